@@ -1,0 +1,90 @@
+//! Colours: 8-bit sRGB as authored, linear light for arithmetic.
+//!
+//! Both conversions go through tables or `libm`, so that a colour is the same number on every platform.
+
+use glam::Vec3;
+
+/// An sRGB colour with straight alpha, as written in files and scene descriptions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct Srgba(pub [u8; 4]);
+
+impl Srgba {
+    /// Opaque white: the colour that changes nothing when multiplied.
+    pub const WHITE: Self = Self([255; 4]);
+
+    /// An opaque colour.
+    pub const fn opaque(red: u8, green: u8, blue: u8) -> Self {
+        Self([red, green, blue, 255])
+    }
+
+    /// Red, green and blue in linear light, each in 0..=1.
+    pub fn linear(self) -> Vec3 {
+        let [red, green, blue, _] = self.0;
+        Vec3::new(linear_from_srgb(red), linear_from_srgb(green), linear_from_srgb(blue))
+    }
+
+    /// Alpha in 0..=1.
+    pub fn alpha(self) -> f32 {
+        f32::from(self.0[3]) / 255.0
+    }
+
+    /// The opaque colour nearest to `linear` light; values outside 0..=1 are clamped.
+    pub fn from_linear(linear: Vec3) -> Self {
+        Self::opaque(srgb_from_linear(linear.x), srgb_from_linear(linear.y), srgb_from_linear(linear.z))
+    }
+}
+
+/// One sRGB channel to linear light in 0..=1 (IEC 61966-2-1).
+pub fn linear_from_srgb(channel: u8) -> f32 {
+    static TABLE: std::sync::LazyLock<[f32; 256]> = std::sync::LazyLock::new(|| {
+        std::array::from_fn(|channel| {
+            let value = channel as f32 / 255.0;
+            if value <= 0.04045 { value / 12.92 } else { libm::powf((value + 0.055) / 1.055, 2.4) }
+        })
+    });
+    TABLE[usize::from(channel)]
+}
+
+/// Linear light to the nearest sRGB channel value (IEC 61966-2-1); clamps to 0..=1, NaN gives 0.
+///
+/// Looks up a table of 4096 steps on the square root of the light, whose rounding stays within one step of
+/// the exact conversion.
+pub fn srgb_from_linear(light: f32) -> u8 {
+    const STEPS: f32 = 4095.0;
+    static TABLE: std::sync::LazyLock<Vec<u8>> = std::sync::LazyLock::new(|| {
+        (0..=STEPS as usize)
+            .map(|step| {
+                let root = step as f32 / STEPS;
+                let light = root * root;
+                let value = if light <= 0.003_130_8 {
+                    light * 12.92
+                } else {
+                    1.055 * libm::powf(light, 1.0 / 2.4) - 0.055
+                };
+                (value * 255.0 + 0.5) as u8
+            })
+            .collect()
+    });
+    let root = light.clamp(0.0, 1.0).sqrt();
+    TABLE[(root * STEPS + 0.5) as usize]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_channel_value_survives_the_round_trip() {
+        for channel in 0..=255 {
+            assert_eq!(srgb_from_linear(linear_from_srgb(channel)), channel);
+        }
+    }
+
+    #[test]
+    fn light_out_of_range_is_clamped() {
+        assert_eq!(srgb_from_linear(-1.0), 0);
+        assert_eq!(srgb_from_linear(7.0), 255);
+        assert_eq!(srgb_from_linear(f32::NAN), 0);
+    }
+}

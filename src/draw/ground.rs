@@ -1,0 +1,143 @@
+//! The ground as a map: heights, slopes and light per post, and how they are coloured.
+//!
+//! The mesh that is drawn may be coarse; colour, contours and shading are taken from here at every pixel,
+//! so the picture shows the elevation model and not the triangles.
+
+use glam::Vec2;
+
+use crate::draw::color::Srgba;
+
+/// What the ground looks like, sampled at the posts of a regular grid; row 0 is the southernmost.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroundMap {
+    /// World X and Y of the south-west post, in metres.
+    pub origin: Vec2,
+    /// Distance between posts eastward and northward, in metres, both positive.
+    pub cell: Vec2,
+    /// Posts per row.
+    pub columns: u32,
+    /// Rows of posts.
+    pub rows: u32,
+    /// One entry a post, row by row from the south-west.
+    pub posts: Vec<GroundPost>,
+    /// Colour by height.
+    pub ramp: Ramp,
+    /// Contour lines; `None` draws none.
+    pub contours: Option<Contours>,
+}
+
+/// The ground at one post.
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct GroundPost {
+    /// Height in metres, without vertical exaggeration; posts without data hold a neighbour's height.
+    pub height_m: f32,
+    /// Rise eastward, metres per metre, with vertical exaggeration.
+    pub slope_east: f32,
+    /// Rise northward, metres per metre, with vertical exaggeration.
+    pub slope_north: f32,
+    /// Share of the sun that reaches the post past other terrain, 0..=1.
+    pub sun_visibility: f32,
+    /// Share of the sky seen from the post, 0..=1.
+    pub sky_visibility: f32,
+}
+
+/// Colours at rising heights, blended linearly in linear light between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ramp {
+    stops: Vec<(f32, Srgba)>,
+}
+
+impl Ramp {
+    /// A ramp from `stops` of height in metres and colour.
+    ///
+    /// `None` where there is no stop, or heights do not rise strictly or are not finite.
+    pub fn new(stops: Vec<(f32, Srgba)>) -> Option<Self> {
+        let finite = stops.iter().all(|(height, _)| height.is_finite());
+        let rising = stops.windows(2).all(|pair| pair[0].0 < pair[1].0);
+        (!stops.is_empty() && finite && rising).then_some(Self { stops })
+    }
+
+    /// The stops, rising.
+    pub fn stops(&self) -> &[(f32, Srgba)] {
+        &self.stops
+    }
+
+    /// The ramp as `steps` colours in linear light, evenly spaced from the lowest to the highest stop.
+    pub fn table(&self, steps: usize) -> Vec<glam::Vec3> {
+        let (low, high) = self.range();
+        (0..steps)
+            .map(|step| self.linear_at(low + (high - low) * step as f32 / (steps - 1).max(1) as f32))
+            .collect()
+    }
+
+    /// The lowest and the highest stop's heights.
+    pub fn range(&self) -> (f32, f32) {
+        (self.stops[0].0, self.stops[self.stops.len() - 1].0)
+    }
+
+    /// The colour at `height_m` in linear light; the end colours beyond the ends.
+    pub fn linear_at(&self, height_m: f32) -> glam::Vec3 {
+        let above = self.stops.partition_point(|stop| stop.0 <= height_m);
+        match (above.checked_sub(1).map(|below| self.stops[below]), self.stops.get(above)) {
+            (Some((low, from)), Some(&(high, to))) => {
+                from.linear().lerp(to.linear(), (height_m - low) / (high - low))
+            }
+            (Some((_, last)), None) => last.linear(),
+            (None, _) => self.stops[0].1.linear(),
+        }
+    }
+}
+
+/// Contour lines, drawn at a constant width on the picture.
+///
+/// At a pixel, `w` is the change of height across one pixel (|∂h/∂x| + |∂h/∂y| on the screen). A line covers
+/// `clamp(width_px / 2 + 0.5 − |h − nearest line| / w, 0, 1)` of it, faded by
+/// `clamp((interval / w − 3) / 5, 0, 1)` so that lines vanish before they run together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contours {
+    /// Height between lines, in metres.
+    pub interval_m: f32,
+    /// Every how many lines one is drawn heavier; 1 makes all heavy.
+    pub major_every: u32,
+    /// The colour, with alpha as strength.
+    pub color: Srgba,
+    /// Width of an ordinary line in pixels; heavier ones are twice as wide.
+    pub width_px: f32,
+}
+
+impl GroundMap {
+    /// The map at world position `at`, bilinear between posts; positions outside take the border's value.
+    pub fn sample(&self, at: Vec2) -> GroundPost {
+        let last = Vec2::new((self.columns - 1) as f32, (self.rows - 1) as f32);
+        let grid = ((at - self.origin) / self.cell).clamp(Vec2::ZERO, last);
+        let cell = grid.floor().min((last - 1.0).max(Vec2::ZERO));
+        let part = grid - cell;
+        let (column, row) = (cell.x as usize, cell.y as usize);
+        let stride = self.columns as usize;
+        let east = usize::from(self.columns > 1);
+        let north = if self.rows > 1 { stride } else { 0 };
+        let first = row * stride + column;
+        let south = self.posts[first].lerp(&self.posts[first + east], part.x);
+        let upper = self.posts[first + north].lerp(&self.posts[first + north + east], part.x);
+        south.lerp(&upper, part.y)
+    }
+}
+
+impl GroundPost {
+    fn lerp(&self, other: &Self, t: f32) -> Self {
+        let mix = |a: f32, b: f32| a + (b - a) * t;
+        Self {
+            height_m: mix(self.height_m, other.height_m),
+            slope_east: mix(self.slope_east, other.slope_east),
+            slope_north: mix(self.slope_north, other.slope_north),
+            sun_visibility: mix(self.sun_visibility, other.sun_visibility),
+            sky_visibility: mix(self.sky_visibility, other.sky_visibility),
+        }
+    }
+
+    /// The upward unit normal.
+    pub fn normal(&self) -> glam::Vec3 {
+        glam::Vec3::new(-self.slope_east, -self.slope_north, 1.0).normalize()
+    }
+}

@@ -1,0 +1,6 @@
+//! Mathematics on `glam` and `geo`: no terrain, no files.
+
+pub mod crs;
+pub mod polygon;
+pub mod polyline;
+pub mod rect;

@@ -1,0 +1,1 @@
+//! Polygons with holes: the one door to `geo`.

@@ -1,0 +1,15 @@
+//! What a renderer gives back.
+
+use crate::draw::list::FeatureId;
+use crate::draw::pixels::Pixels;
+
+/// A rendered picture with its buffers, all of the same size, rows from the top.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// Colours, opaque.
+    pub pixels: Pixels,
+    /// Metres from the eye along the viewing direction at the pixel's centre; infinite for sky.
+    pub depth_m: Vec<f32>,
+    /// The feature at the pixel's centre; [`FeatureId::NONE`] for sky.
+    pub features: Vec<FeatureId>,
+}

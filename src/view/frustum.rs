@@ -1,0 +1,58 @@
+//! The five planes a camera sees within, for culling boxes.
+
+use glam::Vec3;
+
+use crate::view::camera::Camera;
+
+/// The left, right, top, bottom and far planes of a camera, normals inward.
+///
+/// The near plane is left out: what it would cull is a sliver before the eye.
+#[derive(Clone, Copy, Debug)]
+pub struct Frustum {
+    planes: [(Vec3, f32); 5],
+}
+
+impl Frustum {
+    /// The frustum of `camera`.
+    pub fn of(camera: &Camera) -> Self {
+        let (eye, forward) = (camera.eye(), camera.forward());
+        let tan = camera.tan_half_fov();
+        let through_eye = |normal: Vec3| (normal, -normal.dot(eye));
+        let far_point = eye + forward * camera.planes().1;
+        Self {
+            planes: [
+                through_eye(forward * tan.x + camera.right()),
+                through_eye(forward * tan.x - camera.right()),
+                through_eye(forward * tan.y + camera.up()),
+                through_eye(forward * tan.y - camera.up()),
+                (-forward, forward.dot(far_point)),
+            ],
+        }
+    }
+
+    /// Whether some of the box `min..=max` may be seen. Never false for a box that is in view; may be
+    /// true for one that is just outside a corner.
+    pub fn may_see(&self, min: Vec3, max: Vec3) -> bool {
+        self.planes.iter().all(|&(normal, offset)| {
+            let farthest = Vec3::select(normal.cmpge(Vec3::ZERO), max, min);
+            normal.dot(farthest) + offset >= 0.0
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_is_culled_beside_and_behind_but_not_before_the_eye() {
+        let camera = Camera::new(Vec3::ZERO, Vec3::Y, 1.0, (100, 100), (1.0, 1000.0)).expect("sound");
+        let frustum = Frustum::of(&camera);
+        let unit_box_at = |center: Vec3| frustum.may_see(center - 1.0, center + 1.0);
+        assert!(unit_box_at(Vec3::Y * 50.0));
+        assert!(!unit_box_at(Vec3::Y * -50.0));
+        assert!(!unit_box_at(Vec3::new(100.0, 50.0, 0.0)));
+        assert!(!unit_box_at(Vec3::new(0.0, 50.0, 60.0)));
+        assert!(!unit_box_at(Vec3::Y * 1100.0));
+    }
+}
