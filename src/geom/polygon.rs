@@ -1,1 +1,117 @@
 //! Polygons with holes: the one door to `geo`.
+
+use geo::TriangulateEarcut;
+use glam::DVec2;
+
+use crate::geom::rect::Rect;
+
+/// Twice the signed area of the ring; positive where it runs counter-clockwise.
+pub fn doubled_area(ring: &[DVec2]) -> f64 {
+    edges(ring).map(|(from, to)| from.perp_dot(to)).sum()
+}
+
+/// The ring's edges, the closing one last.
+pub fn edges(ring: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
+    let next = ring.iter().cycle().skip(1);
+    ring.iter().copied().zip(next.copied())
+}
+
+/// Whether `point` lies inside by the even-odd rule over all rings: inside the outer ring and in no hole.
+pub fn contains<'a>(rings: impl IntoIterator<Item = &'a [DVec2]>, point: DVec2) -> bool {
+    let crossings = rings.into_iter().flat_map(edges).filter(|&(from, to)| {
+        (from.y > point.y) != (to.y > point.y)
+            && point.x < from.x + (to.x - from.x) * (point.y - from.y) / (to.y - from.y)
+    });
+    crossings.count() % 2 == 1
+}
+
+/// Cuts the polygon with `exterior` and `holes` into counter-clockwise triangles (ear clipping).
+///
+/// Self-intersecting rings give some triangulation of their points, never a panic.
+pub fn triangulate(exterior: &[DVec2], holes: &[Vec<DVec2>]) -> Vec<[DVec2; 3]> {
+    let ring = |points: &[DVec2]| geo::LineString::from_iter(points.iter().map(|p| (p.x, p.y)));
+    let polygon = geo::Polygon::new(ring(exterior), holes.iter().map(|hole| ring(hole)).collect());
+    let corner = |at: geo::Coord| DVec2::new(at.x, at.y);
+    polygon
+        .earcut_triangles()
+        .into_iter()
+        .map(|triangle| [corner(triangle.v1()), corner(triangle.v2()), corner(triangle.v3())])
+        .filter_map(counter_clockwise)
+        .collect()
+}
+
+fn counter_clockwise([a, b, c]: [DVec2; 3]) -> Option<[DVec2; 3]> {
+    let area = (b - a).perp_dot(c - a);
+    if area > 0.0 {
+        Some([a, b, c])
+    } else {
+        (area < 0.0).then_some([a, c, b])
+    }
+}
+
+/// The part of a convex counter-clockwise `polygon` that lies in a convex counter-clockwise `window`
+/// (Sutherland and Hodgman 1974). Empty where they do not overlap.
+///
+/// `polygon` and `scratch` are working space: the result is left in `polygon`.
+pub fn clip_convex(polygon: &mut Vec<DVec2>, scratch: &mut Vec<DVec2>, window: &[DVec2]) {
+    for (from, to) in edges(window) {
+        let side = |point: DVec2| (to - from).perp_dot(point - from);
+        scratch.clear();
+        for (index, &here) in polygon.iter().enumerate() {
+            let before = polygon[(index + polygon.len() - 1) % polygon.len()];
+            let (side_before, side_here) = (side(before), side(here));
+            if (side_before < 0.0) != (side_here < 0.0) {
+                scratch.push(before.lerp(here, side_before / (side_before - side_here)));
+            }
+            if side_here >= 0.0 {
+                scratch.push(here);
+            }
+        }
+        std::mem::swap(polygon, scratch);
+    }
+}
+
+/// The smallest rectangle around the ring.
+pub fn bounds(ring: &[DVec2]) -> Rect {
+    Rect::around(ring.iter().copied())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(low: f64, high: f64) -> Vec<DVec2> {
+        vec![
+            DVec2::new(low, low),
+            DVec2::new(high, low),
+            DVec2::new(high, high),
+            DVec2::new(low, high),
+        ]
+    }
+
+    #[test]
+    fn triangles_cover_the_polygon_without_its_hole() {
+        let triangles = triangulate(&square(0.0, 10.0), &[square(4.0, 6.0)]);
+        let area: f64 = triangles.iter().map(|triangle| doubled_area(triangle) / 2.0).sum();
+        assert!((area - 96.0).abs() < 1e-9);
+        assert!(triangles.iter().all(|triangle| doubled_area(triangle) > 0.0));
+    }
+
+    #[test]
+    fn a_point_in_a_hole_is_outside() {
+        let (outer, hole) = (square(0.0, 10.0), square(4.0, 6.0));
+        let rings = [outer.as_slice(), hole.as_slice()];
+        assert!(contains(rings, DVec2::new(2.0, 5.0)));
+        assert!(!contains(rings, DVec2::new(5.0, 5.0)));
+        assert!(!contains(rings, DVec2::new(-1.0, 5.0)));
+    }
+
+    #[test]
+    fn clipping_leaves_the_overlap() {
+        let mut polygon = square(0.0, 4.0);
+        clip_convex(&mut polygon, &mut Vec::new(), &square(3.0, 9.0));
+        assert!((doubled_area(&polygon) / 2.0 - 1.0).abs() < 1e-12);
+        clip_convex(&mut polygon, &mut Vec::new(), &square(20.0, 21.0));
+        assert!(polygon.is_empty());
+    }
+}
