@@ -1,3 +1,4 @@
 //! Elevation rasters: their georeference, one file per format, warping to a metric system.
 
 pub mod raster;
+pub mod sample;

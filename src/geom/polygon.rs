@@ -42,11 +42,7 @@ pub fn triangulate(exterior: &[DVec2], holes: &[Vec<DVec2>]) -> Vec<[DVec2; 3]> 
 
 fn counter_clockwise([a, b, c]: [DVec2; 3]) -> Option<[DVec2; 3]> {
     let area = (b - a).perp_dot(c - a);
-    if area > 0.0 {
-        Some([a, b, c])
-    } else {
-        (area < 0.0).then_some([a, c, b])
-    }
+    if area > 0.0 { Some([a, b, c]) } else { (area < 0.0).then_some([a, c, b]) }
 }
 
 /// The part of a convex counter-clockwise `polygon` that lies in a convex counter-clockwise `window`
@@ -81,12 +77,7 @@ mod tests {
     use super::*;
 
     fn square(low: f64, high: f64) -> Vec<DVec2> {
-        vec![
-            DVec2::new(low, low),
-            DVec2::new(high, low),
-            DVec2::new(high, high),
-            DVec2::new(low, high),
-        ]
+        vec![DVec2::new(low, low), DVec2::new(high, low), DVec2::new(high, high), DVec2::new(low, high)]
     }
 
     #[test]

@@ -1,1 +1,26 @@
-//! x
+//! The level-of-detail core: longest-edge bisection on one vertex graph.
+//!
+//! A bintree triangle is split at the midpoint of its hypotenuse, and that midpoint is a grid vertex. So the
+//! whole state of a mesh is one bit per vertex — active or not — and the mesh is conforming exactly when
+//! every active vertex has its parents active:
+//!
+//! - `graph` is the arithmetic of vertices: level, parents, children; it knows no heights.
+//! - `bintree` is the arithmetic of triangles: roots of a patch, splitting.
+//! - `layout` lays patches over a lattice of any size.
+//! - `error` measures, once, how far each vertex's triangles are off the ground.
+//! - `active` holds the bits; activating a vertex first activates its parents (the forced split).
+//! - `criterion` turns an error and a camera into a decision.
+//! - `refine` sets the bits from the roots down.
+//! - `emit` reads triangles off the bits.
+//!
+//! Sources: Duchaineau et al. 1997 (ROAM); the patch-based forced splits and the screen-space error of the
+//! later papers; Lindstrom and Pascucci 2001 for errors kept monotone up the graph.
+
+pub mod active;
+pub mod bintree;
+pub mod criterion;
+pub mod emit;
+pub mod error;
+pub mod graph;
+pub mod layout;
+pub mod refine;

@@ -1,0 +1,128 @@
+//! Square patches laid over a lattice of any size.
+//!
+//! Patches of 2ⁿ cells a side start at the south-west post and reach past the lattice's east and north borders
+//! where its size is no multiple of theirs. A vertex beyond a border stands for the nearest post on it: every
+//! axis is mapped monotonically, so triangles across the border shrink to its near side, those beyond it lose
+//! their area and are not drawn, and the mesh stays conforming without a single extra vertex.
+
+use glam::Vec3;
+
+use crate::roam::graph::Vertex;
+use crate::terrain::lattice::{Lattice, Post};
+
+/// How patches cover a lattice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layout {
+    patch: i32,
+    patches_east: i32,
+    patches_north: i32,
+    last_column: i32,
+    last_row: i32,
+}
+
+/// Cells along a patch's side where the caller has no reason for another: 65² vertices keep an index list
+/// within 16 bits, and culling a patch saves up to 8,192 triangles.
+pub const DEFAULT_PATCH: u32 = 64;
+
+impl Layout {
+    /// Patches of `patch` cells a side, a power of two from 2 to 4096, over a lattice of `columns` × `rows`
+    /// posts, at least 2 × 2 and at most 2²⁸ either way. `None` otherwise.
+    pub fn new(columns: u32, rows: u32, patch: u32) -> Option<Self> {
+        let sizes = 2..=1 << 28;
+        if !patch.is_power_of_two()
+            || !(2..=4096).contains(&patch)
+            || !sizes.contains(&columns)
+            || !sizes.contains(&rows)
+        {
+            return None;
+        }
+        Some(Self {
+            patch: patch as i32,
+            patches_east: (columns - 1).div_ceil(patch) as i32,
+            patches_north: (rows - 1).div_ceil(patch) as i32,
+            last_column: columns as i32 - 1,
+            last_row: rows as i32 - 1,
+        })
+    }
+
+    /// Cells along a patch's side.
+    pub fn patch(&self) -> i32 {
+        self.patch
+    }
+
+    /// The south-west corners of all patches, row by row.
+    pub fn patches(&self) -> impl Iterator<Item = Vertex> + use<> {
+        let (patch, east) = (self.patch, self.patches_east);
+        (0..self.patches_north).flat_map(move |y| (0..east).map(move |x| Vertex::new(x * patch, y * patch)))
+    }
+
+    /// How many patches there are.
+    pub fn patch_count(&self) -> usize {
+        self.patches_east as usize * self.patches_north as usize
+    }
+
+    /// Vertices per row.
+    pub fn columns(&self) -> usize {
+        (self.patches_east * self.patch) as usize + 1
+    }
+
+    /// Rows of vertices.
+    pub fn rows(&self) -> usize {
+        (self.patches_north * self.patch) as usize + 1
+    }
+
+    /// How many vertices there are.
+    pub fn vertex_count(&self) -> usize {
+        self.columns() * self.rows()
+    }
+
+    /// Whether the vertex belongs to a patch.
+    pub fn contains(&self, vertex: Vertex) -> bool {
+        (0..self.columns() as i32).contains(&vertex.x) && (0..self.rows() as i32).contains(&vertex.y)
+    }
+
+    /// Where a vertex is stored, row by row. The vertex must be contained.
+    pub fn index(&self, vertex: Vertex) -> usize {
+        debug_assert!(self.contains(vertex), "{vertex:?} is outside {self:?}");
+        vertex.y as usize * self.columns() + vertex.x as usize
+    }
+
+    /// Whether the vertex is a corner of patches, which is always there.
+    pub fn is_corner(&self, vertex: Vertex) -> bool {
+        (vertex.x | vertex.y) & (self.patch - 1) == 0
+    }
+
+    /// The post that a vertex stands for: itself, or the nearest on the border.
+    pub fn post(&self, vertex: Vertex) -> Post {
+        Post { column: vertex.x.min(self.last_column) as u32, row: vertex.y.min(self.last_row) as u32 }
+    }
+
+    /// Whether the vertex is a post of its own and stands for no other.
+    pub fn is_own_post(&self, vertex: Vertex) -> bool {
+        vertex.x <= self.last_column && vertex.y <= self.last_row
+    }
+
+    /// World position of a vertex, its height times `exaggeration`.
+    pub fn position(&self, lattice: &Lattice, vertex: Vertex, exaggeration: f32) -> Vec3 {
+        let post = self.post(vertex);
+        lattice.position(post).extend(lattice.height(post) * exaggeration)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patches_cover_the_lattice_and_no_row_more() {
+        let layout = Layout::new(65, 66, 64).expect("sound");
+        assert_eq!((layout.columns(), layout.rows(), layout.patch_count()), (65, 129, 2));
+        assert_eq!(layout.post(Vertex::new(10, 100)), Post { column: 10, row: 65 });
+    }
+
+    #[test]
+    fn sizes_that_make_no_patches_are_refused() {
+        assert_eq!(Layout::new(65, 65, 48), None);
+        assert_eq!(Layout::new(1, 65, 64), None);
+    }
+}

@@ -1,0 +1,244 @@
+//! The ground as one lattice of posts.
+//!
+//! Posts stand at equal distances east and north of an f64 origin, the south-west post; heights are f32 metres,
+//! NaN where there is no data. Between posts the ground is the plane of the finest bintree triangles: the
+//! diagonal of the cell north-east of post (column, row) joins the two corners whose coordinates are both even
+//! or both odd, as longest-edge bisection leaves it:
+//!
+//! ```text
+//! row 2  o───────o───────o
+//!        │ ╲     │     ╱ │      posts with both coordinates odd or both even
+//!        │   ╲   │   ╱   │      are joined by the diagonals
+//! row 1  o───────o───────o
+//!        │     ╱ │ ╲     │
+//!        │   ╱   │   ╲   │
+//! row 0  o───────o───────o
+//!        0       1       2  column
+//! ```
+
+use glam::{DVec2, Vec2};
+
+use crate::dem::raster::Raster;
+use crate::geom::rect::Rect;
+
+/// Posts of a regular grid with their heights.
+#[derive(Clone, Debug)]
+pub struct Lattice {
+    origin: DVec2,
+    cell: DVec2,
+    columns: u32,
+    rows: u32,
+    heights: Vec<f32>,
+    pinned: Vec<bool>,
+}
+
+/// Why a raster cannot become the ground.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LatticeError {
+    /// The raster is a single row or column.
+    #[error("the elevation model has {0}×{1} samples, at least 2×2 are needed to make a surface")]
+    TooSmall(u32, u32),
+    /// The raster's rows do not run east with north up.
+    #[error("the elevation model's grid is rotated or upside down; it must be warped north-up first")]
+    NotNorthUp,
+    /// All samples are no-data.
+    #[error("the elevation model holds no data at all")]
+    Empty,
+}
+
+/// A post by column and row, counted from the south-west.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Post {
+    /// Eastward.
+    pub column: u32,
+    /// Northward.
+    pub row: u32,
+}
+
+impl Lattice {
+    /// The lattice of a north-up raster in metres.
+    ///
+    /// # Errors
+    /// See [`LatticeError`].
+    pub fn from_raster(raster: &Raster) -> Result<Self, LatticeError> {
+        let (columns, rows) = (raster.width, raster.height);
+        if columns < 2 || rows < 2 {
+            return Err(LatticeError::TooSmall(columns, rows));
+        }
+        let matrix = raster.map_from_grid.matrix2;
+        if matrix.x_axis.x <= 0.0
+            || matrix.y_axis.y >= 0.0
+            || matrix.x_axis.y != 0.0
+            || matrix.y_axis.x != 0.0
+        {
+            return Err(LatticeError::NotNorthUp);
+        }
+        let origin = raster.map_from_grid.transform_point2(DVec2::new(0.5, f64::from(rows) - 0.5));
+        let heights: Vec<f32> = (0..rows)
+            .rev()
+            .flat_map(|row| (0..columns).map(move |column| (column, row)))
+            .map(|(column, row)| raster.at(column, row) as f32)
+            .collect();
+        Self::new(origin, DVec2::new(matrix.x_axis.x, -matrix.y_axis.y), columns, heights)
+    }
+
+    /// A lattice from its heights, row by row from the south-west; all rows full.
+    ///
+    /// # Errors
+    /// See [`LatticeError`].
+    pub fn new(origin: DVec2, cell: DVec2, columns: u32, heights: Vec<f32>) -> Result<Self, LatticeError> {
+        let rows = heights.len().checked_div(columns as usize).unwrap_or(0) as u32;
+        if columns < 2 || rows < 2 || heights.len() != columns as usize * rows as usize {
+            return Err(LatticeError::TooSmall(columns, rows));
+        }
+        if heights.iter().all(|height| height.is_nan()) {
+            return Err(LatticeError::Empty);
+        }
+        let pinned = vec![false; heights.len()];
+        Ok(Self { origin, cell, columns, rows, heights, pinned })
+    }
+
+    /// Map coordinates of the south-west post: the origin of world space.
+    pub fn origin(&self) -> DVec2 {
+        self.origin
+    }
+
+    /// Metres between posts, eastward and northward.
+    pub fn cell(&self) -> DVec2 {
+        self.cell
+    }
+
+    /// Posts per row.
+    pub fn columns(&self) -> u32 {
+        self.columns
+    }
+
+    /// Rows of posts.
+    pub fn rows(&self) -> u32 {
+        self.rows
+    }
+
+    /// All heights, row by row from the south-west.
+    pub fn heights(&self) -> &[f32] {
+        &self.heights
+    }
+
+    /// The rectangle of all posts in world space, the origin's post at (0, 0).
+    pub fn extent(&self) -> Rect {
+        let last = DVec2::new(f64::from(self.columns - 1), f64::from(self.rows - 1));
+        Rect { min: DVec2::ZERO, max: last * self.cell }
+    }
+
+    /// World X and Y of a post.
+    pub fn position(&self, post: Post) -> Vec2 {
+        (DVec2::new(f64::from(post.column), f64::from(post.row)) * self.cell).as_vec2()
+    }
+
+    /// The height of a post, NaN where there is no data. Panics outside the lattice.
+    pub fn height(&self, post: Post) -> f32 {
+        self.heights[self.index(post)]
+    }
+
+    /// Whether the post belongs to something whose true shape must show; see [`Lattice::pin`].
+    pub fn is_pinned(&self, post: Post) -> bool {
+        self.pinned[self.index(post)]
+    }
+
+    /// Sets a post's height and pins it: any drawn triangle that covers it must then be exact.
+    pub fn pin(&mut self, post: Post, height: f32) {
+        let index = self.index(post);
+        self.heights[index] = height;
+        self.pinned[index] = true;
+    }
+
+    /// Where a post is stored.
+    pub fn index(&self, post: Post) -> usize {
+        assert!(post.column < self.columns && post.row < self.rows, "{post:?} is outside the lattice");
+        post.row as usize * self.columns as usize + post.column as usize
+    }
+
+    /// The lowest and highest height; finite, since a lattice holds some data.
+    pub fn height_range(&self) -> (f32, f32) {
+        let start = (f32::INFINITY, f32::NEG_INFINITY);
+        self.heights.iter().fold(start, |(low, high), &height| (low.min(height), high.max(height)))
+    }
+
+    /// The cell that holds a world position and the position within it, 0..=1 east and north; `None` outside.
+    pub fn cell_at(&self, world: DVec2) -> Option<(Post, DVec2)> {
+        let grid = world / self.cell;
+        let last = DVec2::new(f64::from(self.columns - 1), f64::from(self.rows - 1));
+        if !(grid.cmpge(DVec2::ZERO).all() && grid.cmple(last).all()) {
+            return None;
+        }
+        let corner = grid.floor().min(last - 1.0);
+        Some((Post { column: corner.x as u32, row: corner.y as u32 }, grid - corner))
+    }
+
+    /// The heights of a cell's corners: south-west, south-east, north-west, north-east.
+    pub fn corner_heights(&self, cell: Post) -> [f32; 4] {
+        let first = self.index(cell);
+        let stride = self.columns as usize;
+        [
+            self.heights[first],
+            self.heights[first + 1],
+            self.heights[first + stride],
+            self.heights[first + stride + 1],
+        ]
+    }
+
+    /// The slopes at a post, rise per metre eastward and northward: Horn's weighting of the eight neighbours
+    /// (Horn 1981, as `gdaldem` and most hillshades use); missing neighbours take the post's own height.
+    /// Zero where the post has no data.
+    pub fn slopes(&self, post: Post) -> Vec2 {
+        let own = self.height(post);
+        if own.is_nan() {
+            return Vec2::ZERO;
+        }
+        let at = |east: i64, north: i64| -> f32 {
+            let column = (i64::from(post.column) + east).clamp(0, i64::from(self.columns) - 1);
+            let row = (i64::from(post.row) + north).clamp(0, i64::from(self.rows) - 1);
+            let height = self.height(Post { column: column as u32, row: row as u32 });
+            if height.is_nan() { own } else { height }
+        };
+        let east = (at(1, 1) + 2.0 * at(1, 0) + at(1, -1)) - (at(-1, 1) + 2.0 * at(-1, 0) + at(-1, -1));
+        let north = (at(1, 1) + 2.0 * at(0, 1) + at(-1, 1)) - (at(1, -1) + 2.0 * at(0, -1) + at(-1, -1));
+        let span = |index: u32, count: u32| if index == 0 || index + 1 == count { 4.0 } else { 8.0 };
+        Vec2::new(
+            east / (span(post.column, self.columns) * self.cell.x as f32),
+            north / (span(post.row, self.rows) * self.cell.y as f32),
+        )
+    }
+
+    /// All posts, row by row from the south-west.
+    pub fn posts(&self) -> impl Iterator<Item = Post> + use<> {
+        let (columns, rows) = (self.columns, self.rows);
+        (0..rows).flat_map(move |row| (0..columns).map(move |column| Post { column, row }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plane() -> Lattice {
+        let heights = (0..12).map(|index| (index % 4) as f32 * 2.0 - (index / 4) as f32).collect();
+        Lattice::new(DVec2::new(500.0, 900.0), DVec2::new(10.0, 5.0), 4, heights).expect("sound")
+    }
+
+    #[test]
+    fn slopes_of_a_plane_are_exact_inside_and_at_the_border() {
+        let lattice = plane();
+        for post in lattice.posts() {
+            assert!((lattice.slopes(post) - Vec2::new(0.2, -0.2)).length() < 1e-6, "{post:?}");
+        }
+    }
+
+    #[test]
+    fn the_border_belongs_to_the_lattice_and_beyond_it_nothing() {
+        let lattice = plane();
+        let (cell, part) = lattice.cell_at(DVec2::new(30.0, 10.0)).expect("the last post");
+        assert_eq!((cell, part), (Post { column: 2, row: 1 }, DVec2::ONE));
+        assert_eq!(lattice.cell_at(DVec2::new(30.1, 3.0)), None);
+        assert_eq!(lattice.cell_at(DVec2::new(f64::NAN, 3.0)), None);
+    }
+}
