@@ -1,1 +1,10 @@
-//! x
+//! What lies on the ground: roads, rivers and lakes as meshes cut to the displayed triangles.
+//!
+//! `stroke` and `area` make triangles in plan; `drape` cuts them along the edges of the displayed triangles, so
+//! that every piece lies in the plane of one of them and nothing sinks or floats, whatever the level of detail.
+
+pub mod area;
+pub mod drape;
+pub mod plan;
+pub mod stroke;
+pub mod texture;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, Vec3};
+use glam::Vec3;
 
 use crate::geom::rect::Rect;
 use crate::mesh::sink::{MeshSink, VertexId};
@@ -19,13 +19,18 @@ pub struct DisplayedTerrain {
     active: ActiveSet,
     exaggeration: f32,
     patches: Vec<Vertex>,
+    shown: Vec<bool>,
 }
 
 impl DisplayedTerrain {
     /// The terrain that `active` shows of `lattice`, heights drawn times `exaggeration`, in the patches whose
     /// south-west corners are listed.
     pub fn new(lattice: Arc<Lattice>, active: ActiveSet, exaggeration: f32, patches: Vec<Vertex>) -> Self {
-        Self { lattice, active, exaggeration, patches }
+        let mut shown = vec![false; active.layout().patch_count()];
+        for &corner in &patches {
+            shown[active.layout().patch_index(corner)] = true;
+        }
+        Self { lattice, active, exaggeration, patches, shown }
     }
 
     /// The bits.
@@ -85,13 +90,14 @@ impl DisplayedTerrain {
 
     /// The patches, of those displayed, that meet the world rectangle.
     fn patches_meeting(&self, rect: &Rect) -> impl Iterator<Item = Vertex> {
-        let side = DVec2::splat(f64::from(self.active.layout().patch())) * self.lattice.cell();
-        let rect = *rect;
-        self.patches.iter().copied().filter(move |corner| {
-            let min = DVec2::new(f64::from(corner.x), f64::from(corner.y)) * self.lattice.cell();
-            // World positions are f32: a patch's own corner may round past its f64 border.
-            Rect { min, max: min + side }.grown(1e-6 * side.max_element()).meets(&rect)
-        })
+        let layout = self.active.layout();
+        let side = f64::from(layout.patch()) * self.lattice.cell();
+        // World positions are f32: a patch's own corner may round past its f64 border.
+        let rect = rect.grown(1e-6 * side.max_element());
+        let (first, last) = ((rect.min / side).floor(), (rect.max / side).floor());
+        layout
+            .patches_within((first.x as i32, first.y as i32), (last.x as i32, last.y as i32))
+            .filter(|&corner| self.shown[layout.patch_index(corner)])
     }
 }
 
@@ -120,6 +126,7 @@ mod tests {
     use crate::mesh::check;
     use crate::mesh::trimesh::TriMesh;
     use crate::roam::layout::Layout;
+    use glam::DVec2;
     use proptest::prelude::*;
 
     fn lattice(columns: u32, rows: u32, holes: &[usize]) -> Arc<Lattice> {

@@ -56,6 +56,23 @@ impl Layout {
         (0..self.patches_north).flat_map(move |y| (0..east).map(move |x| Vertex::new(x * patch, y * patch)))
     }
 
+    /// The south-west corners of the patches from (`first`) to (`last`) east and north, counted in patches and
+    /// ends included; those beyond the borders are left out.
+    pub fn patches_within(
+        &self,
+        first: (i32, i32),
+        last: (i32, i32),
+    ) -> impl Iterator<Item = Vertex> + use<> {
+        let east = first.0.max(0)..=last.0.min(self.patches_east - 1);
+        let (patch, north) = (self.patch, first.1.max(0)..=last.1.min(self.patches_north - 1));
+        north.flat_map(move |y| east.clone().map(move |x| Vertex::new(x * patch, y * patch)))
+    }
+
+    /// The place of the patch with south-west corner `corner` in [`Layout::patches`].
+    pub fn patch_index(&self, corner: Vertex) -> usize {
+        (corner.y / self.patch * self.patches_east + corner.x / self.patch) as usize
+    }
+
     /// How many patches there are.
     pub fn patch_count(&self) -> usize {
         self.patches_east as usize * self.patches_north as usize

@@ -109,7 +109,7 @@ mod tests {
     fn the_whole_polygon_lies_on_level_cells() {
         let mut lattice = slope();
         let ring = vec![DVec2::new(32.0, 32.0), DVec2::new(58.0, 41.0), DVec2::new(44.0, 67.0)];
-        level(&mut lattice, &[ring.clone()], 5.0);
+        level(&mut lattice, std::slice::from_ref(&ring), 5.0);
         for step in 0..200 {
             let (from, to) = polygon::edges(&ring).nth(step % 3).expect("three edges");
             let at = from.lerp(to, f64::from(step as u32 / 3) / 66.0).lerp(DVec2::new(44.0, 45.0), 0.001);

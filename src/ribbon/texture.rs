@@ -1,0 +1,103 @@
+//! Procedural textures for what lies on the ground; the same pixels on every machine.
+
+use crate::draw::color::Srgba;
+use crate::draw::pixels::Pixels;
+
+/// What a ribbon is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Surface {
+    /// A paved road: dark carriageway, light edge lines and a dashed centre line.
+    Asphalt,
+    /// A gravel road.
+    Gravel,
+    /// Two wheel tracks with grass between.
+    Track,
+    /// Running water: light in the stream, dark along the banks.
+    River,
+    /// Still water.
+    Lake,
+}
+
+const SIZE: u32 = 128;
+
+/// The texture of `surface`: U across (0 left edge, 1 right edge), V along.
+pub fn texture(surface: Surface) -> Pixels {
+    Pixels::from_fn(SIZE, SIZE, |x, y| {
+        let (u, v) = ((x as f32 + 0.5) / SIZE as f32, (y as f32 + 0.5) / SIZE as f32);
+        let grain = grain(x, y);
+        match surface {
+            Surface::Asphalt => asphalt(u, v, grain),
+            Surface::Gravel => gravel(u, grain),
+            Surface::Track => track(u, grain),
+            Surface::River => river(u, grain),
+            Surface::Lake => shade([74, 124, 158], (grain - 0.5) * 5.0),
+        }
+    })
+}
+
+/// Metres along a ribbon of `width_m` in one repeat of its texture: dashes keep their proportion to the width.
+pub fn texture_length_m(surface: Surface, width_m: f64) -> f64 {
+    match surface {
+        Surface::Asphalt => width_m * 2.5,
+        _ => width_m * 2.0,
+    }
+}
+
+fn asphalt(u: f32, v: f32, grain: f32) -> Srgba {
+    let from_edge = u.min(1.0 - u);
+    let dash = (u - 0.5).abs() < 0.028 && v < 0.55;
+    if from_edge < 0.055 {
+        shade([58, 54, 50], 0.0)
+    } else if from_edge < 0.115 || dash {
+        shade([243, 238, 222], 0.0)
+    } else {
+        shade([126, 116, 110], (grain - 0.5) * 14.0)
+    }
+}
+
+fn gravel(u: f32, grain: f32) -> Srgba {
+    let from_edge = u.min(1.0 - u);
+    if from_edge < 0.09 { shade([112, 92, 66], 0.0) } else { shade([214, 194, 154], (grain - 0.5) * 34.0) }
+}
+
+fn track(u: f32, grain: f32) -> Srgba {
+    let wheel = ((u - 0.5).abs() - 0.27).abs() < 0.15;
+    if wheel {
+        shade([176, 148, 108], (grain - 0.5) * 30.0)
+    } else {
+        shade([122, 124, 82], (grain - 0.5) * 30.0)
+    }
+}
+
+fn river(u: f32, grain: f32) -> Srgba {
+    let depth = 1.0 - (2.0 * u - 1.0).abs();
+    let light = (depth * 2.2).min(1.0);
+    let mix = |bank: f32, stream: f32| bank + (stream - bank) * light;
+    shade([mix(38.0, 92.0) as u8, mix(84.0, 150.0) as u8, mix(118.0, 190.0) as u8], (grain - 0.5) * 8.0)
+}
+
+fn shade(color: [u8; 3], by: f32) -> Srgba {
+    let [red, green, blue] = color.map(|channel| (f32::from(channel) + by).clamp(0.0, 255.0) as u8);
+    Srgba::opaque(red, green, blue)
+}
+
+/// A fixed number in 0..1 for each pixel, without pattern (a 32-bit integer hash, Wellons 2018).
+fn grain(x: u32, y: u32) -> f32 {
+    let mut hash = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b);
+    hash = (hash ^ hash >> 16).wrapping_mul(0x7feb_352d);
+    hash = (hash ^ hash >> 15).wrapping_mul(0x846c_a68b);
+    (hash >> 16 & 0xffff) as f32 / 65536.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_road_has_light_edge_lines_and_water_none() {
+        let road = texture(Surface::Asphalt);
+        let light = |pixels: &Pixels| (0..SIZE).filter(|&x| pixels.at(x, SIZE - 4).0[0] > 230).count();
+        assert!(light(&road) > 8);
+        assert_eq!(light(&texture(Surface::Lake)), 0);
+    }
+}
