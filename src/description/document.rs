@@ -1,139 +1,211 @@
-//! The scene file's tables, one struct each. Lengths are metres, angles degrees, unless a key says otherwise.
+//! The scene file's tables, one struct each: the reference of what a scene file may say.
+//!
+//! A scene file is TOML in UTF-8. Lengths and heights are metres, angles degrees, compass directions
+//! clockwise from north, coordinates `[easting, northing]` or `[longitude, latitude]`, and file names
+//! relative to the scene file, unless a key says otherwise. Keys that are not listed here are errors. Every
+//! number is finite; the range of each is stated, with `(` where the end itself is not allowed.
+//!
+//! ```toml
+//! title = "The hill"
+//! crs = "EPSG:32616"
+//!
+//! [terrain]
+//! dem = "hill.tif"
+//!
+//! [style]
+//! ramp = "atlas"
+//! contours = { interval = 20 }
+//!
+//! [[road]]
+//! file = "roads.geojson"
+//! where = { highway = ["primary", "secondary"] }
+//! width = 8
+//!
+//! [[camera]]
+//! name = "south"
+//! eye = [500000, 4649000]
+//! eye_height = 300
+//! look_at = [500000, 4650000]
+//! ```
+//!
+//! The structs keep optional values optional: defaults are stated here and applied where the scene is built,
+//! so that what the user wrote and what was assumed can be told apart. Values that may turn out wrong only
+//! then (a file that is not there, a point off the terrain) are [`Spanned`]; [`Document::error`] makes a
+//! message that points at one.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
 
-use serde::Deserialize;
 use toml::Spanned;
 
+use crate::description::diagnostic::Diagnostic;
+use crate::description::source_text::SourceText;
+use crate::description::words::{Clamp, LabelKind, Ramp, Surface};
+
 /// A whole scene file.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct Document {
-    /// The picture's title.
+    /// The text it was read from; what messages point into.
+    pub source: Arc<SourceText>,
+    /// `title`: the picture's title. Default: none.
     pub title: Option<String>,
-    /// A second line under the title.
+    /// `subtitle`: a second line under the title. Default: none.
     pub subtitle: Option<String>,
-    /// The scene's coordinate system, metric: `EPSG:n` or a proj string. Default: the DEM's own, or the UTM
-    /// zone of its centre where it is in degrees.
+    /// `crs`: the scene's coordinate system, `EPSG:n` or a proj string, in metres. Default: the DEM's own, or
+    /// the UTM zone of its centre where it is in degrees.
     pub crs: Option<Spanned<String>>,
-    /// The coordinate system that inline points are written in, unless a feature says otherwise. Default:
-    /// the scene's.
+    /// `points_crs`: the coordinate system that inline points are written in, unless a feature says
+    /// otherwise. Default: the scene's.
     pub points_crs: Option<Spanned<String>>,
-    /// The ground.
+    /// `[terrain]`, needed: the ground.
     pub terrain: Terrain,
-    /// How it looks.
-    #[serde(default)]
+    /// `[style]`: how the ground looks.
     pub style: Style,
-    /// Roads, in drawing order.
-    #[serde(default, rename = "road")]
+    /// `[[road]]`: in drawing order; at most 10 000, as of every repeated table.
     pub roads: Vec<Road>,
-    /// Rivers, in drawing order.
-    #[serde(default, rename = "river")]
+    /// `[[river]]`: in drawing order.
     pub rivers: Vec<River>,
-    /// Lakes.
-    #[serde(default, rename = "lake")]
+    /// `[[lake]]`.
     pub lakes: Vec<Lake>,
-    /// Models set on the ground.
-    #[serde(default, rename = "model")]
+    /// `[[model]]`: what stands on the ground.
     pub models: Vec<ModelPlacement>,
-    /// Names and heights on the picture.
-    #[serde(default, rename = "label")]
+    /// `[[label]]`: names and heights on the picture.
     pub labels: Vec<Label>,
-    /// Views; the first is the default.
-    #[serde(default, rename = "camera")]
+    /// `[[camera]]`: views; the first is the default. Without any, one is made that sees everything.
     pub cameras: Vec<CameraTable>,
-    /// Title, north arrow, scale bar and legend.
-    #[serde(default)]
+    /// `[furniture]`: title, north arrow, scale bar and legend.
     pub furniture: Furniture,
 }
 
+impl Document {
+    /// `message` about a value, pointing at its place.
+    pub fn error<T>(&self, value: &Spanned<T>, message: impl Into<String>) -> Diagnostic {
+        self.error_at(value.span(), message)
+    }
+
+    /// `message` about the bytes `span` of the scene file.
+    pub fn error_at(&self, span: Range<usize>, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(&self.source, span, message)
+    }
+}
+
 /// `[terrain]`: the elevation model.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct Terrain {
-    /// The elevation file, relative to the scene file.
+    /// `dem`, needed: the elevation file.
     pub dem: Spanned<String>,
-    /// The DEM's coordinate system where the file names none or a wrong one.
+    /// `crs`: the DEM's coordinate system where the file names none or a wrong one. Default: what it names.
     pub crs: Option<Spanned<String>>,
-    /// Metres per unit of a 16-bit PNG's sample value; needed for PNG, refused for others.
+    /// `height_scale`: metres per unit of a 16-bit PNG's sample value, in (0, 10⁶]; needed for PNG, refused
+    /// for others.
     pub height_scale: Option<Spanned<f64>>,
-    /// Height in metres of sample value 0 of a 16-bit PNG. Default 0.
+    /// `height_offset`: height in metres of sample value 0 of a 16-bit PNG, in [−10⁷, 10⁷]. Default 0.
     pub height_offset: Option<Spanned<f64>>,
-    /// Distance in metres between samples of a file without georeference; its south-west sample then stands
-    /// at (0, 0).
+    /// `cell`: distance in metres between samples of a file without georeference, in (0, 10⁶]; its south-west
+    /// sample then stands at (0, 0).
     pub cell: Option<Spanned<f64>>,
-    /// How many times heights are stretched when drawn. Default 1.
+    /// `vertical_exaggeration`: how many times heights are stretched when drawn, in (0, 1000]. Default 1.
     pub vertical_exaggeration: Option<Spanned<f64>>,
-    /// How many pixels the drawn ground may be off. Default 1.
+    /// `tolerance_px`: how many pixels the drawn ground may be off, in (0, 1000]. Default 1.
     pub tolerance_px: Option<Spanned<f64>>,
 }
 
 /// `[style]`: how the ground looks.
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default)]
 pub struct Style {
-    /// A named ramp (`atlas`, `desert`, `grey`) or a list of `[height, "#rrggbb"]` stops. Default `atlas`.
+    /// `ramp`: `"atlas"`, `"desert"`, `"grey"`, or from 2 to 256 stops `[[height, "#rrggbb"], ...]`. Default
+    /// `"atlas"`.
     pub ramp: Option<Spanned<RampChoice>>,
-    /// Contour lines. Absent: none.
+    /// `[style.contours]`: contour lines. Default: none.
     pub contours: Option<ContourTable>,
-    /// Where the light comes from.
-    #[serde(default)]
+    /// `[style.light]`: where the light comes from.
     pub light: Light,
-    /// Distance in metres at which 63 % of what is seen is haze; 0 for clear air. Default: eight times
-    /// the longer side of the terrain.
+    /// `haze`: distance in metres at which 63 % of what is seen is haze, in [0, 10⁹]; 0 for clear air.
+    /// Default: eight times the longer side of the terrain.
     pub haze: Option<Spanned<f64>>,
 }
 
 /// A ramp by name or by its stops.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(untagged)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum RampChoice {
     /// A built-in ramp, stretched from the lowest to the highest ground.
-    Named(String),
-    /// Heights in metres and colours.
-    Stops(Vec<(f64, String)>),
+    Named(Ramp),
+    /// At least two heights in metres, growing, and their colours.
+    Stops(Vec<(f64, Color)>),
+}
+
+/// A colour as written: sRGB red, green, blue and straight alpha.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Color(pub [u8; 4]);
+
+impl Color {
+    /// The colour that `#rgb`, `#rrggbb` or `#rrggbbaa` names; without alpha it is opaque.
+    pub fn parse(text: &str) -> Option<Self> {
+        let digits = text.strip_prefix('#')?.chars().map(|digit| digit.to_digit(16));
+        let digits: Vec<u8> =
+            digits.take(9).map(|digit| digit.map(|digit| digit as u8)).collect::<Option<_>>()?;
+        match digits[..] {
+            [r, g, b] => Some(Self([r * 17, g * 17, b * 17, 255])),
+            [_, _, _, _, _, _] | [_, _, _, _, _, _, _, _] => {
+                let mut channels = [255; 4];
+                for (channel, pair) in channels.iter_mut().zip(digits.chunks(2)) {
+                    *channel = pair[0] * 16 + pair[1];
+                }
+                Some(Self(channels))
+            }
+            _ => None,
+        }
+    }
 }
 
 /// `[style.contours]`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct ContourTable {
-    /// Height between lines.
+    /// `interval`, needed: height in metres between lines, in [0.01, 10⁵].
     pub interval: Spanned<f64>,
-    /// Every how many lines one is drawn heavier. Default 5.
+    /// `major_every`: every how many lines one is drawn heavier, from 1 to 1000. Default 5.
     pub major_every: Option<Spanned<u32>>,
-    /// Colour, `#rrggbb` or `#rrggbbaa`. Default a translucent brown.
-    pub color: Option<Spanned<String>>,
+    /// `color`: `#rgb`, `#rrggbb` or `#rrggbbaa`. Default: a translucent brown.
+    pub color: Option<Spanned<Color>>,
 }
 
 /// `[style.light]`.
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default)]
 pub struct Light {
-    /// Where the sun stands, clockwise from north. Default 315 (north-west).
+    /// `azimuth`: where the sun stands, in [−360, 360]. Default 315 (north-west).
     pub azimuth: Option<Spanned<f64>>,
-    /// How high it stands above the horizon, above 0 to 90. Default 45.
+    /// `altitude`: how high it stands above the horizon, in (0, 90]. Default 45.
     pub altitude: Option<Spanned<f64>>,
 }
 
-/// Where a feature's coordinates come from: inline `points`, or `file` with an optional filter.
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(default)]
+/// Where a feature's coordinates come from: inline `points`, or `file` with an optional filter; exactly one
+/// of the two. These keys stand in the feature's own table.
+#[derive(Clone, Debug, Default)]
 pub struct Source {
-    /// Inline coordinates.
+    /// `points`: inline coordinates, at least two for a line and three for a lake, at most 100 000, each in
+    /// ±10⁹. A lake's last point may repeat its first.
     pub points: Option<Spanned<Vec<[f64; 2]>>>,
-    /// A vector file, relative to the scene file.
+    /// `file`: a vector file.
     pub file: Option<Spanned<String>>,
-    /// Only features whose properties match: a value, or a list of which one must be equal.
-    #[serde(rename = "where")]
+    /// `where`, only with `file`: only features whose properties match all of it, each by a value or by one
+    /// of a list of up to 256 values. Default: all features.
     pub filter: Option<Spanned<BTreeMap<String, Match>>>,
-    /// The coordinate system of `points` or of a file that names none or a wrong one.
+    /// `crs`: the coordinate system of `points`, or of a file that names none or a wrong one. Default: the
+    /// scene's `points_crs`, or what the file names.
     pub crs: Option<Spanned<String>>,
 }
 
+impl Source {
+    /// The place of the coordinates or of the file's name, for messages.
+    pub fn span(&self) -> Range<usize> {
+        let points = self.points.as_ref().map(Spanned::span);
+        points.or_else(|| self.file.as_ref().map(Spanned::span)).unwrap_or(0..0)
+    }
+}
+
 /// What a property must equal.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(untagged)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Match {
     /// One of several values.
     AnyOf(Vec<Scalar>),
@@ -141,9 +213,18 @@ pub enum Match {
     Is(Scalar),
 }
 
+impl Match {
+    /// The values of which the property must equal one.
+    pub fn values(&self) -> &[Scalar] {
+        match self {
+            Self::AnyOf(values) => values,
+            Self::Is(value) => std::slice::from_ref(value),
+        }
+    }
+}
+
 /// A property's value.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(untagged)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Scalar {
     /// True or false.
     Bool(bool),
@@ -154,119 +235,128 @@ pub enum Scalar {
 }
 
 /// `[[road]]`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug)]
 pub struct Road {
-    /// For messages and the feature list.
+    /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
-    /// The centreline.
-    #[serde(flatten)]
+    /// `points`, `file`, `where` and `crs`: the centreline.
     pub source: Source,
-    /// Carriageway width. Default 6.
+    /// `width`: of the carriageway, in (0, 10 000]. Default 6.
     pub width: Option<Spanned<f64>>,
-    /// `asphalt`, `gravel` or `track`. Default `asphalt`.
-    pub surface: Option<Spanned<String>>,
+    /// `surface`: `"asphalt"`, `"gravel"` or `"track"`. Default `"asphalt"`.
+    pub surface: Option<Spanned<Surface>>,
 }
 
 /// `[[river]]`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug)]
 pub struct River {
-    /// For messages and the feature list.
+    /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
-    /// The centreline.
-    #[serde(flatten)]
+    /// `points`, `file`, `where` and `crs`: the centreline.
     pub source: Source,
-    /// Width of the water. Default 8.
+    /// `width`: of the water, in (0, 10 000]. Default 8.
     pub width: Option<Spanned<f64>>,
 }
 
 /// `[[lake]]`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug)]
 pub struct Lake {
-    /// For messages and the feature list.
+    /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
-    /// The shore.
-    #[serde(flatten)]
+    /// `points`, `file`, `where` and `crs`: the shore.
     pub source: Source,
-    /// The water's level. Default: the lowest ground along the shore.
+    /// `level`: the water's elevation, in [−10⁷, 10⁷]. Default: the lowest ground along the shore.
     pub level: Option<Spanned<f64>>,
 }
 
 /// `[[model]]`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug)]
 pub struct ModelPlacement {
-    /// For messages and the feature list.
+    /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
-    /// The model file, relative to the scene file.
+    /// `file`, needed: the model file.
     pub file: Spanned<String>,
-    /// Where its origin stands.
+    /// `at`, needed: where its origin stands.
     pub at: Spanned<[f64; 2]>,
-    /// The coordinate system of `at`.
+    /// `crs`: the coordinate system of `at`. Default: the scene's `points_crs`.
     pub crs: Option<Spanned<String>>,
-    /// Which way its front points, clockwise from north. Default 0.
+    /// `heading`: which way its front points, in [−360, 360]. Default 0 (north).
     pub heading: Option<Spanned<f64>>,
-    /// Metres per unit of the model file. Default 1.
+    /// `scale`: metres per unit of the model file, in (0, 10⁶]. Default 1.
     pub scale: Option<Spanned<f64>>,
-    /// `ground`: its lowest point on the ground; `relative`: `height` above the ground; `absolute`: at
-    /// elevation `height`. Default `ground`.
-    pub clamp: Option<Spanned<String>>,
-    /// For `relative` and `absolute`.
+    /// `clamp`: `"ground"`, its lowest point on the ground; `"relative"`, `height` above the ground;
+    /// `"absolute"`, at elevation `height`. Default `"ground"`.
+    pub clamp: Option<Spanned<Clamp>>,
+    /// `height`, in [−10⁷, 10⁷]: needed for `"relative"` and `"absolute"`, refused for `"ground"`.
     pub height: Option<Spanned<f64>>,
 }
 
 /// `[[label]]`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct Label {
-    /// What it says; `{height}` becomes the ground's elevation in whole metres.
+    /// `text`, needed: what it says; `{height}` becomes the ground's elevation in whole metres.
     pub text: Spanned<String>,
-    /// The place it names.
+    /// `at`, needed: the place it names.
     pub at: Spanned<[f64; 2]>,
-    /// The coordinate system of `at`.
+    /// `crs`: the coordinate system of `at`. Default: the scene's `points_crs`.
     pub crs: Option<Spanned<String>>,
-    /// How far above the ground the leader line starts. Default 0.
+    /// `height`: how far above the ground the leader line starts, in [0, 10⁷]. Default 0.
     pub height: Option<Spanned<f64>>,
-    /// `summit`, `place`, `water` or `point`. Default `place`.
-    pub kind: Option<Spanned<String>>,
+    /// `kind`: `"summit"`, `"place"`, `"water"` or `"point"`. Default `"place"`.
+    pub kind: Option<Spanned<LabelKind>>,
 }
 
 /// `[[camera]]`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct CameraTable {
-    /// How `--camera` calls it.
+    /// `name`, needed: how `--camera` calls it; no two alike.
     pub name: Spanned<String>,
-    /// Where the eye is.
+    /// `eye`, needed: where the eye is.
     pub eye: Spanned<[f64; 2]>,
-    /// How high the eye is above the ground. Default 2; give this or `eye_elevation`.
+    /// `eye_height`: how high the eye is above the ground, in [0, 10⁷]. Default 2.
     pub eye_height: Option<Spanned<f64>>,
-    /// The eye's elevation.
+    /// `eye_elevation`, instead of `eye_height`: the eye's elevation, in [−10⁷, 10⁷].
     pub eye_elevation: Option<Spanned<f64>>,
-    /// What it looks at, on the ground.
+    /// `look_at`, needed: what it looks at, on the ground.
     pub look_at: Spanned<[f64; 2]>,
-    /// How high above the ground it looks. Default 0.
+    /// `look_at_height`: how high above the ground it looks, in [−10⁷, 10⁷]. Default 0.
     pub look_at_height: Option<Spanned<f64>>,
-    /// The coordinate system of `eye` and `look_at`.
+    /// `crs`: the coordinate system of `eye` and `look_at`. Default: the scene's `points_crs`.
     pub crs: Option<Spanned<String>>,
-    /// Vertical field of view. Default 40.
+    /// `field_of_view`: vertical, in [1, 170]. Default 40.
     pub field_of_view: Option<Spanned<f64>>,
 }
 
-/// `[furniture]`: what frames the picture; all shown unless turned off.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+/// `[furniture]`: what frames the picture; `true` or `false`, all shown unless turned off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Furniture {
-    /// Title and subtitle.
+    /// `title`: title and subtitle.
     pub title: bool,
-    /// The north arrow.
+    /// `north_arrow`: the north arrow.
     pub north_arrow: bool,
-    /// The scale bar.
+    /// `scale_bar`: the scale bar.
     pub scale_bar: bool,
-    /// The elevation legend.
+    /// `legend`: the elevation legend.
     pub legend: bool,
 }
 
 impl Default for Furniture {
     fn default() -> Self {
         Self { title: true, north_arrow: true, scale_bar: true, legend: true }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_have_three_six_or_eight_digits() {
+        assert_eq!(Color::parse("#fa0"), Some(Color([255, 170, 0, 255])));
+        assert_eq!(Color::parse("#102030"), Some(Color([16, 32, 48, 255])));
+        assert_eq!(Color::parse("#10203040"), Some(Color([16, 32, 48, 64])));
+        for bad in ["", "#", "102030", "#1020", "#12345", "#ggg", "#1020304050", "#１２３"] {
+            assert_eq!(Color::parse(bad), None, "{bad}");
+        }
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use crate::geom::crs::Crs;
+use crate::geom::crs::{Crs, CrsError};
 
 /// All features of one file.
 #[derive(Clone, Debug)]
@@ -13,10 +13,12 @@ pub struct Layer {
     pub features: Vec<Feature>,
     /// The system of all coordinates: what the file states, else its format's default.
     pub crs: Crs,
+    /// What the file holds that no feature came of, for the user to know.
+    pub notes: Vec<String>,
 }
 
 /// One feature.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Feature {
     /// Its shape; multi-part shapes hold several lines, polygons or points.
     pub geometry: Geometry,
@@ -42,4 +44,107 @@ pub struct Polygon {
     pub exterior: Vec<DVec2>,
     /// Holes, at least three vertices each.
     pub holes: Vec<Vec<DVec2>>,
+}
+
+impl Layer {
+    /// The same features in the system `to`.
+    ///
+    /// # Errors
+    /// [`CrsError`] for the first vertex that either system cannot express.
+    pub fn transformed(mut self, to: &Crs) -> Result<Self, CrsError> {
+        if self.crs != *to {
+            let from = self.crs.clone();
+            for vertex in self.features.iter_mut().flat_map(|feature| feature.geometry.vertices_mut()) {
+                *vertex = from.transform(to, *vertex)?;
+            }
+        }
+        self.crs = to.clone();
+        Ok(self)
+    }
+}
+
+impl Feature {
+    /// Its lines; none for points and polygons.
+    pub fn lines(&self) -> &[Vec<DVec2>] {
+        match &self.geometry {
+            Geometry::Lines(lines) => lines,
+            Geometry::Points(_) | Geometry::Polygons(_) => &[],
+        }
+    }
+
+    /// Its polygons; none for points and lines.
+    pub fn polygons(&self) -> &[Polygon] {
+        match &self.geometry {
+            Geometry::Polygons(polygons) => polygons,
+            Geometry::Points(_) | Geometry::Lines(_) => &[],
+        }
+    }
+
+    /// Its points; none for lines and polygons.
+    pub fn points(&self) -> &[DVec2] {
+        match &self.geometry {
+            Geometry::Points(points) => points,
+            Geometry::Lines(_) | Geometry::Polygons(_) => &[],
+        }
+    }
+}
+
+impl Geometry {
+    /// `points`, `lines` or `polygons`.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Points(_) => "points",
+            Self::Lines(_) => "lines",
+            Self::Polygons(_) => "polygons",
+        }
+    }
+
+    /// All its vertices, part by part.
+    pub fn vertices(&self) -> Box<dyn Iterator<Item = &DVec2> + '_> {
+        match self {
+            Self::Points(points) => Box::new(points.iter()),
+            Self::Lines(lines) => Box::new(lines.iter().flatten()),
+            Self::Polygons(polygons) => Box::new(
+                polygons
+                    .iter()
+                    .flat_map(|polygon| polygon.exterior.iter().chain(polygon.holes.iter().flatten())),
+            ),
+        }
+    }
+
+    fn vertices_mut(&mut self) -> Box<dyn Iterator<Item = &mut DVec2> + '_> {
+        match self {
+            Self::Points(points) => Box::new(points.iter_mut()),
+            Self::Lines(lines) => Box::new(lines.iter_mut().flatten()),
+            Self::Polygons(polygons) => {
+                Box::new(polygons.iter_mut().flat_map(|polygon| {
+                    polygon.exterior.iter_mut().chain(polygon.holes.iter_mut().flatten())
+                }))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_layer_is_brought_to_another_system_with_its_holes() {
+        let ring = |size: f64| {
+            vec![DVec2::new(15.0, 48.0), DVec2::new(15.0 + size, 48.0), DVec2::new(15.0, 48.0 + size)]
+        };
+        let polygon = Polygon { exterior: ring(0.1), holes: vec![ring(0.01)] };
+        let geometry = Geometry::Polygons(vec![polygon]);
+        let feature = Feature { geometry, properties: BTreeMap::new() };
+        let layer = Layer { features: vec![feature], crs: Crs::wgs84(), notes: Vec::new() };
+        let utm = Crs::utm_at(15.0, 48.0);
+        let moved = layer.transformed(&utm).expect("in the zone");
+        assert_eq!(moved.crs, utm);
+        let vertices: Vec<_> = moved.features[0].geometry.vertices().copied().collect();
+        assert_eq!(vertices.len(), 6);
+        assert!(vertices.iter().all(|vertex| vertex.y > 5.0e6), "{vertices:?}");
+        assert_eq!(vertices[0], vertices[3]);
+        assert!((vertices[0].x - 500_000.0).abs() < 1e-3, "on the central meridian: {}", vertices[0]);
+    }
 }

@@ -1,0 +1,250 @@
+//! The scene file's tables, key by key: which there are, what each may hold, and which exclude each other.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use toml::Spanned;
+
+use crate::description::document::{
+    CameraTable, ContourTable, Document, Furniture, Label, Lake, Light, ModelPlacement, River, Road, Source,
+    Style, Terrain,
+};
+use crate::description::item::{Bounds, ELEVATION};
+use crate::description::reader::Reader;
+use crate::description::source_text::SourceText;
+use crate::description::words::Clamp;
+use crate::geom::crs::Crs;
+
+/// Widths of roads and rivers in metres.
+const WIDTH: Bounds = Bounds::Above(0.0, 10_000.0);
+/// Compass directions in degrees.
+const DIRECTION: Bounds = Bounds::Within(-360.0, 360.0);
+
+/// The whole file.
+pub(super) fn document(reader: &mut Reader<'_, '_>, source: Arc<SourceText>) -> Option<Document> {
+    let title = plain_text(reader, "title");
+    let subtitle = plain_text(reader, "subtitle");
+    let crs = reader.get("crs", |item| item.crs(metric));
+    let points_crs = any_crs(reader, "points_crs");
+    let terrain = reader.require_table("terrain", terrain);
+    let style = reader.table("style", style).unwrap_or_default();
+    let roads = reader.tables("road", road);
+    let rivers = reader.tables("river", river);
+    let lakes = reader.tables("lake", lake);
+    let models = reader.tables("model", model);
+    let labels = reader.tables("label", label);
+    let cameras = reader.tables("camera", camera);
+    distinct_names(reader, &source, &cameras);
+    let furniture = reader.table("furniture", furniture).unwrap_or_default();
+    let terrain = terrain.flatten()?;
+    Some(Document {
+        source,
+        title,
+        subtitle,
+        crs,
+        points_crs,
+        terrain,
+        style,
+        roads,
+        rivers,
+        lakes,
+        models,
+        labels,
+        cameras,
+        furniture,
+    })
+}
+
+fn terrain(reader: &mut Reader<'_, '_>) -> Option<Terrain> {
+    let dem = reader.require("dem", |item| item.filled_text());
+    let crs = any_crs(reader, "crs");
+    let height_scale = number(reader, "height_scale", Bounds::Above(0.0, 1e6));
+    let height_offset = number(reader, "height_offset", ELEVATION);
+    let cell = number(reader, "cell", Bounds::Above(0.0, 1e6));
+    let vertical_exaggeration = number(reader, "vertical_exaggeration", Bounds::Above(0.0, 1000.0));
+    let tolerance_px = number(reader, "tolerance_px", Bounds::Above(0.0, 1000.0));
+    Some(Terrain { dem: dem?, crs, height_scale, height_offset, cell, vertical_exaggeration, tolerance_px })
+}
+
+fn style(reader: &mut Reader<'_, '_>) -> Style {
+    Style {
+        ramp: reader.get("ramp", |item| item.ramp()),
+        contours: reader.table("contours", contours).flatten(),
+        light: reader.table("light", light).unwrap_or_default(),
+        haze: number(reader, "haze", Bounds::Within(0.0, 1e9)),
+    }
+}
+
+fn contours(reader: &mut Reader<'_, '_>) -> Option<ContourTable> {
+    let interval = reader.require("interval", |item| item.number(Bounds::Within(0.01, 100_000.0)));
+    let major_every = reader.get("major_every", |item| item.whole(1..=1000));
+    let color = reader.get("color", |item| item.color());
+    Some(ContourTable { interval: interval?, major_every, color })
+}
+
+fn light(reader: &mut Reader<'_, '_>) -> Light {
+    Light {
+        azimuth: number(reader, "azimuth", DIRECTION),
+        altitude: number(reader, "altitude", Bounds::Above(0.0, 90.0)),
+    }
+}
+
+fn road(reader: &mut Reader<'_, '_>) -> Option<Road> {
+    let name = plain_text(reader, "name");
+    let source = source(reader, 2);
+    let width = number(reader, "width", WIDTH);
+    let surface = reader.get("surface", |item| item.word());
+    Some(Road { name, source: source?, width, surface })
+}
+
+fn river(reader: &mut Reader<'_, '_>) -> Option<River> {
+    let name = plain_text(reader, "name");
+    let source = source(reader, 2);
+    let width = number(reader, "width", WIDTH);
+    Some(River { name, source: source?, width })
+}
+
+fn lake(reader: &mut Reader<'_, '_>) -> Option<Lake> {
+    let name = plain_text(reader, "name");
+    let source = source(reader, 3);
+    let level = number(reader, "level", ELEVATION);
+    Some(Lake { name, source: source?, level })
+}
+
+/// The four keys that say where a feature's coordinates come from: `points` or `file`, not both; a filter
+/// only for a file.
+fn source(reader: &mut Reader<'_, '_>, least_points: usize) -> Option<Source> {
+    let given = [reader.has("points"), reader.has("file"), reader.has("where")];
+    let points = reader.get("points", |item| item.points(least_points));
+    let file = reader.get("file", |item| item.filled_text());
+    let filter = reader.get("where", |item| item.filter());
+    let crs = any_crs(reader, "crs");
+    let title = reader.title();
+    match given {
+        [Some(_), Some(file), _] => {
+            reader.error(file, format!("{title} has both `points` and `file`"), "keep one of them");
+        }
+        [Some(_), None, Some(filter)] => {
+            reader.error(
+                filter,
+                "`where` chooses features of a file, but the points are given here",
+                "remove it",
+            );
+        }
+        [None, None, _] => {
+            let help = "add `points = [[x, y], ...]` or `file = \"name.geojson\"`";
+            reader.error_if_unexplained(
+                &["points", "file"],
+                format!("{title} has neither `points` nor `file`"),
+                help,
+            );
+        }
+        _ => {}
+    }
+    Some(Source { points, file, filter, crs })
+}
+
+fn model(reader: &mut Reader<'_, '_>) -> Option<ModelPlacement> {
+    let name = plain_text(reader, "name");
+    let file = reader.require("file", |item| item.filled_text());
+    let at = reader.require("at", |item| item.point());
+    let crs = any_crs(reader, "crs");
+    let heading = number(reader, "heading", DIRECTION);
+    let scale = number(reader, "scale", Bounds::Above(0.0, 1e6));
+    let clamp = reader.get("clamp", |item| item.word());
+    let has_height = reader.has("height");
+    let height = number(reader, "height", ELEVATION);
+    match (clamp.as_ref().map_or(Clamp::Ground, |clamp| *clamp.get_ref()), has_height, &clamp) {
+        (Clamp::Ground, Some(span), _) => {
+            let help = "add `clamp = \"relative\"` or `clamp = \"absolute\"`, or remove it";
+            reader.error(span, "`height` says nothing for a model that stands on the ground", help);
+        }
+        (Clamp::Relative | Clamp::Absolute, None, Some(clamp)) => {
+            reader.error(clamp.span(), "this needs a `height`", "add `height = ...` in metres");
+        }
+        _ => {}
+    }
+    Some(ModelPlacement { name, file: file?, at: at?, crs, heading, scale, clamp, height })
+}
+
+fn label(reader: &mut Reader<'_, '_>) -> Option<Label> {
+    let text = reader.require("text", |item| item.filled_text());
+    let at = reader.require("at", |item| item.point());
+    let crs = any_crs(reader, "crs");
+    let height = number(reader, "height", Bounds::Within(0.0, 1e7));
+    let kind = reader.get("kind", |item| item.word());
+    Some(Label { text: text?, at: at?, crs, height, kind })
+}
+
+fn camera(reader: &mut Reader<'_, '_>) -> Option<CameraTable> {
+    let name = reader.require("name", |item| item.filled_text());
+    let eye = reader.require("eye", |item| item.point());
+    let eye_height = number(reader, "eye_height", Bounds::Within(0.0, 1e7));
+    let eye_elevation = number(reader, "eye_elevation", ELEVATION);
+    let look_at = reader.require("look_at", |item| item.point());
+    let look_at_height = number(reader, "look_at_height", ELEVATION);
+    let crs = any_crs(reader, "crs");
+    let field_of_view = number(reader, "field_of_view", Bounds::Within(1.0, 170.0));
+    if let (Some(_), Some(elevation)) = (&eye_height, &eye_elevation) {
+        let help = "keep `eye_height` to measure from the ground, or `eye_elevation` to measure from the sea";
+        reader.error(elevation.span(), "the eye has both a height and an elevation", help);
+    }
+    let (name, eye, look_at) = (name?, eye?, look_at?);
+    Some(CameraTable { name, eye, eye_height, eye_elevation, look_at, look_at_height, crs, field_of_view })
+}
+
+fn furniture(reader: &mut Reader<'_, '_>) -> Furniture {
+    let shown = |reader: &mut Reader<'_, '_>, key| {
+        reader.get(key, |item| item.switch()).is_none_or(Spanned::into_inner)
+    };
+    Furniture {
+        title: shown(reader, "title"),
+        north_arrow: shown(reader, "north_arrow"),
+        scale_bar: shown(reader, "scale_bar"),
+        legend: shown(reader, "legend"),
+    }
+}
+
+fn distinct_names(reader: &mut Reader<'_, '_>, source: &SourceText, cameras: &[CameraTable]) {
+    let mut seen = BTreeMap::new();
+    for camera in cameras {
+        let name = camera.name.get_ref();
+        if let Some(first) = seen.get(name) {
+            let line = source.line_column(*first).line;
+            let message = format!("the camera on line {line} already has this name");
+            reader.error(camera.name.span(), message, "give each camera a name of its own");
+        } else {
+            seen.insert(name, camera.name.span().start);
+        }
+    }
+}
+
+fn plain_text(reader: &mut Reader<'_, '_>, key: &'static str) -> Option<String> {
+    reader.get(key, |item| item.text()).map(Spanned::into_inner)
+}
+
+fn number(reader: &mut Reader<'_, '_>, key: &'static str, bounds: Bounds) -> Option<Spanned<f64>> {
+    reader.get(key, |item| item.number(bounds))
+}
+
+fn any_crs(reader: &mut Reader<'_, '_>, key: &'static str) -> Option<Spanned<String>> {
+    reader.get(key, |item| item.crs(|_| Ok(())))
+}
+
+/// A scene's own system must be metric, since its heights, widths and distances are metres.
+fn metric(crs: &Crs) -> Result<(), String> {
+    if crs.is_geographic() {
+        return Err(format!(
+            "the scene's coordinate system must be metric, but {} is in degrees",
+            crs.name()
+        ));
+    }
+    let unit = crs.metres_per_unit();
+    if unit != 1.0 {
+        return Err(format!(
+            "the scene's coordinate system must be metric, but a unit of {} is {unit} m",
+            crs.name()
+        ));
+    }
+    Ok(())
+}

@@ -1,0 +1,380 @@
+//! One value of the scene file on its way from TOML to a type: what it may be, and what to say if it is not.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::RangeInclusive;
+
+use toml::Spanned;
+use toml::de::{DeArray, DeValue};
+
+use crate::description::diagnostic::Report;
+use crate::description::document::{Color, Match, RampChoice, Scalar};
+use crate::description::suggest::{quoted, remedy};
+use crate::description::words::Word;
+use crate::geom::crs::Crs;
+
+/// The largest coordinate, in any unit: beyond it centimetres are lost to rounding.
+const MAX_COORDINATE: f64 = 1e9;
+/// The most inline points of one feature; longer lines belong in a file.
+const MAX_POINTS: usize = 100_000;
+/// The longest text, in characters.
+const MAX_TEXT: usize = 4096;
+/// The most stops of a ramp and the most values of a filter's list.
+const MAX_LIST: usize = 256;
+
+/// A value, the key it was given for, and where to say what is wrong with it.
+pub(super) struct Item<'a, 'i> {
+    pub report: &'a mut Report,
+    pub key: &'a str,
+    pub value: &'a Spanned<DeValue<'i>>,
+}
+
+/// The numbers a key allows; never NaN or infinite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Bounds {
+    /// Greater than the first, up to the second.
+    Above(f64, f64),
+    /// From the first to the second.
+    Within(f64, f64),
+}
+
+impl Bounds {
+    fn hold(self, number: f64) -> bool {
+        match self {
+            Self::Above(low, high) => number > low && number <= high,
+            Self::Within(low, high) => number >= low && number <= high,
+        }
+    }
+}
+
+impl fmt::Display for Bounds {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Above(low, high) => {
+                write!(out, "greater than {} and at most {}", Short(*low), Short(*high))
+            }
+            Self::Within(low, high) => write!(out, "from {} to {}", Short(*low), Short(*high)),
+        }
+    }
+}
+
+/// A number as people write it: without a tail of zeros.
+struct Short(f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let size = self.0.abs();
+        if size.is_finite() && (size >= 1e7 || (size > 0.0 && size < 1e-6)) {
+            write!(out, "{:e}", self.0)
+        } else {
+            write!(out, "{}", self.0)
+        }
+    }
+}
+
+/// What a value is, in the words of messages.
+pub(super) fn kind_of(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(_) => "text",
+        DeValue::Integer(_) | DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "true or false",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a table",
+    }
+}
+
+/// The number that `value` is; `None` where it is none or is too large for what TOML can hold.
+fn as_number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Integer(whole) => {
+            i64::from_str_radix(whole.as_str(), whole.radix()).ok().map(|whole| whole as f64)
+        }
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        _ => None,
+    }
+}
+
+impl<'i> Item<'_, 'i> {
+    fn wrong(&mut self, message: impl Into<String>, help: impl Into<String>) {
+        self.report.error(self.value.span(), message, Some(help.into()));
+    }
+
+    fn wrong_kind(&mut self, wanted: &str, help: impl Into<String>) {
+        let found = kind_of(self.value.get_ref());
+        self.wrong(format!("`{}` must be {wanted}, but this is {found}", self.key), help);
+    }
+
+    fn element<'b>(&'b mut self, value: &'b Spanned<DeValue<'i>>) -> Item<'b, 'i> {
+        Item { report: self.report, key: self.key, value }
+    }
+
+    /// A finite number within `bounds`.
+    pub fn number(mut self, bounds: Bounds) -> Option<f64> {
+        match as_number(self.value.get_ref()) {
+            Some(number) if bounds.hold(number) => Some(number),
+            Some(number) => {
+                let message = format!("`{}` must be {bounds}, but this is {}", self.key, Short(number));
+                self.wrong(message, "give a number in that range");
+                None
+            }
+            None => {
+                self.not_a_number(&bounds.to_string());
+                None
+            }
+        }
+    }
+
+    /// A whole number within `bounds`.
+    pub fn whole(mut self, bounds: RangeInclusive<u32>) -> Option<u32> {
+        let wanted = format!("from {} to {}", bounds.start(), bounds.end());
+        match as_number(self.value.get_ref()) {
+            Some(number)
+                if number == number.trunc() && bounds.contains(&(number as u32)) && number >= 0.0 =>
+            {
+                Some(number as u32)
+            }
+            Some(number) => {
+                let message =
+                    format!("`{}` must be a whole number {wanted}, but this is {}", self.key, Short(number));
+                self.wrong(message, "give a number in that range");
+                None
+            }
+            None => {
+                self.not_a_number(&wanted);
+                None
+            }
+        }
+    }
+
+    fn not_a_number(&mut self, wanted: &str) {
+        let help = match self.value.get_ref() {
+            DeValue::String(text) if text.trim().parse::<f64>().is_ok() => {
+                format!("write {} without quotes", text.trim())
+            }
+            _ => format!("give a number {wanted}"),
+        };
+        self.wrong_kind("a number", help);
+    }
+
+    /// True or false.
+    pub fn switch(mut self) -> Option<bool> {
+        match self.value.get_ref() {
+            DeValue::Boolean(on) => Some(*on),
+            _ => {
+                self.wrong_kind("true or false", "write true or false, without quotes");
+                None
+            }
+        }
+    }
+
+    /// Text of bounded length; may be empty.
+    pub fn text(mut self) -> Option<String> {
+        match self.value.get_ref() {
+            DeValue::String(text) if text.chars().nth(MAX_TEXT).is_none() => Some(text.to_string()),
+            DeValue::String(_) => {
+                self.wrong(format!("`{}` is longer than {MAX_TEXT} characters", self.key), "shorten it");
+                None
+            }
+            _ => {
+                self.wrong_kind("text", "write it in double quotes");
+                None
+            }
+        }
+    }
+
+    /// Text with something in it.
+    pub fn filled_text(mut self) -> Option<String> {
+        let text = self.element(self.value).text()?;
+        if text.trim().is_empty() {
+            self.wrong(format!("`{}` is empty", self.key), "write something in it, or leave the key out");
+            return None;
+        }
+        Some(text)
+    }
+
+    /// Text that names a coordinate reference system; `check` may refuse what it names.
+    pub fn crs(mut self, check: impl FnOnce(&Crs) -> Result<(), String>) -> Option<String> {
+        let text = self.element(self.value).filled_text()?;
+        let refused = match Crs::parse(&text).map_err(|error| error.to_string()) {
+            Ok(crs) => check(&crs).err(),
+            Err(error) => Some(error),
+        };
+        match refused {
+            None => Some(text),
+            Some(reason) => {
+                let help = "write \"EPSG:n\", for example \"EPSG:32616\", or a proj string in metres";
+                self.wrong(reason, help);
+                None
+            }
+        }
+    }
+
+    /// One of `W`'s words.
+    pub fn word<W: Word>(mut self) -> Option<W> {
+        let words: Vec<&str> = W::ALL.iter().map(|(word, _)| *word).collect();
+        let DeValue::String(text) = self.value.get_ref() else {
+            self.wrong_kind("a word in quotes", remedy("", &words, "it may be"));
+            return None;
+        };
+        let found = W::ALL.iter().find(|(word, _)| word == text);
+        if found.is_none() {
+            let message = format!("`{}` cannot be \"{}\"", self.key, quoted(text));
+            self.wrong(message, remedy(text, &words, "it may be"));
+        }
+        found.map(|(_, value)| *value)
+    }
+
+    /// `#rgb`, `#rrggbb` or `#rrggbbaa`.
+    pub fn color(mut self) -> Option<Color> {
+        let help = "write \"#rgb\", \"#rrggbb\" or \"#rrggbbaa\" in hexadecimal digits";
+        let DeValue::String(text) = self.value.get_ref() else {
+            self.wrong_kind("a colour in quotes", help);
+            return None;
+        };
+        let color = Color::parse(text);
+        if color.is_none() {
+            self.wrong(format!("\"{}\" is not a colour", quoted(text)), help);
+        }
+        color
+    }
+
+    /// A coordinate pair.
+    pub fn point(mut self) -> Option<[f64; 2]> {
+        let help =
+            "write [easting, northing], or [longitude, latitude] in degrees; heights come from the ground";
+        match self.value.get_ref() {
+            DeValue::Array(pair) if pair.len() == 2 => {
+                let bounds = Bounds::Within(-MAX_COORDINATE, MAX_COORDINATE);
+                let east = self.element(&pair[0]).number(bounds);
+                let north = self.element(&pair[1]).number(bounds);
+                Some([east?, north?])
+            }
+            DeValue::Array(other) => {
+                let message = format!("a point has two numbers, but this has {}", other.len());
+                self.wrong(message, help);
+                None
+            }
+            _ => {
+                self.wrong_kind("a point", help);
+                None
+            }
+        }
+    }
+
+    /// At least `least` coordinate pairs; a closing point that repeats the first one is not counted where
+    /// `least` asks for a ring of three.
+    pub fn points(mut self, least: usize) -> Option<Vec<[f64; 2]>> {
+        let help = format!("write at least {least} points as [[x1, y1], [x2, y2], ...]");
+        let DeValue::Array(list) = self.value.get_ref() else {
+            self.wrong_kind("a list of points", help);
+            return None;
+        };
+        if list.len() > MAX_POINTS {
+            let message = format!("{} points are more than the {MAX_POINTS} allowed here", list.len());
+            self.wrong(message, "put them in a GeoJSON file and name it with `file`");
+            return None;
+        }
+        let points: Vec<_> = list.iter().map(|point| self.element(point).point()).collect();
+        let points: Vec<[f64; 2]> = points.into_iter().collect::<Option<_>>()?;
+        let closed = least > 2 && points.len() > 1 && points.first() == points.last();
+        let count = points.len() - usize::from(closed);
+        if count < least {
+            self.wrong(format!("`{}` has {count} of the {least} points it needs", self.key), help);
+            return None;
+        }
+        Some(points)
+    }
+
+    /// A ramp's name, or its stops from low to high.
+    pub fn ramp(mut self) -> Option<RampChoice> {
+        match self.value.get_ref() {
+            DeValue::Array(stops) => self.stops(stops).map(RampChoice::Stops),
+            _ => self.word().map(RampChoice::Named),
+        }
+    }
+
+    fn stops(&mut self, list: &DeArray<'i>) -> Option<Vec<(f64, Color)>> {
+        let help = "write [[height, \"#rrggbb\"], ...] with heights in metres that grow";
+        if !(2..=MAX_LIST).contains(&list.len()) {
+            self.wrong(format!("a ramp has from 2 to {MAX_LIST} stops, but this has {}", list.len()), help);
+            return None;
+        }
+        let stops: Vec<_> = list.iter().map(|stop| self.element(stop).stop(help)).collect();
+        let stops: Vec<(f64, Color)> = stops.into_iter().collect::<Option<_>>()?;
+        if let Some(at) = stops.windows(2).position(|pair| pair[0].0 >= pair[1].0) {
+            self.element(&list[at + 1]).wrong("this stop is not higher than the one before it", help);
+            return None;
+        }
+        Some(stops)
+    }
+
+    fn stop(mut self, help: &str) -> Option<(f64, Color)> {
+        match self.value.get_ref() {
+            DeValue::Array(pair) if pair.len() == 2 => {
+                let height = self.element(&pair[0]).number(ELEVATION);
+                let color = self.element(&pair[1]).color();
+                Some((height?, color?))
+            }
+            _ => {
+                self.wrong("a stop is a height and a colour", help);
+                None
+            }
+        }
+    }
+
+    /// A filter: properties and the values they may have.
+    pub fn filter(mut self) -> Option<BTreeMap<String, Match>> {
+        let help = "write { property = value } or { property = [value, value] }";
+        let DeValue::Table(table) = self.value.get_ref() else {
+            self.wrong_kind("a table", help);
+            return None;
+        };
+        if table.is_empty() {
+            self.wrong(format!("`{}` names no property", self.key), help);
+            return None;
+        }
+        let matches: Vec<_> = table
+            .iter()
+            .map(|(property, wanted)| {
+                let item = Item { report: self.report, key: property.get_ref(), value: wanted };
+                Some((property.get_ref().to_string(), item.wanted()?))
+            })
+            .collect();
+        matches.into_iter().collect()
+    }
+
+    fn wanted(mut self) -> Option<Match> {
+        match self.value.get_ref() {
+            DeValue::Array(list) if (1..=MAX_LIST).contains(&list.len()) => {
+                let values: Vec<_> = list.iter().map(|value| self.element(value).scalar()).collect();
+                values.into_iter().collect::<Option<_>>().map(Match::AnyOf)
+            }
+            DeValue::Array(list) => {
+                let message = format!("`{}` lists {} values", quoted(self.key), list.len());
+                self.wrong(message, format!("list from 1 to {MAX_LIST}"));
+                None
+            }
+            _ => self.scalar().map(Match::Is),
+        }
+    }
+
+    fn scalar(mut self) -> Option<Scalar> {
+        match self.value.get_ref() {
+            DeValue::Boolean(value) => Some(Scalar::Bool(*value)),
+            DeValue::String(text) => Some(Scalar::Text(text.to_string())),
+            DeValue::Integer(_) | DeValue::Float(_) => {
+                self.number(Bounds::Within(f64::MIN, f64::MAX)).map(Scalar::Number)
+            }
+            _ => {
+                let message =
+                    format!("`{}` cannot equal {}", quoted(self.key), kind_of(self.value.get_ref()));
+                self.wrong(message, "write text, a number, true or false, or a list of those");
+                None
+            }
+        }
+    }
+}
+
+/// Heights in metres: from below any sea to above any camera's orbit.
+pub(super) const ELEVATION: Bounds = Bounds::Within(-1e7, 1e7);

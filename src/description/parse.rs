@@ -1,0 +1,111 @@
+//! Text to [`Document`], with every error in the file found in one run.
+
+use std::ops::Range;
+
+use toml::de::DeTable;
+
+use crate::description::decode::document;
+use crate::description::diagnostic::{Diagnostic, Diagnostics, Report};
+use crate::description::document::Document;
+use crate::description::reader::Reader;
+use crate::description::source_text::SourceText;
+
+/// The largest scene file in bytes. Room for some hundred thousand points; reading costs up to a hundred
+/// bytes of memory for each byte of a hostile file, so this also bounds memory to a few hundred megabytes.
+pub const MAX_BYTES: usize = 4 << 20;
+
+/// The scene that `text` describes; `file_name` is what messages call the file.
+///
+/// # Errors
+/// Everything wrong in the file as far as it can be told without another file. Where the text is not TOML,
+/// only that is reported, since what the rest means is then a guess.
+pub fn parse(file_name: &str, text: &str) -> Result<Document, Diagnostics> {
+    if text.len() > MAX_BYTES {
+        return Err(too_large(file_name, text.len()));
+    }
+    let source = SourceText::new(file_name, text);
+    let mut report = Report::new(source.clone());
+    let (table, errors) = DeTable::parse_recoverable(text);
+    let mut last_line = None;
+    for error in in_order(&errors) {
+        let span = error.span().unwrap_or(0..0);
+        let line = source.line_at(span.start).start;
+        if last_line.replace(line) != Some(line) {
+            let (message, help) = syntax(error.message(), &text[clamped(&span, text)]);
+            report.error(span, message, help);
+        }
+    }
+    if errors.iter().any(|error| error.message() != DUPLICATE) {
+        return Err(report.into_diagnostics().unwrap_or_else(|| unread(file_name)));
+    }
+    let parsed = Reader::read_root(&mut report, table.into_inner(), |reader| document(reader, source));
+    match (report.into_diagnostics(), parsed) {
+        (None, Some(document)) => Ok(document),
+        (errors, _) => Err(errors.unwrap_or_else(|| unread(file_name))),
+    }
+}
+
+/// As [`parse`], for bytes as they come from a disk.
+///
+/// # Errors
+/// As [`parse`], and where the bytes are not UTF-8.
+pub fn parse_bytes(file_name: &str, bytes: &[u8]) -> Result<Document, Diagnostics> {
+    if bytes.len() > MAX_BYTES {
+        return Err(too_large(file_name, bytes.len()));
+    }
+    match std::str::from_utf8(bytes) {
+        Ok(text) => parse(file_name, text),
+        Err(error) => {
+            let source = SourceText::new(file_name, String::from_utf8_lossy(bytes));
+            let at = error.valid_up_to();
+            let wrong = Diagnostic::new(&source, at..at + '\u{fffd}'.len_utf8(), "this is not UTF-8 text");
+            Err(wrong.with_help("save the file as UTF-8").into())
+        }
+    }
+}
+
+/// What the TOML parser says of a key that is there already.
+const DUPLICATE: &str = "duplicate key";
+
+fn in_order(errors: &[toml::de::Error]) -> Vec<&toml::de::Error> {
+    let mut sorted: Vec<_> = errors.iter().collect();
+    sorted.sort_by_key(|error| error.span().map_or(0, |span| span.start));
+    sorted
+}
+
+/// A sentence and a remedy for the TOML parser's message about the text `found`.
+fn syntax(message: &str, found: &str) -> (String, Option<String>) {
+    match message {
+        DUPLICATE => (format!("`{found}` is already given above"), Some("remove one of the two".into())),
+        _ if message.starts_with("string values must be quoted") && found.is_empty() => {
+            ("a value is missing here".into(), Some("write one after the `=`".into()))
+        }
+        _ if message.starts_with("string values must be quoted") => {
+            ("text must be in quotes".into(), Some(format!("write \"{}\"", found.trim())))
+        }
+        _ => (message.into(), None),
+    }
+}
+
+/// `span` within `text`, on character boundaries, at most one line of 60 bytes.
+fn clamped(span: &Range<usize>, text: &str) -> Range<usize> {
+    let start = text.floor_char_boundary(span.start);
+    let end = text.floor_char_boundary(span.end.min(start + 60)).max(start);
+    start..text[start..end].find('\n').map_or(end, |feed| start + feed)
+}
+
+fn too_large(file_name: &str, bytes: usize) -> Diagnostics {
+    let source = SourceText::new(file_name, "");
+    Diagnostic::new(
+        &source,
+        0..0,
+        format!("the scene file has {bytes} bytes, more than the {MAX_BYTES} allowed"),
+    )
+    .with_help("put long lists of points in GeoJSON files and name them with `file`")
+    .into()
+}
+
+/// For a table that could not be read though nothing was reported: our own bug, said politely.
+fn unread(file_name: &str) -> Diagnostics {
+    Diagnostic::new(&SourceText::new(file_name, ""), 0..0, "the scene file cannot be understood").into()
+}

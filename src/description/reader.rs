@@ -1,0 +1,255 @@
+//! Takes the keys out of one TOML table, one by one; what is left over at the end was not known.
+//!
+//! Hand-written rather than derived: a derived deserialiser stops at the first error, loses the place of a
+//! value inside flattened structs, and cannot say which key was meant. Here reading never stops, and every
+//! key that is asked for is thereby known, so that the list of valid keys cannot drift from the code.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::description::diagnostic::Report;
+use crate::description::item::{Item, kind_of};
+use crate::description::suggest::{listed, nearest, quoted};
+
+/// The most tables of one kind (`[[road]]`, `[[label]]` …) in a scene; far above what a picture can show.
+const MAX_TABLES: usize = 10_000;
+/// Keys that stand before the first table, and end up in the wrong one when written after it.
+const TOP_KEYS: [&str; 4] = ["title", "subtitle", "crs", "points_crs"];
+
+/// One table while it is read.
+pub(super) struct Reader<'r, 'i> {
+    report: &'r mut Report,
+    table: DeTable<'i>,
+    path: Path,
+    span: Range<usize>,
+    known: Vec<&'static str>,
+    missing: Vec<&'static str>,
+}
+
+/// What a table is called.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Path {
+    dotted: String,
+    repeated: bool,
+}
+
+impl Path {
+    fn inside(&self, key: &str, repeated: bool) -> Self {
+        let dot = if self.dotted.is_empty() { "" } else { "." };
+        Self { dotted: format!("{}{dot}{key}", self.dotted), repeated }
+    }
+
+    /// `[style.light]`, `[[road]]` or `the scene file`.
+    fn title(&self) -> String {
+        match (self.dotted.as_str(), self.repeated) {
+            ("", _) => "the scene file".into(),
+            (dotted, true) => format!("[[{dotted}]]"),
+            (dotted, false) => format!("[{dotted}]"),
+        }
+    }
+}
+
+impl<'r, 'i> Reader<'r, 'i> {
+    /// Reads the whole file's table with `decode`.
+    pub fn read_root<T>(
+        report: &'r mut Report,
+        table: DeTable<'i>,
+        decode: impl FnOnce(&mut Reader<'_, 'i>) -> T,
+    ) -> T {
+        Reader::read(report, table, Path::default(), 0..0, decode)
+    }
+
+    fn read<T>(
+        report: &'r mut Report,
+        table: DeTable<'i>,
+        path: Path,
+        span: Range<usize>,
+        decode: impl FnOnce(&mut Reader<'_, 'i>) -> T,
+    ) -> T {
+        let mut reader = Reader { report, table, path, span, known: Vec::new(), missing: Vec::new() };
+        let value = decode(&mut reader);
+        reader.finish();
+        value
+    }
+
+    /// The table's header or, for an inline table, all of it.
+    pub fn span(&self) -> Range<usize> {
+        self.span.clone()
+    }
+
+    /// `[style.light]`, `[[road]]` or `the scene file`.
+    pub fn title(&self) -> String {
+        self.path.title()
+    }
+
+    /// Notes an error.
+    pub fn error(&mut self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) {
+        self.report.error(span, message, Some(help.into()));
+    }
+
+    /// Where `key` stands, whatever its value; `None` where it is absent. To be asked before its value.
+    pub fn has(&self, key: &str) -> Option<Range<usize>> {
+        self.table.get_key_value(key).map(|(key, _)| key.span())
+    }
+
+    /// Notes an error about the table, unless a key that is none looks like one of `keys` misspelt.
+    pub fn error_if_unexplained(&mut self, keys: &[&'static str], message: String, help: &str) {
+        let explains = |unknown: &str| nearest(unknown, keys.iter().copied()).is_some();
+        let asked_for = |key: &str| self.known.contains(&key);
+        if !self.table.keys().any(|key| !asked_for(key.get_ref()) && explains(key.get_ref())) {
+            self.error(self.span(), message, help);
+        }
+    }
+
+    /// The value of `key` as `decode` understands it; `None` where the key is absent or its value wrong.
+    pub fn get<T>(
+        &mut self,
+        key: &'static str,
+        decode: impl FnOnce(Item<'_, 'i>) -> Option<T>,
+    ) -> Option<Spanned<T>> {
+        let (_, value) = self.take(key)?;
+        self.decode(key, &value, decode)
+    }
+
+    /// As [`Self::get`], but the key must be there.
+    pub fn require<T>(
+        &mut self,
+        key: &'static str,
+        decode: impl FnOnce(Item<'_, 'i>) -> Option<T>,
+    ) -> Option<Spanned<T>> {
+        let Some((_, value)) = self.take(key) else {
+            self.missing.push(key);
+            return None;
+        };
+        self.decode(key, &value, decode)
+    }
+
+    /// The table `key`, `None` where it is absent.
+    pub fn table<T>(
+        &mut self,
+        key: &'static str,
+        decode: impl FnOnce(&mut Reader<'_, 'i>) -> T,
+    ) -> Option<T> {
+        let (_, value) = self.take(key)?;
+        let path = self.path.inside(key, false);
+        self.nested(value, path, decode)
+    }
+
+    /// As [`Self::table`], but the table must be there.
+    pub fn require_table<T>(
+        &mut self,
+        key: &'static str,
+        decode: impl FnOnce(&mut Reader<'_, 'i>) -> T,
+    ) -> Option<T> {
+        if !self.table.contains_key(key) {
+            self.missing.push(key);
+        }
+        self.table(key, decode)
+    }
+
+    /// All tables `[[key]]`; those that are wrong are left out.
+    pub fn tables<T>(
+        &mut self,
+        key: &'static str,
+        decode: impl Fn(&mut Reader<'_, 'i>) -> Option<T>,
+    ) -> Vec<T> {
+        let Some((name, value)) = self.take(key) else { return Vec::new() };
+        let path = self.path.inside(key, true);
+        let span = value.span();
+        match value.into_inner() {
+            DeValue::Array(rows) if rows.len() > MAX_TABLES => {
+                let message =
+                    format!("{} {} tables are more than the {MAX_TABLES} allowed", rows.len(), path.title());
+                self.error(name.span(), message, "put them in a GeoJSON file and name it once with `file`");
+                Vec::new()
+            }
+            DeValue::Array(rows) => {
+                rows.into_iter().filter_map(|row| self.nested(row, path.clone(), &decode).flatten()).collect()
+            }
+            DeValue::Table(_) => {
+                let help = format!("write {} with double brackets: there may be several", path.title());
+                self.error(span, format!("`{key}` is a list of tables, not one table"), help);
+                Vec::new()
+            }
+            other => {
+                let message = format!("`{key}` must be a list of tables, but this is {}", kind_of(&other));
+                self.error(span, message, format!("start each with {}", path.title()));
+                Vec::new()
+            }
+        }
+    }
+
+    fn take(
+        &mut self,
+        key: &'static str,
+    ) -> Option<(Spanned<std::borrow::Cow<'i, str>>, Spanned<DeValue<'i>>)> {
+        self.known.push(key);
+        self.table.remove_entry(key)
+    }
+
+    fn decode<T>(
+        &mut self,
+        key: &str,
+        value: &Spanned<DeValue<'i>>,
+        decode: impl FnOnce(Item<'_, 'i>) -> Option<T>,
+    ) -> Option<Spanned<T>> {
+        decode(Item { report: self.report, key, value }).map(|decoded| Spanned::new(value.span(), decoded))
+    }
+
+    fn nested<T>(
+        &mut self,
+        value: Spanned<DeValue<'i>>,
+        path: Path,
+        decode: impl FnOnce(&mut Reader<'_, 'i>) -> T,
+    ) -> Option<T> {
+        let span = value.span();
+        match value.into_inner() {
+            DeValue::Table(table) => Some(Reader::read(self.report, table, path, span, decode)),
+            other => {
+                let message = format!("`{}` must be a table, but this is {}", path.dotted, kind_of(&other));
+                self.error(span, message, format!("start it with {}", path.title()));
+                None
+            }
+        }
+    }
+
+    /// Reports the keys that nobody asked for, and the keys that were needed and are not there unless a
+    /// misspelt one explains it.
+    fn finish(mut self) {
+        let mut explained = Vec::new();
+        for (key, _) in std::mem::take(&mut self.table) {
+            let meant = nearest(key.get_ref(), self.known.iter().copied());
+            explained.extend(meant);
+            let message = format!("unknown key `{}` in {}", quoted(key.get_ref()), self.title());
+            let help = self.help_for_unknown(key.get_ref(), meant);
+            self.error(key.span(), message, help);
+        }
+        for key in std::mem::take(&mut self.missing) {
+            if !explained.contains(&key) {
+                self.report_missing(key);
+            }
+        }
+    }
+
+    fn help_for_unknown(&self, key: &str, meant: Option<&str>) -> String {
+        match meant {
+            Some(meant) => format!("did you mean `{meant}`?"),
+            None if !self.path.dotted.is_empty() && TOP_KEYS.contains(&key) => {
+                format!("`{key}` belongs to the whole scene: write it at the top, before the first [table]")
+            }
+            None => format!("{} knows {}", self.title(), listed(&self.known).replace(" or ", " and ")),
+        }
+    }
+
+    fn report_missing(&mut self, key: &str) {
+        if self.path.dotted.is_empty() {
+            let message = format!("{} has no [{key}] table", self.title());
+            self.error(self.span(), message, format!("add a line [{key}] and the keys it needs below it"));
+        } else {
+            let message = format!("{} needs the key `{key}`", self.title());
+            self.error(self.span(), message, format!("add a line `{key} = ...` below it"));
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! Chooses features by their properties.
+
+use std::collections::BTreeSet;
+
+use serde_json::Value;
+
+use crate::vector::feature::{Feature, Layer};
+
+/// What a feature's properties must be; all conditions must hold, and none always do.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Filter {
+    /// In any order.
+    pub conditions: Vec<Condition>,
+}
+
+/// What one property must be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Condition {
+    /// The property's name.
+    pub property: String,
+    /// The values of which it must equal one. Numbers equal as numbers, whole or not; text as text; the
+    /// number 2 and the text "2" are different.
+    pub any_of: Vec<Value>,
+}
+
+impl Filter {
+    /// Whether all conditions hold; an absent property fulfils none.
+    pub fn matches(&self, feature: &Feature) -> bool {
+        self.conditions.iter().all(|condition| {
+            feature.properties.get(&condition.property).is_some_and(|value| condition.holds(value))
+        })
+    }
+
+    /// The layer's features that match, in its order.
+    pub fn select<'a>(&'a self, layer: &'a Layer) -> impl Iterator<Item = &'a Feature> + 'a {
+        layer.features.iter().filter(|feature| self.matches(feature))
+    }
+
+    /// Why no feature of the layer matches: for each condition that never holds, the values that there are
+    /// instead. `None` where some feature matches, or each condition holds somewhere but never all together.
+    pub fn explain_none(&self, layer: &Layer) -> Option<String> {
+        if self.select(layer).next().is_some() {
+            return None;
+        }
+        let reasons: Vec<String> =
+            self.conditions.iter().filter_map(|condition| condition.explain_none(layer)).collect();
+        (!reasons.is_empty()).then(|| reasons.join("; "))
+    }
+}
+
+impl Condition {
+    fn holds(&self, value: &Value) -> bool {
+        self.any_of.iter().any(|wanted| equal(wanted, value))
+    }
+
+    fn explain_none(&self, layer: &Layer) -> Option<String> {
+        /// As many as fit on a line.
+        const SHOWN: usize = 12;
+        let property = &self.property;
+        let values = layer.features.iter().filter_map(|feature| feature.properties.get(property));
+        let mut found = BTreeSet::new();
+        for value in values.filter(|value| !value.is_null()) {
+            if self.holds(value) {
+                return None;
+            }
+            if found.len() <= SHOWN {
+                found.insert(value.to_string().chars().take(40).collect::<String>());
+            }
+        }
+        if found.is_empty() {
+            return Some(format!("no feature has the property '{property}'"));
+        }
+        let more = if found.len() > SHOWN { ", ..." } else { "" };
+        let shown: Vec<String> = found.into_iter().take(SHOWN).collect();
+        Some(format!("'{property}' is {}{more}", shown.join(", ")))
+    }
+}
+
+fn equal(wanted: &Value, value: &Value) -> bool {
+    match (wanted, value) {
+        (Value::Number(wanted), Value::Number(value)) => wanted.as_f64() == value.as_f64(),
+        _ => wanted == value,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::crs::Crs;
+    use crate::vector::feature::Geometry;
+    use serde_json::json;
+
+    fn layer(properties: &[Value]) -> Layer {
+        let feature = |properties: &Value| Feature {
+            geometry: Geometry::Points(Vec::new()),
+            properties: properties.as_object().expect("an object").clone().into_iter().collect(),
+        };
+        Layer { features: properties.iter().map(feature).collect(), crs: Crs::wgs84(), notes: Vec::new() }
+    }
+
+    fn filter(conditions: &[(&str, &[Value])]) -> Filter {
+        let condition = |(property, any_of): &(&str, &[Value])| Condition {
+            property: (*property).into(),
+            any_of: any_of.to_vec(),
+        };
+        Filter { conditions: conditions.iter().map(condition).collect() }
+    }
+
+    #[test]
+    fn all_conditions_must_hold_each_by_one_of_its_values() {
+        let roads = layer(&[
+            json!({"highway": "primary", "lanes": 2}),
+            json!({"highway": "secondary", "lanes": 2.0}),
+            json!({"highway": "primary", "lanes": 4}),
+            json!({"highway": "track", "lanes": 2}),
+            json!({"lanes": 2}),
+        ]);
+        let wanted =
+            filter(&[("highway", &[json!("primary"), json!("secondary")]), ("lanes", &[json!(2.0)])]);
+        let chosen: Vec<_> = wanted.select(&roads).collect();
+        assert_eq!(chosen, [&roads.features[0], &roads.features[1]]);
+    }
+
+    #[test]
+    fn an_empty_filter_chooses_everything() {
+        assert_eq!(Filter::default().select(&layer(&[json!({}), json!({"a": 1})])).count(), 2);
+    }
+
+    #[test]
+    fn text_is_not_a_number_and_the_explanation_shows_it() {
+        let roads = layer(&[json!({"lanes": "2"}), json!({"lanes": "4"}), json!({"lanes": null})]);
+        let wanted = filter(&[("lanes", &[json!(2)]), ("highway", &[json!("primary")])]);
+        assert_eq!(
+            wanted.explain_none(&roads).as_deref(),
+            Some("'lanes' is \"2\", \"4\"; no feature has the property 'highway'")
+        );
+        assert_eq!(filter(&[("lanes", &[json!("2")])]).explain_none(&roads), None);
+    }
+}
