@@ -1,3 +1,21 @@
 //! Model files — 3DS, OBJ with MTL, glTF and GLB — to one [`kind::Model`], Z up, no file system.
+//!
+//! ```text
+//! bytes ── read ──┬─ three_ds ─┐
+//!                 ├─ obj ──────┼─ normals, triangulate, part, texture ──► Model
+//!                 └─ gltf ─────┘
+//! ```
+//!
+//! What a model names — buffers, textures, material libraries — comes through [`kind::Companions`]. A file
+//! that cannot be trusted is an error; a picture that cannot be had is a note on a model without it.
 
+pub mod error;
+pub mod gltf;
 pub mod kind;
+mod normals;
+pub mod obj;
+mod part;
+pub mod read;
+mod texture;
+pub mod three_ds;
+mod triangulate;

@@ -1,0 +1,178 @@
+//! Corner normals where a file brings none: flat, by smoothing group, or smooth up to a crease.
+//!
+//! Vertices are welded where their positions are equal in every bit, because exporters split them along
+//! texture seams. A corner's normal is the mean of the normals of the triangles around its vertex that it is
+//! smooth with, each weighted with its angle there (Thürmer and Wüthrich, "Computing vertex normals from
+//! polygonal facets", 1998), so that the way a polygon is cut into triangles does not show.
+
+use std::collections::HashMap;
+
+use glam::Vec3;
+
+/// The most triangles around a vertex that are compared pair by pair; around a wider fan, such as the tip of
+/// a finely cut cone, all are smooth. Bounds the time that a hostile file can take.
+const MAX_FAN: usize = 256;
+
+/// Cosine of the sharpest angle between neighbours that still looks round where a file does not say: 40°
+/// keeps an octagonal column angular and rounds a sphere of ten segments.
+pub(super) const CREASE_COS: f32 = 0.766;
+
+/// Which triangles that meet in a vertex share its normal.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Smoothing<'a> {
+    /// None.
+    Flat,
+    /// Those whose masks have a bit in common; one mask a triangle, 0 is flat.
+    Groups(&'a [u32]),
+    /// Those whose numbers are the same; one number a triangle, 0 is flat.
+    Numbers(&'a [u32]),
+    /// Those whose normals' angle has at least this cosine.
+    Crease(f32),
+}
+
+/// Unit normals of the corners of `triangles`; +Z for a triangle without area that has no neighbour.
+/// Indices must lie within `positions`, and masks must be as many as triangles.
+pub(super) fn corner_normals(
+    positions: &[Vec3],
+    triangles: &[[u32; 3]],
+    smoothing: Smoothing<'_>,
+) -> Vec<[Vec3; 3]> {
+    let faces: Vec<Vec3> = triangles.iter().map(|&triangle| face_normal(positions, triangle)).collect();
+    let flat = || faces.iter().map(|&normal| [upright(normal); 3]).collect();
+    match smoothing {
+        Smoothing::Flat => flat(),
+        Smoothing::Groups(masks) => {
+            shared(positions, triangles, &faces, |a, b| a == b || masks[a] & masks[b] != 0)
+        }
+        Smoothing::Numbers(numbers) => {
+            shared(positions, triangles, &faces, |a, b| a == b || (numbers[a] == numbers[b] && numbers[a] != 0))
+        }
+        Smoothing::Crease(cos) => {
+            shared(positions, triangles, &faces, |a, b| a == b || faces[a].dot(faces[b]) >= cos)
+        }
+    }
+}
+
+/// A corner of a triangle, with the triangle's angle there.
+#[derive(Clone, Copy)]
+struct Spoke {
+    triangle: usize,
+    corner: usize,
+    angle: f32,
+}
+
+fn shared(
+    positions: &[Vec3],
+    triangles: &[[u32; 3]],
+    faces: &[Vec3],
+    smooth: impl Fn(usize, usize) -> bool,
+) -> Vec<[Vec3; 3]> {
+    let mut normals: Vec<[Vec3; 3]> = faces.iter().map(|&normal| [upright(normal); 3]).collect();
+    for fan in fans(positions, triangles) {
+        for &spoke in &fan {
+            let sum: Vec3 = fan
+                .iter()
+                .filter(|other| fan.len() > MAX_FAN || smooth(spoke.triangle, other.triangle))
+                .take(if fan.len() > MAX_FAN { MAX_FAN } else { fan.len() })
+                .map(|other| faces[other.triangle] * other.angle)
+                .sum();
+            if let Some(normal) = sum.try_normalize() {
+                normals[spoke.triangle][spoke.corner] = normal;
+            }
+        }
+    }
+    normals
+}
+
+/// The corners around every welded vertex, in the order of the vertices' first use.
+fn fans(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec<Spoke>> {
+    let mut of_position: HashMap<[u32; 3], usize> = HashMap::with_capacity(positions.len());
+    let mut fans: Vec<Vec<Spoke>> = Vec::new();
+    for (triangle, &ids) in triangles.iter().enumerate() {
+        let corners = ids.map(|id| positions[id as usize]);
+        for (corner, &at) in corners.iter().enumerate() {
+            let angle = angle_at(at, corners[(corner + 1) % 3], corners[(corner + 2) % 3]);
+            let fan = *of_position.entry(weld_key(at)).or_insert_with(|| {
+                fans.push(Vec::new());
+                fans.len() - 1
+            });
+            fans[fan].push(Spoke { triangle, corner, angle });
+        }
+    }
+    fans
+}
+
+/// Adding zero makes one of the two zeros.
+fn weld_key(position: Vec3) -> [u32; 3] {
+    (position + Vec3::ZERO).to_array().map(f32::to_bits)
+}
+
+fn angle_at(at: Vec3, next: Vec3, last: Vec3) -> f32 {
+    let cos = (next - at).normalize_or_zero().dot((last - at).normalize_or_zero());
+    libm::acosf(cos.clamp(-1.0, 1.0))
+}
+
+fn face_normal(positions: &[Vec3], triangle: [u32; 3]) -> Vec3 {
+    let [a, b, c] = triangle.map(|id| positions[id as usize].as_dvec3());
+    (b - a).cross(c - a).normalize_or_zero().as_vec3()
+}
+
+fn upright(normal: Vec3) -> Vec3 {
+    if normal == Vec3::ZERO { Vec3::Z } else { normal }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ridge along Y: two squares that meet at the top, each cut into two triangles.
+    const RIDGE: [Vec3; 6] = [
+        Vec3::new(-1.0, 0.0, 0.0),
+        Vec3::new(-1.0, 1.0, 0.0),
+        Vec3::new(0.0, 0.0, 1.0),
+        Vec3::new(0.0, 1.0, 1.0),
+        Vec3::new(1.0, 0.0, 0.0),
+        Vec3::new(1.0, 1.0, 0.0),
+    ];
+    const SLOPES: [[u32; 3]; 4] = [[0, 2, 1], [2, 3, 1], [2, 4, 3], [4, 5, 3]];
+
+    #[test]
+    fn a_common_group_rounds_the_ridge() {
+        let normals = corner_normals(&RIDGE, &SLOPES, Smoothing::Groups(&[1, 1, 3, 3]));
+        assert!(normals[0][1].abs_diff_eq(Vec3::Z, 1e-6), "{}", normals[0][1]);
+        assert!(normals[0][0].x < -0.7);
+    }
+
+    #[test]
+    fn groups_without_a_common_bit_and_sharp_creases_keep_it() {
+        for smoothing in [Smoothing::Groups(&[1, 1, 2, 2]), Smoothing::Crease(CREASE_COS), Smoothing::Flat] {
+            let normals = corner_normals(&RIDGE, &SLOPES, smoothing);
+            assert!(normals[0][1].abs_diff_eq(Vec3::new(-0.70710678, 0.0, 0.70710678), 1e-6));
+        }
+    }
+
+    #[test]
+    fn the_cut_of_a_polygon_does_not_weigh() {
+        let normals = corner_normals(&RIDGE, &SLOPES, Smoothing::Crease(-1.0));
+        assert!(normals[0][1].abs_diff_eq(Vec3::Z, 1e-6) && normals[1][1].abs_diff_eq(Vec3::Z, 1e-6));
+    }
+
+    #[test]
+    fn a_triangle_without_area_points_up() {
+        let normals = corner_normals(&[Vec3::ONE], &[[0, 0, 0]], Smoothing::Flat);
+        assert_eq!(normals, [[Vec3::Z; 3]]);
+    }
+
+    #[test]
+    fn a_very_wide_fan_takes_no_longer_than_it_must() {
+        let rim = 60_000;
+        let positions: Vec<Vec3> = std::iter::once(Vec3::Z)
+            .chain((0..=rim).map(|step| {
+                let (sin, cos) = libm::sincosf(step as f32 / rim as f32 * std::f32::consts::TAU);
+                Vec3::new(cos, sin, 0.0)
+            }))
+            .collect();
+        let triangles: Vec<[u32; 3]> = (1..=rim).map(|step| [0, step, step + 1]).collect();
+        assert_eq!(corner_normals(&positions, &triangles, Smoothing::Crease(-1.0)).len(), rim as usize);
+    }
+}

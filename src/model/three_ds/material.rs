@@ -1,0 +1,124 @@
+//! Materials: colours, transparency, sides and the diffuse map.
+
+use glam::Vec2;
+
+use crate::draw::color::Srgba;
+use crate::model::error::ModelError;
+
+use super::chunk::{Chunk, Cursor};
+
+/// A material as stored.
+#[derive(Clone, Debug)]
+pub(super) struct Described {
+    pub name: String,
+    pub diffuse: Srgba,
+    /// 0 is opaque, 1 lets all light pass.
+    pub transparency: f32,
+    pub two_sided: bool,
+    pub map: Option<Map>,
+    /// Whether there is an opacity map, which is not drawn.
+    pub opacity_map: bool,
+}
+
+/// The diffuse map.
+#[derive(Clone, Debug)]
+pub(super) struct Map {
+    pub file: String,
+    pub scale: Vec2,
+    pub offset: Vec2,
+}
+
+/// The material in a material chunk.
+pub(super) fn parse(chunk: &Chunk<'_>) -> Result<Described, ModelError> {
+    const NAME: u16 = 0xA000;
+    const DIFFUSE: u16 = 0xA020;
+    const TRANSPARENCY: u16 = 0xA050;
+    const TWO_SIDED: u16 = 0xA081;
+    const TEXTURE_MAP: u16 = 0xA200;
+    const OPACITY_MAP: u16 = 0xA210;
+    /// 3D Studio's own grey.
+    const GREY: Srgba = Srgba::opaque(150, 150, 150);
+    let mut material = Described {
+        name: String::new(),
+        diffuse: GREY,
+        transparency: 0.0,
+        two_sided: false,
+        map: None,
+        opacity_map: false,
+    };
+    for part in chunk.children() {
+        let part = part?;
+        match part.id {
+            NAME => material.name = part.read().text()?,
+            DIFFUSE => material.diffuse = color(&part)?.unwrap_or(GREY),
+            TRANSPARENCY => material.transparency = percentage(&part)?.unwrap_or(0.0),
+            TWO_SIDED => material.two_sided = true,
+            TEXTURE_MAP => material.map = map(&part)?,
+            OPACITY_MAP => material.opacity_map = true,
+            _ => {}
+        }
+    }
+    Ok(material)
+}
+
+/// The first colour in a chunk: bytes or shares of one, plain or gamma-corrected, which are the same here.
+fn color(chunk: &Chunk<'_>) -> Result<Option<Srgba>, ModelError> {
+    const SHARES: [u16; 2] = [0x0010, 0x0013];
+    const BYTES: [u16; 2] = [0x0011, 0x0012];
+    for part in chunk.children() {
+        let part = part?;
+        let mut cursor = part.read();
+        if SHARES.contains(&part.id) {
+            let [red, green, blue] = cursor.vec3()?.to_array().map(|share| (share * 255.0 + 0.5) as u8);
+            return Ok(Some(Srgba::opaque(red, green, blue)));
+        }
+        if BYTES.contains(&part.id) {
+            return Ok(Some(Srgba::opaque(cursor.u8()?, cursor.u8()?, cursor.u8()?)));
+        }
+    }
+    Ok(None)
+}
+
+/// The first percentage in a chunk as a share in 0..=1.
+fn percentage(chunk: &Chunk<'_>) -> Result<Option<f32>, ModelError> {
+    const WHOLE: u16 = 0x0030;
+    const FLOAT: u16 = 0x0031;
+    for part in chunk.children() {
+        let part = part?;
+        let share = match part.id {
+            WHOLE => f32::from(part.read().u16()?) / 100.0,
+            FLOAT => part.read().f32()?,
+            _ => continue,
+        };
+        return Ok(Some(if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }));
+    }
+    Ok(None)
+}
+
+fn map(chunk: &Chunk<'_>) -> Result<Option<Map>, ModelError> {
+    const FILE: u16 = 0xA300;
+    const V_SCALE: u16 = 0xA354;
+    const U_SCALE: u16 = 0xA356;
+    const U_OFFSET: u16 = 0xA358;
+    const V_OFFSET: u16 = 0xA35A;
+    let mut map = Map { file: String::new(), scale: Vec2::ONE, offset: Vec2::ZERO };
+    let number = |mut cursor: Cursor<'_>, target: &mut f32| -> Result<(), ModelError> {
+        let value = cursor.f32()?;
+        if value.is_finite() {
+            *target = value;
+        }
+        Ok(())
+    };
+    for part in chunk.children() {
+        let part = part?;
+        match part.id {
+            FILE => map.file = part.read().text()?,
+            U_SCALE => number(part.read(), &mut map.scale.x)?,
+            V_SCALE => number(part.read(), &mut map.scale.y)?,
+            U_OFFSET => number(part.read(), &mut map.offset.x)?,
+            V_OFFSET => number(part.read(), &mut map.offset.y)?,
+            _ => {}
+        }
+    }
+    Ok((!map.file.trim().is_empty()).then_some(map))
+}
