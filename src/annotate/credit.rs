@@ -1,0 +1,55 @@
+//! The credit line: where the data come from, small along the lower border.
+
+use glam::Vec2;
+
+use crate::annotate::drawing::Drawing;
+use crate::annotate::paragraph::{fitted, written_lines};
+use crate::annotate::report::Report;
+use crate::annotate::sheet::{INK, Sheet};
+use crate::annotate::text::{Face, Typesetter, write};
+
+/// The line with its baseline starting at the origin, no wider than `most_px`; `None` where there is nothing
+/// to say or no room to say it.
+pub fn compose(
+    credit: &str,
+    most_px: f32,
+    sheet: &Sheet,
+    setter: &mut Typesetter,
+    report: &mut Report,
+) -> Option<Drawing> {
+    let text = written_lines(credit, usize::MAX).0.join(" · ");
+    let face = Face::upright(sheet.type_px(13.0), Face::REGULAR);
+    let line = fitted(setter, &text, face, most_px)?;
+    let mut drawing = Drawing::default();
+    write(&mut drawing, &[(&line, Vec2::ZERO)], INK, sheet.px(2.0).max(1.4));
+    if drawing.marks().is_empty() {
+        return None;
+    }
+    report.set(credit, line.missing, line.shortened);
+    Some(drawing)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(credit: &str, most_px: f32) -> (Option<Drawing>, Report) {
+        let mut report = Report::default();
+        let sheet = Sheet::new(1920, 1080);
+        (compose(credit, most_px, &sheet, &mut Typesetter::new(), &mut report), report)
+    }
+
+    #[test]
+    fn a_credit_is_one_line_however_it_was_written() {
+        let (one, two) = (line("USGS 3DEP", 900.0).0, line("USGS\n3DEP", 900.0).0);
+        let height = |drawing: Option<Drawing>| drawing.expect("a line").bounds().size().y;
+        assert!((height(one) - height(two)).abs() < 0.1);
+    }
+
+    #[test]
+    fn a_credit_without_room_or_words_is_left_out_and_a_long_one_cut() {
+        assert!(line("USGS 3DEP", 2.0).0.is_none());
+        assert!(line(" ", 900.0).0.is_none());
+        assert_eq!(line("USGS 3DEP, National Map, public domain", 90.0).1.shortened.len(), 1);
+    }
+}

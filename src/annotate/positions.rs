@@ -1,0 +1,160 @@
+//! Where one label may stand: candidates around its place, the best first.
+//!
+//! ```text
+//!        Name              Name              Name
+//!       1062 m            1062 m            1062 m          ▲ Name      Name ▲
+//!          │              │                       │           1062 m  1062 m
+//!          ▲              ▲                       ▲
+//!       centred       to the right          to the left          beside it
+//! ```
+//!
+//! Readers look above a place first, so the text stands at the end of a leader line; where that is taken
+//! the leader is lengthened or shortened and the text shifted along it; beside the place comes last. Names
+//! of waters stand on the water itself first.
+
+use glam::Vec2;
+
+use crate::annotate::pixel_box::{PixelBox, Segment};
+use crate::annotate::place::Candidate;
+
+/// What the candidates of one label are made from; all lengths in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stance {
+    /// The place.
+    pub anchor: Vec2,
+    /// From the place to the wished end of its leader line; upward.
+    pub reach: Vec2,
+    /// The box of the text, around any origin; candidates are moves of it by whole pixels.
+    pub text: PixelBox,
+    /// Half the size of the symbol.
+    pub symbol: Vec2,
+    /// Room between text and leader line, and text and symbol.
+    pub gap: f32,
+    /// The longest leader line.
+    pub longest: f32,
+    /// What comes first.
+    pub preference: Preference,
+}
+
+/// Where a label would rather stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Preference {
+    /// Above its place, at the end of a leader line.
+    Above,
+    /// On its place, without symbol or line.
+    OnPlace,
+}
+
+/// Lengths of the leader tried, as multiples of the wished one.
+const LENGTHS: [f32; 7] = [1.0, 0.55, 1.5, 2.1, 2.8, 3.7, 5.0];
+/// Where along the text's lower edge the leader meets it: the middle, near its start, near its end.
+const MEETINGS: [f32; 3] = [0.5, 0.14, 0.86];
+
+/// All candidates, the best first.
+pub fn candidates(stance: &Stance) -> Vec<Candidate> {
+    let on_place = (stance.preference == Preference::OnPlace).then(|| centred_on_place(stance));
+    let above = LENGTHS
+        .iter()
+        .filter(|&&length| stance.reach.length() * length <= stance.longest)
+        .flat_map(|&length| MEETINGS.map(|meeting| above(stance, stance.reach * length, meeting)));
+    let beside = [1.0, -1.0].map(|side| beside(stance, side));
+    on_place.into_iter().chain(above).chain(beside).collect()
+}
+
+/// The symbol's box at the place.
+pub fn spot(stance: &Stance) -> PixelBox {
+    PixelBox::around(stance.anchor, stance.symbol)
+}
+
+fn centred_on_place(stance: &Stance) -> Candidate {
+    let text = moved(stance, stance.anchor - stance.text.center());
+    Candidate { text, symbol: None, leader: None }
+}
+
+fn above(stance: &Stance, reach: Vec2, meeting: f32) -> Candidate {
+    let end = stance.anchor + reach;
+    let foot = Vec2::new(
+        stance.text.min.x + (stance.text.max.x - stance.text.min.x) * meeting,
+        stance.text.max.y + stance.gap,
+    );
+    let text = moved(stance, end - foot);
+    let from = stance.anchor + reach.normalize_or_zero() * stance.symbol.y;
+    // The text is moved by whole pixels, the line ends where the text then is.
+    let to = Vec2::new(end.x, text.max.y + stance.gap);
+    Candidate { text, symbol: Some(spot(stance)), leader: Some(Segment { from, to }) }
+}
+
+fn beside(stance: &Stance, side: f32) -> Candidate {
+    let half = stance.text.size() * 0.5;
+    let away = stance.symbol.x + stance.gap + half.x;
+    let center = stance.anchor + Vec2::new(side * away, 0.0);
+    let mut text = moved(stance, center - stance.text.center());
+    // Rounding to whole pixels must not bring the text over the symbol.
+    if text.overlaps(&spot(stance)) {
+        text = text.moved(Vec2::new(side, 0.0));
+    }
+    Candidate { text, symbol: Some(spot(stance)), leader: None }
+}
+
+fn moved(stance: &Stance, by: Vec2) -> PixelBox {
+    stance.text.moved(by.round())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stance() -> Stance {
+        Stance {
+            anchor: Vec2::new(400.3, 300.7),
+            reach: Vec2::new(4.0, -50.0),
+            text: PixelBox { min: Vec2::new(-1.5, -20.0), max: Vec2::new(80.5, 12.0) },
+            symbol: Vec2::splat(6.0),
+            gap: 3.0,
+            longest: 200.0,
+            preference: Preference::Above,
+        }
+    }
+
+    #[test]
+    fn the_first_candidate_is_centred_over_the_leaders_wished_end() {
+        let first = candidates(&stance())[0];
+        let end = stance().anchor + stance().reach;
+        assert!((first.text.center().x - end.x).abs() <= 0.5);
+        assert!((first.text.max.y + 3.0 - end.y).abs() <= 0.5);
+    }
+
+    #[test]
+    fn no_candidate_covers_its_own_symbol_or_leader() {
+        for (number, candidate) in candidates(&stance()).iter().enumerate() {
+            let symbol = candidate.symbol.expect("drawn with a symbol");
+            assert!(!candidate.text.overlaps(&symbol), "{number}: {candidate:?}");
+            assert!(candidate.leader.is_none_or(|line| !candidate.text.meets(&line)), "{number}");
+        }
+    }
+
+    #[test]
+    fn texts_move_by_whole_pixels() {
+        for candidate in candidates(&stance()) {
+            let by = candidate.text.min - stance().text.min;
+            assert_eq!(by, by.round());
+        }
+    }
+
+    #[test]
+    fn leaders_are_no_longer_than_allowed() {
+        let longest = candidates(&stance())
+            .iter()
+            .filter_map(|candidate| candidate.leader)
+            .map(|line| (line.to - line.from).length())
+            .fold(0.0, f32::max);
+        assert!(longest > 100.0 && longest <= 201.0, "{longest}");
+    }
+
+    #[test]
+    fn a_water_name_stands_on_the_water_first() {
+        let first = candidates(&Stance { preference: Preference::OnPlace, ..stance() })[0];
+        assert!((first.text.center() - stance().anchor).abs().max_element() <= 0.5);
+        assert_eq!((first.symbol, first.leader), (None, None));
+    }
+}

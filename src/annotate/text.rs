@@ -1,0 +1,287 @@
+//! Type: one line of text to one outline, in the fonts embedded in the program.
+//!
+//! `parley` orders and shapes the line (right-to-left scripts, ligatures, kerning), `skrifa` reads the
+//! outlines, and the result is a single path whose baseline starts at the origin. Ubuntu Light is the face,
+//! Hack lends it the signs it lacks (arrows, primes); both ship in `epaint_default_fonts`. The machine's own
+//! fonts are never looked up: a picture must not depend on who makes it. Characters that neither font has
+//! come out as boxes and are counted.
+//!
+//! A light face is too thin on a picture. Its outline is drawn a second time with a fine stroke of the same
+//! colour, which gives the strength of a regular or medium face without a second font.
+
+use std::sync::Arc;
+
+use glam::Vec2;
+use parley::fontique::{Blob, Collection, CollectionOptions, FontInfoOverride, SourceCache};
+use parley::layout::{Layout, PositionedLayoutItem};
+use parley::style::{FontFamily, FontFamilyName, StyleProperty};
+use parley::{FontContext, GlyphRun, LayoutContext};
+use skrifa::instance::{LocationRef, Size};
+use skrifa::outline::{DrawSettings, OutlinePen};
+use skrifa::{FontRef, GlyphId, MetadataProvider};
+use tiny_skia::{Path, PathBuilder};
+
+use crate::annotate::drawing::{Drawing, box_of};
+use crate::annotate::pixel_box::PixelBox;
+use crate::annotate::sheet::HALO;
+use crate::draw::color::Srgba;
+
+/// Height of capitals and figures above the baseline, in ems of the embedded face.
+pub const CAP_HEIGHT: f32 = 0.693;
+/// How far letters hang below the baseline, in ems of the embedded face.
+pub const DESCENT: f32 = 0.189;
+
+/// Longer lines are cut before they are shaped: none this long fits a picture, and shaping must end.
+const MOST_CHARACTERS: usize = 300;
+
+const FACE: &str = "sandtable sheet";
+const FALLBACK_FACE: &str = "sandtable signs";
+
+/// Size and posture of type.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Face {
+    /// Height of the em in pixels.
+    pub size_px: f32,
+    /// How far the tops lean to the right: tangent of the angle. 0 is upright.
+    pub slant: f32,
+    /// Width of the stroke that strengthens the letters, in ems.
+    pub weight: f32,
+}
+
+impl Face {
+    /// Strength of running text: a regular face.
+    pub const REGULAR: f32 = 0.028;
+    /// Strength of names: a medium face.
+    pub const MEDIUM: f32 = 0.05;
+    /// Strength of titles.
+    pub const BOLD: f32 = 0.075;
+
+    /// Upright type.
+    pub fn upright(size_px: f32, weight: f32) -> Self {
+        Self { size_px, slant: 0.0, weight }
+    }
+}
+
+/// A line of text, set.
+#[derive(Clone, Debug)]
+pub struct Line {
+    /// Outline of all letters, baseline from the origin to the right; `None` where nothing shows.
+    pub outline: Option<Path>,
+    /// How far the line reaches along the baseline, in pixels.
+    pub advance: f32,
+    /// Characters the fonts lack; each shows as a box.
+    pub missing: usize,
+    /// Whether the end was cut off.
+    pub shortened: bool,
+    /// The type it is set in.
+    pub face: Face,
+}
+
+/// Sets text in the embedded fonts; holds their tables and scratch space between lines.
+pub struct Typesetter {
+    fonts: FontContext,
+    layouts: LayoutContext<()>,
+}
+
+impl Default for Typesetter {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Typesetter {
+    /// A typesetter with the embedded fonts and no others.
+    pub fn new() -> Self {
+        let options = CollectionOptions { shared: false, system_fonts: false };
+        let mut collection = Collection::new(options);
+        register(&mut collection, epaint_default_fonts::UBUNTU_LIGHT, FACE);
+        register(&mut collection, epaint_default_fonts::HACK_REGULAR, FALLBACK_FACE);
+        let fonts = FontContext { collection, source_cache: SourceCache::default() };
+        Self { fonts, layouts: LayoutContext::new() }
+    }
+
+    /// `text` as one line. Line ends and other control characters in it become spaces; beyond 300
+    /// characters it is cut.
+    pub fn line(&mut self, text: &str, face: Face) -> Line {
+        let shortened = text.chars().nth(MOST_CHARACTERS).is_some();
+        let text: String =
+            text.chars().take(MOST_CHARACTERS).map(|c| if c.is_control() { ' ' } else { c }).collect();
+        let layout = self.shape(&text, face.size_px);
+        let mut ink = Outliner { path: PathBuilder::new(), at: Vec2::ZERO, slant: face.slant };
+        let (mut missing, mut advance) = (0, 0.0f32);
+        if let Some(line) = layout.lines().next() {
+            for item in line.items() {
+                if let PositionedLayoutItem::GlyphRun(run) = item {
+                    missing += draw_run(&run, &mut ink);
+                    advance = advance.max(run.offset() + run.advance());
+                }
+            }
+        }
+        Line { outline: ink.path.finish(), advance, missing, shortened, face }
+    }
+
+    fn shape(&mut self, text: &str, size_px: f32) -> Layout<()> {
+        let families = [FontFamilyName::named(FACE), FontFamilyName::named(FALLBACK_FACE)];
+        let mut builder = self.layouts.ranged_builder(&mut self.fonts, text, 1.0, false);
+        builder.push_default(StyleProperty::FontFamily(FontFamily::from(&families[..])));
+        builder.push_default(StyleProperty::FontSize(size_px));
+        let mut layout = builder.build(text);
+        layout.break_all_lines(None);
+        layout
+    }
+}
+
+impl Line {
+    /// The smallest box around the letters, as they are painted; [`PixelBox::EMPTY`] where nothing shows.
+    pub fn ink(&self) -> PixelBox {
+        let stroke = self.face.weight * self.face.size_px * 0.5;
+        self.outline.as_ref().map_or(PixelBox::EMPTY, |path| box_of(path).grown(stroke))
+    }
+}
+
+/// Lines of text on a drawing: all halos first, so that none covers a neighbour's letters.
+///
+/// Each line comes with the start of its baseline. `halo` is how far the halo reaches around the letters in
+/// pixels; 0 draws none.
+pub fn write(drawing: &mut Drawing, lines: &[(&Line, Vec2)], color: Srgba, halo: f32) {
+    let placed: Vec<_> = lines.iter().filter_map(|(line, at)| placed(line, *at)).collect();
+    if halo > 0.0 {
+        let mut all = PathBuilder::new();
+        placed.iter().for_each(|(path, _)| all.push_path(path));
+        if let Some(all) = all.finish() {
+            drawing.stroke(&all, halo * 2.0, HALO);
+        }
+    }
+    for (path, stroke) in placed {
+        if stroke > 0.0 {
+            drawing.stroke(&path, stroke, color);
+        }
+        drawing.fill(path, color);
+    }
+}
+
+fn placed(line: &Line, at: Vec2) -> Option<(Path, f32)> {
+    let path = line.outline.clone()?.transform(tiny_skia::Transform::from_translate(at.x, at.y))?;
+    Some((path, line.face.weight * line.face.size_px))
+}
+
+fn register(collection: &mut Collection, font: &'static [u8], name: &str) {
+    let naming = FontInfoOverride { family_name: Some(name), ..FontInfoOverride::default() };
+    collection.register_fonts(Blob::new(Arc::new(font)), Some(naming));
+}
+
+/// Adds the outlines of `run` to `ink`, relative to its baseline; returns how many glyphs the font lacks.
+fn draw_run(run: &GlyphRun<'_, ()>, ink: &mut Outliner) -> usize {
+    let font = run.run().font();
+    let Ok(tables) = FontRef::from_index(font.data.data(), font.index) else { return 0 };
+    let outlines = tables.outline_glyphs();
+    let size = Size::new(run.run().font_size());
+    let mut missing = 0;
+    for glyph in run.positioned_glyphs() {
+        missing += usize::from(glyph.id == 0);
+        ink.at = Vec2::new(glyph.x, glyph.y - run.baseline());
+        if let Some(outline) = outlines.get(GlyphId::new(glyph.id)) {
+            // A glyph whose outline is broken leaves a gap; the embedded fonts have none.
+            let _ = outline.draw(DrawSettings::unhinted(size, LocationRef::default()), ink);
+        }
+    }
+    missing
+}
+
+/// Collects glyph outlines (Y up, from the glyph's origin) into one path (Y down, from the line's start).
+struct Outliner {
+    path: PathBuilder,
+    at: Vec2,
+    slant: f32,
+}
+
+impl Outliner {
+    fn map(&self, x: f32, y: f32) -> Vec2 {
+        self.at + Vec2::new(x + self.slant * y, -y)
+    }
+}
+
+impl OutlinePen for Outliner {
+    fn move_to(&mut self, x: f32, y: f32) {
+        let to = self.map(x, y);
+        self.path.move_to(to.x, to.y);
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        let to = self.map(x, y);
+        self.path.line_to(to.x, to.y);
+    }
+
+    fn quad_to(&mut self, cx: f32, cy: f32, x: f32, y: f32) {
+        let (control, to) = (self.map(cx, cy), self.map(x, y));
+        self.path.quad_to(control.x, control.y, to.x, to.y);
+    }
+
+    fn curve_to(&mut self, ax: f32, ay: f32, bx: f32, by: f32, x: f32, y: f32) {
+        let (first, second, to) = (self.map(ax, ay), self.map(bx, by), self.map(x, y));
+        self.path.cubic_to(first.x, first.y, second.x, second.y, to.x, to.y);
+    }
+
+    fn close(&mut self) {
+        self.path.close();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn set(text: &str) -> Line {
+        Typesetter::new().line(text, Face::upright(20.0, Face::REGULAR))
+    }
+
+    #[test]
+    fn capitals_stand_on_the_baseline_as_high_as_the_constant_says() {
+        let ink = box_of(&set("HEIH").outline.expect("letters"));
+        assert!(ink.max.y.abs() < 0.01, "{ink:?}");
+        assert!((ink.min.y + CAP_HEIGHT * 20.0).abs() < 0.05, "{ink:?}");
+    }
+
+    #[test]
+    fn latin_greek_and_cyrillic_names_and_the_signs_of_maps_are_all_there() {
+        for text in ["Žďár nad Sázavou", "Όλυμπος 2918 m", "Эльбрус", "−12.5 °C ×1.5 → ′ ″ ▲ …"]
+        {
+            assert_eq!(set(text).missing, 0, "{text}");
+        }
+    }
+
+    #[test]
+    fn characters_the_fonts_lack_are_counted_and_shown_as_boxes() {
+        let line = set("富士山");
+        assert_eq!(line.missing, 3);
+        assert!(line.outline.is_some());
+        assert_eq!(set("הר 3").missing, 2);
+    }
+
+    #[test]
+    fn invisible_and_control_characters_are_neither_shown_nor_missing() {
+        for text in ["", " ", "\u{200b}", "\u{200f}\u{2066}\u{2069}", "\t\r\n\u{7}", "\u{feff}"] {
+            let line = set(text);
+            assert_eq!((line.missing, line.outline.is_some()), (0, false), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn a_line_end_inside_a_line_is_a_space() {
+        assert!((set("a\nb").advance - set("a b").advance).abs() < 1e-3);
+    }
+
+    #[test]
+    fn endless_text_is_cut() {
+        let line = set(&"m".repeat(100_000));
+        assert!(line.shortened && line.advance < 300.0 * 20.0);
+    }
+
+    #[test]
+    fn slanted_type_leans_right() {
+        let face = Face { slant: 0.2, ..Face::upright(20.0, 0.0) };
+        let lean = box_of(&Typesetter::new().line("I", face).outline.expect("a letter"));
+        let upright = box_of(&set("I").outline.expect("a letter"));
+        assert!((lean.max.x - upright.max.x - 0.2 * 20.0 * CAP_HEIGHT).abs() < 0.01);
+    }
+}

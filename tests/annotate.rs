@@ -1,0 +1,120 @@
+//! Annotating whole pictures: promises about pixels, and proof sheets for the eye.
+//!
+//! `cargo test --test annotate -- --ignored` writes proof sheets as PNG and prints where; somebody must look.
+
+use glam::Vec2;
+use sandtable::annotate::annotation::{Annotations, Label, LabelKind};
+use sandtable::annotate::legend::Legend;
+use sandtable::annotate::north::NorthArrow;
+use sandtable::annotate::paint::annotate;
+use sandtable::annotate::report::Furniture;
+use sandtable::annotate::scale_bar::ScaleBar;
+use sandtable::draw::color::Srgba;
+use sandtable::draw::ground::Ramp;
+use sandtable::draw::pixels::Pixels;
+
+/// A landscape of ridges under a sky, with grain: busy enough to test halos on.
+fn landscape(width: u32, height: u32) -> Pixels {
+    Pixels::from_fn(width, height, |x, y| {
+        let (u, v) = (f64::from(x) / f64::from(height), f64::from(y) / f64::from(height));
+        let noise = |n: u32| {
+            let h = n.wrapping_mul(0x9E37_79B1) ^ (n >> 15);
+            f64::from(h.wrapping_mul(0x85EB_CA6B) >> 24) / 255.0 - 0.5
+        };
+        let grain = noise(x.wrapping_mul(7919) ^ y.wrapping_mul(104_729));
+        let mut color = [178.0 + 50.0 * v, 203.0 + 30.0 * v, 226.0 + 12.0 * v];
+        for ridge in 0..7 {
+            let k = f64::from(ridge);
+            let wave = |f: f64, p: f64| libm::sin(u * f + p);
+            let crest = 0.24
+                + 0.105 * k
+                + (0.05 - 0.004 * k) * wave(2.1 + k, k * 1.7)
+                + 0.016 * wave(9.0 + k * 2.0, k)
+                + 0.006 * wave(31.0, k * 3.0)
+                + 0.002 * wave(90.0, k);
+            if v > crest {
+                let near = k / 6.0;
+                let light = 0.80
+                    + 0.25
+                        * wave(13.0 + 3.0 * k, 1.0 + k + 22.0 * (v - crest))
+                        * libm::exp(-(v - crest) * 7.0)
+                    + 0.10 * grain;
+                let land = [112.0 - 14.0 * near, 136.0 - 16.0 * near, 92.0 - 30.0 * near];
+                let haze = (1.0 - near) * 0.7;
+                color = [0, 1, 2].map(|c| land[c] * light * (1.0 - haze) + [190.0, 208.0, 224.0][c] * haze);
+            }
+        }
+        let [red, green, blue] = color.map(|c: f64| c.clamp(0.0, 255.0) as u8);
+        Srgba::opaque(red, green, blue)
+    })
+}
+
+fn label(text: &str, kind: LabelKind, x: f32, y: f32, depth_m: f32) -> Label {
+    Label { text: text.to_owned(), anchor_px: Vec2::new(x, y), top_px: None, depth_m, visible: true, kind }
+}
+
+/// Labels as a scene of the southern Appalachians would have them, on a sheet of the given size.
+fn labels(width: f32, height: f32) -> Vec<Label> {
+    use LabelKind::{Place, Point, Summit, Water};
+    let all = [
+        ("Cross Mountain\n1062 m", Summit, 0.21, 0.26, 14e3),
+        ("Frozen Head\n1012 m", Summit, 0.44, 0.27, 15e3),
+        ("Bird Mountain\n951 m", Summit, 0.475, 0.285, 16e3),
+        ("Windrock\n1010 m", Summit, 0.73, 0.30, 12e3),
+        ("Walden Ridge\n873 m", Summit, 0.83, 0.40, 9e3),
+        ("Lake City", Place, 0.36, 0.52, 7e3),
+        ("Briceville", Place, 0.52, 0.47, 8e3),
+        ("Fraterville", Place, 0.545, 0.475, 8.1e3),
+        ("Clinton", Place, 0.67, 0.66, 4e3),
+        ("Norris Lake", Water, 0.44, 0.68, 4e3),
+        ("Coal Creek", Water, 0.30, 0.72, 3e3),
+        ("Fire tower", Point, 0.60, 0.56, 5e3),
+        ("Mine portal No. 3", Point, 0.25, 0.60, 5e3),
+        ("Quarry", Point, 0.77, 0.59, 4.5e3),
+    ];
+    all.map(|(text, kind, x, y, depth)| label(text, kind, x * width, y * height, depth)).to_vec()
+}
+
+fn sheet(width: u32, height: u32) -> Annotations {
+    let (w, h) = (width as f32, height as f32);
+    let stops = [
+        (250.0, [104, 138, 96]),
+        (450.0, [164, 176, 116]),
+        (700.0, [206, 186, 134]),
+        (900.0, [172, 138, 104]),
+        (1100.0, [236, 230, 222]),
+    ];
+    let stops = stops.map(|(at, [r, g, b])| (at, Srgba::opaque(r, g, b))).to_vec();
+    Annotations {
+        labels: labels(w, h),
+        title: Some("Cross Mountain and the Coal Creek Valley".to_owned()),
+        subtitle: Some("Anderson and Campbell Counties, Tennessee — view to the north-west".to_owned()),
+        north: Some(NorthArrow { direction: Vec2::new(0.62, -0.50).normalize(), foreshortening: 0.45 }),
+        scale_bar: Some(ScaleBar { pixels_per_metre: h * 0.000_043, distance_m: 12_400.0 }),
+        legend: Some(Legend {
+            ramp: Ramp::new(stops).expect("rising stops"),
+            low_m: 252.0,
+            high_m: 1071.0,
+            vertical_exaggeration: 1.5,
+            contour_interval: Some(20.0),
+            vertical_datum: Some("NAVD88".to_owned()),
+        }),
+        credit: Some("Elevation: USGS 3D Elevation Program".to_owned()),
+    }
+}
+
+#[test]
+#[ignore = "writes pictures to be looked at"]
+fn proof_sheets() {
+    let sizes = [(1920, 1080), (960, 540), (480, 270), (3840, 2160), (1080, 1350), (300, 200)];
+    for (width, height) in sizes {
+        let mut pixels = landscape(width, height);
+        let start = std::time::Instant::now();
+        let report = annotate(&mut pixels, &sheet(width, height));
+        let took = start.elapsed();
+        let path = format!("{}/annotate-{width}x{height}.png", env!("CARGO_TARGET_TMPDIR"));
+        let color = image::ExtendedColorType::Rgba8;
+        image::save_buffer(&path, pixels.bytes(), width, height, color).expect("the folder can be written");
+        println!("{path} in {took:?}\n{report:?}");
+    }
+}
