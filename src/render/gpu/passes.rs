@@ -57,22 +57,19 @@ impl Recording<'_> {
 
     fn features(&self, encoder: &mut wgpu::CommandEncoder) {
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
-        let (feature, depth_m, depth) =
-            (view(&self.targets.feature), view(&self.targets.depth_m), view(&self.targets.depth));
-        let attachment = |view| {
-            Some(wgpu::RenderPassColorAttachment {
-                view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                    store: wgpu::StoreOp::Store,
-                },
-            })
+        let (feature, depth) = (view(&self.targets.feature), view(&self.targets.depth));
+        let attachment = wgpu::RenderPassColorAttachment {
+            view: &feature,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                store: wgpu::StoreOp::Store,
+            },
         };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("features"),
-            color_attachments: &[attachment(&feature), attachment(&depth_m)],
+            color_attachments: &[Some(attachment)],
             depth_stencil_attachment: Some(cleared_depth(&depth)),
             ..Default::default()
         });

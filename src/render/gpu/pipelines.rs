@@ -11,10 +11,8 @@ use crate::render::gpu::uniforms::{Frame, ItemConstants};
 pub(in crate::render::gpu) const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// Reversed depth needs floats: their resolution near zero is what makes it worth reversing.
 pub(in crate::render::gpu) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-/// Feature numbers.
-pub(in crate::render::gpu) const FEATURE: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
-/// Metres from the eye.
-pub(in crate::render::gpu) const DEPTH_M: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+/// Feature numbers and the bits of depths in metres: integers, because OpenGL ES need not draw to floats.
+pub(in crate::render::gpu) const FEATURE: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 
 /// By how much a drape counts as nearer than it is: the one part in 50,000 of the draw list's contract.
 const DRAPE_NEARER: f64 = 1.0 + 1.0 / 50_000.0;
@@ -167,7 +165,7 @@ fn pipeline(
             module: shader,
             entry_point: Some(entry_point),
             compilation_options: options,
-            targets: &targets(pass, rule),
+            targets: &target(pass, rule),
         }),
         multiview_mask: None,
         cache: None,
@@ -191,18 +189,18 @@ fn depth_state(rule: Rule) -> wgpu::DepthStencilState {
     }
 }
 
-fn targets(pass: Pass, rule: Rule) -> Vec<Option<wgpu::ColorTargetState>> {
+fn target(pass: Pass, rule: Rule) -> [Option<wgpu::ColorTargetState>; 1] {
     let write_mask = match rule {
         Rule::DrapeDepth => wgpu::ColorWrites::empty(),
         _ => wgpu::ColorWrites::ALL,
     };
     let blends = matches!(rule, Rule::Blend | Rule::DrapeBlend) && pass == Pass::Color;
     let blend = blends.then_some(wgpu::BlendState::ALPHA_BLENDING);
-    let formats: &[_] = match pass {
-        Pass::Color => &[COLOR],
-        Pass::Feature => &[FEATURE, DEPTH_M],
+    let format = match pass {
+        Pass::Color => COLOR,
+        Pass::Feature => FEATURE,
     };
-    formats.iter().map(|&format| Some(wgpu::ColorTargetState { format, blend, write_mask })).collect()
+    [Some(wgpu::ColorTargetState { format, blend, write_mask })]
 }
 
 fn multisample(gpu: &Gpu, pass: Pass) -> wgpu::MultisampleState {
@@ -234,7 +232,7 @@ fn sky(gpu: &Gpu, layout: &wgpu::PipelineLayout, shader: &wgpu::ShaderModule) ->
             module: shader,
             entry_point: Some("sky_color"),
             compilation_options: Default::default(),
-            targets: &targets(Pass::Color, Rule::Solid),
+            targets: &target(Pass::Color, Rule::Solid),
         }),
         multiview_mask: None,
         cache: None,

@@ -10,15 +10,12 @@ use crate::draw::list::FeatureId;
 use crate::draw::pixels::Pixels;
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
-use crate::render::gpu::pipelines::{COLOR, DEPTH, DEPTH_M, FEATURE};
+use crate::render::gpu::pipelines::{COLOR, DEPTH, FEATURE};
 use crate::render::picture::Picture;
 
 /// How long a picture may take before the device counts as hung. A software adapter needs a second for
 /// millions of triangles; ten minutes leaves room for a far slower machine, and nobody waits longer.
 const PATIENCE: Duration = Duration::from_secs(600);
-
-/// All formats read back have four bytes a texel.
-const TEXEL_BYTES: u32 = 4;
 
 /// The textures of one picture.
 #[derive(Debug)]
@@ -29,10 +26,8 @@ pub(in crate::render::gpu) struct Targets {
     pub sample_depth: wgpu::Texture,
     /// One colour a pixel.
     pub color: wgpu::Texture,
-    /// One feature a pixel.
+    /// One feature a pixel and the bits of its depth in metres; both zero where there is nothing.
     pub feature: wgpu::Texture,
-    /// Metres from the eye; zero where there is nothing.
-    pub depth_m: wgpu::Texture,
     /// The depth buffer of features.
     pub depth: wgpu::Texture,
     size: (u32, u32),
@@ -41,7 +36,10 @@ pub(in crate::render::gpu) struct Targets {
 /// A copy of one texture that the processor can read.
 struct Copy {
     buffer: wgpu::Buffer,
+    /// With padding.
     bytes_per_row: u32,
+    /// Without.
+    row_bytes: u32,
 }
 
 impl Targets {
@@ -73,7 +71,6 @@ impl Targets {
             sample_depth: texture(DEPTH, gpu.samples, kept),
             color: texture(COLOR, 1, read),
             feature: texture(FEATURE, 1, read),
-            depth_m: texture(DEPTH_M, 1, read),
             depth: texture(DEPTH, 1, kept),
             size,
         })
@@ -84,10 +81,8 @@ impl Targets {
     /// # Errors
     /// [`GpuError`] where a copy does not fit a buffer or the device fails.
     pub fn read(&self, gpu: &Gpu, mut encoder: wgpu::CommandEncoder) -> Result<Picture, GpuError> {
-        let copies = [&self.color, &self.feature, &self.depth_m]
-            .into_iter()
-            .map(|texture| self.copy(gpu, &mut encoder, texture))
-            .collect::<Result<Vec<_>, _>>()?;
+        let copies =
+            [self.copy(gpu, &mut encoder, &self.color)?, self.copy(gpu, &mut encoder, &self.feature)?];
         gpu.queue.submit([encoder.finish()]);
         let (sender, arrived) = mpsc::channel();
         for copy in &copies {
@@ -104,7 +99,7 @@ impl Targets {
             let result = arrived.recv().map_err(|error| self.failed(gpu, &error))?;
             result.map_err(|error| self.failed(gpu, &error))?;
         }
-        self.picture(gpu, &copies)
+        self.picture(gpu, &copies[0], &copies[1])
     }
 
     fn failed(&self, gpu: &Gpu, reason: &dyn std::fmt::Display) -> GpuError {
@@ -122,7 +117,8 @@ impl Targets {
         texture: &wgpu::Texture,
     ) -> Result<Copy, GpuError> {
         let (width, height) = self.size;
-        let bytes_per_row = wgpu::util::align_to(width * TEXEL_BYTES, wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let row_bytes = width * texture.format().block_copy_size(None).unwrap_or(16);
+        let bytes_per_row = wgpu::util::align_to(row_bytes, wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let size = u64::from(bytes_per_row) * u64::from(height);
         let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -137,29 +133,30 @@ impl Targets {
         };
         let to = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
         encoder.copy_texture_to_buffer(texture.as_image_copy(), to, texture.size());
-        Ok(Copy { buffer, bytes_per_row })
+        Ok(Copy { buffer, bytes_per_row, row_bytes })
     }
 
-    fn picture(&self, gpu: &Gpu, copies: &[Copy]) -> Result<Picture, GpuError> {
+    fn picture(&self, gpu: &Gpu, color: &Copy, feature: &Copy) -> Result<Picture, GpuError> {
         let (width, height) = self.size;
-        let texels = |copy: &Copy| self.texels(gpu, copy);
-        let colors =
-            texels(&copies[0])?.into_iter().map(|[red, green, blue, _]| Srgba([red, green, blue, 255]));
-        let features = texels(&copies[1])?.into_iter().map(|bytes| FeatureId(u32::from_le_bytes(bytes)));
-        let depths = texels(&copies[2])?.into_iter().map(f32::from_le_bytes);
+        let colors = self.texels::<4>(gpu, color)?;
+        let colors = colors.into_iter().map(|[red, green, blue, _]| Srgba::opaque(red, green, blue));
         let pixels = Pixels::from_data(width, height, colors.collect())
             .ok_or_else(|| self.failed(gpu, &"the driver returned too few pixels"))?;
-        Ok(Picture {
-            pixels,
-            depth_m: depths.map(|depth| if depth > 0.0 { depth } else { f32::INFINITY }).collect(),
-            features: features.collect(),
-        })
+        let (features, depth_m) = self.texels::<8>(gpu, feature)?.into_iter().map(feature_and_depth).unzip();
+        Ok(Picture { pixels, depth_m, features })
     }
 
-    fn texels(&self, gpu: &Gpu, copy: &Copy) -> Result<Vec<[u8; 4]>, GpuError> {
-        let row_bytes = (self.size.0 * TEXEL_BYTES) as usize;
+    /// The texels of `copy`, of `N` bytes each, without padding.
+    fn texels<const N: usize>(&self, gpu: &Gpu, copy: &Copy) -> Result<Vec<[u8; N]>, GpuError> {
         let view = copy.buffer.get_mapped_range(..).map_err(|error| self.failed(gpu, &error))?;
         let rows = view.chunks_exact(copy.bytes_per_row as usize);
-        Ok(rows.flat_map(|row| row[..row_bytes].as_chunks().0).copied().collect())
+        Ok(rows.flat_map(|row| row[..copy.row_bytes as usize].as_chunks().0).copied().collect())
     }
+}
+
+/// What a texel of the feature texture says; nothing lies infinitely far.
+fn feature_and_depth([a, b, c, d, e, f, g, h]: [u8; 8]) -> (FeatureId, f32) {
+    let depth_m = f32::from_ne_bytes([e, f, g, h]);
+    let feature = FeatureId(u32::from_ne_bytes([a, b, c, d]));
+    (feature, if depth_m > 0.0 { depth_m } else { f32::INFINITY })
 }

@@ -199,14 +199,18 @@ fn reversed_depth(in: Varying) -> f32 {
     return frame.depth.x * nearer * in.clip.w - frame.depth.y;
 }
 
-@fragment
-fn color(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+fn shade_or_discard(in: Varying, front: bool) -> vec4f {
     let shaded = shade(in, front);
     let alpha = surface(in).a;
     if (item.flags.x & MASK) != 0u && alpha < item.cutoff.x {
         discard;
     }
     return shaded;
+}
+
+@fragment
+fn color(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    return shade_or_discard(in, front);
 }
 
 struct ColorAndDepth {
@@ -217,12 +221,11 @@ struct ColorAndDepth {
 // For OpenGL, whose clip space halves the depth range about zero and so loses what reversing gained.
 @fragment
 fn color_and_depth(in: Varying, @builtin(front_facing) front: bool) -> ColorAndDepth {
-    return ColorAndDepth(color(in, front), reversed_depth(in));
+    return ColorAndDepth(shade_or_discard(in, front), reversed_depth(in));
 }
 
 struct FeatureAndDepth {
-    @location(0) feature: u32,
-    @location(1) depth_m: f32,
+    @location(0) seen: vec2u, // feature, bits of the depth in metres
     @builtin(frag_depth) depth: f32,
 }
 
@@ -232,5 +235,5 @@ fn feature(in: Varying) -> FeatureAndDepth {
     if (item.flags.x & (MASK | BLEND)) != 0u && alpha < item.cutoff.x {
         discard;
     }
-    return FeatureAndDepth(item.flags.y, 1.0 / in.clip.w, reversed_depth(in));
+    return FeatureAndDepth(vec2u(item.flags.y, bitcast<u32>(1.0 / in.clip.w)), reversed_depth(in));
 }
