@@ -1,0 +1,271 @@
+//! The fixed part of drawing: shader, bindings and one pipeline for each way an item can be drawn.
+
+use std::collections::BTreeMap;
+
+use crate::draw::list::DrawVertex;
+use crate::render::gpu::adapter::{Api, Gpu};
+use crate::render::gpu::plan::{Plan, Rule, Step};
+use crate::render::gpu::uniforms::{Frame, ItemConstants};
+
+/// What colours are drawn to and read back as.
+pub(in crate::render::gpu) const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// Reversed depth needs floats: their resolution near zero is what makes it worth reversing.
+pub(in crate::render::gpu) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// Feature numbers and the bits of depths in metres: integers, because OpenGL ES need not draw to floats.
+pub(in crate::render::gpu) const FEATURE: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
+
+/// By how much a drape counts as nearer than it is: the one part in 50,000 of the draw list's contract.
+const DRAPE_NEARER: f64 = 1.0 + 1.0 / 50_000.0;
+
+pub(in crate::render::gpu) const SHADER: &str =
+    concat!(include_str!("shader.wgsl"), "\n", include_str!("sky.wgsl"));
+
+/// The shapes of what shaders are given.
+#[derive(Debug)]
+pub(in crate::render::gpu) struct Layouts {
+    /// Group 0: constants, ground posts, ramp.
+    pub frame: wgpu::BindGroupLayout,
+    /// Group 1: an item's constants, at a dynamic offset.
+    pub item: wgpu::BindGroupLayout,
+    /// Group 2: the base colour texture and its sampler.
+    pub texture: wgpu::BindGroupLayout,
+}
+
+/// The two passes of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::render::gpu) enum Pass {
+    /// Colours, several samples a pixel.
+    Color,
+    /// Features and depths at pixels' centres.
+    Feature,
+}
+
+/// Every pipeline that a plan calls for.
+#[derive(Debug)]
+pub(in crate::render::gpu) struct Pipelines {
+    /// Draws the sky behind everything.
+    pub sky: wgpu::RenderPipeline,
+    by_way: BTreeMap<(Pass, Rule, bool), wgpu::RenderPipeline>,
+}
+
+impl Layouts {
+    /// The layouts all pipelines share.
+    pub fn new(gpu: &Gpu) -> Self {
+        let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
+        let fragment = wgpu::ShaderStages::FRAGMENT;
+        let texture = |sample_type| wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let uniform = |size: usize, has_dynamic_offset| wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset,
+            min_binding_size: wgpu::BufferSize::new(size as u64),
+        };
+        let group = |bindings: &[(wgpu::ShaderStages, wgpu::BindingType)]| {
+            let entries: Vec<_> = (0..)
+                .zip(bindings)
+                .map(|(binding, &(visibility, ty))| wgpu::BindGroupLayoutEntry {
+                    binding,
+                    visibility,
+                    ty,
+                    count: None,
+                })
+                .collect();
+            let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
+            gpu.device.create_bind_group_layout(&descriptor)
+        };
+        Self {
+            frame: group(&[
+                (both, uniform(size_of::<Frame>(), false)),
+                (fragment, texture(wgpu::TextureSampleType::Uint)),
+                (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
+            ]),
+            item: group(&[(both, uniform(size_of::<ItemConstants>(), true))]),
+            texture: group(&[
+                (fragment, texture(wgpu::TextureSampleType::Float { filterable: true })),
+                (fragment, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+            ]),
+        }
+    }
+}
+
+impl Pipelines {
+    /// The pipelines for all steps of `plan`.
+    pub fn new(gpu: &Gpu, layouts: &Layouts, plan: &Plan) -> Self {
+        let shader = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("sandtable"),
+            source: wgpu::ShaderSource::Wgsl(SHADER.into()),
+        });
+        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: &[Some(&layouts.frame), Some(&layouts.item), Some(&layouts.texture)],
+            immediate_size: 0,
+        });
+        let sky_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: &[Some(&layouts.frame)],
+            immediate_size: 0,
+        });
+        let color = plan.color.iter().map(|step| (Pass::Color, step.rule, step.two_sided));
+        let features = plan.features.iter().map(|step| (Pass::Feature, step.rule, step.two_sided));
+        let mut by_way = BTreeMap::new();
+        for way in color.chain(features) {
+            by_way.entry(way).or_insert_with(|| pipeline(gpu, &layout, &shader, way));
+        }
+        Self { sky: sky(gpu, &sky_layout, &shader), by_way }
+    }
+
+    /// The pipeline for a step of the plan these were made for.
+    pub fn get(&self, pass: Pass, step: &Step) -> Option<&wgpu::RenderPipeline> {
+        self.by_way.get(&(pass, step.rule, step.two_sided))
+    }
+}
+
+fn pipeline(
+    gpu: &Gpu,
+    layout: &wgpu::PipelineLayout,
+    shader: &wgpu::ShaderModule,
+    (pass, rule, two_sided): (Pass, Rule, bool),
+) -> wgpu::RenderPipeline {
+    let is_hair_nearer = matches!(rule, Rule::Drape | Rule::DrapeBlend);
+    let constants = [("nearer", if is_hair_nearer { DRAPE_NEARER } else { 1.0 })];
+    let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
+    let entry_point = match (pass, gpu.api()) {
+        (Pass::Feature, _) => "feature",
+        (Pass::Color, Api::Vulkan) => "color",
+        (Pass::Color, Api::Gl) => "color_and_depth",
+    };
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(entry_point),
+        layout: Some(layout),
+        vertex: wgpu::VertexState {
+            module: shader,
+            entry_point: Some("vertex"),
+            compilation_options: options.clone(),
+            buffers: &[Some(wgpu::VertexBufferLayout {
+                array_stride: size_of::<DrawVertex>() as u64,
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: &wgpu::vertex_attr_array![
+                    0 => Float32x3,
+                    1 => Float32x3,
+                    2 => Float32x2,
+                    3 => Unorm8x4,
+                ],
+            })],
+        },
+        primitive: wgpu::PrimitiveState {
+            cull_mode: (!two_sided).then_some(wgpu::Face::Back),
+            ..Default::default()
+        },
+        depth_stencil: Some(depth_state(rule)),
+        multisample: multisample(gpu, pass),
+        fragment: Some(wgpu::FragmentState {
+            module: shader,
+            entry_point: Some(entry_point),
+            compilation_options: options,
+            targets: &target(pass, rule),
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// Depth is reversed: greater is nearer.
+fn depth_state(rule: Rule) -> wgpu::DepthStencilState {
+    let (writes, compare) = match rule {
+        Rule::Solid => (true, wgpu::CompareFunction::Greater),
+        Rule::Blend => (false, wgpu::CompareFunction::Greater),
+        Rule::Drape | Rule::DrapeBlend => (false, wgpu::CompareFunction::GreaterEqual),
+        Rule::DrapeDepth => (true, wgpu::CompareFunction::GreaterEqual),
+    };
+    wgpu::DepthStencilState {
+        format: DEPTH,
+        depth_write_enabled: Some(writes),
+        depth_compare: Some(compare),
+        stencil: Default::default(),
+        bias: Default::default(),
+    }
+}
+
+fn target(pass: Pass, rule: Rule) -> [Option<wgpu::ColorTargetState>; 1] {
+    let write_mask = match rule {
+        Rule::DrapeDepth => wgpu::ColorWrites::empty(),
+        _ => wgpu::ColorWrites::ALL,
+    };
+    let blends = matches!(rule, Rule::Blend | Rule::DrapeBlend) && pass == Pass::Color;
+    let blend = blends.then_some(wgpu::BlendState::ALPHA_BLENDING);
+    let format = match pass {
+        Pass::Color => COLOR,
+        Pass::Feature => FEATURE,
+    };
+    [Some(wgpu::ColorTargetState { format, blend, write_mask })]
+}
+
+fn multisample(gpu: &Gpu, pass: Pass) -> wgpu::MultisampleState {
+    let count = match pass {
+        Pass::Color => gpu.samples,
+        Pass::Feature => 1,
+    };
+    wgpu::MultisampleState { count, ..Default::default() }
+}
+
+fn sky(gpu: &Gpu, layout: &wgpu::PipelineLayout, shader: &wgpu::ShaderModule) -> wgpu::RenderPipeline {
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("sky"),
+        layout: Some(layout),
+        vertex: wgpu::VertexState {
+            module: shader,
+            entry_point: Some("sky_vertex"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            depth_write_enabled: Some(false),
+            depth_compare: Some(wgpu::CompareFunction::Always),
+            ..depth_state(Rule::Blend)
+        }),
+        multisample: multisample(gpu, Pass::Color),
+        fragment: Some(wgpu::FragmentState {
+            module: shader,
+            entry_point: Some("sky_color"),
+            compilation_options: Default::default(),
+            targets: &target(Pass::Color, Rule::Solid),
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shader_is_valid_without_any_gpu() {
+        let module = naga::front::wgsl::parse_str(SHADER)
+            .unwrap_or_else(|error| panic!("{}", error.emit_to_string(SHADER)));
+        let flags = naga::valid::ValidationFlags::all();
+        naga::valid::Validator::new(flags, naga::valid::Capabilities::empty())
+            .validate(&module)
+            .unwrap_or_else(|error| panic!("{}", error.emit_to_string(SHADER)));
+        let names: Vec<&str> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
+        assert_eq!(names, ["vertex", "color", "color_and_depth", "feature", "sky_vertex", "sky_color"]);
+    }
+
+    #[test]
+    fn the_constants_are_laid_out_as_the_shader_declares_them() {
+        let module = naga::front::wgsl::parse_str(SHADER).expect("valid, by the test above");
+        let size_of_struct = |name: &str| {
+            let found = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name));
+            match found.map(|(_, ty)| &ty.inner) {
+                Some(naga::TypeInner::Struct { span, .. }) => *span as usize,
+                other => panic!("{name} is {other:?}"),
+            }
+        };
+        assert_eq!(size_of_struct("Frame"), size_of::<Frame>());
+        assert_eq!(size_of_struct("Item"), size_of::<ItemConstants>());
+    }
+}

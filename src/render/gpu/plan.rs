@@ -1,0 +1,101 @@
+//! In which order and by which rule each item is drawn.
+//!
+//! ```text
+//! ground ─► drapes in list order ─► solids ─► blended solids, farthest first
+//! ```
+//!
+//! A drape lies in the ground's triangles, so its depth differs from the ground's by rounding only. Drawing
+//! it as if it were nearer by a hair and writing *that* depth would stack up from drape to drape, and bury
+//! what stands on the road; so a drape is tested a hair nearer but leaves its true depth behind, by a second,
+//! colourless draw. A blended drape keeps its place among the drapes: a lake under a road stays under it.
+
+use std::ops::Range;
+
+use glam::Vec3;
+
+use crate::draw::list::{DrawItem, DrawList, Layer};
+use crate::draw::material::Alpha;
+use crate::view::camera::Camera;
+
+/// The rule by which an item meets the depth buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::render::gpu) enum Rule {
+    /// Drawn where nearer, leaving its depth.
+    Solid,
+    /// Drawn where nearer, mixed with what is there, leaving no depth.
+    Blend,
+    /// Drawn where no farther by a hair, leaving no depth.
+    Drape,
+    /// The same, mixed with what is there.
+    DrapeBlend,
+    /// Not drawn; leaves its depth where no farther.
+    DrapeDepth,
+}
+
+/// One draw call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::render::gpu) struct Step {
+    /// Index into the draw list's items.
+    pub item: usize,
+    /// How it meets the depth buffer.
+    pub rule: Rule,
+    /// Whether backs are drawn too.
+    pub two_sided: bool,
+}
+
+/// The draw calls of both passes.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub(in crate::render::gpu) struct Plan {
+    /// What makes the colours.
+    pub color: Vec<Step>,
+    /// What makes the feature and depth buffers: the same items, blended ones like solid ones.
+    pub features: Vec<Step>,
+}
+
+impl Plan {
+    /// The plan for a list that has passed its own check; items without triangles are left out.
+    pub fn of(list: &DrawList, camera: &Camera) -> Self {
+        let mut plan = Self::default();
+        let mut blended = Vec::new();
+        for (index, item) in list.items.iter().enumerate().filter(|(_, item)| !item.triangles.is_empty()) {
+            let material = &list.materials[item.material.0 as usize];
+            let step = |rule| Step { item: index, rule, two_sided: material.two_sided };
+            let is_blend = material.alpha == Alpha::Blend;
+            match (item.layer, is_blend) {
+                (Layer::Draped(_), _) => {
+                    let depth = step(Rule::DrapeDepth);
+                    plan.features.extend([step(Rule::Drape), depth]);
+                    match is_blend {
+                        true => plan.color.push(step(Rule::DrapeBlend)),
+                        false => plan.color.extend([step(Rule::Drape), depth]),
+                    }
+                }
+                (_, false) => {
+                    plan.color.push(step(Rule::Solid));
+                    plan.features.push(step(Rule::Solid));
+                }
+                (_, true) => {
+                    blended.push((depth_of(list, item, camera), step(Rule::Blend)));
+                    plan.features.push(step(Rule::Solid));
+                }
+            }
+        }
+        // Stable, so that equally far items keep the list's order.
+        blended.sort_by(|a, b| b.0.total_cmp(&a.0));
+        plan.color.extend(blended.into_iter().map(|(_, step)| step));
+        plan
+    }
+}
+
+/// Metres along the viewing direction to the middle of what `item` draws.
+fn depth_of(list: &DrawList, item: &DrawItem, camera: &Camera) -> f32 {
+    let mesh = &list.meshes[item.mesh.0 as usize];
+    let Range { start, end } = item.triangles;
+    let corners = mesh.triangles[start as usize..end as usize].iter().flatten();
+    let (min, max) = corners.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), id| {
+        let at = Vec3::from_array(mesh.vertices[id.index()].position);
+        (min.min(at), max.max(at))
+    });
+    let middle = item.world_from_mesh.transform_point3((min + max) * 0.5);
+    (middle - camera.eye()).dot(camera.forward())
+}

@@ -1,0 +1,239 @@
+// Draws one item of a draw list, by the formulas of src/draw/lighting.rs and src/draw/ground.rs.
+//
+// Two families of entry points share everything but their outputs: `color` writes the lit surface,
+// `feature` writes the feature's number and the depth in metres. Depth is reversed: with the clip planes
+// folded into A and B, the buffer holds A / d − B, which is 1 at the near plane and 0 at the far plane, so
+// that a float buffer resolves equal ratios of depth equally well everywhere.
+
+struct Frame {
+    eye: vec4f,           // xyz
+    right: vec4f,         // xyz, 1 / tangent of half the horizontal field of view
+    up: vec4f,            // xyz, 1 / tangent of half the vertical field of view
+    forward: vec4f,       // xyz
+    depth: vec4f,         // A, B of the depth buffer's A / d − B; width and height of the picture
+    to_sun: vec4f,        // xyz
+    sun: vec4f,           // rgb
+    sky: vec4f,           // rgb
+    bounce: vec4f,        // rgb
+    haze: vec4f,          // rgb, 1 / distance
+    zenith: vec4f,        // rgb
+    ground: vec4f,        // x and y of the south-west post, cell's width and height
+    ground_size: vec4u,   // columns, rows, ramp stops, stops in a row of the ramp's texture
+    contour: vec4f,       // rgb, strength
+    contour_shape: vec4f, // interval in metres (0: none), width in pixels, every how many is heavier
+}
+
+struct Item {
+    world_from_mesh: mat4x4f,
+    base_color: vec4f, // linear rgb, straight alpha
+    flags: vec4u,      // bits of the constants below, feature
+    cutoff: vec4f,     // x: alpha below it is a hole, for the colour where MASK is set, for the feature too where BLEND is
+}
+
+const FROM_GROUND_NORMAL = 1u;
+const FROM_GROUND_ALBEDO = 2u;
+const MASK = 4u;
+const BLEND = 8u;
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+// One texel a post: height, slope east and slope north as bits of f32, both visibilities as 16 bits each.
+@group(0) @binding(1) var ground_posts: texture_2d<u32>;
+// One texel a stop of the ramp: linear rgb, height.
+@group(0) @binding(2) var ramp_stops: texture_2d<f32>;
+@group(1) @binding(0) var<uniform> item: Item;
+@group(2) @binding(0) var base_texture: texture_2d<f32>;
+@group(2) @binding(1) var base_sampler: sampler;
+
+// By how much an item counts as nearer than it is: 1, or a little more for what is draped.
+override nearer: f32 = 1.0;
+
+struct Corner {
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) uv: vec2f,
+    @location(3) color: vec4f,
+}
+
+struct Varying {
+    @invariant @builtin(position) clip: vec4f,
+    @location(0) world: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) uv: vec2f,
+    @location(3) color: vec4f,
+}
+
+fn linear_from_srgb(value: vec3f) -> vec3f {
+    let low = value / 12.92;
+    let high = pow((value + 0.055) / 1.055, vec3f(2.4));
+    return select(high, low, value <= vec3f(0.04045));
+}
+
+@vertex
+fn vertex(corner: Corner) -> Varying {
+    let world = (item.world_from_mesh * vec4f(corner.position, 1.0)).xyz;
+    // Relative to the eye first: far from the origin a product of matrices would lose the low digits.
+    let offset = world - frame.eye.xyz;
+    let depth = dot(offset, frame.forward.xyz);
+    var out: Varying;
+    out.clip = vec4f(
+        dot(offset, frame.right.xyz) * frame.right.w,
+        dot(offset, frame.up.xyz) * frame.up.w,
+        frame.depth.x * nearer - frame.depth.y * depth,
+        depth,
+    );
+    out.world = world;
+    out.normal = (item.world_from_mesh * vec4f(corner.normal, 0.0)).xyz;
+    out.uv = corner.uv;
+    out.color = vec4f(linear_from_srgb(corner.color.rgb), corner.color.a);
+    return out;
+}
+
+struct Post {
+    height: f32,
+    slope: vec2f,
+    visibility: vec2f, // of the sun, of the sky
+}
+
+fn post_at(column: u32, row: u32) -> Post {
+    let texel = textureLoad(ground_posts, vec2u(column, row), 0);
+    return Post(bitcast<f32>(texel.x), bitcast<vec2f>(texel.yz), unpack2x16unorm(texel.w));
+}
+
+fn mix_post(a: Post, b: Post, t: f32) -> Post {
+    return Post(
+        a.height + (b.height - a.height) * t,
+        a.slope + (b.slope - a.slope) * t,
+        a.visibility + (b.visibility - a.visibility) * t,
+    );
+}
+
+// GroundMap::sample.
+fn ground_at(at: vec2f) -> Post {
+    let last = vec2f(frame.ground_size.xy - 1u);
+    let grid = clamp((at - frame.ground.xy) / frame.ground.zw, vec2f(0.0), last);
+    let cell = min(floor(grid), max(last - 1.0, vec2f(0.0)));
+    let part = grid - cell;
+    let first = vec2u(cell);
+    let next = min(first + 1u, frame.ground_size.xy - 1u);
+    let south = mix_post(post_at(first.x, first.y), post_at(next.x, first.y), part.x);
+    let north = mix_post(post_at(first.x, next.y), post_at(next.x, next.y), part.x);
+    return mix_post(south, north, part.y);
+}
+
+fn stop_at(index: u32) -> vec4f {
+    let columns = frame.ground_size.w;
+    return textureLoad(ramp_stops, vec2u(index % columns, index / columns), 0);
+}
+
+// Ramp::linear_at.
+fn ramp_at(height: f32) -> vec3f {
+    var low = 0u;
+    var high = frame.ground_size.z;
+    while low < high {
+        let middle = (low + high) / 2u;
+        if stop_at(middle).w <= height {
+            low = middle + 1u;
+        } else {
+            high = middle;
+        }
+    }
+    let after = stop_at(min(low, frame.ground_size.z - 1u));
+    let before = stop_at(max(low, 1u) - 1u);
+    let between = low > 0u && low < frame.ground_size.z;
+    let part = select(0.0, (height - before.w) / (after.w - before.w), between);
+    return mix(before.rgb, after.rgb, part);
+}
+
+// Contours: how much of a pixel a line covers, where height changes by `per_pixel` across one.
+fn contour_cover(height: f32, per_pixel: f32) -> f32 {
+    let interval = frame.contour_shape.x;
+    if interval <= 0.0 || per_pixel <= 0.0 {
+        return 0.0;
+    }
+    let line = round(height / interval);
+    let every = frame.contour_shape.z;
+    let heavy = line - every * floor(line / every) < 0.5;
+    let width = frame.contour_shape.y * select(1.0, 2.0, heavy);
+    let cover = clamp(width * 0.5 + 0.5 - abs(height - line * interval) / per_pixel, 0.0, 1.0);
+    return cover * clamp((interval / per_pixel - 3.0) / 5.0, 0.0, 1.0);
+}
+
+fn lit(albedo: vec3f, normal: vec3f, sun_visibility: f32, sky_visibility: f32) -> vec3f {
+    let direct = frame.sun.rgb * (max(dot(normal, frame.to_sun.xyz), 0.0) * sun_visibility);
+    let ambient = mix(frame.bounce.rgb, frame.sky.rgb, normal.z * 0.5 + 0.5) * sky_visibility;
+    return albedo * (direct + ambient);
+}
+
+// A unit vector; zero stays zero.
+fn unit(v: vec3f) -> vec3f {
+    return v * inverseSqrt(max(dot(v, v), 1e-30));
+}
+
+fn surface(in: Varying) -> vec4f {
+    return item.base_color * in.color * textureSample(base_texture, base_sampler, in.uv);
+}
+
+fn shade(in: Varying, front: bool) -> vec4f {
+    let flags = item.flags.x;
+    var color = surface(in);
+    var normal = unit(in.normal) * select(-1.0, 1.0, front);
+    var visibility = vec2f(1.0);
+    if (flags & (FROM_GROUND_NORMAL | FROM_GROUND_ALBEDO)) != 0u {
+        let post = ground_at(in.world.xy);
+        if (flags & FROM_GROUND_NORMAL) != 0u {
+            normal = normalize(vec3f(-post.slope, 1.0));
+            visibility = post.visibility;
+        }
+        if (flags & FROM_GROUND_ALBEDO) != 0u {
+            let cover = contour_cover(post.height, fwidth(post.height)) * frame.contour.a;
+            color = vec4f(mix(ramp_at(post.height), frame.contour.rgb, cover), color.a);
+        }
+    }
+    let light = lit(color.rgb, normal, visibility.x, visibility.y);
+    let clear = exp(-distance(in.world, frame.eye.xyz) * frame.haze.w);
+    return vec4f(mix(frame.haze.rgb, light, clear), select(1.0, color.a, (flags & BLEND) != 0u));
+}
+
+// The depth buffer's value from what the rasteriser knows exactly at a pixel's centre, 1 / d.
+fn reversed_depth(in: Varying) -> f32 {
+    return frame.depth.x * nearer * in.clip.w - frame.depth.y;
+}
+
+fn shade_or_discard(in: Varying, front: bool) -> vec4f {
+    let shaded = shade(in, front);
+    let alpha = surface(in).a;
+    if (item.flags.x & MASK) != 0u && alpha < item.cutoff.x {
+        discard;
+    }
+    return shaded;
+}
+
+@fragment
+fn color(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    return shade_or_discard(in, front);
+}
+
+struct ColorAndDepth {
+    @location(0) color: vec4f,
+    @builtin(frag_depth) depth: f32,
+}
+
+// For OpenGL, whose clip space halves the depth range about zero and so loses what reversing gained.
+@fragment
+fn color_and_depth(in: Varying, @builtin(front_facing) front: bool) -> ColorAndDepth {
+    return ColorAndDepth(shade_or_discard(in, front), reversed_depth(in));
+}
+
+struct FeatureAndDepth {
+    @location(0) seen: vec2u, // feature, bits of the depth in metres
+    @builtin(frag_depth) depth: f32,
+}
+
+@fragment
+fn feature(in: Varying) -> FeatureAndDepth {
+    let alpha = surface(in).a;
+    if (item.flags.x & (MASK | BLEND)) != 0u && alpha < item.cutoff.x {
+        discard;
+    }
+    return FeatureAndDepth(vec2u(item.flags.y, bitcast<u32>(1.0 / in.clip.w)), reversed_depth(in));
+}

@@ -1,0 +1,126 @@
+//! The constants shaders read, laid out as `shader.wgsl` declares them.
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+use crate::draw::list::{DrawItem, DrawList};
+use crate::draw::material::{Albedo, Alpha, Material, Normals};
+use crate::view::camera::Camera;
+
+/// How many ramp stops lie in one row of their texture; any number below the smallest limit will do.
+pub(in crate::render::gpu) const RAMP_COLUMNS: u32 = 1024;
+
+/// A blended surface at least this opaque is what the feature and depth buffers show; through a clearer one
+/// they show what lies behind, as a reader of the picture would.
+const SEEN_ALPHA: f32 = 0.5;
+
+const FROM_GROUND_NORMAL: u32 = 1;
+const FROM_GROUND_ALBEDO: u32 = 2;
+const MASK: u32 = 4;
+const BLEND: u32 = 8;
+
+/// What is the same for a whole picture: `Frame` in the shader.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(in crate::render::gpu) struct Frame {
+    eye: [f32; 4],
+    right: [f32; 4],
+    up: [f32; 4],
+    forward: [f32; 4],
+    depth: [f32; 4],
+    to_sun: [f32; 4],
+    sun: [f32; 4],
+    sky: [f32; 4],
+    bounce: [f32; 4],
+    haze: [f32; 4],
+    zenith: [f32; 4],
+    ground: [f32; 4],
+    ground_size: [u32; 4],
+    contour: [f32; 4],
+    contour_shape: [f32; 4],
+}
+
+/// What is the same for one item: `Item` in the shader.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(in crate::render::gpu) struct ItemConstants {
+    world_from_mesh: [[f32; 4]; 4],
+    base_color: [f32; 4],
+    flags: [u32; 4],
+    cutoff: [f32; 4],
+}
+
+fn with(vector: Vec3, w: f32) -> [f32; 4] {
+    vector.extend(w).to_array()
+}
+
+impl Frame {
+    /// The constants of `list` seen by `camera`.
+    pub fn of(list: &DrawList, camera: &Camera) -> Self {
+        let tan = camera.tan_half_fov();
+        let (near, far) = camera.planes();
+        let (width, height) = camera.size();
+        let light = &list.lighting;
+        Self {
+            eye: with(camera.eye(), 0.0),
+            right: with(camera.right(), 1.0 / tan.x),
+            up: with(camera.up(), 1.0 / tan.y),
+            forward: with(camera.forward(), 0.0),
+            // near · far may exceed what f32 holds; their ratio cannot be lost that way.
+            depth: [near / (1.0 - near / far), near / (far - near), width as f32, height as f32],
+            to_sun: with(light.to_sun, 0.0),
+            sun: with(light.sun, 0.0),
+            sky: with(light.sky, 0.0),
+            bounce: with(light.bounce, 0.0),
+            haze: with(light.haze.color, 1.0 / light.haze.distance_m),
+            zenith: with(light.zenith, 0.0),
+            ..Self::of_ground(list)
+        }
+    }
+
+    fn of_ground(list: &DrawList) -> Self {
+        let mut frame = Self { ground: [0.0, 0.0, 1.0, 1.0], ..Self::zeroed() };
+        frame.ground_size = [1, 1, 1, RAMP_COLUMNS];
+        let Some(map) = &list.ground else { return frame };
+        frame.ground = [map.origin.x, map.origin.y, map.cell.x, map.cell.y];
+        frame.ground_size = [map.columns, map.rows, map.ramp.stops().len() as u32, RAMP_COLUMNS];
+        if let Some(contours) = map.contours {
+            let every = contours.major_every.max(1) as f32;
+            frame.contour = with(contours.color.linear(), contours.color.alpha());
+            frame.contour_shape = [contours.interval_m, contours.width_px, every, 0.0];
+        }
+        frame
+    }
+}
+
+impl ItemConstants {
+    /// The constants of `item`, drawn with `material`.
+    ///
+    /// Where there is no ground map, a material that takes its colour from it shows its base colour instead.
+    pub fn of(item: &DrawItem, material: &Material, list: &DrawList) -> Self {
+        let mut flags = 0;
+        if material.normals == Normals::Ground {
+            flags |= FROM_GROUND_NORMAL;
+        }
+        if material.albedo == Albedo::GroundMap && list.ground.is_some() {
+            flags |= FROM_GROUND_ALBEDO;
+        }
+        let cutoff = match material.alpha {
+            Alpha::Opaque => 0.0,
+            Alpha::Mask(cutoff) => {
+                flags |= MASK;
+                cutoff
+            }
+            Alpha::Blend => {
+                flags |= BLEND;
+                SEEN_ALPHA
+            }
+        };
+        Self {
+            world_from_mesh: item.world_from_mesh.to_cols_array_2d(),
+            base_color: with(material.base_color.linear(), material.base_color.alpha()),
+            flags: [flags, item.feature.0, 0, 0],
+            cutoff: [cutoff, 0.0, 0.0, 0.0],
+        }
+    }
+}
