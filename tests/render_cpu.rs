@@ -27,10 +27,11 @@ fn shot(list: &sandtable::draw::list::DrawList, camera: &Camera) -> Picture {
 #[ignore = "writes large pictures to look at; times itself"]
 fn the_landscape_for_the_eye() {
     let list = landscape::landscape(300);
+    let above = |x: f32, y: f32, rise: f32| Vec3::new(x, y, landscape::height(x, y) + rise);
     for (name, eye, target, size) in [
         ("wide.png", Vec3::new(300.0, -9_400.0, 700.0), Vec3::new(0.0, -3_000.0, 0.0), (1920, 1080)),
-        ("near.png", Vec3::new(-20.0, -8_320.0, 190.0), Vec3::new(20.0, -7_700.0, 100.0), (1920, 1080)),
-        ("low.png", Vec3::new(0.0, -8_500.0, 130.0), Vec3::new(0.0, 0.0, 100.0), (1280, 720)),
+        ("near.png", above(-20.0, -8_320.0, 40.0), above(40.0, -7_900.0, 0.0), (1920, 1080)),
+        ("low.png", above(5.0, -8_500.0, 2.0), above(-20.0, -8_300.0, 0.0), (1280, 720)),
         ("above.png", Vec3::new(0.0, -4_000.0, 6_000.0), Vec3::new(0.0, -3_900.0, 0.0), (1280, 720)),
     ] {
         let camera = looking(eye, target, size);
