@@ -1,1 +1,163 @@
-//! x
+//! The deterministic renderer: needs nothing but the processor, and gives the same bytes on every platform
+//! and for every number of threads.
+//!
+//! # How
+//! ```text
+//! DrawList ──geometry──▶ faces, pieces ──band──▶ tiles of 64×64 ──visibility──▶ which face each sample sees
+//!            plane, clip, raster::snapped                         raster, pattern     │
+//!                                                                 blend ◀─────────────┤
+//!                        Picture ◀──band── pixels ◀──tile::resolve── shade ◀──────────┘
+//!                                                                    hit, ground_shade, texture
+//! ```
+//! Coverage is integer arithmetic on snapped corners; depth and attributes come from the exact planes of the
+//! unsnapped triangles in f64, so that a road cut from the ground's triangles has the ground's very depth.
+//! Shading runs once per pixel and face (as multisampling does), at the middle of the samples the face
+//! holds. Tiles are drawn in parallel on the current `rayon` pool; none depends on another, and within a
+//! tile faces keep the list's order.
+//!
+//! # Surfaces
+//! Ground and solids hide what is behind them; draped faces follow [`crate::draw::list::Layer`], with the
+//! tolerance widened where f32 corners far from the origin round by more than it (see
+//! `geometry::drape_tolerance`). Masked surfaces are tested at each sample. Blended surfaces are sorted per
+//! pixel, up to 32 deep, and laid over each sample in linear light; from alpha ½ on they are what depth and
+//! feature buffers hold, below it what lies behind them.
+//!
+//! # Cost
+//! Time grows with pixels × the faces seen in each (shading, most of it), plus triangles (about 100 ns
+//! each), plus covered samples (about 1 ns each). Memory: 12 bytes a pixel for the picture; 150 bytes a
+//! visible triangle; 0.3 MiB a thread; a third of each texture and of the ground map for their smaller
+//! levels.
+
+mod band;
+mod blend;
+mod clip;
+mod geometry;
+mod ground_shade;
+mod hit;
+mod pattern;
+mod plane;
+mod raster;
+mod screen;
+mod shade;
+mod texture;
+mod tile;
+mod visibility;
+
+use rayon::prelude::*;
+
+use crate::draw::color::Srgba;
+use crate::draw::list::{DrawList, FeatureId};
+use crate::draw::material::{Albedo, Normals};
+use crate::draw::pixels::Pixels;
+use crate::render::cpu::band::{BandRows, draw_band};
+use crate::render::cpu::geometry::Geometry;
+use crate::render::cpu::pattern::{EIGHT, FOUR, ONE, Pattern};
+use crate::render::cpu::screen::Screen;
+use crate::render::cpu::shade::Shader;
+use crate::render::cpu::tile::Frame;
+use crate::render::cpu::visibility::TILE;
+use crate::render::picture::Picture;
+use crate::view::camera::Camera;
+
+/// How carefully to render.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Samples a pixel. Default: eight.
+    pub samples: Samples,
+    /// The most readings of a texture or of the ground map along a pixel seen at a grazing angle, 1..=16.
+    /// Default: 8.
+    pub anisotropy: u32,
+}
+
+/// In how many places each pixel is tested for what it sees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Samples {
+    /// Once, at the centre: jagged, for drafts.
+    One,
+    /// Four times.
+    Four,
+    /// Eight times.
+    Eight,
+}
+
+/// Why a draw list cannot be rendered.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RenderError {
+    /// [`DrawList::check`] found something out of place.
+    #[error("the draw list is not sound: {0}; its maker must be mended")]
+    List(String),
+    /// The ground map cannot be read.
+    #[error("the draw list's ground map has {0}; its maker must be mended")]
+    GroundMap(String),
+    /// A material takes colour or normals from a ground map that is not there.
+    #[error(
+        "item {item} takes its colour or normals from the ground map, but the draw list has none; add one"
+    )]
+    NoGroundMap {
+        /// The item's index in the list.
+        item: usize,
+    },
+    /// There are too many triangles.
+    #[error("the draw list draws {0} triangles, the most is 4294965000; draw fewer or coarser meshes")]
+    TooManyTriangles(usize),
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { samples: Samples::Eight, anisotropy: 8 }
+    }
+}
+
+/// The picture that `camera` takes of `list`, drawn on the current `rayon` pool.
+///
+/// Triangles with corners that are not finite are left out.
+///
+/// # Errors
+/// See [`RenderError`].
+pub fn render(list: &DrawList, camera: &Camera, options: &Options) -> Result<Picture, RenderError> {
+    check(list)?;
+    let screen = Screen::of(camera);
+    let geometry =
+        Geometry::of(list, &screen).ok_or_else(|| RenderError::TooManyTriangles(list.triangle_count()))?;
+    let shader = Shader::new(list, &screen, options.anisotropy.clamp(1, 16));
+    let frame = Frame { screen: &screen, geometry: &geometry, shader: &shader, lighting: &list.lighting };
+    Ok(match options.samples {
+        Samples::One => draw(&frame, &ONE),
+        Samples::Four => draw(&frame, &FOUR),
+        Samples::Eight => draw(&frame, &EIGHT),
+    })
+}
+
+fn check(list: &DrawList) -> Result<(), RenderError> {
+    list.check().map_err(RenderError::List)?;
+    if let Some(fault) = list.ground.as_ref().and_then(ground_shade::fault) {
+        return Err(RenderError::GroundMap(fault));
+    }
+    let needs_ground = list.items.iter().position(|item| {
+        let material = &list.materials[item.material.0 as usize];
+        material.albedo == Albedo::GroundMap || material.normals == Normals::Ground
+    });
+    match needs_ground {
+        Some(item) if list.ground.is_none() => Err(RenderError::NoGroundMap { item }),
+        _ => Ok(()),
+    }
+}
+
+/// All bands of the picture.
+fn draw<const N: usize>(frame: &Frame, pattern: &Pattern<N>) -> Picture {
+    let [width, height] = frame.screen.size;
+    let (count, band) = (width as usize * height as usize, (width * TILE) as usize);
+    let mut pixels = Pixels::filled(width, height, Srgba::WHITE);
+    let mut depth_m = vec![f32::INFINITY; count];
+    let mut features = vec![FeatureId::NONE; count];
+    pixels
+        .data_mut()
+        .par_chunks_mut(band)
+        .zip(depth_m.par_chunks_mut(band))
+        .zip(features.par_chunks_mut(band))
+        .enumerate()
+        .for_each(|(number, ((colors, depths_m), features))| {
+            draw_band(frame, pattern, number as u32, BandRows { colors, depths_m, features });
+        });
+    Picture { pixels, depth_m, features }
+}

@@ -1,0 +1,192 @@
+//! The ground map at a pixel: heights, slopes and light filtered to what the pixel sees, ramp and contours.
+//!
+//! Near the eye this is the map's own bilinear reading. Far away a pixel spans many posts, and one reading
+//! would make hillshade sparkle; there the map is read from a pyramid whose levels each smooth and halve the
+//! one before (Williams, "Pyramidal Parametrics", 1983), along the longer side of the pixel's footprint.
+
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+
+use crate::draw::ground::{Contours, GroundMap, GroundPost};
+use crate::render::cpu::hit::Hit;
+use crate::render::cpu::texture::Footprint;
+
+/// A ground map with its smaller levels.
+#[derive(Debug)]
+pub struct Ground<'a> {
+    map: &'a GroundMap,
+    smaller: Vec<Level>,
+    stops: Vec<(f32, Vec3)>,
+}
+
+/// Posts at twice the distance of the level before; the first post of each is the map's first.
+#[derive(Debug)]
+struct Level {
+    columns: usize,
+    rows: usize,
+    posts: Vec<GroundPost>,
+}
+
+/// The ground as one pixel sees it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct GroundPoint {
+    post: GroundPost,
+    /// The rise of `height_m` eastward and northward, metres per metre.
+    gradient: Vec2,
+}
+
+/// What is wrong with a ground map, in words; `None` where it can be read.
+pub fn fault(map: &GroundMap) -> Option<String> {
+    let posts = u64::from(map.columns) * u64::from(map.rows);
+    if posts == 0 || posts != map.posts.len() as u64 {
+        return Some(format!("{}×{} posts but {} entries", map.columns, map.rows, map.posts.len()));
+    }
+    let sound = map.cell.min_element() > 0.0 && map.cell.is_finite() && map.origin.is_finite();
+    (!sound).then(|| format!("cells of {} m from {}", map.cell, map.origin))
+}
+
+impl<'a> Ground<'a> {
+    /// `map`, which must be without [`fault`], with all smaller levels.
+    pub fn new(map: &'a GroundMap) -> Self {
+        let mut smaller: Vec<Level> = Vec::new();
+        loop {
+            let (columns, rows, posts) = smaller
+                .last()
+                .map_or((map.columns as usize, map.rows as usize, map.posts.as_slice()), |level| {
+                    (level.columns, level.rows, level.posts.as_slice())
+                });
+            if columns <= 2 && rows <= 2 {
+                break;
+            }
+            smaller.push(halved(columns, rows, posts));
+        }
+        let stops = map.ramp.stops().iter().map(|&(height, color)| (height, color.linear())).collect();
+        Self { map, smaller, stops }
+    }
+
+    /// The ground beneath a hit, over the pixel's footprint.
+    pub fn at(&self, hit: &Hit, most_taps: u32) -> GroundPoint {
+        let [right, down] = [hit.right.truncate(), hit.down.truncate()];
+        let footprint = Footprint::new(right, down, self.map.cell.recip(), most_taps, 0.0);
+        let level = footprint.level.min(self.smaller.len() as f32);
+        let (lower, part) = (level as usize, level - (level as usize) as f32);
+        let share = 1.0 / footprint.taps as f32;
+        let mut point = GroundPoint::default();
+        for offset in footprint.offsets() {
+            let at = hit.world.truncate() + offset;
+            self.add_bilinear(&mut point, at, lower, share * (1.0 - part));
+            if part > 0.0 {
+                self.add_bilinear(&mut point, at, lower + 1, share * part);
+            }
+        }
+        point
+    }
+
+    /// The map's colour at a point: the ramp with contours on it, in linear light.
+    pub fn albedo(&self, point: &GroundPoint, hit: &Hit) -> Vec3 {
+        let height = point.post.height_m;
+        let color = self.ramp_at(height);
+        let Some(contours) = &self.map.contours else { return color };
+        let change = |step: Vec3| point.gradient.dot(step.truncate()).abs();
+        let strength = contour_strength(contours, height, change(hit.right) + change(hit.down));
+        color.lerp(contours.color.linear(), strength * contours.color.alpha())
+    }
+
+    fn ramp_at(&self, height_m: f32) -> Vec3 {
+        let above = self.stops.partition_point(|stop| stop.0 <= height_m);
+        let last = self.stops.len() - 1;
+        let (low, high) = (self.stops[above.saturating_sub(1)], self.stops[above.min(last)]);
+        if low.0 < high.0 { low.1.lerp(high.1, (height_m - low.0) / (high.0 - low.0)) } else { low.1 }
+    }
+
+    /// Adds `weight` times the bilinear reading of a level at world position `at`.
+    fn add_bilinear(&self, sum: &mut GroundPoint, at: Vec2, level: usize, weight: f32) {
+        let (columns, posts) = match level.checked_sub(1) {
+            Some(index) => (self.smaller[index].columns, self.smaller[index].posts.as_slice()),
+            None => (self.map.columns as usize, self.map.posts.as_slice()),
+        };
+        let rows = posts.len() / columns;
+        let scale = 1.0 / (1u64 << level) as f32;
+        let last = Vec2::new((self.map.columns - 1) as f32, (self.map.rows - 1) as f32);
+        let grid = ((at - self.map.origin) / self.map.cell).clamp(Vec2::ZERO, last) * scale;
+        let (column, x) = split(grid.x, columns);
+        let (row, y) = split(grid.y, rows);
+        let east = usize::from(columns > 1);
+        let north = if rows > 1 { columns } else { 0 };
+        let first = row * columns + column;
+        let corners = [first, first + east, first + north, first + north + east].map(|index| posts[index]);
+        let weights = [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y];
+        for (post, share) in corners.iter().zip(weights) {
+            add(&mut sum.post, post, weight * share);
+        }
+        let [sw, se, nw, ne] = corners.map(|post| post.height_m);
+        let rise = Vec2::new((se - sw) * (1.0 - y) + (ne - nw) * y, (nw - sw) * (1.0 - x) + (ne - se) * x);
+        sum.gradient += rise / self.map.cell * (scale * weight);
+    }
+}
+
+impl GroundPoint {
+    /// The upward unit normal.
+    pub fn normal(&self) -> Vec3 {
+        self.post.normal()
+    }
+
+    /// The shares of the sun and of the sky that reach the point.
+    pub fn visibility(&self) -> [f32; 2] {
+        [self.post.sun_visibility, self.post.sky_visibility]
+    }
+}
+
+/// The cell of a grid coordinate among `count` posts, and the place within it.
+fn split(coordinate: f32, count: usize) -> (usize, f32) {
+    let cell = (coordinate as usize).min(count.saturating_sub(2));
+    (cell, coordinate - cell as f32)
+}
+
+/// How much of a pixel a contour covers, 0..=1, faded; see [`Contours`] for the formula.
+///
+/// Ground that is level over the pixel has none: a lake at the very height of a line is no line.
+fn contour_strength(contours: &Contours, height_m: f32, change_m: f32) -> f32 {
+    let interval = contours.interval_m;
+    if !(interval > 0.0 && change_m > interval * 1e-6) {
+        return 0.0;
+    }
+    let number = (height_m / interval).round();
+    let is_major = contours.major_every > 0 && (number as i64).rem_euclid(contours.major_every.into()) == 0;
+    let width = contours.width_px * if is_major { 2.0 } else { 1.0 };
+    let away_px = (height_m - number * interval).abs() / change_m;
+    let fade = ((interval / change_m - 3.0) / 5.0).clamp(0.0, 1.0);
+    (width / 2.0 + 0.5 - away_px).clamp(0.0, 1.0) * fade
+}
+
+fn add(sum: &mut GroundPost, post: &GroundPost, weight: f32) {
+    sum.height_m += post.height_m * weight;
+    sum.slope_east += post.slope_east * weight;
+    sum.slope_north += post.slope_north * weight;
+    sum.sun_visibility += post.sun_visibility * weight;
+    sum.sky_visibility += post.sky_visibility * weight;
+}
+
+/// Every second post in both directions, each with its neighbours at weights ¼, ½, ¼.
+///
+/// Posts stay where they are, so that levels lie exactly over each other; the last one may lie past the
+/// border, where the border's posts stand in.
+fn halved(columns: usize, rows: usize, posts: &[GroundPost]) -> Level {
+    const KERNEL: [(usize, f32); 3] = [(0, 0.25), (1, 0.5), (2, 0.25)];
+    let [columns_halved, rows_halved] = [columns / 2 + 1, rows / 2 + 1];
+    let neighbour =
+        |index: usize, step: usize, count: usize| (2 * index + step).saturating_sub(1).min(count - 1);
+    let post = |index: usize| {
+        let (row, column) = (index / columns_halved, index % columns_halved);
+        let mut sum = GroundPost::default();
+        for (down, height) in KERNEL {
+            let line = neighbour(row, down, rows) * columns;
+            for (across, width) in KERNEL {
+                add(&mut sum, &posts[line + neighbour(column, across, columns)], height * width);
+            }
+        }
+        sum
+    };
+    let posts = (0..columns_halved * rows_halved).into_par_iter().with_min_len(1024).map(post).collect();
+    Level { columns: columns_halved, rows: rows_halved, posts }
+}

@@ -1,0 +1,105 @@
+//! Functions linear over the picture.
+
+use glam::DVec3;
+
+/// `x·right + y·down + start` at pixel position `(x, y)`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Plane {
+    /// The change over one pixel to the right.
+    pub right: f64,
+    /// The change over one pixel down.
+    pub down: f64,
+    /// The value at the picture's upper left corner.
+    pub start: f64,
+}
+
+impl Plane {
+    /// The plane whose coefficients are the components of `vector`.
+    pub fn of(vector: DVec3) -> Self {
+        Self { right: vector.x, down: vector.y, start: vector.z }
+    }
+
+    /// The value at a pixel position.
+    pub fn at(&self, position: [f32; 2]) -> f64 {
+        self.right * f64::from(position[0]) + self.down * f64::from(position[1]) + self.start
+    }
+
+    /// Whether all coefficients are finite.
+    pub fn is_finite(&self) -> bool {
+        self.right.is_finite() && self.down.is_finite() && self.start.is_finite()
+    }
+}
+
+/// What the homogeneous corners of a triangle say about every point of it on the picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Planes {
+    /// `1 / w`, `w` being metres along the viewing direction.
+    pub inverse_depth: Plane,
+    /// The share of the second corner, divided by `w`.
+    pub second: Plane,
+    /// The share of the third corner, divided by `w`.
+    pub third: Plane,
+    /// Whether the corners run counter-clockwise as seen.
+    pub faces_eye: bool,
+}
+
+impl Planes {
+    /// The planes of a triangle with corners `(x·w, y·w, w)`; `None` where it is seen edge-on or a corner
+    /// is not finite.
+    ///
+    /// A point of the triangle on the picture, `p = (x, y, 1)`, is `w · p = Σ λᵢ cornerᵢ`, so
+    /// `λᵢ / w = Bᵢ · p` with the rows `Bᵢ` of the inverse of the corners' matrix. Differences of corners
+    /// are taken first, since a distant triangle is small beside its distance.
+    pub fn of([a, b, c]: [DVec3; 3]) -> Option<Self> {
+        let (ab, ac) = (b - a, c - a);
+        let normal = ab.cross(ac);
+        let volume = a.dot(normal);
+        let planes = Self {
+            inverse_depth: Plane::of(normal / volume),
+            second: Plane::of(ac.cross(a) / volume),
+            third: Plane::of(a.cross(ab) / volume),
+            faces_eye: volume < 0.0,
+        };
+        let finite =
+            planes.inverse_depth.is_finite() && planes.second.is_finite() && planes.third.is_finite();
+        (volume != 0.0 && finite).then_some(planes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CORNERS: [DVec3; 3] =
+        [DVec3::new(100.0, 50.0, 10.0), DVec3::new(900.0, 4000.0, 20.0), DVec3::new(9000.0, 600.0, 30.0)];
+
+    #[test]
+    fn each_corner_has_its_own_depth_and_share() {
+        let planes = Planes::of(CORNERS).expect("a sound triangle");
+        for (index, corner) in CORNERS.into_iter().enumerate() {
+            let at = [(corner.x / corner.z) as f32, (corner.y / corner.z) as f32];
+            let depth = 1.0 / planes.inverse_depth.at(at);
+            assert!((depth - corner.z).abs() < 1e-4);
+            assert!((planes.second.at(at) * depth - f64::from(index == 1)).abs() < 1e-5);
+            assert!((planes.third.at(at) * depth - f64::from(index == 2)).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn shares_are_perspective_correct_halfway_along_an_edge() {
+        let planes = Planes::of(CORNERS).expect("a sound triangle");
+        let middle = (CORNERS[1] + CORNERS[2]) / 2.0;
+        let at = [(middle.x / middle.z) as f32, (middle.y / middle.z) as f32];
+        let depth = 1.0 / planes.inverse_depth.at(at);
+        assert!((depth - 25.0).abs() < 1e-4);
+        assert!((planes.second.at(at) * depth - 0.5).abs() < 1e-5);
+    }
+
+    #[test]
+    fn triangles_without_area_or_with_infinite_corners_have_no_planes() {
+        let [a, b, _] = CORNERS;
+        assert!(Planes::of([a, b, b]).is_none());
+        assert!(Planes::of([a, b, DVec3::splat(f64::INFINITY)]).is_none());
+        assert!(Planes::of([a, b, DVec3::NAN]).is_none());
+    }
+}

@@ -1,0 +1,144 @@
+//! What a face shows at a pixel: the draw list's formulas put together.
+
+use glam::{Mat3, Vec3};
+use rayon::prelude::*;
+
+use crate::draw::list::{DrawItem, DrawList, DrawVertex, Layer};
+use crate::draw::material::{Albedo, Alpha, Material, Normals};
+use crate::render::cpu::geometry::Face;
+use crate::render::cpu::ground_shade::{Ground, GroundPoint};
+use crate::render::cpu::hit::{Hit, Shares};
+use crate::render::cpu::screen::Screen;
+use crate::render::cpu::texture::{Footprint, Texel, Texture, Weighting};
+
+/// Masks are read this many mip levels finer than colours, since every sample of a pixel reads its own:
+/// with eight samples a pixel each stands for about the square root of an eighth of its side.
+const MASK_LEVEL_BIAS: f32 = -1.5;
+
+/// A draw list with everything that is made once a frame for shading it.
+#[derive(Debug)]
+pub struct Shader<'a> {
+    list: &'a DrawList,
+    screen: &'a Screen,
+    textures: Vec<Texture<'a>>,
+    ground: Option<Ground<'a>>,
+    most_taps: u32,
+}
+
+/// What a surface sends to the eye.
+#[derive(Clone, Copy, Debug)]
+pub struct Shaded {
+    /// Lit and seen through the haze; linear, in 0..=1.
+    pub color: Vec3,
+    /// The share of the light from behind that it stops, 0..=1.
+    pub alpha: f32,
+}
+
+impl<'a> Shader<'a> {
+    /// The shader of a checked list. `most_taps` bounds the readings of a texture along a grazing pixel.
+    pub fn new(list: &'a DrawList, screen: &'a Screen, most_taps: u32) -> Self {
+        Self {
+            list,
+            screen,
+            textures: list.textures.par_iter().map(Texture::new).collect(),
+            ground: list.ground.as_ref().map(Ground::new),
+            most_taps,
+        }
+    }
+
+    /// The item a face belongs to.
+    pub fn item(&self, face: &Face) -> &'a DrawItem {
+        &self.list.items[face.item as usize]
+    }
+
+    /// Whether a face is drawn over what lies in its plane.
+    pub fn is_draped(&self, face: &Face) -> bool {
+        matches!(self.item(face).layer, Layer::Draped(_))
+    }
+
+    /// What `face` shows at pixel position `at`.
+    pub fn shade(&self, face: &Face, at: [f32; 2]) -> Shaded {
+        let item = self.item(face);
+        let material = self.material(item);
+        let hit = Hit::of(face, self.screen, at);
+        let ground = self.ground_beneath(material, &hit);
+        let shares = Shares::of(face, at);
+        let corners = self.corners(item, face);
+        let (albedo, alpha) = match (material.albedo, &ground) {
+            (Albedo::GroundMap, Some((ground, point))) => (ground.albedo(point, &hit), 1.0),
+            _ => self.surface_color(material, &corners, &shares),
+        };
+        let (normal, [sun, sky]) = match (material.normals, &ground) {
+            (Normals::Ground, Some((_, point))) => (point.normal(), point.visibility()),
+            _ => (vertex_normal(item, face, &corners, &shares), [1.0, 1.0]),
+        };
+        let lighting = &self.list.lighting;
+        let lit = lighting.lit(albedo, normal, sun, sky);
+        let seen =
+            if lighting.haze.distance_m.is_finite() { lighting.hazed(lit, hit.distance_m) } else { lit };
+        // Clamped before samples are averaged, as a picture with 8-bit samples would be: an overexposed
+        // surface would otherwise eat away the smooth border of its neighbour.
+        Shaded { color: seen.max(Vec3::ZERO).min(Vec3::ONE), alpha }
+    }
+
+    /// Whether a masked face has a hole at pixel position `at`.
+    pub fn is_hole(&self, face: &Face, at: [f32; 2]) -> bool {
+        let item = self.item(face);
+        let material = self.material(item);
+        let Alpha::Mask(cutoff) = material.alpha else { return false };
+        let (corners, shares) = (self.corners(item, face), Shares::of(face, at));
+        let texel = self.texel(material, &corners, &shares, MASK_LEVEL_BIAS);
+        alpha(material, &corners, &shares, &texel) < cutoff
+    }
+
+    fn material(&self, item: &DrawItem) -> &'a Material {
+        &self.list.materials[item.material.0 as usize]
+    }
+
+    fn corners(&self, item: &DrawItem, face: &Face) -> [&'a DrawVertex; 3] {
+        let mesh = &self.list.meshes[item.mesh.0 as usize];
+        mesh.triangles[face.triangle as usize].map(|id| &mesh.vertices[id.index()])
+    }
+
+    fn ground_beneath(&self, material: &Material, hit: &Hit) -> Option<(&Ground<'a>, GroundPoint)> {
+        let wanted = material.albedo == Albedo::GroundMap || material.normals == Normals::Ground;
+        self.ground.as_ref().filter(|_| wanted).map(|ground| (ground, ground.at(hit, self.most_taps)))
+    }
+
+    /// Base colour × vertex colour × texture, in linear light, and alpha.
+    fn surface_color(&self, material: &Material, corners: &[&DrawVertex; 3], shares: &Shares) -> (Vec3, f32) {
+        let texel = self.texel(material, corners, shares, 0.0);
+        let vertex = shares.blend(corners.map(|corner| corner.color.linear()));
+        let alpha = match material.alpha {
+            Alpha::Blend => alpha(material, corners, shares, &texel),
+            Alpha::Opaque | Alpha::Mask(_) => 1.0,
+        };
+        (material.base_color.linear() * vertex * texel.color, alpha)
+    }
+
+    fn texel(&self, material: &Material, corners: &[&DrawVertex; 3], shares: &Shares, bias: f32) -> Texel {
+        let Some(id) = material.texture else { return Texel { color: Vec3::ONE, alpha: 1.0 } };
+        let texture = &self.textures[id.0 as usize];
+        let [uv, right, down] = shares.blend_uv(corners.map(|corner| corner.uv));
+        let footprint = Footprint::new(right, down, texture.size(), self.most_taps, bias);
+        let weighting = if material.alpha == Alpha::Opaque { Weighting::Even } else { Weighting::ByAlpha };
+        texture.sample(uv, &footprint, weighting)
+    }
+}
+
+/// Base alpha × vertex alpha × texture alpha, 0..=1.
+fn alpha(material: &Material, corners: &[&DrawVertex; 3], shares: &Shares, texel: &Texel) -> f32 {
+    let vertex = shares.blend(corners.map(|corner| Vec3::splat(corner.color.alpha()))).x;
+    material.base_color.alpha() * vertex * texel.alpha
+}
+
+/// The unit normal in world space on the side that is seen; the triangle's own where vertices have none.
+fn vertex_normal(item: &DrawItem, face: &Face, corners: &[&DrawVertex; 3], shares: &Shares) -> Vec3 {
+    let blended = shares.blend(corners.map(|corner| Vec3::from(corner.normal)));
+    let to_world = Mat3::from_mat4(item.world_from_mesh);
+    let normal = (to_world * blended).try_normalize().unwrap_or_else(|| {
+        let [a, b, c] = corners.map(|corner| Vec3::from(corner.position));
+        (to_world * (b - a).cross(c - a)).normalize_or_zero()
+    });
+    if face.planes.faces_eye { normal } else { -normal }
+}

@@ -1,0 +1,271 @@
+//! Textures: mip levels made in linear light, and filtered reading.
+//!
+//! The first level is the list's own picture; each further level halves both sides and is kept as 8-bit
+//! sRGB too, so that all levels together add a third to what the texture takes. A footprint longer than wide
+//! is read by several taps along its length, each at the level of its width (the idea of McCormack and
+//! others, "Feline: Fast Elliptical Lines for Anisotropic Texture Mapping", 1999): roads are seen at grazing
+//! angles.
+
+use glam::{Vec2, Vec3};
+
+use crate::draw::color::{Srgba, linear_from_srgb, srgb_from_linear};
+use crate::draw::pixels::Pixels;
+
+/// A texture with its mip levels.
+#[derive(Debug)]
+pub struct Texture<'a> {
+    base: &'a Pixels,
+    smaller: Vec<Pixels>,
+    linear: [f32; 256],
+}
+
+/// How the colours of transparent texels count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Weighting {
+    /// Like all others, for opaque surfaces.
+    Even,
+    /// By their alpha, so that the unseen colour of holes does not bleed into borders.
+    ByAlpha,
+}
+
+/// A filtered colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Texel {
+    /// In linear light.
+    pub color: Vec3,
+    /// In 0..=1.
+    pub alpha: f32,
+}
+
+/// How many texels a pixel spans, and where from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Footprint {
+    /// The longer of the pixel's two sides, in whatever the map's unit is.
+    pub axis: Vec2,
+    /// Readings along the axis, at least 1.
+    pub taps: u32,
+    /// The mip level of each reading, at least 0.
+    pub level: f32,
+}
+
+impl Footprint {
+    /// The footprint of a pixel whose sides span `right` and `down`, measured in cells of `scale` per unit.
+    ///
+    /// At most `most_taps` readings are taken; where that is too few, the level rises instead. `bias` is
+    /// added to the level. What is not finite reads the coarsest level once.
+    pub fn new(right: Vec2, down: Vec2, scale: Vec2, most_taps: u32, bias: f32) -> Self {
+        let (across, along) = ((right * scale).length(), (down * scale).length());
+        let (axis, longer, shorter) =
+            if across > along { (right, across, along) } else { (down, along, across) };
+        if !longer.is_finite() {
+            return Self { axis: Vec2::ZERO, taps: 1, level: f32::MAX };
+        }
+        let taps = (longer / shorter.max(1.0)).ceil().clamp(1.0, most_taps.max(1) as f32);
+        let level = libm::log2f((longer / taps).max(1e-6)) + bias;
+        Self { axis, taps: taps as u32, level: level.max(0.0) }
+    }
+
+    /// The offsets of the readings from the pixel's position.
+    pub fn offsets(&self) -> impl Iterator<Item = Vec2> + use<> {
+        let (axis, taps) = (self.axis, self.taps);
+        (0..taps).map(move |tap| axis * ((tap as f32 + 0.5) / taps as f32 - 0.5))
+    }
+}
+
+impl<'a> Texture<'a> {
+    /// `base` with all smaller levels; an empty picture reads as opaque white.
+    pub fn new(base: &'a Pixels) -> Self {
+        let mut smaller: Vec<Pixels> = Vec::new();
+        loop {
+            let last = smaller.last().unwrap_or(base);
+            if last.width() <= 1 && last.height() <= 1 || last.width() == 0 || last.height() == 0 {
+                break;
+            }
+            smaller.push(halved(last));
+        }
+        Self { base, smaller, linear: std::array::from_fn(|channel| linear_from_srgb(channel as u8)) }
+    }
+
+    /// Columns and rows of the first level.
+    pub fn size(&self) -> Vec2 {
+        Vec2::new(self.base.width() as f32, self.base.height() as f32)
+    }
+
+    /// The colour over a footprint around `uv`, trilinear.
+    ///
+    /// (0, 0) is the upper left corner, (1, 1) the lower right; the picture repeats in both directions.
+    pub fn sample(&self, uv: Vec2, footprint: &Footprint, weighting: Weighting) -> Texel {
+        if self.base.data().is_empty() {
+            return Texel { color: Vec3::ONE, alpha: 1.0 };
+        }
+        let level = footprint.level.min(self.smaller.len() as f32);
+        let (lower, part) = (level as usize, level - (level as usize) as f32);
+        let mut sum = Sum::default();
+        for offset in footprint.offsets() {
+            let at = uv + offset;
+            self.add_bilinear(&mut sum, at, lower, 1.0 - part, weighting);
+            if part > 0.0 {
+                self.add_bilinear(&mut sum, at, lower + 1, part, weighting);
+            }
+        }
+        sum.mean()
+    }
+
+    fn add_bilinear(&self, sum: &mut Sum, uv: Vec2, level: usize, weight: f32, weighting: Weighting) {
+        let pixels = level.checked_sub(1).map_or(self.base, |index| &self.smaller[index]);
+        let (left, right, x) = neighbours(uv.x, pixels.width());
+        let (top, bottom, y) = neighbours(uv.y, pixels.height());
+        let data = pixels.data();
+        let mut add = |row: usize, column: usize, weight: f32| {
+            let Srgba([red, green, blue, alpha]) = data[row * pixels.width() as usize + column];
+            let linear = |channel: u8| self.linear[usize::from(channel)];
+            let color = Vec3::new(linear(red), linear(green), linear(blue));
+            sum.add(color, f32::from(alpha) / 255.0, weight, weighting);
+        };
+        add(top, left, weight * (1.0 - x) * (1.0 - y));
+        add(top, right, weight * x * (1.0 - y));
+        add(bottom, left, weight * (1.0 - x) * y);
+        add(bottom, right, weight * x * y);
+    }
+}
+
+/// The two texels around a repeated coordinate and how far it lies towards the second.
+fn neighbours(coordinate: f32, size: u32) -> (usize, usize, f32) {
+    let repeated = coordinate - coordinate.floor();
+    let position = repeated * size as f32 - 0.5;
+    let below = position.floor();
+    // Not finite coordinates become texel 0 here: casts saturate and turn NaN to 0.
+    let first = (below as i64).rem_euclid(i64::from(size)) as usize;
+    let second = if first + 1 == size as usize { 0 } else { first + 1 };
+    (first, second, position - below)
+}
+
+/// A weighted sum of colours.
+#[derive(Default)]
+struct Sum {
+    color: Vec3,
+    color_weight: f32,
+    alpha: f32,
+    weight: f32,
+}
+
+impl Sum {
+    fn add(&mut self, color: Vec3, alpha: f32, weight: f32, weighting: Weighting) {
+        let color_weight = match weighting {
+            Weighting::Even => weight,
+            Weighting::ByAlpha => weight * alpha,
+        };
+        self.color += color * color_weight;
+        self.color_weight += color_weight;
+        self.alpha += alpha * weight;
+        self.weight += weight;
+    }
+
+    fn mean(&self) -> Texel {
+        let color = if self.color_weight > 0.0 { self.color / self.color_weight } else { Vec3::ZERO };
+        Texel { color, alpha: self.alpha / self.weight }
+    }
+}
+
+/// The next smaller level: each texel the mean, in linear light, of what it covers.
+fn halved(pixels: &Pixels) -> Pixels {
+    let size = [pixels.width(), pixels.height()].map(|side| (side / 2).max(1));
+    Pixels::from_fn(size[0], size[1], |column, row| {
+        let mut sum = Sum::default();
+        let mut plain = Sum::default();
+        for (y, down) in covered(row, size[1], pixels.height()) {
+            for (x, across) in covered(column, size[0], pixels.width()) {
+                let texel = pixels.at(x, y);
+                sum.add(texel.linear(), texel.alpha(), across * down, Weighting::ByAlpha);
+                plain.add(texel.linear(), texel.alpha(), across * down, Weighting::Even);
+            }
+        }
+        let mean = if sum.color_weight > 0.0 { sum.mean() } else { plain.mean() };
+        let [red, green, blue] = mean.color.to_array().map(srgb_from_linear);
+        Srgba([red, green, blue, (mean.alpha * 255.0 + 0.5) as u8])
+    })
+}
+
+/// The texels of a row of `size` that texel `index` of a row of `halved` covers, with the part covered.
+///
+/// Odd sides do not halve evenly; counting parts keeps the picture in place ("Non-Power-of-Two Mipmapping",
+/// NVIDIA, 2005).
+fn covered(index: u32, halved: u32, size: u32) -> impl Iterator<Item = (u32, f32)> {
+    let scale = size as f32 / halved as f32;
+    let (from, to) = (index as f32 * scale, (index + 1) as f32 * scale);
+    (from as u32..(to.ceil() as u32).min(size)).map(move |texel| {
+        let part = to.min((texel + 1) as f32) - from.max(texel as f32);
+        (texel, part.max(0.0))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sharp() -> Footprint {
+        Footprint { axis: Vec2::ZERO, taps: 1, level: 0.0 }
+    }
+
+    fn checker(side: u32) -> Pixels {
+        let [black, white] = [Srgba::opaque(0, 0, 0), Srgba::WHITE];
+        Pixels::from_fn(side, side, |x, y| if (x + y) % 2 == 0 { black } else { white })
+    }
+
+    #[test]
+    fn the_middle_of_a_texel_reads_that_texel_and_repeats() {
+        let pixels = Pixels::from_fn(4, 2, |x, y| Srgba::opaque(10 * x as u8, 100 * y as u8, 7));
+        let texture = Texture::new(&pixels);
+        for (u, v) in [(0.625, 0.75), (-0.375, 1.75), (5.625, -7.25)] {
+            let texel = texture.sample(Vec2::new(u, v), &sharp(), Weighting::Even);
+            assert!((texel.color - Srgba::opaque(20, 100, 7).linear()).length() < 1e-6, "{u}, {v}");
+        }
+    }
+
+    #[test]
+    fn every_level_of_a_checker_keeps_its_mean_light() {
+        for side in [8, 12, 16] {
+            let pixels = checker(side);
+            let texture = Texture::new(&pixels);
+            let blurred = Footprint { level: 99.0, ..sharp() };
+            let texel = texture.sample(Vec2::new(0.3, 0.1), &blurred, Weighting::Even);
+            assert!((texel.color.x - 0.5).abs() < 0.02, "{side}: {}", texel.color.x);
+        }
+    }
+
+    #[test]
+    fn odd_sides_keep_their_mean_light_too() {
+        let pixels = Pixels::from_fn(7, 5, |x, _| Srgba::opaque(if x < 2 { 255 } else { 0 }, 0, 0));
+        let texture = Texture::new(&pixels);
+        let texel = texture.sample(Vec2::ZERO, &Footprint { level: 99.0, ..sharp() }, Weighting::Even);
+        assert!((texel.color.x - 2.0 / 7.0).abs() < 0.01, "{}", texel.color.x);
+    }
+
+    #[test]
+    fn a_hole_s_colour_does_not_bleed_when_weighted_by_alpha() {
+        let pixels = Pixels::from_fn(2, 1, |x, _| if x == 0 { Srgba::WHITE } else { Srgba([0, 0, 0, 0]) });
+        let texture = Texture::new(&pixels);
+        let texel = texture.sample(Vec2::new(0.5, 0.5), &sharp(), Weighting::ByAlpha);
+        assert!((texel.color - Vec3::ONE).length() < 1e-6 && (texel.alpha - 0.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn grazing_footprints_take_several_sharp_readings() {
+        let long = Footprint::new(Vec2::new(8.0, 0.0), Vec2::new(0.0, 1.0), Vec2::ONE, 8, 0.0);
+        assert_eq!((long.taps, long.level), (8, 0.0));
+        let round = Footprint::new(Vec2::new(8.0, 0.0), Vec2::new(0.0, 8.0), Vec2::ONE, 8, 0.0);
+        assert_eq!((round.taps, round.level), (1, 3.0));
+    }
+
+    #[test]
+    fn hostile_coordinates_and_empty_textures_still_read_something() {
+        let (pixels, empty) = (checker(4), Pixels::filled(0, 3, Srgba::WHITE));
+        let texture = Texture::new(&pixels);
+        for coordinate in [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX] {
+            let footprint = Footprint::new(Vec2::splat(coordinate), Vec2::ONE, texture.size(), 8, 0.0);
+            texture.sample(Vec2::splat(coordinate), &footprint, Weighting::Even);
+        }
+        let white = Texture::new(&empty).sample(Vec2::ZERO, &sharp(), Weighting::Even);
+        assert_eq!(white, Texel { color: Vec3::ONE, alpha: 1.0 });
+    }
+}
