@@ -85,12 +85,11 @@ fn layer(features: Vec<geojson::Feature>, crs: Crs) -> Result<Layer, VectorError
     let mut left = Left::default();
     let mut read = Vec::new();
     for (index, feature) in features.into_iter().enumerate() {
-        let Some(geometry) = feature.geometry else {
-            left.without_geometry += 1;
-            continue;
-        };
         let mut parts = Parts::default();
-        parts.add(geometry.value, &mut left);
+        if let Some(geometry) = feature.geometry {
+            parts.add(geometry.value, &mut left);
+        }
+        left.without_geometry += usize::from(parts.is_empty());
         let properties: BTreeMap<String, Value> =
             feature.properties.unwrap_or_default().into_iter().collect();
         for geometry in parts.into_geometries() {
