@@ -54,11 +54,14 @@ impl<'a> Textures<'a> {
                 self.pixels.push(pixels);
                 Some(TextureId(self.pixels.len() as u32 - 1))
             }
-            Err(reason) => {
-                self.notes.push(format!("texture '{name}' cannot be used: {reason}"));
-                None
-            }
+            Err(reason) => self.miss(name, &reason),
         }
+    }
+
+    /// Notes that the texture `name` cannot be had; `None`.
+    pub(super) fn miss(&mut self, name: &str, reason: &str) -> Option<TextureId> {
+        self.notes.push(format!("texture '{name}' cannot be used: {reason}"));
+        None
     }
 
     /// Whether a texture has pixels that are not opaque.

@@ -1,1 +1,3 @@
-//! x
+//! Scenes, from their description and the files it names.
+
+pub mod assets;

@@ -51,7 +51,7 @@ pub(super) struct Plain {
 /// # Errors
 /// [`ModelError::Obj`] with the line.
 pub(super) fn check(text: &str) -> Result<Plain, ModelError> {
-    let mut reader = Reader::default();
+    let mut reader = Reader { totals: totals(text), ..Reader::default() };
     for (number, line) in logical_lines(text) {
         reader.statement(&line).map_err(|reason| ModelError::obj(number, reason))?;
         if reader.corners > MAX_TRIANGLES {
@@ -61,8 +61,25 @@ pub(super) fn check(text: &str) -> Result<Plain, ModelError> {
     Ok(reader.finish())
 }
 
+/// How many positions, texture coordinates and normals the whole file defines: an index counted from the
+/// start may name what comes later.
+fn totals(text: &str) -> [usize; 3] {
+    let mut totals = [0; 3];
+    for (_, line) in logical_lines(text) {
+        let place = match line.split_whitespace().next() {
+            Some("v") => 0,
+            Some("vt") => 1,
+            Some("vn") => 2,
+            _ => continue,
+        };
+        totals[place] += 1;
+    }
+    totals
+}
+
 #[derive(Default)]
 struct Reader {
+    totals: [usize; 3],
     positions: String,
     colors: Vec<Option<[f32; 3]>>,
     points: Vec<[f32; 3]>,
@@ -165,9 +182,9 @@ impl Reader {
         Ok(())
     }
 
-    /// `position/uv/normal` with absolute indices from 1.
+    /// `position/uv/normal` with absolute indices from 1. Texture coordinates and normals that are not
+    /// there are as if not named: common exporters name them without writing them.
     fn corner(&self, word: &str) -> Result<[Option<usize>; 3], String> {
-        const WHAT: [&str; 3] = ["vertex", "texture coordinate", "normal"];
         let counts = [self.points.len(), self.uvs, self.normals];
         let mut indices = [None; 3];
         for (place, text) in word.split('/').enumerate() {
@@ -179,10 +196,11 @@ impl Reader {
             }
             let number: i64 = text.parse().map_err(|_| format!("'{text}' in the face corner '{word}' is no index"))?;
             let index = if number < 0 { count as i64 + 1 + number } else { number };
-            if index < 1 || index > count as i64 {
-                return Err(format!("a face names {} {number}, and {count} are defined so far", WHAT[place]));
+            *slot = usize::try_from(index).ok().filter(|index| (1..=self.totals[place]).contains(index));
+            if place == 0 && slot.is_none() {
+                let total = self.totals[0];
+                return Err(format!("a face names vertex {number}, and {count} of {total} are defined so far"));
             }
-            *slot = Some(index as usize);
         }
         Ok(indices)
     }
@@ -254,7 +272,7 @@ mod tests {
 
     #[test]
     fn forged_indices_are_refused_with_their_line() {
-        for index in ["0", "4", "-4", "9223372036854775807", "-9223372036854775808", "99999999999999999999", "x"] {
+        for index in ["0", "4", "-4", "9223372036854775807", "-9223372036854775808", "99999999999999999999", "x", "/1"] {
             let error = check(&format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {index}")).expect_err(index);
             assert!(matches!(error, ModelError::Obj { line: 4, .. }), "{error}");
         }

@@ -1,0 +1,360 @@
+//! The files that a scene names: the only place outside the command line that touches the disk.
+//!
+//! A scene file may come from anywhere, so what it can read is limited to where its own files are: its
+//! folder and its folder's parent (which lets `scenes/a.toml` name `../data/hill.tif`), and what the user
+//! allows besides. A path is judged twice: as it is written, before the disk is asked whether it exists, and
+//! as the system resolves it, so that a symbolic link leads nowhere that a plain path would not.
+//!
+//! Paths are written with `/`; `\` is taken for it, so that a scene reads alike on every system.
+
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::{Component, Path, PathBuf};
+
+use crate::description::suggest::{nearest, quoted};
+use crate::model::kind::Companions;
+
+/// The largest file read.
+pub const MAX_BYTES: u64 = 2 << 30;
+/// The most names of a folder that are looked at for the one that was meant.
+const MAX_NAMES: usize = 10_000;
+
+/// Why a file that a scene names cannot be had.
+#[derive(Debug, thiserror::Error)]
+pub enum AssetError {
+    /// The scene file's own folder, or one that was allowed, is not there.
+    #[error("the folder {} cannot be opened", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// Not a path to a file.
+    #[error("'{name}' is not a path that can be read: {reason}")]
+    NotAPath {
+        /// As written, shortened.
+        name: String,
+        /// What is wrong with it and what to write instead.
+        reason: &'static str,
+    },
+    /// A path out of the folders that may be read.
+    #[error(
+        "'{name}' leads to {}, outside {}; if the scene is to be trusted, run again with --allow {}",
+        resolved.display(), root.display(), remedy.display()
+    )]
+    Outside {
+        /// As written, shortened.
+        name: String,
+        /// Where it leads.
+        resolved: PathBuf,
+        /// The folder that it should be in.
+        root: PathBuf,
+        /// The folder to allow.
+        remedy: PathBuf,
+    },
+    /// No such file.
+    #[error("there is no file {}{}", resolved.display(), did_you_mean(meant.as_deref()))]
+    Missing {
+        /// Where it was looked for.
+        resolved: PathBuf,
+        /// The name that is there and most like it.
+        meant: Option<String>,
+    },
+    /// A folder, a pipe or a device.
+    #[error("{} is {kind}, not a file", resolved.display())]
+    NotAFile {
+        /// Where it is.
+        resolved: PathBuf,
+        /// What it is.
+        kind: &'static str,
+    },
+    /// More bytes than [`MAX_BYTES`], or than there is memory for.
+    #[error("{} has {bytes} bytes, more than can be read", resolved.display())]
+    TooLarge {
+        /// Where it is.
+        resolved: PathBuf,
+        /// Its size.
+        bytes: u64,
+    },
+    /// The system cannot read it.
+    #[error("{} cannot be read", resolved.display())]
+    Unreadable {
+        /// Where it is.
+        resolved: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+}
+
+fn did_you_mean(name: Option<&str>) -> String {
+    name.map(|name| format!("; did you mean '{name}'?")).unwrap_or_default()
+}
+
+/// The files that one scene may read.
+#[derive(Clone, Debug)]
+pub struct Assets {
+    folder: PathBuf,
+    root: PathBuf,
+    allowed: Vec<PathBuf>,
+    /// As the user wrote them, links and all, for judging paths as they are written.
+    allowed_as_written: Vec<PathBuf>,
+}
+
+impl Assets {
+    /// The files beside `scene_file` and beside its folder, and those under the `allowed` folders.
+    ///
+    /// Where the scene's folder lies directly under the root of the file system, its parent is not included.
+    ///
+    /// # Errors
+    /// [`AssetError::Folder`] where the scene's folder or an allowed one cannot be found.
+    pub fn new(scene_file: &Path, allowed: &[PathBuf]) -> Result<Self, AssetError> {
+        let folder = match scene_file.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => canonical(parent)?,
+            _ => canonical(Path::new("."))?,
+        };
+        let root = match folder.parent() {
+            Some(parent) if parent.parent().is_some() => parent.to_path_buf(),
+            _ => folder.clone(),
+        };
+        let written = |path: &PathBuf| {
+            std::path::absolute(path).map_or_else(|_| path.clone(), |path| without_dots(&path))
+        };
+        let allowed_as_written = allowed.iter().map(written).collect();
+        let allowed = allowed.iter().map(|path| canonical(path)).collect::<Result<_, _>>()?;
+        Ok(Self { folder, root, allowed, allowed_as_written })
+    }
+
+    /// The bytes of the file that the scene calls `name`, relative to the scene file, or absolute under an
+    /// allowed folder.
+    ///
+    /// # Errors
+    /// [`AssetError`].
+    pub fn read(&self, name: &str) -> Result<Vec<u8>, AssetError> {
+        read_file(&self.resolve(name)?)
+    }
+
+    /// Where the file `name` is, with all links resolved.
+    ///
+    /// # Errors
+    /// [`AssetError`] where it is not there or may not be read.
+    pub fn resolve(&self, name: &str) -> Result<PathBuf, AssetError> {
+        self.resolve_from(&self.folder, name)
+    }
+
+    /// The files beside the model `name`, for its loader.
+    ///
+    /// # Errors
+    /// As [`Self::resolve`].
+    pub fn beside(&self, name: &str) -> Result<Beside<'_>, AssetError> {
+        let model = self.resolve(name)?;
+        let folder = model.parent().unwrap_or(&self.folder).to_path_buf();
+        Ok(Beside { assets: self, folder })
+    }
+
+    fn resolve_from(&self, folder: &Path, name: &str) -> Result<PathBuf, AssetError> {
+        let written = folder.join(checked(name)?);
+        let lexical = without_dots(&written);
+        if !self.allowed_as_written.iter().any(|allowed| lexical.starts_with(allowed)) {
+            self.permit(name, &lexical)?;
+        }
+        match written.canonicalize() {
+            Ok(resolved) => self.permit(name, &resolved).map(|()| resolved),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                let meant = self.name_like(&lexical);
+                Err(AssetError::Missing { resolved: lexical, meant })
+            }
+            Err(source) => Err(AssetError::Unreadable { resolved: lexical, source }),
+        }
+    }
+
+    fn permit(&self, name: &str, path: &Path) -> Result<(), AssetError> {
+        let absolute = is_absolute(name);
+        let inside_own = !absolute && path.starts_with(&self.root);
+        if inside_own || self.allowed.iter().any(|allowed| path.starts_with(allowed)) {
+            return Ok(());
+        }
+        Err(AssetError::Outside {
+            name: quoted(name),
+            resolved: path.to_path_buf(),
+            root: if absolute { self.folder.clone() } else { self.root.clone() },
+            remedy: path.parent().unwrap_or(path).to_path_buf(),
+        })
+    }
+
+    /// The name in the missing file's folder that is most like its own; only where that may be read.
+    fn name_like(&self, missing: &Path) -> Option<String> {
+        let folder = missing.parent()?.canonicalize().ok()?;
+        let readable = |root: &PathBuf| folder.starts_with(root);
+        if !readable(&self.root) && !self.allowed.iter().any(readable) {
+            return None;
+        }
+        let names = names_in(&folder);
+        nearest(missing.file_name()?.to_str()?, names.iter().map(String::as_str)).map(str::to_owned)
+    }
+}
+
+/// The files beside a model: its textures, buffers and material libraries.
+#[derive(Clone, Debug)]
+pub struct Beside<'a> {
+    assets: &'a Assets,
+    folder: PathBuf,
+}
+
+impl Beside<'_> {
+    /// Where the file that the model calls `name` is.
+    ///
+    /// Tried in this order: as named; the same in another case, folder by folder, since many models were made
+    /// where case does not matter; and the bare file name beside the model, since many name the folder of the
+    /// machine that they were made on.
+    ///
+    /// # Errors
+    /// The error of the name as written.
+    pub fn resolve(&self, name: &str) -> Result<PathBuf, AssetError> {
+        let first = match self.assets.resolve_from(&self.folder, name) {
+            Ok(found) => return Ok(found),
+            Err(error) => error,
+        };
+        let slashed = name.replace('\\', "/");
+        let bare = slashed.rsplit('/').next().unwrap_or(&slashed);
+        let tries = [self.in_any_case(&slashed), self.in_any_case(bare)];
+        let found =
+            tries.into_iter().flatten().find_map(|name| self.assets.resolve_from(&self.folder, &name).ok());
+        found.ok_or(first)
+    }
+
+    /// `name` as the disk writes it, looked up beside the model.
+    fn in_any_case(&self, name: &str) -> Option<String> {
+        checked(name).ok().filter(|_| !is_absolute(name))?;
+        let mut found: Vec<String> = Vec::new();
+        for part in name.split('/').filter(|part| !matches!(*part, "" | ".")) {
+            let so_far = self.folder.join(found.join("/"));
+            found.push(match part {
+                ".." => part.to_owned(),
+                _ => {
+                    self.assets.permit(name, &so_far.canonicalize().ok()?).ok()?;
+                    let wanted = part.to_lowercase();
+                    names_in(&so_far).into_iter().find(|name| name.to_lowercase() == wanted)?
+                }
+            });
+        }
+        Some(found.join("/"))
+    }
+}
+
+impl Companions for Beside<'_> {
+    fn load(&self, name: &str) -> Result<Vec<u8>, String> {
+        let bytes = self.resolve(name).and_then(|path| read_file(&path));
+        bytes.map_err(|error| match std::error::Error::source(&error) {
+            Some(source) => format!("{error}: {source}"),
+            None => error.to_string(),
+        })
+    }
+}
+
+fn canonical(path: &Path) -> Result<PathBuf, AssetError> {
+    path.canonicalize().map_err(|source| AssetError::Folder { path: path.into(), source })
+}
+
+/// Whether a path starts at the root of a file system rather than at the scene.
+fn is_absolute(name: &str) -> bool {
+    name.starts_with(['/', '\\']) || Path::new(name).is_absolute()
+}
+
+/// `name` as a path, unless it is something else.
+fn checked(name: &str) -> Result<PathBuf, AssetError> {
+    let refused = |reason| Err(AssetError::NotAPath { name: quoted(name), reason });
+    let letter = |character: char| character.is_ascii_alphanumeric() || matches!(character, '+' | '-' | '.');
+    let scheme = name.split_once(':').map(|(scheme, _)| scheme);
+    match scheme {
+        _ if name.trim().is_empty() => refused("it is empty"),
+        _ if name.contains('\0') => refused("it contains a NUL character"),
+        _ if name.len() > 4096 => refused("it is longer than 4096 bytes"),
+        _ if Path::new(name).is_absolute() => Ok(PathBuf::from(name)),
+        Some("data") => refused("it is data, not the name of a file"),
+        Some(scheme) if scheme.len() == 1 && letter(scheme.chars().next().unwrap_or(' ')) => {
+            refused("it names a Windows drive; write a path relative to the scene file, with /")
+        }
+        Some(scheme) if !scheme.is_empty() && scheme.chars().all(letter) => {
+            refused("it reads as a URL; fetch the file and write its path relative to the scene file")
+        }
+        _ if name.starts_with("\\\\") || name.starts_with("//") => {
+            refused("it names a network share; write a path relative to the scene file, with /")
+        }
+        _ => Ok(PathBuf::from(name.replace('\\', "/"))),
+    }
+}
+
+/// `path` with `.` and `..` taken out as they are written, whatever is on the disk.
+fn without_dots(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for component in path.components() {
+        match component {
+            Component::ParentDir => drop(plain.pop()),
+            Component::CurDir => {}
+            other => plain.push(other),
+        }
+    }
+    plain
+}
+
+/// The names in a folder, sorted, so that the same one is found on every machine.
+fn names_in(folder: &Path) -> Vec<String> {
+    let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
+    let named = entries.take(MAX_NAMES).filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let mut names: Vec<String> = named.collect();
+    names.sort();
+    names
+}
+
+/// All bytes of a regular file. What it is is asked before it is opened, since opening a pipe waits for
+/// somebody to write to it.
+fn read_file(resolved: &Path) -> Result<Vec<u8>, AssetError> {
+    let unreadable = |source| AssetError::Unreadable { resolved: resolved.into(), source };
+    let about = fs::metadata(resolved).map_err(unreadable)?;
+    if !about.is_file() {
+        let kind = if about.is_dir() { "a folder" } else { "a pipe or a device" };
+        return Err(AssetError::NotAFile { resolved: resolved.into(), kind });
+    }
+    let too_large = |bytes| AssetError::TooLarge { resolved: resolved.into(), bytes };
+    let size = about.len();
+    let mut bytes = Vec::new();
+    let room = usize::try_from(size).ok().filter(|_| size <= MAX_BYTES).ok_or_else(|| too_large(size))?;
+    bytes.try_reserve_exact(room).map_err(|_| too_large(size))?;
+    let file = File::open(resolved).map_err(unreadable)?;
+    let count = file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if count as u64 > MAX_BYTES { Err(too_large(count as u64)) } else { Ok(bytes) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_path_is_refused_before_the_disk_is_asked() {
+        for (name, reason) in [
+            ("", "empty"),
+            ("a\0b", "NUL"),
+            ("http://example.org/a.tif", "URL"),
+            ("file:///etc/passwd", "URL"),
+            ("FILE:a", "URL"),
+            ("data:,x", "data"),
+            ("C:\\dem\\a.tif", "Windows drive"),
+            ("c:a.tif", "Windows drive"),
+            ("\\\\server\\share\\a.tif", "network share"),
+        ] {
+            match checked(name) {
+                Err(error) => assert!(error.to_string().contains(reason), "{name}: {error}"),
+                Ok(path) => assert!(cfg!(windows) && path.is_absolute(), "{name}"),
+            }
+        }
+        assert_eq!(checked("a\\b.tif").expect("a path"), Path::new("a/b.tif"));
+        assert!(checked("über 山/a (1).tif").is_ok());
+    }
+
+    #[test]
+    fn dots_are_taken_out_as_written() {
+        assert_eq!(without_dots(Path::new("/a/./b/../../c")), Path::new("/c"));
+        assert_eq!(without_dots(Path::new("/../..")), Path::new("/"));
+    }
+}
