@@ -1,8 +1,44 @@
-//! The command line.
+//! The command line: one file per command; progress, exit codes. Only here are the clock, the environment and
+//! the arguments read.
+
+pub mod arguments;
+pub mod check;
+pub mod dem;
+pub mod failure;
+pub mod files;
+pub mod height;
+pub mod labels;
+pub mod load;
+pub mod model;
+pub mod progress;
+pub mod render;
 
 use std::process::ExitCode;
 
-/// Runs the program.
+use clap::Parser;
+
+use crate::app::arguments::{Arguments, Command, DemCommand, ModelCommand};
+use crate::app::failure::Failure;
+
+/// Runs the program: parses the arguments, runs the command, reports what went wrong.
+///
+/// Exit codes: 0 done, 1 the input is wrong, 2 usage.
 pub fn main() -> ExitCode {
-    ExitCode::SUCCESS
+    match run(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.report();
+            failure.exit_code()
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    match &arguments.command {
+        Command::Render(options) => render::run(options),
+        Command::Check(options) => check::run(options),
+        Command::Dem { command: DemCommand::Info(options) } => dem::info(options),
+        Command::Model { command: ModelCommand::Info(options) } => model::info(options),
+        Command::Height(options) => height::run(options),
+    }
 }

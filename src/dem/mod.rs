@@ -1,4 +1,3 @@
 //! Elevation rasters: their georeference, one file per format, warping to a metric system.
 
 pub mod raster;
-pub mod sample;

@@ -73,7 +73,7 @@ pub fn camera(width: u32, height: u32) -> Camera {
 
 /// The whole scene.
 pub fn scene() -> DrawList {
-    let mut list = DrawList { ground: Some(ground_map()), lighting: lighting(), ..Default::default() };
+    let mut list = DrawList { ground: Some(ground_map().into()), lighting: lighting(), ..Default::default() };
     let ground = ground_mesh();
     let lake = clipped(&clipped(&ground, 1, LAKE_Y.0, 1.0), 1, LAKE_Y.1, -1.0);
     let road = clipped(&clipped(&ground, 0, ROAD_X.0, 1.0), 0, ROAD_X.1, -1.0);

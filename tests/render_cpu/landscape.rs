@@ -222,7 +222,7 @@ pub fn road_texture() -> Pixels {
 pub fn landscape(cells: usize) -> DrawList {
     let lighting = Lighting::default();
     let mut list = DrawList {
-        ground: Some(ground_map(901, HALF_M, true, height)),
+        ground: Some(ground_map(901, HALF_M, true, height).into()),
         lighting: Lighting { haze: Haze { distance_m: 14_000.0, ..lighting.haze }, ..lighting },
         ..DrawList::default()
     };

@@ -130,7 +130,7 @@ pub fn render(list: &DrawList, camera: &Camera, options: &Options) -> Result<Pic
 
 fn check(list: &DrawList) -> Result<(), RenderError> {
     list.check().map_err(RenderError::List)?;
-    if let Some(fault) = list.ground.as_ref().and_then(ground_shade::fault) {
+    if let Some(fault) = list.ground.as_deref().and_then(ground_shade::fault) {
         return Err(RenderError::GroundMap(fault));
     }
     let needs_ground = list.items.iter().position(|item| {

@@ -41,7 +41,7 @@ impl<'a> Shader<'a> {
             list,
             screen,
             textures: list.textures.par_iter().map(Texture::new).collect(),
-            ground: list.ground.as_ref().map(Ground::new),
+            ground: list.ground.as_deref().map(Ground::new),
             most_taps,
         }
     }

@@ -144,7 +144,7 @@ fn frame(
             texture
         }
     };
-    let ramp = ramp_stops(gpu, list.ground.as_ref());
+    let ramp = ramp_stops(gpu, list.ground.as_deref());
     let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
     let (posts, ramp) = (view(&posts), view(&ramp));
     Ok(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {

@@ -1,0 +1,206 @@
+//! What may be said on the command line.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::terrain::query::Interpolation;
+
+/// Elevation models and what stands on them, made into scenes, and scenes into pictures.
+#[derive(Debug, Parser)]
+#[command(name = "sandtable", version, propagate_version = true)]
+#[command(after_help = "Exit codes: 0 done, 1 the input is wrong, 2 wrong usage.")]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene file to an annotated PNG
+    Render(RenderOptions),
+    /// Load and validate a scene file without rendering it
+    Check(CheckOptions),
+    /// Look at elevation files
+    Dem {
+        /// What to do with the file.
+        #[command(subcommand)]
+        command: DemCommand,
+    },
+    /// Look at model files
+    Model {
+        /// What to do with the file.
+        #[command(subcommand)]
+        command: ModelCommand,
+    },
+    /// Ask an elevation file for heights at points
+    Height(HeightOptions),
+}
+
+/// What can be done with an elevation file.
+#[derive(Debug, Subcommand)]
+pub enum DemCommand {
+    /// Print format, size, coordinate system, no-data value and statistics
+    Info(InfoOptions),
+}
+
+/// What can be done with a model file.
+#[derive(Debug, Subcommand)]
+pub enum ModelCommand {
+    /// Print meshes, vertices, faces, materials and bounds (Z up, the file's units)
+    Info(InfoOptions),
+}
+
+/// `render`.
+#[derive(Debug, Args)]
+pub struct RenderOptions {
+    /// The scene file
+    pub scene: PathBuf,
+    /// Where the picture goes [default: the scene's name with .png, in the current folder]
+    #[arg(short, long, value_name = "OUT.png")]
+    pub output: Option<PathBuf>,
+    /// Size of the picture in pixels
+    #[arg(long, value_name = "WxH", default_value = "1920x1080")]
+    pub size: Size,
+    /// Which of the scene's cameras to look through [default: its first]
+    #[arg(long, value_name = "NAME")]
+    pub camera: Option<String>,
+    /// What draws: the processor, the same on every machine, or a graphics adapter
+    #[arg(long, value_enum, default_value_t)]
+    pub backend: Backend,
+    /// How many threads to use [default: one per core]; the picture is the same for any number
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// What may be read.
+    #[command(flatten)]
+    pub access: Access,
+}
+
+/// `check`.
+#[derive(Debug, Args)]
+pub struct CheckOptions {
+    /// The scene file
+    pub scene: PathBuf,
+    /// What may be read.
+    #[command(flatten)]
+    pub access: Access,
+}
+
+/// Which files a scene may name.
+#[derive(Debug, Args)]
+pub struct Access {
+    /// Also let the scene read files under DIR; without it, only under the parent of the scene's folder
+    #[arg(long, value_name = "DIR")]
+    pub allow: Vec<PathBuf>,
+}
+
+/// `dem info` and `model info`.
+#[derive(Debug, Args)]
+pub struct InfoOptions {
+    /// The file
+    pub file: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+    /// Metres per unit of a 16-bit PNG
+    #[arg(long, value_name = "METRES")]
+    pub height_scale: Option<f64>,
+}
+
+/// `height`.
+#[derive(Debug, Args)]
+pub struct HeightOptions {
+    /// The elevation file
+    pub file: PathBuf,
+    /// A CSV file of x,y in the file's coordinates, with or without a header; - reads standard input
+    #[arg(long, value_name = "CSV")]
+    pub points: PathBuf,
+    /// How heights between posts are found
+    #[arg(long, value_enum, default_value_t)]
+    pub interpolation: InterpolationChoice,
+    /// Metres per unit of a 16-bit PNG
+    #[arg(long, value_name = "METRES")]
+    pub height_scale: Option<f64>,
+}
+
+/// What draws.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Backend {
+    /// The processor.
+    #[default]
+    Cpu,
+    /// A graphics adapter.
+    Gpu,
+}
+
+/// An interpolation by its name on the command line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum InterpolationChoice {
+    /// On the finest triangles
+    Planar,
+    /// Between four posts, as GDAL does
+    #[default]
+    Bilinear,
+    /// The nearest post's
+    Nearest,
+    /// The four posts around, weighted by nearness
+    DistanceWeighted,
+}
+
+impl From<InterpolationChoice> for Interpolation {
+    fn from(choice: InterpolationChoice) -> Self {
+        match choice {
+            InterpolationChoice::Planar => Self::Planar,
+            InterpolationChoice::Bilinear => Self::Bilinear,
+            InterpolationChoice::Nearest => Self::Nearest,
+            InterpolationChoice::DistanceWeighted => Self::DistanceWeighted4,
+        }
+    }
+}
+
+/// A picture's size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    /// Pixels across, 16 to 16384.
+    pub width: u32,
+    /// Pixels down, 16 to 16384.
+    pub height: u32,
+}
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let sides = text.split_once(['x', 'X', '×']);
+        let parsed = sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
+        match parsed {
+            Some((width, height)) if (16..=16384).contains(&width) && (16..=16384).contains(&height) => {
+                Ok(Self { width, height })
+            }
+            Some(_) => Err("each side must lie between 16 and 16384 pixels".into()),
+            None => Err("write width and height as in 1920x1080".into()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_arguments_are_sound() {
+        use clap::CommandFactory;
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_are_two_numbers_within_range() {
+        assert_eq!("640x480".parse(), Ok(Size { width: 640, height: 480 }));
+        for wrong in ["640", "640x", "0x0", "99999x10", "-4x20", "axb"] {
+            assert!(wrong.parse::<Size>().is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! `sandtable dem`: what is in an elevation file.
+
+use std::path::Path;
+
+use serde_json::json;
+
+use crate::app::arguments::InfoOptions;
+use crate::app::failure::Failure;
+use crate::app::files;
+use crate::dem::raster::Raster;
+use crate::dem::read::{self, Hints};
+use crate::dem::stats::{self, Stats};
+
+/// Reads the elevation file at `path`, its sidecars beside it.
+///
+/// # Errors
+/// It cannot be had or read; the message names it.
+pub fn read_raster(path: &Path, height_scale: Option<f64>) -> Result<Raster, Failure> {
+    let bytes = files::read(path)?;
+    let beside = files::beside(path);
+    let hints = Hints { png_height_scale: height_scale, companions: &beside, ..Hints::default() };
+    let name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
+    read::read(&name, &bytes, &hints).map_err(|error| Failure::input(format!("{}: {error}", path.display())))
+}
+
+/// `dem info`.
+///
+/// # Errors
+/// The file cannot be had or read.
+pub fn info(options: &InfoOptions) -> Result<(), Failure> {
+    let raster = read_raster(&options.file, options.height_scale)?;
+    let stats = stats::of(&raster);
+    if options.json {
+        println!("{}", describe(&raster, &stats));
+    } else {
+        print_table(&raster, &stats);
+    }
+    Ok(())
+}
+
+/// One JSON object; numbers that there are not (no valid sample, no such tag) are null.
+fn describe(raster: &Raster, stats: &Stats) -> serde_json::Value {
+    let affine = raster.map_from_grid;
+    let (east, south) = (affine.matrix2.x_axis, affine.matrix2.y_axis);
+    json!({
+        "driver": raster.driver,
+        "width": raster.width,
+        "height": raster.height,
+        "crs": raster.crs.as_ref().map(|crs| crs.name()),
+        "transform": [affine.translation.x, east.x, south.x, affine.translation.y, east.y, south.y],
+        "nodata": nodata(raster.nodata),
+        "valid": stats.valid,
+        "min": stats.min,
+        "max": stats.max,
+        "mean": stats.mean,
+        "std": stats.std,
+    })
+}
+
+/// JSON has no NaN: a no-data value of NaN is the text `"nan"`.
+fn nodata(value: Option<f64>) -> serde_json::Value {
+    match value {
+        Some(value) if value.is_nan() => json!("nan"),
+        Some(value) => json!(value),
+        None => serde_json::Value::Null,
+    }
+}
+
+fn print_table(raster: &Raster, stats: &Stats) {
+    let affine = raster.map_from_grid;
+    let (east, south) = (affine.matrix2.x_axis, affine.matrix2.y_axis);
+    println!("  driver   {}", raster.driver);
+    println!("  size     {} columns, {} rows", raster.width, raster.height);
+    println!("  crs      {}", raster.crs.as_ref().map_or("none stated", |crs| crs.name()));
+    println!("  corner   ({}, {}), outer corner of the first sample", affine.translation.x, affine.translation.y);
+    println!("  sample   ({}, {}) a column, ({}, {}) a row", east.x, east.y, south.x, south.y);
+    println!("  nodata   {}", raster.nodata.map_or("none stated".to_owned(), |value| value.to_string()));
+    println!("  valid    {} of {} samples", stats.valid, raster.samples.len());
+    println!("  heights  {} to {}, mean {}, deviation {}", stats.min, stats.max, stats.mean, stats.std);
+}

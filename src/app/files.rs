@@ -1,0 +1,80 @@
+//! Reading what the user names and writing what a command makes.
+
+use std::fs;
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+
+use crate::app::failure::Failure;
+
+/// No input file may be larger: more than any elevation tile in use, less than this machine's memory.
+const MAX_BYTES: u64 = 4 << 30;
+
+/// The bytes of a file.
+///
+/// # Errors
+/// It cannot be read, is no regular file, or is too large; the message names it.
+pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
+    let wrong = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
+    let metadata = fs::metadata(path).map_err(|error| wrong(describe(&error)))?;
+    if !metadata.is_file() {
+        return Err(wrong("this is not a file".into()));
+    }
+    if metadata.len() > MAX_BYTES {
+        return Err(wrong(format!("{} bytes are more than the {MAX_BYTES} that are read", metadata.len())));
+    }
+    fs::read(path).map_err(|error| wrong(describe(&error)))
+}
+
+/// The text of a file, or of standard input for `-`.
+///
+/// # Errors
+/// As for [`read`]; or it is not UTF-8.
+pub fn read_text(path: &Path) -> Result<String, Failure> {
+    let bytes = if path == Path::new("-") {
+        let mut bytes = Vec::new();
+        let result = io::stdin().lock().take(MAX_BYTES).read_to_end(&mut bytes);
+        result.map_err(|error| Failure::input(format!("standard input: {error}")))?;
+        bytes
+    } else {
+        read(path)?
+    };
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        Failure::input(format!("{}: byte {at} is not UTF-8 text", path.display()))
+    })
+}
+
+/// The file beside `path` with another name, if it can be read: a sidecar.
+pub fn beside(path: &Path) -> impl Fn(&str) -> Option<Vec<u8>> + '_ {
+    move |name: &str| {
+        let plain = !name.is_empty() && !name.contains(['/', '\\']);
+        plain.then(|| read(&path.with_file_name(name)).ok()).flatten()
+    }
+}
+
+/// Writes a file whole or not at all: beside its place first, then renamed into it.
+///
+/// # Errors
+/// It cannot be written; nothing is left behind.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let wrong = |error: io::Error| Failure::input(format!("{}: {}", path.display(), describe(&error)));
+    let name = path.file_name().ok_or_else(|| wrong(io::Error::from(io::ErrorKind::InvalidFilename)))?;
+    let mut partial = name.to_owned();
+    partial.push(format!(".{}.part", std::process::id()));
+    let partial: PathBuf = path.with_file_name(partial);
+    let written = fs::File::create(&partial)
+        .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
+        .and_then(|()| fs::rename(&partial, path));
+    written.map_err(|error| {
+        let _ = fs::remove_file(&partial);
+        wrong(error)
+    })
+}
+
+fn describe(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "there is no such file or folder".into(),
+        io::ErrorKind::PermissionDenied => "permission denied".into(),
+        _ => error.to_string(),
+    }
+}

@@ -1,0 +1,129 @@
+//! `sandtable height`: heights at points, as CSV.
+
+use std::io::{self, BufWriter, Write};
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::app::arguments::HeightOptions;
+use crate::app::dem::read_raster;
+use crate::app::failure::Failure;
+use crate::app::files;
+use crate::terrain::query::{Answer, raster_height};
+
+/// Prints `x,y,height,status` for every point, in order; x and y as they were written.
+///
+/// # Errors
+/// The elevation file or the points cannot be had or read.
+pub fn run(options: &HeightOptions) -> Result<(), Failure> {
+    let raster = read_raster(&options.file, options.height_scale)?;
+    let text = files::read_text(&options.points)?;
+    let name = options.points.display().to_string();
+    let points = parse_points(&name, &text)?;
+    let answers: Vec<Answer> =
+        points.par_iter().map(|point| raster_height(&raster, options.interpolation.into(), point.at)).collect();
+    match write_csv(&points, &answers) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::input(error)),
+        _ => Ok(()),
+    }
+}
+
+fn write_csv(points: &[Point<'_>], answers: &[Answer]) -> io::Result<()> {
+    let mut out = BufWriter::new(io::stdout().lock());
+    writeln!(out, "x,y,height,status")?;
+    for (point, answer) in points.iter().zip(answers) {
+        let [x, y] = point.written;
+        match answer.height_m() {
+            Some(height) => writeln!(out, "{x},{y},{height},{}", answer.status())?,
+            None => writeln!(out, "{x},{y},,{}", answer.status())?,
+        }
+    }
+    out.flush()
+}
+
+/// A point and how it was written.
+#[derive(Debug, PartialEq)]
+struct Point<'a> {
+    at: DVec2,
+    written: [&'a str; 2],
+}
+
+/// The points of a CSV text: a header that names columns `x` and `y` (or `lon` and `lat`), or none and x, y first.
+fn parse_points<'a>(name: &str, text: &'a str) -> Result<Vec<Point<'a>>, Failure> {
+    let mut lines = text
+        .trim_start_matches('\u{feff}')
+        .lines()
+        .enumerate()
+        .filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'))
+        .peekable();
+    let columns = match lines.peek().and_then(|(_, line)| header(line)) {
+        Some(columns) => {
+            lines.next();
+            columns
+        }
+        None => [0, 1],
+    };
+    lines
+        .map(|(index, line)| {
+            parse_point(line, columns).ok_or_else(|| {
+                let place = index + 1;
+                Failure::input(format!("{name}:{place}: found '{line}', each line must hold numbers x,y"))
+            })
+        })
+        .collect()
+}
+
+fn parse_point(line: &str, columns: [usize; 2]) -> Option<Point<'_>> {
+    let fields: Vec<&str> = fields(line).collect();
+    let written = [*fields.get(columns[0])?, *fields.get(columns[1])?];
+    let at = DVec2::new(written[0].parse().ok()?, written[1].parse().ok()?);
+    at.is_finite().then_some(Point { at, written })
+}
+
+/// The columns of x and y where the line is a header.
+fn header(line: &str) -> Option<[usize; 2]> {
+    let names: Vec<String> = fields(line).map(str::to_lowercase).collect();
+    if names.first()?.parse::<f64>().is_ok() {
+        return None;
+    }
+    let find = |accepted: &[&str]| names.iter().position(|name| accepted.contains(&name.as_str()));
+    let x = find(&["x", "lon", "longitude", "easting", "east"]);
+    let y = find(&["y", "lat", "latitude", "northing", "north"]);
+    Some([x.unwrap_or(0), y.unwrap_or(1)])
+}
+
+fn fields(line: &str) -> impl Iterator<Item = &str> {
+    let separator = if line.contains(',') {
+        ','
+    } else if line.contains(';') {
+        ';'
+    } else {
+        ' '
+    };
+    line.split(separator)
+        .map(|field| field.trim().trim_matches('"'))
+        .filter(move |field| separator != ' ' || !field.is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_come_with_or_without_a_header_and_in_any_columns() {
+        let at = |text: &str| parse_points("p.csv", text).expect("sound").iter().map(|point| point.at).collect::<Vec<_>>();
+        let expected = vec![DVec2::new(1.5, 2.0), DVec2::new(-3.0, 4e3)];
+        assert_eq!(at("1.5,2\n-3,4e3\n"), expected);
+        assert_eq!(at("x,y\r\n1.5,2\r\n\r\n-3,4e3"), expected);
+        assert_eq!(at("id;lat;lon\n7;2;1.5\n8;4e3;-3"), expected);
+        assert_eq!(at("1.5  2\n-3 4e3"), expected);
+    }
+
+    #[test]
+    fn a_line_that_is_no_point_is_named() {
+        let Err(Failure::Input(reason)) = parse_points("p.csv", "x,y\n1,2\n3,north\n") else {
+            panic!("accepted");
+        };
+        assert!(reason.contains("p.csv:3:") && reason.contains("3,north"), "{reason}");
+    }
+}

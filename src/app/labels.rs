@@ -1,0 +1,90 @@
+//! From a scene, a camera and a picture to annotations: where world and picture meet.
+
+use glam::{Vec2, Vec3};
+
+use crate::annotate::annotation::{Annotations, Label, LabelKind};
+use crate::annotate::legend::Legend;
+use crate::annotate::north::NorthArrow;
+use crate::annotate::scale_bar::ScaleBar;
+use crate::description::words;
+use crate::render::picture::Picture;
+use crate::scene::kind::{Label as SceneLabel, Scene};
+use crate::view::camera::Camera;
+
+/// Everything to be written on the picture.
+pub fn annotations(scene: &Scene, camera: &Camera, picture: &Picture) -> Annotations {
+    let shown = |wanted: bool| wanted.then_some(());
+    let furniture = scene.furniture;
+    Annotations {
+        labels: scene.labels.iter().filter_map(|label| place(label, camera, picture)).collect(),
+        title: scene.title.clone().filter(|_| furniture.title),
+        subtitle: scene.subtitle.clone().filter(|_| furniture.title),
+        north: shown(furniture.north_arrow).map(|()| north_arrow(camera)),
+        scale_bar: shown(furniture.scale_bar).and_then(|()| scale_bar(scene, camera, picture)),
+        legend: shown(furniture.legend).map(|()| legend(scene)),
+        ..Annotations::default()
+    }
+}
+
+fn place(label: &SceneLabel, camera: &Camera, picture: &Picture) -> Option<Label> {
+    let ground = camera.project(label.ground)?;
+    let top = camera.project(label.anchor)?;
+    Some(Label {
+        text: label.text.clone(),
+        anchor_px: ground.pixel,
+        top_px: (label.anchor != label.ground).then_some(top.pixel),
+        depth_m: ground.depth_m,
+        visible: is_visible(picture, ground.pixel, ground.depth_m) || is_visible(picture, top.pixel, top.depth_m),
+        kind: match label.kind {
+            words::LabelKind::Summit => LabelKind::Summit,
+            words::LabelKind::Place => LabelKind::Place,
+            words::LabelKind::Water => LabelKind::Water,
+            words::LabelKind::Point => LabelKind::Point,
+        },
+    })
+}
+
+/// Whether a place is not behind what the picture shows there: within 2 % of the depth at one of the pixels
+/// around, since the drawn ground may be off by its tolerance and a summit's own pixel may show what is behind.
+fn is_visible(picture: &Picture, pixel: Vec2, depth_m: f32) -> bool {
+    let (width, height) = (picture.pixels.width() as i32, picture.pixels.height() as i32);
+    let (column, row) = (pixel.x.floor() as i32, pixel.y.floor() as i32);
+    (-2..=1).any(|up| {
+        (-1..=1).any(|aside| {
+            let (x, y) = (column + aside, row + up);
+            let inside = (0..width).contains(&x) && (0..height).contains(&y);
+            inside && picture.depth_m[(y * width + x) as usize] >= depth_m * 0.98
+        })
+    })
+}
+
+/// North on the picture's ground plane, seen with the camera's tilt.
+fn north_arrow(camera: &Camera) -> NorthArrow {
+    let level = |direction: Vec3| direction.truncate().normalize_or_zero();
+    let ahead = if camera.forward().truncate().length() > 1e-3 { level(camera.forward()) } else { level(camera.up()) };
+    let right = level(camera.right());
+    NorthArrow {
+        direction: Vec2::new(right.y, -ahead.y).normalize_or(Vec2::NEG_Y),
+        foreshortening: (-camera.forward().z).clamp(0.0, 1.0),
+    }
+}
+
+/// The bar for the distance of the ground in the picture's middle, or of the nearest ground below it.
+fn scale_bar(_scene: &Scene, camera: &Camera, picture: &Picture) -> Option<ScaleBar> {
+    let (width, height) = (picture.pixels.width() as usize, picture.pixels.height() as usize);
+    let middle = (height / 2..height).map(|row| picture.depth_m[row * width + width / 2]);
+    let distance_m = middle.into_iter().find(|depth| depth.is_finite())?;
+    Some(ScaleBar { pixels_per_metre: camera.pixels_per_metre(distance_m), distance_m })
+}
+
+fn legend(scene: &Scene) -> Legend {
+    let (low_m, high_m) = scene.terrain.lattice.height_range();
+    Legend {
+        ramp: scene.map.ramp.clone(),
+        low_m,
+        high_m,
+        vertical_exaggeration: scene.terrain.exaggeration,
+        contour_interval: scene.map.contours.map(|contours| contours.interval_m),
+        vertical_datum: None,
+    }
+}

@@ -1,0 +1,111 @@
+//! From a document and its assets to a scene, pass by pass.
+
+use std::sync::Arc;
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::Document;
+use crate::roam::error::ErrorMap;
+use crate::roam::layout::{DEFAULT_PATCH, Layout};
+use crate::roam::refine::PatchHeights;
+use crate::scene::assets::Assets;
+use crate::scene::features::{self, Collected};
+use crate::scene::ground;
+use crate::scene::kind::{Scene, Terrain};
+use crate::scene::models;
+use crate::scene::place::{Places, parse_crs};
+use crate::scene::sources::Sources;
+use crate::scene::style;
+use crate::scene::views;
+use crate::terrain::lattice::Lattice;
+use crate::terrain::query::HeightService;
+
+/// Builds the scene that `document` describes. `step` is called with what is done next, as each pass begins.
+///
+/// # Errors
+/// The first thing that cannot be had or does not fit, pointing at its place in the scene file.
+pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) -> Result<Scene, Diagnostic> {
+    step("reading elevation");
+    let loaded = ground::load(document, assets)?;
+    let (crs, mut lattice) = (loaded.crs, loaded.lattice);
+    let places = places(document, &crs, &lattice)?;
+
+    step("laying features");
+    let sources = Sources::new(&places, assets);
+    let mut collected = Collected::default();
+    features::lakes(document, &sources, &mut lattice, &mut collected)?;
+    let extent = lattice.extent();
+    features::rivers(document, &sources, &extent, &mut collected)?;
+    features::roads(document, &sources, &extent, &mut collected)?;
+
+    step("loading models");
+    let (models, placements) = models::place(document, &places, assets, &lattice, &mut collected)?;
+
+    step("measuring terrain");
+    let terrain = terrain(document, lattice)?;
+    let labels = views::labels(document, &places, &terrain)?;
+    let cameras = views::cameras(document, &places, &terrain)?;
+
+    step("lighting terrain");
+    let lighting = style::lighting(document, extent.size().max_element());
+    let ramp = style::ramp(document, &terrain.lattice)?;
+    let map = style::ground_map(
+        &terrain.lattice,
+        terrain.exaggeration,
+        lighting.to_sun,
+        ramp,
+        style::contours(document),
+    );
+
+    let heights = HeightService::new(loaded.source, crs.clone(), Arc::clone(&terrain.lattice));
+    Ok(Scene {
+        title: document.title.clone(),
+        subtitle: document.subtitle.clone(),
+        heights,
+        terrain,
+        map: Arc::new(map),
+        lighting,
+        ribbons: collected.ribbons,
+        models,
+        placements,
+        labels,
+        cameras,
+        furniture: document.furniture,
+        features: collected.features,
+        notes: collected.notes,
+        crs,
+    })
+}
+
+fn places<'a>(
+    document: &'a Document,
+    crs: &'a crate::geom::crs::Crs,
+    lattice: &Lattice,
+) -> Result<Places<'a>, Diagnostic> {
+    Ok(Places {
+        document,
+        crs,
+        points_crs: parse_crs(document, document.points_crs.as_ref())?.unwrap_or_else(|| crs.clone()),
+        origin: lattice.origin(),
+        exaggeration: exaggeration(document),
+    })
+}
+
+fn exaggeration(document: &Document) -> f32 {
+    document.terrain.vertical_exaggeration.as_ref().map_or(1.0, |value| *value.get_ref()) as f32
+}
+
+fn terrain(document: &Document, lattice: Lattice) -> Result<Terrain, Diagnostic> {
+    let layout = Layout::new(lattice.columns(), lattice.rows(), DEFAULT_PATCH).ok_or_else(|| {
+        let size = format!("{}×{} posts", lattice.columns(), lattice.rows());
+        document.error(&document.terrain.dem, format!("an elevation model of {size} is too large"))
+    })?;
+    let exaggeration = exaggeration(document);
+    Ok(Terrain {
+        errors: ErrorMap::new(&lattice, &layout),
+        patch_heights: PatchHeights::new(&lattice, &layout, exaggeration),
+        lattice: Arc::new(lattice),
+        layout,
+        exaggeration,
+        tolerance_px: document.terrain.tolerance_px.as_ref().map_or(1.0, |value| *value.get_ref()) as f32,
+    })
+}

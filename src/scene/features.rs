@@ -1,0 +1,219 @@
+//! Lakes, rivers and roads: lakes level the ground, then everything becomes a ribbon in plan.
+
+use glam::DVec2;
+use toml::Spanned;
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::{Document, Lake};
+use crate::description::words;
+use crate::draw::list::FeatureId;
+use crate::geom::polygon;
+use crate::geom::polyline::Polyline;
+use crate::geom::rect::Rect;
+use crate::mesh::sink::MeshSink;
+use crate::ribbon::area;
+use crate::ribbon::plan::{PlanMesh, PlanVertex};
+use crate::ribbon::stroke::{StrokeOptions, stroke};
+use crate::ribbon::texture::{Surface, texture_length_m};
+use crate::scene::kind::{Feature, FeatureKind, Ribbon};
+use crate::scene::sources::{Named, Sources};
+use crate::terrain::earthwork;
+use crate::terrain::lattice::Lattice;
+use crate::terrain::query::{Interpolation, ground_height};
+use crate::vector::feature::Polygon;
+
+/// Features with their ids, and what there is to say about them.
+#[derive(Default)]
+pub struct Collected {
+    /// What lies on the ground.
+    pub ribbons: Vec<Ribbon>,
+    /// Every feature so far; ids count from 2.
+    pub features: Vec<Feature>,
+    /// For the user.
+    pub notes: Vec<String>,
+}
+
+impl Collected {
+    /// Notes a feature and returns its id.
+    pub fn add(&mut self, kind: FeatureKind, name: String) -> FeatureId {
+        self.features.push(Feature { kind, name });
+        FeatureId(FeatureId::GROUND.0 + self.features.len() as u32)
+    }
+}
+
+/// Vertices nearer to each other than this have no direction worth a joint.
+const MERGE_M: f64 = 0.01;
+
+/// Adds the document's lakes to `collected` and levels the ground under them.
+///
+/// # Errors
+/// A source cannot be had, or a level cannot be found.
+pub fn lakes(
+    document: &Document,
+    sources: &Sources<'_>,
+    lattice: &mut Lattice,
+    collected: &mut Collected,
+) -> Result<(), Diagnostic> {
+    for lake in &document.lakes {
+        for Named { name, shape } in sources.polygons(&lake.source)? {
+            let name = named(lake.name.as_deref(), name);
+            let shore = Rect::around(shape.exterior.iter().copied());
+            if !shore.meets(&lattice.extent()) {
+                collected.notes.push(format!("lake '{name}' lies off the elevation model"));
+                continue;
+            }
+            let level_m = level_of(document, lake, &shape, lattice)?;
+            add_lake(collected, lattice, name, &shape, level_m);
+        }
+    }
+    Ok(())
+}
+
+fn add_lake(collected: &mut Collected, lattice: &mut Lattice, name: String, shape: &Polygon, level_m: f64) {
+    let rings: Vec<Vec<DVec2>> = std::iter::once(&shape.exterior).chain(&shape.holes).cloned().collect();
+    let volumes = earthwork::level(lattice, &rings, level_m as f32);
+    collected.notes.push(format!(
+        "lake '{name}' lies level at {level_m:.1} m: {:.0} m³ cut, {:.0} m³ filled",
+        volumes.cut_m3, volumes.fill_m3
+    ));
+    let mut plan = PlanMesh::default();
+    area::fill(&shape.exterior, &shape.holes, LAKE_TEXTURE_M, &mut plan);
+    let feature = collected.add(FeatureKind::Lake, name);
+    collected.ribbons.push(Ribbon { plan, surface: Surface::Lake, layer: layer_of(Surface::Lake), feature });
+}
+
+/// Metres in one repeat of the water's texture: fine enough not to be seen as a pattern.
+const LAKE_TEXTURE_M: f64 = 400.0;
+
+/// The stated level, or the lowest ground along the shore, sampled twice a cell.
+fn level_of(document: &Document, lake: &Lake, shape: &Polygon, lattice: &Lattice) -> Result<f64, Diagnostic> {
+    if let Some(level) = &lake.level {
+        return Ok(*level.get_ref());
+    }
+    let step = lattice.cell().min_element() / 2.0;
+    let lowest = polygon::edges(&shape.exterior)
+        .flat_map(|(from, to)| {
+            let count = (from.distance(to) / step).ceil().clamp(1.0, 1e6) as u32;
+            (0..count).map(move |index| from.lerp(to, f64::from(index) / f64::from(count)))
+        })
+        .filter_map(|at| ground_height(lattice, Interpolation::Bilinear, at + lattice.origin()).height_m())
+        .fold(f64::INFINITY, f64::min);
+    if lowest.is_finite() {
+        return Ok(lowest);
+    }
+    let message = "no ground lies along this lake's shore to take its level from";
+    Err(document.error_at(lake.source.span(), message).with_help("state it: level = <metres>"))
+}
+
+/// Adds the document's rivers.
+///
+/// # Errors
+/// A source cannot be had.
+pub fn rivers(
+    document: &Document,
+    sources: &Sources<'_>,
+    extent: &Rect,
+    collected: &mut Collected,
+) -> Result<(), Diagnostic> {
+    for river in &document.rivers {
+        let width_m = value(river.width.as_ref(), 8.0);
+        let lines = sources.lines(&river.source)?;
+        add_lines(collected, extent, FeatureKind::River, river.name.as_deref(), lines, (Surface::River, width_m));
+    }
+    Ok(())
+}
+
+/// Adds the document's roads.
+///
+/// # Errors
+/// A source cannot be had.
+pub fn roads(
+    document: &Document,
+    sources: &Sources<'_>,
+    extent: &Rect,
+    collected: &mut Collected,
+) -> Result<(), Diagnostic> {
+    for road in &document.roads {
+        let surface = match road.surface.as_ref().map(Spanned::get_ref).copied().unwrap_or_default() {
+            words::Surface::Asphalt => Surface::Asphalt,
+            words::Surface::Gravel => Surface::Gravel,
+            words::Surface::Track => Surface::Track,
+        };
+        let width_m = value(road.width.as_ref(), 6.0);
+        let lines = sources.lines(&road.source)?;
+        add_lines(collected, extent, FeatureKind::Road, road.name.as_deref(), lines, (surface, width_m));
+    }
+    Ok(())
+}
+
+/// Makes a ribbon of every line that comes near the ground's `extent`.
+fn add_lines(
+    collected: &mut Collected,
+    extent: &Rect,
+    kind: FeatureKind,
+    given: Option<&str>,
+    lines: Vec<Named<Vec<DVec2>>>,
+    (surface, width_m): (Surface, f64),
+) {
+    let options = StrokeOptions {
+        width_m,
+        texture_length_m: texture_length_m(surface, width_m),
+        ..StrokeOptions::default()
+    };
+    let mut off = 0;
+    for Named { name, shape } in lines {
+        let reach = Rect::around(shape.iter().copied()).grown(width_m * options.mitre_limit);
+        let line = Polyline::new(shape, MERGE_M).filter(|_| reach.meets(extent));
+        let Some(line) = line else {
+            off += 1;
+            continue;
+        };
+        let mut plan = Clipped { plan: PlanMesh::default(), extent };
+        stroke(&line, &options, &mut plan);
+        let feature = collected.add(kind, named(given, name));
+        let layer = layer_of(surface);
+        collected.ribbons.push(Ribbon { plan: plan.plan, surface, layer, feature });
+    }
+    if off > 0 {
+        let what = given.map(|name| format!(" of '{name}'")).unwrap_or_default();
+        collected.notes.push(format!("{off} {}{what} left out: off the elevation model or a single point", kind.noun(off)));
+    }
+}
+
+/// A plan mesh that leaves out triangles that cannot meet the ground.
+struct Clipped<'a> {
+    plan: PlanMesh,
+    extent: &'a Rect,
+}
+
+impl MeshSink<PlanVertex> for Clipped<'_> {
+    fn vertex(&mut self, vertex: PlanVertex) -> crate::mesh::sink::VertexId {
+        self.plan.vertex(vertex)
+    }
+
+    fn triangle(&mut self, corners: [crate::mesh::sink::VertexId; 3]) {
+        let reach = Rect::around(corners.map(|id| self.plan.vertices[id.index()].at));
+        if reach.meets(self.extent) {
+            self.plan.triangle(corners);
+        }
+    }
+}
+
+/// What covers what, by class: still water over streams, roads over water, better roads over lesser.
+fn layer_of(surface: Surface) -> u8 {
+    match surface {
+        Surface::River => 0,
+        Surface::Lake => 1,
+        Surface::Track => 2,
+        Surface::Gravel => 3,
+        Surface::Asphalt => 4,
+    }
+}
+
+fn named(given: Option<&str>, in_file: String) -> String {
+    given.map_or(in_file, str::to_owned)
+}
+
+fn value(stated: Option<&Spanned<f64>>, default: f64) -> f64 {
+    stated.map_or(default, |value| *value.get_ref())
+}

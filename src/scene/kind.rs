@@ -1,0 +1,202 @@
+//! A scene, loaded and checked: everything that does not depend on a camera.
+
+use std::sync::Arc;
+
+use glam::{DVec2, Vec2, Vec3};
+
+use crate::description::document::Furniture;
+use crate::description::words::{Clamp, LabelKind};
+use crate::draw::ground::GroundMap;
+use crate::draw::lighting::Lighting;
+use crate::draw::list::FeatureId;
+use crate::geom::crs::Crs;
+use crate::geom::rect::Rect;
+use crate::model::kind::Model;
+use crate::ribbon::plan::PlanMesh;
+use crate::ribbon::texture::Surface;
+use crate::roam::error::ErrorMap;
+use crate::roam::layout::Layout;
+use crate::roam::refine::{Ground, PatchHeights};
+use crate::terrain::lattice::Lattice;
+use crate::terrain::query::HeightService;
+
+/// A digital terrain model: the ground, what lies and stands on it, and how it is to be seen.
+pub struct Scene {
+    /// The picture's title.
+    pub title: Option<String>,
+    /// A second line under it.
+    pub subtitle: Option<String>,
+    /// The map coordinates' system.
+    pub crs: Crs,
+    /// The terrain.
+    pub terrain: Terrain,
+    /// Answers height queries in map coordinates.
+    pub heights: HeightService,
+    /// What the ground looks like.
+    pub map: Arc<GroundMap>,
+    /// Light, haze and sky.
+    pub lighting: Lighting,
+    /// Lakes, rivers and roads, in drawing order.
+    pub ribbons: Vec<Ribbon>,
+    /// Model files, each loaded once.
+    pub models: Vec<Model>,
+    /// What stands on the ground.
+    pub placements: Vec<Placement>,
+    /// Names and heights.
+    pub labels: Vec<Label>,
+    /// Views; at least one.
+    pub cameras: Vec<View>,
+    /// What frames the picture.
+    pub furniture: Furniture,
+    /// Every feature, in the order of their ids from 2 up.
+    pub features: Vec<Feature>,
+    /// What was done that a user should know: features off the model, missing textures, earth moved.
+    pub notes: Vec<String>,
+}
+
+/// The ground with what refinement needs to know of it.
+pub struct Terrain {
+    /// The heights.
+    pub lattice: Arc<Lattice>,
+    /// The patches over them.
+    pub layout: Layout,
+    /// The errors of their vertices.
+    pub errors: ErrorMap,
+    /// The drawn heights' range per patch.
+    pub patch_heights: PatchHeights,
+    /// How many times heights are stretched when drawn.
+    pub exaggeration: f32,
+    /// How many pixels the drawn ground may be off.
+    pub tolerance_px: f32,
+}
+
+impl Terrain {
+    /// What refinement reads.
+    pub fn ground(&self) -> Ground<'_> {
+        Ground {
+            lattice: &self.lattice,
+            layout: &self.layout,
+            errors: &self.errors,
+            heights: &self.patch_heights,
+        }
+    }
+
+    /// The box of the ground in world space, drawn heights.
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        let (low, high) = self.lattice.height_range();
+        let Rect { min, max } = self.lattice.extent();
+        let corner = |plan: DVec2, z: f32| plan.as_vec2().extend(z * self.exaggeration);
+        (corner(min, low), corner(max, high))
+    }
+}
+
+/// What a feature is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum FeatureKind {
+    /// A lake.
+    Lake,
+    /// A river or stream.
+    River,
+    /// A road.
+    Road,
+    /// A model.
+    Model,
+}
+
+impl FeatureKind {
+    /// Its name for a count of one, or of several.
+    pub fn noun(self, count: usize) -> &'static str {
+        match (self, count) {
+            (Self::Lake, 1) => "lake",
+            (Self::Lake, _) => "lakes",
+            (Self::River, 1) => "river",
+            (Self::River, _) => "rivers",
+            (Self::Road, 1) => "road",
+            (Self::Road, _) => "roads",
+            (Self::Model, 1) => "model",
+            (Self::Model, _) => "models",
+        }
+    }
+}
+
+/// One feature of the scene: one road line, one lake polygon, one model.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Feature {
+    /// What it is.
+    pub kind: FeatureKind,
+    /// Its name; may be empty.
+    pub name: String,
+}
+
+/// Something that lies on the ground.
+pub struct Ribbon {
+    /// Its triangles in plan.
+    pub plan: PlanMesh,
+    /// What it is made of.
+    pub surface: Surface,
+    /// Where it lies among others: a higher number covers a lower.
+    pub layer: u8,
+    /// The feature it belongs to.
+    pub feature: FeatureId,
+}
+
+/// A model in its place.
+pub struct Placement {
+    /// Which of the scene's models.
+    pub model: usize,
+    /// World X and Y of its origin.
+    pub at: Vec2,
+    /// How its height is found.
+    pub clamp: Clamp,
+    /// Metres above the ground, or elevation, as `clamp` says; 0 where it stands on the ground.
+    pub height_m: f32,
+    /// Which way its front points, radians clockwise from north.
+    pub heading_rad: f32,
+    /// Metres per unit of the model.
+    pub scale: f32,
+    /// The feature it is.
+    pub feature: FeatureId,
+}
+
+/// A name on the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    /// What it says.
+    pub text: String,
+    /// The place on the ground, world space, drawn height.
+    pub ground: Vec3,
+    /// Where the leader line starts, at or above the ground.
+    pub anchor: Vec3,
+    /// What it names.
+    pub kind: LabelKind,
+}
+
+/// A view of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    /// How `--camera` calls it.
+    pub name: String,
+    /// The eye, world space.
+    pub eye: Vec3,
+    /// What it looks at, world space.
+    pub target: Vec3,
+    /// Vertical field of view in radians.
+    pub fov_y_rad: f32,
+}
+
+impl Scene {
+    /// The view called `name`, or the first where no name is given.
+    pub fn view(&self, name: Option<&str>) -> Option<&View> {
+        match name {
+            Some(name) => self.cameras.iter().find(|view| view.name == name),
+            None => self.cameras.first(),
+        }
+    }
+
+    /// How many features there are of each kind, kinds in order, only those present.
+    pub fn census(&self) -> Vec<(FeatureKind, usize)> {
+        let kinds = [FeatureKind::Lake, FeatureKind::River, FeatureKind::Road, FeatureKind::Model];
+        let count = |kind| self.features.iter().filter(|feature| feature.kind == kind).count();
+        kinds.map(|kind| (kind, count(kind))).into_iter().filter(|&(_, count)| count > 0).collect()
+    }
+}

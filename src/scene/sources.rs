@@ -1,0 +1,179 @@
+//! Lines and polygons of a feature, from inline points or a vector file, in world coordinates.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use glam::DVec2;
+use toml::Spanned;
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::{Match, Scalar, Source};
+use crate::geom::crs::Crs;
+use crate::scene::assets::Assets;
+use crate::scene::place::{Places, parse_crs};
+use crate::vector::feature::{Geometry, Layer, Polygon};
+use crate::vector::filter::{Condition, Filter};
+use crate::vector::read;
+
+/// A file's name and the system stated for it.
+type LayerKey = (String, Option<String>);
+
+/// Reads vector files, each once.
+pub struct Sources<'a> {
+    places: &'a Places<'a>,
+    assets: &'a Assets,
+    layers: RefCell<BTreeMap<LayerKey, Rc<Layer>>>,
+}
+
+/// A shape with the name it has in its file, if any.
+pub struct Named<T> {
+    /// The `name` property of the feature; empty for inline points.
+    pub name: String,
+    /// The shape, in world coordinates.
+    pub shape: T,
+}
+
+impl<'a> Sources<'a> {
+    /// Sources that read through `assets` and place through `places`.
+    pub fn new(places: &'a Places<'a>, assets: &'a Assets) -> Self {
+        Self { places, assets, layers: RefCell::default() }
+    }
+
+    /// The lines of a source.
+    ///
+    /// # Errors
+    /// The file cannot be had or read, holds no line that matches, or its coordinates cannot be brought to the
+    /// scene's system.
+    pub fn lines(&self, source: &Source) -> Result<Vec<Named<Vec<DVec2>>>, Diagnostic> {
+        let lines = self.shapes(source, |geometry| match geometry {
+            Geometry::Lines(lines) => lines.clone(),
+            Geometry::Points(_) | Geometry::Polygons(_) => Vec::new(),
+        })?;
+        self.place_all(source, lines, |line, place| line.into_iter().map(place).collect())
+    }
+
+    /// The polygons of a source; inline points are an outer ring.
+    ///
+    /// # Errors
+    /// As for [`Sources::lines`].
+    pub fn polygons(&self, source: &Source) -> Result<Vec<Named<Polygon>>, Diagnostic> {
+        let polygons = self.shapes(source, |geometry| match geometry {
+            Geometry::Polygons(polygons) => polygons.clone(),
+            Geometry::Lines(lines) => lines.iter().cloned().filter_map(closed).collect(),
+            Geometry::Points(_) => Vec::new(),
+        })?;
+        self.place_all(source, polygons, |polygon, place| {
+            let ring = |ring: Vec<DVec2>| ring.into_iter().map(place).collect::<Result<Vec<_>, _>>();
+            let holes = polygon.holes.into_iter().map(ring).collect::<Result<_, _>>()?;
+            Ok(Polygon { exterior: ring(polygon.exterior)?, holes })
+        })
+    }
+
+    /// The shapes that `pick` takes from every feature that matches, unplaced.
+    fn shapes<T>(
+        &self,
+        source: &Source,
+        pick: impl Fn(&Geometry) -> Vec<T>,
+    ) -> Result<(Crs, Vec<Named<T>>), Diagnostic> {
+        if let Some(points) = &source.points {
+            let line = points.get_ref().iter().map(|&point| DVec2::from(point)).collect();
+            let shape = pick(&Geometry::Lines(vec![line]));
+            let named = |shape| Named { name: String::new(), shape };
+            return Ok((self.places.crs_of(source.crs.as_ref())?, shape.into_iter().map(named).collect()));
+        }
+        let Some(file) = &source.file else {
+            return Ok((self.places.crs.clone(), Vec::new()));
+        };
+        let stated = parse_crs(self.places.document, source.crs.as_ref())?;
+        let layer = self.layer(file, stated.as_ref())?;
+        let filter = filter_of(source);
+        let named = |name: &str, shape| Named { name: name.to_owned(), shape };
+        let shapes: Vec<_> = filter
+            .select(&layer)
+            .flat_map(|feature| {
+                let name = feature.properties.get("name").and_then(|name| name.as_str()).unwrap_or("");
+                pick(&feature.geometry).into_iter().map(move |shape| named(name, shape))
+            })
+            .collect();
+        if shapes.is_empty() {
+            return Err(self.nothing_found(source, file, &filter, &layer));
+        }
+        Ok((layer.crs.clone(), shapes))
+    }
+
+    fn nothing_found(
+        &self,
+        source: &Source,
+        file: &Spanned<String>,
+        filter: &Filter,
+        layer: &Layer,
+    ) -> Diagnostic {
+        let name = file.get_ref();
+        match (filter.explain_none(layer), &source.filter) {
+            (Some(reason), Some(place)) => {
+                let message = format!("no feature of '{name}' matches");
+                self.places.document.error(place, message).with_help(reason)
+            }
+            _ => {
+                let message = format!("no feature of '{name}' that matches has the shape needed here");
+                let kinds: std::collections::BTreeSet<_> =
+                    layer.features.iter().map(|feature| feature.geometry.kind()).collect();
+                let kinds: Vec<_> = kinds.into_iter().collect();
+                let count = layer.features.len();
+                let help = format!("the file's {count} features are {}", kinds.join(", "));
+                self.places.document.error(file, message).with_help(help)
+            }
+        }
+    }
+
+    fn layer(&self, file: &Spanned<String>, stated: Option<&Crs>) -> Result<Rc<Layer>, Diagnostic> {
+        let key = (file.get_ref().clone(), stated.map(|crs| crs.name().to_owned()));
+        if let Some(layer) = self.layers.borrow().get(&key) {
+            return Ok(Rc::clone(layer));
+        }
+        let wrong = |reason: String| self.places.document.error(file, reason);
+        let bytes = self.assets.read(file.get_ref()).map_err(|error| wrong(error.to_string()))?;
+        let layer = read::read(file.get_ref(), &bytes, stated).map_err(|error| wrong(error.to_string()))?;
+        let layer = Rc::new(layer);
+        self.layers.borrow_mut().insert(key, Rc::clone(&layer));
+        Ok(layer)
+    }
+
+    /// Brings every shape to the world.
+    fn place_all<T, U>(
+        &self,
+        source: &Source,
+        (from, shapes): (Crs, Vec<Named<T>>),
+        transform: impl Fn(T, &dyn Fn(DVec2) -> Result<DVec2, String>) -> Result<U, String>,
+    ) -> Result<Vec<Named<U>>, Diagnostic> {
+        let place = |at: DVec2| self.places.world(&from, at);
+        shapes
+            .into_iter()
+            .map(|Named { name, shape }| transform(shape, &place).map(|shape| Named { name, shape }))
+            .collect::<Result<_, _>>()
+            .map_err(|reason| self.places.document.error_at(source.span(), reason))
+    }
+}
+
+/// A line as an outer ring, without repeating its first vertex; `None` where fewer than three remain.
+fn closed(mut ring: Vec<DVec2>) -> Option<Polygon> {
+    if ring.len() > 1 && ring.first() == ring.last() {
+        ring.pop();
+    }
+    (ring.len() >= 3).then_some(Polygon { exterior: ring, holes: Vec::new() })
+}
+
+fn filter_of(source: &Source) -> Filter {
+    let value = |scalar: &Scalar| match scalar {
+        Scalar::Bool(value) => serde_json::Value::from(*value),
+        Scalar::Number(value) => serde_json::Value::from(*value),
+        Scalar::Text(value) => serde_json::Value::from(value.as_str()),
+    };
+    let conditions = source.filter.iter().flat_map(|filter| filter.get_ref());
+    let condition = |(property, wanted): (&String, &Match)| Condition {
+        property: property.clone(),
+        any_of: wanted.values().iter().map(value).collect(),
+    };
+    Filter { conditions: conditions.map(condition).collect() }
+}

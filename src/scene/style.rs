@@ -1,0 +1,153 @@
+//! How the ground looks: ramp, contours, light and haze.
+
+use std::f32::consts::FRAC_PI_2;
+
+use glam::Vec3;
+use toml::Spanned;
+
+use crate::description::document::{Color, ContourTable, Document, RampChoice};
+use crate::description::words;
+use crate::draw::color::Srgba;
+use crate::draw::ground::{Contours, GroundMap, GroundPost, Ramp};
+use crate::draw::lighting::{Haze, Lighting};
+use crate::terrain::lattice::Lattice;
+use crate::terrain::light;
+
+/// An atlas's tints from the lowest ground to the highest: meadow, field, heath, rock, pale heights.
+const ATLAS: [(f32, [u8; 3]); 7] = [
+    (0.0, [120, 158, 106]),
+    (0.18, [156, 182, 124]),
+    (0.38, [206, 206, 150]),
+    (0.56, [216, 190, 138]),
+    (0.74, [190, 156, 118]),
+    (0.90, [172, 150, 134]),
+    (1.0, [226, 220, 212]),
+];
+
+/// Dry country: sand, ochre, red rock, pale heights.
+const DESERT: [(f32, [u8; 3]); 5] = [
+    (0.0, [196, 178, 138]),
+    (0.3, [222, 196, 146]),
+    (0.6, [206, 150, 104]),
+    (0.85, [170, 110, 84]),
+    (1.0, [232, 214, 196]),
+];
+
+/// A neutral ground for overlays.
+const GREY: [(f32, [u8; 3]); 2] = [(0.0, [168, 168, 168]), (1.0, [236, 236, 236])];
+
+/// The document's ramp over the ground's range of heights.
+///
+/// # Errors
+/// Stops that do not rise.
+pub fn ramp(document: &Document, lattice: &Lattice) -> Result<Ramp, crate::description::diagnostic::Diagnostic> {
+    let named = |name| match name {
+        words::Ramp::Atlas => stretched(&ATLAS, lattice),
+        words::Ramp::Desert => stretched(&DESERT, lattice),
+        words::Ramp::Grey => stretched(&GREY, lattice),
+    };
+    let Some(choice) = &document.style.ramp else {
+        return Ok(named(words::Ramp::default()));
+    };
+    match choice.get_ref() {
+        RampChoice::Named(name) => Ok(named(*name)),
+        RampChoice::Stops(stops) => {
+            let stops = stops.iter().map(|&(height, Color(channels))| (height as f32, Srgba(channels))).collect();
+            Ramp::new(stops).ok_or_else(|| document.error(choice, "the ramp's heights do not rise"))
+        }
+    }
+}
+
+fn stretched(stops: &[(f32, [u8; 3])], lattice: &Lattice) -> Ramp {
+    let (low, high) = lattice.height_range();
+    let span = (high - low).max(1.0);
+    let stops = stops.iter().map(|&(part, [r, g, b])| (low + span * part, Srgba::opaque(r, g, b))).collect();
+    Ramp::new(stops).expect("the parts rise and the span is positive")
+}
+
+/// The document's contour lines.
+pub fn contours(document: &Document) -> Option<Contours> {
+    document.style.contours.as_ref().map(|ContourTable { interval, major_every, color }| Contours {
+        interval_m: *interval.get_ref() as f32,
+        major_every: major_every.as_ref().map_or(5, |every| *every.get_ref()),
+        color: color.as_ref().map_or(Srgba([112, 74, 40, 150]), |color| Srgba(color.get_ref().0)),
+        width_px: 1.0,
+    })
+}
+
+/// The document's light, and haze over ground `extent_m` metres wide.
+pub fn lighting(document: &Document, extent_m: f64) -> Lighting {
+    let angle = |stated: &Option<Spanned<f64>>, default: f64| {
+        (stated.as_ref().map_or(default, |value| *value.get_ref()) as f32).to_radians()
+    };
+    let light = &document.style.light;
+    let (azimuth, altitude) = (angle(&light.azimuth, 315.0), angle(&light.altitude, 45.0));
+    let level = libm::sinf(FRAC_PI_2 - altitude);
+    let to_sun = Vec3::new(libm::sinf(azimuth) * level, libm::cosf(azimuth) * level, libm::sinf(altitude));
+    let distance_m = match document.style.haze.as_ref().map(Spanned::get_ref) {
+        Some(0.0) => f32::INFINITY,
+        Some(&distance) => distance as f32,
+        None => (extent_m * 8.0) as f32,
+    };
+    let default = Lighting::default();
+    Lighting { to_sun: to_sun.normalize_or(Vec3::Z), haze: Haze { distance_m, ..default.haze }, ..default }
+}
+
+/// What the ground shows at every post.
+pub fn ground_map(
+    lattice: &Lattice,
+    exaggeration: f32,
+    to_sun: Vec3,
+    ramp: Ramp,
+    contours: Option<Contours>,
+) -> GroundMap {
+    let light = light::light(lattice, exaggeration, to_sun);
+    let filled = filled_heights(lattice);
+    let posts = lattice
+        .posts()
+        .zip(filled)
+        .zip(light.sun.into_iter().zip(light.sky))
+        .map(|((post, height_m), (sun_visibility, sky_visibility))| {
+            let slopes = lattice.slopes(post) * exaggeration;
+            GroundPost { height_m, slope_east: slopes.x, slope_north: slopes.y, sun_visibility, sky_visibility }
+        })
+        .collect();
+    GroundMap {
+        origin: glam::Vec2::ZERO,
+        cell: lattice.cell().as_vec2(),
+        columns: lattice.columns(),
+        rows: lattice.rows(),
+        posts,
+        ramp,
+        contours,
+    }
+}
+
+/// Heights with posts without data taking the last known height of their row, then of the row below: they only
+/// colour the pixels within half a cell of the edge of data.
+fn filled_heights(lattice: &Lattice) -> Vec<f32> {
+    let columns = lattice.columns() as usize;
+    let mut heights = lattice.heights().to_vec();
+    let lowest = lattice.height_range().0;
+    for row in heights.chunks_mut(columns) {
+        spread(row);
+        row.reverse();
+        spread(row);
+        row.reverse();
+    }
+    for height in heights.iter_mut().filter(|height| height.is_nan()) {
+        *height = lowest;
+    }
+    heights
+}
+
+fn spread(row: &mut [f32]) {
+    let mut last = f32::NAN;
+    for height in row {
+        if height.is_nan() {
+            *height = last;
+        } else {
+            last = *height;
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! Holds the code to the map: `src/ARCHITECTURE.md` and `src/` must agree.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+/// The cells of every row of the table whose heading row is `heading`.
+fn table(page: &str, heading: &str) -> Vec<Vec<String>> {
+    let rows = page.lines().skip_while(|line| *line != heading).skip(2);
+    rows.take_while(|line| line.starts_with('|'))
+        .map(|line| line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect())
+        .collect()
+}
+
+fn page() -> String {
+    fs::read_to_string(Path::new(ROOT).join("src/ARCHITECTURE.md")).expect("the map is there")
+}
+
+/// Every room with its floor.
+fn floors() -> BTreeMap<String, u32> {
+    let rows = table(&page(), "| floor | room | what lives there | knows nothing of |");
+    assert!(rows.len() > 10, "the table of rooms was not found");
+    rows.into_iter().map(|row| (row[1].clone(), row[0].parse().expect("a floor is a number"))).collect()
+}
+
+fn rust_files(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).expect("readable").map(|entry| entry.expect("readable").path()) {
+        if entry.is_dir() {
+            found.extend(rust_files(&entry));
+        } else if entry.extension().is_some_and(|extension| extension == "rs") {
+            found.push(entry);
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Every source file with its path below `src/` and its code: no comments, no unit tests.
+fn sources() -> Vec<(String, String)> {
+    let src = Path::new(ROOT).join("src");
+    let code = |path: &PathBuf| {
+        let text = fs::read_to_string(path).expect("readable");
+        let code = text.lines().take_while(|line| *line != "#[cfg(test)]");
+        code.filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
+    };
+    let name = |path: &PathBuf| path.strip_prefix(&src).expect("below src").to_string_lossy().replace('\\', "/");
+    rust_files(&src).iter().map(|path| (name(path), code(path))).collect()
+}
+
+/// Every place where `code` names a path that starts with `name::`.
+fn names(code: &str, name: &str) -> bool {
+    let needle = format!("{name}::");
+    code.match_indices(&needle).any(|(at, _)| {
+        let before = code[..at].chars().next_back();
+        !before.is_some_and(|before| before.is_alphanumeric() || before == '_' || before == ':')
+    })
+}
+
+#[test]
+fn every_folder_of_the_source_is_a_room_on_the_map_and_every_room_is_there() {
+    let floors = floors();
+    let mut folders: Vec<String> = fs::read_dir(Path::new(ROOT).join("src"))
+        .expect("readable")
+        .map(|entry| entry.expect("readable").path())
+        .filter(|path| path.is_dir())
+        .map(|path| path.file_name().expect("named").to_string_lossy().into_owned())
+        .collect();
+    folders.sort();
+    let rooms: Vec<String> = floors.keys().cloned().collect();
+    assert_eq!(folders, rooms, "folders of src/ on the left, rooms of the map on the right");
+}
+
+#[test]
+fn no_room_reaches_upward_or_sideways() {
+    let floors = floors();
+    let mut wrong = Vec::new();
+    for (file, code) in sources().iter().filter(|(file, _)| file.contains('/')) {
+        let room = file.split('/').next().expect("in a room");
+        for (other, floor) in floors.iter().filter(|(other, _)| other.as_str() != room) {
+            if *floor >= floors[room] && names(code, &format!("crate::{other}")) {
+                wrong.push(format!("{file} (floor {}) names {other} (floor {floor})", floors[room]));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn what_has_one_door_is_named_nowhere_else() {
+    let doors = table(&page(), "| what | only in |");
+    assert!(doors.len() > 5, "the table of doors was not found");
+    let mut wrong = Vec::new();
+    for (file, code) in sources() {
+        for door in &doors {
+            let allowed = door[1].split(", ").any(|place| file.starts_with(place));
+            if !allowed && names(&code, &door[0]) {
+                wrong.push(format!("{file} names {}, which belongs in {}", door[0], door[1]));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_source_file_opens_with_what_it_does_and_stays_one_idea() {
+    for path in rust_files(&Path::new(ROOT).join("src")) {
+        let text = fs::read_to_string(&path).expect("readable");
+        let opens = text.starts_with("//!") || text.starts_with("#![doc");
+        assert!(opens, "{} does not open with //!", path.display());
+        let lines = text.lines().count();
+        assert!(lines <= 600, "{} has {lines} lines: split it", path.display());
+    }
+}
+
+#[test]
+fn nothing_is_imported_through_the_root_or_by_glob() {
+    for (file, code) in sources() {
+        let globs = code.lines().filter(|line| line.trim_start().starts_with("use crate") && line.contains('*'));
+        let globs: Vec<&str> = globs.collect();
+        assert!(globs.is_empty(), "{file}: {globs:?}");
+        let reexports = code.lines().filter(|line| line.trim_start().starts_with("pub use"));
+        let reexports: Vec<&str> = reexports.collect();
+        assert!(reexports.is_empty(), "{file}: {reexports:?}");
+    }
+}
