@@ -104,7 +104,9 @@ impl Crs {
     /// [`CrsError::Unknown`] where the code is not in the table or the unit is not a positive length.
     pub fn from_epsg_in(code: u32, metres_per_unit: f64) -> Result<Self, CrsError> {
         let plain = Self::from_epsg(code)?;
-        if plain.is_geographic() || plain.metres_per_unit() == metres_per_unit {
+        let own = plain.metres_per_unit();
+        // The registry's feet are written with twelve digits or so.
+        if plain.is_geographic() || (own - metres_per_unit).abs() <= 1e-10 * own {
             return Ok(plain);
         }
         let name = format!("EPSG:{code} +to_meter={metres_per_unit}");
