@@ -1,3 +1,19 @@
 //! Elevation rasters: their georeference, one file per format, warping to a metric system.
 
+pub mod archive;
+pub mod ascii;
+pub mod bt;
+pub mod fault;
+pub mod gdal_metadata;
+pub mod geokeys;
+pub mod georef;
+pub mod geotiff;
+pub mod hgt;
+pub mod png;
 pub mod raster;
+pub mod read;
+pub mod sample;
+pub mod stats;
+pub mod tiff_blocks;
+pub mod tiff_mask;
+pub mod tiff_neutral;

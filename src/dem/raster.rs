@@ -1,8 +1,9 @@
 //! An elevation raster as a file holds it.
 
-use glam::{DAffine2, DVec2};
+use glam::{DAffine2, DMat2, DVec2};
 
 use crate::geom::crs::Crs;
+use crate::geom::rect::Rect;
 
 /// Elevations row by row from the raster's first sample, with their georeference.
 ///
@@ -11,7 +12,7 @@ use crate::geom::crs::Crs;
 /// a sample to meet this.
 #[derive(Clone, Debug)]
 pub struct Raster {
-    /// The format it was read from, as GDAL names its drivers: `GTiff`, `AAIGrid`, `PNG`, …
+    /// The format it was read from, as GDAL names its drivers: `GTiff`, `AAIGrid`, `PNG`, `BT`, `SRTMHGT`.
     pub driver: &'static str,
     /// Samples per row; at least 1.
     pub width: u32,
@@ -19,20 +20,25 @@ pub struct Raster {
     pub height: u32,
     /// Elevations in the file's vertical unit with scale and offset applied, NaN where there is no data.
     pub samples: Samples,
-    /// Grid position (column, row) to map coordinates.
+    /// Metres in the vertical unit: 1, or 0.3048 and the like where the file states feet.
+    pub metres_per_z: f64,
+    /// Grid position (column, row) to map coordinates; can be inverted.
     pub map_from_grid: DAffine2,
+    /// Whether `map_from_grid` was stated by the file, a companion or the caller; where not, samples were set
+    /// 1 apart with the centre of the south-west sample at (0, 0).
+    pub georeferenced: bool,
     /// The coordinate reference system; `None` where the file names none.
     pub crs: Option<Crs>,
-    /// The value that stood for no data in the file, before it became NaN.
+    /// The value that stood for no data in the file, before it became NaN and before scale and offset.
     pub nodata: Option<f64>,
 }
 
 /// Elevations in the precision that keeps the file's values exact.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Samples {
-    /// From integers of up to 16 bits and 32-bit floats.
+    /// From integers of up to 16 bits, 32-bit floats and text.
     F32(Vec<f32>),
-    /// From 32-bit integers and 64-bit floats.
+    /// From wider integers, 64-bit floats, and whatever a scale or an offset was applied to.
     F64(Vec<f64>),
 }
 
@@ -57,6 +63,27 @@ impl Samples {
             Self::F64(values) => values[index],
         }
     }
+
+    /// All values in order, NaN where there is no data.
+    pub fn iter(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.len()).map(|index| self.get(index))
+    }
+
+    /// Makes the value at `index` no data; nothing beyond the end.
+    pub(crate) fn clear(&mut self, index: usize) {
+        match self {
+            Self::F32(values) => values.get_mut(index).map_or((), |value| *value = f32::NAN),
+            Self::F64(values) => values.get_mut(index).map_or((), |value| *value = f64::NAN),
+        }
+    }
+
+    /// These values times `factor` plus `offset`, in 64 bits; unchanged where that changes nothing.
+    pub(crate) fn scaled(self, factor: f64, offset: f64) -> Self {
+        if factor == 1.0 && offset == 0.0 {
+            return self;
+        }
+        Self::F64(self.iter().map(|value| value * factor + offset).collect())
+    }
 }
 
 impl Raster {
@@ -69,6 +96,84 @@ impl Raster {
     /// Grid position (column, row) of a point in the raster's own coordinates; NaN where the georeference
     /// cannot be inverted.
     pub fn grid_from_map(&self, at: DVec2) -> DVec2 {
-        self.map_from_grid.inverse().transform_point2(at)
+        // The large map coordinates cancel before the small cell divides them.
+        self.map_from_grid.matrix2.inverse() * (at - self.map_from_grid.translation)
+    }
+
+    /// Distance between neighbouring samples along a row and along a column, in map units.
+    pub fn spacing(&self) -> DVec2 {
+        let axes = self.map_from_grid.matrix2;
+        DVec2::new(axes.x_axis.length(), axes.y_axis.length())
+    }
+
+    /// Whether rows run east and columns run south, as maps are printed.
+    pub fn is_north_up(&self) -> bool {
+        let DMat2 { x_axis, y_axis } = self.map_from_grid.matrix2;
+        x_axis.y == 0.0 && y_axis.x == 0.0 && x_axis.x > 0.0 && y_axis.y < 0.0
+    }
+
+    /// Map coordinates of the centre of the raster.
+    pub fn center(&self) -> DVec2 {
+        self.map_from_grid.transform_point2(self.grid_size() * 0.5)
+    }
+
+    /// The smallest map rectangle around all samples, out to their outer edges.
+    pub fn extent(&self) -> Rect {
+        let size = self.grid_size();
+        let corners = [DVec2::ZERO, DVec2::new(size.x, 0.0), DVec2::new(0.0, size.y), size];
+        Rect::around(corners.map(|corner| self.map_from_grid.transform_point2(corner)))
+    }
+
+    /// The georeference in GDAL's order: x of the corner, x per column, x per row, y of the corner, y per
+    /// column, y per row.
+    pub fn geotransform(&self) -> [f64; 6] {
+        let DAffine2 { matrix2: DMat2 { x_axis, y_axis }, translation } = self.map_from_grid;
+        [translation.x, x_axis.x, y_axis.x, translation.y, x_axis.y, y_axis.y]
+    }
+
+    fn grid_size(&self) -> DVec2 {
+        DVec2::new(f64::from(self.width), f64::from(self.height))
+    }
+}
+
+/// The map position of a grid whose rows run east and columns south: `corner` is the outer north-west corner.
+pub(crate) fn north_up(corner: DVec2, cell: DVec2) -> DAffine2 {
+    DAffine2 { matrix2: DMat2::from_diagonal(DVec2::new(cell.x, -cell.y)), translation: corner }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A raster in metres, ten apart, whose south-west outer corner is at (1000, 2000).
+    pub(crate) fn small(width: u32, height: u32, values: Vec<f32>) -> Raster {
+        assert_eq!(values.len(), (width * height) as usize);
+        Raster {
+            driver: "test",
+            width,
+            height,
+            samples: Samples::F32(values),
+            metres_per_z: 1.0,
+            map_from_grid: north_up(
+                DVec2::new(1000.0, 2000.0 + 10.0 * f64::from(height)),
+                DVec2::splat(10.0),
+            ),
+            georeferenced: true,
+            crs: None,
+            nodata: None,
+        }
+    }
+
+    #[test]
+    fn grid_and_map_are_each_others_inverse() {
+        let raster = small(3, 2, vec![0.0; 6]);
+        assert_eq!(raster.grid_from_map(DVec2::new(1000.0, 2020.0)), DVec2::ZERO);
+        assert_eq!(raster.grid_from_map(DVec2::new(1030.0, 2000.0)), DVec2::new(3.0, 2.0));
+        assert_eq!(
+            raster.extent(),
+            Rect { min: DVec2::new(1000.0, 2000.0), max: DVec2::new(1030.0, 2020.0) }
+        );
+        assert_eq!(raster.geotransform(), [1000.0, 10.0, 0.0, 2020.0, 0.0, -10.0]);
+        assert!(raster.is_north_up());
     }
 }

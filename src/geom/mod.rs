@@ -3,4 +3,6 @@
 pub mod crs;
 pub mod polygon;
 pub mod polyline;
+pub mod projection;
 pub mod rect;
+pub mod wkt;

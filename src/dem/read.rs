@@ -1,0 +1,191 @@
+//! Bytes to a raster: the format is told by content, then by extension.
+
+use crate::dem::archive;
+use crate::dem::fault::{DemError, Fault};
+use crate::dem::raster::Raster;
+use crate::dem::{ascii, bt, geotiff, hgt, png};
+use crate::geom::crs::Crs;
+
+/// What the caller knows of a file beyond its bytes.
+pub struct Hints<'a> {
+    /// Metres per grey value of a PNG; a PNG is refused without it, other formats do not look at it.
+    pub png_height_scale: Option<f64>,
+    /// Elevation in metres of grey value 0. Default 0.
+    pub png_height_offset: Option<f64>,
+    /// Distance in metres between samples of a file without georeference; its south-west sample then stands
+    /// at (0, 0). Files with a georeference keep theirs.
+    pub cell: Option<f64>,
+    /// The coordinate system, in place of what the file says or where it says nothing.
+    pub crs: Option<Crs>,
+    /// The bytes of a file that lies beside this one, by its name: the name given to [`read`] with another
+    /// extension. Asked for `.prj` and world files; `None` where there is none.
+    pub companions: &'a dyn Fn(&str) -> Option<Vec<u8>>,
+}
+
+impl Default for Hints<'_> {
+    fn default() -> Self {
+        Self { png_height_scale: None, png_height_offset: None, cell: None, crs: None, companions: &|_| None }
+    }
+}
+
+/// A file while it is read: its name, bytes and hints.
+pub(crate) struct Source<'a> {
+    /// The name as given, for the extension and the companions.
+    pub name: &'a str,
+    /// The content.
+    pub bytes: &'a [u8],
+    /// What the caller knows.
+    pub hints: &'a Hints<'a>,
+}
+
+impl Source<'_> {
+    /// The extension in lower case, without the dot; empty where there is none.
+    pub fn extension(&self) -> String {
+        split_extension(self.name).1.to_ascii_lowercase()
+    }
+
+    /// The file name without folders and extension.
+    pub fn stem(&self) -> &str {
+        let file = self.name.rsplit(['/', '\\']).next().unwrap_or(self.name);
+        split_extension(file).0
+    }
+
+    /// The bytes of the companion with another extension, asked for in lower and in upper case.
+    pub fn companion(&self, extension: &str) -> Option<Vec<u8>> {
+        let base = split_extension(self.name).0;
+        let ask = |extension: &str| (self.hints.companions)(&format!("{base}.{extension}"));
+        ask(extension).or_else(|| ask(&extension.to_ascii_uppercase()))
+    }
+
+    /// The coordinate system of the hints, or of a `.prj` companion; `None` where there is neither.
+    pub fn crs_beside(&self) -> Result<Option<Crs>, Fault> {
+        if let Some(crs) = &self.hints.crs {
+            return Ok(Some(crs.clone()));
+        }
+        let Some(bytes) = self.companion("prj") else { return Ok(None) };
+        Crs::parse(&String::from_utf8_lossy(&bytes)).map(Some).map_err(Fault::Crs)
+    }
+
+    /// The hinted distance between samples, checked.
+    pub fn cell(&self) -> Result<Option<f64>, Fault> {
+        match self.hints.cell {
+            Some(cell) if !(cell.is_finite() && cell > 0.0) => {
+                Err(Fault::Hint { what: "cell", value: cell, wanted: "a positive number of metres" })
+            }
+            cell => Ok(cell),
+        }
+    }
+}
+
+/// Reads an elevation file.
+///
+/// `name` serves the extension, the companions' names and messages; nothing is opened.
+///
+/// # Errors
+/// [`DemError`] with the name and what was wrong; an unknown format lists what can be read.
+pub fn read(name: &str, bytes: &[u8], hints: &Hints) -> Result<Raster, DemError> {
+    read_source(&Source { name, bytes, hints }).map_err(|fault| DemError { name: name.into(), fault })
+}
+
+fn read_source(source: &Source) -> Result<Raster, Fault> {
+    let bytes = source.bytes;
+    if archive::is_gzip(bytes) {
+        return read_gzip(source);
+    }
+    if archive::is_zip(bytes) {
+        return read_zip(source);
+    }
+    if geotiff::recognises(bytes) {
+        return geotiff::read(source);
+    }
+    if png::recognises(bytes) {
+        return png::read(source);
+    }
+    if bt::recognises(bytes) {
+        return bt::read(source);
+    }
+    if ascii::recognises(bytes) {
+        return ascii::read(source);
+    }
+    match source.extension().as_str() {
+        "hgt" => hgt::read(source),
+        "tif" | "tiff" => Err(Fault::broken("GeoTIFF", "it does not start as a TIFF file does")),
+        "asc" => Err(Fault::broken("ESRI ASCII grid", "it does not start with ncols")),
+        "bt" => Err(Fault::broken("BT terrain", "it does not start with 'binterr1.' and a digit")),
+        "png" => Err(Fault::broken("PNG", "it does not start as a PNG file does")),
+        extension => Err(Fault::UnknownFormat { found: describe(bytes, extension) }),
+    }
+}
+
+fn read_gzip(source: &Source) -> Result<Raster, Fault> {
+    let (base, extension) = split_extension(source.name);
+    let inner = if extension.eq_ignore_ascii_case("btz") { format!("{base}.bt") } else { base.to_owned() };
+    let content = archive::gunzip(source.bytes)?;
+    if archive::is_gzip(&content) || archive::is_zip(&content) {
+        return Err(Fault::UnknownFormat { found: "it is packed twice".into() });
+    }
+    read_source(&Source { name: &inner, bytes: &content, hints: source.hints })
+}
+
+fn read_zip(source: &Source) -> Result<Raster, Fault> {
+    match archive::unzip_first(source.bytes, ".hgt")? {
+        Some((name, content)) => hgt::read(&Source { name: &name, bytes: &content, hints: source.hints }),
+        None => Err(Fault::UnknownFormat { found: "it is a zip archive without an .hgt tile in it".into() }),
+    }
+}
+
+/// What an unknown file seems to be.
+fn describe(bytes: &[u8], extension: &str) -> String {
+    const KNOWN: [(&[u8], &str); 9] = [
+        (b"SQLite format 3", "it is an SQLite database, perhaps a GeoPackage"),
+        (b"EHFA_HEADER_TAG", "it is an Erdas Imagine file"),
+        (b"TERRAGEN", "it is a Terragen terrain"),
+        (b"DSRB", "it is a Surfer 7 grid"),
+        (b"DSBB", "it is a Surfer 6 grid"),
+        (b"DSAA", "it is a Surfer text grid"),
+        (b"UHL1", "it is DTED"),
+        (b"\xff\xd8\xff", "it is a JPEG picture"),
+        (b"\x89HDF", "it is an HDF 5 or NetCDF file"),
+    ];
+    let found = KNOWN.iter().find(|(start, _)| bytes.starts_with(start));
+    match (found, bytes.is_empty(), extension) {
+        (Some((_, what)), ..) => (*what).into(),
+        (_, true, _) => "the file is empty".into(),
+        (.., "") => "neither its content nor its name says what it is".into(),
+        (.., extension) => format!("its content is not known, and .{extension} is not read"),
+    }
+}
+
+/// A name without its extension, and the extension.
+fn split_extension(name: &str) -> (&str, &str) {
+    match name.rsplit_once('.') {
+        Some((base, extension)) if !extension.contains(['/', '\\']) => (base, extension),
+        _ => (name, ""),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unknown_file_is_refused_with_what_it_is_and_what_is_read() {
+        let said =
+            |name: &str, bytes: &[u8]| read(name, bytes, &Hints::default()).expect_err("refused").to_string();
+        assert!(said("a/b.ter", b"TERRAGENTERRAIN ").contains("Terragen"));
+        for wanted in ["x.xyz", ".xyz is not read", "GeoTIFF", ".asc", ".png", ".bt", ".hgt"] {
+            assert!(said("x.xyz", b"1 2 3").contains(wanted), "{wanted}");
+        }
+        assert!(said("x", b"").contains("empty"));
+    }
+
+    #[test]
+    fn companions_are_asked_for_by_the_name_with_another_extension() {
+        let grid = b"ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n5\n";
+        let beside = |name: &str| (name == "dir.d/a.prj").then(|| b"EPSG:32612".to_vec());
+        let hints = Hints { companions: &beside, ..Hints::default() };
+        let raster = read("dir.d/a.asc", grid, &hints).expect("a small grid");
+        assert_eq!(raster.crs.and_then(|crs| crs.epsg()), Some(32612));
+        assert!(read("b.asc", grid, &hints).expect("a small grid").crs.is_none());
+    }
+}

@@ -1,0 +1,132 @@
+//! The elevation at a point between samples.
+//!
+//! The convention is GDAL's: a value stands at its sample's centre. In the outer half sample along the border
+//! the nearest row or column is held. Neighbours without data drop out and the weights of the others grow to
+//! one; only where none is left is there no data.
+
+use glam::DVec2;
+
+use crate::dem::raster::Raster;
+
+/// How far outside the border, in samples, still counts as on it: what is lost when a corner's map
+/// coordinates are written with a dozen digits.
+const BORDER: f64 = 1e-6;
+
+/// A position nearer than this, in samples, to a row or column of centres lies on it: rounding in map
+/// coordinates must not give a neighbour, or a hole beside it, a say in an exact value.
+const ON_CENTRE: f64 = 1e-7;
+
+/// What a raster says of a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sampled {
+    /// The elevation in the raster's vertical unit.
+    Ok(f64),
+    /// Inside, but the samples there hold no data.
+    NoData,
+    /// Beyond the outer edge of the raster, or not a finite point.
+    Outside,
+}
+
+impl Sampled {
+    /// The elevation, where there is one.
+    pub fn value(self) -> Option<f64> {
+        match self {
+            Self::Ok(value) => Some(value),
+            Self::NoData | Self::Outside => None,
+        }
+    }
+
+    fn of(value: f64) -> Self {
+        if value.is_nan() { Self::NoData } else { Self::Ok(value) }
+    }
+}
+
+/// The value of the sample that contains a point in the raster's own coordinates.
+pub fn nearest(raster: &Raster, at_map: DVec2) -> Sampled {
+    let at = raster.grid_from_map(at_map);
+    if !inside(raster, at) {
+        return Sampled::Outside;
+    }
+    let column = (at.x.max(0.0) as u32).min(raster.width - 1);
+    let row = (at.y.max(0.0) as u32).min(raster.height - 1);
+    Sampled::of(raster.at(column, row))
+}
+
+/// The bilinear value at a point in the raster's own coordinates.
+pub fn bilinear(raster: &Raster, at_map: DVec2) -> Sampled {
+    bilinear_at_grid(raster, raster.grid_from_map(at_map))
+}
+
+/// The bilinear value at a grid position (column, row), where (0.5, 0.5) is the first sample's centre.
+pub fn bilinear_at_grid(raster: &Raster, at: DVec2) -> Sampled {
+    if !inside(raster, at) {
+        return Sampled::Outside;
+    }
+    let (left, right, across) = neighbours(at.x, raster.width);
+    let (above, below, down) = neighbours(at.y, raster.height);
+    let corners = [
+        (left, above, (1.0 - across) * (1.0 - down)),
+        (right, above, across * (1.0 - down)),
+        (left, below, (1.0 - across) * down),
+        (right, below, across * down),
+    ];
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for (column, row, weight) in corners {
+        let value = raster.at(column, row);
+        if weight > 0.0 && !value.is_nan() {
+            sum += weight * value;
+            weights += weight;
+        }
+    }
+    if weights > 0.0 { Sampled::of(sum / weights) } else { Sampled::NoData }
+}
+
+fn inside(raster: &Raster, at: DVec2) -> bool {
+    let (width, height) = (f64::from(raster.width), f64::from(raster.height));
+    (-BORDER..=width + BORDER).contains(&at.x) && (-BORDER..=height + BORDER).contains(&at.y)
+}
+
+/// The two samples on either side of a position along one axis, and how far it lies from the first to the
+/// second.
+fn neighbours(at: f64, count: u32) -> (u32, u32, f64) {
+    let from_first = (at - 0.5).clamp(0.0, f64::from(count - 1));
+    let first = from_first as u32;
+    let part = from_first - f64::from(first);
+    if part <= ON_CENTRE {
+        return (first, first, 0.0);
+    }
+    let second = (first + 1).min(count - 1);
+    if part >= 1.0 - ON_CENTRE { (second, second, 0.0) } else { (first, second, part) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dem::raster::tests::small;
+
+    #[test]
+    fn a_plane_is_kept_between_centres_and_held_beyond_them() {
+        let raster = small(3, 2, vec![0.0, 10.0, 20.0, 100.0, 110.0, 120.0]);
+        assert_eq!(bilinear(&raster, DVec2::new(1015.0, 2010.0)), Sampled::Ok(60.0));
+        assert_eq!(bilinear(&raster, DVec2::new(1000.0, 2020.0)), Sampled::Ok(0.0));
+        assert_eq!(bilinear(&raster, DVec2::new(1030.0, 2000.0)), Sampled::Ok(120.0));
+        assert_eq!(nearest(&raster, DVec2::new(1019.0, 2011.0)), Sampled::Ok(10.0));
+        assert_eq!(nearest(&raster, DVec2::new(1030.0, 2000.0)), Sampled::Ok(120.0));
+    }
+
+    #[test]
+    fn holes_drop_out_and_leave_their_weight_to_the_others() {
+        let raster = small(2, 2, vec![f32::NAN, 10.0, f32::NAN, 30.0]);
+        assert_eq!(bilinear(&raster, DVec2::new(1010.0, 2010.0)), Sampled::Ok(20.0));
+        assert_eq!(bilinear(&raster, DVec2::new(1005.0, 2010.0)), Sampled::NoData);
+        assert_eq!(nearest(&raster, DVec2::new(1005.0, 2010.0)), Sampled::NoData);
+    }
+
+    #[test]
+    fn a_hole_is_not_the_edge_of_the_world() {
+        let raster = small(1, 1, vec![f32::NAN]);
+        assert_eq!(bilinear(&raster, DVec2::new(1005.0, 2005.0)), Sampled::NoData);
+        assert_eq!(bilinear(&raster, DVec2::new(1011.0, 2005.0)), Sampled::Outside);
+        assert_eq!(nearest(&raster, DVec2::new(f64::NAN, 2005.0)), Sampled::Outside);
+    }
+}

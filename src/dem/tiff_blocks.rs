@@ -1,0 +1,232 @@
+//! Strips and tiles of a TIFF's first band to rows of elevations.
+//!
+//! Everything that a header can claim is held against the file's length here, before the decoder allocates
+//! for it: the size of the image, of one tile, and the number of blocks. Blocks are decoded one at a time, so
+//! a file that breaks off costs no more than the block in hand.
+
+use std::io::{Read, Seek};
+
+use tiff::TiffError;
+use tiff::decoder::{ChunkType, Decoder, DecodingResult};
+use tiff::tags::Tag;
+
+use crate::dem::fault::{Fault, check_size};
+use crate::dem::raster::Samples;
+
+pub(crate) const FORMAT: &str = "GeoTIFF";
+
+/// What an image says of how it is stored.
+#[derive(Clone, Debug)]
+pub(crate) struct Storage {
+    /// Samples per row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Bits of one sample.
+    pub bits: u16,
+    is_float: bool,
+    /// Bands that lie side by side in one block.
+    bands_per_block: u16,
+    /// Compressed bytes of each block; 0 for one that was never written.
+    block_bytes: Vec<u64>,
+}
+
+impl Storage {
+    /// Reads and checks the tags of the decoder's current image.
+    pub fn of<R: Read + Seek>(decoder: &mut Decoder<R>, file_bytes: usize) -> Result<Self, Fault> {
+        let (width, height) = decoder.dimensions().map_err(fault)?;
+        let short = |decoder: &mut Decoder<R>, tag: Tag, default: u16| {
+            decoder
+                .find_tag_unsigned_vec::<u16>(tag)
+                .map_err(fault)
+                .map(|found| found.and_then(|values| values.first().copied()).unwrap_or(default))
+        };
+        let expansion = expansion(short(decoder, Tag::Compression, 1)?)?;
+        let bits = short(decoder, Tag::BitsPerSample, 1)?;
+        let bands = short(decoder, Tag::SamplesPerPixel, 1)?;
+        let planar = short(decoder, Tag::PlanarConfiguration, 1)? == 2;
+        let is_float = short(decoder, Tag::SampleFormat, 1)? == 3;
+        let counts_tag = match decoder.get_chunk_type() {
+            ChunkType::Strip => Tag::StripByteCounts,
+            ChunkType::Tile => Tag::TileByteCounts,
+        };
+        let block_bytes = decoder.find_tag_unsigned_vec(counts_tag).map_err(fault)?.unwrap_or_default();
+        let bands_per_block = if planar { 1 } else { bands.max(1) };
+        let storage = Self { width, height, bits, is_float, bands_per_block, block_bytes };
+        storage.check(decoder, file_bytes, expansion)?;
+        Ok(storage)
+    }
+
+    fn check<R: Read + Seek>(&self, decoder: &Decoder<R>, file: usize, expansion: u64) -> Result<(), Fault> {
+        // Blocks that were never written take no bytes: such a file may claim more than it holds.
+        let sparse = self.block_bytes.contains(&0);
+        let held = (file, if sparse { expansion.max(2) } else { expansion });
+        let bytes = u64::from(self.bits.div_ceil(8)) * u64::from(self.bands_per_block);
+        check_size((self.width.into(), self.height.into()), if self.bits < 8 { 0 } else { bytes }, held)?;
+        if decoder.get_chunk_type() == ChunkType::Tile {
+            let (across, down) = decoder.chunk_dimensions();
+            check_size((across.into(), down.into()), bytes, (file, expansion.max(2)))?;
+        }
+        Ok(())
+    }
+
+    fn is_wide(&self) -> bool {
+        self.bits == 64 || (self.bits == 32 && !self.is_float)
+    }
+
+    /// A no-data value as a sample can equal it.
+    fn comparable(&self, nodata: Option<f64>) -> f64 {
+        match nodata {
+            Some(value) if self.is_float && self.bits <= 32 => f64::from(value as f32),
+            Some(value) => value,
+            None => f64::NAN,
+        }
+    }
+
+    /// Where each block of the first band starts in the image: index, column, row.
+    pub fn blocks<R: Read + Seek>(
+        &self,
+        decoder: &Decoder<R>,
+    ) -> impl Iterator<Item = (u32, u32, u32)> + use<R> {
+        let (across, down) = decoder.chunk_dimensions();
+        let (across, down) = (across.max(1), down.max(1));
+        let columns = self.width.div_ceil(across);
+        let blocks = u64::from(columns) * u64::from(self.height.div_ceil(down));
+        (0..blocks).map(move |index| {
+            let (row, column) = (index / u64::from(columns), index % u64::from(columns));
+            (index as u32, column as u32 * across, row as u32 * down)
+        })
+    }
+
+    /// Whether a block was written at all.
+    pub fn is_written(&self, index: u32) -> bool {
+        self.block_bytes.get(index as usize).is_none_or(|&bytes| bytes > 0)
+    }
+}
+
+/// The elevations of the current image's first band, `nodata` as NaN.
+pub(crate) fn decode<R: Read + Seek>(
+    decoder: &mut Decoder<R>,
+    storage: &Storage,
+    nodata: Option<f64>,
+) -> Result<Samples, Fault> {
+    if ![8, 16, 32, 64].contains(&storage.bits) {
+        return Err(Fault::Unsupported {
+            format: FORMAT,
+            what: format!("samples of {} bits", storage.bits),
+            remedy: "convert it, for example with: gdal_translate -ot Float32 FILE out.tif",
+        });
+    }
+    let count = storage.width as usize * storage.height as usize;
+    // What was never written is no data where the file knows such a value, else 0, as GDAL has it.
+    let blank = if nodata.is_some() { f64::NAN } else { 0.0 };
+    if storage.is_wide() {
+        let mut values = vec![blank; count];
+        fill(decoder, storage, nodata, &mut values, |value| value)?;
+        return Ok(Samples::F64(values));
+    }
+    let mut values = vec![blank as f32; count];
+    fill(decoder, storage, nodata, &mut values, |value| value as f32)?;
+    Ok(Samples::F32(values))
+}
+
+fn fill<R: Read + Seek, T>(
+    decoder: &mut Decoder<R>,
+    storage: &Storage,
+    nodata: Option<f64>,
+    values: &mut [T],
+    narrow: impl Fn(f64) -> T + Copy,
+) -> Result<(), Fault> {
+    let hole = storage.comparable(nodata);
+    let elevation =
+        move |value: f64| narrow(if value == hole || !value.is_finite() { f64::NAN } else { value });
+    for (index, column, row) in storage.blocks(decoder) {
+        if !storage.is_written(index) {
+            continue;
+        }
+        let block = decoder.read_chunk(index).map_err(fault)?;
+        let (width, height) = decoder.chunk_data_dimensions(index);
+        let window = Window { storage, column, row, width, height };
+        let placed = match &block {
+            DecodingResult::U8(v) => window.place(values, v, |x| elevation(x.into())),
+            DecodingResult::I8(v) => window.place(values, v, |x| elevation(x.into())),
+            DecodingResult::U16(v) => window.place(values, v, |x| elevation(x.into())),
+            DecodingResult::I16(v) => window.place(values, v, |x| elevation(x.into())),
+            DecodingResult::U32(v) => window.place(values, v, |x| elevation(x.into())),
+            DecodingResult::I32(v) => window.place(values, v, |x| elevation(x.into())),
+            DecodingResult::U64(v) => window.place(values, v, |x| elevation(x as f64)),
+            DecodingResult::I64(v) => window.place(values, v, |x| elevation(x as f64)),
+            DecodingResult::F16(v) => window.place(values, v, |x| elevation(x.to_f64())),
+            DecodingResult::F32(v) => window.place(values, v, |x| elevation(x.into())),
+            DecodingResult::F64(v) => window.place(values, v, elevation),
+        };
+        placed.ok_or_else(|| Fault::broken(FORMAT, format!("block {index} does not fit its image")))?;
+    }
+    Ok(())
+}
+
+/// Where a block lies in the image.
+struct Window<'a> {
+    storage: &'a Storage,
+    column: u32,
+    row: u32,
+    width: u32,
+    height: u32,
+}
+
+impl Window<'_> {
+    /// Copies the first band of a block; `None` where the two do not fit.
+    fn place<S: Copy, T>(&self, image: &mut [T], block: &[S], to: impl Fn(S) -> T) -> Option<()> {
+        let bands = usize::from(self.storage.bands_per_block);
+        let (width, image_width) = (self.width as usize, self.storage.width as usize);
+        for row in 0..self.height as usize {
+            let source = block.get(row * width * bands..(row + 1) * width * bands)?;
+            let start = (self.row as usize + row) * image_width + self.column as usize;
+            let target = image.get_mut(start..start + width)?;
+            for (target, source) in target.iter_mut().zip(source.chunks_exact(bands)) {
+                *target = to(source[0]);
+            }
+        }
+        Some(())
+    }
+}
+
+/// How many bytes one compressed byte can become, by compression scheme.
+fn expansion(compression: u16) -> Result<u64, Fault> {
+    let what = match compression {
+        1 => return Ok(1),
+        // A code of 12 bits stands for up to 4 KiB.
+        5 => return Ok(2731),
+        8 | 32946 => return Ok(1032),
+        32773 => return Ok(64),
+        2..=4 => "fax compression".into(),
+        6 | 7 => "JPEG compression".into(),
+        34712 => "JPEG 2000 compression".into(),
+        34887 => "LERC compression".into(),
+        34925 => "LZMA compression".into(),
+        50000 => "ZSTD compression".into(),
+        50001 => "WebP compression".into(),
+        50002 | 52546 => "JPEG XL compression".into(),
+        other => format!("compression scheme {other}"),
+    };
+    Err(Fault::Unsupported {
+        format: FORMAT,
+        what,
+        remedy: "convert it, for example with: gdal_translate -co COMPRESS=DEFLATE FILE out.tif",
+    })
+}
+
+/// The decoder's error in our words.
+pub(crate) fn fault(error: TiffError) -> Fault {
+    match error {
+        TiffError::UnsupportedError(what) => Fault::Unsupported {
+            format: FORMAT,
+            what: what.to_string(),
+            remedy: "convert it, for example with: gdal_translate -co COMPRESS=DEFLATE FILE out.tif",
+        },
+        TiffError::LimitsExceeded => {
+            Fault::broken(FORMAT, "a tag or a block claims more than the file holds")
+        }
+        other => Fault::broken(FORMAT, other.to_string()),
+    }
+}
