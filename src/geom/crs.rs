@@ -187,6 +187,14 @@ impl Crs {
         Self::from_epsg(4326).expect("EPSG:4326 is in the table")
     }
 
+    /// A plane in metres with no known place on Earth: what a raster without a system lies in. Nothing can be
+    /// transformed to or from it.
+    pub fn local() -> Self {
+        let proj = Self::utm_at(0.0, 0.0).inner.proj.clone();
+        let datum = Datum::Adrift("no place on Earth".into());
+        Self { inner: Arc::new(Inner { name: "local metres".into(), epsg: None, proj, datum }) }
+    }
+
     /// The UTM zone on WGS 84 that holds a longitude and latitude in degrees (the plain six-degree zones).
     pub fn utm_at(longitude: f64, latitude: f64) -> Self {
         let zone = (((longitude + 180.0).rem_euclid(360.0)) / 6.0).floor().min(59.0) as u32 + 1;

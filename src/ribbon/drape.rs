@@ -13,7 +13,7 @@ use crate::draw::color::Srgba;
 use crate::draw::list::{DrawMesh, DrawVertex};
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
-use crate::mesh::sink::MeshSink;
+use crate::mesh::sink::{MeshSink, VertexId};
 use crate::ribbon::plan::{PlanMesh, PlanVertex};
 use crate::terrain::facets::{Facet, Facets, plane_z};
 
@@ -76,18 +76,17 @@ impl TextureMap {
     }
 }
 
-/// The largest vertical distance in metres between a draped mesh and the displayed ground, at the corners and the
-/// middle of every triangle: the invariant this room exists for. Infinite where a triangle lies off the ground.
+/// The largest vertical distance in metres between a draped mesh and the displayed ground, at the middle of
+/// every triangle and at every corner above displayed ground: the invariant this room exists for. Infinite
+/// where the middle of a triangle lies off the ground.
 pub fn check_clearance(draped: &DrawMesh, ground: &dyn Facets) -> f64 {
-    let clearance = |at: Vec3| match ground.displayed_z(at.truncate().as_dvec2()) {
-        Some(z) => (f64::from(at.z) - z).abs(),
-        None => f64::INFINITY,
+    let clearance = |at: Vec3| {
+        let displayed = ground.displayed_z(at.truncate().as_dvec2());
+        displayed.map(|z| (f64::from(at.z) - z).abs())
     };
-    let corner = |id: crate::mesh::sink::VertexId| Vec3::from(draped.vertices[id.index()].position);
-    draped
-        .triangles
-        .iter()
-        .map(|&[a, b, c]| (corner(a) + corner(b) + corner(c)) / 3.0)
-        .map(clearance)
-        .fold(0.0, f64::max)
+    let corner = |id: VertexId| Vec3::from(draped.vertices[id.index()].position);
+    let middles = draped.triangles.iter().map(|&[a, b, c]| (corner(a) + corner(b) + corner(c)) / 3.0);
+    let middles = middles.map(|at| clearance(at).unwrap_or(f64::INFINITY));
+    let corners = draped.vertices.iter().filter_map(|vertex| clearance(Vec3::from(vertex.position)));
+    middles.chain(corners).fold(0.0, f64::max)
 }

@@ -44,6 +44,6 @@ pub fn load(document: &Document, assets: &Assets) -> Result<LoadedGround, Diagno
     let target = parse_crs(document, document.crs.as_ref())?;
     let metric = warp::to_metric(&source, target.as_ref()).map_err(|error| wrong(error.to_string()))?;
     let lattice = Lattice::from_raster(&metric).map_err(|error| wrong(error.to_string()))?;
-    let crs = metric.crs.or(target).unwrap_or_else(Crs::wgs84);
+    let crs = metric.crs.or(target).unwrap_or_else(Crs::local);
     Ok(LoadedGround { source: Arc::new(source), lattice, crs })
 }
