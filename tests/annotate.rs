@@ -117,4 +117,54 @@ fn proof_sheets() {
         image::save_buffer(&path, pixels.bytes(), width, height, color).expect("the folder can be written");
         println!("{path} in {took:?}\n{report:?}");
     }
+    for (width, height) in [(1920, 1080), (960, 540)] {
+        let mut pixels = landscape(width, height);
+        println!("{:?}", annotate(&mut pixels, &trouble(width, height)));
+        let path = format!("{}/annotate-trouble-{width}.png", env!("CARGO_TARGET_TMPDIR"));
+        image::save_buffer(&path, pixels.bytes(), width, height, image::ExtendedColorType::Rgba8)
+            .expect("the folder can be written");
+    }
+}
+
+/// A sheet of everything that goes wrong: crowds, scripts the fonts lack, slanted leaders, odd figures.
+fn trouble(width: u32, height: u32) -> Annotations {
+    let (w, h) = (width as f32, height as f32);
+    let kinds = [LabelKind::Summit, LabelKind::Place, LabelKind::Water, LabelKind::Point];
+    let mut labels: Vec<Label> = (0..90u32)
+        .map(|n| {
+            let spread = |salt: u32| {
+                f64::from((n * 7919 + salt).wrapping_mul(2_654_435_761) >> 8) / f64::from(1u32 << 24)
+            };
+            let (x, y) = (spread(1) as f32, spread(77) as f32);
+            let anchor_px = Vec2::new(x * w, (0.2 + 0.7 * y) * h);
+            let lean = (anchor_px.x - 0.5 * w) * 0.06;
+            Label {
+                text: format!("Hill {n}\n{} m", 300 + n * 7),
+                anchor_px,
+                top_px: (n % 2 == 0).then_some(anchor_px + Vec2::new(lean, -0.06 * h)),
+                depth_m: 1000.0 + n as f32,
+                visible: n % 9 != 0,
+                kind: kinds[n as usize % 4],
+            }
+        })
+        .collect();
+    labels.push(label("富士山\n3776 m", LabelKind::Summit, 0.5 * w, 0.3 * h, 1.0));
+    labels.push(label("Эльбрус · Ἐρύμανθος\nהר חרמון", LabelKind::Summit, 0.3 * w, 0.3 * h, 1.0));
+    Annotations {
+        labels,
+        title: Some("Great Smoky Mountains ".repeat(9)),
+        subtitle: Some("one\ntwo\nthree".to_owned()),
+        north: Some(NorthArrow { direction: Vec2::new(-0.9, 0.2), foreshortening: 0.1 }),
+        scale_bar: Some(ScaleBar { pixels_per_metre: h * 0.13, distance_m: 4.2 }),
+        legend: Some(Legend {
+            low_m: -12.5,
+            high_m: 31.0,
+            vertical_exaggeration: 1.0,
+            contour_interval: Some(0.5),
+            vertical_datum: None,
+            ..sheet(width, height).legend.expect("a legend")
+        }),
+        credit: Some("Elevation: nobody knows; ".repeat(20)),
+        ..Annotations::default()
+    }
 }

@@ -6,7 +6,7 @@ use crate::annotate::drawing::Drawing;
 use crate::annotate::paragraph::{fitted, written_lines};
 use crate::annotate::report::Report;
 use crate::annotate::sheet::{INK, Sheet};
-use crate::annotate::text::{Face, Typesetter, write};
+use crate::annotate::text::{Face, Typesetter, halos, write};
 
 /// The line with its baseline starting at the origin, no wider than `most_px`; `None` where there is nothing
 /// to say or no room to say it.
@@ -21,7 +21,8 @@ pub fn compose(
     let face = Face::upright(sheet.type_px(13.0), Face::REGULAR);
     let line = fitted(setter, &text, face, most_px)?;
     let mut drawing = Drawing::default();
-    write(&mut drawing, &[(&line, Vec2::ZERO)], INK, sheet.px(2.0).max(1.4));
+    halos(&mut drawing, &[(&line, Vec2::ZERO)], sheet.px(1.7).max(1.2));
+    write(&mut drawing, &[(&line, Vec2::ZERO)], INK);
     if drawing.marks().is_empty() {
         return None;
     }

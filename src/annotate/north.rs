@@ -9,7 +9,7 @@ use tiny_skia::{Path, PathBuilder, Rect};
 
 use crate::annotate::drawing::{Drawing, polygon, polyline};
 use crate::annotate::sheet::{FRAME, HALO, INK, PANEL, PAPER, Sheet};
-use crate::annotate::text::{CAP_HEIGHT, Face, Typesetter, write};
+use crate::annotate::text::{CAP_HEIGHT, Face, Typesetter, halos, write};
 
 /// Flatter than this the needle could not be read; views nearer the horizon are drawn with this tilt.
 const FLATTEST: f32 = 0.3;
@@ -91,7 +91,9 @@ fn draw_letter(plane: &Plane, sheet: &Sheet, setter: &mut Typesetter, drawing: &
     let tip = plane.on_picture(Vec2::Y);
     let middle = tip + tip.normalize_or(Vec2::NEG_Y) * letter_distance(sheet);
     let half = Vec2::new(-letter.advance * 0.5, letter.face.size_px * CAP_HEIGHT * 0.5);
-    write(drawing, &[(&letter, (middle + half).round())], INK, sheet.px(2.4).max(1.5));
+    let lines = [(&letter, (middle + half).round())];
+    halos(drawing, &lines, sheet.px(2.4).max(1.5));
+    write(drawing, &lines, INK);
 }
 
 fn letter_px(sheet: &Sheet) -> f32 {

@@ -106,7 +106,7 @@ fn head_that_fits<'t>(setter: &mut Typesetter, text: &'t str, face: Face, most_p
 mod tests {
     use super::*;
 
-    const FACE: Face = Face { size_px: 20.0, slant: 0.0, weight: 0.0 };
+    const FACE: Face = Face { size_px: 20.0, slant: 0.0, weight: 0.0, tracking: 0.0 };
 
     #[test]
     fn written_lines_are_clean_and_never_empty() {

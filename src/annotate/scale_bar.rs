@@ -6,7 +6,7 @@
 //! ```text
 //!  0        2.5        5 km
 //!  ██████▒▒▒▒▒▒██████▒▒▒▒▒▒
-//!  12.4 km from the eye
+//!  at 12.4 km from the eye
 //! ```
 
 use glam::Vec2;
@@ -58,7 +58,7 @@ pub fn compose(bar: &ScaleBar, sheet: &Sheet, setter: &mut Typesetter) -> Option
     let note = Face::upright(sheet.type_px(14.0), Face::REGULAR);
     let figures = figures(&measure.length).map(|text| setter.line(&text, face));
     let unit = setter.line(&format!(" {}", unit(&measure.length).0), face);
-    let where_true = setter.line(&format!("{} from the eye", distance(f64::from(bar.distance_m))), note);
+    let where_true = setter.line(&format!("at {} from the eye", distance(f64::from(bar.distance_m))), note);
     Some(lay_out(&measure, &figures, &unit, &where_true, sheet))
 }
 
@@ -84,10 +84,10 @@ fn lay_out(measure: &Measure, figures: &[Line; 3], unit: &Line, note: &Line, she
         .zip(figures)
         .map(|(&part, line)| (line, Vec2::new(middle(part, line).round(), baseline)))
         .collect();
-    write(&mut drawing, &at, INK, 0.0);
+    write(&mut drawing, &at, INK);
     let unit_x = at[2].1.x + figures[2].advance;
-    write(&mut drawing, &[(unit, Vec2::new(unit_x, baseline))], INK, 0.0);
-    write(&mut drawing, &[(note, note_at)], SOFT_INK, 0.0);
+    write(&mut drawing, &[(unit, Vec2::new(unit_x, baseline))], INK);
+    write(&mut drawing, &[(note, note_at)], SOFT_INK);
     drawing
 }
 
