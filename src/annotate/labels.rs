@@ -43,8 +43,8 @@ pub fn draw_labels(
             fates[number] = Fate::Hidden;
         } else if prepared.len() < MOST_LABELS {
             match prepare(number, label, sheet, setter) {
-                Some(label) => prepared.push(label),
-                None => fates[number] = Fate::Empty,
+                Ok(label) => prepared.push(label),
+                Err(fate) => fates[number] = fate,
             }
         }
     }
@@ -90,7 +90,7 @@ fn field(furniture: &[PixelBox], sheet: &Sheet) -> Field {
     Field {
         bounds: sheet.bounds().grown(-(sheet.margin() * 0.4).round()),
         taken: furniture.iter().map(|taken| taken.grown(air)).collect(),
-        leader_room: sheet.px(3.0),
+        leader_room: sheet.px(5.0),
     }
 }
 
@@ -115,27 +115,33 @@ fn by_importance(labels: &[Label]) -> Vec<(usize, &Label)> {
     order
 }
 
-/// Sets the label's text and lists its positions; `None` where nothing shows.
+/// Sets the label's text and lists its positions.
+///
+/// # Errors
+/// Its fate, where nothing would show: it is empty, or the picture is too narrow for a few letters.
 fn prepare<'a>(
     number: usize,
     label: &'a Label,
     sheet: &Sheet,
     setter: &mut Typesetter,
-) -> Option<Prepared<'a>> {
+) -> Result<Prepared<'a>, Fate> {
     let look = Look::of(label.kind, sheet);
     let block = set_lines(&label.text, &look, sheet, setter);
+    if block.lines.is_empty() {
+        return Err(if block.shortened { Fate::CrowdedOut } else { Fate::Empty });
+    }
     // Air around the text, so that no two labels read as one.
     let air = sheet.px(2.0);
     let texts = [Alignment::Left, Alignment::Center, Alignment::Right]
         .map(|alignment| block_box(&block.lines, alignment, look.halo).grown(air));
     if texts.iter().any(|text| text.size().cmple(Vec2::ZERO).any() || !text.size().is_finite()) {
-        return None;
+        return Err(Fate::Empty);
     }
     let stance = stance(label, texts, &look, sheet);
     let positions = positions(&stance);
     let candidates = positions.iter().map(|position| position.candidate).collect();
     let request = Request { candidates, spot: Some(spot(&stance)) };
-    Some(Prepared { number, label, look, block, texts, positions, request })
+    Ok(Prepared { number, label, look, block, texts, positions, request })
 }
 
 fn stance(label: &Label, texts: [PixelBox; 3], look: &Look, sheet: &Sheet) -> Stance {
@@ -267,10 +273,10 @@ impl Look {
     fn of(kind: LabelKind, sheet: &Sheet) -> Self {
         let (slant, tracking) = if kind == LabelKind::Water { (WATER_SLANT, 0.06) } else { (0.0, 0.0) };
         let (name, weight, symbol, leader) = match kind {
-            LabelKind::Summit => (20.0, Face::MEDIUM, 6.0, 44.0),
-            LabelKind::Place => (19.0, Face::MEDIUM, 4.5, 34.0),
-            LabelKind::Water => (19.0, Face::REGULAR, 3.0, 34.0),
-            LabelKind::Point => (16.5, Face::REGULAR, 3.2, 26.0),
+            LabelKind::Summit => (20.0, Face::BOLD, 6.0, 44.0),
+            LabelKind::Place => (19.0, Face::BOLD, 4.5, 34.0),
+            LabelKind::Water => (19.0, Face::MEDIUM, 3.0, 34.0),
+            LabelKind::Point => (16.5, Face::MEDIUM, 3.2, 26.0),
         };
         let (ink, note_ink) = match kind {
             LabelKind::Water => (WATER_INK, WATER_INK),
@@ -278,11 +284,11 @@ impl Look {
         };
         Self {
             name: Face { size_px: sheet.type_px(name), slant, weight, tracking },
-            note: Face { size_px: sheet.type_px(name * 0.8), slant, weight: Face::REGULAR, tracking },
+            note: Face { size_px: sheet.type_px(name * 0.8), slant, weight: Face::MEDIUM, tracking },
             ink,
             note_ink,
             halo: sheet.px(2.2).max(1.5),
-            symbol: sheet.px(symbol).max(2.0),
+            symbol: sheet.px(symbol).max(2.6),
             leader: sheet.px(leader),
         }
     }

@@ -11,7 +11,7 @@ use crate::draw::color::Srgba;
 /// Letters and lines.
 pub const INK: Srgba = Srgba::opaque(0x1e, 0x23, 0x27);
 /// Second lines and notes.
-pub const SOFT_INK: Srgba = Srgba::opaque(0x45, 0x4b, 0x50);
+pub const SOFT_INK: Srgba = Srgba::opaque(0x3c, 0x42, 0x47);
 /// Names of waters.
 pub const WATER_INK: Srgba = Srgba::opaque(0x14, 0x4f, 0x7e);
 /// White of bars and needles.

@@ -51,12 +51,12 @@ pub struct Face {
 }
 
 impl Face {
-    /// Strength of running text: a regular face.
-    pub const REGULAR: f32 = 0.028;
-    /// Strength of names: a medium face.
-    pub const MEDIUM: f32 = 0.05;
-    /// Strength of titles.
-    pub const BOLD: f32 = 0.075;
+    /// Strength of running text on a panel: a regular face.
+    pub const REGULAR: f32 = 0.03;
+    /// Strength of titles, and of text on the picture itself, where halos eat at the letters' edges.
+    pub const MEDIUM: f32 = 0.055;
+    /// Strength of names on the picture.
+    pub const BOLD: f32 = 0.08;
 
     /// Upright type.
     pub fn upright(size_px: f32, weight: f32) -> Self {

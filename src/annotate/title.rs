@@ -29,8 +29,8 @@ pub fn compose(
 ) -> Option<Drawing> {
     let widest = sheet.size.x * WIDEST_SHARE - sheet.padding() * 2.0;
     let texts = [title, subtitle].map(Option::unwrap_or_default);
-    let faces = [(30.0, Face::MEDIUM), (18.0, Face::REGULAR)]
-        .map(|(size, weight)| Face::upright(sheet.type_px(size), weight));
+    let size = title_px(texts[0], widest, sheet, setter);
+    let faces = [Face::upright(size, Face::MEDIUM), Face::upright(sheet.type_px(18.0), Face::REGULAR)];
     for (title_lines, subtitle_lines) in MOST_LINES {
         let title = broken(setter, texts[0], faces[0], widest, title_lines);
         // A subtitle without a title may use the title's room.
@@ -44,6 +44,16 @@ pub fn compose(
         }
     }
     None
+}
+
+/// The size of the title's type: a little smaller than usual where that saves a second line.
+fn title_px(title: &str, widest: f32, sheet: &Sheet, setter: &mut Typesetter) -> f32 {
+    /// Smaller than this, in design pixels, it would no longer look like a title.
+    const SMALLEST: f32 = 25.0;
+    let usual = sheet.type_px(30.0);
+    let advance = setter.line(title, Face::upright(usual, Face::MEDIUM)).advance;
+    let fitting = (usual * widest / advance.max(1.0)).min(usual) * 0.99;
+    if fitting >= sheet.type_px(SMALLEST) { fitting } else { usual }
 }
 
 fn lay_out(title: &Paragraph, subtitle: &Paragraph, sheet: &Sheet) -> Option<Drawing> {
