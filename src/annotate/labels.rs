@@ -6,7 +6,7 @@ use crate::annotate::annotation::{Label, LabelKind};
 use crate::annotate::drawing::{Drawing, polygon};
 use crate::annotate::paragraph::{Paragraph, fitted, written_lines};
 use crate::annotate::pixel_box::{PixelBox, Segment};
-use crate::annotate::place::{Candidate, Field, Request, place};
+use crate::annotate::place::{Candidate, Field, Request, check, place};
 use crate::annotate::positions::{Alignment, Position, Preference, Stance, positions, spot};
 use crate::annotate::report::Report;
 use crate::annotate::sheet::{HALO, INK, PAPER, SOFT_INK, Sheet, WATER_INK};
@@ -49,7 +49,9 @@ pub fn draw_labels(
         }
     }
     let requests: Vec<Request> = prepared.iter().map(|label| label.request.clone()).collect();
-    let choices = place(&requests, &field(furniture, sheet));
+    let field = field(furniture, sheet);
+    let choices = place(&requests, &field);
+    debug_assert_eq!(check(&requests, &choices, &field), Ok(()));
     for (label, _) in prepared.iter().zip(&choices).filter(|(_, choice)| choice.is_some()) {
         fates[label.number] =
             Fate::Placed { missing: label.block.missing(), shortened: label.block.shortened };

@@ -16,6 +16,7 @@ use crate::annotate::nice::{Nice, distance, number};
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::sheet::{INK, PAPER, SOFT_INK, Sheet};
 use crate::annotate::text::{CAP_HEIGHT, DESCENT, Face, Line, Typesetter, write};
+use crate::view::camera::Camera;
 
 /// Longest bar, in design pixels. Round lengths are at most 2.5 times apart, so bars are at least 104.
 const LONGEST: f32 = 260.0;
@@ -29,6 +30,13 @@ pub struct ScaleBar {
     pub pixels_per_metre: f32,
     /// The distance from the eye for which that holds, in metres; printed under the bar.
     pub distance_m: f32,
+}
+
+impl ScaleBar {
+    /// How large `camera` shows things `distance_m` metres along its viewing direction.
+    pub fn seen_by(camera: &Camera, distance_m: f32) -> Self {
+        Self { pixels_per_metre: camera.pixels_per_metre(distance_m), distance_m }
+    }
 }
 
 /// A bar of round length.
