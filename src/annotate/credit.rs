@@ -6,7 +6,10 @@ use crate::annotate::drawing::Drawing;
 use crate::annotate::paragraph::{fitted, written_lines};
 use crate::annotate::report::Report;
 use crate::annotate::sheet::{INK, Sheet};
-use crate::annotate::text::{Face, Typesetter, write};
+use crate::annotate::text::{Face, Typesetter, halos, write};
+
+/// A credit cut shorter than this, in ems, names nobody and is left out.
+const SHORTEST_EM: f32 = 10.0;
 
 /// The line with its baseline starting at the origin, no wider than `most_px`; `None` where there is nothing
 /// to say or no room to say it.
@@ -18,10 +21,12 @@ pub fn compose(
     report: &mut Report,
 ) -> Option<Drawing> {
     let text = written_lines(credit, usize::MAX).0.join(" · ");
-    let face = Face::upright(sheet.type_px(13.0), Face::REGULAR);
-    let line = fitted(setter, &text, face, most_px)?;
+    let face = Face::upright(sheet.type_px(13.0), Face::MEDIUM);
+    let line = fitted(setter, &text, face, most_px)
+        .filter(|line| !line.shortened || line.advance >= face.size_px * SHORTEST_EM)?;
     let mut drawing = Drawing::default();
-    write(&mut drawing, &[(&line, Vec2::ZERO)], INK, sheet.px(2.0).max(1.4));
+    halos(&mut drawing, &[(&line, Vec2::ZERO)], sheet.px(1.7).max(1.2));
+    write(&mut drawing, &[(&line, Vec2::ZERO)], INK);
     if drawing.marks().is_empty() {
         return None;
     }
@@ -48,8 +53,8 @@ mod tests {
 
     #[test]
     fn a_credit_without_room_or_words_is_left_out_and_a_long_one_cut() {
-        assert!(line("USGS 3DEP", 2.0).0.is_none());
+        assert!(line("USGS 3DEP, National Map, public domain", 60.0).0.is_none());
         assert!(line(" ", 900.0).0.is_none());
-        assert_eq!(line("USGS 3DEP, National Map, public domain", 90.0).1.shortened.len(), 1);
+        assert_eq!(line("USGS 3DEP, National Map, public domain", 200.0).1.shortened.len(), 1);
     }
 }

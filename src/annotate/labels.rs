@@ -6,11 +6,11 @@ use crate::annotate::annotation::{Label, LabelKind};
 use crate::annotate::drawing::{Drawing, polygon};
 use crate::annotate::paragraph::{Paragraph, fitted, written_lines};
 use crate::annotate::pixel_box::{PixelBox, Segment};
-use crate::annotate::place::{Candidate, Field, Request, place};
-use crate::annotate::positions::{Preference, Stance, candidates, spot};
+use crate::annotate::place::{Candidate, Field, Request, check, place};
+use crate::annotate::positions::{Alignment, Position, Preference, Stance, positions, spot};
 use crate::annotate::report::Report;
 use crate::annotate::sheet::{HALO, INK, PAPER, SOFT_INK, Sheet, WATER_INK};
-use crate::annotate::text::{Face, Line, Typesetter, write};
+use crate::annotate::text::{Face, Line, Typesetter, halos, write};
 use crate::draw::color::Srgba;
 
 /// More labels than this are not even tried: no picture holds as many, and trying takes time by the square.
@@ -21,6 +21,8 @@ const MOST_LINES: usize = 4;
 const WIDEST_SHARE: f32 = 0.33;
 /// The longest leader line, as a share of the picture's height.
 const LONGEST_LEADER_SHARE: f32 = 0.26;
+/// From baseline to baseline, in ems of the lower line.
+const LEADING: f32 = 1.16;
 /// Tangent of the lean of water names, about 12 degrees.
 const WATER_SLANT: f32 = 0.21;
 
@@ -41,15 +43,18 @@ pub fn draw_labels(
             fates[number] = Fate::Hidden;
         } else if prepared.len() < MOST_LABELS {
             match prepare(number, label, sheet, setter) {
-                Some(label) => prepared.push(label),
-                None => fates[number] = Fate::Empty,
+                Ok(label) => prepared.push(label),
+                Err(fate) => fates[number] = fate,
             }
         }
     }
     let requests: Vec<Request> = prepared.iter().map(|label| label.request.clone()).collect();
-    let choices = place(&requests, &field(furniture, sheet));
+    let field = field(furniture, sheet);
+    let choices = place(&requests, &field);
+    debug_assert_eq!(check(&requests, &choices, &field), Ok(()));
     for (label, _) in prepared.iter().zip(&choices).filter(|(_, choice)| choice.is_some()) {
-        fates[label.number] = Fate::Placed { missing: label.missing, shortened: label.shortened };
+        fates[label.number] =
+            Fate::Placed { missing: label.block.missing(), shortened: label.block.shortened };
     }
     tell(labels, &fates, report);
     draw_chosen(&prepared, &choices, sheet)
@@ -87,7 +92,7 @@ fn field(furniture: &[PixelBox], sheet: &Sheet) -> Field {
     Field {
         bounds: sheet.bounds().grown(-(sheet.margin() * 0.4).round()),
         taken: furniture.iter().map(|taken| taken.grown(air)).collect(),
-        leader_room: sheet.px(3.0),
+        leader_room: sheet.px(5.0),
     }
 }
 
@@ -95,11 +100,12 @@ fn field(furniture: &[PixelBox], sheet: &Sheet) -> Field {
 struct Prepared<'a> {
     number: usize,
     label: &'a Label,
-    text: Drawing,
-    origin: Vec2,
+    look: Look,
+    block: Paragraph,
+    /// The stance's boxes of the text, one for each alignment.
+    texts: [PixelBox; 3],
+    positions: Vec<Position>,
     request: Request,
-    missing: usize,
-    shortened: bool,
 }
 
 /// Kind first, then the nearer, then by text; the input's order decides between equals.
@@ -111,30 +117,36 @@ fn by_importance(labels: &[Label]) -> Vec<(usize, &Label)> {
     order
 }
 
-/// Sets the label's text around its own origin and lists its candidates; `None` where nothing shows.
+/// Sets the label's text and lists its positions.
+///
+/// # Errors
+/// Its fate, where nothing would show: it is empty, or the picture is too narrow for a few letters.
 fn prepare<'a>(
     number: usize,
     label: &'a Label,
     sheet: &Sheet,
     setter: &mut Typesetter,
-) -> Option<Prepared<'a>> {
+) -> Result<Prepared<'a>, Fate> {
     let look = Look::of(label.kind, sheet);
     let block = set_lines(&label.text, &look, sheet, setter);
-    let mut text = Drawing::default();
-    draw_lines(&block.lines, &look, &mut text);
-    let bounds = text.bounds();
-    if bounds.size().min_element().is_nan() || bounds.size().min_element() <= 0.0 {
-        return None;
+    if block.lines.is_empty() {
+        return Err(if block.shortened { Fate::CrowdedOut } else { Fate::Empty });
     }
     // Air around the text, so that no two labels read as one.
-    let area = bounds.grown(sheet.px(2.0));
-    let stance = stance(label, area, &look, sheet);
-    let request = Request { candidates: candidates(&stance), spot: Some(spot(&stance)) };
-    let (missing, shortened) = (block.missing(), block.shortened);
-    Some(Prepared { number, label, text, origin: area.min, request, missing, shortened })
+    let air = sheet.px(2.0);
+    let texts = [Alignment::Left, Alignment::Center, Alignment::Right]
+        .map(|alignment| block_box(&block.lines, alignment, look.halo).grown(air));
+    if texts.iter().any(|text| text.size().cmple(Vec2::ZERO).any() || !text.size().is_finite()) {
+        return Err(Fate::Empty);
+    }
+    let stance = stance(label, texts, &look, sheet);
+    let positions = positions(&stance);
+    let candidates = positions.iter().map(|position| position.candidate).collect();
+    let request = Request { candidates, spot: Some(spot(&stance)) };
+    Ok(Prepared { number, label, look, block, texts, positions, request })
 }
 
-fn stance(label: &Label, text: PixelBox, look: &Look, sheet: &Sheet) -> Stance {
+fn stance(label: &Label, texts: [PixelBox; 3], look: &Look, sheet: &Sheet) -> Stance {
     let longest = sheet.size.y * LONGEST_LEADER_SHARE;
     let preference = match label.kind {
         LabelKind::Water => Preference::OnPlace,
@@ -143,9 +155,9 @@ fn stance(label: &Label, text: PixelBox, look: &Look, sheet: &Sheet) -> Stance {
     Stance {
         anchor: pixel_center(label.anchor_px),
         reach: reach(label, look.leader, longest),
-        text,
+        texts,
         symbol: Vec2::splat(look.symbol + look.halo),
-        gap: sheet.px(2.0),
+        gap: sheet.px(1.0),
         longest,
         preference,
     }
@@ -176,36 +188,55 @@ fn set_lines(text: &str, look: &Look, sheet: &Sheet, setter: &mut Typesetter) ->
     Paragraph { lines, shortened }
 }
 
-/// Draws the lines centred on x = 0, the first baseline at y = 0.
-fn draw_lines(lines: &[Line], look: &Look, drawing: &mut Drawing) {
-    let mut baseline = 0.0f32;
-    let mut placed = Vec::new();
-    for (number, line) in lines.iter().enumerate() {
+/// Where the lines' baselines start: the first at y = 0, all aligned to x = 0.
+fn baselines(lines: &[Line], alignment: Alignment) -> Vec<(&Line, Vec2)> {
+    let mut y = 0.0;
+    let place = |(number, line): (usize, &'_ Line)| {
         if number > 0 {
-            baseline += (line.face.size_px * 1.16).round();
+            y += (line.face.size_px * LEADING).round();
         }
-        placed.push((line, Vec2::new((-line.advance * 0.5).round(), baseline)));
-    }
-    let Some((first, rest)) = placed.split_first() else { return };
-    // All halos first: the name's must not eat into the height below it.
-    let mut ink = Drawing::default();
-    write(&mut ink, &[*first], look.ink, 0.0);
-    write(&mut ink, rest, look.note_ink, 0.0);
-    write(drawing, &placed, look.ink, look.halo);
-    drawing.append(&ink, Vec2::ZERO);
+        let share = match alignment {
+            Alignment::Left => 0.0,
+            Alignment::Center => 0.5,
+            Alignment::Right => 1.0,
+        };
+        Vec2::new((-line.advance * share).round(), y)
+    };
+    let starts: Vec<Vec2> = lines.iter().enumerate().map(place).collect();
+    lines.iter().zip(starts).collect()
+}
+
+fn block_box(lines: &[Line], alignment: Alignment, halo: f32) -> PixelBox {
+    baselines(lines, alignment)
+        .into_iter()
+        .map(|(line, at)| line.ink(halo).moved(at))
+        .fold(PixelBox::EMPTY, PixelBox::union)
+}
+
+/// Writes the lines around the origin, moved by `by`: all halos first, for the name's must not eat into the
+/// height below it.
+fn draw_lines(label: &Prepared<'_>, alignment: Alignment, by: Vec2, drawing: &mut Drawing) {
+    let mut lines = baselines(&label.block.lines, alignment);
+    lines.iter_mut().for_each(|(_, at)| *at += by);
+    halos(drawing, &lines, label.look.halo);
+    let (name, notes) = lines.split_at(1.min(lines.len()));
+    write(drawing, name, label.look.ink);
+    write(drawing, notes, label.look.note_ink);
 }
 
 /// Symbols and leaders first, all texts over them.
 fn draw_chosen(prepared: &[Prepared<'_>], choices: &[Option<usize>], sheet: &Sheet) -> Drawing {
     let (mut drawing, mut texts) = (Drawing::default(), Drawing::default());
     for (label, choice) in prepared.iter().zip(choices) {
-        let Some(candidate) = choice.map(|which| label.request.candidates[which]) else { continue };
-        let look = Look::of(label.label.kind, sheet);
-        draw_leader(&candidate, &look, sheet, &mut drawing);
+        let Some(Position { candidate, alignment }) = choice.map(|which| label.positions[which]) else {
+            continue;
+        };
+        draw_leader(&candidate, &label.look, sheet, &mut drawing);
         if candidate.symbol.is_some() {
-            look.draw_symbol(label.label, sheet, &mut drawing);
+            label.look.draw_symbol(label.label, sheet, &mut drawing);
         }
-        texts.append(&label.text, candidate.text.min - label.origin);
+        let by = candidate.text.min - label.texts[alignment as usize].min;
+        draw_lines(label, alignment, by.round(), &mut texts);
     }
     drawing.append(&texts, Vec2::ZERO);
     drawing
@@ -242,24 +273,24 @@ struct Look {
 
 impl Look {
     fn of(kind: LabelKind, sheet: &Sheet) -> Self {
-        let slant = if kind == LabelKind::Water { WATER_SLANT } else { 0.0 };
+        let (slant, tracking) = if kind == LabelKind::Water { (WATER_SLANT, 0.06) } else { (0.0, 0.0) };
         let (name, weight, symbol, leader) = match kind {
-            LabelKind::Summit => (20.0, Face::MEDIUM, 6.0, 44.0),
-            LabelKind::Place => (19.0, Face::MEDIUM, 4.5, 34.0),
-            LabelKind::Water => (19.0, Face::REGULAR, 3.0, 34.0),
-            LabelKind::Point => (16.5, Face::REGULAR, 3.2, 26.0),
+            LabelKind::Summit => (20.0, Face::BOLD, 6.0, 44.0),
+            LabelKind::Place => (19.0, Face::BOLD, 4.5, 34.0),
+            LabelKind::Water => (19.0, Face::MEDIUM, 3.0, 34.0),
+            LabelKind::Point => (16.5, Face::MEDIUM, 3.2, 26.0),
         };
         let (ink, note_ink) = match kind {
             LabelKind::Water => (WATER_INK, WATER_INK),
             _ => (INK, SOFT_INK),
         };
         Self {
-            name: Face { size_px: sheet.type_px(name), slant, weight },
-            note: Face { size_px: sheet.type_px(name * 0.8), slant, weight: Face::REGULAR },
+            name: Face { size_px: sheet.type_px(name), slant, weight, tracking },
+            note: Face { size_px: sheet.type_px(name * 0.8), slant, weight: Face::MEDIUM, tracking },
             ink,
             note_ink,
             halo: sheet.px(2.2).max(1.5),
-            symbol: sheet.px(symbol).max(2.0),
+            symbol: sheet.px(symbol).max(2.6),
             leader: sheet.px(leader),
         }
     }

@@ -122,8 +122,8 @@ fn lay_out(
         bottom = (bottom + note.face.size_px * leading).round();
         placed.push((note, Vec2::new(padding, bottom)));
     }
-    write(&mut content, &[(head, head_at)], INK, 0.0);
-    write(&mut content, &placed, SOFT_INK, 0.0);
+    write(&mut content, &[(head, head_at)], INK);
+    write(&mut content, &placed, SOFT_INK);
     let widest = notes.iter().map(|note| note.advance).fold(head.advance, f32::max);
     let right = (padding + widest).max(figures_right);
     let mut drawing = Drawing::default();
@@ -149,7 +149,7 @@ fn draw_ramp(drawing: &mut Drawing, legend: &Legend, ramp: PixelBox, sheet: &She
 /// Ticks and figures to the right of the ramp; returns how far right they reach.
 fn draw_marks(drawing: &mut Drawing, marks: &[HeightMark], ramp: PixelBox, sheet: &Sheet) -> f32 {
     let line = sheet.hairline().round();
-    let figures_left = ramp.max.x + sheet.whole_px(12.0);
+    let figures_left = ramp.max.x + sheet.whole_px(10.0);
     let widest = marks.iter().map(|mark| mark.figure.advance).fold(0.0, f32::max);
     for mark in marks {
         let y = (ramp.max.y - ramp.size().y * mark.share - line * 0.5)
@@ -160,7 +160,7 @@ fn draw_marks(drawing: &mut Drawing, marks: &[HeightMark], ramp: PixelBox, sheet
         let baseline = (y + line * 0.5 + mark.figure.face.size_px * CAP_HEIGHT * 0.5).round();
         // Figures stand flush right, so that digits of the same worth stand under each other.
         let at = Vec2::new(figures_left + widest - mark.figure.advance, baseline);
-        write(drawing, &[(&mark.figure, at)], INK, 0.0);
+        write(drawing, &[(&mark.figure, at)], INK);
     }
     figures_left + widest
 }

@@ -9,14 +9,17 @@ use tiny_skia::{Path, PathBuilder, Rect};
 
 use crate::annotate::drawing::{Drawing, polygon, polyline};
 use crate::annotate::sheet::{FRAME, HALO, INK, PANEL, PAPER, Sheet};
-use crate::annotate::text::{CAP_HEIGHT, Face, Typesetter, write};
+use crate::annotate::text::{CAP_HEIGHT, Face, Typesetter, halos, write};
+use crate::view::camera::Camera;
 
 /// Flatter than this the needle could not be read; views nearer the horizon are drawn with this tilt.
-const FLATTEST: f32 = 0.3;
+const FLATTEST: f32 = 0.4;
 /// Below this the ground's direction cannot be told from its direction on the picture.
 const HARDLY_TILTED: f32 = 0.02;
 /// Radius of the ring in design pixels.
-const RADIUS: f32 = 36.0;
+const RADIUS: f32 = 40.0;
+/// Between ring and letter, in ems of the letter.
+const LETTER_GAP: f32 = 0.16;
 
 /// Which way north is, and how much the ground is foreshortened.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +29,17 @@ pub struct NorthArrow {
     /// How long a length on the ground into the picture appears against the same length across it: the
     /// sine of the angle at which the camera looks down. 1 looking straight down, 0 at the horizon.
     pub foreshortening: f32,
+}
+
+impl NorthArrow {
+    /// North as `camera` sees it on the ground at the middle of its picture.
+    pub fn seen_by(camera: &Camera) -> Self {
+        let foreshortening = camera.forward().z.abs().max(HARDLY_TILTED);
+        // The right of the picture is level, so its east and north parts are the cosine and the negative
+        // sine of the heading. A level view, whose horizon would hide whether north is ahead, is tilted.
+        let right = camera.right();
+        Self { direction: Vec2::new(right.y, -right.x * foreshortening), foreshortening }
+    }
 }
 
 /// The arrow around the origin; `None` where its direction is no direction.
@@ -45,7 +59,8 @@ pub fn compose(arrow: &NorthArrow, sheet: &Sheet, setter: &mut Typesetter) -> Op
 
 /// How far the arrow may reach from its middle in any direction: it is set this far from the border.
 pub fn reach(sheet: &Sheet) -> f32 {
-    (sheet.px(RADIUS) + letter_distance(sheet) + letter_px(sheet) * 0.55).ceil()
+    let letter = letter_px(sheet) * (CAP_HEIGHT + LETTER_GAP) + letter_halo(sheet);
+    (sheet.px(RADIUS) + letter).ceil()
 }
 
 /// The ground around the arrow's middle: north along Y, east along X, the ring at distance 1.
@@ -86,24 +101,32 @@ fn draw_needle(plane: &Plane, sheet: &Sheet, drawing: &mut Drawing) -> Option<()
     Some(())
 }
 
+/// The letter stands beyond the tip on the ring's outward normal, so that it clears the ring however flat.
 fn draw_letter(plane: &Plane, sheet: &Sheet, setter: &mut Typesetter, drawing: &mut Drawing) {
     let letter = setter.line("N", Face::upright(letter_px(sheet), Face::BOLD));
+    let half = Vec2::new(letter.advance, letter.face.size_px * CAP_HEIGHT) * 0.5;
     let tip = plane.on_picture(Vec2::Y);
-    let middle = tip + tip.normalize_or(Vec2::NEG_Y) * letter_distance(sheet);
-    let half = Vec2::new(-letter.advance * 0.5, letter.face.size_px * CAP_HEIGHT * 0.5);
-    write(drawing, &[(&letter, (middle + half).round())], INK, sheet.px(2.4).max(1.5));
+    let outward = (tip / (plane.radius * plane.radius)).normalize_or(Vec2::NEG_Y);
+    // As far as the letter's own box reaches back along the normal, and a gap.
+    let away = outward.abs().dot(half) + letter_px(sheet) * LETTER_GAP;
+    let start = tip + outward * away + Vec2::new(-half.x, half.y);
+    let lines = [(&letter, start.round())];
+    halos(drawing, &lines, letter_halo(sheet));
+    write(drawing, &lines, INK);
 }
 
 fn letter_px(sheet: &Sheet) -> f32 {
     sheet.type_px(20.0)
 }
 
-fn letter_distance(sheet: &Sheet) -> f32 {
-    letter_px(sheet) * 0.62
+fn letter_halo(sheet: &Sheet) -> f32 {
+    sheet.px(2.4).max(1.5)
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
 
     fn plane(x: f32, y: f32, foreshortening: f32) -> Plane {
@@ -143,6 +166,28 @@ mod tests {
             let bounds = drawing.bounds();
             let reached = bounds.min.abs().max(bounds.max.abs()).max_element();
             assert!(reached <= reach(&sheet) + 3.0, "{reached} at {angle}");
+        }
+    }
+
+    #[test]
+    fn the_arrow_of_a_camera_points_where_the_camera_projects_north() {
+        for (east, north) in [(300.0, 400.0), (-500.0, 20.0), (90.0, -700.0), (0.0, 600.0)] {
+            let eye = Vec3::new(0.0, 0.0, 350.0);
+            let target = Vec3::new(east, north, 0.0);
+            let camera = Camera::new(eye, target, 0.7, (800, 600), (1.0, 9000.0)).expect("a sound camera");
+            let pixel = |at: Vec3| camera.project(at).expect("in front of the eye").pixel;
+            let seen = pixel(target + Vec3::Y * 0.5) - pixel(target - Vec3::Y * 0.5);
+            let off = NorthArrow::seen_by(&camera).direction.angle_to(seen);
+            assert!(off.abs() < 0.01, "{off} looking at {target}");
+        }
+    }
+
+    #[test]
+    fn a_level_view_still_knows_north_ahead_from_north_behind() {
+        for (target, up) in [(Vec3::Y, true), (Vec3::NEG_Y, false)] {
+            let camera =
+                Camera::new(Vec3::ZERO, target, 0.7, (800, 600), (1.0, 9.0)).expect("a sound camera");
+            assert_eq!(NorthArrow::seen_by(&camera).direction.y < 0.0, up);
         }
     }
 

@@ -14,7 +14,7 @@ use crate::annotate::{credit, legend, north, scale_bar, title};
 use crate::draw::pixels::Pixels;
 
 /// Furniture larger than this share of the picture, in width or height, would hide what it explains.
-const LARGEST_SHARE: Vec2 = Vec2::new(0.56, 0.52);
+const LARGEST_SHARE: Vec2 = Vec2::new(0.63, 0.52);
 
 /// Paints `annotations` on `pixels`; returns what was drawn and what could not be.
 ///

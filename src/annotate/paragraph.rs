@@ -41,7 +41,7 @@ fn one_spaced(text: &str) -> String {
 
 /// `text` as one line no wider than `most_px`, ending in an ellipsis where it had to be cut.
 ///
-/// `None` where not even the ellipsis fits.
+/// `None` where not even a few letters before the ellipsis fit.
 pub fn fitted(setter: &mut Typesetter, text: &str, face: Face, most_px: f32) -> Option<Line> {
     let whole = setter.line(text, face);
     if whole.advance <= most_px && !whole.shortened {
@@ -53,9 +53,11 @@ pub fn fitted(setter: &mut Typesetter, text: &str, face: Face, most_px: f32) -> 
         let line = setter.line(&format!("{kept}…"), face);
         (line.advance <= most_px).then_some(Line { shortened: true, ..line })
     };
+    /// Fewer letters than this before an ellipsis tell nothing.
+    const FEWEST: usize = 4;
     // Advance grows with the letters kept (but for kerning), so halving finds the longest that fits.
-    let (mut fits, mut too_long) = (0, ends.len());
-    let mut best = cut(0)?;
+    let (mut fits, mut too_long) = (FEWEST, ends.len());
+    let mut best = cut(FEWEST)?;
     while too_long - fits > 1 {
         let middle = fits + (too_long - fits) / 2;
         match cut(middle) {
@@ -106,7 +108,7 @@ fn head_that_fits<'t>(setter: &mut Typesetter, text: &'t str, face: Face, most_p
 mod tests {
     use super::*;
 
-    const FACE: Face = Face { size_px: 20.0, slant: 0.0, weight: 0.0 };
+    const FACE: Face = Face { size_px: 20.0, slant: 0.0, weight: 0.0, tracking: 0.0 };
 
     #[test]
     fn written_lines_are_clean_and_never_empty() {
@@ -123,7 +125,7 @@ mod tests {
         assert!(!whole.shortened);
         let cut = fitted(&mut setter, "Norris Geyser Basin", FACE, 100.0).expect("fits when cut");
         assert!(cut.shortened && cut.advance <= 100.0 && cut.advance > 75.0, "{}", cut.advance);
-        assert!(fitted(&mut setter, "Norris", FACE, 3.0).is_none());
+        assert!(fitted(&mut setter, "Norris", FACE, 30.0).is_none(), "N… is no name");
     }
 
     #[test]

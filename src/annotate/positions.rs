@@ -24,8 +24,9 @@ pub struct Stance {
     pub anchor: Vec2,
     /// From the place to the wished end of its leader line; upward.
     pub reach: Vec2,
-    /// The box of the text, around any origin; candidates are moves of it by whole pixels.
-    pub text: PixelBox,
+    /// The box of the text for each [`Alignment`], around any origin; candidates are moves of it by whole
+    /// pixels.
+    pub texts: [PixelBox; 3],
     /// Half the size of the symbol.
     pub symbol: Vec2,
     /// Room between text and leader line, and text and symbol.
@@ -34,6 +35,26 @@ pub struct Stance {
     pub longest: f32,
     /// What comes first.
     pub preference: Preference,
+}
+
+/// One way to draw a label, and how its lines are set then.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Position {
+    /// Where everything is.
+    pub candidate: Candidate,
+    /// How the lines of the text stand under each other.
+    pub alignment: Alignment,
+}
+
+/// How lines of text stand under each other; the numbers index [`Stance::texts`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Alignment {
+    /// Flush left: the text stands to the right of what it names.
+    Left = 0,
+    /// Centred: the text stands over what it names.
+    Center = 1,
+    /// Flush right: the text stands to the left of what it names.
+    Right = 2,
 }
 
 /// Where a label would rather stand.
@@ -47,17 +68,18 @@ pub enum Preference {
 
 /// Lengths of the leader tried, as multiples of the wished one.
 const LENGTHS: [f32; 7] = [1.0, 0.55, 1.5, 2.1, 2.8, 3.7, 5.0];
-/// Where along the text's lower edge the leader meets it: the middle, near its start, near its end.
-const MEETINGS: [f32; 3] = [0.5, 0.14, 0.86];
+/// Where along the text's lower edge the leader meets it.
+const MEETINGS: [(f32, Alignment); 3] =
+    [(0.5, Alignment::Center), (0.14, Alignment::Left), (0.86, Alignment::Right)];
 
-/// All candidates, the best first.
-pub fn candidates(stance: &Stance) -> Vec<Candidate> {
+/// All positions, the best first.
+pub fn positions(stance: &Stance) -> Vec<Position> {
     let on_place = (stance.preference == Preference::OnPlace).then(|| centred_on_place(stance));
     let above = LENGTHS
         .iter()
         .filter(|&&length| stance.reach.length() * length <= stance.longest)
         .flat_map(|&length| MEETINGS.map(|meeting| above(stance, stance.reach * length, meeting)));
-    let beside = [1.0, -1.0].map(|side| beside(stance, side));
+    let beside = [(1.0, Alignment::Left), (-1.0, Alignment::Right)].map(|side| beside(stance, side));
     on_place.into_iter().chain(above).chain(beside).collect()
 }
 
@@ -66,38 +88,38 @@ pub fn spot(stance: &Stance) -> PixelBox {
     PixelBox::around(stance.anchor, stance.symbol)
 }
 
-fn centred_on_place(stance: &Stance) -> Candidate {
-    let text = moved(stance, stance.anchor - stance.text.center());
-    Candidate { text, symbol: None, leader: None }
+fn centred_on_place(stance: &Stance) -> Position {
+    let alignment = Alignment::Center;
+    let text = moved_center(stance.texts[alignment as usize], stance.anchor);
+    Position { candidate: Candidate { text, symbol: None, leader: None }, alignment }
 }
 
-fn above(stance: &Stance, reach: Vec2, meeting: f32) -> Candidate {
+fn above(stance: &Stance, reach: Vec2, (meeting, alignment): (f32, Alignment)) -> Position {
+    let area = stance.texts[alignment as usize];
     let end = stance.anchor + reach;
-    let foot = Vec2::new(
-        stance.text.min.x + (stance.text.max.x - stance.text.min.x) * meeting,
-        stance.text.max.y + stance.gap,
-    );
-    let text = moved(stance, end - foot);
+    let foot = Vec2::new(area.min.x + area.size().x * meeting, area.max.y + stance.gap);
+    let text = area.moved((end - foot).round());
     let from = stance.anchor + reach.normalize_or_zero() * stance.symbol.y;
     // The text is moved by whole pixels, the line ends where the text then is.
     let to = Vec2::new(end.x, text.max.y + stance.gap);
-    Candidate { text, symbol: Some(spot(stance)), leader: Some(Segment { from, to }) }
+    let leader = Some(Segment { from, to });
+    Position { candidate: Candidate { text, symbol: Some(spot(stance)), leader }, alignment }
 }
 
-fn beside(stance: &Stance, side: f32) -> Candidate {
-    let half = stance.text.size() * 0.5;
-    let away = stance.symbol.x + stance.gap + half.x;
-    let center = stance.anchor + Vec2::new(side * away, 0.0);
-    let mut text = moved(stance, center - stance.text.center());
+fn beside(stance: &Stance, (side, alignment): (f32, Alignment)) -> Position {
+    let area = stance.texts[alignment as usize];
+    let away = stance.symbol.x + stance.gap + area.size().x * 0.5;
+    let mut text = moved_center(area, stance.anchor + Vec2::new(side * away, 0.0));
     // Rounding to whole pixels must not bring the text over the symbol.
     if text.overlaps(&spot(stance)) {
         text = text.moved(Vec2::new(side, 0.0));
     }
-    Candidate { text, symbol: Some(spot(stance)), leader: None }
+    Position { candidate: Candidate { text, symbol: Some(spot(stance)), leader: None }, alignment }
 }
 
-fn moved(stance: &Stance, by: Vec2) -> PixelBox {
-    stance.text.moved(by.round())
+/// `area` moved by whole pixels so that its middle comes to `center`.
+fn moved_center(area: PixelBox, center: Vec2) -> PixelBox {
+    area.moved((center - area.center()).round())
 }
 
 #[cfg(test)]
@@ -105,15 +127,20 @@ mod tests {
     use super::*;
 
     fn stance() -> Stance {
+        let text = PixelBox { min: Vec2::new(-1.5, -20.0), max: Vec2::new(80.5, 12.0) };
         Stance {
             anchor: Vec2::new(400.3, 300.7),
             reach: Vec2::new(4.0, -50.0),
-            text: PixelBox { min: Vec2::new(-1.5, -20.0), max: Vec2::new(80.5, 12.0) },
+            texts: [text.moved(Vec2::new(3.0, 0.0)), text, text.moved(Vec2::new(-3.0, 0.0))],
             symbol: Vec2::splat(6.0),
             gap: 3.0,
             longest: 200.0,
             preference: Preference::Above,
         }
+    }
+
+    fn candidates(stance: &Stance) -> Vec<Candidate> {
+        positions(stance).into_iter().map(|position| position.candidate).collect()
     }
 
     #[test]
@@ -135,9 +162,21 @@ mod tests {
 
     #[test]
     fn texts_move_by_whole_pixels() {
-        for candidate in candidates(&stance()) {
-            let by = candidate.text.min - stance().text.min;
-            assert_eq!(by, by.round());
+        for position in positions(&stance()) {
+            let by = position.candidate.text.min - stance().texts[position.alignment as usize].min;
+            assert!((by - by.round()).length() < 1e-3, "{by}");
+        }
+    }
+
+    #[test]
+    fn lines_stand_flush_towards_what_they_name() {
+        for position in positions(&stance()) {
+            let off = position.candidate.text.center().x - stance().anchor.x - 4.0;
+            match position.alignment {
+                Alignment::Left => assert!(off > 10.0),
+                Alignment::Right => assert!(off < -10.0),
+                Alignment::Center => assert!(off.abs() < 25.0),
+            }
         }
     }
 

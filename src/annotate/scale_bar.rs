@@ -6,7 +6,7 @@
 //! ```text
 //!  0        2.5        5 km
 //!  ██████▒▒▒▒▒▒██████▒▒▒▒▒▒
-//!  12.4 km from the eye
+//!  at 12.4 km from the eye
 //! ```
 
 use glam::Vec2;
@@ -16,6 +16,7 @@ use crate::annotate::nice::{Nice, distance, number};
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::sheet::{INK, PAPER, SOFT_INK, Sheet};
 use crate::annotate::text::{CAP_HEIGHT, DESCENT, Face, Line, Typesetter, write};
+use crate::view::camera::Camera;
 
 /// Longest bar, in design pixels. Round lengths are at most 2.5 times apart, so bars are at least 104.
 const LONGEST: f32 = 260.0;
@@ -29,6 +30,13 @@ pub struct ScaleBar {
     pub pixels_per_metre: f32,
     /// The distance from the eye for which that holds, in metres; printed under the bar.
     pub distance_m: f32,
+}
+
+impl ScaleBar {
+    /// How large `camera` shows things `distance_m` metres along its viewing direction.
+    pub fn seen_by(camera: &Camera, distance_m: f32) -> Self {
+        Self { pixels_per_metre: camera.pixels_per_metre(distance_m), distance_m }
+    }
 }
 
 /// A bar of round length.
@@ -58,7 +66,7 @@ pub fn compose(bar: &ScaleBar, sheet: &Sheet, setter: &mut Typesetter) -> Option
     let note = Face::upright(sheet.type_px(14.0), Face::REGULAR);
     let figures = figures(&measure.length).map(|text| setter.line(&text, face));
     let unit = setter.line(&format!(" {}", unit(&measure.length).0), face);
-    let where_true = setter.line(&format!("{} from the eye", distance(f64::from(bar.distance_m))), note);
+    let where_true = setter.line(&format!("at {} from the eye", distance(f64::from(bar.distance_m))), note);
     Some(lay_out(&measure, &figures, &unit, &where_true, sheet))
 }
 
@@ -84,10 +92,10 @@ fn lay_out(measure: &Measure, figures: &[Line; 3], unit: &Line, note: &Line, she
         .zip(figures)
         .map(|(&part, line)| (line, Vec2::new(middle(part, line).round(), baseline)))
         .collect();
-    write(&mut drawing, &at, INK, 0.0);
+    write(&mut drawing, &at, INK);
     let unit_x = at[2].1.x + figures[2].advance;
-    write(&mut drawing, &[(unit, Vec2::new(unit_x, baseline))], INK, 0.0);
-    write(&mut drawing, &[(note, note_at)], SOFT_INK, 0.0);
+    write(&mut drawing, &[(unit, Vec2::new(unit_x, baseline))], INK);
+    write(&mut drawing, &[(note, note_at)], SOFT_INK);
     drawing
 }
 

@@ -11,7 +11,7 @@ use crate::draw::color::Srgba;
 /// Letters and lines.
 pub const INK: Srgba = Srgba::opaque(0x1e, 0x23, 0x27);
 /// Second lines and notes.
-pub const SOFT_INK: Srgba = Srgba::opaque(0x45, 0x4b, 0x50);
+pub const SOFT_INK: Srgba = Srgba::opaque(0x3c, 0x42, 0x47);
 /// Names of waters.
 pub const WATER_INK: Srgba = Srgba::opaque(0x14, 0x4f, 0x7e);
 /// White of bars and needles.
@@ -28,7 +28,7 @@ const DESIGN_HEIGHT: f32 = 1080.0;
 /// Wide enough for furniture: pictures narrower than 3:4 are scaled by their width.
 const DESIGN_ASPECT: f32 = 0.75;
 /// Share of the sizes that does not shrink with the picture below the design height.
-const STEADY_SHARE: f32 = 0.36;
+const STEADY_SHARE: f32 = 0.32;
 /// Type is never smaller: below this the embedded light face falls apart into grey.
 const SMALLEST_TYPE_PX: f32 = 9.5;
 
@@ -100,7 +100,7 @@ mod tests {
         assert_eq!(Sheet::new(1920, 1080).scale, 1.0);
         assert_eq!(Sheet::new(3840, 2160).scale, 2.0);
         let small = Sheet::new(480, 270);
-        assert!(small.scale > 0.5 && small.type_px(12.0) >= SMALLEST_TYPE_PX);
+        assert!(small.scale > 0.45 && small.type_px(12.0) >= SMALLEST_TYPE_PX);
     }
 
     #[test]

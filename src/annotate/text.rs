@@ -46,19 +46,36 @@ pub struct Face {
     pub slant: f32,
     /// Width of the stroke that strengthens the letters, in ems.
     pub weight: f32,
+    /// Room added between letters, in ems.
+    pub tracking: f32,
 }
 
 impl Face {
-    /// Strength of running text: a regular face.
-    pub const REGULAR: f32 = 0.028;
-    /// Strength of names: a medium face.
-    pub const MEDIUM: f32 = 0.05;
-    /// Strength of titles.
-    pub const BOLD: f32 = 0.075;
+    /// Strength of running text on a panel: a regular face.
+    pub const REGULAR: f32 = 0.03;
+    /// Strength of titles, and of text on the picture itself, where halos eat at the letters' edges.
+    pub const MEDIUM: f32 = 0.055;
+    /// Strength of names on the picture.
+    pub const BOLD: f32 = 0.08;
 
     /// Upright type.
     pub fn upright(size_px: f32, weight: f32) -> Self {
-        Self { size_px, slant: 0.0, weight }
+        Self { size_px, slant: 0.0, weight, tracking: 0.0 }
+    }
+
+    /// Width of the strengthening stroke in pixels.
+    fn stroke_px(&self) -> f32 {
+        self.weight * self.size_px
+    }
+
+    /// Room between letters in pixels: as asked for, and what the stroke takes away, and a little more for
+    /// small type, whose letters would otherwise run together.
+    fn tracking_px(&self) -> f32 {
+        /// Above this size type needs no help, in pixels.
+        const SMALL_PX: f32 = 13.0;
+        let stroke = self.weight * 0.5;
+        let small = (SMALL_PX - self.size_px).max(0.0) * 0.007;
+        (self.tracking + stroke + small) * self.size_px
     }
 }
 
@@ -106,7 +123,7 @@ impl Typesetter {
         let shortened = text.chars().nth(MOST_CHARACTERS).is_some();
         let text: String =
             text.chars().take(MOST_CHARACTERS).map(|c| if c.is_control() { ' ' } else { c }).collect();
-        let layout = self.shape(&text, face.size_px);
+        let layout = self.shape(&text, face);
         let mut ink = Outliner { path: PathBuilder::new(), at: Vec2::ZERO, slant: face.slant };
         let (mut missing, mut advance) = (0, 0.0f32);
         if let Some(line) = layout.lines().next() {
@@ -120,11 +137,12 @@ impl Typesetter {
         Line { outline: ink.path.finish(), advance, missing, shortened, face }
     }
 
-    fn shape(&mut self, text: &str, size_px: f32) -> Layout<()> {
+    fn shape(&mut self, text: &str, face: Face) -> Layout<()> {
         let families = [FontFamilyName::named(FACE), FontFamilyName::named(FALLBACK_FACE)];
         let mut builder = self.layouts.ranged_builder(&mut self.fonts, text, 1.0, false);
         builder.push_default(StyleProperty::FontFamily(FontFamily::from(&families[..])));
-        builder.push_default(StyleProperty::FontSize(size_px));
+        builder.push_default(StyleProperty::FontSize(face.size_px));
+        builder.push_default(StyleProperty::LetterSpacing(face.tracking_px()));
         let mut layout = builder.build(text);
         layout.break_all_lines(None);
         layout
@@ -132,27 +150,17 @@ impl Typesetter {
 }
 
 impl Line {
-    /// The smallest box around the letters, as they are painted; [`PixelBox::EMPTY`] where nothing shows.
-    pub fn ink(&self) -> PixelBox {
-        let stroke = self.face.weight * self.face.size_px * 0.5;
-        self.outline.as_ref().map_or(PixelBox::EMPTY, |path| box_of(path).grown(stroke))
+    /// The smallest box around the letters with a halo of `halo` pixels, baseline from the origin;
+    /// [`PixelBox::EMPTY`] where nothing shows.
+    pub fn ink(&self, halo: f32) -> PixelBox {
+        let around = halo.max(self.face.stroke_px() * 0.5);
+        self.outline.as_ref().map_or(PixelBox::EMPTY, |path| box_of(path).grown(around))
     }
 }
 
-/// Lines of text on a drawing: all halos first, so that none covers a neighbour's letters.
-///
-/// Each line comes with the start of its baseline. `halo` is how far the halo reaches around the letters in
-/// pixels; 0 draws none.
-pub fn write(drawing: &mut Drawing, lines: &[(&Line, Vec2)], color: Srgba, halo: f32) {
-    let placed: Vec<_> = lines.iter().filter_map(|(line, at)| placed(line, *at)).collect();
-    if halo > 0.0 {
-        let mut all = PathBuilder::new();
-        placed.iter().for_each(|(path, _)| all.push_path(path));
-        if let Some(all) = all.finish() {
-            drawing.stroke(&all, halo * 2.0, HALO);
-        }
-    }
-    for (path, stroke) in placed {
+/// Writes lines of text, each from the start of its baseline.
+pub fn write(drawing: &mut Drawing, lines: &[(&Line, Vec2)], color: Srgba) {
+    for (path, stroke) in lines.iter().filter_map(|(line, at)| placed(line, *at)) {
         if stroke > 0.0 {
             drawing.stroke(&path, stroke, color);
         }
@@ -160,9 +168,21 @@ pub fn write(drawing: &mut Drawing, lines: &[(&Line, Vec2)], color: Srgba, halo:
     }
 }
 
+/// Draws one halo, reaching `reach` pixels around the letters, under all of `lines`: drawn before any is
+/// written, it covers no neighbour's letters, and where lines are close it stays one even tone.
+pub fn halos(drawing: &mut Drawing, lines: &[(&Line, Vec2)], reach: f32) {
+    let mut all = PathBuilder::new();
+    for (path, _) in lines.iter().filter_map(|(line, at)| placed(line, *at)) {
+        all.push_path(&path);
+    }
+    if let Some(all) = all.finish() {
+        drawing.stroke(&all, reach * 2.0, HALO);
+    }
+}
+
 fn placed(line: &Line, at: Vec2) -> Option<(Path, f32)> {
     let path = line.outline.clone()?.transform(tiny_skia::Transform::from_translate(at.x, at.y))?;
-    Some((path, line.face.weight * line.face.size_px))
+    Some((path, line.face.stroke_px()))
 }
 
 fn register(collection: &mut Collection, font: &'static [u8], name: &str) {

@@ -10,12 +10,16 @@ use crate::annotate::sheet::{INK, SOFT_INK, Sheet};
 use crate::annotate::text::{CAP_HEIGHT, Face, Line, Typesetter, write};
 
 /// The block is no wider than this share of the picture: the rest is left to the view and the north arrow.
-const WIDEST_SHARE: f32 = 0.55;
-/// Lines of the title, and of the subtitle.
-const MOST_LINES: usize = 2;
+const WIDEST_SHARE: f32 = 0.62;
+/// Nor higher than this share; it is given up only by the last of [`MOST_LINES`].
+const HIGHEST_SHARE: f32 = 0.21;
+/// Lines of the title and of the subtitle, from the most generous to the least.
+const MOST_LINES: [(usize, usize); 4] = [(2, 2), (2, 1), (2, 0), (1, 0)];
 
 /// The title block with its upper left corner at the origin; `None` where there is nothing to say or no room
 /// to say it.
+///
+/// On small pictures the subtitle gives way to the title: first its second line, then the whole of it.
 pub fn compose(
     title: Option<&str>,
     subtitle: Option<&str>,
@@ -23,18 +27,33 @@ pub fn compose(
     setter: &mut Typesetter,
     report: &mut Report,
 ) -> Option<Drawing> {
-    let padding = sheet.padding();
-    let widest = sheet.size.x * WIDEST_SHARE - padding * 2.0;
-    let mut set = |text: Option<&str>, size: f32, weight: f32| {
-        let face = Face::upright(sheet.type_px(size), weight);
-        broken(setter, text.unwrap_or(""), face, widest, MOST_LINES)
-    };
-    let title_lines = set(title, 30.0, Face::MEDIUM);
-    let subtitle_lines = set(subtitle, 18.0, Face::REGULAR);
-    for (text, lines) in [(title, &title_lines), (subtitle, &subtitle_lines)] {
-        report.set(text.unwrap_or(""), lines.missing(), lines.shortened && !lines.lines.is_empty());
+    let widest = sheet.size.x * WIDEST_SHARE - sheet.padding() * 2.0;
+    let texts = [title, subtitle].map(Option::unwrap_or_default);
+    let size = title_px(texts[0], widest, sheet, setter);
+    let faces = [Face::upright(size, Face::MEDIUM), Face::upright(sheet.type_px(18.0), Face::REGULAR)];
+    for (title_lines, subtitle_lines) in MOST_LINES {
+        let title = broken(setter, texts[0], faces[0], widest, title_lines);
+        // A subtitle without a title may use the title's room.
+        let subtitle_lines = if title.lines.is_empty() { title_lines } else { subtitle_lines };
+        let subtitle = broken(setter, texts[1], faces[1], widest, subtitle_lines);
+        let drawing = lay_out(&title, &subtitle, sheet)?;
+        if title_lines == 1 || drawing.bounds().size().y <= sheet.size.y * HIGHEST_SHARE {
+            report.set(texts[0], title.missing(), title.shortened);
+            report.set(texts[1], subtitle.missing(), subtitle.shortened);
+            return Some(drawing);
+        }
     }
-    lay_out(&title_lines, &subtitle_lines, sheet)
+    None
+}
+
+/// The size of the title's type: a little smaller than usual where that saves a second line.
+fn title_px(title: &str, widest: f32, sheet: &Sheet, setter: &mut Typesetter) -> f32 {
+    /// Smaller than this, in design pixels, it would no longer look like a title.
+    const SMALLEST: f32 = 25.0;
+    let usual = sheet.type_px(30.0);
+    let advance = setter.line(title, Face::upright(usual, Face::MEDIUM)).advance;
+    let fitting = (usual * widest / advance.max(1.0)).min(usual) * 0.99;
+    if fitting >= sheet.type_px(SMALLEST) { fitting } else { usual }
 }
 
 fn lay_out(title: &Paragraph, subtitle: &Paragraph, sheet: &Sheet) -> Option<Drawing> {
@@ -58,8 +77,8 @@ fn lay_out(title: &Paragraph, subtitle: &Paragraph, sheet: &Sheet) -> Option<Dra
     let area = PixelBox::at(Vec2::ZERO, Vec2::new((width + padding * 2.0).ceil(), height));
     drawing.panel(area, sheet.hairline());
     let (title_part, subtitle_part) = placed.split_at(title.lines.len());
-    write(&mut drawing, title_part, INK, 0.0);
-    write(&mut drawing, subtitle_part, SOFT_INK, 0.0);
+    write(&mut drawing, title_part, INK);
+    write(&mut drawing, subtitle_part, SOFT_INK);
     Some(drawing)
 }
 
@@ -92,5 +111,15 @@ mod tests {
         let (drawing, report) = block(Some(&"Great Smoky Mountains ".repeat(60)), None);
         assert!(drawing.expect("a title").bounds().size().x <= 1920.0 * WIDEST_SHARE + 1.0);
         assert_eq!(report.shortened.len(), 1);
+    }
+
+    #[test]
+    fn on_a_small_picture_the_subtitle_gives_way_and_the_report_says_so() {
+        let (sheet, mut report) = (Sheet::new(480, 270), Report::default());
+        let (title, subtitle) = ("Cross Mountain and the Coal Creek Valley", "Anderson County ".repeat(9));
+        let mut setter = Typesetter::new();
+        let drawing = compose(Some(title), Some(&subtitle), &sheet, &mut setter, &mut report);
+        assert!(drawing.expect("a title").bounds().size().y <= 270.0 * HIGHEST_SHARE);
+        assert_eq!(report.shortened, [subtitle]);
     }
 }
