@@ -14,7 +14,7 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::description::snippet::snippet;
+use crate::description::snippet::{harmless, snippet};
 use crate::description::source_text::{LineColumn, SourceText};
 
 /// One thing wrong with a scene file, where, and what to do about it.
@@ -79,15 +79,16 @@ impl fmt::Display for Diagnostic {
         let shown = snippet(&self.source.text()[line], mark);
         let number = at.line.to_string();
         let gutter = " ".repeat(number.len());
-        writeln!(out, "{}:{}:{}: error: {}", self.source.name(), at.line, at.column, self.message)?;
+        let (name, message) = (harmless(self.source.name()), harmless(&self.message));
+        writeln!(out, "{name}:{}:{}: error: {message}", at.line, at.column)?;
         writeln!(out, "{gutter} |")?;
         writeln!(out, "{}", format!("{number} | {}", shown.line).trim_end())?;
         write!(out, "{gutter} | {}", shown.carets)?;
         if let Some(label) = &self.label {
-            write!(out, " {label}")?;
+            write!(out, " {}", harmless(label))?;
         }
         if let Some(help) = &self.help {
-            write!(out, "\n{gutter} = help: {help}")?;
+            write!(out, "\n{gutter} = help: {}", harmless(help))?;
         }
         Ok(())
     }
@@ -156,9 +157,19 @@ impl Report {
         Self { source, list: Vec::new(), omitted: 0 }
     }
 
+    /// The text that is read.
+    pub fn source(&self) -> &SourceText {
+        &self.source
+    }
+
+    /// Whether more errors are only counted, so that no thought need be given to their wording.
+    pub fn is_full(&self) -> bool {
+        self.list.len() >= MAX_ERRORS
+    }
+
     /// Notes one error.
     pub fn error(&mut self, span: Range<usize>, message: impl Into<String>, help: Option<String>) {
-        if self.list.len() >= MAX_ERRORS {
+        if self.is_full() {
             self.omitted += 1;
             return;
         }
@@ -186,6 +197,13 @@ mod tests {
             .with_help("did you mean `width`?");
         let expected = "hill.toml:2:1: error: unknown key `widht`\n  |\n2 | widht = 4\n  | ^^^^^ here\n  = help: did you mean `width`?";
         assert_eq!(shown.to_string(), expected);
+    }
+
+    #[test]
+    fn what_a_message_quotes_cannot_steer_the_terminal() {
+        let source = SourceText::new("a\u{1b}", "x\u{1b}[2J");
+        let shown = Diagnostic::new(&source, 0..1, "m\u{1b}").with_help("h\n\u{202e}").to_string();
+        assert!(!shown.contains(['\u{1b}', '\u{202e}']) && shown.lines().count() == 5, "{shown}");
     }
 
     #[test]

@@ -72,6 +72,11 @@ impl Snippet {
     }
 }
 
+/// `text` without what could steer a terminal.
+pub(super) fn harmless(text: &str) -> String {
+    text.chars().map(|character| if character == '\t' { ' ' } else { shown(character) }).collect()
+}
+
 /// The character to print for `character`.
 fn shown(character: char) -> char {
     match character {
