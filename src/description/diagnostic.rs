@@ -108,6 +108,18 @@ pub struct Diagnostics {
 const MAX_ERRORS: usize = 50;
 
 impl Diagnostics {
+    /// `list` in the order of the file, shortened to what anybody reads; `None` where it is empty.
+    pub fn new(list: Vec<Diagnostic>) -> Option<Self> {
+        Self::with_omitted(list, 0)
+    }
+
+    fn with_omitted(mut list: Vec<Diagnostic>, omitted: usize) -> Option<Self> {
+        list.sort_by_key(|diagnostic| diagnostic.span.start);
+        let omitted = omitted + list.len().saturating_sub(MAX_ERRORS);
+        list.truncate(MAX_ERRORS);
+        (!list.is_empty()).then_some(Self { list, omitted })
+    }
+
     /// All that are kept.
     pub fn as_slice(&self) -> &[Diagnostic] {
         &self.list
@@ -179,9 +191,7 @@ impl Report {
 
     /// Everything noted, in the order of the file; `None` where there was nothing.
     pub fn into_diagnostics(self) -> Option<Diagnostics> {
-        let Self { mut list, omitted, .. } = self;
-        list.sort_by_key(|diagnostic| diagnostic.span.start);
-        (!list.is_empty()).then_some(Diagnostics { list, omitted })
+        Diagnostics::with_omitted(self.list, self.omitted)
     }
 }
 

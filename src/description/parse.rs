@@ -102,6 +102,9 @@ fn syntax(message: &str, found: &str) -> (String, Option<String>) {
         _ if message.starts_with("string values must be quoted") => {
             ("text must be in quotes".into(), Some(format!("write \"{}\"", quoted(found.trim()))))
         }
+        _ if message.ends_with(" string, expected `\"`") || message.ends_with(" string, expected `'`") => {
+            ("this text has no closing quote".into(), Some("close it on the line where it starts".into()))
+        }
         _ => (message.into(), None),
     }
 }
