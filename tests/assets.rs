@@ -123,7 +123,8 @@ fn folders_are_no_files() {
 fn missing_folders_are_told() {
     let disk = Disk::new();
     let gone = disk.at("gone");
-    let error = Assets::new(&disk.at("project/scenes/a.toml"), &[gone.clone()]).expect_err("not there");
+    let error =
+        Assets::new(&disk.at("project/scenes/a.toml"), std::slice::from_ref(&gone)).expect_err("not there");
     assert!(error.to_string().contains(&gone.display().to_string()), "{error}");
     assert!(Assets::new(&gone.join("a.toml"), &[]).is_err());
     assert!(Assets::new(Path::new("a.toml"), &[]).is_ok(), "the current folder");

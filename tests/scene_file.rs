@@ -338,6 +338,8 @@ const BROKEN: &[(&str, &[&str])] = &[
     ("cell = 3\ncell = 4\n", &["hill.toml:4:1:", "`cell` is already given above", "remove one"]),
     ("[terrain]\n", &["hill.toml:3:2:", "`terrain` is already given above"]),
     ("[style]\nramp = atlas\n", &["hill.toml:4:8:", "text must be in quotes", "write \"atlas\""]),
+    ("[[camera]]\nname = \"x\n", &["hill.toml:4:10:", "no closing quote"]),
+    ("[[camera]]\nname = 'x\n", &["hill.toml:4:10:", "no closing quote"]),
     ("[[road\n", &["hill.toml:3:", "unclosed"]),
     ("cell = 3 4\n", &["hill.toml:3:8:", "text must be in quotes"]),
     // many-byte characters and tabs before the place
@@ -444,6 +446,8 @@ fn too_much_is_refused() {
     assert!(shown.contains("hill.toml:3:3:") && shown.contains("10001 [[label]] tables"), "{shown}");
     let shown = messages(&format!("{LEAST}[style]\nhaze = {}1{}\n", "[".repeat(50_000), "]".repeat(50_000)));
     assert!(shown.contains("cannot recurse further"), "{shown}");
+    let shown = messages(&format!("{LEAST}{}", "x = 1\n".repeat(500_000)));
+    assert!(shown.contains("hill.toml:4:1:") && shown.len() < 1000, "{shown}");
     let shown = messages(&format!("{LEAST}{}", "x = \n".repeat(1000)));
     assert!(shown.contains("and 950 more errors"), "{shown}");
 }

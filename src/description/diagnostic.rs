@@ -14,7 +14,7 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::description::snippet::snippet;
+use crate::description::snippet::{harmless, snippet};
 use crate::description::source_text::{LineColumn, SourceText};
 
 /// One thing wrong with a scene file, where, and what to do about it.
@@ -79,15 +79,16 @@ impl fmt::Display for Diagnostic {
         let shown = snippet(&self.source.text()[line], mark);
         let number = at.line.to_string();
         let gutter = " ".repeat(number.len());
-        writeln!(out, "{}:{}:{}: error: {}", self.source.name(), at.line, at.column, self.message)?;
+        let (name, message) = (harmless(self.source.name()), harmless(&self.message));
+        writeln!(out, "{name}:{}:{}: error: {message}", at.line, at.column)?;
         writeln!(out, "{gutter} |")?;
         writeln!(out, "{}", format!("{number} | {}", shown.line).trim_end())?;
         write!(out, "{gutter} | {}", shown.carets)?;
         if let Some(label) = &self.label {
-            write!(out, " {label}")?;
+            write!(out, " {}", harmless(label))?;
         }
         if let Some(help) = &self.help {
-            write!(out, "\n{gutter} = help: {help}")?;
+            write!(out, "\n{gutter} = help: {}", harmless(help))?;
         }
         Ok(())
     }
@@ -107,6 +108,18 @@ pub struct Diagnostics {
 const MAX_ERRORS: usize = 50;
 
 impl Diagnostics {
+    /// `list` in the order of the file, shortened to what anybody reads; `None` where it is empty.
+    pub fn new(list: Vec<Diagnostic>) -> Option<Self> {
+        Self::with_omitted(list, 0)
+    }
+
+    fn with_omitted(mut list: Vec<Diagnostic>, omitted: usize) -> Option<Self> {
+        list.sort_by_key(|diagnostic| diagnostic.span.start);
+        let omitted = omitted + list.len().saturating_sub(MAX_ERRORS);
+        list.truncate(MAX_ERRORS);
+        (!list.is_empty()).then_some(Self { list, omitted })
+    }
+
     /// All that are kept.
     pub fn as_slice(&self) -> &[Diagnostic] {
         &self.list
@@ -156,9 +169,19 @@ impl Report {
         Self { source, list: Vec::new(), omitted: 0 }
     }
 
+    /// The text that is read.
+    pub fn source(&self) -> &SourceText {
+        &self.source
+    }
+
+    /// Whether more errors are only counted, so that no thought need be given to their wording.
+    pub fn is_full(&self) -> bool {
+        self.list.len() >= MAX_ERRORS
+    }
+
     /// Notes one error.
     pub fn error(&mut self, span: Range<usize>, message: impl Into<String>, help: Option<String>) {
-        if self.list.len() >= MAX_ERRORS {
+        if self.is_full() {
             self.omitted += 1;
             return;
         }
@@ -168,9 +191,7 @@ impl Report {
 
     /// Everything noted, in the order of the file; `None` where there was nothing.
     pub fn into_diagnostics(self) -> Option<Diagnostics> {
-        let Self { mut list, omitted, .. } = self;
-        list.sort_by_key(|diagnostic| diagnostic.span.start);
-        (!list.is_empty()).then_some(Diagnostics { list, omitted })
+        Diagnostics::with_omitted(self.list, self.omitted)
     }
 }
 
@@ -186,6 +207,13 @@ mod tests {
             .with_help("did you mean `width`?");
         let expected = "hill.toml:2:1: error: unknown key `widht`\n  |\n2 | widht = 4\n  | ^^^^^ here\n  = help: did you mean `width`?";
         assert_eq!(shown.to_string(), expected);
+    }
+
+    #[test]
+    fn what_a_message_quotes_cannot_steer_the_terminal() {
+        let source = SourceText::new("a\u{1b}", "x\u{1b}[2J");
+        let shown = Diagnostic::new(&source, 0..1, "m\u{1b}").with_help("h\n\u{202e}").to_string();
+        assert!(!shown.contains(['\u{1b}', '\u{202e}']) && shown.lines().count() == 5, "{shown}");
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! Text to [`Document`], with every error in the file found in one run.
 
 use std::ops::Range;
+use std::sync::Arc;
 
+use toml::Spanned;
 use toml::de::DeTable;
 
 use crate::description::decode::document;
@@ -9,6 +11,7 @@ use crate::description::diagnostic::{Diagnostic, Diagnostics, Report};
 use crate::description::document::Document;
 use crate::description::reader::Reader;
 use crate::description::source_text::SourceText;
+use crate::description::suggest::quoted;
 
 /// The largest scene file in bytes. Room for some hundred thousand points; reading costs up to a hundred
 /// bytes of memory for each byte of a hostile file, so this also bounds memory to a few hundred megabytes.
@@ -24,21 +27,10 @@ pub fn parse(file_name: &str, text: &str) -> Result<Document, Diagnostics> {
         return Err(too_large(file_name, text.len()));
     }
     let source = SourceText::new(file_name, text);
-    let mut report = Report::new(source.clone());
-    let (table, errors) = DeTable::parse_recoverable(text);
-    let mut last_line = None;
-    for error in in_order(&errors) {
-        let span = error.span().unwrap_or(0..0);
-        let line = source.line_at(span.start).start;
-        if last_line.replace(line) != Some(line) {
-            let (message, help) = syntax(error.message(), &text[clamped(&span, text)]);
-            report.error(span, message, help);
-        }
-    }
-    if errors.iter().any(|error| error.message() != DUPLICATE) {
-        return Err(report.into_diagnostics().unwrap_or_else(|| unread(file_name)));
-    }
-    let parsed = Reader::read_root(&mut report, table.into_inner(), |reader| document(reader, source));
+    let mut report = Report::new(Arc::clone(&source));
+    let table = toml_table(text, &mut report);
+    let parsed =
+        table.and_then(|table| Reader::read_root(&mut report, table, |reader| document(reader, source)));
     match (report.into_diagnostics(), parsed) {
         (None, Some(document)) => Ok(document),
         (errors, _) => Err(errors.unwrap_or_else(|| unread(file_name))),
@@ -67,21 +59,51 @@ pub fn parse_bytes(file_name: &str, bytes: &[u8]) -> Result<Document, Diagnostic
 /// What the TOML parser says of a key that is there already.
 const DUPLICATE: &str = "duplicate key";
 
-fn in_order(errors: &[toml::de::Error]) -> Vec<&toml::de::Error> {
-    let mut sorted: Vec<_> = errors.iter().collect();
-    sorted.sort_by_key(|error| error.span().map_or(0, |span| span.start));
-    sorted
+/// Texts up to here have all their syntax errors told, larger ones only the first: collecting them costs
+/// hundreds of bytes for each.
+const MAX_BYTES_RECOVERED: usize = 256 << 10;
+
+/// The text as a table, where nothing is wrong with it but a key given twice. Reports one syntax error for
+/// each line, since what follows an error is often caused by it.
+fn toml_table<'i>(text: &'i str, report: &mut Report) -> Option<DeTable<'i>> {
+    let (table, mut errors) = if text.len() <= MAX_BYTES_RECOVERED {
+        DeTable::parse_recoverable(text)
+    } else {
+        match DeTable::parse(text) {
+            Ok(table) => (table, Vec::new()),
+            Err(error) => (Spanned::new(0..0, DeTable::new()), vec![error]),
+        }
+    };
+    errors.sort_by_key(|error| error.span().map_or(0, |span| span.start));
+    let mut last_end = None;
+    for error in &errors {
+        let span = error.span().unwrap_or(0..0);
+        let same_line = last_end.is_some_and(|end| span.start <= end);
+        if !same_line {
+            let (message, help) = syntax(error.message(), &text[clamped(&span, text)]);
+            report.error(span.clone(), message, help);
+            last_end = Some(report.source().line_at(span.start).end);
+        }
+    }
+    let recovered = text.len() <= MAX_BYTES_RECOVERED || errors.is_empty();
+    let readable = recovered && errors.iter().all(|error| error.message() == DUPLICATE);
+    readable.then(|| table.into_inner())
 }
 
 /// A sentence and a remedy for the TOML parser's message about the text `found`.
 fn syntax(message: &str, found: &str) -> (String, Option<String>) {
     match message {
-        DUPLICATE => (format!("`{found}` is already given above"), Some("remove one of the two".into())),
+        DUPLICATE => {
+            (format!("`{}` is already given above", quoted(found)), Some("remove one of the two".into()))
+        }
         _ if message.starts_with("string values must be quoted") && found.is_empty() => {
             ("a value is missing here".into(), Some("write one after the `=`".into()))
         }
         _ if message.starts_with("string values must be quoted") => {
-            ("text must be in quotes".into(), Some(format!("write \"{}\"", found.trim())))
+            ("text must be in quotes".into(), Some(format!("write \"{}\"", quoted(found.trim()))))
+        }
+        _ if message.ends_with(" string, expected `\"`") || message.ends_with(" string, expected `'`") => {
+            ("this text has no closing quote".into(), Some("close it on the line where it starts".into()))
         }
         _ => (message.into(), None),
     }

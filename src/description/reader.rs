@@ -220,6 +220,10 @@ impl<'r, 'i> Reader<'r, 'i> {
     fn finish(mut self) {
         let mut explained = Vec::new();
         for (key, _) in std::mem::take(&mut self.table) {
+            if self.report.is_full() {
+                self.error(key.span(), "", "");
+                continue;
+            }
             let meant = nearest(key.get_ref(), self.known.iter().copied());
             explained.extend(meant);
             let message = format!("unknown key `{}` in {}", quoted(key.get_ref()), self.title());

@@ -48,7 +48,7 @@ pub(super) fn snippet(line: &str, mark: Range<usize>) -> Snippet {
             out.push('…', 1, false);
             break;
         }
-        out.push(shown(character), width, mark.contains(&at));
+        out.push(shown(character), width, at == mark.start || mark.contains(&at));
     }
     out.finish(mark.start >= line.len())
 }
@@ -70,6 +70,11 @@ impl Snippet {
         self.carets.truncate(self.carets.trim_end().len());
         self
     }
+}
+
+/// `text` without what could steer a terminal.
+pub(super) fn harmless(text: &str) -> String {
+    text.chars().map(|character| if character == '\t' { ' ' } else { shown(character) }).collect()
 }
 
 /// The character to print for `character`.
@@ -121,6 +126,7 @@ mod tests {
     #[test]
     fn an_empty_mark_gets_one_caret() {
         assert_eq!(snippet("a =", 3..3).carets, "   ^");
+        assert_eq!(snippet("[terrain]", 0..0).carets, "^");
         assert_eq!(snippet("", 0..0).carets, "^");
         assert_eq!(snippet("a = 1", 9..12).carets, "     ^");
     }
