@@ -1,6 +1,6 @@
 //! Numbers out of accessors, every slice checked; integers become floats as the format says.
 
-use std::cell::RefCell;
+use std::cell::Cell;
 
 use ::gltf::json::Root;
 use ::gltf::json::accessor::{Accessor, ComponentType, Type};
@@ -17,7 +17,7 @@ const MAX_ELEMENTS: usize = 1 << 25;
 pub(super) struct Accessors<'a> {
     root: &'a Root,
     data: &'a Data,
-    read: RefCell<usize>,
+    read: Cell<usize>,
 }
 
 /// How one component is stored.
@@ -57,7 +57,7 @@ struct Layout {
 impl<'a> Accessors<'a> {
     /// A reader that has read nothing yet.
     pub(super) fn new(root: &'a Root, data: &'a Data) -> Self {
-        Self { root, data, read: RefCell::new(0) }
+        Self { root, data, read: Cell::new(0) }
     }
 
     /// Vectors of `N` components.
@@ -92,6 +92,19 @@ impl<'a> Accessors<'a> {
         }
     }
 
+    /// Counts `elements` against what one model may read.
+    ///
+    /// # Errors
+    /// [`ModelError::TooLarge`].
+    pub(super) fn charge(&self, elements: usize) -> Result<(), ModelError> {
+        let read = self.read.get().saturating_add(elements);
+        self.read.set(read);
+        if read > MAX_ELEMENTS {
+            return Err(ModelError::TooLarge { what: "vertices, indices and joints", limit: MAX_ELEMENTS });
+        }
+        Ok(())
+    }
+
     fn elements<T: Clone>(
         &self,
         index: usize,
@@ -101,10 +114,7 @@ impl<'a> Accessors<'a> {
         let fail = |reason: String| ModelError::gltf(format!("accessors[{index}]"), reason);
         let accessor = self.root.accessors.get(index).ok_or_else(|| fail("it is not there".into()))?;
         let layout = self.layout(accessor, components).map_err(&fail)?;
-        *self.read.borrow_mut() += layout.count;
-        if *self.read.borrow() > MAX_ELEMENTS {
-            return Err(ModelError::TooLarge { what: "vertices and indices", limit: MAX_ELEMENTS });
-        }
+        self.charge(layout.count)?;
         let mut elements = match accessor.buffer_view {
             Some(view) => {
                 let view = self.data.view(self.root, view.value())?;
@@ -205,7 +215,7 @@ mod tests {
             [{{"buffer":0,"byteLength":8}},{{"buffer":0,"byteLength":8,"byteStride":4}}],"accessors":[{accessor}]}}"#
         );
         let root: Root = serde_json::from_str(&json).expect("sound JSON");
-        let data = Data::load(&root, Some(&[0, 1, 2, 3, 4, 5, 6, 7]), &Nothing)?;
+        let data = Data::load(&root, Some(&[0, 1, 2, 3, 4, 5, 6, 7]), &Nothing);
         Accessors::new(&root, &data).vectors(0)
     }
 

@@ -3,6 +3,7 @@
 use ::gltf::json::mesh::Semantic;
 use ::gltf::json::validation::{Checked, Error, Validate};
 use ::gltf::json::{Path, Root};
+use serde_json::{Value, json};
 
 use crate::model::error::ModelError;
 
@@ -18,7 +19,10 @@ const REFINES: &str = "KHR_materials_";
 pub(super) fn open(bytes: &[u8]) -> Result<(Root, Option<&[u8]>), ModelError> {
     let (json, binary) = if bytes.starts_with(b"glTF") { split(bytes)? } else { (bytes, None) };
     let json = json.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(json);
-    let mut root: Root = serde_json::from_slice(json).map_err(|error| ModelError::gltf("the JSON", error.to_string()))?;
+    let fail = |error: serde_json::Error| ModelError::gltf("the JSON", error.to_string());
+    let mut document: Value = serde_json::from_slice(json).map_err(fail)?;
+    complete(&mut document);
+    let mut root: Root = serde_json::from_value(document).map_err(fail)?;
     check_version(&root.asset.version)?;
     check_extensions(&root)?;
     root.extensions_required.clear();
@@ -60,6 +64,47 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ModelError> {
         at += 8 + body.len();
     }
     json.map(|json| (json, binary)).ok_or_else(|| fail("no JSON chunk follows it".into()))
+}
+
+/// Adds what the format lets out and `gltf-json` 1.4.1 insists on: nodes of scenes, and the image of a
+/// texture that has one only by an extension. Takes out `extras`, of which it refuses all but objects.
+fn complete(document: &mut Value) {
+    drop_extras(document);
+    for scene in list_in(document, "scenes") {
+        if let Some(scene) = scene.as_object_mut() {
+            scene.entry("nodes").or_insert_with(|| json!([]));
+        }
+    }
+    let images = list_in(document, "images").len();
+    let mut lacking = false;
+    for texture in list_in(document, "textures") {
+        if let Some(texture) = texture.as_object_mut().filter(|texture| !texture.contains_key("source")) {
+            texture.insert("source".into(), json!(images));
+            lacking = true;
+        }
+    }
+    if lacking && let Some(document) = document.as_object_mut() {
+        let images = document.entry("images").or_insert_with(|| json!([]));
+        if let Some(images) = images.as_array_mut() {
+            images.push(json!({ "name": "an image in a format that is not supported" }));
+        }
+    }
+}
+
+fn list_in<'a>(document: &'a mut Value, field: &str) -> &'a mut [Value] {
+    document.get_mut(field).and_then(Value::as_array_mut).map_or(&mut [], Vec::as_mut_slice)
+}
+
+/// Recursion ends: `serde_json` lets values nest no deeper than 128 levels.
+fn drop_extras(value: &mut Value) {
+    match value {
+        Value::Array(values) => values.iter_mut().for_each(drop_extras),
+        Value::Object(fields) => {
+            fields.remove("extras");
+            fields.values_mut().for_each(drop_extras);
+        }
+        _ => {}
+    }
 }
 
 fn check_version(version: &str) -> Result<(), ModelError> {
@@ -153,6 +198,16 @@ mod tests {
     fn a_position_that_names_no_accessor_is_refused() {
         let json = br#"{"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":{"POSITION":4}}]}]}"#;
         assert!(open(json).expect_err("forged").to_string().contains("accessor 4 of 0"));
+    }
+
+    #[test]
+    fn what_the_format_lets_out_may_be_let_out() {
+        let json = br#"{"asset":{"version":"2.0"},"scenes":[{}],"textures":[{"extras":3}],"extras":[1]}"#;
+        let (root, _) = open(json).expect("a sound file");
+        assert_eq!((root.scenes[0].nodes.len(), root.images.len()), (0, 1));
+        for odd in [&b"[]"[..], b"3", br#"{"scenes":3}"#, br#"{"images":{},"textures":[{}]}"#] {
+            assert!(open(odd).is_err());
+        }
     }
 
     #[test]

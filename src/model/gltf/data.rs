@@ -8,9 +8,9 @@ use ::gltf::json::Root;
 use crate::model::error::ModelError;
 use crate::model::kind::Companions;
 
-/// The buffers of a document.
+/// The buffers of a document, or why one cannot be had: a buffer that nothing reads may be missing.
 pub(super) struct Data {
-    buffers: Vec<Rc<[u8]>>,
+    buffers: Vec<Result<Rc<[u8]>, String>>,
 }
 
 /// A part of a buffer with the distance between its elements, where it states one.
@@ -22,48 +22,36 @@ pub(super) struct View<'a> {
 
 impl Data {
     /// All buffers, each companion loaded once.
-    ///
-    /// # Errors
-    /// [`ModelError::Gltf`] where one cannot be had or is shorter than stated.
-    pub(super) fn load(
-        root: &Root,
-        binary: Option<&[u8]>,
-        companions: &dyn Companions,
-    ) -> Result<Self, ModelError> {
-        let mut by_uri: BTreeMap<&str, Rc<[u8]>> = BTreeMap::new();
+    pub(super) fn load(root: &Root, binary: Option<&[u8]>, companions: &dyn Companions) -> Self {
+        let mut by_uri: BTreeMap<&str, Result<Rc<[u8]>, String>> = BTreeMap::new();
         let mut buffers = Vec::new();
         for (index, buffer) in root.buffers.iter().enumerate() {
-            let fail = |reason: String| ModelError::gltf(format!("buffers[{index}]"), reason);
             let bytes = match (&buffer.uri, binary) {
-                (Some(uri), _) => match by_uri.get(uri.as_str()) {
-                    Some(known) => known.clone(),
-                    None => {
-                        let bytes: Rc<[u8]> = resolve(uri, companions).map_err(fail)?.into();
-                        by_uri.insert(uri, bytes.clone());
-                        bytes
-                    }
-                },
-                (None, Some(binary)) if index == 0 => binary.into(),
-                (None, _) if buffer.byte_length.0 == 0 => Rc::from([]),
-                (None, _) => return Err(fail("it has no uri, and the file no binary chunk for it".into())),
+                (Some(uri), _) => {
+                    by_uri.entry(uri).or_insert_with(|| resolve(uri, companions).map(Rc::from)).clone()
+                }
+                (None, Some(binary)) if index == 0 => Ok(binary.into()),
+                (None, _) => Err("it has no uri, and the file no binary chunk for it".into()),
             };
-            if (bytes.len() as u64) < buffer.byte_length.0 {
-                let reason = format!("{} bytes are stated and {} there", buffer.byte_length.0, bytes.len());
-                return Err(fail(reason));
-            }
-            buffers.push(bytes);
+            buffers.push(bytes.and_then(|bytes| {
+                let (stated, there) = (buffer.byte_length.0, bytes.len());
+                let enough = there as u64 >= stated;
+                if enough { Ok(bytes) } else { Err(format!("{stated} bytes are stated and {there} there")) }
+            }));
         }
-        Ok(Self { buffers })
+        Self { buffers }
     }
 
     /// The bytes of buffer view `index`.
     ///
     /// # Errors
-    /// [`ModelError::Gltf`] where it reaches past its buffer.
+    /// [`ModelError::Gltf`] where its buffer cannot be had or it reaches past it.
     pub(super) fn view(&self, root: &Root, index: usize) -> Result<View<'_>, ModelError> {
         let fail = |reason: &str| ModelError::gltf(format!("bufferViews[{index}]"), reason);
         let view = root.buffer_views.get(index).ok_or_else(|| fail("it is not there"))?;
-        let buffer = self.buffers.get(view.buffer.value()).ok_or_else(|| fail("its buffer is not there"))?;
+        let place = view.buffer.value();
+        let buffer = self.buffers.get(place).ok_or_else(|| fail("its buffer is not there"))?;
+        let buffer = buffer.as_ref().map_err(|reason| ModelError::gltf(format!("buffers[{place}]"), reason))?;
         let start = usize::try_from(view.byte_offset.unwrap_or_default().0).ok();
         let length = usize::try_from(view.byte_length.0).ok();
         let bytes = start

@@ -39,7 +39,7 @@ const Z_UP: Mat4 =
 /// [`ModelError::Gltf`] and [`ModelError::TooLarge`]. A picture that cannot be had is a note.
 pub fn read(bytes: &[u8], companions: &dyn Companions) -> Result<Model, ModelError> {
     let (root, binary) = container::open(bytes)?;
-    let data = Data::load(&root, binary, companions)?;
+    let data = Data::load(&root, binary, companions);
     let standing = nodes::standing(&root)?;
     let mut model = Model::default();
     let mut painter = Painter::new(&root, &data, companions);
@@ -49,7 +49,7 @@ pub fn read(bytes: &[u8], companions: &dyn Companions) -> Result<Model, ModelErr
         let node = &root.nodes[index];
         let Some(mesh) = node.mesh else { continue };
         let pose = match node.skin {
-            Some(skin) => skin::pose(&root, &data, skin.value(), &standing.world_from_node)?,
+            Some(skin) => skin::pose(&root, painter.accessors(), skin.value(), &standing.world_from_node)?,
             None => skin::Pose::Rigid(Z_UP * standing.world_from_node[index]),
         };
         let name = node.name.as_ref().or(root.meshes[mesh.value()].name.as_ref()).cloned().unwrap_or_default();

@@ -57,6 +57,11 @@ impl<'a> Painter<'a> {
         }
     }
 
+    /// What reads the document's accessors.
+    pub(super) fn accessors(&self) -> &Accessors<'a> {
+        &self.accessors
+    }
+
     /// Adds mesh `index` in `pose`, and to the census where it is `new`; returns how many primitives it has.
     ///
     /// # Errors

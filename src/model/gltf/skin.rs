@@ -7,7 +7,6 @@ use crate::model::error::ModelError;
 
 use super::Z_UP;
 use super::accessor::Accessors;
-use super::data::Data;
 
 /// How a mesh is brought to the world, Z up.
 pub(super) enum Pose {
@@ -41,16 +40,17 @@ impl Pose {
 /// The rest pose of skin `index`.
 ///
 /// # Errors
-/// [`ModelError::Gltf`] where its matrices do not hold what they state.
+/// [`ModelError::Gltf`] where its matrices do not hold what they state; [`ModelError::TooLarge`].
 pub(super) fn pose(
     root: &Root,
-    data: &Data,
+    accessors: &Accessors<'_>,
     index: usize,
     world_from_node: &[Mat4],
 ) -> Result<Pose, ModelError> {
     let skin = &root.skins[index];
+    accessors.charge(skin.joints.len())?;
     let inverse_binds = match skin.inverse_bind_matrices {
-        Some(accessor) => Accessors::new(root, data).vectors::<16>(accessor.value())?,
+        Some(accessor) => accessors.vectors::<16>(accessor.value())?,
         None => Vec::new(),
     };
     let joints = skin.joints.iter().enumerate().map(|(place, joint)| {
