@@ -25,6 +25,9 @@ pub struct Shader<'a> {
     most_taps: u32,
 }
 
+/// A face's vertices and their shares at a point.
+type Corners<'a> = ([&'a DrawVertex; 3], Shares);
+
 /// What a surface sends to the eye.
 #[derive(Clone, Copy, Debug)]
 pub struct Shaded {
@@ -62,15 +65,14 @@ impl<'a> Shader<'a> {
         let material = self.material(item);
         let hit = Hit::of(face, self.screen, at);
         let ground = self.ground_beneath(material, &hit);
-        let shares = Shares::of(face, at);
-        let corners = self.corners(item, face);
+        let corners = || (self.corners(item, face), Shares::of(face, at));
         let (albedo, alpha) = match (material.albedo, &ground) {
             (Albedo::GroundMap, Some((ground, point))) => (ground.albedo(point, &hit), 1.0),
-            _ => self.surface_color(material, &corners, &shares),
+            _ => self.surface_color(material, corners()),
         };
         let (normal, [sun, sky]) = match (material.normals, &ground) {
             (Normals::Ground, Some((_, point))) => (point.normal(), point.visibility()),
-            _ => (vertex_normal(item, face, &corners, &shares), [1.0, 1.0]),
+            _ => (vertex_normal(item, face, corners()), [1.0, 1.0]),
         };
         let lighting = &self.list.lighting;
         let lit = lighting.lit(albedo, normal, sun, sky);
@@ -106,11 +108,11 @@ impl<'a> Shader<'a> {
     }
 
     /// Base colour × vertex colour × texture, in linear light, and alpha.
-    fn surface_color(&self, material: &Material, corners: &[&DrawVertex; 3], shares: &Shares) -> (Vec3, f32) {
-        let texel = self.texel(material, corners, shares, 0.0);
+    fn surface_color(&self, material: &Material, (corners, shares): Corners) -> (Vec3, f32) {
+        let texel = self.texel(material, &corners, &shares, 0.0);
         let vertex = shares.blend(corners.map(|corner| corner.color.linear()));
         let alpha = match material.alpha {
-            Alpha::Blend => alpha(material, corners, shares, &texel),
+            Alpha::Blend => alpha(material, &corners, &shares, &texel),
             Alpha::Opaque | Alpha::Mask(_) => 1.0,
         };
         (material.base_color.linear() * vertex * texel.color, alpha)
@@ -133,7 +135,7 @@ fn alpha(material: &Material, corners: &[&DrawVertex; 3], shares: &Shares, texel
 }
 
 /// The unit normal in world space on the side that is seen; the triangle's own where vertices have none.
-fn vertex_normal(item: &DrawItem, face: &Face, corners: &[&DrawVertex; 3], shares: &Shares) -> Vec3 {
+fn vertex_normal(item: &DrawItem, face: &Face, (corners, shares): Corners) -> Vec3 {
     let blended = shares.blend(corners.map(|corner| Vec3::from(corner.normal)));
     let to_world = Mat3::from_mat4(item.world_from_mesh);
     let normal = (to_world * blended).try_normalize().unwrap_or_else(|| {

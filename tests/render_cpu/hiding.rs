@@ -1,0 +1,223 @@
+//! What hides what: drapes, ridges, solids, holes, transparency.
+
+use glam::{DVec2, Vec3};
+use sandtable::draw::color::Srgba;
+use sandtable::draw::list::{DrawList, FeatureId, Layer};
+use sandtable::draw::material::{Alpha, Material};
+use sandtable::draw::pixels::Pixels;
+use sandtable::render::picture::Picture;
+use sandtable::view::camera::Camera;
+
+use crate::landscape::{
+    BOX, FOREST, ROAD, box_mesh, draped_material, draped_strip, ground_map, ground_material, ground_mesh,
+    item,
+};
+use crate::{count, depth, feature, looking, northward, plain_light, shot, wall};
+
+const RED: Srgba = Srgba::opaque(255, 0, 0);
+const GREEN: Srgba = Srgba::opaque(0, 255, 0);
+const BLUE: Srgba = Srgba::opaque(0, 0, 255);
+
+/// Ground of `height`, and strips beside each other at an angle that cover its inner part.
+fn draped_all_over(half_m: f32, height: impl Fn(f32, f32) -> f32) -> DrawList {
+    let ground = ground_mesh(40, half_m, &height);
+    let mut list = DrawList { ground: Some(ground_map(81, half_m, false, height)), ..DrawList::default() };
+    let half = f64::from(half_m);
+    let along = DVec2::new(0.8, 0.6);
+    let width = half / 10.0;
+    let strips: Vec<_> = (-8..8)
+        .map(|strip| {
+            let middle = along.perp() * (f64::from(strip) + 0.5) * width;
+            draped_strip(&ground, &[middle - along * half, middle + along * half], width / 2.0)
+        })
+        .collect();
+    item(&mut list, ground, ground_material(), Layer::Ground, FeatureId::GROUND);
+    for strip in strips {
+        item(&mut list, strip, draped_material(RED), Layer::Draped(1), ROAD);
+    }
+    list
+}
+
+/// The pixels that show ground well inside the area that [`draped_all_over`] covers.
+fn bare_pixels(picture: &Picture, camera: &Camera, half_m: f32) -> usize {
+    let (width, height) = camera.size();
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    pixels
+        .filter(|&(x, y)| feature(picture, x, y) == FeatureId::GROUND)
+        .filter(|&(x, y)| {
+            let ray = camera.ray_through(glam::Vec2::new(x as f32 + 0.5, y as f32 + 0.5));
+            let world = camera.eye() + ray * depth(picture, x, y);
+            world.truncate().length() < 0.7 * half_m
+        })
+        .count()
+}
+
+#[test]
+fn a_drape_wins_over_its_slope_from_every_side_and_distance() {
+    let hills = |x: f32, y: f32| 40.0 * libm::sinf(x / 130.0) * libm::cosf(y / 170.0) + 0.1 * x;
+    let list = draped_all_over(500.0, hills);
+    let on = |x: f32, y: f32, rise: f32| Vec3::new(x, y, hills(x, y) + rise);
+    for (eye, target) in [
+        (on(0.0, 0.0, 1.7), on(30.0, 300.0, 0.0)),
+        (on(-200.0, 100.0, 0.6), on(200.0, 110.0, 0.0)),
+        (on(100.0, -340.0, 3.0), on(0.0, 0.0, 0.0)),
+        (Vec3::new(0.0, -900.0, 60.0), Vec3::ZERO),
+        (Vec3::new(700.0, 700.0, 900.0), Vec3::ZERO),
+        (Vec3::new(0.0, 0.0, 3_000.0), Vec3::ZERO),
+    ] {
+        let camera = looking(eye, target, (320, 200));
+        let picture = shot(&list, &camera);
+        assert!(count(&picture, ROAD) > 3_000, "hardly anything is in view from {eye}");
+        assert_eq!(bare_pixels(&picture, &camera, 500.0), 0, "from {eye}");
+    }
+}
+
+#[test]
+fn a_drape_wins_over_its_slope_ten_kilometres_away() {
+    let hills = |x: f32, y: f32| 300.0 * libm::sinf(x / 1900.0) * libm::cosf(y / 1300.0);
+    let list = draped_all_over(4_000.0, hills);
+    for eye in [Vec3::new(0.0, -10_000.0, 600.0), Vec3::new(9_000.0, 5_000.0, 2_500.0)] {
+        let camera = Camera::new(eye, Vec3::ZERO, 0.3, (320, 200), (1.0, 60_000.0)).expect("sound");
+        let picture = shot(&list, &camera);
+        assert!(count(&picture, ROAD) > 3_000, "hardly anything is in view from {eye}");
+        assert_eq!(bare_pixels(&picture, &camera, 4_000.0), 0, "from {eye}");
+    }
+}
+
+#[test]
+fn a_drape_does_not_shine_through_a_ridge() {
+    // A ridge 30 m wide and 40 m high along the X axis, a road at its far foot.
+    let ridge = |_: f32, y: f32| (40.0 - 40.0 * (y / 15.0).abs()).max(0.0);
+    let ground = ground_mesh(80, 600.0, ridge);
+    let line = [DVec2::new(-500.0, 20.0), DVec2::new(500.0, 20.0)];
+    let road = draped_strip(&ground, &line, 3.0);
+    let mut list = DrawList { ground: Some(ground_map(81, 600.0, false, ridge)), ..DrawList::default() };
+    item(&mut list, ground, ground_material(), Layer::Ground, FeatureId::GROUND);
+    item(&mut list, road, draped_material(RED), Layer::Draped(1), ROAD);
+    for y in [-50.0, -500.0, -10_000.0] {
+        let eye = Vec3::new(0.0, y, 10.0 - y / 1000.0);
+        let picture = shot(&list, &looking(eye, Vec3::new(0.0, 0.0, 10.0), (300, 200)));
+        assert_eq!(count(&picture, ROAD), 0, "from {eye}");
+    }
+    let behind = shot(&list, &looking(Vec3::new(0.0, 200.0, 30.0), Vec3::ZERO, (300, 200)));
+    assert!(count(&behind, ROAD) > 500);
+}
+
+#[test]
+fn what_stands_or_lies_on_a_road_hides_it() {
+    let flat = |_: f32, _: f32| 0.0;
+    let ground = ground_mesh(10, 100.0, flat);
+    let road = draped_strip(&ground, &[DVec2::new(-90.0, 0.0), DVec2::new(90.0, 0.0)], 10.0);
+    let mut list = DrawList { ground: Some(ground_map(11, 100.0, false, flat)), ..DrawList::default() };
+    item(&mut list, ground, ground_material(), Layer::Ground, FeatureId::GROUND);
+    item(&mut list, road, draped_material(RED), Layer::Draped(1), ROAD);
+    let house = box_mesh(Vec3::ZERO, Vec3::new(6.0, 6.0, 5.0));
+    item(&mut list, house, Material::default(), Layer::Solid, BOX);
+    let plate = box_mesh(Vec3::new(20.0, 0.0, 0.0), Vec3::new(6.0, 6.0, 0.02));
+    item(&mut list, plate, Material::default(), Layer::Solid, BOX);
+    let camera = looking(Vec3::new(10.0, -90.0, 30.0), Vec3::new(10.0, 0.0, 0.0), (400, 300));
+    let picture = shot(&list, &camera);
+    // Just above the foot of the wall, on the plate, and on the road between them.
+    let things = [(0.0, -3.0, 0.2, BOX), (20.0, 0.0, 0.02, BOX), (11.0, 0.0, 0.0, ROAD)];
+    for (x, y, z, expected) in things {
+        let at = camera.project(Vec3::new(x, y, z)).expect("in view");
+        assert_eq!(feature(&picture, at.pixel.x as u32, at.pixel.y as u32), expected, "at {x}, {y}, {z}");
+    }
+}
+
+#[test]
+fn a_later_drape_covers_an_earlier_one_and_transparent_ones_keep_to_that() {
+    let flat = |_: f32, _: f32| 0.0;
+    let ground = ground_mesh(10, 100.0, flat);
+    let lower = draped_strip(&ground, &[DVec2::new(-90.0, 0.0), DVec2::new(90.0, 3.0)], 30.0);
+    let upper = draped_strip(&ground, &[DVec2::new(0.0, -90.0), DVec2::new(7.0, 90.0)], 10.0);
+    for alpha in [Alpha::Opaque, Alpha::Blend] {
+        let mut list = DrawList { ground: Some(ground_map(11, 100.0, false, flat)), ..DrawList::default() };
+        item(&mut list, ground.clone(), ground_material(), Layer::Ground, FeatureId::GROUND);
+        let under = Material { alpha, ..draped_material(Srgba([0, 255, 0, 200])) };
+        item(&mut list, lower.clone(), under, Layer::Draped(1), FOREST);
+        item(&mut list, upper.clone(), draped_material(RED), Layer::Draped(2), ROAD);
+        let picture = shot(&list, &looking(Vec3::new(0.0, -80.0, 40.0), Vec3::ZERO, (200, 150)));
+        assert_eq!(feature(&picture, 100, 75), ROAD);
+        assert_eq!(picture.pixels.at(100, 75).0[1], 0, "green shows through");
+        assert_eq!(feature(&picture, 60, 75), FOREST);
+    }
+}
+
+#[test]
+fn masked_holes_show_what_is_behind_them() {
+    let mut list = DrawList::default();
+    plain_light(&mut list);
+    let holes = Pixels::from_fn(2, 1, |x, _| Srgba([255, 0, 0, if x == 0 { 255 } else { 0 }]));
+    let texture = Some(list.add_texture(holes));
+    let material = Material { texture, alpha: Alpha::Mask(0.5), ..Material::default() };
+    item(&mut list, wall(10.0, [-2.0, 2.0], [-2.0, 2.0], Srgba::WHITE), material, Layer::Solid, BOX);
+    let behind = wall(20.0, [-9.0, 9.0], [-9.0, 9.0], BLUE);
+    item(&mut list, behind, Material::default(), Layer::Solid, ROAD);
+    let picture = shot(&list, &northward((160, 120)));
+    assert_eq!((feature(&picture, 66, 60), feature(&picture, 94, 60)), (BOX, ROAD));
+    assert_eq!((picture.pixels.at(66, 60), picture.pixels.at(94, 60)), (RED, BLUE));
+    // The texture repeats, so alpha passes ½ at a quarter, at three quarters: half the wall is left.
+    let left = count(&picture, BOX) as f32;
+    let side = 120.0 * 4.0 / (2.0 * libm::tanf(0.4) * 10.0);
+    assert!((left / (side * side) - 0.5).abs() < 0.03, "{left} of {}", side * side);
+}
+
+#[test]
+fn transparent_walls_blend_in_linear_light_and_by_depth_not_by_order() {
+    let glass = |color: [u8; 3]| Material {
+        base_color: Srgba([color[0], color[1], color[2], 128]),
+        alpha: Alpha::Blend,
+        ..Material::default()
+    };
+    let walls = [(12.0, [255, 0, 0]), (10.0, [0, 255, 0]), (8.0, [0, 0, 255])];
+    let pictures = [[0, 1, 2], [2, 0, 1], [1, 2, 0]].map(|order| {
+        let mut list = DrawList::default();
+        plain_light(&mut list);
+        let back = wall(20.0, [-20.0, 20.0], [-20.0, 20.0], Srgba::opaque(0, 0, 0));
+        item(&mut list, back, Material::default(), Layer::Solid, ROAD);
+        for index in order {
+            let (y, color) = walls[index];
+            item(&mut list, wall(y, [-2.0, 2.0], [-2.0, 2.0], Srgba::WHITE), glass(color), Layer::Solid, BOX);
+        }
+        shot(&list, &northward((80, 60)))
+    });
+    assert!(pictures.iter().all(|picture| picture.pixels == pictures[0].pixels));
+    let a = 128.0 / 255.0;
+    let expected = Vec3::new(a * (1.0 - a) * (1.0 - a), a * (1.0 - a), a);
+    let (seen, wanted) = (pictures[0].pixels.at(40, 30), Srgba::from_linear(expected));
+    assert!(seen.0.iter().zip(wanted.0).all(|(a, b)| a.abs_diff(b) <= 1), "{seen:?} for {wanted:?}");
+    assert_eq!(feature(&pictures[0], 40, 30), BOX);
+    assert!((depth(&pictures[0], 40, 30) - 8.0).abs() < 1e-3);
+}
+
+#[test]
+fn backs_are_left_out_unless_a_material_has_two_sides() {
+    for (two_sided, seen) in [(false, FeatureId::NONE), (true, BOX)] {
+        let mut list = DrawList::default();
+        let away = wall(10.0, [2.0, -2.0], [-2.0, 2.0], GREEN);
+        item(&mut list, away, Material { two_sided, ..Material::default() }, Layer::Solid, BOX);
+        list.lighting.to_sun = -Vec3::Y;
+        let picture = shot(&list, &northward((80, 60)));
+        assert_eq!(feature(&picture, 40, 30), seen);
+        if two_sided {
+            // Turned to the viewer, the normal also faces the sun behind the viewer.
+            let lit = list.lighting.lit(GREEN.linear(), -Vec3::Y, 1.0, 1.0);
+            assert_eq!(picture.pixels.at(40, 30), Srgba::from_linear(lit));
+        }
+    }
+}
+
+#[test]
+fn more_transparent_layers_than_are_kept_still_show_the_nearest() {
+    let mut list = DrawList::default();
+    plain_light(&mut list);
+    let veil =
+        Material { base_color: Srgba([255, 255, 255, 255]), alpha: Alpha::Blend, ..Material::default() };
+    for step in 0..100 {
+        let color = if step == 99 { GREEN } else { RED };
+        let mesh = wall(110.0 - step as f32, [-9.0, 9.0], [-9.0, 9.0], color);
+        item(&mut list, mesh, veil.clone(), Layer::Solid, BOX);
+    }
+    assert_eq!(shot(&list, &northward((80, 60))).pixels.at(40, 30), GREEN);
+}
