@@ -5,8 +5,8 @@
 mod common;
 
 use common::synthetic::{
-    BLENDED, BOARD_HEIGHT_M, BOARD_WIDTH_M, BOX, FENCE, FENCE_COLOR, HOUSE, LAKE, LAKE_COLOR, LAKE_Y, MASKED,
-    PANE, PANE_COLOR, ROAD, ROAD_COLOR, ROAD_X, camera, contours, height_at, material_of, scene,
+    BOARD_HEIGHT_M, BOARD_WIDTH_M, BOX, FENCE, FENCE_COLOR, HOUSE, LAKE, LAKE_COLOR, LAKE_Y, MASKED, PANE,
+    PANE_COLOR, ROAD, ROAD_COLOR, ROAD_X, camera, contours, height_at, material_of, scene,
 };
 use glam::{Vec2, Vec3};
 use sandtable::draw::color::Srgba;
@@ -213,7 +213,7 @@ fn a_mask_leaves_holes_and_a_pane_lets_light_through() {
 
 #[test]
 fn a_one_sided_board_is_not_seen_from_behind_and_a_two_sided_one_turns_its_normal() {
-    let (mut list, _) = (scene(), ());
+    let mut list = scene();
     let eye = on_board(FENCE, 0.0) + Vec3::new(0.0, 150.0, 60.0);
     let camera = Camera::new(eye, on_board(FENCE, 0.0), 0.8, (320, 240), (1.0, 5000.0)).expect("sound");
     for gpu in gpus() {
@@ -267,15 +267,16 @@ fn drawing_twice_gives_the_same_bytes() {
 }
 
 #[test]
-fn an_empty_list_is_sky_and_a_bare_material_needs_no_ground_map() {
+fn an_empty_list_is_sky_and_solids_need_no_ground_map() {
     let camera = camera(65, 33);
     for gpu in gpus() {
         let picture = drawn(gpu, &DrawList::default(), &camera);
         assert!(picture.features.iter().all(|&feature| feature == FeatureId::NONE));
         let mut list = scene();
+        list.items.retain(|item| item.layer == Layer::Solid);
         list.ground = None;
         let picture = drawn(gpu, &list, &camera);
-        assert!(picture.features.contains(&FeatureId::GROUND));
+        assert!(picture.features.contains(&HOUSE));
     }
 }
 
@@ -294,6 +295,10 @@ fn what_does_not_fit_is_refused_in_a_sentence() {
         assert!(unsound.items[0].layer > Layer::Ground);
         let error = render_on(gpu, &unsound, &camera(32, 32)).expect_err("layers fall");
         assert!(matches!(error, GpuError::List(_)), "{error}");
+        let mut groundless = list.clone();
+        groundless.ground = None;
+        let error = render_on(gpu, &groundless, &camera(32, 32)).expect_err("no ground map");
+        assert!(error.to_string().contains("item 0"), "{error}");
         let mut holed = list.clone();
         holed.ground.as_mut().expect("there").posts.pop();
         let error = render_on(gpu, &holed, &camera(32, 32)).expect_err("a post is missing");
