@@ -23,7 +23,7 @@ const TOLERANCE: i32 = 2;
 /// Every adapter of this machine; opening one takes a while, so all tests share them.
 fn gpus() -> &'static [Gpu] {
     static GPUS: std::sync::LazyLock<Vec<Gpu>> =
-        std::sync::LazyLock::new(|| [Api::Vulkan, Api::Gl].into_iter().filter_map(|api| open(api)).collect());
+        std::sync::LazyLock::new(|| [Api::Vulkan, Api::Gl].into_iter().filter_map(open).collect());
     &GPUS
 }
 
