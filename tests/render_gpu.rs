@@ -4,6 +4,7 @@
 
 mod common;
 
+use common::adapters::gpus;
 use common::synthetic::{
     BOARD_HEIGHT_M, BOARD_WIDTH_M, BOX, FENCE, FENCE_COLOR, HOUSE, LAKE, LAKE_COLOR, LAKE_Y, MASKED, PANE,
     PANE_COLOR, ROAD, ROAD_COLOR, ROAD_X, camera, contours, height_at, material_of, scene,
@@ -11,7 +12,8 @@ use common::synthetic::{
 use glam::{Vec2, Vec3};
 use sandtable::draw::color::Srgba;
 use sandtable::draw::list::{DrawList, FeatureId, Layer};
-use sandtable::render::gpu::adapter::{Api, Gpu};
+use sandtable::draw::pixels::Pixels;
+use sandtable::render::gpu::adapter::Gpu;
 use sandtable::render::gpu::error::GpuError;
 use sandtable::render::gpu::{render, render_on};
 use sandtable::render::picture::Picture;
@@ -19,27 +21,6 @@ use sandtable::view::camera::Camera;
 
 /// Eight-bit steps by which a driver's rounding may differ from ours.
 const TOLERANCE: i32 = 2;
-
-/// Every adapter of this machine; opening one takes a while, so all tests share them.
-fn gpus() -> &'static [Gpu] {
-    static GPUS: std::sync::LazyLock<Vec<Gpu>> =
-        std::sync::LazyLock::new(|| [Api::Vulkan, Api::Gl].into_iter().filter_map(open).collect());
-    &GPUS
-}
-
-fn open(api: Api) -> Option<Gpu> {
-    match Gpu::open(&[api]) {
-        Ok(gpu) => {
-            eprintln!("drawing on {}", gpu.name());
-            Some(gpu)
-        }
-        Err(error) => {
-            assert!(std::env::var_os("SANDTABLE_REQUIRE_GPU").is_none(), "{error}");
-            eprintln!("SKIPPED: no GPU adapter for {api:?}: {error}");
-            None
-        }
-    }
-}
 
 fn drawn(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Picture {
     render_on(gpu, list, camera).unwrap_or_else(|error| panic!("{error}"))
@@ -303,6 +284,27 @@ fn what_does_not_fit_is_refused_in_a_sentence() {
         holed.ground.as_mut().expect("there").posts.pop();
         let error = render_on(gpu, &holed, &camera(32, 32)).expect_err("a post is missing");
         assert!(error.to_string().contains("65×65"), "{error}");
+    }
+}
+
+#[test]
+fn hostile_numbers_leave_the_rest_of_the_picture_alone() {
+    let (mut list, camera) = (scene(), camera(160, 120));
+    let mut broken = list.meshes[3].clone();
+    broken.vertices[0].position = [f32::NAN; 3];
+    broken.vertices[1].position = [f32::INFINITY, 0.0, 3e38];
+    broken.vertices[2].normal = [0.0; 3];
+    broken.vertices[3].uv = [f32::NAN, 1e30];
+    let mesh = list.add_mesh(broken);
+    let mut item = list.items[3].clone();
+    item.mesh = mesh;
+    list.items.push(item);
+    let empty = list.add_texture(Pixels::filled(0, 7, Srgba::WHITE));
+    material_of(&mut list, MASKED).texture = Some(empty);
+    for gpu in gpus() {
+        let picture = drawn(gpu, &list, &camera);
+        assert!(picture.features.contains(&ROAD) && picture.features.contains(&FeatureId::GROUND));
+        assert!(picture.features.contains(&MASKED), "a texture without texels is white");
     }
 }
 

@@ -10,9 +10,6 @@
 //!            camera
 //! ```
 
-// Each test binary uses its own part of this.
-#![allow(dead_code)]
-
 use glam::{Mat4, Vec2, Vec3};
 use sandtable::draw::color::Srgba;
 use sandtable::draw::ground::{Contours, GroundMap, GroundPost, Ramp};
