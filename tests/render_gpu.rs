@@ -7,7 +7,8 @@ mod common;
 use common::adapters::gpus;
 use common::synthetic::{
     BOARD_HEIGHT_M, BOARD_WIDTH_M, BOX, FENCE, FENCE_COLOR, HOUSE, LAKE, LAKE_COLOR, LAKE_Y, MASKED, PANE,
-    PANE_COLOR, ROAD, ROAD_COLOR, ROAD_X, camera, contours, height_at, material_of, scene,
+    PANE_COLOR, ROAD, ROAD_COLOR, ROAD_X, camera, ground_of, height_at, material_of, scene,
+    scene_with_contours,
 };
 use glam::{Vec2, Vec3};
 use sandtable::draw::color::Srgba;
@@ -214,8 +215,7 @@ fn a_one_sided_board_is_not_seen_from_behind_and_a_two_sided_one_turns_its_norma
 fn contours_darken_the_ground_along_their_heights_only() {
     let camera = camera(640, 480);
     let plain = scene();
-    let mut lined = scene();
-    lined.ground.as_mut().expect("the scene has a ground map").contours = Some(contours());
+    let lined = scene_with_contours();
     for gpu in gpus() {
         let (before, after) = (drawn(gpu, &plain, &camera), drawn(gpu, &lined, &camera));
         let (mut on_line, mut off_line, mut changed_off) = (0, 0, 0);
@@ -281,7 +281,7 @@ fn what_does_not_fit_is_refused_in_a_sentence() {
         let error = render_on(gpu, &groundless, &camera(32, 32)).expect_err("no ground map");
         assert!(error.to_string().contains("item 0"), "{error}");
         let mut holed = list.clone();
-        holed.ground.as_mut().expect("there").posts.pop();
+        ground_of(&mut holed).posts.pop();
         let error = render_on(gpu, &holed, &camera(32, 32)).expect_err("a post is missing");
         assert!(error.to_string().contains("65×65"), "{error}");
     }

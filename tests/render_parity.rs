@@ -8,7 +8,7 @@
 mod common;
 
 use common::adapters::gpus;
-use common::synthetic::{camera, contours, scene};
+use common::synthetic::{camera, scene, scene_with_contours};
 use glam::Vec3;
 use sandtable::draw::list::DrawList;
 use sandtable::render::cpu::{Options, Samples, render};
@@ -80,18 +80,14 @@ fn the_whole_scene_is_the_same_on_both() {
 
 #[test]
 fn contours_are_the_same_on_both() {
-    let mut list = scene();
-    list.ground.as_mut().expect("the scene has a ground map").contours = Some(contours());
-    compare(&list, &camera(640, 480), "contours");
+    compare(&scene_with_contours(), &camera(640, 480), "contours");
 }
 
 #[test]
 fn a_grazing_view_of_far_ground_is_the_same_on_both() {
     let (eye, target) = (Vec3::new(320.0, -3000.0, 260.0), Vec3::new(320.0, 300.0, 40.0));
     let camera = Camera::new(eye, target, 0.3, (640, 240), (1.0, 9000.0)).expect("sound");
-    let mut list = scene();
-    list.ground.as_mut().expect("the scene has a ground map").contours = Some(contours());
-    compare(&list, &camera, "from afar");
+    compare(&scene_with_contours(), &camera, "from afar");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The draw list: everything a picture shows, in drawing order.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::Mat4;
 
@@ -110,7 +111,7 @@ pub struct DrawList {
     /// What to draw, layers rising.
     pub items: Vec<DrawItem>,
     /// The map that ground materials read.
-    pub ground: Option<GroundMap>,
+    pub ground: Option<Arc<GroundMap>>,
     /// Light, haze and sky.
     pub lighting: Lighting,
 }

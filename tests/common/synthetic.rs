@@ -10,6 +10,8 @@
 //!            camera
 //! ```
 
+use std::sync::Arc;
+
 use glam::{Mat4, Vec2, Vec3};
 use sandtable::draw::color::Srgba;
 use sandtable::draw::ground::{Contours, GroundMap, GroundPost, Ramp};
@@ -70,7 +72,7 @@ pub fn camera(width: u32, height: u32) -> Camera {
 
 /// The whole scene.
 pub fn scene() -> DrawList {
-    let mut list = DrawList { ground: Some(ground_map()), lighting: lighting(), ..Default::default() };
+    let mut list = DrawList { ground: Some(ground_map().into()), lighting: lighting(), ..Default::default() };
     let ground = ground_mesh();
     let lake = clipped(&clipped(&ground, 1, LAKE_Y.0, 1.0), 1, LAKE_Y.1, -1.0);
     let road = clipped(&clipped(&ground, 0, ROAD_X.0, 1.0), 0, ROAD_X.1, -1.0);
@@ -167,8 +169,19 @@ fn ground_map() -> GroundMap {
     }
 }
 
-/// Contour lines every five metres.
-pub fn contours() -> Contours {
+/// The ground map of the scene, to be changed.
+pub fn ground_of(list: &mut DrawList) -> &mut GroundMap {
+    Arc::make_mut(list.ground.as_mut().expect("the scene has a ground map"))
+}
+
+/// The whole scene with contour lines every five metres.
+pub fn scene_with_contours() -> DrawList {
+    let mut list = scene();
+    ground_of(&mut list).contours = Some(contours());
+    list
+}
+
+fn contours() -> Contours {
     Contours { interval_m: 5.0, major_every: 4, color: Srgba([70, 40, 20, 200]), width_px: 1.0 }
 }
 

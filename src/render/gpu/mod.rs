@@ -74,7 +74,7 @@ pub fn render_on(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Picture,
 /// What the draw list's own check leaves to the renderer.
 fn check(list: &DrawList) -> Result<(), GpuError> {
     list.check().map_err(GpuError::List)?;
-    if let Some(fault) = list.ground.as_ref().and_then(ground::fault) {
+    if let Some(fault) = list.ground.as_deref().and_then(ground::fault) {
         return Err(GpuError::List(fault));
     }
     let needs_ground = list.items.iter().position(|item| {

@@ -140,8 +140,8 @@ fn frame(
     let constants = Frame::of(list, camera);
     let what = || "the camera".into();
     let buffer = buffer(gpu, what, wgpu::BufferUsages::UNIFORM, bytes_of(&constants))?;
-    let ground = GroundTextures::upload(gpu, list.ground.as_ref())?;
-    let ramp = ramp_stops(gpu, list.ground.as_ref());
+    let ground = GroundTextures::upload(gpu, list.ground.as_deref())?;
+    let ramp = ramp_stops(gpu, list.ground.as_deref());
     let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
     let views = [view(&ground.posts), view(&ground.coarse), view(&ramp)];
     let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }];
