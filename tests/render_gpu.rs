@@ -4,14 +4,17 @@
 
 mod common;
 
+use common::adapters::gpus;
 use common::synthetic::{
-    BLENDED, BOARD_HEIGHT_M, BOARD_WIDTH_M, BOX, FENCE, FENCE_COLOR, HOUSE, LAKE, LAKE_COLOR, LAKE_Y, MASKED,
-    PANE, PANE_COLOR, ROAD, ROAD_COLOR, ROAD_X, camera, contours, height_at, material_of, scene,
+    BOARD_HEIGHT_M, BOARD_WIDTH_M, BOX, FENCE, FENCE_COLOR, HOUSE, LAKE, LAKE_COLOR, LAKE_Y, MASKED, PANE,
+    PANE_COLOR, ROAD, ROAD_COLOR, ROAD_X, camera, ground_of, height_at, material_of, scene,
+    scene_with_contours,
 };
 use glam::{Vec2, Vec3};
 use sandtable::draw::color::Srgba;
 use sandtable::draw::list::{DrawList, FeatureId, Layer};
-use sandtable::render::gpu::adapter::{Api, Gpu};
+use sandtable::draw::pixels::Pixels;
+use sandtable::render::gpu::adapter::Gpu;
 use sandtable::render::gpu::error::GpuError;
 use sandtable::render::gpu::{render, render_on};
 use sandtable::render::picture::Picture;
@@ -19,27 +22,6 @@ use sandtable::view::camera::Camera;
 
 /// Eight-bit steps by which a driver's rounding may differ from ours.
 const TOLERANCE: i32 = 2;
-
-/// Every adapter of this machine; opening one takes a while, so all tests share them.
-fn gpus() -> &'static [Gpu] {
-    static GPUS: std::sync::LazyLock<Vec<Gpu>> =
-        std::sync::LazyLock::new(|| [Api::Vulkan, Api::Gl].into_iter().filter_map(|api| open(api)).collect());
-    &GPUS
-}
-
-fn open(api: Api) -> Option<Gpu> {
-    match Gpu::open(&[api]) {
-        Ok(gpu) => {
-            eprintln!("drawing on {}", gpu.name());
-            Some(gpu)
-        }
-        Err(error) => {
-            assert!(std::env::var_os("SANDTABLE_REQUIRE_GPU").is_none(), "{error}");
-            eprintln!("SKIPPED: no GPU adapter for {api:?}: {error}");
-            None
-        }
-    }
-}
 
 fn drawn(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Picture {
     render_on(gpu, list, camera).unwrap_or_else(|error| panic!("{error}"))
@@ -213,7 +195,7 @@ fn a_mask_leaves_holes_and_a_pane_lets_light_through() {
 
 #[test]
 fn a_one_sided_board_is_not_seen_from_behind_and_a_two_sided_one_turns_its_normal() {
-    let (mut list, _) = (scene(), ());
+    let mut list = scene();
     let eye = on_board(FENCE, 0.0) + Vec3::new(0.0, 150.0, 60.0);
     let camera = Camera::new(eye, on_board(FENCE, 0.0), 0.8, (320, 240), (1.0, 5000.0)).expect("sound");
     for gpu in gpus() {
@@ -233,8 +215,7 @@ fn a_one_sided_board_is_not_seen_from_behind_and_a_two_sided_one_turns_its_norma
 fn contours_darken_the_ground_along_their_heights_only() {
     let camera = camera(640, 480);
     let plain = scene();
-    let mut lined = scene();
-    lined.ground.as_mut().expect("the scene has a ground map").contours = Some(contours());
+    let lined = scene_with_contours();
     for gpu in gpus() {
         let (before, after) = (drawn(gpu, &plain, &camera), drawn(gpu, &lined, &camera));
         let (mut on_line, mut off_line, mut changed_off) = (0, 0, 0);
@@ -267,15 +248,16 @@ fn drawing_twice_gives_the_same_bytes() {
 }
 
 #[test]
-fn an_empty_list_is_sky_and_a_bare_material_needs_no_ground_map() {
+fn an_empty_list_is_sky_and_solids_need_no_ground_map() {
     let camera = camera(65, 33);
     for gpu in gpus() {
         let picture = drawn(gpu, &DrawList::default(), &camera);
         assert!(picture.features.iter().all(|&feature| feature == FeatureId::NONE));
         let mut list = scene();
+        list.items.retain(|item| item.layer == Layer::Solid);
         list.ground = None;
         let picture = drawn(gpu, &list, &camera);
-        assert!(picture.features.contains(&FeatureId::GROUND));
+        assert!(picture.features.contains(&HOUSE));
     }
 }
 
@@ -294,10 +276,35 @@ fn what_does_not_fit_is_refused_in_a_sentence() {
         assert!(unsound.items[0].layer > Layer::Ground);
         let error = render_on(gpu, &unsound, &camera(32, 32)).expect_err("layers fall");
         assert!(matches!(error, GpuError::List(_)), "{error}");
+        let mut groundless = list.clone();
+        groundless.ground = None;
+        let error = render_on(gpu, &groundless, &camera(32, 32)).expect_err("no ground map");
+        assert!(error.to_string().contains("item 0"), "{error}");
         let mut holed = list.clone();
-        holed.ground.as_mut().expect("there").posts.pop();
+        ground_of(&mut holed).posts.pop();
         let error = render_on(gpu, &holed, &camera(32, 32)).expect_err("a post is missing");
         assert!(error.to_string().contains("65×65"), "{error}");
+    }
+}
+
+#[test]
+fn hostile_numbers_leave_the_rest_of_the_picture_alone() {
+    let (mut list, camera) = (scene(), camera(160, 120));
+    let mut broken = list.meshes[3].clone();
+    broken.vertices[0].position = [f32::NAN; 3];
+    broken.vertices[1].position = [f32::INFINITY, 0.0, 3e38];
+    broken.vertices[2].normal = [0.0; 3];
+    broken.vertices[3].uv = [f32::NAN, 1e30];
+    let mesh = list.add_mesh(broken);
+    let mut item = list.items[3].clone();
+    item.mesh = mesh;
+    list.items.push(item);
+    let empty = list.add_texture(Pixels::filled(0, 7, Srgba::WHITE));
+    material_of(&mut list, MASKED).texture = Some(empty);
+    for gpu in gpus() {
+        let picture = drawn(gpu, &list, &camera);
+        assert!(picture.features.contains(&ROAD) && picture.features.contains(&FeatureId::GROUND));
+        assert!(picture.features.contains(&MASKED), "a texture without texels is white");
     }
 }
 

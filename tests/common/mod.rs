@@ -1,3 +1,7 @@
 //! What several integration tests share.
 
+// Each test binary uses its own part of this.
+#![allow(dead_code)]
+
+pub mod adapters;
 pub mod synthetic;

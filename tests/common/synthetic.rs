@@ -10,8 +10,7 @@
 //!            camera
 //! ```
 
-// Each test binary uses its own part of this.
-#![allow(dead_code)]
+use std::sync::Arc;
 
 use glam::{Mat4, Vec2, Vec3};
 use sandtable::draw::color::Srgba;
@@ -170,8 +169,19 @@ fn ground_map() -> GroundMap {
     }
 }
 
-/// Contour lines every five metres.
-pub fn contours() -> Contours {
+/// The ground map of the scene, to be changed.
+pub fn ground_of(list: &mut DrawList) -> &mut GroundMap {
+    Arc::make_mut(list.ground.as_mut().expect("the scene has a ground map"))
+}
+
+/// The whole scene with contour lines every five metres.
+pub fn scene_with_contours() -> DrawList {
+    let mut list = scene();
+    ground_of(&mut list).contours = Some(contours());
+    list
+}
+
+fn contours() -> Contours {
     Contours { interval_m: 5.0, major_every: 4, color: Srgba([70, 40, 20, 200]), width_px: 1.0 }
 }
 

@@ -1,7 +1,7 @@
 //! Finding a GPU and talking to it safely.
 //!
 //! A device reports mistakes and exhaustion not where they happen but to the innermost error scope, and the
-//! library panics where a device vanishes in the middle of a wait. [`Gpu::guarded`] is the one place that
+//! library panics where a device vanishes in the middle of a wait. `Gpu::guarded` is the one place that
 //! turns all of these into values.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -4,7 +4,7 @@
 //! rounding down, as WebGPU prescribes; where a side is odd a texel of the next level covers a fraction more
 //! than two, and the weights below account for it, so that nothing shifts.
 
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 
 use crate::draw::color::{Srgba, srgb_from_linear};
 use crate::draw::pixels::Pixels;
@@ -27,6 +27,15 @@ pub(in crate::render::gpu) fn levels(texture: &Pixels, limit: u32) -> Vec<Pixels
     levels
 }
 
+/// The same picture with colours multiplied by alpha, in linear light.
+pub(in crate::render::gpu) fn premultiplied(level: &Pixels) -> Pixels {
+    Pixels::from_fn(level.width(), level.height(), |x, y| {
+        let texel = level.at(x, y);
+        let Srgba([red, green, blue, _]) = Srgba::from_linear(texel.linear() * texel.alpha());
+        Srgba([red, green, blue, texel.0[3]])
+    })
+}
+
 /// The next smaller level; `None` below a single texel.
 fn half(level: &Pixels) -> Option<Pixels> {
     let (width, height) = (level.width(), level.height());
@@ -35,14 +44,26 @@ fn half(level: &Pixels) -> Option<Pixels> {
     }
     let (columns, rows) = (spans(width), spans(height));
     Some(Pixels::from_fn(columns.len() as u32, rows.len() as u32, |x, y| {
-        let mut sum = Vec4::ZERO;
+        let mut seen = Vec4::ZERO;
+        let mut all = Vec3::ZERO;
         for (row, row_weight) in rows[y as usize] {
             for (column, column_weight) in columns[x as usize] {
-                sum += premultiplied(level.at(column, row)) * (row_weight * column_weight);
+                let (texel, weight) = (level.at(column, row), row_weight * column_weight);
+                let (light, alpha) = (texel.linear(), texel.alpha());
+                seen += (light * alpha).extend(alpha) * weight;
+                all += light * weight;
             }
         }
-        straight(sum)
+        mean(seen, all)
     }))
+}
+
+/// The mean colour weighted by alpha, so that the colour of what is invisible does not bleed into what is
+/// not; where all is invisible, the plain mean, for surfaces that ignore alpha.
+fn mean(seen: Vec4, all: Vec3) -> Srgba {
+    let light = if seen.w > 0.0 { seen.truncate() / seen.w } else { all };
+    let [red, green, blue] = light.to_array().map(srgb_from_linear);
+    Srgba([red, green, blue, (seen.w.clamp(0.0, 1.0) * 255.0 + 0.5) as u8])
 }
 
 /// For every texel of a side half as long, the three texels it covers and the share of each.
@@ -59,17 +80,6 @@ fn spans(side: u32) -> Vec<[(u32, f32); 3]> {
             })
         })
         .collect()
-}
-
-/// Light weighted by alpha, so that the colour of what is invisible does not bleed into what is not.
-fn premultiplied(color: Srgba) -> Vec4 {
-    (color.linear() * color.alpha()).extend(color.alpha())
-}
-
-fn straight(sum: Vec4) -> Srgba {
-    let light = if sum.w > 0.0 { sum.truncate() / sum.w } else { sum.truncate() };
-    let [red, green, blue] = light.to_array().map(srgb_from_linear);
-    Srgba([red, green, blue, (sum.w.clamp(0.0, 1.0) * 255.0 + 0.5) as u8])
 }
 
 #[cfg(test)]
@@ -105,6 +115,7 @@ mod tests {
         let leaf = Srgba([20, 120, 30, 255]);
         let edge = Pixels::from_fn(2, 1, |x, _| if x == 0 { leaf } else { Srgba([255, 0, 255, 0]) });
         assert_eq!(levels(&edge, 64)[1].at(0, 0), Srgba([20, 120, 30, 128]));
+        assert_eq!(premultiplied(&edge).data(), [leaf, Srgba([0, 0, 0, 0])]);
     }
 
     #[test]

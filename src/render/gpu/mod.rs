@@ -11,6 +11,7 @@
 //! pictures differ from machine to machine by a little. Where the very bytes matter, use the CPU.
 
 use crate::draw::list::DrawList;
+use crate::draw::material::{Albedo, Normals};
 use crate::render::gpu::adapter::{Api, Gpu};
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::passes::Recording;
@@ -23,6 +24,7 @@ use crate::view::camera::Camera;
 
 pub mod adapter;
 pub mod error;
+mod ground;
 mod mips;
 mod passes;
 mod pipelines;
@@ -72,11 +74,17 @@ pub fn render_on(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Picture,
 /// What the draw list's own check leaves to the renderer.
 fn check(list: &DrawList) -> Result<(), GpuError> {
     list.check().map_err(GpuError::List)?;
-    let Some(map) = &list.ground else { return Ok(()) };
-    let posts = u64::from(map.columns) * u64::from(map.rows);
-    if posts == 0 || posts != map.posts.len() as u64 {
-        let (columns, rows, held) = (map.columns, map.rows, map.posts.len());
-        return Err(GpuError::List(format!("the ground map of {columns}×{rows} posts holds {held}")));
+    if let Some(fault) = list.ground.as_deref().and_then(ground::fault) {
+        return Err(GpuError::List(fault));
     }
-    Ok(())
+    let needs_ground = list.items.iter().position(|item| {
+        let material = &list.materials[item.material.0 as usize];
+        material.albedo == Albedo::GroundMap || material.normals == Normals::Ground
+    });
+    match needs_ground {
+        Some(item) if list.ground.is_none() => Err(GpuError::List(format!(
+            "item {item} takes its colour or normals from the ground map, but there is none"
+        ))),
+        _ => Ok(()),
+    }
 }

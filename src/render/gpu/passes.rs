@@ -86,11 +86,10 @@ impl Recording<'_> {
             else {
                 continue;
             };
-            let texture = self.list.materials[item.material.0 as usize].texture;
-            let texture = texture.and_then(|id| self.resources.textures[id.0 as usize].as_ref());
+            let texture = self.resources.texture_of(&self.list.materials[item.material.0 as usize]);
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &self.resources.items, &[step.item as u32 * self.resources.item_stride]);
-            pass.set_bind_group(2, texture.unwrap_or(&self.resources.white), &[]);
+            pass.set_bind_group(2, texture, &[]);
             if bound != Some(item.mesh) {
                 pass.set_vertex_buffer(0, mesh.vertices.slice(..));
                 pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);

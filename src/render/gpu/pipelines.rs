@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::draw::list::DrawVertex;
 use crate::render::gpu::adapter::{Api, Gpu};
-use crate::render::gpu::plan::{Plan, Rule, Step};
+use crate::render::gpu::plan::{Plan, Rule, Step, Way};
 use crate::render::gpu::uniforms::{Frame, ItemConstants};
 
 /// What colours are drawn to and read back as.
@@ -16,6 +16,10 @@ pub(in crate::render::gpu) const FEATURE: wgpu::TextureFormat = wgpu::TextureFor
 
 /// By how much a drape counts as nearer than it is: the one part in 50,000 of the draw list's contract.
 const DRAPE_NEARER: f64 = 1.0 + 1.0 / 50_000.0;
+
+/// The same as a part of a pixel. Hardware moves corners to a grid of 1/256 pixel, each by up to 0.7 of half
+/// a step; a drape has corners that the ground has not, and four times that covers both.
+const DRAPE_NEARER_PX: f32 = 1.0 / 128.0;
 
 pub(in crate::render::gpu) const SHADER: &str =
     concat!(include_str!("shader.wgsl"), "\n", include_str!("sky.wgsl"));
@@ -45,7 +49,7 @@ pub(in crate::render::gpu) enum Pass {
 pub(in crate::render::gpu) struct Pipelines {
     /// Draws the sky behind everything.
     pub sky: wgpu::RenderPipeline,
-    by_way: BTreeMap<(Pass, Rule, bool), wgpu::RenderPipeline>,
+    by_way: BTreeMap<(Pass, Way), wgpu::RenderPipeline>,
 }
 
 impl Layouts {
@@ -80,6 +84,7 @@ impl Layouts {
             frame: group(&[
                 (both, uniform(size_of::<Frame>(), false)),
                 (fragment, texture(wgpu::TextureSampleType::Uint)),
+                (fragment, texture(wgpu::TextureSampleType::Uint)),
                 (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
             ]),
             item: group(&[(both, uniform(size_of::<ItemConstants>(), true))]),
@@ -108,18 +113,18 @@ impl Pipelines {
             bind_group_layouts: &[Some(&layouts.frame)],
             immediate_size: 0,
         });
-        let color = plan.color.iter().map(|step| (Pass::Color, step.rule, step.two_sided));
-        let features = plan.features.iter().map(|step| (Pass::Feature, step.rule, step.two_sided));
+        let color = plan.color.iter().map(|step| (Pass::Color, step.way));
+        let features = plan.features.iter().map(|step| (Pass::Feature, step.way));
         let mut by_way = BTreeMap::new();
-        for way in color.chain(features) {
-            by_way.entry(way).or_insert_with(|| pipeline(gpu, &layout, &shader, way));
+        for (pass, way) in color.chain(features) {
+            by_way.entry((pass, way)).or_insert_with(|| pipeline(gpu, &layout, &shader, pass, way));
         }
         Self { sky: sky(gpu, &sky_layout, &shader), by_way }
     }
 
     /// The pipeline for a step of the plan these were made for.
     pub fn get(&self, pass: Pass, step: &Step) -> Option<&wgpu::RenderPipeline> {
-        self.by_way.get(&(pass, step.rule, step.two_sided))
+        self.by_way.get(&(pass, step.way))
     }
 }
 
@@ -127,15 +132,18 @@ fn pipeline(
     gpu: &Gpu,
     layout: &wgpu::PipelineLayout,
     shader: &wgpu::ShaderModule,
-    (pass, rule, two_sided): (Pass, Rule, bool),
+    pass: Pass,
+    way: Way,
 ) -> wgpu::RenderPipeline {
-    let is_hair_nearer = matches!(rule, Rule::Drape | Rule::DrapeBlend);
-    let constants = [("nearer", if is_hair_nearer { DRAPE_NEARER } else { 1.0 })];
-    let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
+    let (nearer, nearer_px) =
+        if is_tested_nearer(way.rule) { (DRAPE_NEARER, f64::from(DRAPE_NEARER_PX)) } else { (1.0, 0.0) };
+    let vertex_constants = [("nearer", nearer)];
+    let fragment_constants = [("nearer", nearer), ("nearer_px", nearer_px)];
     let entry_point = match (pass, gpu.api()) {
         (Pass::Feature, _) => "feature",
-        (Pass::Color, Api::Vulkan) => "color",
         (Pass::Color, Api::Gl) => "color_and_depth",
+        (Pass::Color, Api::Vulkan) if way.masked && gpu.samples == 4 => "masked_color",
+        (Pass::Color, Api::Vulkan) => "color",
     };
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(entry_point),
@@ -143,7 +151,7 @@ fn pipeline(
         vertex: wgpu::VertexState {
             module: shader,
             entry_point: Some("vertex"),
-            compilation_options: options.clone(),
+            compilation_options: options(&vertex_constants),
             buffers: &[Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<DrawVertex>() as u64,
                 step_mode: wgpu::VertexStepMode::Vertex,
@@ -156,20 +164,28 @@ fn pipeline(
             })],
         },
         primitive: wgpu::PrimitiveState {
-            cull_mode: (!two_sided).then_some(wgpu::Face::Back),
+            cull_mode: (!way.two_sided).then_some(wgpu::Face::Back),
             ..Default::default()
         },
-        depth_stencil: Some(depth_state(rule)),
+        depth_stencil: Some(depth_state(way.rule)),
         multisample: multisample(gpu, pass),
         fragment: Some(wgpu::FragmentState {
             module: shader,
             entry_point: Some(entry_point),
-            compilation_options: options,
-            targets: &target(pass, rule),
+            compilation_options: options(&fragment_constants),
+            targets: &target(pass, way.rule),
         }),
         multiview_mask: None,
         cache: None,
     })
+}
+
+fn options<'a>(constants: &'a [(&'a str, f64)]) -> wgpu::PipelineCompilationOptions<'a> {
+    wgpu::PipelineCompilationOptions { constants, ..Default::default() }
+}
+
+fn is_tested_nearer(rule: Rule) -> bool {
+    matches!(rule, Rule::Drape | Rule::DrapeBlend)
 }
 
 /// Depth is reversed: greater is nearer.
@@ -185,7 +201,11 @@ fn depth_state(rule: Rule) -> wgpu::DepthStencilState {
         depth_write_enabled: Some(writes),
         depth_compare: Some(compare),
         stencil: Default::default(),
-        bias: Default::default(),
+        // Where the shader writes the depth itself this has no effect, and `nearer_px` does the same.
+        bias: wgpu::DepthBiasState {
+            slope_scale: if is_tested_nearer(rule) { DRAPE_NEARER_PX } else { 0.0 },
+            ..Default::default()
+        },
     }
 }
 
@@ -252,7 +272,10 @@ mod tests {
             .validate(&module)
             .unwrap_or_else(|error| panic!("{}", error.emit_to_string(SHADER)));
         let names: Vec<&str> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
-        assert_eq!(names, ["vertex", "color", "color_and_depth", "feature", "sky_vertex", "sky_color"]);
+        assert_eq!(
+            names,
+            ["vertex", "color", "masked_color", "color_and_depth", "feature", "sky_vertex", "sky_color",]
+        );
     }
 
     #[test]

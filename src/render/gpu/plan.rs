@@ -37,10 +37,19 @@ pub(in crate::render::gpu) enum Rule {
 pub(in crate::render::gpu) struct Step {
     /// Index into the draw list's items.
     pub item: usize,
+    /// What it needs of a pipeline.
+    pub way: Way,
+}
+
+/// All that tells one pipeline of a pass from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::render::gpu) struct Way {
     /// How it meets the depth buffer.
     pub rule: Rule,
     /// Whether backs are drawn too.
     pub two_sided: bool,
+    /// Whether alpha cuts holes.
+    pub masked: bool,
 }
 
 /// The draw calls of both passes.
@@ -59,7 +68,9 @@ impl Plan {
         let mut blended = Vec::new();
         for (index, item) in list.items.iter().enumerate().filter(|(_, item)| !item.triangles.is_empty()) {
             let material = &list.materials[item.material.0 as usize];
-            let step = |rule| Step { item: index, rule, two_sided: material.two_sided };
+            let masked = matches!(material.alpha, Alpha::Mask(_));
+            let way = |rule| Way { rule, two_sided: material.two_sided, masked };
+            let step = |rule| Step { item: index, way: way(rule) };
             let is_blend = material.alpha == Alpha::Blend;
             match (item.layer, is_blend) {
                 (Layer::Draped(_), _) => {
@@ -98,4 +109,70 @@ fn depth_of(list: &DrawList, item: &DrawItem, camera: &Camera) -> f32 {
     });
     let middle = item.world_from_mesh.transform_point3((min + max) * 0.5);
     (middle - camera.eye()).dot(camera.forward())
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Mat4;
+
+    use super::*;
+    use crate::draw::color::Srgba;
+    use crate::draw::list::{DrawMesh, DrawVertex, FeatureId};
+    use crate::draw::material::Material;
+    use crate::mesh::sink::{MeshSink, VertexId};
+
+    fn list(items: &[(Layer, Alpha, f32)]) -> DrawList {
+        let mut list = DrawList::default();
+        let mut mesh = DrawMesh::default();
+        for position in [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]] {
+            mesh.vertex(DrawVertex { position, normal: [0.0; 3], uv: [0.0; 2], color: Srgba::WHITE });
+        }
+        mesh.triangle([VertexId(0), VertexId(1), VertexId(2)]);
+        let mesh = list.add_mesh(mesh);
+        for &(layer, alpha, y) in items {
+            let material = list.add_material(Material { alpha, ..Default::default() });
+            let world_from_mesh = Mat4::from_translation(Vec3::Y * y);
+            let feature = FeatureId::GROUND;
+            list.items.push(DrawItem { mesh, triangles: 0..1, material, world_from_mesh, layer, feature });
+        }
+        list
+    }
+
+    fn color_order(list: &DrawList) -> Vec<(usize, Rule)> {
+        let camera = Camera::new(Vec3::ZERO, Vec3::Y, 1.0, (8, 8), (1.0, 100.0)).expect("sound");
+        Plan::of(list, &camera).color.iter().map(|step| (step.item, step.way.rule)).collect()
+    }
+
+    #[test]
+    fn blended_solids_come_last_and_farthest_first() {
+        use Alpha::{Blend, Opaque};
+        let list = list(&[
+            (Layer::Ground, Opaque, 9.0),
+            (Layer::Solid, Blend, 5.0),
+            (Layer::Solid, Opaque, 4.0),
+            (Layer::Solid, Blend, 50.0),
+            (Layer::Solid, Blend, 7.0),
+        ]);
+        let expected =
+            [(0, Rule::Solid), (2, Rule::Solid), (3, Rule::Blend), (4, Rule::Blend), (1, Rule::Blend)];
+        assert_eq!(color_order(&list), expected);
+    }
+
+    #[test]
+    fn a_blended_drape_keeps_its_place_below_a_higher_one() {
+        let list = list(&[
+            (Layer::Ground, Alpha::Opaque, 9.0),
+            (Layer::Draped(0), Alpha::Blend, 9.0),
+            (Layer::Draped(1), Alpha::Opaque, 9.0),
+        ]);
+        let expected = [(0, Rule::Solid), (1, Rule::DrapeBlend), (2, Rule::Drape), (2, Rule::DrapeDepth)];
+        assert_eq!(color_order(&list), expected);
+    }
+
+    #[test]
+    fn items_without_triangles_are_not_drawn() {
+        let mut list = list(&[(Layer::Solid, Alpha::Opaque, 5.0)]);
+        list.items[0].triangles = 1..1;
+        assert_eq!(color_order(&list), []);
+    }
 }

@@ -2,8 +2,9 @@
 //!
 //! Rows of a copy must start at multiples of 256 bytes; the padding is dropped while reading.
 
+// From `core`, which has spans of time but no clock.
+use core::time::Duration;
 use std::sync::mpsc;
-use std::time::Duration;
 
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;

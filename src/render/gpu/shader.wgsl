@@ -18,9 +18,10 @@ struct Frame {
     haze: vec4f,          // rgb, 1 / distance
     zenith: vec4f,        // rgb
     ground: vec4f,        // x and y of the south-west post, cell's width and height
-    ground_size: vec4u,   // columns, rows, ramp stops, stops in a row of the ramp's texture
+    ground_size: vec4u,   // ramp stops, stops in a row of the ramp's texture, levels of the ground
     contour: vec4f,       // rgb, strength
     contour_shape: vec4f, // interval in metres (0: none), width in pixels, every how many is heavier
+    ground_levels: array<vec4u, 24>, // columns, rows, first column in `ground_coarse` (level 0: in `ground_posts`)
 }
 
 struct Item {
@@ -35,17 +36,28 @@ const FROM_GROUND_ALBEDO = 2u;
 const MASK = 4u;
 const BLEND = 8u;
 
+// The most readings of the ground along the longer side of a pixel seen at a grazing angle.
+const MOST_TAPS = 8.0;
+// Masks are read this many mip levels finer than colours, since each of a pixel's samples reads its own.
+const MASK_LEVEL_BIAS = -1.0;
+
 @group(0) @binding(0) var<uniform> frame: Frame;
 // One texel a post: height, slope east and slope north as bits of f32, both visibilities as 16 bits each.
 @group(0) @binding(1) var ground_posts: texture_2d<u32>;
+// The same for all smaller levels, side by side.
+@group(0) @binding(2) var ground_coarse: texture_2d<u32>;
 // One texel a stop of the ramp: linear rgb, height.
-@group(0) @binding(2) var ramp_stops: texture_2d<f32>;
+@group(0) @binding(3) var ramp_stops: texture_2d<f32>;
 @group(1) @binding(0) var<uniform> item: Item;
+// Colours multiplied by alpha where the item is not opaque, so that unseen colours count for nothing.
 @group(2) @binding(0) var base_texture: texture_2d<f32>;
 @group(2) @binding(1) var base_sampler: sampler;
 
 // By how much an item counts as nearer than it is: 1, or a little more for what is draped.
 override nearer: f32 = 1.0;
+// The same as a part of a pixel: what its depth changes by over that part is added. Covers the grid that
+// hardware moves corners to, which tilts a drape against the ground where both are seen edge-on.
+override nearer_px: f32 = 0.0;
 
 struct Corner {
     @location(0) position: vec3f,
@@ -92,11 +104,17 @@ struct Post {
     height: f32,
     slope: vec2f,
     visibility: vec2f, // of the sun, of the sky
+    gradient: vec2f,   // rise of the height itself, metres per metre
 }
 
-fn post_at(column: u32, row: u32) -> Post {
-    let texel = textureLoad(ground_posts, vec2u(column, row), 0);
-    return Post(bitcast<f32>(texel.x), bitcast<vec2f>(texel.yz), unpack2x16unorm(texel.w));
+fn post_at(at: vec2u, level: u32) -> Post {
+    var texel: vec4u;
+    if level == 0u {
+        texel = textureLoad(ground_posts, at, 0);
+    } else {
+        texel = textureLoad(ground_coarse, at + vec2u(frame.ground_levels[level].z, 0u), 0);
+    }
+    return Post(bitcast<f32>(texel.x), bitcast<vec2f>(texel.yz), unpack2x16unorm(texel.w), vec2f(0.0));
 }
 
 fn mix_post(a: Post, b: Post, t: f32) -> Post {
@@ -104,31 +122,66 @@ fn mix_post(a: Post, b: Post, t: f32) -> Post {
         a.height + (b.height - a.height) * t,
         a.slope + (b.slope - a.slope) * t,
         a.visibility + (b.visibility - a.visibility) * t,
+        a.gradient + (b.gradient - a.gradient) * t,
     );
 }
 
-// GroundMap::sample.
-fn ground_at(at: vec2f) -> Post {
-    let last = vec2f(frame.ground_size.xy - 1u);
-    let grid = clamp((at - frame.ground.xy) / frame.ground.zw, vec2f(0.0), last);
-    let cell = min(floor(grid), max(last - 1.0, vec2f(0.0)));
-    let part = grid - cell;
-    let first = vec2u(cell);
-    let next = min(first + 1u, frame.ground_size.xy - 1u);
-    let south = mix_post(post_at(first.x, first.y), post_at(next.x, first.y), part.x);
-    let north = mix_post(post_at(first.x, next.y), post_at(next.x, next.y), part.x);
-    return mix_post(south, north, part.y);
+// GroundMap::sample on one level; posts of level n lie 2^n of the map's cells apart.
+fn ground_on_level(at: vec2f, level: u32) -> Post {
+    let scale = 1.0 / f32(1u << level);
+    let last = vec2f(frame.ground_levels[0].xy - 1u);
+    let grid = clamp((at - frame.ground.xy) / frame.ground.zw, vec2f(0.0), last) * scale;
+    let size = frame.ground_levels[level].xy;
+    let first = min(vec2u(grid), max(size, vec2u(2u)) - 2u);
+    let next = min(first + 1u, size - 1u);
+    let part = grid - vec2f(first);
+    let sw = post_at(first, level);
+    let se = post_at(vec2u(next.x, first.y), level);
+    let nw = post_at(vec2u(first.x, next.y), level);
+    let ne = post_at(next, level);
+    var post = mix_post(mix_post(sw, se, part.x), mix_post(nw, ne, part.x), part.y);
+    let east = mix(se.height - sw.height, ne.height - nw.height, part.y);
+    let north = mix(nw.height - sw.height, ne.height - se.height, part.x);
+    post.gradient = vec2f(east, north) / frame.ground.zw * scale;
+    return post;
+}
+
+// The ground over a pixel that spans `right` and `down`: near the eye one reading of the map itself, far
+// away several readings of a coarser level along the pixel's longer side, since one would sparkle.
+fn ground_at(at: vec2f, right: vec2f, down: vec2f) -> Post {
+    let across = length(right / frame.ground.zw);
+    let along = length(down / frame.ground.zw);
+    let axis = select(down, right, across > along);
+    let longer = max(across, along);
+    let taps = clamp(ceil(longer / max(min(across, along), 1.0)), 1.0, MOST_TAPS);
+    let most = f32(frame.ground_size.z - 1u);
+    let level = clamp(log2(max(longer / taps, 1e-6)), 0.0, most);
+    let lower = u32(level);
+    let part = level - f32(lower);
+    var sum = Post(0.0, vec2f(0.0), vec2f(0.0), vec2f(0.0));
+    for (var tap = 0.0; tap < taps; tap += 1.0) {
+        let here = at + axis * ((tap + 0.5) / taps - 0.5);
+        var post = ground_on_level(here, lower);
+        if part > 0.0 {
+            post = mix_post(post, ground_on_level(here, lower + 1u), part);
+        }
+        sum.height += post.height / taps;
+        sum.slope += post.slope / taps;
+        sum.visibility += post.visibility / taps;
+        sum.gradient += post.gradient / taps;
+    }
+    return sum;
 }
 
 fn stop_at(index: u32) -> vec4f {
-    let columns = frame.ground_size.w;
+    let columns = frame.ground_size.y;
     return textureLoad(ramp_stops, vec2u(index % columns, index / columns), 0);
 }
 
 // Ramp::linear_at.
 fn ramp_at(height: f32) -> vec3f {
     var low = 0u;
-    var high = frame.ground_size.z;
+    var high = frame.ground_size.x;
     while low < high {
         let middle = (low + high) / 2u;
         if stop_at(middle).w <= height {
@@ -137,9 +190,9 @@ fn ramp_at(height: f32) -> vec3f {
             high = middle;
         }
     }
-    let after = stop_at(min(low, frame.ground_size.z - 1u));
+    let after = stop_at(min(low, frame.ground_size.x - 1u));
     let before = stop_at(max(low, 1u) - 1u);
-    let between = low > 0u && low < frame.ground_size.z;
+    let between = low > 0u && low < frame.ground_size.x;
     let part = select(0.0, (height - before.w) / (after.w - before.w), between);
     return mix(before.rgb, after.rgb, part);
 }
@@ -147,7 +200,7 @@ fn ramp_at(height: f32) -> vec3f {
 // Contours: how much of a pixel a line covers, where height changes by `per_pixel` across one.
 fn contour_cover(height: f32, per_pixel: f32) -> f32 {
     let interval = frame.contour_shape.x;
-    if interval <= 0.0 || per_pixel <= 0.0 {
+    if !(interval > 0.0 && per_pixel > interval * 1e-6) {
         return 0.0;
     }
     let line = round(height / interval);
@@ -164,29 +217,44 @@ fn lit(albedo: vec3f, normal: vec3f, sun_visibility: f32, sky_visibility: f32) -
     return albedo * (direct + ambient);
 }
 
-// A unit vector; zero stays zero.
-fn unit(v: vec3f) -> vec3f {
-    return v * inverseSqrt(max(dot(v, v), 1e-30));
+// The normal on the side that is seen; the triangle's own where its corners have none.
+fn vertex_normal(in: Varying, front: bool) -> vec3f {
+    let own = cross(dpdx(in.world), dpdy(in.world));
+    let towards_eye = own * select(1.0, -1.0, dot(own, in.world - frame.eye.xyz) > 0.0);
+    let given = in.normal * select(-1.0, 1.0, front);
+    let normal = select(towards_eye, given, dot(given, given) > 0.0);
+    return normal * inverseSqrt(max(dot(normal, normal), 1e-30));
+}
+
+fn is_opaque() -> bool {
+    return (item.flags.x & (MASK | BLEND)) == 0u;
 }
 
 fn surface(in: Varying) -> vec4f {
-    return item.base_color * in.color * textureSample(base_texture, base_sampler, in.uv);
+    var texel = textureSample(base_texture, base_sampler, in.uv);
+    if !is_opaque() {
+        texel = vec4f(texel.rgb / max(texel.a, 1e-4), texel.a);
+    }
+    return item.base_color * in.color * texel;
 }
 
 fn shade(in: Varying, front: bool) -> vec4f {
     let flags = item.flags.x;
     var color = surface(in);
-    var normal = unit(in.normal) * select(-1.0, 1.0, front);
+    var normal = vertex_normal(in, front);
     var visibility = vec2f(1.0);
+    let right = dpdx(in.world.xy);
+    let down = dpdy(in.world.xy);
     if (flags & (FROM_GROUND_NORMAL | FROM_GROUND_ALBEDO)) != 0u {
-        let post = ground_at(in.world.xy);
+        let post = ground_at(in.world.xy, right, down);
         if (flags & FROM_GROUND_NORMAL) != 0u {
             normal = normalize(vec3f(-post.slope, 1.0));
             visibility = post.visibility;
         }
         if (flags & FROM_GROUND_ALBEDO) != 0u {
-            let cover = contour_cover(post.height, fwidth(post.height)) * frame.contour.a;
-            color = vec4f(mix(ramp_at(post.height), frame.contour.rgb, cover), color.a);
+            let per_pixel = abs(dot(post.gradient, right)) + abs(dot(post.gradient, down));
+            let cover = contour_cover(post.height, per_pixel) * frame.contour.a;
+            color = vec4f(mix(ramp_at(post.height), frame.contour.rgb, cover), 1.0);
         }
     }
     let light = lit(color.rgb, normal, visibility.x, visibility.y);
@@ -196,7 +264,8 @@ fn shade(in: Varying, front: bool) -> vec4f {
 
 // The depth buffer's value from what the rasteriser knows exactly at a pixel's centre, 1 / d.
 fn reversed_depth(in: Varying) -> f32 {
-    return frame.depth.x * nearer * in.clip.w - frame.depth.y;
+    let change = max(abs(dpdx(in.clip.w)), abs(dpdy(in.clip.w)));
+    return frame.depth.x * (nearer * in.clip.w + nearer_px * change) - frame.depth.y;
 }
 
 fn shade_or_discard(in: Varying, front: bool) -> vec4f {
@@ -213,6 +282,31 @@ fn color(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec4f 
     return shade_or_discard(in, front);
 }
 
+struct ColorAndSamples {
+    @location(0) color: vec4f,
+    @builtin(sample_mask) samples: u32,
+}
+
+fn is_solid_at(in: Varying, offset: vec2f) -> bool {
+    let uv = in.uv + dpdx(in.uv) * offset.x + dpdy(in.uv) * offset.y;
+    let texel = textureSampleBias(base_texture, base_sampler, uv, MASK_LEVEL_BIAS);
+    return item.base_color.a * in.color.a * texel.a >= item.cutoff.x;
+}
+
+// A masked item with its alpha tested at each of the four standard sample places, for smooth borders.
+@fragment
+fn masked_color(in: Varying, @builtin(front_facing) front: bool) -> ColorAndSamples {
+    let shaded = shade(in, front);
+    let solid = vec4<bool>(
+        is_solid_at(in, vec2f(-0.125, -0.375)),
+        is_solid_at(in, vec2f(0.375, -0.125)),
+        is_solid_at(in, vec2f(-0.375, 0.125)),
+        is_solid_at(in, vec2f(0.125, 0.375)),
+    );
+    let bits = select(vec4u(0u), vec4u(1u, 2u, 4u, 8u), solid);
+    return ColorAndSamples(shaded, bits.x | bits.y | bits.z | bits.w);
+}
+
 struct ColorAndDepth {
     @location(0) color: vec4f,
     @builtin(frag_depth) depth: f32,
@@ -221,7 +315,8 @@ struct ColorAndDepth {
 // For OpenGL, whose clip space halves the depth range about zero and so loses what reversing gained.
 @fragment
 fn color_and_depth(in: Varying, @builtin(front_facing) front: bool) -> ColorAndDepth {
-    return ColorAndDepth(shade_or_discard(in, front), reversed_depth(in));
+    let depth = reversed_depth(in);
+    return ColorAndDepth(shade_or_discard(in, front), depth);
 }
 
 struct FeatureAndDepth {
@@ -231,9 +326,10 @@ struct FeatureAndDepth {
 
 @fragment
 fn feature(in: Varying) -> FeatureAndDepth {
+    let depth = reversed_depth(in);
     let alpha = surface(in).a;
-    if (item.flags.x & (MASK | BLEND)) != 0u && alpha < item.cutoff.x {
+    if !is_opaque() && alpha < item.cutoff.x {
         discard;
     }
-    return FeatureAndDepth(vec2u(item.flags.y, bitcast<u32>(1.0 / in.clip.w)), reversed_depth(in));
+    return FeatureAndDepth(vec2u(item.flags.y, bitcast<u32>(1.0 / in.clip.w)), depth);
 }

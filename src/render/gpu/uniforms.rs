@@ -5,6 +5,7 @@ use glam::Vec3;
 
 use crate::draw::list::{DrawItem, DrawList};
 use crate::draw::material::{Albedo, Alpha, Material, Normals};
+use crate::render::gpu::ground::{MOST_LEVELS, levels};
 use crate::view::camera::Camera;
 
 /// How many ramp stops lie in one row of their texture; any number below the smallest limit will do.
@@ -38,6 +39,7 @@ pub(in crate::render::gpu) struct Frame {
     ground_size: [u32; 4],
     contour: [f32; 4],
     contour_shape: [f32; 4],
+    ground_levels: [[u32; 4]; MOST_LEVELS],
 }
 
 /// What is the same for one item: `Item` in the shader.
@@ -79,11 +81,14 @@ impl Frame {
     }
 
     fn of_ground(list: &DrawList) -> Self {
-        let mut frame = Self { ground: [0.0, 0.0, 1.0, 1.0], ..Self::zeroed() };
-        frame.ground_size = [1, 1, 1, RAMP_COLUMNS];
+        let mut frame = Self::zeroed();
         let Some(map) = &list.ground else { return frame };
+        let levels = levels(map.columns, map.rows);
+        for (place, level) in frame.ground_levels.iter_mut().zip(&levels) {
+            *place = [level.columns, level.rows, level.first, 0];
+        }
         frame.ground = [map.origin.x, map.origin.y, map.cell.x, map.cell.y];
-        frame.ground_size = [map.columns, map.rows, map.ramp.stops().len() as u32, RAMP_COLUMNS];
+        frame.ground_size = [map.ramp.stops().len() as u32, RAMP_COLUMNS, levels.len() as u32, 0];
         if let Some(contours) = map.contours {
             let every = contours.major_every.max(1) as f32;
             frame.contour = with(contours.color.linear(), contours.color.alpha());
@@ -95,14 +100,12 @@ impl Frame {
 
 impl ItemConstants {
     /// The constants of `item`, drawn with `material`.
-    ///
-    /// Where there is no ground map, a material that takes its colour from it shows its base colour instead.
-    pub fn of(item: &DrawItem, material: &Material, list: &DrawList) -> Self {
+    pub fn of(item: &DrawItem, material: &Material) -> Self {
         let mut flags = 0;
         if material.normals == Normals::Ground {
             flags |= FROM_GROUND_NORMAL;
         }
-        if material.albedo == Albedo::GroundMap && list.ground.is_some() {
+        if material.albedo == Albedo::GroundMap {
             flags |= FROM_GROUND_ALBEDO;
         }
         let cutoff = match material.alpha {

@@ -1,26 +1,21 @@
-//! A draw list as buffers and textures on the device.
-//!
-//! Only what items use goes up. The ground map becomes a texture of integers holding the bits of its
-//! floats: every adapter can read one, none may filter it, so that what the shader interpolates by hand is
-//! the same everywhere.
+//! A draw list as buffers and textures on the device. Only what items use goes up.
 
 use bytemuck::{bytes_of, cast_slice};
+use rayon::prelude::*;
 use wgpu::util::align_to;
 
 use crate::draw::color::Srgba;
-use crate::draw::ground::{GroundMap, GroundPost};
+use crate::draw::ground::GroundMap;
 use crate::draw::list::{DrawList, DrawMesh};
+use crate::draw::material::{Alpha, Material};
 use crate::draw::pixels::Pixels;
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
-use crate::render::gpu::mips::levels;
+use crate::render::gpu::ground::GroundTextures;
+use crate::render::gpu::mips::{levels, premultiplied};
 use crate::render::gpu::pipelines::Layouts;
 use crate::render::gpu::uniforms::{Frame, ItemConstants, RAMP_COLUMNS};
 use crate::view::camera::Camera;
-
-/// Rows of the ground map are sent in portions of about this many bytes, so that a large map is never held
-/// three times over.
-const PORTION_BYTES: usize = 16 << 20;
 
 /// A mesh on the device.
 #[derive(Debug)]
@@ -40,10 +35,17 @@ pub(in crate::render::gpu) struct Resources {
     pub items: wgpu::BindGroup,
     /// Bytes from one item's constants to the next.
     pub item_stride: u32,
-    /// One a texture; `None` for one that no item shows.
-    pub textures: Vec<Option<wgpu::BindGroup>>,
-    /// What an item without a texture binds.
-    pub white: wgpu::BindGroup,
+    textures: Vec<TextureForms>,
+    white: wgpu::BindGroup,
+}
+
+/// A texture in the forms that some item shows it in; an empty one has none.
+#[derive(Debug, Default)]
+struct TextureForms {
+    /// As it is, for opaque materials.
+    straight: Option<wgpu::BindGroup>,
+    /// Colours multiplied by alpha, for all others: filtering must not mix in what is not seen.
+    premultiplied: Option<wgpu::BindGroup>,
 }
 
 impl Resources {
@@ -53,18 +55,13 @@ impl Resources {
     /// [`GpuError`] where something is too large for the adapter.
     pub fn upload(gpu: &Gpu, layouts: &Layouts, list: &DrawList, camera: &Camera) -> Result<Self, GpuError> {
         let mut mesh_used = vec![false; list.meshes.len()];
-        let mut texture_used = vec![false; list.textures.len()];
         for item in list.items.iter().filter(|item| !item.triangles.is_empty()) {
             mesh_used[item.mesh.0 as usize] = true;
-            if let Some(texture) = list.materials[item.material.0 as usize].texture {
-                texture_used[texture.0 as usize] = true;
-            }
         }
         let meshes = list.meshes.iter().zip(mesh_used).enumerate();
-        let textures = list.textures.iter().zip(texture_used);
         let (items, item_stride) = items(gpu, layouts, list)?;
         let sampler = sampler(gpu);
-        let white = Pixels::filled(1, 1, Srgba::WHITE);
+        let white = [Pixels::filled(1, 1, Srgba::WHITE)];
         Ok(Self {
             meshes: meshes
                 .map(|(index, (mesh, used))| used.then(|| upload_mesh(gpu, index, mesh)).transpose())
@@ -72,11 +69,19 @@ impl Resources {
             frame: frame(gpu, layouts, list, camera)?,
             items,
             item_stride,
-            textures: textures
-                .map(|(pixels, used)| if used { texture(gpu, layouts, &sampler, pixels) } else { None })
-                .collect(),
-            white: bind_texture(gpu, layouts, &sampler, &[white]),
+            textures: textures(gpu, layouts, &sampler, list),
+            white: bind_texture(gpu, layouts, &sampler, &white),
         })
+    }
+
+    /// What an item with `material` binds as its texture: white where it has none.
+    pub fn texture_of(&self, material: &Material) -> &wgpu::BindGroup {
+        let forms = material.texture.map(|id| &self.textures[id.0 as usize]);
+        let form = forms.and_then(|forms| match material.alpha {
+            Alpha::Opaque => forms.straight.as_ref(),
+            Alpha::Mask(_) | Alpha::Blend => forms.premultiplied.as_ref(),
+        });
+        form.unwrap_or(&self.white)
     }
 }
 
@@ -113,7 +118,7 @@ fn items(gpu: &Gpu, layouts: &Layouts, list: &DrawList) -> Result<(wgpu::BindGro
     let total = gpu.fitting(what, list.items.len().max(1) as u64 * u64::from(stride))?;
     let mut bytes = vec![0; total as usize];
     for (slot, item) in bytes.chunks_exact_mut(stride as usize).zip(&list.items) {
-        let constants = ItemConstants::of(item, &list.materials[item.material.0 as usize], list);
+        let constants = ItemConstants::of(item, &list.materials[item.material.0 as usize]);
         slot[..size].copy_from_slice(bytes_of(&constants));
     }
     let buffer = buffer(gpu, what, wgpu::BufferUsages::UNIFORM, &bytes)?;
@@ -135,57 +140,20 @@ fn frame(
     let constants = Frame::of(list, camera);
     let what = || "the camera".into();
     let buffer = buffer(gpu, what, wgpu::BufferUsages::UNIFORM, bytes_of(&constants))?;
-    let posts = match &list.ground {
-        Some(map) => ground_posts(gpu, map)?,
-        None => {
-            let level = GroundPost { sun_visibility: 1.0, sky_visibility: 1.0, ..Default::default() };
-            let texture = data_texture(gpu, (1, 1), wgpu::TextureFormat::Rgba32Uint);
-            write_rows(gpu, &texture, 0..1, 1, bytes_of(&packed(&level)));
-            texture
-        }
-    };
+    let ground = GroundTextures::upload(gpu, list.ground.as_deref())?;
     let ramp = ramp_stops(gpu, list.ground.as_deref());
     let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
-    let (posts, ramp) = (view(&posts), view(&ramp));
+    let views = [view(&ground.posts), view(&ground.coarse), view(&ramp)];
+    let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }];
+    entries.extend((1..).zip(&views).map(|(binding, view)| wgpu::BindGroupEntry {
+        binding,
+        resource: wgpu::BindingResource::TextureView(view),
+    }));
     Ok(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout: &layouts.frame,
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&posts) },
-            wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(&ramp) },
-        ],
+        entries: &entries,
     }))
-}
-
-/// Height and slopes as bits, both visibilities as 16 bits each.
-fn packed(post: &GroundPost) -> [u32; 4] {
-    let sixteen = |share: f32| (share.clamp(0.0, 1.0) * 65535.0 + 0.5) as u32;
-    [
-        post.height_m.to_bits(),
-        post.slope_east.to_bits(),
-        post.slope_north.to_bits(),
-        sixteen(post.sun_visibility) | sixteen(post.sky_visibility) << 16,
-    ]
-}
-
-fn ground_posts(gpu: &Gpu, map: &GroundMap) -> Result<wgpu::Texture, GpuError> {
-    let limit = gpu.limits.max_texture_dimension_2d;
-    let (columns, rows) = (map.columns, map.rows);
-    if columns > limit || rows > limit {
-        return Err(GpuError::GroundSize { columns, rows, limit, adapter: gpu.name().into() });
-    }
-    let texture = data_texture(gpu, (columns, rows), wgpu::TextureFormat::Rgba32Uint);
-    let stride = columns as usize;
-    let portion = (PORTION_BYTES / (stride * size_of::<[u32; 4]>())).max(1);
-    let mut first = 0;
-    for posts in map.posts.chunks(portion * stride) {
-        let texels: Vec<[u32; 4]> = posts.iter().map(packed).collect();
-        let last = first + (posts.len() / stride) as u32;
-        write_rows(gpu, &texture, first..last, columns, cast_slice(&texels));
-        first = last;
-    }
-    Ok(texture)
 }
 
 /// Every stop as linear red, green, blue and its height, in rows of [`RAMP_COLUMNS`].
@@ -196,33 +164,24 @@ fn ramp_stops(gpu: &Gpu, map: Option<&GroundMap>) -> wgpu::Texture {
         stops.iter().map(|&(height, color)| color.linear().extend(height).to_array()).collect();
     let rows = texels.len().div_ceil(RAMP_COLUMNS as usize);
     texels.resize(rows * RAMP_COLUMNS as usize, [0.0; 4]);
-    let texture = data_texture(gpu, (RAMP_COLUMNS, rows as u32), wgpu::TextureFormat::Rgba32Float);
-    write_rows(gpu, &texture, 0..rows as u32, RAMP_COLUMNS, cast_slice(&texels));
-    texture
-}
-
-fn data_texture(gpu: &Gpu, (width, height): (u32, u32), format: wgpu::TextureFormat) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+    let size = wgpu::Extent3d { width: RAMP_COLUMNS, height: rows as u32, depth_or_array_layers: 1 };
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("ramp"),
+        size,
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format,
+        format: wgpu::TextureFormat::Rgba32Float,
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
-    })
-}
-
-/// Fills `rows` of a texture whose texels are 16 bytes.
-fn write_rows(gpu: &Gpu, texture: &wgpu::Texture, rows: std::ops::Range<u32>, width: u32, bytes: &[u8]) {
-    let mut to = texture.as_image_copy();
-    to.origin.y = rows.start;
-    let height = rows.end - rows.start;
-    let layout =
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(width * 16), rows_per_image: None };
-    let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
-    gpu.queue.write_texture(to, bytes, layout, size);
+    });
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(RAMP_COLUMNS * size_of::<[f32; 4]>() as u32),
+        rows_per_image: None,
+    };
+    gpu.queue.write_texture(texture.as_image_copy(), cast_slice(&texels), layout, size);
+    texture
 }
 
 /// Repeats both ways and blends between the two nearest levels.
@@ -238,15 +197,28 @@ fn sampler(gpu: &Gpu) -> wgpu::Sampler {
     })
 }
 
-/// `None` for a texture without texels, which then shows as white.
-fn texture(
-    gpu: &Gpu,
-    layouts: &Layouts,
-    sampler: &wgpu::Sampler,
-    pixels: &Pixels,
-) -> Option<wgpu::BindGroup> {
-    let levels = levels(pixels, gpu.limits.max_texture_dimension_2d);
-    (!levels.is_empty()).then(|| bind_texture(gpu, layouts, sampler, &levels))
+fn textures(gpu: &Gpu, layouts: &Layouts, sampler: &wgpu::Sampler, list: &DrawList) -> Vec<TextureForms> {
+    let mut wanted = vec![[false; 2]; list.textures.len()];
+    for item in list.items.iter().filter(|item| !item.triangles.is_empty()) {
+        let material = &list.materials[item.material.0 as usize];
+        if let Some(id) = material.texture {
+            wanted[id.0 as usize][usize::from(material.alpha != Alpha::Opaque)] = true;
+        }
+    }
+    let limit = gpu.limits.max_texture_dimension_2d;
+    let bind = |levels: &[Pixels]| bind_texture(gpu, layouts, sampler, levels);
+    let forms = |(texture, [straight, multiplied]): (&Pixels, [bool; 2])| {
+        let levels = if straight || multiplied { levels(texture, limit) } else { Vec::new() };
+        if levels.is_empty() {
+            return TextureForms::default();
+        }
+        TextureForms {
+            straight: straight.then(|| bind(&levels)),
+            premultiplied: multiplied
+                .then(|| bind(&levels.par_iter().map(premultiplied).collect::<Vec<_>>())),
+        }
+    };
+    list.textures.iter().zip(wanted).map(forms).collect()
 }
 
 fn bind_texture(gpu: &Gpu, layouts: &Layouts, sampler: &wgpu::Sampler, levels: &[Pixels]) -> wgpu::BindGroup {

@@ -1,0 +1,25 @@
+//! The GPU adapters of this machine, or a loud word that there are none.
+
+use std::sync::LazyLock;
+
+use sandtable::render::gpu::adapter::{Api, Gpu};
+
+/// One device for each interface that offers one; opening takes a while, so all tests share them.
+///
+/// Where an interface offers none, this says so; with `SANDTABLE_REQUIRE_GPU` set it fails instead.
+pub fn gpus() -> &'static [Gpu] {
+    static GPUS: LazyLock<Vec<Gpu>> =
+        LazyLock::new(|| [Api::Vulkan, Api::Gl].into_iter().filter_map(open).collect());
+    &GPUS
+}
+
+fn open(api: Api) -> Option<Gpu> {
+    match Gpu::open(&[api]) {
+        Ok(gpu) => Some(gpu),
+        Err(error) => {
+            assert!(std::env::var_os("SANDTABLE_REQUIRE_GPU").is_none(), "{error}");
+            eprintln!("SKIPPED: no GPU adapter: {error}");
+            None
+        }
+    }
+}
