@@ -50,7 +50,7 @@ pub fn build(ground: &Ground, flow: &Flow, water: &[bool], notes: &mut Vec<Strin
     );
     let junction = nearest_vertex(&valley, ground.from_lon_lat(-84.2120, 36.2815));
     let mut stops = vec![junction];
-    stops.extend(places(&[(-84.2425, 36.2795), (-84.2615, 36.2655), (-84.3290, 36.2360)]));
+    stops.extend(places(&[(-84.2429, 36.2778), (-84.2615, 36.2655), (-84.2735, 36.2610)]));
     let pass = planner.road(&stops, PASS);
     let crest = highest_vertex(ground, &pass);
     note(ground, notes, "junction", junction);

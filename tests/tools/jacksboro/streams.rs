@@ -25,26 +25,18 @@ const LEASH_M: f64 = 55.0;
 const PASSES: usize = 6;
 /// How much detail is dropped, in metres.
 const DETAIL_M: f64 = 6.0;
-/// Streams that are known by name, by a place on their lower course: longitude, latitude, name, and how far
-/// the name holds. A tributary comes before the river it joins, so that the river's name holds below the
-/// confluence.
-const NAMED: [(f64, f64, &str, Reach); 6] = [
-    (-84.1560, 36.2170, "Coal Creek", Reach::Whole),
-    (-84.1020, 36.2030, "Clinch River", Reach::Below),
-    (-84.2290, 36.3040, "Cove Creek", Reach::Whole),
-    (-84.0850, 36.2170, "Clinch River", Reach::Below),
-    (-84.1200, 36.3750, "Big Creek", Reach::Whole),
-    (-84.3360, 36.2370, "New River", Reach::Below),
+/// Streams that are known by name: longitude and latitude of a place on them, and the name, which holds from
+/// there down to the next larger stream. Upstream it is not carried: the drained area, as far as it lies in
+/// the tile, does not tell which branch people call by the name. A tributary comes before the river it
+/// joins, so that the river's name holds below the confluence.
+const NAMED: [(f64, f64, &str); 6] = [
+    (-84.1800, 36.1870, "Coal Creek"),
+    (-84.2620, 36.3570, "Cove Creek"),
+    (-84.1270, 36.3920, "Big Creek"),
+    (-84.3360, 36.2370, "New River"),
+    (-84.0900, 36.2210, "Clinch River"),
+    (-84.0790, 36.2068, "Clinch River"),
 ];
-
-/// How far a name holds from the place it is given at, always down to the next larger stream.
-#[derive(Clone, Copy, PartialEq)]
-enum Reach {
-    /// Also upstream, along the branch that drains most.
-    Whole,
-    /// Not upstream: the river comes from outside the tile, and drained area there does not tell its branch.
-    Below,
-}
 
 /// One stretch of stream between confluences.
 pub struct Stream {
@@ -56,8 +48,6 @@ pub struct Stream {
     pub area_km2: f64,
     /// Its name where it is known.
     pub name: Option<&'static str>,
-    /// The posts it was traced on, downstream.
-    pub posts: Vec<usize>,
 }
 
 /// All streams outside standing water, in the order of their uppermost posts.
@@ -80,7 +70,6 @@ pub fn trace(ground: &Ground, flow: &Flow, water: &[bool]) -> Vec<Stream> {
             order: order[inner],
             area_km2: flow.area_km2[inner],
             name: names[inner],
-            posts,
         });
     }
     streams
@@ -174,15 +163,10 @@ fn names(ground: &Ground, flow: &Flow, channel: &[bool]) -> Vec<Option<&'static 
             *donor = post;
         }
     }
-    for (lon, lat, name, reach) in NAMED {
+    for (lon, lat, name) in NAMED {
         let Some(start) = nearest_channel(ground, flow, channel, ground.from_lon_lat(lon, lat)) else {
             continue;
         };
-        let mut post = if reach == Reach::Whole { start } else { NONE };
-        while post != NONE {
-            names[post] = Some(name);
-            post = largest_donor[post];
-        }
         let mut post = start;
         names[start] = Some(name);
         let mut above = largest_donor[flow.down[start]];
