@@ -19,7 +19,6 @@ pub struct DemError {
     /// The file, as the caller named it.
     pub name: String,
     /// What was wrong.
-    #[source]
     pub fault: Fault,
 }
 
@@ -71,8 +70,8 @@ pub enum Fault {
         remedy: &'static str,
     },
     /// The coordinate reference system is not understood.
-    #[error("its coordinate system cannot be used; state the right one as crs under [terrain]")]
-    Crs(#[source] CrsError),
+    #[error("its coordinate system cannot be used: {0}; or state the right one as crs under [terrain]")]
+    Crs(CrsError),
     /// A picture without the height of its grey values.
     #[error(
         "a PNG holds grey values, not metres: state height_scale (metres per grey value) and, where value 0 is not at 0 m, height_offset, under [terrain], or --height-scale and --height-offset on the command line"

@@ -17,3 +17,5 @@ pub mod stats;
 pub mod tiff_blocks;
 pub mod tiff_mask;
 pub mod tiff_neutral;
+pub mod warp;
+pub mod warp_line;
