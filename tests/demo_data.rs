@@ -9,6 +9,7 @@ use jacksboro::flow::{Flow, NONE};
 use jacksboro::ground::Ground;
 use jacksboro::{lakes, line, network, samples};
 use sandtable::description::document::{Document, Source};
+use sandtable::description::parse::parse;
 
 #[path = "tools/jacksboro/mod.rs"]
 mod jacksboro;
@@ -150,13 +151,11 @@ fn every_scene_reads_and_names_files_that_are_there() {
     for path in scenes {
         let written = std::fs::read_to_string(&path).expect("a scene reads");
         assert!(written.starts_with("# "), "{path:?} opens with what it shows");
-        let document: Document = toml::from_str(&written).unwrap_or_else(|error| panic!("{path:?}: {error}"));
+        let document = parse(&path.to_string_lossy(), &written).unwrap_or_else(|error| panic!("{error}"));
         assert!(!document.cameras.is_empty(), "{path:?} has a camera");
         for file in files(&document) {
             let place = path.parent().expect("a folder").join(&file);
-            // The models come from a room of their own; where they are, they must all be.
-            let models = place.parent().is_some_and(|folder| folder.ends_with("models") && !folder.exists());
-            assert!(models || place.exists(), "{path:?} names {file}, which is not there");
+            assert!(place.exists(), "{path:?} names {file}, which is not there");
         }
     }
 }

@@ -79,7 +79,7 @@ fn lists_that_are_not_sound_are_refused_with_a_reason() {
     let mut bare = list.clone();
     let mut map = ground_map(5, 10.0, false, |_, _| 0.0);
     map.columns = u32::MAX;
-    bare.ground = Some(map);
+    bare.ground = Some(map.into());
     assert!(matches!(refused(&bare), RenderError::GroundMap(_)));
 
     let mut dangling = list.clone();
@@ -97,7 +97,7 @@ fn ground_maps_of_one_post_or_one_row_can_be_read() {
         let mut map = ground_map(7, 10.0, true, |_, _| 5.0);
         (map.columns, map.rows) = (columns, rows);
         map.posts.truncate((columns * rows) as usize);
-        let mut list = DrawList { ground: Some(map), ..DrawList::default() };
+        let mut list = DrawList { ground: Some(map.into()), ..DrawList::default() };
         let mesh = ground_mesh(2, 10.0, |_, y| -3.0 + 0.1 * y);
         item(&mut list, mesh, ground_material(), Layer::Ground, FeatureId::GROUND);
         assert!(count(&shot(&list, &northward((40, 30))), FeatureId::GROUND) > 100);
@@ -117,7 +117,7 @@ proptest! {
         blends in any::<bool>(),
         draped in any::<bool>(),
     ) {
-        let mut list = DrawList { ground: Some(ground_map(3, 5.0, true, |x, _| x)), ..DrawList::default() };
+        let mut list = DrawList { ground: Some(ground_map(3, 5.0, true, |x, _| x).into()), ..DrawList::default() };
         let alpha = if blends { Alpha::Blend } else { Alpha::Opaque };
         for corners in corners {
             let base = if draped { draped_material(Srgba([9, 9, 9, 99])) } else { Material::default() };

@@ -137,9 +137,9 @@ fn haze_thickens_with_the_true_distance() {
 #[test]
 fn contours_keep_their_width_from_near_to_far() {
     let slope = |_: f32, y: f32| 0.25 * y;
-    let mut list = DrawList { ground: Some(ground_map(101, 500.0, false, slope)), ..DrawList::default() };
+    let mut list = DrawList { ground: Some(ground_map(101, 500.0, false, slope).into()), ..DrawList::default() };
     plain_light(&mut list);
-    let map = list.ground.as_mut().expect("just put there");
+    let map = std::sync::Arc::make_mut(list.ground.as_mut().expect("just put there"));
     map.ramp = sandtable::draw::ground::Ramp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop");
     map.contours = Some(Contours {
         interval_m: 10.0,
@@ -169,7 +169,7 @@ fn contours_keep_their_width_from_near_to_far() {
 #[test]
 fn a_lake_at_the_height_of_a_line_is_not_all_line() {
     let flat = |_: f32, _: f32| 20.0;
-    let mut list = DrawList { ground: Some(ground_map(11, 100.0, true, flat)), ..DrawList::default() };
+    let mut list = DrawList { ground: Some(ground_map(11, 100.0, true, flat).into()), ..DrawList::default() };
     plain_light(&mut list);
     item(&mut list, ground_mesh(4, 100.0, flat), ground_material(), Layer::Ground, FeatureId::GROUND);
     let picture = shot(&list, &looking(Vec3::new(0.0, -50.0, 60.0), Vec3::new(0.0, 0.0, 20.0), (60, 40)));
