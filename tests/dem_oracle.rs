@@ -13,6 +13,7 @@ use sandtable::dem::raster::Raster;
 use sandtable::dem::read::{Hints, read};
 use sandtable::dem::sample::{Sampled, bilinear, nearest};
 use sandtable::dem::stats;
+use sandtable::dem::warp::to_metric;
 use sandtable::geom::crs::{Crs, CrsError};
 use serde_json::Value;
 
@@ -358,4 +359,83 @@ fn mutants_of_real_files_are_errors_or_rasters() {
             }
         }
     }
+}
+
+#[test]
+fn a_grid_that_old_gdal_cannot_read_is_read() {
+    let Some(folder) = data() else { return };
+    let raster = open(&folder.join("dem/gdal_nodata_nan.asc")).expect("readable");
+    let values: Vec<f64> = raster.samples.iter().collect();
+    assert!(values[0].is_nan());
+    assert_eq!(values[1..], [-1.0, 0.0, 1.0, 2.0, 3.0]);
+}
+
+#[test]
+fn every_raster_with_a_place_comes_to_metres_or_is_refused_for_a_reason() {
+    let Some(folder) = data() else { return };
+    for (file, entry) in oracle(&folder) {
+        let Ok(raster) = open(&folder.join(&file)) else { continue };
+        let text = match to_metric(&raster, None) {
+            Ok(metric) => {
+                assert!(metric.is_north_up() && metric.crs.as_ref().is_none_or(Crs::is_metric), "{file}");
+                let (before, after) = (stats::of(&raster), stats::of(&metric));
+                let range = before.max - before.min;
+                assert!(after.min >= before.min - 1e-9 && after.max <= before.max + 1e-9, "{file}");
+                assert!((after.mean - before.mean).abs() <= 0.02 * range, "{file}: {before:?} {after:?}");
+                let kept = after.valid as f64 / before.valid as f64;
+                assert!((0.9..1.15).contains(&kept) || before.valid < 500, "{file}: {kept} of the samples");
+                continue;
+            }
+            Err(error) => error.to_string(),
+        };
+        let wanted = match &file[..] {
+            "dem/etopo1_1deg_global.tif" => "no UTM zone",
+            "dem/boulder_SRTMGL3.asc"
+            | "dem_formats/xllcenter.asc"
+            | "dem_formats/crlf_tabs.asc"
+            | "dem_formats/i16_no_crs_tfw.tif" => "EPSG:4326",
+            _ if entry["geotransform"].is_null() => "cell",
+            _ => panic!("{file} is refused: {text}"),
+        };
+        assert!(text.contains(wanted), "{file} is refused, but not for '{wanted}': {text}");
+    }
+}
+
+#[test]
+fn the_flagship_keeps_its_heights_on_the_way_to_utm() {
+    let Some(folder) = data() else { return };
+    let file = "scenes/swellendam_za/dem_srtm_wgs84_f32.tif";
+    let raster = open(&folder.join(file)).expect("readable");
+    let start = Instant::now();
+    let metric = to_metric(&raster, None).expect("in one zone");
+    println!(
+        "{} x {} samples to {} x {} in {:?}",
+        raster.width,
+        raster.height,
+        metric.width,
+        metric.height,
+        start.elapsed()
+    );
+    let utm = metric.crs.as_ref().expect("a zone");
+    assert_eq!(utm.epsg(), Some(32734));
+    let mut count = 0;
+    for at in (0..metric.samples.len()).step_by(7) {
+        let (column, row) = (at % metric.width as usize, at / metric.width as usize);
+        let center = DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
+        let exact = utm.transform(&Crs::wgs84(), metric.map_from_grid.transform_point2(center));
+        let wanted = value(bilinear(&raster, exact.expect("inside")));
+        let ours = metric.samples.get(at);
+        if wanted.is_finite() {
+            // A parabola may stand in for the projection, and heights are kept in 32 bits.
+            assert!((ours - wanted).abs() < 0.002, "({column}, {row}): {ours} for {wanted}");
+            count += 1;
+        }
+    }
+    assert!(count > 70_000, "{count} cells");
+    let samples = samples(&folder, file, "samples");
+    let inside = samples.iter().filter(|sample| {
+        let at = Crs::wgs84().transform(utm, sample.at).expect("inside");
+        matches!(bilinear(&metric, at), Sampled::Ok(_))
+    });
+    assert!(inside.count() > 190, "the extent is kept");
 }

@@ -66,7 +66,7 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
 fn samples(words: &mut Words, count: usize, nodata: f64) -> Result<(Vec<f32>, bool), Fault> {
     let mut values = Vec::with_capacity(count);
     let mut replaced = false;
-    while let Some(word) = words.next() {
+    for word in words {
         if values.len() == count {
             return Err(Fault::broken(
                 FORMAT,

@@ -23,6 +23,9 @@ use crate::dem::tiff_neutral::neutralised;
 /// The most bytes of one tag: the offsets of a million blocks.
 const LARGEST_TAG: usize = 16 << 20;
 
+/// The most bytes of a text tag; GDAL's metadata takes a few kilobytes.
+const LARGEST_TEXT: u64 = 1 << 20;
+
 /// The most bytes that one block decodes to.
 const LARGEST_BLOCK: usize = 2 << 30;
 
@@ -102,6 +105,11 @@ impl Tags {
 
 /// A tag of text, or of bytes that are text, up to its first NUL; empty where absent.
 fn text<R: Read + Seek>(decoder: &mut Decoder<R>, tag: Tag) -> String {
+    // The decoder allocates what a text tag claims before it looks whether the file holds it.
+    let claimed = decoder.image_ifd().find_entry(tag).map_or(0, |entry| entry.count());
+    if claimed > LARGEST_TEXT {
+        return String::new();
+    }
     let found = match decoder.find_tag(tag) {
         Ok(Some(ifd::Value::Ascii(text))) => text,
         Ok(Some(other)) => String::from_utf8_lossy(&other.into_u8_vec().unwrap_or_default()).into_owned(),

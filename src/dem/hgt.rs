@@ -30,7 +30,7 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     })?;
     let samples = (source.bytes.len() / 2) as u64;
     let size = SIZES.into_iter().find(|&(width, height)| {
-        u64::from(width) * u64::from(height) == samples && source.bytes.len() % 2 == 0
+        u64::from(width) * u64::from(height) == samples && source.bytes.len().is_multiple_of(2)
     });
     let (width, height) = size.filter(|_| samples <= MOST_SAMPLES).ok_or_else(|| {
         Fault::broken(

@@ -17,5 +17,6 @@ pub mod stats;
 pub mod tiff_blocks;
 pub mod tiff_mask;
 pub mod tiff_neutral;
+pub mod valid;
 pub mod warp;
 pub mod warp_line;

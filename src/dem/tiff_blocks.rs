@@ -44,6 +44,9 @@ impl Storage {
         let expansion = expansion(short(decoder, Tag::Compression, 1)?)?;
         let bits = short(decoder, Tag::BitsPerSample, 1)?;
         let bands = short(decoder, Tag::SamplesPerPixel, 1)?;
+        if bands == 0 {
+            return Err(Fault::broken(FORMAT, "it has no band"));
+        }
         let planar = short(decoder, Tag::PlanarConfiguration, 1)? == 2;
         let is_float = short(decoder, Tag::SampleFormat, 1)? == 3;
         let counts_tag = match decoder.get_chunk_type() {
@@ -51,7 +54,7 @@ impl Storage {
             ChunkType::Tile => Tag::TileByteCounts,
         };
         let block_bytes = decoder.find_tag_unsigned_vec(counts_tag).map_err(fault)?.unwrap_or_default();
-        let bands_per_block = if planar { 1 } else { bands.max(1) };
+        let bands_per_block = if planar { 1 } else { bands };
         let storage = Self { width, height, bits, is_float, bands_per_block, block_bytes };
         storage.check(decoder, file_bytes, expansion)?;
         Ok(storage)
@@ -110,10 +113,10 @@ pub(crate) fn decode<R: Read + Seek>(
     storage: &Storage,
     nodata: Option<f64>,
 ) -> Result<Samples, Fault> {
-    if ![8, 16, 32, 64].contains(&storage.bits) {
+    if ![8, 16, 32, 64].contains(&storage.bits) || (storage.is_float && storage.bits == 8) {
         return Err(Fault::Unsupported {
             format: FORMAT,
-            what: format!("samples of {} bits", storage.bits),
+            what: format!("{}-bit {}", storage.bits, if storage.is_float { "floats" } else { "samples" }),
             remedy: "convert it, for example with: gdal_translate -ot Float32 FILE out.tif",
         });
     }

@@ -6,13 +6,10 @@ use rayon::prelude::*;
 use crate::dem::fault::MOST_SAMPLES;
 use crate::dem::raster::{Raster, Samples, north_up};
 use crate::dem::sample::bilinear_at_grid;
+use crate::dem::valid::{outline, valid_grid};
 use crate::dem::warp_line;
 use crate::geom::crs::{Crs, CrsError};
 use crate::geom::rect::Rect;
-
-/// Exact positions along one side of a raster when its extent is projected: the sides bend so little that a
-/// few hundred points leave less than a thousandth of a cell.
-const SIDE_POINTS: u32 = 400;
 
 /// How far from its central meridian a UTM zone is used when nobody chose it. At 9° lengths are off by up
 /// to 1.2 %.
@@ -309,33 +306,6 @@ fn cell_size(center: DVec2, at: &impl Fn(DVec2) -> Result<DVec2, CrsError>) -> R
     let east = at(center + half * DVec2::X)? - at(center - half * DVec2::X)?;
     let south = at(center + half * DVec2::Y)? - at(center - half * DVec2::Y)?;
     Ok(east.perp_dot(south).abs().sqrt())
-}
-
-/// The smallest grid rectangle around the valid samples, out to their edges; `None` where there is none.
-fn valid_grid(raster: &Raster) -> Option<Rect> {
-    let width = raster.width as usize;
-    let mut around = Rect::EMPTY;
-    for row in 0..raster.height as usize {
-        let valid = |column: &usize| !raster.samples.get(row * width + column).is_nan();
-        if let (Some(first), Some(last)) = ((0..width).find(valid), (0..width).rev().find(valid)) {
-            around = around.with(DVec2::new(first as f64, row as f64));
-            around = around.with(DVec2::new(last as f64 + 1.0, row as f64 + 1.0));
-        }
-    }
-    (!around.is_empty()).then_some(around)
-}
-
-/// Points along the sides of a rectangle, corners included.
-fn outline(rect: Rect) -> impl Iterator<Item = DVec2> {
-    (0..=SIDE_POINTS).flat_map(move |step| {
-        let at = rect.min.lerp(rect.max, f64::from(step) / f64::from(SIDE_POINTS));
-        [
-            DVec2::new(at.x, rect.min.y),
-            DVec2::new(at.x, rect.max.y),
-            DVec2::new(rect.min.x, at.y),
-            DVec2::new(rect.max.x, at.y),
-        ]
-    })
 }
 
 #[cfg(test)]

@@ -329,7 +329,7 @@ fn settle_datum(text: &str) -> (String, Datum) {
 /// Whether an ellipsoid is WGS 84's or GRS 80's, on which modern datums stand within a metre or two of
 /// WGS 84, as PROJ too takes them. The two differ by 0.1 mm at the pole.
 fn is_like_wgs84((major, minor): (f64, f64)) -> bool {
-    (major - 6_378_137.0).abs() < 1e-3 && (minor - 6_356_752.3142).abs() < 1e-3
+    (major - 6_378_137.0).abs() < 1e-3 && (minor - 6_356_752.314_2).abs() < 1e-3
 }
 
 fn unknown(text: &str, reason: &str) -> CrsError {

@@ -120,20 +120,17 @@ fn projected(node: &Node) -> Result<Wkt, String> {
 /// and a conic with one parallel takes it from either parameter.
 fn settle_parallels(mut definition: Definition) -> Definition {
     match definition.method {
-        Method::PolarStereographic if definition.parallel_1_deg.is_none() => {
-            if definition.latitude_deg.abs() < 90.0 {
-                definition.parallel_1_deg = Some(definition.latitude_deg);
-            }
+        Method::PolarStereographic
+            if definition.parallel_1_deg.is_none() && definition.latitude_deg.abs() < 90.0 =>
+        {
+            definition.parallel_1_deg = Some(definition.latitude_deg);
         }
-        Method::LambertConic1 => {
-            if let Some(parallel) = definition.parallel_1_deg.take() {
-                definition.parallel_1_deg = Some(parallel);
-                if parallel != definition.latitude_deg {
-                    // One parallel away from the origin is the conic with both parallels there.
-                    definition.method = Method::LambertConic2;
-                    definition.parallel_2_deg = Some(parallel);
-                }
-            }
+        // One parallel away from the origin is the conic with both parallels there.
+        Method::LambertConic1
+            if definition.parallel_1_deg.is_some_and(|at| at != definition.latitude_deg) =>
+        {
+            definition.method = Method::LambertConic2;
+            definition.parallel_2_deg = definition.parallel_1_deg;
         }
         _ => {}
     }
