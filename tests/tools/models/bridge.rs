@@ -85,25 +85,25 @@ fn masonry(bridge: &mut Shape) {
         }
         let (z0, z1) = (under0.unwrap_or(FOOT_M), under1.unwrap_or(FOOT_M));
         let (top0, top1) = (road(y0), road(y1));
-        bridge.polygon(STONE, &[
-            Vec3::new(w, y0, z0),
-            Vec3::new(w, y1, z1),
-            Vec3::new(w, y1, top1),
-            Vec3::new(w, y0, top0),
-        ]);
-        bridge.polygon(STONE, &[
-            Vec3::new(-w, y1, z1),
-            Vec3::new(-w, y0, z0),
-            Vec3::new(-w, y0, top0),
-            Vec3::new(-w, y1, top1),
-        ]);
+        bridge.polygon(
+            STONE,
+            &[Vec3::new(w, y0, z0), Vec3::new(w, y1, z1), Vec3::new(w, y1, top1), Vec3::new(w, y0, top0)],
+        );
+        bridge.polygon(
+            STONE,
+            &[Vec3::new(-w, y1, z1), Vec3::new(-w, y0, z0), Vec3::new(-w, y0, top0), Vec3::new(-w, y1, top1)],
+        );
         if under0.is_some() {
             let soffit =
                 [Vec3::new(-w, y0, z0), Vec3::new(-w, y1, z1), Vec3::new(w, y1, z1), Vec3::new(w, y0, z0)];
             bridge.smooth_polygon(SHADED, 1, &soffit);
         }
-        let deck =
-            [Vec3::new(-w, y0, top0), Vec3::new(w, y0, top0), Vec3::new(w, y1, top1), Vec3::new(-w, y1, top1)];
+        let deck = [
+            Vec3::new(-w, y0, top0),
+            Vec3::new(w, y0, top0),
+            Vec3::new(w, y1, top1),
+            Vec3::new(-w, y1, top1),
+        ];
         bridge.smooth_polygon(ROAD, 2, &deck);
     }
     for end in [-1.0, 1.0] {
@@ -124,13 +124,8 @@ fn ring(bridge: &mut Shape, arch: [f32; 3]) {
             let mut face = [at(out, y0, z0), at(out, y1, z1), at(out, v1, w1), at(out, v0, w0)];
             let mut under = [at(wall, y0, z0), at(wall, y1, z1), at(out, y1, z1), at(out, y0, z0)];
             let mut over = [at(wall, v1, w1), at(wall, v0, w0), at(out, v0, w0), at(out, v1, w1)];
-            // The band runs northward; from outside that is counter-clockwise only on the eastern side, and
-            // the underside faces down there.
-            if side > 0.0 {
-                face.reverse();
-                face.rotate_right(1);
-                face.reverse();
-            } else {
+            // Written for the eastern side; the western one is its mirror image.
+            if side < 0.0 {
                 face.reverse();
                 under.reverse();
                 over.reverse();
@@ -172,10 +167,42 @@ fn parapets(bridge: &mut Shape) {
             let (y0, y1) = (y(step), y(step + 1));
             let corner = |x: f32, y: f32, up: f32| Vec3::new(x * side, y, road(y) + up);
             let quads = [
-                (STONE, [corner(outer, y0, -0.25), corner(outer, y1, -0.25), corner(outer, y1, high), corner(outer, y0, high)]),
-                (STONE, [corner(inner, y1, 0.0), corner(inner, y0, 0.0), corner(inner, y0, high), corner(inner, y1, high)]),
-                (RING, [corner(inner, y0, high), corner(outer, y0, high), corner(outer, y1, high), corner(inner, y1, high)]),
-                (STONE, [corner(outer, y1, -0.25), corner(outer, y0, -0.25), corner(HALF_WIDTH_M, y0, -0.25), corner(HALF_WIDTH_M, y1, -0.25)]),
+                (
+                    STONE,
+                    [
+                        corner(outer, y0, -0.25),
+                        corner(outer, y1, -0.25),
+                        corner(outer, y1, high),
+                        corner(outer, y0, high),
+                    ],
+                ),
+                (
+                    STONE,
+                    [
+                        corner(inner, y1, 0.0),
+                        corner(inner, y0, 0.0),
+                        corner(inner, y0, high),
+                        corner(inner, y1, high),
+                    ],
+                ),
+                (
+                    RING,
+                    [
+                        corner(inner, y0, high),
+                        corner(outer, y0, high),
+                        corner(outer, y1, high),
+                        corner(inner, y1, high),
+                    ],
+                ),
+                (
+                    STONE,
+                    [
+                        corner(outer, y1, -0.25),
+                        corner(outer, y0, -0.25),
+                        corner(HALF_WIDTH_M, y0, -0.25),
+                        corner(HALF_WIDTH_M, y1, -0.25),
+                    ],
+                ),
             ];
             for (paint, mut quad) in quads {
                 if side < 0.0 {

@@ -32,10 +32,8 @@ pub fn walls() -> RgbImage {
 }
 
 pub fn build() -> Shape {
-    let bricks = Paint {
-        texture: Some(("farmhouse_walls.png", walls())),
-        ..Paint::plain("bricks", [255, 255, 255])
-    };
+    let bricks =
+        Paint { texture: Some(("farmhouse_walls.png", walls())), ..Paint::plain("bricks", [255, 255, 255]) };
     let mut house = Shape::new(vec![
         bricks,
         Paint::plain("timber", [74, 54, 40]),
@@ -96,11 +94,20 @@ fn roof(house: &mut Shape) {
     let (edge, low) = (HALF_WIDTH_M + over, EAVES_M - over * slope);
     let thick = 0.22;
     for side in [-1.0, 1.0] {
-        let outline = [[0.0, RIDGE_M], [edge * side, low], [edge * side, low + thick], [0.0, RIDGE_M + thick]];
-        let outline = if side > 0.0 { [outline[1], outline[2], outline[3], outline[0]] } else { [outline[0], outline[3], outline[2], outline[1]] };
+        let outline =
+            [[0.0, RIDGE_M], [edge * side, low], [edge * side, low + thick], [0.0, RIDGE_M + thick]];
+        let outline = if side > 0.0 {
+            [outline[1], outline[2], outline[3], outline[0]]
+        } else {
+            [outline[0], outline[3], outline[2], outline[1]]
+        };
         house.prism(ROOF, Axis::X, &outline, -reach, reach);
     }
-    house.block(ROOF, [-reach - 0.03, -0.16, RIDGE_M + thick - 0.12], [reach + 0.03, 0.16, RIDGE_M + thick + 0.08]);
+    house.block(
+        ROOF,
+        [-reach - 0.03, -0.16, RIDGE_M + thick - 0.12],
+        [reach + 0.03, 0.16, RIDGE_M + thick + 0.08],
+    );
 }
 
 fn openings(house: &mut Shape) {
@@ -142,7 +149,13 @@ fn porch(house: &mut Shape) {
     for x in [-1.05, 1.05] {
         house.block(TIMBER, [x - 0.09, front - 1.4, 0.3], [x + 0.09, front - 1.22, 2.75]);
     }
-    house.prism(ROOF, Axis::Y, &[[-1.45, 2.6], [1.45, 2.6], [1.45, 2.75], [0.0, 3.75], [-1.45, 2.75]], front - 1.7, front + 0.6);
+    house.prism(
+        ROOF,
+        Axis::Y,
+        &[[-1.45, 2.6], [1.45, 2.6], [1.45, 2.75], [0.0, 3.75], [-1.45, 2.75]],
+        front - 1.7,
+        front + 0.6,
+    );
 }
 
 fn chimney(house: &mut Shape) {

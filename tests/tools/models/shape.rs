@@ -120,12 +120,23 @@ impl Shape {
         self.polygon(paint, &far);
         for (at, &corner) in outline.iter().enumerate() {
             let next = outline[(at + 1) % outline.len()];
-            self.polygon(paint, &[place(corner, from), place(next, from), place(next, to), place(corner, to)]);
+            self.polygon(
+                paint,
+                &[place(corner, from), place(next, from), place(next, to), place(corner, to)],
+            );
         }
     }
 
     /// An upright cone or a piece of one, `sides` round, open below; closed on top where `top` is 0.
-    pub fn cone(&mut self, paint: usize, sides: usize, [bottom, low]: [f32; 2], [top, high]: [f32; 2], turn: f32) {
+    pub fn cone(
+        &mut self,
+        paint: usize,
+        sides: usize,
+        [bottom, low]: [f32; 2],
+        [top, high]: [f32; 2],
+        turn: f32,
+        smoothing: u32,
+    ) {
         let at = |side: usize, radius: f32, height: f32| {
             let (sin, cos) = libm::sincosf((side as f32 / sides as f32 + turn) * std::f32::consts::TAU);
             Vec3::new(cos * radius, sin * radius, height)
@@ -133,16 +144,15 @@ impl Shape {
         for side in 0..sides {
             let base = [at(side, bottom, low), at(side + 1, bottom, low)];
             if top == 0.0 {
-                self.smooth_polygon(paint, 1, &[base[0], base[1], Vec3::Z * high]);
+                self.smooth_polygon(paint, smoothing, &[base[0], base[1], Vec3::Z * high]);
             } else {
-                self.smooth_polygon(paint, 1, &[base[0], base[1], at(side + 1, top, high), at(side, top, high)]);
+                self.smooth_polygon(
+                    paint,
+                    smoothing,
+                    &[base[0], base[1], at(side + 1, top, high), at(side, top, high)],
+                );
             }
         }
-    }
-
-    /// How many faces there are, polygons counted once.
-    pub fn faces(&self) -> impl Iterator<Item = &Face> {
-        self.objects.iter().flat_map(|object| &object.faces)
     }
 }
 

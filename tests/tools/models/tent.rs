@@ -20,7 +20,7 @@ fn canvas() -> RgbImage {
     RgbImage::from_fn(64, 64, |x, y| {
         let weave = if (x + y) % 2 == 0 { 1.03 } else { 0.97 };
         let seam = if x % 32 == 0 || y % 64 == 0 { 0.78 } else { 1.0 };
-        let stain = 1.0 + 0.09 * noise(x / 12 + 31, y / 12) + 0.04 * noise(x, y);
+        let stain = 1.0 + 0.045 * noise(x / 12 + 31, y / 12) + 0.04 * noise(x, y);
         Rgb([138.0, 136.0, 98.0].map(|channel: f32| (channel * weave * seam * stain).clamp(0.0, 255.0) as u8))
     })
 }
@@ -47,9 +47,11 @@ fn canvases(tent: &mut Shape) {
     let (w, l) = (HALF_WIDTH_M, HALF_LENGTH_M);
     let at = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
     for side in [-1.0, 1.0] {
-        let mut wall = [at(w * side, -l, 0.0), at(w * side, l, 0.0), at(w * side, l, WALL_M), at(w * side, -l, WALL_M)];
+        let mut wall =
+            [at(w * side, -l, 0.0), at(w * side, l, 0.0), at(w * side, l, WALL_M), at(w * side, -l, WALL_M)];
         let (edge, low) = (w + 0.25, WALL_M - 0.2);
-        let mut roof = [at(edge * side, -l, low), at(edge * side, l, low), at(0.0, l, RIDGE_M), at(0.0, -l, RIDGE_M)];
+        let mut roof =
+            [at(edge * side, -l, low), at(edge * side, l, low), at(0.0, l, RIDGE_M), at(0.0, -l, RIDGE_M)];
         // Door flaps, folded back.
         let mut flap = [
             at(w * side, -l, 0.0),
@@ -69,13 +71,10 @@ fn canvases(tent: &mut Shape) {
         tent.polygon(CANVAS, &[a, b, d]);
         tent.polygon(CANVAS, &[b, c, d]);
     }
-    tent.polygon(CANVAS, &[
-        at(w, l, 0.0),
-        at(-w, l, 0.0),
-        at(-w, l, WALL_M),
-        at(0.0, l, RIDGE_M),
-        at(w, l, WALL_M),
-    ]);
+    tent.polygon(
+        CANVAS,
+        &[at(w, l, 0.0), at(-w, l, 0.0), at(-w, l, WALL_M), at(0.0, l, RIDGE_M), at(w, l, WALL_M)],
+    );
     tent.polygon(GROUND, &[at(-w, -l, 0.03), at(w, -l, 0.03), at(w, l, 0.03), at(-w, l, 0.03)]);
 }
 

@@ -53,14 +53,38 @@ fn cab(truck: &mut Shape) {
     for side in [-1.0, 1.0] {
         let (inner, outer): (f32, f32) = (0.75 * side, 1.18 * side);
         let (low, high) = (inner.min(outer), inner.max(outer));
-        truck.prism(BODY, Axis::X, &[[-3.1, 0.9], [-2.95, 1.0], [-1.75, 1.0], [-1.6, 0.8], [-1.6, 1.1], [-1.8, 1.2], [-2.9, 1.2], [-3.1, 1.1]], low, high);
+        truck.prism(
+            BODY,
+            Axis::X,
+            &[
+                [-3.1, 0.9],
+                [-2.95, 1.0],
+                [-1.75, 1.0],
+                [-1.6, 0.8],
+                [-1.6, 1.1],
+                [-1.8, 1.2],
+                [-2.9, 1.2],
+                [-3.1, 1.1],
+            ],
+            low,
+            high,
+        );
         truck.block(LAMP, [0.95 * side - 0.12, -3.16, 1.12], [0.95 * side + 0.12, -3.04, 1.36]);
     }
     truck.block(STEEL, [-0.6, -3.42, 0.9], [0.6, -3.36, 1.42]);
-    truck.prism(BODY, Axis::X, &[[-1.9, 0.8], [-0.55, 0.8], [-0.55, 2.4], [-1.6, 2.4], [-1.9, 1.65]], -1.12, 1.12);
+    truck.prism(
+        BODY,
+        Axis::X,
+        &[[-1.9, 0.8], [-0.55, 0.8], [-0.55, 2.4], [-1.6, 2.4], [-1.9, 1.65]],
+        -1.12,
+        1.12,
+    );
     let screen = |x: f32, part: f32| Vec3::new(x, -1.9 + 0.3 * part - 0.02, 1.65 + 0.75 * part);
     for x in [-0.53, 0.53] {
-        truck.polygon(GLASS, &[screen(x - 0.45, 0.14), screen(x + 0.45, 0.14), screen(x + 0.45, 0.86), screen(x - 0.45, 0.86)]);
+        truck.polygon(
+            GLASS,
+            &[screen(x - 0.45, 0.14), screen(x + 0.45, 0.14), screen(x + 0.45, 0.86), screen(x - 0.45, 0.86)],
+        );
     }
     for side in [-1.0, 1.0] {
         let at = |y: f32, z: f32| Vec3::new(1.135 * side, y, z);

@@ -74,7 +74,8 @@ fn mesh(object: &Object, paints: &[Paint]) -> Vec<u8> {
             smoothing.push(face.smoothing);
         }
     }
-    let count = |count: usize| u16::try_from(count).expect("a mesh holds at most 65,535 of each").to_le_bytes();
+    let count =
+        |count: usize| u16::try_from(count).expect("a mesh holds at most 65,535 of each").to_le_bytes();
     let mut faces = count(triangles.len()).to_vec();
     for ids in &triangles {
         faces.extend(ids.iter().flat_map(|id| id.to_le_bytes()));

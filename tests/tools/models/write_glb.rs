@@ -11,8 +11,10 @@ pub fn write(shape: &Shape) -> Vec<u8> {
     let mut file = File::default();
     let materials: Vec<Value> = shape.paints.iter().map(|paint| file.material(paint)).collect();
     let meshes: Vec<Value> = shape.objects.iter().map(|object| file.mesh(object, shape)).collect();
-    let nodes: Vec<Value> =
-        (0..).zip(&shape.objects).map(|(mesh, object): (usize, _)| json!({"mesh": mesh, "name": object.name})).collect();
+    let nodes: Vec<Value> = (0..)
+        .zip(&shape.objects)
+        .map(|(mesh, object): (usize, _)| json!({"mesh": mesh, "name": object.name}))
+        .collect();
     let mut document = json!({
         "asset": {"version": "2.0"},
         "scene": 0,
@@ -48,11 +50,14 @@ impl File {
     }
 
     fn vectors(&mut self, kind: &str, vectors: &[&[f32]]) -> usize {
-        let bytes: Vec<u8> = vectors.iter().flat_map(|vector| vector.iter()).flat_map(|value| value.to_le_bytes()).collect();
+        let bytes: Vec<u8> =
+            vectors.iter().flat_map(|vector| vector.iter()).flat_map(|value| value.to_le_bytes()).collect();
         let view = self.view(&bytes);
         let edge = |pick: fn(f32, f32) -> f32| -> Vec<f32> {
             let start = vectors[0].to_vec();
-            vectors.iter().fold(start, |edge, vector| edge.iter().zip(*vector).map(|(&a, &b)| pick(a, b)).collect())
+            vectors
+                .iter()
+                .fold(start, |edge, vector| edge.iter().zip(*vector).map(|(&a, &b)| pick(a, b)).collect())
         };
         self.accessors.push(json!({
             "bufferView": view, "componentType": 5126, "count": vectors.len(), "type": kind,
@@ -110,7 +115,9 @@ impl File {
         }
         let bytes: Vec<u8> = indices.iter().flat_map(|index| index.to_le_bytes()).collect();
         let view = self.view(&bytes);
-        self.accessors.push(json!({"bufferView": view, "componentType": 5123, "count": indices.len(), "type": "SCALAR"}));
+        self.accessors.push(
+            json!({"bufferView": view, "componentType": 5123, "count": indices.len(), "type": "SCALAR"}),
+        );
         json!({"attributes": attributes, "indices": self.accessors.len() - 1, "material": paint})
     }
 }
@@ -119,11 +126,14 @@ impl File {
 fn normal_at(face: &Face, at: Vec3, faces: &[&Face]) -> Vec3 {
     let normal = |face: &Face| -> Vec3 {
         let corners = &face.corners;
-        let sum: Vec3 =
-            (0..corners.len()).map(|place| corners[place].0.cross(corners[(place + 1) % corners.len()].0)).sum();
+        let sum: Vec3 = (0..corners.len())
+            .map(|place| corners[place].0.cross(corners[(place + 1) % corners.len()].0))
+            .sum();
         sum.normalize()
     };
-    let meets = |other: &&&Face| other.smoothing == face.smoothing && other.corners.iter().any(|corner| corner.0 == at);
+    let meets = |other: &&&Face| {
+        other.smoothing == face.smoothing && other.corners.iter().any(|corner| corner.0 == at)
+    };
     match face.smoothing {
         0 => normal(face),
         _ => faces.iter().filter(meets).map(|other| normal(other)).sum::<Vec3>().normalize(),

@@ -27,7 +27,8 @@ pub fn objects(shape: &Shape, library: &str) -> Vec<u8> {
             let mut corners = String::new();
             for &(at, uv) in &face.corners {
                 // Tenths of millimetres; adding zero makes one of the two zeros.
-                let place = [at.x, at.z, -at.y].map(|value| format!("{:.4}", (value * 1e4).round() / 1e4 + 0.0));
+                let place =
+                    [at.x, at.z, -at.y].map(|value| format!("{:.4}", (value * 1e4).round() / 1e4 + 0.0));
                 let next = places.len() + 1;
                 let id = *places.entry(place.join(" ")).or_insert_with_key(|place| {
                     put(format_args!("v {place}\n"));
