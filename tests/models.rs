@@ -34,24 +34,24 @@ const OTHER_BOUNDS: [&str; 3] = [
 /// its parent's in the wrong order when it takes the box; these boxes come from an independent script that
 /// prints the oracle's boxes for all 38 files when it multiplies in that order too.
 const MOVED_BY_NODES: [(&str, [f32; 3], [f32; 3]); 19] = [
-    ("3ds/CameraRollAnim.3ds", [-24.7863, -24.7863, 0.0000], [45.8689, 23.0769, 38.7464]),
-    ("3ds/Cube.3DS", [-32.3431, -26.1420, -27.5362], [32.3912, 32.7952, 30.4348]),
+    ("3ds/CameraRollAnim.3ds", [-24.7863, -24.7863, 0.0], [45.8689, 23.0769, 38.7464]),
+    ("3ds/Cube.3DS", [-32.3431, -26.142, -27.5362], [32.3912, 32.7952, 30.4348]),
     ("3ds/RotatingCube.3DS", [-29.3447, -34.1813, -4.0862], [37.3219, 29.2585, 49.2083]),
-    ("3ds/blitz_LodMesh/skull.3ds", [-0.2938, 1.6576, -0.4937], [0.2938, 2.3850, 0.2967]),
+    ("3ds/blitz_LodMesh/skull.3ds", [-0.2938, 1.6576, -0.4937], [0.2938, 2.385, 0.2967]),
     ("3ds/blitz_Media/asteroid.3ds", [-96.1192, -80.8559, -91.4908], [96.8315, 80.2958, 91.3673]),
-    ("3ds/blitz_Media/claw.3DS", [-23.8630, -139.4620, 17.4005], [123.7967, -105.3573, 142.5536]),
-    ("3ds/blitz_british-tadpole/btadpole.3ds", [-473.4440, -807.9778, -0.0067], [473.4440, 807.9778, 449.2881]),
-    ("3ds/blitz_emerald_gate/my_stargate3.3ds", [-70.4007, -155.9488, 0.0000], [5.8995, -145.3998, 78.8770]),
-    ("3ds/blitz_hearse/hearse.3ds", [-145.7434, -144.3260, 0.2484], [145.7434, 654.3260, 215.3972]),
+    ("3ds/blitz_Media/claw.3DS", [-23.863, -139.462, 17.4005], [123.7967, -105.3573, 142.5536]),
+    ("3ds/blitz_british-tadpole/btadpole.3ds", [-473.444, -807.9778, -0.0067], [473.444, 807.9778, 449.2881]),
+    ("3ds/blitz_emerald_gate/my_stargate3.3ds", [-70.4007, -155.9488, 0.0], [5.8995, -145.3998, 78.877]),
+    ("3ds/blitz_hearse/hearse.3ds", [-145.7434, -144.326, 0.2484], [145.7434, 654.326, 215.3972]),
     ("3ds/blitz_makbot/mak_robotic.3DS", [-11.7171, -9.9476, -0.6971], [9.0257, 13.2992, 47.5209]),
-    ("3ds/blitz_orbit_nebula_source/rock.3DS", [-22.8236, -32.6822, -10.4832], [3.3518, -3.7573, 22.4400]),
+    ("3ds/blitz_orbit_nebula_source/rock.3DS", [-22.8236, -32.6822, -10.4832], [3.3518, -3.7573, 22.44]),
     ("3ds/blitz_rallycar/rallycar1.3ds", [-47.1189, -83.8484, -0.2287], [46.4514, 94.1771, 66.3613]),
     ("3ds/blitz_saucer/fsaucer1.3ds", [-19.8812, -20.9773, -0.0373], [19.8812, 22.7923, 7.1332]),
-    ("3ds/blitz_wood-crate/wcrate1.3ds", [-20.1806, -20.1139, -20.2362], [20.3515, 20.4183, 20.2960]),
+    ("3ds/blitz_wood-crate/wcrate1.3ds", [-20.1806, -20.1139, -20.2362], [20.3515, 20.4183, 20.296]),
     ("3ds/boat.3ds", [-1076.9227, -1704.5703, -556.4998], [965.7532, 3455.7978, 4107.0985]),
-    ("3ds/cube_with_diffuse_texture.3DS", [-50.0000, 32.6177, -30.5402], [0.0000, 82.6177, 19.4598]),
-    ("3ds/cubes_with_alpha.3DS", [-856.3110, -55.1009, -268.1591], [98.8105, 1227.1409, 248.4380]),
-    ("3ds/teapot.3ds", [-62.9651, -25.1361, 0.0000], [54.0575, 47.6831, 57.3451]),
+    ("3ds/cube_with_diffuse_texture.3DS", [-50.0, 32.6177, -30.5402], [0.0, 82.6177, 19.4598]),
+    ("3ds/cubes_with_alpha.3DS", [-856.311, -55.1009, -268.1591], [98.8105, 1227.1409, 248.438]),
+    ("3ds/teapot.3ds", [-62.9651, -25.1361, 0.0], [54.0575, 47.6831, 57.3451]),
     ("3ds/test1.3ds", [-10.3432, -0.1942, -10.1551], [9.8509, 10.2303, 10.2476]),
 ];
 
@@ -80,7 +80,8 @@ fn files_below(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(&folder).expect("the folder can be listed") {
             let path = entry.expect("the entry can be read").path();
-            let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
+            let extension =
+                path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
             if path.is_dir() {
                 folders.push(path);
             } else if extension.is_some_and(|extension| extensions.contains(&extension.as_str())) {
@@ -115,14 +116,19 @@ fn check(model: &Model, path: &Path) {
         assert!(part.mesh.triangles.iter().flatten().all(|id| id.index() < count));
         for vertex in &part.mesh.vertices {
             assert!(Vec3::from(vertex.position).is_finite(), "{}", path.display());
-            assert!((Vec3::from(vertex.normal).length() - 1.0).abs() < 1e-3, "{}: {vertex:?}", path.display());
+            assert!(
+                (Vec3::from(vertex.normal).length() - 1.0).abs() < 1e-3,
+                "{}: {vertex:?}",
+                path.display()
+            );
             assert!(vertex.uv.iter().all(|coordinate| coordinate.is_finite()));
         }
     }
 }
 
 fn vector(value: &Value) -> Option<Vec3> {
-    let numbers: Vec<f32> = value.as_array()?.iter().filter_map(|number| Some(number.as_f64()? as f32)).collect();
+    let numbers: Vec<f32> =
+        value.as_array()?.iter().filter_map(|number| Some(number.as_f64()? as f32)).collect();
     Some(Vec3::new(*numbers.first()?, *numbers.get(1)?, *numbers.get(2)?))
 }
 

@@ -37,9 +37,9 @@ pub struct Part {
 pub struct Census {
     /// Meshes: 3DS triangle meshes, OBJ objects or groups with faces, glTF primitives as placed by nodes.
     pub meshes: usize,
-    /// Vertices as stored in the file.
+    /// Vertices as stored in the file; of glTF, those of drawn meshes, each mesh once.
     pub vertices: usize,
-    /// Faces as stored in the file; a polygon counts once.
+    /// Faces as stored in the file: a polygon counts once, and so does a mesh that stands in several places.
     pub faces: usize,
     /// Materials defined.
     pub materials: usize,
@@ -61,5 +61,10 @@ impl Model {
             self.parts.iter().flat_map(|part| &part.mesh.vertices).map(|vertex| Vec3::from(vertex.position));
         let first = positions.next()?;
         Some(positions.fold((first, first), |(min, max), at| (min.min(at), max.max(at))))
+    }
+
+    /// How many triangles are drawn, all places of a mesh counted.
+    pub fn triangle_count(&self) -> usize {
+        self.parts.iter().map(|part| part.mesh.triangles.len()).sum()
     }
 }

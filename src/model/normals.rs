@@ -44,9 +44,9 @@ pub(super) fn corner_normals(
         Smoothing::Groups(masks) => {
             shared(positions, triangles, &faces, |a, b| a == b || masks[a] & masks[b] != 0)
         }
-        Smoothing::Numbers(numbers) => {
-            shared(positions, triangles, &faces, |a, b| a == b || (numbers[a] == numbers[b] && numbers[a] != 0))
-        }
+        Smoothing::Numbers(numbers) => shared(positions, triangles, &faces, |a, b| {
+            a == b || (numbers[a] == numbers[b] && numbers[a] != 0)
+        }),
         Smoothing::Crease(cos) => {
             shared(positions, triangles, &faces, |a, b| a == b || faces[a].dot(faces[b]) >= cos)
         }
@@ -123,6 +123,8 @@ fn upright(normal: Vec3) -> Vec3 {
 
 #[cfg(test)]
 mod tests {
+    use std::f32::consts::FRAC_1_SQRT_2;
+
     use super::*;
 
     /// A ridge along Y: two squares that meet at the top, each cut into two triangles.
@@ -147,7 +149,7 @@ mod tests {
     fn groups_without_a_common_bit_and_sharp_creases_keep_it() {
         for smoothing in [Smoothing::Groups(&[1, 1, 2, 2]), Smoothing::Crease(CREASE_COS), Smoothing::Flat] {
             let normals = corner_normals(&RIDGE, &SLOPES, smoothing);
-            assert!(normals[0][1].abs_diff_eq(Vec3::new(-0.70710678, 0.0, 0.70710678), 1e-6));
+            assert!(normals[0][1].abs_diff_eq(Vec3::new(-FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2), 1e-6));
         }
     }
 

@@ -102,7 +102,10 @@ mod tests {
     fn what_cannot_be_read_is_told_what_can() {
         let error = read("house.fbx", b"Kaydara", &Nothing).map(|_| ()).expect_err("not a model");
         let text = error.to_string();
-        assert!(text.contains("house.fbx") && text.contains("4B 61 79 64") && text.contains(".glb"), "{text}");
+        assert!(
+            text.contains("house.fbx") && text.contains("4B 61 79 64") && text.contains(".glb"),
+            "{text}"
+        );
     }
 
     #[test]

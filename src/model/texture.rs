@@ -66,7 +66,9 @@ impl<'a> Textures<'a> {
 
     /// Whether a texture has pixels that are not opaque.
     pub(super) fn is_cut_out(&self, id: TextureId) -> bool {
-        self.pixels.get(id.0 as usize).is_some_and(|pixels| pixels.data().iter().any(|pixel| pixel.0[3] < 255))
+        self.pixels
+            .get(id.0 as usize)
+            .is_some_and(|pixels| pixels.data().iter().any(|pixel| pixel.0[3] < 255))
     }
 
     /// The textures and what went wrong.
@@ -161,7 +163,9 @@ mod tests {
         assert_eq!(textures.by_name("broken.png"), None);
         assert_eq!(textures.by_name("absent.png"), None);
         let (_, notes) = textures.finish();
-        assert!(notes[0].contains("'broken.png' cannot be used") && notes[1].contains("'absent.png' is missing"));
+        assert!(
+            notes[0].contains("'broken.png' cannot be used") && notes[1].contains("'absent.png' is missing")
+        );
     }
 
     #[test]

@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3, Vec3};
 
 /// Most corners of a polygon that are cut properly: earcut's time grows with their square at worst. A larger
 /// one is a fan.
-const MAX_CORNERS: usize = 4096;
+const MAX_CORNERS: usize = 512;
 
 /// Triples of positions in `corners`, oriented like the polygon; none for fewer than three.
 pub(super) fn triangulate(corners: &[Vec3]) -> Vec<[usize; 3]> {

@@ -130,7 +130,8 @@ impl<'a> Accessors<'a> {
             let values = slices(values, &layout.sparse(count, sparse.values.byte_offset.0)).map_err(&fail)?;
             let places = self.sparse_places(sparse, count).map_err(&fail)?;
             for (place, bytes) in places.into_iter().zip(values) {
-                let slot = elements.get_mut(place).ok_or_else(|| fail("a sparse index is too large".into()))?;
+                let slot =
+                    elements.get_mut(place).ok_or_else(|| fail("a sparse index is too large".into()))?;
                 *slot = one(layout.component, bytes);
             }
         }
@@ -138,7 +139,8 @@ impl<'a> Accessors<'a> {
     }
 
     fn layout(&self, accessor: &Accessor, components: usize) -> Result<Layout, String> {
-        let (Checked::Valid(kind), Checked::Valid(component)) = (accessor.type_, accessor.component_type) else {
+        let (Checked::Valid(kind), Checked::Valid(component)) = (accessor.type_, accessor.component_type)
+        else {
             return Err("its type is none of those allowed".into());
         };
         if kind.multiplicity() != components {
@@ -166,7 +168,10 @@ impl<'a> Accessors<'a> {
         let component = Component { kind: kind.0, normalized: false };
         let offset = usize::try_from(sparse.indices.byte_offset.0).map_err(|_| "an offset is too large")?;
         let layout = Layout { count, component, size: kind.0.size(), offset };
-        let view = self.data.view(self.root, sparse.indices.buffer_view.value()).map_err(|error| error.to_string())?;
+        let view = self
+            .data
+            .view(self.root, sparse.indices.buffer_view.value())
+            .map_err(|error| error.to_string())?;
         let place = |bytes: &[u8]| bytes.iter().rev().fold(0, |place, &byte| place << 8 | usize::from(byte));
         Ok(slices(view, &layout)?.map(place).collect())
     }
@@ -187,7 +192,9 @@ fn slices<'a>(view: View<'a>, layout: &Layout) -> Result<impl Iterator<Item = &'
     }
     let end = match count.checked_sub(1) {
         None => Some(0),
-        Some(before) => before.checked_mul(stride).and_then(|start| start.checked_add(size)?.checked_add(offset)),
+        Some(before) => {
+            before.checked_mul(stride).and_then(|start| start.checked_add(size)?.checked_add(offset))
+        }
     };
     if end.is_none_or(|end| end > view.bytes.len()) {
         let have = view.bytes.len();

@@ -45,7 +45,10 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ModelError> {
     }
     let length = length as usize;
     if length > bytes.len() || length < 12 {
-        return Err(fail(format!("{length} bytes are stated and {} there; the file is cut off", bytes.len())));
+        return Err(fail(format!(
+            "{length} bytes are stated and {} there; the file is cut off",
+            bytes.len()
+        )));
     }
     let (mut json, mut binary) = (None, None);
     let mut at = 12;
@@ -54,7 +57,10 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ModelError> {
         let end = (at + 8).checked_add(size as usize).filter(|&end| end <= length);
         let body = end.map(|end| &bytes[at + 8..end]).ok_or_else(|| {
             let left = length - at - 8;
-            ModelError::gltf("a GLB chunk", format!("{size} bytes are stated and {left} left; the file is cut off"))
+            ModelError::gltf(
+                "a GLB chunk",
+                format!("{size} bytes are stated and {left} left; the file is cut off"),
+            )
         })?;
         match kind {
             JSON if json.is_none() => json = Some(body),
@@ -127,8 +133,11 @@ fn check_extensions(root: &Root) -> Result<(), ModelError> {
 
 /// What `gltf-json` 1.4.1 panics on when it is not so: POSITION names an accessor that is there.
 fn check_positions(root: &Root) -> Result<(), ModelError> {
-    for (mesh, primitive) in
-        root.meshes.iter().enumerate().flat_map(|(mesh, one)| one.primitives.iter().map(move |each| (mesh, each)))
+    for (mesh, primitive) in root
+        .meshes
+        .iter()
+        .enumerate()
+        .flat_map(|(mesh, one)| one.primitives.iter().map(move |each| (mesh, each)))
     {
         let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
         if let Some(index) = positions.filter(|index| index.value() >= root.accessors.len()) {
@@ -196,7 +205,8 @@ mod tests {
 
     #[test]
     fn a_position_that_names_no_accessor_is_refused() {
-        let json = br#"{"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":{"POSITION":4}}]}]}"#;
+        let json =
+            br#"{"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":{"POSITION":4}}]}]}"#;
         assert!(open(json).expect_err("forged").to_string().contains("accessor 4 of 0"));
     }
 

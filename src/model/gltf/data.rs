@@ -51,7 +51,8 @@ impl Data {
         let view = root.buffer_views.get(index).ok_or_else(|| fail("it is not there"))?;
         let place = view.buffer.value();
         let buffer = self.buffers.get(place).ok_or_else(|| fail("its buffer is not there"))?;
-        let buffer = buffer.as_ref().map_err(|reason| ModelError::gltf(format!("buffers[{place}]"), reason))?;
+        let buffer =
+            buffer.as_ref().map_err(|reason| ModelError::gltf(format!("buffers[{place}]"), reason))?;
         let start = usize::try_from(view.byte_offset.unwrap_or_default().0).ok();
         let length = usize::try_from(view.byte_length.0).ok();
         let bytes = start
@@ -88,7 +89,9 @@ pub(super) fn bytes_of(uri: &str) -> Result<Vec<u8>, String> {
 /// Where the URI is not relative.
 pub(super) fn file_name(uri: &str) -> Result<String, String> {
     let scheme = uri.split_once(':').map(|(scheme, _)| scheme);
-    if scheme.is_some_and(|scheme| scheme.chars().all(|each| each.is_ascii_alphanumeric() || "+-.".contains(each))) {
+    if scheme
+        .is_some_and(|scheme| scheme.chars().all(|each| each.is_ascii_alphanumeric() || "+-.".contains(each)))
+    {
         return Err(format!("'{uri}' is no file beside the model"));
     }
     String::from_utf8(unescape(uri)).map_err(|_| format!("'{uri}' is no UTF-8"))

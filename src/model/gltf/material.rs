@@ -44,7 +44,11 @@ impl UvChange {
 }
 
 /// The materials of a document, then one for what names none.
-pub(super) fn translate_all(root: &Root, data: &Data, textures: &mut Textures<'_>) -> Vec<(Material, UvChange)> {
+pub(super) fn translate_all(
+    root: &Root,
+    data: &Data,
+    textures: &mut Textures<'_>,
+) -> Vec<(Material, UvChange)> {
     let mut images: Vec<Option<Option<TextureId>>> = vec![None; root.images.len()];
     let mut all: Vec<_> = root
         .materials

@@ -52,9 +52,15 @@ pub fn read(bytes: &[u8], companions: &dyn Companions) -> Result<Model, ModelErr
             Some(skin) => skin::pose(&root, painter.accessors(), skin.value(), &standing.world_from_node)?,
             None => skin::Pose::Rigid(Z_UP * standing.world_from_node[index]),
         };
-        let name = node.name.as_ref().or(root.meshes[mesh.value()].name.as_ref()).cloned().unwrap_or_default();
+        let name =
+            node.name.as_ref().or(root.meshes[mesh.value()].name.as_ref()).cloned().unwrap_or_default();
         let mut parts = PartBuilder::new(name);
-        meshes += painter.mesh(mesh.value(), &pose, !std::mem::replace(&mut seen[mesh.value()], true), &mut parts)?;
+        meshes += painter.mesh(
+            mesh.value(),
+            &pose,
+            !std::mem::replace(&mut seen[mesh.value()], true),
+            &mut parts,
+        )?;
         model.parts.extend(parts.finish());
     }
     note_what_is_left_out(&root, &mut model.notes);
@@ -71,7 +77,9 @@ fn note_what_is_left_out(root: &Root, notes: &mut Vec<String>) {
         notes.push(format!("{} animations are not played; the rest pose is drawn", root.animations.len()));
     }
     let moves = |weights: &Option<Vec<f32>>| weights.iter().flatten().any(|&weight| weight != 0.0);
-    if root.meshes.iter().any(|mesh| moves(&mesh.weights)) || root.nodes.iter().any(|node| moves(&node.weights)) {
+    if root.meshes.iter().any(|mesh| moves(&mesh.weights))
+        || root.nodes.iter().any(|node| moves(&node.weights))
+    {
         notes.push("morph targets are not drawn".into());
     }
 }

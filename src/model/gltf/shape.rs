@@ -134,11 +134,15 @@ impl<'a> Painter<'a> {
         let Some(positions) = named(Semantic::Positions) else { return Ok(None) };
         let positions = self.accessors.vectors::<3>(positions)?;
         let normals = named(Semantic::Normals).map(|index| self.accessors.vectors::<3>(index)).transpose()?;
-        let uvs =
-            named(Semantic::TexCoords(change.set)).map(|index| self.accessors.vectors::<2>(index)).transpose()?;
-        let joints = named(Semantic::Joints(0)).map(|index| self.accessors.vectors::<4>(index)).transpose()?;
-        let weights = named(Semantic::Weights(0)).map(|index| self.accessors.vectors::<4>(index)).transpose()?;
-        let colors = named(Semantic::Colors(0)).map(|index| self.colors(index)).transpose()?.unwrap_or_default();
+        let uvs = named(Semantic::TexCoords(change.set))
+            .map(|index| self.accessors.vectors::<2>(index))
+            .transpose()?;
+        let joints =
+            named(Semantic::Joints(0)).map(|index| self.accessors.vectors::<4>(index)).transpose()?;
+        let weights =
+            named(Semantic::Weights(0)).map(|index| self.accessors.vectors::<4>(index)).transpose()?;
+        let colors =
+            named(Semantic::Colors(0)).map(|index| self.colors(index)).transpose()?.unwrap_or_default();
         let moved: Vec<Mat4> = (0..positions.len())
             .map(|at| {
                 let of = |list: &Option<Vec<[f32; 4]>>| list.as_ref().and_then(|list| list.get(at).copied());
@@ -184,8 +188,15 @@ impl<'a> Painter<'a> {
 
 impl Vertices {
     /// Adds the triangles whose corners are finite; returns how many.
-    fn draw(&self, triangles: &[[u32; 3]], material: MaterialId, change: UvChange, parts: &mut PartBuilder) -> usize {
-        let finite = |triangle: &&[u32; 3]| triangle.iter().all(|&id| self.positions[id as usize].is_finite());
+    fn draw(
+        &self,
+        triangles: &[[u32; 3]],
+        material: MaterialId,
+        change: UvChange,
+        parts: &mut PartBuilder,
+    ) -> usize {
+        let finite =
+            |triangle: &&[u32; 3]| triangle.iter().all(|&id| self.positions[id as usize].is_finite());
         let drawn: Vec<[u32; 3]> = triangles.iter().filter(finite).copied().collect();
         // The format asks for flat normals where there are none.
         let flat = match self.normals {
@@ -199,7 +210,9 @@ impl Vertices {
                 let uv = self.uvs.as_ref().and_then(|uvs| uvs.get(id));
                 Corner {
                     position: self.positions[id],
-                    normal: stored.or_else(|| flat.get(triangle).map(|normals| normals[place])).unwrap_or(Vec3::Z),
+                    normal: stored
+                        .or_else(|| flat.get(triangle).map(|normals| normals[place]))
+                        .unwrap_or(Vec3::Z),
                     uv: uv.map_or(Vec2::ZERO, |&uv| change.apply(uv.into())),
                     color: self.colors.get(id).copied().unwrap_or(Srgba::WHITE),
                 }

@@ -41,8 +41,12 @@ pub(super) fn assemble(plain: &Plain, companions: &dyn Companions) -> Result<Mod
         shape.draw(&used, &mut parts);
         model.parts.extend(parts.finish());
     }
-    model.census =
-        Census { meshes, vertices: plain.vertices, faces: plain.stated_faces, materials: model.materials.len() };
+    model.census = Census {
+        meshes,
+        vertices: plain.vertices,
+        faces: plain.stated_faces,
+        materials: model.materials.len(),
+    };
     note_what_is_missing(plain, left_out, &mut model);
     Ok(model)
 }
@@ -196,8 +200,11 @@ impl<'a> Shape<'a> {
         if self.triangles.iter().all(|(_, face)| face.has_normals) {
             return vec![[Vec3::Z; 3]; self.triangles.len()];
         }
-        let ids: Vec<[u32; 3]> =
-            self.triangles.iter().map(|(triangle, _)| triangle.map(|corner| self.mesh.indices[corner])).collect();
+        let ids: Vec<[u32; 3]> = self
+            .triangles
+            .iter()
+            .map(|(triangle, _)| triangle.map(|corner| self.mesh.indices[corner]))
+            .collect();
         let groups: Vec<u32> = self.triangles.iter().map(|(_, face)| face.smoothing).collect();
         let smoothing =
             if says_smoothing { Smoothing::Numbers(&groups) } else { Smoothing::Crease(CREASE_COS) };
@@ -274,7 +281,10 @@ mod tests {
         let library = Library("newmtl red\nKd 1 0 0\nd 0.5\n");
         let text = format!("{SQUARE}usemtl red\nf 1 2 3\nusemtl lost\nf 1 3 4");
         let model = read(text.as_bytes(), &library).expect("a sound file");
-        assert_eq!((model.materials[0].base_color, model.materials[0].alpha), (Srgba([255, 0, 0, 128]), Alpha::Blend));
+        assert_eq!(
+            (model.materials[0].base_color, model.materials[0].alpha),
+            (Srgba([255, 0, 0, 128]), Alpha::Blend)
+        );
         assert_eq!(model.parts.iter().map(|part| part.material.0).collect::<Vec<_>>(), [0, 1]);
         assert_eq!(model.notes, ["material 'lost' is used but not defined"]);
     }

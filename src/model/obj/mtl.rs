@@ -105,10 +105,14 @@ mod tests {
 
     #[test]
     fn odd_statements_do_not_lose_the_library() {
-        let text = "Kd 1 0 0\nnewmtl a b\n  Kd 0.5\n d 0.25\nKd spectral x.rfl\nnewmtl c\nTr 0.25\nmap_Kd\nilum";
+        let text =
+            "Kd 1 0 0\nnewmtl a b\n  Kd 0.5\n d 0.25\nKd spectral x.rfl\nnewmtl c\nTr 0.25\nmap_Kd\nilum";
         let materials = parse(text);
         assert_eq!(materials.len(), 2);
-        assert_eq!((materials[0].name.as_str(), materials[0].diffuse, materials[0].opacity), ("a b", [0.5; 3], 0.25));
+        assert_eq!(
+            (materials[0].name.as_str(), materials[0].diffuse, materials[0].opacity),
+            ("a b", [0.5; 3], 0.25)
+        );
         assert_eq!((materials[1].opacity, &materials[1].map), (0.75, &None));
     }
 }

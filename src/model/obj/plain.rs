@@ -133,7 +133,8 @@ impl Reader {
     /// `x y z`, `x y z w` with all divided by w, or `x y z red green blue`.
     fn position(&mut self, rest: &str) -> Result<(), String> {
         let values = numbers(rest);
-        let [x, y, z] = three(&values).ok_or_else(|| format!("a vertex has {} of 3 coordinates", values.len()))?;
+        let [x, y, z] =
+            three(&values).ok_or_else(|| format!("a vertex has {} of 3 coordinates", values.len()))?;
         let w = if values.len() == 4 && values[3] != 0.0 { values[3] } else { 1.0 };
         self.points.push([x / w, y / w, z / w]);
         self.colors.push(values.get(3..6).and_then(three));
@@ -151,7 +152,8 @@ impl Reader {
 
     fn normal(&mut self, rest: &str) -> Result<(), String> {
         let values = numbers(rest);
-        let [x, y, z] = three(&values).ok_or_else(|| format!("a normal has {} of 3 components", values.len()))?;
+        let [x, y, z] =
+            three(&values).ok_or_else(|| format!("a normal has {} of 3 components", values.len()))?;
         self.normals += 1;
         put(&mut self.attributes, format_args!("vn {x} {y} {z}\n"));
         Ok(())
@@ -167,7 +169,12 @@ impl Reader {
         self.corners += corners.len();
         let has_uvs = corners.iter().all(|corner| corner[1].is_some());
         let has_normals = corners.iter().all(|corner| corner[2].is_some());
-        self.plain.faces.push(Face { material: self.material, smoothing: self.smoothing, has_uvs, has_normals });
+        self.plain.faces.push(Face {
+            material: self.material,
+            smoothing: self.smoothing,
+            has_uvs,
+            has_normals,
+        });
         self.bodies.push('f');
         for [position, uv, normal] in corners {
             put(&mut self.bodies, format_args!(" {}/", position.unwrap_or(1)));
@@ -194,12 +201,15 @@ impl Reader {
             if text.is_empty() && place > 0 {
                 continue;
             }
-            let number: i64 = text.parse().map_err(|_| format!("'{text}' in the face corner '{word}' is no index"))?;
+            let number: i64 =
+                text.parse().map_err(|_| format!("'{text}' in the face corner '{word}' is no index"))?;
             let index = if number < 0 { count as i64 + 1 + number } else { number };
             *slot = usize::try_from(index).ok().filter(|index| (1..=self.totals[place]).contains(index));
             if place == 0 && slot.is_none() {
                 let total = self.totals[0];
-                return Err(format!("a face names vertex {number}, and {count} of {total} are defined so far"));
+                return Err(format!(
+                    "a face names vertex {number}, and {count} of {total} are defined so far"
+                ));
             }
         }
         Ok(indices)
@@ -264,7 +274,8 @@ mod tests {
 
     #[test]
     fn indices_become_absolute() {
-        let plain = check("v 0 0 0\nv 1 0 0\nvt 0 0\nv 0 1 0\nf -3/-1 -2/1 3/1 # last").expect("a sound file");
+        let plain =
+            check("v 0 0 0\nv 1 0 0\nvt 0 0\nv 0 1 0\nf -3/-1 -2/1 3/1 # last").expect("a sound file");
         assert!(plain.text.ends_with("f 1/1 2/1 3/1\n"), "{}", plain.text);
         assert_eq!((plain.vertices, plain.stated_faces), (3, 1));
         assert!(plain.faces[0].has_uvs && !plain.faces[0].has_normals);
@@ -272,7 +283,9 @@ mod tests {
 
     #[test]
     fn forged_indices_are_refused_with_their_line() {
-        for index in ["0", "4", "-4", "9223372036854775807", "-9223372036854775808", "99999999999999999999", "x", "/1"] {
+        for index in
+            ["0", "4", "-4", "9223372036854775807", "-9223372036854775808", "99999999999999999999", "x", "/1"]
+        {
             let error = check(&format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {index}")).expect_err(index);
             assert!(matches!(error, ModelError::Obj { line: 4, .. }), "{error}");
         }

@@ -53,7 +53,8 @@ mod tests {
 
     #[test]
     fn continued_lines_become_one() {
-        let lines: Vec<_> = logical_lines("a \\\r\nb\\\nc\nd\\").map(|(at, line)| (at, line.into_owned())).collect();
+        let lines: Vec<_> =
+            logical_lines("a \\\r\nb\\\nc\nd\\").map(|(at, line)| (at, line.into_owned())).collect();
         assert_eq!(lines, [(1, "a  b c".into()), (4, "d ".into())]);
     }
 }

@@ -81,7 +81,11 @@ fn census(file: &File) -> Census {
     }
 }
 
-fn translate(described: &Described, textures: &mut Textures<'_>, notes: &mut Vec<String>) -> (Material, UvChange) {
+fn translate(
+    described: &Described,
+    textures: &mut Textures<'_>,
+    notes: &mut Vec<String>,
+) -> (Material, UvChange) {
     if described.opacity_map {
         notes.push(format!("material '{}' has an opacity map, which is not drawn", described.name));
     }
@@ -166,7 +170,8 @@ fn draw(object: &TriObject, world_from_stored: Mat4, palette: &Palette<'_>, mode
         let change = palette.changes.get(material.0 as usize).copied().unwrap_or(UvChange::NONE);
         let corner = |corner: usize| {
             let id = ids[corner] as usize;
-            let uv = object.uvs.get(id).filter(|uv| uv.is_finite()).map_or(Vec2::ZERO, |&uv| change.apply(uv));
+            let uv =
+                object.uvs.get(id).filter(|uv| uv.is_finite()).map_or(Vec2::ZERO, |&uv| change.apply(uv));
             Corner { position: positions[id], normal: normals[corner], uv, color: Srgba::WHITE }
         };
         parts.triangle(material, [corner(0), corner(1), corner(2)]);

@@ -129,8 +129,10 @@ impl<'a> Cursor<'a> {
         let (id, length) = (self.u16()?, self.u32()? as usize);
         let left = self.bytes.len();
         let Some(body) = length.checked_sub(HEADER).and_then(|length| self.bytes.get(..length)) else {
-            let reason =
-                format!("chunk {id:04X} says it is {length} bytes long where its parent has {}", left + HEADER);
+            let reason = format!(
+                "chunk {id:04X} says it is {length} bytes long where its parent has {}",
+                left + HEADER
+            );
             return Err(ModelError::three_ds(start, reason));
         };
         let chunk = Chunk { id, body, offset: self.offset };

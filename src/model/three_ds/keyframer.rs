@@ -45,8 +45,13 @@ fn node(chunk: &Chunk<'_>, id: u16) -> Result<Node, ModelError> {
     const ROTATION: u16 = 0xB021;
     const SCALE: u16 = 0xB022;
     const ID: u16 = 0xB030;
-    let mut node =
-        Node { id, parent: NO_PARENT, object: String::new(), pivot: Vec3::ZERO, parent_from_node: Mat4::IDENTITY };
+    let mut node = Node {
+        id,
+        parent: NO_PARENT,
+        object: String::new(),
+        pivot: Vec3::ZERO,
+        parent_from_node: Mat4::IDENTITY,
+    };
     let (mut position, mut rotation, mut scale) = (Vec3::ZERO, Quat::IDENTITY, Vec3::ONE);
     for part in chunk.children() {
         let part = part?;
