@@ -98,7 +98,7 @@ impl Flow {
         assert_eq!(self.order.len(), self.down.len(), "flow directions form no ring");
         self.area_km2.fill(ground.post_m.x * ground.post_m.y / 1e6);
         for (lon, lat, area) in INFLOWS {
-            self.area_km2[ground.post_at(ground.from_lon_lat(lon, lat))] += area;
+            self.area_km2[ground.post_at(ground.locate(lon, lat))] += area;
         }
         for &post in self.order.iter().rev() {
             if self.down[post] != NONE {

@@ -93,7 +93,7 @@ impl Ground {
     }
 
     /// A point of the metric frame from longitude and latitude.
-    pub fn from_lon_lat(&self, lon: f64, lat: f64) -> DVec2 {
+    pub fn locate(&self, lon: f64, lat: f64) -> DVec2 {
         let south = self.north - self.step * self.height as f64;
         DVec2::new(lon - self.west, lat - south) / self.step * self.post_m
     }

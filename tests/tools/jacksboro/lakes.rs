@@ -56,7 +56,7 @@ pub fn find(ground: &Ground) -> Lakes {
     let mut water = vec![false; ground.z.len()];
     let mut lakes = Vec::new();
     for (lon, lat, level, name) in KNOWN {
-        let seed = ground.post_at(ground.from_lon_lat(lon, lat));
+        let seed = ground.post_at(ground.locate(lon, lat));
         let flat = ground.z[seed];
         let patch = flood(ground, seed, flat, level);
         assert!(patch.len() > 20, "{name} has no flat patch at its seed, where the ground is at {flat} m");

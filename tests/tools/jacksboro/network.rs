@@ -35,7 +35,7 @@ const TRACK: Design = Design { grade: 0.12, climb_cost: 1.0, slope_cost: 1.5, ro
 pub fn build(ground: &Ground, flow: &Flow, water: &[bool], notes: &mut Vec<String>) -> Vec<Road> {
     let planner = Planner::over(ground, flow, water);
     let places = |list: &[(f64, f64)]| -> Vec<DVec2> {
-        list.iter().map(|&(lon, lat)| ground.from_lon_lat(lon, lat)).collect()
+        list.iter().map(|&(lon, lat)| ground.locate(lon, lat)).collect()
     };
     let valley = planner.road(
         &places(&[
@@ -48,18 +48,18 @@ pub fn build(ground: &Ground, flow: &Flow, water: &[bool], notes: &mut Vec<Strin
         ]),
         VALLEY,
     );
-    let junction = nearest_vertex(&valley, ground.from_lon_lat(-84.2120, 36.2815));
+    let junction = nearest_vertex(&valley, ground.locate(-84.2120, 36.2815));
     let mut stops = vec![junction];
     stops.extend(places(&[(-84.2429, 36.2778), (-84.2615, 36.2655), (-84.2735, 36.2610)]));
     let pass = planner.road(&stops, PASS);
     let crest = highest_vertex(ground, &pass);
     note(ground, notes, "junction", junction);
     note(ground, notes, "pass", crest);
-    let mut stops = vec![nearest_vertex(&pass, ground.from_lon_lat(-84.2425, 36.2790))];
+    let mut stops = vec![nearest_vertex(&pass, ground.locate(-84.2425, 36.2790))];
     note(ground, notes, "summit fork", stops[0]);
     stops.extend(places(&[(-84.2308, 36.1992)]));
     let summit = planner.road(&stops, TRACK);
-    let fork = nearest_vertex(&valley, ground.from_lon_lat(-84.1838, 36.3301));
+    let fork = nearest_vertex(&valley, ground.locate(-84.1838, 36.3301));
     let mut stops = vec![fork];
     stops.extend(places(&[(-84.1500, 36.2830)]));
     let shore = planner.road(&stops, TRACK);

@@ -29,7 +29,7 @@ pub fn valley(ground: &Ground) -> String {
         let heights = (0..VALLEY_POSTS).map(|column| {
             let post = DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5) * VALLEY_CELL_M;
             let place = utm.transform(&geographic, VALLEY_CORNER + post).expect("the valley is in the zone");
-            format!("{:.1}", ground.at(ground.from_lon_lat(place.x, place.y)))
+            format!("{:.1}", ground.at(ground.locate(place.x, place.y)))
         });
         text.push_str(&heights.collect::<Vec<_>>().join(" "));
         text.push('\n');

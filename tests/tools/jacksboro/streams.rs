@@ -164,7 +164,7 @@ fn names(ground: &Ground, flow: &Flow, channel: &[bool]) -> Vec<Option<&'static 
         }
     }
     for (lon, lat, name) in NAMED {
-        let Some(start) = nearest_channel(ground, flow, channel, ground.from_lon_lat(lon, lat)) else {
+        let Some(start) = nearest_channel(ground, flow, channel, ground.locate(lon, lat)) else {
             continue;
         };
         let mut post = start;
