@@ -4,6 +4,9 @@ use crate::draw::list::FeatureId;
 use crate::draw::pixels::Pixels;
 
 /// A rendered picture with its buffers, all of the same size, rows from the top.
+///
+/// Where a transparent surface covers a pixel, depth and feature are its own from an alpha of ½ on, and those
+/// of what lies behind it below that.
 #[derive(Clone, Debug)]
 pub struct Picture {
     /// Colours, opaque.

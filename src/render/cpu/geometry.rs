@@ -211,7 +211,7 @@ fn add_triangle(
         item: setup.index,
         triangle,
         planes,
-        range: inverse_depth_range(&outline),
+        range: inverse_depth_range(&outline, screen.near),
         reach: reach as f32,
     });
 }
@@ -238,8 +238,11 @@ fn push_pieces(
 }
 
 /// The least and greatest `1 / w` among the corners.
-fn inverse_depth_range(outline: &Outline) -> [f32; 2] {
-    let inverses = outline.corners().iter().map(|corner| (1.0 / corner.z) as f32);
+///
+/// Cutting a triangle of astronomic size can leave a corner a little before the near plane, or even behind
+/// the eye, so both are kept to what a camera sees.
+fn inverse_depth_range(outline: &Outline, near: f64) -> [f32; 2] {
+    let inverses = outline.corners().iter().map(|corner| (1.0 / corner.z).clamp(0.0, 1.0 / near) as f32);
     inverses.fold([f32::MAX, 0.0], |[least, most], inverse| [least.min(inverse), most.max(inverse)])
 }
 

@@ -15,6 +15,7 @@ use crate::render::cpu::texture::Footprint;
 #[derive(Debug)]
 pub struct Ground<'a> {
     map: &'a GroundMap,
+    posts_per_metre: Vec2,
     smaller: Vec<Level>,
     stops: Vec<(f32, Vec3)>,
 }
@@ -41,7 +42,10 @@ pub fn fault(map: &GroundMap) -> Option<String> {
     if posts == 0 || posts != map.posts.len() as u64 {
         return Some(format!("{}×{} posts but {} entries", map.columns, map.rows, map.posts.len()));
     }
-    let sound = map.cell.min_element() > 0.0 && map.cell.is_finite() && map.origin.is_finite();
+    let sound = map.cell.min_element() > 0.0
+        && map.cell.recip().is_finite()
+        && map.cell.is_finite()
+        && map.origin.is_finite();
     (!sound).then(|| format!("cells of {} m from {}", map.cell, map.origin))
 }
 
@@ -61,13 +65,13 @@ impl<'a> Ground<'a> {
             smaller.push(halved(columns, rows, posts));
         }
         let stops = map.ramp.stops().iter().map(|&(height, color)| (height, color.linear())).collect();
-        Self { map, smaller, stops }
+        Self { map, posts_per_metre: map.cell.recip(), smaller, stops }
     }
 
     /// The ground beneath a hit, over the pixel's footprint.
     pub fn at(&self, hit: &Hit, most_taps: u32) -> GroundPoint {
         let [right, down] = [hit.right.truncate(), hit.down.truncate()];
-        let footprint = Footprint::new(right, down, self.map.cell.recip(), most_taps, 0.0);
+        let footprint = Footprint::new(right, down, self.posts_per_metre, most_taps, 0.0);
         let level = footprint.level.min(self.smaller.len() as f32);
         let (lower, part) = (level as usize, level - (level as usize) as f32);
         let share = 1.0 / footprint.taps as f32;
@@ -108,7 +112,7 @@ impl<'a> Ground<'a> {
         let rows = posts.len() / columns;
         let scale = 1.0 / (1u64 << level) as f32;
         let last = Vec2::new((self.map.columns - 1) as f32, (self.map.rows - 1) as f32);
-        let grid = ((at - self.map.origin) / self.map.cell).clamp(Vec2::ZERO, last) * scale;
+        let grid = ((at - self.map.origin) * self.posts_per_metre).clamp(Vec2::ZERO, last) * scale;
         let (column, x) = split(grid.x, columns);
         let (row, y) = split(grid.y, rows);
         let east = usize::from(columns > 1);
@@ -121,7 +125,7 @@ impl<'a> Ground<'a> {
         }
         let [sw, se, nw, ne] = corners.map(|post| post.height_m);
         let rise = Vec2::new((se - sw) * (1.0 - y) + (ne - nw) * y, (nw - sw) * (1.0 - x) + (ne - se) * x);
-        sum.gradient += rise / self.map.cell * (scale * weight);
+        sum.gradient += rise * self.posts_per_metre * (scale * weight);
     }
 }
 
@@ -189,4 +193,95 @@ fn halved(columns: usize, rows: usize, posts: &[GroundPost]) -> Level {
     };
     let posts = (0..columns_halved * rows_halved).into_par_iter().with_min_len(1024).map(post).collect();
     Level { columns: columns_halved, rows: rows_halved, posts }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::color::Srgba;
+    use crate::draw::ground::Ramp;
+
+    fn map(columns: u32, rows: u32, height: impl Fn(f32, f32) -> f32) -> GroundMap {
+        let post = |index: u32| GroundPost {
+            height_m: height((index % columns) as f32, (index / columns) as f32),
+            sun_visibility: 0.5,
+            ..GroundPost::default()
+        };
+        let stops = [(0.0, Srgba::opaque(10, 60, 200)), (9.0, Srgba::WHITE), (20.0, Srgba::opaque(0, 0, 0))];
+        GroundMap {
+            origin: Vec2::new(-30.0, 70.0),
+            cell: Vec2::new(2.0, 5.0),
+            columns,
+            rows,
+            posts: (0..columns * rows).map(post).collect(),
+            ramp: Ramp::new(stops.to_vec()).expect("rising"),
+            contours: None,
+        }
+    }
+
+    fn hit(world: Vec3, pixel_m: f32) -> Hit {
+        Hit { world, distance_m: 1.0, right: Vec3::X * pixel_m, down: Vec3::Y * pixel_m }
+    }
+
+    #[test]
+    fn close_up_the_reading_is_the_map_s_own() {
+        let map = map(6, 5, |x, y| x * x - 3.0 * y + x * y);
+        let ground = Ground::new(&map);
+        for at in [(-30.0, 70.0), (-27.3, 81.2), (-20.0, 90.0), (-99.0, 77.0), (99.0, 999.0)] {
+            let at = Vec2::from(at);
+            let point = ground.at(&hit(at.extend(0.0), 0.01), 8);
+            assert!((point.post.height_m - map.sample(at).height_m).abs() < 1e-4, "{at}");
+        }
+    }
+
+    #[test]
+    fn every_level_keeps_an_even_slope_in_place() {
+        let map = map(129, 129, |x, y| 3.0 * x - 2.0 * y);
+        let ground = Ground::new(&map);
+        let middle = Vec2::new(-30.0 + 2.0 * 64.0, 70.0 + 5.0 * 64.0);
+        for pixel_m in [0.1, 4.0, 9.0, 20.0] {
+            let point = ground.at(&hit(middle.extend(0.0), pixel_m), 1);
+            assert!((point.post.height_m - 64.0).abs() < 1e-3, "{pixel_m}: {}", point.post.height_m);
+            assert!((point.post.sun_visibility - 0.5).abs() < 1e-5);
+            let rise = point.gradient - Vec2::new(1.5, -0.4);
+            assert!(rise.length() < 1e-3, "{pixel_m}: {}", point.gradient);
+        }
+    }
+
+    #[test]
+    fn far_away_sharp_ground_reads_as_its_mean() {
+        let map = map(64, 64, |x, y| if (x + y) % 2.0 == 0.0 { 0.0 } else { 10.0 });
+        let point = Ground::new(&map).at(&hit(Vec3::new(31.0, 230.0, 0.0), 100.0), 8);
+        assert!((point.post.height_m - 5.0).abs() < 0.2, "{}", point.post.height_m);
+    }
+
+    #[test]
+    fn the_ramp_is_the_list_s_ramp() {
+        let map = map(2, 2, |_, _| 0.0);
+        let ground = Ground::new(&map);
+        for height in [-5.0, 0.0, 3.3, 9.0, 14.2, 20.0, 99.0] {
+            assert!((ground.ramp_at(height) - map.ramp.linear_at(height)).length() < 1e-6, "{height}");
+        }
+    }
+
+    #[test]
+    fn contours_follow_their_formula_and_survive_odd_settings() {
+        let plain = Contours { interval_m: 10.0, major_every: 5, color: Srgba::WHITE, width_px: 1.0 };
+        assert_eq!(contour_strength(&plain, 20.0, 0.5), 1.0);
+        assert!((contour_strength(&plain, 20.3, 0.5) - 0.4).abs() < 1e-5);
+        assert!((contour_strength(&plain, 50.7, 0.5) - 0.1).abs() < 1e-5, "the fifth is twice as wide");
+        assert_eq!(contour_strength(&plain, 20.0, 4.0), 0.0, "too close together");
+        for interval_m in [0.0, -1.0, f32::NAN] {
+            assert_eq!(contour_strength(&Contours { interval_m, ..plain }, 20.0, 0.5), 0.0);
+        }
+        assert!(contour_strength(&Contours { major_every: 0, ..plain }, f32::NAN, 0.5).is_nan());
+    }
+
+    #[test]
+    fn maps_that_cannot_be_read_are_named() {
+        assert_eq!(fault(&map(3, 2, |_, _| 0.0)), None);
+        assert!(fault(&GroundMap { columns: 9, ..map(3, 2, |_, _| 0.0) }).is_some());
+        assert!(fault(&GroundMap { cell: Vec2::new(0.0, 1.0), ..map(3, 2, |_, _| 0.0) }).is_some());
+        assert!(fault(&GroundMap { origin: Vec2::NAN, ..map(3, 2, |_, _| 0.0) }).is_some());
+    }
 }

@@ -23,10 +23,14 @@
 //! feature buffers hold, below it what lies behind them.
 //!
 //! # Cost
-//! Time grows with pixels × the faces seen in each (shading, most of it), plus triangles (about 100 ns
-//! each), plus covered samples (about 1 ns each). Memory: 12 bytes a pixel for the picture; 150 bytes a
-//! visible triangle; 0.3 MiB a thread; a third of each texture and of the ground map for their smaller
-//! levels.
+//! Time is a sum of pixels × the surfaces seen in each (shading, two thirds of it and more), triangles
+//! (three corners projected and three planes each), and covered samples (one depth test each). Against one
+//! sample a pixel, four take about a quarter more time and eight a third. A landscape of 180,000 triangles,
+//! 1920×1080, eight samples, takes about half a second of processor time, shared evenly by the threads.
+//!
+//! Memory: 12 bytes a pixel for the picture; 150 bytes a visible triangle; for each band of 64 rows at work
+//! 12 bytes a pixel and 48 a triangle in it; for each thread 0.3 MiB, and up to 2 MiB more under
+//! transparent surfaces; a third of each texture and of the ground map for their smaller levels.
 
 mod band;
 mod blend;

@@ -59,6 +59,12 @@ impl<'a> Shader<'a> {
         matches!(self.item(face).layer, Layer::Draped(_))
     }
 
+    /// Whether a face looks the same as any other at its place: coloured and lit by the ground map alone.
+    pub fn is_mapped(&self, face: &Face) -> bool {
+        let material = self.material(self.item(face));
+        material.albedo == Albedo::GroundMap && material.normals == Normals::Ground
+    }
+
     /// What `face` shows at pixel position `at`.
     pub fn shade(&self, face: &Face, at: [f32; 2]) -> Shaded {
         let item = self.item(face);

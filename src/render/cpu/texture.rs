@@ -54,9 +54,12 @@ impl Footprint {
     /// At most `most_taps` readings are taken; where that is too few, the level rises instead. `bias` is
     /// added to the level. What is not finite reads the coarsest level once.
     pub fn new(right: Vec2, down: Vec2, scale: Vec2, most_taps: u32, bias: f32) -> Self {
-        let (across, along) = ((right * scale).length(), (down * scale).length());
-        let (axis, longer, shorter) =
-            if across > along { (right, across, along) } else { (down, along, across) };
+        let (across, along) = ((right * scale).length_squared(), (down * scale).length_squared());
+        if across.max(along) <= 1.0 && bias <= 0.0 {
+            return Self { axis: Vec2::ZERO, taps: 1, level: 0.0 };
+        }
+        let axis = if across > along { right } else { down };
+        let (longer, shorter) = (across.max(along).sqrt(), across.min(along).sqrt());
         if !longer.is_finite() {
             return Self { axis: Vec2::ZERO, taps: 1, level: f32::MAX };
         }

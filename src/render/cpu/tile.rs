@@ -7,11 +7,15 @@ use crate::draw::lighting::Lighting;
 use crate::draw::list::FeatureId;
 use crate::render::cpu::blend::Blend;
 use crate::render::cpu::geometry::{FaceId, Geometry, Pass, Piece};
-use crate::render::cpu::pattern::Pattern;
+use crate::render::cpu::pattern::{Mask, Pattern};
 use crate::render::cpu::raster::Window;
 use crate::render::cpu::screen::Screen;
 use crate::render::cpu::shade::Shader;
 use crate::render::cpu::visibility::{Visibility, samples_of};
+
+/// Samples of ground whose depths differ by less than this part are taken to lie on one slope. Across
+/// a silhouette depths differ by more; along a slope they differ by less, except close to the horizon.
+const SAME_SLOPE: f32 = 0.01;
 
 /// Everything the tiles of a frame share.
 #[derive(Debug)]
@@ -106,7 +110,7 @@ fn resolve<const N: usize>(
     let mut left = Pattern::<N>::FULL;
     while left != 0 {
         let id = faces[left.trailing_zeros() as usize];
-        let mask = samples_of(faces, id);
+        let mask = left & alike(frame, visibility, (x, y), left.trailing_zeros() as usize);
         let [right, down] = pattern.centroid(mask);
         let color = match id {
             FaceId::NONE => frame.lighting.sky_at(frame.screen.ray_at(center)),
@@ -125,6 +129,33 @@ fn resolve<const N: usize>(
     let (depth_m, feature) = seen_at(frame, transparent.unwrap_or(faces[0]), center);
     let mean = colors.iter().sum::<Vec3>() / N as f32;
     PixelOut { color: Srgba::from_linear(mean), depth_m, feature }
+}
+
+/// The samples of a pixel that look like sample `first` and need no shading of their own: those of its face
+/// and, on ground that takes its looks from the map, those of its neighbours on the same slope.
+///
+/// Ground triangles are often no larger than a few pixels; this spares about a sixth of a frame's time.
+fn alike<const N: usize>(
+    frame: &Frame,
+    visibility: &Visibility<N>,
+    (x, y): (u32, u32),
+    first: usize,
+) -> Mask {
+    let (faces, depths) = (visibility.faces(x, y), visibility.depths(x, y));
+    let mut mask = samples_of(faces, faces[first]);
+    if mask == Pattern::<N>::FULL || faces[first] == FaceId::NONE {
+        return mask;
+    }
+    let face = frame.geometry.face(faces[first]);
+    if !frame.shader.is_mapped(face) {
+        return mask;
+    }
+    for (sample, &id) in faces.iter().enumerate() {
+        let near = (depths[sample] - depths[first]).abs() < SAME_SLOPE * depths[first];
+        let same = near && id != FaceId::NONE && frame.geometry.face(id).item == face.item;
+        mask |= Mask::from(same) << sample;
+    }
+    mask
 }
 
 /// The depth and feature of a face at a pixel's centre.
