@@ -1,7 +1,7 @@
 //! Two small elevation models for the scenes that show one thing each.
 //!
 //! `valley.asc` is the country round Caryville, resampled to whole metres of UTM zone 16 north. `hills.png`
-//! is made by formula: round hills on a gentle slope, an elevation model without any georeference.
+//! is made by formula: round hills and a hollow on a gentle slope, an elevation model without any georeference.
 
 use glam::DVec2;
 use sandtable::geom::crs::Crs;
@@ -39,14 +39,16 @@ pub fn valley(ground: &Ground) -> String {
 
 /// `hills.png`, sample values row by row from the north: decimetres above the lowest ground.
 pub fn hills() -> Vec<u16> {
-    /// Each hill: centre east and south, as parts of the side, radius likewise, height in decimetres.
-    const HILLS: [(f64, f64, f64, f64); 6] = [
+    /// Each hill: centre east and south, as parts of the side, radius likewise, height in decimetres. The
+    /// last is a hollow, for a pond.
+    const HILLS: [(f64, f64, f64, f64); 7] = [
         (0.30, 0.32, 0.16, 1_900.0),
         (0.68, 0.26, 0.12, 1_300.0),
         (0.55, 0.58, 0.20, 2_300.0),
         (0.20, 0.72, 0.12, 900.0),
         (0.82, 0.74, 0.14, 1_500.0),
         (0.44, 0.86, 0.09, 700.0),
+        (0.65, 0.87, 0.08, -330.0),
     ];
     let side = f64::from(HILLS_SIDE - 1);
     let height = |east: f64, south: f64| -> f64 {
