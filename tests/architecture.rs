@@ -46,7 +46,8 @@ fn sources() -> Vec<(String, String)> {
         let code = text.lines().take_while(|line| *line != "#[cfg(test)]");
         code.filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
     };
-    let name = |path: &PathBuf| path.strip_prefix(&src).expect("below src").to_string_lossy().replace('\\', "/");
+    let name =
+        |path: &PathBuf| path.strip_prefix(&src).expect("below src").to_string_lossy().replace('\\', "/");
     rust_files(&src).iter().map(|path| (name(path), code(path))).collect()
 }
 
@@ -118,7 +119,8 @@ fn every_source_file_opens_with_what_it_does_and_stays_one_idea() {
 #[test]
 fn nothing_is_imported_through_the_root_or_by_glob() {
     for (file, code) in sources() {
-        let globs = code.lines().filter(|line| line.trim_start().starts_with("use crate") && line.contains('*'));
+        let globs =
+            code.lines().filter(|line| line.trim_start().starts_with("use crate") && line.contains('*'));
         let globs: Vec<&str> = globs.collect();
         assert!(globs.is_empty(), "{file}: {globs:?}");
         let reexports = code.lines().filter(|line| line.trim_start().starts_with("pub use"));

@@ -61,7 +61,8 @@ fn hills() -> Lattice {
     let height = |index: u32| {
         let (x, y) = (f64::from(index % COLUMNS), f64::from(index / COLUMNS));
         let wave = |fx: f64, fy: f64, phase: f64| libm::sin(x * fx + y * fy + phase);
-        (400.0 + 90.0 * wave(0.05, 0.03, 0.2) + 40.0 * wave(-0.11, 0.17, 1.0) + 9.0 * wave(0.7, 0.9, 2.0)) as f32
+        (400.0 + 90.0 * wave(0.05, 0.03, 0.2) + 40.0 * wave(-0.11, 0.17, 1.0) + 9.0 * wave(0.7, 0.9, 2.0))
+            as f32
     };
     let heights = (0..COLUMNS * ROWS).map(height).collect();
     Lattice::new(DVec2::new(5e5, 4e6), DVec2::splat(CELL_M), COLUMNS, heights).expect("sound")
@@ -138,7 +139,9 @@ proptest! {
 fn a_lake_is_perfectly_level_however_coarse_the_ground_around_it() {
     let mut lattice = hills();
     let shore: Vec<DVec2> =
-        [(900.0, 800.0), (1700.0, 760.0), (2050.0, 1300.0), (1500.0, 1750.0), (980.0, 1500.0)].map(DVec2::from).into();
+        [(900.0, 800.0), (1700.0, 760.0), (2050.0, 1300.0), (1500.0, 1750.0), (980.0, 1500.0)]
+            .map(DVec2::from)
+            .into();
     earthwork::level(&mut lattice, std::slice::from_ref(&shore), 371.25);
     let world = World::new(lattice);
     let mut plan = PlanMesh::default();
@@ -154,7 +157,8 @@ fn a_lake_is_perfectly_level_however_coarse_the_ground_around_it() {
             .triangles
             .iter()
             .map(|triangle| {
-                let [a, b, c] = triangle.map(|id| Vec3::from(lake.vertices[id.index()].position).as_dvec3().truncate());
+                let [a, b, c] =
+                    triangle.map(|id| Vec3::from(lake.vertices[id.index()].position).as_dvec3().truncate());
                 (b - a).perp_dot(c - a) / 2.0
             })
             .sum();

@@ -15,7 +15,10 @@ pub fn run(options: &CheckOptions) -> Result<(), Failure> {
     let scene = load::scene(&options.scene, &options.access, &steps)?;
     steps.begin("checking invariants");
     let terrain = &scene.terrain;
-    terrain.errors.check(&terrain.layout).map_err(|flaw| Failure::input(format!("internal check: {flaw}")))?;
+    terrain
+        .errors
+        .check(&terrain.layout)
+        .map_err(|flaw| Failure::input(format!("internal check: {flaw}")))?;
     steps.finish();
     println!("{} is sound", options.scene.display());
     print_contents(&scene);

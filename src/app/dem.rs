@@ -72,7 +72,10 @@ fn print_table(raster: &Raster, stats: &Stats) {
     println!("  driver   {}", raster.driver);
     println!("  size     {} columns, {} rows", raster.width, raster.height);
     println!("  crs      {}", raster.crs.as_ref().map_or("none stated", |crs| crs.name()));
-    println!("  corner   ({}, {}), outer corner of the first sample", affine.translation.x, affine.translation.y);
+    println!(
+        "  corner   ({}, {}), outer corner of the first sample",
+        affine.translation.x, affine.translation.y
+    );
     println!("  sample   ({}, {}) a column, ({}, {}) a row", east.x, east.y, south.x, south.y);
     println!("  nodata   {}", raster.nodata.map_or("none stated".to_owned(), |value| value.to_string()));
     println!("  valid    {} of {} samples", stats.valid, raster.samples.len());

@@ -20,8 +20,10 @@ pub fn run(options: &HeightOptions) -> Result<(), Failure> {
     let text = files::read_text(&options.points)?;
     let name = options.points.display().to_string();
     let points = parse_points(&name, &text)?;
-    let answers: Vec<Answer> =
-        points.par_iter().map(|point| raster_height(&raster, options.interpolation.into(), point.at)).collect();
+    let answers: Vec<Answer> = points
+        .par_iter()
+        .map(|point| raster_height(&raster, options.interpolation.into(), point.at))
+        .collect();
     match write_csv(&points, &answers) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::input(error)),
         _ => Ok(()),
@@ -111,7 +113,9 @@ mod tests {
 
     #[test]
     fn points_come_with_or_without_a_header_and_in_any_columns() {
-        let at = |text: &str| parse_points("p.csv", text).expect("sound").iter().map(|point| point.at).collect::<Vec<_>>();
+        let at = |text: &str| {
+            parse_points("p.csv", text).expect("sound").iter().map(|point| point.at).collect::<Vec<_>>()
+        };
         let expected = vec![DVec2::new(1.5, 2.0), DVec2::new(-3.0, 4e3)];
         assert_eq!(at("1.5,2\n-3,4e3\n"), expected);
         assert_eq!(at("x,y\r\n1.5,2\r\n\r\n-3,4e3"), expected);

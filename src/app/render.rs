@@ -49,8 +49,7 @@ struct Done {
 fn render(options: &RenderOptions, steps: &Steps) -> Result<Done, Failure> {
     let scene = load::scene(&options.scene, &options.access, steps)?;
     let view = find_view(&scene, options.camera.as_deref())?.clone();
-    let camera =
-        camera(&scene, &view, (options.size.width, options.size.height)).map_err(Failure::input)?;
+    let camera = camera(&scene, &view, (options.size.width, options.size.height)).map_err(Failure::input)?;
     let Shot { list, ground_triangles, .. } = shoot(&scene, &camera, &|step| steps.begin(step));
     steps.begin("drawing");
     let mut picture = draw(&list, &camera, options.backend)?;

@@ -40,6 +40,26 @@ pub fn triangulate(exterior: &[DVec2], holes: &[Vec<DVec2>]) -> Vec<[DVec2; 3]> 
         .collect()
 }
 
+/// Cuts a polygon without holes into counter-clockwise triples of positions in `ring` (ear clipping).
+///
+/// Triangles without area are kept, so that every vertex of a folded ring may be used. Empty where no ear is
+/// found.
+pub fn triangulate_ring(ring: &[DVec2]) -> Vec<[usize; 3]> {
+    let polygon = geo::Polygon::new(geo::LineString::from_iter(ring.iter().map(|p| (p.x, p.y))), Vec::new());
+    // The ring is closed by `geo`, so its last vertex is the first again.
+    let corner = |index: usize| index % ring.len();
+    polygon
+        .earcut_triangles_raw()
+        .triangle_indices
+        .chunks_exact(3)
+        .map(|ids| [corner(ids[0]), corner(ids[1]), corner(ids[2])])
+        .map(|[a, b, c]| {
+            let area = (ring[b] - ring[a]).perp_dot(ring[c] - ring[a]);
+            if area < 0.0 { [a, c, b] } else { [a, b, c] }
+        })
+        .collect()
+}
+
 fn counter_clockwise([a, b, c]: [DVec2; 3]) -> Option<[DVec2; 3]> {
     let area = (b - a).perp_dot(c - a);
     if area > 0.0 { Some([a, b, c]) } else { (area < 0.0).then_some([a, c, b]) }

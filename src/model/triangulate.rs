@@ -1,13 +1,14 @@
 //! A polygon in space to triangles.
 //!
 //! Convex polygons, nearly all there are, become fans. Others are projected along their Newell normal and
-//! cut by `geo`'s earcut, which finds its way on what crosses itself or is folded; where even that gives
+//! cut into ears, which finds its way on what crosses itself or is folded; where even that gives
 //! nothing, a fan is drawn.
 
-use geo::TriangulateEarcut;
 use glam::{DVec2, DVec3, Vec3};
 
-/// Most corners of a polygon that are cut properly: earcut's time grows with their square at worst. A larger
+use crate::geom::polygon::triangulate_ring;
+
+/// Most corners of a polygon that are cut properly: the time of ear clipping grows with their square at worst. A larger
 /// one is a fan.
 const MAX_CORNERS: usize = 512;
 
@@ -20,7 +21,7 @@ pub(super) fn triangulate(corners: &[Vec3]) -> Vec<[usize; 3]> {
     if is_convex(&flat) {
         return fan(corners.len());
     }
-    let cut = earcut(&flat);
+    let cut = triangulate_ring(&flat);
     if cut.is_empty() { fan(corners.len()) } else { cut }
 }
 
@@ -50,21 +51,6 @@ fn is_convex(flat: &[DVec2]) -> bool {
         reversals += usize::from(((b - a).x < 0.0) != ((c - b).x < 0.0));
     }
     reversals <= 2
-}
-
-fn earcut(flat: &[DVec2]) -> Vec<[usize; 3]> {
-    let ring = flat.iter().map(|point| (point.x, point.y)).collect::<Vec<_>>();
-    let polygon = geo::Polygon::new(geo::LineString::from(ring), Vec::new());
-    let raw = polygon.earcut_triangles_raw();
-    // The ring is closed, so its last vertex is the first again.
-    let corner = |index: usize| index % flat.len();
-    let mut triangles = Vec::new();
-    for ids in raw.triangle_indices.chunks_exact(3) {
-        let [a, b, c] = [corner(ids[0]), corner(ids[1]), corner(ids[2])];
-        let area = (flat[b] - flat[a]).perp_dot(flat[c] - flat[a]);
-        triangles.push(if area < 0.0 { [a, c, b] } else { [a, b, c] });
-    }
-    triangles
 }
 
 #[cfg(test)]

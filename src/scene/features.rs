@@ -118,7 +118,14 @@ pub fn rivers(
     for river in &document.rivers {
         let width_m = value(river.width.as_ref(), 8.0);
         let lines = sources.lines(&river.source)?;
-        add_lines(collected, extent, FeatureKind::River, river.name.as_deref(), lines, (Surface::River, width_m));
+        add_lines(
+            collected,
+            extent,
+            FeatureKind::River,
+            river.name.as_deref(),
+            lines,
+            (Surface::River, width_m),
+        );
     }
     Ok(())
 }
@@ -176,7 +183,10 @@ fn add_lines(
     }
     if off > 0 {
         let what = given.map(|name| format!(" of '{name}'")).unwrap_or_default();
-        collected.notes.push(format!("{off} {}{what} left out: off the elevation model or a single point", kind.noun(off)));
+        collected.notes.push(format!(
+            "{off} {}{what} left out: off the elevation model or a single point",
+            kind.noun(off)
+        ));
     }
 }
 

@@ -36,7 +36,11 @@ pub struct Shot {
 ///
 /// # Errors
 /// See [`CameraError`].
-pub fn camera(scene: &Scene, view: &crate::scene::kind::View, size: (u32, u32)) -> Result<Camera, CameraError> {
+pub fn camera(
+    scene: &Scene,
+    view: &crate::scene::kind::View,
+    size: (u32, u32),
+) -> Result<Camera, CameraError> {
     let (min, max) = scene.terrain.bounds();
     let farthest = Vec3::select((view.eye - min).abs().cmpgt((view.eye - max).abs()), min, max);
     let far = view.eye.distance(farthest) * 1.5 + 1000.0;
@@ -114,10 +118,12 @@ fn add_ribbons(list: &mut DrawList, scene: &Scene, displayed: &dyn Facets) {
         })
         .collect();
     let mut materials: BTreeMap<Surface, MaterialId> = BTreeMap::new();
-    let mut order: Vec<_> = scene.ribbons.iter().zip(meshes).filter(|(_, mesh)| !mesh.triangles.is_empty()).collect();
+    let mut order: Vec<_> =
+        scene.ribbons.iter().zip(meshes).filter(|(_, mesh)| !mesh.triangles.is_empty()).collect();
     order.sort_by_key(|(ribbon, _)| ribbon.layer);
     for (ribbon, mesh) in order {
-        let material = *materials.entry(ribbon.surface).or_insert_with(|| draped_material(list, ribbon.surface));
+        let material =
+            *materials.entry(ribbon.surface).or_insert_with(|| draped_material(list, ribbon.surface));
         add_mesh(list, mesh, material, Layer::Draped(ribbon.layer), ribbon.feature);
     }
 }
@@ -146,7 +152,8 @@ fn add_models(list: &mut DrawList, scene: &Scene, displayed: &dyn Facets) {
         };
         let model =
             listed.entry(placement.model).or_insert_with(|| list_model(list, &scene.models[placement.model]));
-        let world_from_mesh = transform(placement, model.lowest_z, ground_z as f32, scene.terrain.exaggeration);
+        let world_from_mesh =
+            transform(placement, model.lowest_z, ground_z as f32, scene.terrain.exaggeration);
         for &(mesh, count, material) in &model.parts {
             list.items.push(DrawItem {
                 mesh,
@@ -201,7 +208,8 @@ mod tests {
 
     #[test]
     fn a_model_s_front_turns_to_its_heading_and_its_foot_stands_on_the_ground() {
-        for (heading, front) in [(0.0, Vec2::Y), (90.0, Vec2::X), (180.0, Vec2::NEG_Y), (270.0, Vec2::NEG_X)] {
+        for (heading, front) in [(0.0, Vec2::Y), (90.0, Vec2::X), (180.0, Vec2::NEG_Y), (270.0, Vec2::NEG_X)]
+        {
             let placement = Placement {
                 model: 0,
                 at: Vec2::new(100.0, 200.0),

@@ -40,7 +40,10 @@ const GREY: [(f32, [u8; 3]); 2] = [(0.0, [168, 168, 168]), (1.0, [236, 236, 236]
 ///
 /// # Errors
 /// Stops that do not rise.
-pub fn ramp(document: &Document, lattice: &Lattice) -> Result<Ramp, crate::description::diagnostic::Diagnostic> {
+pub fn ramp(
+    document: &Document,
+    lattice: &Lattice,
+) -> Result<Ramp, crate::description::diagnostic::Diagnostic> {
     let named = |name| match name {
         words::Ramp::Atlas => stretched(&ATLAS, lattice),
         words::Ramp::Desert => stretched(&DESERT, lattice),
@@ -52,7 +55,8 @@ pub fn ramp(document: &Document, lattice: &Lattice) -> Result<Ramp, crate::descr
     match choice.get_ref() {
         RampChoice::Named(name) => Ok(named(*name)),
         RampChoice::Stops(stops) => {
-            let stops = stops.iter().map(|&(height, Color(channels))| (height as f32, Srgba(channels))).collect();
+            let stops =
+                stops.iter().map(|&(height, Color(channels))| (height as f32, Srgba(channels))).collect();
             Ramp::new(stops).ok_or_else(|| document.error(choice, "the ramp's heights do not rise"))
         }
     }
@@ -109,7 +113,13 @@ pub fn ground_map(
         .zip(light.sun.into_iter().zip(light.sky))
         .map(|((post, height_m), (sun_visibility, sky_visibility))| {
             let slopes = lattice.slopes(post) * exaggeration;
-            GroundPost { height_m, slope_east: slopes.x, slope_north: slopes.y, sun_visibility, sky_visibility }
+            GroundPost {
+                height_m,
+                slope_east: slopes.x,
+                slope_north: slopes.y,
+                sun_visibility,
+                sky_visibility,
+            }
         })
         .collect();
     GroundMap {

@@ -21,7 +21,8 @@ const BLUE: Srgba = Srgba::opaque(0, 0, 255);
 /// Ground of `height`, and strips beside each other at an angle that cover its inner part.
 fn draped_all_over(half_m: f32, height: impl Fn(f32, f32) -> f32) -> DrawList {
     let ground = ground_mesh(40, half_m, &height);
-    let mut list = DrawList { ground: Some(ground_map(81, half_m, false, height).into()), ..DrawList::default() };
+    let mut list =
+        DrawList { ground: Some(ground_map(81, half_m, false, height).into()), ..DrawList::default() };
     let half = f64::from(half_m);
     let along = DVec2::new(0.8, 0.6);
     let width = half / 10.0;
@@ -109,7 +110,8 @@ fn a_drape_does_not_shine_through_a_ridge() {
     let ground = ground_mesh(80, 600.0, ridge);
     let line = [DVec2::new(-500.0, 20.0), DVec2::new(500.0, 20.0)];
     let road = draped_strip(&ground, &line, 3.0);
-    let mut list = DrawList { ground: Some(ground_map(81, 600.0, false, ridge).into()), ..DrawList::default() };
+    let mut list =
+        DrawList { ground: Some(ground_map(81, 600.0, false, ridge).into()), ..DrawList::default() };
     item(&mut list, ground, ground_material(), Layer::Ground, FeatureId::GROUND);
     item(&mut list, road, draped_material(RED), Layer::Draped(1), ROAD);
     // Half as high as far, the eye looks at the ridge's top and at the road through it.
@@ -130,7 +132,8 @@ fn what_stands_or_lies_on_a_road_hides_it() {
     let flat = |_: f32, _: f32| 0.0;
     let ground = ground_mesh(10, 100.0, flat);
     let road = draped_strip(&ground, &[DVec2::new(-90.0, 0.0), DVec2::new(90.0, 0.0)], 10.0);
-    let mut list = DrawList { ground: Some(ground_map(11, 100.0, false, flat).into()), ..DrawList::default() };
+    let mut list =
+        DrawList { ground: Some(ground_map(11, 100.0, false, flat).into()), ..DrawList::default() };
     item(&mut list, ground, ground_material(), Layer::Ground, FeatureId::GROUND);
     item(&mut list, road, draped_material(RED), Layer::Draped(1), ROAD);
     let house = box_mesh(Vec3::ZERO, Vec3::new(6.0, 6.0, 5.0));
@@ -154,7 +157,8 @@ fn a_later_drape_covers_an_earlier_one_and_transparent_ones_keep_to_that() {
     let lower = draped_strip(&ground, &[DVec2::new(-90.0, 0.0), DVec2::new(90.0, 3.0)], 30.0);
     let upper = draped_strip(&ground, &[DVec2::new(0.0, -90.0), DVec2::new(7.0, 90.0)], 10.0);
     for alpha in [Alpha::Opaque, Alpha::Blend] {
-        let mut list = DrawList { ground: Some(ground_map(11, 100.0, false, flat).into()), ..DrawList::default() };
+        let mut list =
+            DrawList { ground: Some(ground_map(11, 100.0, false, flat).into()), ..DrawList::default() };
         item(&mut list, ground.clone(), ground_material(), Layer::Ground, FeatureId::GROUND);
         let under = Material { alpha, ..draped_material(Srgba([0, 255, 0, 200])) };
         item(&mut list, lower.clone(), under, Layer::Draped(1), FOREST);

@@ -137,7 +137,8 @@ fn haze_thickens_with_the_true_distance() {
 #[test]
 fn contours_keep_their_width_from_near_to_far() {
     let slope = |_: f32, y: f32| 0.25 * y;
-    let mut list = DrawList { ground: Some(ground_map(101, 500.0, false, slope).into()), ..DrawList::default() };
+    let mut list =
+        DrawList { ground: Some(ground_map(101, 500.0, false, slope).into()), ..DrawList::default() };
     plain_light(&mut list);
     let map = std::sync::Arc::make_mut(list.ground.as_mut().expect("just put there"));
     map.ramp = sandtable::draw::ground::Ramp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop");
