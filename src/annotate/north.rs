@@ -91,8 +91,8 @@ impl Plane {
 
 /// A slender needle, dark to the right of north and light to its left, notched at its foot.
 fn draw_needle(plane: &Plane, sheet: &Sheet, drawing: &mut Drawing) -> Option<()> {
-    let [tip, foot] = [Vec2::new(0.0, 0.98), Vec2::new(0.0, -0.42)].map(|point| plane.on_picture(point));
-    let [right, left] = [0.42, -0.42].map(|x| plane.on_picture(Vec2::new(x, -0.72)));
+    let [tip, foot] = [Vec2::new(0.0, 0.98), Vec2::new(0.0, -0.52)].map(|point| plane.on_picture(point));
+    let [right, left] = [0.25, -0.25].map(|x| plane.on_picture(Vec2::new(x, -0.7)));
     let whole = polygon(&[tip, right, foot, left])?;
     drawing.stroke(&whole, sheet.px(3.0), HALO);
     drawing.fill(polygon(&[tip, left, foot])?, PAPER);

@@ -1,6 +1,6 @@
 //! From a scene, a camera and a picture to annotations: where world and picture meet.
 
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 use crate::annotate::annotation::{Annotations, Label, LabelKind};
 use crate::annotate::legend::Legend;
@@ -13,15 +13,14 @@ use crate::view::camera::Camera;
 
 /// Everything to be written on the picture.
 pub fn annotations(scene: &Scene, camera: &Camera, picture: &Picture) -> Annotations {
-    let shown = |wanted: bool| wanted.then_some(());
     let furniture = scene.furniture;
     Annotations {
         labels: scene.labels.iter().filter_map(|label| place(label, camera, picture)).collect(),
         title: scene.title.clone().filter(|_| furniture.title),
         subtitle: scene.subtitle.clone().filter(|_| furniture.title),
-        north: shown(furniture.north_arrow).map(|()| north_arrow(camera)),
-        scale_bar: shown(furniture.scale_bar).and_then(|()| scale_bar(scene, camera, picture)),
-        legend: shown(furniture.legend).map(|()| legend(scene)),
+        north: furniture.north_arrow.then(|| NorthArrow::seen_by(camera)),
+        scale_bar: if furniture.scale_bar { scale_bar(camera, picture) } else { None },
+        legend: furniture.legend.then(|| legend(scene)),
         ..Annotations::default()
     }
 }
@@ -59,27 +58,12 @@ fn is_visible(picture: &Picture, pixel: Vec2, depth_m: f32) -> bool {
     })
 }
 
-/// North on the picture's ground plane, seen with the camera's tilt.
-fn north_arrow(camera: &Camera) -> NorthArrow {
-    let level = |direction: Vec3| direction.truncate().normalize_or_zero();
-    let ahead = if camera.forward().truncate().length() > 1e-3 {
-        level(camera.forward())
-    } else {
-        level(camera.up())
-    };
-    let right = level(camera.right());
-    NorthArrow {
-        direction: Vec2::new(right.y, -ahead.y).normalize_or(Vec2::NEG_Y),
-        foreshortening: (-camera.forward().z).clamp(0.0, 1.0),
-    }
-}
-
 /// The bar for the distance of the ground in the picture's middle, or of the nearest ground below it.
-fn scale_bar(_scene: &Scene, camera: &Camera, picture: &Picture) -> Option<ScaleBar> {
+fn scale_bar(camera: &Camera, picture: &Picture) -> Option<ScaleBar> {
     let (width, height) = (picture.pixels.width() as usize, picture.pixels.height() as usize);
     let middle = (height / 2..height).map(|row| picture.depth_m[row * width + width / 2]);
     let distance_m = middle.into_iter().find(|depth| depth.is_finite())?;
-    Some(ScaleBar { pixels_per_metre: camera.pixels_per_metre(distance_m), distance_m })
+    Some(ScaleBar::seen_by(camera, distance_m))
 }
 
 fn legend(scene: &Scene) -> Legend {

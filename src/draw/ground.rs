@@ -91,9 +91,11 @@ impl Ramp {
 
 /// Contour lines, drawn at a constant width on the picture.
 ///
-/// At a pixel, `w` is the change of height across one pixel (|∂h/∂x| + |∂h/∂y| on the screen). A line covers
-/// `clamp(width_px / 2 + 0.5 − |h − nearest line| / w, 0, 1)` of it, faded by
-/// `clamp((interval / w − 3) / 5, 0, 1)` so that lines vanish before they run together.
+/// At a pixel, `w` is the change of height across one pixel, `sqrt((∂h/∂x)² + (∂h/∂y)²)` on the screen. A line
+/// covers `clamp(width / 2 + 0.5 − |h − nearest line| / w, 0, 1)` of it and is faded by `f(spacing)` with
+/// `f(s) = clamp((s / w − 4) / 6, 0, 1)`, so that lines vanish before they run together: `spacing` is the
+/// interval for ordinary lines and the interval × `major_every` for heavier ones, which outlast them. Ordinary
+/// lines are `width_px` wide, heavier ones `width_px · (1 + f(interval))`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contours {
     /// Height between lines, in metres.
@@ -102,7 +104,7 @@ pub struct Contours {
     pub major_every: u32,
     /// The colour, with alpha as strength.
     pub color: Srgba,
-    /// Width of an ordinary line in pixels; heavier ones are twice as wide.
+    /// Width of an ordinary line in pixels; heavier ones are twice as wide where ordinary ones show.
     pub width_px: f32,
 }
 

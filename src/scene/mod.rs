@@ -12,6 +12,7 @@ pub mod kind;
 pub mod models;
 pub mod picture;
 pub mod place;
+pub mod plinth;
 pub mod sources;
 pub mod style;
 pub mod views;

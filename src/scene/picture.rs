@@ -18,6 +18,7 @@ use crate::roam::criterion::ScreenError;
 use crate::roam::emit::DisplayedTerrain;
 use crate::roam::refine;
 use crate::scene::kind::{Placement, Scene, Terrain};
+use crate::scene::plinth::plinth;
 use crate::terrain::facets::Facets;
 use crate::view::camera::{Camera, CameraError};
 use crate::view::frustum::Frustum;
@@ -53,11 +54,12 @@ pub fn shoot(scene: &Scene, camera: &Camera, step: &dyn Fn(&'static str)) -> Sho
     let displayed = Arc::new(display(&scene.terrain, camera));
     let mut list =
         DrawList { ground: Some(Arc::clone(&scene.map)), lighting: scene.lighting, ..DrawList::default() };
-    add_ground(&mut list, &displayed);
+    let walls = add_ground(&mut list, &scene.terrain, &displayed);
     let ground_triangles = list.triangle_count();
     step("draping features");
     add_ribbons(&mut list, scene, &*displayed);
     step("setting models");
+    add_plinth(&mut list, walls);
     add_models(&mut list, scene, &*displayed);
     Shot { list, displayed, ground_triangles }
 }
@@ -89,9 +91,11 @@ impl MeshSink<Vec3> for GroundSink {
     }
 }
 
-fn add_ground(list: &mut DrawList, displayed: &DisplayedTerrain) {
+/// Adds the ground and returns the walls below its edge.
+fn add_ground(list: &mut DrawList, terrain: &Terrain, displayed: &DisplayedTerrain) -> DrawMesh {
     let mut sink = GroundSink(DrawMesh::default());
     displayed.emit(&mut sink);
+    let walls = plinth(&sink.0, &terrain.lattice, terrain.exaggeration);
     let material = list.add_material(Material {
         name: "ground".into(),
         normals: Normals::Ground,
@@ -99,6 +103,12 @@ fn add_ground(list: &mut DrawList, displayed: &DisplayedTerrain) {
         ..Material::default()
     });
     add_mesh(list, sink.0, material, Layer::Ground, FeatureId::GROUND);
+    walls
+}
+
+fn add_plinth(list: &mut DrawList, walls: DrawMesh) {
+    let material = list.add_material(Material { name: "plinth".into(), ..Material::default() });
+    add_mesh(list, walls, material, Layer::Solid, FeatureId::GROUND);
 }
 
 fn add_mesh(list: &mut DrawList, mesh: DrawMesh, material: MaterialId, layer: Layer, feature: FeatureId) {

@@ -56,8 +56,10 @@ fn sun_visibility(lattice: &Lattice, z: &[f32], to_sun: Vec3) -> Vec<f32> {
         for at in 0..line_length {
             let shadow = between(&before, at as f32 + aside) - drop;
             let here = z[index(line, at)];
-            visible[index(line, at)] = ((here - shadow) / penumbra + 0.5).clamp(0.0, 1.0);
-            sheet[at] = if here >= shadow { here } else { shadow };
+            if !here.is_nan() {
+                visible[index(line, at)] = ((here - shadow) / penumbra + 0.5).clamp(0.0, 1.0);
+            }
+            sheet[at] = here.max(shadow);
         }
     }
     visible
@@ -153,6 +155,14 @@ mod tests {
         assert!(light.sun[row + 25] < 0.01, "50 m behind the wall");
         assert!(light.sun[row + 32] > 0.99, "120 m behind the wall");
         assert!(light.sun[row + 10] > 0.99, "before the wall");
+    }
+
+    #[test]
+    fn posts_without_data_cast_no_shadow_and_lie_in_full_light() {
+        let heights = (0..41 * 41).map(|index| if index % 41 == 20 { f32::NAN } else { 3.0 }).collect();
+        let holed = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 41, heights).expect("sound");
+        let light = light(&holed, 1.0, Vec3::new(-0.6, 0.1, 0.5).normalize());
+        assert!(light.sun.iter().chain(&light.sky).all(|&share| share == 1.0));
     }
 
     #[test]

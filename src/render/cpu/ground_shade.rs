@@ -91,8 +91,9 @@ impl<'a> Ground<'a> {
         let height = point.post.height_m;
         let color = self.ramp_at(height);
         let Some(contours) = &self.map.contours else { return color };
-        let change = |step: Vec3| point.gradient.dot(step.truncate()).abs();
-        let strength = contour_strength(contours, height, change(hit.right) + change(hit.down));
+        let change = |step: Vec3| point.gradient.dot(step.truncate());
+        let across = Vec2::new(change(hit.right), change(hit.down)).length();
+        let strength = contour_strength(contours, height, across);
         color.lerp(contours.color.linear(), strength * contours.color.alpha())
     }
 
@@ -157,10 +158,15 @@ fn contour_strength(contours: &Contours, height_m: f32, change_m: f32) -> f32 {
     }
     let number = (height_m / interval).round();
     let is_major = contours.major_every > 0 && (number as i64).rem_euclid(contours.major_every.into()) == 0;
-    let width = contours.width_px * if is_major { 2.0 } else { 1.0 };
+    let fade = |spacing: f32| ((spacing / change_m - 4.0) / 6.0).clamp(0.0, 1.0);
+    let minor = fade(interval);
+    let (width, strength) = if is_major {
+        (contours.width_px * (1.0 + minor), fade(interval * contours.major_every as f32))
+    } else {
+        (contours.width_px, minor)
+    };
     let away_px = (height_m - number * interval).abs() / change_m;
-    let fade = ((interval / change_m - 3.0) / 5.0).clamp(0.0, 1.0);
-    (width / 2.0 + 0.5 - away_px).clamp(0.0, 1.0) * fade
+    (width / 2.0 + 0.5 - away_px).clamp(0.0, 1.0) * strength
 }
 
 fn add(sum: &mut GroundPost, post: &GroundPost, weight: f32) {
@@ -271,6 +277,8 @@ mod tests {
         assert!((contour_strength(&plain, 20.3, 0.5) - 0.4).abs() < 1e-5);
         assert!((contour_strength(&plain, 50.7, 0.5) - 0.1).abs() < 1e-5, "the fifth is twice as wide");
         assert_eq!(contour_strength(&plain, 20.0, 4.0), 0.0, "too close together");
+        assert_eq!(contour_strength(&plain, 50.0, 4.0), 1.0, "every fifth line outlasts the others");
+        assert_eq!(contour_strength(&plain, 50.0, 15.0), 0.0, "and vanishes in its turn");
         for interval_m in [0.0, -1.0, f32::NAN] {
             assert_eq!(contour_strength(&Contours { interval_m, ..plain }, 20.0, 0.5), 0.0);
         }

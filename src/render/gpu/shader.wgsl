@@ -197,6 +197,11 @@ fn ramp_at(height: f32) -> vec3f {
     return mix(before.rgb, after.rgb, part);
 }
 
+// Lines `spacing` metres apart vanish before they run together.
+fn contour_fade(spacing: f32, per_pixel: f32) -> f32 {
+    return clamp((spacing / per_pixel - 4.0) / 6.0, 0.0, 1.0);
+}
+
 // Contours: how much of a pixel a line covers, where height changes by `per_pixel` across one.
 fn contour_cover(height: f32, per_pixel: f32) -> f32 {
     let interval = frame.contour_shape.x;
@@ -206,9 +211,10 @@ fn contour_cover(height: f32, per_pixel: f32) -> f32 {
     let line = round(height / interval);
     let every = frame.contour_shape.z;
     let heavy = line - every * floor(line / every) < 0.5;
-    let width = frame.contour_shape.y * select(1.0, 2.0, heavy);
-    let cover = clamp(width * 0.5 + 0.5 - abs(height - line * interval) / per_pixel, 0.0, 1.0);
-    return cover * clamp((interval / per_pixel - 3.0) / 5.0, 0.0, 1.0);
+    let minor = contour_fade(interval, per_pixel);
+    let width = frame.contour_shape.y * select(1.0, 1.0 + minor, heavy);
+    let strength = select(minor, contour_fade(interval * every, per_pixel), heavy);
+    return clamp(width * 0.5 + 0.5 - abs(height - line * interval) / per_pixel, 0.0, 1.0) * strength;
 }
 
 fn lit(albedo: vec3f, normal: vec3f, sun_visibility: f32, sky_visibility: f32) -> vec3f {
@@ -252,7 +258,7 @@ fn shade(in: Varying, front: bool) -> vec4f {
             visibility = post.visibility;
         }
         if (flags & FROM_GROUND_ALBEDO) != 0u {
-            let per_pixel = abs(dot(post.gradient, right)) + abs(dot(post.gradient, down));
+            let per_pixel = length(vec2f(dot(post.gradient, right), dot(post.gradient, down)));
             let cover = contour_cover(post.height, per_pixel) * frame.contour.a;
             color = vec4f(mix(ramp_at(post.height), frame.contour.rgb, cover), 1.0);
         }
