@@ -13,8 +13,8 @@ use crate::terrain::query::{Answer, Interpolation, ground_height};
 const DEPTH: f64 = 0.02;
 
 /// The wall's colour at the ground and at the base: a cut through soil.
-const TOP: Srgba = Srgba::opaque(150, 126, 100);
-const FOOT: Srgba = Srgba::opaque(92, 76, 62);
+const TOP: Srgba = Srgba::opaque(196, 168, 136);
+const FOOT: Srgba = Srgba::opaque(132, 110, 90);
 
 /// Walls under the border edges of `ground`, a mesh emitted from `lattice`, heights drawn times `exaggeration`.
 ///
@@ -67,8 +67,8 @@ fn add_wall(walls: &mut DrawMesh, (from, to): (Vec3, Vec3), base: f32, outward: 
     };
     let corners =
         [corner(from.with_z(base), FOOT), corner(to.with_z(base), FOOT), corner(to, TOP), corner(from, TOP)];
-    walls.triangle([corners[1], corners[0], corners[3]]);
-    walls.triangle([corners[1], corners[3], corners[2]]);
+    walls.triangle([corners[0], corners[1], corners[2]]);
+    walls.triangle([corners[0], corners[2], corners[3]]);
 }
 
 #[cfg(test)]
