@@ -12,7 +12,7 @@ use crate::scene::kind::{FeatureKind, Scene};
 /// Whatever is wrong with the scene.
 pub fn run(options: &CheckOptions) -> Result<(), Failure> {
     let steps = Steps::default();
-    let scene = load::scene(&options.scene, &options.access, &steps)?;
+    let scene = load::scene(&options.scene, &options.access, &|step| steps.begin(step))?;
     steps.begin("checking invariants");
     let terrain = &scene.terrain;
     terrain

@@ -5,20 +5,19 @@ use std::path::Path;
 use crate::app::arguments::Access;
 use crate::app::failure::Failure;
 use crate::app::files;
-use crate::app::progress::Steps;
 use crate::description::parse::parse_bytes;
 use crate::scene::assets::Assets;
 use crate::scene::build::build;
 use crate::scene::kind::Scene;
 
-/// Reads, parses and builds the scene at `path`.
+/// Reads, parses and builds the scene at `path`. `step` is called with what is done next.
 ///
 /// # Errors
 /// Everything wrong with the scene file, or the first thing wrong with what it names.
-pub fn scene(path: &Path, access: &Access, steps: &Steps) -> Result<Scene, Failure> {
-    steps.begin("reading the scene file");
+pub fn scene(path: &Path, access: &Access, step: &dyn Fn(&'static str)) -> Result<Scene, Failure> {
+    step("reading the scene file");
     let bytes = files::read(path)?;
     let document = parse_bytes(&path.to_string_lossy(), &bytes).map_err(Failure::input)?;
     let assets = Assets::new(path, &access.allow).map_err(Failure::input)?;
-    build(&document, &assets, &|step| steps.begin(step)).map_err(Failure::input)
+    build(&document, &assets, step).map_err(Failure::input)
 }

@@ -2,21 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use image::ImageEncoder;
-
-use crate::annotate::paint::annotate;
-use crate::annotate::report::Report;
-use crate::app::arguments::{Backend, RenderOptions};
+use crate::app::arguments::RenderOptions;
 use crate::app::check::print_contents;
 use crate::app::failure::Failure;
+use crate::app::picture::{Finished, picture_of, png};
 use crate::app::progress::Steps;
-use crate::app::{files, labels, load};
-use crate::draw::list::DrawList;
-use crate::draw::pixels::Pixels;
-use crate::render::{cpu, gpu, picture::Picture};
+use crate::app::{files, load};
 use crate::scene::kind::{Scene, View};
-use crate::scene::picture::{Shot, camera, shoot};
-use crate::view::camera::Camera;
 
 /// Renders the scene and prints where the picture is, what is in it, and how long each step took.
 ///
@@ -41,25 +33,18 @@ struct Done {
     scene: Scene,
     view: String,
     output: PathBuf,
-    ground_triangles: usize,
-    triangles: usize,
-    report: Report,
+    finished: Finished,
 }
 
 fn render(options: &RenderOptions, steps: &Steps) -> Result<Done, Failure> {
-    let scene = load::scene(&options.scene, &options.access, steps)?;
+    let step = |step| steps.begin(step);
+    let scene = load::scene(&options.scene, &options.access, &step)?;
     let view = find_view(&scene, options.camera.as_deref())?.clone();
-    let camera = camera(&scene, &view, (options.size.width, options.size.height)).map_err(Failure::input)?;
-    let Shot { list, ground_triangles, .. } = shoot(&scene, &camera, &|step| steps.begin(step));
-    steps.begin("drawing");
-    let mut picture = draw(&list, &camera, options.backend)?;
-    steps.begin("annotating");
-    let annotations = labels::annotations(&scene, &camera, &picture);
-    let report = annotate(&mut picture.pixels, &annotations);
-    steps.begin("writing the picture");
+    let finished = picture_of(&scene, &view, options.size, options.backend, &step)?;
+    step("writing the picture");
     let output = options.output.clone().unwrap_or_else(|| default_output(&options.scene));
-    files::write_whole(&output, &encode_png(&picture.pixels)?)?;
-    Ok(Done { view: view.name, output, ground_triangles, triangles: list.triangle_count(), report, scene })
+    files::write_whole(&output, &png(&finished.pixels)?)?;
+    Ok(Done { scene, view: view.name, output, finished })
 }
 
 fn find_view<'a>(scene: &'a Scene, name: Option<&str>) -> Result<&'a View, Failure> {
@@ -70,44 +55,30 @@ fn find_view<'a>(scene: &'a Scene, name: Option<&str>) -> Result<&'a View, Failu
     })
 }
 
-fn draw(list: &DrawList, camera: &Camera, backend: Backend) -> Result<Picture, Failure> {
-    match backend {
-        Backend::Cpu => cpu::render(list, camera, &cpu::Options::default()).map_err(Failure::input),
-        Backend::Gpu => gpu::render(list, camera).map_err(Failure::input),
-    }
-}
-
 /// The scene's name with `.png`, in the current folder.
 fn default_output(scene: &Path) -> PathBuf {
     PathBuf::from(scene.file_stem().unwrap_or("scene".as_ref())).with_extension("png")
 }
 
-/// The picture as PNG without alpha.
-fn encode_png(pixels: &Pixels) -> Result<Vec<u8>, Failure> {
-    let rgb: Vec<u8> = pixels.data().iter().flat_map(|color| [color.0[0], color.0[1], color.0[2]]).collect();
-    let mut png = Vec::new();
-    image::codecs::png::PngEncoder::new(&mut png)
-        .write_image(&rgb, pixels.width(), pixels.height(), image::ExtendedColorType::Rgb8)
-        .map_err(Failure::input)?;
-    Ok(png)
-}
-
 fn print_picture(done: &Done) {
+    let report = &done.finished.report;
     println!(
         "  camera    {}: {} triangles, {} of them ground",
-        done.view, done.triangles, done.ground_triangles
+        done.view,
+        done.finished.shot.list.triangle_count(),
+        done.finished.shot.ground_triangles
     );
     let left_out = [
-        ("hidden", &done.report.hidden),
-        ("outside the picture", &done.report.outside),
-        ("without room", &done.report.crowded_out),
-        ("shortened", &done.report.shortened),
+        ("hidden", &report.hidden),
+        ("outside the picture", &report.outside),
+        ("without room", &report.crowded_out),
+        ("shortened", &report.shortened),
     ];
     for (why, labels) in left_out.iter().filter(|(_, labels)| !labels.is_empty()) {
         let names: Vec<String> = labels.iter().map(|label| label.replace('\n', " ")).collect();
         println!("  labels    {why}: {}", names.join(", "));
     }
-    for missing in &done.report.missing_glyphs {
+    for missing in &report.missing_glyphs {
         eprintln!("warning: the font lacks {} characters of '{}'", missing.count, missing.text);
     }
 }

@@ -1,0 +1,71 @@
+//! A view of a scene to a finished picture, in memory: shoot, draw, annotate.
+//!
+//! Nothing is read, written, printed or timed here, so that the program, its tests and its benchmark make their
+//! pictures the same way. What is done next is told to the caller, who may show it or time it.
+
+use image::ImageEncoder;
+
+use crate::annotate::paint::annotate;
+use crate::annotate::report::Report;
+use crate::app::arguments::{Backend, Size};
+use crate::app::failure::Failure;
+use crate::app::labels;
+use crate::draw::list::DrawList;
+use crate::draw::pixels::Pixels;
+use crate::render::picture::Picture;
+use crate::render::{cpu, gpu};
+use crate::scene::kind::{Scene, View};
+use crate::scene::picture::{Shot, camera, shoot};
+use crate::view::camera::Camera;
+
+/// An annotated picture with what it was made from.
+pub struct Finished {
+    /// The picture, opaque.
+    pub pixels: Pixels,
+    /// What was drawn.
+    pub shot: Shot,
+    /// What became of the labels.
+    pub report: Report,
+}
+
+/// The annotated picture of `size` that `view` has of `scene`, drawn on the current `rayon` pool. `step` is
+/// called with what is done next.
+///
+/// # Errors
+/// The view's camera cannot see anything, or `backend` cannot draw: no adapter, for one.
+pub fn picture_of(
+    scene: &Scene,
+    view: &View,
+    size: Size,
+    backend: Backend,
+    step: &dyn Fn(&'static str),
+) -> Result<Finished, Failure> {
+    let camera = camera(scene, view, (size.width, size.height)).map_err(Failure::input)?;
+    let shot = shoot(scene, &camera, step);
+    step("drawing");
+    let mut picture = draw(&shot.list, &camera, backend)?;
+    step("annotating");
+    let annotations = labels::annotations(scene, &camera, &picture);
+    let report = annotate(&mut picture.pixels, &annotations);
+    Ok(Finished { pixels: picture.pixels, shot, report })
+}
+
+fn draw(list: &DrawList, camera: &Camera, backend: Backend) -> Result<Picture, Failure> {
+    match backend {
+        Backend::Cpu => cpu::render(list, camera, &cpu::Options::default()).map_err(Failure::input),
+        Backend::Gpu => gpu::render(list, camera).map_err(Failure::input),
+    }
+}
+
+/// The bytes of `pixels` as a PNG file without alpha.
+///
+/// # Errors
+/// The picture is empty.
+pub fn png(pixels: &Pixels) -> Result<Vec<u8>, Failure> {
+    let rgb: Vec<u8> = pixels.data().iter().flat_map(|color| [color.0[0], color.0[1], color.0[2]]).collect();
+    let mut png = Vec::new();
+    image::codecs::png::PngEncoder::new(&mut png)
+        .write_image(&rgb, pixels.width(), pixels.height(), image::ExtendedColorType::Rgb8)
+        .map_err(Failure::input)?;
+    Ok(png)
+}
