@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, Vec3};
+use glam::{DAffine2, DVec2, Vec3};
 use proptest::prelude::*;
+use sandtable::dem::raster::{Raster, Samples};
 use sandtable::draw::list::DrawMesh;
+use sandtable::geom::crs::Crs;
 use sandtable::geom::polyline::Polyline;
 use sandtable::mesh::check;
 use sandtable::mesh::trimesh::TriMesh;
@@ -20,6 +22,7 @@ use sandtable::roam::refine::{Ground, PatchHeights, patches_in_view, rebuild};
 use sandtable::terrain::earthwork;
 use sandtable::terrain::facets::Facets;
 use sandtable::terrain::lattice::Lattice;
+use sandtable::terrain::query::{Answer, HeightService, Interpolation, Surface};
 use sandtable::view::camera::Camera;
 use sandtable::view::frustum::Frustum;
 
@@ -163,5 +166,45 @@ fn a_lake_is_perfectly_level_however_coarse_the_ground_around_it() {
             })
             .sum();
         assert!((area / plan.area_m2() - 1.0).abs() < 1e-4, "{area} of {}", plan.area_m2());
+    }
+}
+
+#[test]
+fn displayed_heights_are_those_of_the_drawn_triangles_and_ground_heights_never_change() {
+    let lattice = hills();
+    let raster = Raster {
+        driver: "AAIGrid",
+        width: COLUMNS,
+        height: ROWS,
+        samples: Samples::F32(lattice.heights().to_vec()),
+        map_from_grid: DAffine2::IDENTITY,
+        crs: None,
+        nodata: None,
+        metres_per_z: 1.0,
+        georeferenced: false,
+    };
+    let world = World::new(lattice);
+    let service = HeightService::new(Arc::new(raster), Crs::local(), Arc::clone(&world.lattice));
+    let at: Vec<DVec2> = (0..4000)
+        .map(|index| {
+            world.lattice.origin() + DVec2::new(f64::from(index * 37 % 3570), f64::from(index * 53 % 2670))
+        })
+        .collect();
+    let ask = |service: &HeightService, surface| {
+        let mut answers = vec![Answer::NoData; at.len()];
+        service.heights(surface, Interpolation::Planar, &at, &mut answers);
+        answers
+    };
+    let ground = ask(&service, Surface::Ground);
+    assert!(ask(&service, Surface::Displayed).iter().all(|answer| *answer == Answer::Outside));
+    for tolerance_px in [0.5, 4.0, 60.0] {
+        let camera = camera((1800.0, -2500.0, 1800.0), (1800.0, 1300.0)).expect("sound");
+        let terrain = Arc::new(world.seen_by(&camera, tolerance_px));
+        let showing = service.displaying(Arc::clone(&terrain) as Arc<dyn Facets>, 1.5);
+        assert_eq!(ask(&showing, Surface::Ground), ground, "ground heights do not depend on what is drawn");
+        for (&at, answer) in at.iter().zip(ask(&showing, Surface::Displayed)) {
+            let drawn = terrain.displayed_z(at - world.lattice.origin()).map(|z| z / 1.5);
+            assert_eq!(answer.height_m(), drawn);
+        }
     }
 }
