@@ -9,7 +9,7 @@
 //! ```
 //!
 //! Vertices are stored where the object stood in the editor; the keyframer says where it stands at frame 0.
-//! [`assemble`] brings one to the other. Ids and layouts follow lib3ds and the "3D Studio File Format"
+//! `assemble` brings one to the other. Ids and layouts follow lib3ds and the "3D Studio File Format"
 //! notes of Jochen Wilhelmy (1996). A chunk that reaches past its parent is refused, as lib3ds and assimp do:
 //! what comes after it cannot be told from noise.
 
