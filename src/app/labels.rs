@@ -34,7 +34,8 @@ fn place(label: &SceneLabel, camera: &Camera, picture: &Picture) -> Option<Label
         anchor_px: ground.pixel,
         top_px: (label.anchor != label.ground).then_some(top.pixel),
         depth_m: ground.depth_m,
-        visible: is_visible(picture, ground.pixel, ground.depth_m) || is_visible(picture, top.pixel, top.depth_m),
+        visible: is_visible(picture, ground.pixel, ground.depth_m)
+            || is_visible(picture, top.pixel, top.depth_m),
         kind: match label.kind {
             words::LabelKind::Summit => LabelKind::Summit,
             words::LabelKind::Place => LabelKind::Place,
@@ -61,7 +62,11 @@ fn is_visible(picture: &Picture, pixel: Vec2, depth_m: f32) -> bool {
 /// North on the picture's ground plane, seen with the camera's tilt.
 fn north_arrow(camera: &Camera) -> NorthArrow {
     let level = |direction: Vec3| direction.truncate().normalize_or_zero();
-    let ahead = if camera.forward().truncate().length() > 1e-3 { level(camera.forward()) } else { level(camera.up()) };
+    let ahead = if camera.forward().truncate().length() > 1e-3 {
+        level(camera.forward())
+    } else {
+        level(camera.up())
+    };
     let right = level(camera.right());
     NorthArrow {
         direction: Vec2::new(right.y, -ahead.y).normalize_or(Vec2::NEG_Y),

@@ -17,7 +17,10 @@ impl Default for Steps {
         let bar = ProgressBar::new_spinner();
         bar.enable_steady_tick(Duration::from_millis(100));
         let style = ProgressStyle::with_template("{spinner} {msg} [{elapsed}]");
-        Self { bar: bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner())), times: Mutex::default() }
+        Self {
+            bar: bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner())),
+            times: Mutex::default(),
+        }
     }
 }
 

@@ -7,10 +7,11 @@ use image::ImageEncoder;
 use crate::annotate::paint::annotate;
 use crate::annotate::report::Report;
 use crate::app::arguments::{Backend, RenderOptions};
-use crate::app::check::print_contents;
+use crate::app::check::contents;
 use crate::app::failure::Failure;
 use crate::app::progress::Steps;
-use crate::app::{files, labels, load};
+use crate::app::{files, labels, load, output};
+use crate::description::suggest::{nearest, quoted};
 use crate::draw::list::DrawList;
 use crate::draw::pixels::Pixels;
 use crate::render::{cpu, gpu, picture::Picture};
@@ -25,14 +26,23 @@ use crate::view::camera::Camera;
 pub fn run(options: &RenderOptions) -> Result<(), Failure> {
     let threads = options.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::input)?;
+    let place = options.output.clone().unwrap_or_else(|| default_output(&options.scene));
+    files::check_place(&place, &options.scene)?;
     let steps = Steps::default();
-    let done = pool.scope(|_| render(options, &steps))?;
+    let done = pool.scope(|_| render(options, &place, &steps))?;
     let times = steps.finish();
-    println!("{}", done.output.display());
-    print_contents(&done.scene);
-    print_picture(&done);
+    let mut lines = vec![format!("{}", place.display())];
+    lines.extend(contents(&done.scene));
+    lines.extend(picture(&done));
     let times: Vec<String> = times.iter().map(|(step, seconds)| format!("{step} {seconds:.2} s")).collect();
-    println!("  time      {}", times.join(", "));
+    lines.push(format!("  time      {}", times.join(", ")));
+    output::print(&output::text_of(&lines))?;
+    for missing in &done.report.missing_glyphs {
+        output::complain(&format!(
+            "warning: the font lacks {} characters of '{}'",
+            missing.count, missing.text
+        ));
+    }
     Ok(())
 }
 
@@ -40,17 +50,15 @@ pub fn run(options: &RenderOptions) -> Result<(), Failure> {
 struct Done {
     scene: Scene,
     view: String,
-    output: PathBuf,
     ground_triangles: usize,
     triangles: usize,
     report: Report,
 }
 
-fn render(options: &RenderOptions, steps: &Steps) -> Result<Done, Failure> {
+fn render(options: &RenderOptions, place: &Path, steps: &Steps) -> Result<Done, Failure> {
     let scene = load::scene(&options.scene, &options.access, steps)?;
     let view = find_view(&scene, options.camera.as_deref())?.clone();
-    let camera =
-        camera(&scene, &view, (options.size.width, options.size.height)).map_err(Failure::input)?;
+    let camera = camera(&scene, &view, (options.size.width, options.size.height)).map_err(Failure::input)?;
     let Shot { list, ground_triangles, .. } = shoot(&scene, &camera, &|step| steps.begin(step));
     steps.begin("drawing");
     let mut picture = draw(&list, &camera, options.backend)?;
@@ -58,16 +66,18 @@ fn render(options: &RenderOptions, steps: &Steps) -> Result<Done, Failure> {
     let annotations = labels::annotations(&scene, &camera, &picture);
     let report = annotate(&mut picture.pixels, &annotations);
     steps.begin("writing the picture");
-    let output = options.output.clone().unwrap_or_else(|| default_output(&options.scene));
-    files::write_whole(&output, &encode_png(&picture.pixels)?)?;
-    Ok(Done { view: view.name, output, ground_triangles, triangles: list.triangle_count(), report, scene })
+    files::write_whole(place, &encode_png(&picture.pixels)?)?;
+    Ok(Done { view: view.name, ground_triangles, triangles: list.triangle_count(), report, scene })
 }
 
 fn find_view<'a>(scene: &'a Scene, name: Option<&str>) -> Result<&'a View, Failure> {
     scene.view(name).ok_or_else(|| {
         let names: Vec<&str> = scene.cameras.iter().map(|view| view.name.as_str()).collect();
         let wanted = name.unwrap_or_default();
-        Failure::Usage(format!("the scene has no camera '{wanted}'; it has {}", names.join(", ")))
+        let meant = nearest(wanted, names.iter().copied());
+        let meant = meant.map(|name| format!("; did you mean '{name}'?")).unwrap_or_default();
+        let (wanted, names) = (quoted(wanted), names.join(", "));
+        Failure::Usage(format!("the scene has no camera '{wanted}'; it has {names}{meant}"))
     })
 }
 
@@ -93,11 +103,11 @@ fn encode_png(pixels: &Pixels) -> Result<Vec<u8>, Failure> {
     Ok(png)
 }
 
-fn print_picture(done: &Done) {
-    println!(
-        "  camera    {}: {} triangles, {} of them ground",
-        done.view, done.triangles, done.ground_triangles
-    );
+/// What the picture shows, and which labels it does not, in lines.
+fn picture(done: &Done) -> Vec<String> {
+    let ground = done.ground_triangles;
+    let mut lines =
+        vec![format!("  camera    {}: {} triangles, {ground} of them ground", done.view, done.triangles)];
     let left_out = [
         ("hidden", &done.report.hidden),
         ("outside the picture", &done.report.outside),
@@ -106,9 +116,7 @@ fn print_picture(done: &Done) {
     ];
     for (why, labels) in left_out.iter().filter(|(_, labels)| !labels.is_empty()) {
         let names: Vec<String> = labels.iter().map(|label| label.replace('\n', " ")).collect();
-        println!("  labels    {why}: {}", names.join(", "));
+        lines.push(format!("  labels    {why}: {}", names.join(", ")));
     }
-    for missing in &done.report.missing_glyphs {
-        eprintln!("warning: the font lacks {} characters of '{}'", missing.count, missing.text);
-    }
+    lines
 }
