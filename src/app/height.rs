@@ -98,16 +98,10 @@ fn columns(header: &str) -> Option<[usize; 2]> {
 }
 
 fn fields(line: &str) -> impl Iterator<Item = &str> {
-    let separator = if line.contains(',') {
-        ','
-    } else if line.contains(';') {
-        ';'
-    } else {
-        ' '
-    };
-    line.split(separator)
+    let separator = [',', ';'].into_iter().find(|&separator| line.contains(separator));
+    line.split(move |at: char| separator.map_or(at.is_whitespace(), |separator| at == separator))
         .map(|field| field.trim().trim_matches('"'))
-        .filter(move |field| separator != ' ' || !field.is_empty())
+        .filter(move |field| separator.is_some() || !field.is_empty())
 }
 
 #[cfg(test)]

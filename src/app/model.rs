@@ -7,6 +7,7 @@ use serde_json::json;
 use crate::app::arguments::InfoOptions;
 use crate::app::failure::Failure;
 use crate::app::{files, output};
+use crate::model::error::ModelError;
 use crate::model::kind::Model;
 use crate::model::read;
 use crate::scene::assets::Assets;
@@ -22,7 +23,10 @@ pub fn info(options: &InfoOptions) -> Result<(), Failure> {
     let name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
     let assets = Assets::new(path, &[]).map_err(|error| wrong(error.to_string()))?;
     let companions = assets.beside(&name).map_err(|error| wrong(error.to_string()))?;
-    let model = read::read(&name, &bytes, &companions).map_err(|error| wrong(error.to_string()))?;
+    let model = read::read(&path.to_string_lossy(), &bytes, &companions).map_err(|error| match error {
+        ModelError::Empty { .. } | ModelError::Unknown { .. } => Failure::input(error),
+        _ => wrong(error.to_string()),
+    })?;
     let text = if options.json { format!("{}\n", describe(&model)) } else { table(path, &model) };
     output::print(&text)
 }
