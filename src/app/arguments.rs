@@ -44,7 +44,7 @@ pub enum Command {
 #[derive(Debug, Subcommand)]
 pub enum DemCommand {
     /// Print format, size, coordinate system, no-data value and statistics
-    Info(InfoOptions),
+    Info(DemInfoOptions),
 }
 
 /// What can be done with a model file.
@@ -97,7 +97,7 @@ pub struct Access {
     pub allow: Vec<PathBuf>,
 }
 
-/// `dem info` and `model info`.
+/// `model info`, and what `dem info` has in common with it.
 #[derive(Debug, Args)]
 pub struct InfoOptions {
     /// The file
@@ -105,9 +105,28 @@ pub struct InfoOptions {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
-    /// Metres per unit of a 16-bit PNG
-    #[arg(long, value_name = "METRES")]
+}
+
+/// `dem info`.
+#[derive(Debug, Args)]
+pub struct DemInfoOptions {
+    /// The file and the form of the answer.
+    #[command(flatten)]
+    pub info: InfoOptions,
+    /// What grey values mean.
+    #[command(flatten)]
+    pub heights: GreyHeights,
+}
+
+/// What the grey values of a picture mean in metres.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct GreyHeights {
+    /// Metres per grey value of a PNG; needed for one
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub height_scale: Option<f64>,
+    /// Height in metres of grey value 0 of a PNG [default: 0]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    pub height_offset: Option<f64>,
 }
 
 /// `height`.
@@ -121,9 +140,9 @@ pub struct HeightOptions {
     /// How heights between posts are found
     #[arg(long, value_enum, default_value_t)]
     pub interpolation: InterpolationChoice,
-    /// Metres per unit of a 16-bit PNG
-    #[arg(long, value_name = "METRES")]
-    pub height_scale: Option<f64>,
+    /// What grey values mean.
+    #[command(flatten)]
+    pub heights: GreyHeights,
 }
 
 /// What draws.

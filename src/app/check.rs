@@ -2,8 +2,8 @@
 
 use crate::app::arguments::CheckOptions;
 use crate::app::failure::Failure;
-use crate::app::load;
 use crate::app::progress::Steps;
+use crate::app::{load, output};
 use crate::scene::kind::{FeatureKind, Scene};
 
 /// Loads the scene, checks its invariants and prints what is in it.
@@ -20,17 +20,17 @@ pub fn run(options: &CheckOptions) -> Result<(), Failure> {
         .check(&terrain.layout)
         .map_err(|flaw| Failure::input(format!("internal check: {flaw}")))?;
     steps.finish();
-    println!("{} is sound", options.scene.display());
-    print_contents(&scene);
-    Ok(())
+    let mut lines = vec![format!("{} is sound", options.scene.display())];
+    lines.extend(contents(&scene));
+    output::print(&output::text_of(&lines))
 }
 
-/// Prints what a scene holds, and what there is to say about it.
-pub fn print_contents(scene: &Scene) {
+/// What a scene holds, and what there is to say about it, in lines.
+pub fn contents(scene: &Scene) -> Vec<String> {
     let lattice = &scene.terrain.lattice;
     let (low, high) = lattice.height_range();
     let size = lattice.extent().size() / 1000.0;
-    println!(
+    let ground = format!(
         "  ground    {}×{} posts, {:.2}×{:.2} km, {low:.0} to {high:.0} m, {}",
         lattice.columns(),
         lattice.rows(),
@@ -41,12 +41,14 @@ pub fn print_contents(scene: &Scene) {
     let mut parts: Vec<String> = scene.census().into_iter().map(count_of).collect();
     let labels = scene.labels.len();
     parts.push(format!("{labels} label{}", if labels == 1 { "" } else { "s" }));
-    println!("  features  {}", parts.join(", "));
     let cameras: Vec<&str> = scene.cameras.iter().map(|view| view.name.as_str()).collect();
-    println!("  cameras   {}", cameras.join(", "));
-    for note in &scene.notes {
-        println!("  note      {note}");
-    }
+    let mut lines = vec![
+        ground,
+        format!("  features  {}", parts.join(", ")),
+        format!("  cameras   {}", cameras.join(", ")),
+    ];
+    lines.extend(scene.notes.iter().map(|note| format!("  note      {note}")));
+    lines
 }
 
 fn count_of((kind, count): (FeatureKind, usize)) -> String {

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use serde_json::json;
 
-use crate::app::arguments::InfoOptions;
+use crate::app::arguments::{DemInfoOptions, GreyHeights};
 use crate::app::failure::Failure;
-use crate::app::files;
+use crate::app::{files, output};
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, Hints};
 use crate::dem::stats::{self, Stats};
@@ -15,27 +15,32 @@ use crate::dem::stats::{self, Stats};
 ///
 /// # Errors
 /// It cannot be had or read; the message names it.
-pub fn read_raster(path: &Path, height_scale: Option<f64>) -> Result<Raster, Failure> {
+pub fn read_raster(path: &Path, heights: GreyHeights) -> Result<Raster, Failure> {
     let bytes = files::read(path)?;
     let beside = files::beside(path);
-    let hints = Hints { png_height_scale: height_scale, companions: &beside, ..Hints::default() };
+    let hints = Hints {
+        png_height_scale: heights.height_scale,
+        png_height_offset: heights.height_offset,
+        companions: &beside,
+        ..Hints::default()
+    };
     let name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
-    read::read(&name, &bytes, &hints).map_err(|error| Failure::input(format!("{}: {error}", path.display())))
+    read::read(&name, &bytes, &hints)
+        .map_err(|error| Failure::input(format!("{}: {}", path.display(), error.fault)))
 }
 
 /// `dem info`.
 ///
 /// # Errors
 /// The file cannot be had or read.
-pub fn info(options: &InfoOptions) -> Result<(), Failure> {
-    let raster = read_raster(&options.file, options.height_scale)?;
+pub fn info(options: &DemInfoOptions) -> Result<(), Failure> {
+    let raster = read_raster(&options.info.file, options.heights)?;
     let stats = stats::of(&raster);
-    if options.json {
-        println!("{}", describe(&raster, &stats));
+    if options.info.json {
+        output::print(&format!("{}\n", describe(&raster, &stats)))
     } else {
-        print_table(&raster, &stats);
+        output::print(&table(&raster, &stats))
     }
-    Ok(())
 }
 
 /// One JSON object; numbers that there are not (no valid sample, no such tag) are null.
@@ -66,18 +71,24 @@ fn nodata(value: Option<f64>) -> serde_json::Value {
     }
 }
 
-fn print_table(raster: &Raster, stats: &Stats) {
+fn table(raster: &Raster, stats: &Stats) -> String {
     let affine = raster.map_from_grid;
     let (east, south) = (affine.matrix2.x_axis, affine.matrix2.y_axis);
-    println!("  driver   {}", raster.driver);
-    println!("  size     {} columns, {} rows", raster.width, raster.height);
-    println!("  crs      {}", raster.crs.as_ref().map_or("none stated", |crs| crs.name()));
-    println!(
-        "  corner   ({}, {}), outer corner of the first sample",
-        affine.translation.x, affine.translation.y
-    );
-    println!("  sample   ({}, {}) a column, ({}, {}) a row", east.x, east.y, south.x, south.y);
-    println!("  nodata   {}", raster.nodata.map_or("none stated".to_owned(), |value| value.to_string()));
-    println!("  valid    {} of {} samples", stats.valid, raster.samples.len());
-    println!("  heights  {} to {}, mean {}, deviation {}", stats.min, stats.max, stats.mean, stats.std);
+    let heights = match stats.valid {
+        0 => "none".to_owned(),
+        _ => format!("{} to {}, mean {}, deviation {}", stats.min, stats.max, stats.mean, stats.std),
+    };
+    output::text_of(&[
+        format!("  driver   {}", raster.driver),
+        format!("  size     {} columns, {} rows", raster.width, raster.height),
+        format!("  crs      {}", raster.crs.as_ref().map_or("none stated", |crs| crs.name())),
+        format!(
+            "  corner   ({}, {}), outer corner of the first sample",
+            affine.translation.x, affine.translation.y
+        ),
+        format!("  sample   ({}, {}) a column, ({}, {}) a row", east.x, east.y, south.x, south.y),
+        format!("  nodata   {}", raster.nodata.map_or("none stated".to_owned(), |value| value.to_string())),
+        format!("  valid    {} of {} samples", stats.valid, raster.samples.len()),
+        format!("  heights  {heights}"),
+    ])
 }

@@ -3,6 +3,8 @@
 use std::fmt::Display;
 use std::process::ExitCode;
 
+use crate::app::output;
+
 /// Why a command stopped.
 #[derive(Debug)]
 pub enum Failure {
@@ -22,7 +24,7 @@ impl Failure {
     pub fn report(&self) {
         let (Self::Input(reason) | Self::Usage(reason)) = self;
         let head = if reason.contains(": error: ") { "" } else { "error: " };
-        eprintln!("{head}{reason}");
+        output::complain(&format!("{head}{reason}"));
     }
 
     /// The program's exit code.

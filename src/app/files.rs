@@ -40,8 +40,13 @@ pub fn read_text(path: &Path) -> Result<String, Failure> {
     };
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        Failure::input(format!("{}: byte {at} is not UTF-8 text", path.display()))
+        Failure::input(format!("{}: byte {at} is not UTF-8 text", text_name(path)))
     })
+}
+
+/// What messages call a text that [`read_text`] reads.
+pub fn text_name(path: &Path) -> String {
+    if path == Path::new("-") { "standard input".into() } else { path.display().to_string() }
 }
 
 /// The file beside `path` with another name, if it can be read: a sidecar.
@@ -49,6 +54,28 @@ pub fn beside(path: &Path) -> impl Fn(&str) -> Option<Vec<u8>> + '_ {
     move |name: &str| {
         let plain = !name.is_empty() && !name.contains(['/', '\\']);
         plain.then(|| read(&path.with_file_name(name)).ok()).flatten()
+    }
+}
+
+/// Whether the picture of `scene` could be written to `path`, as far as can be told without writing it: a
+/// mistyped folder should not be told only after a long rendering.
+///
+/// # Errors
+/// The folder is not there, `path` is a folder or a device, or it is the scene file itself.
+pub fn check_place(path: &Path, scene: &Path) -> Result<(), Failure> {
+    let wrong = |reason: &str| Err(Failure::input(format!("{}: {reason}", path.display())));
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        return wrong("there is no such folder to write to");
+    }
+    match fs::metadata(path) {
+        Ok(there) if there.is_dir() => wrong("this is a folder; name a file in it"),
+        Ok(there) if !there.is_file() => wrong("this is a device or a pipe; name a file"),
+        Ok(_) if path.canonicalize().ok() == scene.canonicalize().ok() => {
+            wrong("this is the scene file itself; name another with -o")
+        }
+        _ if path.file_name().is_none() => wrong("this is not the name of a file"),
+        _ => Ok(()),
     }
 }
 

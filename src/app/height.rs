@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::app::arguments::HeightOptions;
 use crate::app::dem::read_raster;
 use crate::app::failure::Failure;
-use crate::app::files;
+use crate::app::{files, output};
 use crate::terrain::query::{Answer, raster_height};
 
 /// Prints `x,y,height,status` for every point, in order; x and y as they were written.
@@ -16,18 +16,14 @@ use crate::terrain::query::{Answer, raster_height};
 /// # Errors
 /// The elevation file or the points cannot be had or read.
 pub fn run(options: &HeightOptions) -> Result<(), Failure> {
-    let raster = read_raster(&options.file, options.height_scale)?;
+    let raster = read_raster(&options.file, options.heights)?;
     let text = files::read_text(&options.points)?;
-    let name = options.points.display().to_string();
-    let points = parse_points(&name, &text)?;
+    let points = parse_points(&files::text_name(&options.points), &text)?;
     let answers: Vec<Answer> = points
         .par_iter()
         .map(|point| raster_height(&raster, options.interpolation.into(), point.at))
         .collect();
-    match write_csv(&points, &answers) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::input(error)),
-        _ => Ok(()),
-    }
+    output::forgive_leaving(write_csv(&points, &answers))
 }
 
 fn write_csv(points: &[Point<'_>], answers: &[Answer]) -> io::Result<()> {
@@ -58,12 +54,17 @@ fn parse_points<'a>(name: &str, text: &'a str) -> Result<Vec<Point<'a>>, Failure
         .enumerate()
         .filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'))
         .peekable();
-    let columns = match lines.peek().and_then(|(_, line)| header(line)) {
-        Some(columns) => {
+    let columns = match lines.peek() {
+        Some(&(index, line)) if is_header(line) => {
             lines.next();
-            columns
+            columns(line).ok_or_else(|| {
+                let place = index + 1;
+                Failure::input(format!(
+                    "{name}:{place}: the header '{line}' must name columns x and y, or lon and lat"
+                ))
+            })?
         }
-        None => [0, 1],
+        _ => [0, 1],
     };
     lines
         .map(|(index, line)| {
@@ -82,29 +83,25 @@ fn parse_point(line: &str, columns: [usize; 2]) -> Option<Point<'_>> {
     at.is_finite().then_some(Point { at, written })
 }
 
-/// The columns of x and y where the line is a header.
-fn header(line: &str) -> Option<[usize; 2]> {
-    let names: Vec<String> = fields(line).map(str::to_lowercase).collect();
-    if names.first()?.parse::<f64>().is_ok() {
-        return None;
-    }
+/// Whether a first line holds names; one with a number in it is a point, or meant to be one.
+fn is_header(line: &str) -> bool {
+    fields(line).all(|field| field.parse::<f64>().is_err())
+}
+
+/// The columns of x and y that a header names.
+fn columns(header: &str) -> Option<[usize; 2]> {
+    let names: Vec<String> = fields(header).map(str::to_lowercase).collect();
     let find = |accepted: &[&str]| names.iter().position(|name| accepted.contains(&name.as_str()));
-    let x = find(&["x", "lon", "longitude", "easting", "east"]);
-    let y = find(&["y", "lat", "latitude", "northing", "north"]);
-    Some([x.unwrap_or(0), y.unwrap_or(1)])
+    let x = find(&["x", "lon", "long", "longitude", "easting", "east"])?;
+    let y = find(&["y", "lat", "latitude", "northing", "north"])?;
+    Some([x, y])
 }
 
 fn fields(line: &str) -> impl Iterator<Item = &str> {
-    let separator = if line.contains(',') {
-        ','
-    } else if line.contains(';') {
-        ';'
-    } else {
-        ' '
-    };
-    line.split(separator)
+    let separator = [',', ';'].into_iter().find(|&separator| line.contains(separator));
+    line.split(move |at: char| separator.map_or(at.is_whitespace(), |separator| at == separator))
         .map(|field| field.trim().trim_matches('"'))
-        .filter(move |field| separator != ' ' || !field.is_empty())
+        .filter(move |field| separator.is_some() || !field.is_empty())
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ pub mod height;
 pub mod labels;
 pub mod load;
 pub mod model;
+pub mod output;
 pub mod picture;
 pub mod progress;
 pub mod render;

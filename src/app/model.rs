@@ -6,7 +6,9 @@ use serde_json::json;
 
 use crate::app::arguments::InfoOptions;
 use crate::app::failure::Failure;
-use crate::app::files;
+use crate::app::{files, output};
+use crate::model::error::ModelError;
+use crate::model::kind::Model;
 use crate::model::read;
 use crate::scene::assets::Assets;
 
@@ -21,28 +23,39 @@ pub fn info(options: &InfoOptions) -> Result<(), Failure> {
     let name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
     let assets = Assets::new(path, &[]).map_err(|error| wrong(error.to_string()))?;
     let companions = assets.beside(&name).map_err(|error| wrong(error.to_string()))?;
-    let model = read::read(&name, &bytes, &companions).map_err(|error| wrong(error.to_string()))?;
+    let model = read::read(&path.to_string_lossy(), &bytes, &companions).map_err(|error| match error {
+        ModelError::Empty { .. } | ModelError::Unknown { .. } => Failure::input(error),
+        _ => wrong(error.to_string()),
+    })?;
+    let text = if options.json { format!("{}\n", describe(&model)) } else { table(path, &model) };
+    output::print(&text)
+}
+
+/// One JSON object.
+fn describe(model: &Model) -> serde_json::Value {
     let census = model.census;
     let (min, max) = model.bounds().unwrap_or_default();
-    if options.json {
-        let bounds = json!({ "min": min.to_array(), "max": max.to_array() });
-        println!(
-            "{}",
-            json!({
-                "meshes": census.meshes, "vertices": census.vertices, "faces": census.faces,
-                "materials": census.materials, "bounds": bounds, "notes": model.notes,
-            })
-        );
-        return Ok(());
-    }
-    println!("{}", path.display());
-    println!("  meshes     {}", census.meshes);
-    println!("  vertices   {}", census.vertices);
-    println!("  faces      {}", census.faces);
-    println!("  materials  {}", census.materials);
-    println!("  bounds     ({}, {}, {}) to ({}, {}, {}), Z up", min.x, min.y, min.z, max.x, max.y, max.z);
-    for note in &model.notes {
-        println!("  note       {note}");
-    }
-    Ok(())
+    json!({
+        "meshes": census.meshes,
+        "vertices": census.vertices,
+        "faces": census.faces,
+        "materials": census.materials,
+        "bounds": { "min": min.to_array(), "max": max.to_array() },
+        "notes": model.notes,
+    })
+}
+
+fn table(path: &Path, model: &Model) -> String {
+    let census = model.census;
+    let (min, max) = model.bounds().unwrap_or_default();
+    let mut lines = vec![
+        format!("{}", path.display()),
+        format!("  meshes     {}", census.meshes),
+        format!("  vertices   {}", census.vertices),
+        format!("  faces      {}", census.faces),
+        format!("  materials  {}", census.materials),
+        format!("  bounds     ({}, {}, {}) to ({}, {}, {}), Z up", min.x, min.y, min.z, max.x, max.y, max.z),
+    ];
+    lines.extend(model.notes.iter().map(|note| format!("  note       {note}")));
+    output::text_of(&lines)
 }

@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use crate::app::arguments::RenderOptions;
-use crate::app::check::print_contents;
+use crate::app::check::contents;
 use crate::app::failure::Failure;
 use crate::app::picture::{Finished, picture_of, png};
 use crate::app::progress::Steps;
-use crate::app::{files, load};
+use crate::app::{files, load, output};
+use crate::description::suggest::{nearest, quoted};
 use crate::scene::kind::{Scene, View};
 
 /// Renders the scene and prints where the picture is, what is in it, and how long each step took.
@@ -17,14 +18,23 @@ use crate::scene::kind::{Scene, View};
 pub fn run(options: &RenderOptions) -> Result<(), Failure> {
     let threads = options.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::input)?;
+    let place = options.output.clone().unwrap_or_else(|| default_output(&options.scene));
+    files::check_place(&place, &options.scene)?;
     let steps = Steps::default();
-    let done = pool.scope(|_| render(options, &steps))?;
+    let done = pool.scope(|_| render(options, &place, &steps))?;
     let times = steps.finish();
-    println!("{}", done.output.display());
-    print_contents(&done.scene);
-    print_picture(&done);
+    let mut lines = vec![format!("{}", place.display())];
+    lines.extend(contents(&done.scene));
+    lines.extend(picture(&done));
     let times: Vec<String> = times.iter().map(|(step, seconds)| format!("{step} {seconds:.2} s")).collect();
-    println!("  time      {}", times.join(", "));
+    lines.push(format!("  time      {}", times.join(", ")));
+    output::print(&output::text_of(&lines))?;
+    for missing in &done.finished.report.missing_glyphs {
+        output::complain(&format!(
+            "warning: the font lacks {} characters of '{}'",
+            missing.count, missing.text
+        ));
+    }
     Ok(())
 }
 
@@ -32,26 +42,27 @@ pub fn run(options: &RenderOptions) -> Result<(), Failure> {
 struct Done {
     scene: Scene,
     view: String,
-    output: PathBuf,
     finished: Finished,
 }
 
-fn render(options: &RenderOptions, steps: &Steps) -> Result<Done, Failure> {
+fn render(options: &RenderOptions, place: &Path, steps: &Steps) -> Result<Done, Failure> {
     let step = |step| steps.begin(step);
     let scene = load::scene(&options.scene, &options.access, &step)?;
     let view = find_view(&scene, options.camera.as_deref())?.clone();
     let finished = picture_of(&scene, &view, options.size, options.backend, &step)?;
     step("writing the picture");
-    let output = options.output.clone().unwrap_or_else(|| default_output(&options.scene));
-    files::write_whole(&output, &png(&finished.pixels)?)?;
-    Ok(Done { scene, view: view.name, output, finished })
+    files::write_whole(place, &png(&finished.pixels)?)?;
+    Ok(Done { scene, view: view.name, finished })
 }
 
 fn find_view<'a>(scene: &'a Scene, name: Option<&str>) -> Result<&'a View, Failure> {
     scene.view(name).ok_or_else(|| {
         let names: Vec<&str> = scene.cameras.iter().map(|view| view.name.as_str()).collect();
         let wanted = name.unwrap_or_default();
-        Failure::Usage(format!("the scene has no camera '{wanted}'; it has {}", names.join(", ")))
+        let meant = nearest(wanted, names.iter().copied());
+        let meant = meant.map(|name| format!("; did you mean '{name}'?")).unwrap_or_default();
+        let (wanted, names) = (quoted(wanted), names.join(", "));
+        Failure::Usage(format!("the scene has no camera '{wanted}'; it has {names}{meant}"))
     })
 }
 
@@ -60,14 +71,11 @@ fn default_output(scene: &Path) -> PathBuf {
     PathBuf::from(scene.file_stem().unwrap_or("scene".as_ref())).with_extension("png")
 }
 
-fn print_picture(done: &Done) {
+/// What the picture shows, and which labels it does not, in lines.
+fn picture(done: &Done) -> Vec<String> {
     let report = &done.finished.report;
-    println!(
-        "  camera    {}: {} triangles, {} of them ground",
-        done.view,
-        done.finished.shot.list.triangle_count(),
-        done.finished.shot.ground_triangles
-    );
+    let (all, ground) = (done.finished.shot.list.triangle_count(), done.finished.shot.ground_triangles);
+    let mut lines = vec![format!("  camera    {}: {all} triangles, {ground} of them ground", done.view)];
     let left_out = [
         ("hidden", &report.hidden),
         ("outside the picture", &report.outside),
@@ -76,9 +84,7 @@ fn print_picture(done: &Done) {
     ];
     for (why, labels) in left_out.iter().filter(|(_, labels)| !labels.is_empty()) {
         let names: Vec<String> = labels.iter().map(|label| label.replace('\n', " ")).collect();
-        println!("  labels    {why}: {}", names.join(", "));
+        lines.push(format!("  labels    {why}: {}", names.join(", ")));
     }
-    for missing in &report.missing_glyphs {
-        eprintln!("warning: the font lacks {} characters of '{}'", missing.count, missing.text);
-    }
+    lines
 }

@@ -4,4 +4,5 @@
 #![allow(dead_code)]
 
 pub mod adapters;
+pub mod scratch;
 pub mod synthetic;

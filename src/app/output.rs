@@ -1,0 +1,40 @@
+//! Writing results to standard output.
+//!
+//! A reader that goes away (`sandtable … | head`) has seen what it wanted: that is no failure, and nothing to
+//! panic about. A full disk behind a redirection is one.
+
+use std::io::{self, Write};
+
+use crate::app::failure::Failure;
+
+/// Prints `text` and flushes it.
+///
+/// # Errors
+/// Standard output cannot be written, for another reason than that nobody reads it any more.
+pub fn print(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    forgive_leaving(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// Takes a reader that has gone away for success.
+///
+/// # Errors
+/// Everything else that went wrong while writing.
+pub fn forgive_leaving(written: io::Result<()>) -> Result<(), Failure> {
+    match written {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::input(format!("standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// `lines`, each ended.
+pub fn text_of(lines: &[String]) -> String {
+    lines.iter().flat_map(|line| [line.as_str(), "\n"]).collect()
+}
+
+/// Prints a line on standard error, where it can be written.
+pub fn complain(line: &str) {
+    let _ = writeln!(io::stderr(), "{line}");
+}
