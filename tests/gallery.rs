@@ -44,7 +44,8 @@ struct Shown {
 
 fn scene_files() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-    let entries = fs::read_dir(folder).expect("the scenes are there").map(|entry| entry.expect("readable").path());
+    let entries =
+        fs::read_dir(folder).expect("the scenes are there").map(|entry| entry.expect("readable").path());
     let mut files: Vec<PathBuf> =
         entries.filter(|path| path.extension().is_some_and(|extension| extension == "toml")).collect();
     files.sort();
@@ -52,7 +53,8 @@ fn scene_files() -> Vec<PathBuf> {
 }
 
 fn exhibits() -> &'static [Exhibit] {
-    static EXHIBITS: LazyLock<Vec<Exhibit>> = LazyLock::new(|| scene_files().iter().map(|path| load(path)).collect());
+    static EXHIBITS: LazyLock<Vec<Exhibit>> =
+        LazyLock::new(|| scene_files().iter().map(|path| load(path)).collect());
     &EXHIBITS
 }
 
@@ -65,7 +67,9 @@ fn load(path: &Path) -> Exhibit {
 /// Every camera of every scene.
 fn shown() -> &'static [Shown] {
     static SHOWN: LazyLock<Vec<Shown>> = LazyLock::new(|| {
-        let views = exhibits().iter().flat_map(|exhibit| exhibit.scene.cameras.iter().map(move |view| (exhibit, view)));
+        let views = exhibits()
+            .iter()
+            .flat_map(|exhibit| exhibit.scene.cameras.iter().map(move |view| (exhibit, view)));
         views.map(|(exhibit, view)| show(exhibit, view)).collect()
     });
     &SHOWN
@@ -160,7 +164,10 @@ fn every_picture_is_the_golden_one() {
                 SANDTABLE_BLESS=1 cargo test --test gallery";
     assert!(faults.is_empty(), "{}\n{help}", faults.join("\n"));
     let bytes: u64 = golden::files().iter().map(|path| fs::metadata(path).expect("readable").len()).sum();
-    assert!(bytes < MOST_BYTES, "the golden pictures have {bytes} bytes, at most {MOST_BYTES} should be kept");
+    assert!(
+        bytes < MOST_BYTES,
+        "the golden pictures have {bytes} bytes, at most {MOST_BYTES} should be kept"
+    );
 }
 
 /// The golden pictures of no view; removed where pictures are blessed.

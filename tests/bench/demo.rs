@@ -94,7 +94,8 @@ fn print_triangles(shot: &Shot) {
 type Times = [f64; 2];
 
 fn print_threads(run: &Run, cores: usize) {
-    let counts: Vec<usize> = (0..).map(|power| 1 << power).take_while(|&count| count <= cores.max(2)).collect();
+    let counts: Vec<usize> =
+        (0..).map(|power| 1 << power).take_while(|&count| count <= cores.max(2)).collect();
     let pools: Vec<_> = counts.iter().map(|&count| pool(count)).collect();
     let mut times: Vec<Vec<Times>> = vec![Vec::new(); counts.len()];
     for _ in 0..ROUNDS {
@@ -103,7 +104,10 @@ fn print_threads(run: &Run, cores: usize) {
         }
     }
     println!("\nMedian of {ROUNDS} rounds, thread counts in turn:");
-    println!("{:<10}{:>16}{:>14}{:>14}{:>14}", "threads", "whole picture", "against 1", "drawing", "against 1");
+    println!(
+        "{:<10}{:>16}{:>14}{:>14}{:>14}",
+        "threads", "whole picture", "against 1", "drawing", "against 1"
+    );
     let medians: Vec<Times> = times.iter().map(|times| [0, 1].map(|part| median(times, part))).collect();
     for (count, [whole, drawing]) in counts.iter().zip(&medians) {
         let [whole_1, drawing_1] = medians[0];

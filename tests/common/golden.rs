@@ -29,7 +29,8 @@ pub fn files() -> Vec<PathBuf> {
         let name = path.to_string_lossy();
         name.ends_with(".png") && !name.ends_with(".new.png") && !name.ends_with(".diff.png")
     };
-    let mut files: Vec<PathBuf> = entries.map(|entry| entry.expect("readable").path()).filter(is_golden).collect();
+    let mut files: Vec<PathBuf> =
+        entries.map(|entry| entry.expect("readable").path()).filter(is_golden).collect();
     files.sort();
     files
 }

@@ -52,7 +52,9 @@ pub fn memory_method() -> &'static str {
     match (peak_mib(), reset_peak()) {
         (None, _) => "not measured on this platform",
         (Some(_), true) => "the whole process at the step's worst moment",
-        (Some(_), false) => "the whole process at its worst moment so far, as the mark may not be set back here",
+        (Some(_), false) => {
+            "the whole process at its worst moment so far, as the mark may not be set back here"
+        }
     }
 }
 
