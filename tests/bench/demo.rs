@@ -14,7 +14,7 @@ use std::path::Path;
 use sandtable::app::arguments::{Access, Backend, Size};
 use sandtable::app::load;
 use sandtable::app::picture::{Finished, picture_of, png};
-use sandtable::draw::list::Layer;
+use sandtable::draw::list::{DrawItem, FeatureId, Layer};
 use sandtable::scene::kind::{Scene, View};
 use sandtable::scene::picture::Shot;
 
@@ -81,13 +81,15 @@ fn print_steps(steps: &[Step]) {
 }
 
 fn print_triangles(shot: &Shot) {
-    let count = |wanted: fn(Layer) -> bool| -> usize {
-        shot.list.items.iter().filter(|item| wanted(item.layer)).map(|item| item.triangles.len()).sum()
+    let count = |wanted: fn(&DrawItem) -> bool| -> usize {
+        shot.list.items.iter().filter(|item| wanted(item)).map(|item| item.triangles.len()).sum()
     };
-    let draped = count(|layer| matches!(layer, Layer::Draped(_)));
+    let ground = shot.ground_triangles;
+    let draped = count(|item| matches!(item.layer, Layer::Draped(_)));
+    let models = count(|item| item.layer == Layer::Solid && item.feature > FeatureId::GROUND);
     let all = shot.list.triangle_count();
-    let models = all - shot.ground_triangles - draped;
-    println!("\nTriangles: {} ground, {draped} draped, {models} models, {all} in all", shot.ground_triangles);
+    let rest = all - ground - draped - models;
+    println!("\nTriangles: {ground} ground, {draped} draped, {models} models, {rest} others, {all} in all");
 }
 
 /// One round's times in seconds: the whole picture, and the drawing alone.
