@@ -1,6 +1,6 @@
 //! From the roots down: a mesh for one camera, built anew.
 //!
-//! Cost: one visit per triangle of the resulting tree, about 20 ns each, whatever the size of the terrain.
+//! Cost: one visit per triangle of the resulting tree, whatever the size of the terrain.
 
 use glam::Vec3;
 

@@ -11,7 +11,8 @@
 //! | nearest | the corner nearest to the point: a constant round each post | steps | no answer |
 //! | distance-weighted | `Σ hᵢ/dᵢ ÷ Σ 1/dᵢ` over the four corners, `d` in metres | continuous within a cell | left out, weights renormalised |
 //!
-//! A query costs one cell look-up, 20–100 ns; a batch is spread over all threads and allocates nothing per point.
+//! A query costs one look-up of a cell and its corners, whatever the size of the model; a batch is spread over
+//! all threads and allocates nothing per point.
 
 use std::sync::Arc;
 
