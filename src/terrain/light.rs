@@ -10,7 +10,8 @@ use rayon::prelude::*;
 
 use crate::terrain::lattice::{Lattice, Post};
 
-/// Shares of light per post, row by row from the south-west, each 0..=1.
+/// Shares of light per post, row by row from the south-west, each 0..=1; 1 where a post has no data, since
+/// what is drawn beside a hole reads its posts too.
 #[derive(Clone, Debug)]
 pub struct Light {
     /// Of the sun.
@@ -56,7 +57,9 @@ fn sun_visibility(lattice: &Lattice, z: &[f32], to_sun: Vec3) -> Vec<f32> {
         for at in 0..line_length {
             let shadow = between(&before, at as f32 + aside) - drop;
             let here = z[index(line, at)];
-            visible[index(line, at)] = ((here - shadow) / penumbra + 0.5).clamp(0.0, 1.0);
+            if !here.is_nan() {
+                visible[index(line, at)] = ((here - shadow) / penumbra + 0.5).clamp(0.0, 1.0);
+            }
             sheet[at] = if here >= shadow { here } else { shadow };
         }
     }
@@ -153,6 +156,16 @@ mod tests {
         assert!(light.sun[row + 25] < 0.01, "50 m behind the wall");
         assert!(light.sun[row + 32] > 0.99, "120 m behind the wall");
         assert!(light.sun[row + 10] > 0.99, "before the wall");
+    }
+
+    #[test]
+    fn posts_without_data_are_lit_and_cast_no_shadow() {
+        let heights = (0..9 * 9).map(|index| if index % 9 == 4 { f32::NAN } else { 10.0 }).collect();
+        let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 9, heights).expect("sound");
+        for sun in [Vec3::new(-1.0, 0.3, 1.0), Vec3::new(0.2, 1.0, 0.4), Vec3::Z] {
+            let light = light(&lattice, 1.5, sun.normalize());
+            assert!(light.sun.iter().chain(&light.sky).all(|&share| share == 1.0), "{light:?}");
+        }
     }
 
     #[test]
