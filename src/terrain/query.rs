@@ -70,12 +70,12 @@ impl Answer {
         }
     }
 
-    /// `ok`, `nodata` or `outside`.
+    /// `Ok`, `NoData` or `Outside`.
     pub fn status(self) -> &'static str {
         match self {
-            Self::Height(_) => "ok",
-            Self::NoData => "nodata",
-            Self::Outside => "outside",
+            Self::Height(_) => "Ok",
+            Self::NoData => "NoData",
+            Self::Outside => "Outside",
         }
     }
 }

@@ -24,7 +24,7 @@ fn points_inside_in_a_hole_and_outside_are_answered_in_their_order() {
     let out = run_in(scratch.folder(), &["height", "grid.asc", "--points", "points.csv"]).ok();
     assert_eq!(
         out,
-        "x,y,height,status\n35,25,40,ok\n5.0,5,90,ok\n15,15,,nodata\n-400,1e3,,outside\n30,20,55,ok\n"
+        "x,y,height,status\n35,25,40,Ok\n5.0,5,90,Ok\n15,15,,NoData\n-400,1e3,,Outside\n30,20,55,Ok\n"
     );
     assert_eq!(run_with_input(scratch.folder(), &HEIGHT, points).ok(), out, "standard input says the same");
 }
@@ -39,16 +39,16 @@ fn every_interpolation_has_its_own_answer() {
         last.strip_prefix(&format!("{point},")).expect("the point as written").to_owned()
     };
     // In the cell of 30, 40, 70 and 80, a quarter from its west and three quarters from its south.
-    assert_eq!(answer("bilinear", "27.5,22.5"), "42.5,ok");
-    assert_eq!(answer("planar", "27.5,22.5"), "42.5,ok");
-    assert_eq!(answer("nearest", "27.5,22.5"), "30,ok");
+    assert_eq!(answer("bilinear", "27.5,22.5"), "42.5,Ok");
+    assert_eq!(answer("planar", "27.5,22.5"), "42.5,Ok");
+    assert_eq!(answer("nearest", "27.5,22.5"), "30,Ok");
     let weighted = answer("distance-weighted", "30,20");
-    assert_eq!(weighted, "55,ok", "all corners are equally near");
+    assert_eq!(weighted, "55,Ok", "all corners are equally near");
     // Beside the hole: what fills gaps answers from the others, what does not has no answer.
-    assert_eq!(answer("planar", "16,16"), ",nodata");
-    assert_eq!(answer("nearest", "16,16"), ",nodata");
-    assert!(answer("bilinear", "16,16").ends_with(",ok"));
-    assert!(answer("distance-weighted", "16,16").ends_with(",ok"));
+    assert_eq!(answer("planar", "16,16"), ",NoData");
+    assert_eq!(answer("nearest", "16,16"), ",NoData");
+    assert!(answer("bilinear", "16,16").ends_with(",Ok"));
+    assert!(answer("distance-weighted", "16,16").ends_with(",Ok"));
 }
 
 #[test]
@@ -62,7 +62,7 @@ fn a_header_names_the_columns_and_other_columns_are_left_alone() {
         "35\t5\n",
     ] {
         let out = run_with_input(scratch.folder(), &HEIGHT, points).ok();
-        assert_eq!(out, "x,y,height,status\n35,5,120,ok\n", "{points:?}");
+        assert_eq!(out, "x,y,height,status\n35,5,120,Ok\n", "{points:?}");
     }
     assert_eq!(
         run_with_input(scratch.folder(), &HEIGHT, "").ok(),

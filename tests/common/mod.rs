@@ -4,5 +4,7 @@
 #![allow(dead_code)]
 
 pub mod adapters;
+pub mod data;
 pub mod scratch;
+pub mod shapefile;
 pub mod synthetic;

@@ -1,0 +1,1 @@
+//! Six more places, each with something that breaks what is too simple.
