@@ -59,7 +59,7 @@ pub fn lakes(
             let name = named(lake.name.as_deref(), name);
             let shore = Rect::around(shape.exterior.iter().copied());
             if !shore.meets(&lattice.extent()) {
-                collected.notes.push(format!("lake '{name}' lies off the elevation model"));
+                collected.notes.push(format!("{} lies off the elevation model", called(&name)));
                 continue;
             }
             let level_m = level_of(document, lake, &shape, lattice)?;
@@ -73,8 +73,10 @@ fn add_lake(collected: &mut Collected, lattice: &mut Lattice, name: String, shap
     let rings: Vec<Vec<DVec2>> = std::iter::once(&shape.exterior).chain(&shape.holes).cloned().collect();
     let volumes = earthwork::level(lattice, &rings, level_m as f32);
     collected.notes.push(format!(
-        "lake '{name}' lies level at {level_m:.1} m: {:.0} m³ cut, {:.0} m³ filled",
-        volumes.cut_m3, volumes.fill_m3
+        "{} lies level at {level_m:.1} m: {:.0} m³ cut, {:.0} m³ filled",
+        called(&name),
+        volumes.cut_m3,
+        volumes.fill_m3
     ));
     let mut plan = PlanMesh::default();
     area::fill(&shape.exterior, &shape.holes, LAKE_TEXTURE_M, &mut plan);
@@ -218,6 +220,11 @@ fn layer_of(surface: Surface) -> u8 {
         Surface::Gravel => 3,
         Surface::Asphalt => 4,
     }
+}
+
+/// A lake in a note; many have no name.
+fn called(name: &str) -> String {
+    if name.is_empty() { "a lake without a name".into() } else { format!("lake '{name}'") }
 }
 
 fn named(given: Option<&str>, in_file: String) -> String {
