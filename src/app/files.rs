@@ -61,7 +61,8 @@ pub fn beside(path: &Path) -> impl Fn(&str) -> Option<Vec<u8>> + '_ {
 /// mistyped folder should not be told only after a long rendering.
 ///
 /// # Errors
-/// The folder is not there, `path` is a folder or a device, or it is the scene file itself.
+/// The folder is not there, `path` is a folder or a device, it is the scene file itself, or its name is that of
+/// another format.
 pub fn check_place(path: &Path, scene: &Path) -> Result<(), Failure> {
     let wrong = |reason: &str| Err(Failure::input(format!("{}: {reason}", path.display())));
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -75,8 +76,14 @@ pub fn check_place(path: &Path, scene: &Path) -> Result<(), Failure> {
             wrong("this is the scene file itself; name another with -o")
         }
         _ if path.file_name().is_none() => wrong("this is not the name of a file"),
+        _ if !is_png_name(path) => wrong("pictures are written as PNG; name one that ends in .png"),
         _ => Ok(()),
     }
+}
+
+/// A name without an extension is the user's choice; another format's would belie the content.
+fn is_png_name(path: &Path) -> bool {
+    path.extension().is_none_or(|extension| extension.eq_ignore_ascii_case("png"))
 }
 
 /// Writes a file whole or not at all: beside its place first, then renamed into it.

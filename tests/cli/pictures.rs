@@ -90,9 +90,12 @@ fn a_place_that_cannot_be_written_is_told() {
     let text = "[terrain]\ndem = \"../data/valley.asc\"\ncrs = \"EPSG:32616\"\n";
     scratch.write("scenes/a.png", text);
     let scene = project("scenes/road.toml");
-    for (place, wanted) in
-        [("nowhere/a.png", "no such folder"), ("scenes", "this is a folder"), ("..", "folder")]
-    {
+    for (place, wanted) in [
+        ("nowhere/a.png", "no such folder"),
+        ("scenes", "this is a folder"),
+        ("..", "folder"),
+        ("a.jpg", "PNG"),
+    ] {
         let refused = render(&scratch, &[&scene, "-o", place]).failed(1);
         assert!(refused.contains(wanted), "{place}: {refused}");
     }
