@@ -15,6 +15,10 @@ mod sandbox;
 use std::fs;
 use std::path::Path;
 
+use sandtable::description::parse::parse;
+use sandtable::scene::assets::Assets;
+use sandtable::scene::build::build;
+
 use crate::command::{Command, Line};
 use crate::sandbox::Sandbox;
 
@@ -44,6 +48,17 @@ fn every_command_of_the_readme_runs_and_writes_what_it_says() {
         }
     }
     assert!(ran > 0, "README.md has no command in a block marked sh");
+}
+
+#[test]
+fn the_scene_that_the_readme_shows_is_a_whole_one() {
+    let page = page("README.md");
+    let scene = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a scene");
+    let place = Path::new(ROOT).join("scenes/shown-in-the-readme.toml");
+    let document = parse(&place.to_string_lossy(), scene).unwrap_or_else(|error| panic!("{error}"));
+    let assets = Assets::new(&place, &[]).expect("the folder is there");
+    let built = build(&document, &assets, &|_| {}).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(built.ribbons.len(), 1, "its road lies on its ground");
 }
 
 #[test]
