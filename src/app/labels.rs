@@ -47,8 +47,9 @@ fn place(label: &SceneLabel, camera: &Camera, picture: &Picture) -> Option<Label
 /// Whether a place is not behind what the picture shows there: within 2 % of the depth at one of the pixels
 /// around, since the drawn ground may be off by its tolerance and a summit's own pixel may show what is behind.
 fn is_visible(picture: &Picture, pixel: Vec2, depth_m: f32) -> bool {
-    let (width, height) = (picture.pixels.width() as i32, picture.pixels.height() as i32);
-    let (column, row) = (pixel.x.floor() as i32, pixel.y.floor() as i32);
+    let (width, height) = (i64::from(picture.pixels.width()), i64::from(picture.pixels.height()));
+    // A place just before the eye's plane may fall further aside than an i32 counts.
+    let (column, row) = (i64::from(pixel.x.floor() as i32), i64::from(pixel.y.floor() as i32));
     (-2..=1).any(|up| {
         (-1..=1).any(|aside| {
             let (x, y) = (column + aside, row + up);

@@ -72,7 +72,8 @@ pub struct Document {
     pub models: Vec<ModelPlacement>,
     /// `[[label]]`: names and heights on the picture.
     pub labels: Vec<Label>,
-    /// `[[camera]]`: views; the first is the default. Without any, one is made that sees everything.
+    /// `[[camera]]`: views; the first is the default. Without any, one is made that sees the
+    /// whole ground in pictures of 4:3 and wider.
     pub cameras: Vec<CameraTable>,
     /// `[furniture]`: title, north arrow, scale bar and legend.
     pub furniture: Furniture,

@@ -45,6 +45,27 @@ impl Rect {
         self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
     }
 
+    /// The part of the line from `from` to `to` that lies inside; `None` where it passes by (Liang and Barsky
+    /// 1984). An end that lies inside comes back as it is.
+    pub fn clip_line(&self, from: DVec2, to: DVec2) -> Option<(DVec2, DVec2)> {
+        let (mut enter, mut leave) = (0.0, 1.0);
+        let way = to - from;
+        for axis in 0..2 {
+            let (low, high) = (self.min[axis] - from[axis], self.max[axis] - from[axis]);
+            if way[axis] == 0.0 {
+                if low > 0.0 || high < 0.0 {
+                    return None;
+                }
+                continue;
+            }
+            let (first, last) = (low / way[axis], high / way[axis]);
+            enter = first.min(last).max(enter);
+            leave = first.max(last).min(leave);
+        }
+        let at = |part: f64| if part == 1.0 { to } else { from + way * part };
+        (enter <= leave).then(|| (at(enter), at(leave)))
+    }
+
     /// Width and height; negative where empty.
     pub fn size(&self) -> DVec2 {
         self.max - self.min
@@ -53,5 +74,21 @@ impl Rect {
     /// The middle; NaN where empty.
     pub fn center(&self) -> DVec2 {
         (self.min + self.max) * 0.5
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_is_cut_to_its_part_inside() {
+        let rect = Rect { min: DVec2::ZERO, max: DVec2::new(10.0, 20.0) };
+        let inside = (DVec2::new(1.0, 2.0), DVec2::new(9.0, 19.0));
+        assert_eq!(rect.clip_line(inside.0, inside.1), Some(inside));
+        let through = rect.clip_line(DVec2::new(-10.0, 5.0), DVec2::new(30.0, 5.0));
+        assert_eq!(through, Some((DVec2::new(0.0, 5.0), DVec2::new(10.0, 5.0))));
+        assert_eq!(rect.clip_line(DVec2::new(-5.0, 15.0), DVec2::new(5.0, 35.0)), None);
+        assert_eq!(rect.clip_line(DVec2::new(11.0, 0.0), DVec2::new(11.0, 20.0)), None);
     }
 }

@@ -24,9 +24,14 @@ pub struct Layout {
 /// within 16 bits, and culling a patch saves up to 8,192 triangles.
 pub const DEFAULT_PATCH: u32 = 64;
 
+/// The most vertices of a layout. Posts are limited where rasters are read, but patches over a lattice of two
+/// rows have up to 2048 vertices a post: indices would not fit a u32, and errors not the memory.
+pub const MOST_VERTICES: u64 = 1 << 29;
+
 impl Layout {
     /// Patches of `patch` cells a side, a power of two from 2 to 4096, over a lattice of `columns` × `rows`
-    /// posts, at least 2 × 2 and at most 2²⁸ either way. `None` otherwise.
+    /// posts, at least 2 × 2 and at most 2²⁸ either way, with at most [`MOST_VERTICES`] vertices in all.
+    /// `None` otherwise.
     pub fn new(columns: u32, rows: u32, patch: u32) -> Option<Self> {
         let sizes = 2..=1 << 28;
         if !patch.is_power_of_two()
@@ -34,6 +39,10 @@ impl Layout {
             || !sizes.contains(&columns)
             || !sizes.contains(&rows)
         {
+            return None;
+        }
+        let vertices = |posts: u32| u64::from((posts - 1).div_ceil(patch) * patch) + 1;
+        if vertices(columns) * vertices(rows) > MOST_VERTICES {
             return None;
         }
         Some(Self {
@@ -141,5 +150,7 @@ mod tests {
     fn sizes_that_make_no_patches_are_refused() {
         assert_eq!(Layout::new(65, 65, 48), None);
         assert_eq!(Layout::new(1, 65, 64), None);
+        assert_eq!(Layout::new(2, 1 << 28, 64), None);
+        assert!(Layout::new(16_384, 16_384, 64).is_some());
     }
 }

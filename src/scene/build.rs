@@ -44,6 +44,7 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     let terrain = terrain(document, lattice)?;
     let labels = views::labels(document, &places, &terrain)?;
     let cameras = views::cameras(document, &places, &terrain)?;
+    collected.notes.extend(views::buried(&cameras, &terrain));
 
     step("lighting terrain");
     let lighting = style::lighting(document, extent.size().max_element());

@@ -44,7 +44,8 @@ impl Collected {
 /// Vertices nearer to each other than this have no direction worth a joint.
 const MERGE_M: f64 = 0.01;
 
-/// Adds the document's lakes to `collected` and levels the ground under them.
+/// Adds the document's lakes to `collected` and levels the ground under them. Lakes off the ground and those
+/// without an area are left out, with a note.
 ///
 /// # Errors
 /// A source cannot be had, or a level cannot be found.
@@ -62,14 +63,27 @@ pub fn lakes(
                 collected.notes.push(format!("{} lies off the elevation model", called(&name)));
                 continue;
             }
+            let mut plan = PlanMesh::default();
+            area::fill(&shape.exterior, &shape.holes, LAKE_TEXTURE_M, &mut plan);
+            if plan.triangles.is_empty() {
+                collected.notes.push(format!("lake '{name}' left out: its shore encloses no area"));
+                continue;
+            }
             let level_m = level_of(document, lake, &shape, lattice)?;
-            add_lake(collected, lattice, name, &shape, level_m);
+            add_lake(collected, lattice, name, &shape, plan, level_m);
         }
     }
     Ok(())
 }
 
-fn add_lake(collected: &mut Collected, lattice: &mut Lattice, name: String, shape: &Polygon, level_m: f64) {
+fn add_lake(
+    collected: &mut Collected,
+    lattice: &mut Lattice,
+    name: String,
+    shape: &Polygon,
+    plan: PlanMesh,
+    level_m: f64,
+) {
     let rings: Vec<Vec<DVec2>> = std::iter::once(&shape.exterior).chain(&shape.holes).cloned().collect();
     let volumes = earthwork::level(lattice, &rings, level_m as f32);
     collected.notes.push(format!(
@@ -78,8 +92,6 @@ fn add_lake(collected: &mut Collected, lattice: &mut Lattice, name: String, shap
         volumes.cut_m3,
         volumes.fill_m3
     ));
-    let mut plan = PlanMesh::default();
-    area::fill(&shape.exterior, &shape.holes, LAKE_TEXTURE_M, &mut plan);
     let feature = collected.add(FeatureKind::Lake, name);
     collected.ribbons.push(Ribbon { plan, surface: Surface::Lake, layer: layer_of(Surface::Lake), feature });
 }
@@ -93,7 +105,9 @@ fn level_of(document: &Document, lake: &Lake, shape: &Polygon, lattice: &Lattice
         return Ok(*level.get_ref());
     }
     let step = lattice.cell().min_element() / 2.0;
+    let extent = lattice.extent();
     let lowest = polygon::edges(&shape.exterior)
+        .filter_map(|(from, to)| extent.clip_line(from, to))
         .flat_map(|(from, to)| {
             let count = (from.distance(to) / step).ceil().clamp(1.0, 1e6) as u32;
             (0..count).map(move |index| from.lerp(to, f64::from(index) / f64::from(count)))

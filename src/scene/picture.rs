@@ -20,6 +20,7 @@ use crate::roam::refine;
 use crate::scene::kind::{Placement, Scene, Terrain};
 use crate::scene::plinth::plinth;
 use crate::terrain::facets::Facets;
+use crate::terrain::query::{Interpolation, ground_height};
 use crate::view::camera::{Camera, CameraError};
 use crate::view::frustum::Frustum;
 
@@ -157,7 +158,7 @@ struct Listed {
 fn add_models(list: &mut DrawList, scene: &Scene, displayed: &dyn Facets) {
     let mut listed: BTreeMap<usize, Listed> = BTreeMap::new();
     for placement in &scene.placements {
-        let Some(ground_z) = displayed.displayed_z(placement.at.as_dvec2()) else {
+        let Some(ground_z) = foot_z(scene, placement, displayed) else {
             continue;
         };
         let model =
@@ -175,6 +176,17 @@ fn add_models(list: &mut DrawList, scene: &Scene, displayed: &dyn Facets) {
             });
         }
     }
+}
+
+/// World Z of the ground under a model: as displayed, or as it is where the ground there is out of view, since
+/// the model's upper parts may be in view all the same. `None` over no data.
+fn foot_z(scene: &Scene, placement: &Placement, displayed: &dyn Facets) -> Option<f64> {
+    let lattice = &scene.terrain.lattice;
+    let at = placement.at.as_dvec2();
+    displayed.displayed_z(at).or_else(|| {
+        let height_m = ground_height(lattice, Interpolation::Planar, at + lattice.origin()).height_m()?;
+        Some(height_m * f64::from(scene.terrain.exaggeration))
+    })
 }
 
 fn list_model(list: &mut DrawList, model: &Model) -> Listed {

@@ -64,9 +64,10 @@ pub fn ramp(
 
 fn stretched(stops: &[(f32, [u8; 3])], lattice: &Lattice) -> Ramp {
     let (low, high) = lattice.height_range();
-    let span = (high - low).max(1.0);
+    // Level ground far from 0 still needs stops that an f32 can tell apart.
+    let span = (high - low).max(1.0).max(low.abs() * 1e-4);
     let stops = stops.iter().map(|&(part, [r, g, b])| (low + span * part, Srgba::opaque(r, g, b))).collect();
-    Ramp::new(stops).expect("the parts rise and the span is positive")
+    Ramp::new(stops).expect("the parts rise, and the span is wide enough for an f32 to tell them apart")
 }
 
 /// The document's contour lines.
@@ -158,6 +159,22 @@ fn spread(row: &mut [f32]) {
             *height = last;
         } else {
             last = *height;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+
+    #[test]
+    fn a_named_ramp_fits_any_ground_that_a_lattice_takes() {
+        for height in [0.0, -0.3, 8848.0, 9.99e6, -1e7] {
+            let level = Lattice::new(DVec2::ZERO, DVec2::ONE, 2, vec![height; 4]).expect("sound");
+            for stops in [ATLAS.as_slice(), DESERT.as_slice(), GREY.as_slice()] {
+                stretched(stops, &level);
+            }
         }
     }
 }

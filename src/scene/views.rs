@@ -7,6 +7,7 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::{CameraTable, Document};
 use crate::scene::kind::{Label, Terrain, View};
 use crate::scene::place::Places;
+use crate::terrain::query::{Interpolation, ground_height};
 
 /// The document's labels, `{height}` filled in.
 ///
@@ -16,7 +17,7 @@ pub fn labels(document: &Document, places: &Places<'_>, terrain: &Terrain) -> Re
     let label = |table: &crate::description::document::Label| {
         let world = places.point(&table.at, table.crs.as_ref())?;
         let ground = places.on_ground(&terrain.lattice, &table.at, world)?;
-        let elevation = format!("{:.0}", ground.z / terrain.exaggeration);
+        let elevation = whole_metres(ground.z / terrain.exaggeration);
         let above = table.height.as_ref().map_or(0.0, |height| *height.get_ref()) as f32;
         Ok(Label {
             text: table.text.get_ref().replace("{height}", &elevation),
@@ -28,10 +29,17 @@ pub fn labels(document: &Document, places: &Places<'_>, terrain: &Terrain) -> Re
     document.labels.iter().map(label).collect()
 }
 
+/// A height in whole metres, without a sign before 0.
+fn whole_metres(height_m: f32) -> String {
+    let rounded = height_m.round();
+    format!("{:.0}", if rounded == 0.0 { 0.0 } else { rounded })
+}
+
 /// The document's cameras, or one that sees the whole ground where it has none.
 ///
 /// # Errors
-/// A camera's eye or target stands off the ground without an elevation of its own.
+/// A camera's eye stands off the ground without an elevation of its own, its target stands off the ground, or
+/// the two are one place.
 pub fn cameras(document: &Document, places: &Places<'_>, terrain: &Terrain) -> Result<Vec<View>, Diagnostic> {
     if document.cameras.is_empty() {
         return Ok(vec![overview(terrain)]);
@@ -55,19 +63,68 @@ fn camera(table: &CameraTable, places: &Places<'_>, terrain: &Terrain) -> Result
     };
     let target_world = places.point(&table.look_at, table.crs.as_ref())?;
     let target = places.on_ground(&terrain.lattice, &table.look_at, target_world)?;
+    let target = target + Vec3::Z * metres(&table.look_at_height, 0.0);
+    if (target - eye).try_normalize().is_none() {
+        let message = "the camera looks at the place where its eye is";
+        let help = "move look_at, or give it another look_at_height";
+        return Err(places.document.error(&table.look_at, message).with_help(help));
+    }
     Ok(View {
         name: table.name.get_ref().clone(),
         eye,
-        target: target + Vec3::Z * metres(&table.look_at_height, 0.0),
+        target,
         fov_y_rad: metres(&table.field_of_view, 40.0).to_radians(),
     })
 }
 
-/// From the south, looking down at about 35°, with the whole ground in view.
+/// What there is to say about cameras whose eye is under the ground.
+pub fn buried(cameras: &[View], terrain: &Terrain) -> Vec<String> {
+    let lattice = &terrain.lattice;
+    let depth_m = |view: &View| {
+        let at = lattice.origin() + view.eye.truncate().as_dvec2();
+        let height = ground_height(lattice, Interpolation::Planar, at).height_m()?;
+        Some(height - f64::from(view.eye.z / terrain.exaggeration)).filter(|&depth| depth > 0.0)
+    };
+    cameras
+        .iter()
+        .filter_map(|view| Some((view, depth_m(view)?)))
+        .map(|(view, depth)| format!("camera '{}' has its eye {depth:.1} m under the ground", view.name))
+        .collect()
+}
+
+/// The overview's field of view.
+const OVERVIEW_FOV_DEG: f32 = 40.0;
+/// The narrowest picture, width to height, that shows the overview's whole ground.
+const OVERVIEW_ASPECT: f32 = 4.0 / 3.0;
+/// How much further back the eye stands than it must: room for the plinth and the furniture.
+const OVERVIEW_MARGIN: f32 = 1.1;
+
+/// From the south, looking down at about 36°, as near as it may be with the whole ground in view.
 fn overview(terrain: &Terrain) -> View {
     let (min, max) = terrain.bounds();
     let target = (min + max) / 2.0;
-    let reach = (max - min).truncate().max_element();
-    let eye = target + Vec3::new(0.0, -1.15 * reach, 0.85 * reach);
-    View { name: "overview".into(), eye, target, fov_y_rad: 40f32.to_radians() }
+    let back = Vec3::new(0.0, -0.8, 0.6);
+    let up = Vec3::new(0.0, 0.6, 0.8);
+    let fov_y_rad = OVERVIEW_FOV_DEG.to_radians();
+    let tan = libm::tanf(fov_y_rad / 2.0);
+    // Every corner asks for a distance at which it is no further from the middle of the picture than its border.
+    let distance = (0..8)
+        .map(|corner| {
+            let side = |bit: i32| if corner & bit == 0 { -0.5 } else { 0.5 };
+            let offset = (max - min) * Vec3::new(side(1), side(2), side(4));
+            offset.dot(back) + (offset.dot(up).abs() / tan).max(offset.x.abs() / (tan * OVERVIEW_ASPECT))
+        })
+        .fold(0.0, f32::max);
+    View { name: "overview".into(), eye: target + back * (distance * OVERVIEW_MARGIN), target, fov_y_rad }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_height_is_written_as_minus_nothing() {
+        let written = [-0.3, 0.0, 0.4, -0.6, 311.5].map(whole_metres);
+        assert_eq!(written, ["0", "0", "0", "-1", "312"]);
+    }
 }

@@ -32,6 +32,10 @@ pub struct Lattice {
     pinned: Vec<bool>,
 }
 
+/// No height may lie further from 0 than this many metres: as far as a scene file's elevations go, and little
+/// enough that an f32 still tells one metre from the next.
+pub const HIGHEST_M: f32 = 1e7;
+
 /// Why a raster cannot become the ground.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LatticeError {
@@ -44,6 +48,14 @@ pub enum LatticeError {
     /// All samples are no-data.
     #[error("the elevation model holds no data at all")]
     Empty,
+    /// A height that no ground has: mostly a no-data value that the file does not name as one.
+    #[error(
+        "the elevation model holds a height of {height} m, beyond ±{HIGHEST_M} m; if that stands for no data, the file must say so (its no-data value)"
+    )]
+    TooHigh {
+        /// In metres; may be infinite.
+        height: f32,
+    },
 }
 
 /// A post by column and row, counted from the south-west.
@@ -94,6 +106,9 @@ impl Lattice {
         if heights.iter().all(|height| height.is_nan()) {
             return Err(LatticeError::Empty);
         }
+        if let Some(&height) = heights.iter().find(|height| height.abs() > HIGHEST_M) {
+            return Err(LatticeError::TooHigh { height });
+        }
         let pinned = vec![false; heights.len()];
         Ok(Self { origin, cell, columns, rows, heights, pinned })
     }
@@ -134,7 +149,10 @@ impl Lattice {
         (DVec2::new(f64::from(post.column), f64::from(post.row)) * self.cell).as_vec2()
     }
 
-    /// The height of a post, NaN where there is no data. Panics outside the lattice.
+    /// The height of a post in metres, NaN where there is no data.
+    ///
+    /// # Panics
+    /// Where the post lies outside the lattice.
     pub fn height(&self, post: Post) -> f32 {
         self.heights[self.index(post)]
     }
@@ -151,7 +169,10 @@ impl Lattice {
         self.pinned[index] = true;
     }
 
-    /// Where a post is stored.
+    /// Where a post is stored: its place in [`Lattice::heights`].
+    ///
+    /// # Panics
+    /// Where the post lies outside the lattice.
     pub fn index(&self, post: Post) -> usize {
         assert!(post.column < self.columns && post.row < self.rows, "{post:?} is outside the lattice");
         post.row as usize * self.columns as usize + post.column as usize
@@ -230,6 +251,14 @@ mod tests {
         let lattice = plane();
         for post in lattice.posts() {
             assert!((lattice.slopes(post) - Vec2::new(0.2, -0.2)).length() < 1e-6, "{post:?}");
+        }
+    }
+
+    #[test]
+    fn a_no_data_value_that_nobody_named_is_not_taken_for_ground() {
+        for height in [f32::MIN, f32::INFINITY, 1.1e7] {
+            let lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 2, vec![1.0, f32::NAN, height, 2.0]);
+            assert_eq!(lattice.err(), Some(LatticeError::TooHigh { height }));
         }
     }
 

@@ -94,7 +94,8 @@ fn sky_visibility(lattice: &Lattice, z: &[f32]) -> Vec<f32> {
 /// cos² of the horizon's angle at every post, looking back against `direction`.
 fn open_sky(lattice: &Lattice, z: &[f32], direction: (i64, i64)) -> Vec<f32> {
     let mut open = vec![1.0; z.len()];
-    let step = (lattice.cell().x * direction.0 as f64).hypot(lattice.cell().y * direction.1 as f64) as f32;
+    let step =
+        libm::hypot(lattice.cell().x * direction.0 as f64, lattice.cell().y * direction.1 as f64) as f32;
     let mut hull: Vec<(f32, f32)> = Vec::new();
     for start in line_starts(lattice, direction) {
         hull.clear();
