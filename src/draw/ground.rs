@@ -109,6 +109,27 @@ pub struct Contours {
 }
 
 impl GroundMap {
+    /// Whether there is a post for every place and distances are those of a grid: what a renderer relies on.
+    ///
+    /// # Errors
+    /// A sentence that names the first thing out of place.
+    pub fn check(&self) -> Result<(), String> {
+        let posts = u64::from(self.columns) * u64::from(self.rows);
+        if posts == 0 || posts != self.posts.len() as u64 {
+            let (columns, rows, held) = (self.columns, self.rows, self.posts.len());
+            return Err(format!("the ground map of {columns}×{rows} posts holds {held}"));
+        }
+        // Renderers count in posts per metre.
+        let sound = self.cell.min_element() > 0.0
+            && self.cell.recip().is_finite()
+            && self.cell.is_finite()
+            && self.origin.is_finite();
+        match sound {
+            true => Ok(()),
+            false => Err(format!("the ground map has cells of {} m from {}", self.cell, self.origin)),
+        }
+    }
+
     /// The map at world position `at`, bilinear between posts; positions outside take the border's value.
     pub fn sample(&self, at: Vec2) -> GroundPost {
         let last = Vec2::new((self.columns - 1) as f32, (self.rows - 1) as f32);
@@ -141,5 +162,32 @@ impl GroundPost {
     /// The upward unit normal.
     pub fn normal(&self) -> glam::Vec3 {
         glam::Vec3::new(-self.slope_east, -self.slope_north, 1.0).normalize()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maps_that_cannot_be_read_are_named() {
+        let map = GroundMap {
+            origin: Vec2::new(-30.0, 70.0),
+            cell: Vec2::new(2.0, 5.0),
+            columns: 3,
+            rows: 2,
+            posts: vec![GroundPost::default(); 6],
+            ramp: Ramp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
+            contours: None,
+        };
+        let fault = |map: GroundMap| map.check().expect_err("unsound");
+        assert_eq!(map.check(), Ok(()));
+        assert_eq!(fault(GroundMap { columns: 9, ..map.clone() }), "the ground map of 9×2 posts holds 6");
+        assert!(fault(GroundMap { columns: 0, posts: Vec::new(), ..map.clone() }).ends_with("holds 0"));
+        for cell in [Vec2::new(0.0, 1.0), Vec2::new(1.0, -1.0), Vec2::splat(1e-40), Vec2::NAN, Vec2::INFINITY]
+        {
+            assert!(fault(GroundMap { cell, ..map.clone() }).contains("has cells of"), "{cell}");
+        }
+        assert!(fault(GroundMap { origin: Vec2::NAN, ..map.clone() }).contains("from [NaN, NaN]"));
     }
 }

@@ -140,7 +140,8 @@ impl DrawList {
         self.items.iter().map(|item| item.triangles.len()).sum()
     }
 
-    /// Whether every index points at something and layers rise: what a renderer relies on.
+    /// Whether every index points at something, layers rise and the ground map is sound: what a renderer
+    /// relies on.
     ///
     /// # Errors
     /// A sentence that names the first thing out of place.
@@ -172,6 +173,7 @@ impl DrawList {
                 return Err(format!("item {index} names no material"));
             }
         }
+        self.ground.as_deref().map_or(Ok(()), GroundMap::check)?;
         match self.items.windows(2).position(|pair| pair[0].layer > pair[1].layer) {
             Some(index) => Err(format!("item {} lies in a lower layer than the one before it", index + 1)),
             None => Ok(()),

@@ -89,7 +89,7 @@ fn lists_that_are_not_sound_are_refused_with_a_reason() {
     let mut map = ground_map(5, 10.0, false, |_, _| 0.0);
     map.columns = u32::MAX;
     bare.ground = Some(map.into());
-    assert!(matches!(refused(&bare), RenderError::GroundMap(_)));
+    assert!(matches!(refused(&bare), RenderError::List(_)));
 
     let mut dangling = list.clone();
     dangling.items[0].material = MaterialId(9);

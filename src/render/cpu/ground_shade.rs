@@ -1,15 +1,14 @@
 //! The ground map at a pixel: heights, slopes and light filtered to what the pixel sees, ramp and contours.
 //!
-//! Near the eye this is the map's own bilinear reading. Far away a pixel spans many posts, and one reading
-//! would make hillshade sparkle; there the map is read from a pyramid whose levels each smooth and halve the
-//! one before (Williams, "Pyramidal Parametrics", 1983), along the longer side of the pixel's footprint.
+//! Near the eye this is the map's own bilinear reading. Far away, where a pixel spans many posts, the map is read
+//! from its smaller levels, along the longer side of the pixel's footprint.
 
 use glam::{Vec2, Vec3};
-use rayon::prelude::*;
 
 use crate::draw::ground::{Contours, GroundMap, GroundPost};
 use crate::render::cpu::hit::Hit;
 use crate::render::cpu::texture::Footprint;
+use crate::render::ground_levels::{Level, Size, add, smaller_levels};
 
 /// A ground map with its smaller levels.
 #[derive(Debug)]
@@ -20,14 +19,6 @@ pub struct Ground<'a> {
     stops: Vec<(f32, Vec3)>,
 }
 
-/// Posts at twice the distance of the level before; the first post of each is the map's first.
-#[derive(Debug)]
-struct Level {
-    columns: usize,
-    rows: usize,
-    posts: Vec<GroundPost>,
-}
-
 /// The ground as one pixel sees it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GroundPoint {
@@ -36,34 +27,10 @@ pub struct GroundPoint {
     gradient: Vec2,
 }
 
-/// What is wrong with a ground map, in words; `None` where it can be read.
-pub fn fault(map: &GroundMap) -> Option<String> {
-    let posts = u64::from(map.columns) * u64::from(map.rows);
-    if posts == 0 || posts != map.posts.len() as u64 {
-        return Some(format!("{}×{} posts but {} entries", map.columns, map.rows, map.posts.len()));
-    }
-    let sound = map.cell.min_element() > 0.0
-        && map.cell.recip().is_finite()
-        && map.cell.is_finite()
-        && map.origin.is_finite();
-    (!sound).then(|| format!("cells of {} m from {}", map.cell, map.origin))
-}
-
 impl<'a> Ground<'a> {
-    /// `map`, which must be without [`fault`], with all smaller levels.
+    /// `map`, which has passed its check, with all smaller levels.
     pub fn new(map: &'a GroundMap) -> Self {
-        let mut smaller: Vec<Level> = Vec::new();
-        loop {
-            let (columns, rows, posts) = smaller
-                .last()
-                .map_or((map.columns as usize, map.rows as usize, map.posts.as_slice()), |level| {
-                    (level.columns, level.rows, level.posts.as_slice())
-                });
-            if columns <= 2 && rows <= 2 {
-                break;
-            }
-            smaller.push(halved(columns, rows, posts));
-        }
+        let smaller = smaller_levels(map).collect();
         let stops = map.ramp.stops().iter().map(|&(height, color)| (height, color.linear())).collect();
         Self { map, posts_per_metre: map.cell.recip(), smaller, stops }
     }
@@ -106,11 +73,11 @@ impl<'a> Ground<'a> {
 
     /// Adds `weight` times the bilinear reading of a level at world position `at`.
     fn add_bilinear(&self, sum: &mut GroundPoint, at: Vec2, level: usize, weight: f32) {
-        let (columns, posts) = match level.checked_sub(1) {
-            Some(index) => (self.smaller[index].columns, self.smaller[index].posts.as_slice()),
-            None => (self.map.columns as usize, self.map.posts.as_slice()),
+        let (size, posts) = match level.checked_sub(1) {
+            Some(index) => (self.smaller[index].size, self.smaller[index].posts.as_slice()),
+            None => (Size::of(self.map), self.map.posts.as_slice()),
         };
-        let rows = posts.len() / columns;
+        let (columns, rows) = (size.columns as usize, size.rows as usize);
         let scale = 1.0 / (1u64 << level) as f32;
         let last = Vec2::new((self.map.columns - 1) as f32, (self.map.rows - 1) as f32);
         let grid = ((at - self.map.origin) * self.posts_per_metre).clamp(Vec2::ZERO, last) * scale;
@@ -167,38 +134,6 @@ fn contour_strength(contours: &Contours, height_m: f32, change_m: f32) -> f32 {
     };
     let away_px = (height_m - number * interval).abs() / change_m;
     (width / 2.0 + 0.5 - away_px).clamp(0.0, 1.0) * strength
-}
-
-fn add(sum: &mut GroundPost, post: &GroundPost, weight: f32) {
-    sum.height_m += post.height_m * weight;
-    sum.slope_east += post.slope_east * weight;
-    sum.slope_north += post.slope_north * weight;
-    sum.sun_visibility += post.sun_visibility * weight;
-    sum.sky_visibility += post.sky_visibility * weight;
-}
-
-/// Every second post in both directions, each with its neighbours at weights ¼, ½, ¼.
-///
-/// Posts stay where they are, so that levels lie exactly over each other; the last one may lie past the
-/// border, where the border's posts stand in.
-fn halved(columns: usize, rows: usize, posts: &[GroundPost]) -> Level {
-    const KERNEL: [(usize, f32); 3] = [(0, 0.25), (1, 0.5), (2, 0.25)];
-    let [columns_halved, rows_halved] = [columns / 2 + 1, rows / 2 + 1];
-    let neighbour =
-        |index: usize, step: usize, count: usize| (2 * index + step).saturating_sub(1).min(count - 1);
-    let post = |index: usize| {
-        let (row, column) = (index / columns_halved, index % columns_halved);
-        let mut sum = GroundPost::default();
-        for (down, height) in KERNEL {
-            let line = neighbour(row, down, rows) * columns;
-            for (across, width) in KERNEL {
-                add(&mut sum, &posts[line + neighbour(column, across, columns)], height * width);
-            }
-        }
-        sum
-    };
-    let posts = (0..columns_halved * rows_halved).into_par_iter().with_min_len(1024).map(post).collect();
-    Level { columns: columns_halved, rows: rows_halved, posts }
 }
 
 #[cfg(test)]
@@ -283,13 +218,5 @@ mod tests {
             assert_eq!(contour_strength(&Contours { interval_m, ..plain }, 20.0, 0.5), 0.0);
         }
         assert!(contour_strength(&Contours { major_every: 0, ..plain }, f32::NAN, 0.5).is_nan());
-    }
-
-    #[test]
-    fn maps_that_cannot_be_read_are_named() {
-        assert_eq!(fault(&map(3, 2, |_, _| 0.0)), None);
-        assert!(fault(&GroundMap { columns: 9, ..map(3, 2, |_, _| 0.0) }).is_some());
-        assert!(fault(&GroundMap { cell: Vec2::new(0.0, 1.0), ..map(3, 2, |_, _| 0.0) }).is_some());
-        assert!(fault(&GroundMap { origin: Vec2::NAN, ..map(3, 2, |_, _| 0.0) }).is_some());
     }
 }

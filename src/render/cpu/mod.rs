@@ -90,9 +90,6 @@ pub enum RenderError {
     /// [`DrawList::check`] found something out of place.
     #[error("the draw list is not sound: {0}; its maker must be mended")]
     List(String),
-    /// The ground map cannot be read.
-    #[error("the draw list's ground map has {0}; its maker must be mended")]
-    GroundMap(String),
     /// A material takes colour or normals from a ground map that is not there.
     #[error(
         "item {item} takes its colour or normals from the ground map, but the draw list has none; add one"
@@ -134,9 +131,6 @@ pub fn render(list: &DrawList, camera: &Camera, options: &Options) -> Result<Pic
 
 fn check(list: &DrawList) -> Result<(), RenderError> {
     list.check().map_err(RenderError::List)?;
-    if let Some(fault) = list.ground.as_deref().and_then(ground_shade::fault) {
-        return Err(RenderError::GroundMap(fault));
-    }
     let needs_ground = list.items.iter().position(|item| {
         let material = &list.materials[item.material.0 as usize];
         material.albedo == Albedo::GroundMap || material.normals == Normals::Ground

@@ -1,15 +1,14 @@
-//! Textures: mip levels made in linear light, and filtered reading.
+//! Textures: filtered reading of a picture and its mip levels.
 //!
-//! The first level is the list's own picture; each further level halves both sides and is kept as 8-bit
-//! sRGB too, so that all levels together add a third to what the texture takes. A footprint longer than wide
-//! is read by several taps along its length, each at the level of its width (the idea of McCormack and
-//! others, "Feline: Fast Elliptical Lines for Anisotropic Texture Mapping", 1999): roads are seen at grazing
-//! angles.
+//! A footprint longer than wide is read by several taps along its length, each at the level of its width (the
+//! idea of McCormack and others, "Feline: Fast Elliptical Lines for Anisotropic Texture Mapping", 1999): roads
+//! are seen at grazing angles.
 
 use glam::{Vec2, Vec3};
 
-use crate::draw::color::{Srgba, linear_from_srgb, srgb_from_linear};
+use crate::draw::color::{Srgba, linear_from_srgb};
 use crate::draw::pixels::Pixels;
+use crate::render::mip_levels::smaller_levels;
 
 /// A texture with its mip levels.
 #[derive(Debug)]
@@ -78,14 +77,7 @@ impl Footprint {
 impl<'a> Texture<'a> {
     /// `base` with all smaller levels; an empty picture reads as opaque white.
     pub fn new(base: &'a Pixels) -> Self {
-        let mut smaller: Vec<Pixels> = Vec::new();
-        loop {
-            let last = smaller.last().unwrap_or(base);
-            if last.width() <= 1 && last.height() <= 1 || last.width() == 0 || last.height() == 0 {
-                break;
-            }
-            smaller.push(halved(last));
-        }
+        let smaller = smaller_levels(base);
         Self { base, smaller, linear: std::array::from_fn(|channel| linear_from_srgb(channel as u8)) }
     }
 
@@ -168,38 +160,6 @@ impl Sum {
         let color = if self.color_weight > 0.0 { self.color / self.color_weight } else { Vec3::ZERO };
         Texel { color, alpha: self.alpha / self.weight }
     }
-}
-
-/// The next smaller level: each texel the mean, in linear light, of what it covers.
-fn halved(pixels: &Pixels) -> Pixels {
-    let size = [pixels.width(), pixels.height()].map(|side| (side / 2).max(1));
-    Pixels::from_fn(size[0], size[1], |column, row| {
-        let mut sum = Sum::default();
-        let mut plain = Sum::default();
-        for (y, down) in covered(row, size[1], pixels.height()) {
-            for (x, across) in covered(column, size[0], pixels.width()) {
-                let texel = pixels.at(x, y);
-                sum.add(texel.linear(), texel.alpha(), across * down, Weighting::ByAlpha);
-                plain.add(texel.linear(), texel.alpha(), across * down, Weighting::Even);
-            }
-        }
-        let mean = if sum.color_weight > 0.0 { sum.mean() } else { plain.mean() };
-        let [red, green, blue] = mean.color.to_array().map(srgb_from_linear);
-        Srgba([red, green, blue, (mean.alpha * 255.0 + 0.5) as u8])
-    })
-}
-
-/// The texels of a row of `size` that texel `index` of a row of `halved` covers, with the part covered.
-///
-/// Odd sides do not halve evenly; counting parts keeps the picture in place ("Non-Power-of-Two Mipmapping",
-/// NVIDIA, 2005).
-fn covered(index: u32, halved: u32, size: u32) -> impl Iterator<Item = (u32, f32)> {
-    let scale = size as f32 / halved as f32;
-    let (from, to) = (index as f32 * scale, (index + 1) as f32 * scale);
-    (from as u32..(to.ceil() as u32).min(size)).map(move |texel| {
-        let part = to.min((texel + 1) as f32) - from.max(texel as f32);
-        (texel, part.max(0.0))
-    })
 }
 
 #[cfg(test)]

@@ -1,10 +1,7 @@
 //! The ground map as textures: the map itself and the smaller levels that far ground is read from.
 //!
-//! A far pixel spans many posts, and one reading would make hillshade sparkle; so there are levels of every
-//! second post, each smoothed from the one before (Williams, "Pyramidal Parametrics", 1983), by the same
-//! rule as the CPU renderer's. They are no mip levels to the device: `n` posts become `n / 2 + 1`, so that
-//! posts stay where they are, while mip levels would halve rounding down. The smaller ones lie side by side
-//! in a texture of their own:
+//! They are no mip levels to the device, which would halve rounding down: `n` posts become `n / 2 + 1`. The
+//! smaller ones lie side by side in a texture of their own:
 //!
 //! ```text
 //!   posts          coarse
@@ -17,12 +14,15 @@
 //! Texels are integers holding the bits of floats: every adapter can read them and none may filter them, so
 //! that what the shader interpolates by hand is the same everywhere.
 
+use std::iter::successors;
+
 use bytemuck::cast_slice;
 use rayon::prelude::*;
 
 use crate::draw::ground::{GroundMap, GroundPost};
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
+use crate::render::ground_levels::{Size, smaller_levels};
 
 /// More levels than the largest texture has; the shader's array is as long.
 pub(in crate::render::gpu) const MOST_LEVELS: usize = 24;
@@ -30,16 +30,11 @@ pub(in crate::render::gpu) const MOST_LEVELS: usize = 24;
 /// Posts are sent in portions of about this many bytes, so that a large map is never held three times over.
 const PORTION_BYTES: usize = 16 << 20;
 
-/// Every second post counts half, its neighbours a quarter each.
-const KERNEL: [(usize, f32); 3] = [(0, 0.25), (1, 0.5), (2, 0.25)];
-
-/// One level of the pyramid.
+/// A level and its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::render::gpu) struct Level {
-    /// Posts per row.
-    pub columns: u32,
-    /// Rows of posts.
-    pub rows: u32,
+pub(in crate::render::gpu) struct Placed {
+    /// How many posts.
+    pub size: Size,
     /// Its first column in the texture that holds it.
     pub first: u32,
 }
@@ -53,43 +48,31 @@ pub(in crate::render::gpu) struct GroundTextures {
     pub coarse: wgpu::Texture,
 }
 
-/// The levels of a map of `columns` × `rows` posts, down to two posts a side.
-pub(in crate::render::gpu) fn levels(columns: u32, rows: u32) -> Vec<Level> {
-    let mut levels = vec![Level { columns, rows, first: 0 }];
-    while let Some(&last) = levels.last()
-        && (last.columns > 2 || last.rows > 2)
-        && levels.len() < MOST_LEVELS
-    {
-        let first = if levels.len() == 1 { 0 } else { last.first + last.columns };
-        levels.push(Level { columns: last.columns / 2 + 1, rows: last.rows / 2 + 1, first });
-    }
-    levels
-}
-
-/// What is wrong with a ground map, in words; `None` where it can be read.
-pub(in crate::render::gpu) fn fault(map: &GroundMap) -> Option<String> {
-    let posts = u64::from(map.columns) * u64::from(map.rows);
-    if posts == 0 || posts != map.posts.len() as u64 {
-        let (columns, rows, held) = (map.columns, map.rows, map.posts.len());
-        return Some(format!("the ground map of {columns}×{rows} posts holds {held}"));
-    }
-    let sound = map.cell.min_element() > 0.0 && map.cell.is_finite() && map.origin.is_finite();
-    (!sound).then(|| format!("the ground map has cells of {} m from {}", map.cell, map.origin))
+/// The levels of a map of `size`, down to two posts a side.
+pub(in crate::render::gpu) fn levels(size: Size) -> Vec<Placed> {
+    let next = |last: &Placed| {
+        let first = if last.size == size { 0 } else { last.first + last.size.columns };
+        last.size.halved().map(|size| Placed { size, first })
+    };
+    successors(Some(Placed { size, first: 0 }), next).take(MOST_LEVELS).collect()
 }
 
 impl GroundTextures {
-    /// Sends a map without [`fault`] to the device; without a map, one texel that nothing reads.
+    /// Sends a map, which has passed its check, to the device; without a map, one texel that nothing reads.
     ///
     /// # Errors
     /// [`GpuError::GroundSize`].
     pub fn upload(gpu: &Gpu, map: Option<&GroundMap>) -> Result<Self, GpuError> {
-        let levels = map.map_or_else(Vec::new, |map| levels(map.columns, map.rows));
-        let size = |level: Option<&Level>, columns: u32| level.map_or((1, 1), |level| (columns, level.rows));
-        let posts_size = size(levels.first(), levels.first().map_or(1, |level| level.columns));
-        let coarse_size = size(levels.get(1), levels.last().map_or(1, |last| last.first + last.columns));
+        let levels = map.map_or_else(Vec::new, |map| levels(Size::of(map)));
+        let one = Size { columns: 1, rows: 1 };
+        let posts_size = levels.first().map_or(one, |level| level.size);
+        let coarse_size = match (levels.get(1), levels.last()) {
+            (Some(largest), Some(last)) => Size { columns: last.first + last.size.columns, ..largest.size },
+            _ => one,
+        };
         let limit = gpu.limits.max_texture_dimension_2d;
-        let (columns, rows) = posts_size;
-        if columns.max(rows).max(coarse_size.0) > limit {
+        let Size { columns, rows } = posts_size;
+        if columns.max(rows).max(coarse_size.columns) > limit {
             return Err(GpuError::GroundSize { columns, rows, limit, adapter: gpu.name().into() });
         }
         let textures = Self { posts: texture(gpu, posts_size), coarse: texture(gpu, coarse_size) };
@@ -99,18 +82,15 @@ impl GroundTextures {
         Ok(textures)
     }
 
-    fn fill(&self, gpu: &Gpu, map: &GroundMap, levels: &[Level]) {
+    fn fill(&self, gpu: &Gpu, map: &GroundMap, levels: &[Placed]) {
         write(gpu, &self.posts, &levels[0], &map.posts);
-        let mut finer: Option<Vec<GroundPost>> = None;
-        for pair in levels.windows(2) {
-            let coarser = halved(&pair[0], finer.as_deref().unwrap_or(&map.posts), &pair[1]);
-            write(gpu, &self.coarse, &pair[1], &coarser);
-            finer = Some(coarser);
+        for (place, level) in levels[1..].iter().zip(smaller_levels(map)) {
+            write(gpu, &self.coarse, place, &level.posts);
         }
     }
 }
 
-fn texture(gpu: &Gpu, (width, height): (u32, u32)) -> wgpu::Texture {
+fn texture(gpu: &Gpu, Size { columns: width, rows: height }: Size) -> wgpu::Texture {
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("ground"),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
@@ -123,12 +103,12 @@ fn texture(gpu: &Gpu, (width, height): (u32, u32)) -> wgpu::Texture {
     })
 }
 
-fn write(gpu: &Gpu, texture: &wgpu::Texture, level: &Level, posts: &[GroundPost]) {
-    let stride = level.columns as usize;
+fn write(gpu: &Gpu, texture: &wgpu::Texture, place: &Placed, posts: &[GroundPost]) {
+    let stride = place.size.columns as usize;
     let row_bytes = stride * size_of::<[u32; 4]>();
     let portion = (PORTION_BYTES / row_bytes).max(1);
     let mut to = texture.as_image_copy();
-    to.origin.x = level.first;
+    to.origin.x = place.first;
     for posts in posts.chunks(portion * stride) {
         let texels: Vec<[u32; 4]> = posts.par_iter().with_min_len(1024).map(packed).collect();
         let height = (posts.len() / stride) as u32;
@@ -137,7 +117,7 @@ fn write(gpu: &Gpu, texture: &wgpu::Texture, level: &Level, posts: &[GroundPost]
             bytes_per_row: Some(row_bytes as u32),
             rows_per_image: None,
         };
-        let size = wgpu::Extent3d { width: level.columns, height, depth_or_array_layers: 1 };
+        let size = wgpu::Extent3d { width: place.size.columns, height, depth_or_array_layers: 1 };
         gpu.queue.write_texture(to, cast_slice(&texels), layout, size);
         to.origin.y += height;
     }
@@ -154,67 +134,19 @@ fn packed(post: &GroundPost) -> [u32; 4] {
     ]
 }
 
-/// The posts of `to`, the level after `from`.
-fn halved(from: &Level, posts: &[GroundPost], to: &Level) -> Vec<GroundPost> {
-    let (columns, rows, stride) = (from.columns as usize, from.rows as usize, to.columns as usize);
-    // Past the border, the border's posts stand in.
-    let neighbour =
-        |index: usize, step: usize, count: usize| (2 * index + step).saturating_sub(1).min(count - 1);
-    let post = |index: usize| {
-        let mut sum = GroundPost::default();
-        for (down, height) in KERNEL {
-            let line = neighbour(index / stride, down, rows) * columns;
-            for (across, width) in KERNEL {
-                add(&mut sum, &posts[line + neighbour(index % stride, across, columns)], height * width);
-            }
-        }
-        sum
-    };
-    (0..stride * to.rows as usize).into_par_iter().with_min_len(1024).map(post).collect()
-}
-
-fn add(sum: &mut GroundPost, post: &GroundPost, weight: f32) {
-    sum.height_m += post.height_m * weight;
-    sum.slope_east += post.slope_east * weight;
-    sum.slope_north += post.slope_north * weight;
-    sum.sun_visibility += post.sun_visibility * weight;
-    sum.sky_visibility += post.sky_visibility * weight;
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn levels_shrink_to_two_posts_a_side_and_lie_side_by_side() {
-        let of_nine = levels(9, 4);
-        let sizes: Vec<_> = of_nine.iter().map(|level| (level.columns, level.rows, level.first)).collect();
+        let levels = |columns, rows| levels(Size { columns, rows });
+        let placed = levels(9, 4);
+        let sizes: Vec<_> =
+            placed.iter().map(|level| (level.size.columns, level.size.rows, level.first)).collect();
         assert_eq!(sizes, [(9, 4, 0), (5, 3, 0), (3, 2, 5), (2, 2, 8)]);
         assert_eq!(levels(1, 1).len(), 1);
         assert!(levels(u32::MAX, 2).len() <= MOST_LEVELS);
-    }
-
-    #[test]
-    fn a_plane_stays_a_plane_on_every_level_away_from_the_border() {
-        let of_map = levels(33, 17);
-        let height = |column: u32, row: u32| column as f32 * 3.0 - row as f32;
-        let plane = |level: &Level, step: u32| -> Vec<GroundPost> {
-            (0..level.columns * level.rows)
-                .map(|index| GroundPost {
-                    height_m: height(index % level.columns * step, index / level.columns * step),
-                    ..Default::default()
-                })
-                .collect()
-        };
-        let (posts, expected) = (plane(&of_map[0], 1), plane(&of_map[1], 2));
-        let coarser = halved(&of_map[0], &posts, &of_map[1]);
-        let columns = of_map[1].columns as usize;
-        for (index, (post, plane)) in coarser.iter().zip(&expected).enumerate() {
-            let (column, row) = (index % columns, index / columns);
-            if (1..columns - 1).contains(&column) && (1..7).contains(&row) {
-                assert_eq!(post.height_m, plane.height_m, "{column}, {row}");
-            }
-        }
     }
 
     #[test]

@@ -74,9 +74,6 @@ pub fn render_on(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Picture,
 /// What the draw list's own check leaves to the renderer.
 fn check(list: &DrawList) -> Result<(), GpuError> {
     list.check().map_err(GpuError::List)?;
-    if let Some(fault) = list.ground.as_deref().and_then(ground::fault) {
-        return Err(GpuError::List(fault));
-    }
     let needs_ground = list.items.iter().position(|item| {
         let material = &list.materials[item.material.0 as usize];
         material.albedo == Albedo::GroundMap || material.normals == Normals::Ground

@@ -6,6 +6,7 @@ use glam::Vec3;
 use crate::draw::list::{DrawItem, DrawList};
 use crate::draw::material::{Albedo, Alpha, Material, Normals};
 use crate::render::gpu::ground::{MOST_LEVELS, levels};
+use crate::render::ground_levels::Size;
 use crate::view::camera::Camera;
 
 /// How many ramp stops lie in one row of their texture; any number below the smallest limit will do.
@@ -83,9 +84,9 @@ impl Frame {
     fn of_ground(list: &DrawList) -> Self {
         let mut frame = Self::zeroed();
         let Some(map) = &list.ground else { return frame };
-        let levels = levels(map.columns, map.rows);
+        let levels = levels(Size::of(map));
         for (place, level) in frame.ground_levels.iter_mut().zip(&levels) {
-            *place = [level.columns, level.rows, level.first, 0];
+            *place = [level.size.columns, level.size.rows, level.first, 0];
         }
         frame.ground = [map.origin.x, map.origin.y, map.cell.x, map.cell.y];
         frame.ground_size = [map.ramp.stops().len() as u32, RAMP_COLUMNS, levels.len() as u32, 0];

@@ -1,0 +1,125 @@
+//! The smaller levels of a ground map, which far ground is read from.
+//!
+//! A far pixel spans many posts, and one reading would make hillshade sparkle; so there are levels of every
+//! second post, each smoothed from the one before (Williams, "Pyramidal Parametrics", 1983). `n` posts become
+//! `n / 2 + 1`, not half as many rounding down as a texture's texels do: posts stay where they are, so that
+//! levels lie exactly over each other, the first post of each over the map's first. The last post of a level
+//! may lie past the map's border.
+
+use std::iter::successors;
+
+use rayon::prelude::*;
+
+use crate::draw::ground::{GroundMap, GroundPost};
+
+/// Every second post counts half, its neighbours a quarter each.
+const KERNEL: [(usize, f32); 3] = [(0, 0.25), (1, 0.5), (2, 0.25)];
+
+/// Columns and rows of posts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::render) struct Size {
+    /// Posts per row.
+    pub columns: u32,
+    /// Rows of posts.
+    pub rows: u32,
+}
+
+/// Posts at twice the distance of the level before.
+#[derive(Debug)]
+pub(in crate::render) struct Level {
+    /// How many.
+    pub size: Size,
+    /// The posts, row by row from the south-west.
+    pub posts: Vec<GroundPost>,
+}
+
+impl Size {
+    /// The posts of `map` itself.
+    pub fn of(map: &GroundMap) -> Self {
+        Self { columns: map.columns, rows: map.rows }
+    }
+
+    /// The next smaller level; `None` after two posts a side.
+    pub fn halved(self) -> Option<Self> {
+        let Self { columns, rows } = self;
+        (columns.max(rows) > 2).then_some(Self { columns: columns / 2 + 1, rows: rows / 2 + 1 })
+    }
+}
+
+/// Every smaller level of `map`, which has passed its check, the largest first, down to two posts a side.
+///
+/// Each is made when the one before is handed out, and no earlier one is kept.
+pub(in crate::render) fn smaller_levels(map: &GroundMap) -> impl Iterator<Item = Level> {
+    let first = halved(Size::of(map), &map.posts);
+    successors(first, |level| halved(level.size, &level.posts))
+}
+
+/// Adds `weight` times `post` to `sum`.
+pub(in crate::render) fn add(sum: &mut GroundPost, post: &GroundPost, weight: f32) {
+    sum.height_m += post.height_m * weight;
+    sum.slope_east += post.slope_east * weight;
+    sum.slope_north += post.slope_north * weight;
+    sum.sun_visibility += post.sun_visibility * weight;
+    sum.sky_visibility += post.sky_visibility * weight;
+}
+
+fn halved(from: Size, posts: &[GroundPost]) -> Option<Level> {
+    let size = from.halved()?;
+    let [columns, rows, stride] = [from.columns, from.rows, size.columns].map(|count| count as usize);
+    // Past the border, the border's posts stand in.
+    let neighbour =
+        |index: usize, step: usize, count: usize| (2 * index + step).saturating_sub(1).min(count - 1);
+    let post = |index: usize| {
+        let (row, column) = (index / stride, index % stride);
+        let mut sum = GroundPost::default();
+        for (down, height) in KERNEL {
+            let line = neighbour(row, down, rows) * columns;
+            for (across, width) in KERNEL {
+                add(&mut sum, &posts[line + neighbour(column, across, columns)], height * width);
+            }
+        }
+        sum
+    };
+    let count = stride * size.rows as usize;
+    let posts = (0..count).into_par_iter().with_min_len(1024).map(post).collect();
+    Some(Level { size, posts })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn posts(size: Size, height: impl Fn(u32, u32) -> f32) -> Vec<GroundPost> {
+        let post = |index: u32| GroundPost {
+            height_m: height(index % size.columns, index / size.columns),
+            ..GroundPost::default()
+        };
+        (0..size.columns * size.rows).map(post).collect()
+    }
+
+    #[test]
+    fn levels_shrink_to_two_posts_a_side() {
+        let sizes = |columns, rows| -> Vec<_> {
+            let all = successors(Some(Size { columns, rows }), |size| size.halved());
+            all.map(|size| (size.columns, size.rows)).collect()
+        };
+        assert_eq!(sizes(9, 4), [(9, 4), (5, 3), (3, 2), (2, 2)]);
+        assert_eq!(sizes(1, 5), [(1, 5), (1, 3), (1, 2)]);
+        assert_eq!(sizes(1, 1).len(), 1);
+        assert!(sizes(u32::MAX, 2).len() <= 33);
+    }
+
+    #[test]
+    fn a_plane_stays_a_plane_away_from_the_border() {
+        let height = |column: u32, row: u32| column as f32 * 3.0 - row as f32;
+        let from = Size { columns: 33, rows: 17 };
+        let level = halved(from, &posts(from, height)).expect("more than two posts a side");
+        let plane = posts(level.size, |column, row| height(2 * column, 2 * row));
+        for (index, (post, plane)) in (0..).zip(level.posts.iter().zip(&plane)) {
+            let (column, row) = (index % level.size.columns, index / level.size.columns);
+            if (1..level.size.columns - 1).contains(&column) && (1..level.size.rows - 1).contains(&row) {
+                assert_eq!(post.height_m, plane.height_m, "{column}, {row}");
+            }
+        }
+    }
+}

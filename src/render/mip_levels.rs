@@ -1,0 +1,132 @@
+//! The smaller copies of a texture, averaged in linear light.
+//!
+//! Averaging the sRGB bytes themselves would darken what is fine and bright. Each level halves both sides
+//! rounding down, as WebGPU prescribes, and is kept as 8-bit sRGB, so that all levels together add a third to
+//! what the texture takes. Where a side is odd, a texel of the next level covers a fraction more than two;
+//! weighing its texels by the part covered keeps the picture in place ("Non-Power-of-Two Mipmapping", NVIDIA,
+//! 2005).
+
+use std::iter::successors;
+
+use glam::{Vec3, Vec4};
+
+use crate::draw::color::{Srgba, srgb_from_linear};
+use crate::draw::pixels::Pixels;
+
+/// Every smaller level of `texture`, the largest first, down to a single texel.
+///
+/// None at all where a side is zero.
+pub(in crate::render) fn smaller_levels(texture: &Pixels) -> Vec<Pixels> {
+    successors(halved(texture), halved).collect()
+}
+
+/// The next smaller level; `None` below a single texel.
+fn halved(level: &Pixels) -> Option<Pixels> {
+    let (width, height) = (level.width(), level.height());
+    if width.min(height) == 0 || width.max(height) == 1 {
+        return None;
+    }
+    Some(Pixels::from_fn((width / 2).max(1), (height / 2).max(1), |x, y| {
+        let mut seen = Vec4::ZERO;
+        let mut all = Vec3::ZERO;
+        for (row, down) in covered(y, height) {
+            for (column, across) in covered(x, width) {
+                let (texel, weight) = (level.at(column, row), across * down);
+                let (light, alpha) = (texel.linear(), texel.alpha());
+                seen += (light * alpha).extend(alpha) * weight;
+                all += light * weight;
+            }
+        }
+        mean(seen, all)
+    }))
+}
+
+/// The mean colour weighted by alpha, so that the colour of what is invisible does not bleed into what is
+/// not; where all is invisible, the plain mean, for surfaces that ignore alpha.
+fn mean(seen: Vec4, all: Vec3) -> Srgba {
+    let light = if seen.w > 0.0 { seen.truncate() / seen.w } else { all };
+    let [red, green, blue] = light.to_array().map(srgb_from_linear);
+    Srgba([red, green, blue, (seen.w.clamp(0.0, 1.0) * 255.0 + 0.5) as u8])
+}
+
+/// The texels of a row of `side` that texel `index` of the next level covers, and the share of each.
+///
+/// Of `2 m + 1` texels, texel `i` of the `m` below covers `2 i` to a part of `m - i`, the next wholly and the
+/// one after to a part of `i + 1`, in `m`-ths: whole numbers, so that no rounding adds up along the row.
+fn covered(index: u32, side: u32) -> impl Iterator<Item = (u32, f32)> {
+    let half = side / 2;
+    let parts = match (side, side % 2) {
+        (1, _) => [1, 0, 0],
+        (_, 0) => [half, half, 0],
+        _ => [half - index, half, index + 1],
+    };
+    (2 * index..)
+        .zip(parts)
+        .filter(|&(_, part)| part > 0)
+        .map(move |(texel, part)| (texel, part as f32 / side as f32))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_checkerboard_averages_to_half_the_light_not_half_the_bytes() {
+        let board = Pixels::from_fn(4, 4, |x, y| match (x + y) % 2 {
+            0 => Srgba::WHITE,
+            _ => Srgba::opaque(0, 0, 0),
+        });
+        let levels = smaller_levels(&board);
+        assert_eq!(levels.iter().map(Pixels::width).collect::<Vec<_>>(), [2, 1]);
+        assert_eq!(levels[1].at(0, 0), Srgba::opaque(188, 188, 188));
+    }
+
+    #[test]
+    fn both_sides_shrink_to_one_and_an_empty_texture_has_no_levels() {
+        let sizes: Vec<_> = smaller_levels(&Pixels::filled(13, 3, Srgba::WHITE))
+            .iter()
+            .map(|level| (level.width(), level.height()))
+            .collect();
+        assert_eq!(sizes, [(6, 1), (3, 1), (1, 1)]);
+        for (width, height) in [(1, 1), (0, 8), (8, 0), (0, 0)] {
+            assert!(smaller_levels(&Pixels::filled(width, height, Srgba::WHITE)).is_empty());
+        }
+    }
+
+    #[test]
+    fn odd_sides_keep_a_single_colour_and_every_texel_counts_equally() {
+        let color = Srgba([10, 200, 90, 128]);
+        for level in smaller_levels(&Pixels::filled(7, 3, color)) {
+            assert!(level.data().iter().all(|&texel| texel == color), "{level:?}");
+        }
+        for side in 1..40_u32 {
+            let mut share = vec![0.0; side as usize];
+            let all = (0..(side / 2).max(1)).flat_map(|index| covered(index, side));
+            all.for_each(|(texel, weight)| share[texel as usize] += weight);
+            assert!(share.iter().all(|&sum| (sum - share[0]).abs() < 1e-6), "{side}: {share:?}");
+        }
+    }
+
+    #[test]
+    fn odd_sides_shift_nothing() {
+        for side in 1..40_u32 {
+            let below = (side / 2).max(1);
+            for index in 0..below {
+                let middle: f32 = covered(index, side).map(|(texel, part)| (texel as f32 + 0.5) * part).sum();
+                let expected = (index as f32 + 0.5) * side as f32 / below as f32;
+                assert!((middle - expected).abs() < 0.1, "{side}, {index}: {middle} for {expected}");
+                let whole: f32 = covered(index, side).map(|(_, part)| part).sum();
+                assert!((whole - 1.0).abs() < 1e-6, "{side}, {index}: {whole}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_invisible_does_not_bleed_into_what_is_not() {
+        let leaf = Srgba([20, 120, 30, 255]);
+        let edge = Pixels::from_fn(2, 1, |x, _| if x == 0 { leaf } else { Srgba([255, 0, 255, 0]) });
+        assert_eq!(smaller_levels(&edge)[0].at(0, 0), Srgba([20, 120, 30, 128]));
+        let holes = Pixels::from_fn(2, 2, |x, _| Srgba([if x == 0 { 255 } else { 0 }, 7, 7, 0]));
+        assert_eq!(smaller_levels(&holes)[0].at(0, 0), Srgba([188, 7, 7, 0]));
+    }
+}
