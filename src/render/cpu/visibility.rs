@@ -55,30 +55,25 @@ impl<const N: usize> Visibility<N> {
 
     /// Draws a piece of a solid or of the ground where it is nearer than what is there.
     pub fn draw_nearer(&mut self, piece: &Piece, face: &Face, pattern: &Pattern<N>) {
-        let slope = SampleDepths::of(face, pattern);
-        cover(&piece.corners, pattern, piece.window.and(self.window), |x, y, mask| {
-            let index = self.index(x, y);
-            let new = slope.at(face, x, y);
-            let (faces, depths) = (&mut self.faces[index], &mut self.depths[index]);
-            for sample in 0..N {
-                let seen = mask & (1 << sample) != 0 && new[sample] > depths[sample];
-                faces[sample] = if seen { piece.face } else { faces[sample] };
-                depths[sample] = if seen { new[sample] } else { depths[sample] };
-            }
-        });
+        self.draw(piece, face, pattern, |new, there| new > there);
     }
 
     /// Draws a piece of a draped face where it is behind what is there by no more than the face's reach.
+    pub fn draw_draped(&mut self, piece: &Piece, face: &Face, pattern: &Pattern<N>) {
+        self.draw(piece, face, pattern, |new, there| new * face.reach >= there);
+    }
+
+    /// Draws a piece where `is_seen` says so of its inverse depth and the one there.
     ///
     /// The nearer of both depths is kept, so that drapes laid over each other do not sink step by step.
-    pub fn draw_draped(&mut self, piece: &Piece, face: &Face, pattern: &Pattern<N>) {
+    fn draw(&mut self, piece: &Piece, face: &Face, pattern: &Pattern<N>, is_seen: impl Fn(f32, f32) -> bool) {
         let slope = SampleDepths::of(face, pattern);
         cover(&piece.corners, pattern, piece.window.and(self.window), |x, y, mask| {
             let index = self.index(x, y);
             let new = slope.at(face, x, y);
             let (faces, depths) = (&mut self.faces[index], &mut self.depths[index]);
             for sample in 0..N {
-                let seen = mask & (1 << sample) != 0 && new[sample] * face.reach >= depths[sample];
+                let seen = mask & (1 << sample) != 0 && is_seen(new[sample], depths[sample]);
                 faces[sample] = if seen { piece.face } else { faces[sample] };
                 depths[sample] = if seen { new[sample].max(depths[sample]) } else { depths[sample] };
             }
