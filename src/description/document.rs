@@ -123,7 +123,7 @@ pub struct Style {
     /// `[style.light]`: where the light comes from.
     pub light: Light,
     /// `haze`: distance in metres at which 63 % of what is seen is haze, in [0, 10⁹]; 0 for clear air.
-    /// Default: eight times the longer side of the terrain.
+    /// Default: eight times the longest side of the terrain, its drawn height included.
     pub haze: Option<Spanned<f64>>,
 }
 

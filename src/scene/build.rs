@@ -47,7 +47,8 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     collected.notes.extend(views::buried(&cameras, &terrain));
 
     step("lighting terrain");
-    let lighting = style::lighting(document, extent.size().max_element());
+    let (low, high) = terrain.bounds();
+    let lighting = style::lighting(document, (high - low).max_element());
     let ramp = style::ramp(document, &terrain.lattice)?;
     let map = style::ground_map(
         &terrain.lattice,

@@ -80,8 +80,9 @@ pub fn contours(document: &Document) -> Option<Contours> {
     })
 }
 
-/// The document's light, and haze over ground `extent_m` metres wide.
-pub fn lighting(document: &Document, extent_m: f64) -> Lighting {
+/// The document's light, and haze over ground whose drawn box is `extent_m` metres long or, if that is more,
+/// high.
+pub fn lighting(document: &Document, extent_m: f32) -> Lighting {
     let angle = |stated: &Option<Spanned<f64>>, default: f64| {
         (stated.as_ref().map_or(default, |value| *value.get_ref()) as f32).to_radians()
     };
@@ -92,7 +93,7 @@ pub fn lighting(document: &Document, extent_m: f64) -> Lighting {
     let distance_m = match document.style.haze.as_ref().map(Spanned::get_ref) {
         Some(0.0) => f32::INFINITY,
         Some(&distance) => distance as f32,
-        None => (extent_m * 8.0) as f32,
+        None => extent_m * 8.0,
     };
     let default = Lighting::default();
     Lighting { to_sun: to_sun.normalize_or(Vec3::Z), haze: Haze { distance_m, ..default.haze }, ..default }

@@ -50,7 +50,7 @@ pub enum LatticeError {
     Empty,
     /// A height that no ground has: mostly a no-data value that the file does not name as one.
     #[error(
-        "the elevation model holds a height of {height} m, beyond ±{HIGHEST_M} m; if that stands for no data, the file must say so (its no-data value)"
+        "the elevation model holds a height of {height:e} m, beyond ±{HIGHEST_M} m; if that stands for no data, the file must say so (its no-data value)"
     )]
     TooHigh {
         /// In metres; may be infinite.
