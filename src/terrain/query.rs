@@ -150,6 +150,11 @@ impl HeightService {
             Some(own) => crs.transform(own, at),
             None => Ok(at),
         };
+        let in_source = in_source.map(|at| match &source.crs {
+            // Longitudes come back within ±180°; a raster across the date line counts them on from there.
+            Some(own) if own.is_geographic() => at + DVec2::X * whole_turns(source.center().x - at.x),
+            _ => at,
+        });
         in_source.map_or(Answer::Outside, |at| raster_height(source, interpolation, at))
     }
 
@@ -163,6 +168,11 @@ impl HeightService {
             None => Answer::Outside,
         }
     }
+}
+
+/// The whole turns, in degrees, nearest to `degrees`.
+fn whole_turns(degrees: f64) -> f64 {
+    360.0 * (degrees / 360.0).round()
 }
 
 /// The height of the ground lattice at a map position.
@@ -282,6 +292,7 @@ fn inverse_distance_weights(part: DVec2, cell: DVec2) -> [f64; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dem::read;
 
     const ALL: [Interpolation; 4] = [
         Interpolation::Planar,
@@ -327,6 +338,19 @@ mod tests {
         assert_eq!(on_diagonal, Answer::Height(4.0), "the diagonal joins (0, 0) and (1, 1)");
         let beside = lattice(|column, row| if (column, row) == (1, 0) { 8.0 } else { 0.0 });
         assert_eq!(ground_height(&beside, Interpolation::Planar, at(5.0, 10.0)), Answer::Height(0.0));
+    }
+
+    #[test]
+    fn the_source_across_the_date_line_answers_on_both_sides() {
+        let text = "ncols 4\nnrows 2\nxllcorner 179.8\nyllcorner -16.1\ncellsize 0.1\n1 2 3 4\n1 2 3 4\n";
+        let hints = read::Hints { crs: Some(Crs::wgs84()), ..read::Hints::default() };
+        let source = read::read("a.asc", text.as_bytes(), &hints).expect("sound");
+        let utm = Crs::from_epsg(32701).expect("a zone");
+        let service = HeightService::new(Arc::new(source), utm.clone(), Arc::new(lattice(|_, _| 0.0)));
+        for (longitude, height) in [(179.85, 1.0), (179.95, 2.0), (-179.95, 3.0), (180.15, 4.0)] {
+            let at = Crs::wgs84().transform(&utm, DVec2::new(longitude, -16.0)).expect("inside");
+            assert_eq!(service.height(Surface::Source, Interpolation::Nearest, at), Answer::Height(height));
+        }
     }
 
     #[test]
