@@ -5,6 +5,7 @@ use crate::app::failure::Failure;
 use crate::app::progress::Steps;
 use crate::app::{load, output};
 use crate::scene::kind::{FeatureKind, Scene};
+use crate::scene::views::whole_metres;
 
 /// Loads the scene, checks its invariants and prints what is in it.
 ///
@@ -31,11 +32,13 @@ pub fn contents(scene: &Scene) -> Vec<String> {
     let (low, high) = lattice.height_range();
     let size = lattice.extent().size() / 1000.0;
     let ground = format!(
-        "  ground    {}×{} posts, {:.2}×{:.2} km, {low:.0} to {high:.0} m, {}",
+        "  ground    {}×{} posts, {:.2}×{:.2} km, {} to {} m, {}",
         lattice.columns(),
         lattice.rows(),
         size.x,
         size.y,
+        whole_metres(low),
+        whole_metres(high),
         scene.crs.name()
     );
     let mut parts: Vec<String> = scene.census().into_iter().map(count_of).collect();

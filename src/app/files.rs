@@ -81,6 +81,20 @@ pub fn check_place(path: &Path, scene: &Path) -> Result<(), Failure> {
     }
 }
 
+/// Whether `path` is none of the files that the picture is made of.
+///
+/// # Errors
+/// It is one of `inputs`, whose links are followed.
+pub fn check_no_input(path: &Path, inputs: &[PathBuf]) -> Result<(), Failure> {
+    match path.canonicalize() {
+        Ok(there) if inputs.contains(&there) => {
+            let reason = "the scene is made of this file; name another with -o";
+            Err(Failure::input(format!("{}: {reason}", path.display())))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// A name without an extension is the user's choice; another format's would belie the content.
 fn is_png_name(path: &Path) -> bool {
     path.extension().is_none_or(|extension| extension.eq_ignore_ascii_case("png"))

@@ -49,6 +49,7 @@ fn render(options: &RenderOptions, place: &Path, steps: &Steps) -> Result<Done, 
     let step = |step| steps.begin(step);
     let scene = load::scene(&options.scene, &options.access, &step)?;
     let view = find_view(&scene, options.camera.as_deref())?.clone();
+    files::check_no_input(place, &scene.files)?;
     let finished = picture_of(&scene, &view, options.size, options.backend, &step)?;
     step("writing the picture");
     files::write_whole(place, &png(&finished.pixels)?)?;
@@ -83,8 +84,18 @@ fn picture(done: &Done) -> Vec<String> {
         ("shortened", &report.shortened),
     ];
     for (why, labels) in left_out.iter().filter(|(_, labels)| !labels.is_empty()) {
-        let names: Vec<String> = labels.iter().map(|label| label.replace('\n', " ")).collect();
+        let names: Vec<String> = labels.iter().map(|label| shortened(label)).collect();
         lines.push(format!("  labels    {why}: {}", names.join(", ")));
     }
     lines
+}
+
+/// A label on one line, cut where it is longer than a name.
+fn shortened(label: &str) -> String {
+    const LONGEST: usize = 60;
+    let line = label.replace('\n', " ");
+    match line.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", &line[..end]),
+        None => line,
+    }
 }

@@ -7,9 +7,11 @@
 //!
 //! Paths are written with `/`; `\` is taken for it, so that a scene reads alike on every system.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::description::suggest::{nearest, quoted};
 use crate::model::kind::Companions;
@@ -99,6 +101,8 @@ pub struct Assets {
     allowed: Vec<PathBuf>,
     /// As the user wrote them, links and all, for judging paths as they are written.
     allowed_as_written: Vec<PathBuf>,
+    /// Every file read so far.
+    read: Arc<Mutex<BTreeSet<PathBuf>>>,
 }
 
 impl Assets {
@@ -122,7 +126,7 @@ impl Assets {
         };
         let allowed_as_written = allowed.iter().map(written).collect();
         let allowed = allowed.iter().map(|path| canonical(path)).collect::<Result<_, _>>()?;
-        Ok(Self { folder, root, allowed, allowed_as_written })
+        Ok(Self { folder, root, allowed, allowed_as_written, read: Arc::default() })
     }
 
     /// The bytes of the file that the scene calls `name`, relative to the scene file, or absolute under an
@@ -131,7 +135,18 @@ impl Assets {
     /// # Errors
     /// [`AssetError`].
     pub fn read(&self, name: &str) -> Result<Vec<u8>, AssetError> {
-        read_file(&self.resolve(name)?)
+        self.read_resolved(self.resolve(name)?)
+    }
+
+    /// The files read so far, links followed, in alphabetical order: what no output may be written over.
+    pub fn files_read(&self) -> Vec<PathBuf> {
+        self.read.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
+    }
+
+    fn read_resolved(&self, path: PathBuf) -> Result<Vec<u8>, AssetError> {
+        let bytes = read_file(&path)?;
+        self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(path);
+        Ok(bytes)
     }
 
     /// Where the file `name` is, with all links resolved.
@@ -244,7 +259,7 @@ impl Beside<'_> {
 
 impl Companions for Beside<'_> {
     fn load(&self, name: &str) -> Result<Vec<u8>, String> {
-        let bytes = self.resolve(name).and_then(|path| read_file(&path));
+        let bytes = self.resolve(name).and_then(|path| self.assets.read_resolved(path));
         bytes.map_err(|error| match std::error::Error::source(&error) {
             Some(source) => format!("{error}: {source}"),
             None => error.to_string(),

@@ -75,6 +75,7 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
         features: collected.features,
         notes: collected.notes,
         crs,
+        files: assets.files_read(),
     })
 }
 

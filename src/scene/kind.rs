@@ -52,6 +52,8 @@ pub struct Scene {
     pub features: Vec<Feature>,
     /// What was done that a user should know: features off the model, missing textures, earth moved.
     pub notes: Vec<String>,
+    /// The files it was made of, besides the scene file itself.
+    pub files: Vec<std::path::PathBuf>,
 }
 
 /// The ground with what refinement needs to know of it.

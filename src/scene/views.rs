@@ -30,7 +30,7 @@ pub fn labels(document: &Document, places: &Places<'_>, terrain: &Terrain) -> Re
 }
 
 /// A height in whole metres, without a sign before 0.
-fn whole_metres(height_m: f32) -> String {
+pub fn whole_metres(height_m: f32) -> String {
     let rounded = height_m.round();
     format!("{:.0}", if rounded == 0.0 { 0.0 } else { rounded })
 }
