@@ -7,6 +7,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use sandtable::model::kind::Companions;
 use sandtable::scene::assets::{AssetError, Assets};
 
+#[path = "common/skip.rs"]
+mod skip;
+
 /// A folder of its own for each test, gone when it ends:
 ///
 /// ```text
@@ -224,7 +227,7 @@ mod links {
             Ok(status) if status.success() => {
                 assert!(refusal(&assets, "pipe").contains("a pipe or a device"))
             }
-            _ => println!("SKIPPED: no mkfifo on this machine"),
+            _ => super::skip::skipped("no mkfifo on this machine"),
         }
     }
 
@@ -233,7 +236,7 @@ mod links {
         let disk = Disk::new();
         let file = fs::File::create(disk.at("project/scenes/huge.tif")).expect("writable");
         if file.set_len(3 << 30).is_err() {
-            println!("SKIPPED: this file system holds no sparse file of 3 GiB");
+            super::skip::skipped("this file system holds no sparse file of 3 GiB");
             return;
         }
         assert!(refusal(&disk.assets(&[]), "huge.tif").contains("3221225472 bytes, more than can be read"));

@@ -41,14 +41,14 @@ const REFUSED: [(&str, &str); 17] = [
 /// How many files of the oracle are read; a change here is a format gained or lost.
 const READ: usize = 71;
 
+#[allow(dead_code, reason = "each test uses its own part")]
+#[path = "common/data.rs"]
+mod common_data;
+#[path = "common/skip.rs"]
+mod skip;
+
 fn data() -> Option<PathBuf> {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data"));
-    if folder.join("DEM_ORACLE.json").exists() {
-        return Some(folder.into());
-    }
-    println!("SKIPPED: {} is not there", folder.display());
-    assert!(std::env::var_os("SANDTABLE_REQUIRE_DATA").is_none(), "the test data are required and not there");
-    None
+    common_data::data("DEM_ORACLE.json")?.parent().map(Path::to_path_buf)
 }
 
 fn open(path: &Path) -> Result<Raster, DemError> {

@@ -64,14 +64,14 @@ impl Companions for Folder {
     }
 }
 
+#[allow(dead_code, reason = "each test uses its own part")]
+#[path = "common/data.rs"]
+mod common_data;
+#[path = "common/skip.rs"]
+mod skip;
+
 fn data() -> Option<PathBuf> {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data"));
-    if folder.is_dir() {
-        return Some(folder.into());
-    }
-    assert!(std::env::var_os("SANDTABLE_REQUIRE_DATA").is_none(), "{} is required", folder.display());
-    eprintln!("SKIPPED: no test data at {}", folder.display());
-    None
+    common_data::data("MODEL_ORACLE.json")?.parent().map(Path::to_path_buf)
 }
 
 fn files_below(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {

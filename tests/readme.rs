@@ -11,6 +11,8 @@ mod command;
 mod links;
 #[path = "readme/sandbox.rs"]
 mod sandbox;
+#[path = "common/skip.rs"]
+mod skip;
 
 use std::fs;
 use std::path::Path;

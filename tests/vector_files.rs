@@ -1,22 +1,19 @@
 //! Real vector files against what GDAL says is in them, and broken ones.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use sandtable::geom::crs::Crs;
 use sandtable::vector::feature::{Geometry, Layer};
 use sandtable::vector::read::read;
 use serde_json::Value;
 
-/// The test data, or `None` with a loud line where it is not there.
-fn data(path: &str) -> Option<PathBuf> {
-    let at = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data")).join(path);
-    if at.exists() {
-        return Some(at);
-    }
-    println!("SKIPPED: no test data at {}", at.display());
-    assert!(std::env::var_os("SANDTABLE_REQUIRE_DATA").is_none(), "SANDTABLE_REQUIRE_DATA is set");
-    None
-}
+#[allow(dead_code, reason = "each test uses its own part")]
+#[path = "common/data.rs"]
+mod common_data;
+#[path = "common/skip.rs"]
+mod skip;
+
+use crate::common_data::data;
 
 fn layer(path: &Path) -> Layer {
     let bytes = std::fs::read(path).expect("the file is there");

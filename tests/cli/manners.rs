@@ -142,7 +142,7 @@ fn file_names_need_not_be_utf_8() {
     let name = std::ffi::OsStr::from_bytes(b"h\xfcgel.asc");
     let path = scratch.folder().join(name);
     if std::fs::copy(project("assets/jacksboro/valley.asc"), &path).is_err() {
-        println!("SKIPPED: this file system takes only UTF-8 names");
+        crate::common::skip::skipped("this file system takes only UTF-8 names");
         return;
     }
     let out = run_in(scratch.folder(), &["dem".as_ref(), "info".as_ref(), path.as_os_str()]).ok();

@@ -3,6 +3,7 @@
 use std::fs;
 
 use crate::common::scratch::Scratch;
+use crate::common::skip::skipped;
 use crate::{bytes_of, project, run_in};
 
 const SMALL: [&str; 2] = ["--size", "192x108"];
@@ -131,7 +132,7 @@ fn without_an_adapter_the_gpu_is_refused_and_with_one_it_draws() {
         assert_eq!(scratch.names(), ["road.png"]);
         return;
     }
-    println!("SKIPPED: no GPU adapter");
+    skipped("no GPU adapter");
     let refused = ran.failed(1);
     assert!(refused.contains("--backend cpu") || refused.contains("cpu"), "{refused}");
     assert!(scratch.names().is_empty());

@@ -18,7 +18,7 @@ fn open(api: Api) -> Option<Gpu> {
         Ok(gpu) => Some(gpu),
         Err(error) => {
             assert!(std::env::var_os("SANDTABLE_REQUIRE_GPU").is_none(), "{error}");
-            eprintln!("SKIPPED: no GPU adapter: {error}");
+            super::skip::skipped(&format!("no GPU adapter: {error}"));
             None
         }
     }

@@ -11,7 +11,7 @@ pub fn data(path: &str) -> Option<PathBuf> {
     if at.exists() {
         return Some(at.canonicalize().expect("it is there"));
     }
-    println!("SKIPPED: no test data at {}", at.display());
+    super::skip::skipped(&format!("no test data at {}", at.display()));
     assert!(std::env::var_os("SANDTABLE_REQUIRE_DATA").is_none(), "SANDTABLE_REQUIRE_DATA is set");
     None
 }

@@ -7,4 +7,5 @@ pub mod adapters;
 pub mod data;
 pub mod scratch;
 pub mod shapefile;
+pub mod skip;
 pub mod synthetic;

@@ -68,7 +68,7 @@ impl Sandbox {
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         let excused = arguments.contains(&"gpu") && std::env::var_os("SANDTABLE_REQUIRE_GPU").is_none();
         if excused && said.contains("adapter") {
-            eprintln!("SKIPPED: no GPU adapter: {said}");
+            crate::skip::skipped(&format!("no GPU adapter: {said}"));
             return Ok(false);
         }
         Err(format!("{}\n{said}", output.status))
