@@ -45,14 +45,12 @@ pub fn info(options: &DemInfoOptions) -> Result<(), Failure> {
 
 /// One JSON object; numbers that there are not (no valid sample, no such tag) are null.
 fn describe(raster: &Raster, stats: &Stats) -> serde_json::Value {
-    let affine = raster.map_from_grid;
-    let (east, south) = (affine.matrix2.x_axis, affine.matrix2.y_axis);
     json!({
         "driver": raster.driver,
         "width": raster.width,
         "height": raster.height,
         "crs": raster.crs.as_ref().map(|crs| crs.name()),
-        "transform": [affine.translation.x, east.x, south.x, affine.translation.y, east.y, south.y],
+        "transform": raster.geotransform(),
         "nodata": nodata(raster.nodata),
         "valid": stats.valid,
         "min": stats.min,

@@ -5,10 +5,8 @@
 //! axis is mapped monotonically, so triangles across the border shrink to its near side, those beyond it lose
 //! their area and are not drawn, and the mesh stays conforming without a single extra vertex.
 
-use glam::Vec3;
-
 use crate::roam::graph::Vertex;
-use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::lattice::Post;
 
 /// How patches cover a lattice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,17 +119,6 @@ impl Layout {
     /// The post that a vertex stands for: itself, or the nearest on the border.
     pub fn post(&self, vertex: Vertex) -> Post {
         Post { column: vertex.x.min(self.last_column) as u32, row: vertex.y.min(self.last_row) as u32 }
-    }
-
-    /// Whether the vertex is a post of its own and stands for no other.
-    pub fn is_own_post(&self, vertex: Vertex) -> bool {
-        vertex.x <= self.last_column && vertex.y <= self.last_row
-    }
-
-    /// World position of a vertex, its height times `exaggeration`.
-    pub fn position(&self, lattice: &Lattice, vertex: Vertex, exaggeration: f32) -> Vec3 {
-        let post = self.post(vertex);
-        lattice.position(post).extend(lattice.height(post) * exaggeration)
     }
 }
 

@@ -17,7 +17,7 @@ use crate::ribbon::texture::{Surface, texture};
 use crate::roam::criterion::ScreenError;
 use crate::roam::emit::DisplayedTerrain;
 use crate::roam::refine;
-use crate::scene::kind::{Placement, Scene, Terrain};
+use crate::scene::kind::{Placement, Scene, Terrain, View};
 use crate::scene::plinth::plinth;
 use crate::terrain::facets::Facets;
 use crate::terrain::query::{Interpolation, ground_height};
@@ -38,11 +38,7 @@ pub struct Shot {
 ///
 /// # Errors
 /// See [`CameraError`].
-pub fn camera(
-    scene: &Scene,
-    view: &crate::scene::kind::View,
-    size: (u32, u32),
-) -> Result<Camera, CameraError> {
+pub fn camera(scene: &Scene, view: &View, size: (u32, u32)) -> Result<Camera, CameraError> {
     let (min, max) = scene.terrain.bounds();
     let farthest = Vec3::select((view.eye - min).abs().cmpgt((view.eye - max).abs()), min, max);
     let far = view.eye.distance(farthest) * 1.5 + 1000.0;
