@@ -19,7 +19,9 @@ pub struct ScreenError {
 impl ScreenError {
     /// The criterion for one camera; heights are drawn times `exaggeration`.
     pub fn new(camera: &Camera, tolerance_px: f32, exaggeration: f32) -> Self {
-        let corner = (1.0 + camera.tan_half_fov().length_squared()).sqrt();
+        // A length δ at distance d from the eye, θ off the viewing direction, spans at most δ / (d · cos² θ) on the
+        // picture's plane: cos θ since depth is shorter than distance, and once more since the plane is met at a slant.
+        let corner = 1.0 + camera.tan_half_fov().length_squared();
         let pixels = camera.pixels_per_metre(1.0) * corner;
         Self { eye: camera.eye(), metres_per_metre: pixels * exaggeration / tolerance_px }
     }
