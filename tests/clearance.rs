@@ -14,11 +14,13 @@ use sandtable::ribbon::area;
 use sandtable::ribbon::drape::{check_clearance, drape};
 use sandtable::ribbon::plan::PlanMesh;
 use sandtable::ribbon::stroke::{StrokeOptions, stroke};
-use sandtable::roam::criterion::ScreenError;
-use sandtable::roam::emit::DisplayedTerrain;
-use sandtable::roam::error::ErrorMap;
+use sandtable::roam::criterion::screen::ScreenError;
+use sandtable::roam::culling::{PatchHeights, patches_in_view};
+use sandtable::roam::displayed::DisplayedTerrain;
+use sandtable::roam::errors::ErrorMap;
+use sandtable::roam::ground::Ground;
 use sandtable::roam::layout::Layout;
-use sandtable::roam::refine::{Ground, PatchHeights, patches_in_view, rebuild};
+use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::terrain::earthwork;
 use sandtable::terrain::facets::Facets;
 use sandtable::terrain::lattice::Lattice;
@@ -41,20 +43,20 @@ struct World {
 impl World {
     fn new(lattice: Lattice) -> Self {
         let layout = Layout::new(lattice.columns(), lattice.rows(), 32).expect("sound");
-        let errors = ErrorMap::new(&lattice, &layout);
-        let heights = PatchHeights::new(&lattice, &layout, 1.5);
+        let errors = ErrorMap::exact(&lattice, &layout);
+        let heights = PatchHeights::new(Ground { lattice: &lattice, layout: &layout, exaggeration: 1.5 });
         Self { lattice: Arc::new(lattice), layout, errors, heights }
     }
 
     fn ground(&self) -> Ground<'_> {
-        Ground { lattice: &self.lattice, layout: &self.layout, errors: &self.errors, heights: &self.heights }
+        Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.5 }
     }
 
     fn seen_by(&self, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
-        let frustum = Frustum::of(camera);
-        let active = rebuild(self.ground(), &ScreenError::new(camera, tolerance_px, 1.5), &frustum);
+        let patches = patches_in_view(self.ground(), &self.heights, &Frustum::of(camera));
+        let criterion = ScreenError::new(self.ground(), &self.errors, &self.heights, camera, tolerance_px);
+        let active = rebuild(&self.layout, &criterion, patches.iter().copied());
         active.check().expect("parents active");
-        let patches = patches_in_view(self.ground(), &frustum);
         DisplayedTerrain::new(Arc::clone(&self.lattice), active, 1.5, patches)
     }
 }

@@ -6,21 +6,27 @@
 //!
 //! - `graph` is the arithmetic of vertices: level, parents, children; it knows no heights.
 //! - `bintree` is the arithmetic of triangles: roots of a patch, splitting.
-//! - `layout` lays patches over a lattice of any size.
-//! - `error` measures, once, how far each vertex's triangles are off the ground.
+//! - `layout` lays patches over a lattice of any size; `ground` places their vertices in drawn world space.
+//! - `errors` measures, once, how far each vertex's triangles are off the ground.
 //! - `active` holds the bits; activating a vertex first activates its parents (the forced split).
-//! - `criterion` turns an error and a camera into a decision.
-//! - `refine` sets the bits from the roots down.
-//! - `emit` reads triangles off the bits.
+//! - `spheres` turns errors into nested spheres; `block` is one patch of them on its own.
+//! - `criterion` turns an error and a view into a decision.
+//! - `culling` tells which patches can be seen.
+//! - `refine` sets the bits.
+//! - `displayed` reads triangles off the bits.
 //!
 //! Sources: Duchaineau et al. 1997 (ROAM); the patch-based forced splits and the screen-space error of the
 //! later papers; Lindstrom and Pascucci 2001 for errors kept monotone up the graph.
 
 pub mod active;
 pub mod bintree;
+pub mod block;
 pub mod criterion;
-pub mod emit;
-pub mod error;
+pub mod culling;
+pub mod displayed;
+pub mod errors;
 pub mod graph;
+pub mod ground;
 pub mod layout;
 pub mod refine;
+pub mod spheres;

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
-use crate::roam::error::ErrorMap;
+use crate::roam::culling::PatchHeights;
+use crate::roam::errors::ErrorMap;
+use crate::roam::ground::Ground;
 use crate::roam::layout::{DEFAULT_PATCH, Layout};
-use crate::roam::refine::PatchHeights;
 use crate::scene::assets::Assets;
 use crate::scene::features::{self, Collected};
 use crate::scene::ground;
@@ -104,8 +105,8 @@ fn terrain(document: &Document, lattice: Lattice) -> Result<Terrain, Diagnostic>
     })?;
     let exaggeration = exaggeration(document);
     Ok(Terrain {
-        errors: ErrorMap::new(&lattice, &layout),
-        patch_heights: PatchHeights::new(&lattice, &layout, exaggeration),
+        errors: ErrorMap::exact(&lattice, &layout),
+        patch_heights: PatchHeights::new(Ground { lattice: &lattice, layout: &layout, exaggeration }),
         lattice: Arc::new(lattice),
         layout,
         exaggeration,

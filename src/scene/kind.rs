@@ -14,9 +14,10 @@ use crate::geom::rect::Rect;
 use crate::model::kind::Model;
 use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::Surface;
-use crate::roam::error::ErrorMap;
+use crate::roam::culling::PatchHeights;
+use crate::roam::errors::ErrorMap;
+use crate::roam::ground::Ground;
 use crate::roam::layout::Layout;
-use crate::roam::refine::{Ground, PatchHeights};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::HeightService;
 
@@ -75,12 +76,7 @@ pub struct Terrain {
 impl Terrain {
     /// What refinement reads.
     pub fn ground(&self) -> Ground<'_> {
-        Ground {
-            lattice: &self.lattice,
-            layout: &self.layout,
-            errors: &self.errors,
-            heights: &self.patch_heights,
-        }
+        Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: self.exaggeration }
     }
 
     /// The box of the ground in world space, drawn heights.

@@ -14,9 +14,10 @@ use crate::mesh::sink::{MeshSink, VertexId};
 use crate::model::kind::Model;
 use crate::ribbon::drape::drape;
 use crate::ribbon::texture::{Surface, texture};
-use crate::roam::criterion::ScreenError;
-use crate::roam::emit::DisplayedTerrain;
-use crate::roam::refine;
+use crate::roam::criterion::screen::ScreenError;
+use crate::roam::culling::patches_in_view;
+use crate::roam::displayed::DisplayedTerrain;
+use crate::roam::refine::rebuild::rebuild;
 use crate::scene::kind::{Placement, Scene, Terrain, View};
 use crate::scene::plinth::plinth;
 use crate::terrain::facets::Facets;
@@ -63,10 +64,10 @@ pub fn shoot(scene: &Scene, camera: &Camera, step: &dyn Fn(&'static str)) -> Sho
 
 /// The terrain as `camera` shows it.
 pub fn display(terrain: &Terrain, camera: &Camera) -> DisplayedTerrain {
-    let frustum = Frustum::of(camera);
-    let criterion = ScreenError::new(camera, terrain.tolerance_px, terrain.exaggeration);
-    let active = refine::rebuild(terrain.ground(), &criterion, &frustum);
-    let patches = refine::patches_in_view(terrain.ground(), &frustum);
+    let (ground, heights) = (terrain.ground(), &terrain.patch_heights);
+    let patches = patches_in_view(ground, heights, &Frustum::of(camera));
+    let criterion = ScreenError::new(ground, &terrain.errors, heights, camera, terrain.tolerance_px);
+    let active = rebuild(&terrain.layout, &criterion, patches.iter().copied());
     DisplayedTerrain::new(Arc::clone(&terrain.lattice), active, terrain.exaggeration, patches)
 }
 

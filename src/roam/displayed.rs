@@ -183,15 +183,9 @@ mod tests {
     fn fully_refined_ground_leaves_out_just_the_triangles_at_a_hole() {
         let layout = Layout::new(17, 17, 16).expect("sound");
         let lattice = lattice(17, 17, &[8 * 17 + 8]);
-        let errors = crate::roam::error::ErrorMap::new(&lattice, &layout);
-        let heights = crate::roam::refine::PatchHeights::new(&lattice, &layout, 1.0);
-        let ground = crate::roam::refine::Ground {
-            lattice: &lattice,
-            layout: &layout,
-            errors: &errors,
-            heights: &heights,
-        };
-        let active = crate::roam::refine::rebuild_everywhere(ground, 0.0);
+        let errors = crate::roam::errors::ErrorMap::exact(&lattice, &layout);
+        let criterion = crate::roam::criterion::flat::Flat::new(&layout, &errors, 0.0);
+        let active = crate::roam::refine::rebuild::rebuild(&layout, &criterion, layout.patches());
         let terrain = DisplayedTerrain::new(Arc::clone(&lattice), active, 1.0, layout.patches().collect());
         let mesh = emitted(&terrain);
         assert_eq!(mesh.triangles.len(), 2 * 16 * 16 - 8);

@@ -1,9 +1,8 @@
-//! How far the triangles at each vertex are off the ground.
+//! The exact error of every vertex: a bound.
 //!
 //! The error of a triangle is exact: the largest vertical distance between its plane and any post it covers,
 //! not only at the middle of its hypotenuse, because a midpoint error is no bound (asked for 5 m, midpoint
-//! errors leave 7 to 10 m). The error of a vertex is that of the triangles it splits, and at least that of
-//! its children, so that a decision "error above a threshold" is always closed under parents.
+//! errors leave 7 to 10 m). The error of a vertex is that of the triangles it splits.
 //!
 //! Two cases make an error infinite, so that refinement goes down to the posts: a triangle that covers both
 //! data and no data, and one that is not exact over a pinned post (see [`Lattice::pin`]).
@@ -13,6 +12,7 @@
 use rayon::prelude::*;
 
 use crate::roam::bintree::Triangle;
+use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
 use crate::roam::layout::Layout;
 use crate::terrain::lattice::{Lattice, Post};
@@ -20,15 +20,9 @@ use crate::terrain::lattice::{Lattice, Post};
 /// Pinned ground may be off by this many metres: rounding of f32 heights, nothing a picture shows.
 const PINNED_SLACK_M: f32 = 1e-3;
 
-/// The object-space error of every vertex, in metres without exaggeration.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ErrorMap {
-    errors: Vec<f32>,
-}
-
 impl ErrorMap {
     /// Measures `lattice`; in parallel over patches, the same for any number of threads.
-    pub fn new(lattice: &Lattice, layout: &Layout) -> Self {
+    pub fn exact(lattice: &Lattice, layout: &Layout) -> Self {
         let patches: Vec<Vertex> = layout.patches().collect();
         let measured: Vec<Vec<(u32, f32)>> =
             patches.par_iter().map(|&corner| measure_patch(lattice, layout, corner)).collect();
@@ -37,60 +31,7 @@ impl ErrorMap {
             let slot = &mut errors[index as usize];
             *slot = slot.max(error);
         }
-        let mut map = Self { errors };
-        map.raise_to_children(layout);
-        map
-    }
-
-    /// The error at a vertex of the layout it was measured with: metres, or infinite.
-    pub fn at(&self, layout: &Layout, vertex: Vertex) -> f32 {
-        self.errors[layout.index(vertex)]
-    }
-
-    /// Makes every vertex's error at least that of its children, finest level first.
-    fn raise_to_children(&mut self, layout: &Layout) {
-        let mut step = 1;
-        while step < layout.patch() {
-            for (first, stride) in [((step, 0), 2 * step), ((0, step), 2 * step), ((step, step), 2 * step)] {
-                self.raise_level(layout, first, stride);
-            }
-            step *= 2;
-        }
-    }
-
-    fn raise_level(&mut self, layout: &Layout, first: (i32, i32), stride: i32) {
-        for y in (first.1..layout.rows() as i32).step_by(stride as usize) {
-            for x in (first.0..layout.columns() as i32).step_by(stride as usize) {
-                let vertex = Vertex::new(x, y);
-                let below = vertex
-                    .children()
-                    .filter(|&child| layout.contains(child))
-                    .map(|child| self.errors[layout.index(child)])
-                    .fold(0f32, f32::max);
-                let slot = &mut self.errors[layout.index(vertex)];
-                *slot = slot.max(below);
-            }
-        }
-    }
-
-    /// Whether no vertex has a smaller error than one of its children.
-    ///
-    /// # Errors
-    /// A sentence naming the first pair that is out of order.
-    pub fn check(&self, layout: &Layout) -> Result<(), String> {
-        for index in 0..layout.vertex_count() {
-            let vertex = Vertex::new((index % layout.columns()) as i32, (index / layout.columns()) as i32);
-            if layout.is_corner(vertex) {
-                continue;
-            }
-            for child in vertex.children().filter(|&child| layout.contains(child)) {
-                let (own, below) = (self.at(layout, vertex), self.at(layout, child));
-                if own < below {
-                    return Err(format!("{vertex:?} has error {own} m, its child {child:?} has {below} m"));
-                }
-            }
-        }
-        Ok(())
+        Self::raised(errors, layout)
     }
 }
 
@@ -295,7 +236,7 @@ mod tests {
     fn errors_never_shrink_towards_the_roots() {
         let lattice = hilly(50, 37);
         let layout = Layout::new(50, 37, 16).expect("sound");
-        ErrorMap::new(&lattice, &layout).check(&layout).expect("monotone");
+        ErrorMap::exact(&lattice, &layout).check(&layout).expect("monotone");
     }
 
     #[test]
@@ -305,9 +246,9 @@ mod tests {
         let make =
             |heights: &[f32]| Lattice::new(DVec2::ZERO, DVec2::ONE, 17, heights.to_vec()).expect("sound");
         let center = Vertex::new(8, 8);
-        assert_eq!(ErrorMap::new(&make(&heights), &layout).at(&layout, center), 0.0);
+        assert_eq!(ErrorMap::exact(&make(&heights), &layout).at(&layout, center), 0.0);
         heights[5 * 17 + 5] = f32::NAN;
-        assert_eq!(ErrorMap::new(&make(&heights), &layout).at(&layout, center), f32::INFINITY);
+        assert_eq!(ErrorMap::exact(&make(&heights), &layout).at(&layout, center), f32::INFINITY);
     }
 
     #[test]
@@ -315,7 +256,7 @@ mod tests {
         let mut lattice = hilly(17, 17);
         lattice.pin(Post { column: 4, row: 4 }, 50.0);
         let layout = Layout::new(17, 17, 16).expect("sound");
-        let map = ErrorMap::new(&lattice, &layout);
+        let map = ErrorMap::exact(&lattice, &layout);
         assert_eq!(map.at(&layout, Vertex::new(4, 4)), f32::INFINITY);
         assert!(map.at(&layout, Vertex::new(12, 12)).is_finite());
     }

@@ -1,0 +1,32 @@
+//! No view at all: an error is an error wherever it is.
+
+use crate::roam::criterion::Criterion;
+use crate::roam::errors::ErrorMap;
+use crate::roam::graph::Vertex;
+use crate::roam::layout::Layout;
+
+/// The object-space error over a tolerance in metres: what a mesh without a camera is made by.
+#[derive(Clone, Copy, Debug)]
+pub struct Flat<'a> {
+    layout: &'a Layout,
+    errors: &'a ErrorMap,
+    tolerance_m: f32,
+}
+
+impl<'a> Flat<'a> {
+    /// Errors above `tolerance_m`, 0 or more, are refined.
+    pub fn new(layout: &'a Layout, errors: &'a ErrorMap, tolerance_m: f32) -> Self {
+        Self { layout, errors, tolerance_m }
+    }
+}
+
+impl Criterion for Flat<'_> {
+    fn excess(&self, vertex: Vertex) -> f32 {
+        let error = self.errors.at(self.layout, vertex);
+        if error > self.tolerance_m { error / self.tolerance_m } else { 0.0 }
+    }
+
+    fn wants(&self, vertex: Vertex) -> bool {
+        self.errors.at(self.layout, vertex) > self.tolerance_m
+    }
+}

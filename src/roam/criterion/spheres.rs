@@ -1,0 +1,43 @@
+//! The nested spheres as a criterion.
+
+use glam::Vec3;
+
+use crate::roam::criterion::Criterion;
+use crate::roam::graph::Vertex;
+use crate::roam::ground::Ground;
+use crate::roam::spheres::SphereMap;
+
+/// A vertex is wanted while the eye is inside its sphere.
+#[derive(Clone, Copy, Debug)]
+pub struct Spheres<'a> {
+    ground: Ground<'a>,
+    map: &'a SphereMap,
+    eye: Vec3,
+}
+
+impl<'a> Spheres<'a> {
+    /// The spheres of `map` as seen from `eye`, drawn world space.
+    pub fn new(ground: Ground<'a>, map: &'a SphereMap, eye: Vec3) -> Self {
+        Self { ground, map, eye }
+    }
+}
+
+impl Criterion for Spheres<'_> {
+    fn excess(&self, vertex: Vertex) -> f32 {
+        let radius = self.map.at(self.ground.layout, vertex);
+        if radius == 0.0 {
+            return 0.0;
+        }
+        (f64::from(radius) / distance(self.eye, self.ground.position(vertex))) as f32
+    }
+
+    fn wants(&self, vertex: Vertex) -> bool {
+        let radius = self.map.at(self.ground.layout, vertex);
+        radius > 0.0 && distance(self.eye, self.ground.position(vertex)) < f64::from(radius)
+    }
+}
+
+/// In f64, so that neighbours agree about a vertex to the last bit and nested spheres stay nested.
+pub fn distance(eye: Vec3, position: Vec3) -> f64 {
+    (eye.as_dvec3() - position.as_dvec3()).length()
+}

@@ -1,0 +1,89 @@
+//! How far the triangles at each vertex are off the ground: object-space errors, computed once, from the finest
+//! level up.
+//!
+//! An error map holds one number a vertex, in metres without exaggeration, and never grows from a vertex to its
+//! children: a decision "error above a threshold" is then closed under parents by itself. What the number
+//! measures differs; one file per measure:
+//!
+//! - `exact`: the largest vertical distance over every post that the vertex's triangles cover. A bound.
+
+pub mod exact;
+
+use crate::roam::graph::Vertex;
+use crate::roam::layout::Layout;
+
+/// The object-space error of every vertex, in metres without exaggeration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ErrorMap {
+    errors: Vec<f32>,
+}
+
+impl ErrorMap {
+    /// The map of the vertices' own errors, in the order of [`Layout::index`], each raised to those of its
+    /// children.
+    ///
+    /// # Panics
+    /// Where there is not one error a vertex.
+    pub fn raised(own: Vec<f32>, layout: &Layout) -> Self {
+        assert_eq!(own.len(), layout.vertex_count(), "one error a vertex");
+        let mut map = Self { errors: own };
+        map.raise_to_children(layout);
+        map
+    }
+
+    /// All errors, in the order of [`Layout::index`].
+    pub fn values(&self) -> &[f32] {
+        &self.errors
+    }
+
+    /// The error at a vertex of the layout it was measured with: metres, or infinite.
+    pub fn at(&self, layout: &Layout, vertex: Vertex) -> f32 {
+        self.errors[layout.index(vertex)]
+    }
+
+    /// Makes every vertex's error at least that of its children, finest level first.
+    fn raise_to_children(&mut self, layout: &Layout) {
+        let mut step = 1;
+        while step < layout.patch() {
+            for (first, stride) in [((step, 0), 2 * step), ((0, step), 2 * step), ((step, step), 2 * step)] {
+                self.raise_level(layout, first, stride);
+            }
+            step *= 2;
+        }
+    }
+
+    fn raise_level(&mut self, layout: &Layout, first: (i32, i32), stride: i32) {
+        for y in (first.1..layout.rows() as i32).step_by(stride as usize) {
+            for x in (first.0..layout.columns() as i32).step_by(stride as usize) {
+                let vertex = Vertex::new(x, y);
+                let below = vertex
+                    .children()
+                    .filter(|&child| layout.contains(child))
+                    .map(|child| self.errors[layout.index(child)])
+                    .fold(0f32, f32::max);
+                let slot = &mut self.errors[layout.index(vertex)];
+                *slot = slot.max(below);
+            }
+        }
+    }
+
+    /// Whether no vertex has a smaller error than one of its children.
+    ///
+    /// # Errors
+    /// A sentence naming the first pair that is out of order.
+    pub fn check(&self, layout: &Layout) -> Result<(), String> {
+        for index in 0..layout.vertex_count() {
+            let vertex = Vertex::new((index % layout.columns()) as i32, (index / layout.columns()) as i32);
+            if layout.is_corner(vertex) {
+                continue;
+            }
+            for child in vertex.children().filter(|&child| layout.contains(child)) {
+                let (own, below) = (self.at(layout, vertex), self.at(layout, child));
+                if own < below {
+                    return Err(format!("{vertex:?} has error {own} m, its child {child:?} has {below} m"));
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,42 @@
+//! The ground as the vertex graph sees it: every vertex with its place in drawn world space.
+
+use glam::{Vec2, Vec3};
+
+use crate::roam::graph::Vertex;
+use crate::roam::layout::Layout;
+use crate::terrain::lattice::Lattice;
+
+/// What refinement reads: heights, the patches over them, and how many times heights are stretched when drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Ground<'a> {
+    /// The heights.
+    pub lattice: &'a Lattice,
+    /// The patches over them.
+    pub layout: &'a Layout,
+    /// Vertical exaggeration; 1 draws heights as they are.
+    pub exaggeration: f32,
+}
+
+impl Ground<'_> {
+    /// World X and Y of a vertex of the layout, metres.
+    pub fn plan(&self, vertex: Vertex) -> Vec2 {
+        self.lattice.position(self.layout.post(vertex))
+    }
+
+    /// Where a vertex of the layout is drawn, metres; at Z 0 where it has no data.
+    pub fn position(&self, vertex: Vertex) -> Vec3 {
+        let height = self.lattice.height(self.layout.post(vertex));
+        let z = if height.is_nan() { 0.0 } else { height * self.exaggeration };
+        self.plan(vertex).extend(z)
+    }
+
+    /// The rectangle of the two triangles that `vertex` splits, south-west and north-east corner in metres; of
+    /// one of them where the other lies outside the terrain.
+    pub fn diamond(&self, vertex: Vertex) -> (Vec2, Vec2) {
+        let ends = vertex.hypotenuse().into_iter();
+        let apexes = vertex.parents().into_iter().filter(|&parent| self.layout.contains(parent));
+        ends.chain(apexes)
+            .map(|corner| self.plan(corner))
+            .fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(min, max), at| (min.min(at), max.max(at)))
+    }
+}

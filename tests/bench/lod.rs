@@ -1,0 +1,5 @@
+//! `cargo bench --bench lod`: what the level-of-detail core costs, beside others and beside its own plain ways.
+
+fn main() {
+    println!("no rows yet");
+}
