@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 use crate::roam::graph::Vertex;
 use crate::roam::ground::Ground;
@@ -33,10 +33,22 @@ pub struct BlockError {
     pub reason: String,
 }
 
+/// The sphere in the middle of a patch: nothing in the patch is active while the eye is outside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RootSphere {
+    /// The patch's middle, drawn world space.
+    pub center: Vec3,
+    /// Its radius, metres.
+    pub radius: f32,
+}
+
 /// Where patches come from: the memory, or a file larger than it.
 pub trait BlockSource {
     /// The patches.
     fn layout(&self) -> &Layout;
+
+    /// The sphere in the middle of the patch with south-west corner `corner`, known without reading the patch.
+    fn root(&self, corner: Vertex) -> RootSphere;
 
     /// The patch with south-west corner `corner`.
     ///
@@ -57,6 +69,13 @@ pub struct WholeGround<'a> {
 impl BlockSource for WholeGround<'_> {
     fn layout(&self) -> &Layout {
         self.ground.layout
+    }
+
+    fn root(&self, corner: Vertex) -> RootSphere {
+        let half = self.ground.layout.patch() / 2;
+        let middle = corner.moved(half, half);
+        let radius = self.spheres.at(self.ground.layout, middle);
+        RootSphere { center: self.ground.position(middle), radius }
     }
 
     fn block(&mut self, corner: Vertex) -> Result<Arc<PatchBlock>, BlockError> {

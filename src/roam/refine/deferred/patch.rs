@@ -1,0 +1,349 @@
+//! One patch that follows the eye on its own.
+//!
+//! A vertex is active exactly while the eye is inside its sphere, spheres are nested, and vertices on a border have
+//! the same sphere in both patches: so each patch is a function of the eye alone, and patches that are up to date
+//! agree along their borders without being told.
+//!
+//! Only two kinds of vertices can change next: inactive ones whose parents are active, and active ones without
+//! active children. They wait in a wheel until the eye may have reached their sphere's surface. Each change
+//! rewrites four places of the patch's index list; the list is dense at all times.
+
+use glam::Vec3;
+
+use crate::roam::block::PatchBlock;
+use crate::roam::refine::deferred::topology::{NONE, Node, Topology, triangle};
+use crate::roam::refine::deferred::wheel::{Link, Links, Wheel};
+
+/// Slack is shortened by this share before it is turned into ticks: more than all rounding on the way.
+const SAFETY: f64 = 1.0 - 1e-9;
+
+const ACTIVE: u8 = 1;
+/// A corner of the patch, always active and never split at.
+const CORNER: u8 = 2;
+/// No triangle is shown that has this corner: it has no data.
+const HOLE: u8 = 4;
+/// Counts active children, of which there are at most four.
+const ONE_CHILD: u8 = 8;
+
+/// Where the eye is and how far it has come.
+#[derive(Clone, Copy, Debug)]
+pub struct Station {
+    /// The eye, drawn world space.
+    pub eye: Vec3,
+    /// Ticks travelled, with their fraction.
+    pub travelled: f64,
+    /// Ticks in a metre.
+    pub ticks_per_m: f64,
+}
+
+impl Station {
+    /// The last full tick.
+    pub fn tick(&self) -> u64 {
+        self.travelled as u64
+    }
+
+    /// The tick in which a vertex can change first that is `slack_m` metres from its sphere's surface.
+    pub fn due(&self, slack_m: f64) -> u64 {
+        (self.travelled + slack_m * self.ticks_per_m * SAFETY) as u64
+    }
+
+    /// How far the eye is inside the sphere about (`x`, `y`, `z`), metres; negative outside. A sphere of no radius
+    /// holds nothing.
+    ///
+    /// In f64: neighbours agree to the last bit, and spheres that are nested by a hair stay nested.
+    pub fn inside_m(&self, [x, y, z, radius]: [f32; 4]) -> f64 {
+        let (dx, dy, dz) = (
+            f64::from(x) - f64::from(self.eye.x),
+            f64::from(y) - f64::from(self.eye.y),
+            f64::from(z) - f64::from(self.eye.z),
+        );
+        let inside = f64::from(radius) - (dx * dx + dy * dy + dz * dz).sqrt();
+        if radius > 0.0 { inside } else { f64::NEG_INFINITY }
+    }
+}
+
+/// One vertex: what it is, where it is, where it waits, where its triangles are in the index list.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    z: f32,
+    radius: f32,
+    slots: [u16; 4],
+    link: Link,
+    flags: u8,
+}
+
+/// What an update counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Vertices activated.
+    pub splits: usize,
+    /// Vertices deactivated.
+    pub merges: usize,
+    /// Vertices looked at.
+    pub examined: usize,
+}
+
+/// The mesh of one patch.
+#[derive(Clone, Debug)]
+pub struct PatchMesh {
+    cells: Vec<Cell>,
+    plan: [Vec<f32>; 2],
+    wheel: Wheel,
+    indices: Vec<[u16; 3]>,
+    owners: Vec<u32>,
+    /// Whether some triangle of the patch must not be shown: over no data, or beyond the terrain's border.
+    partial: bool,
+    todo: Vec<u16>,
+    counts: Counts,
+}
+
+impl Links for Vec<Cell> {
+    fn link(&mut self, vertex: u16) -> &mut Link {
+        &mut self[vertex as usize].link
+    }
+}
+
+impl PatchMesh {
+    /// The patch with nothing active, its root triangles shown; it is brought up to date by [`PatchMesh::update`].
+    pub fn new(topology: &Topology, block: &PatchBlock) -> Self {
+        let mut mesh = Self {
+            cells: Vec::new(),
+            plan: [Vec::new(), Vec::new()],
+            wheel: Wheel::new(0),
+            indices: Vec::new(),
+            owners: Vec::new(),
+            partial: false,
+            todo: Vec::new(),
+            counts: Counts::default(),
+        };
+        mesh.reset(topology, block, 0);
+        mesh
+    }
+
+    /// Makes the patch that of another block at tick `now`, keeping its memory.
+    pub fn reset(&mut self, topology: &Topology, block: &PatchBlock, now: u64) {
+        self.plan.clone_from(&block.plan);
+        self.cells.clear();
+        self.cells.extend(block.z.iter().zip(&block.radii).map(|(&z, &radius)| Cell {
+            z: if z.is_nan() { 0.0 } else { z },
+            radius,
+            slots: [NONE; 4],
+            link: Link::FREE,
+            flags: if z.is_nan() { HOLE } else { 0 },
+        }));
+        let clipped = self.plan.iter().any(|along| along.windows(2).any(|pair| pair[0] == pair[1]));
+        self.partial = clipped || block.z.iter().any(|z| z.is_nan());
+        self.wheel = Wheel::new(now);
+        self.indices.clear();
+        self.owners.clear();
+        for [apex, left, right] in topology.roots() {
+            for corner in [apex, left, right] {
+                self.cells[corner as usize].flags |= ACTIVE | CORNER;
+            }
+        }
+        for root in topology.roots() {
+            self.show(topology, root, triangle(root[0], 0));
+        }
+        self.todo.clear();
+        self.todo.push(topology.center());
+    }
+
+    /// The triangles shown: corners by number in the patch, row by row from the south-west, counter-clockwise.
+    pub fn indices(&self) -> &[[u16; 3]] {
+        &self.indices
+    }
+
+    /// Whether the vertex is active; patch corners are.
+    pub fn is_active(&self, vertex: u16) -> bool {
+        self.cells[vertex as usize].flags & ACTIVE != 0
+    }
+
+    /// Brings the patch to where the eye is.
+    pub fn update(&mut self, topology: &Topology, station: &Station) -> Counts {
+        self.counts = Counts::default();
+        if !(self.todo.is_empty() && self.wheel.is_idle(station.tick())) {
+            self.wheel.take_due(&mut self.cells, station.tick(), &mut self.todo);
+            while let Some(vertex) = self.todo.pop() {
+                self.examine(topology, station, vertex);
+            }
+        }
+        self.counts
+    }
+
+    /// Turns the patch into one whose heights or spheres were edited, at the same tick; what changed is looked at in
+    /// the next update.
+    pub fn edit(&mut self, topology: &Topology, block: &PatchBlock) {
+        let is_hole = |cell: &Cell| cell.flags & HOLE != 0;
+        if self.cells.iter().zip(&block.z).any(|(cell, z)| is_hole(cell) != z.is_nan()) {
+            return self.reset(topology, block, self.wheel.now());
+        }
+        let mut changed = Vec::new();
+        for (vertex, (&z, &radius)) in block.z.iter().zip(&block.radii).enumerate() {
+            let cell = &mut self.cells[vertex];
+            let drawn = if z.is_nan() { 0.0 } else { z };
+            if (cell.z, cell.radius) != (drawn, radius) {
+                (cell.z, cell.radius) = (drawn, radius);
+                changed.push(vertex as u16);
+            }
+        }
+        for &vertex in &changed {
+            if self.cells[vertex as usize].link.list != NONE {
+                self.wheel.remove(&mut self.cells, vertex);
+            }
+        }
+        self.todo.extend(changed.into_iter().filter(|&vertex| !topology.is_corner(vertex)));
+    }
+
+    /// How many active children a vertex counts.
+    pub(super) fn active_children(&self, vertex: u16) -> usize {
+        usize::from(self.cells[vertex as usize].flags / ONE_CHILD)
+    }
+
+    /// Whether a vertex waits in the wheel.
+    pub(super) fn is_waiting(&self, vertex: u16) -> bool {
+        self.cells[vertex as usize].link.list != NONE
+    }
+
+    /// Where a triangle is in the index list.
+    pub(super) fn slot(&self, triangle: u32) -> Option<usize> {
+        let slot = self.cells[(triangle / 4) as usize].slots[(triangle % 4) as usize];
+        (slot != NONE).then_some(slot as usize)
+    }
+
+    /// Whether only the root triangles are shown and nothing is active.
+    pub fn is_flat(&self, topology: &Topology) -> bool {
+        !self.is_active(topology.center())
+    }
+
+    pub(super) fn sphere(&self, node: &Node, vertex: u16) -> [f32; 4] {
+        let cell = &self.cells[vertex as usize];
+        [self.plan[0][node.at[0] as usize], self.plan[1][node.at[1] as usize], cell.z, cell.radius]
+    }
+
+    /// Decides about a vertex that is in no list, and puts it where it is decided next.
+    fn examine(&mut self, topology: &Topology, station: &Station, vertex: u16) {
+        let node = &topology.nodes()[vertex as usize];
+        let cell = &self.cells[vertex as usize];
+        let active = cell.flags & ACTIVE != 0;
+        let may_change = if active { cell.flags < ONE_CHILD } else { self.may_split(node) };
+        if !may_change || cell.link.list != NONE {
+            return;
+        }
+        self.counts.examined += 1;
+        let inside = station.inside_m(self.sphere(node, vertex));
+        match (active, inside > 0.0) {
+            (false, true) => self.activate(topology, node, vertex),
+            (true, false) => self.deactivate(topology, node, vertex),
+            _ => {}
+        }
+        if inside != f64::NEG_INFINITY {
+            self.wheel.put(&mut self.cells, vertex, station.due(inside.abs()));
+        }
+    }
+
+    /// Whether the parents of an inactive vertex are active; one outside the patch is, if the vertex's sphere says
+    /// so.
+    pub(super) fn may_split(&self, node: &Node) -> bool {
+        let ready = |parent: u16| parent == NONE || self.is_active(parent);
+        ready(node.ring[1]) && ready(node.ring[3])
+    }
+
+    fn activate(&mut self, topology: &Topology, node: &Node, vertex: u16) {
+        self.counts.splits += 1;
+        self.cells[vertex as usize].flags |= ACTIVE;
+        for side in 0..2 {
+            let parent = node.ring[2 * side + 1];
+            if parent == NONE {
+                continue;
+            }
+            self.cells[parent as usize].flags += ONE_CHILD;
+            let [first, second] = halves(node, vertex, side);
+            self.replace(topology, node.splits[side], triangle(vertex, 2 * side), first);
+            self.show(topology, second, triangle(vertex, 2 * side + 1));
+        }
+        for child in node.children {
+            if child != NONE && self.cells[child as usize].link.list == NONE {
+                self.todo.push(child);
+            }
+        }
+    }
+
+    fn deactivate(&mut self, topology: &Topology, node: &Node, vertex: u16) {
+        self.counts.merges += 1;
+        self.cells[vertex as usize].flags &= !ACTIVE;
+        for side in 0..2 {
+            let parent = node.ring[2 * side + 1];
+            if parent == NONE {
+                continue;
+            }
+            self.hide(triangle(vertex, 2 * side + 1));
+            let whole = [parent, node.ring[(2 * side + 2) % 4], node.ring[2 * side]];
+            self.replace(topology, triangle(vertex, 2 * side), node.splits[side], whole);
+            let above = &mut self.cells[parent as usize];
+            above.flags -= ONE_CHILD;
+            let may_merge = above.flags < ONE_CHILD && above.flags & CORNER == 0;
+            if may_merge && above.link.list == NONE {
+                self.todo.push(parent);
+            }
+        }
+    }
+
+    /// Shows a triangle in the place of another.
+    fn replace(&mut self, topology: &Topology, old: u32, new: u32, corners: [u16; 3]) {
+        let slot = self.cells[(old / 4) as usize].slots[(old % 4) as usize];
+        if slot == NONE || self.partial {
+            self.hide(old);
+            self.show(topology, corners, new);
+            return;
+        }
+        self.cells[(old / 4) as usize].slots[(old % 4) as usize] = NONE;
+        self.cells[(new / 4) as usize].slots[(new % 4) as usize] = slot;
+        self.indices[slot as usize] = corners;
+        self.owners[slot as usize] = new;
+    }
+
+    /// Adds a triangle to the index list, unless it lies over no data or has no area.
+    fn show(&mut self, topology: &Topology, corners: [u16; 3], triangle: u32) {
+        if self.partial && self.is_missing(topology, corners) {
+            return;
+        }
+        self.cells[(triangle / 4) as usize].slots[(triangle % 4) as usize] = self.indices.len() as u16;
+        self.indices.push(corners);
+        self.owners.push(triangle);
+    }
+
+    /// Takes a triangle out of the index list; the last one takes its place.
+    fn hide(&mut self, triangle: u32) {
+        let own = &mut self.cells[(triangle / 4) as usize].slots[(triangle % 4) as usize];
+        let slot = std::mem::replace(own, NONE);
+        if slot == NONE {
+            return;
+        }
+        self.indices.swap_remove(slot as usize);
+        self.owners.swap_remove(slot as usize);
+        if let Some(&moved) = self.owners.get(slot as usize) {
+            self.cells[(moved / 4) as usize].slots[(moved % 4) as usize] = slot;
+        }
+    }
+
+    /// Whether a triangle lies over no data, or has no area, as beyond the border of the terrain.
+    pub(super) fn is_missing(&self, topology: &Topology, corners: [u16; 3]) -> bool {
+        let holed = corners.iter().any(|&corner| self.cells[corner as usize].flags & HOLE != 0);
+        holed || self.is_degenerate(topology, corners)
+    }
+
+    /// Whether the corners lie on a line, as they do beyond the border of the terrain.
+    fn is_degenerate(&self, topology: &Topology, corners: [u16; 3]) -> bool {
+        let [a, b, c] = corners.map(|corner| {
+            let [x, y] = topology.nodes()[corner as usize].at;
+            [self.plan[0][x as usize], self.plan[1][y as usize]]
+        });
+        (b[0] - a[0]) * (c[1] - a[1]) == (b[1] - a[1]) * (c[0] - a[0])
+    }
+}
+
+/// The two triangles that activating a vertex makes of the one on its parent's side.
+fn halves(node: &Node, vertex: u16, side: usize) -> [[u16; 3]; 2] {
+    let [first, parent, second] = [2 * side, 2 * side + 1, (2 * side + 2) % 4].map(|at| node.ring[at]);
+    [[vertex, first, parent], [vertex, parent, second]]
+}

@@ -1,0 +1,108 @@
+//! The deferred refiner shows, after any path and any edits, the mesh that is built from the roots for the same eye.
+
+use glam::{DVec2, Vec3};
+use proptest::prelude::*;
+use sandtable::roam::bintree::Triangle;
+use sandtable::roam::block::WholeGround;
+use sandtable::roam::criterion::spheres::Spheres;
+use sandtable::roam::errors::ErrorMap;
+use sandtable::roam::graph::Vertex;
+use sandtable::roam::ground::Ground;
+use sandtable::roam::layout::Layout;
+use sandtable::roam::refine::deferred::Deferred;
+use sandtable::roam::refine::rebuild::rebuild;
+use sandtable::roam::spheres::SphereMap;
+use sandtable::terrain::lattice::Lattice;
+
+fn hills(columns: u32, rows: u32, holes: &[usize]) -> Lattice {
+    let mut heights: Vec<f32> = (0..columns * rows)
+        .map(|index| {
+            let (x, y) = ((index % columns) as f32, (index / columns) as f32);
+            libm::sinf(x * 0.21) * 9.0
+                + libm::cosf(y * 0.17 + x * 0.05) * 14.0
+                + libm::sinf(x * y * 0.9) * 0.8
+        })
+        .collect();
+    for &hole in holes {
+        let count = heights.len();
+        heights[hole % count] = f32::NAN;
+    }
+    Lattice::new(DVec2::ZERO, DVec2::new(10.0, 8.0), columns, heights).expect("sound")
+}
+
+fn spheres(ground: Ground<'_>, reach: f32) -> SphereMap {
+    let errors = ErrorMap::exact(ground.lattice, ground.layout);
+    SphereMap::nested(ground, errors.values().iter().map(|error| error * reach).collect())
+}
+
+/// The triangles of the listed patches as sorted vertex triples: by the bits of a rebuild.
+fn rebuilt(ground: Ground<'_>, map: &SphereMap, eye: Vec3, patches: &[Vertex]) -> Vec<[Vertex; 3]> {
+    let active = rebuild(ground.layout, &Spheres::new(ground, map, eye), patches.iter().copied());
+    let mut found = Vec::new();
+    let mut stack: Vec<Triangle> =
+        patches.iter().flat_map(|&corner| Triangle::roots(corner, ground.layout.patch())).collect();
+    while let Some(triangle) = stack.pop() {
+        if !triangle.is_finest() && active.is_active(triangle.split_vertex()) {
+            stack.extend(triangle.split());
+            continue;
+        }
+        let posts = triangle.corners().map(|corner| ground.layout.post(corner));
+        let [a, b, c] = posts.map(|post| (i64::from(post.column), i64::from(post.row)));
+        let area = (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0);
+        if area != 0 && posts.iter().all(|&post| !ground.lattice.height(post).is_nan()) {
+            let mut corners = triangle.corners();
+            corners.sort_unstable();
+            found.push(corners);
+        }
+    }
+    found.sort_unstable();
+    found
+}
+
+fn shown(walk: &Deferred<WholeGround<'_>>, side: i32) -> Vec<[Vertex; 3]> {
+    let mut found = Vec::new();
+    for &corner in walk.visible() {
+        for triangle in walk.indices(corner) {
+            let at = |index: u16| corner.moved(i32::from(index) % (side + 1), i32::from(index) / (side + 1));
+            let mut corners = triangle.map(at);
+            corners.sort_unstable();
+            found.push(corners);
+        }
+    }
+    found.sort_unstable();
+    found
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn after_any_path_the_mesh_is_that_of_a_rebuild(
+        columns in 10u32..110, rows in 10u32..110,
+        holes in proptest::collection::vec(0usize..12_000, 0..3),
+        reach in 3f32..60.0,
+        path in proptest::collection::vec((0f32..1100.0, 0f32..900.0, 0f32..300.0, 1usize..30, any::<u64>()), 2..6),
+    ) {
+        let lattice = hills(columns, rows, &holes);
+        let layout = Layout::new(columns, rows, 16).expect("sound");
+        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let map = spheres(ground, reach);
+        let mut walk = Deferred::new(WholeGround { ground, spheres: &map }, 8.0).expect("small patches");
+        let all: Vec<Vertex> = layout.patches().collect();
+        let mut eye = Vec3::new(300.0, 300.0, 80.0);
+        for (x, y, z, steps, mask) in path {
+            let to = Vec3::new(x, y, z);
+            // Steps shorten by half each, so that long strides, crawling and standing still all occur.
+            for _ in 0..steps {
+                eye += (to - eye) * 0.5;
+                let patches: Vec<Vertex> = (all.iter().enumerate())
+                    .filter(|(index, _)| mask >> (index % 64) & 1 == 1)
+                    .map(|(_, &corner)| corner)
+                    .collect();
+                walk.update(eye, &patches).expect("in memory");
+                prop_assert_eq!(walk.check(), Ok(()));
+            }
+            prop_assert_eq!(shown(&walk, 16), rebuilt(ground, &map, eye, &walk.visible().to_vec()));
+        }
+    }
+}
