@@ -3,12 +3,13 @@
 use glam::{DVec2, Vec3};
 use proptest::prelude::*;
 use sandtable::roam::bintree::Triangle;
-use sandtable::roam::block::WholeGround;
+use sandtable::roam::block::{PatchBlock, WholeGround};
 use sandtable::roam::criterion::spheres::Spheres;
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
 use sandtable::roam::ground::Ground;
 use sandtable::roam::layout::Layout;
+use sandtable::roam::refine::Changes;
 use sandtable::roam::refine::deferred::Deferred;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::roam::spheres::SphereMap;
@@ -105,4 +106,94 @@ proptest! {
             prop_assert_eq!(shown(&walk, 16), rebuilt(ground, &map, eye, &walk.visible().to_vec()));
         }
     }
+}
+
+/// The ground before any edit and after each: a mound or a pit of `height` about a post.
+fn edited(columns: u32, rows: u32, edits: &[(u32, u32, f32)]) -> Vec<Lattice> {
+    let mut states = vec![hills(columns, rows, &[])];
+    for &(column, row, height) in edits {
+        let last = &states[states.len() - 1];
+        let mut heights = last.heights().to_vec();
+        for (index, z) in heights.iter_mut().enumerate() {
+            let (x, y) = (index as u32 % columns, index as u32 / columns);
+            let away = x.abs_diff(column % columns).max(y.abs_diff(row % rows));
+            *z += height * (1.0 - away as f32 / 6.0).max(0.0);
+        }
+        states.push(Lattice::new(DVec2::ZERO, last.cell(), columns, heights).expect("sound"));
+    }
+    states
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn after_any_edits_the_mesh_is_that_of_a_rebuild(
+        columns in 20u32..90, rows in 20u32..90,
+        reach in 3f32..60.0,
+        edits in proptest::collection::vec((0u32..90, 0u32..90, -60f32..60.0), 1..5),
+        stride in 0f32..40.0,
+    ) {
+        let lattices = edited(columns, rows, &edits);
+        let layout = Layout::new(columns, rows, 16).expect("sound");
+        let grounds: Vec<Ground<'_>> =
+            lattices.iter().map(|lattice| Ground { lattice, layout: &layout, exaggeration: 1.5 }).collect();
+        let maps: Vec<SphereMap> = grounds.iter().map(|&ground| spheres(ground, reach)).collect();
+        let all: Vec<Vertex> = layout.patches().collect();
+        let mut walk = Deferred::new(WholeGround { ground: grounds[0], spheres: &maps[0] }, 8.0).expect("small");
+        let mut eye = Vec3::new(250.0, 200.0, 60.0);
+        walk.update(eye, &all).expect("in memory");
+        for state in 1..grounds.len() {
+            let cut = |state: usize, corner| PatchBlock::cut(grounds[state], &maps[state], corner);
+            let dirty: Vec<Vertex> =
+                all.iter().copied().filter(|&corner| cut(state - 1, corner) != cut(state, corner)).collect();
+            *walk.source_mut() = WholeGround { ground: grounds[state], spheres: &maps[state] };
+            walk.edit(&dirty).expect("in memory");
+            eye.x += stride;
+            walk.update(eye, &all).expect("in memory");
+            prop_assert_eq!(walk.check(), Ok(()));
+            prop_assert_eq!(shown(&walk, 16), rebuilt(grounds[state], &maps[state], eye, &all));
+        }
+    }
+}
+
+#[test]
+fn an_eye_at_rest_changes_nothing_and_looks_at_nothing() {
+    let lattice = hills(80, 80, &[]);
+    let layout = Layout::new(80, 80, 16).expect("sound");
+    let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+    let map = spheres(ground, 30.0);
+    let mut walk = Deferred::new(WholeGround { ground, spheres: &map }, 8.0).expect("small patches");
+    let all: Vec<Vertex> = layout.patches().collect();
+    let eye = Vec3::new(300.0, 300.0, 50.0);
+    assert!(walk.update(eye, &all).expect("in memory").splits > 100);
+    assert_eq!(walk.update(eye, &all).expect("in memory"), &Changes::default());
+    assert_eq!(walk.examined(), 0);
+}
+
+#[test]
+fn patches_out_of_view_can_be_forgotten_and_come_back_the_same() {
+    let lattice = hills(120, 120, &[]);
+    let layout = Layout::new(120, 120, 16).expect("sound");
+    let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+    let map = spheres(ground, 60.0);
+    let mut walk = Deferred::new(WholeGround { ground, spheres: &map }, 8.0).expect("small patches");
+    let all: Vec<Vertex> = layout.patches().collect();
+    let eye = Vec3::new(500.0, 500.0, 50.0);
+    walk.update(eye, &all).expect("in memory");
+    let (meshes, before) = (walk.meshes(), shown(&walk, 16));
+    walk.update(eye, &all[..20]).expect("in memory");
+    walk.forget(25);
+    assert!(meshes > 25 && walk.meshes() == 25, "{meshes} meshes, then {}", walk.meshes());
+    walk.update(eye, &all).expect("in memory");
+    assert_eq!(shown(&walk, 16), before);
+}
+
+#[test]
+fn patches_with_more_vertices_than_a_u16_counts_are_refused() {
+    let lattice = hills(300, 300, &[]);
+    let layout = Layout::new(300, 300, 256).expect("sound");
+    let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+    let map = SphereMap::nested(ground, vec![0.0; layout.vertex_count()]);
+    assert!(Deferred::new(WholeGround { ground, spheres: &map }, 8.0).is_none());
 }

@@ -87,16 +87,32 @@ impl PatchBlock {
     /// The patch with south-west corner `corner` of a ground in memory.
     pub fn cut(ground: Ground<'_>, spheres: &SphereMap, corner: Vertex) -> Self {
         let side = ground.layout.patch() + 1;
-        let along = |step: fn(i32) -> Vertex, axis: fn(Vec2) -> f32| -> Vec<f32> {
-            (0..side).map(|at| axis(ground.plan(corner.moved(step(at).x, step(at).y)))).collect()
-        };
-        let plan = [along(|at| Vertex::new(at, 0), |at| at.x), along(|at| Vertex::new(0, at), |at| at.y)];
-        let vertices = || (0..side).flat_map(move |y| (0..side).map(move |x| corner.moved(x, y)));
-        let z = |vertex| ground.lattice.height(ground.layout.post(vertex)) * ground.exaggeration;
-        Self {
+        let plan = [
+            (0..side).map(|x| ground.plan(corner.moved(x, 0)).x).collect(),
+            (0..side).map(|y| ground.plan(corner.moved(0, y)).y).collect(),
+        ];
+        let mut block = Self {
             plan,
-            z: vertices().map(z).collect(),
-            radii: vertices().map(|vertex| spheres.at(ground.layout, vertex)).collect(),
+            z: Vec::with_capacity((side * side) as usize),
+            radii: Vec::with_capacity((side * side) as usize),
+        };
+        for y in 0..side {
+            block.append_row(ground, spheres, corner.moved(0, y));
         }
+        block
+    }
+
+    /// Appends the vertices from `first` to the end of the row in its patch.
+    fn append_row(&mut self, ground: Ground<'_>, spheres: &SphereMap, first: Vertex) {
+        let side = ground.layout.patch() as usize + 1;
+        let start = ground.layout.index(first);
+        self.radii.extend_from_slice(&spheres.values()[start..start + side]);
+        let (from, to) = (first, first.moved(side as i32 - 1, 0));
+        let (from, to) = (ground.layout.post(from), ground.layout.post(to));
+        let row = &ground.lattice.heights()[ground.lattice.index(from)..=ground.lattice.index(to)];
+        self.z.extend(row.iter().map(|height| height * ground.exaggeration));
+        // Vertices beyond the east border stand for the last post.
+        let last = self.z[self.z.len() - 1];
+        self.z.extend(std::iter::repeat_n(last, side - row.len()));
     }
 }

@@ -41,8 +41,8 @@ pub const LARGEST_PATCH: i32 = 128;
 #[derive(Debug, Default)]
 struct Shown {
     mesh: Option<Box<PatchMesh>>,
-    /// A patch without a mesh of its own may need one from this tick on.
-    root_due: u64,
+    /// The tick before which nothing can change in the patch.
+    due: u64,
     /// The update in which it was last listed.
     seen: u64,
 }
@@ -58,6 +58,8 @@ pub struct Deferred<S> {
     spare: Vec<Box<PatchMesh>>,
     visible: Vec<Vertex>,
     station: Station,
+    /// Whether the listed patches are right for where the eye is.
+    settled: bool,
     frame: u64,
     changes: Changes,
     examined: usize,
@@ -84,6 +86,7 @@ impl<S: BlockSource> Deferred<S> {
             visible: Vec::new(),
             // The first tick is past 0, so that a patch never looked at is due.
             station: Station { eye: Vec3::NAN, travelled: 1.0, ticks_per_m: TICKS_PER_POST / cell_m },
+            settled: false,
             frame: 0,
             changes: Changes::default(),
             examined: 0,
@@ -95,17 +98,22 @@ impl<S: BlockSource> Deferred<S> {
     /// # Errors
     /// Where a patch cannot be had; the patches before it are up to date, and the update can be asked for again.
     pub fn update(&mut self, eye: Vec3, visible: &[Vertex]) -> Result<&Changes, BlockError> {
-        self.travel_to(eye);
-        self.frame += 1;
         self.changes.splits = 0;
         self.changes.merges = 0;
         self.changes.dirty.clear();
         self.examined = 0;
+        if self.settled && eye == self.station.eye && visible == self.visible {
+            return Ok(&self.changes);
+        }
+        self.settled = false;
+        self.travel_to(eye);
+        self.frame += 1;
         self.visible.clear();
         self.visible.extend_from_slice(visible);
         for &corner in visible {
             self.update_patch(corner)?;
         }
+        self.settled = true;
         Ok(&self.changes)
     }
 
@@ -156,9 +164,10 @@ impl<S: BlockSource> Deferred<S> {
     /// # Errors
     /// Where a patch cannot be had.
     pub fn edit(&mut self, dirty: &[Vertex]) -> Result<(), BlockError> {
+        self.settled = false;
         for &corner in dirty {
             let index = self.layout.patch_index(corner);
-            self.patches[index].root_due = 0;
+            self.patches[index].due = 0;
             if self.patches[index].mesh.is_some() {
                 let block = self.source.block(corner)?;
                 let topology = &self.topologies[parity(&self.layout, corner)];
@@ -191,7 +200,7 @@ impl<S: BlockSource> Deferred<S> {
         let surplus = self.meshes().saturating_sub(most);
         for (_, index) in held.into_iter().take(surplus) {
             self.patches[index].mesh = None;
-            self.patches[index].root_due = 0;
+            self.patches[index].due = 0;
         }
         self.spare.clear();
     }
@@ -226,14 +235,14 @@ impl<S: BlockSource> Deferred<S> {
         let index = self.layout.patch_index(corner);
         let shown = &mut self.patches[index];
         shown.seen = self.frame;
+        if shown.due > self.station.tick() {
+            return Ok(());
+        }
         if shown.mesh.is_none() {
-            if shown.root_due > self.station.tick() {
-                return Ok(());
-            }
             let root = self.source.root(corner);
             let inside = self.station.inside_m([root.center.x, root.center.y, root.center.z, root.radius]);
             if inside <= 0.0 {
-                shown.root_due = self.station.due(-inside);
+                shown.due = self.station.due(-inside);
                 return Ok(());
             }
             self.found_mesh(corner, index)?;
@@ -257,6 +266,7 @@ impl<S: BlockSource> Deferred<S> {
         let shown = &mut self.patches[index];
         let Some(mesh) = &mut shown.mesh else { return };
         let counts = mesh.update(topology, &self.station);
+        shown.due = mesh.next_tick();
         self.examined += counts.examined;
         if counts.splits + counts.merges > 0 {
             self.changes.splits += counts.splits;
@@ -264,7 +274,7 @@ impl<S: BlockSource> Deferred<S> {
             self.changes.dirty.push(index);
             if mesh.is_flat(topology) {
                 self.spare.extend(shown.mesh.take());
-                shown.root_due = 0;
+                shown.due = 0;
             }
         }
     }

@@ -94,6 +94,7 @@ pub struct PatchMesh {
     /// Whether some triangle of the patch must not be shown: over no data, or beyond the terrain's border.
     partial: bool,
     todo: Vec<u16>,
+    measured: Vec<f64>,
     counts: Counts,
 }
 
@@ -114,6 +115,7 @@ impl PatchMesh {
             owners: Vec::new(),
             partial: false,
             todo: Vec::new(),
+            measured: Vec::new(),
             counts: Counts::default(),
         };
         mesh.reset(topology, block, 0);
@@ -161,13 +163,22 @@ impl PatchMesh {
     /// Brings the patch to where the eye is.
     pub fn update(&mut self, topology: &Topology, station: &Station) -> Counts {
         self.counts = Counts::default();
-        if !(self.todo.is_empty() && self.wheel.is_idle(station.tick())) {
-            self.wheel.take_due(&mut self.cells, station.tick(), &mut self.todo);
-            while let Some(vertex) = self.todo.pop() {
-                self.examine(topology, station, vertex);
-            }
+        self.wheel.take_due(&mut self.cells, station.tick(), &mut self.todo);
+        self.measure(topology, station);
+        for at in 0..self.measured.len() {
+            self.decide(topology, station, self.todo[at], self.measured[at]);
+        }
+        self.todo.drain(..self.measured.len());
+        while let Some(vertex) = self.todo.pop() {
+            let inside = station.inside_m(self.sphere(&topology.nodes()[vertex as usize], vertex));
+            self.decide(topology, station, vertex, inside);
         }
         self.counts
+    }
+
+    /// The first tick at which an update may change anything, if nothing is edited before.
+    pub fn next_tick(&self) -> u64 {
+        self.wheel.next()
     }
 
     /// Turns the patch into one whose heights or spheres were edited, at the same tick; what changed is looked at in
@@ -220,8 +231,21 @@ impl PatchMesh {
         [self.plan[0][node.at[0] as usize], self.plan[1][node.at[1] as usize], cell.z, cell.radius]
     }
 
+    /// How far the eye is inside the spheres of all that is to do: measured before anything is decided, since reads
+    /// that do not wait for decisions overlap, and most of them miss the cache.
+    fn measure(&mut self, topology: &Topology, station: &Station) {
+        let mut measured = std::mem::take(&mut self.measured);
+        measured.clear();
+        measured.extend(
+            self.todo
+                .iter()
+                .map(|&vertex| station.inside_m(self.sphere(&topology.nodes()[vertex as usize], vertex))),
+        );
+        self.measured = measured;
+    }
+
     /// Decides about a vertex that is in no list, and puts it where it is decided next.
-    fn examine(&mut self, topology: &Topology, station: &Station, vertex: u16) {
+    fn decide(&mut self, topology: &Topology, station: &Station, vertex: u16, inside: f64) {
         let node = &topology.nodes()[vertex as usize];
         let cell = &self.cells[vertex as usize];
         let active = cell.flags & ACTIVE != 0;
@@ -230,7 +254,6 @@ impl PatchMesh {
             return;
         }
         self.counts.examined += 1;
-        let inside = station.inside_m(self.sphere(node, vertex));
         match (active, inside > 0.0) {
             (false, true) => self.activate(topology, node, vertex),
             (true, false) => self.deactivate(topology, node, vertex),

@@ -64,9 +64,19 @@ impl Wheel {
         self.now
     }
 
-    /// Whether [`Wheel::take_due`] would find something at tick `now`, or something might change before the next.
-    pub fn is_idle(&self, now: u64) -> bool {
-        self.heads[NEXT_TIME] == NONE && self.due_slots(0, now) == 0 && (self.now ^ now) >> SHIFT == 0
+    /// The first tick at which [`Wheel::take_due`] may find something: now, if something may change before the next
+    /// tick; the farthest there is, if the wheel is empty.
+    pub fn next(&self) -> u64 {
+        if self.heads[NEXT_TIME] != NONE {
+            return self.now;
+        }
+        let begin = |level: usize| {
+            let shift = level as u32 * SHIFT;
+            let slot = self.now >> shift;
+            let ahead = self.filled[level].rotate_right((slot % SLOTS) as u32).trailing_zeros();
+            (slot + u64::from(ahead)) << shift
+        };
+        (0..LEVELS).filter(|&level| self.filled[level] != 0).map(begin).min().unwrap_or(u64::MAX)
     }
 
     /// Puts `vertex`, which is in no list, where it is handed out at tick `due` or up to a sixteenth of the way
@@ -175,9 +185,10 @@ mod tests {
                 let last = now;
                 now += stride;
                 let mut due = Vec::new();
-                let idle = wheel.is_idle(now);
+                let next = wheel.next();
                 wheel.take_due(&mut links, now, &mut due);
-                prop_assert!(!idle || due.is_empty());
+                prop_assert!(next <= now || due.is_empty(), "{next} was too late");
+                prop_assert!(next > now || !due.is_empty(), "{next} was too early");
                 waiting -= due.len();
                 for vertex in due {
                     let ahead = ahead[vertex as usize];
