@@ -12,7 +12,7 @@ impl PatchMesh {
     /// A sentence naming the first flaw.
     pub fn check(&self, topology: &Topology, station: &Station) -> Result<(), String> {
         for (vertex, node) in topology.nodes().iter().enumerate() {
-            if !topology.is_corner(vertex as u16) {
+            if !Topology::is_corner(vertex as u16) {
                 self.check_vertex(topology, station, vertex as u16, node)?;
             }
         }
@@ -26,13 +26,17 @@ impl PatchMesh {
         vertex: u16,
         node: &Node,
     ) -> Result<(), String> {
-        let flaw = |what: &str| Err(format!("vertex {:?} {what}", node.at));
+        let flaw = |what: &str| Err(format!("vertex {:?} {what}", topology.places()[vertex as usize]));
         let active = self.is_active(vertex);
-        let inside = station.inside_m(self.sphere(node, vertex)) > 0.0;
-        if active && !self.may_split(node) {
+        let inside = station.inside_m(self.sphere(topology, vertex)) > 0.0;
+        let ready = |parent: u16| parent == NONE || self.is_active(parent);
+        if self.may_split(vertex) != (ready(node.ring[1]) && ready(node.ring[3])) {
+            return flaw("counts its active parents wrongly");
+        }
+        if active && !self.may_split(vertex) {
             return flaw("is active without a parent");
         }
-        if active != (inside && self.may_split(node)) {
+        if active != (inside && self.may_split(vertex)) {
             return flaw("is not as the eye's place asks");
         }
         // A vertex on the border is also a child of a middle in the next patch, and splits nothing there.
@@ -41,8 +45,11 @@ impl PatchMesh {
         if children != self.active_children(vertex) {
             return flaw("counts its active children wrongly");
         }
-        let may_change = if active { children == 0 } else { self.may_split(node) };
-        if may_change && !self.is_waiting(vertex) && station.inside_m(self.sphere(node, vertex)).is_finite() {
+        let may_change = if active { children == 0 } else { self.may_split(vertex) };
+        if may_change
+            && !self.is_waiting(vertex)
+            && station.inside_m(self.sphere(topology, vertex)).is_finite()
+        {
             return flaw("could change next but is not waited for");
         }
         let leaves = (0..4).filter(|&side| self.is_leaf(topology, vertex, side)).count();

@@ -132,12 +132,19 @@ impl<S: BlockSource> Deferred<S> {
         self.examined
     }
 
-    /// The triangles shown of a patch: numbers of its vertices, row by row from the south-west, counter-clockwise.
+    /// The triangles shown of a patch: corners by number, counter-clockwise. Vertices are numbered as [`Topology`]
+    /// numbers them, the same for all patches of one orientation; [`Deferred::vertex`] tells which is which.
     pub fn indices(&self, corner: Vertex) -> &[[u16; 3]] {
         match &self.patches[self.layout.patch_index(corner)].mesh {
             Some(mesh) => mesh.indices(),
             None => self.topology(corner).flat(),
         }
+    }
+
+    /// The vertex with a number in the patch with south-west corner `corner`.
+    pub fn vertex(&self, corner: Vertex, number: u16) -> Vertex {
+        let [column, row] = self.topology(corner).places()[number as usize].map(i32::from);
+        corner.moved(column, row)
     }
 
     /// How many triangles the listed patches show.
@@ -151,8 +158,8 @@ impl<S: BlockSource> Deferred<S> {
         let side = self.layout.patch() + 1;
         for &corner in &self.visible {
             let Some(mesh) = &self.patches[self.layout.patch_index(corner)].mesh else { continue };
-            for at in (0..side * side).filter(|&at| mesh.is_active(at as u16)) {
-                active.activate(corner.moved(at % side, at / side));
+            for number in (0..(side * side) as u16).filter(|&number| mesh.is_active(number)) {
+                active.activate(self.vertex(corner, number));
             }
         }
         active
@@ -272,7 +279,7 @@ impl<S: BlockSource> Deferred<S> {
             self.changes.splits += counts.splits;
             self.changes.merges += counts.merges;
             self.changes.dirty.push(index);
-            if mesh.is_flat(topology) {
+            if mesh.is_flat() {
                 self.spare.extend(shown.mesh.take());
                 shown.due = 0;
             }

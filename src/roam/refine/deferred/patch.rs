@@ -11,7 +11,7 @@
 use glam::Vec3;
 
 use crate::roam::block::PatchBlock;
-use crate::roam::refine::deferred::topology::{NONE, Node, Topology, triangle};
+use crate::roam::refine::deferred::topology::{CENTER, NONE, Node, Topology, triangle};
 use crate::roam::refine::deferred::wheel::{Link, Links, Wheel};
 
 /// Slack is shortened by this share before it is turned into ticks: more than all rounding on the way.
@@ -22,8 +22,13 @@ const ACTIVE: u8 = 1;
 const CORNER: u8 = 2;
 /// No triangle is shown that has this corner: it has no data.
 const HOLE: u8 = 4;
+/// Counts parents that are active, two of them; one outside the patch counts, since the vertex's own sphere says
+/// whether it is.
+const ONE_PARENT: u8 = 8;
+const BOTH_PARENTS: u8 = 2 * ONE_PARENT;
+const PARENTS: u8 = 3 * ONE_PARENT;
 /// Counts active children, of which there are at most four.
-const ONE_CHILD: u8 = 8;
+const ONE_CHILD: u8 = 32;
 
 /// Where the eye is and how far it has come.
 #[derive(Clone, Copy, Debug)]
@@ -62,12 +67,11 @@ impl Station {
     }
 }
 
-/// One vertex: what it is, where it is, where it waits, where its triangles are in the index list.
+/// One vertex: where its sphere is, where it waits, what it is. Sixteen bytes, so that a line of the cache holds four.
 #[derive(Clone, Copy, Debug)]
 struct Cell {
     z: f32,
     radius: f32,
-    slots: [u16; 4],
     link: Link,
     flags: u8,
 }
@@ -87,6 +91,8 @@ pub struct Counts {
 #[derive(Clone, Debug)]
 pub struct PatchMesh {
     cells: Vec<Cell>,
+    /// Where each vertex's four triangles are in the index list.
+    slots: Vec<[u16; 4]>,
     plan: [Vec<f32>; 2],
     wheel: Wheel,
     indices: Vec<[u16; 3]>,
@@ -109,6 +115,7 @@ impl PatchMesh {
     pub fn new(topology: &Topology, block: &PatchBlock) -> Self {
         let mut mesh = Self {
             cells: Vec::new(),
+            slots: Vec::new(),
             plan: [Vec::new(), Vec::new()],
             wheel: Wheel::new(0),
             indices: Vec::new(),
@@ -126,13 +133,17 @@ impl PatchMesh {
     pub fn reset(&mut self, topology: &Topology, block: &PatchBlock, now: u64) {
         self.plan.clone_from(&block.plan);
         self.cells.clear();
-        self.cells.extend(block.z.iter().zip(&block.radii).map(|(&z, &radius)| Cell {
-            z: if z.is_nan() { 0.0 } else { z },
-            radius,
-            slots: [NONE; 4],
-            link: Link::FREE,
-            flags: if z.is_nan() { HOLE } else { 0 },
+        self.cells.extend(topology.nodes().iter().enumerate().map(|(vertex, node)| {
+            let at = topology.row_major(vertex as u16);
+            let z = block.z[at];
+            let absent = u8::from(node.ring[1] == NONE) + u8::from(node.ring[3] == NONE);
+            let hole = if z.is_nan() { HOLE } else { 0 };
+            let flags = hole | (absent * ONE_PARENT);
+            Cell { z: if z.is_nan() { 0.0 } else { z }, radius: block.radii[at], link: Link::FREE, flags }
         }));
+        self.cells[CENTER as usize].flags |= BOTH_PARENTS;
+        self.slots.clear();
+        self.slots.resize(self.cells.len(), [NONE; 4]);
         let clipped = self.plan.iter().any(|along| along.windows(2).any(|pair| pair[0] == pair[1]));
         self.partial = clipped || block.z.iter().any(|z| z.is_nan());
         self.wheel = Wheel::new(now);
@@ -147,10 +158,10 @@ impl PatchMesh {
             self.show(topology, root, triangle(root[0], 0));
         }
         self.todo.clear();
-        self.todo.push(topology.center());
+        self.todo.push(CENTER);
     }
 
-    /// The triangles shown: corners by number in the patch, row by row from the south-west, counter-clockwise.
+    /// The triangles shown: corners by number in the patch (see [`Topology`]), counter-clockwise.
     pub fn indices(&self) -> &[[u16; 3]] {
         &self.indices
     }
@@ -170,7 +181,7 @@ impl PatchMesh {
         }
         self.todo.drain(..self.measured.len());
         while let Some(vertex) = self.todo.pop() {
-            let inside = station.inside_m(self.sphere(&topology.nodes()[vertex as usize], vertex));
+            let inside = station.inside_m(self.sphere(topology, vertex));
             self.decide(topology, station, vertex, inside);
         }
         self.counts
@@ -185,12 +196,14 @@ impl PatchMesh {
     /// the next update.
     pub fn edit(&mut self, topology: &Topology, block: &PatchBlock) {
         let is_hole = |cell: &Cell| cell.flags & HOLE != 0;
-        if self.cells.iter().zip(&block.z).any(|(cell, z)| is_hole(cell) != z.is_nan()) {
+        let row_major = |vertex: usize| topology.row_major(vertex as u16);
+        let holed = |(vertex, cell): (usize, &Cell)| is_hole(cell) != block.z[row_major(vertex)].is_nan();
+        if self.cells.iter().enumerate().any(holed) {
             return self.reset(topology, block, self.wheel.now());
         }
         let mut changed = Vec::new();
-        for (vertex, (&z, &radius)) in block.z.iter().zip(&block.radii).enumerate() {
-            let cell = &mut self.cells[vertex];
+        for (vertex, cell) in self.cells.iter_mut().enumerate() {
+            let (z, radius) = (block.z[row_major(vertex)], block.radii[row_major(vertex)]);
             let drawn = if z.is_nan() { 0.0 } else { z };
             if (cell.z, cell.radius) != (drawn, radius) {
                 (cell.z, cell.radius) = (drawn, radius);
@@ -202,7 +215,7 @@ impl PatchMesh {
                 self.wheel.remove(&mut self.cells, vertex);
             }
         }
-        self.todo.extend(changed.into_iter().filter(|&vertex| !topology.is_corner(vertex)));
+        self.todo.extend(changed.into_iter().filter(|&vertex| !Topology::is_corner(vertex)));
     }
 
     /// How many active children a vertex counts.
@@ -217,18 +230,19 @@ impl PatchMesh {
 
     /// Where a triangle is in the index list.
     pub(super) fn slot(&self, triangle: u32) -> Option<usize> {
-        let slot = self.cells[(triangle / 4) as usize].slots[(triangle % 4) as usize];
+        let slot = self.slots[(triangle / 4) as usize][(triangle % 4) as usize];
         (slot != NONE).then_some(slot as usize)
     }
 
     /// Whether only the root triangles are shown and nothing is active.
-    pub fn is_flat(&self, topology: &Topology) -> bool {
-        !self.is_active(topology.center())
+    pub fn is_flat(&self) -> bool {
+        !self.is_active(CENTER)
     }
 
-    pub(super) fn sphere(&self, node: &Node, vertex: u16) -> [f32; 4] {
+    pub(super) fn sphere(&self, topology: &Topology, vertex: u16) -> [f32; 4] {
         let cell = &self.cells[vertex as usize];
-        [self.plan[0][node.at[0] as usize], self.plan[1][node.at[1] as usize], cell.z, cell.radius]
+        let [column, row] = topology.places()[vertex as usize];
+        [self.plan[0][column as usize], self.plan[1][row as usize], cell.z, cell.radius]
     }
 
     /// How far the eye is inside the spheres of all that is to do: measured before anything is decided, since reads
@@ -236,27 +250,22 @@ impl PatchMesh {
     fn measure(&mut self, topology: &Topology, station: &Station) {
         let mut measured = std::mem::take(&mut self.measured);
         measured.clear();
-        measured.extend(
-            self.todo
-                .iter()
-                .map(|&vertex| station.inside_m(self.sphere(&topology.nodes()[vertex as usize], vertex))),
-        );
+        measured.extend(self.todo.iter().map(|&vertex| station.inside_m(self.sphere(topology, vertex))));
         self.measured = measured;
     }
 
     /// Decides about a vertex that is in no list, and puts it where it is decided next.
     fn decide(&mut self, topology: &Topology, station: &Station, vertex: u16, inside: f64) {
-        let node = &topology.nodes()[vertex as usize];
         let cell = &self.cells[vertex as usize];
         let active = cell.flags & ACTIVE != 0;
-        let may_change = if active { cell.flags < ONE_CHILD } else { self.may_split(node) };
+        let may_change = if active { cell.flags < ONE_CHILD } else { cell.flags & PARENTS == BOTH_PARENTS };
         if !may_change || cell.link.list != NONE {
             return;
         }
         self.counts.examined += 1;
         match (active, inside > 0.0) {
-            (false, true) => self.activate(topology, node, vertex),
-            (true, false) => self.deactivate(topology, node, vertex),
+            (false, true) => self.activate(topology, vertex),
+            (true, false) => self.deactivate(topology, vertex),
             _ => {}
         }
         if inside != f64::NEG_INFINITY {
@@ -264,14 +273,13 @@ impl PatchMesh {
         }
     }
 
-    /// Whether the parents of an inactive vertex are active; one outside the patch is, if the vertex's sphere says
-    /// so.
-    pub(super) fn may_split(&self, node: &Node) -> bool {
-        let ready = |parent: u16| parent == NONE || self.is_active(parent);
-        ready(node.ring[1]) && ready(node.ring[3])
+    /// Whether the parents of a vertex are active.
+    pub(super) fn may_split(&self, vertex: u16) -> bool {
+        self.cells[vertex as usize].flags & PARENTS == BOTH_PARENTS
     }
 
-    fn activate(&mut self, topology: &Topology, node: &Node, vertex: u16) {
+    fn activate(&mut self, topology: &Topology, vertex: u16) {
+        let node = &topology.nodes()[vertex as usize];
         self.counts.splits += 1;
         self.cells[vertex as usize].flags |= ACTIVE;
         for side in 0..2 {
@@ -284,16 +292,22 @@ impl PatchMesh {
             self.replace(topology, node.splits[side], triangle(vertex, 2 * side), first);
             self.show(topology, second, triangle(vertex, 2 * side + 1));
         }
-        for child in node.children {
-            if child != NONE && self.cells[child as usize].link.list == NONE {
+        for child in node.children.into_iter().filter(|&child| child != NONE) {
+            let below = &mut self.cells[child as usize];
+            below.flags += ONE_PARENT;
+            if below.flags & PARENTS == BOTH_PARENTS && below.link.list == NONE {
                 self.todo.push(child);
             }
         }
     }
 
-    fn deactivate(&mut self, topology: &Topology, node: &Node, vertex: u16) {
+    fn deactivate(&mut self, topology: &Topology, vertex: u16) {
+        let node = &topology.nodes()[vertex as usize];
         self.counts.merges += 1;
         self.cells[vertex as usize].flags &= !ACTIVE;
+        for child in node.children.into_iter().filter(|&child| child != NONE) {
+            self.cells[child as usize].flags -= ONE_PARENT;
+        }
         for side in 0..2 {
             let parent = node.ring[2 * side + 1];
             if parent == NONE {
@@ -313,14 +327,14 @@ impl PatchMesh {
 
     /// Shows a triangle in the place of another.
     fn replace(&mut self, topology: &Topology, old: u32, new: u32, corners: [u16; 3]) {
-        let slot = self.cells[(old / 4) as usize].slots[(old % 4) as usize];
+        let slot = self.slots[(old / 4) as usize][(old % 4) as usize];
         if slot == NONE || self.partial {
             self.hide(old);
             self.show(topology, corners, new);
             return;
         }
-        self.cells[(old / 4) as usize].slots[(old % 4) as usize] = NONE;
-        self.cells[(new / 4) as usize].slots[(new % 4) as usize] = slot;
+        self.slots[(old / 4) as usize][(old % 4) as usize] = NONE;
+        self.slots[(new / 4) as usize][(new % 4) as usize] = slot;
         self.indices[slot as usize] = corners;
         self.owners[slot as usize] = new;
     }
@@ -330,14 +344,14 @@ impl PatchMesh {
         if self.partial && self.is_missing(topology, corners) {
             return;
         }
-        self.cells[(triangle / 4) as usize].slots[(triangle % 4) as usize] = self.indices.len() as u16;
+        self.slots[(triangle / 4) as usize][(triangle % 4) as usize] = self.indices.len() as u16;
         self.indices.push(corners);
         self.owners.push(triangle);
     }
 
     /// Takes a triangle out of the index list; the last one takes its place.
     fn hide(&mut self, triangle: u32) {
-        let own = &mut self.cells[(triangle / 4) as usize].slots[(triangle % 4) as usize];
+        let own = &mut self.slots[(triangle / 4) as usize][(triangle % 4) as usize];
         let slot = std::mem::replace(own, NONE);
         if slot == NONE {
             return;
@@ -345,7 +359,7 @@ impl PatchMesh {
         self.indices.swap_remove(slot as usize);
         self.owners.swap_remove(slot as usize);
         if let Some(&moved) = self.owners.get(slot as usize) {
-            self.cells[(moved / 4) as usize].slots[(moved % 4) as usize] = slot;
+            self.slots[(moved / 4) as usize][(moved % 4) as usize] = slot;
         }
     }
 
@@ -358,7 +372,7 @@ impl PatchMesh {
     /// Whether the corners lie on a line, as they do beyond the border of the terrain.
     fn is_degenerate(&self, topology: &Topology, corners: [u16; 3]) -> bool {
         let [a, b, c] = corners.map(|corner| {
-            let [x, y] = topology.nodes()[corner as usize].at;
+            let [x, y] = topology.places()[corner as usize];
             [self.plan[0][x as usize], self.plan[1][y as usize]]
         });
         (b[0] - a[0]) * (c[1] - a[1]) == (b[1] - a[1]) * (c[0] - a[0])

@@ -13,11 +13,17 @@
 //!
 //! Arithmetic could tell all this again for every vertex and frame; a table of 28 bytes a vertex tells it in one
 //! read and stays in the second-level cache.
+//!
+//! Vertices are numbered by level, coarsest first, and row by row within a level: what a patch of a few triangles
+//! reads lies together.
 
-use crate::roam::graph::Vertex;
+use crate::roam::graph::{Kind, Vertex};
 
 /// No vertex, no triangle, no place: outside the patch or not there.
 pub const NONE: u16 = u16::MAX;
+
+/// The middle of the patch, where refinement starts; before it only the four corners are numbered.
+pub const CENTER: u16 = 4;
 
 /// What activation changes around one vertex of a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,8 +34,6 @@ pub struct Node {
     pub children: [u16; 4],
     /// The triangles that it splits, by [`triangle`]: those of parents 1 and 3; meaningless where they are not.
     pub splits: [u32; 2],
-    /// Its column and row in the patch.
-    pub at: [u8; 2],
 }
 
 /// The number of triangle `side` of a vertex. A patch corner owns one triangle, side 0: the root it is apex of.
@@ -37,11 +41,12 @@ pub fn triangle(vertex: u16, side: usize) -> u32 {
     u32::from(vertex) * 4 + side as u32
 }
 
-/// All vertices of a patch, row by row from the south-west.
+/// All vertices of a patch, coarsest level first.
 #[derive(Clone, Debug)]
 pub struct Topology {
     side: i32,
     nodes: Vec<Node>,
+    places: Vec<[u8; 2]>,
     roots: [[u16; 3]; 2],
 }
 
@@ -50,9 +55,10 @@ impl Topology {
     pub fn new(side: i32, corner: Vertex) -> Self {
         // Only the parity of the patch matters, and small coordinates keep away from overflow.
         let corner = Vertex::new((corner.x / side + corner.y / side) % 2 * side, 0);
-        let place = Place { side, corner };
-        let vertices = (0..=side).flat_map(|y| (0..=side).map(move |x| corner.moved(x, y)));
-        let mut nodes: Vec<Node> = vertices.map(|vertex| place.node(vertex)).collect();
+        let place = Place::new(side, corner);
+        let mut nodes: Vec<Node> = place.vertices.iter().map(|&vertex| place.node(vertex)).collect();
+        let places =
+            place.vertices.iter().map(|at| [(at.x - corner.x) as u8, (at.y - corner.y) as u8]).collect();
         for parent in 0..nodes.len() {
             for child in 0..4 {
                 let below = nodes[parent].children[child];
@@ -64,20 +70,25 @@ impl Topology {
         }
         let roots = crate::roam::bintree::Triangle::roots(corner, side)
             .map(|root| root.corners().map(|vertex| place.local(vertex)));
-        let center = place.local(corner.moved(side / 2, side / 2)) as usize;
-        let ring = nodes[center].ring;
-        nodes[center].splits = [triangle(ring[1], 0), triangle(ring[3], 0)];
-        Self { side, nodes, roots }
+        let ring = nodes[CENTER as usize].ring;
+        nodes[CENTER as usize].splits = [triangle(ring[1], 0), triangle(ring[3], 0)];
+        Self { side, nodes, places, roots }
     }
 
-    /// The vertices, row by row from the south-west.
+    /// Column and row in the patch of every vertex, in the order of their numbers.
+    pub fn places(&self) -> &[[u8; 2]] {
+        &self.places
+    }
+
+    /// The vertices in the order of their numbers.
     pub fn nodes(&self) -> &[Node] {
         &self.nodes
     }
 
-    /// The middle of the patch, where refinement starts.
-    pub fn center(&self) -> u16 {
-        (self.nodes.len() / 2) as u16
+    /// A vertex's place in a patch stored row by row.
+    pub fn row_major(&self, vertex: u16) -> usize {
+        let [column, row] = self.places[vertex as usize].map(usize::from);
+        row * (self.side as usize + 1) + column
     }
 
     /// The two root triangles: apex, left, right.
@@ -91,14 +102,14 @@ impl Topology {
     }
 
     /// Whether the vertex is a corner of the patch.
-    pub fn is_corner(&self, vertex: u16) -> bool {
-        self.nodes[vertex as usize].at.iter().all(|&at| at == 0 || i32::from(at) == self.side)
+    pub fn is_corner(vertex: u16) -> bool {
+        vertex < CENTER
     }
 
     /// The vertex that splits a triangle, [`NONE`] for the finest.
     pub fn middle(&self, triangle: u32) -> u16 {
         let (vertex, side) = ((triangle / 4) as u16, (triangle % 4) as usize);
-        if self.is_corner(vertex) { self.center() } else { self.nodes[vertex as usize].children[side] }
+        if Self::is_corner(vertex) { CENTER } else { self.nodes[vertex as usize].children[side] }
     }
 
     /// The corners of a triangle by number.
@@ -112,23 +123,39 @@ impl Topology {
     }
 }
 
-/// Where a patch lies among the vertices.
+/// A patch's vertices by number, and their numbers by place.
 struct Place {
     side: i32,
     corner: Vertex,
+    vertices: Vec<Vertex>,
+    numbers: Vec<u16>,
 }
 
 impl Place {
+    fn new(side: i32, corner: Vertex) -> Self {
+        let mut vertices: Vec<Vertex> =
+            (0..=side).flat_map(|y| (0..=side).map(move |x| corner.moved(x, y))).collect();
+        // On each level squares' centres come before edges' middles.
+        vertices.sort_by_key(|at| {
+            let is_corner = (at.x | at.y) & (side - 1) == 0;
+            if is_corner { (i32::MIN, false) } else { (-at.step(), at.kind() != Kind::Center) }
+        });
+        let mut numbers = vec![NONE; vertices.len()];
+        for (number, at) in vertices.iter().enumerate() {
+            numbers[((at.y - corner.y) * (side + 1) + at.x - corner.x) as usize] = number as u16;
+        }
+        Self { side, corner, vertices, numbers }
+    }
+
     fn local(&self, vertex: Vertex) -> u16 {
         let (x, y) = (vertex.x - self.corner.x, vertex.y - self.corner.y);
         let inside = (0..=self.side).contains(&x) && (0..=self.side).contains(&y);
-        if inside { (y * (self.side + 1) + x) as u16 } else { NONE }
+        if inside { self.numbers[(y * (self.side + 1) + x) as usize] } else { NONE }
     }
 
     fn node(&self, vertex: Vertex) -> Node {
-        let at = [(vertex.x - self.corner.x) as u8, (vertex.y - self.corner.y) as u8];
-        if at.iter().all(|&at| at == 0 || i32::from(at) == self.side) {
-            return Node { ring: [NONE; 4], children: [NONE; 4], splits: [0; 2], at };
+        if Topology::is_corner(self.local(vertex)) {
+            return Node { ring: [NONE; 4], children: [NONE; 4], splits: [0; 2] };
         }
         let [from, to] = vertex.hypotenuse();
         let [parent, other] = vertex.parents();
@@ -143,7 +170,7 @@ impl Place {
                 }
             }
         }
-        Node { ring: ring.map(|corner| self.local(corner)), children, splits: [0; 2], at }
+        Node { ring: ring.map(|corner| self.local(corner)), children, splits: [0; 2] }
     }
 }
 
@@ -155,14 +182,18 @@ mod tests {
     fn the_table_says_what_the_graph_s_arithmetic_says() {
         for corner in [Vertex::new(0, 0), Vertex::new(16, 0), Vertex::new(48, 32)] {
             let topology = Topology::new(16, corner);
-            for (index, node) in topology.nodes().iter().enumerate() {
-                if topology.is_corner(index as u16) {
-                    continue;
-                }
-                let vertex = corner.moved(i32::from(node.at[0]), i32::from(node.at[1]));
-                let place = Place { side: 16, corner };
-                let mut parents = vertex.parents().map(|parent| place.local(parent));
-                let mut ring = [node.ring[1], node.ring[3]];
+            let global = |number: u16| {
+                let [x, y] = topology.places()[number as usize].map(i32::from);
+                corner.moved(x, y)
+            };
+            for (number, node) in topology.nodes().iter().enumerate().skip(usize::from(CENTER)) {
+                let vertex = global(number as u16);
+                let within = |at: &Vertex| {
+                    (0..=16).contains(&(at.x - corner.x)) && (0..=16).contains(&(at.y - corner.y))
+                };
+                let mut parents: Vec<Vertex> = vertex.parents().into_iter().filter(within).collect();
+                let mut ring: Vec<Vertex> =
+                    [node.ring[1], node.ring[3]].into_iter().filter(|&at| at != NONE).map(global).collect();
                 parents.sort_unstable();
                 ring.sort_unstable();
                 assert_eq!(parents, ring, "{vertex:?}");
@@ -178,16 +209,29 @@ mod tests {
     }
 
     #[test]
+    fn vertices_are_numbered_once_each_and_coarsest_first() {
+        let topology = Topology::new(8, Vertex::new(8, 0));
+        let mut seen: Vec<usize> = (0..81).map(|number| topology.row_major(number)).collect();
+        assert_eq!((seen[..4].to_vec(), seen[4]), (vec![0, 8, 72, 80], 40));
+        for (number, node) in topology.nodes().iter().enumerate() {
+            let later = |&child: &u16| child == NONE || usize::from(child) > number;
+            assert!(node.children.iter().all(later), "{number} {node:?}");
+        }
+        seen.sort_unstable();
+        assert!(seen.into_iter().eq(0..81));
+    }
+
+    #[test]
     fn triangles_are_counter_clockwise() {
         let topology = Topology::new(8, Vertex::new(8, 0));
-        for (index, node) in topology.nodes().iter().enumerate() {
+        for (number, node) in topology.nodes().iter().enumerate() {
             for side in 0..4 {
                 if node.ring[side] == NONE || node.ring[(side + 1) % 4] == NONE {
                     continue;
                 }
                 let at = topology
-                    .corners(triangle(index as u16, side))
-                    .map(|corner| topology.nodes()[corner as usize].at.map(i32::from));
+                    .corners(triangle(number as u16, side))
+                    .map(|corner| topology.places()[corner as usize].map(i32::from));
                 let [a, b, c] = at;
                 assert!((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0, "{at:?}");
             }
