@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
 use crate::roam::graph::Vertex;
 use crate::roam::ground::Ground;

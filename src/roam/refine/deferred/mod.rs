@@ -2,12 +2,11 @@
 //!
 //! A vertex that is s metres from the surface of its sphere cannot change before the eye has travelled s metres:
 //! the delay factor of the constrained nested error criterion, made exact by counting distance instead of frames.
-//! So every vertex that could change next waits in a wheel keyed by distance travelled, one wheel a patch, and is
-//! looked at when it falls due.
+//! So every vertex that could change next waits in a wheel keyed by distance travelled, and is looked at when it falls due.
 //!
 //! Patches out of view wait: nothing is looked at in them, and what fell due meanwhile is made up for when they come
-//! into view again. A patch whose middle sphere does not hold the eye shows its two root triangles and has no memory
-//! of its own.
+//! into view again. A patch whose middle sphere has never held the eye shows its two root triangles and has no
+//! memory of its own.
 //!
 //! The mesh is exactly that of `rebuild` with the spheres as criterion, over the patches shown. Any nested spheres
 //! will do, and nothing else: other criteria have no distance within which they keep their mind.
@@ -23,12 +22,13 @@ pub mod wheel;
 use glam::Vec3;
 
 use crate::roam::active::ActiveSet;
-use crate::roam::block::{BlockError, BlockSource};
+use crate::roam::block::{BlockError, BlockSource, PatchBlock};
 use crate::roam::graph::Vertex;
 use crate::roam::layout::Layout;
 use crate::roam::refine::Changes;
-use crate::roam::refine::deferred::patch::{PatchMesh, Station};
+use crate::roam::refine::deferred::patch::{Counts, Decider, PatchMesh, Station};
 use crate::roam::refine::deferred::topology::Topology;
+use crate::roam::refine::deferred::wheel::{Link, Links, Wheel};
 
 /// Ticks that a post's distance is cut into. Finer ticks look at fewer vertices every frame, coarser ones turn fewer
 /// slots: between 4 and 32 the cost of a frame changes by a tenth.
@@ -37,14 +37,34 @@ const TICKS_PER_POST: f64 = 8.0;
 /// Patches of more cells a side have no u16 for each vertex.
 pub const LARGEST_PATCH: i32 = 128;
 
+/// Bits of an entry of the wheel that number the vertex; the others number the mesh.
+const VERTEX_BITS: u32 = 15;
+
 /// One patch of the walk.
-#[derive(Debug, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Shown {
-    mesh: Option<Box<PatchMesh>>,
-    /// The tick before which nothing can change in the patch.
+    /// Its place among the meshes, if it has one.
+    mesh: Option<u32>,
+    /// A patch without a mesh needs none before this tick.
     due: u64,
-    /// The update in which it was last listed.
-    seen: u64,
+}
+
+/// The patches that have a mesh of their own.
+#[derive(Debug, Default)]
+struct Meshes(Vec<PatchMesh>);
+
+impl Links for Meshes {
+    fn link(&mut self, entry: u32) -> &mut Link {
+        self.0[(entry >> VERTEX_BITS) as usize].link((entry & ((1 << VERTEX_BITS) - 1)) as u16)
+    }
+}
+
+/// Lists that every update fills anew; kept for their memory.
+#[derive(Debug, Default)]
+struct Scratch {
+    due: Vec<u32>,
+    inside_m: Vec<f64>,
+    todo: Vec<u16>,
 }
 
 /// A mesh that follows the eye through patches of a source.
@@ -54,15 +74,18 @@ pub struct Deferred<S> {
     layout: Layout,
     topologies: [Topology; 2],
     patches: Vec<Shown>,
-    #[expect(clippy::vec_box, reason = "boxes are handed over, a kilobyte and a half each")]
-    spare: Vec<Box<PatchMesh>>,
+    meshes: Meshes,
+    /// Meshes that no patch has.
+    spare: Vec<u32>,
+    wheel: Wheel,
     visible: Vec<Vertex>,
     station: Station,
     /// Whether the listed patches are right for where the eye is.
     settled: bool,
     frame: u64,
     changes: Changes,
-    examined: usize,
+    counts: Counts,
+    scratch: Scratch,
 }
 
 impl<S: BlockSource> Deferred<S> {
@@ -75,21 +98,21 @@ impl<S: BlockSource> Deferred<S> {
             return None;
         }
         let topology = |parity: i32| Topology::new(layout.patch(), Vertex::new(parity * layout.patch(), 0));
-        let mut patches = Vec::new();
-        patches.resize_with(layout.patch_count(), Shown::default);
         Some(Self {
             source,
             layout,
             topologies: [topology(0), topology(1)],
-            patches,
+            patches: vec![Shown::default(); layout.patch_count()],
+            meshes: Meshes::default(),
             spare: Vec::new(),
+            wheel: Wheel::new(0),
             visible: Vec::new(),
-            // The first tick is past 0, so that a patch never looked at is due.
-            station: Station { eye: Vec3::NAN, travelled: 1.0, ticks_per_m: TICKS_PER_POST / cell_m },
+            station: Station { eye: Vec3::NAN, travelled: 0.0, ticks_per_m: TICKS_PER_POST / cell_m },
             settled: false,
             frame: 0,
             changes: Changes::default(),
-            examined: 0,
+            counts: Counts::default(),
+            scratch: Scratch::default(),
         })
     }
 
@@ -98,10 +121,9 @@ impl<S: BlockSource> Deferred<S> {
     /// # Errors
     /// Where a patch cannot be had; the patches before it are up to date, and the update can be asked for again.
     pub fn update(&mut self, eye: Vec3, visible: &[Vertex]) -> Result<&Changes, BlockError> {
-        self.changes.splits = 0;
-        self.changes.merges = 0;
+        self.changes = Changes { dirty: std::mem::take(&mut self.changes.dirty), ..Changes::default() };
         self.changes.dirty.clear();
-        self.examined = 0;
+        self.counts = Counts::default();
         if self.settled && eye == self.station.eye && visible == self.visible {
             return Ok(&self.changes);
         }
@@ -110,9 +132,12 @@ impl<S: BlockSource> Deferred<S> {
         self.frame += 1;
         self.visible.clear();
         self.visible.extend_from_slice(visible);
-        for &corner in visible {
-            self.update_patch(corner)?;
-        }
+        self.list_patches()?;
+        self.examine_due();
+        self.catch_up();
+        self.changes.splits = self.counts.splits;
+        self.changes.merges = self.counts.merges;
+        self.changes.dirty.sort_unstable();
         self.settled = true;
         Ok(&self.changes)
     }
@@ -129,16 +154,13 @@ impl<S: BlockSource> Deferred<S> {
 
     /// How many vertices the last update looked at.
     pub fn examined(&self) -> usize {
-        self.examined
+        self.counts.examined
     }
 
     /// The triangles shown of a patch: corners by number, counter-clockwise. Vertices are numbered as [`Topology`]
     /// numbers them, the same for all patches of one orientation; [`Deferred::vertex`] tells which is which.
     pub fn indices(&self, corner: Vertex) -> &[[u16; 3]] {
-        match &self.patches[self.layout.patch_index(corner)].mesh {
-            Some(mesh) => mesh.indices(),
-            None => self.topology(corner).flat(),
-        }
+        self.mesh(corner).map_or(self.topology(corner).flat(), PatchMesh::indices)
     }
 
     /// The vertex with a number in the patch with south-west corner `corner`.
@@ -157,7 +179,7 @@ impl<S: BlockSource> Deferred<S> {
         let mut active = ActiveSet::new(self.layout);
         let side = self.layout.patch() + 1;
         for &corner in &self.visible {
-            let Some(mesh) = &self.patches[self.layout.patch_index(corner)].mesh else { continue };
+            let Some(mesh) = self.mesh(corner) else { continue };
             for number in (0..(side * side) as u16).filter(|&number| mesh.is_active(number)) {
                 active.activate(self.vertex(corner, number));
             }
@@ -175,15 +197,36 @@ impl<S: BlockSource> Deferred<S> {
         for &corner in dirty {
             let index = self.layout.patch_index(corner);
             self.patches[index].due = 0;
-            if self.patches[index].mesh.is_some() {
+            if let Some(mesh) = self.patches[index].mesh {
                 let block = self.source.block(corner)?;
-                let topology = &self.topologies[parity(&self.layout, corner)];
-                if let Some(mesh) = &mut self.patches[index].mesh {
-                    mesh.edit(topology, &block);
-                }
+                self.edit_mesh(mesh, &block);
             }
         }
         Ok(())
+    }
+
+    fn edit_mesh(&mut self, mesh: u32, block: &PatchBlock) {
+        let (entries, slot) = (mesh << VERTEX_BITS, mesh as usize);
+        let topology = &self.topologies[self.meshes.0[slot].parity];
+        let Some(changed) = self.meshes.0[slot].edit(topology, block) else {
+            self.wheel.retain(&mut self.meshes, |entry| entry >> VERTEX_BITS != mesh);
+            self.meshes.0[slot].reset(topology, block, entries);
+            return;
+        };
+        for vertex in changed {
+            let patch = &mut self.meshes.0[slot];
+            let link = *patch.link(vertex);
+            let inside = self.station.inside_m(patch.sphere(topology, vertex));
+            let waits_well = link.is_waiting()
+                && (inside > 0.0) == patch.is_active(vertex)
+                && self.station.due(inside.abs()) >= self.wheel.begin(link);
+            if !waits_well {
+                patch.miss(vertex);
+                if link.is_waiting() {
+                    self.wheel.remove(&mut self.meshes, entries + u32::from(vertex));
+                }
+            }
+        }
     }
 
     /// Where patches come from; whoever changes it tells so by [`Deferred::edit`].
@@ -193,23 +236,26 @@ impl<S: BlockSource> Deferred<S> {
 
     /// How many patches have a mesh of their own.
     pub fn meshes(&self) -> usize {
-        self.patches.iter().filter(|patch| patch.mesh.is_some()).count()
+        self.meshes.0.len() - self.spare.len()
     }
 
     /// Gives up the meshes of patches that have not been listed for the longest time, until at most `most` are left
     /// or only listed ones; they are made anew when they are listed again.
     pub fn forget(&mut self, most: usize) {
-        let mut held: Vec<(u64, usize)> = (self.patches.iter().enumerate())
-            .filter(|(_, patch)| patch.mesh.is_some() && patch.seen < self.frame)
-            .map(|(index, patch)| (patch.seen, index))
+        let mut held: Vec<(u64, usize, u32)> = (self.patches.iter().enumerate())
+            .filter_map(|(index, patch)| Some((index, patch.mesh?)))
+            .map(|(index, mesh)| (self.meshes.0[mesh as usize].seen, index, mesh))
+            .filter(|&(seen, ..)| seen < self.frame)
             .collect();
         held.sort_unstable();
-        let surplus = self.meshes().saturating_sub(most);
-        for (_, index) in held.into_iter().take(surplus) {
-            self.patches[index].mesh = None;
-            self.patches[index].due = 0;
+        held.truncate(self.meshes().saturating_sub(most));
+        let mut given_up = vec![false; self.meshes.0.len()];
+        for &(_, index, mesh) in &held {
+            given_up[mesh as usize] = true;
+            self.patches[index] = Shown::default();
+            self.spare.push(mesh);
         }
-        self.spare.clear();
+        self.wheel.retain(&mut self.meshes, |entry| !given_up[(entry >> VERTEX_BITS) as usize]);
     }
 
     /// Whether every listed patch is sound, and right for where the eye is now.
@@ -218,7 +264,7 @@ impl<S: BlockSource> Deferred<S> {
     /// A sentence naming the first patch that is not.
     pub fn check(&self) -> Result<(), String> {
         for &corner in &self.visible {
-            if let Some(mesh) = &self.patches[self.layout.patch_index(corner)].mesh {
+            if let Some(mesh) = self.mesh(corner) {
                 mesh.check(self.topology(corner), &self.station)
                     .map_err(|flaw| format!("patch at {corner:?}: {flaw}"))?;
             }
@@ -238,53 +284,104 @@ impl<S: BlockSource> Deferred<S> {
         &self.topologies[parity(&self.layout, corner)]
     }
 
-    fn update_patch(&mut self, corner: Vertex) -> Result<(), BlockError> {
-        let index = self.layout.patch_index(corner);
-        let shown = &mut self.patches[index];
-        shown.seen = self.frame;
-        if shown.due > self.station.tick() {
-            return Ok(());
-        }
-        if shown.mesh.is_none() {
-            let root = self.source.root(corner);
-            let inside = self.station.inside_m([root.center.x, root.center.y, root.center.z, root.radius]);
-            if inside <= 0.0 {
-                shown.due = self.station.due(-inside);
-                return Ok(());
+    fn mesh(&self, corner: Vertex) -> Option<&PatchMesh> {
+        self.patches[self.layout.patch_index(corner)].mesh.map(|mesh| &self.meshes.0[mesh as usize])
+    }
+
+    /// Marks the meshes of the listed patches as seen, and gives one to those that need it now.
+    fn list_patches(&mut self) -> Result<(), BlockError> {
+        for at in 0..self.visible.len() {
+            let corner = self.visible[at];
+            let index = self.layout.patch_index(corner);
+            let shown = self.patches[index];
+            match shown.mesh {
+                Some(mesh) => self.meshes.0[mesh as usize].seen = self.frame,
+                None if shown.due > self.station.tick() => {}
+                None => self.found_mesh_if_needed(corner, index)?,
             }
-            self.found_mesh(corner, index)?;
         }
-        self.update_mesh(corner, index);
         Ok(())
     }
 
-    /// Gives a patch a mesh of its own.
-    fn found_mesh(&mut self, corner: Vertex, index: usize) -> Result<(), BlockError> {
+    fn found_mesh_if_needed(&mut self, corner: Vertex, index: usize) -> Result<(), BlockError> {
+        let root = self.source.root(corner);
+        let inside = self.station.inside_m([root.center.x, root.center.y, root.center.z, root.radius]);
+        if inside <= 0.0 {
+            self.patches[index].due = self.station.due(-inside);
+            return Ok(());
+        }
         let block = self.source.block(corner)?;
-        let topology = &self.topologies[parity(&self.layout, corner)];
-        let mut mesh = self.spare.pop().unwrap_or_else(|| Box::new(PatchMesh::new(topology, &block)));
-        mesh.reset(topology, &block, self.station.tick());
+        let mesh = self.spare.pop().unwrap_or_else(|| {
+            self.meshes.0.push(PatchMesh::default());
+            self.meshes.0.len() as u32 - 1
+        });
+        let patch = &mut self.meshes.0[mesh as usize];
+        patch.parity = parity(&self.layout, corner);
+        patch.seen = self.frame;
+        patch.patch = index;
+        patch.reset(&self.topologies[patch.parity], &block, mesh << VERTEX_BITS);
         self.patches[index].mesh = Some(mesh);
         Ok(())
     }
 
-    fn update_mesh(&mut self, corner: Vertex, index: usize) {
-        let topology = &self.topologies[parity(&self.layout, corner)];
-        let shown = &mut self.patches[index];
-        let Some(mesh) = &mut shown.mesh else { return };
-        let counts = mesh.update(topology, &self.station);
-        shown.due = mesh.next_tick();
-        self.examined += counts.examined;
-        if counts.splits + counts.merges > 0 {
-            self.changes.splits += counts.splits;
-            self.changes.merges += counts.merges;
-            self.changes.dirty.push(index);
-            if mesh.is_flat() {
-                self.spare.extend(shown.mesh.take());
-                shown.due = 0;
+    /// Looks at what fell due: first measures all, then decides. Reads that do not wait for decisions overlap, and
+    /// most of them miss the cache.
+    fn examine_due(&mut self) {
+        let mut due = std::mem::take(&mut self.scratch.due);
+        let mut inside_m = std::mem::take(&mut self.scratch.inside_m);
+        due.clear();
+        inside_m.clear();
+        self.wheel.take_due(&mut self.meshes, self.station.tick(), &mut due);
+        inside_m.extend(due.iter().map(|&entry| {
+            let patch = &self.meshes.0[(entry >> VERTEX_BITS) as usize];
+            self.station.inside_m(patch.sphere(&self.topologies[patch.parity], vertex_of(entry)))
+        }));
+        for (&entry, &inside) in due.iter().zip(&inside_m) {
+            let mesh = (entry >> VERTEX_BITS) as usize;
+            if self.meshes.0[mesh].seen == self.frame {
+                self.with_patch(mesh, |patch, with| patch.decide(with, vertex_of(entry), inside));
+            } else {
+                self.meshes.0[mesh].miss(vertex_of(entry));
+            }
+        }
+        self.scratch.due = due;
+        self.scratch.inside_m = inside_m;
+    }
+
+    /// Makes up for what the listed patches missed.
+    fn catch_up(&mut self) {
+        for at in 0..self.visible.len() {
+            let index = self.layout.patch_index(self.visible[at]);
+            if let Some(mesh) = self.patches[index].mesh.map(|mesh| mesh as usize)
+                && self.meshes.0[mesh].has_missed()
+            {
+                self.with_patch(mesh, PatchMesh::catch_up);
             }
         }
     }
+
+    /// Lets a patch decide, and notes whether it changed.
+    fn with_patch(&mut self, mesh: usize, decide: impl FnOnce(&mut PatchMesh, &mut Decider<'_>)) {
+        let before = self.counts.splits + self.counts.merges;
+        let patch = &mut self.meshes.0[mesh];
+        let mut with = Decider {
+            topology: &self.topologies[patch.parity],
+            station: &self.station,
+            wheel: &mut self.wheel,
+            todo: &mut self.scratch.todo,
+            counts: &mut self.counts,
+        };
+        decide(patch, &mut with);
+        if self.counts.splits + self.counts.merges > before && patch.changed < self.frame {
+            patch.changed = self.frame;
+            self.changes.dirty.push(patch.patch);
+        }
+    }
+}
+
+/// The vertex of an entry of the wheel.
+fn vertex_of(entry: u32) -> u16 {
+    (entry & ((1 << VERTEX_BITS) - 1)) as u16
 }
 
 /// Which of the two orientations a patch has.

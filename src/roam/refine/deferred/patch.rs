@@ -5,14 +5,15 @@
 //! agree along their borders without being told.
 //!
 //! Only two kinds of vertices can change next: inactive ones whose parents are active, and active ones without
-//! active children. They wait in a wheel until the eye may have reached their sphere's surface. Each change
-//! rewrites four places of the patch's index list; the list is dense at all times.
+//! active children. They wait in the wheel until the eye may have reached their sphere's surface; what falls due
+//! while the patch is out of view is kept for when it comes back. Each change rewrites four places of the patch's
+//! index list; the list is dense at all times.
 
 use glam::Vec3;
 
 use crate::roam::block::PatchBlock;
 use crate::roam::refine::deferred::topology::{CENTER, NONE, Node, Topology, triangle};
-use crate::roam::refine::deferred::wheel::{Link, Links, Wheel};
+use crate::roam::refine::deferred::wheel::{Link, Wheel};
 
 /// Slack is shortened by this share before it is turned into ticks: more than all rounding on the way.
 const SAFETY: f64 = 1.0 - 1e-9;
@@ -76,6 +77,45 @@ struct Cell {
     flags: u8,
 }
 
+/// The mesh of one patch.
+#[derive(Clone, Debug, Default)]
+pub struct PatchMesh {
+    /// Its place in the layout.
+    pub patch: usize,
+    /// The update in which it was last listed.
+    pub seen: u64,
+    /// The update in which it last changed.
+    pub changed: u64,
+    /// Added to a vertex's number to make the wheel's entry.
+    entries: u32,
+    /// Whether some triangle of the patch must not be shown: over no data, or beyond the terrain's border.
+    partial: bool,
+    /// Which of the two orientations it has.
+    pub parity: usize,
+    cells: Vec<Cell>,
+    /// Where each vertex's four triangles are in the index list.
+    slots: Vec<[u16; 4]>,
+    plan: [Vec<f32>; 2],
+    indices: Vec<[u16; 3]>,
+    owners: Vec<u32>,
+    /// What is to be looked at when the patch is listed again.
+    missed: Vec<u16>,
+}
+
+/// What vertices are decided with.
+pub struct Decider<'a> {
+    /// The vertices of the patch.
+    pub topology: &'a Topology,
+    /// Where the eye is.
+    pub station: &'a Station,
+    /// Where what was decided waits for its next time.
+    pub wheel: &'a mut Wheel,
+    /// What is to be decided yet, in the same patch.
+    pub todo: &'a mut Vec<u16>,
+    /// What was done.
+    pub counts: &'a mut Counts,
+}
+
 /// What an update counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
@@ -87,50 +127,11 @@ pub struct Counts {
     pub examined: usize,
 }
 
-/// The mesh of one patch.
-#[derive(Clone, Debug)]
-pub struct PatchMesh {
-    cells: Vec<Cell>,
-    /// Where each vertex's four triangles are in the index list.
-    slots: Vec<[u16; 4]>,
-    plan: [Vec<f32>; 2],
-    wheel: Wheel,
-    indices: Vec<[u16; 3]>,
-    owners: Vec<u32>,
-    /// Whether some triangle of the patch must not be shown: over no data, or beyond the terrain's border.
-    partial: bool,
-    todo: Vec<u16>,
-    measured: Vec<f64>,
-    counts: Counts,
-}
-
-impl Links for Vec<Cell> {
-    fn link(&mut self, vertex: u16) -> &mut Link {
-        &mut self[vertex as usize].link
-    }
-}
-
 impl PatchMesh {
-    /// The patch with nothing active, its root triangles shown; it is brought up to date by [`PatchMesh::update`].
-    pub fn new(topology: &Topology, block: &PatchBlock) -> Self {
-        let mut mesh = Self {
-            cells: Vec::new(),
-            slots: Vec::new(),
-            plan: [Vec::new(), Vec::new()],
-            wheel: Wheel::new(0),
-            indices: Vec::new(),
-            owners: Vec::new(),
-            partial: false,
-            todo: Vec::new(),
-            measured: Vec::new(),
-            counts: Counts::default(),
-        };
-        mesh.reset(topology, block, 0);
-        mesh
-    }
-
-    /// Makes the patch that of another block at tick `now`, keeping its memory.
-    pub fn reset(&mut self, topology: &Topology, block: &PatchBlock, now: u64) {
+    /// Makes this the patch of a block, with nothing active and its root triangles shown, keeping its memory. None of
+    /// its vertices may be in the wheel; they get the entries from `entries` on.
+    pub fn reset(&mut self, topology: &Topology, block: &PatchBlock, entries: u32) {
+        self.entries = entries;
         self.plan.clone_from(&block.plan);
         self.cells.clear();
         self.cells.extend(topology.nodes().iter().enumerate().map(|(vertex, node)| {
@@ -146,19 +147,16 @@ impl PatchMesh {
         self.slots.resize(self.cells.len(), [NONE; 4]);
         let clipped = self.plan.iter().any(|along| along.windows(2).any(|pair| pair[0] == pair[1]));
         self.partial = clipped || block.z.iter().any(|z| z.is_nan());
-        self.wheel = Wheel::new(now);
         self.indices.clear();
         self.owners.clear();
-        for [apex, left, right] in topology.roots() {
-            for corner in [apex, left, right] {
-                self.cells[corner as usize].flags |= ACTIVE | CORNER;
-            }
+        for corner in topology.roots().into_iter().flatten() {
+            self.cells[corner as usize].flags |= ACTIVE | CORNER;
         }
         for root in topology.roots() {
             self.show(topology, root, triangle(root[0], 0));
         }
-        self.todo.clear();
-        self.todo.push(CENTER);
+        self.missed.clear();
+        self.missed.push(CENTER);
     }
 
     /// The triangles shown: corners by number in the patch (see [`Topology`]), counter-clockwise.
@@ -171,51 +169,45 @@ impl PatchMesh {
         self.cells[vertex as usize].flags & ACTIVE != 0
     }
 
-    /// Brings the patch to where the eye is.
-    pub fn update(&mut self, topology: &Topology, station: &Station) -> Counts {
-        self.counts = Counts::default();
-        self.wheel.take_due(&mut self.cells, station.tick(), &mut self.todo);
-        self.measure(topology, station);
-        for at in 0..self.measured.len() {
-            self.decide(topology, station, self.todo[at], self.measured[at]);
-        }
-        self.todo.drain(..self.measured.len());
-        while let Some(vertex) = self.todo.pop() {
-            let inside = station.inside_m(self.sphere(topology, vertex));
-            self.decide(topology, station, vertex, inside);
-        }
-        self.counts
+    /// Remembers a vertex that must be looked at when the patch is listed next.
+    pub fn miss(&mut self, vertex: u16) {
+        self.missed.push(vertex);
     }
 
-    /// The first tick at which an update may change anything, if nothing is edited before.
-    pub fn next_tick(&self) -> u64 {
-        self.wheel.next()
+    /// Whether there is something to catch up with.
+    pub fn has_missed(&self) -> bool {
+        !self.missed.is_empty()
     }
 
-    /// Turns the patch into one whose heights or spheres were edited, at the same tick; what changed is looked at in
-    /// the next update.
-    pub fn edit(&mut self, topology: &Topology, block: &PatchBlock) {
-        let is_hole = |cell: &Cell| cell.flags & HOLE != 0;
-        let row_major = |vertex: usize| topology.row_major(vertex as u16);
-        let holed = |(vertex, cell): (usize, &Cell)| is_hole(cell) != block.z[row_major(vertex)].is_nan();
-        if self.cells.iter().enumerate().any(holed) {
-            return self.reset(topology, block, self.wheel.now());
-        }
+    /// Decides about everything that was missed or edited.
+    pub fn catch_up(&mut self, with: &mut Decider<'_>) {
+        std::mem::swap(&mut self.missed, with.todo);
+        self.decide_all(with);
+    }
+
+    /// Turns the patch into one whose heights or spheres were edited, and returns the vertices whose spheres changed;
+    /// `None` where data came or went: the patch must be reset then.
+    pub fn edit(&mut self, topology: &Topology, block: &PatchBlock) -> Option<Vec<u16>> {
         let mut changed = Vec::new();
         for (vertex, cell) in self.cells.iter_mut().enumerate() {
-            let (z, radius) = (block.z[row_major(vertex)], block.radii[row_major(vertex)]);
+            let at = topology.row_major(vertex as u16);
+            let (z, radius) = (block.z[at], block.radii[at]);
+            if z.is_nan() != (cell.flags & HOLE != 0) {
+                return None;
+            }
             let drawn = if z.is_nan() { 0.0 } else { z };
             if (cell.z, cell.radius) != (drawn, radius) {
                 (cell.z, cell.radius) = (drawn, radius);
                 changed.push(vertex as u16);
             }
         }
-        for &vertex in &changed {
-            if self.cells[vertex as usize].link.list != NONE {
-                self.wheel.remove(&mut self.cells, vertex);
-            }
-        }
-        self.todo.extend(changed.into_iter().filter(|&vertex| !Topology::is_corner(vertex)));
+        changed.retain(|&vertex| !Topology::is_corner(vertex));
+        Some(changed)
+    }
+
+    /// The link of a vertex.
+    pub fn link(&mut self, vertex: u16) -> &mut Link {
+        &mut self.cells[vertex as usize].link
     }
 
     /// How many active children a vertex counts.
@@ -225,7 +217,7 @@ impl PatchMesh {
 
     /// Whether a vertex waits in the wheel.
     pub(super) fn is_waiting(&self, vertex: u16) -> bool {
-        self.cells[vertex as usize].link.list != NONE
+        self.cells[vertex as usize].link.is_waiting()
     }
 
     /// Where a triangle is in the index list.
@@ -234,42 +226,42 @@ impl PatchMesh {
         (slot != NONE).then_some(slot as usize)
     }
 
-    /// Whether only the root triangles are shown and nothing is active.
-    pub fn is_flat(&self) -> bool {
-        !self.is_active(CENTER)
-    }
-
     pub(super) fn sphere(&self, topology: &Topology, vertex: u16) -> [f32; 4] {
         let cell = &self.cells[vertex as usize];
         let [column, row] = topology.places()[vertex as usize];
         [self.plan[0][column as usize], self.plan[1][row as usize], cell.z, cell.radius]
     }
 
-    /// How far the eye is inside the spheres of all that is to do: measured before anything is decided, since reads
-    /// that do not wait for decisions overlap, and most of them miss the cache.
-    fn measure(&mut self, topology: &Topology, station: &Station) {
-        let mut measured = std::mem::take(&mut self.measured);
-        measured.clear();
-        measured.extend(self.todo.iter().map(|&vertex| station.inside_m(self.sphere(topology, vertex))));
-        self.measured = measured;
+    /// Decides about a vertex whose sphere the eye is `inside` by that many metres, and about what follows from it.
+    pub fn decide(&mut self, with: &mut Decider<'_>, vertex: u16, inside: f64) {
+        self.decide_one(with, vertex, inside);
+        self.decide_all(with);
     }
 
-    /// Decides about a vertex that is in no list, and puts it where it is decided next.
-    fn decide(&mut self, topology: &Topology, station: &Station, vertex: u16, inside: f64) {
+    fn decide_all(&mut self, with: &mut Decider<'_>) {
+        while let Some(vertex) = with.todo.pop() {
+            let inside = with.station.inside_m(self.sphere(with.topology, vertex));
+            self.decide_one(with, vertex, inside);
+        }
+    }
+
+    /// Decides about a vertex, unless it waits or cannot change, and puts it where it is decided next.
+    fn decide_one(&mut self, with: &mut Decider<'_>, vertex: u16, inside: f64) {
         let cell = &self.cells[vertex as usize];
         let active = cell.flags & ACTIVE != 0;
         let may_change = if active { cell.flags < ONE_CHILD } else { cell.flags & PARENTS == BOTH_PARENTS };
-        if !may_change || cell.link.list != NONE {
+        if !may_change || cell.link.is_waiting() {
             return;
         }
-        self.counts.examined += 1;
+        with.counts.examined += 1;
         match (active, inside > 0.0) {
-            (false, true) => self.activate(topology, vertex),
-            (true, false) => self.deactivate(topology, vertex),
+            (false, true) => self.activate(with, vertex),
+            (true, false) => self.deactivate(with, vertex),
             _ => {}
         }
         if inside != f64::NEG_INFINITY {
-            self.wheel.put(&mut self.cells, vertex, station.due(inside.abs()));
+            let due = with.station.due(inside.abs());
+            self.cells[vertex as usize].link = with.wheel.put(self.entries + u32::from(vertex), due);
         }
     }
 
@@ -278,9 +270,10 @@ impl PatchMesh {
         self.cells[vertex as usize].flags & PARENTS == BOTH_PARENTS
     }
 
-    fn activate(&mut self, topology: &Topology, vertex: u16) {
+    fn activate(&mut self, with: &mut Decider<'_>, vertex: u16) {
+        let topology = with.topology;
         let node = &topology.nodes()[vertex as usize];
-        self.counts.splits += 1;
+        with.counts.splits += 1;
         self.cells[vertex as usize].flags |= ACTIVE;
         for side in 0..2 {
             let parent = node.ring[2 * side + 1];
@@ -295,15 +288,16 @@ impl PatchMesh {
         for child in node.children.into_iter().filter(|&child| child != NONE) {
             let below = &mut self.cells[child as usize];
             below.flags += ONE_PARENT;
-            if below.flags & PARENTS == BOTH_PARENTS && below.link.list == NONE {
-                self.todo.push(child);
+            if below.flags & PARENTS == BOTH_PARENTS && !below.link.is_waiting() {
+                with.todo.push(child);
             }
         }
     }
 
-    fn deactivate(&mut self, topology: &Topology, vertex: u16) {
+    fn deactivate(&mut self, with: &mut Decider<'_>, vertex: u16) {
+        let topology = with.topology;
         let node = &topology.nodes()[vertex as usize];
-        self.counts.merges += 1;
+        with.counts.merges += 1;
         self.cells[vertex as usize].flags &= !ACTIVE;
         for child in node.children.into_iter().filter(|&child| child != NONE) {
             self.cells[child as usize].flags -= ONE_PARENT;
@@ -319,8 +313,8 @@ impl PatchMesh {
             let above = &mut self.cells[parent as usize];
             above.flags -= ONE_CHILD;
             let may_merge = above.flags < ONE_CHILD && above.flags & CORNER == 0;
-            if may_merge && above.link.list == NONE {
-                self.todo.push(parent);
+            if may_merge && !above.link.is_waiting() {
+                with.todo.push(parent);
             }
         }
     }

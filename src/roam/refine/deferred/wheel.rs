@@ -5,10 +5,11 @@
 //! too early. What is in a slot is handed out when the walk reaches the slot's *beginning*: early, never late.
 //! What may change before the next tick lies in a list of its own that is handed out every time.
 //!
-//! Entries are vertices of a patch, linked through the array that the patch keeps of its vertices; the wheel holds
-//! only the heads of the lists.
+//! Entries are vertices by a number of their owner's choosing, linked through cells that the owner keeps of them;
+//! the wheel holds only the heads of the lists, three kilobytes for any number of vertices.
 
-use crate::roam::refine::deferred::topology::NONE;
+/// No entry, no list.
+pub const FREE: u32 = u32::MAX;
 
 /// Slots of a level; one word of bits tells which are not empty.
 const SLOTS: u64 = 64;
@@ -25,24 +26,29 @@ const FARTHEST: u64 = (SLOTS - 2) << (SHIFT * (LEVELS as u32 - 1));
 /// Where the list of what is handed out next time is found among the heads.
 const NEXT_TIME: usize = LEVELS * SLOTS as usize;
 
-/// One entry's links: the array of all vertices' links belongs to the patch.
+/// The owner of the entries' links.
 pub trait Links {
-    /// The link of `vertex`.
-    fn link(&mut self, vertex: u16) -> &mut Link;
+    /// The link of an entry.
+    fn link(&mut self, entry: u32) -> &mut Link;
 }
 
 /// What an entry knows of its list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Link {
-    /// The next entry, or [`NONE`].
-    pub next: u16,
-    /// The list it is in, or [`NONE`].
-    pub list: u16,
+    /// The next entry, or [`FREE`].
+    pub next: u32,
+    /// The list it is in, or `u16::MAX`.
+    list: u16,
 }
 
 impl Link {
     /// In no list.
-    pub const FREE: Self = Self { next: NONE, list: NONE };
+    pub const FREE: Self = Self { next: FREE, list: u16::MAX };
+
+    /// Whether it is in a list.
+    pub fn is_waiting(&self) -> bool {
+        self.list != u16::MAX
+    }
 }
 
 /// The heads of the lists.
@@ -50,42 +56,23 @@ impl Link {
 pub struct Wheel {
     now: u64,
     filled: [u64; LEVELS],
-    heads: [u16; NEXT_TIME + 1],
+    heads: [u32; NEXT_TIME + 1],
 }
 
 impl Wheel {
     /// An empty wheel at tick `now`.
     pub fn new(now: u64) -> Self {
-        Self { now, filled: [0; LEVELS], heads: [NONE; NEXT_TIME + 1] }
+        Self { now, filled: [0; LEVELS], heads: [FREE; NEXT_TIME + 1] }
     }
 
-    /// The tick it was last moved on to.
-    pub fn now(&self) -> u64 {
-        self.now
-    }
-
-    /// The first tick at which [`Wheel::take_due`] may find something: now, if something may change before the next
-    /// tick; the farthest there is, if the wheel is empty.
-    pub fn next(&self) -> u64 {
-        if self.heads[NEXT_TIME] != NONE {
-            return self.now;
-        }
-        let begin = |level: usize| {
-            let shift = level as u32 * SHIFT;
-            let slot = self.now >> shift;
-            let ahead = self.filled[level].rotate_right((slot % SLOTS) as u32).trailing_zeros();
-            (slot + u64::from(ahead)) << shift
-        };
-        (0..LEVELS).filter(|&level| self.filled[level] != 0).map(begin).min().unwrap_or(u64::MAX)
-    }
-
-    /// Puts `vertex`, which is in no list, where it is handed out at tick `due` or up to a sixteenth of the way
-    /// earlier; at the next taking where that is now.
-    pub fn put(&mut self, links: &mut impl Links, vertex: u16, due: u64) {
+    /// Puts `entry`, which is in no list, where it is handed out at tick `due` or up to a sixteenth of the way
+    /// earlier; at the next taking where that is now. Returns the link that its owner must keep of it.
+    #[must_use]
+    pub fn put(&mut self, entry: u32, due: u64) -> Link {
         let due = due.min(self.now + FARTHEST);
         let list = if due <= self.now { NEXT_TIME } else { self.slot(due) };
-        *links.link(vertex) = Link { next: self.heads[list], list: list as u16 };
-        self.heads[list] = vertex;
+        let next = std::mem::replace(&mut self.heads[list], entry);
+        Link { next, list: list as u16 }
     }
 
     /// The slot of a tick after now, marked as filled.
@@ -101,24 +88,52 @@ impl Wheel {
         level as usize * SLOTS as usize + slot as usize
     }
 
-    /// Takes `vertex` out of the list it is in.
-    pub fn remove(&mut self, links: &mut impl Links, vertex: u16) {
-        let Link { next, list } = *links.link(vertex);
-        *links.link(vertex) = Link::FREE;
-        let head = self.heads[list as usize];
-        if head == vertex {
-            self.heads[list as usize] = next;
+    /// The tick at which what is in the list of `link` is handed out; 0 if that is every time.
+    pub fn begin(&self, link: Link) -> u64 {
+        let list = u64::from(link.list);
+        if list as usize == NEXT_TIME {
+            return 0;
+        }
+        let (shift, slot) = ((list / SLOTS) as u32 * SHIFT, list % SLOTS);
+        let now = self.now >> shift;
+        (now + slot.wrapping_sub(now) % SLOTS) << shift
+    }
+
+    /// Takes an entry out of the list it is in, walking the list.
+    pub fn remove(&mut self, links: &mut impl Links, entry: u32) {
+        let Link { next, list } = std::mem::replace(links.link(entry), Link::FREE);
+        let head = &mut self.heads[list as usize];
+        if *head == entry {
+            *head = next;
             return;
         }
-        let mut before = head;
-        while links.link(before).next != vertex {
+        let mut before = *head;
+        while links.link(before).next != entry {
             before = links.link(before).next;
         }
         links.link(before).next = next;
     }
 
+    /// Takes out every entry that `keep` does not want.
+    pub fn retain(&mut self, links: &mut impl Links, keep: impl Fn(u32) -> bool) {
+        for head in &mut self.heads {
+            let mut entry = std::mem::replace(head, FREE);
+            while entry != FREE {
+                let link = links.link(entry);
+                let next = link.next;
+                if keep(entry) {
+                    link.next = *head;
+                    *head = entry;
+                } else {
+                    *link = Link::FREE;
+                }
+                entry = next;
+            }
+        }
+    }
+
     /// Moves on to tick `now`, which must not be before the last, and appends everything due by then to `due`.
-    pub fn take_due(&mut self, links: &mut impl Links, now: u64, due: &mut Vec<u16>) {
+    pub fn take_due(&mut self, links: &mut impl Links, now: u64, due: &mut Vec<u32>) {
         take_list(&mut self.heads[NEXT_TIME], links, due);
         for level in 0..LEVELS {
             if (self.now >> (level as u32 * SHIFT)) == (now >> (level as u32 * SHIFT)) {
@@ -147,12 +162,12 @@ impl Wheel {
     }
 }
 
-fn take_list(head: &mut u16, links: &mut impl Links, due: &mut Vec<u16>) {
-    let mut vertex = std::mem::replace(head, NONE);
-    while vertex != NONE {
-        due.push(vertex);
-        let link = links.link(vertex);
-        vertex = link.next;
+fn take_list(head: &mut u32, links: &mut impl Links, due: &mut Vec<u32>) {
+    let mut entry = std::mem::replace(head, FREE);
+    while entry != FREE {
+        due.push(entry);
+        let link = links.link(entry);
+        entry = link.next;
         *link = Link::FREE;
     }
 }
@@ -163,8 +178,8 @@ mod tests {
     use proptest::prelude::*;
 
     impl Links for Vec<Link> {
-        fn link(&mut self, vertex: u16) -> &mut Link {
-            &mut self[vertex as usize]
+        fn link(&mut self, entry: u32) -> &mut Link {
+            &mut self[entry as usize]
         }
     }
 
@@ -178,29 +193,26 @@ mod tests {
             let mut links = vec![Link::FREE; ahead.len()];
             let mut wheel = Wheel::new(start);
             for (vertex, &ahead) in ahead.iter().enumerate() {
-                wheel.put(&mut links, vertex as u16, start + ahead);
+                links[vertex] = wheel.put(vertex as u32, start + ahead);
             }
             let (mut now, mut waiting) = (start, ahead.len());
             for stride in strides {
                 let last = now;
                 now += stride;
                 let mut due = Vec::new();
-                let next = wheel.next();
                 wheel.take_due(&mut links, now, &mut due);
-                prop_assert!(next <= now || due.is_empty(), "{next} was too late");
-                prop_assert!(next > now || !due.is_empty(), "{next} was too early");
                 waiting -= due.len();
                 for vertex in due {
                     let ahead = ahead[vertex as usize];
                     prop_assert!(ahead == 0 || start + ahead >= last, "late");
                     prop_assert!(start + ahead - ahead / 8 <= now + 1, "{ahead} at {}", now - start);
                 }
-                let left = links.iter().enumerate().filter(|(_, link)| link.list != NONE);
+                let left = links.iter().enumerate().filter(|(_, link)| link.is_waiting());
                 for (vertex, _) in left {
                     prop_assert!(start + ahead[vertex] > now, "{} is overdue at {}", ahead[vertex], now - start);
                 }
             }
-            prop_assert_eq!(waiting, links.iter().filter(|link| link.list != NONE).count());
+            prop_assert_eq!(waiting, links.iter().filter(|link| link.is_waiting()).count());
         }
 
         #[test]
@@ -208,15 +220,18 @@ mod tests {
             let mut links = vec![Link::FREE; ahead.len()];
             let mut wheel = Wheel::new(7);
             for (vertex, &ahead) in ahead.iter().enumerate() {
-                wheel.put(&mut links, vertex as u16, 7 + ahead);
+                links[vertex] = wheel.put(vertex as u32, 7 + ahead);
             }
-            for vertex in (0..ahead.len()).step_by(2) {
-                wheel.remove(&mut links, vertex as u16);
+            let begins: Vec<u64> = links.iter().map(|&link| wheel.begin(link)).collect();
+            prop_assert!(begins.iter().zip(&ahead).all(|(&begin, &ahead)| begin <= 7 + ahead));
+            wheel.retain(&mut links, |vertex| vertex % 4 != 0);
+            for vertex in (2..ahead.len() as u32).step_by(4) {
+                wheel.remove(&mut links, vertex);
             }
             let mut due = Vec::new();
             wheel.take_due(&mut links, 600, &mut due);
             due.sort_unstable();
-            let kept: Vec<u16> = (0..ahead.len() as u16).filter(|vertex| vertex % 2 == 1).collect();
+            let kept: Vec<u32> = (0..ahead.len() as u32).filter(|vertex| vertex % 2 == 1).collect();
             prop_assert_eq!(due, kept);
         }
     }
