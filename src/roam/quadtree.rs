@@ -8,13 +8,13 @@
 //! ```text
 //! ┌───┬───┐            ●── north ──●        ●  a vertex of a node above
 //! │ 2 │ 3 │            │           │
-//! ├───┼───┤          west  center east      south = {0, 1}   west = {0, 2}
+//! ├───┼───┤          west centre east      south = {0, 1}   west = {0, 2}
 //! │ 0 │ 1 │            │           │        north = {2, 3}   east = {1, 3}
 //! └───┴───┘            ●── south ──●
 //! ```
 //!
-//! Dependencies: a center depends on the two corners of its node on the diagonal that is perpendicular to the
-//! line to the parent's center; an edge vertex depends on the two centers beside it. They are the vertex graph's
+//! Dependencies: a centre depends on the two corners of its node on the diagonal that is perpendicular to the
+//! line to the parent's centre; an edge vertex depends on the two centres beside it. They are the vertex graph's
 //! own: see [`Vertex::parents`].
 //!
 //! Source: the restricted quadtree with five-vertex nodes and base-4 indices, after Lindstrom et al. 1996.
@@ -166,7 +166,7 @@ impl Square {
         self.center().moved(dx * half, dy * half)
     }
 
-    /// The five vertices of the node in their stored order: center, west, south, east, north.
+    /// The five vertices of the node in their stored order: centre, west, south, east, north.
     pub fn vertices(self) -> [Vertex; 5] {
         let [west, south, east, north] = SIDES.map(|side| self.edge(side));
         [self.center(), west, south, east, north]
@@ -200,7 +200,7 @@ impl Node {
         (side >= 2).then_some(Square { corner, side })
     }
 
-    /// The node whose center is `center`, in patches of `patch` cells; `None` for a vertex that is no center.
+    /// The node whose centre is `center`, in patches of `patch` cells; `None` for a vertex that is no centre.
     pub fn of_center(center: Vertex, patch: i32) -> Option<Self> {
         let half = center.step();
         if center.kind() != Kind::Center || half <= 0 || half >= patch {
@@ -216,8 +216,8 @@ impl Node {
         Some(Self { east, north, address })
     }
 
-    /// The two corners of the node that its center depends on: those on the diagonal perpendicular to the line
-    /// to the parent's center. `None` for a root, whose corners are always there.
+    /// The two corners of the node that its centre depends on: those on the diagonal perpendicular to the line
+    /// to the parent's centre. `None` for a root, whose corners are always there.
     pub fn center_depends_on(self, patch: i32) -> Option<[Vertex; 2]> {
         let center = self.square(patch)?.center();
         let above = self.parent()?.square(patch)?.center();
@@ -225,7 +225,7 @@ impl Node {
         Some([center.moved(-dy, dx), center.moved(dy, -dx)])
     }
 
-    /// The two centers that an edge vertex depends on: those of the nodes beside it, of which one may lie
+    /// The two centres that an edge vertex depends on: those of the nodes beside it, of which one may lie
     /// outside the terrain.
     pub fn edge_depends_on(self, side: Side, patch: i32) -> Option<[Vertex; 2]> {
         Some([self.square(patch)?.center(), self.neighbor(side).square(patch)?.center()])

@@ -105,7 +105,13 @@ impl Block {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::roam::emit::examples::{activations, active_set, shares_edge};
+    use crate::mesh::check;
+    use crate::roam::criterion::flat::Flat;
+    use crate::roam::emit::examples::{activations, active_set, full_area_m2, lattice, mesh_of, shares_edge};
+    use crate::roam::emit::quadtree;
+    use crate::roam::emit::strips::{self, Strips};
+    use crate::roam::errors::ErrorMap;
+    use crate::roam::refine::rebuild::rebuild;
     use proptest::prelude::*;
 
     /// The leaves by splitting triangles, the plain way.
@@ -151,6 +157,32 @@ mod tests {
                 let named: Vec<_> =
                     list.iter().map(|indices| indices.map(|index| block.vertex(corner, index))).collect();
                 prop_assert_eq!(named, walked);
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn where_holes_have_infinite_errors_the_bintree_s_quadtree_s_and_strips_holes_are_the_full_mesh_s(
+            columns in 2u32..49, rows in 2u32..49, holes in proptest::collection::vec(0usize..2400, 0..5),
+            tolerance_m in 0.0..10.0f32,
+        ) {
+            let layout = Layout::new(columns, rows, 16).expect("sound");
+            let lattice = lattice(columns, rows, &holes);
+            let errors = ErrorMap::exact(&lattice, &layout);
+            let active = rebuild(&layout, &Flat::new(&layout, &errors, tolerance_m), layout.patches());
+            let expected = full_area_m2(&lattice, &layout);
+            let mut strips = Strips::default();
+            strips.add_patches(&active, layout.patches(), |_| true);
+            let meshes = [
+                mesh_of(&lattice, &layout, |place| triangles(&active, layout.patches(), place)),
+                mesh_of(&lattice, &layout, |place| quadtree::triangles(&active, layout.patches(), place)),
+                mesh_of(&lattice, &layout, |place| {
+                    strips.iter().for_each(|strip| strips::unstrip(strip, &mut *place));
+                }),
+            ];
+            for mesh in meshes {
+                prop_assert_eq!(check::check_with_area(&mesh, expected).err(), None);
             }
         }
     }

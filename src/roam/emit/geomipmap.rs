@@ -9,9 +9,9 @@
 //! are independent of each other:
 //!
 //! ```text
-//! o───o───o───o───o ┄┄    the row inside keeps its step s
-//! │ ╲ │ ╱   ╲ │ ╱ │
-//! │   o───────o───────o   the border has the coarser one, S
+//!     o───o───o───o───o───o───o          the row inside keeps its step s
+//!   ╱  ╲  │  ╱  ╲  │  ╱  ╲  │  ╱  ╲
+//! o───────o───────o───────o───────o      the border has the coarser one, S
 //! ```
 //!
 //! Each border edge takes the post of the row inside that faces its middle; each edge of the row inside takes

@@ -5,13 +5,13 @@
 //! sent again (the swap), which makes a triangle without area:
 //!
 //! ```text
-//!   b ─── d        a b c d      goes on over b–c
-//!   │ ╲   │ ╲
-//!   │   ╲ │   ╲    a b c        and over a–c:
-//!   a ─── c     f  a b a c e    the triangle (a, b, a) is empty
-//!     ╲   │
-//!       ╲ │
 //!         e
+//!       ╱ │
+//!     ╱   │
+//!   a ─── c      a b c d      goes on over b–c
+//!   │   ╱ │
+//!   │ ╱   │      a b a c e    goes on over a–c: the triangle (a, b, a) is empty
+//!   b ─── d
 //! ```
 //!
 //! The leaves of a bintree, in the order of its walk, share edge after edge (Pascucci 2000 sends the same curve),
@@ -69,24 +69,31 @@ enum End {
 }
 
 impl Strips {
-    /// The strips of the patches whose south-west corners are listed: of the bintree's leaves that `keep` keeps.
+    /// Adds the patches whose south-west corners are listed, each a strip: of the bintree's leaves that `keep`
+    /// keeps.
     ///
     /// `keep` is for leaves that are not drawn; see [`drawn_posts`](crate::roam::emit::world::drawn_posts).
-    pub fn of(
+    pub fn add_patches(
+        &mut self,
         active: &ActiveSet,
         patches: impl IntoIterator<Item = Vertex>,
         mut keep: impl FnMut([Vertex; 3]) -> bool,
-    ) -> Self {
-        let mut strips = Self::default();
+    ) {
         for corner in patches {
             bintree::triangles(active, [corner], |corners| {
                 if keep(corners) {
-                    strips.push(corners);
+                    self.push(corners);
                 }
             });
-            strips.finish();
+            self.finish();
         }
-        strips
+    }
+
+    /// Takes all strips out, to be filled anew.
+    pub fn clear(&mut self) {
+        self.vertices.clear();
+        self.starts.clear();
+        (self.triangles, self.end) = (0, End::Nothing);
     }
 
     /// Adds a triangle, counter-clockwise: to the strip where it shares an edge with the one before, else to a
@@ -182,7 +189,8 @@ mod tests {
         ) {
             let active = active_set(columns, rows, 16, &vertices);
             let patches = || active.layout().patches();
-            let strips = Strips::of(&active, patches(), |_| true);
+            let mut strips = Strips::default();
+            strips.add_patches(&active, patches(), |_| true);
             prop_assert_eq!(strips.stats().strips, active.layout().patch_count());
             let expected = sorted(|emit| bintree::triangles(&active, patches(), emit));
             prop_assert_eq!(strips.stats().triangles, expected.len());
@@ -198,7 +206,8 @@ mod tests {
             let layout = active.layout();
             let ground = Ground { lattice: &lattice, layout, exaggeration: 1.0 };
             let drawn = |corners| world::drawn_posts(ground, corners).is_some();
-            let strips = Strips::of(&active, layout.patches(), drawn);
+            let mut strips = Strips::default();
+            strips.add_patches(&active, layout.patches(), drawn);
             let kept = |corners: [Vertex; 3]| drawn(corners);
             let mut count = 0;
             unstripped(&strips, &mut |corners| count += usize::from(kept(corners)));
@@ -239,7 +248,9 @@ mod tests {
     fn strips_and_fans_save_about_half_of_the_vertices_that_a_list_of_triangles_sends() {
         let active = refined();
         let patches = || active.layout().patches();
-        let strips = Strips::of(&active, patches(), |_| true).stats();
+        let mut strips = Strips::default();
+        strips.add_patches(&active, patches(), |_| true);
+        let strips = strips.stats();
         assert!(strips.triangles > 1500, "{strips:?}");
         assert!(strips.vertices_per_triangle() < 1.6, "{strips:?}");
         let mut fans = StripStats::default();

@@ -11,10 +11,14 @@ use crate::terrain::lattice::Post;
 /// area, or where one of its corners has no data.
 pub fn drawn_posts(ground: Ground<'_>, corners: [Vertex; 3]) -> Option<[Post; 3]> {
     let posts = corners.map(|vertex| ground.layout.post(vertex));
-    let [a, b, c] = posts.map(|post| (i64::from(post.column), i64::from(post.row)));
-    let doubled_area = (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0);
     let has_data = posts.iter().all(|&post| !ground.lattice.height(post).is_nan());
-    (doubled_area != 0 && has_data).then_some(posts)
+    (has_data && doubled_area(posts) != 0).then_some(posts)
+}
+
+/// Twice a triangle's area in cells.
+fn doubled_area(posts: [Post; 3]) -> i64 {
+    let [a, b, c] = posts.map(|post| (i64::from(post.column), i64::from(post.row)));
+    (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0)
 }
 
 /// Where a post with data is drawn, metres.
@@ -24,16 +28,23 @@ pub fn position(ground: Ground<'_>, post: Post) -> Vec3 {
 
 /// What writes an emitter's triangles to `sink`, those that are drawn, with one vertex a post.
 pub fn placing<'a>(ground: Ground<'a>, sink: &'a mut impl MeshSink<Vec3>) -> impl FnMut([Vertex; 3]) {
-    let mut ids: Vec<Option<VertexId>> = vec![None; ground.lattice.heights().len()];
+    let mut ids = vec![NOT_PLACED; ground.lattice.heights().len()];
     move |corners| {
         if let Some(posts) = drawn_posts(ground, corners) {
             let corners = posts.map(|post| {
-                *ids[ground.lattice.index(post)].get_or_insert_with(|| sink.vertex(position(ground, post)))
+                let slot = &mut ids[ground.lattice.index(post)];
+                if *slot == NOT_PLACED {
+                    *slot = sink.vertex(position(ground, post)).0 + 1;
+                }
+                VertexId(*slot - 1)
             });
             sink.triangle(corners);
         }
     }
 }
+
+/// No vertex yet at this post: 0, so that fresh memory need not be written; ids are stored one higher.
+const NOT_PLACED: u32 = 0;
 
 #[cfg(test)]
 mod tests {
