@@ -64,7 +64,8 @@ impl ActiveSet {
         Ok(())
     }
 
-    fn bit(&self, index: usize) -> bool {
+    /// Whether the vertex stored at `index` is active; patch corners have no bit.
+    pub fn bit(&self, index: usize) -> bool {
         self.bits[index / 64] >> (index % 64) & 1 == 1
     }
 }

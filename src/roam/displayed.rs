@@ -1,16 +1,17 @@
-//! From bits to triangles: the bintree read off an active set.
+//! The displayed terrain: what the bits show of the ground, as a mesh and as facets to lay things on.
 
 use std::sync::Arc;
 
 use glam::Vec3;
 
 use crate::geom::rect::Rect;
-use crate::mesh::sink::{MeshSink, VertexId};
+use crate::mesh::sink::MeshSink;
 use crate::roam::active::ActiveSet;
-use crate::roam::bintree::Triangle;
+use crate::roam::emit::{bintree, world};
 use crate::roam::graph::Vertex;
+use crate::roam::ground::Ground;
 use crate::terrain::facets::{Facet, Facets};
-use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::lattice::Lattice;
 
 /// A displayed terrain: the ground and the bits that say how finely it is shown.
 #[derive(Clone, Debug)]
@@ -40,52 +41,15 @@ impl DisplayedTerrain {
 
     /// Writes the displayed triangles to `sink`, one vertex a post, counter-clockwise seen from above.
     pub fn emit(&self, sink: &mut impl MeshSink<Vec3>) {
-        let mut ids: Vec<Option<VertexId>> = vec![None; self.lattice.heights().len()];
-        for triangle in self.patches.iter().flat_map(|&corner| self.leaves(corner)) {
-            let Some(posts) = self.drawn_posts(&triangle) else {
-                continue;
-            };
-            let corners = posts.map(|post| {
-                *ids[self.lattice.index(post)].get_or_insert_with(|| sink.vertex(self.position(post)))
-            });
-            sink.triangle(corners);
-        }
+        bintree::triangles(&self.active, self.patches.iter().copied(), world::placing(self.ground(), sink));
     }
 
-    /// The leaf triangles of one patch.
-    fn leaves(&self, corner: Vertex) -> impl Iterator<Item = Triangle> {
-        let mut stack: Vec<Triangle> = Triangle::roots(corner, self.active.layout().patch()).to_vec();
-        std::iter::from_fn(move || {
-            while let Some(triangle) = stack.pop() {
-                if self.is_leaf(&triangle) {
-                    return Some(triangle);
-                }
-                stack.extend(triangle.split());
-            }
-            None
-        })
+    fn ground(&self) -> Ground<'_> {
+        Ground { lattice: &self.lattice, layout: self.active.layout(), exaggeration: self.exaggeration }
     }
 
-    fn is_leaf(&self, triangle: &Triangle) -> bool {
-        triangle.is_finest() || !self.active.is_active(triangle.split_vertex())
-    }
-
-    /// The posts of a leaf; `None` where it lies beyond the border or over no data.
-    fn drawn_posts(&self, triangle: &Triangle) -> Option<[Post; 3]> {
-        let posts = triangle.corners().map(|vertex| self.active.layout().post(vertex));
-        let [a, b, c] = posts.map(|post| (i64::from(post.column), i64::from(post.row)));
-        let doubled_area = (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0);
-        let has_data = posts.iter().all(|&post| !self.lattice.height(post).is_nan());
-        (doubled_area != 0 && has_data).then_some(posts)
-    }
-
-    fn position(&self, post: Post) -> Vec3 {
-        self.lattice.position(post).extend(self.lattice.height(post) * self.exaggeration)
-    }
-
-    fn plan_bounds(&self, triangle: &Triangle) -> Rect {
-        let corner = |vertex| self.lattice.position(self.active.layout().post(vertex)).as_dvec2();
-        Rect::around(triangle.corners().map(corner))
+    fn plan_bounds(&self, corners: [Vertex; 3]) -> Rect {
+        Rect::around(corners.map(|vertex| self.ground().plan(vertex).as_dvec2()))
     }
 
     /// The patches, of those displayed, that meet the world rectangle.
@@ -103,19 +67,14 @@ impl DisplayedTerrain {
 
 impl Facets for DisplayedTerrain {
     fn visit_facets(&self, rect: &Rect, visit: &mut dyn FnMut(&Facet)) {
-        let mut stack = Vec::new();
+        let ground = self.ground();
         for corner in self.patches_meeting(rect) {
-            stack.extend(Triangle::roots(corner, self.active.layout().patch()));
-            while let Some(triangle) = stack.pop() {
-                if !self.plan_bounds(&triangle).meets(rect) {
-                    continue;
+            let meets = |corners| self.plan_bounds(corners).meets(rect);
+            bintree::triangles_where(&self.active, corner, meets, |corners| {
+                if let Some(posts) = world::drawn_posts(ground, corners) {
+                    visit(&posts.map(|post| world::position(ground, post)));
                 }
-                if !self.is_leaf(&triangle) {
-                    stack.extend(triangle.split());
-                } else if let Some(posts) = self.drawn_posts(&triangle) {
-                    visit(&posts.map(|post| self.position(post)));
-                }
-            }
+            });
         }
     }
 }

@@ -13,7 +13,8 @@
 //! - `criterion` turns an error and a view into a decision.
 //! - `culling` tells which patches can be seen.
 //! - `refine` sets the bits.
-//! - `displayed` reads triangles off the bits.
+//! - `emit` turns the bits into triangles, in several ways; `quadtree` is the arithmetic of one of them.
+//! - `displayed` is what the bits show, for what lies on it.
 //!
 //! Sources: Duchaineau et al. 1997 (ROAM); the patch-based forced splits and the screen-space error of the
 //! later papers; Lindstrom and Pascucci 2001 for errors kept monotone up the graph.
@@ -24,9 +25,11 @@ pub mod block;
 pub mod criterion;
 pub mod culling;
 pub mod displayed;
+pub mod emit;
 pub mod errors;
 pub mod graph;
 pub mod ground;
 pub mod layout;
+pub mod quadtree;
 pub mod refine;
 pub mod spheres;

@@ -1,0 +1,209 @@
+//! The triangle bintree's leaves, as Duchaineau et al. (1997) draw them.
+//!
+//! Either as triples of grid vertices, for any patch, or per patch as triples of indices into the block of its
+//! (patch + 1)² vertices: the block never changes, and the short list is all that a frame renews.
+
+use crate::roam::active::ActiveSet;
+use crate::roam::bintree::Triangle;
+use crate::roam::emit::walk::{self, Key};
+use crate::roam::graph::Vertex;
+use crate::roam::layout::Layout;
+
+/// Calls `emit` with the leaves of the patches whose south-west corners are listed, counter-clockwise from the
+/// apex. Within a patch every leaf shares an edge with the one before.
+pub fn triangles(
+    active: &ActiveSet,
+    patches: impl IntoIterator<Item = Vertex>,
+    mut emit: impl FnMut([Vertex; 3]),
+) {
+    for corner in patches {
+        triangles_where(active, corner, |_| true, &mut emit);
+    }
+}
+
+/// The leaves of one patch, leaving out the triangles that `enter` refuses with all below them. `enter` sees
+/// the corners of inner triangles too.
+pub fn triangles_where(
+    active: &ActiveSet,
+    corner: Vertex,
+    mut enter: impl FnMut([Vertex; 3]) -> bool,
+    mut emit: impl FnMut([Vertex; 3]),
+) {
+    let layout = active.layout();
+    let columns = layout.columns() as i32;
+    let vertices = |keys: [Key; 3]| keys.map(|key| vertex(columns, key));
+    let roots = Triangle::roots(corner, layout.patch()).map(|root| root.corners().map(|at| key(layout, at)));
+    walk::leaves(active, roots, |keys| enter(vertices(keys)), |keys| emit(vertices(keys)));
+}
+
+/// The key of a vertex of the layout, tagged with its row.
+pub fn key(layout: &Layout, vertex: Vertex) -> Key {
+    Key::new(layout.index(vertex) as u32, vertex.y as u32)
+}
+
+/// The vertex of a key that is tagged with its row; `columns` vertices make a row.
+pub fn vertex(columns: i32, key: Key) -> Vertex {
+    let y = key.tag() as i32;
+    Vertex::new(key.index() as i32 - y * columns, y)
+}
+
+/// The (patch + 1)² vertices of one patch, row by row from the south-west: what index lists point into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Block {
+    patch: i32,
+}
+
+/// Cells along the side of the largest patch whose vertices can be told apart by 16 bits: 129² of them.
+pub const LARGEST_BLOCK: i32 = 128;
+
+impl Block {
+    /// The block of every patch of a layout; `None` where its patches are larger than [`LARGEST_BLOCK`].
+    pub fn of(layout: &Layout) -> Option<Self> {
+        (layout.patch() <= LARGEST_BLOCK).then_some(Self { patch: layout.patch() })
+    }
+
+    /// How many vertices the block has.
+    pub fn vertex_count(self) -> usize {
+        ((self.patch + 1) * (self.patch + 1)) as usize
+    }
+
+    /// The vertex at `index` in the block of the patch with south-west corner `corner`.
+    pub fn vertex(self, corner: Vertex, index: u16) -> Vertex {
+        let side = self.patch + 1;
+        corner.moved(i32::from(index) % side, i32::from(index) / side)
+    }
+
+    /// Appends the leaves of one patch that `keep` keeps to `list`, counter-clockwise from the apex.
+    ///
+    /// A patch that a border cuts or that lacks data needs a `keep` that asks
+    /// [`drawn_posts`](crate::roam::emit::world::drawn_posts); any other keeps all.
+    pub fn append(
+        self,
+        active: &ActiveSet,
+        corner: Vertex,
+        mut keep: impl FnMut([u16; 3]) -> bool,
+        list: &mut Vec<[u16; 3]>,
+    ) {
+        let (layout, side) = (active.layout(), self.patch + 1);
+        let local = |at: Vertex| ((at.y - corner.y) * side + at.x - corner.x) as u32;
+        let key = |at: Vertex| Key::new(layout.index(at) as u32, local(at));
+        let roots = Triangle::roots(corner, layout.patch()).map(|root| root.corners().map(key));
+        walk::leaves(
+            active,
+            roots,
+            |_| true,
+            |keys| {
+                let indices = keys.map(|key| key.tag() as u16);
+                if keep(indices) {
+                    list.push(indices);
+                }
+            },
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::check;
+    use crate::roam::criterion::flat::Flat;
+    use crate::roam::emit::examples::{activations, active_set, full_area_m2, lattice, mesh_of, shares_edge};
+    use crate::roam::emit::quadtree;
+    use crate::roam::emit::strips::{self, Strips};
+    use crate::roam::errors::ErrorMap;
+    use crate::roam::refine::rebuild::rebuild;
+    use proptest::prelude::*;
+
+    /// The leaves by splitting triangles, the plain way.
+    fn plain(active: &ActiveSet, corner: Vertex) -> Vec<[Vertex; 3]> {
+        let mut stack = Triangle::roots(corner, active.layout().patch()).to_vec();
+        let mut found = Vec::new();
+        while let Some(triangle) = stack.pop() {
+            if triangle.is_finest() || !active.is_active(triangle.split_vertex()) {
+                found.push(triangle.corners());
+            } else {
+                stack.extend(triangle.split());
+            }
+        }
+        found.sort();
+        found
+    }
+
+    proptest! {
+        #[test]
+        fn the_walk_on_linear_indices_finds_the_leaves_of_the_bintree(
+            (columns, rows, vertices) in activations(),
+        ) {
+            let active = active_set(columns, rows, 16, &vertices);
+            for corner in active.layout().patches() {
+                let mut walked = Vec::new();
+                triangles(&active, [corner], |corners| walked.push(corners));
+                for pair in walked.windows(2) {
+                    prop_assert!(shares_edge(pair[0], pair[1]), "{:?}", pair);
+                }
+                walked.sort();
+                prop_assert_eq!(walked, plain(&active, corner));
+            }
+        }
+
+        #[test]
+        fn a_patch_s_short_indices_name_its_leaves((columns, rows, vertices) in activations()) {
+            let active = active_set(columns, rows, 16, &vertices);
+            let block = Block::of(active.layout()).expect("small patches");
+            for corner in active.layout().patches() {
+                let (mut walked, mut list) = (Vec::new(), Vec::new());
+                triangles(&active, [corner], |corners| walked.push(corners));
+                block.append(&active, corner, |_| true, &mut list);
+                let named: Vec<_> =
+                    list.iter().map(|indices| indices.map(|index| block.vertex(corner, index))).collect();
+                prop_assert_eq!(named, walked);
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn where_holes_have_infinite_errors_the_bintree_s_quadtree_s_and_strips_holes_are_the_full_mesh_s(
+            columns in 2u32..49, rows in 2u32..49, holes in proptest::collection::vec(0usize..2400, 0..5),
+            tolerance_m in 0.0..10.0f32,
+        ) {
+            let layout = Layout::new(columns, rows, 16).expect("sound");
+            let lattice = lattice(columns, rows, &holes);
+            let errors = ErrorMap::exact(&lattice, &layout);
+            let active = rebuild(&layout, &Flat::new(&layout, &errors, tolerance_m), layout.patches());
+            let expected = full_area_m2(&lattice, &layout);
+            let mut strips = Strips::default();
+            strips.add_patches(&active, layout.patches(), |_| true);
+            let meshes = [
+                mesh_of(&lattice, &layout, |place| triangles(&active, layout.patches(), place)),
+                mesh_of(&lattice, &layout, |place| quadtree::triangles(&active, layout.patches(), place)),
+                mesh_of(&lattice, &layout, |place| {
+                    strips.iter().for_each(|strip| strips::unstrip(strip, &mut *place));
+                }),
+            ];
+            for mesh in meshes {
+                prop_assert_eq!(check::check_with_area(&mesh, expected).err(), None);
+            }
+        }
+    }
+
+    #[test]
+    fn the_largest_block_is_the_last_that_sixteen_bits_hold() {
+        let block = |patch| Block::of(&Layout::new(300, 300, patch).expect("sound"));
+        assert_eq!(block(128).map(Block::vertex_count), Some(129 * 129));
+        assert_eq!(block(256), None);
+    }
+
+    #[test]
+    fn the_deepest_patch_is_walked_to_its_posts() {
+        let layout = Layout::new(4097, 4097, 4096).expect("sound");
+        let mut active = ActiveSet::new(layout);
+        active.activate(Vertex::new(1, 0));
+        active.activate(Vertex::new(4095, 4096));
+        let mut finest = 0;
+        triangles(&active, layout.patches(), |[a, b, c]| {
+            finest += i32::from((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) == 1);
+        });
+        assert!(finest >= 4, "{finest} finest triangles");
+    }
+}

@@ -1,0 +1,72 @@
+//! What the emitters' tests share: grounds, active sets, and triangle sets to compare.
+
+use glam::DVec2;
+use proptest::prelude::Strategy;
+
+use crate::mesh::trimesh::TriMesh;
+use crate::roam::active::ActiveSet;
+use crate::roam::emit::{full, world};
+use crate::roam::graph::Vertex;
+use crate::roam::ground::Ground;
+use crate::roam::layout::Layout;
+use crate::terrain::lattice::Lattice;
+
+/// Columns, rows and vertices to activate, some of them beyond the borders.
+pub type Activations = (u32, u32, Vec<(i32, i32)>);
+
+/// Grounds of any shape up to 3 × 3 patches of 16, with up to 60 activations.
+pub fn activations() -> impl Strategy<Value = Activations> {
+    (2u32..49, 2u32..49, proptest::collection::vec((0..49i32, 0..49i32), 0..60))
+}
+
+/// The closure of the listed vertices.
+pub fn active_set(columns: u32, rows: u32, patch: u32, vertices: &[(i32, i32)]) -> ActiveSet {
+    let mut active = ActiveSet::new(Layout::new(columns, rows, patch).expect("sound"));
+    vertices.iter().for_each(|&(x, y)| active.activate(Vertex::new(x, y)));
+    active
+}
+
+/// A wavy ground with cells of 3 × 5 m; the posts listed, modulo their number, have no data.
+pub fn lattice(columns: u32, rows: u32, holes: &[usize]) -> Lattice {
+    let mut heights: Vec<f32> =
+        (0..columns * rows).map(|index| libm::sinf(index as f32 * 0.37) * 4.0).collect();
+    let last = heights.len() - 1;
+    // The last post keeps its data: a lattice without any is refused.
+    holes.iter().for_each(|hole| heights[hole % last] = f32::NAN);
+    Lattice::new(DVec2::ZERO, DVec2::new(3.0, 5.0), columns, heights).expect("sound")
+}
+
+/// The mesh in world space of what `emit` emits.
+pub fn mesh_of(
+    lattice: &Lattice,
+    layout: &Layout,
+    emit: impl FnOnce(&mut dyn FnMut([Vertex; 3])),
+) -> TriMesh {
+    let mut mesh = TriMesh::default();
+    emit(&mut world::placing(Ground { lattice, layout, exaggeration: 2.0 }, &mut mesh));
+    mesh
+}
+
+/// The plan area of the full mesh, square metres.
+pub fn full_area_m2(lattice: &Lattice, layout: &Layout) -> f64 {
+    let mesh = mesh_of(lattice, layout, |place| full::triangles(layout, layout.patches(), place));
+    crate::mesh::check::check(&mesh).expect("the full mesh is conforming").plan_area_m2
+}
+
+/// What `emit` emits as a set: triangles rotated to start at their least corner, in order.
+pub fn sorted(emit: impl FnOnce(&mut dyn FnMut([Vertex; 3]))) -> Vec<[Vertex; 3]> {
+    let mut found = Vec::new();
+    emit(&mut |corners| found.push(turned(corners)));
+    found.sort();
+    found
+}
+
+/// The corners from the least on, in the same sense.
+pub fn turned([a, b, c]: [Vertex; 3]) -> [Vertex; 3] {
+    [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().expect("three ways")
+}
+
+/// Whether two triangles have two corners in common.
+pub fn shares_edge(a: [Vertex; 3], b: [Vertex; 3]) -> bool {
+    a.iter().filter(|corner| b.contains(corner)).count() == 2
+}

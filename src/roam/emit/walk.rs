@@ -1,0 +1,117 @@
+//! The way down the bintree of one patch to its leaves, on linear indices.
+//!
+//! A vertex is two numbers that are both linear in its coordinates, packed into one word: its place in the
+//! layout's order, where its bit is read, and whatever the caller wants to know it by. The middle of a hypotenuse
+//! is then one addition and one shift for both, exact because the middle is a grid vertex.
+//!
+//! The leaves come in the order of Sierpiński's curve: a triangle is entered at one end of its hypotenuse and
+//! left at the other, by way of its apex, so the halves follow each other and each leaf shares an edge with the
+//! leaf before it. Seen from above the halves run the other way round than the whole:
+//!
+//! ```text
+//!         apex                    exit of the first, entry of the second
+//!         ╱ ╲                        ╱│╲
+//!       ╱     ╲                    ╱  │  ╲
+//!     ╱         ╲                ╱    │    ╲
+//! entry ─────── exit         entry ─ apex ─ exit
+//! ```
+
+use crate::roam::active::ActiveSet;
+
+/// Twice the levels of the largest patch, 4096 cells a side, and the other root.
+const DEEPEST: usize = 26;
+
+/// A vertex: its place in the layout's order and a tag below 2³¹ that is linear in its coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Key(u64);
+
+impl Key {
+    /// The key of the vertex at `index` in the layout's order.
+    pub const fn new(index: u32, tag: u32) -> Self {
+        Self((tag as u64) << 32 | index as u64)
+    }
+
+    /// The place in the layout's order.
+    pub const fn index(self) -> usize {
+        self.0 as u32 as usize
+    }
+
+    /// The tag.
+    pub const fn tag(self) -> u32 {
+        (self.0 >> 32) as u32
+    }
+
+    /// The key halfway to `other`, for the ends of a hypotenuse.
+    pub const fn middle(self, other: Self) -> Self {
+        Self((self.0 + other.0) >> 1)
+    }
+
+    /// The key moved by the difference of two others, `to` less `from`.
+    pub const fn moved(self, from: Self, to: Self) -> Self {
+        Self(self.0.wrapping_add(to.0).wrapping_sub(from.0))
+    }
+}
+
+/// A triangle with the ends of its hypotenuse in the order of the walk.
+#[derive(Clone, Copy, Default)]
+struct Stop {
+    entry: Key,
+    apex: Key,
+    exit: Key,
+    depth: u32,
+}
+
+impl Stop {
+    fn halves(&self, middle: Key) -> [Self; 2] {
+        let depth = self.depth + 1;
+        [
+            Self { entry: self.entry, apex: middle, exit: self.apex, depth },
+            Self { entry: self.apex, apex: middle, exit: self.exit, depth },
+        ]
+    }
+
+    /// Its corners, counter-clockwise from the apex.
+    fn corners(&self) -> [Key; 3] {
+        if self.depth.is_multiple_of(2) {
+            [self.apex, self.entry, self.exit]
+        } else {
+            [self.apex, self.exit, self.entry]
+        }
+    }
+}
+
+/// Calls `emit` with every leaf below `roots`, corners counter-clockwise from the apex.
+///
+/// `roots` are the two triangles of a patch, each apex first and counter-clockwise, the second's hypotenuse the
+/// first's the other way round. A triangle that `enter` refuses is left out with all below it.
+pub fn leaves(
+    active: &ActiveSet,
+    roots: [[Key; 3]; 2],
+    mut enter: impl FnMut([Key; 3]) -> bool,
+    mut emit: impl FnMut([Key; 3]),
+) {
+    let finest = 2 * active.layout().patch().trailing_zeros();
+    let [first, second] = roots.map(|[apex, entry, exit]| Stop { entry, apex, exit, depth: 0 });
+    let mut waiting = [Stop::default(); DEEPEST];
+    waiting[0] = second;
+    let mut count = 1;
+    let mut stop = first;
+    loop {
+        let middle = stop.entry.middle(stop.exit);
+        if enter(stop.corners()) {
+            if stop.depth < finest && active.bit(middle.index()) {
+                let [next, later] = stop.halves(middle);
+                waiting[count] = later;
+                count += 1;
+                stop = next;
+                continue;
+            }
+            emit(stop.corners());
+        }
+        if count == 0 {
+            return;
+        }
+        count -= 1;
+        stop = waiting[count];
+    }
+}

@@ -1,0 +1,74 @@
+//! From grid vertices to world space: where a triangle's corners lie, and whether it is drawn at all.
+
+use glam::Vec3;
+
+use crate::mesh::sink::{MeshSink, VertexId};
+use crate::roam::graph::Vertex;
+use crate::roam::ground::Ground;
+use crate::terrain::lattice::Post;
+
+/// The posts of a triangle of vertices of the layout; `None` where it lies beyond the border, so that it has no
+/// area, or where one of its corners has no data.
+pub fn drawn_posts(ground: Ground<'_>, corners: [Vertex; 3]) -> Option<[Post; 3]> {
+    let posts = corners.map(|vertex| ground.layout.post(vertex));
+    let has_data = posts.iter().all(|&post| !ground.lattice.height(post).is_nan());
+    (has_data && doubled_area(posts) != 0).then_some(posts)
+}
+
+/// Twice a triangle's area in cells.
+fn doubled_area(posts: [Post; 3]) -> i64 {
+    let [a, b, c] = posts.map(|post| (i64::from(post.column), i64::from(post.row)));
+    (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0)
+}
+
+/// Where a post with data is drawn, metres.
+pub fn position(ground: Ground<'_>, post: Post) -> Vec3 {
+    ground.lattice.position(post).extend(ground.lattice.height(post) * ground.exaggeration)
+}
+
+/// What writes an emitter's triangles to `sink`, those that are drawn, with one vertex a post.
+pub fn placing<'a>(ground: Ground<'a>, sink: &'a mut impl MeshSink<Vec3>) -> impl FnMut([Vertex; 3]) {
+    let mut ids = vec![NOT_PLACED; ground.lattice.heights().len()];
+    move |corners| {
+        if let Some(posts) = drawn_posts(ground, corners) {
+            let corners = posts.map(|post| {
+                let slot = &mut ids[ground.lattice.index(post)];
+                if *slot == NOT_PLACED {
+                    *slot = sink.vertex(position(ground, post)).0 + 1;
+                }
+                VertexId(*slot - 1)
+            });
+            sink.triangle(corners);
+        }
+    }
+}
+
+/// No vertex yet at this post: 0, so that fresh memory need not be written; ids are stored one higher.
+const NOT_PLACED: u32 = 0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::trimesh::TriMesh;
+    use crate::roam::layout::Layout;
+    use crate::terrain::lattice::Lattice;
+    use glam::DVec2;
+
+    #[test]
+    fn only_triangles_with_area_and_data_are_placed_and_share_their_vertices() {
+        let mut heights = vec![1.0; 4 * 3];
+        heights[11] = f32::NAN;
+        let lattice = Lattice::new(DVec2::ZERO, DVec2::new(2.0, 3.0), 4, heights).expect("sound");
+        let layout = Layout::new(4, 3, 4).expect("sound");
+        let mut mesh = TriMesh::default();
+        let mut place = placing(Ground { lattice: &lattice, layout: &layout, exaggeration: 5.0 }, &mut mesh);
+        let triangle = |points: [(i32, i32); 3]| points.map(|(x, y)| Vertex::new(x, y));
+        place(triangle([(0, 0), (4, 0), (0, 2)]));
+        place(triangle([(4, 0), (3, 1), (0, 2)]));
+        place(triangle([(3, 0), (4, 0), (4, 1)]));
+        place(triangle([(2, 1), (3, 1), (3, 2)]));
+        drop(place);
+        assert_eq!((mesh.positions.len(), mesh.triangles.len()), (4, 2));
+        assert_eq!(mesh.positions[1], Vec3::new(6.0, 0.0, 5.0));
+    }
+}
