@@ -25,9 +25,12 @@ pub fn rebuild(
     for corner in patches {
         stack.extend(Triangle::roots(corner, layout.patch()));
         while let Some(triangle) = stack.pop() {
-            if !triangle.is_finest() && criterion.wants(triangle.split_vertex()) {
-                active.activate(triangle.split_vertex());
-                stack.extend(triangle.split());
+            let vertex = triangle.split_vertex();
+            if criterion.wants(vertex) {
+                active.activate(vertex);
+                if vertex.has_children() {
+                    stack.extend(triangle.split());
+                }
             }
         }
     }
