@@ -14,6 +14,8 @@ pub struct Layout {
     patch: i32,
     patches_east: i32,
     patches_north: i32,
+    columns: i32,
+    rows: i32,
     last_column: i32,
     last_row: i32,
 }
@@ -44,6 +46,8 @@ impl Layout {
             return None;
         }
         Some(Self {
+            columns: vertices(columns) as i32,
+            rows: vertices(rows) as i32,
             patch: patch as i32,
             patches_east: (columns - 1).div_ceil(patch) as i32,
             patches_north: (rows - 1).div_ceil(patch) as i32,
@@ -104,13 +108,13 @@ impl Layout {
     /// Vertices per row.
     #[inline]
     pub fn columns(&self) -> usize {
-        (self.patches_east * self.patch) as usize + 1
+        self.columns as usize
     }
 
     /// Rows of vertices.
     #[inline]
     pub fn rows(&self) -> usize {
-        (self.patches_north * self.patch) as usize + 1
+        self.rows as usize
     }
 
     /// How many vertices there are.

@@ -29,4 +29,12 @@ impl Lens {
     pub(super) fn excess(&self, error_m: f32, distance_m: f32) -> f32 {
         if error_m == 0.0 || error_m == f32::INFINITY { error_m } else { error_m * self.scale / distance_m }
     }
+
+    /// Whether `error_m` spans more than a tolerance at the distance whose square is `squared_m2`: the same as
+    /// an excess above 1, to rounding, without a root or a division.
+    #[inline]
+    pub(super) fn shows(&self, error_m: f32, squared_m2: f32) -> bool {
+        let reach_m = error_m * self.scale;
+        error_m > 0.0 && (reach_m * reach_m > squared_m2 || error_m == f32::INFINITY)
+    }
 }

@@ -39,4 +39,10 @@ impl Criterion for Midpoint<'_> {
         }
         self.lens.excess(error, self.ground.position(vertex).distance(self.lens.eye))
     }
+
+    #[inline]
+    fn wants(&self, vertex: Vertex) -> bool {
+        let error = self.errors.at(self.ground.layout, vertex);
+        error > 0.0 && self.lens.shows(error, self.ground.position(vertex).distance_squared(self.lens.eye))
+    }
 }

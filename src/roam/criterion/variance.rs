@@ -55,4 +55,11 @@ impl Criterion for Variance<'_> {
         }
         self.lens.excess(variance, self.ground.position(vertex).distance(self.lens.eye))
     }
+
+    #[inline]
+    fn wants(&self, vertex: Vertex) -> bool {
+        let variance = self.errors.at(self.ground.layout, vertex);
+        variance > 0.0
+            && self.lens.shows(variance, self.ground.position(vertex).distance_squared(self.lens.eye))
+    }
 }

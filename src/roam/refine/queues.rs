@@ -156,7 +156,7 @@ impl Queues {
         splits.clear();
         self.splittable.retain(active.layout(), |vertex, index| {
             let leaf = !active.is_active(vertex) && has_leaf(active, listed, vertex);
-            let excess = if leaf { criterion.excess(vertex) } else { 0.0 };
+            let excess = if leaf { priority(criterion, vertex) } else { 0.0 };
             if excess > goal.floor() {
                 splits.push(entry(excess, index));
             }
@@ -282,7 +282,7 @@ impl Queues {
         }
         let layout = self.active.layout();
         self.splittable.insert(layout, vertex);
-        let excess = criterion.excess(vertex);
+        let excess = priority(criterion, vertex);
         if excess > self.goal.floor() {
             self.splits.push(entry(excess, layout.index(vertex)));
         }
@@ -384,9 +384,20 @@ fn has_leaf(active: &ActiveSet, listed: &Listed, vertex: Vertex) -> bool {
     listed_apexes(active.layout(), listed, vertex).any(|apex| active.is_active(apex))
 }
 
+/// The excess of a vertex. Where rounding leaves open on which side of 1 it is, the criterion's plain answer
+/// settles it, so that this refiner wants what the others want.
+fn priority(criterion: &impl Criterion, vertex: Vertex) -> f32 {
+    let excess = criterion.excess(vertex);
+    match (excess - 1.0).abs() < 1e-4 {
+        true if criterion.wants(vertex) => excess.max(1f32.next_up()),
+        true => excess.min(1.0),
+        false => excess,
+    }
+}
+
 /// The excess of a vertex, 0 where it splits no triangle of a listed patch.
 fn excess_where_listed(layout: &Layout, listed: &Listed, criterion: &impl Criterion, vertex: Vertex) -> f32 {
-    if added(layout, listed, vertex) > 0 { criterion.excess(vertex) } else { 0.0 }
+    if added(layout, listed, vertex) > 0 { priority(criterion, vertex) } else { 0.0 }
 }
 
 /// Lists the inactive vertices that activating `vertex` activates, parents before their children, each once.
