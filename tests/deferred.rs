@@ -9,7 +9,7 @@ use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
 use sandtable::roam::ground::Ground;
 use sandtable::roam::layout::Layout;
-use sandtable::roam::refine::Changes;
+use sandtable::roam::refine::changes::Changes;
 use sandtable::roam::refine::deferred::Deferred;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::roam::spheres::SphereMap;

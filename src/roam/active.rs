@@ -24,20 +24,69 @@ impl ActiveSet {
     }
 
     /// Whether a vertex of the layout is active.
+    #[inline]
     pub fn is_active(&self, vertex: Vertex) -> bool {
         self.layout.is_corner(vertex) || self.bit(self.layout.index(vertex))
     }
 
     /// Activates a vertex and first its inactive parents, up to the roots: the forced split.
+    #[inline]
     pub fn activate(&mut self, vertex: Vertex) {
-        let mut waiting = vec![vertex];
-        while let Some(vertex) = waiting.pop() {
-            if self.layout.contains(vertex) && !self.is_active(vertex) {
-                let index = self.layout.index(vertex);
-                self.bits[index / 64] |= 1 << (index % 64);
-                waiting.extend(vertex.parents());
-            }
+        self.activate_each(vertex, &mut |_| ());
+    }
+
+    /// The forced split as [`ActiveSet::activate`] does it; `each` is told every vertex that becomes active,
+    /// parents before their children. Recursion is as deep as the graph has levels, 25 at most.
+    #[inline]
+    pub fn activate_each(&mut self, vertex: Vertex, each: &mut impl FnMut(Vertex)) {
+        if self.layout.contains(vertex) && !self.is_active(vertex) {
+            self.force(vertex, each);
         }
+    }
+
+    fn force(&mut self, vertex: Vertex, each: &mut impl FnMut(Vertex)) {
+        for parent in vertex.parents() {
+            self.activate_each(parent, each);
+        }
+        let index = self.layout.index(vertex);
+        self.bits[index / 64] |= 1 << (index % 64);
+        each(vertex);
+    }
+
+    /// Deactivates a vertex and first its active children, down to the finest: the forced merge. Patch corners
+    /// stay.
+    pub fn deactivate(&mut self, vertex: Vertex) {
+        self.deactivate_each(vertex, &mut |_| ());
+    }
+
+    /// The forced merge as [`ActiveSet::deactivate`] does it; `each` is told every vertex that becomes inactive,
+    /// children before their parents.
+    pub fn deactivate_each(&mut self, vertex: Vertex, each: &mut impl FnMut(Vertex)) {
+        if !self.layout.contains(vertex) || self.layout.is_corner(vertex) || !self.is_active(vertex) {
+            return;
+        }
+        for child in vertex.children() {
+            self.deactivate_each(child, each);
+        }
+        self.clear(vertex);
+        each(vertex);
+    }
+
+    /// Deactivates a vertex that can go without any other going; says whether it did. It did not where the
+    /// vertex is a patch corner, not active, or has an active child.
+    pub fn merge(&mut self, vertex: Vertex) -> bool {
+        let goes = self.is_mergeable(vertex);
+        if goes {
+            self.clear(vertex);
+        }
+        goes
+    }
+
+    /// Whether the vertex is in the layout, active, no patch corner, and has no active child.
+    pub fn is_mergeable(&self, vertex: Vertex) -> bool {
+        self.layout.contains(vertex)
+            && self.bit(self.layout.index(vertex))
+            && !vertex.children().any(|child| self.layout.contains(child) && self.is_active(child))
     }
 
     /// How many vertices are active, not counting patch corners.
@@ -64,7 +113,13 @@ impl ActiveSet {
         Ok(())
     }
 
+    fn clear(&mut self, vertex: Vertex) {
+        let index = self.layout.index(vertex);
+        self.bits[index / 64] &= !(1 << (index % 64));
+    }
+
     /// Whether the vertex stored at `index` is active; patch corners have no bit.
+    #[inline]
     pub fn bit(&self, index: usize) -> bool {
         self.bits[index / 64] >> (index % 64) & 1 == 1
     }
@@ -86,6 +141,47 @@ mod tests {
                 prop_assert!(!active.layout().contains(Vertex::new(x, y)) || active.is_active(Vertex::new(x, y)));
             }
             prop_assert_eq!(active.check(), Ok(()));
+        }
+
+        #[test]
+        fn a_forced_merge_takes_back_a_forced_split_and_nothing_else(
+            vertices in proptest::collection::vec((0..65i32, 0..49i32), 0..40),
+            x in 0..65i32, y in 0..49i32,
+        ) {
+            let mut before = ActiveSet::new(Layout::new(60, 40, 16).expect("sound"));
+            for (x, y) in vertices {
+                before.activate(Vertex::new(x, y));
+            }
+            let mut active = before.clone();
+            let mut split = Vec::new();
+            active.activate_each(Vertex::new(x, y), &mut |vertex| split.push(vertex));
+            if let Some(&first) = split.first() {
+                prop_assert_eq!(active.count(), before.count() + split.len());
+                let mut merged = Vec::new();
+                for &vertex in split.iter().rev() {
+                    active.deactivate_each(vertex, &mut |vertex| merged.push(vertex));
+                }
+                merged.reverse();
+                prop_assert_eq!(merged, split);
+                prop_assert!(!active.is_active(first));
+            }
+            prop_assert_eq!(&active, &before);
+        }
+
+        #[test]
+        fn any_forced_merge_leaves_parents_active(
+            vertices in proptest::collection::vec((0..65i32, 0..49i32), 0..40),
+            gone in proptest::collection::vec((-2..67i32, -2..51i32), 0..10),
+        ) {
+            let mut active = ActiveSet::new(Layout::new(60, 40, 16).expect("sound"));
+            vertices.iter().for_each(|&(x, y)| active.activate(Vertex::new(x, y)));
+            for (x, y) in gone {
+                active.deactivate(Vertex::new(x, y));
+                prop_assert_eq!(active.check(), Ok(()));
+                let inside = active.layout().contains(Vertex::new(x, y));
+                let corner = active.layout().is_corner(Vertex::new(x, y));
+                prop_assert!(!inside || corner || !active.is_active(Vertex::new(x, y)));
+            }
         }
     }
 }

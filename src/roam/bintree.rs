@@ -17,6 +17,7 @@ impl Triangle {
     /// The two triangles of the square patch with south-west corner `corner` and side `side`, a power of two.
     ///
     /// The diagonal between them alternates from patch to patch, as the vertex graph asks.
+    #[inline]
     pub const fn roots(corner: Vertex, side: i32) -> [Self; 2] {
         let (south_east, north_west) = (corner.moved(side, 0), corner.moved(0, side));
         let north_east = corner.moved(side, side);
@@ -34,17 +35,20 @@ impl Triangle {
     }
 
     /// The middle of the hypotenuse: activating this vertex splits the triangle.
+    #[inline]
     pub const fn split_vertex(&self) -> Vertex {
         self.left.middle(self.right)
     }
 
     /// The halves left and right of the line from the apex to the middle of the hypotenuse.
+    #[inline]
     pub const fn split(&self) -> [Self; 2] {
         let apex = self.split_vertex();
         [Self { apex, left: self.apex, right: self.left }, Self { apex, left: self.right, right: self.apex }]
     }
 
     /// Whether no grid vertex lies on its hypotenuse, so that it cannot be split.
+    #[inline]
     pub const fn is_finest(&self) -> bool {
         let dx = self.left.x - self.right.x;
         let dy = self.left.y - self.right.y;
@@ -52,6 +56,7 @@ impl Triangle {
     }
 
     /// Its corners, counter-clockwise.
+    #[inline]
     pub const fn corners(&self) -> [Vertex; 3] {
         [self.apex, self.left, self.right]
     }

@@ -37,28 +37,33 @@ pub enum Kind {
 
 impl Vertex {
     /// The vertex at (`x`, `y`).
+    #[inline]
     pub const fn new(x: i32, y: i32) -> Self {
         Self { x, y }
     }
 
     /// This vertex moved by (`dx`, `dy`).
+    #[inline]
     pub const fn moved(self, dx: i32, dy: i32) -> Self {
         Self { x: self.x + dx, y: self.y + dy }
     }
 
     /// The vertex halfway to `other`; exact for the ends of a hypotenuse.
+    #[inline]
     pub const fn middle(self, other: Self) -> Self {
         Self { x: (self.x + other.x) / 2, y: (self.y + other.y) / 2 }
     }
 
     /// Half the side of the square, or half the length of the edge, that this vertex is the middle of. The
     /// origin's is meaningless: it is a patch corner whatever the patch size.
+    #[inline]
     pub const fn step(self) -> i32 {
         let bits = self.x | self.y;
         bits & bits.wrapping_neg()
     }
 
     /// What this vertex is the middle of.
+    #[inline]
     pub const fn kind(self) -> Kind {
         let step = self.step();
         match ((self.x & step) != 0, (self.y & step) != 0) {
@@ -69,6 +74,7 @@ impl Vertex {
     }
 
     /// The ends of the hypotenuse that this vertex splits.
+    #[inline]
     pub const fn hypotenuse(self) -> [Self; 2] {
         let step = self.step();
         match self.kind() {
@@ -81,6 +87,7 @@ impl Vertex {
 
     /// The vertices that must be active before this one: the right-angled corners of the two triangles that
     /// share its hypotenuse. One of them may lie outside the terrain, where only one triangle is there.
+    #[inline]
     pub const fn parents(self) -> [Self; 2] {
         let step = self.step();
         match self.kind() {
@@ -91,7 +98,14 @@ impl Vertex {
         }
     }
 
+    /// Whether any vertex names this one as a parent: all but the middles of the finest level's edges.
+    #[inline]
+    pub const fn has_children(self) -> bool {
+        (self.x ^ self.y) & 1 == 0
+    }
+
     /// The vertices that name this one as a parent; none for vertices of the finest level's edges.
+    #[inline]
     pub fn children(self) -> impl Iterator<Item = Self> {
         let step = self.step();
         let (reach, offsets) = match self.kind() {
@@ -104,9 +118,9 @@ impl Vertex {
 
     /// Whether a centre's hypotenuse runs from south-west to north-east: it joins the corners of its square
     /// whose coordinates, in units of the square's side, are both even or both odd.
+    #[inline]
     const fn diagonal_rises(self) -> bool {
-        let side = self.step() * 2;
-        ((self.x / side) + (self.y / side)) % 2 == 0
+        (self.x ^ self.y) & (self.step() * 2) == 0
     }
 }
 
@@ -124,6 +138,7 @@ mod tests {
             for child in vertex.children() {
                 assert!(child.parents().contains(&vertex), "{vertex:?} of {child:?}");
             }
+            assert_eq!(vertex.has_children(), vertex.children().count() > 0, "{vertex:?}");
             for parent in vertex.parents() {
                 assert!(parent.children().any(|child| child == vertex), "{parent:?} of {vertex:?}");
             }

@@ -19,11 +19,13 @@ pub struct Ground<'a> {
 
 impl Ground<'_> {
     /// World X and Y of a vertex of the layout, metres.
+    #[inline]
     pub fn plan(&self, vertex: Vertex) -> Vec2 {
         self.lattice.position(self.layout.post(vertex))
     }
 
     /// Where a vertex of the layout is drawn, metres; at Z 0 where it has no data.
+    #[inline]
     pub fn position(&self, vertex: Vertex) -> Vec3 {
         let height = self.lattice.height(self.layout.post(vertex));
         let z = if height.is_nan() { 0.0 } else { height * self.exaggeration };

@@ -14,6 +14,8 @@ pub struct Layout {
     patch: i32,
     patches_east: i32,
     patches_north: i32,
+    columns: i32,
+    rows: i32,
     last_column: i32,
     last_row: i32,
 }
@@ -44,6 +46,8 @@ impl Layout {
             return None;
         }
         Some(Self {
+            columns: vertices(columns) as i32,
+            rows: vertices(rows) as i32,
             patch: patch as i32,
             patches_east: (columns - 1).div_ceil(patch) as i32,
             patches_north: (rows - 1).div_ceil(patch) as i32,
@@ -53,6 +57,7 @@ impl Layout {
     }
 
     /// Cells along a patch's side.
+    #[inline]
     pub fn patch(&self) -> i32 {
         self.patch
     }
@@ -76,8 +81,23 @@ impl Layout {
     }
 
     /// The place of the patch with south-west corner `corner` in [`Layout::patches`].
+    #[inline]
     pub fn patch_index(&self, corner: Vertex) -> usize {
-        (corner.y / self.patch * self.patches_east + corner.x / self.patch) as usize
+        let shift = self.patch.trailing_zeros();
+        ((corner.y >> shift) * self.patches_east + (corner.x >> shift)) as usize
+    }
+
+    /// The place in [`Layout::patches`] of the patch that holds the triangle which `vertex` splits and whose
+    /// right-angled corner is `apex`, one of its parents; both are vertices of the layout.
+    #[inline]
+    pub fn patch_holding(&self, vertex: Vertex, apex: Vertex) -> usize {
+        // Halfway between them lies inside that patch, whatever borders the two are on.
+        self.patch_index(Vertex::new((vertex.x + apex.x) >> 1, (vertex.y + apex.y) >> 1))
+    }
+
+    /// How many patches lie side by side eastward and northward.
+    pub fn patch_grid(&self) -> (usize, usize) {
+        (self.patches_east as usize, self.patches_north as usize)
     }
 
     /// How many patches there are.
@@ -86,37 +106,44 @@ impl Layout {
     }
 
     /// Vertices per row.
+    #[inline]
     pub fn columns(&self) -> usize {
-        (self.patches_east * self.patch) as usize + 1
+        self.columns as usize
     }
 
     /// Rows of vertices.
+    #[inline]
     pub fn rows(&self) -> usize {
-        (self.patches_north * self.patch) as usize + 1
+        self.rows as usize
     }
 
     /// How many vertices there are.
+    #[inline]
     pub fn vertex_count(&self) -> usize {
         self.columns() * self.rows()
     }
 
     /// Whether the vertex belongs to a patch.
+    #[inline]
     pub fn contains(&self, vertex: Vertex) -> bool {
-        (0..self.columns() as i32).contains(&vertex.x) && (0..self.rows() as i32).contains(&vertex.y)
+        (vertex.x as usize) < self.columns() && (vertex.y as usize) < self.rows()
     }
 
     /// Where a vertex is stored, row by row. The vertex must be contained.
+    #[inline]
     pub fn index(&self, vertex: Vertex) -> usize {
         debug_assert!(self.contains(vertex), "{vertex:?} is outside {self:?}");
         vertex.y as usize * self.columns() + vertex.x as usize
     }
 
     /// Whether the vertex is a corner of patches, which is always there.
+    #[inline]
     pub fn is_corner(&self, vertex: Vertex) -> bool {
         (vertex.x | vertex.y) & (self.patch - 1) == 0
     }
 
     /// The post that a vertex stands for: itself, or the nearest on the border.
+    #[inline]
     pub fn post(&self, vertex: Vertex) -> Post {
         Post { column: vertex.x.min(self.last_column) as u32, row: vertex.y.min(self.last_row) as u32 }
     }

@@ -49,6 +49,7 @@ impl SphereMap {
     }
 
     /// The radius of a vertex's sphere, metres.
+    #[inline]
     pub fn at(&self, layout: &Layout, vertex: Vertex) -> f32 {
         self.radii[layout.index(vertex)]
     }

@@ -145,6 +145,7 @@ impl Lattice {
     }
 
     /// World X and Y of a post.
+    #[inline]
     pub fn position(&self, post: Post) -> Vec2 {
         (DVec2::new(f64::from(post.column), f64::from(post.row)) * self.cell).as_vec2()
     }
@@ -153,6 +154,7 @@ impl Lattice {
     ///
     /// # Panics
     /// Where the post lies outside the lattice.
+    #[inline]
     pub fn height(&self, post: Post) -> f32 {
         self.heights[self.index(post)]
     }
@@ -173,6 +175,7 @@ impl Lattice {
     ///
     /// # Panics
     /// Where the post lies outside the lattice.
+    #[inline]
     pub fn index(&self, post: Post) -> usize {
         assert!(post.column < self.columns && post.row < self.rows, "{post:?} is outside the lattice");
         post.row as usize * self.columns as usize + post.column as usize

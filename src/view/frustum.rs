@@ -13,6 +13,9 @@ pub struct Frustum {
 }
 
 impl Frustum {
+    /// All planes, as bits for [`Frustum::crossed`].
+    pub const ALL: u8 = 0b1_1111;
+
     /// The frustum of `camera`.
     pub fn of(camera: &Camera) -> Self {
         let (eye, forward) = (camera.eye(), camera.forward());
@@ -33,10 +36,26 @@ impl Frustum {
     /// Whether some of the box `min..=max` may be seen. Never false for a box that is in view; may be
     /// true for one that is just outside a corner.
     pub fn may_see(&self, min: Vec3, max: Vec3) -> bool {
-        self.planes.iter().all(|&(normal, offset)| {
-            let farthest = Vec3::select(normal.cmpge(Vec3::ZERO), max, min);
-            normal.dot(farthest) + offset >= 0.0
-        })
+        self.crossed(min, max, Self::ALL).is_some()
+    }
+
+    /// The planes of `among`, a bit each, that the box crosses; `None` where it lies outside one of them. Boxes
+    /// within this one need be asked about these only.
+    pub fn crossed(&self, min: Vec3, max: Vec3, among: u8) -> Option<u8> {
+        let mut crossed = 0;
+        for (place, &(normal, offset)) in self.planes.iter().enumerate() {
+            let bit = 1 << place;
+            if among & bit != 0 {
+                let rising = normal.cmpge(Vec3::ZERO);
+                if normal.dot(Vec3::select(rising, max, min)) + offset < 0.0 {
+                    return None;
+                }
+                if normal.dot(Vec3::select(rising, min, max)) + offset < 0.0 {
+                    crossed |= bit;
+                }
+            }
+        }
+        Some(crossed)
     }
 }
 

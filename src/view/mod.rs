@@ -1,4 +1,5 @@
-//! Looking: the camera, its frustum, and how large things appear.
+//! Looking: the camera, its frustum or wedge, and how large things appear.
 
 pub mod camera;
 pub mod frustum;
+pub mod wedge;

@@ -21,11 +21,13 @@ impl<'a> Flat<'a> {
 }
 
 impl Criterion for Flat<'_> {
+    #[inline]
     fn excess(&self, vertex: Vertex) -> f32 {
         let error = self.errors.at(self.layout, vertex);
         if error > self.tolerance_m { error / self.tolerance_m } else { 0.0 }
     }
 
+    #[inline]
     fn wants(&self, vertex: Vertex) -> bool {
         self.errors.at(self.layout, vertex) > self.tolerance_m
     }

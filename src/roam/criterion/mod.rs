@@ -4,9 +4,14 @@
 //! does not know what it is asked for: any criterion goes with any refiner, except where a refiner asks for
 //! more than [`Criterion`] promises and says so in its types.
 
+pub mod anisotropic;
+pub mod block;
 pub mod flat;
+mod lens;
+pub mod midpoint;
 pub mod screen;
 pub mod spheres;
+pub mod variance;
 
 use crate::roam::graph::Vertex;
 

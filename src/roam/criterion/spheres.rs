@@ -23,6 +23,7 @@ impl<'a> Spheres<'a> {
 }
 
 impl Criterion for Spheres<'_> {
+    #[inline]
     fn excess(&self, vertex: Vertex) -> f32 {
         let radius = self.map.at(self.ground.layout, vertex);
         if radius == 0.0 {
@@ -31,6 +32,7 @@ impl Criterion for Spheres<'_> {
         (f64::from(radius) / distance(self.eye, self.ground.position(vertex))) as f32
     }
 
+    #[inline]
     fn wants(&self, vertex: Vertex) -> bool {
         let radius = self.map.at(self.ground.layout, vertex);
         radius > 0.0 && distance(self.eye, self.ground.position(vertex)) < f64::from(radius)
@@ -38,6 +40,7 @@ impl Criterion for Spheres<'_> {
 }
 
 /// In f64, so that neighbours agree about a vertex to the last bit and nested spheres stay nested.
+#[inline]
 pub fn distance(eye: Vec3, position: Vec3) -> f64 {
     (eye.as_dvec3() - position.as_dvec3()).length()
 }

@@ -6,8 +6,10 @@
 //! measures differs; one file per measure:
 //!
 //! - `exact`: the largest vertical distance over every post that the vertex's triangles cover. A bound.
+//! - `relief`: highest less lowest post that they cover. A bound too, and a lazy one.
 
 pub mod exact;
+pub mod relief;
 
 use crate::roam::graph::Vertex;
 use crate::roam::layout::Layout;
@@ -37,6 +39,7 @@ impl ErrorMap {
     }
 
     /// The error at a vertex of the layout it was measured with: metres, or infinite.
+    #[inline]
     pub fn at(&self, layout: &Layout, vertex: Vertex) -> f32 {
         self.errors[layout.index(vertex)]
     }

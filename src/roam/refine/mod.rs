@@ -3,16 +3,10 @@
 //! Whatever the policy, the mesh for one view is the same: the closure under parents of the vertices that are
 //! wanted and have a parent that is (see [`rebuild`]), unless a budget of triangles stops it earlier.
 
+pub mod changes;
+pub mod coherent;
 pub mod deferred;
+mod listed;
+mod members;
+pub mod queues;
 pub mod rebuild;
-
-/// What one update of a mesh changed.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Changes {
-    /// Vertices activated.
-    pub splits: usize,
-    /// Vertices deactivated.
-    pub merges: usize,
-    /// The patches in which something changed, by [`crate::roam::layout::Layout::patch_index`], ascending.
-    pub dirty: Vec<usize>,
-}

@@ -21,15 +21,23 @@ pub fn rebuild(
     patches: impl IntoIterator<Item = Vertex>,
 ) -> ActiveSet {
     let mut active = ActiveSet::new(*layout);
-    let mut stack = Vec::new();
     for corner in patches {
-        stack.extend(Triangle::roots(corner, layout.patch()));
-        while let Some(triangle) = stack.pop() {
-            if !triangle.is_finest() && criterion.wants(triangle.split_vertex()) {
-                active.activate(triangle.split_vertex());
-                stack.extend(triangle.split());
-            }
+        for root in Triangle::roots(corner, layout.patch()) {
+            split(&mut active, criterion, root);
         }
     }
     active
+}
+
+/// Splits a triangle and its halves as far as they are wanted; recursion is as deep as the patch has levels.
+fn split(active: &mut ActiveSet, criterion: &impl Criterion, triangle: Triangle) {
+    let vertex = triangle.split_vertex();
+    if criterion.wants(vertex) {
+        active.activate(vertex);
+        if vertex.has_children() {
+            for half in triangle.split() {
+                split(active, criterion, half);
+            }
+        }
+    }
 }

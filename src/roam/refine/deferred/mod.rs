@@ -25,7 +25,7 @@ use crate::roam::active::ActiveSet;
 use crate::roam::block::{BlockError, BlockSource, PatchBlock};
 use crate::roam::graph::Vertex;
 use crate::roam::layout::Layout;
-use crate::roam::refine::Changes;
+use crate::roam::refine::changes::Changes;
 use crate::roam::refine::deferred::patch::{Counts, Decider, PatchMesh, Station};
 use crate::roam::refine::deferred::topology::Topology;
 use crate::roam::refine::deferred::wheel::{Link, Links, Wheel};

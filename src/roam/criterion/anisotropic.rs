@@ -1,0 +1,51 @@
+//! The screen-space error that knows the viewing direction (the criterion of 001).
+//!
+//! `δ_s² = λ² n² δ² [(Vx−Ex)² + (Vy−Ey)²] / [(Vx−Ex)² + (Vy−Ey)² + (Vz−Ez)²]²`: a vertical error δ at the vertex V
+//! seen from the eye E, foreshortened. Seen level it spans λδ/d as everywhere; seen from straight above, nothing.
+//! Here n is 1 and λ the pixels of a metre at a distance of one metre, so that δ_s is pixels.
+//!
+//! δ is the error of the vertex and all below it (a raised [`ErrorMap`], the midpoint error in 001), so that of
+//! two vertices seen alike the one with more below it is refined first.
+//!
+//! It promises no bound: V stands for all of the triangles, and where the eye is above V but not above all of
+//! them, what is seen aslant beside it can show. Nor is it monotone; splits have to be forced.
+
+use crate::roam::criterion::Criterion;
+use crate::roam::criterion::lens::Lens;
+use crate::roam::errors::ErrorMap;
+use crate::roam::graph::Vertex;
+use crate::roam::ground::Ground;
+use crate::view::camera::Camera;
+
+/// The length of a vertical error on the picture, over the tolerance.
+#[derive(Clone, Copy, Debug)]
+pub struct Anisotropic<'a> {
+    ground: Ground<'a>,
+    errors: &'a ErrorMap,
+    lens: Lens,
+}
+
+impl<'a> Anisotropic<'a> {
+    /// The criterion for one camera; `tolerance_px` is above 0.
+    pub fn new(ground: Ground<'a>, errors: &'a ErrorMap, camera: &Camera, tolerance_px: f32) -> Self {
+        Self { ground, errors, lens: Lens::new(ground, camera, tolerance_px) }
+    }
+}
+
+impl Criterion for Anisotropic<'_> {
+    #[inline]
+    fn excess(&self, vertex: Vertex) -> f32 {
+        let error = self.errors.at(self.ground.layout, vertex);
+        if error == 0.0 {
+            return 0.0;
+        }
+        let sight = self.ground.position(vertex) - self.lens.eye;
+        let squared = sight.length_squared();
+        let seen = self.lens.excess(error, squared.sqrt());
+        // With the eye on the vertex there is no direction to foreshorten by.
+        if squared == 0.0 || seen == f32::INFINITY {
+            return f32::INFINITY;
+        }
+        seen * (sight.truncate().length_squared() / squared).sqrt()
+    }
+}

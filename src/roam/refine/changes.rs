@@ -1,0 +1,64 @@
+//! What an update did, and how that is kept while it goes on.
+
+use crate::roam::graph::Vertex;
+use crate::roam::layout::Layout;
+
+/// What one update changed.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Changes {
+    /// Vertices that became active.
+    pub splits: usize,
+    /// Vertices that became inactive.
+    pub merges: usize,
+    /// The patches that hold a triangle of such a vertex, as places in [`Layout::patches`], rising: what else
+    /// was drawn from the bits is still right.
+    pub dirty: Vec<usize>,
+}
+
+/// Changes as they come.
+#[derive(Clone, Debug)]
+pub(super) struct Tally {
+    changes: Changes,
+    marked: Vec<bool>,
+}
+
+impl Tally {
+    pub(super) fn new(layout: &Layout) -> Self {
+        Self { changes: Changes::default(), marked: vec![false; layout.patch_count()] }
+    }
+
+    pub(super) fn split(&mut self, layout: &Layout, vertex: Vertex) {
+        self.changes.splits += 1;
+        self.touch(layout, vertex);
+    }
+
+    pub(super) fn merge(&mut self, layout: &Layout, vertex: Vertex) {
+        self.changes.merges += 1;
+        self.touch(layout, vertex);
+    }
+
+    /// Forgets that a vertex was merged, once it is active again. Its patches stay marked.
+    pub(super) fn take_back_merge(&mut self) {
+        self.changes.merges -= 1;
+    }
+
+    /// All changes since the last call.
+    pub(super) fn take(&mut self) -> Changes {
+        let mut changes = std::mem::take(&mut self.changes);
+        changes.dirty.sort_unstable();
+        for &patch in &changes.dirty {
+            self.marked[patch] = false;
+        }
+        changes
+    }
+
+    fn touch(&mut self, layout: &Layout, vertex: Vertex) {
+        for apex in vertex.parents().into_iter().filter(|&apex| layout.contains(apex)) {
+            let patch = layout.patch_holding(vertex, apex);
+            if !self.marked[patch] {
+                self.marked[patch] = true;
+                self.changes.dirty.push(patch);
+            }
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! Vertices that are listed once each, whatever is asked of them.
+
+use crate::roam::graph::Vertex;
+use crate::roam::layout::Layout;
+
+/// A list of vertices, with a bit for each of the layout that says whether it is in.
+#[derive(Clone, Debug)]
+pub(super) struct Members {
+    list: Vec<Vertex>,
+    bits: Vec<u64>,
+}
+
+impl Members {
+    pub(super) fn new(layout: &Layout) -> Self {
+        Self { list: Vec::new(), bits: vec![0; layout.vertex_count().div_ceil(64)] }
+    }
+
+    /// Whether the vertex with index `index` is in.
+    pub(super) fn holds(&self, index: usize) -> bool {
+        self.bits[index / 64] >> (index % 64) & 1 == 1
+    }
+
+    pub(super) fn insert(&mut self, layout: &Layout, vertex: Vertex) {
+        let index = layout.index(vertex);
+        if !self.holds(index) {
+            self.bits[index / 64] |= 1 << (index % 64);
+            self.list.push(vertex);
+        }
+    }
+
+    /// Keeps those for which `keep`, told the vertex and its index, says so.
+    pub(super) fn retain(&mut self, layout: &Layout, mut keep: impl FnMut(Vertex, usize) -> bool) {
+        let bits = &mut self.bits;
+        self.list.retain(|&vertex| {
+            let index = layout.index(vertex);
+            let kept = keep(vertex, index);
+            if !kept {
+                bits[index / 64] &= !(1 << (index % 64));
+            }
+            kept
+        });
+    }
+}

@@ -1,0 +1,127 @@
+//! What a camera sees, reduced to lines on the ground plane: far, left and right (the culling of 000).
+//!
+//! A wedge knows nothing of heights, so it needs no height ranges, and it never culls what the camera's
+//! [frustum](crate::view::frustum::Frustum) sees. For a level camera its sides are the frustum's; pitched up or
+//! down, the picture's far corners reach further round, and the sides open:
+//!
+//! ```text
+//!     far                 h: how far the ray through the picture's lower (or upper)
+//!  ╲──────────╱              corner gets along the heading, a metre along the
+//!   ╲        ╱               viewing direction
+//!    ╲      ╱ tan / h     tan: how far it gets sideways
+//!     ╲    ╱
+//!      ╲  ╱               h = cos pitch − tan(fov_y / 2) · |sin pitch|
+//!      eye
+//! ```
+//!
+//! Once h is not above 0 the camera sees the ground behind its own heading, and there are no sides left: what
+//! remains is the strip between the farthest seen ahead and the farthest seen behind.
+
+use glam::{Vec2, Vec3};
+
+use crate::view::camera::Camera;
+
+/// The sides open and the far line recedes by this share, so that rounding never culls a box that the frustum just
+/// touches. A hundred times the rounding of f32.
+const SLACK: f32 = 1e-5;
+
+/// Lines on the ground plane with normals inward. Where there are no sides, the left line stands for the farthest
+/// behind, and the right one is nowhere.
+#[derive(Clone, Copy, Debug)]
+pub struct Wedge {
+    lines: [(Vec2, f32); 3],
+}
+
+impl Wedge {
+    /// As many planes as a wedge has lines, as bits for [`Wedge::crossed`].
+    pub const ALL: u8 = 0b111;
+
+    /// The wedge of `camera`.
+    pub fn of(camera: &Camera) -> Self {
+        let (eye, right) = (camera.eye().truncate(), camera.right().truncate());
+        // The camera's right is level, whatever its pitch.
+        let heading = right.perp();
+        let tan = camera.tan_half_fov() * (1.0 + SLACK);
+        let along = |ray: Vec3| ray.truncate().dot(heading);
+        let (level, opening) = (along(camera.forward()), (tan.y * along(camera.up())).abs());
+        let (nearest, farthest) = (level - opening, level + opening);
+        let far_m = camera.planes().1 * (1.0 + SLACK);
+        let line = |normal: Vec2, distance_m: f32| (normal, distance_m - normal.dot(eye));
+        let far = line(-heading, far_m * farthest);
+        let lines = if nearest > 0.0 {
+            let side = |normal: Vec2| line(heading * tan.x + normal * nearest, 0.0);
+            [far, side(right), side(-right)]
+        } else {
+            [far, line(heading, -far_m * nearest), (Vec2::ZERO, 0.0)]
+        };
+        Self { lines }
+    }
+
+    /// Whether some of what stands on the rectangle `min..=max` may be seen. Never false for what is in view.
+    pub fn may_see(&self, min: Vec2, max: Vec2) -> bool {
+        self.crossed(min, max, Self::ALL).is_some()
+    }
+
+    /// The lines of `among`, a bit each, that the rectangle crosses; `None` where it lies outside one of them.
+    /// What lies in the rectangle need be asked about these only.
+    pub fn crossed(&self, min: Vec2, max: Vec2, among: u8) -> Option<u8> {
+        let mut crossed = 0;
+        for (place, &(normal, offset)) in self.lines.iter().enumerate() {
+            let bit = 1 << place;
+            if among & bit != 0 {
+                let rising = normal.cmpge(Vec2::ZERO);
+                if normal.dot(Vec2::select(rising, max, min)) + offset < 0.0 {
+                    return None;
+                }
+                if normal.dot(Vec2::select(rising, min, max)) + offset < 0.0 {
+                    crossed |= bit;
+                }
+            }
+        }
+        Some(crossed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn camera(eye: Vec3, direction: Vec3) -> Camera {
+        Camera::new(eye, eye + direction, 0.8, (640, 480), (1.0, 1000.0)).expect("sound")
+    }
+
+    #[test]
+    fn a_level_wedge_culls_beside_behind_and_beyond_whatever_the_height() {
+        let wedge = Wedge::of(&camera(Vec3::Z * 900.0, Vec3::Y));
+        let unit_at = |x: f32, y: f32| wedge.may_see(Vec2::new(x, y) - 1.0, Vec2::new(x, y) + 1.0);
+        assert!(unit_at(0.0, 50.0) && unit_at(27.0, 50.0));
+        assert!(!unit_at(31.0, 50.0) && !unit_at(-31.0, 50.0));
+        assert!(!unit_at(0.0, -50.0) && !unit_at(0.0, 1002.0));
+    }
+
+    #[test]
+    fn looking_straight_down_leaves_a_strip() {
+        let wedge = Wedge::of(&camera(Vec3::Z * 900.0, -Vec3::Z));
+        let unit_at = |x: f32, y: f32| wedge.may_see(Vec2::new(x, y) - 1.0, Vec2::new(x, y) + 1.0);
+        assert!(unit_at(0.0, -300.0) && unit_at(0.0, 300.0) && unit_at(5000.0, 0.0));
+        assert!(!unit_at(0.0, -500.0) && !unit_at(0.0, 500.0));
+    }
+
+    proptest! {
+        #[test]
+        fn the_wedge_never_culls_what_the_camera_sees(
+            heading in 0.0..std::f32::consts::TAU, pitch in -1.57..1.57f32,
+            x in 0.5..639.5f32, y in 0.5..479.5f32, depth_m in 1.0..1000.0f32,
+            eye_x in -3000.0..3000.0f32, eye_y in -3000.0..3000.0f32,
+        ) {
+            let (sin, cos) = (libm::sinf(pitch), libm::cosf(pitch));
+            let direction = Vec3::new(libm::cosf(heading) * cos, libm::sinf(heading) * cos, sin);
+            let camera = camera(Vec3::new(eye_x, eye_y, 700.0), direction);
+            let seen = camera.eye() + camera.ray_through(Vec2::new(x, y)) * depth_m;
+            let slack = Vec2::splat(2e-3);
+            let at = seen.truncate();
+            prop_assert!(Wedge::of(&camera).may_see(at - slack, at + slack), "{seen} of {camera:?}");
+        }
+    }
+}

@@ -1,0 +1,359 @@
+//! The comparison of 000 on its own terms: classic queues, forced split + forced merge, and splits alone.
+//!
+//! 1025² posts in patches of 64 cells, the circling flight of one post a frame, about 8,766, 7,656 and 6,360
+//! triangles in the patches in view. A frame is culling and the update of the mesh, nothing is emitted. All
+//! methods follow the same flight in turns, round by round, so that another program's load falls on all alike; a
+//! method's figure is the median of its rounds' medians. Each frame is updated twice, the second time at rest:
+//! what the first takes longer, over the splits and merges it made, is the price of one.
+//!
+//! Two criteria. 000's own, variance over distance, is not monotone, so that splits are forced; nested spheres,
+//! where they never are, is what the other sections of this benchmark refine by.
+
+use std::time::{Duration, Instant};
+
+use glam::{DVec2, Vec2, Vec3};
+use sandtable::roam::active::ActiveSet;
+use sandtable::roam::bintree::Triangle;
+use sandtable::roam::criterion::Criterion;
+use sandtable::roam::criterion::spheres::Spheres;
+use sandtable::roam::criterion::variance::Variance;
+use sandtable::roam::culling::{Culling, PatchHeights, cull};
+use sandtable::roam::errors::ErrorMap;
+use sandtable::roam::graph::Vertex;
+use sandtable::roam::ground::Ground;
+use sandtable::roam::layout::{DEFAULT_PATCH, Layout};
+use sandtable::roam::refine::changes::Changes;
+use sandtable::roam::refine::coherent::Coherent;
+use sandtable::roam::refine::queues::{Goal, Queues};
+use sandtable::roam::refine::rebuild::rebuild;
+use sandtable::roam::spheres::SphereMap;
+use sandtable::terrain::lattice::{Lattice, Post};
+use sandtable::view::camera::Camera;
+
+/// The triangles of 000's three comparisons.
+const TRIANGLES: [usize; 3] = [8_766, 7_656, 6_360];
+const POSTS: u32 = 1025;
+const SPACING_M: f32 = 10.0;
+const FRAMES: u32 = 240;
+const ROUNDS: usize = 5;
+
+/// Prints the comparison.
+pub fn print() {
+    let world = World::new();
+    println!(
+        "\nRefiners: {POSTS}² posts, patches of {DEFAULT_PATCH}, {FRAMES} frames of one post, {ROUNDS} rounds"
+    );
+    for rule in [Rule::Variance, Rule::Spheres] {
+        println!("\n{}", rule.title());
+        println!("method                 triangles   ms/frame   at rest   ops/frame   ns/op   against");
+        for triangles in TRIANGLES {
+            compare(&world, rule, triangles);
+        }
+    }
+    println!();
+    culling(&world);
+}
+
+#[derive(Clone, Copy)]
+enum Rule {
+    Variance,
+    Spheres,
+}
+
+impl Rule {
+    fn title(self) -> &'static str {
+        match self {
+            Self::Variance => "k · variance · width / distance (000)",
+            Self::Spheres => "nested spheres (003)",
+        }
+    }
+}
+
+/// The terrain and what is measured of it once.
+struct World {
+    lattice: Lattice,
+    layout: Layout,
+    errors: ErrorMap,
+    heights: PatchHeights,
+}
+
+impl World {
+    fn new() -> Self {
+        let spacing = DVec2::splat(f64::from(SPACING_M));
+        let lattice = Lattice::new(DVec2::ZERO, spacing, POSTS, fractal(POSTS as usize)).expect("sound");
+        let layout = Layout::new(POSTS, POSTS, DEFAULT_PATCH).expect("sound");
+        let errors = midpoint_errors(&lattice, &layout);
+        let heights = PatchHeights::new(Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 });
+        Self { lattice, layout, errors, heights }
+    }
+
+    fn ground(&self) -> Ground<'_> {
+        Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
+    }
+
+    fn spheres(&self, metres_per_metre: f32) -> SphereMap {
+        let own = self.errors.values().iter().map(|error| error * metres_per_metre).collect();
+        SphereMap::nested(self.ground(), own)
+    }
+
+    /// The height in posts at a place in posts.
+    fn height(&self, at: Vec2) -> f32 {
+        let post = Post { column: at.x as u32, row: at.y as u32 };
+        self.lattice.height(post) / SPACING_M
+    }
+
+    /// Along a circle of 0.3 × 512 posts, 30 posts above the ground about it, 8° down, 60° × 47°.
+    fn camera(&self, frame: u32) -> Camera {
+        let (middle, radius) = (256.0f32, 153.6f32);
+        let place = |turn: f32| Vec2::splat(middle) + Vec2::new(turn.cos(), turn.sin()) * radius;
+        let turn = frame as f32 / radius;
+        let about = |step: i32| self.height(place(turn + step as f32 * 2.0 / radius));
+        let ground = (-8..=8).map(about).sum::<f32>() / 17.0;
+        let eye = place(turn).extend(ground + 30.0) * SPACING_M;
+        let forward = Vec3::new(-turn.sin(), turn.cos(), -0.14);
+        let fov_y = 2.0 * (30f32.to_radians().tan() * 0.75).atan();
+        Camera::new(eye, eye + forward * 100.0, fov_y, (1024, 768), (1.0, 60_000.0)).expect("sound")
+    }
+}
+
+/// One method with its mesh.
+enum Method {
+    Rebuild(ActiveSet),
+    Coherent(Box<Coherent>),
+    Queues(Box<Queues>),
+}
+
+impl Method {
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Rebuild(_) => "splits alone",
+            Self::Coherent(_) => "split + merge",
+            Self::Queues(_) => "queues, budget",
+        }
+    }
+
+    fn update(&mut self, criterion: &impl Criterion, patches: &[Vertex]) -> Changes {
+        match self {
+            Self::Rebuild(active) => {
+                *active = rebuild(active.layout(), criterion, patches.iter().copied());
+                Changes::default()
+            }
+            Self::Coherent(refiner) => refiner.update(criterion, patches),
+            Self::Queues(refiner) => refiner.update(criterion, patches),
+        }
+    }
+
+    fn active(&self) -> &ActiveSet {
+        match self {
+            Self::Rebuild(active) => active,
+            Self::Coherent(refiner) => refiner.active(),
+            Self::Queues(refiner) => refiner.active(),
+        }
+    }
+}
+
+/// What a flight cost.
+#[derive(Default)]
+struct Flown {
+    moving: Vec<Duration>,
+    resting: Vec<Duration>,
+    triangles: usize,
+    operations: usize,
+}
+
+fn compare(world: &World, rule: Rule, triangles: usize) {
+    let scale = scale_for(world, rule, triangles);
+    let spheres = world.spheres(scale);
+    let mut rounds: [Vec<Flown>; 3] = Default::default();
+    for _ in 0..ROUNDS {
+        for (which, flown) in rounds.iter_mut().enumerate() {
+            let mut method = match which {
+                0 => Method::Rebuild(ActiveSet::new(world.layout)),
+                1 => Method::Coherent(Box::new(Coherent::new(world.layout))),
+                _ => Method::Queues(Box::new(Queues::new(world.layout, Goal::Budget(triangles)))),
+            };
+            flown.push(fly(world, rule, scale, &spheres, &mut method));
+            if flown.len() == ROUNDS {
+                report(&method, flown);
+            }
+        }
+    }
+    let moving = rounds.each_ref().map(|flown| medians(flown, |flown| &flown.moving));
+    println!(
+        "  split + merge against splits alone {:.2}×, against queues {:.2}×",
+        moving[0] / moving[1],
+        moving[2] / moving[1]
+    );
+}
+
+fn fly(world: &World, rule: Rule, scale: f32, spheres: &SphereMap, method: &mut Method) -> Flown {
+    let (mut flown, mut patches) = (Flown::default(), Vec::new());
+    for frame in 0..FRAMES {
+        let camera = world.camera(frame);
+        let variance = Variance::with_k(world.ground(), &world.errors, camera.eye(), k_of(scale));
+        let nested = Spheres::new(world.ground(), spheres, camera.eye());
+        let mut frame_takes = || {
+            let start = Instant::now();
+            cull(world.ground(), &world.heights, &Culling::frustum(&camera), &mut patches);
+            let changes = match rule {
+                Rule::Variance => method.update(&variance, &patches),
+                Rule::Spheres => method.update(&nested, &patches),
+            };
+            (start.elapsed(), changes)
+        };
+        let (moving, changes) = frame_takes();
+        let (resting, _) = frame_takes();
+        // The first frames build the mesh.
+        if frame >= 8 {
+            flown.moving.push(moving);
+            flown.resting.push(resting);
+            flown.operations += changes.splits + changes.merges;
+            flown.triangles += leaves(method.active(), &patches);
+        }
+    }
+    flown.operations /= flown.moving.len();
+    flown.triangles /= flown.moving.len();
+    flown
+}
+
+fn report(method: &Method, rounds: &[Flown]) {
+    let moving_ms = medians(rounds, |flown| &flown.moving);
+    let resting_ms = medians(rounds, |flown| &flown.resting);
+    let last = &rounds[rounds.len() - 1];
+    let per_operation = match last.operations {
+        0 => "-".to_owned(),
+        operations => format!("{:.0}", (moving_ms - resting_ms) * 1e6 / operations as f64),
+    };
+    println!(
+        "{:22} {:9} {moving_ms:10.4} {resting_ms:9.4} {:11} {per_operation:>7}   {:.1} ns a triangle",
+        method.name(),
+        last.triangles,
+        last.operations,
+        moving_ms * 1e6 / last.triangles as f64,
+    );
+}
+
+/// The median of the rounds' medians, milliseconds.
+fn medians(rounds: &[Flown], times: fn(&Flown) -> &Vec<Duration>) -> f64 {
+    median(rounds.iter().map(|flown| median(times(flown).iter().map(Duration::as_secs_f64)) * 1e3))
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted[sorted.len() / 2]
+}
+
+/// 000's k that reaches as far as spheres of `scale` metres a metre of error.
+fn k_of(scale: f32) -> f32 {
+    scale / ((POSTS - 1) as f32 * SPACING_M)
+}
+
+/// The scale at which splits alone make so many triangles on average.
+fn scale_for(world: &World, rule: Rule, triangles: usize) -> f32 {
+    let (mut low, mut high) = (1f32, 1e4f32);
+    for _ in 0..14 {
+        let scale = (low * high).sqrt();
+        let spheres = world.spheres(scale);
+        let mut found = 0;
+        for frame in (0..FRAMES).step_by(FRAMES as usize / 8) {
+            let camera = world.camera(frame);
+            let mut patches = Vec::new();
+            cull(world.ground(), &world.heights, &Culling::frustum(&camera), &mut patches);
+            let variance = Variance::with_k(world.ground(), &world.errors, camera.eye(), k_of(scale));
+            let nested = Spheres::new(world.ground(), &spheres, camera.eye());
+            let active = match rule {
+                Rule::Variance => rebuild(&world.layout, &variance, patches.iter().copied()),
+                Rule::Spheres => rebuild(&world.layout, &nested, patches.iter().copied()),
+            };
+            found += leaves(&active, &patches);
+        }
+        if found / 8 > triangles { high = scale } else { low = scale }
+    }
+    (low * high).sqrt()
+}
+
+fn leaves(active: &ActiveSet, patches: &[Vertex]) -> usize {
+    let mut stack: Vec<Triangle> =
+        patches.iter().flat_map(|&corner| Triangle::roots(corner, active.layout().patch())).collect();
+    let mut leaves = 0;
+    while let Some(triangle) = stack.pop() {
+        if triangle.is_finest() || !active.is_active(triangle.split_vertex()) {
+            leaves += 1;
+        } else {
+            stack.extend(triangle.split());
+        }
+    }
+    leaves
+}
+
+/// What culling costs, by wedge, by frustum, and by asking every patch.
+fn culling(world: &World) {
+    const TIMES: u32 = 200;
+    let ground = world.ground();
+    let mut found = Vec::new();
+    println!("culling of {} patches     µs   patches in view", world.layout.patch_count());
+    for (name, culling_of) in
+        [("wedge (000)", Culling::wedge as fn(&Camera) -> Culling), ("frustum", Culling::frustum)]
+    {
+        let mut seen = 0;
+        let times = (0..FRAMES).map(|frame| {
+            let culling = culling_of(&world.camera(frame));
+            let start = Instant::now();
+            for _ in 0..TIMES {
+                cull(ground, &world.heights, &culling, &mut found);
+            }
+            seen += found.len();
+            start.elapsed().as_secs_f64() * 1e6 / f64::from(TIMES)
+        });
+        let times: Vec<f64> = times.collect();
+        println!("{name:24} {:6.2} {:17}", median(times.into_iter()), seen / FRAMES as usize);
+    }
+}
+
+/// Midpoint displacement, every level 2^-0.9 of the one above; the same field each time.
+fn fractal(posts: usize) -> Vec<f32> {
+    let mut heights = vec![0f32; posts * posts];
+    let layout = Layout::new(posts as u32, posts as u32, (posts - 1).min(4096) as u32).expect("sound");
+    let mut step = layout.patch() / 2;
+    while step >= 1 {
+        for odd in [[(step, step)].as_slice(), &[(step, 0), (0, step)]] {
+            for &(first_x, first_y) in odd {
+                for y in (first_y..posts as i32).step_by(2 * step as usize) {
+                    for x in (first_x..posts as i32).step_by(2 * step as usize) {
+                        let vertex = Vertex::new(x, y);
+                        let [from, to] = vertex.hypotenuse();
+                        let mean = (heights[layout.index(from)] + heights[layout.index(to)]) / 2.0;
+                        let size = 0.8 * (step as f32).powf(0.9);
+                        heights[layout.index(vertex)] = mean + noise(vertex) * size;
+                    }
+                }
+            }
+        }
+        step /= 2;
+    }
+    heights
+}
+
+/// −1..1, of mean 0.
+fn noise(vertex: Vertex) -> f32 {
+    let mut mixed = (vertex.x as u64) << 32 | vertex.y as u64;
+    for _ in 0..3 {
+        mixed = (mixed ^ mixed >> 29).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    }
+    (mixed >> 40) as f32 / (1u32 << 23) as f32 - 1.0
+}
+
+fn midpoint_errors(lattice: &Lattice, layout: &Layout) -> ErrorMap {
+    let columns = layout.columns();
+    let own = (0..layout.vertex_count()).map(|index| {
+        let vertex = Vertex::new((index % columns) as i32, (index / columns) as i32);
+        let height = |vertex| lattice.height(layout.post(vertex));
+        if layout.is_corner(vertex) {
+            return 0.0;
+        }
+        let [from, to] = vertex.hypotenuse();
+        (height(vertex) - (height(from) + height(to)) / 2.0).abs()
+    });
+    ErrorMap::raised(own.collect(), layout)
+}
