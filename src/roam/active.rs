@@ -40,6 +40,18 @@ impl ActiveSet {
         }
     }
 
+    /// Deactivates a vertex and first its active children, down to the finest: the forced merge. Patch corners stay.
+    pub fn deactivate(&mut self, vertex: Vertex) {
+        let mut waiting = vec![vertex];
+        while let Some(vertex) = waiting.pop() {
+            if self.layout.contains(vertex) && !self.layout.is_corner(vertex) && self.is_active(vertex) {
+                let index = self.layout.index(vertex);
+                self.bits[index / 64] &= !(1 << (index % 64));
+                waiting.extend(vertex.children());
+            }
+        }
+    }
+
     /// How many vertices are active, not counting patch corners.
     pub fn count(&self) -> usize {
         self.bits.iter().map(|word| word.count_ones() as usize).sum()
@@ -83,6 +95,22 @@ mod tests {
             for (x, y) in vertices {
                 active.activate(Vertex::new(x, y));
                 prop_assert!(!active.layout().contains(Vertex::new(x, y)) || active.is_active(Vertex::new(x, y)));
+            }
+            prop_assert_eq!(active.check(), Ok(()));
+        }
+
+        #[test]
+        fn any_deactivations_leave_no_vertex_without_its_parents(
+            vertices in proptest::collection::vec((0..65i32, 0..49i32), 0..40),
+            dropped in proptest::collection::vec((0..65i32, 0..49i32), 0..40),
+        ) {
+            let mut active = ActiveSet::new(Layout::new(60, 40, 16).expect("sound"));
+            vertices.iter().for_each(|&(x, y)| active.activate(Vertex::new(x, y)));
+            for vertex in dropped.into_iter().map(|(x, y)| Vertex::new(x, y)) {
+                active.deactivate(vertex);
+                let layout = *active.layout();
+                let stays = layout.contains(vertex) && layout.is_corner(vertex);
+                prop_assert!(stays || !layout.contains(vertex) || !active.is_active(vertex));
             }
             prop_assert_eq!(active.check(), Ok(()));
         }

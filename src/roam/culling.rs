@@ -23,6 +23,13 @@ impl PatchHeights {
         self.ranges[ground.layout.patch_index(corner)] = range(ground, corner);
     }
 
+    /// Takes in heights of the patch `index` that are new, drawn Z from `low` to `high`, where none of the range's own
+    /// ends went away.
+    pub(in crate::roam) fn widen(&mut self, index: usize, (low, high): (f32, f32)) {
+        let range = &mut self.ranges[index];
+        *range = (range.0.min(low), range.1.max(high));
+    }
+
     /// The lowest and highest drawn Z of the patch `index`; low above high where it has no data.
     pub fn range(&self, index: usize) -> (f32, f32) {
         self.ranges[index]
