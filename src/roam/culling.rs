@@ -86,8 +86,11 @@ impl PatchHeights {
     /// Measures the patch with south-west corner `corner` again, after an edit.
     pub fn renew(&mut self, ground: Ground<'_>, corner: Vertex) {
         let patch = ground.layout.patch();
-        let (mut x, mut y) = ((corner.x / patch) as usize, (corner.y / patch) as usize);
-        let mut renewed = range(ground, corner);
+        self.put((corner.x / patch) as usize, (corner.y / patch) as usize, range(ground, corner));
+    }
+
+    /// Sets the range of the patch in column `x` and row `y`, and those of the squares that hold it.
+    fn put(&mut self, mut x: usize, mut y: usize, mut renewed: (f32, f32)) {
         for place in 0..self.levels.len() {
             let level = &mut self.levels[place];
             let index = y * level.columns + x;
@@ -95,6 +98,14 @@ impl PatchHeights {
             (x, y) = (x / 2, y / 2);
             renewed = level.square(x, y);
         }
+    }
+
+    /// Takes in heights of the patch `index` that are new, drawn Z from `low` to `high`, where none of the range's own
+    /// ends went away.
+    pub(in crate::roam) fn widen(&mut self, index: usize, (low, high): (f32, f32)) {
+        let range = self.levels[0].ranges[index];
+        let columns = self.levels[0].columns;
+        self.put(index % columns, index / columns, (range.0.min(low), range.1.max(high)));
     }
 
     /// The lowest and highest drawn Z of the patch `index`, in the layout's patch order; low above high where it

@@ -9,12 +9,15 @@
 //! - `layout` lays patches over a lattice of any size; `ground` places their vertices in drawn world space.
 //! - `errors` measures, once, how far each vertex's triangles are off the ground.
 //! - `active` holds the bits; activating a vertex first activates its parents (the forced split).
+//! - `roughness` says how rough the ground is around each post.
 //! - `spheres` turns errors into nested spheres; `block` is one patch of them on its own.
 //! - `criterion` turns an error and a view into a decision.
 //! - `culling` tells which patches can be seen.
 //! - `refine` sets the bits.
 //! - `emit` turns the bits into triangles, in several ways; `quadtree` is the arithmetic of one of them.
 //! - `displayed` is what the bits show, for what lies on it.
+//! - `sweep` is the order in which whatever is nested up the graph is made.
+//! - `edit` mends errors and spheres after heights changed; `dynamic` is a terrain that can be edited.
 //!
 //! Sources: Duchaineau et al. 1997 (ROAM); the patch-based forced splits and the screen-space error of the
 //! later papers; Lindstrom and Pascucci 2001 for errors kept monotone up the graph.
@@ -25,6 +28,8 @@ pub mod block;
 pub mod criterion;
 pub mod culling;
 pub mod displayed;
+pub mod dynamic;
+pub mod edit;
 pub mod emit;
 pub mod errors;
 pub mod graph;
@@ -32,4 +37,6 @@ pub mod ground;
 pub mod layout;
 pub mod quadtree;
 pub mod refine;
+pub mod roughness;
 pub mod spheres;
+pub mod sweep;

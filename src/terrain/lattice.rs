@@ -171,6 +171,12 @@ impl Lattice {
         self.pinned[index] = true;
     }
 
+    /// Sets the height of a post; whether it is pinned stays as it is.
+    pub(in crate::terrain) fn set_height(&mut self, post: Post, height: f32) {
+        let index = self.index(post);
+        self.heights[index] = height;
+    }
+
     /// Where a post is stored: its place in [`Lattice::heights`].
     ///
     /// # Panics

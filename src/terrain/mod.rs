@@ -1,6 +1,7 @@
-//! The ground: one lattice of heights, the earthworks on it, the light that reaches it, and the height query
+//! The ground: one lattice of heights, the earthworks and brushes that change it, the light that reaches it, and the height query
 //! service.
 
+pub mod brush;
 pub mod earthwork;
 pub mod facets;
 pub mod lattice;

@@ -5,14 +5,17 @@
 //! children: a decision "error above a threshold" is then closed under parents by itself. What the number
 //! measures differs; one file per measure:
 //!
+//! - `own` measures one vertex alone.
 //! - `exact`: the largest vertical distance over every post that the vertex's triangles cover. A bound.
 //! - `relief`: highest less lowest post that they cover. A bound too, and a lazy one.
 
 pub mod exact;
+pub mod own;
 pub mod relief;
 
 use crate::roam::graph::Vertex;
 use crate::roam::layout::Layout;
+use crate::roam::sweep::Pass;
 
 /// The object-space error of every vertex, in metres without exaggeration.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +45,16 @@ impl ErrorMap {
     #[inline]
     pub fn at(&self, layout: &Layout, vertex: Vertex) -> f32 {
         self.errors[layout.index(vertex)]
+    }
+
+    /// Sets the error of a vertex of `pass` again from its own and those of its children, which are as they shall be;
+    /// tells whether it changed.
+    pub(in crate::roam) fn renew(&mut self, layout: &Layout, pass: Pass, vertex: Vertex, own: f32) -> bool {
+        let reach = pass.child_reach();
+        let children = pass.child_offsets().iter().map(|&(x, y)| vertex.moved(x * reach, y * reach));
+        let children = children.filter(|&child| layout.contains(child));
+        let error = children.map(|child| self.errors[layout.index(child)]).fold(own, f32::max);
+        std::mem::replace(&mut self.errors[layout.index(vertex)], error) != error
     }
 
     /// Makes every vertex's error at least that of its children, finest level first.

@@ -1,0 +1,113 @@
+//! Local roughness: how far the posts around a post differ from it in height.
+//!
+//! `f = (1/n) Σ (z − z_i)²` over a window of M × N posts around the post, the n posts of it that are there and hold
+//! data (constrained nested error criterion; 3 × 3 in the paper's tests). The factor that it gives,
+//! `k = 1 − 1/(f + 1 + ξ)` with `0 < k < 1`, is near 1 on rough ground and near 0 on flat ground. It is no length and
+//! knows no scale: a slope counts as roughness, and metres are what f is measured in, as the paper has it.
+
+use rayon::prelude::*;
+
+use crate::terrain::brush::PostRect;
+use crate::terrain::lattice::{Lattice, Post};
+
+/// The paper's ξ: keeps k above 0 on level ground, so that an infinite error stays infinite.
+const XI: f64 = 1e-6;
+
+/// The local roughness of every post, square metres of height without exaggeration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Roughness {
+    columns: usize,
+    half_window: (u32, u32),
+    values: Vec<f32>,
+}
+
+impl Roughness {
+    /// The roughness over windows that reach `half_window` posts east and north of each post, (1, 1) for the paper's
+    /// 3 × 3. In parallel; the same for any number of threads.
+    pub fn new(lattice: &Lattice, half_window: (u32, u32)) -> Self {
+        let columns = lattice.columns() as usize;
+        let mut values = vec![0.0; lattice.heights().len()];
+        values.par_chunks_mut(columns).enumerate().for_each(|(row, values)| {
+            for (column, value) in values.iter_mut().enumerate() {
+                *value = local(lattice, Post { column: column as u32, row: row as u32 }, half_window);
+            }
+        });
+        Self { columns, half_window, values }
+    }
+
+    /// How many posts a window reaches east and north.
+    pub fn half_window(&self) -> (u32, u32) {
+        self.half_window
+    }
+
+    /// The roughness of a post of the lattice it was measured with; 0 without data.
+    pub fn at(&self, post: Post) -> f32 {
+        self.values[post.row as usize * self.columns + post.column as usize]
+    }
+
+    /// The constraint factor of a post, above 0 and at most 1.
+    pub fn factor(&self, post: Post) -> f64 {
+        1.0 - 1.0 / (f64::from(self.at(post)) + 1.0 + XI)
+    }
+
+    /// Measures again whatever the posts of `posts`, which have new heights, have a part in.
+    pub fn renew(&mut self, lattice: &Lattice, posts: &PostRect) {
+        let grown = posts.grown(self.half_window, lattice);
+        for row in grown.first.row..=grown.last.row {
+            for column in grown.first.column..=grown.last.column {
+                let post = Post { column, row };
+                self.values[lattice.index(post)] = local(lattice, post, self.half_window);
+            }
+        }
+    }
+}
+
+fn local(lattice: &Lattice, post: Post, half_window: (u32, u32)) -> f32 {
+    let own = f64::from(lattice.height(post));
+    let window = PostRect { first: post, last: post }.grown(half_window, lattice);
+    let (mut sum, mut count) = (0.0, 0u32);
+    for row in window.first.row..=window.last.row {
+        let start = lattice.index(Post { column: window.first.column, row });
+        let width = (window.last.column - window.first.column) as usize;
+        for &height in &lattice.heights()[start..=start + width] {
+            let rise = own - f64::from(height);
+            if !rise.is_nan() {
+                sum += rise * rise;
+                count += 1;
+            }
+        }
+    }
+    // The post itself is in its window but is no neighbour.
+    if count > 1 { (sum / f64::from(count - 1)) as f32 } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+
+    fn lattice(heights: Vec<f32>) -> Lattice {
+        Lattice::new(DVec2::ZERO, DVec2::ONE, 5, heights).expect("sound")
+    }
+
+    #[test]
+    fn a_spike_is_as_rough_as_its_height_squared_and_its_neighbours_an_eighth_of_it() {
+        let mut heights = vec![10.0; 25];
+        heights[12] = 14.0;
+        let roughness = Roughness::new(&lattice(heights), (1, 1));
+        let at = |column, row| roughness.at(Post { column, row });
+        assert_eq!((at(2, 2), at(1, 2), at(0, 0)), (16.0, 2.0, 0.0));
+        let factor = |column, row| roughness.factor(Post { column, row });
+        assert!((factor(2, 2) - 16.0 / 17.0).abs() < 1e-6);
+        assert!(factor(0, 0) > 0.0 && factor(0, 0) < 1e-5);
+    }
+
+    #[test]
+    fn neighbours_without_data_or_beyond_the_border_are_left_out() {
+        let mut heights = vec![10.0; 25];
+        (heights[0], heights[5], heights[1]) = (12.0, f32::NAN, 13.0);
+        let roughness = Roughness::new(&lattice(heights), (1, 1));
+        assert_eq!(roughness.at(Post { column: 0, row: 0 }), (1.0 + 4.0) / 2.0);
+        assert_eq!(roughness.at(Post { column: 0, row: 1 }), 0.0);
+    }
+}

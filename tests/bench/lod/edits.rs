@@ -1,0 +1,341 @@
+//! Dynamic terrain: what mending after a small edit costs beside making everything anew; and what constraining the
+//! spheres by local roughness (003) saves at the same height difference.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+use glam::{DVec2, Vec3};
+use sandtable::dem::read::{Hints, read};
+use sandtable::dem::warp::to_metric;
+use sandtable::mesh::trimesh::TriMesh;
+use sandtable::roam::criterion::spheres::Spheres;
+use sandtable::roam::displayed::DisplayedTerrain;
+use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, Measure, Radius};
+use sandtable::roam::edit::{mend_exact, mend_midpoint, mend_spheres};
+use sandtable::roam::errors::ErrorMap;
+use sandtable::roam::errors::own::{exact_errors, midpoint_errors};
+use sandtable::roam::ground::Ground;
+use sandtable::roam::layout::Layout;
+use sandtable::roam::refine::rebuild::rebuild;
+use sandtable::roam::roughness::Roughness;
+use sandtable::roam::spheres::{OwnRadius, SphereMap};
+use sandtable::terrain::brush::{Changes, PostRect, set_heights};
+use sandtable::terrain::lattice::{Lattice, Post};
+
+/// Edits whose median and maximum are told.
+const EDITS: u32 = 200;
+
+/// Posts along the side of an edit.
+const SIDE: u32 = 33;
+
+/// Metres of distance per metre of error: about 1.5 pixels at 768 rows and 47°.
+const REACH: f32 = 600.0;
+
+/// Rebuilds whose least counts.
+const REBUILDS: usize = 3;
+
+/// Prints all tables.
+pub fn print() {
+    print_edits();
+    print_constrained();
+}
+
+fn print_edits() {
+    println!(
+        "\nA {SIDE}×{SIDE} edit: µs to mend, median (largest) of {EDITS}, and to make anew, least of {REBUILDS}"
+    );
+    println!(
+        "{:<28}{:>20}{:>20}{:>14}{:>9}{:>20}{:>10}",
+        "posts, patch, errors", "errors", "with spheres", "anew", "ratio", "whole edit", "unequal"
+    );
+    let only = std::env::var("SANDTABLE_BENCH_SIDE").ok().and_then(|side| side.parse().ok());
+    for posts in [513, 1025, 4097].into_iter().filter(|&posts| only.is_none_or(|only: u32| only == posts)) {
+        let lattice = fractal(posts);
+        for (patch, measure) in
+            [(64, Measure::Midpoint), (posts - 1, Measure::Midpoint), (64, Measure::Exact)]
+        {
+            print_row(&lattice, patch, measure);
+        }
+    }
+}
+
+fn print_row(lattice: &Lattice, patch: u32, measure: Measure) {
+    let mut lattice = lattice.clone();
+    let layout = Layout::new(lattice.columns(), lattice.rows(), patch).expect("sound");
+    let anew =
+        (0..REBUILDS).map(|_| timed(|| make(&lattice, &layout, measure)).1).fold(f64::INFINITY, f64::min);
+    let mut maps = make(&lattice, &layout, measure);
+    let (mut errors_us, mut both_us) = (Vec::new(), Vec::new());
+    for number in 0..EDITS {
+        let changes = bump(&mut lattice, number);
+        let change = changes.pieces.first().expect("a bump changes heights");
+        let (errors, spent) = timed(|| match measure {
+            Measure::Midpoint => mend_midpoint(&mut maps.errors, &lattice, &layout, change),
+            Measure::Exact => mend_exact(&mut maps.own, &mut maps.errors, &lattice, &layout, change),
+        });
+        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let own = own_radius(&maps.errors, measure);
+        let (_, more) = timed(|| mend_spheres(&mut maps.spheres, ground, &own, change, &errors));
+        errors_us.push(spent);
+        both_us.push(spent + more);
+    }
+    let fresh = make(&lattice, &layout, measure);
+    let unequal = different(maps.errors.values(), fresh.errors.values())
+        + different(maps.spheres.values(), fresh.spheres.values());
+    let whole_us = whole_edits(&lattice, patch, measure);
+    let ratio = anew / median(&both_us);
+    println!(
+        "{:<28}{:>20}{:>20}{:>14.0}{:>9.0}{:>20}{:>10}",
+        format!("{}², {patch}, {measure:?}", lattice.columns()),
+        told(&errors_us),
+        told(&both_us),
+        anew,
+        ratio,
+        told(&whole_us),
+        unequal
+    );
+}
+
+/// Edits of a terrain that mends everything and tells the dirty patches, writing the heights included.
+fn whole_edits(lattice: &Lattice, patch: u32, measure: Measure) -> Vec<f64> {
+    let radius = match measure {
+        Measure::Midpoint => Radius::Plain,
+        Measure::Exact => Radius::Bounding,
+    };
+    let options = DynamicOptions { patch, exaggeration: 1.0, measure, radius, reach: REACH };
+    let mut terrain = DynamicTerrain::new(lattice.clone(), options).expect("sound");
+    (0..EDITS).map(|number| timed(|| terrain.edit(|lattice| bump(lattice, number + EDITS))).1).collect()
+}
+
+struct Maps {
+    own: Vec<f32>,
+    errors: ErrorMap,
+    spheres: SphereMap,
+}
+
+fn make(lattice: &Lattice, layout: &Layout, measure: Measure) -> Maps {
+    let (own, errors) = match measure {
+        Measure::Midpoint => (Vec::new(), ErrorMap::raised(midpoint_errors(lattice, layout), layout)),
+        Measure::Exact => {
+            let own = exact_errors(lattice, layout);
+            (own.clone(), ErrorMap::raised(own, layout))
+        }
+    };
+    let ground = Ground { lattice, layout, exaggeration: 1.0 };
+    let spheres = SphereMap::of(ground, &own_radius(&errors, measure));
+    Maps { own, errors, spheres }
+}
+
+fn own_radius(errors: &ErrorMap, measure: Measure) -> OwnRadius<'_> {
+    match measure {
+        Measure::Midpoint => OwnRadius::Plain { errors, reach: REACH },
+        Measure::Exact => OwnRadius::Bounding { errors, reach: REACH },
+    }
+}
+
+/// Raises a round bump of 5 m at one of many places.
+fn bump(lattice: &mut Lattice, number: u32) -> Changes {
+    let places = lattice.columns() - SIDE;
+    let at = |prime: u32| (u64::from(number) * u64::from(prime) % u64::from(places)) as u32;
+    let first = Post { column: at(7919), row: at(104_729) };
+    let last = Post { column: first.column + SIDE - 1, row: first.row + SIDE - 1 };
+    let posts = PostRect { first, last };
+    let half = f64::from(SIDE / 2);
+    let raised = |post: Post| {
+        let off = DVec2::new(f64::from(post.column - first.column), f64::from(post.row - first.row)) - half;
+        lattice.height(post) + (5.0 * (1.0 - off.length() / 23.0)) as f32
+    };
+    let heights: Vec<f32> = posts.posts().map(raised).collect();
+    set_heights(lattice, posts, &heights)
+}
+
+fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let start = Instant::now();
+    let made = work();
+    (made, start.elapsed().as_secs_f64() * 1e6)
+}
+
+fn median(times: &[f64]) -> f64 {
+    let mut sorted = times.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted[sorted.len() / 2]
+}
+
+fn told(times: &[f64]) -> String {
+    format!("{:.1} ({:.0})", median(times), times.iter().copied().fold(0.0, f64::max))
+}
+
+fn different(a: &[f32], b: &[f32]) -> usize {
+    a.iter().zip(b).filter(|(a, b)| a.to_bits() != b.to_bits()).count()
+}
+
+/// Ground whose roughness falls off with its scale, by displaced midpoints, 10 m between posts.
+fn fractal(posts: u32) -> Lattice {
+    let (side, mut heights) = (posts as usize, vec![0f32; (posts * posts) as usize]);
+    let mut state = 0x2545_F491_4F6C_DD1Du64;
+    let mut random = |scale: f32| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        ((state >> 40) as f32 / (1 << 23) as f32 - 1.0) * scale
+    };
+    let mut step = side - 1;
+    while step > 1 {
+        let (half, scale) = (step / 2, step as f32 * 1.2);
+        for y in (0..side).step_by(half) {
+            for x in (0..side).step_by(half) {
+                if (x | y) & (step - 1) != 0 {
+                    let low = (x & !(step - 1), y & !(step - 1));
+                    let high = ((low.0 + step).min(side - 1), (low.1 + step).min(side - 1));
+                    let ends = if x & (step - 1) == 0 {
+                        [(x, low.1), (x, high.1)]
+                    } else if y & (step - 1) == 0 {
+                        [(low.0, y), (high.0, y)]
+                    } else {
+                        [low, high]
+                    };
+                    let [a, b] = ends.map(|(x, y)| heights[y * side + x]);
+                    heights[y * side + x] = (a + b) / 2.0 + random(scale * 0.25);
+                }
+            }
+        }
+        step = half;
+    }
+    Lattice::new(DVec2::ZERO, DVec2::splat(10.0), posts, heights).expect("sound")
+}
+
+/// Real ground: its name and place in the test data.
+const GROUNDS: [(&str, &str); 3] = [
+    ("crater", "scenes/crater_lake_bt/crater.bt"),
+    ("big tujunga", "dem/bigtujunga_utm11_i16_tiled.tif"),
+    ("boulder", "dem/boulder_SRTMGL3.asc"),
+];
+
+/// Times the plain spheres' reach within which the constrained ones' is sought, doublings either way.
+const SEARCH: (f32, f32) = (0.25, 4096.0);
+
+fn print_constrained() {
+    println!(
+        "\nSpheres constrained by local roughness (3×3) against plain ones, eight eyes, means over all posts"
+    );
+    println!(
+        "{:<14}{:>12}{:>8}{:>22}{:>30}{:>34}",
+        "ground", "posts", "reach", "plain", "constrained, same reach", "constrained, same mean"
+    );
+    for (name, path) in GROUNDS {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(path);
+        let Some(lattice) = real(&path) else {
+            println!("{name:<14}SKIPPED: no elevation model at {}", path.display());
+            continue;
+        };
+        let lattice = Arc::new(lattice);
+        for reach in [150.0, REACH] {
+            compare(name, &lattice, reach);
+        }
+    }
+}
+
+fn real(path: &Path) -> Option<Lattice> {
+    let bytes = std::fs::read(path).ok()?;
+    let companions = |name: &str| std::fs::read(name).ok();
+    let hints = Hints { companions: &companions, ..Hints::default() };
+    let raster = read(&path.to_string_lossy(), &bytes, &hints).expect("a file of the test data");
+    Some(Lattice::from_raster(&to_metric(&raster, None).expect("it has a place")).expect("it holds ground"))
+}
+
+/// What eight eyes see, on average.
+#[derive(Clone, Copy)]
+struct Sight {
+    triangles: f64,
+    mean_m: f64,
+}
+
+fn compare(name: &str, lattice: &Arc<Lattice>, reach: f32) {
+    let layout = Layout::new(lattice.columns(), lattice.rows(), 64).expect("sound");
+    let ground = Ground { lattice, layout: &layout, exaggeration: 1.0 };
+    let errors = ErrorMap::raised(midpoint_errors(lattice, &layout), &layout);
+    let roughness = Roughness::new(lattice, (1, 1));
+    let plain = see(lattice, &layout, &SphereMap::plain(ground, &errors, reach));
+    let constrained = |reach: f32| see(lattice, &layout, &SphereMap::constrained(ground, reach, &roughness));
+    let same_reach = constrained(reach);
+    let (mut low, mut high) = (reach * SEARCH.0, reach * SEARCH.1);
+    for _ in 0..18 {
+        let middle = (low * high).sqrt();
+        if constrained(middle).mean_m > plain.mean_m { low = middle } else { high = middle }
+    }
+    let same_mean = constrained(high);
+    let sight = |sight: Sight| format!("{:.0}, {:.3} m", sight.triangles, sight.mean_m);
+    println!(
+        "{name:<14}{:>12}{reach:>8.0}{:>22}{:>30}{:>34}",
+        format!("{}×{}", lattice.columns(), lattice.rows()),
+        sight(plain),
+        format!("{} ({:.3}×)", sight(same_reach), same_reach.triangles / plain.triangles),
+        format!(
+            "{} ({:.3}×, reach ×{:.2})",
+            sight(same_mean),
+            same_mean.triangles / plain.triangles,
+            high / reach
+        ),
+    );
+}
+
+fn see(lattice: &Arc<Lattice>, layout: &Layout, spheres: &SphereMap) -> Sight {
+    let ground = Ground { lattice, layout, exaggeration: 1.0 };
+    let (far, top) = (lattice.extent().max.as_vec2(), lattice.height_range().1);
+    let eyes = (0..8u16).map(|eye| {
+        let angle = f32::from(eye) * std::f32::consts::FRAC_PI_4;
+        let plan = far * 0.5 + far * 0.35 * glam::Vec2::new(angle.cos(), angle.sin());
+        plan.extend(top + 100.0)
+    });
+    let seen: Vec<Sight> = eyes.map(|eye: Vec3| see_from(lattice, ground, spheres, eye)).collect();
+    let mean = |part: fn(&Sight) -> f64| seen.iter().map(part).sum::<f64>() / seen.len() as f64;
+    Sight { triangles: mean(|sight| sight.triangles), mean_m: mean(|sight| sight.mean_m) }
+}
+
+fn see_from(lattice: &Arc<Lattice>, ground: Ground<'_>, spheres: &SphereMap, eye: Vec3) -> Sight {
+    let layout = ground.layout;
+    let active = rebuild(layout, &Spheres::new(ground, spheres, eye), layout.patches());
+    let shown = DisplayedTerrain::new(Arc::clone(lattice), active, 1.0, layout.patches().collect());
+    let mut mesh = TriMesh::default();
+    shown.emit(&mut mesh);
+    Sight { triangles: mesh.triangles.len() as f64, mean_m: mean_difference(lattice, &mesh) }
+}
+
+/// The mean of |mesh − ground| over all posts that the mesh covers, metres.
+fn mean_difference(lattice: &Lattice, mesh: &TriMesh) -> f64 {
+    let mut seen = vec![false; lattice.heights().len()];
+    let (mut sum, mut count) = (0.0, 0u64);
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|id| {
+            let at = mesh.positions[id.index()].as_dvec3();
+            let grid = (at.truncate() / lattice.cell()).round();
+            grid.extend(at.z)
+        });
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        let area = (b - a).truncate().perp_dot((c - a).truncate());
+        for row in low.y as u32..=high.y as u32 {
+            for column in low.x as u32..=high.x as u32 {
+                let at = DVec2::new(f64::from(column), f64::from(row));
+                let part = |from: glam::DVec3, to: glam::DVec3| {
+                    (to - from).truncate().perp_dot(at - from.truncate()) / area
+                };
+                let (to_c, to_a, to_b) = (part(a, b), part(b, c), part(c, a));
+                let post = Post { column, row };
+                if to_a >= 0.0
+                    && to_b >= 0.0
+                    && to_c >= 0.0
+                    && !std::mem::replace(&mut seen[lattice.index(post)], true)
+                {
+                    let z = a.z * to_a + b.z * to_b + c.z * to_c;
+                    let off = (z - f64::from(lattice.height(post))).abs();
+                    if !off.is_nan() {
+                        sum += off;
+                        count += 1;
+                    }
+                }
+            }
+        }
+    }
+    sum / count as f64
+}
