@@ -14,6 +14,7 @@
 //! - `culling` tells which patches can be seen.
 //! - `refine` sets the bits.
 //! - `displayed` reads triangles off the bits.
+//! - `closure` sets the fewest bits that keep an error bound; `bound` measures a mesh at every post.
 //!
 //! Sources: Duchaineau et al. 1997 (ROAM); the patch-based forced splits and the screen-space error of the
 //! later papers; Lindstrom and Pascucci 2001 for errors kept monotone up the graph.
@@ -21,6 +22,8 @@
 pub mod active;
 pub mod bintree;
 pub mod block;
+pub mod bound;
+pub mod closure;
 pub mod criterion;
 pub mod culling;
 pub mod displayed;

@@ -8,6 +8,10 @@
 //! - `exact`: the largest vertical distance over every post that the vertex's triangles cover. A bound.
 
 pub mod exact;
+pub mod near;
+pub mod rows;
+pub mod scan;
+pub mod survey;
 
 use crate::roam::graph::Vertex;
 use crate::roam::layout::Layout;
