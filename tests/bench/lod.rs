@@ -1,5 +1,8 @@
 //! `cargo bench --bench lod`: what the level-of-detail core costs, beside others and beside its own plain ways.
 
+#[path = "lod/bound.rs"]
+mod bound;
+
 fn main() {
-    println!("no rows yet");
+    bound::print();
 }
