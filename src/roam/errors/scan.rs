@@ -189,8 +189,20 @@ impl<'a> PostTriangle<'a> {
             ((posts[at] - self.apex_height) - plane).abs()
         };
         if posts.len() < LANES {
-            for at in 0..posts.len() {
-                worst[at] = larger(worst[at], off(at));
+            // Of four to seven posts the last four overlap the first.
+            let half = LANES / 2;
+            if posts.len() < half {
+                for at in 0..posts.len() {
+                    worst[at] = larger(worst[at], off(at));
+                }
+                return;
+            }
+            for lane in 0..half {
+                worst[lane] = larger(worst[lane], off(lane));
+            }
+            let rest = posts.len() - half;
+            for lane in 0..half {
+                worst[half + lane] = larger(worst[half + lane], off(rest + lane));
             }
             return;
         }
