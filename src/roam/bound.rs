@@ -139,7 +139,9 @@ mod tests {
         mesh.triangle([0, 2, 3].map(VertexId));
         let whole = measure(&lattice, &mesh).expect("on posts");
         assert_eq!((whole.measured, whole.left_out), (9, 0));
-        assert!((whole.mean_m - 4.0 / 9.0).abs() < 1e-12 && (whole.rms_m - (10f64 / 9.0).sqrt()).abs() < 1e-12);
+        assert!(
+            (whole.mean_m - 4.0 / 9.0).abs() < 1e-12 && (whole.rms_m - (10f64 / 9.0).sqrt()).abs() < 1e-12
+        );
     }
 
     #[test]

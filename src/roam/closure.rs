@@ -28,7 +28,7 @@ pub fn least_closure(lattice: &Lattice, layout: &Layout, tolerance_m: f32) -> Ac
     let mut growth = Growth {
         lattice,
         layout,
-        tolerance_m,
+        tolerance_m: if tolerance_m.is_nan() { -1.0 } else { tolerance_m },
         survey: Survey::of(lattice),
         active: ActiveSet::new(*layout),
         waiting: layout.patches().flat_map(|corner| Triangle::roots(corner, layout.patch())).collect(),
@@ -55,7 +55,7 @@ pub fn is_off(
     });
     match plain {
         Some(posts) => posts.exceeds(tolerance_m),
-        None => !(triangle_error(lattice, layout, triangle) <= tolerance_m),
+        None => triangle_error(lattice, layout, triangle) > tolerance_m,
     }
 }
 

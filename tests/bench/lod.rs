@@ -4,6 +4,8 @@
 mod bound;
 
 fn main() {
-    if std::env::var_os("STEPS").is_some() { return bound::steps(); }
+    if std::env::var_os("STEPS").is_some() {
+        return bound::steps();
+    }
     bound::print();
 }

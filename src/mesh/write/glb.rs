@@ -89,7 +89,8 @@ mod tests {
     fn chunks_are_aligned_and_bounds_are_those_of_the_positions() {
         let mut bytes = Vec::new();
         write(&square(), &remarks(), &mut bytes).expect("memory");
-        let number = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().expect("four bytes")) as usize;
+        let number =
+            |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().expect("four bytes")) as usize;
         assert_eq!((&bytes[..4], number(4), number(8)), (&b"glTF"[..], 2, bytes.len()));
         let text = number(12);
         assert_eq!((text % 4, number(20 + text), &bytes[24 + text..28 + text]), (0, 72, &b"BIN\0"[..]));

@@ -36,7 +36,9 @@ mod tests {
         assert!(text.starts_with("# a?v 9 9 9\n# zwölf\nv 0 0 -1.5\n"), "{text}");
         let numbers = |kind: &str| -> Vec<f32> {
             let lines = text.lines().filter(|line| line.starts_with(kind));
-            lines.flat_map(|line| line.split(' ').skip(1).map(|word| word.parse().expect("a number"))).collect()
+            lines
+                .flat_map(|line| line.split(' ').skip(1).map(|word| word.parse().expect("a number")))
+                .collect()
         };
         let expected: Vec<f32> = square().positions.iter().flat_map(|at| at.to_array()).collect();
         assert_eq!(numbers("v "), expected);

@@ -49,7 +49,8 @@ mod tests {
         assert!(bytes.starts_with(b"origin 5 6  "));
         assert_eq!(bytes.len(), 84 + 2 * 50);
         assert_eq!(bytes[80..84], [2, 0, 0, 0]);
-        let number = |at: usize| f32::from_le_bytes(bytes[84 + 4 * at..][..4].try_into().expect("four bytes"));
+        let number =
+            |at: usize| f32::from_le_bytes(bytes[84 + 4 * at..][..4].try_into().expect("four bytes"));
         let normal = glam::Vec3::new(number(0), number(1), number(2));
         assert!((normal.length() - 1.0).abs() < 1e-6 && normal.z > 0.0, "{normal}");
         assert_eq!((number(5), number(8), number(11)), (-1.5, 0.1, 1e7));

@@ -75,11 +75,6 @@ pub fn own_error(lattice: &Lattice, layout: &Layout, vertex: Vertex) -> f32 {
     }
 }
 
-#[doc(hidden)]
-pub fn plain_error_for_timing(lattice: &Lattice, layout: &Layout, vertex: Vertex) -> f32 {
-    Diamond::new(lattice, layout, vertex).unwrap().error(lattice, vertex)
-}
-
 fn general_error(lattice: &Lattice, layout: &Layout, vertex: Vertex) -> f32 {
     let error = |triangle| triangle_error(lattice, layout, &triangle);
     triangles_split_at(layout, vertex).into_iter().flatten().map(error).fold(0.0, f32::max)
@@ -200,7 +195,9 @@ impl<'a> Measured<'a> {
 
     /// [`own_error`], with the survey's help.
     fn one(&self, vertex: Vertex) -> f32 {
-        match Diamond::new(self.lattice, self.layout, vertex).filter(|diamond| diamond.is_known_plain(&self.survey)) {
+        match Diamond::new(self.lattice, self.layout, vertex)
+            .filter(|diamond| diamond.is_known_plain(&self.survey))
+        {
             Some(diamond) => diamond.error(self.lattice, vertex),
             None => own_error(self.lattice, self.layout, vertex),
         }
@@ -252,7 +249,8 @@ impl<'a> Measured<'a> {
 
     fn strips(&self, vertex: Vertex) -> Vec<Strip<'a>> {
         let diamond = Diamond::new(self.lattice, self.layout, vertex);
-        let plain = diamond.filter(|diamond| diamond.is_known_plain(&self.survey) || diamond.is_plain(self.lattice));
+        let plain =
+            diamond.filter(|diamond| diamond.is_known_plain(&self.survey) || diamond.is_plain(self.lattice));
         let Some(diamond) = plain else {
             return vec![Strip::General(vertex)];
         };
@@ -463,9 +461,11 @@ mod tests {
 
     #[test]
     fn steep_planes_have_no_error_to_speak_of() {
-        let heights = (0..257 * 257).map(|index| 900.0 + (index % 257) as f32 * 3.7 - (index / 257) as f32 * 1.3);
+        let heights =
+            (0..257 * 257).map(|index| 900.0 + (index % 257) as f32 * 3.7 - (index / 257) as f32 * 1.3);
         let lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 257, heights.collect()).expect("sound");
-        let worst = own_errors(&lattice, &Layout::new(257, 257, 256).expect("sound")).into_iter().fold(0.0, f32::max);
+        let worst =
+            own_errors(&lattice, &Layout::new(257, 257, 256).expect("sound")).into_iter().fold(0.0, f32::max);
         assert!(worst < 1e-3, "{worst}");
     }
 

@@ -42,8 +42,8 @@ impl<const N: usize> Lanes<N> {
     #[inline(always)]
     fn with(self, other: Self, each: impl Fn(f32, f32) -> f32) -> Self {
         let mut result = self.0;
-        for lane in 0..N {
-            result[lane] = each(self.0[lane], other.0[lane]);
+        for (one, other) in result.iter_mut().zip(other.0) {
+            *one = each(*one, other);
         }
         Self(result)
     }

@@ -93,12 +93,19 @@ impl<'a> PostTriangle<'a> {
             let rise = if to.1 > from.1 { right - left } else { left - right };
             (Shape::Aslant { east, reach }, (left + right) * (scale * east as f32), rise * scale)
         } else {
-            let ((ahead, along), (aside, across)) =
-                if from.1 == apex.1 { ((from.0, left), (to.1, right)) } else { ((to.0, right), (from.1, left)) };
+            let ((ahead, along), (aside, across)) = if from.1 == apex.1 {
+                ((from.0, left), (to.1, right))
+            } else {
+                ((to.0, right), (from.1, left))
+            };
             let (east, north) = ((ahead - apex.0).signum(), (aside - apex.1).signum());
             let leg = (ahead - apex.0).abs();
             let scale = 1.0 / leg as f32;
-            (Shape::Corner { east, north, leg }, along * (scale * east as f32), across * (scale * north as f32))
+            (
+                Shape::Corner { east, north, leg },
+                along * (scale * east as f32),
+                across * (scale * north as f32),
+            )
         };
         Some(Self { heights, columns: columns as usize, apex, apex_height, per_column, per_row, shape })
     }
@@ -145,7 +152,7 @@ impl<'a> PostTriangle<'a> {
         (0..self.rows()).step_by(ROWS_PER_LOOK as usize).any(|first| {
             let rows = first..(first + ROWS_PER_LOOK).min(self.rows());
             self.scan(rows, Hypotenuse::Counted, &mut worst);
-            !(largest(&worst) <= tolerance_m)
+            largest(&worst) > tolerance_m
         })
     }
 
@@ -183,7 +190,8 @@ impl<'a> PostTriangle<'a> {
     #[inline(always)]
     fn scan_span(&self, row: i32, first: i32, length: i32, worst: &mut Worst) {
         let posts = &self.heights[self.posts(row, first, length)];
-        let start = self.per_column * (first - self.apex.0) as f32 + self.per_row * (row - self.apex.1) as f32;
+        let start =
+            self.per_column * (first - self.apex.0) as f32 + self.per_row * (row - self.apex.1) as f32;
         let off = |at: usize| {
             let plane = start + self.per_column * (at as i32 as f32);
             ((posts[at] - self.apex_height) - plane).abs()
@@ -192,17 +200,16 @@ impl<'a> PostTriangle<'a> {
             // Of four to seven posts the last four overlap the first.
             let half = LANES / 2;
             if posts.len() < half {
-                for at in 0..posts.len() {
-                    worst[at] = larger(worst[at], off(at));
+                for (at, worst) in worst.iter_mut().enumerate().take(posts.len()) {
+                    *worst = larger(*worst, off(at));
                 }
                 return;
             }
-            for lane in 0..half {
-                worst[lane] = larger(worst[lane], off(lane));
-            }
+            let (first, last) = worst.split_at_mut(half);
             let rest = posts.len() - half;
-            for lane in 0..half {
-                worst[half + lane] = larger(worst[half + lane], off(rest + lane));
+            for (lane, (first, last)) in first.iter_mut().zip(last).enumerate() {
+                *first = larger(*first, off(lane));
+                *last = larger(*last, off(rest + lane));
             }
             return;
         }

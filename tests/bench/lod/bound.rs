@@ -29,7 +29,8 @@ pub fn print() {
 /// Rough ground at `n` × `n` posts, 10 m apart: noise at every wavelength with amplitudes as wavelength^0.9.
 pub fn fractal(n: usize) -> Vec<f32> {
     let random = |x: u32, y: u32, octave: u32| {
-        let mut bits = x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca77) ^ octave.wrapping_mul(0xc2b2_ae3d);
+        let mut bits =
+            x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca77) ^ octave.wrapping_mul(0xc2b2_ae3d);
         for _ in 0..2 {
             bits = (bits ^ (bits >> 15)).wrapping_mul(0x2c1b_3c6d);
         }
@@ -39,7 +40,8 @@ pub fn fractal(n: usize) -> Vec<f32> {
     let octave = |x: usize, y: usize, octave: u32| {
         let length = 2048usize >> octave;
         let (cell_x, cell_y) = ((x / length) as u32, (y / length) as u32);
-        let (u, v) = (smooth((x % length) as f32 / length as f32), smooth((y % length) as f32 / length as f32));
+        let (u, v) =
+            (smooth((x % length) as f32 / length as f32), smooth((y % length) as f32 / length as f32));
         let at = |dx: u32, dy: u32| random(cell_x + dx, cell_y + dy, octave);
         let (south, north) = (at(0, 0) + (at(1, 0) - at(0, 0)) * u, at(0, 1) + (at(1, 1) - at(0, 1)) * u);
         (south + (north - south) * v) * 2000.0 * libm::powf(length as f32 / 2048.0, 0.9)
@@ -193,20 +195,10 @@ fn wedgies(lattice: &Lattice, layout: &Layout) -> ErrorMap {
 }
 
 pub fn steps() {
-    let n = 513;
+    let n = 4097;
     let lattice = lattice_of(n);
-    let layout = Layout::new(n as u32, n as u32, 512).expect("sound");
-    for step in [1, 2, 4, 8, 16, 32, 64, 128] {
-        for kind in [sandtable::roam::graph::Kind::Center, sandtable::roam::graph::Kind::EastEdge, sandtable::roam::graph::Kind::NorthEdge] {
-            let list: Vec<Vertex> = vertices(&layout).filter(|v| v.step() == step && v.kind() == kind).filter(|v| v.x > 0 && v.y > 0 && v.x < 512 && v.y < 512).collect();
-            let mut best = f64::MAX;
-            let mut sum = 0.0;
-            for _ in 0..7 {
-                best = best.min(milliseconds(&mut || {
-                    for &v in &list { sum += sandtable::roam::errors::exact::plain_error_for_timing(&lattice, &layout, v); }
-                }));
-            }
-            println!("{step:4} {kind:?} {best:.3} ms {:.2} ns a post of the terrain {sum}", best * 1e6 / (513.0 * 513.0));
-        }
+    let layout = Layout::new(n as u32, n as u32, 4096).expect("sound");
+    for _ in 0..10 {
+        println!("{:.1}", milliseconds(&mut || drop(own_errors(&lattice, &layout))));
     }
 }
