@@ -4,8 +4,5 @@
 mod bound;
 
 fn main() {
-    if std::env::var_os("STEPS").is_some() {
-        return bound::steps();
-    }
     bound::print();
 }

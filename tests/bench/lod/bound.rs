@@ -37,6 +37,7 @@ pub fn fractal(n: usize) -> Vec<f32> {
         (bits >> 8) as f32 / (1u32 << 24) as f32 - 0.5
     };
     let smooth = |t: f32| t * t * (3.0 - 2.0 * t);
+    let amplitudes: Vec<f32> = (0..12).map(|octave| 2000.0 * libm::powf(0.5, octave as f32 * 0.9)).collect();
     let octave = |x: usize, y: usize, octave: u32| {
         let length = 2048usize >> octave;
         let (cell_x, cell_y) = ((x / length) as u32, (y / length) as u32);
@@ -44,7 +45,7 @@ pub fn fractal(n: usize) -> Vec<f32> {
             (smooth((x % length) as f32 / length as f32), smooth((y % length) as f32 / length as f32));
         let at = |dx: u32, dy: u32| random(cell_x + dx, cell_y + dy, octave);
         let (south, north) = (at(0, 0) + (at(1, 0) - at(0, 0)) * u, at(0, 1) + (at(1, 1) - at(0, 1)) * u);
-        (south + (north - south) * v) * 2000.0 * libm::powf(length as f32 / 2048.0, 0.9)
+        (south + (north - south) * v) * amplitudes[octave as usize]
     };
     (0..n * n).map(|at| (0..12).map(|index| octave(at % n, at / n, index)).sum()).collect()
 }
@@ -192,13 +193,4 @@ fn wedgies(lattice: &Lattice, layout: &Layout) -> ErrorMap {
         thickness[layout.index(vertex)] = below + midpoint_error(lattice, layout, vertex);
     }
     ErrorMap::raised(thickness, layout)
-}
-
-pub fn steps() {
-    let n = 4097;
-    let lattice = lattice_of(n);
-    let layout = Layout::new(n as u32, n as u32, 4096).expect("sound");
-    for _ in 0..10 {
-        println!("{:.1}", milliseconds(&mut || drop(own_errors(&lattice, &layout))));
-    }
 }
