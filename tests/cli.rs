@@ -8,6 +8,8 @@ mod heights;
 mod info;
 #[path = "cli/manners.rs"]
 mod manners;
+#[path = "cli/meshes.rs"]
+mod meshes;
 #[path = "cli/pictures.rs"]
 mod pictures;
 #[path = "cli/wrong_scenes.rs"]

@@ -38,6 +38,8 @@ pub enum Command {
     },
     /// Ask an elevation file for heights at points
     Height(HeightOptions),
+    /// Turn an elevation file into a mesh that is nowhere off by more than a given height
+    Mesh(MeshOptions),
 }
 
 /// What can be done with an elevation file.
@@ -145,6 +147,39 @@ pub struct HeightOptions {
     pub heights: GreyHeights,
 }
 
+/// `mesh`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Coordinates are metres from the south-west post, X east, Y north, Z up; the file says where that is.\n\
+                  An elevation file in degrees is brought to its UTM zone first. Ground without data is left out."
+)]
+pub struct MeshOptions {
+    /// The elevation file
+    pub file: PathBuf,
+    /// The most that the mesh may be off, vertically, at any post of the elevation file
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = metres_from_zero)]
+    pub max_error: f64,
+    /// Where the mesh goes: .obj, .ply, .stl or .glb
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// The coordinate system of an elevation file that names none, for example EPSG:4326
+    #[arg(long, value_name = "CRS")]
+    pub crs: Option<String>,
+    /// Metres between the posts of an elevation file that does not say
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    pub cell: Option<f64>,
+    /// What grey values mean.
+    #[command(flatten)]
+    pub heights: GreyHeights,
+}
+
+fn metres_from_zero(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(metres) if metres.is_finite() && metres >= 0.0 => Ok(metres),
+        _ => Err("write metres as a number from 0 on".into()),
+    }
+}
+
 /// What draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Backend {
@@ -213,6 +248,14 @@ mod tests {
     fn the_arguments_are_sound() {
         use clap::CommandFactory;
         Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn an_error_is_a_finite_number_from_zero_on() {
+        assert_eq!(metres_from_zero("2.5"), Ok(2.5));
+        for wrong in ["-1", "NaN", "inf", "1e999", "five", ""] {
+            assert!(metres_from_zero(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

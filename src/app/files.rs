@@ -1,7 +1,7 @@
 //! Reading what the user names and writing what a command makes.
 
 use std::fs;
-use std::io::{self, Read, Write};
+use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
 use crate::app::failure::Failure;
@@ -64,6 +64,19 @@ pub fn beside(path: &Path) -> impl Fn(&str) -> Option<Vec<u8>> + '_ {
 /// The folder is not there, `path` is a folder or a device, it is the scene file itself, or its name is that of
 /// another format.
 pub fn check_place(path: &Path, scene: &Path) -> Result<(), Failure> {
+    check_file_place(path, scene, "this is the scene file itself; name another with -o")?;
+    if !is_png_name(path) {
+        let reason = "pictures are written as PNG; name one that ends in .png";
+        return Err(Failure::input(format!("{}: {reason}", path.display())));
+    }
+    Ok(())
+}
+
+/// Whether a file could be written to `path`, as far as can be told without writing it.
+///
+/// # Errors
+/// The folder is not there, `path` is a folder or a device, or it is `input`; then with the reason `is_input`.
+pub fn check_file_place(path: &Path, input: &Path, is_input: &str) -> Result<(), Failure> {
     let wrong = |reason: &str| Err(Failure::input(format!("{}: {reason}", path.display())));
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {
@@ -72,11 +85,8 @@ pub fn check_place(path: &Path, scene: &Path) -> Result<(), Failure> {
     match fs::metadata(path) {
         Ok(there) if there.is_dir() => wrong("this is a folder; name a file in it"),
         Ok(there) if !there.is_file() => wrong("this is a device or a pipe; name a file"),
-        Ok(_) if path.canonicalize().ok() == scene.canonicalize().ok() => {
-            wrong("this is the scene file itself; name another with -o")
-        }
+        Ok(_) if path.canonicalize().ok() == input.canonicalize().ok() => wrong(is_input),
         _ if path.file_name().is_none() => wrong("this is not the name of a file"),
-        _ if !is_png_name(path) => wrong("pictures are written as PNG; name one that ends in .png"),
         _ => Ok(()),
     }
 }
@@ -105,14 +115,28 @@ fn is_png_name(path: &Path) -> bool {
 /// # Errors
 /// It cannot be written; nothing is left behind.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    write_whole_with(path, |out| out.write_all(bytes))
+}
+
+/// [`write_whole`] for content that is made while it is written.
+///
+/// # Errors
+/// It cannot be written; nothing is left behind.
+pub fn write_whole_with(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<fs::File>) -> io::Result<()>,
+) -> Result<(), Failure> {
     let wrong = |error: io::Error| Failure::input(format!("{}: {}", path.display(), describe(&error)));
     let name = path.file_name().ok_or_else(|| wrong(io::Error::from(io::ErrorKind::InvalidFilename)))?;
     let mut partial = name.to_owned();
     partial.push(format!(".{}.part", std::process::id()));
     let partial: PathBuf = path.with_file_name(partial);
-    let written = fs::File::create(&partial)
-        .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
-        .and_then(|()| fs::rename(&partial, path));
+    let fill = |file| {
+        let mut out = BufWriter::new(file);
+        write(&mut out)?;
+        out.into_inner()?.sync_all()
+    };
+    let written = fs::File::create(&partial).and_then(fill).and_then(|()| fs::rename(&partial, path));
     written.map_err(|error| {
         let _ = fs::remove_file(&partial);
         wrong(error)

@@ -9,6 +9,7 @@ pub mod files;
 pub mod height;
 pub mod labels;
 pub mod load;
+pub mod mesh;
 pub mod model;
 pub mod output;
 pub mod picture;
@@ -42,5 +43,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Dem { command: DemCommand::Info(options) } => dem::info(options),
         Command::Model { command: ModelCommand::Info(options) } => model::info(options),
         Command::Height(options) => height::run(options),
+        Command::Mesh(options) => mesh::run(options),
     }
 }

@@ -18,6 +18,7 @@
 //! - `displayed` is what the bits show, for what lies on it.
 //! - `sweep` is the order in which whatever is nested up the graph is made.
 //! - `edit` mends errors and spheres after heights changed; `dynamic` is a terrain that can be edited.
+//! - `closure` sets the fewest bits that keep an error bound; `bound` measures a mesh at every post.
 //!
 //! Sources: Duchaineau et al. 1997 (ROAM); the patch-based forced splits and the screen-space error of the
 //! later papers; Lindstrom and Pascucci 2001 for errors kept monotone up the graph.
@@ -25,6 +26,8 @@
 pub mod active;
 pub mod bintree;
 pub mod block;
+pub mod bound;
+pub mod closure;
 pub mod criterion;
 pub mod culling;
 pub mod displayed;

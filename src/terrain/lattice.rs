@@ -164,6 +164,11 @@ impl Lattice {
         self.pinned[self.index(post)]
     }
 
+    /// Which posts are pinned, in the order of [`Lattice::heights`].
+    pub fn pinned(&self) -> &[bool] {
+        &self.pinned
+    }
+
     /// Sets a post's height and pins it: any drawn triangle that covers it must then be exact.
     pub fn pin(&mut self, post: Post, height: f32) {
         let index = self.index(post);

@@ -10,8 +10,12 @@
 //! - `relief`: highest less lowest post that they cover. A bound too, and a lazy one.
 
 pub mod exact;
+pub mod near;
 pub mod own;
 pub mod relief;
+pub mod rows;
+pub mod scan;
+pub mod survey;
 
 use crate::roam::graph::Vertex;
 use crate::roam::layout::Layout;

@@ -1,0 +1,156 @@
+//! How far a mesh over the lattice's posts is off the ground, measured at every post.
+//!
+//! This is the check of the promise an error bound makes, so it shares nothing with what made the mesh but the
+//! lattice: it takes the triangles as they are written, in f64, whatever made them.
+
+use glam::DVec3;
+
+use crate::mesh::trimesh::TriMesh;
+use crate::roam::errors::rows::RowSpans;
+use crate::terrain::lattice::{Lattice, Post};
+
+/// Vertical distances between a mesh and the ground, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// The largest.
+    pub max_m: f64,
+    /// The mean.
+    pub mean_m: f64,
+    /// The root of the mean square.
+    pub rms_m: f64,
+    /// Where the largest is, the first in order of rows where there are several; `None` where the mesh is empty.
+    pub worst: Option<Post>,
+    /// Posts with data that stand in a triangle.
+    pub measured: usize,
+    /// Posts with data that stand in none: the mesh leaves them out.
+    pub left_out: usize,
+}
+
+/// Why a mesh cannot be measured.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum BoundError {
+    /// A vertex does not stand on a post of the lattice.
+    #[error("vertex {0} of the mesh stands on no post")]
+    OffPosts(usize),
+    /// A triangle covers a post that has no data.
+    #[error("triangle {triangle} of the mesh covers column {column}, row {row}, which has no data")]
+    OverHole {
+        /// The triangle.
+        triangle: usize,
+        /// Counted eastward.
+        column: u32,
+        /// Counted northward.
+        row: u32,
+    },
+}
+
+/// Measures `mesh`, whose vertices stand on posts of `lattice`, heights without exaggeration.
+///
+/// Posts stand where [`Lattice::position`] has them: in f32, as the mesh has its vertices. A post in several
+/// triangles counts with the largest of its distances.
+///
+/// # Errors
+/// See [`BoundError`].
+pub fn measure(lattice: &Lattice, mesh: &TriMesh) -> Result<Deviation, BoundError> {
+    let posts: Vec<Post> = (0..mesh.positions.len())
+        .map(|vertex| post_of(lattice, mesh, vertex).ok_or(BoundError::OffPosts(vertex)))
+        .collect::<Result<_, _>>()?;
+    let mut off = vec![f64::NAN; lattice.heights().len()];
+    for (triangle, corners) in mesh.triangles.iter().enumerate() {
+        let corner_posts = corners.map(|id| posts[id.index()]);
+        let corners = corners.map(|id| mesh.positions[id.index()].as_dvec3());
+        for span in RowSpans::of(corner_posts) {
+            for post in (span.first..=span.last).map(|column| Post { column, row: span.row }) {
+                let distance = distance(lattice, &corners, &corner_posts, post);
+                if distance.is_nan() {
+                    return Err(BoundError::OverHole { triangle, column: post.column, row: post.row });
+                }
+                let slot = &mut off[lattice.index(post)];
+                *slot = slot.max(distance);
+            }
+        }
+    }
+    Ok(summary(lattice, &off))
+}
+
+fn post_of(lattice: &Lattice, mesh: &TriMesh, vertex: usize) -> Option<Post> {
+    let at = mesh.positions[vertex];
+    let grid = (at.truncate().as_dvec2() / lattice.cell()).round();
+    let inside = grid.x >= 0.0
+        && grid.y >= 0.0
+        && grid.x < f64::from(lattice.columns())
+        && grid.y < f64::from(lattice.rows());
+    let post = Post { column: grid.x as u32, row: grid.y as u32 };
+    (inside && lattice.position(post) == at.truncate()).then_some(post)
+}
+
+/// How far a post is off the plane of a triangle; off its very height where it is a corner.
+fn distance(lattice: &Lattice, corners: &[DVec3; 3], posts: &[Post; 3], post: Post) -> f64 {
+    let height = f64::from(lattice.height(post));
+    if let Some(corner) = posts.iter().position(|&corner| corner == post) {
+        return (height - corners[corner].z).abs();
+    }
+    let [a, b, c] = *corners;
+    let (ab, ac, at) = (b - a, c - a, lattice.position(post).as_dvec2() - a.truncate());
+    let doubled_area = ab.truncate().perp_dot(ac.truncate());
+    let (toward_b, toward_c) = (at.perp_dot(ac.truncate()), ab.truncate().perp_dot(at));
+    (height - (a.z + (toward_b * ab.z + toward_c * ac.z) / doubled_area)).abs()
+}
+
+fn summary(lattice: &Lattice, off: &[f64]) -> Deviation {
+    let (mut worst, mut max_m, mut sum, mut squares, mut measured) = (None, 0.0, 0.0, 0.0, 0);
+    for (post, &distance) in lattice.posts().zip(off).filter(|(_, distance)| !distance.is_nan()) {
+        if worst.is_none() || distance > max_m {
+            (worst, max_m) = (Some(post), distance);
+        }
+        sum += distance;
+        squares += distance * distance;
+        measured += 1;
+    }
+    let with_data = lattice.heights().iter().filter(|height| !height.is_nan()).count();
+    let count = measured.max(1) as f64;
+    let rms_m = (squares / count).sqrt();
+    Deviation { max_m, mean_m: sum / count, rms_m, worst, measured, left_out: with_data - measured }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::sink::{MeshSink, VertexId};
+    use glam::{DVec2, Vec3};
+
+    fn square() -> (Lattice, TriMesh) {
+        let heights = vec![0.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0, -1.0, 0.0];
+        let lattice = Lattice::new(DVec2::ZERO, DVec2::new(10.0, 20.0), 3, heights).expect("sound");
+        let mut mesh = TriMesh::default();
+        for (x, y) in [(0.0, 0.0), (20.0, 0.0), (20.0, 40.0), (0.0, 40.0)] {
+            mesh.vertex(Vec3::new(x, y, 0.0));
+        }
+        mesh.triangle([0, 1, 2].map(VertexId));
+        (lattice, mesh)
+    }
+
+    #[test]
+    fn every_post_of_a_triangle_counts_and_those_of_none_are_told() {
+        let (lattice, mut mesh) = square();
+        let half = measure(&lattice, &mesh).expect("on posts");
+        assert_eq!((half.max_m, half.measured, half.left_out), (3.0, 6, 3));
+        assert_eq!(half.worst, Some(Post { column: 1, row: 1 }));
+        mesh.triangle([0, 2, 3].map(VertexId));
+        let whole = measure(&lattice, &mesh).expect("on posts");
+        assert_eq!((whole.measured, whole.left_out), (9, 0));
+        assert!(
+            (whole.mean_m - 4.0 / 9.0).abs() < 1e-12 && (whole.rms_m - (10f64 / 9.0).sqrt()).abs() < 1e-12
+        );
+    }
+
+    #[test]
+    fn a_mesh_beside_the_posts_or_over_a_hole_is_refused() {
+        let (mut lattice, mut mesh) = square();
+        lattice.pin(Post { column: 1, row: 1 }, f32::NAN);
+        let over = BoundError::OverHole { triangle: 0, column: 1, row: 1 };
+        assert_eq!(measure(&lattice, &mesh), Err(over));
+        mesh.positions[1].x += 1.0;
+        assert_eq!(measure(&lattice, &mesh), Err(BoundError::OffPosts(1)));
+    }
+}

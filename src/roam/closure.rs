@@ -1,0 +1,195 @@
+//! The least mesh that keeps an error bound.
+//!
+//! Raising errors to those of the children makes one threshold enough to choose vertices by, but splits triangles
+//! that are good enough. Here a triangle is split only where it is itself off by more than the tolerance, and
+//! where a neighbour forces it (the forced split of Duchaineau et al. 1997).
+//!
+//! Both are rules of one kind, "if this vertex is active, so is that one": an active vertex makes its parents
+//! active, and the right-angled corner of a triangle that is off by too much makes the middle of its hypotenuse
+//! active. Such rules have a least fixed point, the same in whatever order they are applied: any mesh of bintree
+//! triangles that keeps the bound has at least its vertices. Every triangle is looked at once, when the vertex
+//! that makes it is activated, and none is measured further than the first posts that are off.
+
+use crate::roam::active::ActiveSet;
+use crate::roam::bintree::Triangle;
+use crate::roam::errors::exact::{triangle_error, triangles_split_at};
+use crate::roam::errors::scan::PostTriangle;
+use crate::roam::errors::survey::Survey;
+use crate::roam::graph::Vertex;
+use crate::roam::layout::Layout;
+use crate::terrain::lattice::Lattice;
+
+/// The fewest active vertices that leave no triangle off by more than `tolerance_m` at any post it covers, no
+/// triangle over both data and no data but the finest, and pinned posts exact.
+///
+/// The tolerance is in metres without exaggeration; distances are measured within one part in a million of the
+/// relief under a triangle. Negative and NaN tolerances keep everything.
+pub fn least_closure(lattice: &Lattice, layout: &Layout, tolerance_m: f32) -> ActiveSet {
+    let mut growth = Growth {
+        lattice,
+        layout,
+        tolerance_m: if tolerance_m.is_nan() { -1.0 } else { tolerance_m },
+        survey: Survey::of(lattice),
+        active: ActiveSet::new(*layout),
+        waiting: layout.patches().flat_map(|corner| Triangle::roots(corner, layout.patch())).collect(),
+    };
+    while let Some(triangle) = growth.waiting.pop() {
+        if !triangle.is_finest() && growth.is_off(&triangle) {
+            growth.force(triangle.split_vertex());
+        }
+    }
+    growth.active
+}
+
+/// Whether a triangle is off by more than `tolerance_m` at any post it covers; `survey` is the lattice's.
+pub fn is_off(
+    lattice: &Lattice,
+    layout: &Layout,
+    survey: &Survey,
+    triangle: &Triangle,
+    tolerance_m: f32,
+) -> bool {
+    let plain = PostTriangle::new(lattice, triangle).filter(|posts| {
+        let (first, last) = posts.bounds();
+        survey.is_plain(first, last)
+    });
+    match plain {
+        Some(posts) => posts.exceeds(tolerance_m),
+        None => triangle_error(lattice, layout, triangle) > tolerance_m,
+    }
+}
+
+struct Growth<'a> {
+    lattice: &'a Lattice,
+    layout: &'a Layout,
+    tolerance_m: f32,
+    survey: Survey,
+    active: ActiveSet,
+    /// Triangles of the mesh that have not been looked at.
+    waiting: Vec<Triangle>,
+}
+
+impl Growth<'_> {
+    /// One that a neighbour has forced apart meanwhile needs no look.
+    fn is_off(&self, triangle: &Triangle) -> bool {
+        !self.active.is_active(triangle.split_vertex())
+            && is_off(self.lattice, self.layout, &self.survey, triangle, self.tolerance_m)
+    }
+
+    /// Activates a vertex, its parents first, and lets the halves it makes wait. As deep as there are levels.
+    fn force(&mut self, vertex: Vertex) {
+        if !self.layout.contains(vertex) || self.active.is_active(vertex) {
+            return;
+        }
+        for parent in vertex.parents() {
+            self.force(parent);
+        }
+        self.active.activate(vertex);
+        for triangle in triangles_split_at(self.layout, vertex).into_iter().flatten() {
+            self.waiting.extend(triangle.split());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::roam::errors::ErrorMap;
+    use glam::DVec2;
+    use proptest::prelude::*;
+
+    /// The leaf triangles of the mesh.
+    fn leaves(active: &ActiveSet) -> Vec<Triangle> {
+        let layout = active.layout();
+        let mut stack: Vec<Triangle> =
+            layout.patches().flat_map(|corner| Triangle::roots(corner, layout.patch())).collect();
+        let mut leaves = Vec::new();
+        while let Some(triangle) = stack.pop() {
+            if triangle.is_finest() || !active.is_active(triangle.split_vertex()) {
+                leaves.push(triangle);
+            } else {
+                stack.extend(triangle.split());
+            }
+        }
+        leaves
+    }
+
+    /// The mesh that errors raised to their children give.
+    fn saturated(map: &ErrorMap, layout: &Layout, tolerance_m: f32) -> ActiveSet {
+        let mut active = ActiveSet::new(*layout);
+        for (index, _) in map.values().iter().enumerate().filter(|&(_, &error)| error > tolerance_m) {
+            let vertex = Vertex::new((index % layout.columns()) as i32, (index / layout.columns()) as i32);
+            if !layout.is_corner(vertex) {
+                active.activate(vertex);
+            }
+        }
+        active
+    }
+
+    /// The same by whole re-scans until nothing changes, in the opposite order.
+    fn plain_closure(lattice: &Lattice, layout: &Layout, tolerance_m: f32) -> ActiveSet {
+        let mut active = ActiveSet::new(*layout);
+        loop {
+            let before = active.count();
+            for triangle in leaves(&active).into_iter().rev().filter(|triangle| !triangle.is_finest()) {
+                if triangle_error(lattice, layout, &triangle) > tolerance_m {
+                    active.activate(triangle.split_vertex());
+                }
+            }
+            if active.count() == before {
+                return active;
+            }
+        }
+    }
+
+    fn rough(columns: u32, rows: u32, seed: u32, holes: u32) -> Lattice {
+        let random = |index: u32| (index ^ seed).wrapping_mul(2_654_435_761).rotate_left(13) >> 8;
+        let height = |index: u32| {
+            let (x, y) = ((index % columns) as f32, (index / columns) as f32);
+            let wave = libm::sinf(x * 0.21 + seed as f32) * 40.0 + libm::cosf(y * 0.13) * 60.0;
+            let hole = random(index.wrapping_mul(7)) % 1000 < holes;
+            if hole { f32::NAN } else { wave + (random(index) % 100) as f32 * 0.05 }
+        };
+        let heights = (0..columns * rows).map(height).collect();
+        Lattice::new(DVec2::ZERO, DVec2::splat(10.0), columns, heights).expect("sound")
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+        #[test]
+        fn no_triangle_is_off_and_none_is_split_without_need(
+            columns in 5..70u32, rows in 5..70u32, seed in 0..1000u32, holes in 0..3u32, tolerance in 0.5..30f32,
+        ) {
+            let lattice = rough(columns, rows, seed, holes);
+            let layout = Layout::new(columns, rows, 16).expect("sound");
+            let least = least_closure(&lattice, &layout, tolerance);
+            prop_assert_eq!(least.check(), Ok(()));
+            for triangle in leaves(&least).iter().filter(|triangle| !triangle.is_finest()) {
+                let error = triangle_error(&lattice, &layout, triangle);
+                prop_assert!(error <= tolerance + 1e-3, "{:?} is off by {}", triangle, error);
+            }
+            let plain = plain_closure(&lattice, &layout, tolerance);
+            prop_assert!(least == plain, "{} against {} vertices", least.count(), plain.count());
+            let raised = saturated(&ErrorMap::exact(&lattice, &layout), &layout, tolerance);
+            prop_assert!(raised.count() >= least.count());
+        }
+    }
+
+    #[test]
+    fn flat_ground_is_two_triangles_a_patch_and_no_tolerance_keeps_every_rough_post() {
+        let layout = Layout::new(33, 33, 32).expect("sound");
+        let flat = Lattice::new(DVec2::ZERO, DVec2::ONE, 33, vec![812.3; 33 * 33]).expect("sound");
+        assert_eq!(least_closure(&flat, &layout, 0.0).count(), 0);
+        let every = least_closure(&rough(33, 33, 5, 0), &layout, -1.0);
+        assert_eq!(every.count() + 4, layout.vertex_count());
+        assert_eq!(every, least_closure(&rough(33, 33, 5, 0), &layout, f32::NAN));
+    }
+
+    #[test]
+    fn pinned_posts_are_kept_exact() {
+        let mut lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 33, vec![1.0; 33 * 33]).expect("sound");
+        lattice.pin(crate::terrain::lattice::Post { column: 11, row: 7 }, 1.5);
+        let least = least_closure(&lattice, &Layout::new(33, 33, 32).expect("sound"), 5.0);
+        assert!(least.is_active(Vertex::new(11, 7)));
+    }
+}

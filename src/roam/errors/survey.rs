@@ -1,0 +1,75 @@
+//! Where the ground is plain: every post has data and none is pinned.
+//!
+//! Plain ground can be scanned without a question at every post. The survey answers for whole tiles, so that
+//! the answer costs nothing beside the scan; it errs only one way, a region called plain is plain.
+
+use rayon::prelude::*;
+
+use crate::terrain::lattice::Lattice;
+
+/// Posts along a tile's side: the smaller, the less ground around a hole is scanned the slow way; the larger,
+/// the fewer tiles there are to ask.
+const TILE: usize = 32;
+
+/// Which tiles of a lattice are plain.
+#[derive(Clone, Debug)]
+pub struct Survey {
+    tiles_east: usize,
+    blemished: Vec<bool>,
+}
+
+impl Survey {
+    /// Looks at every post once.
+    pub fn of(lattice: &Lattice) -> Self {
+        let columns = lattice.columns() as usize;
+        let tiles_east = columns.div_ceil(TILE);
+        let mut blemished = vec![false; tiles_east * (lattice.rows() as usize).div_ceil(TILE)];
+        blemished.par_chunks_mut(tiles_east).enumerate().for_each(|(north, tiles)| {
+            let posts = north * TILE * columns..((north + 1) * TILE * columns).min(lattice.heights().len());
+            let rows = lattice.heights()[posts.clone()].chunks_exact(columns);
+            for (heights, pinned) in rows.zip(lattice.pinned()[posts].chunks_exact(columns)) {
+                let pieces = heights.chunks(TILE).zip(pinned.chunks(TILE));
+                for (tile, (heights, pinned)) in tiles.iter_mut().zip(pieces) {
+                    *tile |= !is_plain(heights, pinned);
+                }
+            }
+        });
+        Self { tiles_east, blemished }
+    }
+
+    /// Whether all posts from column and row `first` to `last`, both included and within the lattice, are known
+    /// to be plain.
+    pub fn is_plain(&self, first: (i32, i32), last: (i32, i32)) -> bool {
+        let tile = |at: i32| at as usize / TILE;
+        (tile(first.1)..=tile(last.1)).all(|north| {
+            let row = north * self.tiles_east;
+            !self.blemished[row + tile(first.0)..=row + tile(last.0)].contains(&true)
+        })
+    }
+}
+
+/// Whether all these posts have data and none is pinned. Without an early way out: that costs more than it saves
+/// on the few posts of a row.
+pub fn is_plain(heights: &[f32], pinned: &[bool]) -> bool {
+    !(heights.iter().fold(false, |found, height| found | height.is_nan())
+        | pinned.iter().fold(false, |found, &pin| found | pin))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::terrain::lattice::Post;
+    use glam::DVec2;
+
+    #[test]
+    fn holes_and_pins_spoil_their_own_tiles_only() {
+        let mut heights = vec![1.0; 100 * 70];
+        heights[40 * 100 + 70] = f32::NAN;
+        let mut lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 100, heights).expect("sound");
+        lattice.pin(Post { column: 99, row: 69 }, 2.0);
+        let survey = Survey::of(&lattice);
+        assert!(survey.is_plain((0, 0), (99, 31)) && survey.is_plain((0, 0), (63, 69)));
+        assert!(!survey.is_plain((60, 30), (64, 32)) && !survey.is_plain((96, 64), (96, 64)));
+        assert!(survey.is_plain((96, 32), (99, 63)));
+    }
+}
