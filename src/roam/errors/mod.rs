@@ -6,9 +6,15 @@
 //! measures differs; one file per measure:
 //!
 //! - `exact`: the largest vertical distance over every post that the vertex's triangles cover. A bound.
+//! - `midpoint`: the vertical distance at the vertex alone. Fast, and no bound.
+//!
+//! `sweep` raises whatever was measured to what is below it.
 
 pub mod exact;
+pub mod midpoint;
+mod sweep;
 
+use crate::roam::errors::sweep::{Field, Given};
 use crate::roam::graph::Vertex;
 use crate::roam::layout::Layout;
 
@@ -41,30 +47,11 @@ impl ErrorMap {
         self.errors[layout.index(vertex)]
     }
 
-    /// Makes every vertex's error at least that of its children, finest level first.
+    /// Makes every vertex's error at least that of its children, finest level first; patch corners get none.
     fn raise_to_children(&mut self, layout: &Layout) {
-        let mut step = 1;
-        while step < layout.patch() {
-            for (first, stride) in [((step, 0), 2 * step), ((0, step), 2 * step), ((step, step), 2 * step)] {
-                self.raise_level(layout, first, stride);
-            }
-            step *= 2;
-        }
-    }
-
-    fn raise_level(&mut self, layout: &Layout, first: (i32, i32), stride: i32) {
-        for y in (first.1..layout.rows() as i32).step_by(stride as usize) {
-            for x in (first.0..layout.columns() as i32).step_by(stride as usize) {
-                let vertex = Vertex::new(x, y);
-                let below = vertex
-                    .children()
-                    .filter(|&child| layout.contains(child))
-                    .map(|child| self.errors[layout.index(child)])
-                    .fold(0f32, f32::max);
-                let slot = &mut self.errors[layout.index(vertex)];
-                *slot = slot.max(below);
-            }
-        }
+        let mut raised = vec![0f32; self.errors.len()];
+        Field::new(&self.errors, layout).sweep::<Given>(&mut raised);
+        self.errors = raised;
     }
 
     /// Whether no vertex has a smaller error than one of its children.
