@@ -25,6 +25,7 @@ pub mod criterion;
 pub mod culling;
 pub mod displayed;
 pub mod errors;
+pub mod extract;
 pub mod graph;
 pub mod ground;
 pub mod layout;

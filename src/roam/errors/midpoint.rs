@@ -35,10 +35,9 @@ impl ErrorMap {
         }
         let heights = heights(lattice, layout);
         let field = Field::new(&heights, layout);
-        if heights.iter().any(|height| height.is_nan()) {
-            field.sweep::<TornMidpoints>(&mut self.errors);
-        } else {
-            field.sweep::<Midpoints>(&mut self.errors);
+        if !field.sweep::<Midpoints>(&mut self.errors) {
+            let sound = field.sweep::<TornMidpoints>(&mut self.errors);
+            debug_assert!(sound, "a measure that takes holes took none");
         }
     }
 }
@@ -82,46 +81,21 @@ struct Midpoints;
 /// Heights of which some are NaN.
 struct TornMidpoints;
 
-/// The loops of a measure that is a function of a hypotenuse's ends and its middle.
-macro_rules! measure_by {
-    ($measure:ty, $off:path) => {
-        impl Measure for $measure {
-            fn east(row: &[[f32; 2]], evens: &[f32], out: &mut [f32]) {
-                let ends = evens.iter().zip(&evens[1..]);
-                for (out, (pair, (&west, &east))) in out.iter_mut().zip(row.iter().zip(ends)) {
-                    *out = $off(west, east, pair[1]);
-                }
-            }
+impl Measure for Midpoints {
+    const HOLES: bool = false;
 
-            fn north(low_evens: &[f32], mid: &[[f32; 2]], high_evens: &[f32], out: &mut [f32]) {
-                let ends = low_evens.iter().zip(high_evens);
-                for (out, (pair, (&south, &north))) in out.iter_mut().zip(mid.iter().zip(ends)) {
-                    *out = $off(south, north, pair[0]);
-                }
-            }
-
-            fn last_north(low: f32, mid: f32, high: f32) -> f32 {
-                $off(low, high, mid)
-            }
-
-            fn center(near_evens: &[f32], mid: &[[f32; 2]], far_evens: &[f32], out: &mut [f32]) {
-                let count = out.len().min(mid.len());
-                let (near, near_next) = (&near_evens[..count], &near_evens[1..=count]);
-                let (far, far_next) = (&far_evens[..count], &far_evens[1..=count]);
-                let (out, mid) = (&mut out[..count], &mid[..count]);
-                for index in 0..count {
-                    let odd = index & 1 == 1;
-                    let from = if odd { near_next[index] } else { near[index] };
-                    let to = if odd { far[index] } else { far_next[index] };
-                    out[index] = $off(from, to, mid[index][1]);
-                }
-            }
-        }
-    };
+    fn own(from: f32, to: f32, at: f32) -> f32 {
+        off(from, to, at)
+    }
 }
 
-measure_by!(Midpoints, off);
-measure_by!(TornMidpoints, torn_off);
+impl Measure for TornMidpoints {
+    const HOLES: bool = true;
+
+    fn own(from: f32, to: f32, at: f32) -> f32 {
+        torn_off(from, to, at)
+    }
+}
 
 #[cfg(test)]
 mod tests {

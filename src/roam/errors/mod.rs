@@ -50,7 +50,8 @@ impl ErrorMap {
     /// Makes every vertex's error at least that of its children, finest level first; patch corners get none.
     fn raise_to_children(&mut self, layout: &Layout) {
         let mut raised = vec![0f32; self.errors.len()];
-        Field::new(&self.errors, layout).sweep::<Given>(&mut raised);
+        let sound = Field::new(&self.errors, layout).sweep::<Given>(&mut raised);
+        debug_assert!(sound, "given errors are taken as they are");
         self.errors = raised;
     }
 

@@ -13,7 +13,7 @@
 //! ```
 //!
 //! So heights are read once and errors are written once, all else stays in the cache, and every loop runs over
-//! contiguous slices. A recursion over triangles visits the same vertices in an order that no cache and no
+//! contiguous slices, written so that compilers make vector code of them for the plainest processors. A recursion over triangles visits the same vertices in an order that no cache and no
 //! vector unit follows. Bands of rows run in parallel and start a few rows early instead of waiting for each
 //! other; levels coarser than a band can see come after, on a lattice a sixty-fourth the size.
 
@@ -21,40 +21,23 @@ use rayon::prelude::*;
 
 use crate::roam::layout::Layout;
 
-/// How a row's own errors are found. `evens` are every other value of a row, one more than there are pairs.
-pub trait Measure: Sync {
-    /// Of the east edges of one row.
-    fn east(row: &[[f32; 2]], evens: &[f32], out: &mut [f32]);
+/// What a vertex's own error is.
+pub trait Measure {
+    /// Whether values may be NaN. Where they may not, a sweep stops at the first that is.
+    const HOLES: bool;
 
-    /// Of the north edges between two rows, but for the last column's.
-    fn north(low_evens: &[f32], mid: &[[f32; 2]], high_evens: &[f32], out: &mut [f32]);
-
-    /// Of the last column's north edge.
-    fn last_north(low: f32, mid: f32, high: f32) -> f32;
-
-    /// Of the centres between two rows. The hypotenuse of an even centre joins the near row's even value before
-    /// it to the far row's after it, that of an odd one the near row's after it to the far row's before it.
-    fn center(near_evens: &[f32], mid: &[[f32; 2]], far_evens: &[f32], out: &mut [f32]);
+    /// The own error of a vertex from the values at the ends of its hypotenuse and at itself.
+    fn own(from: f32, to: f32, at: f32) -> f32;
 }
 
 /// Own errors that are already known, at their vertices.
 pub struct Given;
 
 impl Measure for Given {
-    fn east(row: &[[f32; 2]], _: &[f32], out: &mut [f32]) {
-        out.iter_mut().zip(row).for_each(|(out, pair)| *out = pair[1]);
-    }
+    const HOLES: bool = true;
 
-    fn north(_: &[f32], mid: &[[f32; 2]], _: &[f32], out: &mut [f32]) {
-        out.iter_mut().zip(mid).for_each(|(out, pair)| *out = pair[0]);
-    }
-
-    fn last_north(_: f32, mid: f32, _: f32) -> f32 {
-        mid
-    }
-
-    fn center(_: &[f32], mid: &[[f32; 2]], _: &[f32], out: &mut [f32]) {
-        out.iter_mut().zip(mid).for_each(|(out, pair)| *out = pair[1]);
+    fn own(_: f32, _: f32, at: f32) -> f32 {
+        at
     }
 }
 
@@ -89,19 +72,22 @@ impl<'a> Field<'a> {
     }
 
     /// Writes every vertex's error, 0 at the patch corners. In parallel, the same for any number of threads.
-    pub fn sweep<M: Measure>(&self, out: &mut [f32]) {
+    ///
+    /// Whether the values were what the measure asks for; where they were not, what was written has no meaning.
+    #[must_use]
+    pub fn sweep<M: Measure>(&self, out: &mut [f32]) -> bool {
         let levels = self.patch.ilog2().min(BAND_LEVELS);
         let side = 1usize << levels;
         let (columns, rows) = ((self.columns - 1) / side, (self.rows - 1) / side);
         let mut values = vec![0f32; (columns + 1) * (rows + 1)];
         let mut cells = vec![0f32; columns * rows];
         let mut bands = self.bands(side, out, &mut cells);
-        match bands.as_mut_slice() {
+        let sound = match bands.as_mut_slice() {
             [only] => only.sweep::<M>(levels),
-            many => many.par_iter_mut().for_each(|band| band.sweep::<M>(levels)),
-        }
-        if side == self.patch {
-            return;
+            many => many.par_iter_mut().map(|band| band.sweep::<M>(levels)).reduce(|| true, |a, b| a && b),
+        };
+        if side == self.patch || !sound {
+            return sound;
         }
         let from_rows = self.values.chunks_exact(self.columns).step_by(side);
         for (coarse, fine) in values.chunks_exact_mut(columns + 1).zip(from_rows) {
@@ -111,11 +97,12 @@ impl<'a> Field<'a> {
         let field =
             Field { values: &values, cells: Some(&cells), columns: columns + 1, rows: rows + 1, patch };
         let mut errors = vec![0f32; values.len()];
-        field.sweep::<M>(&mut errors);
+        let sound = field.sweep::<M>(&mut errors);
         let to_rows = out.chunks_exact_mut(self.columns).step_by(side);
         for (coarse, fine) in errors.chunks_exact(columns + 1).zip(to_rows) {
             coarse.iter().zip(fine.iter_mut().step_by(side)).for_each(|(coarse, fine)| *fine = *coarse);
         }
+        sound
     }
 
     /// Bands of rows, each a multiple of `side`, the last with one row more.
@@ -161,11 +148,16 @@ struct Level {
     rows: [Vec<f32>; 4],
     /// Errors of the cells by row modulo 4, with a 0 before and after each row.
     cells: [Vec<f32>; 4],
+    /// Every other value of a row.
+    odds: Vec<f32>,
+    mid_evens: Vec<f32>,
     low_east: Vec<f32>,
     high_east: Vec<f32>,
     north: Vec<f32>,
     center: Vec<f32>,
     around: Vec<f32>,
+    /// What the finest level writes where coarser ones will.
+    zeros: Vec<f32>,
 }
 
 impl Level {
@@ -174,11 +166,14 @@ impl Level {
         Self {
             rows: std::array::from_fn(|_| row(columns)),
             cells: std::array::from_fn(|_| row(columns + 1)),
+            odds: row(columns / 2),
+            mid_evens: row(columns / 2 + 1),
             low_east: row(columns / 2),
             high_east: row(columns / 2),
             north: row(columns / 2 + 1),
             center: row(columns / 2),
             around: row(columns + 1),
+            zeros: row(columns / 2),
         }
     }
 }
@@ -191,7 +186,7 @@ struct Reach {
 }
 
 impl Band<'_> {
-    fn sweep<M: Measure>(&mut self, levels: u32) {
+    fn sweep<M: Measure>(&mut self, levels: u32) -> bool {
         // What an end of the reach spoils lies within the coarsest square beside it.
         let early = 1usize << levels;
         let south = self.first.saturating_sub(early);
@@ -200,9 +195,21 @@ impl Band<'_> {
         let mut stages: Vec<Level> =
             (0..=levels).map(|level| Level::new(((self.field.columns - 1) >> level) + 1)).collect();
         for pair in 0..(reach.north - reach.south) / 2 {
+            if !M::HOLES && self.has_hole(reach, pair) {
+                return false;
+            }
             self.take_cells(&mut stages[0], reach, pair);
             self.step::<M>(&mut stages, 0, reach, pair);
         }
+        true
+    }
+
+    /// Whether a value is NaN, of those that one step of the finest level reads first.
+    fn has_hole(&self, reach: Reach, pair: usize) -> bool {
+        let columns = self.field.columns;
+        let rows = if pair == 0 { 0..3 } else { 2 * pair + 1..2 * pair + 3 };
+        let values = &self.field.values[(reach.south + rows.start) * columns..];
+        values[..rows.len() * columns].iter().fold(false, |hole, value| hole | value.is_nan())
     }
 
     /// Copies the cells that one step needs into the finest stage.
@@ -224,31 +231,26 @@ impl Band<'_> {
         let (finer, coarser) = stages.split_at_mut(level + 1);
         let (here, next) = (&mut finer[level], &mut coarser[0]);
         let field = self.field;
-        let Level { rows, cells, low_east, high_east, north, center, around } = here;
+        let Level { rows, cells, odds, mid_evens, low_east, high_east, north, center, around, zeros } = here;
         let row = |index: usize| match level {
             0 => &field.values[(reach.south + index) * field.columns..][..field.columns],
             _ => rows[index % 4].as_slice(),
         };
         let raised = level > 0 || field.cells.is_some();
         if pair == 0 {
-            let (pairs, end) = row(0).as_chunks::<2>();
-            take_evens(pairs, end, &mut next.rows[0]);
-            M::east(pairs, &next.rows[0], high_east);
+            split(row(0), &mut next.rows[0], odds);
+            own_east::<M>(&next.rows[0], odds, high_east);
             if raised {
                 raise_east(&cells[0], high_east);
             }
-            self.write_east(level, reach.south, high_east);
+            self.write_east(level, reach.south, high_east, zeros);
         }
         std::mem::swap(low_east, high_east);
-        let (high, end) = row(2 * pair + 2).as_chunks::<2>();
-        take_evens(high, end, &mut next.rows[(pair + 1) % 4]);
+        split(row(2 * pair + 2), &mut next.rows[(pair + 1) % 4], odds);
         let (low_evens, high_evens) = (&next.rows[pair % 4], &next.rows[(pair + 1) % 4]);
-        let (mid, mid_end) = row(2 * pair + 1).as_chunks::<2>();
-
-        let half = mid.len();
-        M::north(low_evens, mid, high_evens, &mut north[..half]);
-        north[half] = M::last_north(low_evens[half], mid_end[0], high_evens[half]);
-        M::east(high, high_evens, high_east);
+        own_east::<M>(high_evens, odds, high_east);
+        split(row(2 * pair + 1), mid_evens, odds);
+        own_north::<M>(low_evens, mid_evens, high_evens, north);
         if raised {
             larger(&cells[2 * pair % 4], &cells[(2 * pair + 1) % 4], around);
             raise_north(around, north);
@@ -260,15 +262,15 @@ impl Band<'_> {
         }
         let squares_south = reach.south >> (level + 1);
         if (squares_south + pair).is_multiple_of(2) {
-            M::center(low_evens, mid, high_evens, center);
+            own_center::<M>(low_evens, odds, high_evens, center);
         } else {
-            M::center(high_evens, mid, low_evens, center);
+            own_center::<M>(high_evens, odds, low_evens, center);
         }
         raise_center(low_east, high_east, north, center);
-        next.cells[pair % 4][1..=half].copy_from_slice(center);
+        next.cells[pair % 4][1..=center.len()].copy_from_slice(center);
 
         self.write_mid(level, reach.south + ((2 * pair + 1) << level), north, center);
-        self.write_east(level, reach.south + ((2 * pair + 2) << level), high_east);
+        self.write_east(level, reach.south + ((2 * pair + 2) << level), high_east, zeros);
         if level + 2 == stages.len() {
             let center = &stages[level].center;
             self.write_cells(level, reach.south + ((2 * pair) << level), center);
@@ -289,12 +291,11 @@ impl Band<'_> {
         Some(&mut self.out[own * columns..][..columns])
     }
 
-    fn write_east(&mut self, level: usize, row: usize, east: &[f32]) {
+    fn write_east(&mut self, level: usize, row: usize, east: &[f32], zeros: &[f32]) {
         let Some(out) = self.out_row(row) else { return };
         if level == 0 {
-            let (pairs, end) = out.as_chunks_mut::<2>();
-            pairs.iter_mut().zip(east).for_each(|(pair, &east)| *pair = [0.0, east]);
-            end.fill(0.0);
+            join(zeros, east, out);
+            *out.last_mut().expect("a row has at least three vertices") = 0.0;
         } else {
             let spots = out[1 << level..].iter_mut().step_by(2 << level);
             spots.zip(east).for_each(|(spot, &east)| *spot = east);
@@ -305,9 +306,7 @@ impl Band<'_> {
         let Some(out) = self.out_row(row) else { return };
         let step = 1 << level;
         if level == 0 {
-            let pairs = out.as_chunks_mut::<2>().0;
-            let both = north.iter().zip(center);
-            pairs.iter_mut().zip(both).for_each(|(pair, (&north, &center))| *pair = [north, center]);
+            join(north, center, out);
         } else {
             let squares = out.chunks_exact_mut(2 * step).zip(north.iter().zip(center));
             squares.for_each(|(square, (&north, &center))| (square[0], square[step]) = (north, center));
@@ -328,9 +327,62 @@ impl Band<'_> {
     }
 }
 
-fn take_evens(pairs: &[[f32; 2]], end: &[f32], evens: &mut [f32]) {
-    evens.iter_mut().zip(pairs).for_each(|(even, pair)| *even = pair[0]);
-    evens[pairs.len()] = end[0];
+/// A row's values at even places, of which there is one more, and at odd ones.
+///
+/// Pairs are read as one number: compilers make shuffles of that, and single loads of the obvious way.
+fn split(row: &[f32], evens: &mut [f32], odds: &mut [f32]) {
+    let pairs = bytemuck::cast_slice::<f32, u8>(row).as_chunks::<8>().0;
+    for (pair, (even, odd)) in pairs.iter().zip(evens.iter_mut().zip(odds)) {
+        let both = u64::from_ne_bytes(*pair);
+        let halves = [both as u32, (both >> 32) as u32].map(f32::from_bits);
+        [*even, *odd] = if cfg!(target_endian = "little") { halves } else { [halves[1], halves[0]] };
+    }
+    if let (Some(end), Some(last)) = (evens.last_mut(), row.last()) {
+        *end = *last;
+    }
+}
+
+/// The inverse of [`split`], but for the last value; by fours, which compilers make shuffles of.
+fn join(evens: &[f32], odds: &[f32], row: &mut [f32]) {
+    let fours = odds.len() / 4 * 4;
+    let both = evens.as_chunks::<4>().0.iter().zip(odds.as_chunks::<4>().0);
+    for (out, (e, o)) in row.as_chunks_mut::<8>().0.iter_mut().zip(both) {
+        *out = [e[0], o[0], e[1], o[1], e[2], o[2], e[3], o[3]];
+    }
+    let rest = evens[fours..].iter().zip(&odds[fours..]);
+    for (out, (&even, &odd)) in row[2 * fours..].as_chunks_mut::<2>().0.iter_mut().zip(rest) {
+        *out = [even, odd];
+    }
+}
+
+fn own_east<M: Measure>(evens: &[f32], odds: &[f32], out: &mut [f32]) {
+    let ends = evens.iter().zip(&evens[1..]);
+    for (out, (&at, (&west, &east))) in out.iter_mut().zip(odds.iter().zip(ends)) {
+        *out = M::own(west, east, at);
+    }
+}
+
+fn own_north<M: Measure>(low: &[f32], mid: &[f32], high: &[f32], out: &mut [f32]) {
+    let ends = low.iter().zip(high);
+    for (out, (&at, (&south, &north))) in out.iter_mut().zip(mid.iter().zip(ends)) {
+        *out = M::own(south, north, at);
+    }
+}
+
+/// The hypotenuse of an even centre joins the near row's value before it to the far row's after it, that of an odd
+/// one the near row's after it to the far row's before it. Chosen by masks: a condition would keep the loop scalar.
+fn own_center<M: Measure>(near: &[f32], odds: &[f32], far: &[f32], out: &mut [f32]) {
+    let count = out.len();
+    let (near, near_after, far, far_after) =
+        (&near[..count], &near[1..=count], &far[..count], &far[1..=count]);
+    let odds = &odds[..count];
+    for index in 0..count {
+        let mask = 0u32.wrapping_sub(index as u32 & 1);
+        let pick = |even: f32, odd: f32| f32::from_bits(even.to_bits() & !mask | odd.to_bits() & mask);
+        let from = pick(near[index], near_after[index]);
+        let to = pick(far_after[index], far[index]);
+        out[index] = M::own(from, to, odds[index]);
+    }
 }
 
 /// The larger of two numbers that are no NaN: one instruction, where `f32::max` must look for NaN.
