@@ -24,8 +24,9 @@ use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
 use crate::roam::layout::Layout;
 
-/// Columns and rows of the blocks that are passed over where their centre is not active.
-const BLOCK: usize = 64;
+/// Columns and rows of the blocks that are passed over where their centre is not active: sixteen errors are one
+/// line of the cache, and a quarter of a word of bits.
+const BLOCK: usize = 16;
 
 /// A mesh of posts, and the memory it was made in: extracting again reuses it.
 #[derive(Clone, Debug, Default)]
@@ -100,7 +101,8 @@ pub fn extract(layout: &Layout, errors: &ErrorMap, tolerance_m: f32, out: &mut E
     if out.triangles.len() < most {
         out.triangles = vec![[0; 3]; most];
     }
-    let mut emit = Emitter { bits: &out.bits, triangles: &mut out.triangles, count: 0 };
+    let stars = Star::all(&out.bits);
+    let mut emit = Emitter { bits: &out.bits, stars: &stars, triangles: &mut out.triangles, count: 0 };
     emit.roots(layout);
     emit.rows();
     out.count = emit.count;
@@ -132,6 +134,9 @@ fn clamp_to_border(layout: &Layout, out: &mut Extract) {
 struct Bits {
     words: Vec<u64>,
     before: Vec<u32>,
+    /// The numbers of active vertices with even coordinates; of others, whatever was there.
+    even_numbers: Vec<u32>,
+    even_width: usize,
     /// Words in a row.
     width: usize,
     columns: usize,
@@ -146,23 +151,53 @@ impl Bits {
         self.width = self.columns.div_ceil(64);
         self.words.clear();
         self.words.resize(self.width * self.rows, 0);
-        for (row, words) in self.words.chunks_exact_mut(self.width).enumerate() {
-            let from = &errors[row * self.columns..][..self.columns];
-            let centers = (self.patch >= BLOCK && row % BLOCK != 0).then(|| {
-                let center = (row / BLOCK * BLOCK + BLOCK / 2) * self.columns;
-                &errors[center..][..self.columns]
-            });
-            for (word, (block, from)) in words.iter_mut().zip(from.chunks(BLOCK).enumerate()) {
-                // Inside a block all descend from its centre; its west side's vertices from the next block's too.
-                let may = centers.is_none_or(|centers| {
-                    centers.get(block * BLOCK + BLOCK / 2).is_some_and(|&error| error > tolerance_m)
-                });
-                *word = if may { above(from, tolerance_m) } else { u64::from(from[0] > tolerance_m) };
+        if self.patch < BLOCK {
+            for (from, to) in errors.chunks_exact(self.columns).zip(self.words.chunks_exact_mut(self.width)) {
+                for (word, from) in to.iter_mut().zip(from.chunks(64)) {
+                    *word = above(from, tolerance_m);
+                }
             }
+        } else {
+            self.set_by_blocks(errors, tolerance_m);
         }
         for y in (0..self.rows).step_by(self.patch) {
             for x in (0..self.columns).step_by(self.patch) {
                 self.words[y * self.width + x / 64] |= 1 << (x % 64);
+            }
+        }
+    }
+
+    /// Inside a block, all vertices descend from its centre; on its sides, from that of the block beyond as well;
+    /// its corners, of other vertices, are always looked at.
+    fn set_by_blocks(&mut self, errors: &[f32], tolerance_m: f32) {
+        let (columns, width) = (self.columns, self.width);
+        let blocks = (columns - 1) / BLOCK;
+        let mut south = vec![false; blocks];
+        let mut here = vec![false; blocks];
+        for first in (0..self.rows).step_by(BLOCK) {
+            std::mem::swap(&mut south, &mut here);
+            match errors.chunks_exact(columns).nth(first + BLOCK / 2) {
+                Some(centers) => {
+                    let centers = centers[BLOCK / 2..].iter().step_by(BLOCK);
+                    here.iter_mut().zip(centers).for_each(|(here, &error)| *here = error > tolerance_m);
+                }
+                None => here.fill(false),
+            }
+            for block in 0..=blocks {
+                let x = block * BLOCK;
+                let is = |active: &[bool], block: usize| active.get(block).is_some_and(|&active| active);
+                let (own, west) = (is(&here, block), is(&here, block.wrapping_sub(1)));
+                let words = self.words[first * width + x / 64..].iter_mut().step_by(width);
+                let mut rows = words.zip(errors[first * columns + x..].chunks(columns)).take(BLOCK);
+                if let Some((word, from)) = rows.next() {
+                    let wide = own || is(&south, block);
+                    *word |= above_block(from, if wide { BLOCK } else { 1 }, tolerance_m) << (x % 64);
+                }
+                if own {
+                    rows.for_each(|(word, from)| *word |= above_block(from, BLOCK, tolerance_m) << (x % 64));
+                } else if west {
+                    rows.for_each(|(word, from)| *word |= u64::from(from[0] > tolerance_m) << (x % 64));
+                }
             }
         }
     }
@@ -176,12 +211,24 @@ impl Bits {
             count += word.count_ones();
             before
         }));
+        self.even_width = self.columns / 2 + 1;
+        self.even_numbers.resize(self.even_width * (self.rows / 2 + 1), 0);
         vertices.clear();
         vertices.reserve(count as usize);
         for (row, words) in self.words.chunks_exact(self.width).enumerate() {
-            for (place, &word) in words.iter().enumerate() {
+            let even_row = row / 2 * self.even_width;
+            for (place, &word) in words.iter().enumerate().filter(|(_, word)| **word != 0) {
+                let mut number = vertices.len() as u32;
                 let first = (row * self.columns + place * 64) as u32;
                 vertices.extend(places(word).map(|bit| first + bit));
+                if row % 2 == 0 {
+                    let numbers = &mut self.even_numbers[even_row + place * 32..];
+                    for bit in places(word) {
+                        // An odd place has the even ones beside it active, and writes once more what is there.
+                        numbers[bit as usize / 2] = number - (bit & 1);
+                        number += 1;
+                    }
+                }
             }
         }
     }
@@ -217,15 +264,65 @@ fn above(errors: &[f32], tolerance_m: f32) -> u64 {
     for (byte, &error) in bytes.iter_mut().zip(errors) {
         *byte = u8::from(error > tolerance_m);
     }
-    // Eight bytes of 0 or 1 to eight bits: every byte is moved to its place in the top byte, and nothing else is.
-    let gather = |eight: &[u8; 8]| u64::from_le_bytes(*eight).wrapping_mul(0x0102_0408_1020_4080) >> 56;
     let eights = bytes.as_chunks::<8>().0.iter().enumerate();
     eights.fold(0, |word, (place, eight)| word | gather(eight) << (8 * place))
+}
+
+/// The same for the first `count` errors, 16 or 1.
+fn above_block(errors: &[f32], count: usize, tolerance_m: f32) -> u64 {
+    let Some(errors) = errors.first_chunk::<BLOCK>().filter(|_| count == BLOCK) else {
+        return u64::from(errors[0] > tolerance_m);
+    };
+    let mut bytes = [0u8; BLOCK];
+    for (byte, &error) in bytes.iter_mut().zip(errors) {
+        *byte = u8::from(error > tolerance_m);
+    }
+    bytes.as_chunks::<8>().0.iter().rev().fold(0, |word, eight| word << 8 | gather(eight))
+}
+
+/// Eight bytes of 0 or 1 to eight bits: every byte is moved to its place in the top byte, and nothing else is.
+fn gather(eight: &[u8; 8]) -> u64 {
+    u64::from_le_bytes(*eight).wrapping_mul(0x0102_0408_1020_4080) >> 56
+}
+
+/// Where a vertex's corners and children are, as distances in storage that wrap around: counter-clockwise, every
+/// child between its corner and the next. Whether a vertex is a centre then chooses numbers and not ways, for
+/// which one it is next can hardly be guessed.
+#[derive(Clone, Copy, Default)]
+struct Star {
+    /// In the numbers of even vertices.
+    corners: [usize; 4],
+    /// In words.
+    child_rows: [usize; 4],
+    /// In columns.
+    child_columns: [usize; 4],
+}
+
+impl Star {
+    /// Of edges' middles and centres by turns, from the finest step.
+    fn all(bits: &Bits) -> Vec<Self> {
+        let steps = (0..bits.patch.ilog2()).map(|level| 1isize << level);
+        let first = |step: isize| [((step, 0), (step / 2, step / 2)), ((-step, -step), (0, -step))];
+        steps.flat_map(first).map(|(corner, child)| Self::new(bits, corner, child)).collect()
+    }
+
+    fn new(bits: &Bits, mut corner: (isize, isize), mut child: (isize, isize)) -> Self {
+        let mut star = Self::default();
+        for at in 0..4 {
+            let linear = |(x, y): (isize, isize)| (y / 2 * bits.even_width as isize + x / 2) as usize;
+            star.corners[at] = linear(corner);
+            star.child_rows[at] = (child.1 * bits.width as isize) as usize;
+            star.child_columns[at] = child.0 as usize;
+            (corner, child) = ((-corner.1, corner.0), (-child.1, child.0));
+        }
+        star
+    }
 }
 
 /// The pass that writes triangles.
 struct Emitter<'a> {
     bits: &'a Bits,
+    stars: &'a [Star],
     triangles: &'a mut [[u32; 3]],
     count: usize,
 }
@@ -342,30 +439,29 @@ impl Emitter<'_> {
                 if x == 0 || x + 1 == *columns || step >= self.bits.patch {
                     self.around(x, y);
                 } else {
-                    self.coarse(x, y, step, rank(mid_before[place], word, bit));
+                    self.coarse(x, y, step);
                 }
             }
         }
     }
 
     /// The triangles around a vertex inside the layout whose four quadrants are there.
-    fn coarse(&mut self, x: usize, y: usize, step: usize, own: u32) {
-        let half = step / 2;
-        if (x & y & step) != 0 {
-            let corner = |x, y| self.bits.rank(x, y);
-            let (west, east, south, north) = (x - step, x + step, y - step, y + step);
-            let around = [corner(west, south), corner(east, south), corner(east, north), corner(west, north)];
-            let child = |x, y| u64::from(self.bits.get(x, y));
-            let children = [child(x, south), child(east, y), child(x, north), child(west, y)];
-            self.put_missing(own, around, children);
-        } else {
-            let corner = |x, y| self.bits.rank(x, y);
-            let around = [corner(x + step, y), corner(x, y + step), corner(x - step, y), corner(x, y - step)];
-            let child = |x, y| u64::from(self.bits.get(x, y));
-            let (west, east, south, north) = (x - half, x + half, y - half, y + half);
-            let children = [child(east, north), child(west, north), child(west, south), child(east, south)];
-            self.put_missing(own, around, children);
+    fn coarse(&mut self, x: usize, y: usize, step: usize) {
+        let bits = self.bits;
+        let is_center = usize::from(x & y & step != 0);
+        let star = &self.stars[2 * step.trailing_zeros() as usize + is_center];
+        let row = y * bits.width;
+        let child = |at: usize| {
+            let x = x.wrapping_add(star.child_columns[at]);
+            bits.words[row.wrapping_add(star.child_rows[at]).wrapping_add(x / 64)] >> (x % 64) & 1
+        };
+        let children = [child(0), child(1), child(2), child(3)];
+        if children[0] & children[1] & children[2] & children[3] == 1 {
+            return;
         }
+        let place = y / 2 * bits.even_width + x / 2;
+        let corner = |at: usize| bits.even_numbers[place.wrapping_add(star.corners[at])];
+        self.put_missing(bits.even_numbers[place], [corner(0), corner(1), corner(2), corner(3)], children);
     }
 
     /// The triangles around any vertex, by the graph's own rules: patch corners and the terrain's border.

@@ -4,7 +4,7 @@
 ///
 /// Fractional noise with a Hurst exponent of about 0.9: smooth noise summed over octaves, each of half the length
 /// and 2⁻⁰·⁹ the height. Smaller sizes are corners of larger ones, so that a post is as rough at every size; over
-/// 4097² posts the relief is about 3,000 m.
+/// 4097² posts the relief is some thousand metres.
 pub fn fractal(n: usize) -> Vec<f32> {
     let mut heights = vec![0f64; n * n];
     let mut spacing = 2048usize;
@@ -18,7 +18,7 @@ pub fn fractal(n: usize) -> Vec<f32> {
 }
 
 /// Of the octave that has a knot every 2,048 posts.
-const LARGEST_M: f64 = 900.0;
+const LARGEST_M: f64 = 1400.0;
 
 /// 2⁻⁰·⁹.
 const OCTAVE_RATIO: f64 = 0.535_886_731_268_146_6;
