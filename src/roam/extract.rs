@@ -97,7 +97,7 @@ impl Extract {
 pub fn extract(layout: &Layout, errors: &ErrorMap, tolerance_m: f32, out: &mut Extract) {
     out.bits.set(layout, errors.values(), tolerance_m);
     out.bits.number(&mut out.vertices);
-    let most = out.bits.most_triangles(layout, &out.vertices);
+    let most = Bits::most_triangles(layout, &out.vertices);
     if out.triangles.len() < most {
         out.triangles = vec![[0; 3]; most];
     }
@@ -234,7 +234,7 @@ impl Bits {
     }
 
     /// Room for all triangles and for those that are written and then thought better of.
-    fn most_triangles(&self, layout: &Layout, vertices: &[u32]) -> usize {
+    fn most_triangles(layout: &Layout, vertices: &[u32]) -> usize {
         2 * layout.patch_count() + 2 * vertices.len() + 4
     }
 
@@ -309,8 +309,7 @@ impl Star {
     fn new(bits: &Bits, mut corner: (isize, isize), mut child: (isize, isize)) -> Self {
         let mut star = Self::default();
         for at in 0..4 {
-            let linear = |(x, y): (isize, isize)| (y / 2 * bits.even_width as isize + x / 2) as usize;
-            star.corners[at] = linear(corner);
+            star.corners[at] = (corner.1 / 2 * bits.even_width as isize + corner.0 / 2) as usize;
             star.child_rows[at] = (child.1 * bits.width as isize) as usize;
             star.child_columns[at] = child.0 as usize;
             (corner, child) = ((-corner.1, corner.0), (-child.1, child.0));
