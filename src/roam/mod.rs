@@ -35,6 +35,7 @@ pub mod dynamic;
 pub mod edit;
 pub mod emit;
 pub mod errors;
+pub mod extract;
 pub mod graph;
 pub mod ground;
 pub mod layout;

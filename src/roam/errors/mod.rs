@@ -7,16 +7,22 @@
 //!
 //! - `own` measures one vertex alone.
 //! - `exact`: the largest vertical distance over every post that the vertex's triangles cover. A bound.
+//! - `midpoint`: the vertical distance at the vertex alone. Fast, and no bound.
 //! - `relief`: highest less lowest post that they cover. A bound too, and a lazy one.
+//!
+//! `sweep` raises whatever was measured to what is below it.
 
 pub mod exact;
+pub mod midpoint;
 pub mod near;
 pub mod own;
 pub mod relief;
 pub mod rows;
 pub mod scan;
 pub mod survey;
+mod sweep;
 
+use crate::roam::errors::sweep::{Field, Given};
 use crate::roam::graph::Vertex;
 use crate::roam::layout::Layout;
 use crate::roam::sweep::Pass;
@@ -61,30 +67,12 @@ impl ErrorMap {
         std::mem::replace(&mut self.errors[layout.index(vertex)], error) != error
     }
 
-    /// Makes every vertex's error at least that of its children, finest level first.
+    /// Makes every vertex's error at least that of its children, finest level first; patch corners get none.
     fn raise_to_children(&mut self, layout: &Layout) {
-        let mut step = 1;
-        while step < layout.patch() {
-            for (first, stride) in [((step, 0), 2 * step), ((0, step), 2 * step), ((step, step), 2 * step)] {
-                self.raise_level(layout, first, stride);
-            }
-            step *= 2;
-        }
-    }
-
-    fn raise_level(&mut self, layout: &Layout, first: (i32, i32), stride: i32) {
-        for y in (first.1..layout.rows() as i32).step_by(stride as usize) {
-            for x in (first.0..layout.columns() as i32).step_by(stride as usize) {
-                let vertex = Vertex::new(x, y);
-                let below = vertex
-                    .children()
-                    .filter(|&child| layout.contains(child))
-                    .map(|child| self.errors[layout.index(child)])
-                    .fold(0f32, f32::max);
-                let slot = &mut self.errors[layout.index(vertex)];
-                *slot = slot.max(below);
-            }
-        }
+        let mut raised = vec![0f32; self.errors.len()];
+        let sound = Field::new(&self.errors, layout).sweep::<Given>(&mut raised);
+        debug_assert!(sound, "given errors are taken as they are");
+        self.errors = raised;
     }
 
     /// Whether no vertex has a smaller error than one of its children.

@@ -1,0 +1,414 @@
+//! One sweep over all vertices, finest level first: what a vertex's error is depends on the measure, how it is
+//! raised to those of its children does not.
+//!
+//! The rows of a level are streamed from south to north through a small working set, and every level hands the
+//! next coarser one what it needs, every other post of every other row and one error a cell:
+//!
+//! ```text
+//! high  e───E───e───E───e    e  evens: the posts of the next coarser level
+//!       │       │       │    E  east edges:  own, raised to the cells around
+//! mid   N   C   N   C   N    N  north edges: own, raised to the cells around
+//!       │       │       │    C  centres:     own, raised to the four edges around;
+//! low   e───E───e───E───e       the cells of the next coarser level
+//! ```
+//!
+//! So heights are read once and errors are written once, all else stays in the cache, and every loop runs over
+//! contiguous slices, written so that compilers make vector code of them for the plainest processors. A recursion over triangles visits the same vertices in an order that no cache and no
+//! vector unit follows. Bands of rows run in parallel and start a few rows early instead of waiting for each
+//! other; levels coarser than a band can see come after, on a lattice a sixty-fourth the size.
+
+use rayon::prelude::*;
+
+use crate::roam::layout::Layout;
+
+/// What a vertex's own error is.
+pub trait Measure {
+    /// Whether values may be NaN. Where they may not, a sweep stops at the first that is.
+    const HOLES: bool;
+
+    /// The own error of a vertex from the values at the ends of its hypotenuse and at itself.
+    fn own(from: f32, to: f32, at: f32) -> f32;
+}
+
+/// Own errors that are already known, at their vertices.
+pub struct Given;
+
+impl Measure for Given {
+    const HOLES: bool = true;
+
+    fn own(_: f32, _: f32, at: f32) -> f32 {
+        at
+    }
+}
+
+/// Levels that a band sweeps in one go. Its rows start 2³ rows early; the rest is 1/64 of the vertices.
+const BAND_LEVELS: u32 = 3;
+
+/// Rows of a band at least, so that the rows it starts early are few beside its own.
+const BAND_ROWS: usize = 64;
+
+/// A lattice of values, one error a cell of it, and where errors go.
+#[derive(Clone, Copy)]
+pub struct Field<'a> {
+    /// Heights or own errors, row by row.
+    values: &'a [f32],
+    /// The largest error below each cell; none on the finest level.
+    cells: Option<&'a [f32]>,
+    columns: usize,
+    rows: usize,
+    /// Cells along a patch's side.
+    patch: usize,
+}
+
+impl<'a> Field<'a> {
+    /// One value a vertex of the layout.
+    ///
+    /// # Panics
+    /// Where there is not.
+    pub fn new(values: &'a [f32], layout: &Layout) -> Self {
+        assert_eq!(values.len(), layout.vertex_count(), "one value a vertex");
+        let (columns, rows) = (layout.columns(), layout.rows());
+        Self { values, cells: None, columns, rows, patch: layout.patch() as usize }
+    }
+
+    /// Writes every vertex's error, 0 at the patch corners. In parallel, the same for any number of threads.
+    ///
+    /// Whether the values were what the measure asks for; where they were not, what was written has no meaning.
+    #[must_use]
+    pub fn sweep<M: Measure>(&self, out: &mut [f32]) -> bool {
+        let levels = self.patch.ilog2().min(BAND_LEVELS);
+        let side = 1usize << levels;
+        let (columns, rows) = ((self.columns - 1) / side, (self.rows - 1) / side);
+        let mut values = vec![0f32; (columns + 1) * (rows + 1)];
+        let mut cells = vec![0f32; columns * rows];
+        let mut bands = self.bands(side, out, &mut cells);
+        let sound = match bands.as_mut_slice() {
+            [only] => only.sweep::<M>(levels),
+            many => many.par_iter_mut().map(|band| band.sweep::<M>(levels)).reduce(|| true, |a, b| a && b),
+        };
+        if side == self.patch || !sound {
+            return sound;
+        }
+        let from_rows = self.values.chunks_exact(self.columns).step_by(side);
+        for (coarse, fine) in values.chunks_exact_mut(columns + 1).zip(from_rows) {
+            coarse.iter_mut().zip(fine.iter().step_by(side)).for_each(|(coarse, fine)| *coarse = *fine);
+        }
+        let patch = self.patch / side;
+        let field =
+            Field { values: &values, cells: Some(&cells), columns: columns + 1, rows: rows + 1, patch };
+        let mut errors = vec![0f32; values.len()];
+        let sound = field.sweep::<M>(&mut errors);
+        let to_rows = out.chunks_exact_mut(self.columns).step_by(side);
+        for (coarse, fine) in errors.chunks_exact(columns + 1).zip(to_rows) {
+            coarse.iter().zip(fine.iter_mut().step_by(side)).for_each(|(coarse, fine)| *fine = *coarse);
+        }
+        sound
+    }
+
+    /// Bands of rows, each a multiple of `side`, the last with one row more.
+    fn bands<'b>(&self, side: usize, mut out: &'b mut [f32], mut cells: &'b mut [f32]) -> Vec<Band<'b>>
+    where
+        'a: 'b,
+    {
+        let threads = rayon::current_num_threads();
+        let height = if threads == 1 {
+            self.rows
+        } else {
+            ((self.rows - 1).div_ceil(threads * 4)).max(BAND_ROWS).next_multiple_of(side)
+        };
+        let mut bands = Vec::new();
+        let mut first = 0;
+        while first + 1 < self.rows {
+            let rest = self.rows - first;
+            // The last row alone is no band.
+            let rows = if rest <= height + 1 { rest } else { height };
+            let (own, others) = out.split_at_mut(rows * self.columns);
+            let (own_cells, other_cells) = cells.split_at_mut(rows / side * ((self.columns - 1) / side));
+            bands.push(Band { field: *self, first, rows, out: own, cells: own_cells });
+            (out, cells, first) = (others, other_cells, first + rows);
+        }
+        bands
+    }
+}
+
+/// Rows that one thread writes.
+struct Band<'a> {
+    field: Field<'a>,
+    first: usize,
+    rows: usize,
+    out: &'a mut [f32],
+    /// The errors of the coarsest centres, one for every square between the band's rows.
+    cells: &'a mut [f32],
+}
+
+/// Between the steps of a level: the last rows that came from the next finer one, and what was made of them.
+#[derive(Default)]
+struct Level {
+    /// Values by row modulo 4.
+    rows: [Vec<f32>; 4],
+    /// Errors of the cells by row modulo 4, with a 0 before and after each row.
+    cells: [Vec<f32>; 4],
+    /// Every other value of a row.
+    odds: Vec<f32>,
+    mid_evens: Vec<f32>,
+    low_east: Vec<f32>,
+    high_east: Vec<f32>,
+    north: Vec<f32>,
+    center: Vec<f32>,
+    around: Vec<f32>,
+    /// What the finest level writes where coarser ones will.
+    zeros: Vec<f32>,
+}
+
+impl Level {
+    fn new(columns: usize) -> Self {
+        let row = |length: usize| vec![0f32; length];
+        Self {
+            rows: std::array::from_fn(|_| row(columns)),
+            cells: std::array::from_fn(|_| row(columns + 1)),
+            odds: row(columns / 2),
+            mid_evens: row(columns / 2 + 1),
+            low_east: row(columns / 2),
+            high_east: row(columns / 2),
+            north: row(columns / 2 + 1),
+            center: row(columns / 2),
+            around: row(columns + 1),
+            zeros: row(columns / 2),
+        }
+    }
+}
+
+/// Where a sweep of a band starts and ends: rows of the field, ends included.
+#[derive(Clone, Copy)]
+struct Reach {
+    south: usize,
+    north: usize,
+}
+
+impl Band<'_> {
+    fn sweep<M: Measure>(&mut self, levels: u32) -> bool {
+        // What an end of the reach spoils lies within the coarsest square beside it.
+        let early = 1usize << levels;
+        let south = self.first.saturating_sub(early);
+        let north = (self.first + self.rows - 1).next_multiple_of(early) + early;
+        let reach = Reach { south, north: north.min(self.field.rows - 1) };
+        let mut stages: Vec<Level> =
+            (0..=levels).map(|level| Level::new(((self.field.columns - 1) >> level) + 1)).collect();
+        for pair in 0..(reach.north - reach.south) / 2 {
+            if !M::HOLES && self.has_hole(reach, pair) {
+                return false;
+            }
+            self.take_cells(&mut stages[0], reach, pair);
+            self.step::<M>(&mut stages, 0, reach, pair);
+        }
+        true
+    }
+
+    /// Whether a value is NaN, of those that one step of the finest level reads first.
+    fn has_hole(&self, reach: Reach, pair: usize) -> bool {
+        let columns = self.field.columns;
+        let rows = if pair == 0 { 0..3 } else { 2 * pair + 1..2 * pair + 3 };
+        let values = &self.field.values[(reach.south + rows.start) * columns..];
+        values[..rows.len() * columns].iter().fold(false, |hole, value| hole | value.is_nan())
+    }
+
+    /// Copies the cells that one step needs into the finest stage.
+    fn take_cells(&self, stage: &mut Level, reach: Reach, pair: usize) {
+        let Some(cells) = self.field.cells else { return };
+        let width = self.field.columns - 1;
+        for row in 2 * pair..2 * pair + 3 {
+            let kept = &mut stage.cells[row % 4][1..=width];
+            match cells.chunks_exact(width).nth(reach.south + row) {
+                Some(cells) => kept.copy_from_slice(cells),
+                None => kept.fill(0.0),
+            }
+        }
+    }
+
+    /// Works off rows 2·pair to 2·pair + 2 of a level, counted from the reach's south end in the level's steps.
+    fn step<M: Measure>(&mut self, stages: &mut [Level], level: usize, reach: Reach, pair: usize) {
+        let last = ((reach.north - reach.south) >> (level + 1)) - 1;
+        let (finer, coarser) = stages.split_at_mut(level + 1);
+        let (here, next) = (&mut finer[level], &mut coarser[0]);
+        let field = self.field;
+        let Level { rows, cells, odds, mid_evens, low_east, high_east, north, center, around, zeros } = here;
+        let row = |index: usize| match level {
+            0 => &field.values[(reach.south + index) * field.columns..][..field.columns],
+            _ => rows[index % 4].as_slice(),
+        };
+        let raised = level > 0 || field.cells.is_some();
+        if pair == 0 {
+            split(row(0), &mut next.rows[0], odds);
+            own_east::<M>(&next.rows[0], odds, high_east);
+            if raised {
+                raise_east(&cells[0], high_east);
+            }
+            self.write_east(level, reach.south, high_east, zeros);
+        }
+        std::mem::swap(low_east, high_east);
+        split(row(2 * pair + 2), &mut next.rows[(pair + 1) % 4], odds);
+        let (low_evens, high_evens) = (&next.rows[pair % 4], &next.rows[(pair + 1) % 4]);
+        own_east::<M>(high_evens, odds, high_east);
+        split(row(2 * pair + 1), mid_evens, odds);
+        own_north::<M>(low_evens, mid_evens, high_evens, north);
+        if raised {
+            larger(&cells[2 * pair % 4], &cells[(2 * pair + 1) % 4], around);
+            raise_north(around, north);
+            if pair == last {
+                cells[(2 * pair + 2) % 4].fill(0.0);
+            }
+            larger(&cells[(2 * pair + 1) % 4], &cells[(2 * pair + 2) % 4], around);
+            raise_east(around, high_east);
+        }
+        let squares_south = reach.south >> (level + 1);
+        if (squares_south + pair).is_multiple_of(2) {
+            own_center::<M>(low_evens, odds, high_evens, center);
+        } else {
+            own_center::<M>(high_evens, odds, low_evens, center);
+        }
+        raise_center(low_east, high_east, north, center);
+        next.cells[pair % 4][1..=center.len()].copy_from_slice(center);
+
+        self.write_mid(level, reach.south + ((2 * pair + 1) << level), north, center);
+        self.write_east(level, reach.south + ((2 * pair + 2) << level), high_east, zeros);
+        if level + 2 == stages.len() {
+            let center = &stages[level].center;
+            self.write_cells(level, reach.south + ((2 * pair) << level), center);
+            return;
+        }
+        if pair >= 2 && pair.is_multiple_of(2) {
+            self.step::<M>(stages, level + 1, reach, pair / 2 - 1);
+        }
+        if pair == last {
+            self.step::<M>(stages, level + 1, reach, pair / 2);
+        }
+    }
+
+    /// The row's slice of the output, where the band writes it.
+    fn out_row(&mut self, row: usize) -> Option<&mut [f32]> {
+        let columns = self.field.columns;
+        let own = row.checked_sub(self.first).filter(|&own| own < self.rows)?;
+        Some(&mut self.out[own * columns..][..columns])
+    }
+
+    fn write_east(&mut self, level: usize, row: usize, east: &[f32], zeros: &[f32]) {
+        let Some(out) = self.out_row(row) else { return };
+        if level == 0 {
+            join(zeros, east, out);
+            *out.last_mut().expect("a row has at least three vertices") = 0.0;
+        } else {
+            let spots = out[1 << level..].iter_mut().step_by(2 << level);
+            spots.zip(east).for_each(|(spot, &east)| *spot = east);
+        }
+    }
+
+    fn write_mid(&mut self, level: usize, row: usize, north: &[f32], center: &[f32]) {
+        let Some(out) = self.out_row(row) else { return };
+        let step = 1 << level;
+        if level == 0 {
+            join(north, center, out);
+        } else {
+            let squares = out.chunks_exact_mut(2 * step).zip(north.iter().zip(center));
+            squares.for_each(|(square, (&north, &center))| (square[0], square[step]) = (north, center));
+        }
+        if let (Some(spot), Some(&north)) = (out.last_mut(), north.last()) {
+            *spot = north;
+        }
+    }
+
+    fn write_cells(&mut self, level: usize, row: usize, center: &[f32]) {
+        let Some(own) = row.checked_sub(self.first) else { return };
+        let width = center.len();
+        if let Some(cells) =
+            self.cells.get_mut((own >> (level + 1)) * width..).filter(|rest| !rest.is_empty())
+        {
+            cells[..width].copy_from_slice(center);
+        }
+    }
+}
+
+/// A row's values at even places, of which there is one more, and at odd ones.
+///
+/// Pairs are read as one number: compilers make shuffles of that, and single loads of the obvious way.
+fn split(row: &[f32], evens: &mut [f32], odds: &mut [f32]) {
+    let pairs = bytemuck::cast_slice::<f32, u8>(row).as_chunks::<8>().0;
+    for (pair, (even, odd)) in pairs.iter().zip(evens.iter_mut().zip(odds)) {
+        let both = u64::from_ne_bytes(*pair);
+        let halves = [both as u32, (both >> 32) as u32].map(f32::from_bits);
+        [*even, *odd] = if cfg!(target_endian = "little") { halves } else { [halves[1], halves[0]] };
+    }
+    if let (Some(end), Some(last)) = (evens.last_mut(), row.last()) {
+        *end = *last;
+    }
+}
+
+/// The inverse of [`split`], but for the last value; by fours, which compilers make shuffles of.
+fn join(evens: &[f32], odds: &[f32], row: &mut [f32]) {
+    let fours = odds.len() / 4 * 4;
+    let both = evens.as_chunks::<4>().0.iter().zip(odds.as_chunks::<4>().0);
+    for (out, (e, o)) in row.as_chunks_mut::<8>().0.iter_mut().zip(both) {
+        *out = [e[0], o[0], e[1], o[1], e[2], o[2], e[3], o[3]];
+    }
+    let rest = evens[fours..].iter().zip(&odds[fours..]);
+    for (out, (&even, &odd)) in row[2 * fours..].as_chunks_mut::<2>().0.iter_mut().zip(rest) {
+        *out = [even, odd];
+    }
+}
+
+fn own_east<M: Measure>(evens: &[f32], odds: &[f32], out: &mut [f32]) {
+    let ends = evens.iter().zip(&evens[1..]);
+    for (out, (&at, (&west, &east))) in out.iter_mut().zip(odds.iter().zip(ends)) {
+        *out = M::own(west, east, at);
+    }
+}
+
+fn own_north<M: Measure>(low: &[f32], mid: &[f32], high: &[f32], out: &mut [f32]) {
+    let ends = low.iter().zip(high);
+    for (out, (&at, (&south, &north))) in out.iter_mut().zip(mid.iter().zip(ends)) {
+        *out = M::own(south, north, at);
+    }
+}
+
+/// The hypotenuse of an even centre joins the near row's value before it to the far row's after it, that of an odd
+/// one the near row's after it to the far row's before it. Chosen by masks: a condition would keep the loop scalar.
+fn own_center<M: Measure>(near: &[f32], odds: &[f32], far: &[f32], out: &mut [f32]) {
+    let count = out.len();
+    let (near, near_after, far, far_after) =
+        (&near[..count], &near[1..=count], &far[..count], &far[1..=count]);
+    let odds = &odds[..count];
+    for index in 0..count {
+        let mask = 0u32.wrapping_sub(index as u32 & 1);
+        let pick = |even: f32, odd: f32| f32::from_bits(even.to_bits() & !mask | odd.to_bits() & mask);
+        let from = pick(near[index], near_after[index]);
+        let to = pick(far_after[index], far[index]);
+        out[index] = M::own(from, to, odds[index]);
+    }
+}
+
+/// The larger of two numbers that are no NaN: one instruction, where `f32::max` must look for NaN.
+fn max(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+fn larger(low: &[f32], high: &[f32], out: &mut [f32]) {
+    out.iter_mut().zip(low.iter().zip(high)).for_each(|(out, (&low, &high))| *out = max(low, high));
+}
+
+/// `around` holds the cells beside a row, with a 0 before and after.
+fn raise_east(around: &[f32], east: &mut [f32]) {
+    let pairs = around[1..].as_chunks::<2>().0;
+    east.iter_mut().zip(pairs).for_each(|(east, &[a, b])| *east = max(*east, max(a, b)));
+}
+
+fn raise_north(around: &[f32], north: &mut [f32]) {
+    let pairs = around.as_chunks::<2>().0;
+    north.iter_mut().zip(pairs).for_each(|(north, &[a, b])| *north = max(*north, max(a, b)));
+}
+
+fn raise_center(low_east: &[f32], high_east: &[f32], north: &[f32], center: &mut [f32]) {
+    let east = low_east.iter().zip(high_east).map(|(&low, &high)| max(low, high));
+    let west_and_east = north.iter().zip(&north[1..]).map(|(&west, &east)| max(west, east));
+    for (center, (east, north)) in center.iter_mut().zip(east.zip(west_and_east)) {
+        *center = max(*center, max(east, north));
+    }
+}
