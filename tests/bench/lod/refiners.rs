@@ -45,7 +45,7 @@ pub fn print() {
     );
     for rule in [Rule::Variance, Rule::Spheres] {
         println!("\n{}", rule.title());
-        println!("method                 triangles   ms/frame   at rest   ops/frame   ns/op   against");
+        println!("method                 triangles   ms/frame   at rest   ops/frame   ns/op   ns/triangle");
         for triangles in TRIANGLES {
             compare(&world, rule, triangles);
         }
@@ -225,7 +225,7 @@ fn report(method: &Method, rounds: &[Flown]) {
         operations => format!("{:.0}", (moving_ms - resting_ms) * 1e6 / operations as f64),
     };
     println!(
-        "{:22} {:9} {moving_ms:10.4} {resting_ms:9.4} {:11} {per_operation:>7}   {:.1} ns a triangle",
+        "{:22} {:9} {moving_ms:10.4} {resting_ms:9.4} {:11} {per_operation:>7} {:13.1}",
         method.name(),
         last.triangles,
         last.operations,
@@ -249,6 +249,9 @@ fn k_of(scale: f32) -> f32 {
     scale / ((POSTS - 1) as f32 * SPACING_M)
 }
 
+/// Frames whose triangles are counted to find a scale.
+const COUNTED: u32 = 24;
+
 /// The scale at which splits alone make so many triangles on average.
 fn scale_for(world: &World, rule: Rule, triangles: usize) -> f32 {
     let (mut low, mut high) = (1f32, 1e4f32);
@@ -256,7 +259,7 @@ fn scale_for(world: &World, rule: Rule, triangles: usize) -> f32 {
         let scale = (low * high).sqrt();
         let spheres = world.spheres(scale);
         let mut found = 0;
-        for frame in (0..FRAMES).step_by(FRAMES as usize / 8) {
+        for frame in (0..FRAMES).step_by((FRAMES / COUNTED) as usize) {
             let camera = world.camera(frame);
             let mut patches = Vec::new();
             cull(world.ground(), &world.heights, &Culling::frustum(&camera), &mut patches);
@@ -268,7 +271,7 @@ fn scale_for(world: &World, rule: Rule, triangles: usize) -> f32 {
             };
             found += leaves(&active, &patches);
         }
-        if found / 8 > triangles { high = scale } else { low = scale }
+        if found / COUNTED as usize > triangles { high = scale } else { low = scale }
     }
     (low * high).sqrt()
 }
