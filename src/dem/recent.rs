@@ -74,6 +74,11 @@ impl<K: Ord + Copy, V> Recent<K, V> {
         gone
     }
 
+    /// All that is held, by key; that is no use.
+    pub fn iter(&self) -> impl Iterator<Item = (K, &V)> {
+        self.values.iter().map(|(key, kept)| (*key, &kept.value))
+    }
+
     /// The weight of all that is held.
     pub fn held(&self) -> usize {
         self.held

@@ -87,7 +87,7 @@ mod tests {
     fn two_places_in_one_file_do_not_disturb_each_other() {
         let mut first = TiffFile::new(Cursor::new((0..9u8).collect::<Vec<_>>())).expect("memory");
         let mut second = first.clone();
-        let mut next = |file: &mut TiffFile<_>| {
+        let next = |file: &mut TiffFile<_>| {
             let mut bytes = [0; 2];
             file.read_exact(&mut bytes).expect("inside");
             bytes

@@ -13,6 +13,7 @@
 //! - `criterion` turns an error and a view into a decision.
 //! - `culling` tells which patches can be seen.
 //! - `refine` sets the bits.
+//! - `paging` has patches of terrain larger than the memory, on demand.
 //! - `displayed` reads triangles off the bits.
 //!
 //! Sources: Duchaineau et al. 1997 (ROAM); the patch-based forced splits and the screen-space error of the
@@ -28,5 +29,6 @@ pub mod errors;
 pub mod graph;
 pub mod ground;
 pub mod layout;
+pub mod paging;
 pub mod refine;
 pub mod spheres;

@@ -50,7 +50,7 @@ fn assert_windows_match(windows: &mut impl Windows, whole: &mut Raster, seed: u6
 
 fn hilly(column: u32, row: u32) -> f32 {
     let (x, y) = (f64::from(column), f64::from(row));
-    if (column / 7 + row / 5) % 31 == 0 {
+    if (column / 7 + row / 5).is_multiple_of(31) {
         -9999.0
     } else {
         (libm::sin(x * 0.031) * 90.0 + libm::cos(y * 0.017) * 70.0) as f32
