@@ -8,13 +8,15 @@ use sandtable::dem::fault::Fault;
 use sandtable::dem::raster::{Raster, Samples};
 use sandtable::dem::windows::{Window, Windows};
 use sandtable::geom::crs::Crs;
+use sandtable::roam::bintree::Triangle;
 use sandtable::roam::block::{BlockSource, PatchBlock, WholeGround};
 use sandtable::roam::culling::PatchHeights;
+use sandtable::roam::errors::exact::triangle_error;
 use sandtable::roam::graph::Vertex;
 use sandtable::roam::ground::Ground;
 use sandtable::roam::layout::Layout;
 use sandtable::roam::paging::ground::{PagedGround, PagingError, PagingOptions, exact_spheres};
-use sandtable::terrain::lattice::Lattice;
+use sandtable::terrain::lattice::{Lattice, Post};
 
 use crate::windows::Seeded;
 
@@ -83,6 +85,40 @@ fn every_patch_read_alone_is_that_of_the_whole_bit_for_bit() {
         let raster = raster(width, height, 5, holes);
         for patch in [2, 8, 16, 64] {
             assert_all_patches_match(&raster, PagingOptions { patch, capacity: 3, exaggeration: 1.7 });
+        }
+    }
+}
+
+#[test]
+fn rounding_does_not_depend_on_where_a_piece_begins() {
+    // At the east border triangles are cut to 23 columns, a length that no division is exact by. Far east of the
+    // first post, planes told from there would round otherwise than planes told from a piece's own first post.
+    let (columns, skipped, rows, patch) = (4024, 3968, 33, 32);
+    let part_columns = columns - skipped;
+    let whole_layout = Layout::new(columns, rows, patch).expect("sound");
+    let part_layout = Layout::new(part_columns, rows, patch).expect("sound");
+    for seed in 0..20 {
+        let mut seeded = Seeded(seed);
+        let heights: Vec<f32> = (0..columns * rows)
+            .map(|index| (index % columns) as f32 * 91.3 + seeded.below(1 << 16) as f32 * 1e-6)
+            .collect();
+        let kept = |(index, _): &(usize, &f32)| *index as u32 % columns >= skipped;
+        let part: Vec<f32> = heights.iter().enumerate().filter(kept).map(|(_, height)| *height).collect();
+        let place = (DVec2::ZERO, DVec2::ONE);
+        let whole = Lattice::new(place.0, place.1, columns, heights).expect("sound");
+        let part = Lattice::part(place, Post { column: skipped, row: 0 }, part_columns, part).expect("sound");
+        let mut stack = Triangle::roots(Vertex::new(32, 0), 32).to_vec();
+        while let Some(triangle) = stack.pop() {
+            let [apex, left, right] = triangle.corners().map(|vertex| vertex.moved(skipped as i32, 0));
+            let same = Triangle { apex, left, right };
+            let (found, wanted) = (
+                triangle_error(&part, &part_layout, &triangle),
+                triangle_error(&whole, &whole_layout, &same),
+            );
+            assert_eq!(found.to_bits(), wanted.to_bits(), "{triangle:?} of seed {seed}: {found} {wanted}");
+            if !triangle.is_finest() {
+                stack.extend(triangle.split());
+            }
         }
     }
 }
