@@ -104,14 +104,27 @@ impl Fault {
 /// # Errors
 /// [`Fault::TooLarge`], also for no sample at all.
 pub(crate) fn check_size(
+    size: (u64, u64),
+    bytes_per_sample: u64,
+    held: (usize, u64),
+) -> Result<usize, Fault> {
+    check_size_within(MOST_SAMPLES, size, bytes_per_sample, held)
+}
+
+/// [`check_size`] with a cap of `most` samples, for what is not allocated whole.
+///
+/// # Errors
+/// [`Fault::TooLarge`], also for no sample at all.
+pub(crate) fn check_size_within(
+    most: u64,
     (width, height): (u64, u64),
     bytes_per_sample: u64,
     (file_bytes, expansion): (usize, u64),
 ) -> Result<usize, Fault> {
     let refused = |reason: String| Fault::TooLarge { width, height, reason };
-    let samples = width.checked_mul(height).filter(|&samples| samples <= MOST_SAMPLES).ok_or_else(|| {
+    let samples = width.checked_mul(height).filter(|&samples| samples <= most).ok_or_else(|| {
         refused(format!(
-            "are more than the {MOST_SAMPLES} that are taken; cut or coarsen the file, for example with: gdal_translate -outsize 25% 25%"
+            "are more than the {most} that are taken; cut or coarsen the file, for example with: gdal_translate -outsize 25% 25%"
         ))
     })?;
     if samples == 0 || width > u64::from(u32::MAX) || height > u64::from(u32::MAX) {

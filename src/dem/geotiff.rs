@@ -10,11 +10,11 @@ use std::io::{Cursor, Read, Seek};
 use tiff::decoder::{Decoder, Limits, ifd};
 use tiff::tags::Tag;
 
-use crate::dem::fault::Fault;
+use crate::dem::fault::{Fault, MOST_SAMPLES};
 use crate::dem::gdal_metadata;
 use crate::dem::geokeys::GeoKeys;
 use crate::dem::georef::{self, Place, PlaceTags};
-use crate::dem::raster::Raster;
+use crate::dem::raster::{Raster, Samples};
 use crate::dem::read::Source;
 use crate::dem::tiff_blocks::{self, Storage, fault};
 use crate::dem::tiff_mask;
@@ -39,13 +39,41 @@ pub(crate) fn recognises(bytes: &[u8]) -> bool {
 /// Reads the first band of the first image.
 pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     let bytes = neutralised(source.bytes);
-    let mut limits = Limits::default();
-    limits.ifd_value_size = bytes.len().clamp(1024, LARGEST_TAG);
-    limits.intermediate_buffer_size = bytes.len();
-    limits.decoding_buffer_size = LARGEST_BLOCK;
+    let limits = limits(bytes.len(), LARGEST_BLOCK);
     let mut decoder = Decoder::new(Cursor::new(&bytes[..])).map_err(fault)?.with_limits(limits);
-    let storage = Storage::of(&mut decoder, bytes.len())?;
-    let tags = Tags::read(&mut decoder);
+    let storage = Storage::of(&mut decoder, bytes.len(), MOST_SAMPLES)?;
+    let Described { bare, scale, offset } = describe(&mut decoder, &storage, source)?;
+    let mut samples = tiff_blocks::decode(&mut decoder, &storage, bare.nodata)?;
+    tiff_mask::apply(&mut decoder, (storage.width, storage.height), bytes.len(), &mut samples)?;
+    Ok(Raster { samples: samples.scaled(scale, offset), ..bare })
+}
+
+/// What the decoder may allocate for a file of `file_bytes` bytes.
+pub(crate) fn limits(file_bytes: usize, largest_block: usize) -> Limits {
+    let mut limits = Limits::default();
+    limits.ifd_value_size = file_bytes.clamp(1024, LARGEST_TAG);
+    limits.intermediate_buffer_size = file_bytes.min(largest_block);
+    limits.decoding_buffer_size = largest_block;
+    limits
+}
+
+/// What a file says of itself.
+pub(crate) struct Described {
+    /// The raster without its samples.
+    pub bare: Raster,
+    /// What a stored value is multiplied by.
+    pub scale: f64,
+    /// What is then added.
+    pub offset: f64,
+}
+
+/// Reads everything but the samples of the decoder's current image.
+pub(crate) fn describe<R: Read + Seek>(
+    decoder: &mut Decoder<R>,
+    storage: &Storage,
+    source: &Source,
+) -> Result<Described, Fault> {
+    let tags = Tags::read(decoder);
     let place = tags.place(source, storage.height)?;
     let crs = match &source.hints.crs {
         Some(crs) => Some(crs.clone()),
@@ -53,19 +81,18 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     };
     let band = gdal_metadata::first_band(&tags.metadata)?;
     let metres_per_z = band.metres_per_z.or(tags.keys.metres_per_z()?).unwrap_or(1.0);
-    let mut samples = tiff_blocks::decode(&mut decoder, &storage, tags.nodata)?;
-    tiff_mask::apply(&mut decoder, (storage.width, storage.height), bytes.len(), &mut samples)?;
-    Ok(Raster {
+    let bare = Raster {
         driver: "GTiff",
         width: storage.width,
         height: storage.height,
-        samples: samples.scaled(band.scale, band.offset),
+        samples: Samples::F32(Vec::new()),
         metres_per_z,
         map_from_grid: place.map_from_grid,
         georeferenced: place.stated,
         crs,
         nodata: tags.nodata,
-    })
+    };
+    Ok(Described { bare, scale: band.scale, offset: band.offset })
 }
 
 /// The tags beyond the picture; a tag of the wrong type counts as absent, as GDAL has it.

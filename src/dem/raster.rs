@@ -82,8 +82,13 @@ impl Samples {
         if factor == 1.0 && offset == 0.0 {
             return self;
         }
-        Self::F64(self.iter().map(|value| value * factor + offset).collect())
+        Self::F64(self.iter().map(|value| scaled(value, factor, offset)).collect())
     }
+}
+
+/// A value times `factor` plus `offset`; the value itself where that changes nothing.
+pub(crate) fn scaled(value: f64, factor: f64, offset: f64) -> f64 {
+    if factor == 1.0 && offset == 0.0 { value } else { value * factor + offset }
 }
 
 impl Raster {

@@ -10,7 +10,7 @@ use tiff::TiffError;
 use tiff::decoder::{ChunkType, Decoder, DecodingResult};
 use tiff::tags::Tag;
 
-use crate::dem::fault::{Fault, check_size};
+use crate::dem::fault::{Fault, check_size, check_size_within};
 use crate::dem::raster::Samples;
 
 pub(crate) const FORMAT: &str = "GeoTIFF";
@@ -32,8 +32,8 @@ pub(crate) struct Storage {
 }
 
 impl Storage {
-    /// Reads and checks the tags of the decoder's current image.
-    pub fn of<R: Read + Seek>(decoder: &mut Decoder<R>, file_bytes: usize) -> Result<Self, Fault> {
+    /// Reads and checks the tags of the decoder's current image, of at most `most` samples.
+    pub fn of<R: Read + Seek>(decoder: &mut Decoder<R>, file_bytes: usize, most: u64) -> Result<Self, Fault> {
         let (width, height) = decoder.dimensions().map_err(fault)?;
         let short = |decoder: &mut Decoder<R>, tag: Tag, default: u16| {
             decoder
@@ -56,16 +56,22 @@ impl Storage {
         let block_bytes = decoder.find_tag_unsigned_vec(counts_tag).map_err(fault)?.unwrap_or_default();
         let bands_per_block = if planar { 1 } else { bands };
         let storage = Self { width, height, bits, is_float, bands_per_block, block_bytes };
-        storage.check(decoder, file_bytes, expansion)?;
+        storage.check(decoder, (file_bytes, expansion), most)?;
         Ok(storage)
     }
 
-    fn check<R: Read + Seek>(&self, decoder: &Decoder<R>, file: usize, expansion: u64) -> Result<(), Fault> {
+    fn check<R: Read + Seek>(
+        &self,
+        decoder: &Decoder<R>,
+        (file, expansion): (usize, u64),
+        most: u64,
+    ) -> Result<(), Fault> {
         // Blocks that were never written take no bytes: such a file may claim more than it holds.
         let sparse = self.block_bytes.contains(&0);
         let held = (file, if sparse { expansion.max(2) } else { expansion });
         let bytes = u64::from(self.bits.div_ceil(8)) * u64::from(self.bands_per_block);
-        check_size((self.width.into(), self.height.into()), if self.bits < 8 { 0 } else { bytes }, held)?;
+        let size = (self.width.into(), self.height.into());
+        check_size_within(most, size, if self.bits < 8 { 0 } else { bytes }, held)?;
         if decoder.get_chunk_type() == ChunkType::Tile {
             let (across, down) = decoder.chunk_dimensions();
             check_size((across.into(), down.into()), bytes, (file, expansion.max(2)))?;
@@ -73,7 +79,13 @@ impl Storage {
         Ok(())
     }
 
-    fn is_wide(&self) -> bool {
+    /// How many bytes a block of `samples` samples decodes to.
+    pub fn decoded_bytes(&self, samples: u64) -> u64 {
+        samples * u64::from(self.bits) * u64::from(self.bands_per_block) / 8
+    }
+
+    /// Whether samples need 64 bits to stay exact.
+    pub fn is_wide(&self) -> bool {
         self.bits == 64 || (self.bits == 32 && !self.is_float)
     }
 
@@ -84,6 +96,18 @@ impl Storage {
             Some(value) => value,
             None => f64::NAN,
         }
+    }
+
+    /// Whether samples of this kind are read.
+    pub fn check_samples(&self) -> Result<(), Fault> {
+        if [8, 16, 32, 64].contains(&self.bits) && !(self.is_float && self.bits == 8) {
+            return Ok(());
+        }
+        Err(Fault::Unsupported {
+            format: FORMAT,
+            what: format!("{}-bit {}", self.bits, if self.is_float { "floats" } else { "samples" }),
+            remedy: "convert it, for example with: gdal_translate -ot Float32 FILE out.tif",
+        })
     }
 
     /// Where each block of the first band starts in the image: index, column, row.
@@ -113,16 +137,9 @@ pub(crate) fn decode<R: Read + Seek>(
     storage: &Storage,
     nodata: Option<f64>,
 ) -> Result<Samples, Fault> {
-    if ![8, 16, 32, 64].contains(&storage.bits) || (storage.is_float && storage.bits == 8) {
-        return Err(Fault::Unsupported {
-            format: FORMAT,
-            what: format!("{}-bit {}", storage.bits, if storage.is_float { "floats" } else { "samples" }),
-            remedy: "convert it, for example with: gdal_translate -ot Float32 FILE out.tif",
-        });
-    }
+    storage.check_samples()?;
     let count = storage.width as usize * storage.height as usize;
-    // What was never written is no data where the file knows such a value, else 0, as GDAL has it.
-    let blank = if nodata.is_some() { f64::NAN } else { 0.0 };
+    let blank = blank(nodata);
     if storage.is_wide() {
         let mut values = vec![blank; count];
         fill(decoder, storage, nodata, &mut values, |value| value)?;
@@ -140,48 +157,82 @@ fn fill<R: Read + Seek, T>(
     values: &mut [T],
     narrow: impl Fn(f64) -> T + Copy,
 ) -> Result<(), Fault> {
-    let hole = storage.comparable(nodata);
-    let elevation =
-        move |value: f64| narrow(if value == hole || !value.is_finite() { f64::NAN } else { value });
     for (index, column, row) in storage.blocks(decoder) {
-        if !storage.is_written(index) {
-            continue;
+        if storage.is_written(index) {
+            let (width, height) = decoder.chunk_data_dimensions(index);
+            let bands = usize::from(storage.bands_per_block);
+            let image_width = storage.width as usize;
+            let place = Place { bands, image_width, column, row, width, height };
+            decode_block(decoder, storage, nodata, index, values, &place, narrow)?;
         }
-        let block = decoder.read_chunk(index).map_err(fault)?;
-        let (width, height) = decoder.chunk_data_dimensions(index);
-        let window = Window { storage, column, row, width, height };
-        let placed = match &block {
-            DecodingResult::U8(v) => window.place(values, v, |x| elevation(x.into())),
-            DecodingResult::I8(v) => window.place(values, v, |x| elevation(x.into())),
-            DecodingResult::U16(v) => window.place(values, v, |x| elevation(x.into())),
-            DecodingResult::I16(v) => window.place(values, v, |x| elevation(x.into())),
-            DecodingResult::U32(v) => window.place(values, v, |x| elevation(x.into())),
-            DecodingResult::I32(v) => window.place(values, v, |x| elevation(x.into())),
-            DecodingResult::U64(v) => window.place(values, v, |x| elevation(x as f64)),
-            DecodingResult::I64(v) => window.place(values, v, |x| elevation(x as f64)),
-            DecodingResult::F16(v) => window.place(values, v, |x| elevation(x.to_f64())),
-            DecodingResult::F32(v) => window.place(values, v, |x| elevation(x.into())),
-            DecodingResult::F64(v) => window.place(values, v, elevation),
-        };
-        placed.ok_or_else(|| Fault::broken(FORMAT, format!("block {index} does not fit its image")))?;
     }
     Ok(())
 }
 
-/// Where a block lies in the image.
-struct Window<'a> {
-    storage: &'a Storage,
+/// The elevations of block `index` alone, row by row, `nodata` as NaN; blank where it was never written.
+pub(crate) fn block<R: Read + Seek>(
+    decoder: &mut Decoder<R>,
+    storage: &Storage,
+    nodata: Option<f64>,
+    index: u32,
+) -> Result<Vec<f64>, Fault> {
+    let (width, height) = decoder.chunk_data_dimensions(index);
+    let mut values = vec![blank(nodata); width as usize * height as usize];
+    if storage.is_written(index) {
+        let bands = usize::from(storage.bands_per_block);
+        let place = Place { bands, image_width: width as usize, column: 0, row: 0, width, height };
+        decode_block(decoder, storage, nodata, index, &mut values, &place, |value| value)?;
+    }
+    Ok(values)
+}
+
+/// What stands where nothing was written: no data where the file knows such a value, else 0, as GDAL has it.
+fn blank(nodata: Option<f64>) -> f64 {
+    if nodata.is_some() { f64::NAN } else { 0.0 }
+}
+
+fn decode_block<R: Read + Seek, T>(
+    decoder: &mut Decoder<R>,
+    storage: &Storage,
+    nodata: Option<f64>,
+    index: u32,
+    values: &mut [T],
+    place: &Place,
+    narrow: impl Fn(f64) -> T + Copy,
+) -> Result<(), Fault> {
+    let hole = storage.comparable(nodata);
+    let elevation =
+        move |value: f64| narrow(if value == hole || !value.is_finite() { f64::NAN } else { value });
+    let placed = match &decoder.read_chunk(index).map_err(fault)? {
+        DecodingResult::U8(v) => place.copy(values, v, |x| elevation(x.into())),
+        DecodingResult::I8(v) => place.copy(values, v, |x| elevation(x.into())),
+        DecodingResult::U16(v) => place.copy(values, v, |x| elevation(x.into())),
+        DecodingResult::I16(v) => place.copy(values, v, |x| elevation(x.into())),
+        DecodingResult::U32(v) => place.copy(values, v, |x| elevation(x.into())),
+        DecodingResult::I32(v) => place.copy(values, v, |x| elevation(x.into())),
+        DecodingResult::U64(v) => place.copy(values, v, |x| elevation(x as f64)),
+        DecodingResult::I64(v) => place.copy(values, v, |x| elevation(x as f64)),
+        DecodingResult::F16(v) => place.copy(values, v, |x| elevation(x.to_f64())),
+        DecodingResult::F32(v) => place.copy(values, v, |x| elevation(x.into())),
+        DecodingResult::F64(v) => place.copy(values, v, elevation),
+    };
+    placed.ok_or_else(|| Fault::broken(FORMAT, format!("block {index} does not fit its image")))
+}
+
+/// Where a block lies in the image it is copied to, and how many bands it holds.
+struct Place {
+    bands: usize,
+    image_width: usize,
     column: u32,
     row: u32,
     width: u32,
     height: u32,
 }
 
-impl Window<'_> {
+impl Place {
     /// Copies the first band of a block; `None` where the two do not fit.
-    fn place<S: Copy, T>(&self, image: &mut [T], block: &[S], to: impl Fn(S) -> T) -> Option<()> {
-        let bands = usize::from(self.storage.bands_per_block);
-        let (width, image_width) = (self.width as usize, self.storage.width as usize);
+    fn copy<S: Copy, T>(&self, image: &mut [T], block: &[S], to: impl Fn(S) -> T) -> Option<()> {
+        let (bands, width, image_width) = (self.bands, self.width as usize, self.image_width);
         for row in 0..self.height as usize {
             let source = block.get(row * width * bands..(row + 1) * width * bands)?;
             let start = (self.row as usize + row) * image_width + self.column as usize;

@@ -5,15 +5,15 @@ use std::io::{Read, Seek};
 use tiff::decoder::{Decoder, DecodingResult};
 use tiff::tags::Tag;
 
-use crate::dem::fault::Fault;
+use crate::dem::fault::{Fault, MOST_SAMPLES};
 use crate::dem::raster::Samples;
 use crate::dem::tiff_blocks::{FORMAT, Storage, fault};
 
 /// Images after this many are not looked at.
-const MOST_IMAGES: usize = 64;
+pub(crate) const MOST_IMAGES: usize = 64;
 
 /// NewSubfileType's bit for "mask of another image".
-const IS_MASK: u32 = 4;
+pub(crate) const IS_MASK: u32 = 4;
 
 /// Looks for a mask of the same size among the images after the first and makes NaN of what it hides.
 pub(crate) fn apply<R: Read + Seek>(
@@ -40,31 +40,60 @@ fn hide<R: Read + Seek>(
     file_bytes: usize,
     samples: &mut Samples,
 ) -> Result<(), Fault> {
-    let storage = Storage::of(decoder, file_bytes)?;
-    let bits = usize::from(storage.bits);
-    if ![1, 8].contains(&bits) {
-        return Err(Fault::broken(FORMAT, format!("its mask has {bits} bits")));
-    }
+    let storage = Storage::of(decoder, file_bytes, MOST_SAMPLES)?;
+    check(&storage)?;
     for (index, column, row) in storage.blocks(decoder) {
-        let (width, height) = decoder.chunk_data_dimensions(index);
-        // What was never written hides what lies under it.
-        let block = match storage.is_written(index).then(|| decoder.read_chunk(index)) {
-            Some(Ok(DecodingResult::U8(bytes))) => bytes,
-            Some(Ok(_)) => return Err(Fault::broken(FORMAT, "its mask does not hold bytes")),
-            Some(Err(error)) => return Err(fault(error)),
-            None => Vec::new(),
-        };
-        let row_bytes = (width as usize * bits).div_ceil(8);
-        for y in 0..height as usize {
-            for x in 0..width as usize {
-                let byte = block.get(y * row_bytes + x * bits / 8).copied().unwrap_or(0);
-                let shown = if bits == 8 { byte != 0 } else { byte & (0x80 >> (x % 8)) != 0 };
-                let at = (row as usize + y) * storage.width as usize + column as usize + x;
-                if !shown {
-                    samples.clear(at);
-                }
-            }
+        let block = block(decoder, &storage, index)?;
+        for (x, y) in block.hidden() {
+            samples.clear((row as usize + y) * storage.width as usize + column as usize + x);
         }
     }
     Ok(())
+}
+
+/// Whether a mask is stored in a way that is read.
+pub(crate) fn check(storage: &Storage) -> Result<(), Fault> {
+    match storage.bits {
+        1 | 8 => Ok(()),
+        bits => Err(Fault::broken(FORMAT, format!("its mask has {bits} bits"))),
+    }
+}
+
+/// One block of a mask.
+pub(crate) struct MaskBlock {
+    bytes: Vec<u8>,
+    size: (usize, usize),
+    bits: usize,
+}
+
+/// Decodes block `index` of a mask.
+pub(crate) fn block<R: Read + Seek>(
+    decoder: &mut Decoder<R>,
+    storage: &Storage,
+    index: u32,
+) -> Result<MaskBlock, Fault> {
+    let (width, height) = decoder.chunk_data_dimensions(index);
+    // What was never written hides what lies under it.
+    let bytes = match storage.is_written(index).then(|| decoder.read_chunk(index)) {
+        Some(Ok(DecodingResult::U8(bytes))) => bytes,
+        Some(Ok(_)) => return Err(Fault::broken(FORMAT, "its mask does not hold bytes")),
+        Some(Err(error)) => return Err(fault(error)),
+        None => Vec::new(),
+    };
+    Ok(MaskBlock { bytes, size: (width as usize, height as usize), bits: storage.bits.into() })
+}
+
+impl MaskBlock {
+    /// The columns and rows within the block that it hides.
+    pub fn hidden(&self) -> impl Iterator<Item = (usize, usize)> {
+        let (width, height) = self.size;
+        let places = (0..height).flat_map(move |y| (0..width).map(move |x| (x, y)));
+        places.filter(|&(x, y)| !self.shows(x, y))
+    }
+
+    fn shows(&self, x: usize, y: usize) -> bool {
+        let row_bytes = (self.size.0 * self.bits).div_ceil(8);
+        let byte = self.bytes.get(y * row_bytes + x * self.bits / 8).copied().unwrap_or(0);
+        if self.bits == 8 { byte != 0 } else { byte & (0x80 >> (x % 8)) != 0 }
+    }
 }

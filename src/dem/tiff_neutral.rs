@@ -6,6 +6,7 @@
 //! copied.
 
 use std::borrow::Cow;
+use std::io::{Read, Seek, SeekFrom};
 
 use crate::dem::fault::bytes_at;
 
@@ -20,10 +21,54 @@ const REWRITTEN: [u16; 5] = [0, 2, 3, 4, 5];
 /// More images than this are not looked at.
 const MOST_IMAGES: usize = 64;
 
+/// Directories with more tags than this are not looked at: a classic TIFF cannot count further.
+const MOST_TAGS: usize = 65_535;
+
+/// The bytes of a file, in memory or not.
+trait Bytes {
+    /// How many there are.
+    fn length(&self) -> usize;
+    /// The first `N` bytes from `at`; `None` beyond the end.
+    fn at<const N: usize>(&mut self, at: usize) -> Option<[u8; N]>;
+}
+
+impl Bytes for &[u8] {
+    fn length(&self) -> usize {
+        self.len()
+    }
+
+    fn at<const N: usize>(&mut self, at: usize) -> Option<[u8; N]> {
+        bytes_at(self, at)
+    }
+}
+
+/// A file that is not in memory, with its length.
+struct File<'a, R>(&'a mut R, usize);
+
+impl<R: Read + Seek> Bytes for File<'_, R> {
+    fn length(&self) -> usize {
+        self.1
+    }
+
+    fn at<const N: usize>(&mut self, at: usize) -> Option<[u8; N]> {
+        let mut bytes = [0; N];
+        self.0.seek(SeekFrom::Start(at as u64)).ok()?;
+        self.0.read_exact(&mut bytes).ok().map(|()| bytes)
+    }
+}
+
+/// Where the photometric tags of a file of `length` bytes are to be rewritten, and to what.
+pub(crate) fn rewritten<R: Read + Seek>(file: &mut R, length: usize) -> Vec<(usize, [u8; 2])> {
+    let mut bytes = File(file, length);
+    let layout = Layout::of(&mut bytes);
+    layout.map(|layout| layout.photometric_tags(&mut bytes)).unwrap_or_default()
+}
+
 /// The file with the photometric tag of every image rewritten.
 pub(crate) fn neutralised(bytes: &[u8]) -> Cow<'_, [u8]> {
-    let layout = Layout::of(bytes);
-    let places = layout.map(|layout| layout.photometric_tags(bytes)).unwrap_or_default();
+    let mut whole = bytes;
+    let layout = Layout::of(&mut whole);
+    let places = layout.map(|layout| layout.photometric_tags(&mut whole)).unwrap_or_default();
     if places.is_empty() {
         return Cow::Borrowed(bytes);
     }
@@ -42,8 +87,8 @@ struct Layout {
 }
 
 impl Layout {
-    fn of(bytes: &[u8]) -> Option<Self> {
-        match bytes.get(..4)? {
+    fn of(bytes: &mut impl Bytes) -> Option<Self> {
+        match &bytes.at::<4>(0)? {
             b"II*\0" => Some(Self { little: true, big_tiff: false }),
             b"MM\0*" => Some(Self { little: false, big_tiff: false }),
             b"II+\0" => Some(Self { little: true, big_tiff: true }),
@@ -52,40 +97,45 @@ impl Layout {
         }
     }
 
-    fn short(self, bytes: &[u8], at: usize) -> Option<u16> {
-        bytes_at(bytes, at).map(if self.little { u16::from_le_bytes } else { u16::from_be_bytes })
+    fn short(self, bytes: &mut impl Bytes, at: usize) -> Option<u16> {
+        bytes.at(at).map(if self.little { u16::from_le_bytes } else { u16::from_be_bytes })
     }
 
     /// An offset or a count of the file's own width.
-    fn word(self, bytes: &[u8], at: usize) -> Option<usize> {
+    fn word(self, bytes: &mut impl Bytes, at: usize) -> Option<usize> {
         let wide = if self.big_tiff {
-            bytes_at(bytes, at).map(if self.little { u64::from_le_bytes } else { u64::from_be_bytes })?
+            bytes.at(at).map(if self.little { u64::from_le_bytes } else { u64::from_be_bytes })?
         } else {
-            bytes_at(bytes, at).map(if self.little { u32::from_le_bytes } else { u32::from_be_bytes })?.into()
+            bytes.at(at).map(if self.little { u32::from_le_bytes } else { u32::from_be_bytes })?.into()
         };
         usize::try_from(wide).ok()
     }
 
     /// Where the tags that are to be rewritten stand, with their new bytes.
-    fn photometric_tags(self, bytes: &[u8]) -> Vec<(usize, [u8; 2])> {
+    fn photometric_tags(self, bytes: &mut impl Bytes) -> Vec<(usize, [u8; 2])> {
         let mut found = Vec::new();
         let mut next = self.word(bytes, if self.big_tiff { 8 } else { 4 });
         for _ in 0..MOST_IMAGES {
-            let Some(directory) = next.filter(|&at| at > 0 && at < bytes.len()) else { break };
+            let Some(directory) = next.filter(|&at| at > 0 && at < bytes.length()) else { break };
             next = self.scan(bytes, directory, &mut found);
         }
         found
     }
 
     /// Looks through one directory and returns the offset of the next.
-    fn scan(self, bytes: &[u8], directory: usize, found: &mut Vec<(usize, [u8; 2])>) -> Option<usize> {
+    fn scan(
+        self,
+        bytes: &mut impl Bytes,
+        directory: usize,
+        found: &mut Vec<(usize, [u8; 2])>,
+    ) -> Option<usize> {
         let (count, first, entry, value) = if self.big_tiff {
             (self.word(bytes, directory)?, directory.checked_add(8)?, 20, 12)
         } else {
             (usize::from(self.short(bytes, directory)?), directory.checked_add(2)?, 12, 8)
         };
         let end = first.checked_add(count.checked_mul(entry)?)?;
-        if end > bytes.len() {
+        if end > bytes.length() || count > MOST_TAGS {
             return None;
         }
         for at in (first..end).step_by(entry) {

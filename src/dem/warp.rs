@@ -130,6 +130,19 @@ pub fn to_metric(raster: &Raster, target: Option<&Crs>) -> Result<Raster, WarpEr
     Ok(metric)
 }
 
+/// Whether the raster lies in a system in metres already, so that nothing has to be resampled; its samples are not
+/// looked at.
+///
+/// # Errors
+/// [`WarpError`]: it has no place, it looks like degrees, or its system is not metric.
+pub fn check_metric(raster: &Raster) -> Result<(), WarpError> {
+    check_source(raster)?;
+    match &raster.crs {
+        Some(crs) if !crs.is_metric() => Err(WarpError::TargetNotMetric { name: crs.name().into() }),
+        _ => Ok(()),
+    }
+}
+
 fn check_source(raster: &Raster) -> Result<(), WarpError> {
     if !raster.georeferenced {
         return Err(WarpError::NoPlace);

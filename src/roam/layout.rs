@@ -28,11 +28,27 @@ pub const DEFAULT_PATCH: u32 = 64;
 /// rows have up to 2048 vertices a post: indices would not fit a u32, and errors not the memory.
 pub const MOST_VERTICES: u64 = 1 << 29;
 
+/// The most patches of a layout whose vertices are never in memory together: 65,536 posts a side in patches of 64.
+/// What is kept of every patch is small, and a million of it is tens of megabytes.
+pub const MOST_PATCHES: u64 = 1 << 20;
+
 impl Layout {
     /// Patches of `patch` cells a side, a power of two from 2 to 4096, over a lattice of `columns` × `rows`
     /// posts, at least 2 × 2 and at most 2²⁸ either way, with at most [`MOST_VERTICES`] vertices in all.
     /// `None` otherwise.
     pub fn new(columns: u32, rows: u32, patch: u32) -> Option<Self> {
+        let layout = Self::over(columns, rows, patch)?;
+        (layout.columns() as u64 * layout.rows() as u64 <= MOST_VERTICES).then_some(layout)
+    }
+
+    /// As [`Layout::new`], for patches that are had one at a time: at most [`MOST_PATCHES`] of them, with any number
+    /// of vertices in all.
+    pub fn paged(columns: u32, rows: u32, patch: u32) -> Option<Self> {
+        let layout = Self::over(columns, rows, patch)?;
+        (layout.patches_east as u64 * layout.patches_north as u64 <= MOST_PATCHES).then_some(layout)
+    }
+
+    fn over(columns: u32, rows: u32, patch: u32) -> Option<Self> {
         let sizes = 2..=1 << 28;
         if !patch.is_power_of_two()
             || !(2..=4096).contains(&patch)
@@ -41,10 +57,7 @@ impl Layout {
         {
             return None;
         }
-        let vertices = |posts: u32| u64::from((posts - 1).div_ceil(patch) * patch) + 1;
-        if vertices(columns) * vertices(rows) > MOST_VERTICES {
-            return None;
-        }
+        let vertices = |posts: u32| (posts - 1).div_ceil(patch) * patch + 1;
         Some(Self {
             columns: vertices(columns) as i32,
             rows: vertices(rows) as i32,
@@ -166,5 +179,7 @@ mod tests {
         assert_eq!(Layout::new(1, 65, 64), None);
         assert_eq!(Layout::new(2, 1 << 28, 64), None);
         assert!(Layout::new(16_384, 16_384, 64).is_some());
+        assert!(Layout::new(65_537, 65_537, 64).is_none() && Layout::paged(65_537, 65_537, 64).is_some());
+        assert_eq!(Layout::paged(65_538, 65_537, 64), None);
     }
 }

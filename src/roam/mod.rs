@@ -19,6 +19,7 @@
 //! - `sweep` is the order in which whatever is nested up the graph is made.
 //! - `edit` mends errors and spheres after heights changed; `dynamic` is a terrain that can be edited.
 //! - `closure` sets the fewest bits that keep an error bound; `bound` measures a mesh at every post.
+//! - `paging` has patches of terrain larger than the memory, on demand.
 //!
 //! Sources: Duchaineau et al. 1997 (ROAM); the patch-based forced splits and the screen-space error of the
 //! later papers; Lindstrom and Pascucci 2001 for errors kept monotone up the graph.
@@ -39,6 +40,7 @@ pub mod extract;
 pub mod graph;
 pub mod ground;
 pub mod layout;
+pub mod paging;
 pub mod quadtree;
 pub mod refine;
 pub mod roughness;

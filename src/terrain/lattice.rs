@@ -28,6 +28,7 @@ pub struct Lattice {
     cell: DVec2,
     columns: u32,
     rows: u32,
+    first: Post,
     heights: Vec<f32>,
     pinned: Vec<bool>,
 }
@@ -77,6 +78,23 @@ impl Lattice {
         if columns < 2 || rows < 2 {
             return Err(LatticeError::TooSmall(columns, rows));
         }
+        let (origin, cell) = Self::frame(raster)?;
+        let heights: Vec<f32> = (0..rows)
+            .rev()
+            .flat_map(|row| (0..columns).map(move |column| (column, row)))
+            .map(|(column, row)| raster.at(column, row) as f32)
+            .collect();
+        Self::new(origin, cell, columns, heights)
+    }
+
+    /// The origin and the cell of the lattice of a north-up raster in metres, whose samples are not looked at.
+    ///
+    /// # Errors
+    /// [`LatticeError::TooSmall`] and [`LatticeError::NotNorthUp`].
+    pub fn frame(raster: &Raster) -> Result<(DVec2, DVec2), LatticeError> {
+        if raster.width < 2 || raster.height < 2 {
+            return Err(LatticeError::TooSmall(raster.width, raster.height));
+        }
         let matrix = raster.map_from_grid.matrix2;
         if matrix.x_axis.x <= 0.0
             || matrix.y_axis.y >= 0.0
@@ -85,13 +103,8 @@ impl Lattice {
         {
             return Err(LatticeError::NotNorthUp);
         }
-        let origin = raster.map_from_grid.transform_point2(DVec2::new(0.5, f64::from(rows) - 0.5));
-        let heights: Vec<f32> = (0..rows)
-            .rev()
-            .flat_map(|row| (0..columns).map(move |column| (column, row)))
-            .map(|(column, row)| raster.at(column, row) as f32)
-            .collect();
-        Self::new(origin, DVec2::new(matrix.x_axis.x, -matrix.y_axis.y), columns, heights)
+        let origin = raster.map_from_grid.transform_point2(DVec2::new(0.5, f64::from(raster.height) - 0.5));
+        Ok((origin, DVec2::new(matrix.x_axis.x, -matrix.y_axis.y)))
     }
 
     /// A lattice from its heights, row by row from the south-west; all rows full.
@@ -99,18 +112,34 @@ impl Lattice {
     /// # Errors
     /// See [`LatticeError`].
     pub fn new(origin: DVec2, cell: DVec2, columns: u32, heights: Vec<f32>) -> Result<Self, LatticeError> {
+        if !heights.is_empty() && heights.iter().all(|height| height.is_nan()) {
+            return Err(LatticeError::Empty);
+        }
+        Self::part((origin, cell), Post { column: 0, row: 0 }, columns, heights)
+    }
+
+    /// A part of a larger lattice with this origin and cell, from the larger one's post `first` on. Posts are counted
+    /// from the part's own south-west, and stand where they stand in the larger lattice, to the last bit.
+    ///
+    /// A part may hold no data at all; [`Lattice::height_range`] is then empty, the infinities the wrong way round.
+    ///
+    /// # Errors
+    /// [`LatticeError::TooSmall`] and [`LatticeError::TooHigh`].
+    pub fn part(
+        (origin, cell): (DVec2, DVec2),
+        first: Post,
+        columns: u32,
+        heights: Vec<f32>,
+    ) -> Result<Self, LatticeError> {
         let rows = heights.len().checked_div(columns as usize).unwrap_or(0) as u32;
         if columns < 2 || rows < 2 || heights.len() != columns as usize * rows as usize {
             return Err(LatticeError::TooSmall(columns, rows));
-        }
-        if heights.iter().all(|height| height.is_nan()) {
-            return Err(LatticeError::Empty);
         }
         if let Some(&height) = heights.iter().find(|height| height.abs() > HIGHEST_M) {
             return Err(LatticeError::TooHigh { height });
         }
         let pinned = vec![false; heights.len()];
-        Ok(Self { origin, cell, columns, rows, heights, pinned })
+        Ok(Self { origin, cell, columns, rows, first, heights, pinned })
     }
 
     /// Map coordinates of the south-west post: the origin of world space.
@@ -141,13 +170,19 @@ impl Lattice {
     /// The rectangle of all posts in world space, the origin's post at (0, 0).
     pub fn extent(&self) -> Rect {
         let last = DVec2::new(f64::from(self.columns - 1), f64::from(self.rows - 1));
-        Rect { min: DVec2::ZERO, max: last * self.cell }
+        Rect { min: self.skipped() * self.cell, max: (self.skipped() + last) * self.cell }
+    }
+
+    /// How many posts of the larger lattice lie before this one's first, eastward and northward.
+    fn skipped(&self) -> DVec2 {
+        DVec2::new(f64::from(self.first.column), f64::from(self.first.row))
     }
 
     /// World X and Y of a post.
     #[inline]
     pub fn position(&self, post: Post) -> Vec2 {
-        (DVec2::new(f64::from(post.column), f64::from(post.row)) * self.cell).as_vec2()
+        let (column, row) = (post.column + self.first.column, post.row + self.first.row);
+        (DVec2::new(f64::from(column), f64::from(row)) * self.cell).as_vec2()
     }
 
     /// The height of a post in metres, NaN where there is no data.
@@ -200,7 +235,7 @@ impl Lattice {
 
     /// The cell that holds a world position and the position within it, 0..=1 east and north; `None` outside.
     pub fn cell_at(&self, world: DVec2) -> Option<(Post, DVec2)> {
-        let grid = world / self.cell;
+        let grid = world / self.cell - self.skipped();
         let last = DVec2::new(f64::from(self.columns - 1), f64::from(self.rows - 1));
         if !(grid.cmpge(DVec2::ZERO).all() && grid.cmple(last).all()) {
             return None;
@@ -274,6 +309,24 @@ mod tests {
             let lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 2, vec![1.0, f32::NAN, height, 2.0]);
             assert_eq!(lattice.err(), Some(LatticeError::TooHigh { height }));
         }
+    }
+
+    #[test]
+    fn a_part_s_posts_stand_where_they_stand_in_the_whole() {
+        let (cell, first) = (DVec2::new(0.1, 0.3), Post { column: 1, row: 1 });
+        let whole = Lattice::new(DVec2::ZERO, cell, 4, (0..12u8).map(f32::from).collect()).expect("sound");
+        let heights = vec![5.0, 6.0, 7.0, 9.0, 10.0, 11.0];
+        let part = Lattice::part((DVec2::ZERO, cell), first, 3, heights).expect("sound");
+        for post in part.posts() {
+            let same = Post { column: post.column + 1, row: post.row + 1 };
+            assert_eq!(part.position(post), whole.position(same));
+            assert_eq!(part.height(post), whole.height(same));
+        }
+        assert_eq!(part.extent().max, whole.extent().max);
+        assert_eq!(part.cell_at(DVec2::new(0.25, 0.45)).expect("inside").0, Post { column: 1, row: 0 });
+        assert_eq!(part.cell_at(DVec2::new(0.05, 0.45)), None);
+        let heights = vec![f32::NAN; 6];
+        assert!(Lattice::part((DVec2::ZERO, cell), first, 3, heights).is_ok(), "a part may lie in the sea");
     }
 
     #[test]

@@ -312,9 +312,11 @@ pub fn triangle_error(lattice: &Lattice, layout: &Layout, triangle: &Triangle) -
     seen.error()
 }
 
-/// A triangle's plane over the lattice, in posts and metres.
+/// A triangle's plane over the lattice, in posts and metres, told from the triangle's first corner: so its rounding
+/// does not depend on where the lattice begins, and a part of a terrain has the errors of the whole.
 struct Plane {
-    at_origin: f64,
+    from: (f64, f64),
+    at_from: f64,
     per_column: f64,
     per_row: f64,
 }
@@ -331,7 +333,7 @@ impl Plane {
         }
         let per_column = ((bz - az) * (cy - ay) - (cz - az) * (by - ay)) / doubled_area;
         let per_row = ((cz - az) * (bx - ax) - (bz - az) * (cx - ax)) / doubled_area;
-        Some(Self { at_origin: az - per_column * ax - per_row * ay, per_column, per_row })
+        Some(Self { from: (ax, ay), at_from: az, per_column, per_row })
     }
 }
 
@@ -347,7 +349,7 @@ struct Seen {
 impl Seen {
     fn scan(&mut self, lattice: &Lattice, plane: &Plane, span: RowSpan) {
         let first = lattice.index(Post { column: span.first, row: span.row });
-        let start = plane.at_origin + plane.per_row * f64::from(span.row);
+        let start = plane.at_from + plane.per_row * (f64::from(span.row) - plane.from.1);
         for offset in 0..=(span.last - span.first) {
             let post = Post { column: span.first + offset, row: span.row };
             let height = lattice.heights()[first + offset as usize];
@@ -356,7 +358,8 @@ impl Seen {
                 continue;
             }
             self.data = true;
-            let off = (f64::from(height) - (start + plane.per_column * f64::from(post.column))).abs() as f32;
+            let along = plane.per_column * (f64::from(post.column) - plane.from.0);
+            let off = (f64::from(height) - (start + along)).abs() as f32;
             self.worst = self.worst.max(off);
             if lattice.is_pinned(post) {
                 self.worst_pinned = self.worst_pinned.max(off);

@@ -1,0 +1,298 @@
+//! The source of patches: a raster read in windows, and a bounded cache of what was made of it.
+
+use std::io::{Read, Seek};
+use std::sync::Arc;
+
+use glam::{DVec2, Vec2, Vec3};
+
+use crate::dem::fault::DemError;
+use crate::dem::recent::Recent;
+use crate::dem::tiff_windows::GeoTiffWindows;
+use crate::dem::warp::{self, WarpError};
+use crate::dem::windows::Windows;
+use crate::roam::block::{BlockError, BlockSource, PatchBlock, RootSphere};
+use crate::roam::errors::ErrorMap;
+use crate::roam::graph::Vertex;
+use crate::roam::ground::Ground;
+use crate::roam::layout::{DEFAULT_PATCH, Layout, MOST_PATCHES};
+use crate::roam::paging::region::{Frame, Patches, Region};
+use crate::roam::paging::summary::{self, PatchSummary};
+use crate::roam::spheres::SphereMap;
+use crate::terrain::lattice::{Lattice, LatticeError};
+
+/// How terrain is paged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PagingOptions {
+    /// Cells along a patch's side: a power of two from 2 to 1024. Default [`DEFAULT_PATCH`].
+    pub patch: u32,
+    /// The most patches that are kept; at least 1. A walk reads hardly anything twice where all patches hold whose
+    /// spheres the eye is inside. Default 256, 10 MiB in patches of 64.
+    pub capacity: usize,
+    /// Vertical exaggeration; 1 draws heights as they are. Default 1.
+    pub exaggeration: f32,
+}
+
+impl Default for PagingOptions {
+    fn default() -> Self {
+        Self { patch: DEFAULT_PATCH, capacity: 256, exaggeration: 1.0 }
+    }
+}
+
+/// The largest patch: more posts than that would be measured for each.
+const LARGEST_PATCH: u32 = 1024;
+
+/// Why terrain cannot be paged.
+#[derive(Debug, thiserror::Error)]
+pub enum PagingError {
+    /// The raster would have to be resampled, and that is not done in pieces.
+    #[error(
+        "{0}; terrain that is read in pieces is not resampled: warp the file first, for example with gdalwarp"
+    )]
+    NotMetric(#[source] WarpError),
+    /// The raster is no lattice.
+    #[error(transparent)]
+    Lattice(#[from] LatticeError),
+    /// More patches than are taken, or sizes that make none.
+    #[error(
+        "{columns} x {rows} posts make too many patches of {patch} cells a side, or none: at most {MOST_PATCHES} are taken, of 2 to {LARGEST_PATCH} cells, a power of two; choose larger ones, or add overviews to the file, for example with: gdaladdo FILE 2 4 8"
+    )]
+    Patches {
+        /// Posts per row.
+        columns: u32,
+        /// Rows.
+        rows: u32,
+        /// Cells along a patch's side.
+        patch: u32,
+    },
+    /// A part of the terrain cannot be read.
+    #[error(transparent)]
+    Block(#[from] BlockError),
+    /// An overview cannot be opened.
+    #[error(transparent)]
+    Dem(#[from] DemError),
+}
+
+/// What a source of patches did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PagingCounts {
+    /// Patches that were read and measured.
+    pub loads: u64,
+    /// Patches that were asked for and still kept.
+    pub hits: u64,
+    /// Patches that made room for others.
+    pub evictions: u64,
+    /// The most patches that were kept at any time.
+    pub peak: usize,
+}
+
+/// Terrain of which only some patches are in memory.
+///
+/// `S` measures a ground: from a piece of the terrain, whose positions are those of the whole, to its nested spheres.
+/// What it says of a vertex may depend on the ground under the triangles which the vertex and its descendants split,
+/// on nothing further away, and not on where the piece begins; then every patch is bit for bit that of the whole
+/// terrain in memory.
+///
+/// Memory: the cache, one region of 3 × 3 to 4 × 3 patches while a patch is read, 36 bytes a patch of the terrain,
+/// and what the windows keep. Patches that were handed out live as long as whoever holds them.
+pub struct PagedGround<W, S> {
+    windows: W,
+    spheres: S,
+    frame: Frame,
+    summaries: Vec<PatchSummary>,
+    cache: Recent<usize, Arc<PatchBlock>>,
+    capacity: usize,
+    counts: PagingCounts,
+    buffer: Vec<f32>,
+}
+
+/// Measures plain nested spheres: the own radius is the exact error as drawn, times `reach` metres of distance a metre
+/// of error.
+pub fn exact_spheres(reach: f32) -> impl Fn(Ground<'_>) -> SphereMap {
+    move |ground| {
+        let errors = ErrorMap::exact(ground.lattice, ground.layout);
+        let own = errors.values().iter().map(|error| error * ground.exaggeration * reach).collect();
+        SphereMap::nested(ground, own)
+    }
+}
+
+/// The finest image of `file` whose patches of `patch` cells a side are few enough: the file's own, or the first of
+/// its overviews in the order of the file that fits.
+///
+/// # Errors
+/// None fits, or the one that does cannot be opened.
+pub fn finest_that_fits<R: Read + Seek>(
+    file: GeoTiffWindows<R>,
+    patch: u32,
+) -> Result<GeoTiffWindows<R>, PagingError> {
+    let (columns, rows) = file.size();
+    if Layout::paged(columns, rows, patch).is_some() {
+        return Ok(file);
+    }
+    let fits = |width, height| Layout::paged(width, height, patch).is_some();
+    match file.overviews().iter().find(|overview| fits(overview.width, overview.height)) {
+        Some(overview) => Ok(file.at_overview(overview)?),
+        None => Err(PagingError::Patches { columns, rows, patch }),
+    }
+}
+
+impl<W: Windows, S: Fn(Ground<'_>) -> SphereMap> PagedGround<W, S> {
+    /// Reads the whole terrain once, piece by piece, for the summaries of its patches.
+    ///
+    /// # Errors
+    /// [`PagingError`]: the raster is not north-up or not in metres, has too many patches or no data at all, or a
+    /// piece of it cannot be read.
+    pub fn open(mut windows: W, spheres: S, options: &PagingOptions) -> Result<Self, PagingError> {
+        warp::check_metric(windows.bare()).map_err(PagingError::NotMetric)?;
+        let (origin, cell) = Lattice::frame(windows.bare())?;
+        let ((columns, rows), patch) = (windows.size(), options.patch);
+        let layout = Layout::paged(columns, rows, patch).filter(|_| patch <= LARGEST_PATCH);
+        let layout = layout.ok_or(PagingError::Patches { columns, rows, patch })?;
+        let frame = Frame { layout, origin, cell, exaggeration: options.exaggeration };
+        let summaries = summary::of_all(&mut windows, &frame, &spheres)?;
+        if summaries.iter().all(|summary| summary.low > summary.high) {
+            return Err(LatticeError::Empty.into());
+        }
+        let capacity = options.capacity.max(1);
+        let (cache, counts) = (Recent::new(capacity), PagingCounts::default());
+        Ok(Self { windows, spheres, frame, summaries, cache, capacity, counts, buffer: Vec::new() })
+    }
+
+    /// What is always known of the patch with south-west corner `corner`.
+    pub fn summary(&self, corner: Vertex) -> &PatchSummary {
+        &self.summaries[self.frame.layout.patch_index(corner)]
+    }
+
+    /// The box of the patch with south-west corner `corner` in world space; `None` without data.
+    pub fn bounds(&self, corner: Vertex) -> Option<(Vec3, Vec3)> {
+        let (summary, side) = (self.summary(corner), self.frame.layout.patch());
+        let far = self.plan(corner.moved(side, side));
+        (summary.low <= summary.high)
+            .then(|| (self.plan(corner).extend(summary.low), far.extend(summary.high)))
+    }
+
+    /// Whether the eye is outside all spheres of the patch with south-west corner `corner`: it is then drawn as its
+    /// two root triangles, and need not be read.
+    pub fn is_far(&self, corner: Vertex, eye: Vec3) -> bool {
+        let half = self.frame.layout.patch() / 2;
+        self.summary(corner).is_far(self.plan(corner.moved(half, half)), eye)
+    }
+
+    /// World X and Y of a vertex, metres.
+    pub fn plan(&self, vertex: Vertex) -> Vec2 {
+        let post = self.frame.layout.post(vertex);
+        (DVec2::new(f64::from(post.column), f64::from(post.row)) * self.frame.cell).as_vec2()
+    }
+
+    /// Map coordinates of the south-west post: the origin of world space.
+    pub fn origin(&self) -> DVec2 {
+        self.frame.origin
+    }
+
+    /// The raster that is read.
+    pub fn windows(&self) -> &W {
+        &self.windows
+    }
+
+    /// What was done so far.
+    pub fn counts(&self) -> PagingCounts {
+        self.counts
+    }
+
+    /// How many patches are kept now.
+    pub fn kept(&self) -> usize {
+        self.cache.held()
+    }
+
+    /// Whether the cache is in order and within its capacity, the counts add up, and patches that are kept agree
+    /// about the borders they share and with their summaries.
+    ///
+    /// # Errors
+    /// A sentence naming what disagrees.
+    pub fn check(&self) -> Result<(), String> {
+        self.cache.check()?;
+        let PagingCounts { loads, evictions, peak, .. } = self.counts;
+        let kept = self.cache.held();
+        if kept > peak || peak > self.capacity || loads - evictions != kept as u64 {
+            return Err(format!("{kept} kept, {peak} at most of {}: {:?}", self.capacity, self.counts));
+        }
+        let blocks: std::collections::BTreeMap<usize, &Arc<PatchBlock>> = self.cache.iter().collect();
+        for corner in self.frame.layout.patches() {
+            if let Some(block) = blocks.get(&self.frame.layout.patch_index(corner)) {
+                self.check_block(corner, block, &blocks)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_block(
+        &self,
+        corner: Vertex,
+        block: &PatchBlock,
+        blocks: &std::collections::BTreeMap<usize, &Arc<PatchBlock>>,
+    ) -> Result<(), String> {
+        let side = self.frame.layout.patch();
+        let at = |x: i32, y: i32| (y * (side + 1) + x) as usize;
+        if block.radii[at(side / 2, side / 2)] != self.summary(corner).radius {
+            return Err(format!("the patch at {corner:?} and its summary differ in their largest sphere"));
+        }
+        for (east, north) in [(1, 0), (0, 1)] {
+            let other = corner.moved(east * side, north * side);
+            let held = Some(other).filter(|&other| self.frame.layout.contains(other.moved(side, side)));
+            let Some(other) = held.and_then(|other| blocks.get(&self.frame.layout.patch_index(other))) else {
+                continue;
+            };
+            for along in 0..=side {
+                let own = at(east * side + north * along, north * side + east * along);
+                let others = at(north * along, east * along);
+                let bits = |block: &PatchBlock, at: usize| (block.z[at].to_bits(), block.radii[at].to_bits());
+                // Patch corners split nothing: their radii mean nothing.
+                let same = block.z[own].to_bits() == other.z[others].to_bits();
+                if !same || (along % side != 0 && bits(block, own) != bits(other, others)) {
+                    return Err(format!("the patch at {corner:?} and its neighbour differ at {along}"));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads and measures a patch.
+    fn load(&mut self, corner: Vertex) -> Result<PatchBlock, BlockError> {
+        let patches = Patches::one(&self.frame.layout, corner);
+        let region = Region::read(&mut self.windows, &self.frame, patches, &mut self.buffer);
+        let region = region.map_err(|reason| {
+            let (column, row) = (corner.x as u32, corner.y as u32);
+            BlockError { column, row, reason }
+        })?;
+        let spheres = (self.spheres)(region.ground());
+        Ok(PatchBlock::cut(region.ground(), &spheres, region.own(corner)))
+    }
+}
+
+impl<W: Windows, S: Fn(Ground<'_>) -> SphereMap> BlockSource for PagedGround<W, S> {
+    fn layout(&self) -> &Layout {
+        &self.frame.layout
+    }
+
+    fn root(&self, corner: Vertex) -> RootSphere {
+        let half = self.frame.layout.patch() / 2;
+        let summary = self.summary(corner);
+        RootSphere {
+            center: self.plan(corner.moved(half, half)).extend(summary.middle),
+            radius: summary.radius,
+        }
+    }
+
+    /// A patch that cannot be read is an error now and is tried again when it is next asked for; what is kept stays.
+    fn block(&mut self, corner: Vertex) -> Result<Arc<PatchBlock>, BlockError> {
+        let index = self.frame.layout.patch_index(corner);
+        if let Some(block) = self.cache.get(index) {
+            self.counts.hits += 1;
+            return Ok(Arc::clone(block));
+        }
+        let block = Arc::new(self.load(corner)?);
+        self.counts.loads += 1;
+        self.counts.evictions += self.cache.put(index, Arc::clone(&block), 1) as u64;
+        self.counts.peak = self.counts.peak.max(self.cache.held());
+        Ok(block)
+    }
+}

@@ -1,0 +1,129 @@
+//! A piece of the terrain, read and measured by itself, whose inner patches are those of the whole.
+
+use std::fmt::Display;
+
+use glam::DVec2;
+
+use crate::dem::windows::{Window, Windows};
+use crate::roam::graph::Vertex;
+use crate::roam::ground::Ground;
+use crate::roam::layout::Layout;
+use crate::terrain::lattice::{Lattice, Post};
+
+/// The whole terrain, without its heights.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    /// Its patches.
+    pub layout: Layout,
+    /// Map coordinates of its south-west post.
+    pub origin: DVec2,
+    /// Metres between posts, eastward and northward.
+    pub cell: DVec2,
+    /// Vertical exaggeration.
+    pub exaggeration: f32,
+}
+
+/// Patches of the terrain, from `first` to `last`, counted in patches east and north, ends included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Patches {
+    /// South-west.
+    pub first: (i32, i32),
+    /// North-east.
+    pub last: (i32, i32),
+}
+
+impl Patches {
+    /// One patch, by its south-west corner.
+    pub fn one(layout: &Layout, corner: Vertex) -> Self {
+        let at = (corner.x / layout.patch(), corner.y / layout.patch());
+        Self { first: at, last: at }
+    }
+
+    /// These with all that their errors and spheres depend on.
+    ///
+    /// The first one's diagonal runs as that of the terrain's first patch, so that the region's vertices have the
+    /// parents and children that they have in the terrain.
+    fn with_surroundings(self, layout: &Layout) -> Self {
+        let (east, north) = ((layout.columns() as i32 - 1), (layout.rows() as i32 - 1));
+        let (east, north) = (east / layout.patch(), north / layout.patch());
+        let mut first = ((self.first.0 - 1).max(0), (self.first.1 - 1).max(0));
+        if (first.0 + first.1) % 2 != 0 {
+            // An odd sum has an odd and therefore positive part.
+            if first.0 > 0 { first.0 -= 1 } else { first.1 -= 1 }
+        }
+        Self { first, last: ((self.last.0 + 1).min(east - 1), (self.last.1 + 1).min(north - 1)) }
+    }
+}
+
+/// A piece of the terrain in memory.
+#[derive(Clone, Debug)]
+pub struct Region {
+    lattice: Lattice,
+    layout: Layout,
+    first: Vertex,
+    exaggeration: f32,
+}
+
+impl Region {
+    /// Reads `patches` with all that their errors and spheres depend on. `buffer` is scratch.
+    ///
+    /// # Errors
+    /// A sentence: the samples cannot be had, or hold a height that no ground has.
+    pub fn read(
+        windows: &mut impl Windows,
+        frame: &Frame,
+        patches: Patches,
+        buffer: &mut Vec<f32>,
+    ) -> Result<Self, String> {
+        let side = frame.layout.patch();
+        let Patches { first, last } = patches.with_surroundings(&frame.layout);
+        let first = Vertex::new(first.0 * side, first.1 * side);
+        let end = frame.layout.post(Vertex::new((last.0 + 1) * side, (last.1 + 1) * side));
+        let (columns, rows) = (end.column - first.x as u32 + 1, end.row - first.y as u32 + 1);
+        // Rasters are counted from the north.
+        let top = windows.size().1 - 1 - end.row;
+        let window = Window { column: first.x as u32, row: top, width: columns, height: rows };
+        windows.read(window, buffer).map_err(sentence)?;
+        let heights = buffer.chunks_exact(columns as usize).rev().flatten().copied().collect();
+        let post = Post { column: first.x as u32, row: first.y as u32 };
+        let lattice = Lattice::part((frame.origin, frame.cell), post, columns, heights).map_err(sentence)?;
+        let layout = Layout::new(columns, rows, side as u32);
+        let layout = layout.ok_or_else(|| format!("{columns} x {rows} posts are too many at once"))?;
+        Ok(Self { lattice, layout, first, exaggeration: frame.exaggeration })
+    }
+
+    /// The piece as a ground of its own: vertices are counted from its own south-west, their positions are those of
+    /// the whole terrain.
+    pub fn ground(&self) -> Ground<'_> {
+        Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: self.exaggeration }
+    }
+
+    /// A vertex of the terrain as this region counts it.
+    pub fn own(&self, vertex: Vertex) -> Vertex {
+        vertex.moved(-self.first.x, -self.first.y)
+    }
+}
+
+fn sentence(error: impl Display) -> String {
+    error.to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_region_begins_at_an_even_patch_and_reaches_one_patch_round() {
+        let layout = Layout::new(10 * 16 + 1, 7 * 16 + 1, 16).expect("sound");
+        for corner in layout.patches() {
+            let patches = Patches::one(&layout, corner);
+            let around = patches.with_surroundings(&layout);
+            let (x, y) = patches.first;
+            assert_eq!((around.first.0 + around.first.1) % 2, 0);
+            assert!((around.first.0 == 0 || (x - 2..x).contains(&around.first.0)), "{corner:?} {around:?}");
+            assert!((around.first.1 == 0 || (y - 2..y).contains(&around.first.1)), "{corner:?} {around:?}");
+            assert!(around.first.0 >= 0 && around.first.1 >= 0);
+            assert_eq!(around.last, ((x + 1).min(9), (y + 1).min(6)));
+        }
+    }
+}

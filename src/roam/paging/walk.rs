@@ -1,0 +1,65 @@
+//! From an eye to triangles, patch by patch: the plain way.
+//!
+//! A vertex is active exactly while the eye is inside its sphere. Spheres are nested, so the active vertices of a
+//! patch are closed under parents by themselves; and a vertex on a border has the same sphere in both patches, so each
+//! patch is a function of the eye alone and still fits its neighbours.
+
+use glam::{Vec2, Vec3};
+
+use crate::dem::windows::Windows;
+use crate::roam::bintree::Triangle;
+use crate::roam::block::{BlockError, BlockSource, PatchBlock};
+use crate::roam::criterion::spheres::distance;
+use crate::roam::graph::Vertex;
+use crate::roam::ground::Ground;
+use crate::roam::paging::ground::PagedGround;
+use crate::roam::spheres::SphereMap;
+
+/// Gives `visit` the triangles of a patch for an eye in drawn world space. `corner` is the patch's south-west corner,
+/// `side` the cells along its side.
+pub fn leaves(
+    block: &PatchBlock,
+    (corner, side): (Vertex, i32),
+    eye: Vec3,
+    visit: &mut impl FnMut(Triangle),
+) {
+    let mut stack = Triangle::roots(corner, side).to_vec();
+    while let Some(triangle) = stack.pop() {
+        if triangle.is_finest() || !is_active(block, (corner, side), eye, triangle.split_vertex()) {
+            visit(triangle);
+        } else {
+            stack.extend(triangle.split());
+        }
+    }
+}
+
+fn is_active(block: &PatchBlock, (corner, side): (Vertex, i32), eye: Vec3, vertex: Vertex) -> bool {
+    let (x, y) = ((vertex.x - corner.x) as usize, (vertex.y - corner.y) as usize);
+    let at = y * (side as usize + 1) + x;
+    let z = if block.z[at].is_nan() { 0.0 } else { block.z[at] };
+    let position = Vec2::new(block.plan[0][x], block.plan[1][y]).extend(z);
+    block.radii[at] > 0.0 && distance(eye, position) < f64::from(block.radii[at])
+}
+
+/// Gives `visit` the triangles of `patches`, each by its south-west corner, for an eye in drawn world space. Patches
+/// whose spheres are all out of reach are not read.
+///
+/// # Errors
+/// A patch cannot be read; those before it were visited.
+pub fn walk<W: Windows, S: Fn(Ground<'_>) -> SphereMap>(
+    ground: &mut PagedGround<W, S>,
+    eye: Vec3,
+    patches: impl IntoIterator<Item = Vertex>,
+    visit: &mut impl FnMut(Triangle),
+) -> Result<(), BlockError> {
+    let side = ground.layout().patch();
+    for corner in patches {
+        if ground.is_far(corner, eye) {
+            Triangle::roots(corner, side).into_iter().for_each(&mut *visit);
+        } else {
+            let block = ground.block(corner)?;
+            leaves(&block, (corner, side), eye, visit);
+        }
+    }
+    Ok(())
+}
