@@ -14,6 +14,7 @@
 //! - `culling` tells which patches can be seen.
 //! - `refine` sets the bits.
 //! - `displayed` reads triangles off the bits.
+//! - `shown` is what one frame shows as index lists; `changes` compares frames, `measure` the frame and the ground.
 //!
 //! Sources: Duchaineau et al. 1997 (ROAM); the patch-based forced splits and the screen-space error of the
 //! later papers; Lindstrom and Pascucci 2001 for errors kept monotone up the graph.
@@ -21,6 +22,7 @@
 pub mod active;
 pub mod bintree;
 pub mod block;
+pub mod changes;
 pub mod criterion;
 pub mod culling;
 pub mod displayed;
@@ -28,5 +30,7 @@ pub mod errors;
 pub mod graph;
 pub mod ground;
 pub mod layout;
+pub mod measure;
 pub mod refine;
+pub mod shown;
 pub mod spheres;
