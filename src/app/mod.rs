@@ -6,9 +6,11 @@ pub mod check;
 pub mod dem;
 pub mod failure;
 pub mod files;
+pub mod ground;
 pub mod height;
 pub mod labels;
 pub mod load;
+pub mod lod;
 pub mod model;
 pub mod output;
 pub mod picture;
@@ -42,5 +44,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Dem { command: DemCommand::Info(options) } => dem::info(options),
         Command::Model { command: ModelCommand::Info(options) } => model::info(options),
         Command::Height(options) => height::run(options),
+        Command::Lod(options) => lod::run(options),
     }
 }
