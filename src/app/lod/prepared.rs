@@ -54,6 +54,12 @@ impl Prepared {
         Ok(Self { layout, errors, heights, tolerance_px, spheres: OnceLock::new(), lattice })
     }
 
+    /// Sets another tolerance; what was made for the last one is made anew.
+    pub fn set_tolerance_px(&mut self, tolerance_px: f32) {
+        self.tolerance_px = tolerance_px;
+        self.spheres = OnceLock::new();
+    }
+
     /// What refinement reads; heights are drawn as they are.
     pub fn ground(&self) -> Ground<'_> {
         Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
