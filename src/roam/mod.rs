@@ -14,7 +14,7 @@
 //! - `culling` tells which patches can be seen.
 //! - `refine` sets the bits.
 //! - `displayed` reads triangles off the bits.
-//! - `shown` is what one frame shows as index lists; `changes` compares frames, `measure` the frame and the ground.
+//! - `shown` is what one frame shows as index lists; `frames` compares frames, `measure` the frame and the ground.
 //!
 //! Sources: Duchaineau et al. 1997 (ROAM); the patch-based forced splits and the screen-space error of the
 //! later papers; Lindstrom and Pascucci 2001 for errors kept monotone up the graph.
@@ -22,11 +22,11 @@
 pub mod active;
 pub mod bintree;
 pub mod block;
-pub mod changes;
 pub mod criterion;
 pub mod culling;
 pub mod displayed;
 pub mod errors;
+pub mod frames;
 pub mod graph;
 pub mod ground;
 pub mod layout;

@@ -32,22 +32,37 @@ impl PatchList {
         Self { corner, triangles, indices }
     }
 
+    /// The list of triangles of vertices of the patch with south-west corner `corner`.
+    ///
+    /// # Panics
+    /// Where patches are larger than 128 cells: their vertices have no 16-bit index.
+    pub fn of_vertices(
+        layout: &Layout,
+        corner: Vertex,
+        triangles: impl IntoIterator<Item = [Vertex; 3]>,
+    ) -> Self {
+        let named = |corners: [Vertex; 3]| corners.map(|vertex| local(layout, corner, vertex));
+        Self::of_triangles(corner, Arc::new(triangles.into_iter().map(named).collect()))
+    }
+
     /// The bintree's leaves in the patch with south-west corner `corner`, without those beyond the border or over no
     /// data.
     ///
     /// # Panics
     /// Where patches are larger than 128 cells: their vertices have no 16-bit index.
     pub fn bintree(ground: Ground<'_>, active: &ActiveSet, corner: Vertex) -> Self {
-        let mut triangles = Vec::new();
         let mut stack = Triangle::roots(corner, ground.layout.patch()).to_vec();
-        while let Some(triangle) = stack.pop() {
-            if !triangle.is_finest() && active.is_active(triangle.split_vertex()) {
-                stack.extend(triangle.split());
-            } else if is_drawn(ground, &triangle) {
-                triangles.push(triangle.corners().map(|vertex| local(ground.layout, corner, vertex)));
+        let leaves = std::iter::from_fn(|| {
+            while let Some(triangle) = stack.pop() {
+                if !triangle.is_finest() && active.is_active(triangle.split_vertex()) {
+                    stack.extend(triangle.split());
+                } else if is_drawn(ground, &triangle) {
+                    return Some(triangle.corners());
+                }
             }
-        }
-        Self::of_triangles(corner, Arc::new(triangles))
+            None
+        });
+        Self::of_vertices(ground.layout, corner, leaves)
     }
 
     /// The vertex with index `index` in this patch.

@@ -6,7 +6,7 @@ use crate::app::lod::follow::{Follow, Sending};
 use crate::app::lod::method::Method;
 use crate::app::lod::prepared::Prepared;
 use crate::app::lod::report::Report;
-use crate::roam::changes::Changes;
+use crate::roam::frames::LastFrame;
 use crate::roam::measure::{HeightDifference, height_difference};
 use crate::roam::shown::PatchList;
 use crate::view::camera::Camera;
@@ -19,7 +19,7 @@ pub const MEASURED: usize = 8;
 /// counted.
 pub fn fly(method: Method, follow: &mut dyn Follow, terrain: &Prepared, flight: &[Camera]) -> Report {
     let measured: Vec<usize> = measured_frames(flight.len()).collect();
-    let mut changes = Changes::default();
+    let mut last = LastFrame::default();
     let mut tally = Tally::default();
     for (frame, camera) in flight.iter().enumerate() {
         if frame == 0 {
@@ -29,7 +29,7 @@ pub fn fly(method: Method, follow: &mut dyn Follow, terrain: &Prepared, flight: 
         follow.update(camera);
         let update_ms = start.elapsed().as_secs_f64() * 1e3;
         let shown = follow.shown();
-        let change = changes.next(&shown);
+        let change = last.compare(&shown);
         if frame > 0 {
             let indices: usize = shown.iter().map(|list| list.indices).sum();
             tally.times_ms.push(update_ms);

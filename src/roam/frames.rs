@@ -8,13 +8,13 @@ use crate::roam::shown::{LocalTriangle, PatchList};
 
 /// Remembers the last frame, to compare the next with it.
 #[derive(Clone, Debug, Default)]
-pub struct Changes {
+pub struct LastFrame {
     last: BTreeMap<Vertex, Arc<Vec<LocalTriangle>>>,
 }
 
 /// How a frame differs from the one before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Change {
+pub struct FrameChange {
     /// Triangles that are shown now and were not shown before: split, merged, or come into view with their patch.
     pub appeared: usize,
     /// Triangles that were shown before and are not shown now.
@@ -23,14 +23,14 @@ pub struct Change {
     pub list_bytes: usize,
 }
 
-impl Changes {
+impl LastFrame {
     /// Compares a frame with the last one given, or with an empty one, and remembers it.
     ///
     /// The order of triangles in a list, and where a triangle starts, make no difference to the triangles; they do
     /// to the bytes.
-    pub fn next(&mut self, shown: &[PatchList]) -> Change {
+    pub fn compare(&mut self, shown: &[PatchList]) -> FrameChange {
         let mut last = std::mem::take(&mut self.last);
-        let mut change = Change::default();
+        let mut change = FrameChange::default();
         for list in shown {
             let before = last.remove(&list.corner);
             let same = before
@@ -65,16 +65,16 @@ mod tests {
 
     #[test]
     fn what_appears_what_vanishes_and_what_must_be_sent_are_counted() {
-        let mut changes = Changes::default();
+        let mut last = LastFrame::default();
         let first = [list(0, &[[0, 1, 2], [2, 1, 3]]), list(8, &[[0, 1, 2]])];
-        assert_eq!(changes.next(&first), Change { appeared: 3, vanished: 0, list_bytes: 18 });
-        assert_eq!(changes.next(&first), Change::default(), "the same frame again");
+        assert_eq!(last.compare(&first), FrameChange { appeared: 3, vanished: 0, list_bytes: 18 });
+        assert_eq!(last.compare(&first), FrameChange::default(), "the same frame again");
         let copied = [list(0, &[[0, 1, 2], [2, 1, 3]]), list(8, &[[0, 1, 2]])];
-        assert_eq!(changes.next(&copied), Change::default(), "equal lists");
+        assert_eq!(last.compare(&copied), FrameChange::default(), "equal lists");
         let split = [list(0, &[[0, 1, 2], [4, 2, 1], [4, 3, 2]]), list(8, &[[0, 1, 2]])];
-        assert_eq!(changes.next(&split), Change { appeared: 2, vanished: 1, list_bytes: 18 });
+        assert_eq!(last.compare(&split), FrameChange { appeared: 2, vanished: 1, list_bytes: 18 });
         let turned = [list(0, &[[1, 2, 0], [4, 2, 1], [4, 3, 2]])];
-        assert_eq!(changes.next(&turned), Change { appeared: 0, vanished: 1, list_bytes: 18 });
-        assert_eq!(changes.next(&[]), Change { appeared: 0, vanished: 3, list_bytes: 0 });
+        assert_eq!(last.compare(&turned), FrameChange { appeared: 0, vanished: 1, list_bytes: 18 });
+        assert_eq!(last.compare(&[]), FrameChange { appeared: 0, vanished: 3, list_bytes: 0 });
     }
 }
