@@ -50,7 +50,10 @@ impl HeightDifference {
     }
 
     fn add(&mut self, off_m: f64) {
-        *self = self.with(Self { posts: 1, sum: off_m, squares: off_m * off_m, max_m: off_m });
+        self.posts += 1;
+        self.sum += off_m;
+        self.squares += off_m * off_m;
+        self.max_m = self.max_m.max(off_m);
     }
 }
 
@@ -109,29 +112,55 @@ impl<'a> Scan<'a> {
         let rows = posts.map(|post| post.row);
         for row in rows[0].min(rows[1]).min(rows[2])..=rows[0].max(rows[1]).max(rows[2]) {
             let (first, last) = span(posts, row);
-            for column in first..=last {
-                self.measure(Post { column, row }, &plane);
+            if row == self.first.row || row == self.last.row {
+                (first..=last).for_each(|column| self.measure_on_border(Post { column, row }, &plane));
+                continue;
             }
+            for column in [self.first.column, self.last.column] {
+                if (first..=last).contains(&column) {
+                    self.measure_on_border(Post { column, row }, &plane);
+                }
+            }
+            self.measure_inside(
+                row,
+                first.max(self.first.column + 1),
+                last.min(self.last.column - 1),
+                &plane,
+            );
         }
     }
 
-    fn measure(&mut self, post: Post, plane: &Plane) {
-        let width = (self.last.column - self.first.column + 1) as usize;
-        let place = (post.row - self.first.row) as usize * width + (post.column - self.first.column) as usize;
-        let height = self.lattice.height(post);
-        if height.is_nan() || std::mem::replace(&mut self.seen[place], true) {
+    /// The posts of a row from `first` to `last`, all of them off the patch's border; none for first above last.
+    fn measure_inside(&mut self, row: u32, first: u32, last: u32, plane: &Plane) {
+        if first > last {
             return;
         }
-        let off_m = (f64::from(height) - plane.height(post)).abs();
-        let on_border = post.column == self.first.column
-            || post.row == self.first.row
-            || post.column == self.last.column
-            || post.row == self.last.row;
-        if on_border {
-            self.found.border.push((self.lattice.index(post), off_m));
-        } else {
-            self.found.inside.add(off_m);
+        let (start, place) = (Post { column: first, row }, self.place(Post { column: first, row }));
+        let count = (last - first + 1) as usize;
+        let heights = &self.lattice.heights()[self.lattice.index(start)..][..count];
+        let seen = &mut self.seen[place..place + count];
+        let shown = plane.height(start);
+        let mut found = HeightDifference::default();
+        for (at, (&height, seen)) in heights.iter().zip(seen).enumerate() {
+            if !height.is_nan() && !std::mem::replace(seen, true) {
+                found.add((f64::from(height) - (shown + plane.per_column * at as f64)).abs());
+            }
         }
+        self.found.inside = self.found.inside.with(found);
+    }
+
+    fn measure_on_border(&mut self, post: Post, plane: &Plane) {
+        let (place, height) = (self.place(post), self.lattice.height(post));
+        if !height.is_nan() && !std::mem::replace(&mut self.seen[place], true) {
+            let off_m = (f64::from(height) - plane.height(post)).abs();
+            self.found.border.push((self.lattice.index(post), off_m));
+        }
+    }
+
+    /// Where a post of the patch is among those seen.
+    fn place(&self, post: Post) -> usize {
+        let width = (self.last.column - self.first.column + 1) as usize;
+        (post.row - self.first.row) as usize * width + (post.column - self.first.column) as usize
     }
 }
 
