@@ -6,6 +6,8 @@ mod common;
 mod heights;
 #[path = "cli/info.rs"]
 mod info;
+#[path = "cli/lod.rs"]
+mod lod;
 #[path = "cli/manners.rs"]
 mod manners;
 #[path = "cli/meshes.rs"]

@@ -102,7 +102,7 @@ proptest! {
                 walk.update(eye, &patches).expect("in memory");
                 prop_assert_eq!(walk.check(), Ok(()));
             }
-            prop_assert_eq!(shown(&walk), rebuilt(ground, &map, eye, &walk.visible().to_vec()));
+            prop_assert_eq!(shown(&walk), rebuilt(ground, &map, eye, walk.visible()));
         }
     }
 }

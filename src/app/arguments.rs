@@ -5,6 +5,8 @@ use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::app::lod::method::{Emit, Refine, Rule, Wanted};
+use crate::app::lod::way::Way;
 use crate::terrain::query::Interpolation;
 
 /// Elevation models and what stands on them, made into scenes, and scenes into pictures.
@@ -40,6 +42,8 @@ pub enum Command {
     Height(HeightOptions),
     /// Turn an elevation file into a mesh that is nowhere off by more than a given height
     Mesh(MeshOptions),
+    /// Fly over an elevation file and compare the methods of showing it
+    Lod(LodOptions),
 }
 
 /// What can be done with an elevation file.
@@ -173,10 +177,71 @@ pub struct MeshOptions {
     pub heights: GreyHeights,
 }
 
+/// `lod`.
+#[derive(Debug, Args)]
+#[command(after_help = LOD_HELP)]
+pub struct LodOptions {
+    /// The elevation file; one in degrees is brought to UTM
+    pub file: PathBuf,
+    /// Only methods that make their triangles this way [default: all]
+    #[arg(long, value_enum)]
+    pub emit: Option<Emit>,
+    /// Only methods with this criterion of when an error shows [default: all]
+    #[arg(long, value_enum)]
+    pub criterion: Option<Rule>,
+    /// Only methods that refine this way [default: all]
+    #[arg(long, value_enum)]
+    pub refine: Option<Refine>,
+    /// How many pixels of a picture 1024 wide an error may show
+    #[arg(long, value_name = "X", default_value = "1", value_parser = tolerance_px)]
+    pub tolerance_px: f32,
+    /// Which way to fly: circle, line (from the south-west to the north-east), or a file of stations
+    #[arg(long, value_name = "circle|line|FILE", default_value = "circle")]
+    pub flight: Way,
+    /// How many frames the flight has
+    #[arg(long, value_name = "N", default_value_t = 240, value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    pub frames: u32,
+    /// Print a JSON array with one object per method
+    #[arg(long)]
+    pub json: bool,
+    /// What grey values mean.
+    #[command(flatten)]
+    pub heights: GreyHeights,
+}
+
 fn metres_from_zero(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(metres) if metres.is_finite() && metres >= 0.0 => Ok(metres),
         _ => Err("write metres as a number from 0 on".into()),
+    }
+}
+
+/// What `lod --help` ends with.
+const LOD_HELP: &str = "\
+Flights: the eye of a circle or a line is 30 cells above the ground's mean height along the way and looks 8° down;
+a circle goes one cell a frame round the middle of the south-western 513 posts. A file has a station a line,
+x,y,z,tx,ty,tz: the eye and what it looks at, metres from the south-west post, x east, y north, z the elevation;
+frames are spread over it at equal distances.
+
+Columns, over all frames but the first: triangles and vertices named by the index lists (means); changed: triangles
+not shown in the frame before (mean); milliseconds to bring triangles and lists up to date; upload: bytes of 16-bit
+index lists sent a frame (median; all that are shown where a method does not know which stayed the same);
+mean, RMS and maximum metres between what is shown and the elevation model, at every post of the patches in view
+(parts of them that are out of view among them) in eight frames.";
+
+impl LodOptions {
+    /// Which methods are asked for.
+    pub fn wanted(&self) -> Wanted {
+        Wanted { emit: self.emit, rule: self.criterion, refine: self.refine }
+    }
+}
+
+/// A tolerance in pixels, above 0 and at most 1000.
+fn tolerance_px(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(value) if value > 0.0 && value <= 1000.0 => Ok(value),
+        Ok(_) => Err("it must be above 0 and at most 1000".into()),
+        Err(_) => Err("write a number such as 1.5".into()),
     }
 }
 

@@ -6,9 +6,11 @@ pub mod check;
 pub mod dem;
 pub mod failure;
 pub mod files;
+pub mod ground;
 pub mod height;
 pub mod labels;
 pub mod load;
+pub mod lod;
 pub mod mesh;
 pub mod model;
 pub mod output;
@@ -44,5 +46,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Model { command: ModelCommand::Info(options) } => model::info(options),
         Command::Height(options) => height::run(options),
         Command::Mesh(options) => mesh::run(options),
+        Command::Lod(options) => lod::run(options),
     }
 }

@@ -20,6 +20,7 @@
 //! - `edit` mends errors and spheres after heights changed; `dynamic` is a terrain that can be edited.
 //! - `closure` sets the fewest bits that keep an error bound; `bound` measures a mesh at every post.
 //! - `paging` has patches of terrain larger than the memory, on demand.
+//! - `shown` is what one frame shows as index lists; `frames` compares frames, `measure` the frame and the ground.
 //!
 //! Sources: Duchaineau et al. 1997 (ROAM); the patch-based forced splits and the screen-space error of the
 //! later papers; Lindstrom and Pascucci 2001 for errors kept monotone up the graph.
@@ -37,12 +38,15 @@ pub mod edit;
 pub mod emit;
 pub mod errors;
 pub mod extract;
+pub mod frames;
 pub mod graph;
 pub mod ground;
 pub mod layout;
+pub mod measure;
 pub mod paging;
 pub mod quadtree;
 pub mod refine;
 pub mod roughness;
+pub mod shown;
 pub mod spheres;
 pub mod sweep;

@@ -1,0 +1,32 @@
+//! From an elevation file to ground in metres, for commands that take no scene.
+
+use std::path::Path;
+
+use crate::app::arguments::GreyHeights;
+use crate::app::dem::read_raster;
+use crate::app::failure::Failure;
+use crate::dem::warp::{self, WarpError};
+use crate::terrain::lattice::Lattice;
+
+/// The lattice of the elevation file at `path`; one in degrees is brought to the UTM zone of its middle.
+///
+/// # Errors
+/// The file cannot be had or read, or has no place in metres; the message names it.
+pub fn metric_lattice(path: &Path, heights: GreyHeights) -> Result<Lattice, Failure> {
+    let raster = read_raster(path, heights)?;
+    let wrong = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
+    let metric = warp::to_metric(&raster, None).map_err(|error| wrong(explain(&error)))?;
+    Lattice::from_raster(&metric).map_err(|error| wrong(error.to_string()))
+}
+
+/// What is wrong; where a scene file could state the place, a file beside it must.
+fn explain(error: &WarpError) -> String {
+    match error {
+        WarpError::NoPlace => {
+            "the elevation file does not say where it lies or how far apart its samples are; \
+                               put a world file beside it (.pgw for a PNG: six lines)"
+                .into()
+        }
+        other => other.to_string(),
+    }
+}

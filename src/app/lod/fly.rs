@@ -1,0 +1,116 @@
+//! One method on one flight: only the update is under the clock.
+
+use std::time::Instant;
+
+use crate::app::lod::follow::{Follow, Sending};
+use crate::app::lod::method::Method;
+use crate::app::lod::prepared::Prepared;
+use crate::app::lod::report::Report;
+use crate::roam::frames::LastFrame;
+use crate::roam::measure::{HeightDifference, height_difference};
+use crate::roam::shown::PatchList;
+use crate::view::camera::Camera;
+
+/// Frames whose heights are compared with the elevation model, spread evenly over the flight: enough to even out
+/// what one view happens to see, few enough to take no longer than the flight.
+pub const MEASURED: usize = 8;
+
+/// Flies `method`, which `follow` is. The first frame, which has none before it, starts the method and is not
+/// counted.
+pub fn fly(method: Method, follow: &mut dyn Follow, terrain: &Prepared, flight: &[Camera]) -> Report {
+    let measured: Vec<usize> = measured_frames(flight.len()).collect();
+    let mut last = LastFrame::default();
+    let mut tally = Tally::default();
+    for (frame, camera) in flight.iter().enumerate() {
+        if frame == 0 {
+            follow.prepare(camera);
+        }
+        let start = Instant::now();
+        follow.update(camera);
+        let update_ms = start.elapsed().as_secs_f64() * 1e3;
+        let shown = follow.shown();
+        let change = last.compare(&shown);
+        if frame > 0 {
+            let indices: usize = shown.iter().map(|list| list.indices).sum();
+            tally.times_ms.push(update_ms);
+            tally.triangles += triangles(&shown);
+            tally.vertices += indices;
+            tally.appeared += change.appeared;
+            tally.uploads.push(match follow.sending() {
+                Sending::Everything => 2 * indices,
+                Sending::Changed => change.list_bytes,
+            });
+        }
+        if measured.contains(&frame) {
+            let difference = height_difference(&terrain.lattice, &terrain.layout, &shown);
+            tally.difference = tally.difference.with(difference);
+        }
+    }
+    tally.report(method)
+}
+
+fn triangles(shown: &[PatchList]) -> usize {
+    shown.iter().map(|list| list.triangles.len()).sum()
+}
+
+/// The frames that are measured, from the first to the last.
+fn measured_frames(frames: usize) -> impl Iterator<Item = usize> {
+    let count = MEASURED.min(frames);
+    (0..count).map(move |at| at * (frames - 1) / (count - 1).max(1))
+}
+
+/// What adds up over the frames.
+#[derive(Default)]
+struct Tally {
+    times_ms: Vec<f64>,
+    uploads: Vec<usize>,
+    triangles: usize,
+    vertices: usize,
+    appeared: usize,
+    difference: HeightDifference,
+}
+
+impl Tally {
+    fn report(mut self, method: Method) -> Report {
+        let frames = self.times_ms.len();
+        self.times_ms.sort_by(f64::total_cmp);
+        self.uploads.sort_unstable();
+        let mean = |sum: usize| sum as f64 / frames.max(1) as f64;
+        let at = |share: f64| ((frames as f64 * share).ceil() as usize).saturating_sub(1);
+        let time = |share: f64| self.times_ms.get(at(share)).copied().unwrap_or(0.0);
+        Report {
+            method,
+            frames,
+            triangles: mean(self.triangles),
+            vertices_sent: mean(self.vertices),
+            changed_per_frame: mean(self.appeared),
+            update_ms_median: time(0.5),
+            update_ms_p99: time(0.99),
+            upload_bytes_median: self.uploads.get(at(0.5)).copied().unwrap_or(0),
+            difference: self.difference,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn measured_frames_are_few_and_reach_from_end_to_end() {
+        assert_eq!(measured_frames(2).collect::<Vec<_>>(), [0, 1]);
+        assert_eq!(measured_frames(8).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5, 6, 7]);
+        let many: Vec<usize> = measured_frames(240).collect();
+        assert_eq!((many.len(), many[0], many[7]), (MEASURED, 0, 239));
+    }
+
+    #[test]
+    fn medians_and_percentiles_are_times_that_were_measured() {
+        let method = crate::app::lod::method::ALL[0];
+        let times_ms: Vec<f64> = (1..=200).rev().map(f64::from).collect();
+        let tally = Tally { times_ms, uploads: (0..200).collect(), triangles: 1000, ..Tally::default() };
+        let report = tally.report(method);
+        assert_eq!((report.update_ms_median, report.update_ms_p99), (100.0, 198.0));
+        assert_eq!((report.upload_bytes_median, report.triangles), (99, 5.0));
+    }
+}

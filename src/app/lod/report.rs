@@ -1,0 +1,157 @@
+//! What is said of each method: a table, or JSON.
+
+use serde_json::{Value, json};
+
+use crate::app::lod::fly::MEASURED;
+use crate::app::lod::method::{Method, name};
+use crate::app::lod::prepared::Prepared;
+use crate::app::lod::way::Way;
+use crate::app::output;
+use crate::roam::measure::HeightDifference;
+
+/// What one method did on a flight, over all frames but the first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// The method.
+    pub method: Method,
+    /// Frames counted.
+    pub frames: usize,
+    /// Triangles shown, mean over frames.
+    pub triangles: f64,
+    /// Vertices that the index lists name, mean over frames: three a triangle, fewer in strips.
+    pub vertices_sent: f64,
+    /// Triangles shown that were not shown in the frame before, mean over frames.
+    pub changed_per_frame: f64,
+    /// Milliseconds to bring triangles and lists up to date.
+    pub update_ms_median: f64,
+    /// The same, in all but one of a hundred frames.
+    pub update_ms_p99: f64,
+    /// Bytes of the index lists that are sent anew.
+    pub upload_bytes_median: usize,
+    /// How far what is shown is off the elevation model.
+    pub difference: HeightDifference,
+}
+
+/// One object a method; differences are null where nothing was in view.
+pub fn json(reports: &[Report]) -> Value {
+    reports.iter().map(object).collect()
+}
+
+fn object(report: &Report) -> Value {
+    let (emit, rule, refine) = report.method.parts();
+    let tenths = |mean: f64| (mean * 10.0).round() / 10.0;
+    json!({
+        "method": report.method.to_string(),
+        "emit": name(&emit),
+        "criterion": rule.as_ref().map(name),
+        "refine": refine.as_ref().map(name),
+        "frames": report.frames,
+        "triangles": report.triangles.round() as u64,
+        "vertices_sent": report.vertices_sent.round() as u64,
+        "changed_per_frame": tenths(report.changed_per_frame),
+        "update_ms_median": report.update_ms_median,
+        "update_ms_p99": report.update_ms_p99,
+        "upload_bytes_median": report.upload_bytes_median,
+        "mean_m": report.difference.mean_m(),
+        "rms_m": report.difference.rms_m(),
+        "max_m": report.difference.max_m(),
+    })
+}
+
+/// What was flown over, a row a method, and what the columns are.
+pub fn table(reports: &[Report], terrain: &Prepared, way: &Way) -> String {
+    let lattice = &terrain.lattice;
+    let frames = reports.first().map_or(0, |report| report.frames);
+    let cell = lattice.cell();
+    let mut lines = vec![
+        format!(
+            "{} × {} posts, {} × {} m apart; {way}, {frames} frames after the first, tolerance {} px",
+            lattice.columns(),
+            lattice.rows(),
+            metres(Some(cell.x)),
+            metres(Some(cell.y)),
+            terrain.tolerance_px
+        ),
+        String::new(),
+    ];
+    let mut cells = vec![HEADING.map(str::to_owned)];
+    cells.extend(reports.iter().map(row));
+    lines.extend(aligned(&cells));
+    lines.push(String::new());
+    lines.push(
+        "changed: triangles not shown in the frame before; upload: bytes of index lists a frame".into(),
+    );
+    lines.push(format!(
+        "mean, rms, max: metres off the elevation model, at every post of the patches in view, in {} frames",
+        MEASURED.min(frames + 1)
+    ));
+    output::text_of(&lines)
+}
+
+const HEADING: [&str; 10] = [
+    "method",
+    "triangles",
+    "vertices",
+    "changed",
+    "median ms",
+    "p99 ms",
+    "upload",
+    "mean m",
+    "rms m",
+    "max m",
+];
+
+fn row(report: &Report) -> [String; 10] {
+    let difference = &report.difference;
+    [
+        report.method.to_string(),
+        format!("{:.0}", report.triangles),
+        format!("{:.0}", report.vertices_sent),
+        format!("{:.1}", report.changed_per_frame),
+        format!("{:.3}", report.update_ms_median),
+        format!("{:.3}", report.update_ms_p99),
+        report.upload_bytes_median.to_string(),
+        metres(difference.mean_m()),
+        metres(difference.rms_m()),
+        metres(difference.max_m()),
+    ]
+}
+
+/// About four digits; a dash for nothing.
+fn metres(value: Option<f64>) -> String {
+    match value {
+        None => "-".into(),
+        Some(value) if value >= 1000.0 => format!("{value:.0}"),
+        Some(value) if value >= 100.0 => format!("{value:.1}"),
+        Some(value) if value >= 10.0 => format!("{value:.2}"),
+        Some(value) => format!("{value:.3}"),
+    }
+}
+
+/// Columns as wide as their widest cell, the first to the left, the others to the right.
+fn aligned<const N: usize>(rows: &[[String; N]]) -> Vec<String> {
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..N).map(width).collect();
+    let line = |row: &[String; N]| {
+        let cells = row.iter().enumerate().map(|(column, cell)| match column {
+            0 => format!("{cell:<0$}", widths[0]),
+            _ => format!("  {cell:>0$}", widths[column]),
+        });
+        cells.collect::<String>()
+    };
+    rows.iter().map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_aligned_and_metres_have_about_four_digits() {
+        let rows = [["a".to_owned(), "long".to_owned()], ["method".to_owned(), "7".to_owned()]];
+        assert_eq!(aligned(&rows), ["a       long", "method     7"]);
+        let written = [0.12345, 12.345, 123.45, 12345.6].map(|value| metres(Some(value)));
+        assert_eq!(written, ["0.123", "12.35", "123.5", "12346"]);
+        assert_eq!(metres(None), "-");
+    }
+}

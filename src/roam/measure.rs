@@ -1,0 +1,297 @@
+//! How far the triangles that are shown are off the elevation model, at every post they cover.
+//!
+//! Every shown triangle's posts are scanned once against its plane: no query structure, no sampling, nothing that
+//! a criterion believes about itself. A post on an edge is covered by several triangles and counts once; posts
+//! inside a patch are kept apart by a bitmap, those on its border are brought together at the end.
+//!
+//! Not measured: posts without data, posts of patches that are not shown, and posts under triangles that are left
+//! out because a corner has no data.
+
+use rayon::prelude::*;
+
+use crate::roam::layout::Layout;
+use crate::roam::shown::{LocalTriangle, PatchList};
+use crate::terrain::lattice::{Lattice, Post};
+
+/// `|shown − elevation model|` over posts, in metres without exaggeration.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HeightDifference {
+    /// How many posts were measured.
+    pub posts: u64,
+    sum: f64,
+    squares: f64,
+    max_m: f64,
+}
+
+impl HeightDifference {
+    /// The mean in metres; `None` where nothing was measured.
+    pub fn mean_m(&self) -> Option<f64> {
+        (self.posts > 0).then(|| self.sum / self.posts as f64)
+    }
+
+    /// The root of the mean square in metres; `None` where nothing was measured.
+    pub fn rms_m(&self) -> Option<f64> {
+        (self.posts > 0).then(|| (self.squares / self.posts as f64).sqrt())
+    }
+
+    /// The largest in metres; `None` where nothing was measured.
+    pub fn max_m(&self) -> Option<f64> {
+        (self.posts > 0).then_some(self.max_m)
+    }
+
+    /// Both measurements as one.
+    pub fn with(self, other: Self) -> Self {
+        Self {
+            posts: self.posts + other.posts,
+            sum: self.sum + other.sum,
+            squares: self.squares + other.squares,
+            max_m: self.max_m.max(other.max_m),
+        }
+    }
+
+    fn add(&mut self, off_m: f64) {
+        self.posts += 1;
+        self.sum += off_m;
+        self.squares += off_m * off_m;
+        self.max_m = self.max_m.max(off_m);
+    }
+}
+
+/// Measures the triangles of `shown`, no patch twice; in parallel over patches, the same for any number of threads.
+pub fn height_difference(lattice: &Lattice, layout: &Layout, shown: &[PatchList]) -> HeightDifference {
+    let patches: Vec<Measured> =
+        shown.par_iter().map(|list| Scan::new(lattice, layout, list).measured()).collect();
+    let mut border: Vec<(usize, f64)> = patches.iter().flat_map(|patch| &patch.border).copied().collect();
+    // Neighbours agree about a border post but for rounding; the larger counts.
+    border.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
+    border.dedup_by_key(|&mut (post, _)| post);
+    let mut whole = patches.iter().fold(HeightDifference::default(), |sum, patch| sum.with(patch.inside));
+    border.iter().for_each(|&(_, off_m)| whole.add(off_m));
+    whole
+}
+
+/// What was measured of one patch.
+struct Measured {
+    inside: HeightDifference,
+    /// Posts of the lattice on the patch's border.
+    border: Vec<(usize, f64)>,
+}
+
+/// One patch being measured.
+struct Scan<'a> {
+    lattice: &'a Lattice,
+    layout: &'a Layout,
+    list: &'a PatchList,
+    first: Post,
+    last: Post,
+    seen: Vec<bool>,
+    found: Measured,
+}
+
+impl<'a> Scan<'a> {
+    fn new(lattice: &'a Lattice, layout: &'a Layout, list: &'a PatchList) -> Self {
+        let patch = layout.patch();
+        let (first, last) = (layout.post(list.corner), layout.post(list.corner.moved(patch, patch)));
+        let posts = (last.column - first.column + 1) as usize * (last.row - first.row + 1) as usize;
+        let found = Measured { inside: HeightDifference::default(), border: Vec::new() };
+        Self { lattice, layout, list, first, last, seen: vec![false; posts], found }
+    }
+
+    fn measured(mut self) -> Measured {
+        for triangle in self.list.triangles.iter() {
+            self.scan(triangle);
+        }
+        self.found
+    }
+
+    fn scan(&mut self, triangle: &LocalTriangle) {
+        let posts = triangle.map(|index| self.layout.post(self.list.vertex(self.layout, index)));
+        let Some(plane) = Plane::through(self.lattice, posts) else {
+            return;
+        };
+        let rows = posts.map(|post| post.row);
+        for row in rows[0].min(rows[1]).min(rows[2])..=rows[0].max(rows[1]).max(rows[2]) {
+            let (first, last) = span(posts, row);
+            if row == self.first.row || row == self.last.row {
+                (first..=last).for_each(|column| self.measure_on_border(Post { column, row }, &plane));
+                continue;
+            }
+            for column in [self.first.column, self.last.column] {
+                if (first..=last).contains(&column) {
+                    self.measure_on_border(Post { column, row }, &plane);
+                }
+            }
+            self.measure_inside(
+                row,
+                first.max(self.first.column + 1),
+                last.min(self.last.column - 1),
+                &plane,
+            );
+        }
+    }
+
+    /// The posts of a row from `first` to `last`, all of them off the patch's border; none for first above last.
+    fn measure_inside(&mut self, row: u32, first: u32, last: u32, plane: &Plane) {
+        if first > last {
+            return;
+        }
+        let (start, place) = (Post { column: first, row }, self.place(Post { column: first, row }));
+        let count = (last - first + 1) as usize;
+        let heights = &self.lattice.heights()[self.lattice.index(start)..][..count];
+        let seen = &mut self.seen[place..place + count];
+        let shown = plane.height(start);
+        let mut found = HeightDifference::default();
+        for (at, (&height, seen)) in heights.iter().zip(seen).enumerate() {
+            if !height.is_nan() && !std::mem::replace(seen, true) {
+                found.add((f64::from(height) - (shown + plane.per_column * at as f64)).abs());
+            }
+        }
+        self.found.inside = self.found.inside.with(found);
+    }
+
+    fn measure_on_border(&mut self, post: Post, plane: &Plane) {
+        let (place, height) = (self.place(post), self.lattice.height(post));
+        if !height.is_nan() && !std::mem::replace(&mut self.seen[place], true) {
+            let off_m = (f64::from(height) - plane.height(post)).abs();
+            self.found.border.push((self.lattice.index(post), off_m));
+        }
+    }
+
+    /// Where a post of the patch is among those seen.
+    fn place(&self, post: Post) -> usize {
+        let width = (self.last.column - self.first.column + 1) as usize;
+        (post.row - self.first.row) as usize * width + (post.column - self.first.column) as usize
+    }
+}
+
+/// A triangle's plane over the lattice.
+struct Plane {
+    corner: [f64; 3],
+    per_column: f64,
+    per_row: f64,
+}
+
+impl Plane {
+    /// `None` where the posts lie on a line or have no data.
+    fn through(lattice: &Lattice, posts: [Post; 3]) -> Option<Self> {
+        let point =
+            |post: Post| [f64::from(post.column), f64::from(post.row), f64::from(lattice.height(post))];
+        let [a, b, c] = posts.map(point);
+        let (ab, ac) = ([b[0] - a[0], b[1] - a[1], b[2] - a[2]], [c[0] - a[0], c[1] - a[1], c[2] - a[2]]);
+        let doubled_area = ab[0] * ac[1] - ab[1] * ac[0];
+        let per_column = (ab[2] * ac[1] - ac[2] * ab[1]) / doubled_area;
+        let per_row = (ac[2] * ab[0] - ab[2] * ac[0]) / doubled_area;
+        let sound = doubled_area != 0.0 && per_column.is_finite() && per_row.is_finite();
+        sound.then_some(Self { corner: a, per_column, per_row })
+    }
+
+    fn height(&self, post: Post) -> f64 {
+        let [column, row, height] = self.corner;
+        height
+            + self.per_column * (f64::from(post.column) - column)
+            + self.per_row * (f64::from(post.row) - row)
+    }
+}
+
+/// The first and last column that a triangle of posts covers in a row; first above last where it covers none.
+fn span(posts: [Post; 3], row: u32) -> (u32, u32) {
+    let (mut first, mut last) = (i64::MAX, i64::MIN);
+    for side in 0..3 {
+        let [from, to] = [posts[side], posts[(side + 1) % 3]];
+        let [low, high] = if from.row <= to.row { [from, to] } else { [to, from] };
+        if !(low.row..=high.row).contains(&row) {
+            continue;
+        }
+        let [left, right] = [i64::from(low.column), i64::from(high.column)];
+        let rise = i64::from(high.row - low.row);
+        if rise == 0 {
+            first = first.min(left.min(right));
+            last = last.max(left.max(right));
+            continue;
+        }
+        let run = (right - left) * i64::from(row - low.row);
+        first = first.min(left + run.div_euclid(rise) + i64::from(run.rem_euclid(rise) != 0));
+        last = last.max(left + run.div_euclid(rise));
+    }
+    if first <= last { (first as u32, last as u32) } else { (1, 0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::roam::active::ActiveSet;
+    use crate::roam::displayed::DisplayedTerrain;
+    use crate::roam::graph::Vertex;
+    use crate::roam::ground::Ground;
+    use crate::terrain::facets::Facets;
+    use glam::DVec2;
+    use proptest::prelude::*;
+    use std::sync::Arc;
+
+    fn lattice(columns: u32, rows: u32, holes: &[usize]) -> Arc<Lattice> {
+        let mut heights: Vec<f32> =
+            (0..columns * rows).map(|index| libm::sinf(index as f32 * 0.37) * 8.0).collect();
+        holes.iter().for_each(|&hole| heights[hole % (columns * rows) as usize] = f32::NAN);
+        Arc::new(Lattice::new(DVec2::ZERO, DVec2::new(4.0, 2.0), columns, heights).expect("sound"))
+    }
+
+    /// By asking the displayed ground for its height at every post, the slow and obvious way.
+    fn plainly(lattice: &Lattice, terrain: &DisplayedTerrain) -> HeightDifference {
+        let mut whole = HeightDifference::default();
+        for post in lattice.posts().filter(|&post| !lattice.height(post).is_nan()) {
+            if let Some(z) = terrain.displayed_z(lattice.position(post).as_dvec2()) {
+                whole.add((f64::from(lattice.height(post)) - z).abs());
+            }
+        }
+        whole
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn scanned_differences_are_those_of_the_displayed_ground(
+            columns in 2u32..50, rows in 2u32..50,
+            vertices in proptest::collection::vec((0..64i32, 0..64i32), 0..40),
+            holes in proptest::collection::vec(0usize..2500, 0..3),
+            hidden in 0usize..16,
+        ) {
+            let layout = Layout::new(columns, rows, 16).expect("sound");
+            let mut active = ActiveSet::new(layout);
+            vertices.iter().for_each(|&(x, y)| active.activate(Vertex::new(x, y)));
+            prop_assume!(columns * rows > 4);
+            let lattice = lattice(columns, rows, &holes);
+            let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+            let patches: Vec<Vertex> =
+                layout.patches().enumerate().filter(|&(at, _)| at != hidden).map(|(_, corner)| corner).collect();
+            let lists: Vec<PatchList> =
+                patches.iter().map(|&corner| PatchList::bintree(ground, &active, corner)).collect();
+            let found = height_difference(&lattice, &layout, &lists);
+            let terrain = DisplayedTerrain::new(Arc::clone(&lattice), active, 1.0, patches);
+            let plain = plainly(&lattice, &terrain);
+            prop_assert_eq!(found.posts, plain.posts);
+            prop_assert_eq!(found.mean_m().is_some(), found.posts > 0);
+            for (found, plain) in [
+                (found.mean_m(), plain.mean_m()), (found.rms_m(), plain.rms_m()), (found.max_m(), plain.max_m()),
+            ] {
+                let (found, plain) = (found.unwrap_or(0.0), plain.unwrap_or(0.0));
+                prop_assert!((found - plain).abs() < 1e-5, "{found} against {plain}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_finest_triangles_are_the_elevation_model() {
+        let lattice = lattice(17, 17, &[]);
+        let layout = Layout::new(17, 17, 16).expect("sound");
+        let mut active = ActiveSet::new(layout);
+        (0..289).for_each(|at| active.activate(Vertex::new(at % 17, at / 17)));
+        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 3.0 };
+        let list = PatchList::bintree(ground, &active, Vertex::new(0, 0));
+        let found = height_difference(&lattice, &layout, &[list]);
+        assert_eq!(
+            (found.posts, found.max_m(), found.mean_m(), found.rms_m()),
+            (289, Some(0.0), Some(0.0), Some(0.0))
+        );
+        assert_eq!(height_difference(&lattice, &layout, &[]).mean_m(), None);
+    }
+}

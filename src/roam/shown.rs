@@ -1,0 +1,145 @@
+//! What one frame shows: for each patch an index list of 16 bits into its own block of vertices.
+//!
+//! Whatever refines and whatever emits, this is what reaches a graphics adapter, and so it is what methods are
+//! compared by: their triangles, what changed since the frame before, what had to be sent.
+
+use std::sync::Arc;
+
+use crate::roam::active::ActiveSet;
+use crate::roam::bintree::Triangle;
+use crate::roam::graph::Vertex;
+use crate::roam::ground::Ground;
+use crate::roam::layout::Layout;
+
+/// Three vertices of a patch, counter-clockwise seen from above; vertices count row by row from the south-west.
+pub type LocalTriangle = [u16; 3];
+
+/// The triangles shown in one patch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatchList {
+    /// The patch's south-west corner.
+    pub corner: Vertex,
+    /// Its triangles; shared with the frame before where nothing changed.
+    pub triangles: Arc<Vec<LocalTriangle>>,
+    /// How many indices say so: three a triangle in a list, fewer in strips.
+    pub indices: usize,
+}
+
+impl PatchList {
+    /// The list that names every triangle's three vertices.
+    pub fn of_triangles(corner: Vertex, triangles: Arc<Vec<LocalTriangle>>) -> Self {
+        let indices = 3 * triangles.len();
+        Self { corner, triangles, indices }
+    }
+
+    /// The list of triangles of vertices of the patch with south-west corner `corner`.
+    ///
+    /// # Panics
+    /// Where patches are larger than 128 cells: their vertices have no 16-bit index.
+    pub fn of_vertices(
+        layout: &Layout,
+        corner: Vertex,
+        triangles: impl IntoIterator<Item = [Vertex; 3]>,
+    ) -> Self {
+        let named = |corners: [Vertex; 3]| corners.map(|vertex| local(layout, corner, vertex));
+        Self::of_triangles(corner, Arc::new(triangles.into_iter().map(named).collect()))
+    }
+
+    /// The bintree's leaves in the patch with south-west corner `corner`, without those beyond the border or over no
+    /// data.
+    ///
+    /// # Panics
+    /// Where patches are larger than 128 cells: their vertices have no 16-bit index.
+    pub fn bintree(ground: Ground<'_>, active: &ActiveSet, corner: Vertex) -> Self {
+        let mut stack = Triangle::roots(corner, ground.layout.patch()).to_vec();
+        let leaves = std::iter::from_fn(|| {
+            while let Some(triangle) = stack.pop() {
+                if !triangle.is_finest() && active.is_active(triangle.split_vertex()) {
+                    stack.extend(triangle.split());
+                } else if is_drawn(ground, &triangle) {
+                    return Some(triangle.corners());
+                }
+            }
+            None
+        });
+        Self::of_vertices(ground.layout, corner, leaves)
+    }
+
+    /// The vertex with index `index` in this patch.
+    pub fn vertex(&self, layout: &Layout, index: u16) -> Vertex {
+        let (row, side) = (i32::from(index), layout.patch() + 1);
+        self.corner.moved(row % side, row / side)
+    }
+
+    /// Bytes of the index list.
+    pub fn bytes(&self) -> usize {
+        2 * self.indices
+    }
+}
+
+/// The index of `vertex` in the patch with south-west corner `corner`, which holds it.
+///
+/// # Panics
+/// Where patches are larger than 128 cells.
+pub fn local(layout: &Layout, corner: Vertex, vertex: Vertex) -> u16 {
+    let index = (vertex.y - corner.y) * (layout.patch() + 1) + vertex.x - corner.x;
+    u16::try_from(index).expect("patches of at most 128 cells have 16-bit indices")
+}
+
+/// Whether a leaf has an area and a height at every corner.
+fn is_drawn(ground: Ground<'_>, triangle: &Triangle) -> bool {
+    let posts = triangle.corners().map(|vertex| ground.layout.post(vertex));
+    let [a, b, c] = posts.map(|post| (i64::from(post.column), i64::from(post.row)));
+    let doubled_area = (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0);
+    doubled_area != 0 && posts.iter().all(|&post| !ground.lattice.height(post).is_nan())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::roam::displayed::DisplayedTerrain;
+    use crate::terrain::facets::Facets;
+    use crate::terrain::lattice::Lattice;
+    use glam::{DVec2, Vec2, Vec3};
+    use std::collections::BTreeSet;
+
+    fn plan_key(corners: [Vec2; 3]) -> [[i64; 2]; 3] {
+        let mut key = corners.map(|corner| [corner.x as i64, corner.y as i64]);
+        key.sort();
+        key
+    }
+
+    #[test]
+    fn the_lists_of_all_patches_are_the_triangles_that_are_displayed() {
+        let (columns, rows) = (45u32, 37u32);
+        let mut heights: Vec<f32> =
+            (0..columns * rows).map(|at| libm::sinf(at as f32 * 0.31) * 9.0).collect();
+        heights[20 * 45 + 20] = f32::NAN;
+        let lattice =
+            Arc::new(Lattice::new(DVec2::ZERO, DVec2::splat(4.0), columns, heights).expect("sound"));
+        let layout = Layout::new(columns, rows, 16).expect("sound");
+        let mut active = ActiveSet::new(layout);
+        for (x, y) in [(3, 5), (20, 19), (33, 30), (16, 9), (41, 36)] {
+            active.activate(Vertex::new(x, y));
+        }
+        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let mut listed = BTreeSet::new();
+        for corner in layout.patches() {
+            let list = PatchList::bintree(ground, &active, corner);
+            assert_eq!(list.bytes(), 6 * list.triangles.len());
+            for triangle in list.triangles.iter() {
+                let corners = triangle.map(|index| ground.plan(list.vertex(&layout, index)));
+                assert!(listed.insert(plan_key(corners)), "{corners:?} twice");
+            }
+        }
+        let mut displayed = BTreeSet::new();
+        let extent = lattice.extent();
+        DisplayedTerrain::new(Arc::clone(&lattice), active, 1.0, layout.patches().collect()).visit_facets(
+            &extent,
+            &mut |facet| {
+                displayed.insert(plan_key(facet.map(Vec3::truncate)));
+            },
+        );
+        assert_eq!(listed, displayed);
+    }
+}

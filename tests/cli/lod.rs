@@ -1,0 +1,178 @@
+//! `lod`: methods side by side.
+
+use serde_json::Value;
+
+use crate::common::data::data;
+use crate::common::scratch::Scratch;
+use crate::{run, run_in};
+
+const VALLEY: &str = "assets/jacksboro/valley.asc";
+
+const KEYS: [&str; 9] = [
+    "method",
+    "triangles",
+    "changed_per_frame",
+    "update_ms_median",
+    "update_ms_p99",
+    "upload_bytes_median",
+    "mean_m",
+    "rms_m",
+    "max_m",
+];
+
+fn objects(out: &str) -> Vec<Value> {
+    assert_eq!(out.lines().count(), 1, "one array on one line");
+    match serde_json::from_str(out).expect("JSON") {
+        Value::Array(objects) => objects,
+        other => panic!("no array: {other}"),
+    }
+}
+
+fn number(object: &Value, key: &str) -> f64 {
+    object[key].as_f64().unwrap_or_else(|| panic!("{key} of {object}"))
+}
+
+#[test]
+fn every_method_answers_for_every_key_and_its_numbers_hang_together() {
+    let reports = objects(&run(&["lod", VALLEY, "--frames", "12", "--json"]).ok());
+    assert!(reports.len() >= 2, "methods are compared");
+    for report in &reports {
+        for key in KEYS {
+            assert!(!report[key].is_null(), "{key} in {report}");
+        }
+        assert!(number(report, "triangles") > 100.0, "{report}");
+        assert!(number(report, "vertices_sent") <= 3.0 * number(report, "triangles") + 1.5, "{report}");
+        assert!(number(report, "changed_per_frame") <= number(report, "triangles"), "{report}");
+        assert!(number(report, "update_ms_median") <= number(report, "update_ms_p99"), "{report}");
+        assert!(number(report, "mean_m") <= number(report, "rms_m"), "{report}");
+        assert!(number(report, "rms_m") <= number(report, "max_m"), "{report}");
+        assert_eq!(report["frames"], 11, "the first frame has none before it");
+    }
+}
+
+#[test]
+fn the_table_has_a_row_a_method_and_says_what_it_was_measured_on() {
+    let out = run(&["lod", VALLEY, "--frames", "3", "--flight", "line", "--tolerance-px", "2.5"]).ok();
+    for wanted in ["112 × 112 posts", "a line, 2 frames", "2.5 px", "bintree/screen/rebuild", "max m"] {
+        assert!(out.contains(wanted), "{wanted} in\n{out}");
+    }
+    let rows: Vec<&str> = out.lines().filter(|line| line.contains("/rebuild")).collect();
+    assert!(rows.iter().all(|row| row.chars().count() == rows[0].chars().count()), "aligned\n{out}");
+}
+
+#[test]
+fn what_is_asked_for_is_what_is_flown() {
+    let arguments =
+        ["lod", VALLEY, "--frames", "2", "--json", "--criterion", "spheres", "--refine", "rebuild"];
+    let reports = objects(&run(&[&arguments[..], &["--emit", "bintree"]].concat()).ok());
+    let names: Vec<&Value> = reports.iter().map(|report| &report["method"]).collect();
+    assert_eq!(names, ["bintree/spheres/rebuild"]);
+}
+
+#[test]
+fn everything_but_the_times_is_the_same_again() {
+    let once = || {
+        let mut reports = objects(&run(&["lod", VALLEY, "--frames", "5", "--json"]).ok());
+        for report in &mut reports {
+            let report = report.as_object_mut().expect("an object");
+            report.retain(|key, _| !key.starts_with("update_ms"));
+        }
+        reports
+    };
+    assert_eq!(once(), once());
+}
+
+#[test]
+fn a_finer_tolerance_takes_more_triangles_and_is_less_off() {
+    let at = |tolerance: &str| {
+        let arguments =
+            ["lod", VALLEY, "--frames", "3", "--json", "--criterion", "spheres", "--tolerance-px"];
+        objects(&run(&[&arguments[..], &[tolerance]].concat()).ok()).remove(0)
+    };
+    let (fine, coarse) = (at("1"), at("8"));
+    assert!(number(&fine, "triangles") > number(&coarse, "triangles"), "{fine} {coarse}");
+    assert!(number(&fine, "mean_m") < number(&coarse, "mean_m"), "{fine} {coarse}");
+}
+
+#[test]
+fn a_file_of_stations_is_flown_and_an_eye_that_rests_changes_nothing() {
+    let scratch = Scratch::new();
+    scratch.write("valley.asc", crate::bytes_of(VALLEY));
+    scratch.write("rest.csv", "x,y,z,tx,ty,tz\n50,50,900,4000,4000,300\n50,50,900,4000,4000,300\n");
+    let arguments = ["lod", "valley.asc", "--frames", "4", "--json", "--flight", "rest.csv"];
+    for report in objects(&run_in(scratch.folder(), &arguments).ok()) {
+        assert_eq!(number(&report, "changed_per_frame"), 0.0, "{report}");
+        assert!(number(&report, "triangles") > 0.0, "{report}");
+    }
+    scratch.write("away.csv", "-500 -500 900 -9000 -9000 900\n-600 -600 900 -9000 -9000 900\n");
+    let arguments = ["lod", "valley.asc", "--frames", "4", "--json", "--flight", "away.csv"];
+    for report in objects(&run_in(scratch.folder(), &arguments).ok()) {
+        assert_eq!(
+            (&report["triangles"], &report["mean_m"]),
+            (&Value::from(0), &Value::Null),
+            "nothing in view"
+        );
+    }
+}
+
+#[test]
+fn flights_that_cannot_be_flown_are_refused_by_file_and_line() {
+    let scratch = Scratch::new();
+    scratch.write("valley.asc", crate::bytes_of(VALLEY));
+    for (text, wanted) in [
+        ("1,2,3,4,5,6\n1,2,3\n", "way.csv:2: found '1,2,3'"),
+        ("1,2,3,4,5,6\n", "way.csv: found 1 stations"),
+        ("1,2,3,1,2,3\n1,2,3,4,5,6\n", "way.csv:1: the eye is its own target"),
+        ("1,2,3,4,5,inf\n1,2,3,4,5,6\n", "way.csv:1: coordinates"),
+        // The eye and its target change places and meet on the way.
+        ("0,0,0,2,0,0\n2,0,0,0,0,0\n", "frame 2: the camera's eye and target are the same point"),
+    ] {
+        scratch.write("way.csv", text);
+        let arguments = ["lod", "valley.asc", "--flight", "way.csv", "--frames", "3"];
+        let refused = run_in(scratch.folder(), &arguments).failed(1);
+        assert!(refused.contains(wanted), "{text:?}: {refused}");
+    }
+    let refused = run_in(scratch.folder(), &["lod", "valley.asc", "--flight", "spiral"]).failed(1);
+    assert!(refused.contains("spiral: there is no such file"), "{refused}");
+    scratch.write("way.csv", b"1,2,3,4,5,\xff\n");
+    let refused = run_in(scratch.folder(), &["lod", "valley.asc", "--flight", "way.csv"]).failed(1);
+    assert!(refused.contains("byte 10 is not UTF-8"), "{refused}");
+}
+
+#[test]
+fn wrong_usage_and_wrong_files_are_told_apart() {
+    for wrong in [
+        &["--frames", "1"][..],
+        &["--frames", "100001"],
+        &["--tolerance-px", "0"],
+        &["--tolerance-px", "NaN"],
+        &["--tolerance-px", "-1"],
+        &["--emit", "fans"],
+        &["--criterion", "beauty"],
+        &["--refine", "never"],
+    ] {
+        run(&[&["lod", VALLEY], wrong].concat()).failed(2);
+    }
+    let refused = run(&["lod", "nowhere.tif"]).failed(1);
+    assert!(refused.contains("nowhere.tif: there is no such file"), "{refused}");
+    let refused = run(&["lod", "assets/jacksboro/hills.png", "--height-scale", "0.1"]).failed(1);
+    assert!(refused.contains("hills.png") && refused.contains("world file"), "{refused}");
+}
+
+#[test]
+fn a_model_in_degrees_is_flown_over_in_metres() {
+    let out = run(&["lod", "assets/jacksboro/dem.tif", "--frames", "2"]).ok();
+    assert!(out.contains("83.22 × 83.22 m apart"), "{out}");
+}
+
+#[test]
+fn real_models_with_holes_are_flown_over() {
+    for path in ["scenes/swellendam_za/dem_srtm_wgs84_f32.tif", "scenes/taunton_uk/dtm.tif"] {
+        let Some(at) = data(path) else { continue };
+        let file = at.to_string_lossy().into_owned();
+        for report in objects(&run(&["lod", &file, "--frames", "3", "--json", "--tolerance-px", "4"]).ok()) {
+            assert!(number(&report, "triangles") > 0.0, "{path}: {report}");
+            assert!(number(&report, "mean_m").is_finite(), "{path}: {report}");
+        }
+    }
+}

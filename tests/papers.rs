@@ -1,0 +1,77 @@
+//! What the papers claim, claim by claim, of the product: one test a claim, one file a paper.
+//!
+//! 000: patches with forced splits and merges. 001: the restricted quadtree. 002: outdoor terrain rendering.
+//! 003: the constrained nested error criterion. 004: the digital terrain model.
+
+#[path = "papers/dtm.rs"]
+mod dtm;
+#[path = "papers/nested.rs"]
+mod nested;
+#[path = "papers/outdoor.rs"]
+mod outdoor;
+#[path = "papers/patches.rs"]
+mod patches;
+#[path = "papers/quadtree.rs"]
+mod quadtree;
+
+use glam::{DVec2, Vec3};
+use sandtable::roam::active::ActiveSet;
+use sandtable::roam::bintree::Triangle;
+use sandtable::roam::culling::PatchHeights;
+use sandtable::roam::errors::ErrorMap;
+use sandtable::roam::ground::Ground;
+use sandtable::roam::layout::Layout;
+use sandtable::terrain::lattice::Lattice;
+use sandtable::view::camera::Camera;
+
+/// A ground with what refinement needs of it, posts 10 m apart.
+struct World {
+    lattice: Lattice,
+    layout: Layout,
+    errors: ErrorMap,
+    heights: PatchHeights,
+}
+
+impl World {
+    /// Patches of `patch` cells over columns × rows posts of height `height` of their column and row.
+    fn new((columns, rows): (u32, u32), patch: u32, height: impl Fn(f32, f32) -> f32) -> Self {
+        let heights = (0..columns * rows).map(|at| height((at % columns) as f32, (at / columns) as f32));
+        let lattice =
+            Lattice::new(DVec2::ZERO, DVec2::splat(10.0), columns, heights.collect()).expect("sound");
+        let layout = Layout::new(columns, rows, patch).expect("sound");
+        let errors = ErrorMap::exact(&lattice, &layout);
+        let heights = PatchHeights::new(Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 });
+        Self { lattice, layout, errors, heights }
+    }
+
+    /// Hills of all sizes.
+    fn hills(columns: u32, rows: u32, patch: u32) -> Self {
+        Self::new((columns, rows), patch, |x, y| {
+            40.0 * libm::sinf(x * 0.05) * libm::cosf(y * 0.04) + 6.0 * libm::sinf(x * 0.7 + y * 0.45)
+        })
+    }
+
+    fn ground(&self) -> Ground<'_> {
+        Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
+    }
+}
+
+fn camera(eye: Vec3, target: Vec3) -> Camera {
+    Camera::new(eye, target, 0.8, (1024, 768), (1.0, 50_000.0)).expect("sound")
+}
+
+/// The leaves of all patches.
+fn leaves(active: &ActiveSet) -> Vec<Triangle> {
+    let layout = active.layout();
+    let mut stack: Vec<Triangle> =
+        layout.patches().flat_map(|corner| Triangle::roots(corner, layout.patch())).collect();
+    let mut leaves = Vec::new();
+    while let Some(triangle) = stack.pop() {
+        if !triangle.is_finest() && active.is_active(triangle.split_vertex()) {
+            stack.extend(triangle.split());
+        } else {
+            leaves.push(triangle);
+        }
+    }
+    leaves
+}
