@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use glam::{DVec2, Vec3};
+use glam::Vec3;
 use sandtable::dem::read::{Hints, read};
 use sandtable::dem::warp::to_metric;
 use sandtable::mesh::check;
@@ -228,7 +228,7 @@ fn real_ground_keeps_the_bound() {
             let found = measure(&lattice, &written).expect("on posts");
             assert!(found.max_m <= bound.parse().expect("a number"), "{file}, asked {bound}: {found:?}");
             let extent = lattice.extent();
-            let whole = DVec2::from(extent.max - extent.min);
+            let whole = extent.max - extent.min;
             let area = check::check(&written).expect("sound").plan_area_m2;
             assert!(area <= whole.x * whole.y * (1.0 + 1e-6) && area > 0.0, "{file}: {area}");
         }
