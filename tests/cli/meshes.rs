@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use glam::{DVec2, Vec3};
+use glam::Vec3;
 use sandtable::dem::read::{Hints, read};
 use sandtable::dem::warp::to_metric;
 use sandtable::mesh::check;
