@@ -14,6 +14,7 @@
 //! - `culling` tells which patches can be seen.
 //! - `refine` sets the bits.
 //! - `displayed` reads triangles off the bits.
+//! - `extract` reads triangles for a tolerance without a view off the errors themselves.
 //!
 //! Sources: Duchaineau et al. 1997 (ROAM); the patch-based forced splits and the screen-space error of the
 //! later papers; Lindstrom and Pascucci 2001 for errors kept monotone up the graph.
