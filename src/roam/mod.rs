@@ -21,6 +21,7 @@
 //! - `closure` sets the fewest bits that keep an error bound; `bound` measures a mesh at every post.
 //! - `paging` has patches of terrain larger than the memory, on demand.
 //! - `shown` is what one frame shows as index lists; `frames` compares frames, `measure` the frame and the ground.
+//! - `extract` reads triangles for a tolerance without a view off the errors themselves.
 //!
 //! Sources: Duchaineau et al. 1997 (ROAM); the patch-based forced splits and the screen-space error of the
 //! later papers; Lindstrom and Pascucci 2001 for errors kept monotone up the graph.
