@@ -37,8 +37,26 @@ const REBUILDS: usize = 3;
 
 /// Prints all tables.
 pub fn print() {
+    print_nesting();
     print_edits();
     print_constrained();
+}
+
+fn print_nesting() {
+    println!("\nNesting plain spheres over midpoint errors, ms, least of {REBUILDS}");
+    for posts in [513, 4097] {
+        let lattice = fractal(posts);
+        let layout = Layout::new(posts, posts, 64).expect("sound");
+        let errors = ErrorMap::raised(midpoint_errors(&lattice, &layout), &layout);
+        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let [one, two] = [1, 2].map(|threads| {
+            let pool =
+                rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be had");
+            let make = || timed(|| SphereMap::plain(ground, &errors, REACH)).1 / 1e3;
+            pool.install(|| (0..REBUILDS).map(|_| make()).fold(f64::INFINITY, f64::min))
+        });
+        println!("{:<24}{one:>10.1} with one thread{two:>10.1} with two", format!("{posts}²"));
+    }
 }
 
 fn print_edits() {
