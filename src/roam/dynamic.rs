@@ -230,8 +230,14 @@ impl DynamicTerrain {
 
     /// The corners of the patches that the vertices belong to, in the layout's order.
     fn patches_of(&mut self, vertices: &[Vertex]) -> Vec<Vertex> {
-        let (shift, mut dirty) = (self.layout.patch().trailing_zeros(), Vec::new());
+        let (shift, inner) = (self.layout.patch().trailing_zeros(), self.layout.patch() - 1);
+        let (mut dirty, mut last) = (Vec::new(), (-1, -1));
         for &vertex in vertices {
+            let own = (vertex.x >> shift, vertex.y >> shift);
+            if own == last && vertex.x & inner != 0 && vertex.y & inner != 0 {
+                continue;
+            }
+            last = own;
             let (before, after) = (vertex.moved(-1, -1), vertex);
             for y in before.y.max(0) >> shift..=after.y >> shift {
                 for x in before.x.max(0) >> shift..=after.x >> shift {

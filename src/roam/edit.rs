@@ -9,7 +9,8 @@
 //! rectangles, all heights are changed first and each rectangle is then mended in turn.
 
 use crate::roam::errors::ErrorMap;
-use crate::roam::errors::own::{exact_error_at, midpoint_error_at, split_triangles};
+use crate::roam::errors::own::{exact_error_at, midpoint_error, split_triangles};
+use crate::roam::field::Field;
 use crate::roam::graph::{Kind, Vertex};
 use crate::roam::ground::Ground;
 use crate::roam::layout::Layout;
@@ -43,12 +44,12 @@ impl Mended {
     ) {
         let mut changed = VertexRect::EMPTY;
         if !rect.is_empty() {
-            for vertex in pass.within(layout, &rect) {
+            pass.visit(layout, &rect, |vertex| {
                 if renew(vertex) {
                     changed = changed.with(vertex);
                     self.vertices.push(vertex);
                 }
-            }
+            });
         }
         self.rects.push(changed);
     }
@@ -74,6 +75,7 @@ impl Mended {
 /// Mends a map of midpoint errors after `change`; `lattice` holds the new heights.
 pub fn mend_midpoint(errors: &mut ErrorMap, lattice: &Lattice, layout: &Layout, change: &Change) -> Mended {
     let changed = VertexRect::of_posts(layout, &change.posts);
+    let field = Field::of(Ground { lattice, layout, exaggeration: 1.0 });
     let mut mended = Mended::default();
     for pass in passes(layout) {
         let posts = changed.snapped(pass.step);
@@ -87,7 +89,8 @@ pub fn mend_midpoint(errors: &mut ErrorMap, lattice: &Lattice, layout: &Layout, 
         };
         let rect = measured.union(mended.above(pass));
         mended.sweep(layout, pass, rect, |vertex| {
-            errors.renew(layout, pass, vertex, midpoint_error_at(lattice, layout, vertex))
+            let [from, to] = pass.hypotenuse(vertex).map(|end| field.height(end));
+            errors.renew(layout, pass, vertex, midpoint_error(field.height(vertex), from, to))
         });
     }
     mended
@@ -212,6 +215,7 @@ pub fn mend_spheres(
     let changed = VertexRect::of_posts(ground.layout, &change.posts);
     let window = change.posts.grown(own.half_window(), ground.lattice);
     let rough = VertexRect::of_posts(ground.layout, &window);
+    let field = Field::of(ground);
     let last_error = errors.rects.iter().rposition(|rect| !rect.is_empty());
     let mut mended = Mended::default();
     for (index, pass) in passes(ground.layout).enumerate() {
@@ -221,11 +225,12 @@ pub fn mend_spheres(
         if moved.is_empty() && near.is_empty() && errors_ended && mended.has_ended(pass) {
             break;
         }
-        let children = if pass.kind == Kind::Center { VertexRect::EMPTY } else { moved.grown(half, half) };
+        let has_children = pass.kind != Kind::Center && pass.step > 1;
+        let children = if has_children { moved.grown(half, half) } else { VertexRect::EMPTY };
         let corners = changed.snapped(pass.step).grown(pass.step, pass.step);
         let rect = corners.union(children).union(near).union(errors.rect(index)).union(mended.above(pass));
         mended.sweep(ground.layout, pass, rect, |vertex| {
-            spheres.renew(ground, pass, vertex, own.of(ground, vertex))
+            spheres.renew(&field, pass, vertex, own.of(ground, vertex))
         });
     }
     mended

@@ -6,7 +6,8 @@
 //!
 //! - `graph` is the arithmetic of vertices: level, parents, children; it knows no heights.
 //! - `bintree` is the arithmetic of triangles: roots of a patch, splitting.
-//! - `layout` lays patches over a lattice of any size; `ground` places their vertices in drawn world space.
+//! - `layout` lays patches over a lattice of any size; `ground` places their vertices in drawn world space,
+//!   `field` does so for many.
 //! - `errors` measures, once, how far each vertex's triangles are off the ground.
 //! - `active` holds the bits; activating a vertex first activates its parents (the forced split).
 //! - `roughness` says how rough the ground is around each post.
@@ -39,6 +40,7 @@ pub mod edit;
 pub mod emit;
 pub mod errors;
 pub mod extract;
+pub mod field;
 pub mod frames;
 pub mod graph;
 pub mod ground;

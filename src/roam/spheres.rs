@@ -8,11 +8,12 @@
 //! distance within which the vertex's own error shows (constrained nested error criterion; Lindstrom and Pascucci
 //! 2001 nest spheres the same way). What `r` is differs: see [`OwnRadius`].
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::roam::errors::ErrorMap;
 use crate::roam::errors::own::midpoint_error_at;
+use crate::roam::field::Field;
 use crate::roam::graph::Vertex;
 use crate::roam::ground::Ground;
 use crate::roam::layout::Layout;
@@ -78,29 +79,25 @@ pub fn reach(camera: &Camera, tolerance_px: f32) -> f32 {
 
 impl OwnRadius<'_> {
     /// The own radius of a vertex of the layout, metres; 0 for patch corners, which are always there.
+    #[inline]
     pub fn of(&self, ground: Ground<'_>, vertex: Vertex) -> f32 {
         if ground.layout.is_corner(vertex) {
             return 0.0;
         }
-        let scaled = |error: f32, reach: f32, more: &dyn Fn(f64) -> f64| match error {
-            0.0 => 0.0,
-            f32::INFINITY => f32::INFINITY,
-            error => {
-                let drawn = f64::from(error) * f64::from(ground.exaggeration);
-                (f64::from(reach) * drawn + more(drawn)) as f32
-            }
-        };
         match *self {
-            Self::Plain { errors, reach } => scaled(errors.at(ground.layout, vertex), reach, &|_| 0.0),
+            Self::Plain { errors, reach } => {
+                let error = errors.at(ground.layout, vertex);
+                scaled(error, |error| f64::from(reach) * error * f64::from(ground.exaggeration))
+            }
             Self::Constrained { reach, roughness } => {
-                let factor = roughness.factor(ground.layout.post(vertex)) as f32;
-                scaled(midpoint_error_at(ground.lattice, ground.layout, vertex), reach * factor, &|_| 0.0)
+                let reach = f64::from(reach) * roughness.factor(ground.layout.post(vertex));
+                let error = midpoint_error_at(ground.lattice, ground.layout, vertex);
+                scaled(error, |error| reach * error * f64::from(ground.exaggeration))
             }
-            Self::Bounding { errors, reach } => {
-                let rounded_up = |metres: f64| metres * (1.0 + MARGIN);
-                let more = |drawn: f64| rounded_up(drawn + extent(ground, vertex));
-                scaled(errors.at(ground.layout, vertex), (f64::from(reach) * (1.0 + MARGIN)) as f32, &more)
-            }
+            Self::Bounding { errors, reach } => scaled(errors.at(ground.layout, vertex), |error| {
+                let drawn = error * f64::from(ground.exaggeration);
+                (f64::from(reach) * drawn + drawn + extent(ground, vertex)) * (1.0 + MARGIN)
+            }),
         }
     }
 
@@ -110,6 +107,16 @@ impl OwnRadius<'_> {
             Self::Constrained { roughness, .. } => roughness.half_window(),
             _ => (0, 0),
         }
+    }
+}
+
+/// The radius that a finite error has; 0 for no error, infinite for an infinite one.
+#[inline]
+fn scaled(error: f32, radius: impl FnOnce(f64) -> f64) -> f32 {
+    match error {
+        0.0 => 0.0,
+        f32::INFINITY => f32::INFINITY,
+        error => radius(f64::from(error)) as f32,
     }
 }
 
@@ -213,36 +220,28 @@ impl SphereMap {
 
     /// Sets the radius of a vertex of `pass` again from its own radius and its children's spheres, which are as they
     /// shall be; tells whether it changed.
-    pub(in crate::roam) fn renew(
-        &mut self,
-        ground: Ground<'_>,
-        pass: Pass,
-        vertex: Vertex,
-        own: f32,
-    ) -> bool {
-        let mut radius = own;
-        let offsets = pass.child_offsets();
-        if !offsets.is_empty() {
-            let (center, reach) = (ground.position(vertex), pass.child_reach());
-            let children = offsets.iter().map(|&(x, y)| vertex.moved(x * reach, y * reach));
-            for child in children.filter(|&child| ground.layout.contains(child)) {
-                let below = self.at(ground.layout, child);
-                if below > 0.0 {
-                    radius = radius.max(around(center, ground.position(child), below));
-                }
+    #[inline]
+    pub(in crate::roam) fn renew(&mut self, field: &Field<'_>, pass: Pass, vertex: Vertex, own: f32) -> bool {
+        let (layout, reach) = (field.layout(), pass.child_reach());
+        let (center, mut radius) = (field.position(vertex), own);
+        for &(x, y) in pass.child_offsets() {
+            let child = vertex.moved(x * reach, y * reach);
+            if layout.contains(child) {
+                radius = radius.max(around(center, field.position(child), self.radii[layout.index(child)]));
             }
         }
-        let slot = &mut self.radii[ground.layout.index(vertex)];
+        let slot = &mut self.radii[layout.index(vertex)];
         std::mem::replace(slot, radius) != radius
     }
 }
 
 /// The radius about `center` that holds the sphere of `radius` about `child`; 0 for a child that never shows.
-fn around(center: Vec3, child: Vec3, radius: f32) -> f32 {
+#[inline]
+fn around(center: DVec3, child: DVec3, radius: f32) -> f32 {
     if radius == 0.0 {
         return 0.0;
     }
-    let distance = (center.as_dvec3() - child.as_dvec3()).length();
+    let distance = (center - child).length_squared().sqrt();
     ((distance + f64::from(radius)) * (1.0 + MARGIN)) as f32
 }
 
@@ -313,9 +312,9 @@ struct PlaceRow<'a> {
 }
 
 impl PlaceRow<'_> {
-    fn at(&self, x: usize) -> Vec3 {
+    fn at(&self, x: usize) -> DVec3 {
         let height = self.heights[x.min(self.heights.len() - 1)];
         let z = if height.is_nan() { 0.0 } else { height * self.exaggeration };
-        Vec3::new(self.x[x], self.y, z)
+        Vec3::new(self.x[x], self.y, z).as_dvec3()
     }
 }

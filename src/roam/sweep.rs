@@ -45,6 +45,36 @@ impl Pass {
         along(y, last.1).flat_map(move |y| along(x, last.0).map(move |x| Vertex::new(x, y)))
     }
 
+    /// Calls `visit` with each of the vertices of [`Pass::within`], in the same order.
+    pub fn visit(self, layout: &Layout, rect: &VertexRect, mut visit: impl FnMut(Vertex)) {
+        let Some(first) = self.within(layout, rect).next() else { return };
+        let last = (rect.max.x.min(layout.columns() as i32 - 1), rect.max.y.min(layout.rows() as i32 - 1));
+        let mut y = first.y;
+        while y <= last.1 {
+            let mut x = first.x;
+            while x <= last.0 {
+                visit(Vertex::new(x, y));
+                x += 2 * self.step;
+            }
+            y += 2 * self.step;
+        }
+    }
+
+    /// [`Vertex::hypotenuse`] of one of the pass's vertices.
+    pub fn hypotenuse(self, vertex: Vertex) -> [Vertex; 2] {
+        let step = self.step;
+        let (dx, dy) = match self.kind {
+            Kind::EastEdge => (step, 0),
+            Kind::NorthEdge => (0, step),
+            Kind::Center => {
+                let side = step.trailing_zeros() + 1;
+                let rises = ((vertex.x >> side) + (vertex.y >> side)) & 1 == 0;
+                (step, if rises { step } else { -step })
+            }
+        };
+        [vertex.moved(-dx, -dy), vertex.moved(dx, dy)]
+    }
+
     /// Where the children of the pass's vertices lie, as offsets; none for edge middles of the finest step.
     pub fn child_offsets(self) -> &'static [(i32, i32)] {
         match (self.kind, self.step) {
@@ -188,6 +218,7 @@ mod tests {
             for vertex in pass.within(&layout, &all) {
                 assert_eq!((vertex.kind(), vertex.step()), (pass.kind, pass.step));
                 assert!(!std::mem::replace(&mut seen[layout.index(vertex)], true));
+                assert_eq!(pass.hypotenuse(vertex), vertex.hypotenuse());
                 let mut children: Vec<Vertex> = vertex.children().collect();
                 let reach = pass.child_reach();
                 let offsets = pass.child_offsets().iter();
@@ -206,6 +237,11 @@ mod tests {
         let layout = Layout::new(65, 65, 32).expect("sound");
         let rect = VertexRect { min: Vertex::new(-3, 7), max: Vertex::new(90, 40) };
         let inside: usize = passes(&layout).map(|pass| pass.within(&layout, &rect).count()).sum();
+        for pass in passes(&layout) {
+            let mut visited = Vec::new();
+            pass.visit(&layout, &rect, |vertex| visited.push(vertex));
+            assert_eq!(visited, pass.within(&layout, &rect).collect::<Vec<Vertex>>());
+        }
         let corners = 3;
         assert_eq!(inside, 65 * 34 - corners);
         let snapped = VertexRect { min: Vertex::new(5, 7), max: Vertex::new(17, 9) }.snapped(8);

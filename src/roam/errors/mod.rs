@@ -59,11 +59,15 @@ impl ErrorMap {
 
     /// Sets the error of a vertex of `pass` again from its own and those of its children, which are as they shall be;
     /// tells whether it changed.
+    #[inline]
     pub(in crate::roam) fn renew(&mut self, layout: &Layout, pass: Pass, vertex: Vertex, own: f32) -> bool {
-        let reach = pass.child_reach();
-        let children = pass.child_offsets().iter().map(|&(x, y)| vertex.moved(x * reach, y * reach));
-        let children = children.filter(|&child| layout.contains(child));
-        let error = children.map(|child| self.errors[layout.index(child)]).fold(own, f32::max);
+        let (reach, mut error) = (pass.child_reach(), own);
+        for &(x, y) in pass.child_offsets() {
+            let child = vertex.moved(x * reach, y * reach);
+            if layout.contains(child) {
+                error = error.max(self.errors[layout.index(child)]);
+            }
+        }
         std::mem::replace(&mut self.errors[layout.index(vertex)], error) != error
     }
 

@@ -37,16 +37,34 @@ const REBUILDS: usize = 3;
 
 /// Prints all tables.
 pub fn print() {
+    print_nesting();
     print_edits();
     print_constrained();
 }
 
+fn print_nesting() {
+    println!("\nNesting plain spheres over midpoint errors, ms, least of {REBUILDS}");
+    for posts in [513, 4097] {
+        let lattice = fractal(posts);
+        let layout = Layout::new(posts, posts, 64).expect("sound");
+        let errors = ErrorMap::raised(midpoint_errors(&lattice, &layout), &layout);
+        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let [one, two] = [1, 2].map(|threads| {
+            let pool =
+                rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be had");
+            let make = || timed(|| SphereMap::plain(ground, &errors, REACH)).1 / 1e3;
+            pool.install(|| (0..REBUILDS).map(|_| make()).fold(f64::INFINITY, f64::min))
+        });
+        println!("{:<24}{one:>10.1} with one thread{two:>10.1} with two", format!("{posts}²"));
+    }
+}
+
 fn print_edits() {
     println!(
-        "\nA {SIDE}×{SIDE} edit: µs to mend, median (largest) of {EDITS}, and to make anew, least of {REBUILDS}"
+        "\nA {SIDE}×{SIDE} edit: µs to mend, median (least..largest) of {EDITS}, and to make anew, least of {REBUILDS}"
     );
     println!(
-        "{:<28}{:>20}{:>20}{:>14}{:>9}{:>20}{:>10}",
+        "{:<24}{:>24}{:>24}{:>12}{:>9}{:>24}{:>9}",
         "posts, patch, errors", "errors", "with spheres", "anew", "ratio", "whole edit", "unequal"
     );
     let only = std::env::var("SANDTABLE_BENCH_SIDE").ok().and_then(|side| side.parse().ok());
@@ -86,7 +104,7 @@ fn print_row(lattice: &Lattice, patch: u32, measure: Measure) {
     let whole_us = whole_edits(&lattice, patch, measure);
     let ratio = anew / median(&both_us);
     println!(
-        "{:<28}{:>20}{:>20}{:>14.0}{:>9.0}{:>20}{:>10}",
+        "{:<24}{:>24}{:>24}{:>12.0}{:>9.0}{:>24}{:>9}",
         format!("{}², {patch}, {measure:?}", lattice.columns()),
         told(&errors_us),
         told(&both_us),
@@ -163,7 +181,8 @@ fn median(times: &[f64]) -> f64 {
 }
 
 fn told(times: &[f64]) -> String {
-    format!("{:.1} ({:.0})", median(times), times.iter().copied().fold(0.0, f64::max))
+    let least = times.iter().copied().fold(f64::INFINITY, f64::min);
+    format!("{:.1} ({:.1}..{:.0})", median(times), least, times.iter().copied().fold(0.0, f64::max))
 }
 
 fn different(a: &[f32], b: &[f32]) -> usize {
@@ -209,7 +228,7 @@ fn fractal(posts: u32) -> Lattice {
 const GROUNDS: [(&str, &str); 3] = [
     ("crater", "scenes/crater_lake_bt/crater.bt"),
     ("big tujunga", "dem/bigtujunga_utm11_i16_tiled.tif"),
-    ("boulder", "dem/boulder_SRTMGL3.asc"),
+    ("swellendam", "scenes/swellendam_za/dem_srtm_wgs84_f32.tif"),
 ];
 
 /// Times the plain spheres' reach within which the constrained ones' is sought, doublings either way.
