@@ -66,19 +66,23 @@ impl Display for Way {
 /// # Errors
 /// The file of stations cannot be had or read; a camera looks nowhere.
 pub fn cameras(way: &Way, frames: usize, lattice: &Lattice) -> Result<Vec<Camera>, Failure> {
-    let stations = stations(way, frames, lattice)?;
+    let (low, high) = lattice.height_range();
+    let stations = stations(way, frames, lattice, (low + high) * 0.5)?;
+    let Rect { min, max } = lattice.extent();
+    let corners = (min.as_vec2().extend(low), max.as_vec2().extend(high));
     let camera = |(frame, station): (usize, &Station)| {
-        let camera = station.camera(0.5, far_m(lattice, station.eye));
+        let camera = station.camera(0.5, far_m(corners, station.eye));
         camera.map_err(|error| Failure::input(format!("{way}, frame {}: {error}", frame + 1)))
     };
     stations.iter().enumerate().map(camera).collect()
 }
 
-fn stations(way: &Way, frames: usize, lattice: &Lattice) -> Result<Vec<Station>, Failure> {
+/// The stations of a flight; where there is no data it is flown over ground at `missing_m`.
+fn stations(way: &Way, frames: usize, lattice: &Lattice, missing_m: f32) -> Result<Vec<Station>, Failure> {
     let cell = lattice.cell().as_vec2();
     let size_m = (cell.x * cell.y).sqrt();
     let keeping = Keeping { above_m: ABOVE * size_m, smoothing_m: 2.0 * size_m };
-    let ground = |at: Vec2| drawn_z(lattice, at);
+    let ground = |at: Vec2| drawn_z(lattice, at, missing_m);
     Ok(match way {
         Way::Circle => {
             let side = (lattice.columns().min(lattice.rows()).min(BLOCK) - 1) as f32;
@@ -96,26 +100,16 @@ fn stations(way: &Way, frames: usize, lattice: &Lattice) -> Result<Vec<Station>,
     })
 }
 
-/// The ground's height at a place or at the nearest one that is on the ground; half way between the lowest and the
-/// highest where there is no data.
-fn drawn_z(lattice: &Lattice, at: Vec2) -> f32 {
+/// The ground's height at a place or at the nearest one that is on the ground; `missing_m` where it has no data.
+fn drawn_z(lattice: &Lattice, at: Vec2, missing_m: f32) -> f32 {
     let Rect { min, max } = lattice.extent();
     let at: DVec2 = at.as_dvec2().clamp(min, max);
     let height = ground_height(lattice, Interpolation::Bilinear, at).height_m();
-    height.map_or_else(
-        || {
-            let (low, high) = lattice.height_range();
-            (low + high) * 0.5
-        },
-        |height| height as f32,
-    )
+    height.map_or(missing_m, |height| height as f32)
 }
 
-/// Behind all ground, wherever the eye looks.
-fn far_m(lattice: &Lattice, eye: Vec3) -> f32 {
-    let Rect { min, max } = lattice.extent();
-    let (low, high) = lattice.height_range();
-    let (min, max) = (min.as_vec2().extend(low), max.as_vec2().extend(high));
+/// Behind the box of all ground, wherever the eye looks.
+fn far_m((min, max): (Vec3, Vec3), eye: Vec3) -> f32 {
     let farthest = Vec3::select((eye - min).abs().cmpgt((eye - max).abs()), min, max);
     eye.distance(farthest) * 1.5 + 1000.0
 }
