@@ -26,7 +26,7 @@ pub struct PagingOptions {
     /// Cells along a patch's side: a power of two from 2 to 1024. Default [`DEFAULT_PATCH`].
     pub patch: u32,
     /// The most patches that are kept; at least 1. A walk reads hardly anything twice where all patches hold whose
-    /// spheres the eye is inside. Default 256, 10 MiB in patches of 64.
+    /// spheres the eye is inside. Default 256, 8 MiB in patches of 64.
     pub capacity: usize,
     /// Vertical exaggeration; 1 draws heights as they are. Default 1.
     pub exaggeration: f32,
@@ -92,7 +92,7 @@ pub struct PagingCounts {
 /// on nothing further away, and not on where the piece begins; then every patch is bit for bit that of the whole
 /// terrain in memory.
 ///
-/// Memory: the cache, one region of 3 × 3 to 4 × 3 patches while a patch is read, 36 bytes a patch of the terrain,
+/// Memory: the cache, one region of 3 × 3 to 4 × 3 patches while a patch is read, 32 bytes a patch of the terrain,
 /// and what the windows keep. Patches that were handed out live as long as whoever holds them.
 pub struct PagedGround<W, S> {
     windows: W,
