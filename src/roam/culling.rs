@@ -17,7 +17,7 @@ use crate::view::frustum::Frustum;
 use crate::view::wedge::Wedge;
 
 /// What patches are culled against.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Culling {
     /// Nothing: every patch with data is listed.
     Nothing,
@@ -187,6 +187,29 @@ pub fn cull(ground: Ground<'_>, heights: &PatchHeights, culling: &Culling, found
     let top = heights.levels.len() - 1;
     visit(ground, heights, culling, Square { level: top, x: 0, y: 0 }, culling.all(), found);
     found.sort_unstable_by_key(|corner| (corner.y, corner.x));
+}
+
+/// The patches in view, culled again only when the view is another.
+#[derive(Clone, Debug, Default)]
+pub struct InView {
+    culling: Option<Culling>,
+    patches: Vec<Vertex>,
+}
+
+impl InView {
+    /// The south-west corners of the patches that hold data and are not culled, row by row.
+    pub fn update(&mut self, ground: Ground<'_>, heights: &PatchHeights, culling: Culling) -> &[Vertex] {
+        if self.culling != Some(culling) {
+            cull(ground, heights, &culling, &mut self.patches);
+            self.culling = Some(culling);
+        }
+        &self.patches
+    }
+
+    /// Makes the next update cull, after heights have changed.
+    pub fn forget(&mut self) {
+        self.culling = None;
+    }
 }
 
 /// A square of 2^level patches a side.

@@ -7,7 +7,7 @@ use crate::view::camera::Camera;
 /// The left, right, top, bottom and far planes of a camera, normals inward.
 ///
 /// The near plane is left out: what it would cull is a sliver before the eye.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frustum {
     planes: [(Vec3, f32); 5],
 }

@@ -27,7 +27,7 @@ const SLACK: f32 = 1e-5;
 
 /// Lines on the ground plane with normals inward. Where there are no sides, the left line stands for the farthest
 /// behind, and the right one is nowhere.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wedge {
     lines: [(Vec2, f32); 3],
 }

@@ -14,6 +14,8 @@ mod emitters;
 mod fields;
 #[path = "lod/flight.rs"]
 mod flight;
+#[path = "lod/frame.rs"]
+mod frame;
 #[path = "lod/paging.rs"]
 mod paging;
 #[path = "lod/refiners.rs"]
@@ -24,14 +26,14 @@ mod rounds;
 mod rtin;
 #[path = "lod/stateless.rs"]
 mod stateless;
-#[path = "lod/yardstick.rs"]
-mod yardstick;
+#[path = "lod/walks.rs"]
+mod walks;
 
 /// A section's name and what prints it.
 type Section = (&'static str, fn());
 
 const SECTIONS: &[Section] = &[
-    ("yardstick", yardstick::print),
+    ("frame", frame::print),
     ("refiners", refiners::print),
     ("rtin", rtin::print),
     ("bound", bound::print),

@@ -1,0 +1,190 @@
+//! The contenders of the frame: each brings culling, mesh and index lists up to date for one camera.
+
+use sandtable::roam::block::WholeGround;
+use sandtable::roam::criterion::spheres::Spheres;
+use sandtable::roam::culling::{Culling, InView, PatchHeights};
+use sandtable::roam::emit::bintree::Block;
+use sandtable::roam::errors::ErrorMap;
+use sandtable::roam::graph::Vertex;
+use sandtable::roam::ground::Ground;
+use sandtable::roam::layout::{DEFAULT_PATCH, Layout};
+use sandtable::roam::refine::deferred::Deferred;
+use sandtable::roam::refine::queues::{Goal, Queues};
+use sandtable::roam::refine::rebuild::rebuild;
+use sandtable::roam::spheres::SphereMap;
+use sandtable::terrain::lattice::Lattice;
+use sandtable::view::camera::Camera;
+
+use crate::flight;
+
+/// A ground measured once.
+pub struct World {
+    lattice: Lattice,
+    layout: Layout,
+    errors: ErrorMap,
+    heights: PatchHeights,
+}
+
+impl World {
+    /// The ground of heights in metres.
+    pub fn new(heights: &[f32]) -> Self {
+        let lattice = flight::lattice(heights);
+        let layout =
+            Layout::new(lattice.columns(), lattice.rows(), DEFAULT_PATCH).expect("patches can be laid");
+        let errors = ErrorMap::midpoint(&lattice, &layout);
+        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let heights = PatchHeights::new(ground);
+        Self { layout, errors, heights, lattice }
+    }
+
+    /// What refinement reads.
+    pub fn ground(&self) -> Ground<'_> {
+        Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
+    }
+
+    /// The spheres in which errors show: `reach` metres of distance a metre of error.
+    pub fn spheres(&self, reach: f32) -> SphereMap {
+        SphereMap::plain(self.ground(), &self.errors, reach)
+    }
+}
+
+/// What is flown.
+pub trait Walk {
+    /// Brings everything up to date.
+    fn update(&mut self, camera: &Camera);
+    /// The triangles shown.
+    fn triangles(&self) -> usize;
+    /// Vertices activated and deactivated, and vertices looked at, by the last update.
+    fn work(&self) -> [usize; 2];
+    /// Index bytes of patches that changed in the last update.
+    fn upload(&self) -> usize;
+}
+
+/// The deferred refiner.
+pub struct Following<'a> {
+    world: &'a World,
+    seen: InView,
+    walk: Deferred<WholeGround<'a>>,
+}
+
+impl<'a> Following<'a> {
+    /// By these spheres.
+    pub fn new(world: &'a World, spheres: &'a SphereMap) -> Self {
+        let source = WholeGround { ground: world.ground(), spheres };
+        let walk = Deferred::new(source, f64::from(flight::CELL_M)).expect("small patches");
+        Self { world, seen: InView::default(), walk }
+    }
+}
+
+impl Walk for Following<'_> {
+    fn update(&mut self, camera: &Camera) {
+        let culling = Culling::frustum(camera);
+        let patches = self.seen.update(self.world.ground(), &self.world.heights, culling);
+        self.walk.update(camera.eye(), patches).expect("in memory");
+    }
+
+    fn triangles(&self) -> usize {
+        self.walk.triangle_count()
+    }
+
+    fn work(&self) -> [usize; 2] {
+        let changes = self.walk.changes();
+        [changes.splits + changes.merges, self.walk.examined()]
+    }
+
+    fn upload(&self) -> usize {
+        let corners: Vec<Vertex> = self.world.layout.patches().collect();
+        let dirty = self.walk.changes().dirty.iter();
+        dirty.map(|&patch| 6 * self.walk.indices(corners[patch]).len()).sum()
+    }
+}
+
+/// Splits alone: everything anew, the index list of every patch in view.
+pub struct Rebuilding<'a> {
+    world: &'a World,
+    spheres: &'a SphereMap,
+    block: Block,
+    seen: InView,
+    indices: Vec<[u16; 3]>,
+}
+
+impl<'a> Rebuilding<'a> {
+    /// By these spheres.
+    pub fn new(world: &'a World, spheres: &'a SphereMap) -> Self {
+        let block = Block::of(&world.layout).expect("small patches");
+        Self { world, spheres, block, seen: InView::default(), indices: Vec::new() }
+    }
+}
+
+impl Walk for Rebuilding<'_> {
+    fn update(&mut self, camera: &Camera) {
+        let ground = self.world.ground();
+        let patches = self.seen.update(ground, &self.world.heights, Culling::frustum(camera));
+        let criterion = Spheres::new(ground, self.spheres, camera.eye());
+        let active = rebuild(&self.world.layout, &criterion, patches.iter().copied());
+        self.indices.clear();
+        for &corner in patches {
+            self.block.append(&active, corner, |_| true, &mut self.indices);
+        }
+    }
+
+    fn triangles(&self) -> usize {
+        self.indices.len()
+    }
+
+    fn work(&self) -> [usize; 2] {
+        [self.indices.len(); 2]
+    }
+
+    fn upload(&self) -> usize {
+        6 * self.indices.len()
+    }
+}
+
+/// Split and merge queues under an exact budget; the lists of patches that changed are written anew.
+pub struct Queueing<'a> {
+    world: &'a World,
+    spheres: &'a SphereMap,
+    block: Block,
+    seen: InView,
+    queues: Queues,
+    indices: Vec<[u16; 3]>,
+    work: usize,
+    corners: Vec<Vertex>,
+}
+
+impl<'a> Queueing<'a> {
+    /// With at most `budget` triangles.
+    pub fn new(world: &'a World, spheres: &'a SphereMap, budget: usize) -> Self {
+        let block = Block::of(&world.layout).expect("small patches");
+        let queues = Queues::new(world.layout, Goal::Budget(budget));
+        let corners = world.layout.patches().collect();
+        Self { world, spheres, block, seen: InView::default(), queues, indices: Vec::new(), work: 0, corners }
+    }
+}
+
+impl Walk for Queueing<'_> {
+    fn update(&mut self, camera: &Camera) {
+        let ground = self.world.ground();
+        let patches = self.seen.update(ground, &self.world.heights, Culling::frustum(camera));
+        let criterion = Spheres::new(ground, self.spheres, camera.eye());
+        let changes = self.queues.update(&criterion, patches);
+        self.work = changes.splits + changes.merges;
+        self.indices.clear();
+        for &patch in &changes.dirty {
+            self.block.append(self.queues.active(), self.corners[patch], |_| true, &mut self.indices);
+        }
+    }
+
+    fn triangles(&self) -> usize {
+        self.queues.triangles()
+    }
+
+    fn work(&self) -> [usize; 2] {
+        [self.work; 2]
+    }
+
+    fn upload(&self) -> usize {
+        6 * self.indices.len()
+    }
+}
