@@ -183,10 +183,15 @@ pub fn patches_in_view(ground: Ground<'_>, heights: &PatchHeights, frustum: &Fru
 
 /// Fills `found` with the south-west corners of the patches that hold data and are not culled, row by row.
 pub fn cull(ground: Ground<'_>, heights: &PatchHeights, culling: &Culling, found: &mut Vec<Vertex>) {
+    gather(ground, heights, culling, found);
+    found.sort_unstable_by_key(|corner| (corner.y, corner.x));
+}
+
+/// As [`cull`], in the order in which the squares are visited: row by row within every square.
+fn gather(ground: Ground<'_>, heights: &PatchHeights, culling: &Culling, found: &mut Vec<Vertex>) {
     found.clear();
     let top = heights.levels.len() - 1;
     visit(ground, heights, culling, Square { level: top, x: 0, y: 0 }, culling.all(), found);
-    found.sort_unstable_by_key(|corner| (corner.y, corner.x));
 }
 
 /// The patches in view, culled again only when the view is another.
@@ -197,10 +202,11 @@ pub struct InView {
 }
 
 impl InView {
-    /// The south-west corners of the patches that hold data and are not culled, row by row.
+    /// The south-west corners of the patches that hold data and are not culled, by squares: neighbours in the list
+    /// are neighbours on the ground.
     pub fn update(&mut self, ground: Ground<'_>, heights: &PatchHeights, culling: Culling) -> &[Vertex] {
         if self.culling != Some(culling) {
-            cull(ground, heights, &culling, &mut self.patches);
+            gather(ground, heights, &culling, &mut self.patches);
             self.culling = Some(culling);
         }
         &self.patches

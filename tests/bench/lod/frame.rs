@@ -166,7 +166,8 @@ fn splits_alone() {
 }
 
 /// t(frame) = a + b · (splits and merges) + c · (vertices looked at), fitted over all frames of flights at several
-/// speeds by least squares; the frame of a round is the fastest of all rounds, so that interruptions do not count.
+/// speeds by least squares. A frame's time is its least of all rounds, so that interruptions do not count; frames in
+/// which a patch comes into view that has no mesh yet are left out.
 fn cost_of_change() {
     let heights = fields::fractal(1025);
     let world = World::new(&heights);
@@ -178,15 +179,17 @@ fn cost_of_change() {
         for _ in 0..rounds::ROUNDS {
             let mut walk = Following::new(&world, &spheres);
             for (at, camera) in cameras.iter().enumerate() {
+                let meshes = walk.meshes();
                 let ns = rounds::time_ms(|| walk.update(camera)) * 1e6;
                 let [changed, examined] = walk.work().map(|count| count as f64);
+                let ns = if walk.meshes() == meshes { ns } else { f64::INFINITY };
                 match best.get_mut(at) {
                     Some(frame) => frame[2] = frame[2].min(ns),
                     None => best.push([changed, examined - changed, ns]),
                 }
             }
         }
-        frames.extend(&best[1..]);
+        frames.extend(best.iter().filter(|frame| frame[2].is_finite()));
     }
     let [a, b, c] = fitted(&frames);
     println!(

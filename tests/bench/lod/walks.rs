@@ -74,6 +74,11 @@ impl<'a> Following<'a> {
         let walk = Deferred::new(source, f64::from(flight::CELL_M)).expect("small patches");
         Self { world, seen: InView::default(), walk }
     }
+
+    /// How many patches have a mesh of their own.
+    pub fn meshes(&self) -> usize {
+        self.walk.meshes()
+    }
 }
 
 impl Walk for Following<'_> {

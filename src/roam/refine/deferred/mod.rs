@@ -55,7 +55,11 @@ struct Meshes(Vec<PatchMesh>);
 
 impl Links for Meshes {
     fn link(&mut self, entry: u32) -> &mut Link {
-        self.0[(entry >> VERTEX_BITS) as usize].link((entry & ((1 << VERTEX_BITS) - 1)) as u16)
+        self.0[(entry >> VERTEX_BITS) as usize].link(vertex_of(entry))
+    }
+
+    fn leave(&mut self, entry: u32) -> Link {
+        self.0[(entry >> VERTEX_BITS) as usize].leave(vertex_of(entry))
     }
 }
 
@@ -65,6 +69,7 @@ struct Scratch {
     due: Vec<u32>,
     inside_m: Vec<f64>,
     todo: Vec<u16>,
+    behind: Vec<u32>,
 }
 
 /// A mesh that follows the eye through patches of a source.
@@ -75,6 +80,10 @@ pub struct Deferred<S> {
     topologies: [Topology; 2],
     patches: Vec<Shown>,
     meshes: Meshes,
+    /// The update in which each mesh was last listed.
+    seen: Vec<u64>,
+    /// Whether each mesh has missed something.
+    behind: Vec<bool>,
     /// Meshes that no patch has.
     spare: Vec<u32>,
     wheel: Wheel,
@@ -104,6 +113,8 @@ impl<S: BlockSource> Deferred<S> {
             topologies: [topology(0), topology(1)],
             patches: vec![Shown::default(); layout.patch_count()],
             meshes: Meshes::default(),
+            seen: Vec::new(),
+            behind: Vec::new(),
             spare: Vec::new(),
             wheel: Wheel::new(0),
             visible: Vec::new(),
@@ -128,6 +139,7 @@ impl<S: BlockSource> Deferred<S> {
             return Ok(&self.changes);
         }
         self.settled = false;
+        self.scratch.behind.clear();
         self.travel_to(eye);
         self.frame += 1;
         self.visible.clear();
@@ -211,18 +223,21 @@ impl<S: BlockSource> Deferred<S> {
         let Some(changed) = self.meshes.0[slot].edit(topology, block) else {
             self.wheel.retain(&mut self.meshes, |entry| entry >> VERTEX_BITS != mesh);
             self.meshes.0[slot].reset(topology, block, entries);
+            self.behind[slot] = true;
             return;
         };
         for vertex in changed {
             let patch = &mut self.meshes.0[slot];
             let link = *patch.link(vertex);
             let inside = self.station.inside_m(patch.sphere(topology, vertex));
-            let waits_well = link.is_waiting()
+            let waits = patch.is_waiting(vertex);
+            let waits_well = waits
                 && (inside > 0.0) == patch.is_active(vertex)
                 && self.station.due(inside.abs()) >= self.wheel.begin(link);
             if !waits_well {
                 patch.miss(vertex);
-                if link.is_waiting() {
+                self.behind[slot] = true;
+                if waits {
                     self.wheel.remove(&mut self.meshes, entries + u32::from(vertex));
                 }
             }
@@ -244,7 +259,7 @@ impl<S: BlockSource> Deferred<S> {
     pub fn forget(&mut self, most: usize) {
         let mut held: Vec<(u64, usize, u32)> = (self.patches.iter().enumerate())
             .filter_map(|(index, patch)| Some((index, patch.mesh?)))
-            .map(|(index, mesh)| (self.meshes.0[mesh as usize].seen, index, mesh))
+            .map(|(index, mesh)| (self.seen[mesh as usize], index, mesh))
             .filter(|&(seen, ..)| seen < self.frame)
             .collect();
         held.sort_unstable();
@@ -295,7 +310,12 @@ impl<S: BlockSource> Deferred<S> {
             let index = self.layout.patch_index(corner);
             let shown = self.patches[index];
             match shown.mesh {
-                Some(mesh) => self.meshes.0[mesh as usize].seen = self.frame,
+                Some(mesh) => {
+                    self.seen[mesh as usize] = self.frame;
+                    if self.behind[mesh as usize] {
+                        self.scratch.behind.push(mesh);
+                    }
+                }
                 None if shown.due > self.station.tick() => {}
                 None => self.found_mesh_if_needed(corner, index)?,
             }
@@ -313,14 +333,18 @@ impl<S: BlockSource> Deferred<S> {
         let block = self.source.block(corner)?;
         let mesh = self.spare.pop().unwrap_or_else(|| {
             self.meshes.0.push(PatchMesh::default());
+            self.seen.push(0);
+            self.behind.push(false);
             self.meshes.0.len() as u32 - 1
         });
         let patch = &mut self.meshes.0[mesh as usize];
         patch.parity = parity(&self.layout, corner);
-        patch.seen = self.frame;
         patch.patch = index;
         patch.reset(&self.topologies[patch.parity], &block, mesh << VERTEX_BITS);
         self.patches[index].mesh = Some(mesh);
+        self.seen[mesh as usize] = self.frame;
+        self.behind[mesh as usize] = true;
+        self.scratch.behind.push(mesh);
         Ok(())
     }
 
@@ -338,10 +362,11 @@ impl<S: BlockSource> Deferred<S> {
         }));
         for (&entry, &inside) in due.iter().zip(&inside_m) {
             let mesh = (entry >> VERTEX_BITS) as usize;
-            if self.meshes.0[mesh].seen == self.frame {
+            if self.seen[mesh] == self.frame {
                 self.with_patch(mesh, |patch, with| patch.decide(with, vertex_of(entry), inside));
             } else {
                 self.meshes.0[mesh].miss(vertex_of(entry));
+                self.behind[mesh] = true;
             }
         }
         self.scratch.due = due;
@@ -350,13 +375,9 @@ impl<S: BlockSource> Deferred<S> {
 
     /// Makes up for what the listed patches missed.
     fn catch_up(&mut self) {
-        for at in 0..self.visible.len() {
-            let index = self.layout.patch_index(self.visible[at]);
-            if let Some(mesh) = self.patches[index].mesh.map(|mesh| mesh as usize)
-                && self.meshes.0[mesh].has_missed()
-            {
-                self.with_patch(mesh, PatchMesh::catch_up);
-            }
+        while let Some(mesh) = self.scratch.behind.pop() {
+            self.behind[mesh as usize] = false;
+            self.with_patch(mesh as usize, PatchMesh::catch_up);
         }
     }
 

@@ -19,8 +19,8 @@ use crate::roam::refine::deferred::wheel::{Link, Wheel};
 const SAFETY: f64 = 1.0 - 1e-9;
 
 const ACTIVE: u8 = 1;
-/// A corner of the patch, always active and never split at.
-const CORNER: u8 = 2;
+/// In a list of the wheel.
+const WAITING: u8 = 2;
 /// No triangle is shown that has this corner: it has no data.
 const HOLE: u8 = 4;
 /// Counts parents that are active, two of them; one outside the patch counts, since the vertex's own sphere says
@@ -68,13 +68,13 @@ impl Station {
     }
 }
 
-/// One vertex: where its sphere is, where it waits, what it is. Sixteen bytes, so that a line of the cache holds four.
+/// One vertex: where its sphere is and where it waits. Sixteen bytes, so that a line of the cache holds four; what
+/// changes with the neighbours is kept apart, a byte each, so that a line holds sixty-four.
 #[derive(Clone, Copy, Debug)]
 struct Cell {
     z: f32,
     radius: f32,
     link: Link,
-    flags: u8,
 }
 
 /// The mesh of one patch.
@@ -82,8 +82,6 @@ struct Cell {
 pub struct PatchMesh {
     /// Its place in the layout.
     pub patch: usize,
-    /// The update in which it was last listed.
-    pub seen: u64,
     /// The update in which it last changed.
     pub changed: u64,
     /// Added to a vertex's number to make the wheel's entry.
@@ -93,6 +91,7 @@ pub struct PatchMesh {
     /// Which of the two orientations it has.
     pub parity: usize,
     cells: Vec<Cell>,
+    flags: Vec<u8>,
     /// Where each vertex's four triangles are in the index list.
     slots: Vec<[u16; 4]>,
     plan: [Vec<f32>; 2],
@@ -134,15 +133,17 @@ impl PatchMesh {
         self.entries = entries;
         self.plan.clone_from(&block.plan);
         self.cells.clear();
-        self.cells.extend(topology.nodes().iter().enumerate().map(|(vertex, node)| {
+        self.flags.clear();
+        for (vertex, node) in topology.nodes().iter().enumerate() {
             let at = topology.row_major(vertex as u16);
             let z = block.z[at];
             let absent = u8::from(node.ring[1] == NONE) + u8::from(node.ring[3] == NONE);
             let hole = if z.is_nan() { HOLE } else { 0 };
-            let flags = hole | (absent * ONE_PARENT);
-            Cell { z: if z.is_nan() { 0.0 } else { z }, radius: block.radii[at], link: Link::FREE, flags }
-        }));
-        self.cells[CENTER as usize].flags |= BOTH_PARENTS;
+            self.flags.push(hole | (absent * ONE_PARENT));
+            let z = if z.is_nan() { 0.0 } else { z };
+            self.cells.push(Cell { z, radius: block.radii[at], link: Link::FREE });
+        }
+        self.flags[CENTER as usize] |= BOTH_PARENTS;
         self.slots.clear();
         self.slots.resize(self.cells.len(), [NONE; 4]);
         let clipped = self.plan.iter().any(|along| along.windows(2).any(|pair| pair[0] == pair[1]));
@@ -150,7 +151,7 @@ impl PatchMesh {
         self.indices.clear();
         self.owners.clear();
         for corner in topology.roots().into_iter().flatten() {
-            self.cells[corner as usize].flags |= ACTIVE | CORNER;
+            self.flags[corner as usize] |= ACTIVE;
         }
         for root in topology.roots() {
             self.show(topology, root, triangle(root[0], 0));
@@ -166,17 +167,12 @@ impl PatchMesh {
 
     /// Whether the vertex is active; patch corners are.
     pub fn is_active(&self, vertex: u16) -> bool {
-        self.cells[vertex as usize].flags & ACTIVE != 0
+        self.flags[vertex as usize] & ACTIVE != 0
     }
 
     /// Remembers a vertex that must be looked at when the patch is listed next.
     pub fn miss(&mut self, vertex: u16) {
         self.missed.push(vertex);
-    }
-
-    /// Whether there is something to catch up with.
-    pub fn has_missed(&self) -> bool {
-        !self.missed.is_empty()
     }
 
     /// Decides about everything that was missed or edited.
@@ -189,10 +185,10 @@ impl PatchMesh {
     /// `None` where data came or went: the patch must be reset then.
     pub fn edit(&mut self, topology: &Topology, block: &PatchBlock) -> Option<Vec<u16>> {
         let mut changed = Vec::new();
-        for (vertex, cell) in self.cells.iter_mut().enumerate() {
+        for (vertex, (cell, flags)) in self.cells.iter_mut().zip(&self.flags).enumerate() {
             let at = topology.row_major(vertex as u16);
             let (z, radius) = (block.z[at], block.radii[at]);
-            if z.is_nan() != (cell.flags & HOLE != 0) {
+            if z.is_nan() != (flags & HOLE != 0) {
                 return None;
             }
             let drawn = if z.is_nan() { 0.0 } else { z };
@@ -205,19 +201,25 @@ impl PatchMesh {
         Some(changed)
     }
 
-    /// The link of a vertex.
+    /// Notes that a vertex is in no list of the wheel any more; returns what its link was.
+    pub fn leave(&mut self, vertex: u16) -> Link {
+        self.flags[vertex as usize] &= !WAITING;
+        self.cells[vertex as usize].link
+    }
+
+    /// The link of a vertex; what it says counts only while the vertex waits.
     pub fn link(&mut self, vertex: u16) -> &mut Link {
         &mut self.cells[vertex as usize].link
     }
 
     /// How many active children a vertex counts.
     pub(super) fn active_children(&self, vertex: u16) -> usize {
-        usize::from(self.cells[vertex as usize].flags / ONE_CHILD)
+        usize::from(self.flags[vertex as usize] / ONE_CHILD)
     }
 
     /// Whether a vertex waits in the wheel.
     pub(super) fn is_waiting(&self, vertex: u16) -> bool {
-        self.cells[vertex as usize].link.is_waiting()
+        self.flags[vertex as usize] & WAITING != 0
     }
 
     /// Where a triangle is in the index list.
@@ -247,10 +249,10 @@ impl PatchMesh {
 
     /// Decides about a vertex, unless it waits or cannot change, and puts it where it is decided next.
     fn decide_one(&mut self, with: &mut Decider<'_>, vertex: u16, inside: f64) {
-        let cell = &self.cells[vertex as usize];
-        let active = cell.flags & ACTIVE != 0;
-        let may_change = if active { cell.flags < ONE_CHILD } else { cell.flags & PARENTS == BOTH_PARENTS };
-        if !may_change || cell.link.is_waiting() {
+        let flags = self.flags[vertex as usize];
+        let active = flags & ACTIVE != 0;
+        let may_change = if active { flags < ONE_CHILD } else { flags & PARENTS == BOTH_PARENTS };
+        if !may_change || flags & WAITING != 0 {
             return;
         }
         with.counts.examined += 1;
@@ -261,34 +263,35 @@ impl PatchMesh {
         }
         if inside != f64::NEG_INFINITY {
             let due = with.station.due(inside.abs());
+            self.flags[vertex as usize] |= WAITING;
             self.cells[vertex as usize].link = with.wheel.put(self.entries + u32::from(vertex), due);
         }
     }
 
     /// Whether the parents of a vertex are active.
     pub(super) fn may_split(&self, vertex: u16) -> bool {
-        self.cells[vertex as usize].flags & PARENTS == BOTH_PARENTS
+        self.flags[vertex as usize] & PARENTS == BOTH_PARENTS
     }
 
     fn activate(&mut self, with: &mut Decider<'_>, vertex: u16) {
         let topology = with.topology;
         let node = &topology.nodes()[vertex as usize];
         with.counts.splits += 1;
-        self.cells[vertex as usize].flags |= ACTIVE;
+        self.flags[vertex as usize] |= ACTIVE;
         for side in 0..2 {
             let parent = node.ring[2 * side + 1];
             if parent == NONE {
                 continue;
             }
-            self.cells[parent as usize].flags += ONE_CHILD;
+            self.flags[parent as usize] += ONE_CHILD;
             let [first, second] = halves(node, vertex, side);
             self.replace(topology, node.splits[side], triangle(vertex, 2 * side), first);
             self.show(topology, second, triangle(vertex, 2 * side + 1));
         }
         for child in node.children.into_iter().filter(|&child| child != NONE) {
-            let below = &mut self.cells[child as usize];
-            below.flags += ONE_PARENT;
-            if below.flags & PARENTS == BOTH_PARENTS && !below.link.is_waiting() {
+            let below = &mut self.flags[child as usize];
+            *below += ONE_PARENT;
+            if *below & (PARENTS | WAITING) == BOTH_PARENTS {
                 with.todo.push(child);
             }
         }
@@ -298,9 +301,9 @@ impl PatchMesh {
         let topology = with.topology;
         let node = &topology.nodes()[vertex as usize];
         with.counts.merges += 1;
-        self.cells[vertex as usize].flags &= !ACTIVE;
+        self.flags[vertex as usize] &= !ACTIVE;
         for child in node.children.into_iter().filter(|&child| child != NONE) {
-            self.cells[child as usize].flags -= ONE_PARENT;
+            self.flags[child as usize] -= ONE_PARENT;
         }
         for side in 0..2 {
             let parent = node.ring[2 * side + 1];
@@ -310,10 +313,9 @@ impl PatchMesh {
             self.hide(triangle(vertex, 2 * side + 1));
             let whole = [parent, node.ring[(2 * side + 2) % 4], node.ring[2 * side]];
             self.replace(topology, triangle(vertex, 2 * side), node.splits[side], whole);
-            let above = &mut self.cells[parent as usize];
-            above.flags -= ONE_CHILD;
-            let may_merge = above.flags < ONE_CHILD && above.flags & CORNER == 0;
-            if may_merge && !above.link.is_waiting() {
+            let above = &mut self.flags[parent as usize];
+            *above -= ONE_CHILD;
+            if *above < ONE_CHILD && *above & WAITING == 0 && !Topology::is_corner(parent) {
                 with.todo.push(parent);
             }
         }
@@ -359,7 +361,7 @@ impl PatchMesh {
 
     /// Whether a triangle lies over no data, or has no area, as beyond the border of the terrain.
     pub(super) fn is_missing(&self, topology: &Topology, corners: [u16; 3]) -> bool {
-        let holed = corners.iter().any(|&corner| self.cells[corner as usize].flags & HOLE != 0);
+        let holed = corners.iter().any(|&corner| self.flags[corner as usize] & HOLE != 0);
         holed || self.is_degenerate(topology, corners)
     }
 

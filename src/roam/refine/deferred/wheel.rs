@@ -28,8 +28,11 @@ const NEXT_TIME: usize = LEVELS * SLOTS as usize;
 
 /// The owner of the entries' links.
 pub trait Links {
-    /// The link of an entry.
+    /// The link of an entry that is in a list.
     fn link(&mut self, entry: u32) -> &mut Link;
+
+    /// Notes that an entry is in no list any more; returns what its link was.
+    fn leave(&mut self, entry: u32) -> Link;
 }
 
 /// What an entry knows of its list.
@@ -37,18 +40,13 @@ pub trait Links {
 pub struct Link {
     /// The next entry, or [`FREE`].
     pub next: u32,
-    /// The list it is in, or `u16::MAX`.
+    /// The list it is in.
     list: u16,
 }
 
 impl Link {
-    /// In no list.
+    /// In no list yet.
     pub const FREE: Self = Self { next: FREE, list: u16::MAX };
-
-    /// Whether it is in a list.
-    pub fn is_waiting(&self) -> bool {
-        self.list != u16::MAX
-    }
 }
 
 /// The heads of the lists.
@@ -101,7 +99,7 @@ impl Wheel {
 
     /// Takes an entry out of the list it is in, walking the list.
     pub fn remove(&mut self, links: &mut impl Links, entry: u32) {
-        let Link { next, list } = std::mem::replace(links.link(entry), Link::FREE);
+        let Link { next, list } = links.leave(entry);
         let head = &mut self.heads[list as usize];
         if *head == entry {
             *head = next;
@@ -119,14 +117,12 @@ impl Wheel {
         for head in &mut self.heads {
             let mut entry = std::mem::replace(head, FREE);
             while entry != FREE {
-                let link = links.link(entry);
-                let next = link.next;
-                if keep(entry) {
-                    link.next = *head;
-                    *head = entry;
+                let kept = keep(entry);
+                let next = if kept {
+                    std::mem::replace(&mut links.link(entry).next, std::mem::replace(head, entry))
                 } else {
-                    *link = Link::FREE;
-                }
+                    links.leave(entry).next
+                };
                 entry = next;
             }
         }
@@ -166,9 +162,7 @@ fn take_list(head: &mut u32, links: &mut impl Links, due: &mut Vec<u32>) {
     let mut entry = std::mem::replace(head, FREE);
     while entry != FREE {
         due.push(entry);
-        let link = links.link(entry);
-        entry = link.next;
-        *link = Link::FREE;
+        entry = links.leave(entry).next;
     }
 }
 
@@ -180,6 +174,10 @@ mod tests {
     impl Links for Vec<Link> {
         fn link(&mut self, entry: u32) -> &mut Link {
             &mut self[entry as usize]
+        }
+
+        fn leave(&mut self, entry: u32) -> Link {
+            std::mem::replace(&mut self[entry as usize], Link::FREE)
         }
     }
 
@@ -207,12 +205,12 @@ mod tests {
                     prop_assert!(ahead == 0 || start + ahead >= last, "late");
                     prop_assert!(start + ahead - ahead / 8 <= now + 1, "{ahead} at {}", now - start);
                 }
-                let left = links.iter().enumerate().filter(|(_, link)| link.is_waiting());
+                let left = links.iter().enumerate().filter(|(_, link)| **link != Link::FREE);
                 for (vertex, _) in left {
                     prop_assert!(start + ahead[vertex] > now, "{} is overdue at {}", ahead[vertex], now - start);
                 }
             }
-            prop_assert_eq!(waiting, links.iter().filter(|link| link.is_waiting()).count());
+            prop_assert_eq!(waiting, links.iter().filter(|link| **link != Link::FREE).count());
         }
 
         #[test]
