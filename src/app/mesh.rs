@@ -198,7 +198,8 @@ fn remarks(options: &MeshOptions, ground: &Ground, built: &Built) -> Remarks {
         ),
         format!(
             "vertical error: at most {} m at every post, asked for {} m",
-            built.deviation.max_m, options.max_error
+            told(built.deviation.max_m),
+            options.max_error
         ),
     ];
     Remarks::new(&lines, &format!("metres; origin E {} N {}; {crs}", origin.x, origin.y))
@@ -208,21 +209,26 @@ fn file_name(path: &Path) -> String {
     path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
+/// A maximum in tenths of a millimetre, rounded up: what is told is still a bound.
+fn told(max_m: f64) -> f64 {
+    (max_m * 1e4).ceil() / 1e4
+}
+
 fn summary(options: &MeshOptions, ground: &Ground, built: &Built) -> Vec<String> {
     let Deviation { max_m, mean_m, rms_m, worst, measured, left_out } = built.deviation;
     let origin = ground.lattice.origin();
     let place = worst.map_or_else(String::new, |post| {
         let at = origin + DVec2::new(f64::from(post.column), f64::from(post.row)) * ground.lattice.cell();
         let column = post.column;
-        format!(" at column {column}, row {} from the south-west ({}, {})", post.row, at.x, at.y)
+        format!(" at column {column}, row {} from the south-west ({:.2}, {:.2})", post.row, at.x, at.y)
     });
     let mut lines = vec![
         format!("{}", options.output.display()),
         format!("  vertices   {}", built.mesh.positions.len()),
         format!("  triangles  {}", built.mesh.triangles.len()),
-        format!("  error      maximum {max_m} m, asked for {} m{place}", options.max_error),
-        format!("             mean {mean_m:.6} m, RMS {rms_m:.6} m, over {measured} posts"),
-        format!("  origin     ({}, {}) in {}", origin.x, origin.y, ground.crs.name()),
+        format!("  error      maximum {} m, asked for {} m{place}", told(max_m), options.max_error),
+        format!("             mean {mean_m:.4} m, RMS {rms_m:.4} m, over {measured} posts"),
+        format!("  origin     ({:.3}, {:.3}) in {}", origin.x, origin.y, ground.crs.name()),
     ];
     if left_out > 0 {
         lines.push(format!("  left out   {left_out} posts with data that only cells with a hole touch"));
