@@ -93,7 +93,8 @@ fn a_mesh_keeps_its_bound_at_every_post_and_says_so() {
         let lattice = lattice_of(&scratch.at("grid.asc"));
         let found = measure(&lattice, &written).expect("on posts");
         assert!(found.max_m <= bound.parse().expect("a number"), "asked {bound}: {found:?}");
-        assert_eq!(told(&out, "maximum"), found.max_m, "{out}");
+        let above = told(&out, "maximum") - found.max_m;
+        assert!((0.0..1.001e-4).contains(&above), "told a tenth of a millimetre rounded up: {out}");
         assert_eq!(told(&out, "triangles") as usize, written.triangles.len());
         assert_eq!(told(&out, "vertices") as usize, written.positions.len());
         assert_eq!((told(&out, ", over") as usize, found.left_out), (40 * 30 - 6, 0));
