@@ -18,18 +18,12 @@ fn own_radii(world: &World) -> Vec<f32> {
     world.errors.values().iter().map(|error_m| error_m * reach).collect()
 }
 
-fn vertices(world: &World) -> Vec<Vertex> {
-    let (columns, rows) = (world.layout.columns() as i32, world.layout.rows() as i32);
-    let all = (0..rows).flat_map(|y| (0..columns).map(move |x| Vertex::new(x, y)));
-    all.filter(|&vertex| !world.layout.is_corner(vertex)).collect()
-}
-
 #[test]
 fn paper_003_on_the_error_sphere_s_surface_an_error_spans_the_tolerance() {
     let world = World::hills(65, 65, 64);
     let own = own_radii(&world);
     let camera = camera(Vec3::ZERO, Vec3::Y * 10.0);
-    for vertex in vertices(&world) {
+    for vertex in world.vertices() {
         let (index, error_m) = (world.layout.index(vertex), world.errors.at(&world.layout, vertex));
         if own[index] <= camera.planes().0 {
             continue;
@@ -47,7 +41,7 @@ fn paper_003_a_sphere_is_its_own_or_holds_those_of_its_children() {
     let world = World::hills(97, 65, 32);
     let (own, ground) = (own_radii(&world), world.ground());
     let map = SphereMap::nested(ground, own.clone());
-    for vertex in vertices(&world) {
+    for vertex in world.vertices() {
         let center = ground.position(vertex);
         let below = vertex
             .children()
@@ -68,7 +62,7 @@ fn paper_003_an_eye_inside_spheres_leaves_no_t_junction_without_any_forced_split
     {
         let criterion = Spheres::new(world.ground(), &map, eye);
         let wanted: Vec<Vertex> =
-            vertices(&world).into_iter().filter(|&vertex| criterion.wants(vertex)).collect();
+            world.vertices().into_iter().filter(|&vertex| criterion.wants(vertex)).collect();
         for vertex in &wanted {
             for parent in vertex.parents().into_iter().filter(|&parent| world.layout.contains(parent)) {
                 let there = world.layout.is_corner(parent) || criterion.wants(parent);
