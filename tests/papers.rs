@@ -68,10 +68,6 @@ impl World {
         all.filter(|&vertex| !self.layout.is_corner(vertex)).collect()
     }
 
-    fn patches(&self) -> Vec<Vertex> {
-        self.layout.patches().collect()
-    }
-
     /// `own` of a vertex or of any vertex below it, whichever is largest: asked of each, remembered nowhere.
     fn largest_below(&self, vertex: Vertex, own: &impl Fn(Vertex) -> f32) -> f32 {
         let below = vertex.children().filter(|&child| self.layout.contains(child));
