@@ -1,5 +1,6 @@
 //! 004: the digital terrain model.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::{DVec2, Vec2, Vec3};
@@ -112,7 +113,7 @@ fn paper_004_forced_splits_go_on_recursively_from_block_to_block() {
         }
     }
     let blocks = |vertex: &Vertex| (vertex.x / 32, vertex.y / 32);
-    let touched: std::collections::BTreeSet<_> = order.iter().map(blocks).collect();
+    let touched: BTreeSet<_> = order.iter().map(blocks).collect();
     assert!(touched.len() >= 3, "a corner's split goes over to the blocks beside: {touched:?}");
 }
 
@@ -169,7 +170,6 @@ fn paper_004_a_frame_of_a_terrain_with_sixty_three_times_the_samples_costs_hardl
                 triangles += mesh.triangle_count();
             }
         }
-        eprintln!("{posts}: {examined} {triangles}");
         (examined as f64, triangles as f64)
     };
     let (small, large) = (frame_cost(129), frame_cost(1025));
@@ -184,7 +184,8 @@ fn paper_004_a_digital_terrain_model_is_heights_features_and_what_is_no_terrain(
         (0..60 * 60).map(|at| format!("{:.2}", 100.0 + 9.0 * libm::sin(f64::from(at % 60) * 0.3))).collect();
     let grid = "ncols 60\nnrows 60\nxllcorner 0\nyllcorner 0\ncellsize 10\n".to_string();
     folder.write("hill.asc", grid + &heights.join(" "));
-    folder.write("mast.obj", "v 0 0 0\nv 4 0 0\nv 0 0 30\nf 1 2 3\n");
+    let model = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models/watchtower.3ds"));
+    folder.write("tower.3ds", model.expect("the project's own model"));
     let text = r##"
         title = "Hill"
         subtitle = "from the south"
@@ -200,17 +201,17 @@ fn paper_004_a_digital_terrain_model_is_heights_features_and_what_is_no_terrain(
         [[lake]]
         points = [[400, 300], [460, 300], [460, 350], [400, 350]]
         [[model]]
-        file = "mast.obj"
+        file = "tower.3ds"
         at = [200, 300]
         [[label]]
-        text = "Mast {height}"
+        text = "Tower {height}"
         at = [200, 300]
     "##;
     let file = folder.write("scene.toml", text);
     let document = parse_bytes("scene.toml", text.as_bytes()).unwrap_or_else(|errors| panic!("{errors}"));
     let assets = Assets::new(&file, &[]).expect("the folder is there");
     let scene = build(&document, &assets, &|_| ()).unwrap_or_else(|error| panic!("{error}"));
-    let kinds = scene.features.iter().map(|feature| feature.kind).collect::<std::collections::BTreeSet<_>>();
+    let kinds = scene.features.iter().map(|feature| feature.kind).collect::<BTreeSet<_>>();
     let all = [FeatureKind::Lake, FeatureKind::River, FeatureKind::Road, FeatureKind::Model];
     assert!(all.iter().all(|kind| kinds.contains(kind)), "regular and irregular features: {kinds:?}");
     assert_eq!((scene.title.as_deref(), scene.labels.len()), (Some("Hill"), 1), "what is no terrain");
@@ -223,11 +224,13 @@ fn paper_004_a_digital_terrain_model_is_heights_features_and_what_is_no_terrain(
     for item in draped {
         let mesh = &shot.list.meshes[item.mesh.0 as usize];
         assert!(check_clearance(mesh, &*shot.displayed) < 1e-3, "laid over the ground by height");
+        let material = &shot.list.materials[item.material.0 as usize];
+        assert!(material.texture.is_some(), "each triangle is textured: {}", material.name);
         ribbons += 1;
     }
     assert_eq!(ribbons, 3, "a lake, a river and a road");
-    let mast = shot.list.items.iter().find(|item| item.feature == scene.placements[0].feature);
-    let foot = mast.expect("the model is drawn").world_from_mesh.transform_point3(Vec3::ZERO);
+    let tower = shot.list.items.iter().find(|item| item.feature == scene.placements[0].feature);
+    let foot = tower.expect("the model is drawn").world_from_mesh.transform_point3(Vec3::ZERO);
     let ground = shot.displayed.displayed_z(foot.truncate().as_dvec2()).expect("on the ground") as f32;
     assert!((foot.z - ground).abs() < 1.0, "the model stands at {} on {ground}", foot.z);
 }

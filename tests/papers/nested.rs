@@ -6,6 +6,7 @@ use glam::{DVec2, Vec3};
 use sandtable::dem::read::{Hints, read};
 use sandtable::dem::warp::to_metric;
 use sandtable::roam::active::ActiveSet;
+use sandtable::roam::bintree::Triangle;
 use sandtable::roam::block::WholeGround;
 use sandtable::roam::criterion::Criterion;
 use sandtable::roam::criterion::spheres::Spheres;
@@ -293,6 +294,26 @@ fn paper_003_recomputation_goes_from_the_deformed_vertices_up_and_stops_where_no
         assert!(stopped > 20, "{stopped} ancestors are as they were");
         assert!(changed.iter().any(|&vertex| !deformed(vertex)), "ancestors that were not deformed");
     }
+}
+
+#[test]
+fn paper_003_the_constraint_saves_triangles_on_deformed_ground_too() {
+    let eye = Vec3::new(600.0, 600.0, 80.0);
+    let shown = |radius: Radius| {
+        let plain = World::new((129, 129), 32, |x, y| 0.25 * libm::sinf(x * 0.8) * libm::cosf(y * 0.7));
+        let options = DynamicOptions { radius, reach: 600.0, ..OPTIONS };
+        let mut terrain = DynamicTerrain::new(plain.lattice, options).expect("sound");
+        terrain.edit(|lattice| crater(lattice).and(tyre_track(lattice))).expect("it digs");
+        let criterion = Spheres::new(terrain.ground(), terrain.spheres(), eye);
+        let layout = terrain.layout();
+        let active = rebuild(layout, &criterion, layout.patches());
+        let crater = |leaf: &&Triangle| (leaf.apex.x - 52).abs() < 4 && (leaf.apex.y - 62).abs() < 4;
+        let all = leaves(&active);
+        (all.len(), all.iter().filter(crater).count())
+    };
+    let (plain, constrained) = (shown(Radius::Plain), shown(Radius::Constrained((1, 1))));
+    assert!(constrained.0 * 3 < plain.0 * 2, "{} triangles of {}", constrained.0, plain.0);
+    assert!(constrained.1 * 10 >= plain.1 * 9, "{} of {} in the crater", constrained.1, plain.1);
 }
 
 /// All that a mesh following an eye is made of.

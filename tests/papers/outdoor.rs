@@ -6,6 +6,8 @@ use std::sync::Arc;
 use glam::{DVec2, Vec2, Vec3};
 use image::{DynamicImage, ImageBuffer, ImageFormat};
 use sandtable::dem::read::{Hints, read};
+use sandtable::draw::color::Srgba;
+use sandtable::draw::ground::Ramp;
 use sandtable::mesh::check::check_with_area;
 use sandtable::mesh::trimesh::TriMesh;
 use sandtable::roam::active::ActiveSet;
@@ -27,6 +29,7 @@ use sandtable::roam::layout::Layout;
 use sandtable::roam::refine::queues::{Goal, Queues};
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::terrain::lattice::{Lattice, Post};
+use sandtable::terrain::light::light;
 
 use crate::{World, camera, leaves, same};
 
@@ -284,5 +287,30 @@ fn paper_002_the_number_of_triangles_has_a_cap_that_is_reached_and_never_exceede
             assert_eq!(triangles, queues.triangles());
             assert!(triangles <= most && triangles + 2 >= most, "{triangles} of {most} in step {step}");
         }
+    }
+}
+
+#[test]
+fn paper_002_the_ground_has_light_maps() {
+    // A wall that runs north, the sun low in the west.
+    let world = World::new((65, 33), 32, |x, _| if x == 20.0 { 100.0 } else { 0.0 });
+    let light = light(&world.lattice, 1.0, Vec3::new(-1.0, 0.0, 0.5).normalize());
+    let at = |column: u32| {
+        let place = world.lattice.index(Post { column, row: 16 });
+        (light.sun[place], light.sky[place])
+    };
+    assert_eq!((at(10).0, at(25).0, at(60).0), (1.0, 0.0, 1.0), "before, in and beyond the wall's shadow");
+    assert!(at(21).1 < at(25).1 && at(25).1 < at(60).1, "the wall hides less and less of the sky");
+}
+
+#[test]
+fn paper_002_the_surfaces_of_the_ground_are_blended_by_height() {
+    let [grass, rock] = [Srgba::opaque(40, 120, 30), Srgba::opaque(120, 110, 100)];
+    let ramp = Ramp::new(vec![(100.0, grass), (300.0, rock)]).expect("rising");
+    for (height_m, share) in
+        [(0.0, 0.0), (100.0, 0.0), (150.0, 0.25), (200.0, 0.5), (300.0, 1.0), (900.0, 1.0)]
+    {
+        let blended = grass.linear().lerp(rock.linear(), share);
+        assert!((ramp.linear_at(height_m) - blended).length() < 1e-6, "{height_m} m");
     }
 }
