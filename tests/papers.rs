@@ -3,6 +3,7 @@
 //! 000: patches with forced splits and merges. 001: the restricted quadtree. 002: outdoor terrain rendering.
 //! 003: the constrained nested error criterion. 004: the digital terrain model.
 
+mod common;
 #[path = "papers/dtm.rs"]
 mod dtm;
 #[path = "papers/nested.rs"]
@@ -19,6 +20,7 @@ use sandtable::roam::active::ActiveSet;
 use sandtable::roam::bintree::Triangle;
 use sandtable::roam::culling::PatchHeights;
 use sandtable::roam::errors::ErrorMap;
+use sandtable::roam::graph::Vertex;
 use sandtable::roam::ground::Ground;
 use sandtable::roam::layout::Layout;
 use sandtable::terrain::lattice::Lattice;
@@ -54,6 +56,34 @@ impl World {
     fn ground(&self) -> Ground<'_> {
         Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
     }
+
+    fn height(&self, vertex: Vertex) -> f32 {
+        self.lattice.height(self.layout.post(vertex))
+    }
+
+    /// All vertices but the patch corners.
+    fn vertices(&self) -> Vec<Vertex> {
+        let (columns, rows) = (self.layout.columns() as i32, self.layout.rows() as i32);
+        let all = (0..rows).flat_map(|y| (0..columns).map(move |x| Vertex::new(x, y)));
+        all.filter(|&vertex| !self.layout.is_corner(vertex)).collect()
+    }
+
+    /// `own` of a vertex or of any vertex below it, whichever is largest: asked of each, remembered nowhere.
+    fn largest_below(&self, vertex: Vertex, own: &impl Fn(Vertex) -> f32) -> f32 {
+        let below = vertex.children().filter(|&child| self.layout.contains(child));
+        below.map(|child| self.largest_below(child, own)).fold(own(vertex), f32::max)
+    }
+
+    /// `|z − mean of the ends|` of the hypotenuse that a vertex splits.
+    fn midpoint_error(&self, vertex: Vertex) -> f32 {
+        let [from, to] = vertex.hypotenuse().map(|end| self.height(end));
+        (self.height(vertex) - (from + to) / 2.0).abs()
+    }
+}
+
+/// Whether two lengths or ratios are the same to rounding.
+fn same(found: f32, expected: f32) -> bool {
+    found == expected || (found - expected).abs() <= expected.abs() * 1e-4 + 1e-5
 }
 
 fn camera(eye: Vec3, target: Vec3) -> Camera {

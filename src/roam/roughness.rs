@@ -1,7 +1,7 @@
 //! Local roughness: how far the posts around a post differ from it in height.
 //!
-//! `f = (1/n) Σ (z − z_i)²` over a window of M × N posts around the post, the n posts of it that are there and hold
-//! data (constrained nested error criterion; 3 × 3 in the paper's tests). The factor that it gives,
+//! `f = (1/n) Σ (z − z_i)²` over a window of M × N posts around the post, itself included: n = M · N, or those of it
+//! that are there and hold data (constrained nested error criterion; 3 × 3 in the paper's tests). The factor that it gives,
 //! `k = 1 − 1/(f + 1 + ξ)` with `0 < k < 1`, is near 1 on rough ground and near 0 on flat ground. It is no length and
 //! knows no scale: a slope counts as roughness, and metres are what f is measured in, as the paper has it.
 
@@ -77,8 +77,8 @@ fn local(lattice: &Lattice, post: Post, half_window: (u32, u32)) -> f32 {
             }
         }
     }
-    // The post itself is in its window but is no neighbour.
-    if count > 1 { (sum / f64::from(count - 1)) as f32 } else { 0.0 }
+    // Without data the post is no neighbour of itself either.
+    if count > 0 { (sum / f64::from(count)) as f32 } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -91,14 +91,14 @@ mod tests {
     }
 
     #[test]
-    fn a_spike_is_as_rough_as_its_height_squared_and_its_neighbours_an_eighth_of_it() {
+    fn a_spike_is_eight_times_as_rough_as_each_of_its_neighbours() {
         let mut heights = vec![10.0; 25];
         heights[12] = 14.0;
         let roughness = Roughness::new(&lattice(heights), (1, 1));
         let at = |column, row| roughness.at(Post { column, row });
-        assert_eq!((at(2, 2), at(1, 2), at(0, 0)), (16.0, 2.0, 0.0));
+        assert_eq!((at(2, 2), at(1, 2), at(0, 0)), (8.0 * 16.0 / 9.0, 16.0 / 9.0, 0.0));
         let factor = |column, row| roughness.factor(Post { column, row });
-        assert!((factor(2, 2) - 16.0 / 17.0).abs() < 1e-6);
+        assert!((factor(2, 2) - 128.0 / 137.0).abs() < 1e-6);
         assert!(factor(0, 0) > 0.0 && factor(0, 0) < 1e-5);
     }
 
@@ -107,7 +107,7 @@ mod tests {
         let mut heights = vec![10.0; 25];
         (heights[0], heights[5], heights[1]) = (12.0, f32::NAN, 13.0);
         let roughness = Roughness::new(&lattice(heights), (1, 1));
-        assert_eq!(roughness.at(Post { column: 0, row: 0 }), (1.0 + 4.0) / 2.0);
+        assert_eq!(roughness.at(Post { column: 0, row: 0 }), (0.0 + 1.0 + 4.0) / 3.0);
         assert_eq!(roughness.at(Post { column: 0, row: 1 }), 0.0);
     }
 }
