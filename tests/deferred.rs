@@ -1,19 +1,23 @@
 //! The deferred refiner shows, after any path and any edits, the mesh that is built from the roots for the same eye.
 
-use glam::{DVec2, Vec3};
+use glam::{DAffine2, DMat2, DVec2, Vec3};
 use proptest::prelude::*;
+use sandtable::dem::raster::{Raster, Samples};
 use sandtable::roam::bintree::Triangle;
-use sandtable::roam::block::{PatchBlock, WholeGround};
+use sandtable::roam::block::{BlockSource, PatchBlock, WholeGround};
 use sandtable::roam::criterion::spheres::Spheres;
+use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, Measure, Radius};
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
 use sandtable::roam::ground::Ground;
 use sandtable::roam::layout::Layout;
+use sandtable::roam::paging::ground::{PagedGround, PagingOptions, exact_spheres};
 use sandtable::roam::refine::changes::Changes;
 use sandtable::roam::refine::deferred::Deferred;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::roam::spheres::SphereMap;
-use sandtable::terrain::lattice::Lattice;
+use sandtable::terrain::brush::Crater;
+use sandtable::terrain::lattice::{Lattice, Post};
 
 fn hills(columns: u32, rows: u32, holes: &[usize]) -> Lattice {
     let mut heights: Vec<f32> = (0..columns * rows)
@@ -60,7 +64,7 @@ fn rebuilt(ground: Ground<'_>, map: &SphereMap, eye: Vec3, patches: &[Vertex]) -
     found
 }
 
-fn shown(walk: &Deferred<WholeGround<'_>>) -> Vec<[Vertex; 3]> {
+fn shown(walk: &Deferred<impl BlockSource>) -> Vec<[Vertex; 3]> {
     let mut found = Vec::new();
     for &corner in walk.visible() {
         for triangle in walk.indices(corner) {
@@ -153,6 +157,82 @@ proptest! {
             prop_assert_eq!(walk.check(), Ok(()));
             prop_assert_eq!(shown(&walk), rebuilt(grounds[state], &maps[state], eye, &all));
         }
+    }
+}
+
+#[test]
+fn a_crater_in_view_is_walked_round_as_if_it_had_always_been_there() {
+    let options = DynamicOptions {
+        patch: 16,
+        exaggeration: 1.5,
+        measure: Measure::Midpoint,
+        radius: Radius::Plain,
+        reach: 40.0,
+    };
+    let terrain = DynamicTerrain::new(hills(100, 90, &[]), options).expect("sound");
+    let all: Vec<Vertex> = terrain.layout().patches().collect();
+    let mut walk = Deferred::new(terrain, 8.0).expect("small patches");
+    for step in 0..12 {
+        let eye = Vec3::new(200.0 + 30.0 * step as f32, 300.0, 60.0);
+        let before = walk.update(eye, &all).expect("in memory").clone();
+        assert!(before.splits > 0, "the eye moves");
+        let center = DVec2::new(250.0 + 40.0 * f64::from(step), 310.0 + 9.0 * f64::from(step));
+        let crater = Crater { center, radius_m: 60.0, depth_m: 25.0, rim_m: 6.0 };
+        let edit = walk.source_mut().edit(|lattice| crater.apply(lattice)).expect("ground to dig in");
+        walk.edit(&edit.patches).expect("in memory");
+        let dirty = walk.update(eye, &all).expect("in memory").dirty.clone();
+        assert!(!dirty.is_empty() && dirty.len() < all.len() / 2, "{dirty:?} of {}", all.len());
+        assert_eq!(walk.check(), Ok(()));
+        let bare = DynamicTerrain::new(walk.source().lattice().as_ref().clone(), options).expect("sound");
+        let anew = rebuilt(bare.ground(), bare.spheres(), eye, &all);
+        assert_eq!(shown(&walk), anew, "after crater {step}");
+    }
+}
+
+#[test]
+fn terrain_that_is_read_as_it_is_walked_shows_what_it_would_from_memory() {
+    let lattice = hills(150, 110, &[]);
+    let raster = raster_of(&lattice);
+    let options = PagingOptions { patch: 16, capacity: 4, exaggeration: 1.0 };
+    let paged = PagedGround::open(raster, exact_spheres(25.0), &options).expect("sound");
+    let layout = Layout::new(150, 110, 16).expect("sound");
+    let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+    let map = exact_spheres(25.0)(ground);
+    let all: Vec<Vertex> = layout.patches().collect();
+    let mut from_file = Deferred::new(paged, 8.0).expect("small patches");
+    let mut from_memory = Deferred::new(WholeGround { ground, spheres: &map }, 8.0).expect("small patches");
+    let mut most = 0;
+    for step in 0..40 {
+        let eye = Vec3::new(100.0 + 30.0 * step as f32, 300.0 + 8.0 * step as f32, 40.0);
+        let near: Vec<Vertex> =
+            (all.iter().copied()).filter(|corner| (corner.x * 10 - eye.x as i32).abs() < 400).collect();
+        from_memory.update(eye, &near).expect("in memory");
+        from_file.update(eye, &near).expect("readable");
+        from_file.forget(12);
+        most = most.max(from_file.meshes());
+        assert_eq!(from_file.source().check(), Ok(()));
+        assert_eq!(shown(&from_file), shown(&from_memory), "step {step}");
+    }
+    let counts = from_file.source().counts();
+    assert!(counts.peak <= 4 && counts.loads > 10 && most < all.len() / 2, "{counts:?}, {most} meshes");
+}
+
+/// The raster whose lattice is `lattice`.
+fn raster_of(lattice: &Lattice) -> Raster {
+    let (columns, rows) = (lattice.columns(), lattice.rows());
+    let samples =
+        (0..rows).rev().flat_map(|row| (0..columns).map(move |column| lattice.height(Post { column, row })));
+    let axes = DMat2::from_diagonal(lattice.cell() * DVec2::new(1.0, -1.0));
+    Raster {
+        driver: "test",
+        width: columns,
+        height: rows,
+        samples: Samples::F32(samples.collect()),
+        metres_per_z: 1.0,
+        map_from_grid: DAffine2 { matrix2: axes, translation: DVec2::new(-5.0, f64::from(rows) * 8.0 - 4.0) },
+        georeferenced: true,
+        crs: None,
+        nodata: None,
     }
 }
 

@@ -4,12 +4,16 @@
 //! bit, what would be made from the new heights from scratch. An edit tells which patches are dirty, so that
 //! whatever lies on the ground or was sent from it is renewed there and nowhere else.
 //!
+//! A terrain is a source of patches, so that a walk can own it: edit the walk's source, and tell the walk which
+//! patches are dirty.
+//!
 //! The heights are shared: who holds an epoch of them keeps it whole, since an edit then changes a copy. Where nobody
 //! does, an edit copies nothing.
 
 use std::sync::Arc;
 
 use crate::roam::active::ActiveSet;
+use crate::roam::block::{BlockError, BlockSource, PatchBlock, RootSphere, WholeGround};
 use crate::roam::criterion::Criterion;
 use crate::roam::criterion::spheres::Spheres;
 use crate::roam::culling::PatchHeights;
@@ -92,6 +96,20 @@ pub struct Edit {
     pub volumes: Volumes,
 }
 
+impl BlockSource for DynamicTerrain {
+    fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    fn root(&self, corner: Vertex) -> RootSphere {
+        self.whole().root(corner)
+    }
+
+    fn block(&mut self, corner: Vertex) -> Result<Arc<PatchBlock>, BlockError> {
+        self.whole().block(corner)
+    }
+}
+
 impl DynamicTerrain {
     /// The terrain over `lattice`; `None` where patches cannot be laid over it (see [`Layout::new`]).
     pub fn new(lattice: Lattice, options: DynamicOptions) -> Option<Self> {
@@ -118,6 +136,10 @@ impl DynamicTerrain {
     /// The heights as they are now; whoever keeps this keeps the epoch.
     pub fn lattice(&self) -> &Arc<Lattice> {
         &self.lattice
+    }
+
+    fn whole(&self) -> WholeGround<'_> {
+        WholeGround { ground: self.ground(), spheres: &self.spheres }
     }
 
     /// The ground of this epoch.

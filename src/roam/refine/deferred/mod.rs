@@ -244,6 +244,11 @@ impl<S: BlockSource> Deferred<S> {
         }
     }
 
+    /// Where patches come from.
+    pub fn source(&self) -> &S {
+        &self.source
+    }
+
     /// Where patches come from; whoever changes it tells so by [`Deferred::edit`].
     pub fn source_mut(&mut self) -> &mut S {
         &mut self.source
