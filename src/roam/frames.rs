@@ -37,9 +37,12 @@ impl LastFrame {
                 .as_ref()
                 .is_some_and(|before| Arc::ptr_eq(before, &list.triangles) || *before == list.triangles);
             if !same {
-                let (before, now) = (before.map(|list| set(&list)).unwrap_or_default(), set(&list.triangles));
-                change.appeared += now.difference(&before).count();
-                change.vanished += before.difference(&now).count();
+                let (appeared, vanished) = before.map_or((list.triangles.len(), 0), |before| {
+                    let (before, now) = (set(&before), set(&list.triangles));
+                    (now.difference(&before).count(), before.difference(&now).count())
+                });
+                change.appeared += appeared;
+                change.vanished += vanished;
                 change.list_bytes += list.bytes();
             }
             self.last.insert(list.corner, Arc::clone(&list.triangles));

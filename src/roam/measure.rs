@@ -59,8 +59,18 @@ impl HeightDifference {
 
 /// Measures the triangles of `shown`, no patch twice; in parallel over patches, the same for any number of threads.
 pub fn height_difference(lattice: &Lattice, layout: &Layout, shown: &[PatchList]) -> HeightDifference {
+    height_difference_where(lattice, layout, shown, |_| true)
+}
+
+/// Measures only at posts with data that `wanted` wants: those in the picture, for one.
+pub fn height_difference_where(
+    lattice: &Lattice,
+    layout: &Layout,
+    shown: &[PatchList],
+    wanted: impl Fn(Post) -> bool + Sync,
+) -> HeightDifference {
     let patches: Vec<Measured> =
-        shown.par_iter().map(|list| Scan::new(lattice, layout, list).measured()).collect();
+        shown.par_iter().map(|list| Scan::new(lattice, layout, list, &wanted).measured()).collect();
     let mut border: Vec<(usize, f64)> = patches.iter().flat_map(|patch| &patch.border).copied().collect();
     // Neighbours agree about a border post but for rounding; the larger counts.
     border.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
@@ -78,23 +88,24 @@ struct Measured {
 }
 
 /// One patch being measured.
-struct Scan<'a> {
+struct Scan<'a, W> {
     lattice: &'a Lattice,
     layout: &'a Layout,
     list: &'a PatchList,
+    wanted: &'a W,
     first: Post,
     last: Post,
     seen: Vec<bool>,
     found: Measured,
 }
 
-impl<'a> Scan<'a> {
-    fn new(lattice: &'a Lattice, layout: &'a Layout, list: &'a PatchList) -> Self {
+impl<'a, W: Fn(Post) -> bool> Scan<'a, W> {
+    fn new(lattice: &'a Lattice, layout: &'a Layout, list: &'a PatchList, wanted: &'a W) -> Self {
         let patch = layout.patch();
         let (first, last) = (layout.post(list.corner), layout.post(list.corner.moved(patch, patch)));
         let posts = (last.column - first.column + 1) as usize * (last.row - first.row + 1) as usize;
         let found = Measured { inside: HeightDifference::default(), border: Vec::new() };
-        Self { lattice, layout, list, first, last, seen: vec![false; posts], found }
+        Self { lattice, layout, list, wanted, first, last, seen: vec![false; posts], found }
     }
 
     fn measured(mut self) -> Measured {
@@ -142,7 +153,10 @@ impl<'a> Scan<'a> {
         let shown = plane.height(start);
         let mut found = HeightDifference::default();
         for (at, (&height, seen)) in heights.iter().zip(seen).enumerate() {
-            if !height.is_nan() && !std::mem::replace(seen, true) {
+            if height.is_nan() || std::mem::replace(seen, true) {
+                continue;
+            }
+            if (self.wanted)(Post { column: first + at as u32, row }) {
                 found.add((f64::from(height) - (shown + plane.per_column * at as f64)).abs());
             }
         }
@@ -151,7 +165,8 @@ impl<'a> Scan<'a> {
 
     fn measure_on_border(&mut self, post: Post, plane: &Plane) {
         let (place, height) = (self.place(post), self.lattice.height(post));
-        if !height.is_nan() && !std::mem::replace(&mut self.seen[place], true) {
+        let is_new = !height.is_nan() && !std::mem::replace(&mut self.seen[place], true);
+        if is_new && (self.wanted)(post) {
             let off_m = (f64::from(height) - plane.height(post)).abs();
             self.found.border.push((self.lattice.index(post), off_m));
         }

@@ -1,9 +1,9 @@
 //! The pass that remembers nothing, and the product's own rebuild beside it: the same flight, as many triangles.
 
 use sandtable::app::lod::follow::Follow;
-use sandtable::app::lod::method::Rule;
+use sandtable::app::lod::method::{Lists, Refiner, Rule};
 use sandtable::app::lod::prepared::Prepared;
-use sandtable::app::lod::rebuild::Rebuilding;
+use sandtable::app::lod::refining::Refining;
 use sandtable::view::camera::Camera;
 
 use crate::stateless::Stateless;
@@ -28,12 +28,12 @@ pub fn print() {
 }
 
 fn compare(yardstick: &mut Stateless, terrain: &Prepared, cameras: &[Camera]) {
-    let mut rebuilding = Rebuilding::new(Rule::Spheres, terrain);
+    let mut rebuilding = Refining::new(Lists::Bintree, Rule::Spheres, Refiner::Rebuild, terrain, None);
     let triangles = [
         mean(cameras, |camera| yardstick.update(camera) as f64),
         mean(cameras, |camera| {
             rebuilding.update(camera);
-            shown(&rebuilding)
+            shown(&mut rebuilding)
         }),
     ];
     let (mut stateless_times, mut rebuild_times) = (Vec::new(), Vec::new());
@@ -67,7 +67,7 @@ fn timed(cameras: &[Camera], mut update: impl FnMut(&Camera)) -> Vec<f64> {
     cameras.iter().map(|camera| rounds::time_ms(|| update(camera))).collect()
 }
 
-fn shown(follow: &dyn Follow) -> f64 {
+fn shown(follow: &mut dyn Follow) -> f64 {
     follow.shown().iter().map(|list| list.triangles.len() as f64).sum()
 }
 
@@ -76,10 +76,10 @@ fn tune(terrain: &mut Prepared, target: usize, cameras: &[Camera]) {
     let some: Vec<Camera> = cameras.iter().step_by(cameras.len().div_ceil(8)).copied().collect();
     let found = rounds::bisected(target as f64, (0.05, 500.0), |tolerance_px| {
         terrain.set_tolerance_px(tolerance_px);
-        let mut rebuilding = Rebuilding::new(Rule::Spheres, terrain);
+        let mut rebuilding = Refining::new(Lists::Bintree, Rule::Spheres, Refiner::Rebuild, terrain, None);
         mean(&some, |camera| {
             rebuilding.update(camera);
-            shown(&rebuilding)
+            shown(&mut rebuilding)
         })
     });
     terrain.set_tolerance_px(found);
