@@ -236,8 +236,8 @@ Columns, over all frames but the first: triangles and vertices named by the inde
 not shown in the frame before (mean); milliseconds to bring triangles and lists up to date; upload: bytes of 16-bit
 index lists sent a frame (median): of the patches that changed or came into view, or of all that are shown where a
 method does not know which stayed the same; full sends nothing after the first frame;
-mean, RMS and maximum metres between what is shown and the elevation model, at every post in the picture, hidden ones
-among them, in eight frames.";
+mean, RMS and maximum metres between what is shown and the elevation model, and the most that is on the picture in
+pixels, at every post in the picture, hidden ones among them, in eight frames.";
 
 impl LodOptions {
     /// Which methods are asked for.

@@ -21,6 +21,7 @@ pub struct HeightDifference {
     sum: f64,
     squares: f64,
     max_m: f64,
+    max_px: f64,
 }
 
 impl HeightDifference {
@@ -39,6 +40,11 @@ impl HeightDifference {
         (self.posts > 0).then_some(self.max_m)
     }
 
+    /// The longest on the picture, pixels, where it was measured with one; `None` where nothing was.
+    pub fn max_px(&self) -> Option<f64> {
+        (self.posts > 0).then_some(self.max_px)
+    }
+
     /// Both measurements as one.
     pub fn with(self, other: Self) -> Self {
         Self {
@@ -46,66 +52,77 @@ impl HeightDifference {
             sum: self.sum + other.sum,
             squares: self.squares + other.squares,
             max_m: self.max_m.max(other.max_m),
+            max_px: self.max_px.max(other.max_px),
         }
     }
 
-    fn add(&mut self, off_m: f64) {
+    fn add(&mut self, off_m: f64, seen_px: f64) {
         self.posts += 1;
         self.sum += off_m;
         self.squares += off_m * off_m;
         self.max_m = self.max_m.max(off_m);
+        self.max_px = self.max_px.max(seen_px);
     }
 }
 
 /// Measures the triangles of `shown`, no patch twice; in parallel over patches, the same for any number of threads.
 pub fn height_difference(lattice: &Lattice, layout: &Layout, shown: &[PatchList]) -> HeightDifference {
-    height_difference_where(lattice, layout, shown, |_| true)
+    height_difference_seen(lattice, layout, shown, |_, _| Some(0.0))
 }
 
-/// Measures only at posts with data that `wanted` wants: those in the picture, for one.
-pub fn height_difference_where(
+/// As [`height_difference`], at posts in a picture only: `seen_px` says of a post with data and the height that is
+/// shown there how many pixels are between the two, and `None` of a post that is not in the picture.
+pub fn height_difference_seen(
     lattice: &Lattice,
     layout: &Layout,
     shown: &[PatchList],
-    wanted: impl Fn(Post) -> bool + Sync,
+    seen_px: impl Fn(Post, f64) -> Option<f64> + Sync,
 ) -> HeightDifference {
     let patches: Vec<Measured> =
-        shown.par_iter().map(|list| Scan::new(lattice, layout, list, &wanted).measured()).collect();
-    let mut border: Vec<(usize, f64)> = patches.iter().flat_map(|patch| &patch.border).copied().collect();
+        shown.par_iter().map(|list| Scan::new(lattice, layout, list, &seen_px).measured()).collect();
+    let mut border: Vec<OnBorder> = patches.iter().flat_map(|patch| &patch.border).copied().collect();
     // Neighbours agree about a border post but for rounding; the larger counts.
-    border.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
-    border.dedup_by_key(|&mut (post, _)| post);
+    border.sort_unstable_by(|a, b| a.post.cmp(&b.post).then(b.off_m.total_cmp(&a.off_m)));
+    border.dedup_by_key(|measured| measured.post);
     let mut whole = patches.iter().fold(HeightDifference::default(), |sum, patch| sum.with(patch.inside));
-    border.iter().for_each(|&(_, off_m)| whole.add(off_m));
+    border.iter().for_each(|measured| whole.add(measured.off_m, measured.seen_px));
     whole
 }
 
 /// What was measured of one patch.
 struct Measured {
     inside: HeightDifference,
-    /// Posts of the lattice on the patch's border.
-    border: Vec<(usize, f64)>,
+    border: Vec<OnBorder>,
+}
+
+/// What was measured at a post on a patch's border.
+#[derive(Clone, Copy)]
+struct OnBorder {
+    /// Its index in the lattice.
+    post: usize,
+    off_m: f64,
+    seen_px: f64,
 }
 
 /// One patch being measured.
-struct Scan<'a, W> {
+struct Scan<'a, S> {
     lattice: &'a Lattice,
     layout: &'a Layout,
     list: &'a PatchList,
-    wanted: &'a W,
+    seen_px: &'a S,
     first: Post,
     last: Post,
     seen: Vec<bool>,
     found: Measured,
 }
 
-impl<'a, W: Fn(Post) -> bool> Scan<'a, W> {
-    fn new(lattice: &'a Lattice, layout: &'a Layout, list: &'a PatchList, wanted: &'a W) -> Self {
+impl<'a, S: Fn(Post, f64) -> Option<f64>> Scan<'a, S> {
+    fn new(lattice: &'a Lattice, layout: &'a Layout, list: &'a PatchList, seen_px: &'a S) -> Self {
         let patch = layout.patch();
         let (first, last) = (layout.post(list.corner), layout.post(list.corner.moved(patch, patch)));
         let posts = (last.column - first.column + 1) as usize * (last.row - first.row + 1) as usize;
         let found = Measured { inside: HeightDifference::default(), border: Vec::new() };
-        Self { lattice, layout, list, wanted, first, last, seen: vec![false; posts], found }
+        Self { lattice, layout, list, seen_px, first, last, seen: vec![false; posts], found }
     }
 
     fn measured(mut self) -> Measured {
@@ -156,8 +173,9 @@ impl<'a, W: Fn(Post) -> bool> Scan<'a, W> {
             if height.is_nan() || std::mem::replace(seen, true) {
                 continue;
             }
-            if (self.wanted)(Post { column: first + at as u32, row }) {
-                found.add((f64::from(height) - (shown + plane.per_column * at as f64)).abs());
+            let shown_m = shown + plane.per_column * at as f64;
+            if let Some(seen_px) = (self.seen_px)(Post { column: first + at as u32, row }, shown_m) {
+                found.add((f64::from(height) - shown_m).abs(), seen_px);
             }
         }
         self.found.inside = self.found.inside.with(found);
@@ -166,9 +184,10 @@ impl<'a, W: Fn(Post) -> bool> Scan<'a, W> {
     fn measure_on_border(&mut self, post: Post, plane: &Plane) {
         let (place, height) = (self.place(post), self.lattice.height(post));
         let is_new = !height.is_nan() && !std::mem::replace(&mut self.seen[place], true);
-        if is_new && (self.wanted)(post) {
-            let off_m = (f64::from(height) - plane.height(post)).abs();
-            self.found.border.push((self.lattice.index(post), off_m));
+        let shown_m = plane.height(post);
+        if is_new && let Some(seen_px) = (self.seen_px)(post, shown_m) {
+            let off_m = (f64::from(height) - shown_m).abs();
+            self.found.border.push(OnBorder { post: self.lattice.index(post), off_m, seen_px });
         }
     }
 
@@ -255,7 +274,7 @@ mod tests {
         let mut whole = HeightDifference::default();
         for post in lattice.posts().filter(|&post| !lattice.height(post).is_nan()) {
             if let Some(z) = terrain.displayed_z(lattice.position(post).as_dvec2()) {
-                whole.add((f64::from(lattice.height(post)) - z).abs());
+                whole.add((f64::from(lattice.height(post)) - z).abs(), 0.0);
             }
         }
         whole

@@ -2,16 +2,17 @@
 
 use std::time::Instant;
 
+use glam::{UVec2, Vec2};
+
 use crate::app::lod::follow::Follow;
 use crate::app::lod::method::Method;
 use crate::app::lod::prepared::Prepared;
 use crate::app::lod::report::Report;
 use crate::roam::frames::LastFrame;
-use crate::roam::measure::{HeightDifference, height_difference_where};
+use crate::roam::measure::{HeightDifference, height_difference_seen};
 use crate::roam::shown::PatchList;
 use crate::terrain::lattice::Post;
 use crate::view::camera::Camera;
-use crate::view::frustum::Frustum;
 
 /// Frames whose heights are compared with the elevation model, spread evenly over the flight: enough to even out
 /// what one view happens to see, few enough to take no longer than the flight.
@@ -57,12 +58,19 @@ fn triangles(shown: &[PatchList]) -> usize {
 /// How far what is shown is off at the posts in the picture: a patch can be large, and what of it is out of view may
 /// be left as it comes.
 fn difference_in_view(terrain: &Prepared, camera: &Camera, shown: &[PatchList]) -> HeightDifference {
-    let (lattice, frustum) = (&terrain.lattice, Frustum::of(camera));
-    let in_view = |post: Post| {
-        let at = lattice.position(post).extend(lattice.height(post));
-        frustum.may_see(at, at)
+    let (lattice, size) = (&terrain.lattice, UVec2::from(camera.size()).as_vec2());
+    let seen_px = |post: Post, shown_m: f64| {
+        let (at, height_m) = (lattice.position(post), lattice.height(post));
+        let ground = camera.project(at.extend(height_m))?.pixel;
+        let is_in_view = ground.cmpge(Vec2::ZERO).all() && ground.cmple(size).all();
+        if !is_in_view || f64::from(height_m) == shown_m {
+            return is_in_view.then_some(0.0);
+        }
+        // What is shown nearer than the picture begins is not seen.
+        let shown = camera.project(at.extend(shown_m as f32));
+        Some(shown.map_or(0.0, |shown| f64::from(shown.pixel.distance(ground))))
     };
-    height_difference_where(lattice, &terrain.layout, shown, in_view)
+    height_difference_seen(lattice, &terrain.layout, shown, seen_px)
 }
 
 /// The frames that are measured, from the first to the last.

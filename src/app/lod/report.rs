@@ -60,6 +60,7 @@ fn object(report: &Report) -> Value {
         "mean_m": report.difference.mean_m(),
         "rms_m": report.difference.rms_m(),
         "max_m": report.difference.max_m(),
+        "max_px": report.difference.max_px(),
     })
 }
 
@@ -71,7 +72,7 @@ pub fn table(reports: &[Report], terrain: &Prepared, way: &Way, budget: Option<u
     let frames = reports.first().map_or(0, |report| report.frames);
     let cell = lattice.cell();
     let goal = match budget {
-        Some(most) => format!("at most {most} triangles"),
+        Some(most) => format!("triangle budget {most}"),
         None => format!("tolerance {} px", terrain.tolerance_px),
     };
     let mut lines = vec![
@@ -92,7 +93,7 @@ pub fn table(reports: &[Report], terrain: &Prepared, way: &Way, budget: Option<u
         "changed: triangles not shown in the frame before; upload: bytes of index lists sent a frame".into(),
     );
     lines.push(format!(
-        "mean, rms, max: metres off the elevation model at every post in the picture, in {} frames",
+        "mean, rms, max: metres, and pixels, off the elevation model at every post in the picture, in {} frames",
         MEASURED.min(frames + 1)
     ));
     lines.extend(budget.and_then(|most| exceeded(reports, most as usize)));
@@ -110,7 +111,7 @@ fn exceeded(reports: &[Report], most: usize) -> Option<String> {
     })
 }
 
-const HEADING: [&str; 10] = [
+const HEADING: [&str; 11] = [
     "method",
     "triangles",
     "vertices",
@@ -121,9 +122,10 @@ const HEADING: [&str; 10] = [
     "mean m",
     "rms m",
     "max m",
+    "max px",
 ];
 
-fn row(report: &Report) -> [String; 10] {
+fn row(report: &Report) -> [String; 11] {
     let difference = &report.difference;
     [
         report.method.to_string(),
@@ -136,6 +138,7 @@ fn row(report: &Report) -> [String; 10] {
         metres(difference.mean_m()),
         metres(difference.rms_m()),
         metres(difference.max_m()),
+        difference.max_px().map_or("-".into(), |pixels| format!("{pixels:.2}")),
     ]
 }
 
