@@ -6,6 +6,8 @@
 //!
 //! Not measured: posts without data, posts of patches that are not shown, and posts under triangles that are left
 //! out because a corner has no data.
+//!
+//! What is off in metres far away is small on the picture: with a picture, pixels are measured too.
 
 use rayon::prelude::*;
 
@@ -327,5 +329,22 @@ mod tests {
             (289, Some(0.0), Some(0.0), Some(0.0))
         );
         assert_eq!(height_difference(&lattice, &layout, &[]).mean_m(), None);
+    }
+
+    #[test]
+    fn only_posts_of_the_picture_are_measured_and_the_most_pixels_are_kept() {
+        let lattice = lattice(17, 17, &[]);
+        let layout = Layout::new(17, 17, 16).expect("sound");
+        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let shown = [PatchList::bintree(ground, &ActiveSet::new(layout), Vertex::new(0, 0))];
+        let whole = height_difference(&lattice, &layout, &shown);
+        let seen = height_difference_seen(&lattice, &layout, &shown, |post, shown_m| {
+            let off_m = (f64::from(lattice.height(post)) - shown_m).abs();
+            (post.column < 5).then_some(2.0 * off_m)
+        });
+        assert_eq!((whole.posts, seen.posts), (17 * 17, 17 * 5));
+        let most_px = seen.max_px().expect("posts are seen");
+        assert!(most_px > 0.0 && seen.max_m() == Some(most_px / 2.0), "{seen:?}");
+        assert!(seen.max_m() <= whole.max_m());
     }
 }
