@@ -5,7 +5,8 @@ use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use crate::app::lod::method::{Emit, Refine, Rule, Wanted};
+use crate::app::lod::choice::Wanted;
+use crate::app::lod::method::{Emit, Refine, Rule};
 use crate::app::lod::way::Way;
 use crate::terrain::query::Interpolation;
 
@@ -183,18 +184,21 @@ pub struct MeshOptions {
 pub struct LodOptions {
     /// The elevation file; one in degrees is brought to UTM
     pub file: PathBuf,
-    /// Only methods that make their triangles this way [default: all]
+    /// Only methods that make their triangles this way
     #[arg(long, value_enum)]
     pub emit: Option<Emit>,
-    /// Only methods with this criterion of when an error shows [default: all]
+    /// Only methods with this criterion of when an error shows
     #[arg(long, value_enum)]
     pub criterion: Option<Rule>,
-    /// Only methods that refine this way [default: all]
+    /// Only methods that refine this way
     #[arg(long, value_enum)]
     pub refine: Option<Refine>,
     /// How many pixels of a picture 1024 wide an error may show
     #[arg(long, value_name = "X", default_value = "1", value_parser = tolerance_px)]
     pub tolerance_px: f32,
+    /// As fine as so many triangles allow, instead of a tolerance; only methods that refine by queues
+    #[arg(long, value_name = "N", conflicts_with = "tolerance_px", value_parser = clap::value_parser!(u32).range(1..))]
+    pub budget: Option<u32>,
     /// Which way to fly: circle, line (from the south-west to the north-east), or a file of stations
     #[arg(long, value_name = "circle|line|FILE", default_value = "circle")]
     pub flight: Way,
@@ -223,16 +227,22 @@ a circle goes one cell a frame round the middle of the south-western 513 posts. 
 x,y,z,tx,ty,tz: the eye and what it looks at, metres from the south-west post, x east, y north, z the elevation;
 frames are spread over it at equal distances.
 
+Methods: without --emit, --criterion, --refine and --budget a selection is compared; with any of them all methods that
+go with what is asked for, with the bintree's triangles where --emit is not given. geomipmap and full have no
+criterion and no refiner; deferred goes with spheres, constrained and bounding, and with bintree; a budget goes with
+queues, and is exceeded only where the two root triangles of each patch in view are more.
+
 Columns, over all frames but the first: triangles and vertices named by the index lists (means); changed: triangles
 not shown in the frame before (mean); milliseconds to bring triangles and lists up to date; upload: bytes of 16-bit
-index lists sent a frame (median; all that are shown where a method does not know which stayed the same);
-mean, RMS and maximum metres between what is shown and the elevation model, at every post of the patches in view
-(parts of them that are out of view among them) in eight frames.";
+index lists sent a frame (median): of the patches that changed or came into view, or of all that are shown where a
+method does not know which stayed the same; full sends nothing after the first frame;
+mean, RMS and maximum metres between what is shown and the elevation model, and the most that is on the picture in
+pixels, at every post in the picture, hidden ones among them, in eight frames.";
 
 impl LodOptions {
     /// Which methods are asked for.
     pub fn wanted(&self) -> Wanted {
-        Wanted { emit: self.emit, rule: self.criterion, refine: self.refine }
+        Wanted { emit: self.emit, rule: self.criterion, refine: self.refine, budget: self.budget }
     }
 }
 

@@ -1,6 +1,6 @@
 //! What changed from one frame to the next.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::roam::graph::Vertex;
@@ -37,9 +37,10 @@ impl LastFrame {
                 .as_ref()
                 .is_some_and(|before| Arc::ptr_eq(before, &list.triangles) || *before == list.triangles);
             if !same {
-                let (before, now) = (before.map(|list| set(&list)).unwrap_or_default(), set(&list.triangles));
-                change.appeared += now.difference(&before).count();
-                change.vanished += before.difference(&now).count();
+                let last = before.as_ref().map_or(0, |before| before.len());
+                let kept = before.map_or(0, |before| in_both(&before, &list.triangles));
+                change.appeared += list.triangles.len() - kept;
+                change.vanished += last - kept;
                 change.list_bytes += list.bytes();
             }
             self.last.insert(list.corner, Arc::clone(&list.triangles));
@@ -49,10 +50,25 @@ impl LastFrame {
     }
 }
 
-/// The triangles, each from its lowest corner on.
-fn set(triangles: &[LocalTriangle]) -> BTreeSet<LocalTriangle> {
-    let from_lowest = |&[a, b, c]: &LocalTriangle| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min();
-    triangles.iter().filter_map(from_lowest).collect()
+/// How many triangles are in both lists; none is twice in one.
+fn in_both(one: &[LocalTriangle], other: &[LocalTriangle]) -> usize {
+    let (one, other) = (in_order(one), in_order(other));
+    let mut other = other.iter().peekable();
+    let found = one.iter().filter(|triangle| {
+        while other.next_if(|next| next < triangle).is_some() {}
+        other.next_if_eq(triangle).is_some()
+    });
+    found.count()
+}
+
+/// The triangles, each from its lowest corner on, as numbers in rising order.
+fn in_order(triangles: &[LocalTriangle]) -> Vec<u64> {
+    let number = |[a, b, c]: LocalTriangle| u64::from(a) << 32 | u64::from(b) << 16 | u64::from(c);
+    let from_lowest =
+        |&[a, b, c]: &LocalTriangle| number([a, b, c]).min(number([b, c, a])).min(number([c, a, b]));
+    let mut numbers: Vec<u64> = triangles.iter().map(from_lowest).collect();
+    numbers.sort_unstable();
+    numbers
 }
 
 #[cfg(test)]

@@ -6,6 +6,8 @@
 //!
 //! Not measured: posts without data, posts of patches that are not shown, and posts under triangles that are left
 //! out because a corner has no data.
+//!
+//! What is off in metres far away is small on the picture: with a picture, pixels are measured too.
 
 use rayon::prelude::*;
 
@@ -21,6 +23,7 @@ pub struct HeightDifference {
     sum: f64,
     squares: f64,
     max_m: f64,
+    max_px: f64,
 }
 
 impl HeightDifference {
@@ -39,6 +42,11 @@ impl HeightDifference {
         (self.posts > 0).then_some(self.max_m)
     }
 
+    /// The longest on the picture, pixels, where it was measured with one; `None` where nothing was.
+    pub fn max_px(&self) -> Option<f64> {
+        (self.posts > 0).then_some(self.max_px)
+    }
+
     /// Both measurements as one.
     pub fn with(self, other: Self) -> Self {
         Self {
@@ -46,55 +54,77 @@ impl HeightDifference {
             sum: self.sum + other.sum,
             squares: self.squares + other.squares,
             max_m: self.max_m.max(other.max_m),
+            max_px: self.max_px.max(other.max_px),
         }
     }
 
-    fn add(&mut self, off_m: f64) {
+    fn add(&mut self, off_m: f64, seen_px: f64) {
         self.posts += 1;
         self.sum += off_m;
         self.squares += off_m * off_m;
         self.max_m = self.max_m.max(off_m);
+        self.max_px = self.max_px.max(seen_px);
     }
 }
 
 /// Measures the triangles of `shown`, no patch twice; in parallel over patches, the same for any number of threads.
 pub fn height_difference(lattice: &Lattice, layout: &Layout, shown: &[PatchList]) -> HeightDifference {
+    height_difference_seen(lattice, layout, shown, |_, _| Some(0.0))
+}
+
+/// As [`height_difference`], at posts in a picture only: `seen_px` says of a post with data and the height that is
+/// shown there how many pixels are between the two, and `None` of a post that is not in the picture.
+pub fn height_difference_seen(
+    lattice: &Lattice,
+    layout: &Layout,
+    shown: &[PatchList],
+    seen_px: impl Fn(Post, f64) -> Option<f64> + Sync,
+) -> HeightDifference {
     let patches: Vec<Measured> =
-        shown.par_iter().map(|list| Scan::new(lattice, layout, list).measured()).collect();
-    let mut border: Vec<(usize, f64)> = patches.iter().flat_map(|patch| &patch.border).copied().collect();
+        shown.par_iter().map(|list| Scan::new(lattice, layout, list, &seen_px).measured()).collect();
+    let mut border: Vec<OnBorder> = patches.iter().flat_map(|patch| &patch.border).copied().collect();
     // Neighbours agree about a border post but for rounding; the larger counts.
-    border.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
-    border.dedup_by_key(|&mut (post, _)| post);
+    border.sort_unstable_by(|a, b| a.post.cmp(&b.post).then(b.off_m.total_cmp(&a.off_m)));
+    border.dedup_by_key(|measured| measured.post);
     let mut whole = patches.iter().fold(HeightDifference::default(), |sum, patch| sum.with(patch.inside));
-    border.iter().for_each(|&(_, off_m)| whole.add(off_m));
+    border.iter().for_each(|measured| whole.add(measured.off_m, measured.seen_px));
     whole
 }
 
 /// What was measured of one patch.
 struct Measured {
     inside: HeightDifference,
-    /// Posts of the lattice on the patch's border.
-    border: Vec<(usize, f64)>,
+    border: Vec<OnBorder>,
+}
+
+/// What was measured at a post on a patch's border.
+#[derive(Clone, Copy)]
+struct OnBorder {
+    /// Its index in the lattice.
+    post: usize,
+    off_m: f64,
+    seen_px: f64,
 }
 
 /// One patch being measured.
-struct Scan<'a> {
+struct Scan<'a, S> {
     lattice: &'a Lattice,
     layout: &'a Layout,
     list: &'a PatchList,
+    seen_px: &'a S,
     first: Post,
     last: Post,
     seen: Vec<bool>,
     found: Measured,
 }
 
-impl<'a> Scan<'a> {
-    fn new(lattice: &'a Lattice, layout: &'a Layout, list: &'a PatchList) -> Self {
+impl<'a, S: Fn(Post, f64) -> Option<f64>> Scan<'a, S> {
+    fn new(lattice: &'a Lattice, layout: &'a Layout, list: &'a PatchList, seen_px: &'a S) -> Self {
         let patch = layout.patch();
         let (first, last) = (layout.post(list.corner), layout.post(list.corner.moved(patch, patch)));
         let posts = (last.column - first.column + 1) as usize * (last.row - first.row + 1) as usize;
         let found = Measured { inside: HeightDifference::default(), border: Vec::new() };
-        Self { lattice, layout, list, first, last, seen: vec![false; posts], found }
+        Self { lattice, layout, list, seen_px, first, last, seen: vec![false; posts], found }
     }
 
     fn measured(mut self) -> Measured {
@@ -142,8 +172,12 @@ impl<'a> Scan<'a> {
         let shown = plane.height(start);
         let mut found = HeightDifference::default();
         for (at, (&height, seen)) in heights.iter().zip(seen).enumerate() {
-            if !height.is_nan() && !std::mem::replace(seen, true) {
-                found.add((f64::from(height) - (shown + plane.per_column * at as f64)).abs());
+            if height.is_nan() || std::mem::replace(seen, true) {
+                continue;
+            }
+            let shown_m = shown + plane.per_column * at as f64;
+            if let Some(seen_px) = (self.seen_px)(Post { column: first + at as u32, row }, shown_m) {
+                found.add((f64::from(height) - shown_m).abs(), seen_px);
             }
         }
         self.found.inside = self.found.inside.with(found);
@@ -151,9 +185,11 @@ impl<'a> Scan<'a> {
 
     fn measure_on_border(&mut self, post: Post, plane: &Plane) {
         let (place, height) = (self.place(post), self.lattice.height(post));
-        if !height.is_nan() && !std::mem::replace(&mut self.seen[place], true) {
-            let off_m = (f64::from(height) - plane.height(post)).abs();
-            self.found.border.push((self.lattice.index(post), off_m));
+        let is_new = !height.is_nan() && !std::mem::replace(&mut self.seen[place], true);
+        let shown_m = plane.height(post);
+        if is_new && let Some(seen_px) = (self.seen_px)(post, shown_m) {
+            let off_m = (f64::from(height) - shown_m).abs();
+            self.found.border.push(OnBorder { post: self.lattice.index(post), off_m, seen_px });
         }
     }
 
@@ -240,7 +276,7 @@ mod tests {
         let mut whole = HeightDifference::default();
         for post in lattice.posts().filter(|&post| !lattice.height(post).is_nan()) {
             if let Some(z) = terrain.displayed_z(lattice.position(post).as_dvec2()) {
-                whole.add((f64::from(lattice.height(post)) - z).abs());
+                whole.add((f64::from(lattice.height(post)) - z).abs(), 0.0);
             }
         }
         whole
@@ -293,5 +329,22 @@ mod tests {
             (289, Some(0.0), Some(0.0), Some(0.0))
         );
         assert_eq!(height_difference(&lattice, &layout, &[]).mean_m(), None);
+    }
+
+    #[test]
+    fn only_posts_of_the_picture_are_measured_and_the_most_pixels_are_kept() {
+        let lattice = lattice(17, 17, &[]);
+        let layout = Layout::new(17, 17, 16).expect("sound");
+        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let shown = [PatchList::bintree(ground, &ActiveSet::new(layout), Vertex::new(0, 0))];
+        let whole = height_difference(&lattice, &layout, &shown);
+        let seen = height_difference_seen(&lattice, &layout, &shown, |post, shown_m| {
+            let off_m = (f64::from(lattice.height(post)) - shown_m).abs();
+            (post.column < 5).then_some(2.0 * off_m)
+        });
+        assert_eq!((whole.posts, seen.posts), (17 * 17, 17 * 5));
+        let most_px = seen.max_px().expect("posts are seen");
+        assert!(most_px > 0.0 && seen.max_m() == Some(most_px / 2.0), "{seen:?}");
+        assert!(seen.max_m() <= whole.max_m());
     }
 }

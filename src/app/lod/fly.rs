@@ -2,13 +2,16 @@
 
 use std::time::Instant;
 
-use crate::app::lod::follow::{Follow, Sending};
+use glam::{UVec2, Vec2};
+
+use crate::app::lod::follow::Follow;
 use crate::app::lod::method::Method;
 use crate::app::lod::prepared::Prepared;
 use crate::app::lod::report::Report;
 use crate::roam::frames::LastFrame;
-use crate::roam::measure::{HeightDifference, height_difference};
+use crate::roam::measure::{HeightDifference, height_difference_seen};
 use crate::roam::shown::PatchList;
+use crate::terrain::lattice::Post;
 use crate::view::camera::Camera;
 
 /// Frames whose heights are compared with the elevation model, spread evenly over the flight: enough to even out
@@ -32,18 +35,17 @@ pub fn fly(method: Method, follow: &mut dyn Follow, terrain: &Prepared, flight: 
         let change = last.compare(&shown);
         if frame > 0 {
             let indices: usize = shown.iter().map(|list| list.indices).sum();
+            let triangles = triangles(&shown);
             tally.times_ms.push(update_ms);
-            tally.triangles += triangles(&shown);
+            tally.triangles += triangles;
+            tally.most_triangles = tally.most_triangles.max(triangles);
+            tally.most_patches = tally.most_patches.max(shown.len());
             tally.vertices += indices;
             tally.appeared += change.appeared;
-            tally.uploads.push(match follow.sending() {
-                Sending::Everything => 2 * indices,
-                Sending::Changed => change.list_bytes,
-            });
+            tally.uploads.push(follow.sent_bytes());
         }
         if measured.contains(&frame) {
-            let difference = height_difference(&terrain.lattice, &terrain.layout, &shown);
-            tally.difference = tally.difference.with(difference);
+            tally.difference = tally.difference.with(difference_in_view(terrain, camera, &shown));
         }
     }
     tally.report(method)
@@ -51,6 +53,24 @@ pub fn fly(method: Method, follow: &mut dyn Follow, terrain: &Prepared, flight: 
 
 fn triangles(shown: &[PatchList]) -> usize {
     shown.iter().map(|list| list.triangles.len()).sum()
+}
+
+/// How far what is shown is off at the posts in the picture: a patch can be large, and what of it is out of view may
+/// be left as it comes.
+fn difference_in_view(terrain: &Prepared, camera: &Camera, shown: &[PatchList]) -> HeightDifference {
+    let (lattice, size) = (&terrain.lattice, UVec2::from(camera.size()).as_vec2());
+    let seen_px = |post: Post, shown_m: f64| {
+        let (at, height_m) = (lattice.position(post), lattice.height(post));
+        let ground = camera.project(at.extend(height_m))?.pixel;
+        let is_in_view = ground.cmpge(Vec2::ZERO).all() && ground.cmple(size).all();
+        if !is_in_view || f64::from(height_m) == shown_m {
+            return is_in_view.then_some(0.0);
+        }
+        // What is shown nearer than the picture begins is not seen.
+        let shown = camera.project(at.extend(shown_m as f32));
+        Some(shown.map_or(0.0, |shown| f64::from(shown.pixel.distance(ground))))
+    };
+    height_difference_seen(lattice, &terrain.layout, shown, seen_px)
 }
 
 /// The frames that are measured, from the first to the last.
@@ -65,6 +85,8 @@ struct Tally {
     times_ms: Vec<f64>,
     uploads: Vec<usize>,
     triangles: usize,
+    most_triangles: usize,
+    most_patches: usize,
     vertices: usize,
     appeared: usize,
     difference: HeightDifference,
@@ -82,6 +104,8 @@ impl Tally {
             method,
             frames,
             triangles: mean(self.triangles),
+            most_triangles: self.most_triangles,
+            most_patches: self.most_patches,
             vertices_sent: mean(self.vertices),
             changed_per_frame: mean(self.appeared),
             update_ms_median: time(0.5),
@@ -106,7 +130,7 @@ mod tests {
 
     #[test]
     fn medians_and_percentiles_are_times_that_were_measured() {
-        let method = crate::app::lod::method::ALL[0];
+        let method = Method::Full;
         let times_ms: Vec<f64> = (1..=200).rev().map(f64::from).collect();
         let tally = Tally { times_ms, uploads: (0..200).collect(), triangles: 1000, ..Tally::default() };
         let report = tally.report(method);

@@ -1,40 +1,37 @@
 //! What every method does: it follows a camera and says what it shows.
 
-use crate::app::lod::method::{Emit, Method, Refine};
+use crate::app::lod::deferring::Deferring;
+use crate::app::lod::full::Full;
+use crate::app::lod::method::Method;
+use crate::app::lod::mipmapping::Mipmapping;
 use crate::app::lod::prepared::Prepared;
-use crate::app::lod::rebuild::Rebuilding;
+use crate::app::lod::refining::Refining;
 use crate::roam::shown::PatchList;
 use crate::view::camera::Camera;
 
 /// A method at work.
 pub trait Follow {
-    /// What a camera needs once for the whole flight; not timed.
+    /// Makes, once for the whole flight, what its cameras need; not timed.
     fn prepare(&mut self, camera: &Camera);
 
     /// Brings triangles and index lists up to date. This is what is timed.
     fn update(&mut self, camera: &Camera);
 
-    /// The lists of what is shown, after an update.
-    fn shown(&self) -> Vec<PatchList>;
+    /// Bytes of the index lists that the last update wrote, which are sent.
+    fn sent_bytes(&self) -> usize;
 
-    /// What is sent of them.
-    fn sending(&self) -> Sending;
+    /// The lists of what is shown, after an update; those that were not written are the same as before.
+    fn shown(&mut self) -> Vec<PatchList>;
 }
 
-/// Which lists are sent anew for a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sending {
-    /// All that are shown: nothing is known to be what it was.
-    Everything,
-    /// Those that are not what they were.
-    Changed,
-}
-
-/// The method, ready to follow.
-pub fn follower<'a>(method: Method, terrain: &'a Prepared) -> Box<dyn Follow + 'a> {
+/// The method, ready to follow; `budget` is the most triangles of one that keeps a budget.
+pub fn follower<'a>(method: Method, terrain: &'a Prepared, budget: Option<usize>) -> Box<dyn Follow + 'a> {
     match method {
-        Method::Refining { emit: Emit::Bintree, rule, refine: Refine::Rebuild } => {
-            Box::new(Rebuilding::new(rule, terrain))
+        Method::Full => Box::new(Full::new(terrain)),
+        Method::Geomipmap => Box::new(Mipmapping::new(terrain)),
+        Method::Refining { lists, rule, refiner } => {
+            Box::new(Refining::new(lists, rule, refiner, terrain, budget))
         }
+        Method::Deferred { spheres } => Box::new(Deferring::new(spheres, terrain)),
     }
 }

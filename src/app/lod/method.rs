@@ -1,28 +1,46 @@
-//! Which methods there are, and which of them are asked for.
+//! Which methods there are.
 //!
 //! A method is what emits triangles, the criterion that tells when an error shows, and what refines. Not all go
-//! together, so the ones that do are listed: adding a method is adding a line.
+//! together: a [`Method`] holds only what does, and `choice` tells a user why the rest does not.
 
 use std::fmt::{self, Display};
 
 use clap::ValueEnum;
 
-use crate::app::failure::Failure;
-
-/// What makes triangles of the bits.
+/// What makes triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Emit {
     /// The leaves of the triangle bintree
     Bintree,
+    /// The restricted quadtree's fans: the same triangles
+    Quadtree,
+    /// Triangle strips of the bintree's leaves
+    Strips,
+    /// GeoMipMap: a level for each patch, the borders stitched; nothing is refined
+    Geomipmap,
+    /// Every post: the reference; nothing is refined
+    Full,
 }
 
 /// When an error shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Rule {
-    /// The largest length an error could span on the picture; the tolerance is kept at every post
+    /// The largest length an error could span on the picture; kept at every post of the picture
     Screen,
-    /// Nested error spheres: the error seen from where the vertex is, in any direction
+    /// Variance and the land's width over distance
+    Variance,
+    /// Roughness below a midpoint over distance: at equal pixels what variance is
+    Roughness,
+    /// The length of an error on the picture, foreshortened by the viewing direction
+    Anisotropic,
+    /// Relief times half a block's side over distance
+    Block,
+    /// Nested error spheres about midpoint errors
     Spheres,
+    /// Nested error spheres, smaller where the ground is smooth
+    Constrained,
+    /// Nested error spheres about exact errors; kept at every post, wherever the camera looks
+    Bounding,
 }
 
 /// What sets the bits.
@@ -30,34 +48,115 @@ pub enum Rule {
 pub enum Refine {
     /// Anew for every frame, by splits alone
     Rebuild,
+    /// Forced splits and forced merges of the last frame's mesh
+    Coherent,
+    /// A queue of splits and one of merges; may keep a budget of triangles
+    Queues,
+    /// Each vertex looked at again when the eye has come far enough; goes with spheres
+    Deferred,
+}
+
+/// How bits of vertices are written as index lists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lists {
+    /// Triangles, in the order of the bintree's walk.
+    Bintree,
+    /// Triangles, in the order of the quadtree's nodes.
+    Quadtree,
+    /// Strips of triangles.
+    Strips,
+}
+
+/// What sets bits of vertices by asking any criterion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refiner {
+    /// From the roots, for every frame.
+    Rebuild,
+    /// From the last frame, without queues.
+    Coherent,
+    /// From the last frame, with two queues.
+    Queues,
+}
+
+/// Which own radii the nested spheres have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SphereRule {
+    /// Of midpoint errors.
+    Plain,
+    /// Of midpoint errors and local roughness.
+    Constrained,
+    /// Of exact errors, so that the tolerance is kept.
+    Bounding,
 }
 
 /// One way of showing the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Bits of vertices, set by a refiner where a criterion wants them, and triangles made of them.
+    /// Every post.
+    Full,
+    /// A level for each patch.
+    Geomipmap,
+    /// Bits of vertices, set where a criterion wants them, and index lists written of them.
     Refining {
-        /// What makes triangles.
-        emit: Emit,
+        /// How lists are written.
+        lists: Lists,
         /// When an error shows.
         rule: Rule,
         /// What refines.
-        refine: Refine,
+        refiner: Refiner,
+    },
+    /// Nested spheres examined when due; the index lists of triangles are kept as they change.
+    Deferred {
+        /// Which spheres.
+        spheres: SphereRule,
     },
 }
 
-/// All methods, in the order in which they are compared.
-pub const ALL: &[Method] = &[
-    Method::Refining { emit: Emit::Bintree, rule: Rule::Screen, refine: Refine::Rebuild },
-    Method::Refining { emit: Emit::Bintree, rule: Rule::Spheres, refine: Refine::Rebuild },
-];
+impl Rule {
+    /// Which spheres it is about, if it is about spheres.
+    pub fn spheres(self) -> Option<SphereRule> {
+        match self {
+            Self::Spheres => Some(SphereRule::Plain),
+            Self::Constrained => Some(SphereRule::Constrained),
+            Self::Bounding => Some(SphereRule::Bounding),
+            Self::Screen | Self::Variance | Self::Roughness | Self::Anisotropic | Self::Block => None,
+        }
+    }
+}
 
 impl Method {
-    /// What it is on the command line; what does not refine has no refiner and may have no criterion.
+    /// What it is on the command line; what does not refine has neither criterion nor refiner.
     pub fn parts(&self) -> (Emit, Option<Rule>, Option<Refine>) {
         match *self {
-            Self::Refining { emit, rule, refine } => (emit, Some(rule), Some(refine)),
+            Self::Full => (Emit::Full, None, None),
+            Self::Geomipmap => (Emit::Geomipmap, None, None),
+            Self::Refining { lists, rule, refiner } => (emit(lists), Some(rule), Some(refine(refiner))),
+            Self::Deferred { spheres } => (Emit::Bintree, Some(rule(spheres)), Some(Refine::Deferred)),
         }
+    }
+}
+
+fn emit(lists: Lists) -> Emit {
+    match lists {
+        Lists::Bintree => Emit::Bintree,
+        Lists::Quadtree => Emit::Quadtree,
+        Lists::Strips => Emit::Strips,
+    }
+}
+
+fn refine(refiner: Refiner) -> Refine {
+    match refiner {
+        Refiner::Rebuild => Refine::Rebuild,
+        Refiner::Coherent => Refine::Coherent,
+        Refiner::Queues => Refine::Queues,
+    }
+}
+
+fn rule(spheres: SphereRule) -> Rule {
+    match spheres {
+        SphereRule::Plain => Rule::Spheres,
+        SphereRule::Constrained => Rule::Constrained,
+        SphereRule::Bounding => Rule::Bounding,
     }
 }
 
@@ -75,52 +174,19 @@ pub fn name(value: &impl ValueEnum) -> String {
     value.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
 }
 
-/// What was asked for; what is not said may be anything.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Wanted {
-    /// What makes triangles.
-    pub emit: Option<Emit>,
-    /// When an error shows.
-    pub rule: Option<Rule>,
-    /// What refines.
-    pub refine: Option<Refine>,
-}
-
-impl Wanted {
-    fn holds(&self, method: &Method) -> bool {
-        let (emit, rule, refine) = method.parts();
-        self.emit.is_none_or(|wanted| wanted == emit)
-            && (self.rule.is_none() || self.rule == rule)
-            && (self.refine.is_none() || self.refine == refine)
+/// Every method that has a meaning, in the order in which they are compared.
+pub fn all() -> Vec<Method> {
+    const LISTS: [Lists; 3] = [Lists::Bintree, Lists::Quadtree, Lists::Strips];
+    const REFINERS: [Refiner; 3] = [Refiner::Rebuild, Refiner::Coherent, Refiner::Queues];
+    let mut all = vec![Method::Full, Method::Geomipmap];
+    for lists in LISTS {
+        for &rule in Rule::value_variants() {
+            all.extend(REFINERS.map(|refiner| Method::Refining { lists, rule, refiner }));
+            let spheres = rule.spheres().filter(|_| lists == Lists::Bintree);
+            all.extend(spheres.map(|spheres| Method::Deferred { spheres }));
+        }
     }
-}
-
-impl Display for Wanted {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let parts = [
-            self.emit.as_ref().map(|emit| format!("--emit {}", name(emit))),
-            self.rule.as_ref().map(|rule| format!("--criterion {}", name(rule))),
-            self.refine.as_ref().map(|refine| format!("--refine {}", name(refine))),
-        ];
-        let parts: Vec<String> = parts.into_iter().flatten().collect();
-        out.write_str(&parts.join(" "))
-    }
-}
-
-/// The methods of `all` that are what is wanted, in order.
-///
-/// # Errors
-/// There is none; the message tells what goes together.
-pub fn chosen(all: &[Method], wanted: Wanted) -> Result<Vec<Method>, Failure> {
-    let found: Vec<Method> = all.iter().filter(|method| wanted.holds(method)).copied().collect();
-    if found.is_empty() {
-        let names: Vec<String> = all.iter().map(Method::to_string).collect();
-        let names = names.join(", ");
-        let message =
-            format!("{wanted} have no meaning together; as emit/criterion/refine there are {names}");
-        return Err(Failure::Usage(message));
-    }
-    Ok(found)
+    all
 }
 
 #[cfg(test)]
@@ -128,25 +194,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_asked_for_restricts_and_what_is_not_said_may_be_anything() {
-        assert_eq!(chosen(ALL, Wanted::default()).expect("some"), ALL);
-        let spheres = Wanted { rule: Some(Rule::Spheres), ..Wanted::default() };
-        let found = chosen(ALL, spheres).expect("some");
-        assert!(!found.is_empty() && found.iter().all(|method| method.parts().1 == Some(Rule::Spheres)));
+    fn no_method_is_listed_twice_and_each_has_a_name_of_its_own() {
+        let all = all();
+        for (at, method) in all.iter().enumerate() {
+            assert!(!all[..at].contains(method), "{method}");
+            assert!(all[..at].iter().all(|other| other.to_string() != method.to_string()), "{method}");
+        }
     }
 
     #[test]
-    fn what_has_no_meaning_together_is_refused_with_what_has() {
-        let wanted = Wanted { rule: Some(Rule::Screen), refine: Some(Refine::Rebuild), ..Wanted::default() };
-        let Err(Failure::Usage(message)) = chosen(&ALL[1..], wanted) else { panic!("accepted") };
-        assert!(message.contains("--criterion screen --refine rebuild"), "{message}");
-        assert!(message.contains("bintree/spheres/rebuild"), "{message}");
-    }
-
-    #[test]
-    fn no_method_is_listed_twice() {
-        for (at, method) in ALL.iter().enumerate() {
-            assert!(!ALL[..at].contains(method), "{method}");
+    fn spheres_are_called_by_the_criterion_they_are_of() {
+        for &of in Rule::value_variants() {
+            assert!(of.spheres().is_none_or(|spheres| rule(spheres) == of), "{of:?}");
         }
     }
 }

@@ -1,17 +1,23 @@
 //! `sandtable lod`: the methods of showing an elevation model, side by side.
 //!
 //! Every method flies the same flight and answers for the same things: what it shows, what changed, what it sent,
-//! how long it took, how far it is off. A method is a line of the table in [`method`] and, where it is of a new
-//! kind, a file of its own that implements [`follow::Follow`].
+//! how long it took, how far it is off. [`method`] says which methods there are; each kind of them is a file that
+//! implements [`follow::Follow`].
 
+pub mod choice;
+pub mod deferring;
 pub mod fly;
 pub mod follow;
+pub mod full;
+pub mod kept;
 pub mod method;
+pub mod mipmapping;
 pub mod prepared;
-pub mod rebuild;
+pub mod refining;
 pub mod report;
 pub mod stations;
 pub mod way;
+pub mod writing;
 
 use crate::app::arguments::LodOptions;
 use crate::app::failure::Failure;
@@ -25,7 +31,7 @@ use crate::app::progress::Steps;
 /// # Errors
 /// No method is what was asked for; the elevation file or the flight cannot be had or read.
 pub fn run(options: &LodOptions) -> Result<(), Failure> {
-    let methods = method::chosen(method::ALL, options.wanted())?;
+    let methods = options.wanted().methods()?;
     let steps = Steps::default();
     steps.begin("reading elevation");
     let lattice = metric_lattice(&options.file, options.heights)?;
@@ -33,17 +39,18 @@ pub fn run(options: &LodOptions) -> Result<(), Failure> {
     steps.begin("measuring terrain");
     let terrain = Prepared::new(lattice, options.tolerance_px)
         .map_err(|reason| Failure::input(format!("{}: {reason}", options.file.display())))?;
+    let budget = options.budget.map(|triangles| triangles as usize);
     let reports: Vec<_> = methods
         .iter()
         .map(|&method| {
             steps.begin("flying");
-            fly::fly(method, follow::follower(method, &terrain).as_mut(), &terrain, &flight)
+            fly::fly(method, follow::follower(method, &terrain, budget).as_mut(), &terrain, &flight)
         })
         .collect();
     steps.finish();
     if options.json {
         output::print(&format!("{}\n", report::json(&reports)))
     } else {
-        output::print(&report::table(&reports, &terrain, &options.flight))
+        output::print(&report::table(&reports, &terrain, &options.flight, options.budget))
     }
 }

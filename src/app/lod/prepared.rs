@@ -2,31 +2,44 @@
 
 use std::sync::OnceLock;
 
-use crate::app::lod::method::Rule;
+use crate::app::lod::method::{Rule, SphereRule};
 use crate::roam::criterion::Criterion;
+use crate::roam::criterion::anisotropic::Anisotropic;
+use crate::roam::criterion::block::Block;
+use crate::roam::criterion::midpoint::Midpoint;
 use crate::roam::criterion::screen::ScreenError;
 use crate::roam::criterion::spheres::Spheres;
+use crate::roam::criterion::variance::Variance;
 use crate::roam::culling::PatchHeights;
 use crate::roam::errors::ErrorMap;
+use crate::roam::graph::Vertex;
 use crate::roam::ground::Ground;
 use crate::roam::layout::{DEFAULT_PATCH, Layout};
-use crate::roam::spheres::SphereMap;
-use crate::terrain::lattice::Lattice;
+use crate::roam::roughness::Roughness;
+use crate::roam::spheres::{SphereMap, reach};
+use crate::terrain::lattice::{Lattice, Post};
 use crate::view::camera::Camera;
 
-/// The ground, its errors, and what else some methods ask for, made when it is first asked for.
+/// How many posts a window of local roughness reaches: 3 × 3 posts.
+const HALF_WINDOW: (u32, u32) = (1, 1);
+
+/// The ground, and what some methods ask for, made when it is first asked for.
 pub struct Prepared {
     /// The heights.
     pub lattice: Lattice,
     /// The patches over them.
     pub layout: Layout,
-    /// The exact errors of their vertices.
-    pub errors: ErrorMap,
     /// The drawn heights' range per patch.
     pub heights: PatchHeights,
     /// How many pixels an error may show.
     pub tolerance_px: f32,
-    spheres: OnceLock<SphereMap>,
+    whole: Vec<bool>,
+    exact: OnceLock<ErrorMap>,
+    midpoint: OnceLock<ErrorMap>,
+    relief: OnceLock<ErrorMap>,
+    plain: OnceLock<SphereMap>,
+    constrained: OnceLock<SphereMap>,
+    bounding: OnceLock<SphereMap>,
 }
 
 /// Something that is done with a criterion, whichever it is: a closure generic over its argument.
@@ -38,26 +51,39 @@ pub trait WithCriterion {
     fn call(self, criterion: &impl Criterion) -> Self::Out;
 }
 
+/// Nothing is done: the criterion has only to be there.
+struct Nothing;
+
+impl WithCriterion for Nothing {
+    type Out = ();
+
+    fn call(self, _: &impl Criterion) {}
+}
+
 impl Prepared {
-    /// Measures the ground.
+    /// Lays patches over the ground.
     ///
     /// # Errors
-    /// A sentence where patches cannot be laid over it.
+    /// A sentence where that cannot be done.
     pub fn new(lattice: Lattice, tolerance_px: f32) -> Result<Self, String> {
         let (columns, rows) = (lattice.columns(), lattice.rows());
         let layout = Layout::new(columns, rows, DEFAULT_PATCH).ok_or_else(|| {
             format!("patches of {DEFAULT_PATCH} cells cannot be laid over {columns} × {rows} posts: too many vertices")
         })?;
-        let errors = ErrorMap::exact(&lattice, &layout);
         let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
-        let heights = PatchHeights::new(ground);
-        Ok(Self { layout, errors, heights, tolerance_px, spheres: OnceLock::new(), lattice })
-    }
-
-    /// Sets another tolerance; what was made for the last one is made anew.
-    pub fn set_tolerance_px(&mut self, tolerance_px: f32) {
-        self.tolerance_px = tolerance_px;
-        self.spheres = OnceLock::new();
+        Ok(Self {
+            heights: PatchHeights::new(ground),
+            whole: layout.patches().map(|corner| is_whole(ground, corner)).collect(),
+            tolerance_px,
+            exact: OnceLock::new(),
+            midpoint: OnceLock::new(),
+            relief: OnceLock::new(),
+            plain: OnceLock::new(),
+            constrained: OnceLock::new(),
+            bounding: OnceLock::new(),
+            layout,
+            lattice,
+        })
     }
 
     /// What refinement reads; heights are drawn as they are.
@@ -65,24 +91,72 @@ impl Prepared {
         Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
     }
 
+    /// Whether the patch with south-west corner `corner` lies within the borders and has data at every post, so that
+    /// all its triangles are drawn.
+    pub fn is_whole(&self, corner: Vertex) -> bool {
+        self.whole[self.layout.patch_index(corner)]
+    }
+
+    /// Makes all that the criterion asks for.
+    pub fn make(&self, rule: Rule, camera: &Camera) {
+        self.with_criterion(rule, camera, Nothing);
+    }
+
     /// Calls `with` with the criterion for `camera`.
     pub fn with_criterion<W: WithCriterion>(&self, rule: Rule, camera: &Camera, with: W) -> W::Out {
-        let ground = self.ground();
+        let (ground, tolerance_px) = (self.ground(), self.tolerance_px);
+        let spheres = |which| Spheres::new(ground, self.spheres(which, camera), camera.eye());
         match rule {
             Rule::Screen => {
-                with.call(&ScreenError::new(ground, &self.errors, &self.heights, camera, self.tolerance_px))
+                with.call(&ScreenError::new(ground, self.exact(), &self.heights, camera, tolerance_px))
             }
-            Rule::Spheres => with.call(&Spheres::new(ground, self.spheres(camera), camera.eye())),
+            Rule::Variance => with.call(&Variance::new(ground, self.midpoint(), camera, tolerance_px)),
+            Rule::Roughness => with.call(&Midpoint::new(ground, self.midpoint(), camera, tolerance_px)),
+            Rule::Anisotropic => with.call(&Anisotropic::new(ground, self.midpoint(), camera, tolerance_px)),
+            Rule::Block => with.call(&Block::new(ground, self.relief(), camera, tolerance_px)),
+            Rule::Spheres => with.call(&spheres(SphereRule::Plain)),
+            Rule::Constrained => with.call(&spheres(SphereRule::Constrained)),
+            Rule::Bounding => with.call(&spheres(SphereRule::Bounding)),
         }
     }
 
-    /// The nested spheres for the lens of `camera`, which all cameras of a flight have in common: own radii are the
-    /// distances at which an error spans the tolerance in the middle of the picture.
-    pub fn spheres(&self, camera: &Camera) -> &SphereMap {
-        self.spheres.get_or_init(|| {
-            let reach = camera.pixels_per_metre(1.0) / self.tolerance_px;
-            let own = self.errors.values().iter().map(|error_m| error_m * reach).collect();
-            SphereMap::nested(self.ground(), own)
-        })
+    /// The nested spheres for the lens of `camera`, which all cameras of a flight have in common. Own radii are the
+    /// distances at which an error spans the tolerance in the middle of the picture; those that bound it, at the
+    /// picture's corners.
+    pub fn spheres(&self, which: SphereRule, camera: &Camera) -> &SphereMap {
+        let ground = self.ground();
+        let middle = camera.pixels_per_metre(1.0) / self.tolerance_px;
+        match which {
+            SphereRule::Plain => self.plain.get_or_init(|| SphereMap::plain(ground, self.midpoint(), middle)),
+            SphereRule::Constrained => self.constrained.get_or_init(|| {
+                SphereMap::constrained(ground, middle, &Roughness::new(&self.lattice, HALF_WINDOW))
+            }),
+            SphereRule::Bounding => self
+                .bounding
+                .get_or_init(|| SphereMap::bounding(ground, self.exact(), reach(camera, self.tolerance_px))),
+        }
     }
+
+    fn exact(&self) -> &ErrorMap {
+        self.exact.get_or_init(|| ErrorMap::exact(&self.lattice, &self.layout))
+    }
+
+    fn midpoint(&self) -> &ErrorMap {
+        self.midpoint.get_or_init(|| ErrorMap::midpoint(&self.lattice, &self.layout))
+    }
+
+    fn relief(&self) -> &ErrorMap {
+        self.relief.get_or_init(|| ErrorMap::relief(&self.lattice, &self.layout))
+    }
+}
+
+/// See [`Prepared::is_whole`].
+fn is_whole(ground: Ground<'_>, corner: Vertex) -> bool {
+    let (lattice, far) = (ground.lattice, corner.moved(ground.layout.patch(), ground.layout.patch()));
+    let within = far.x < lattice.columns() as i32 && far.y < lattice.rows() as i32;
+    let row = |y: i32| {
+        let start = lattice.index(Post { column: corner.x as u32, row: y as u32 });
+        &lattice.heights()[start..=start + ground.layout.patch() as usize]
+    };
+    within && (corner.y..=far.y).all(|y| row(y).iter().all(|height| !height.is_nan()))
 }

@@ -18,6 +18,10 @@ pub struct Report {
     pub frames: usize,
     /// Triangles shown, mean over frames.
     pub triangles: f64,
+    /// Triangles shown, the most in any frame.
+    pub most_triangles: usize,
+    /// Patches in view, the most in any frame.
+    pub most_patches: usize,
     /// Vertices that the index lists name, mean over frames: three a triangle, fewer in strips.
     pub vertices_sent: f64,
     /// Triangles shown that were not shown in the frame before, mean over frames.
@@ -47,6 +51,7 @@ fn object(report: &Report) -> Value {
         "refine": refine.as_ref().map(name),
         "frames": report.frames,
         "triangles": report.triangles.round() as u64,
+        "triangles_max": report.most_triangles,
         "vertices_sent": report.vertices_sent.round() as u64,
         "changed_per_frame": tenths(report.changed_per_frame),
         "update_ms_median": report.update_ms_median,
@@ -55,22 +60,28 @@ fn object(report: &Report) -> Value {
         "mean_m": report.difference.mean_m(),
         "rms_m": report.difference.rms_m(),
         "max_m": report.difference.max_m(),
+        "max_px": report.difference.max_px(),
     })
 }
 
 /// What was flown over, a row a method, and what the columns are.
-pub fn table(reports: &[Report], terrain: &Prepared, way: &Way) -> String {
+///
+/// `budget` is the most triangles that were asked for, instead of a tolerance.
+pub fn table(reports: &[Report], terrain: &Prepared, way: &Way, budget: Option<u32>) -> String {
     let lattice = &terrain.lattice;
     let frames = reports.first().map_or(0, |report| report.frames);
     let cell = lattice.cell();
+    let goal = match budget {
+        Some(most) => format!("triangle budget {most}"),
+        None => format!("tolerance {} px", terrain.tolerance_px),
+    };
     let mut lines = vec![
         format!(
-            "{} × {} posts, {} × {} m apart; {way}, {frames} frames after the first, tolerance {} px",
+            "{} × {} posts, {} × {} m apart; {way}, {frames} frames after the first, {goal}",
             lattice.columns(),
             lattice.rows(),
             metres(Some(cell.x)),
             metres(Some(cell.y)),
-            terrain.tolerance_px
         ),
         String::new(),
     ];
@@ -79,16 +90,28 @@ pub fn table(reports: &[Report], terrain: &Prepared, way: &Way) -> String {
     lines.extend(aligned(&cells));
     lines.push(String::new());
     lines.push(
-        "changed: triangles not shown in the frame before; upload: bytes of index lists a frame".into(),
+        "changed: triangles not shown in the frame before; upload: bytes of index lists sent a frame".into(),
     );
     lines.push(format!(
-        "mean, rms, max: metres off the elevation model, at every post of the patches in view, in {} frames",
+        "mean, rms, max: metres, and pixels, off the elevation model at every post in the picture, in {} frames",
         MEASURED.min(frames + 1)
     ));
+    lines.extend(budget.and_then(|most| exceeded(reports, most as usize)));
     output::text_of(&lines)
 }
 
-const HEADING: [&str; 10] = [
+/// What is to be said where a budget cannot be kept.
+fn exceeded(reports: &[Report], most: usize) -> Option<String> {
+    let roots = 2 * reports.iter().map(|report| report.most_patches).max().unwrap_or(0);
+    let found = reports.iter().map(|report| report.most_triangles).max().unwrap_or(0);
+    (found > most).then(|| {
+        format!(
+            "note: up to {found} triangles were shown; two for each patch in view, up to {roots}, are always there"
+        )
+    })
+}
+
+const HEADING: [&str; 11] = [
     "method",
     "triangles",
     "vertices",
@@ -99,9 +122,10 @@ const HEADING: [&str; 10] = [
     "mean m",
     "rms m",
     "max m",
+    "max px",
 ];
 
-fn row(report: &Report) -> [String; 10] {
+fn row(report: &Report) -> [String; 11] {
     let difference = &report.difference;
     [
         report.method.to_string(),
@@ -114,6 +138,7 @@ fn row(report: &Report) -> [String; 10] {
         metres(difference.mean_m()),
         metres(difference.rms_m()),
         metres(difference.max_m()),
+        difference.max_px().map_or("-".into(), |pixels| format!("{pixels:.2}")),
     ]
 }
 

@@ -1,0 +1,75 @@
+//! Nested spheres examined when due: cull patches, let the walk bring those in view up to date.
+//!
+//! The walk keeps index lists itself and changes them in place, with vertices numbered its own way; they are sent
+//! as they are. Triangles beyond the border or over no data are in them: they have no area or no height, and are not
+//! drawn.
+
+use crate::app::lod::follow::Follow;
+use crate::app::lod::kept::{Kept, Stale};
+use crate::app::lod::method::SphereRule;
+use crate::app::lod::prepared::Prepared;
+use crate::roam::block::WholeGround;
+use crate::roam::culling::{Culling, cull};
+use crate::roam::emit::world::drawn_posts;
+use crate::roam::graph::Vertex;
+use crate::roam::refine::deferred::Deferred;
+use crate::roam::shown::PatchList;
+use crate::view::camera::Camera;
+
+/// A walk through a ground in memory.
+type Walk<'a> = Deferred<WholeGround<'a>>;
+
+/// The deferred refiner at work.
+pub struct Deferring<'a> {
+    spheres: SphereRule,
+    terrain: &'a Prepared,
+    walk: Option<Walk<'a>>,
+    sent: Kept<()>,
+    view: Vec<Vertex>,
+}
+
+impl<'a> Deferring<'a> {
+    /// By these spheres.
+    pub fn new(spheres: SphereRule, terrain: &'a Prepared) -> Self {
+        Self { spheres, terrain, walk: None, sent: Kept::new(terrain.layout), view: Vec::new() }
+    }
+}
+
+/// A walk that starts anywhere.
+fn walk<'a>(terrain: &'a Prepared, spheres: SphereRule, camera: &Camera) -> Walk<'a> {
+    let source = WholeGround { ground: terrain.ground(), spheres: terrain.spheres(spheres, camera) };
+    Deferred::new(source, terrain.lattice.cell().min_element())
+        .expect("patches of the default size are small enough")
+}
+
+impl Follow for Deferring<'_> {
+    fn prepare(&mut self, camera: &Camera) {
+        self.walk = Some(walk(self.terrain, self.spheres, camera));
+    }
+
+    fn update(&mut self, camera: &Camera) {
+        let terrain = self.terrain;
+        cull(terrain.ground(), &terrain.heights, &Culling::frustum(camera), &mut self.view);
+        let walk = self.walk.get_or_insert_with(|| walk(terrain, self.spheres, camera));
+        walk.update(camera.eye(), &self.view).expect("a ground in memory has every patch");
+        let stale = Stale::Patches(&walk.changes().dirty);
+        self.sent.renew(&self.view, stale, |corner, ()| 3 * walk.indices(corner).len());
+    }
+
+    fn sent_bytes(&self) -> usize {
+        self.sent.written_bytes()
+    }
+
+    fn shown(&mut self) -> Vec<PatchList> {
+        let (terrain, Some(walk)) = (self.terrain, &self.walk) else { return Vec::new() };
+        self.sent.shown(|corner, ()| drawn(terrain, walk, corner))
+    }
+}
+
+/// What is drawn of a patch, with vertices numbered row by row.
+fn drawn(terrain: &Prepared, walk: &Walk<'_>, corner: Vertex) -> PatchList {
+    let vertices = |numbers: &[u16; 3]| numbers.map(|number| walk.vertex(corner, number));
+    let is_drawn = |&corners: &[Vertex; 3]| drawn_posts(terrain.ground(), corners).is_some();
+    let triangles = walk.indices(corner).iter().map(vertices).filter(is_drawn);
+    PatchList::of_vertices(&terrain.layout, corner, triangles)
+}
