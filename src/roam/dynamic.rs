@@ -15,7 +15,7 @@ use crate::roam::criterion::spheres::Spheres;
 use crate::roam::culling::PatchHeights;
 use crate::roam::edit::{Mended, mend_exact, mend_midpoint, mend_spheres};
 use crate::roam::errors::ErrorMap;
-use crate::roam::errors::own::{exact_errors, midpoint_errors};
+use crate::roam::errors::exact::own_errors;
 use crate::roam::graph::Vertex;
 use crate::roam::ground::Ground;
 use crate::roam::layout::Layout;
@@ -98,9 +98,9 @@ impl DynamicTerrain {
         let layout = Layout::new(lattice.columns(), lattice.rows(), options.patch)?;
         let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: options.exaggeration };
         let (own, errors) = match options.measure {
-            Measure::Midpoint => (Vec::new(), ErrorMap::raised(midpoint_errors(&lattice, &layout), &layout)),
+            Measure::Midpoint => (Vec::new(), ErrorMap::midpoint(&lattice, &layout)),
             Measure::Exact => {
-                let own = exact_errors(&lattice, &layout);
+                let own = own_errors(&lattice, &layout);
                 (own.clone(), ErrorMap::raised(own, &layout))
             }
         };

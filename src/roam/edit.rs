@@ -9,7 +9,8 @@
 //! rectangles, all heights are changed first and each rectangle is then mended in turn.
 
 use crate::roam::errors::ErrorMap;
-use crate::roam::errors::own::{exact_error_at, midpoint_error, split_triangles};
+use crate::roam::errors::exact::{own_error, triangles_split_at};
+use crate::roam::errors::midpoint::torn_off;
 use crate::roam::field::Field;
 use crate::roam::graph::{Kind, Vertex};
 use crate::roam::ground::Ground;
@@ -90,7 +91,7 @@ pub fn mend_midpoint(errors: &mut ErrorMap, lattice: &Lattice, layout: &Layout, 
         let rect = measured.union(mended.above(pass));
         mended.sweep(layout, pass, rect, |vertex| {
             let [from, to] = pass.hypotenuse(vertex).map(|end| field.height(end));
-            errors.renew(layout, pass, vertex, midpoint_error(field.height(vertex), from, to))
+            errors.renew(layout, pass, vertex, torn_off(from, to, field.height(vertex)))
         });
     }
     mended
@@ -119,7 +120,7 @@ pub fn mend_exact(
         mended.sweep(layout, pass, rect, |vertex| {
             let slot = &mut own[layout.index(vertex)];
             if pass.step <= SCANNED || !stands(lattice, layout, vertex, *slot, change) {
-                *slot = exact_error_at(lattice, layout, vertex);
+                *slot = own_error(lattice, layout, vertex);
             }
             errors.renew(layout, pass, vertex, *slot)
         });
@@ -131,17 +132,21 @@ pub fn mend_exact(
 /// ones would cost.
 const SCANNED: i32 = 4;
 
+/// Errors of big triangles are measured in f32: each is off by at most this share of the relief that was measured.
+/// Several times what can come about, and still so little that no scan is saved by less.
+const ROUNDING: f64 = 4e-6;
+
 /// Whether it is certain that the error of `vertex` alone, `own` before, is what it was: its triangles' corners stand,
 /// none of the changed posts they cover is pinned, and all were and are clearly less far off than the worst.
 fn stands(lattice: &Lattice, layout: &Layout, vertex: Vertex, own: f32, change: &Change) -> bool {
-    let clearly_less = f64::from(own) * (1.0 - 1e-5);
     own.is_finite()
-        && split_triangles(layout, vertex).all(|triangle| {
+        && triangles_split_at(layout, vertex).into_iter().flatten().all(|triangle| {
             let corners = triangle.corners().map(|corner| layout.post(corner));
             if corners.iter().any(|&corner| moved(lattice, change, corner)) {
                 return false;
             }
             let Some(plane) = Plane::through(lattice, corners) else { return true };
+            let clearly_less = f64::from(own) - ROUNDING * (f64::from(own) + plane.relief);
             plane.covered(change).all(|(post, before)| {
                 let after = lattice.height(post);
                 let off = plane.off(post, before).max(plane.off(post, after));
@@ -165,6 +170,8 @@ struct Plane {
     corners: [Post; 3],
     at: (f64, f64, f64),
     slope: (f64, f64),
+    /// From the lowest corner to the highest, metres.
+    relief: f64,
 }
 
 impl Plane {
@@ -176,7 +183,8 @@ impl Plane {
             ((b.0 - a.0, b.1 - a.1, b.2 - a.2), (c.0 - a.0, c.1 - a.1, c.2 - a.2));
         let area = bx * cy - by * cx;
         let slope = ((bz * cy - cz * by) / area, (cz * bx - bz * cx) / area);
-        (area != 0.0).then_some(Self { corners, at: a, slope })
+        let relief = a.2.max(b.2).max(c.2) - a.2.min(b.2).min(c.2);
+        (area != 0.0).then_some(Self { corners, at: a, slope, relief })
     }
 
     /// The changed posts in the triangle's bounding box, with their heights before: at least those it covers.

@@ -12,7 +12,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::roam::errors::ErrorMap;
-use crate::roam::errors::own::midpoint_error_at;
+use crate::roam::errors::midpoint::midpoint_error_at;
 use crate::roam::field::Field;
 use crate::roam::graph::Vertex;
 use crate::roam::ground::Ground;

@@ -5,7 +5,6 @@
 //! children: a decision "error above a threshold" is then closed under parents by itself. What the number
 //! measures differs; one file per measure:
 //!
-//! - `own` measures one vertex alone.
 //! - `exact`: the largest vertical distance over every post that the vertex's triangles cover. A bound.
 //! - `midpoint`: the vertical distance at the vertex alone. Fast, and no bound.
 //! - `relief`: highest less lowest post that they cover. A bound too, and a lazy one.
@@ -15,7 +14,6 @@
 pub mod exact;
 pub mod midpoint;
 pub mod near;
-pub mod own;
 pub mod relief;
 pub mod rows;
 pub mod scan;
