@@ -11,12 +11,13 @@
 use crate::roam::errors::ErrorMap;
 use crate::roam::errors::exact::{own_error, triangles_split_at};
 use crate::roam::errors::midpoint::torn_off;
+use crate::roam::errors::plane::PostPlane;
 use crate::roam::field::Field;
 use crate::roam::graph::{Kind, Vertex};
 use crate::roam::ground::Ground;
 use crate::roam::layout::Layout;
+use crate::roam::levels::{Pass, VertexRect, passes};
 use crate::roam::spheres::{OwnRadius, SphereMap};
-use crate::roam::sweep::{Pass, VertexRect, passes};
 use crate::terrain::brush::Change;
 use crate::terrain::lattice::{Lattice, Post};
 
@@ -145,70 +146,42 @@ fn stands(lattice: &Lattice, layout: &Layout, vertex: Vertex, own: f32, change: 
             if corners.iter().any(|&corner| moved(lattice, change, corner)) {
                 return false;
             }
-            let Some(plane) = Plane::through(lattice, corners) else { return true };
-            let clearly_less = f64::from(own) - ROUNDING * (f64::from(own) + plane.relief);
-            plane.covered(change).all(|(post, before)| {
-                let after = lattice.height(post);
-                let off = plane.off(post, before).max(plane.off(post, after));
-                after.to_bits() == before.to_bits() || (off < clearly_less && !lattice.is_pinned(post))
+            let Some(plane) = PostPlane::through(lattice, corners) else { return true };
+            let clearly_less = f64::from(own) - ROUNDING * (f64::from(own) + relief(lattice, corners));
+            covered(corners, change).all(|(post, before)| {
+                let (after, shown) = (lattice.height(post), plane.height(post));
+                let off = |height: f32| (f64::from(height) - shown).abs();
+                let is_less = off(before).max(off(after)) < clearly_less;
+                after.to_bits() == before.to_bits() || (is_less && !lattice.is_pinned(post))
             })
         })
+}
+
+/// From the lowest to the highest of three posts, metres.
+fn relief(lattice: &Lattice, posts: [Post; 3]) -> f64 {
+    let [a, b, c] = posts.map(|post| f64::from(lattice.height(post)));
+    a.max(b).max(c) - a.min(b).min(c)
 }
 
 /// Whether a post has another height than before.
 fn moved(lattice: &Lattice, change: &Change, post: Post) -> bool {
+    change.posts.contains(post) && change.height_before(post).to_bits() != lattice.height(post).to_bits()
+}
+
+/// The changed posts in the bounding box of a triangle of posts, with their heights before: at least those it covers.
+fn covered<'a>(corners: [Post; 3], change: &'a Change) -> impl Iterator<Item = (Post, f32)> + use<'a> {
+    let range = |along: fn(Post) -> u32| {
+        let [a, b, c] = corners.map(along);
+        (a.min(b).min(c), a.max(b).max(c))
+    };
+    let (columns, rows) = (range(|post| post.column), range(|post| post.row));
     let (first, last) = (change.posts.first, change.posts.last);
-    change.posts.contains(post) && {
-        let width = (last.column - first.column + 1) as usize;
-        let at = (post.row - first.row) as usize * width + (post.column - first.column) as usize;
-        change.before[at].to_bits() != lattice.height(post).to_bits()
-    }
-}
-
-/// A triangle of posts and its plane, in posts and metres.
-struct Plane {
-    corners: [Post; 3],
-    at: (f64, f64, f64),
-    slope: (f64, f64),
-    /// From the lowest corner to the highest, metres.
-    relief: f64,
-}
-
-impl Plane {
-    /// `None` where the posts lie on a line; NaN slopes where a corner has no data.
-    fn through(lattice: &Lattice, corners: [Post; 3]) -> Option<Self> {
-        let at = |post: Post| (f64::from(post.column), f64::from(post.row), f64::from(lattice.height(post)));
-        let [a, b, c] = corners.map(at);
-        let ((bx, by, bz), (cx, cy, cz)) =
-            ((b.0 - a.0, b.1 - a.1, b.2 - a.2), (c.0 - a.0, c.1 - a.1, c.2 - a.2));
-        let area = bx * cy - by * cx;
-        let slope = ((bz * cy - cz * by) / area, (cz * bx - bz * cx) / area);
-        let relief = a.2.max(b.2).max(c.2) - a.2.min(b.2).min(c.2);
-        (area != 0.0).then_some(Self { corners, at: a, slope, relief })
-    }
-
-    /// The changed posts in the triangle's bounding box, with their heights before: at least those it covers.
-    fn covered<'a>(&self, change: &'a Change) -> impl Iterator<Item = (Post, f32)> + use<'a> {
-        let range = |along: fn(Post) -> u32, corners: [Post; 3]| {
-            let [a, b, c] = corners.map(along);
-            (a.min(b).min(c), a.max(b).max(c))
-        };
-        let (columns, rows) = (range(|post| post.column, self.corners), range(|post| post.row, self.corners));
-        let (first, last) = (change.posts.first, change.posts.last);
-        let width = (last.column - first.column + 1) as usize;
-        (first.row.max(rows.0)..=last.row.min(rows.1)).flat_map(move |row| {
-            (first.column.max(columns.0)..=last.column.min(columns.1)).map(move |column| {
-                let at = (row - first.row) as usize * width + (column - first.column) as usize;
-                (Post { column, row }, change.before[at])
-            })
+    (first.row.max(rows.0)..=last.row.min(rows.1)).flat_map(move |row| {
+        (first.column.max(columns.0)..=last.column.min(columns.1)).map(move |column| {
+            let post = Post { column, row };
+            (post, change.height_before(post))
         })
-    }
-
-    /// How far a height at a post is off the plane, metres.
-    fn off(&self, post: Post, height: f32) -> f64 {
-        let (east, north) = (f64::from(post.column) - self.at.0, f64::from(post.row) - self.at.1);
-        (f64::from(height) - (self.at.2 + self.slope.0 * east + self.slope.1 * north)).abs()
-    }
+    })
 }
 
 /// Mends nested spheres after `change`, once the errors are mended: `errors` says where those changed. `own` reads

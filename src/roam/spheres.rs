@@ -17,8 +17,8 @@ use crate::roam::field::Field;
 use crate::roam::graph::Vertex;
 use crate::roam::ground::Ground;
 use crate::roam::layout::Layout;
+use crate::roam::levels::{Pass, Rows, for_rows};
 use crate::roam::roughness::Roughness;
-use crate::roam::sweep::{Pass, Rows, for_rows};
 use crate::view::camera::Camera;
 
 /// Spheres grow by this share from child to parent, so that rounding of f32 radii and f64 distances can never make

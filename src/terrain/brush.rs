@@ -71,6 +71,14 @@ pub struct Change {
 }
 
 impl Change {
+    /// The height before of a post of the rectangle.
+    #[inline]
+    pub fn height_before(&self, post: Post) -> f32 {
+        let (first, last) = (self.posts.first, self.posts.last);
+        let width = (last.column - first.column + 1) as usize;
+        self.before[(post.row - first.row) as usize * width + (post.column - first.column) as usize]
+    }
+
     /// The posts that changed, with their heights before.
     pub fn changed<'a>(&'a self, lattice: &'a Lattice) -> impl Iterator<Item = (Post, f32)> {
         let posts = self.posts.posts().zip(self.before.iter().copied());

@@ -14,6 +14,7 @@
 pub mod exact;
 pub mod midpoint;
 pub mod near;
+pub mod plane;
 pub mod relief;
 pub mod rows;
 pub mod scan;
@@ -23,7 +24,7 @@ mod sweep;
 use crate::roam::errors::sweep::{Field, Given};
 use crate::roam::graph::Vertex;
 use crate::roam::layout::Layout;
-use crate::roam::sweep::Pass;
+use crate::roam::levels::Pass;
 
 /// The object-space error of every vertex, in metres without exaggeration.
 #[derive(Clone, Debug, PartialEq)]
