@@ -16,7 +16,7 @@ use crate::roam::field::Field;
 use crate::roam::graph::{Kind, Vertex};
 use crate::roam::ground::Ground;
 use crate::roam::layout::Layout;
-use crate::roam::levels::{Pass, VertexRect, passes};
+use crate::roam::levels::{Pass, PassRow, VertexRect, passes};
 use crate::roam::spheres::{OwnRadius, SphereMap};
 use crate::terrain::brush::Change;
 use crate::terrain::lattice::{Lattice, Post};
@@ -30,30 +30,34 @@ pub struct Mended {
     rects: Vec<VertexRect>,
 }
 
+/// The most passes of a layout: three a step, of 4096 cells.
+const PASSES: usize = 3 * 12;
+
 impl Mended {
+    /// Nothing yet, with room for what a change brings about.
+    fn around(change: &Change) -> Self {
+        Self { vertices: Vec::with_capacity(change.before.len() * 3 / 2), rects: Vec::with_capacity(PASSES) }
+    }
+
     /// The rectangle around the changed vertices of a pass by its place in [`passes`].
     fn rect(&self, pass: usize) -> VertexRect {
         self.rects.get(pass).copied().unwrap_or(VertexRect::EMPTY)
     }
 
-    /// Sweeps the pass: the vertices of `rect` for which `renew` tells that they changed.
+    /// Sweeps the pass: the rows of the vertices of `rect`, of which `renew` adds those that changed.
     fn sweep(
         &mut self,
         layout: &Layout,
         pass: Pass,
         rect: VertexRect,
-        mut renew: impl FnMut(Vertex) -> bool,
+        mut renew: impl FnMut(PassRow, &mut Vec<Vertex>),
     ) {
-        let mut changed = VertexRect::EMPTY;
+        let before = self.vertices.len();
         if !rect.is_empty() {
-            pass.visit(layout, &rect, |vertex| {
-                if renew(vertex) {
-                    changed = changed.with(vertex);
-                    self.vertices.push(vertex);
-                }
-            });
+            pass.rows_within(layout, &rect).for_each(|row| renew(row, &mut self.vertices));
         }
-        self.rects.push(changed);
+        let changed = self.vertices[before..].iter();
+        self.rects.push(changed.fold(VertexRect::EMPTY, |rect, &vertex| rect.with(vertex)));
     }
 
     /// The rectangle around the parents, in `pass`, of what changed so far; `pass` is the next to be swept.
@@ -78,7 +82,7 @@ impl Mended {
 pub fn mend_midpoint(errors: &mut ErrorMap, lattice: &Lattice, layout: &Layout, change: &Change) -> Mended {
     let changed = VertexRect::of_posts(layout, &change.posts);
     let field = Field::of(Ground { lattice, layout, exaggeration: 1.0 });
-    let mut mended = Mended::default();
+    let mut mended = Mended::around(change);
     for pass in passes(layout) {
         let posts = changed.snapped(pass.step);
         if posts.is_empty() && mended.has_ended(pass) {
@@ -90,12 +94,38 @@ pub fn mend_midpoint(errors: &mut ErrorMap, lattice: &Lattice, layout: &Layout, 
             Kind::Center => posts.grown(pass.step, pass.step),
         };
         let rect = measured.union(mended.above(pass));
-        mended.sweep(layout, pass, rect, |vertex| {
-            let [from, to] = pass.hypotenuse(vertex).map(|end| field.height(end));
-            errors.renew(layout, pass, vertex, torn_off(from, to, field.height(vertex)))
-        });
+        mended
+            .sweep(layout, pass, rect, |row, changed| renew_midpoints(errors, layout, &field, row, changed));
     }
     mended
+}
+
+/// Renews a row of midpoint errors; adds the vertices whose error changed to `changed`.
+fn renew_midpoints(
+    errors: &mut ErrorMap,
+    layout: &Layout,
+    field: &Field<'_>,
+    row: PassRow,
+    changed: &mut Vec<Vertex>,
+) {
+    let (step, here) = (row.pass.step as usize, field.row(row.y));
+    if row.pass.kind == Kind::EastEdge {
+        let own = |x: usize| torn_off(here.height(x - step), here.height(x + step), here.height(x));
+        errors.renew_row(layout, row, own, changed);
+        return;
+    }
+    let (south, north) = (field.row(row.y - step), field.row(row.y + step));
+    if row.pass.kind == Kind::NorthEdge {
+        let own = |x: usize| torn_off(south.height(x), north.height(x), here.height(x));
+        errors.renew_row(layout, row, own, changed);
+    } else {
+        let own = |x: usize| {
+            let (from, to) =
+                if row.pass.rises(x, row.y) { (x - step, x + step) } else { (x + step, x - step) };
+            torn_off(south.height(from), north.height(to), here.height(x))
+        };
+        errors.renew_row(layout, row, own, changed);
+    }
 }
 
 /// Mends a map of exact errors after `change`, and `own`, the errors of the vertices alone that it was raised from, in
@@ -115,15 +145,19 @@ pub fn mend_exact(
 ) -> Mended {
     assert_eq!(own.len(), layout.vertex_count(), "one own error a vertex");
     let changed = VertexRect::of_posts(layout, &change.posts);
-    let mut mended = Mended::default();
+    let mut mended = Mended::around(change);
     for pass in passes(layout) {
         let rect = changed.grown(pass.step, pass.step).union(mended.above(pass));
-        mended.sweep(layout, pass, rect, |vertex| {
-            let slot = &mut own[layout.index(vertex)];
-            if pass.step <= SCANNED || !stands(lattice, layout, vertex, *slot, change) {
-                *slot = own_error(lattice, layout, vertex);
-            }
-            errors.renew(layout, pass, vertex, *slot)
+        mended.sweep(layout, pass, rect, |row, changed| {
+            let measure = |x: usize| {
+                let vertex = Vertex::new(x as i32, row.y as i32);
+                let slot = &mut own[layout.index(vertex)];
+                if pass.step <= SCANNED || !stands(lattice, layout, vertex, *slot, change) {
+                    *slot = own_error(lattice, layout, vertex);
+                }
+                *slot
+            };
+            errors.renew_row(layout, row, measure, changed);
         });
     }
     mended
@@ -198,7 +232,7 @@ pub fn mend_spheres(
     let rough = VertexRect::of_posts(ground.layout, &window);
     let field = Field::of(ground);
     let last_error = errors.rects.iter().rposition(|rect| !rect.is_empty());
-    let mut mended = Mended::default();
+    let mut mended = Mended::around(change);
     for (index, pass) in passes(ground.layout).enumerate() {
         let half = (pass.step / 2).max(1);
         let (moved, near) = (changed.snapped(half), rough.snapped(pass.step));
@@ -210,8 +244,8 @@ pub fn mend_spheres(
         let children = if has_children { moved.grown(half, half) } else { VertexRect::EMPTY };
         let corners = changed.snapped(pass.step).grown(pass.step, pass.step);
         let rect = corners.union(children).union(near).union(errors.rect(index)).union(mended.above(pass));
-        mended.sweep(ground.layout, pass, rect, |vertex| {
-            spheres.renew(&field, pass, vertex, own.of(ground, vertex))
+        mended.sweep(ground.layout, pass, rect, |row, changed| {
+            spheres.renew_row(ground, &field, row, own, changed);
         });
     }
     mended

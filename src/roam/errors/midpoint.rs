@@ -11,7 +11,7 @@
 use std::borrow::Cow;
 
 use crate::roam::errors::ErrorMap;
-use crate::roam::errors::sweep::{Field, Measure};
+use crate::roam::errors::sweep::{Measure, Source};
 use crate::roam::graph::Vertex;
 use crate::roam::layout::Layout;
 use crate::terrain::lattice::Lattice;
@@ -34,9 +34,9 @@ impl ErrorMap {
             self.errors = vec![0f32; layout.vertex_count()];
         }
         let heights = heights(lattice, layout);
-        let field = Field::new(&heights, layout);
-        if !field.sweep::<Midpoints>(&mut self.errors) {
-            let sound = field.sweep::<TornMidpoints>(&mut self.errors);
+        let source = Source::new(&heights, layout);
+        if !source.sweep::<Midpoints>(&mut self.errors) {
+            let sound = source.sweep::<TornMidpoints>(&mut self.errors);
             debug_assert!(sound, "a measure that takes holes took none");
         }
     }
