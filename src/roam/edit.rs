@@ -78,10 +78,27 @@ impl Mended {
     }
 }
 
+/// Posts between two that are fetched: what one line of a cache holds.
+const LINE: usize = 16;
+
+/// Reads a value of every cache line of a rectangle. Rows of a big terrain lie far apart, and whoever works on them one
+/// after the other waits for each; these reads wait for nothing, so the memory answers them together.
+fn fetch(values: &[f32], layout: &Layout, rect: VertexRect) {
+    let inside =
+        |low: i32, high: i32, count: usize| (low.max(0) as usize, (high.max(0) as usize).min(count - 1));
+    let (west, east) = inside(rect.min.x, rect.max.x, layout.columns());
+    let (south, north) = inside(rect.min.y, rect.max.y, layout.rows());
+    let row = |y: usize| values.get(y * layout.columns() + west..=y * layout.columns() + east).unwrap_or(&[]);
+    let of_row =
+        |row: &[f32]| row.iter().step_by(LINE).chain(row.last()).fold(0, |all, one| all ^ one.to_bits());
+    std::hint::black_box((south..=north).fold(0, |all, y| all ^ of_row(row(y))));
+}
+
 /// Mends a map of midpoint errors after `change`; `lattice` holds the new heights.
 pub fn mend_midpoint(errors: &mut ErrorMap, lattice: &Lattice, layout: &Layout, change: &Change) -> Mended {
     let changed = VertexRect::of_posts(layout, &change.posts);
     let field = Field::of(Ground { lattice, layout, exaggeration: 1.0 });
+    fetch(errors.values(), layout, changed.grown(1, 1));
     let mut mended = Mended::around(change);
     for pass in passes(layout) {
         let posts = changed.snapped(pass.step);
@@ -231,6 +248,7 @@ pub fn mend_spheres(
     let window = change.posts.grown(own.half_window(), ground.lattice);
     let rough = VertexRect::of_posts(ground.layout, &window);
     let field = Field::of(ground);
+    fetch(spheres.values(), ground.layout, changed.grown(1, 1));
     let last_error = errors.rects.iter().rposition(|rect| !rect.is_empty());
     let mut mended = Mended::around(change);
     for (index, pass) in passes(ground.layout).enumerate() {
