@@ -8,7 +8,7 @@ use sandtable::roam::criterion::Criterion;
 use sandtable::roam::criterion::spheres::Spheres;
 use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::errors::own::midpoint_errors;
+use sandtable::roam::errors::midpoint::midpoint_error_at;
 use sandtable::roam::graph::Vertex;
 use sandtable::roam::ground::Ground;
 use sandtable::roam::layout::Layout;
@@ -41,13 +41,21 @@ fn terrain(columns: u32, rows: u32, seed: u64, hole_every: u64) -> Lattice {
 
 /// All three kinds of spheres.
 fn kinds(ground: Ground<'_>, reach: f32) -> [SphereMap; 3] {
-    let midpoint = ErrorMap::raised(midpoint_errors(ground.lattice, ground.layout), ground.layout);
+    let midpoint = ErrorMap::midpoint(ground.lattice, ground.layout);
     let exact = ErrorMap::exact(ground.lattice, ground.layout);
     [
         SphereMap::plain(ground, &midpoint, reach),
         SphereMap::constrained(ground, reach, &Roughness::new(ground.lattice, (1, 1))),
         SphereMap::bounding(ground, &exact, reach),
     ]
+}
+
+/// The midpoint error of every vertex alone.
+fn midpoint_errors(lattice: &Lattice, layout: &Layout) -> Vec<f32> {
+    let columns = layout.columns();
+    let vertices = (0..layout.vertex_count())
+        .map(|index| Vertex::new((index % columns) as i32, (index / columns) as i32));
+    vertices.map(|vertex| midpoint_error_at(lattice, layout, vertex)).collect()
 }
 
 /// Radii nested one vertex at a time, the slow and obvious way.

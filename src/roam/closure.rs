@@ -42,7 +42,7 @@ pub fn least_closure(lattice: &Lattice, layout: &Layout, tolerance_m: f32) -> Ac
 }
 
 /// Whether a triangle is off by more than `tolerance_m` at any post it covers; `survey` is the lattice's.
-pub fn is_off(
+fn is_off(
     lattice: &Lattice,
     layout: &Layout,
     survey: &Survey,

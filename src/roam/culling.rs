@@ -69,7 +69,8 @@ struct Level {
     ranges: Vec<(f32, f32)>,
 }
 
-const NO_DATA: (f32, f32) = (f32::INFINITY, f32::NEG_INFINITY);
+/// The range of no post.
+pub(in crate::roam) const NO_DATA: (f32, f32) = (f32::INFINITY, f32::NEG_INFINITY);
 
 impl PatchHeights {
     /// The ranges of the drawn ground; patches without data get an empty range.
@@ -158,7 +159,8 @@ impl Level {
     }
 }
 
-fn joined(a: (f32, f32), b: (f32, f32)) -> (f32, f32) {
+/// The range of both.
+pub(in crate::roam) fn joined(a: (f32, f32), b: (f32, f32)) -> (f32, f32) {
     (a.0.min(b.0), a.1.max(b.1))
 }
 
@@ -166,12 +168,31 @@ fn range(ground: Ground<'_>, corner: Vertex) -> (f32, f32) {
     let (lattice, layout) = (ground.lattice, ground.layout);
     let (first, last) = (layout.post(corner), layout.post(corner.moved(layout.patch(), layout.patch())));
     (first.row..=last.row)
-        .flat_map(|row| {
+        .map(|row| {
             let start = row as usize * lattice.columns() as usize;
-            &lattice.heights()[start + first.column as usize..=start + last.column as usize]
+            let posts = &lattice.heights()[start + first.column as usize..=start + last.column as usize];
+            drawn_range(posts, ground.exaggeration)
         })
-        .map(|height| height * ground.exaggeration)
-        .fold(NO_DATA, |(low, high), z| (low.min(z), high.max(z)))
+        .fold(NO_DATA, joined)
+}
+
+/// The lowest and highest drawn Z of some posts, those without data left out. Several at a time: the smaller of two
+/// numbers must be known before that of three.
+pub(in crate::roam) fn drawn_range(heights: &[f32], exaggeration: f32) -> (f32, f32) {
+    const LANES: usize = 8;
+    let (mut low, mut high) = ([NO_DATA.0; LANES], [NO_DATA.1; LANES]);
+    let (groups, rest) = heights.as_chunks::<LANES>();
+    let mut add = |lane: usize, height: f32| {
+        let z = height * exaggeration;
+        // Written so that NaN is never taken, and each is one instruction.
+        low[lane] = if z < low[lane] { z } else { low[lane] };
+        high[lane] = if z > high[lane] { z } else { high[lane] };
+    };
+    for group in groups {
+        group.iter().enumerate().for_each(|(lane, &height)| add(lane, height));
+    }
+    rest.iter().enumerate().for_each(|(lane, &height)| add(lane, height));
+    low.into_iter().zip(high).fold(NO_DATA, joined)
 }
 
 /// The south-west corners of the patches that hold data and may be seen, row by row.

@@ -16,16 +16,16 @@ use crate::roam::active::ActiveSet;
 use crate::roam::block::{BlockError, BlockSource, PatchBlock, RootSphere, WholeGround};
 use crate::roam::criterion::Criterion;
 use crate::roam::criterion::spheres::Spheres;
-use crate::roam::culling::PatchHeights;
+use crate::roam::culling::{NO_DATA, PatchHeights, drawn_range, joined};
 use crate::roam::edit::{Mended, mend_exact, mend_midpoint, mend_spheres};
 use crate::roam::errors::ErrorMap;
-use crate::roam::errors::own::{exact_errors, midpoint_errors};
+use crate::roam::errors::exact::own_errors;
 use crate::roam::graph::Vertex;
 use crate::roam::ground::Ground;
 use crate::roam::layout::Layout;
+use crate::roam::levels::VertexRect;
 use crate::roam::roughness::Roughness;
 use crate::roam::spheres::{OwnRadius, SphereMap};
-use crate::roam::sweep::VertexRect;
 use crate::terrain::brush::{Change, Changes};
 use crate::terrain::earthwork::Volumes;
 use crate::terrain::lattice::Lattice;
@@ -116,9 +116,9 @@ impl DynamicTerrain {
         let layout = Layout::new(lattice.columns(), lattice.rows(), options.patch)?;
         let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: options.exaggeration };
         let (own, errors) = match options.measure {
-            Measure::Midpoint => (Vec::new(), ErrorMap::raised(midpoint_errors(&lattice, &layout), &layout)),
+            Measure::Midpoint => (Vec::new(), ErrorMap::midpoint(&lattice, &layout)),
             Measure::Exact => {
-                let own = exact_errors(&lattice, &layout);
+                let own = own_errors(&lattice, &layout);
                 (own.clone(), ErrorMap::raised(own, &layout))
             }
         };
@@ -180,18 +180,19 @@ impl DynamicTerrain {
             return None;
         }
         self.epoch += 1;
-        let mut vertices = Vec::new();
+        let mut vertices =
+            Vec::with_capacity(4 * changes.pieces.iter().map(|change| change.before.len()).sum::<usize>());
         for change in &changes.pieces {
             self.renew_heights(change);
-            vertices.extend(self.moved(change));
-            vertices.extend(self.mend(change));
+            self.add_moved(change, &mut vertices);
+            self.mend(change, &mut vertices);
         }
         let patches = self.patches_of(&vertices);
         Some(Edit { epoch: self.epoch, patches, vertices, volumes: changes.volumes })
     }
 
-    /// Mends everything for one piece and returns the vertices whose error or radius changed.
-    fn mend(&mut self, change: &Change) -> impl Iterator<Item = Vertex> + use<> {
+    /// Mends everything for one piece and adds the vertices whose error or radius changed to `vertices`.
+    fn mend(&mut self, change: &Change, vertices: &mut Vec<Vertex>) {
         let (lattice, layout) = (&*self.lattice, &self.layout);
         let errors = match self.options.measure {
             Measure::Midpoint => mend_midpoint(&mut self.errors, lattice, layout, change),
@@ -203,45 +204,45 @@ impl DynamicTerrain {
         let ground = Ground { lattice, layout, exaggeration: self.options.exaggeration };
         let own = own_radius(&self.options, &self.errors, self.roughness.as_ref());
         let spheres: Mended = mend_spheres(&mut self.spheres, ground, &own, change, &errors);
-        errors.vertices.into_iter().chain(spheres.vertices)
+        vertices.extend_from_slice(&errors.vertices);
+        vertices.extend_from_slice(&spheres.vertices);
     }
 
-    /// The vertices that stand for posts whose height changed.
-    fn moved(&self, change: &Change) -> Vec<Vertex> {
+    /// Adds the vertices that stand for posts whose height changed to `vertices`.
+    fn add_moved(&self, change: &Change, vertices: &mut Vec<Vertex>) {
         let rect = VertexRect::of_posts(&self.layout, &change.posts);
-        let first = change.posts.first;
-        let width = (change.posts.last.column - first.column + 1) as usize;
-        let vertices =
-            (rect.min.y..=rect.max.y).flat_map(|y| (rect.min.x..=rect.max.x).map(move |x| Vertex::new(x, y)));
-        let is_moved = |vertex: &Vertex| {
-            let post = self.layout.post(*vertex);
-            let at = (post.row - first.row) as usize * width + (post.column - first.column) as usize;
-            change.before[at].to_bits() != self.lattice.height(post).to_bits()
-        };
-        vertices.filter(is_moved).collect()
+        let (first, last) = (change.posts.first, change.posts.last);
+        for y in rect.min.y..=rect.max.y {
+            let row = self.layout.post(Vertex::new(rect.min.x, y)).row;
+            let [before, now] = change.row(&self.lattice, row, (first.column, last.column));
+            let is_moved = |at: usize| before[at].to_bits() != now[at].to_bits();
+            let inside =
+                (0..now.len()).filter(|&at| is_moved(at)).map(|at| Vertex::new(rect.min.x + at as i32, y));
+            vertices.extend(inside);
+            if is_moved(now.len() - 1) {
+                vertices.extend((last.column as i32 + 1..=rect.max.x).map(|x| Vertex::new(x, y)));
+            }
+        }
     }
 
     /// Mends the ranges of the patches that `change` touches: widened by what is new, measured again where the
-    /// lowest or the highest went away.
+    /// lowest or the highest may have gone away.
     fn renew_heights(&mut self, change: &Change) {
         let exaggeration = self.options.exaggeration;
         let rect = VertexRect::of_posts(&self.layout, &change.posts);
+        let (first, last) = (change.posts.first, change.posts.last);
         for corner in patches_meeting(&self.layout, rect) {
             let index = self.layout.patch_index(corner);
             let far = corner.moved(self.layout.patch(), self.layout.patch());
             let (low, high) = (self.layout.post(corner), self.layout.post(far));
-            let (mut new, mut kept) = ((f32::INFINITY, f32::NEG_INFINITY), true);
+            let columns = (low.column.max(first.column), high.column.min(last.column));
+            let rows = low.row.max(first.row)..=high.row.min(last.row);
+            let joint = rows.map(|row| {
+                change.row(&self.lattice, row, columns).map(|posts| drawn_range(posts, exaggeration))
+            });
+            let [old, new] = joint.fold([NO_DATA; 2], |[a, b], [c, d]| [joined(a, c), joined(b, d)]);
             let range = self.heights.range(index);
-            for (post, before) in change.changed(&self.lattice) {
-                let inside = (low.column..=high.column).contains(&post.column)
-                    && (low.row..=high.row).contains(&post.row);
-                if inside {
-                    let (before, z) = (before * exaggeration, self.lattice.height(post) * exaggeration);
-                    kept &= before > range.0 && before < range.1;
-                    new = (new.0.min(z), new.1.max(z));
-                }
-            }
-            if kept {
+            if old.0 > range.0 && old.1 < range.1 {
                 self.heights.widen(index, new);
             } else {
                 let ground = Ground { lattice: &self.lattice, layout: &self.layout, exaggeration };

@@ -9,13 +9,15 @@
 //! rectangles, all heights are changed first and each rectangle is then mended in turn.
 
 use crate::roam::errors::ErrorMap;
-use crate::roam::errors::own::{exact_error_at, midpoint_error, split_triangles};
+use crate::roam::errors::exact::{own_error, triangles_split_at};
+use crate::roam::errors::midpoint::torn_off;
+use crate::roam::errors::plane::PostPlane;
 use crate::roam::field::Field;
 use crate::roam::graph::{Kind, Vertex};
 use crate::roam::ground::Ground;
 use crate::roam::layout::Layout;
+use crate::roam::levels::{Pass, PassRow, VertexRect, passes};
 use crate::roam::spheres::{OwnRadius, SphereMap};
-use crate::roam::sweep::{Pass, VertexRect, passes};
 use crate::terrain::brush::Change;
 use crate::terrain::lattice::{Lattice, Post};
 
@@ -28,30 +30,34 @@ pub struct Mended {
     rects: Vec<VertexRect>,
 }
 
+/// The most passes of a layout: three a step, of 4096 cells.
+const PASSES: usize = 3 * 12;
+
 impl Mended {
+    /// Nothing yet, with room for what a change brings about.
+    fn around(change: &Change) -> Self {
+        Self { vertices: Vec::with_capacity(change.before.len() * 3 / 2), rects: Vec::with_capacity(PASSES) }
+    }
+
     /// The rectangle around the changed vertices of a pass by its place in [`passes`].
     fn rect(&self, pass: usize) -> VertexRect {
         self.rects.get(pass).copied().unwrap_or(VertexRect::EMPTY)
     }
 
-    /// Sweeps the pass: the vertices of `rect` for which `renew` tells that they changed.
+    /// Sweeps the pass: the rows of the vertices of `rect`, of which `renew` adds those that changed.
     fn sweep(
         &mut self,
         layout: &Layout,
         pass: Pass,
         rect: VertexRect,
-        mut renew: impl FnMut(Vertex) -> bool,
+        mut renew: impl FnMut(PassRow, &mut Vec<Vertex>),
     ) {
-        let mut changed = VertexRect::EMPTY;
+        let before = self.vertices.len();
         if !rect.is_empty() {
-            pass.visit(layout, &rect, |vertex| {
-                if renew(vertex) {
-                    changed = changed.with(vertex);
-                    self.vertices.push(vertex);
-                }
-            });
+            pass.rows_within(layout, &rect).for_each(|row| renew(row, &mut self.vertices));
         }
-        self.rects.push(changed);
+        let changed = self.vertices[before..].iter();
+        self.rects.push(changed.fold(VertexRect::EMPTY, |rect, &vertex| rect.with(vertex)));
     }
 
     /// The rectangle around the parents, in `pass`, of what changed so far; `pass` is the next to be swept.
@@ -72,11 +78,28 @@ impl Mended {
     }
 }
 
+/// Posts between two that are fetched: what one line of a cache holds.
+const LINE: usize = 16;
+
+/// Reads a value of every cache line of a rectangle. Rows of a big terrain lie far apart, and whoever works on them one
+/// after the other waits for each; these reads wait for nothing, so the memory answers them together.
+fn fetch(values: &[f32], layout: &Layout, rect: VertexRect) {
+    let inside =
+        |low: i32, high: i32, count: usize| (low.max(0) as usize, (high.max(0) as usize).min(count - 1));
+    let (west, east) = inside(rect.min.x, rect.max.x, layout.columns());
+    let (south, north) = inside(rect.min.y, rect.max.y, layout.rows());
+    let row = |y: usize| values.get(y * layout.columns() + west..=y * layout.columns() + east).unwrap_or(&[]);
+    let of_row =
+        |row: &[f32]| row.iter().step_by(LINE).chain(row.last()).fold(0, |all, one| all ^ one.to_bits());
+    std::hint::black_box((south..=north).fold(0, |all, y| all ^ of_row(row(y))));
+}
+
 /// Mends a map of midpoint errors after `change`; `lattice` holds the new heights.
 pub fn mend_midpoint(errors: &mut ErrorMap, lattice: &Lattice, layout: &Layout, change: &Change) -> Mended {
     let changed = VertexRect::of_posts(layout, &change.posts);
     let field = Field::of(Ground { lattice, layout, exaggeration: 1.0 });
-    let mut mended = Mended::default();
+    fetch(errors.values(), layout, changed.grown(1, 1));
+    let mut mended = Mended::around(change);
     for pass in passes(layout) {
         let posts = changed.snapped(pass.step);
         if posts.is_empty() && mended.has_ended(pass) {
@@ -88,12 +111,38 @@ pub fn mend_midpoint(errors: &mut ErrorMap, lattice: &Lattice, layout: &Layout, 
             Kind::Center => posts.grown(pass.step, pass.step),
         };
         let rect = measured.union(mended.above(pass));
-        mended.sweep(layout, pass, rect, |vertex| {
-            let [from, to] = pass.hypotenuse(vertex).map(|end| field.height(end));
-            errors.renew(layout, pass, vertex, midpoint_error(field.height(vertex), from, to))
-        });
+        mended
+            .sweep(layout, pass, rect, |row, changed| renew_midpoints(errors, layout, &field, row, changed));
     }
     mended
+}
+
+/// Renews a row of midpoint errors; adds the vertices whose error changed to `changed`.
+fn renew_midpoints(
+    errors: &mut ErrorMap,
+    layout: &Layout,
+    field: &Field<'_>,
+    row: PassRow,
+    changed: &mut Vec<Vertex>,
+) {
+    let (step, here) = (row.pass.step as usize, field.row(row.y));
+    if row.pass.kind == Kind::EastEdge {
+        let own = |x: usize| torn_off(here.height(x - step), here.height(x + step), here.height(x));
+        errors.renew_row(layout, row, own, changed);
+        return;
+    }
+    let (south, north) = (field.row(row.y - step), field.row(row.y + step));
+    if row.pass.kind == Kind::NorthEdge {
+        let own = |x: usize| torn_off(south.height(x), north.height(x), here.height(x));
+        errors.renew_row(layout, row, own, changed);
+    } else {
+        let own = |x: usize| {
+            let (from, to) =
+                if row.pass.rises(x, row.y) { (x - step, x + step) } else { (x + step, x - step) };
+            torn_off(south.height(from), north.height(to), here.height(x))
+        };
+        errors.renew_row(layout, row, own, changed);
+    }
 }
 
 /// Mends a map of exact errors after `change`, and `own`, the errors of the vertices alone that it was raised from, in
@@ -113,15 +162,19 @@ pub fn mend_exact(
 ) -> Mended {
     assert_eq!(own.len(), layout.vertex_count(), "one own error a vertex");
     let changed = VertexRect::of_posts(layout, &change.posts);
-    let mut mended = Mended::default();
+    let mut mended = Mended::around(change);
     for pass in passes(layout) {
         let rect = changed.grown(pass.step, pass.step).union(mended.above(pass));
-        mended.sweep(layout, pass, rect, |vertex| {
-            let slot = &mut own[layout.index(vertex)];
-            if pass.step <= SCANNED || !stands(lattice, layout, vertex, *slot, change) {
-                *slot = exact_error_at(lattice, layout, vertex);
-            }
-            errors.renew(layout, pass, vertex, *slot)
+        mended.sweep(layout, pass, rect, |row, changed| {
+            let measure = |x: usize| {
+                let vertex = Vertex::new(x as i32, row.y as i32);
+                let slot = &mut own[layout.index(vertex)];
+                if pass.step <= SCANNED || !stands(lattice, layout, vertex, *slot, change) {
+                    *slot = own_error(lattice, layout, vertex);
+                }
+                *slot
+            };
+            errors.renew_row(layout, row, measure, changed);
         });
     }
     mended
@@ -131,76 +184,55 @@ pub fn mend_exact(
 /// ones would cost.
 const SCANNED: i32 = 4;
 
+/// Errors of big triangles are measured in f32: each is off by at most this share of the relief that was measured.
+/// Several times what can come about, and still so little that no scan is saved by less.
+const ROUNDING: f64 = 4e-6;
+
 /// Whether it is certain that the error of `vertex` alone, `own` before, is what it was: its triangles' corners stand,
 /// none of the changed posts they cover is pinned, and all were and are clearly less far off than the worst.
 fn stands(lattice: &Lattice, layout: &Layout, vertex: Vertex, own: f32, change: &Change) -> bool {
-    let clearly_less = f64::from(own) * (1.0 - 1e-5);
     own.is_finite()
-        && split_triangles(layout, vertex).all(|triangle| {
+        && triangles_split_at(layout, vertex).into_iter().flatten().all(|triangle| {
             let corners = triangle.corners().map(|corner| layout.post(corner));
             if corners.iter().any(|&corner| moved(lattice, change, corner)) {
                 return false;
             }
-            let Some(plane) = Plane::through(lattice, corners) else { return true };
-            plane.covered(change).all(|(post, before)| {
-                let after = lattice.height(post);
-                let off = plane.off(post, before).max(plane.off(post, after));
-                after.to_bits() == before.to_bits() || (off < clearly_less && !lattice.is_pinned(post))
+            let Some(plane) = PostPlane::through(lattice, corners) else { return true };
+            let clearly_less = f64::from(own) - ROUNDING * (f64::from(own) + relief(lattice, corners));
+            covered(corners, change).all(|(post, before)| {
+                let (after, shown) = (lattice.height(post), plane.height(post));
+                let off = |height: f32| (f64::from(height) - shown).abs();
+                let is_less = off(before).max(off(after)) < clearly_less;
+                after.to_bits() == before.to_bits() || (is_less && !lattice.is_pinned(post))
             })
         })
+}
+
+/// From the lowest to the highest of three posts, metres.
+fn relief(lattice: &Lattice, posts: [Post; 3]) -> f64 {
+    let [a, b, c] = posts.map(|post| f64::from(lattice.height(post)));
+    a.max(b).max(c) - a.min(b).min(c)
 }
 
 /// Whether a post has another height than before.
 fn moved(lattice: &Lattice, change: &Change, post: Post) -> bool {
+    change.posts.contains(post) && change.height_before(post).to_bits() != lattice.height(post).to_bits()
+}
+
+/// The changed posts in the bounding box of a triangle of posts, with their heights before: at least those it covers.
+fn covered<'a>(corners: [Post; 3], change: &'a Change) -> impl Iterator<Item = (Post, f32)> + use<'a> {
+    let range = |along: fn(Post) -> u32| {
+        let [a, b, c] = corners.map(along);
+        (a.min(b).min(c), a.max(b).max(c))
+    };
+    let (columns, rows) = (range(|post| post.column), range(|post| post.row));
     let (first, last) = (change.posts.first, change.posts.last);
-    change.posts.contains(post) && {
-        let width = (last.column - first.column + 1) as usize;
-        let at = (post.row - first.row) as usize * width + (post.column - first.column) as usize;
-        change.before[at].to_bits() != lattice.height(post).to_bits()
-    }
-}
-
-/// A triangle of posts and its plane, in posts and metres.
-struct Plane {
-    corners: [Post; 3],
-    at: (f64, f64, f64),
-    slope: (f64, f64),
-}
-
-impl Plane {
-    /// `None` where the posts lie on a line; NaN slopes where a corner has no data.
-    fn through(lattice: &Lattice, corners: [Post; 3]) -> Option<Self> {
-        let at = |post: Post| (f64::from(post.column), f64::from(post.row), f64::from(lattice.height(post)));
-        let [a, b, c] = corners.map(at);
-        let ((bx, by, bz), (cx, cy, cz)) =
-            ((b.0 - a.0, b.1 - a.1, b.2 - a.2), (c.0 - a.0, c.1 - a.1, c.2 - a.2));
-        let area = bx * cy - by * cx;
-        let slope = ((bz * cy - cz * by) / area, (cz * bx - bz * cx) / area);
-        (area != 0.0).then_some(Self { corners, at: a, slope })
-    }
-
-    /// The changed posts in the triangle's bounding box, with their heights before: at least those it covers.
-    fn covered<'a>(&self, change: &'a Change) -> impl Iterator<Item = (Post, f32)> + use<'a> {
-        let range = |along: fn(Post) -> u32, corners: [Post; 3]| {
-            let [a, b, c] = corners.map(along);
-            (a.min(b).min(c), a.max(b).max(c))
-        };
-        let (columns, rows) = (range(|post| post.column, self.corners), range(|post| post.row, self.corners));
-        let (first, last) = (change.posts.first, change.posts.last);
-        let width = (last.column - first.column + 1) as usize;
-        (first.row.max(rows.0)..=last.row.min(rows.1)).flat_map(move |row| {
-            (first.column.max(columns.0)..=last.column.min(columns.1)).map(move |column| {
-                let at = (row - first.row) as usize * width + (column - first.column) as usize;
-                (Post { column, row }, change.before[at])
-            })
+    (first.row.max(rows.0)..=last.row.min(rows.1)).flat_map(move |row| {
+        (first.column.max(columns.0)..=last.column.min(columns.1)).map(move |column| {
+            let post = Post { column, row };
+            (post, change.height_before(post))
         })
-    }
-
-    /// How far a height at a post is off the plane, metres.
-    fn off(&self, post: Post, height: f32) -> f64 {
-        let (east, north) = (f64::from(post.column) - self.at.0, f64::from(post.row) - self.at.1);
-        (f64::from(height) - (self.at.2 + self.slope.0 * east + self.slope.1 * north)).abs()
-    }
+    })
 }
 
 /// Mends nested spheres after `change`, once the errors are mended: `errors` says where those changed. `own` reads
@@ -216,8 +248,9 @@ pub fn mend_spheres(
     let window = change.posts.grown(own.half_window(), ground.lattice);
     let rough = VertexRect::of_posts(ground.layout, &window);
     let field = Field::of(ground);
+    fetch(spheres.values(), ground.layout, changed.grown(1, 1));
     let last_error = errors.rects.iter().rposition(|rect| !rect.is_empty());
-    let mut mended = Mended::default();
+    let mut mended = Mended::around(change);
     for (index, pass) in passes(ground.layout).enumerate() {
         let half = (pass.step / 2).max(1);
         let (moved, near) = (changed.snapped(half), rough.snapped(pass.step));
@@ -229,8 +262,8 @@ pub fn mend_spheres(
         let children = if has_children { moved.grown(half, half) } else { VertexRect::EMPTY };
         let corners = changed.snapped(pass.step).grown(pass.step, pass.step);
         let rect = corners.union(children).union(near).union(errors.rect(index)).union(mended.above(pass));
-        mended.sweep(ground.layout, pass, rect, |vertex| {
-            spheres.renew(&field, pass, vertex, own.of(ground, vertex))
+        mended.sweep(ground.layout, pass, rect, |row, changed| {
+            spheres.renew_row(ground, &field, row, own, changed);
         });
     }
     mended

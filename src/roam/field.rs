@@ -1,21 +1,31 @@
-//! Vertices with their heights and places, for loops that look at many: the same values as [`Ground`]'s, read by
-//! coordinates without a check of each.
+//! Rows of vertices with their heights and places, for loops that look at many: the same values as [`Ground`]'s, without
+//! a look for the post of each.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 use crate::roam::graph::Vertex;
 use crate::roam::ground::Ground;
-use crate::roam::layout::Layout;
+use crate::terrain::lattice::Post;
 
 /// A ground laid open.
 #[derive(Clone, Copy, Debug)]
 pub struct Field<'a> {
     heights: &'a [f32],
     width: usize,
-    last: Vertex,
+    last_row: usize,
+    first: Post,
     cell: DVec2,
     exaggeration: f32,
-    layout: &'a Layout,
+}
+
+/// A row of vertices of a layout.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldRow<'a> {
+    heights: &'a [f32],
+    y: f64,
+    first: u32,
+    cell: f64,
+    exaggeration: f32,
 }
 
 impl<'a> Field<'a> {
@@ -25,54 +35,83 @@ impl<'a> Field<'a> {
         Self {
             heights: ground.lattice.heights(),
             width: ground.lattice.columns() as usize,
-            last: Vertex::new(last.column as i32, last.row as i32),
+            last_row: last.row as usize,
+            first: ground.lattice.first(),
             cell: ground.lattice.cell(),
             exaggeration: ground.exaggeration,
-            layout: ground.layout,
         }
     }
 
-    /// The layout.
-    pub fn layout(&self) -> &'a Layout {
-        self.layout
+    /// The row of vertices `y`.
+    #[inline]
+    pub fn row(&self, y: usize) -> FieldRow<'a> {
+        let row = y.min(self.last_row);
+        FieldRow {
+            heights: &self.heights[row * self.width..][..self.width],
+            y: place(row as u32 + self.first.row, self.cell.y),
+            first: self.first.column,
+            cell: self.cell.x,
+            exaggeration: self.exaggeration,
+        }
+    }
+}
+
+impl FieldRow<'_> {
+    /// The height of the post that the vertex in column `x` stands for, metres; NaN without data.
+    #[inline]
+    pub fn height(&self, x: usize) -> f32 {
+        self.heights[x.min(self.heights.len() - 1)]
     }
 
-    /// The height of the post that a vertex of the layout stands for, metres; NaN without data.
+    /// World X of the vertex in column `x`, metres.
     #[inline]
-    pub fn height(&self, vertex: Vertex) -> f32 {
-        let (x, y) = (vertex.x.min(self.last.x), vertex.y.min(self.last.y));
-        self.heights[y as usize * self.width + x as usize]
+    pub fn x(&self, x: usize) -> f64 {
+        place(x.min(self.heights.len() - 1) as u32 + self.first, self.cell)
     }
 
-    /// [`Ground::position`].
+    /// World Y of the row, metres.
     #[inline]
-    pub fn position(&self, vertex: Vertex) -> DVec3 {
-        let (x, y) = (vertex.x.min(self.last.x), vertex.y.min(self.last.y));
-        let height = self.heights[y as usize * self.width + x as usize];
-        let z = if height.is_nan() { 0.0 } else { height * self.exaggeration };
-        let plan = [f64::from(x) * self.cell.x, f64::from(y) * self.cell.y].map(|at| f64::from(at as f32));
-        DVec3::new(plan[0], plan[1], f64::from(z))
+    pub fn y(&self) -> f64 {
+        self.y
     }
+
+    /// Drawn Z of the vertex in column `x`, metres; 0 where it has no data.
+    #[inline]
+    pub fn z(&self, x: usize) -> f64 {
+        let height = self.height(x);
+        if height.is_nan() { 0.0 } else { f64::from(height * self.exaggeration) }
+    }
+}
+
+/// Rounded to f32, as the ground is drawn. A post's number fits an i32, whose conversion is one instruction.
+#[inline]
+fn place(post: u32, cell: f64) -> f64 {
+    f64::from((f64::from(post as i32) * cell) as f32)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::roam::layout::Layout;
     use crate::terrain::lattice::Lattice;
+    use glam::DVec3;
 
     #[test]
     fn a_field_has_the_places_of_its_ground() {
         let mut heights: Vec<f32> = (0..21 * 13).map(|index| index as f32 * 0.37).collect();
         heights[40] = f32::NAN;
-        let lattice = Lattice::new(DVec2::ZERO, DVec2::new(0.3, 30.7), 21, heights).expect("sound");
+        let first = Post { column: 7, row: 1_000_003 };
+        let lattice = Lattice::part((DVec2::ZERO, DVec2::new(0.3, 30.7)), first, 21, heights).expect("sound");
         let layout = Layout::new(21, 13, 16).expect("sound");
         let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.3 };
         let field = Field::of(ground);
         for (x, y) in (0..33).flat_map(|x| (0..17).map(move |y| (x, y))) {
             let vertex = Vertex::new(x, y);
-            assert_eq!(field.position(vertex), ground.position(vertex).as_dvec3());
+            let row = field.row(y as usize);
+            let place = DVec3::new(row.x(x as usize), row.y(), row.z(x as usize));
+            assert_eq!(place, ground.position(vertex).as_dvec3());
             let height = lattice.height(layout.post(vertex));
-            assert_eq!(field.height(vertex).to_bits(), height.to_bits());
+            assert_eq!(row.height(x as usize).to_bits(), height.to_bits());
         }
     }
 }

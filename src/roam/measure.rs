@@ -11,6 +11,8 @@
 
 use rayon::prelude::*;
 
+use crate::roam::errors::plane::PostPlane;
+use crate::roam::errors::rows::{RowSpan, RowSpans};
 use crate::roam::layout::Layout;
 use crate::roam::shown::{LocalTriangle, PatchList};
 use crate::terrain::lattice::{Lattice, Post};
@@ -136,12 +138,10 @@ impl<'a, S: Fn(Post, f64) -> Option<f64>> Scan<'a, S> {
 
     fn scan(&mut self, triangle: &LocalTriangle) {
         let posts = triangle.map(|index| self.layout.post(self.list.vertex(self.layout, index)));
-        let Some(plane) = Plane::through(self.lattice, posts) else {
+        let Some(plane) = PostPlane::through(self.lattice, posts).filter(PostPlane::has_data) else {
             return;
         };
-        let rows = posts.map(|post| post.row);
-        for row in rows[0].min(rows[1]).min(rows[2])..=rows[0].max(rows[1]).max(rows[2]) {
-            let (first, last) = span(posts, row);
+        for RowSpan { row, first, last } in RowSpans::of(posts) {
             if row == self.first.row || row == self.last.row {
                 (first..=last).for_each(|column| self.measure_on_border(Post { column, row }, &plane));
                 continue;
@@ -161,7 +161,7 @@ impl<'a, S: Fn(Post, f64) -> Option<f64>> Scan<'a, S> {
     }
 
     /// The posts of a row from `first` to `last`, all of them off the patch's border; none for first above last.
-    fn measure_inside(&mut self, row: u32, first: u32, last: u32, plane: &Plane) {
+    fn measure_inside(&mut self, row: u32, first: u32, last: u32, plane: &PostPlane) {
         if first > last {
             return;
         }
@@ -183,7 +183,7 @@ impl<'a, S: Fn(Post, f64) -> Option<f64>> Scan<'a, S> {
         self.found.inside = self.found.inside.with(found);
     }
 
-    fn measure_on_border(&mut self, post: Post, plane: &Plane) {
+    fn measure_on_border(&mut self, post: Post, plane: &PostPlane) {
         let (place, height) = (self.place(post), self.lattice.height(post));
         let is_new = !height.is_nan() && !std::mem::replace(&mut self.seen[place], true);
         let shown_m = plane.height(post);
@@ -198,58 +198,6 @@ impl<'a, S: Fn(Post, f64) -> Option<f64>> Scan<'a, S> {
         let width = (self.last.column - self.first.column + 1) as usize;
         (post.row - self.first.row) as usize * width + (post.column - self.first.column) as usize
     }
-}
-
-/// A triangle's plane over the lattice.
-struct Plane {
-    corner: [f64; 3],
-    per_column: f64,
-    per_row: f64,
-}
-
-impl Plane {
-    /// `None` where the posts lie on a line or have no data.
-    fn through(lattice: &Lattice, posts: [Post; 3]) -> Option<Self> {
-        let point =
-            |post: Post| [f64::from(post.column), f64::from(post.row), f64::from(lattice.height(post))];
-        let [a, b, c] = posts.map(point);
-        let (ab, ac) = ([b[0] - a[0], b[1] - a[1], b[2] - a[2]], [c[0] - a[0], c[1] - a[1], c[2] - a[2]]);
-        let doubled_area = ab[0] * ac[1] - ab[1] * ac[0];
-        let per_column = (ab[2] * ac[1] - ac[2] * ab[1]) / doubled_area;
-        let per_row = (ac[2] * ab[0] - ab[2] * ac[0]) / doubled_area;
-        let sound = doubled_area != 0.0 && per_column.is_finite() && per_row.is_finite();
-        sound.then_some(Self { corner: a, per_column, per_row })
-    }
-
-    fn height(&self, post: Post) -> f64 {
-        let [column, row, height] = self.corner;
-        height
-            + self.per_column * (f64::from(post.column) - column)
-            + self.per_row * (f64::from(post.row) - row)
-    }
-}
-
-/// The first and last column that a triangle of posts covers in a row; first above last where it covers none.
-fn span(posts: [Post; 3], row: u32) -> (u32, u32) {
-    let (mut first, mut last) = (i64::MAX, i64::MIN);
-    for side in 0..3 {
-        let [from, to] = [posts[side], posts[(side + 1) % 3]];
-        let [low, high] = if from.row <= to.row { [from, to] } else { [to, from] };
-        if !(low.row..=high.row).contains(&row) {
-            continue;
-        }
-        let [left, right] = [i64::from(low.column), i64::from(high.column)];
-        let rise = i64::from(high.row - low.row);
-        if rise == 0 {
-            first = first.min(left.min(right));
-            last = last.max(left.max(right));
-            continue;
-        }
-        let run = (right - left) * i64::from(row - low.row);
-        first = first.min(left + run.div_euclid(rise) + i64::from(run.rem_euclid(rise) != 0));
-        last = last.max(left + run.div_euclid(rise));
-    }
-    if first <= last { (first as u32, last as u32) } else { (1, 0) }
 }
 
 #[cfg(test)]

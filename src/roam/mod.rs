@@ -17,7 +17,7 @@
 //! - `refine` sets the bits.
 //! - `emit` turns the bits into triangles, in several ways; `quadtree` is the arithmetic of one of them.
 //! - `displayed` is what the bits show, for what lies on it.
-//! - `sweep` is the order in which whatever is nested up the graph is made.
+//! - `levels` is the order in which whatever is nested up the graph is made.
 //! - `edit` mends errors and spheres after heights changed; `dynamic` is a terrain that can be edited.
 //! - `closure` sets the fewest bits that keep an error bound; `bound` measures a mesh at every post.
 //! - `paging` has patches of terrain larger than the memory, on demand.
@@ -45,6 +45,7 @@ pub mod frames;
 pub mod graph;
 pub mod ground;
 pub mod layout;
+pub mod levels;
 pub mod measure;
 pub mod paging;
 pub mod quadtree;
@@ -52,4 +53,3 @@ pub mod refine;
 pub mod roughness;
 pub mod shown;
 pub mod spheres;
-pub mod sweep;

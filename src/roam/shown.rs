@@ -6,10 +6,14 @@
 use std::sync::Arc;
 
 use crate::roam::active::ActiveSet;
-use crate::roam::bintree::Triangle;
+use crate::roam::emit::bintree::Block;
+use crate::roam::emit::world::drawn_posts;
 use crate::roam::graph::Vertex;
 use crate::roam::ground::Ground;
 use crate::roam::layout::Layout;
+
+/// Why there are indices.
+const SHORT: &str = "patches of at most 128 cells have 16-bit indices";
 
 /// Three vertices of a patch, counter-clockwise seen from above; vertices count row by row from the south-west.
 pub type LocalTriangle = [u16; 3];
@@ -32,37 +36,19 @@ impl PatchList {
         Self { corner, triangles, indices }
     }
 
-    /// The list of triangles of vertices of the patch with south-west corner `corner`.
-    ///
-    /// # Panics
-    /// Where patches are larger than 128 cells: their vertices have no 16-bit index.
-    pub fn of_vertices(
-        layout: &Layout,
-        corner: Vertex,
-        triangles: impl IntoIterator<Item = [Vertex; 3]>,
-    ) -> Self {
-        let named = |corners: [Vertex; 3]| corners.map(|vertex| local(layout, corner, vertex));
-        Self::of_triangles(corner, Arc::new(triangles.into_iter().map(named).collect()))
-    }
-
     /// The bintree's leaves in the patch with south-west corner `corner`, without those beyond the border or over no
     /// data.
     ///
     /// # Panics
     /// Where patches are larger than 128 cells: their vertices have no 16-bit index.
     pub fn bintree(ground: Ground<'_>, active: &ActiveSet, corner: Vertex) -> Self {
-        let mut stack = Triangle::roots(corner, ground.layout.patch()).to_vec();
-        let leaves = std::iter::from_fn(|| {
-            while let Some(triangle) = stack.pop() {
-                if !triangle.is_finest() && active.is_active(triangle.split_vertex()) {
-                    stack.extend(triangle.split());
-                } else if is_drawn(ground, &triangle) {
-                    return Some(triangle.corners());
-                }
-            }
-            None
-        });
-        Self::of_vertices(ground.layout, corner, leaves)
+        let block = Block::of(ground.layout).expect(SHORT);
+        let is_drawn = |triangle: LocalTriangle| {
+            drawn_posts(ground, triangle.map(|index| block.vertex(corner, index))).is_some()
+        };
+        let mut triangles = Vec::new();
+        block.append(active, corner, is_drawn, &mut triangles);
+        Self::of_triangles(corner, Arc::new(triangles))
     }
 
     /// The vertex with index `index` in this patch.
@@ -75,23 +61,6 @@ impl PatchList {
     pub fn bytes(&self) -> usize {
         2 * self.indices
     }
-}
-
-/// The index of `vertex` in the patch with south-west corner `corner`, which holds it.
-///
-/// # Panics
-/// Where patches are larger than 128 cells.
-pub fn local(layout: &Layout, corner: Vertex, vertex: Vertex) -> u16 {
-    let index = (vertex.y - corner.y) * (layout.patch() + 1) + vertex.x - corner.x;
-    u16::try_from(index).expect("patches of at most 128 cells have 16-bit indices")
-}
-
-/// Whether a leaf has an area and a height at every corner.
-fn is_drawn(ground: Ground<'_>, triangle: &Triangle) -> bool {
-    let posts = triangle.corners().map(|vertex| ground.layout.post(vertex));
-    let [a, b, c] = posts.map(|post| (i64::from(post.column), i64::from(post.row)));
-    let doubled_area = (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0);
-    doubled_area != 0 && posts.iter().all(|&post| !ground.lattice.height(post).is_nan())
 }
 
 #[cfg(test)]

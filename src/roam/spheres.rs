@@ -8,17 +8,17 @@
 //! distance within which the vertex's own error shows (constrained nested error criterion; Lindstrom and Pascucci
 //! 2001 nest spheres the same way). What `r` is differs: see [`OwnRadius`].
 
-use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::roam::errors::ErrorMap;
-use crate::roam::errors::own::midpoint_error_at;
-use crate::roam::field::Field;
-use crate::roam::graph::Vertex;
+use crate::roam::errors::midpoint::midpoint_error_at;
+use crate::roam::errors::scan::larger;
+use crate::roam::field::{Field, FieldRow};
+use crate::roam::graph::{Kind, Vertex};
 use crate::roam::ground::Ground;
 use crate::roam::layout::Layout;
+use crate::roam::levels::{Beside, PassRow, Rows, both_sides, for_rows};
 use crate::roam::roughness::Roughness;
-use crate::roam::sweep::{Pass, Rows, for_rows};
 use crate::view::camera::Camera;
 
 /// Spheres grow by this share from child to parent, so that rounding of f32 radii and f64 distances can never make
@@ -86,8 +86,7 @@ impl OwnRadius<'_> {
         }
         match *self {
             Self::Plain { errors, reach } => {
-                let error = errors.at(ground.layout, vertex);
-                scaled(error, |error| f64::from(reach) * error * f64::from(ground.exaggeration))
+                plain_radius(errors.at(ground.layout, vertex), reach, ground.exaggeration)
             }
             Self::Constrained { reach, roughness } => {
                 let reach = f64::from(reach) * roughness.factor(ground.layout.post(vertex));
@@ -108,6 +107,12 @@ impl OwnRadius<'_> {
             _ => (0, 0),
         }
     }
+}
+
+/// See [`OwnRadius::Plain`].
+#[inline]
+fn plain_radius(error: f32, reach: f32, exaggeration: f32) -> f32 {
+    scaled(error, |error| f64::from(reach) * error * f64::from(exaggeration))
 }
 
 /// The radius that a finite error has; 0 for no error, infinite for an infinite one.
@@ -149,6 +154,12 @@ impl SphereMap {
         let columns = ground.layout.columns();
         let mut radii = vec![0.0; ground.layout.vertex_count()];
         radii.par_chunks_mut(columns).enumerate().for_each(|(y, row)| {
+            if let OwnRadius::Plain { errors, reach } = *own {
+                let errors = errors.row(ground.layout, y).iter();
+                let radius = |&error: &f32| plain_radius(error, reach, ground.exaggeration);
+                row.iter_mut().zip(errors.map(radius)).for_each(|(slot, radius)| *slot = radius);
+                return;
+            }
             for (x, radius) in row.iter_mut().enumerate() {
                 *radius = own.of(ground, Vertex::new(x as i32, y as i32));
             }
@@ -165,17 +176,25 @@ impl SphereMap {
     /// Where there is not one radius a vertex.
     pub fn nested(ground: Ground<'_>, own: Vec<f32>) -> Self {
         assert_eq!(own.len(), ground.layout.vertex_count(), "one radius a vertex");
-        let mut radii = own;
-        let (columns, places) = (ground.layout.columns(), Places::of(ground));
+        let (mut radii, layout, field) = (own, ground.layout, Field::of(ground));
+        let columns = layout.columns();
         let mut step = 1;
-        while step < ground.layout.patch() as usize {
+        while step < layout.patch() as usize {
             if step > 1 {
-                for_rows(&mut radii, columns, step / 2, Rows::Even, |y, row, beside| {
-                    places.grow_edges(step, y, row, beside);
+                let half = step / 2;
+                for_rows(&mut radii, columns, half, Rows::Even, |y, row, beside| {
+                    let nest = Nest::of(&field, y, both_sides(y, half, layout.rows()), beside);
+                    let first = if (y / step).is_multiple_of(2) { step } else { 0 };
+                    for x in (first..columns).step_by(2 * step) {
+                        row[x] = larger(row[x], nest.about_edge(half, x));
+                    }
                 });
             }
             for_rows(&mut radii, columns, step, Rows::Odd, |y, row, beside| {
-                places.grow_centers(step, y, row, beside);
+                let nest = Nest::of(&field, y, [y - step, y + step], beside);
+                for x in (step..columns).step_by(2 * step) {
+                    row[x] = larger(row[x], nest.about_center(step, x, row));
+                }
             });
             step *= 2;
         }
@@ -218,103 +237,118 @@ impl SphereMap {
         Ok(())
     }
 
-    /// Sets the radius of a vertex of `pass` again from its own radius and its children's spheres, which are as they
-    /// shall be; tells whether it changed.
+    /// Sets the radii of a row of a pass again from the vertices' own and their children's spheres, which are as they
+    /// shall be; adds the vertices whose radius changed to `changed`.
+    pub(in crate::roam) fn renew_row(
+        &mut self,
+        ground: Ground<'_>,
+        field: &Field<'_>,
+        row: PassRow,
+        own: &OwnRadius<'_>,
+        changed: &mut Vec<Vertex>,
+    ) {
+        let layout = ground.layout;
+        match *own {
+            OwnRadius::Plain { errors, reach } => {
+                let errors = errors.row(layout, row.y);
+                let own = |x: usize| plain_radius(errors[x], reach, ground.exaggeration);
+                self.put_row(layout, field, row, own, changed);
+            }
+            _ => {
+                let own = |x: usize| own.of(ground, Vertex::new(x as i32, row.y as i32));
+                self.put_row(layout, field, row, own, changed);
+            }
+        }
+    }
+
     #[inline]
-    pub(in crate::roam) fn renew(&mut self, field: &Field<'_>, pass: Pass, vertex: Vertex, own: f32) -> bool {
-        let (layout, reach) = (field.layout(), pass.child_reach());
-        let (center, mut radius) = (field.position(vertex), own);
-        for &(x, y) in pass.child_offsets() {
-            let child = vertex.moved(x * reach, y * reach);
-            if layout.contains(child) {
-                radius = radius.max(around(center, field.position(child), self.radii[layout.index(child)]));
+    fn put_row(
+        &mut self,
+        layout: &Layout,
+        field: &Field<'_>,
+        row: PassRow,
+        own: impl Fn(usize) -> f32,
+        changed: &mut Vec<Vertex>,
+    ) {
+        let Beside { here, south, north } = row.of(&mut self.radii, layout);
+        let nest = Nest::of(field, row.y, row.child_rows(layout.rows()), [south, north]);
+        let mut put = |here: &mut [f32], x: usize, held: f32| {
+            let radius = larger(own(x), held);
+            if std::mem::replace(&mut here[x], radius) != radius {
+                changed.push(Vertex::new(x as i32, row.y as i32));
             }
+        };
+        let reach = row.pass.child_reach();
+        if row.pass.is_finest() {
+            row.columns().for_each(|x| put(here, x, 0.0));
+        } else if row.pass.kind == Kind::Center {
+            row.columns().for_each(|x| put(here, x, nest.about_center(reach, x, here)));
+        } else {
+            row.columns().for_each(|x| put(here, x, nest.about_edge(reach, x)));
         }
-        let slot = &mut self.radii[layout.index(vertex)];
-        std::mem::replace(slot, radius) != radius
     }
 }
 
-/// The radius about `center` that holds the sphere of `radius` about `child`; 0 for a child that never shows.
+/// A row of vertices with the rows in which their children are: their places, and the radii of the children's spheres.
+struct Nest<'a> {
+    here: FieldRow<'a>,
+    beside: [FieldRow<'a>; 2],
+    radii: [&'a [f32]; 2],
+}
+
+impl<'a> Nest<'a> {
+    fn of(field: &Field<'a>, y: usize, beside: [usize; 2], radii: [&'a [f32]; 2]) -> Self {
+        Self { here: field.row(y), beside: beside.map(|y| field.row(y)), radii }
+    }
+
+    /// The radius about the edge middle in column `x` that holds the spheres of the centres around.
+    #[inline]
+    fn about_edge(&self, reach: usize, x: usize) -> f32 {
+        let ([south, north], [below, above]) = (self.radii, &self.beside);
+        let [west, east] = both_sides(x, reach, south.len());
+        let (at, z) = (self.here.x(x), self.here.z(x));
+        let [aside, ahead] = [west, east].map(|x| at - self.here.x(x));
+        let [down, up] = [below, above].map(|row| self.here.y() - row.y());
+        let squares = [
+            square(aside, down, z - below.z(west)),
+            square(ahead, down, z - below.z(east)),
+            square(aside, up, z - above.z(west)),
+            square(ahead, up, z - above.z(east)),
+        ];
+        holding(squares, [south[west], south[east], north[west], north[east]])
+    }
+
+    /// The radius about the centre in column `x` that holds the spheres of the edge middles around; `row` has the radii
+    /// of its own row.
+    #[inline]
+    fn about_center(&self, reach: usize, x: usize, row: &[f32]) -> f32 {
+        let ([south, north], [below, above]) = (self.radii, &self.beside);
+        let (west, east) = (x - reach, x + reach);
+        let (at, z) = (self.here.x(x), self.here.z(x));
+        let squares = [
+            square(at - self.here.x(west), 0.0, z - self.here.z(west)),
+            square(at - self.here.x(east), 0.0, z - self.here.z(east)),
+            square(0.0, self.here.y() - below.y(), z - below.z(x)),
+            square(0.0, self.here.y() - above.y(), z - above.z(x)),
+        ];
+        holding(squares, [row[west], row[east], south[x], north[x]])
+    }
+}
+
 #[inline]
-fn around(center: DVec3, child: DVec3, radius: f32) -> f32 {
-    if radius == 0.0 {
-        return 0.0;
-    }
-    let distance = (center - child).length_squared().sqrt();
-    ((distance + f64::from(radius)) * (1.0 + MARGIN)) as f32
+fn square(x: f64, y: f64, z: f64) -> f64 {
+    x * x + y * y + z * z
 }
 
-/// Where vertices are drawn, read row by row: the same places as [`Ground::position`].
-struct Places<'a> {
-    ground: Ground<'a>,
-    x: Vec<f32>,
-}
-
-impl<'a> Places<'a> {
-    fn of(ground: Ground<'a>) -> Self {
-        let columns = 0..ground.layout.columns() as i32;
-        Self { ground, x: columns.map(|x| ground.plan(Vertex::new(x, 0)).x).collect() }
+/// The radius that holds the spheres of the given radii at the given squared distances; those that never show take no
+/// room. All four at once: square roots come in pairs.
+#[inline]
+fn holding(squares: [f64; 4], radii: [f32; 4]) -> f32 {
+    let distances = squares.map(f64::sqrt);
+    let mut held = 0f32;
+    for (distance, radius) in distances.into_iter().zip(radii) {
+        let needed = ((distance + f64::from(radius)) * (1.0 + MARGIN)) as f32;
+        held = larger(held, if radius == 0.0 { 0.0 } else { needed });
     }
-
-    /// The heights of a row of vertices and its Y; vertices beyond the last post have that post's height.
-    fn row(&self, y: usize) -> PlaceRow<'_> {
-        let first = self.ground.layout.post(Vertex::new(0, y as i32));
-        let start = self.ground.lattice.index(first);
-        let heights = &self.ground.lattice.heights()[start..start + self.ground.lattice.columns() as usize];
-        let y = self.ground.plan(Vertex::new(0, y as i32)).y;
-        PlaceRow { x: &self.x, y, heights, exaggeration: self.ground.exaggeration }
-    }
-
-    /// Grows the edge middles of row `y` at `step` to hold the centres of half the step beside it.
-    fn grow_edges(&self, step: usize, y: usize, row: &mut [f32], beside: [&[f32]; 2]) {
-        let half = step / 2;
-        let first = if (y / step).is_multiple_of(2) { step } else { 0 };
-        let here = self.row(y);
-        let south = (!beside[0].is_empty()).then(|| (self.row(y - half), beside[0]));
-        let north = (!beside[1].is_empty()).then(|| (self.row(y + half), beside[1]));
-        let columns = row.len();
-        for x in (first..columns).step_by(2 * step) {
-            let center = here.at(x);
-            let mut radius = row[x];
-            for (places, radii) in [&south, &north].into_iter().flatten() {
-                if x >= half {
-                    radius = radius.max(around(center, places.at(x - half), radii[x - half]));
-                }
-                if x + half < columns {
-                    radius = radius.max(around(center, places.at(x + half), radii[x + half]));
-                }
-            }
-            row[x] = radius;
-        }
-    }
-
-    /// Grows the centres of row `y` at `step` to hold the four edge middles around each.
-    fn grow_centers(&self, step: usize, y: usize, row: &mut [f32], beside: [&[f32]; 2]) {
-        let [here, south, north] = [y, y - step, y + step].map(|y| self.row(y));
-        for x in (step..row.len()).step_by(2 * step) {
-            let center = here.at(x);
-            let radius = around(center, here.at(x - step), row[x - step])
-                .max(around(center, here.at(x + step), row[x + step]))
-                .max(around(center, south.at(x), beside[0][x]))
-                .max(around(center, north.at(x), beside[1][x]));
-            row[x] = row[x].max(radius);
-        }
-    }
-}
-
-/// One row of [`Places`].
-struct PlaceRow<'a> {
-    x: &'a [f32],
-    y: f32,
-    heights: &'a [f32],
-    exaggeration: f32,
-}
-
-impl PlaceRow<'_> {
-    fn at(&self, x: usize) -> DVec3 {
-        let height = self.heights[x.min(self.heights.len() - 1)];
-        let z = if height.is_nan() { 0.0 } else { height * self.exaggeration };
-        Vec3::new(self.x[x], self.y, z).as_dvec3()
-    }
+    held
 }

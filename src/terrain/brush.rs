@@ -46,6 +46,11 @@ impl PostRect {
         })
     }
 
+    /// Posts along a row.
+    pub fn width(&self) -> usize {
+        (self.last.column - self.first.column + 1) as usize
+    }
+
     /// Whether the post lies inside.
     pub fn contains(&self, post: Post) -> bool {
         (self.first.column..=self.last.column).contains(&post.column)
@@ -71,6 +76,23 @@ pub struct Change {
 }
 
 impl Change {
+    /// The height before of a post of the rectangle.
+    #[inline]
+    pub fn height_before(&self, post: Post) -> f32 {
+        let first = self.posts.first;
+        self.before
+            [(post.row - first.row) as usize * self.posts.width() + (post.column - first.column) as usize]
+    }
+
+    /// The posts of one row of the rectangle from column `first` to column `last`: their heights before, and now.
+    pub fn row<'a>(&'a self, lattice: &'a Lattice, row: u32, (first, last): (u32, u32)) -> [&'a [f32]; 2] {
+        let count = (last - first + 1) as usize;
+        let from = (row - self.posts.first.row) as usize * self.posts.width();
+        let now = lattice.index(Post { column: first, row });
+        let before = &self.before[from + (first - self.posts.first.column) as usize..][..count];
+        [before, &lattice.heights()[now..][..count]]
+    }
+
     /// The posts that changed, with their heights before.
     pub fn changed<'a>(&'a self, lattice: &'a Lattice) -> impl Iterator<Item = (Post, f32)> {
         let posts = self.posts.posts().zip(self.before.iter().copied());
@@ -150,27 +172,39 @@ impl PostRect {
 impl Changes {
     /// Gives every post of `posts` that has data its new height, in metres, from its old one.
     fn write(&mut self, lattice: &mut Lattice, posts: PostRect, new: impl Fn(Post, f32) -> f32) {
+        let (first, last) = (posts.first, posts.last);
+        let area = lattice.cell().x * lattice.cell().y;
         let mut bounds: Option<PostRect> = None;
-        let mut written = Vec::new();
-        for post in posts.posts() {
-            let before = lattice.height(post);
-            let after = new(post, before);
-            if !before.is_nan() && after.abs() <= HIGHEST_M && after != before {
-                bounds =
-                    Some(bounds.map_or(PostRect { first: post, last: post }, |bounds| bounds.with(post)));
-                written.push((post, after));
+        let mut before = Vec::with_capacity(posts.width() * (last.row - first.row + 1) as usize);
+        for row in first.row..=last.row {
+            let heights = lattice.heights_mut(Post { column: first.column, row }, last.column);
+            before.extend_from_slice(heights);
+            let mut changed: Option<(u32, u32)> = None;
+            for (column, height) in (first.column..).zip(heights) {
+                let after = new(Post { column, row }, *height);
+                if !height.is_nan() && after.abs() <= HIGHEST_M && after != *height {
+                    let rise = f64::from(after) - f64::from(*height);
+                    self.volumes.fill_m3 += rise.max(0.0) * area;
+                    self.volumes.cut_m3 += (-rise).max(0.0) * area;
+                    changed = Some((changed.map_or(column, |(west, _)| west), column));
+                    *height = after;
+                }
+            }
+            if let Some((west, east)) = changed {
+                let [west, east] = [west, east].map(|column| Post { column, row });
+                let of_row = PostRect { first: west, last: east };
+                bounds = Some(bounds.map_or(of_row, |bounds| bounds.with(west).with(east)));
             }
         }
         let Some(bounds) = bounds else { return };
-        let before = bounds.posts().map(|post| lattice.height(post)).collect();
-        let area = lattice.cell().x * lattice.cell().y;
-        for (post, after) in written {
-            let rise = f64::from(after) - f64::from(lattice.height(post));
-            self.volumes.fill_m3 += rise.max(0.0) * area;
-            self.volumes.cut_m3 += (-rise).max(0.0) * area;
-            lattice.set_height(post, after);
+        let mut all = Change { posts, before };
+        if bounds != posts {
+            all = Change {
+                posts: bounds,
+                before: bounds.posts().map(|post| all.height_before(post)).collect(),
+            };
         }
-        self.pieces.push(Change { posts: bounds, before });
+        self.pieces.push(all);
     }
 }
 

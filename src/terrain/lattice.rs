@@ -173,6 +173,11 @@ impl Lattice {
         Rect { min: self.skipped() * self.cell, max: (self.skipped() + last) * self.cell }
     }
 
+    /// The post of the larger lattice that this one's first is; see [`Lattice::part`].
+    pub fn first(&self) -> Post {
+        self.first
+    }
+
     /// How many posts of the larger lattice lie before this one's first, eastward and northward.
     fn skipped(&self) -> DVec2 {
         DVec2::new(f64::from(self.first.column), f64::from(self.first.row))
@@ -211,10 +216,11 @@ impl Lattice {
         self.pinned[index] = true;
     }
 
-    /// Sets the height of a post; whether it is pinned stays as it is.
-    pub(in crate::terrain) fn set_height(&mut self, post: Post, height: f32) {
-        let index = self.index(post);
-        self.heights[index] = height;
+    /// The heights of the posts from `first` to column `last` of its row, to be set; whether they are pinned stays as
+    /// it is.
+    pub(in crate::terrain) fn heights_mut(&mut self, first: Post, last: u32) -> &mut [f32] {
+        let from = self.index(first);
+        &mut self.heights[from..=from + (last - first.column) as usize]
     }
 
     /// Where a post is stored: its place in [`Lattice::heights`].

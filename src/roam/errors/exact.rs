@@ -20,6 +20,7 @@ use rayon::prelude::*;
 use crate::roam::bintree::Triangle;
 use crate::roam::errors::ErrorMap;
 use crate::roam::errors::near::{self, Gathered};
+use crate::roam::errors::plane::PostPlane;
 use crate::roam::errors::rows::{RowSpan, RowSpans};
 use crate::roam::errors::scan::{Hypotenuse, PostTriangle, Worst, larger, largest};
 use crate::roam::errors::survey::Survey;
@@ -299,7 +300,7 @@ enum Strip<'a> {
 /// data at all or has no area.
 pub fn triangle_error(lattice: &Lattice, layout: &Layout, triangle: &Triangle) -> f32 {
     let posts = triangle.corners().map(|vertex| layout.post(vertex));
-    let Some(plane) = Plane::through(lattice, posts) else {
+    let Some(plane) = PostPlane::through(lattice, posts) else {
         return 0.0;
     };
     let mut seen = Seen::default();
@@ -312,31 +313,6 @@ pub fn triangle_error(lattice: &Lattice, layout: &Layout, triangle: &Triangle) -
     seen.error()
 }
 
-/// A triangle's plane over the lattice, in posts and metres, told from the triangle's first corner: so its rounding
-/// does not depend on where the lattice begins, and a part of a terrain has the errors of the whole.
-struct Plane {
-    from: (f64, f64),
-    at_from: f64,
-    per_column: f64,
-    per_row: f64,
-}
-
-impl Plane {
-    /// `None` where the posts lie on a line. Heights without data make every distance NaN.
-    fn through(lattice: &Lattice, [a, b, c]: [Post; 3]) -> Option<Self> {
-        let point =
-            |post: Post| (f64::from(post.column), f64::from(post.row), f64::from(lattice.height(post)));
-        let ((ax, ay, az), (bx, by, bz), (cx, cy, cz)) = (point(a), point(b), point(c));
-        let doubled_area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
-        if doubled_area == 0.0 {
-            return None;
-        }
-        let per_column = ((bz - az) * (cy - ay) - (cz - az) * (by - ay)) / doubled_area;
-        let per_row = ((cz - az) * (bx - ax) - (bz - az) * (cx - ax)) / doubled_area;
-        Some(Self { from: (ax, ay), at_from: az, per_column, per_row })
-    }
-}
-
 /// What a triangle was found to cover.
 #[derive(Default)]
 struct Seen {
@@ -347,9 +323,9 @@ struct Seen {
 }
 
 impl Seen {
-    fn scan(&mut self, lattice: &Lattice, plane: &Plane, span: RowSpan) {
+    fn scan(&mut self, lattice: &Lattice, plane: &PostPlane, span: RowSpan) {
         let first = lattice.index(Post { column: span.first, row: span.row });
-        let start = plane.at_from + plane.per_row * (f64::from(span.row) - plane.from.1);
+        let line = plane.along(span.row);
         for offset in 0..=(span.last - span.first) {
             let post = Post { column: span.first + offset, row: span.row };
             let height = lattice.heights()[first + offset as usize];
@@ -358,8 +334,7 @@ impl Seen {
                 continue;
             }
             self.data = true;
-            let along = plane.per_column * (f64::from(post.column) - plane.from.0);
-            let off = (f64::from(height) - (start + along)).abs() as f32;
+            let off = (f64::from(height) - line.height(post.column)).abs() as f32;
             self.worst = self.worst.max(off);
             if lattice.is_pinned(post) {
                 self.worst_pinned = self.worst_pinned.max(off);

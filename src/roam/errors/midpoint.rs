@@ -11,7 +11,7 @@
 use std::borrow::Cow;
 
 use crate::roam::errors::ErrorMap;
-use crate::roam::errors::sweep::{Field, Measure};
+use crate::roam::errors::sweep::{Measure, Source};
 use crate::roam::graph::Vertex;
 use crate::roam::layout::Layout;
 use crate::terrain::lattice::Lattice;
@@ -34,9 +34,9 @@ impl ErrorMap {
             self.errors = vec![0f32; layout.vertex_count()];
         }
         let heights = heights(lattice, layout);
-        let field = Field::new(&heights, layout);
-        if !field.sweep::<Midpoints>(&mut self.errors) {
-            let sound = field.sweep::<TornMidpoints>(&mut self.errors);
+        let source = Source::new(&heights, layout);
+        if !source.sweep::<Midpoints>(&mut self.errors) {
+            let sound = source.sweep::<TornMidpoints>(&mut self.errors);
             debug_assert!(sound, "a measure that takes holes took none");
         }
     }
@@ -57,13 +57,29 @@ fn heights<'a>(lattice: &'a Lattice, layout: &Layout) -> Cow<'a, [f32]> {
     Cow::Owned(padded)
 }
 
+/// The midpoint error of a vertex of the layout alone, metres, the very bits that a map is raised from: see
+/// [`ErrorMap::midpoint`] for holes; 0 at patch corners.
+pub fn midpoint_error_at(lattice: &Lattice, layout: &Layout, vertex: Vertex) -> f32 {
+    if layout.is_corner(vertex) {
+        return 0.0;
+    }
+    let height = |vertex| lattice.height(layout.post(vertex));
+    let [from, to] = vertex.hypotenuse().map(height);
+    torn_off(from, to, height(vertex))
+}
+
+/// How far a height is off the middle of two others, metres.
+///
 /// In f64, where the middle of two f32 heights is not rounded.
+#[inline]
 fn off(from: f32, to: f32, at: f32) -> f32 {
     ((f64::from(from) + f64::from(to)) * 0.5 - f64::from(at)).abs() as f32
 }
 
-/// Infinite where some of the three are NaN, 0 where all are.
-fn torn_off(from: f32, to: f32, at: f32) -> f32 {
+/// How far the height `at` a vertex is off the middle of those at the ends of its hypotenuse, metres: infinite where
+/// some of the three are NaN, 0 where all are.
+#[inline]
+pub(in crate::roam) fn torn_off(from: f32, to: f32, at: f32) -> f32 {
     let none = from.is_nan() && to.is_nan() && at.is_nan();
     let off = off(from, to, at);
     if !off.is_nan() {
@@ -105,7 +121,6 @@ mod tests {
 
     /// The same by its words: every vertex's own error, then every vertex after its children.
     fn plain(lattice: &Lattice, layout: &Layout) -> Vec<f32> {
-        let height = |vertex| lattice.height(layout.post(vertex));
         let mut errors = vec![0f32; layout.vertex_count()];
         let mut step = 1;
         while step < layout.patch() {
@@ -113,11 +128,10 @@ mod tests {
                 for y in (first.1..layout.rows() as i32).step_by(2 * step as usize) {
                     for x in (first.0..layout.columns() as i32).step_by(2 * step as usize) {
                         let vertex = Vertex::new(x, y);
-                        let [from, to] = vertex.hypotenuse();
-                        let own = torn_off(height(from), height(to), height(vertex));
                         let below = vertex.children().filter(|&child| layout.contains(child));
                         let below = below.map(|child| errors[layout.index(child)]);
-                        errors[layout.index(vertex)] = below.fold(own, f32::max);
+                        errors[layout.index(vertex)] =
+                            below.fold(midpoint_error_at(lattice, layout, vertex), f32::max);
                     }
                 }
             }

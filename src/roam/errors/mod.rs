@@ -5,7 +5,6 @@
 //! children: a decision "error above a threshold" is then closed under parents by itself. What the number
 //! measures differs; one file per measure:
 //!
-//! - `own` measures one vertex alone.
 //! - `exact`: the largest vertical distance over every post that the vertex's triangles cover. A bound.
 //! - `midpoint`: the vertical distance at the vertex alone. Fast, and no bound.
 //! - `relief`: highest less lowest post that they cover. A bound too, and a lazy one.
@@ -15,17 +14,18 @@
 pub mod exact;
 pub mod midpoint;
 pub mod near;
-pub mod own;
+pub mod plane;
 pub mod relief;
 pub mod rows;
 pub mod scan;
 pub mod survey;
 mod sweep;
 
-use crate::roam::errors::sweep::{Field, Given};
-use crate::roam::graph::Vertex;
+use crate::roam::errors::scan::larger;
+use crate::roam::errors::sweep::{Given, Source};
+use crate::roam::graph::{Kind, Vertex};
 use crate::roam::layout::Layout;
-use crate::roam::sweep::Pass;
+use crate::roam::levels::{Beside, PassRow, both_sides};
 
 /// The object-space error of every vertex, in metres without exaggeration.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,30 +51,55 @@ impl ErrorMap {
         &self.errors
     }
 
+    /// The errors of the row of vertices `y`.
+    #[inline]
+    pub(in crate::roam) fn row(&self, layout: &Layout, y: usize) -> &[f32] {
+        &self.errors[y * layout.columns()..][..layout.columns()]
+    }
+
     /// The error at a vertex of the layout it was measured with: metres, or infinite.
     #[inline]
     pub fn at(&self, layout: &Layout, vertex: Vertex) -> f32 {
         self.errors[layout.index(vertex)]
     }
 
-    /// Sets the error of a vertex of `pass` again from its own and those of its children, which are as they shall be;
-    /// tells whether it changed.
+    /// Sets the errors of a row of a pass again from the vertices' own, which `own` says of each column, and those of
+    /// their children, which are as they shall be; adds the vertices whose error changed to `changed`.
     #[inline]
-    pub(in crate::roam) fn renew(&mut self, layout: &Layout, pass: Pass, vertex: Vertex, own: f32) -> bool {
-        let (reach, mut error) = (pass.child_reach(), own);
-        for &(x, y) in pass.child_offsets() {
-            let child = vertex.moved(x * reach, y * reach);
-            if layout.contains(child) {
-                error = error.max(self.errors[layout.index(child)]);
+    pub(in crate::roam) fn renew_row(
+        &mut self,
+        layout: &Layout,
+        row: PassRow,
+        mut own: impl FnMut(usize) -> f32,
+        changed: &mut Vec<Vertex>,
+    ) {
+        let (reach, columns) = (row.pass.child_reach(), layout.columns());
+        let Beside { here, south, north } = row.of(&mut self.errors, layout);
+        let mut put = |here: &mut [f32], x: usize, error: f32| {
+            if std::mem::replace(&mut here[x], error) != error {
+                changed.push(Vertex::new(x as i32, row.y as i32));
+            }
+        };
+        if row.pass.is_finest() {
+            row.columns().for_each(|x| put(here, x, own(x)));
+        } else if row.pass.kind == Kind::Center {
+            for x in row.columns() {
+                let below = larger(larger(here[x - reach], here[x + reach]), larger(south[x], north[x]));
+                put(here, x, larger(own(x), below));
+            }
+        } else {
+            for x in row.columns() {
+                let [west, east] = both_sides(x, reach, columns);
+                let below = larger(larger(south[west], south[east]), larger(north[west], north[east]));
+                put(here, x, larger(own(x), below));
             }
         }
-        std::mem::replace(&mut self.errors[layout.index(vertex)], error) != error
     }
 
     /// Makes every vertex's error at least that of its children, finest level first; patch corners get none.
     fn raise_to_children(&mut self, layout: &Layout) {
         let mut raised = vec![0f32; self.errors.len()];
-        let sound = Field::new(&self.errors, layout).sweep::<Given>(&mut raised);
+        let sound = Source::new(&self.errors, layout).sweep::<Given>(&mut raised);
         debug_assert!(sound, "given errors are taken as they are");
         self.errors = raised;
     }

@@ -49,7 +49,7 @@ const BAND_ROWS: usize = 64;
 
 /// A lattice of values, one error a cell of it, and where errors go.
 #[derive(Clone, Copy)]
-pub struct Field<'a> {
+pub struct Source<'a> {
     /// Heights or own errors, row by row.
     values: &'a [f32],
     /// The largest error below each cell; none on the finest level.
@@ -60,7 +60,7 @@ pub struct Field<'a> {
     patch: usize,
 }
 
-impl<'a> Field<'a> {
+impl<'a> Source<'a> {
     /// One value a vertex of the layout.
     ///
     /// # Panics
@@ -94,10 +94,10 @@ impl<'a> Field<'a> {
             coarse.iter_mut().zip(fine.iter().step_by(side)).for_each(|(coarse, fine)| *coarse = *fine);
         }
         let patch = self.patch / side;
-        let field =
-            Field { values: &values, cells: Some(&cells), columns: columns + 1, rows: rows + 1, patch };
+        let source =
+            Source { values: &values, cells: Some(&cells), columns: columns + 1, rows: rows + 1, patch };
         let mut errors = vec![0f32; values.len()];
-        let sound = field.sweep::<M>(&mut errors);
+        let sound = source.sweep::<M>(&mut errors);
         let to_rows = out.chunks_exact_mut(self.columns).step_by(side);
         for (coarse, fine) in errors.chunks_exact(columns + 1).zip(to_rows) {
             coarse.iter().zip(fine.iter_mut().step_by(side)).for_each(|(coarse, fine)| *fine = *coarse);
@@ -124,7 +124,7 @@ impl<'a> Field<'a> {
             let rows = if rest <= height + 1 { rest } else { height };
             let (own, others) = out.split_at_mut(rows * self.columns);
             let (own_cells, other_cells) = cells.split_at_mut(rows / side * ((self.columns - 1) / side));
-            bands.push(Band { field: *self, first, rows, out: own, cells: own_cells });
+            bands.push(Band { source: *self, first, rows, out: own, cells: own_cells });
             (out, cells, first) = (others, other_cells, first + rows);
         }
         bands
@@ -133,7 +133,7 @@ impl<'a> Field<'a> {
 
 /// Rows that one thread writes.
 struct Band<'a> {
-    field: Field<'a>,
+    source: Source<'a>,
     first: usize,
     rows: usize,
     out: &'a mut [f32],
@@ -144,7 +144,7 @@ struct Band<'a> {
 /// Between the steps of a level: the last rows that came from the next finer one, and what was made of them.
 #[derive(Default)]
 struct Level {
-    /// Values by row modulo 4.
+    /// Source by row modulo 4.
     rows: [Vec<f32>; 4],
     /// Errors of the cells by row modulo 4, with a 0 before and after each row.
     cells: [Vec<f32>; 4],
@@ -178,7 +178,7 @@ impl Level {
     }
 }
 
-/// Where a sweep of a band starts and ends: rows of the field, ends included.
+/// Where a sweep of a band starts and ends: rows of the source, ends included.
 #[derive(Clone, Copy)]
 struct Reach {
     south: usize,
@@ -191,9 +191,9 @@ impl Band<'_> {
         let early = 1usize << levels;
         let south = self.first.saturating_sub(early);
         let north = (self.first + self.rows - 1).next_multiple_of(early) + early;
-        let reach = Reach { south, north: north.min(self.field.rows - 1) };
+        let reach = Reach { south, north: north.min(self.source.rows - 1) };
         let mut stages: Vec<Level> =
-            (0..=levels).map(|level| Level::new(((self.field.columns - 1) >> level) + 1)).collect();
+            (0..=levels).map(|level| Level::new(((self.source.columns - 1) >> level) + 1)).collect();
         for pair in 0..(reach.north - reach.south) / 2 {
             if !M::HOLES && self.has_hole(reach, pair) {
                 return false;
@@ -206,16 +206,16 @@ impl Band<'_> {
 
     /// Whether a value is NaN, of those that one step of the finest level reads first.
     fn has_hole(&self, reach: Reach, pair: usize) -> bool {
-        let columns = self.field.columns;
+        let columns = self.source.columns;
         let rows = if pair == 0 { 0..3 } else { 2 * pair + 1..2 * pair + 3 };
-        let values = &self.field.values[(reach.south + rows.start) * columns..];
+        let values = &self.source.values[(reach.south + rows.start) * columns..];
         values[..rows.len() * columns].iter().fold(false, |hole, value| hole | value.is_nan())
     }
 
     /// Copies the cells that one step needs into the finest stage.
     fn take_cells(&self, stage: &mut Level, reach: Reach, pair: usize) {
-        let Some(cells) = self.field.cells else { return };
-        let width = self.field.columns - 1;
+        let Some(cells) = self.source.cells else { return };
+        let width = self.source.columns - 1;
         for row in 2 * pair..2 * pair + 3 {
             let kept = &mut stage.cells[row % 4][1..=width];
             match cells.chunks_exact(width).nth(reach.south + row) {
@@ -230,13 +230,13 @@ impl Band<'_> {
         let last = ((reach.north - reach.south) >> (level + 1)) - 1;
         let (finer, coarser) = stages.split_at_mut(level + 1);
         let (here, next) = (&mut finer[level], &mut coarser[0]);
-        let field = self.field;
+        let source = self.source;
         let Level { rows, cells, odds, mid_evens, low_east, high_east, north, center, around, zeros } = here;
         let row = |index: usize| match level {
-            0 => &field.values[(reach.south + index) * field.columns..][..field.columns],
+            0 => &source.values[(reach.south + index) * source.columns..][..source.columns],
             _ => rows[index % 4].as_slice(),
         };
-        let raised = level > 0 || field.cells.is_some();
+        let raised = level > 0 || source.cells.is_some();
         if pair == 0 {
             split(row(0), &mut next.rows[0], odds);
             own_east::<M>(&next.rows[0], odds, high_east);
@@ -286,7 +286,7 @@ impl Band<'_> {
 
     /// The row's slice of the output, where the band writes it.
     fn out_row(&mut self, row: usize) -> Option<&mut [f32]> {
-        let columns = self.field.columns;
+        let columns = self.source.columns;
         let own = row.checked_sub(self.first).filter(|&own| own < self.rows)?;
         Some(&mut self.out[own * columns..][..columns])
     }

@@ -105,11 +105,6 @@ impl Queues {
         self.triangles
     }
 
-    /// Works towards another goal from the next update on.
-    pub fn set_goal(&mut self, goal: Goal) {
-        self.goal = goal;
-    }
-
     /// Adjusts the mesh to a view; `patches` are the south-west corners of patches of the layout. A vertex
     /// that is merged and then forced to return counts both ways, and its patches are dirty.
     pub fn update(&mut self, criterion: &impl Criterion, patches: &[Vertex]) -> Changes {

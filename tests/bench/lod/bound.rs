@@ -12,9 +12,12 @@ use sandtable::roam::closure::least_closure;
 use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::errors::exact::own_errors;
+use sandtable::roam::errors::midpoint::midpoint_error_at;
 use sandtable::roam::graph::Vertex;
 use sandtable::roam::layout::Layout;
 use sandtable::terrain::lattice::Lattice;
+
+use crate::fields::fractal;
 
 /// Rounds of each timing; all contestants take turns in every round.
 const ROUNDS: usize = 7;
@@ -24,30 +27,6 @@ pub fn print() {
     print_map_times(513, &[512, 64]);
     print_map_times(4097, &[4096]);
     print_triangle_counts(513, &[1.0, 5.0, 20.0]);
-}
-
-/// Rough ground at `n` × `n` posts, 10 m apart: noise at every wavelength with amplitudes as wavelength^0.9.
-pub fn fractal(n: usize) -> Vec<f32> {
-    let random = |x: u32, y: u32, octave: u32| {
-        let mut bits =
-            x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca77) ^ octave.wrapping_mul(0xc2b2_ae3d);
-        for _ in 0..2 {
-            bits = (bits ^ (bits >> 15)).wrapping_mul(0x2c1b_3c6d);
-        }
-        (bits >> 8) as f32 / (1u32 << 24) as f32 - 0.5
-    };
-    let smooth = |t: f32| t * t * (3.0 - 2.0 * t);
-    let amplitudes: Vec<f32> = (0..12).map(|octave| 2000.0 * libm::powf(0.5, octave as f32 * 0.9)).collect();
-    let octave = |x: usize, y: usize, octave: u32| {
-        let length = 2048usize >> octave;
-        let (cell_x, cell_y) = ((x / length) as u32, (y / length) as u32);
-        let (u, v) =
-            (smooth((x % length) as f32 / length as f32), smooth((y % length) as f32 / length as f32));
-        let at = |dx: u32, dy: u32| random(cell_x + dx, cell_y + dy, octave);
-        let (south, north) = (at(0, 0) + (at(1, 0) - at(0, 0)) * u, at(0, 1) + (at(1, 1) - at(0, 1)) * u);
-        (south + (north - south) * v) * amplitudes[octave as usize]
-    };
-    (0..n * n).map(|at| (0..12).map(|index| octave(at % n, at / n, index)).sum()).collect()
 }
 
 fn lattice_of(n: usize) -> Lattice {
@@ -105,7 +84,7 @@ fn print_triangle_counts(n: usize, bounds_m: &[f32]) {
     let lattice = Arc::new(lattice_of(n));
     let layout = Layout::new(n as u32, n as u32, (n - 1) as u32).expect("sound");
     let exact = ErrorMap::exact(&lattice, &layout);
-    let midpoint = ErrorMap::raised(midpoint_errors(&lattice, &layout), &layout);
+    let midpoint = ErrorMap::midpoint(&lattice, &layout);
     let wedgies = wedgies(&lattice, &layout);
     println!("triangles for a true bound, {n} x {n} (in brackets: against the least closure; true error)");
     for &bound_m in bounds_m {
@@ -168,20 +147,6 @@ fn lowered(lattice: &Arc<Lattice>, layout: &Layout, midpoint: &ErrorMap, bound_m
     best
 }
 
-fn midpoint_error(lattice: &Lattice, layout: &Layout, vertex: Vertex) -> f32 {
-    let height = |vertex| lattice.height(layout.post(vertex));
-    let [from, to] = vertex.hypotenuse().map(height);
-    (f32::midpoint(from, to) - height(vertex)).abs()
-}
-
-fn midpoint_errors(lattice: &Lattice, layout: &Layout) -> Vec<f32> {
-    let mut errors = vec![0.0; layout.vertex_count()];
-    for vertex in vertices(layout) {
-        errors[layout.index(vertex)] = midpoint_error(lattice, layout, vertex);
-    }
-    errors
-}
-
 /// Duchaineau et al. 1997, equation 1: a wedgie is as thick as its own midpoint is off and its thicker child.
 fn wedgies(lattice: &Lattice, layout: &Layout) -> ErrorMap {
     let mut thickness = vec![0f32; layout.vertex_count()];
@@ -190,7 +155,7 @@ fn wedgies(lattice: &Lattice, layout: &Layout) -> ErrorMap {
     for vertex in finest_first {
         let children = vertex.children().filter(|&child| layout.contains(child));
         let below = children.map(|child| thickness[layout.index(child)]).fold(0.0, f32::max);
-        thickness[layout.index(vertex)] = below + midpoint_error(lattice, layout, vertex);
+        thickness[layout.index(vertex)] = below + midpoint_error_at(lattice, layout, vertex);
     }
     ErrorMap::raised(thickness, layout)
 }

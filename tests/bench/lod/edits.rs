@@ -14,7 +14,7 @@ use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, Measure, Radius};
 use sandtable::roam::edit::{mend_exact, mend_midpoint, mend_spheres};
 use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::errors::own::{exact_errors, midpoint_errors};
+use sandtable::roam::errors::exact::own_errors;
 use sandtable::roam::ground::Ground;
 use sandtable::roam::layout::Layout;
 use sandtable::roam::refine::rebuild::rebuild;
@@ -22,6 +22,8 @@ use sandtable::roam::roughness::Roughness;
 use sandtable::roam::spheres::{OwnRadius, SphereMap};
 use sandtable::terrain::brush::{Changes, PostRect, set_heights};
 use sandtable::terrain::lattice::{Lattice, Post};
+
+use crate::fields::fractal;
 
 /// Edits whose median and maximum are told.
 const EDITS: u32 = 200;
@@ -45,9 +47,9 @@ pub fn print() {
 fn print_nesting() {
     println!("\nNesting plain spheres over midpoint errors, ms, least of {REBUILDS}");
     for posts in [513, 4097] {
-        let lattice = fractal(posts);
+        let lattice = ground(posts);
         let layout = Layout::new(posts, posts, 64).expect("sound");
-        let errors = ErrorMap::raised(midpoint_errors(&lattice, &layout), &layout);
+        let errors = ErrorMap::midpoint(&lattice, &layout);
         let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
         let [one, two] = [1, 2].map(|threads| {
             let pool =
@@ -69,7 +71,7 @@ fn print_edits() {
     );
     let only = std::env::var("SANDTABLE_BENCH_SIDE").ok().and_then(|side| side.parse().ok());
     for posts in [513, 1025, 4097].into_iter().filter(|&posts| only.is_none_or(|only: u32| only == posts)) {
-        let lattice = fractal(posts);
+        let lattice = ground(posts);
         for (patch, measure) in
             [(64, Measure::Midpoint), (posts - 1, Measure::Midpoint), (64, Measure::Exact)]
         {
@@ -134,9 +136,9 @@ struct Maps {
 
 fn make(lattice: &Lattice, layout: &Layout, measure: Measure) -> Maps {
     let (own, errors) = match measure {
-        Measure::Midpoint => (Vec::new(), ErrorMap::raised(midpoint_errors(lattice, layout), layout)),
+        Measure::Midpoint => (Vec::new(), ErrorMap::midpoint(lattice, layout)),
         Measure::Exact => {
-            let own = exact_errors(lattice, layout);
+            let own = own_errors(lattice, layout);
             (own.clone(), ErrorMap::raised(own, layout))
         }
     };
@@ -189,39 +191,9 @@ fn different(a: &[f32], b: &[f32]) -> usize {
     a.iter().zip(b).filter(|(a, b)| a.to_bits() != b.to_bits()).count()
 }
 
-/// Ground whose roughness falls off with its scale, by displaced midpoints, 10 m between posts.
-fn fractal(posts: u32) -> Lattice {
-    let (side, mut heights) = (posts as usize, vec![0f32; (posts * posts) as usize]);
-    let mut state = 0x2545_F491_4F6C_DD1Du64;
-    let mut random = |scale: f32| {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        ((state >> 40) as f32 / (1 << 23) as f32 - 1.0) * scale
-    };
-    let mut step = side - 1;
-    while step > 1 {
-        let (half, scale) = (step / 2, step as f32 * 1.2);
-        for y in (0..side).step_by(half) {
-            for x in (0..side).step_by(half) {
-                if (x | y) & (step - 1) != 0 {
-                    let low = (x & !(step - 1), y & !(step - 1));
-                    let high = ((low.0 + step).min(side - 1), (low.1 + step).min(side - 1));
-                    let ends = if x & (step - 1) == 0 {
-                        [(x, low.1), (x, high.1)]
-                    } else if y & (step - 1) == 0 {
-                        [(low.0, y), (high.0, y)]
-                    } else {
-                        [low, high]
-                    };
-                    let [a, b] = ends.map(|(x, y)| heights[y * side + x]);
-                    heights[y * side + x] = (a + b) / 2.0 + random(scale * 0.25);
-                }
-            }
-        }
-        step = half;
-    }
-    Lattice::new(DVec2::ZERO, DVec2::splat(10.0), posts, heights).expect("sound")
+/// Fractal ground, 10 m between posts.
+fn ground(posts: u32) -> Lattice {
+    Lattice::new(DVec2::ZERO, DVec2::splat(10.0), posts, fractal(posts as usize)).expect("sound")
 }
 
 /// Real ground: its name and place in the test data.
@@ -273,7 +245,7 @@ struct Sight {
 fn compare(name: &str, lattice: &Arc<Lattice>, reach: f32) {
     let layout = Layout::new(lattice.columns(), lattice.rows(), 64).expect("sound");
     let ground = Ground { lattice, layout: &layout, exaggeration: 1.0 };
-    let errors = ErrorMap::raised(midpoint_errors(lattice, &layout), &layout);
+    let errors = ErrorMap::midpoint(lattice, &layout);
     let roughness = Roughness::new(lattice, (1, 1));
     let plain = see(lattice, &layout, &SphereMap::plain(ground, &errors, reach));
     let constrained = |reach: f32| see(lattice, &layout, &SphereMap::constrained(ground, reach, &roughness));

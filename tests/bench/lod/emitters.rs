@@ -19,6 +19,8 @@ use sandtable::roam::layout::Layout;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::terrain::lattice::Lattice;
 
+use crate::fields::fractal;
+
 /// Posts along a side of the field.
 const POSTS: u32 = 1025;
 
@@ -27,7 +29,8 @@ const ROUNDS: usize = 31;
 
 /// Prints the section.
 pub fn print() {
-    let lattice = fractal(POSTS);
+    let heights = fractal(POSTS as usize);
+    let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), POSTS, heights).expect("sound");
     let layout = Layout::new(POSTS, POSTS, 64).expect("sound");
     let errors = ErrorMap::exact(&lattice, &layout);
     let pyramids = Pyramids::new(&lattice, &layout);
@@ -201,52 +204,4 @@ fn tolerance_for(wanted: usize, triangles: impl Fn(f32) -> usize) -> f32 {
         if triangles(middle) > wanted { fine = middle } else { coarse = middle }
     }
     coarse
-}
-
-/// A fractal ground of `posts` a side, 10 m apart: midpoint displacement, halved a level, from a fixed seed.
-fn fractal(posts: u32) -> Lattice {
-    let side = posts as usize;
-    let mut heights = vec![0f32; side * side];
-    let mut noise = Noise(7);
-    let (mut step, mut swing) = (side - 1, 300.0);
-    while step > 1 {
-        displace(&mut heights, side, step, swing, &mut noise);
-        (step, swing) = (step / 2, swing * 0.55);
-    }
-    Lattice::new(DVec2::ZERO, DVec2::splat(10.0), posts, heights).expect("sound")
-}
-
-/// Fills in the middles of all squares and edges of one level, the mean of their ends and up to `swing` metres.
-fn displace(heights: &mut [f32], side: usize, step: usize, swing: f32, noise: &mut Noise) {
-    let half = step / 2;
-    for y in (0..side).step_by(half) {
-        for x in (0..side).step_by(half) {
-            let (in_x, in_y) = (x % step != 0, y % step != 0);
-            if !in_x && !in_y {
-                continue;
-            }
-            let at = |x: usize, y: usize| heights[y * side + x];
-            let ends = match (in_x, in_y) {
-                (true, false) => [at(x - half, y), at(x + half, y)],
-                (false, true) => [at(x, y - half), at(x, y + half)],
-                _ => [
-                    (at(x - half, y - half) + at(x + half, y + half)) / 2.0,
-                    (at(x - half, y + half) + at(x + half, y - half)) / 2.0,
-                ],
-            };
-            heights[y * side + x] = (ends[0] + ends[1]) / 2.0 + swing * noise.next();
-        }
-    }
-}
-
-/// Numbers from -1 to 1 by xorshift (Marsaglia 2003).
-struct Noise(u32);
-
-impl Noise {
-    fn next(&mut self) -> f32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        self.0 as f32 / u32::MAX as f32 * 2.0 - 1.0
-    }
 }

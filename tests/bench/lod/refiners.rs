@@ -30,6 +30,8 @@ use sandtable::roam::spheres::SphereMap;
 use sandtable::terrain::lattice::{Lattice, Post};
 use sandtable::view::camera::Camera;
 
+use crate::fields::fractal;
+
 /// The triangles of 000's three comparisons.
 const TRIANGLES: [usize; 3] = [8_766, 7_656, 6_360];
 const POSTS: u32 = 1025;
@@ -82,7 +84,7 @@ impl World {
         let spacing = DVec2::splat(f64::from(SPACING_M));
         let lattice = Lattice::new(DVec2::ZERO, spacing, POSTS, fractal(POSTS as usize)).expect("sound");
         let layout = Layout::new(POSTS, POSTS, DEFAULT_PATCH).expect("sound");
-        let errors = midpoint_errors(&lattice, &layout);
+        let errors = ErrorMap::midpoint(&lattice, &layout);
         let heights = PatchHeights::new(Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 });
         Self { lattice, layout, errors, heights }
     }
@@ -312,51 +314,4 @@ fn culling(world: &World) {
         let times: Vec<f64> = times.collect();
         println!("{name:24} {:6.2} {:17}", median(times.into_iter()), seen / FRAMES as usize);
     }
-}
-
-/// Midpoint displacement, every level 2^-0.9 of the one above; the same field each time.
-fn fractal(posts: usize) -> Vec<f32> {
-    let mut heights = vec![0f32; posts * posts];
-    let layout = Layout::new(posts as u32, posts as u32, (posts - 1).min(4096) as u32).expect("sound");
-    let mut step = layout.patch() / 2;
-    while step >= 1 {
-        for odd in [[(step, step)].as_slice(), &[(step, 0), (0, step)]] {
-            for &(first_x, first_y) in odd {
-                for y in (first_y..posts as i32).step_by(2 * step as usize) {
-                    for x in (first_x..posts as i32).step_by(2 * step as usize) {
-                        let vertex = Vertex::new(x, y);
-                        let [from, to] = vertex.hypotenuse();
-                        let mean = (heights[layout.index(from)] + heights[layout.index(to)]) / 2.0;
-                        let size = 0.8 * (step as f32).powf(0.9);
-                        heights[layout.index(vertex)] = mean + noise(vertex) * size;
-                    }
-                }
-            }
-        }
-        step /= 2;
-    }
-    heights
-}
-
-/// −1..1, of mean 0.
-fn noise(vertex: Vertex) -> f32 {
-    let mut mixed = (vertex.x as u64) << 32 | vertex.y as u64;
-    for _ in 0..3 {
-        mixed = (mixed ^ mixed >> 29).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    }
-    (mixed >> 40) as f32 / (1u32 << 23) as f32 - 1.0
-}
-
-fn midpoint_errors(lattice: &Lattice, layout: &Layout) -> ErrorMap {
-    let columns = layout.columns();
-    let own = (0..layout.vertex_count()).map(|index| {
-        let vertex = Vertex::new((index % columns) as i32, (index / columns) as i32);
-        let height = |vertex| lattice.height(layout.post(vertex));
-        if layout.is_corner(vertex) {
-            return 0.0;
-        }
-        let [from, to] = vertex.hypotenuse();
-        (height(vertex) - (height(from) + height(to)) / 2.0).abs()
-    });
-    ErrorMap::raised(own.collect(), layout)
 }

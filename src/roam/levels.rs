@@ -30,64 +30,105 @@ pub fn passes(layout: &Layout) -> impl Iterator<Item = Pass> + use<> {
 }
 
 impl Pass {
-    /// The pass's vertices inside the rectangle and the layout, row by row.
-    pub fn within(self, layout: &Layout, rect: &VertexRect) -> impl Iterator<Item = Vertex> + use<> {
-        let stride = 2 * self.step;
-        let first = match self.kind {
+    /// The rows of the pass's vertices inside the rectangle and the layout, from the south.
+    pub fn rows_within(self, layout: &Layout, rect: &VertexRect) -> impl Iterator<Item = PassRow> + use<> {
+        let (stride, limit) = (2 * self.step, (layout.columns() as i32, layout.rows() as i32));
+        let (dx, dy) = match self.kind {
             Kind::EastEdge => (self.step, 0),
             Kind::NorthEdge => (0, self.step),
             Kind::Center => (self.step, self.step),
         };
         let from = |first: i32, low: i32| first + ((low - first).max(0) + stride - 1) / stride * stride;
-        let last = (rect.max.x.min(layout.columns() as i32 - 1), rect.max.y.min(layout.rows() as i32 - 1));
-        let (x, y) = (from(first.0, rect.min.x), from(first.1, rect.min.y));
-        let along = move |from: i32, last: i32| (from..last.saturating_add(1)).step_by(stride as usize);
-        along(y, last.1).flat_map(move |y| along(x, last.0).map(move |x| Vertex::new(x, y)))
+        let (x, y) = (from(dx, rect.min.x), from(dy, rect.min.y));
+        let end = (rect.max.x.min(limit.0 - 1) + 1, rect.max.y.min(limit.1 - 1) + 1);
+        let rows = if x < end.0 { y..end.1 } else { 0..0 };
+        rows.step_by(stride as usize).map(move |y| PassRow {
+            pass: self,
+            y: y as usize,
+            first: x as usize,
+            end: end.0 as usize,
+        })
     }
 
-    /// Calls `visit` with each of the vertices of [`Pass::within`], in the same order.
-    pub fn visit(self, layout: &Layout, rect: &VertexRect, mut visit: impl FnMut(Vertex)) {
-        let Some(first) = self.within(layout, rect).next() else { return };
-        let last = (rect.max.x.min(layout.columns() as i32 - 1), rect.max.y.min(layout.rows() as i32 - 1));
-        let mut y = first.y;
-        while y <= last.1 {
-            let mut x = first.x;
-            while x <= last.0 {
-                visit(Vertex::new(x, y));
-                x += 2 * self.step;
-            }
-            y += 2 * self.step;
-        }
+    /// The pass's vertices inside the rectangle and the layout, row by row.
+    pub fn within(self, layout: &Layout, rect: &VertexRect) -> impl Iterator<Item = Vertex> + use<> {
+        let of_row = |row: PassRow| row.columns().map(move |x| Vertex::new(x as i32, row.y as i32));
+        self.rows_within(layout, rect).flat_map(of_row)
     }
 
-    /// [`Vertex::hypotenuse`] of one of the pass's vertices.
-    pub fn hypotenuse(self, vertex: Vertex) -> [Vertex; 2] {
-        let step = self.step;
-        let (dx, dy) = match self.kind {
-            Kind::EastEdge => (step, 0),
-            Kind::NorthEdge => (0, step),
-            Kind::Center => {
-                let side = step.trailing_zeros() + 1;
-                let rises = ((vertex.x >> side) + (vertex.y >> side)) & 1 == 0;
-                (step, if rises { step } else { -step })
-            }
+    /// Whether the hypotenuse of the centre in column `x` and row `y` runs from south-west to north-east.
+    #[inline]
+    pub fn rises(self, x: usize, y: usize) -> bool {
+        let side = self.step.trailing_zeros() + 1;
+        ((x >> side) + (y >> side)) & 1 == 0
+    }
+
+    /// Whether its vertices have no children: edge middles of the finest step.
+    pub fn is_finest(self) -> bool {
+        self.step == 1 && self.kind != Kind::Center
+    }
+
+    /// How far its vertices' children lie from them, along both axes or along one of them.
+    pub fn child_reach(self) -> usize {
+        (if self.kind == Kind::Center { self.step } else { self.step / 2 }) as usize
+    }
+}
+
+/// Vertices of a pass in one row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PassRow {
+    /// The pass.
+    pub pass: Pass,
+    /// The row.
+    pub y: usize,
+    first: usize,
+    end: usize,
+}
+
+/// A row of values, one a vertex, and the rows in which its vertices' children are.
+pub struct Beside<'a> {
+    /// The row itself.
+    pub here: &'a mut [f32],
+    /// The row of the children south of it; where there is none, that of those north of it.
+    pub south: &'a [f32],
+    /// The row of the children north of it; where there is none, that of those south of it.
+    pub north: &'a [f32],
+}
+
+impl PassRow {
+    /// The columns of its vertices.
+    #[inline]
+    pub fn columns(self) -> impl Iterator<Item = usize> {
+        (self.first..self.end).step_by(2 * self.pass.step as usize)
+    }
+
+    /// The rows south and north in which children are, of the layout's `rows`: twice the same where the border leaves
+    /// one out.
+    #[inline]
+    pub fn child_rows(self, rows: usize) -> [usize; 2] {
+        both_sides(self.y, self.pass.child_reach(), rows)
+    }
+
+    /// Its values among those of all vertices of the layout.
+    #[inline]
+    pub fn of<'a>(self, values: &'a mut [f32], layout: &Layout) -> Beside<'a> {
+        let columns = layout.columns();
+        let [south, north] = self.child_rows(layout.rows());
+        let (before, rest) = values.split_at_mut(self.y * columns);
+        let (here, after) = rest.split_at_mut(columns);
+        let row = |y: usize| match y.checked_sub(self.y + 1) {
+            Some(ahead) => &after[ahead * columns..][..columns],
+            None => before.get(y * columns..).and_then(|rest| rest.get(..columns)).unwrap_or(&[]),
         };
-        [vertex.moved(-dx, -dy), vertex.moved(dx, dy)]
+        Beside { south: row(south), north: row(north), here }
     }
+}
 
-    /// Where the children of the pass's vertices lie, as offsets; none for edge middles of the finest step.
-    pub fn child_offsets(self) -> &'static [(i32, i32)] {
-        match (self.kind, self.step) {
-            (Kind::Center, _) => &[(-1, 0), (1, 0), (0, -1), (0, 1)],
-            (_, 1) => &[],
-            _ => &[(-1, -1), (1, -1), (-1, 1), (1, 1)],
-        }
-    }
-
-    /// What the offsets of the children are multiplied by.
-    pub fn child_reach(self) -> i32 {
-        if self.kind == Kind::Center { self.step } else { self.step / 2 }
-    }
+/// The places `reach` below and above `at` of `count`; where one is not there, the other twice.
+#[inline]
+pub fn both_sides(at: usize, reach: usize, count: usize) -> [usize; 2] {
+    let (below, above) = (at.checked_sub(reach), at + reach);
+    [below.unwrap_or(above), if above < count { above } else { below.unwrap_or(at) }]
 }
 
 /// A rectangle of vertices, ends included; empty where `min` exceeds `max` on either axis.
@@ -174,7 +215,7 @@ pub enum Rows {
 }
 
 /// Calls `write` with every written row of `values`, `columns` long each: its number, the row itself, the read rows
-/// `half` south and north of it (empty beyond the border). In parallel; rows do not depend on each other.
+/// `half` south and north of it (twice the same where one lies beyond the border). In parallel; rows do not depend on each other.
 pub fn for_rows(
     values: &mut [f32],
     columns: usize,
@@ -193,14 +234,16 @@ pub fn for_rows(
         Rows::Odd => (odd, even, half),
     };
     let read: Vec<&[f32]> = read.into_iter().map(|row| &*row).collect();
-    let at = |index: Option<usize>| index.and_then(|index| read.get(index)).copied().unwrap_or(&[]);
     // Fewer rows than this cost less than handing them to another thread.
     let least = (4096 / columns.div_ceil(half)).max(1);
     written.into_par_iter().with_min_len(least).enumerate().for_each(|(index, row)| {
-        let neighbours = match rows {
-            Rows::Even => [at(index.checked_sub(1)), at(Some(index))],
-            Rows::Odd => [at(Some(index)), at(Some(index + 1))],
+        // South of an odd row is the read row of its own number, south of an even one that before.
+        let (south, north) = match rows {
+            Rows::Even => (index.wrapping_sub(1), index),
+            Rows::Odd => (index, index + 1),
         };
+        let at = |index: usize| read.get(index).copied();
+        let neighbours = [at(south).or(at(north)), at(north).or(at(south))].map(Option::unwrap_or_default);
         write(first + 2 * half * index, row, neighbours);
     });
 }
@@ -218,12 +261,17 @@ mod tests {
             for vertex in pass.within(&layout, &all) {
                 assert_eq!((vertex.kind(), vertex.step()), (pass.kind, pass.step));
                 assert!(!std::mem::replace(&mut seen[layout.index(vertex)], true));
-                assert_eq!(pass.hypotenuse(vertex), vertex.hypotenuse());
+                if pass.kind == Kind::Center {
+                    let [from, to] = vertex.hypotenuse();
+                    let rises = pass.rises(vertex.x as usize, vertex.y as usize);
+                    assert_eq!(rises, (to.x > from.x) == (to.y > from.y));
+                }
                 let mut children: Vec<Vertex> = vertex.children().collect();
-                let reach = pass.child_reach();
-                let offsets = pass.child_offsets().iter();
-                let found: Vec<Vertex> = offsets.map(|&(x, y)| vertex.moved(x * reach, y * reach)).collect();
-                assert_eq!(found, children);
+                assert_eq!(pass.is_finest(), children.is_empty());
+                let reach = pass.child_reach() as i32;
+                let is_near =
+                    |child: &Vertex| (child.x - vertex.x).abs().max((child.y - vertex.y).abs()) == reach;
+                assert!(children.iter().all(is_near));
                 children.retain(|&child| layout.contains(child));
                 assert!(children.into_iter().all(|child| seen[layout.index(child)]));
             }
@@ -233,15 +281,29 @@ mod tests {
     }
 
     #[test]
+    fn a_row_lies_between_those_of_its_children_and_at_the_border_the_inner_one_stands_twice() {
+        let layout = Layout::new(9, 9, 8).expect("sound");
+        let mut values: Vec<f32> = (0..81).map(|at| (at / 9) as f32).collect();
+        let all = VertexRect { min: Vertex::new(0, 0), max: Vertex::new(8, 8) };
+        let mut rows_of = |kind, step| {
+            let rows = Pass { kind, step }.rows_within(&layout, &all);
+            let of = |row: PassRow| {
+                let beside = row.of(&mut values, &layout);
+                [beside.south[0], beside.here[0], beside.north[8]]
+            };
+            rows.map(of).collect::<Vec<[f32; 3]>>()
+        };
+        assert_eq!(rows_of(Kind::EastEdge, 4), [[2.0, 0.0, 2.0], [6.0, 8.0, 6.0]]);
+        assert_eq!(rows_of(Kind::NorthEdge, 4), [[2.0, 4.0, 6.0]]);
+        assert_eq!(rows_of(Kind::Center, 2), [[0.0, 2.0, 4.0], [4.0, 6.0, 8.0]]);
+        assert_eq!([both_sides(0, 2, 9), both_sides(8, 2, 9), both_sides(4, 2, 9)], [[2, 2], [6, 6], [2, 6]]);
+    }
+
+    #[test]
     fn a_rectangle_holds_just_the_vertices_inside() {
         let layout = Layout::new(65, 65, 32).expect("sound");
         let rect = VertexRect { min: Vertex::new(-3, 7), max: Vertex::new(90, 40) };
         let inside: usize = passes(&layout).map(|pass| pass.within(&layout, &rect).count()).sum();
-        for pass in passes(&layout) {
-            let mut visited = Vec::new();
-            pass.visit(&layout, &rect, |vertex| visited.push(vertex));
-            assert_eq!(visited, pass.within(&layout, &rect).collect::<Vec<Vertex>>());
-        }
         let corners = 3;
         assert_eq!(inside, 65 * 34 - corners);
         let snapped = VertexRect { min: Vertex::new(5, 7), max: Vertex::new(17, 9) }.snapped(8);
