@@ -36,6 +36,19 @@ impl PatchList {
         Self { corner, triangles, indices }
     }
 
+    /// The list of triangles of vertices of the patch with south-west corner `corner`.
+    ///
+    /// # Panics
+    /// Where patches are larger than 128 cells: their vertices have no 16-bit index.
+    pub fn of_vertices(
+        layout: &Layout,
+        corner: Vertex,
+        triangles: impl IntoIterator<Item = [Vertex; 3]>,
+    ) -> Self {
+        let named = |corners: [Vertex; 3]| corners.map(|vertex| local(layout, corner, vertex));
+        Self::of_triangles(corner, Arc::new(triangles.into_iter().map(named).collect()))
+    }
+
     /// The bintree's leaves in the patch with south-west corner `corner`, without those beyond the border or over no
     /// data.
     ///
@@ -61,6 +74,15 @@ impl PatchList {
     pub fn bytes(&self) -> usize {
         2 * self.indices
     }
+}
+
+/// The index of `vertex` in the patch with south-west corner `corner`, which holds it.
+///
+/// # Panics
+/// Where patches are larger than 128 cells.
+pub fn local(layout: &Layout, corner: Vertex, vertex: Vertex) -> u16 {
+    let index = (vertex.y - corner.y) * (layout.patch() + 1) + vertex.x - corner.x;
+    u16::try_from(index).expect(SHORT)
 }
 
 #[cfg(test)]
