@@ -12,7 +12,7 @@ use sandtable::roam::criterion::Criterion;
 use sandtable::roam::criterion::spheres::Spheres;
 use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, Measure, Radius};
 use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::errors::own::midpoint_error_at;
+use sandtable::roam::errors::midpoint::midpoint_error_at;
 use sandtable::roam::graph::Vertex;
 use sandtable::roam::ground::Ground;
 use sandtable::roam::layout::Layout;

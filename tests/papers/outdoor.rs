@@ -22,7 +22,7 @@ use sandtable::roam::emit::geomipmap::{self, Levels, Pyramids};
 use sandtable::roam::emit::strips::{Strips, unstrip};
 use sandtable::roam::emit::{bintree, quadtree, world};
 use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::errors::own::split_triangles;
+use sandtable::roam::errors::exact::triangles_split_at;
 use sandtable::roam::graph::Vertex;
 use sandtable::roam::ground::Ground;
 use sandtable::roam::layout::Layout;
@@ -222,7 +222,7 @@ fn paper_002_the_borders_of_blocks_of_any_two_levels_are_stitched() {
 /// The height difference under the triangles that a vertex splits, post by post.
 fn relief(world: &World, vertex: Vertex) -> f32 {
     let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-    for triangle in split_triangles(&world.layout, vertex) {
+    for triangle in triangles_split_at(&world.layout, vertex).into_iter().flatten() {
         let corners = triangle.corners();
         for at in world.vertices().into_iter().chain(corners) {
             let inside = (0..3).all(|side| {

@@ -12,7 +12,7 @@ use sandtable::roam::criterion::screen::ScreenError;
 use sandtable::roam::culling::patches_in_view;
 use sandtable::roam::emit::{bintree, quadtree};
 use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::errors::own::midpoint_error_at;
+use sandtable::roam::errors::midpoint::midpoint_error_at;
 use sandtable::roam::graph::{Kind, Vertex};
 use sandtable::roam::layout::Layout;
 use sandtable::roam::quadtree::{Address, Node, SIDES, Side, Square};
