@@ -11,7 +11,7 @@ use crate::roam::spheres::SphereMap;
 
 /// The vertices of one patch, (patch + 1)² of them, row by row from the south-west; those on a border are the same
 /// in both patches that share it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PatchBlock {
     /// World X of each column and Y of each row, metres.
     pub plan: [Vec<f32>; 2],

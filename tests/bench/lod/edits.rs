@@ -10,6 +10,7 @@ use sandtable::dem::read::{Hints, read};
 use sandtable::dem::warp::to_metric;
 use sandtable::mesh::trimesh::TriMesh;
 use sandtable::roam::criterion::spheres::Spheres;
+use sandtable::roam::culling::patches_in_view;
 use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, Measure, Radius};
 use sandtable::roam::edit::{mend_exact, mend_midpoint, mend_spheres};
@@ -17,13 +18,16 @@ use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::errors::exact::own_errors;
 use sandtable::roam::ground::Ground;
 use sandtable::roam::layout::Layout;
+use sandtable::roam::refine::deferred::Deferred;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::roam::roughness::Roughness;
 use sandtable::roam::spheres::{OwnRadius, SphereMap};
 use sandtable::terrain::brush::{Changes, PostRect, set_heights};
 use sandtable::terrain::lattice::{Lattice, Post};
+use sandtable::view::frustum::Frustum;
 
 use crate::fields::fractal;
+use crate::flight;
 
 /// Edits whose median and maximum are told.
 const EDITS: u32 = 200;
@@ -41,6 +45,7 @@ const REBUILDS: usize = 3;
 pub fn print() {
     print_nesting();
     print_edits();
+    print_walked();
     print_constrained();
 }
 
@@ -128,6 +133,46 @@ fn whole_edits(lattice: &Lattice, patch: u32, measure: Measure) -> Vec<f64> {
     (0..EDITS).map(|number| timed(|| terrain.edit(|lattice| bump(lattice, number + EDITS))).1).collect()
 }
 
+/// Edits before the eye of a walk: writing and mending, then telling the walk, then its mesh and index lists.
+fn print_walked() {
+    let posts = 4097;
+    let heights = fractal(posts);
+    let camera = flight::cameras(&heights, 1.0, 1)[0];
+    let options = DynamicOptions {
+        patch: 64,
+        exaggeration: 1.0,
+        measure: Measure::Midpoint,
+        radius: Radius::Plain,
+        reach: REACH,
+    };
+    let terrain = DynamicTerrain::new(flight::lattice(&heights), options).expect("sound");
+    let mut walk = Deferred::new(terrain, f64::from(flight::CELL_M)).expect("small patches");
+    let patches = patches_in_view(walk.source().ground(), walk.source().heights(), &Frustum::of(&camera));
+    walk.update(camera.eye(), &patches).expect("in memory");
+    let ahead = (camera.eye() + camera.forward() * 100.0 * flight::CELL_M) / flight::CELL_M;
+    let [mut edit_us, mut mesh_us] = [Vec::new(), Vec::new()];
+    for number in 0..EDITS {
+        let off = |prime: u32| (number * prime % 61) as f32 - 30.0;
+        let first = Post { column: (ahead.x + off(17)) as u32, row: (ahead.y + off(29)) as u32 };
+        let source = walk.source_mut();
+        let (edit, spent) = timed(|| source.edit(|lattice| bump_at(lattice, first)));
+        let edit = edit.expect("a bump changes heights");
+        edit_us.push(spent);
+        let (_, spent) = timed(|| {
+            walk.edit(&edit.patches).expect("in memory");
+            walk.update(camera.eye(), &patches).expect("in memory");
+        });
+        mesh_us.push(spent);
+    }
+    walk.check().expect("right for the ground as it is now");
+    println!(
+        "\nThe same before the eye of a walk, {posts}², {} triangles in view: µs for the edit {}, for mesh and index lists {}",
+        walk.triangle_count(),
+        told(&edit_us),
+        told(&mesh_us)
+    );
+}
+
 struct Maps {
     own: Vec<f32>,
     errors: ErrorMap,
@@ -159,6 +204,11 @@ fn bump(lattice: &mut Lattice, number: u32) -> Changes {
     let places = lattice.columns() - SIDE;
     let at = |prime: u32| (u64::from(number) * u64::from(prime) % u64::from(places)) as u32;
     let first = Post { column: at(7919), row: at(104_729) };
+    bump_at(lattice, first)
+}
+
+/// Raises a round bump of 5 m whose south-west corner is `first`.
+fn bump_at(lattice: &mut Lattice, first: Post) -> Changes {
     let last = Post { column: first.column + SIDE - 1, row: first.row + SIDE - 1 };
     let posts = PostRect { first, last };
     let half = f64::from(SIDE / 2);

@@ -19,6 +19,8 @@ pub mod patch;
 pub mod topology;
 pub mod wheel;
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
 use crate::roam::active::ActiveSet;
@@ -217,7 +219,7 @@ impl<S: BlockSource> Deferred<S> {
         Ok(())
     }
 
-    fn edit_mesh(&mut self, mesh: u32, block: &PatchBlock) {
+    fn edit_mesh(&mut self, mesh: u32, block: &Arc<PatchBlock>) {
         let (entries, slot) = (mesh << VERTEX_BITS, mesh as usize);
         let topology = &self.topologies[self.meshes.0[slot].parity];
         let Some(changed) = self.meshes.0[slot].edit(topology, block) else {

@@ -9,6 +9,8 @@
 //! while the patch is out of view is kept for when it comes back. Each change rewrites four places of the patch's
 //! index list; the list is dense at all times.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
 use crate::roam::block::PatchBlock;
@@ -17,6 +19,9 @@ use crate::roam::refine::deferred::wheel::{Link, Wheel};
 
 /// Slack is shortened by this share before it is turned into ticks: more than all rounding on the way.
 const SAFETY: f64 = 1.0 - 1e-9;
+
+/// How many vertices are compared at once where most are the same.
+const ROW: usize = 64;
 
 const ACTIVE: u8 = 1;
 /// In a list of the wheel.
@@ -94,7 +99,8 @@ pub struct PatchMesh {
     flags: Vec<u8>,
     /// Where each vertex's four triangles are in the index list.
     slots: Vec<[u16; 4]>,
-    plan: [Vec<f32>; 2],
+    /// What the vertices were made from; an edit is what differs from it.
+    block: Arc<PatchBlock>,
     indices: Vec<[u16; 3]>,
     owners: Vec<u32>,
     /// What is to be looked at when the patch is listed again.
@@ -129,9 +135,9 @@ pub struct Counts {
 impl PatchMesh {
     /// Makes this the patch of a block, with nothing active and its root triangles shown, keeping its memory. None of
     /// its vertices may be in the wheel; they get the entries from `entries` on.
-    pub fn reset(&mut self, topology: &Topology, block: &PatchBlock, entries: u32) {
+    pub fn reset(&mut self, topology: &Topology, block: &Arc<PatchBlock>, entries: u32) {
         self.entries = entries;
-        self.plan.clone_from(&block.plan);
+        self.block = Arc::clone(block);
         self.cells.clear();
         self.flags.clear();
         for (vertex, node) in topology.nodes().iter().enumerate() {
@@ -146,7 +152,7 @@ impl PatchMesh {
         self.flags[CENTER as usize] |= BOTH_PARENTS;
         self.slots.clear();
         self.slots.resize(self.cells.len(), [NONE; 4]);
-        let clipped = self.plan.iter().any(|along| along.windows(2).any(|pair| pair[0] == pair[1]));
+        let clipped = block.plan.iter().any(|along| along.windows(2).any(|pair| pair[0] == pair[1]));
         self.partial = clipped || block.z.iter().any(|z| z.is_nan());
         self.indices.clear();
         self.owners.clear();
@@ -183,18 +189,26 @@ impl PatchMesh {
 
     /// Turns the patch into one whose heights or spheres were edited, and returns the vertices whose spheres changed;
     /// `None` where data came or went: the patch must be reset then.
-    pub fn edit(&mut self, topology: &Topology, block: &PatchBlock) -> Option<Vec<u16>> {
+    pub fn edit(&mut self, topology: &Topology, block: &Arc<PatchBlock>) -> Option<Vec<u16>> {
+        let old = std::mem::replace(&mut self.block, Arc::clone(block));
         let mut changed = Vec::new();
-        for (vertex, (cell, flags)) in self.cells.iter_mut().zip(&self.flags).enumerate() {
-            let at = topology.row_major(vertex as u16);
-            let (z, radius) = (block.z[at], block.radii[at]);
-            if z.is_nan() != (flags & HOLE != 0) {
-                return None;
+        let same = |at: usize| {
+            old.z[at].to_bits() == block.z[at].to_bits()
+                && old.radii[at].to_bits() == block.radii[at].to_bits()
+        };
+        for (row, (z, radii)) in block.z.chunks(ROW).zip(block.radii.chunks(ROW)).enumerate() {
+            let row = row * ROW..row * ROW + z.len();
+            if same_bits(&old.z[row.clone()], z) && same_bits(&old.radii[row.clone()], radii) {
+                continue;
             }
-            let drawn = if z.is_nan() { 0.0 } else { z };
-            if (cell.z, cell.radius) != (drawn, radius) {
-                (cell.z, cell.radius) = (drawn, radius);
-                changed.push(vertex as u16);
+            for at in row.filter(|&at| !same(at)) {
+                let (z, vertex) = (block.z[at], topology.numbers()[at]);
+                if z.is_nan() != (self.flags[vertex as usize] & HOLE != 0) {
+                    return None;
+                }
+                let cell = &mut self.cells[vertex as usize];
+                (cell.z, cell.radius) = (if z.is_nan() { 0.0 } else { z }, block.radii[at]);
+                changed.push(vertex);
             }
         }
         changed.retain(|&vertex| !Topology::is_corner(vertex));
@@ -231,7 +245,7 @@ impl PatchMesh {
     pub(super) fn sphere(&self, topology: &Topology, vertex: u16) -> [f32; 4] {
         let cell = &self.cells[vertex as usize];
         let [column, row] = topology.places()[vertex as usize];
-        [self.plan[0][column as usize], self.plan[1][row as usize], cell.z, cell.radius]
+        [self.block.plan[0][column as usize], self.block.plan[1][row as usize], cell.z, cell.radius]
     }
 
     /// Decides about a vertex whose sphere the eye is `inside` by that many metres, and about what follows from it.
@@ -369,7 +383,7 @@ impl PatchMesh {
     fn is_degenerate(&self, topology: &Topology, corners: [u16; 3]) -> bool {
         let [a, b, c] = corners.map(|corner| {
             let [x, y] = topology.places()[corner as usize];
-            [self.plan[0][x as usize], self.plan[1][y as usize]]
+            [self.block.plan[0][x as usize], self.block.plan[1][y as usize]]
         });
         (b[0] - a[0]) * (c[1] - a[1]) == (b[1] - a[1]) * (c[0] - a[0])
     }
@@ -379,4 +393,9 @@ impl PatchMesh {
 fn halves(node: &Node, vertex: u16, side: usize) -> [[u16; 3]; 2] {
     let [first, parent, second] = [2 * side, 2 * side + 1, (2 * side + 2) % 4].map(|at| node.ring[at]);
     [[vertex, first, parent], [vertex, parent, second]]
+}
+
+/// Whether two rows hold the same bits; no data equals no data.
+fn same_bits(a: &[f32], b: &[f32]) -> bool {
+    a.iter().zip(b).fold(0, |differs, (a, b)| differs | (a.to_bits() ^ b.to_bits())) == 0
 }

@@ -47,6 +47,7 @@ pub struct Topology {
     side: i32,
     nodes: Vec<Node>,
     places: Vec<[u8; 2]>,
+    numbers: Vec<u16>,
     roots: [[u16; 3]; 2],
 }
 
@@ -72,7 +73,7 @@ impl Topology {
             .map(|root| root.corners().map(|vertex| place.local(vertex)));
         let ring = nodes[CENTER as usize].ring;
         nodes[CENTER as usize].splits = [triangle(ring[1], 0), triangle(ring[3], 0)];
-        Self { side, nodes, places, roots }
+        Self { side, nodes, places, numbers: place.numbers, roots }
     }
 
     /// Column and row in the patch of every vertex, in the order of their numbers.
@@ -99,6 +100,11 @@ impl Topology {
     /// The index list of a patch in which nothing is active.
     pub fn flat(&self) -> &[[u16; 3]] {
         &self.roots
+    }
+
+    /// The numbers of the vertices of a patch stored row by row.
+    pub fn numbers(&self) -> &[u16] {
+        &self.numbers
     }
 
     /// Whether the vertex is a corner of the patch.
