@@ -237,6 +237,24 @@ fn raster_of(lattice: &Lattice) -> Raster {
 }
 
 #[test]
+fn an_eye_that_leaps_to_nowhere_and_back_sees_what_is_there() {
+    let lattice = hills(90, 90, &[]);
+    let layout = Layout::new(90, 90, 16).expect("sound");
+    let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+    let map = spheres(ground, 20.0);
+    let all: Vec<Vertex> = layout.patches().collect();
+    let mut walk = Deferred::new(WholeGround { ground, spheres: &map }, 8.0).expect("small patches");
+    let nowhere = [f32::NAN, f32::INFINITY, f32::MAX, 1e20, -1e9];
+    for (step, x) in nowhere.into_iter().cycle().take(40).enumerate() {
+        walk.update(Vec3::new(x, 0.0, 10.0), &all).expect("in memory");
+        for eye in [Vec3::new(100.0 + 15.0 * step as f32, 300.0, 40.0), Vec3::new(430.0, 330.0, 30.0)] {
+            walk.update(eye, &all).expect("in memory");
+            assert!(shown(&walk) == rebuilt(ground, &map, eye, &all), "another mesh after {x}");
+        }
+    }
+}
+
+#[test]
 fn an_eye_at_rest_changes_nothing_and_looks_at_nothing() {
     let lattice = hills(80, 80, &[]);
     let layout = Layout::new(80, 80, 16).expect("sound");

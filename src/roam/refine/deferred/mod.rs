@@ -2,7 +2,8 @@
 //!
 //! A vertex that is s metres from the surface of its sphere cannot change before the eye has travelled s metres:
 //! the delay factor of the constrained nested error criterion, made exact by counting distance instead of frames.
-//! So every vertex that could change next waits in a wheel keyed by distance travelled, and is looked at when it falls due.
+//! So every vertex that could change next waits in a wheel keyed by distance travelled, and is looked at when it
+//! falls due.
 //!
 //! Patches out of view wait: nothing is looked at in them, and what fell due meanwhile is made up for when they come
 //! into view again. A patch whose middle sphere has never held the eye shows its two root triangles and has no
@@ -30,10 +31,10 @@ use crate::roam::layout::Layout;
 use crate::roam::refine::changes::Changes;
 use crate::roam::refine::deferred::patch::{Counts, Decider, PatchMesh, Station};
 use crate::roam::refine::deferred::topology::Topology;
-use crate::roam::refine::deferred::wheel::{Link, Links, Wheel};
+use crate::roam::refine::deferred::wheel::{FARTHEST, Link, Links, Wheel};
 
-/// Ticks that a post's distance is cut into. Finer ticks look at fewer vertices every frame, coarser ones turn fewer
-/// slots: between 4 and 32 the cost of a frame changes by a tenth.
+/// Ticks that a post's distance is cut into. With coarser ticks more vertices may change before the next tick and are
+/// looked at every frame; with finer ones a frame turns more slots. Arbitrary within a few times of this.
 const TICKS_PER_POST: f64 = 8.0;
 
 /// Patches of more cells a side have no u16 for each vertex.
@@ -294,11 +295,13 @@ impl<S: BlockSource> Deferred<S> {
         Ok(())
     }
 
+    /// Counts the way. Nothing waits for longer than [`FARTHEST`] ticks, so no leap need count for more, and a place
+    /// that is not a number may be as far away as anything.
     fn travel_to(&mut self, eye: Vec3) {
         let moved_m = (eye.as_dvec3() - self.station.eye.as_dvec3()).length();
-        if moved_m.is_finite() {
-            self.station.travelled += moved_m * self.station.ticks_per_m;
-        }
+        let ticks = moved_m * self.station.ticks_per_m;
+        let farthest = FARTHEST as f64;
+        self.station.travelled += if ticks < farthest { ticks } else { farthest };
         self.station.eye = eye;
     }
 

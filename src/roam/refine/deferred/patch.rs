@@ -15,7 +15,7 @@ use glam::Vec3;
 
 use crate::roam::block::PatchBlock;
 use crate::roam::refine::deferred::topology::{CENTER, NONE, Node, Topology, triangle};
-use crate::roam::refine::deferred::wheel::{Link, Wheel};
+use crate::roam::refine::deferred::wheel::{FARTHEST, Link, Wheel};
 
 /// Slack is shortened by this share before it is turned into ticks: more than all rounding on the way.
 const SAFETY: f64 = 1.0 - 1e-9;
@@ -53,9 +53,11 @@ impl Station {
         self.travelled as u64
     }
 
-    /// The tick in which a vertex can change first that is `slack_m` metres from its sphere's surface.
+    /// The tick in which a vertex can change first that is `slack_m` metres from its sphere's surface; no more than
+    /// [`FARTHEST`] ahead.
     pub fn due(&self, slack_m: f64) -> u64 {
-        (self.travelled + slack_m * self.ticks_per_m * SAFETY) as u64
+        let ahead = (slack_m * self.ticks_per_m * SAFETY).min(FARTHEST as f64);
+        (self.travelled + ahead) as u64
     }
 
     /// How far the eye is inside the sphere about (`x`, `y`, `z`), metres; negative outside. A sphere of no radius
@@ -69,7 +71,8 @@ impl Station {
             f64::from(z) - f64::from(self.eye.z),
         );
         let inside = f64::from(radius) - (dx * dx + dy * dy + dz * dz).sqrt();
-        if radius > 0.0 { inside } else { f64::NEG_INFINITY }
+        // An eye that is nowhere is outside everything, and everything still waits for its return.
+        if radius > 0.0 { inside.max(f64::MIN) } else { f64::NEG_INFINITY }
     }
 }
 

@@ -21,7 +21,7 @@ const SHIFT: u32 = 2;
 const LEVELS: usize = 12;
 
 /// The farthest that an entry is put ahead, in ticks; what is due later is handed out early and put back.
-const FARTHEST: u64 = (SLOTS - 2) << (SHIFT * (LEVELS as u32 - 1));
+pub const FARTHEST: u64 = (SLOTS - 2) << (SHIFT * (LEVELS as u32 - 1));
 
 /// Where the list of what is handed out next time is found among the heads.
 const NEXT_TIME: usize = LEVELS * SLOTS as usize;
