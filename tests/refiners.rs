@@ -69,10 +69,10 @@ fn triangles(terrain: &Terrain, active: &ActiveSet, patches: &[Vertex]) -> (usiz
     (drawn, leaves)
 }
 
-/// The vertices whose triangles, or what these can be split into, have something to draw.
-fn showing(terrain: &Terrain) -> BTreeSet<Vertex> {
+/// The vertices whose triangles in these patches, or what these can be split into, have something to draw.
+fn showing(terrain: &Terrain, patches: &[Vertex]) -> BTreeSet<Vertex> {
     let mut found = BTreeSet::new();
-    for root in terrain.layout.patches().flat_map(|corner| Triangle::roots(corner, terrain.layout.patch())) {
+    for root in patches.iter().flat_map(|&corner| Triangle::roots(corner, terrain.layout.patch())) {
         let mut stack = vec![vec![root]];
         while let Some(way) = stack.pop() {
             let triangle = way[way.len() - 1];
@@ -181,10 +181,10 @@ proptest! {
         terrain in terrains(), flight in flights(), which in 0..MONOTONE.len(),
     ) {
         let mut refiner = Queues::new(terrain.ground(), Goal::Budget(1 << 20));
-        let showing = showing(&terrain);
         for (frame, camera) in flight.iter().enumerate() {
             let (_, criterion) = terrain.criteria(camera, frame as u32).swap_remove(which);
             let patches = terrain.in_view(camera);
+            let showing = showing(&terrain, &patches);
             refiner.update(&criterion, &patches);
             let wanted = terrain::Any(Box::new(Showing(&criterion, &showing)));
             let all = rebuild(&terrain.layout, &wanted, patches.clone());
@@ -198,10 +198,10 @@ proptest! {
         terrain in terrains(), flight in flights(), which in 0..MONOTONE.len(), budget in 40usize..900,
     ) {
         let mut refiner = Queues::new(terrain.ground(), Goal::Budget(budget));
-        let showing = showing(&terrain);
         for (frame, camera) in flight.iter().enumerate() {
             let (_, criterion) = terrain.criteria(camera, frame as u32).swap_remove(which);
             let patches = terrain.in_view(camera);
+            let showing = showing(&terrain, &patches);
             refiner.update(&criterion, &patches);
             if refiner.triangles() + 4 > budget || refiner.leaves() + 64 > MOST_LEAVES * budget {
                 continue;

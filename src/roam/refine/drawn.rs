@@ -33,7 +33,8 @@ impl Count {
 pub(super) struct Drawn<'a> {
     ground: Ground<'a>,
     whole: Vec<bool>,
-    shows: Vec<u64>,
+    /// Per vertex a bit for each of the triangles that it splits: whether there is anything to draw in it.
+    shows: Vec<u8>,
 }
 
 impl<'a> Drawn<'a> {
@@ -41,7 +42,7 @@ impl<'a> Drawn<'a> {
     pub(super) fn new(ground: Ground<'a>) -> Self {
         let layout = ground.layout;
         let whole = layout.patches().map(|corner| ground.is_whole(corner)).collect();
-        let mut drawn = Self { ground, whole, shows: vec![0; layout.vertex_count().div_ceil(64)] };
+        let mut drawn = Self { ground, whole, shows: vec![0; layout.vertex_count()] };
         for corner in layout.patches() {
             if drawn.whole[layout.patch_index(corner)] {
                 drawn.mark_all(corner);
@@ -58,11 +59,14 @@ impl<'a> Drawn<'a> {
         self.ground.layout
     }
 
-    /// Whether either of the triangles that `vertex` splits is drawn, or anything that they can be split into.
+    /// Whether a triangle of a listed patch that `vertex` splits is drawn, or anything that it can be split into;
+    /// `vertex` splits one at least.
     #[inline]
-    pub(super) fn shows(&self, vertex: Vertex) -> bool {
-        let index = self.layout().index(vertex);
-        self.shows[index / 64] >> (index % 64) & 1 == 1
+    pub(super) fn shows(&self, listed: &Listed, vertex: Vertex) -> bool {
+        let (layout, sides) = (self.layout(), self.shows[self.layout().index(vertex)]);
+        let is_listed = |apex| layout.contains(apex) && listed.holds(layout.patch_holding(vertex, apex));
+        let shows = |apex| sides & side(vertex, apex) != 0 && is_listed(apex);
+        sides == BOTH || vertex.parents().into_iter().any(shows)
     }
 
     /// A leaf of the patch with south-west corner `corner`.
@@ -104,22 +108,34 @@ impl<'a> Drawn<'a> {
                 shows |= self.mark(&half);
             }
             if shows {
-                self.set(triangle.split_vertex());
+                let vertex = triangle.split_vertex();
+                self.set(vertex, side(vertex, triangle.apex));
             }
         }
         shows
     }
 
+    /// Marks every triangle of a patch where all are drawn.
     fn mark_all(&mut self, corner: Vertex) {
-        let side = self.layout().patch();
-        for (y, x) in (corner.y..=corner.y + side).flat_map(|y| (0..=side).map(move |dx| (y, corner.x + dx)))
-        {
-            self.set(Vertex::new(x, y));
+        let far = corner.moved(self.layout().patch(), self.layout().patch());
+        let within = |at: &Vertex| (corner.x..=far.x).contains(&at.x) && (corner.y..=far.y).contains(&at.y);
+        for vertex in (corner.y..=far.y).flat_map(|y| (corner.x..=far.x).map(move |x| Vertex::new(x, y))) {
+            for apex in vertex.parents().into_iter().filter(within) {
+                self.set(vertex, side(vertex, apex));
+            }
         }
     }
 
-    fn set(&mut self, vertex: Vertex) {
+    fn set(&mut self, vertex: Vertex, side: u8) {
         let index = self.layout().index(vertex);
-        self.shows[index / 64] |= 1 << (index % 64);
+        self.shows[index] |= side;
     }
+}
+
+const BOTH: u8 = 0b11;
+
+/// The bit of the triangle that `vertex` splits and whose right-angled corner is `apex`.
+#[inline]
+fn side(vertex: Vertex, apex: Vertex) -> u8 {
+    if (apex.y, apex.x) < (vertex.y, vertex.x) { 1 } else { 2 }
 }

@@ -76,8 +76,8 @@ impl Goal {
     /// The excess of a vertex; under a budget 0 where splitting it can never draw anything. Where rounding leaves
     /// open on which side of 1 it is, the criterion's plain answer settles it, so that this refiner wants what the
     /// others want.
-    fn priority(self, drawn: &Drawn<'_>, criterion: &impl Criterion, vertex: Vertex) -> f32 {
-        if matches!(self, Self::Budget(_)) && !drawn.shows(vertex) {
+    fn priority(self, drawn: &Drawn<'_>, listed: &Listed, criterion: &impl Criterion, vertex: Vertex) -> f32 {
+        if matches!(self, Self::Budget(_)) && !drawn.shows(listed, vertex) {
             return 0.0;
         }
         let excess = criterion.excess(vertex);
@@ -195,7 +195,7 @@ impl<'a> Queues<'a> {
         splits.clear();
         self.splittable.retain(active.layout(), |vertex, index| {
             let leaf = !active.is_active(vertex) && has_leaf(active, listed, vertex);
-            let excess = if leaf { goal.priority(drawn, criterion, vertex) } else { 0.0 };
+            let excess = if leaf { goal.priority(drawn, listed, criterion, vertex) } else { 0.0 };
             if excess > goal.floor() {
                 splits.push(entry(excess, index));
             }
@@ -210,7 +210,7 @@ impl<'a> Queues<'a> {
             let free = active.is_mergeable(vertex);
             if free {
                 let shown = listed_apexes(active.layout(), listed, vertex).next().is_some();
-                let excess = if shown { goal.priority(drawn, criterion, vertex) } else { 0.0 };
+                let excess = if shown { goal.priority(drawn, listed, criterion, vertex) } else { 0.0 };
                 if capped || excess <= goal.floor() {
                     merges.push(Reverse(entry(excess, index)));
                 }
@@ -332,7 +332,7 @@ impl<'a> Queues<'a> {
         }
         let layout = self.active.layout();
         self.splittable.insert(layout, vertex);
-        let excess = self.goal.priority(&self.drawn, criterion, vertex);
+        let excess = self.goal.priority(&self.drawn, &self.listed, criterion, vertex);
         if excess > self.goal.floor() {
             self.splits.push(entry(excess, layout.index(vertex)));
         }
@@ -345,7 +345,8 @@ impl<'a> Queues<'a> {
         let layout = self.active.layout();
         self.mergeable.insert(layout, vertex);
         let shown = listed_apexes(layout, &self.listed, vertex).next().is_some();
-        let excess = if shown { self.goal.priority(&self.drawn, criterion, vertex) } else { 0.0 };
+        let excess =
+            if shown { self.goal.priority(&self.drawn, &self.listed, criterion, vertex) } else { 0.0 };
         self.merges.push(Reverse(entry(excess, layout.index(vertex))));
     }
 
