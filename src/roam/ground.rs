@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use crate::roam::graph::Vertex;
 use crate::roam::layout::Layout;
-use crate::terrain::lattice::Lattice;
+use crate::terrain::lattice::{Lattice, Post};
 
 /// What refinement reads: heights, the patches over them, and how many times heights are stretched when drawn.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +30,19 @@ impl Ground<'_> {
         let height = self.lattice.height(self.layout.post(vertex));
         let z = if height.is_nan() { 0.0 } else { height * self.exaggeration };
         self.plan(vertex).extend(z)
+    }
+
+    /// Whether the patch with south-west corner `corner` lies within the borders and has data at every post, so that
+    /// all its triangles are drawn.
+    pub fn is_whole(&self, corner: Vertex) -> bool {
+        let (lattice, side) = (self.lattice, self.layout.patch());
+        let far = corner.moved(side, side);
+        let within = far.x < lattice.columns() as i32 && far.y < lattice.rows() as i32;
+        let row = |y: i32| {
+            let start = lattice.index(Post { column: corner.x as u32, row: y as u32 });
+            &lattice.heights()[start..=start + side as usize]
+        };
+        within && (corner.y..=far.y).all(|y| row(y).iter().all(|height| !height.is_nan()))
     }
 
     /// The rectangle of the two triangles that `vertex` splits, south-west and north-east corner in metres; of

@@ -278,7 +278,7 @@ fn paper_002_the_number_of_triangles_has_a_cap_that_is_reached_and_never_exceede
     let errors = ErrorMap::midpoint(&world.lattice, &world.layout);
     let patches: Vec<Vertex> = world.layout.patches().collect();
     for most in [100, 1000, 5001] {
-        let mut queues = Queues::new(world.layout, Goal::Budget(most));
+        let mut queues = Queues::new(world.ground(), Goal::Budget(most));
         for step in 0..12u8 {
             let eye = Vec3::new(200.0 * f32::from(step), 400.0 + 100.0 * f32::from(step), 60.0);
             let camera = camera(eye, Vec3::new(1280.0, 1280.0, 0.0));

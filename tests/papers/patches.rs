@@ -265,7 +265,7 @@ fn paper_000_the_mesh_needs_no_priority_queues() {
     let world = World::hills(257, 257, 32);
     let spheres = exact_spheres(150.0)(world.ground());
     let (mut adjusted, mut queued) =
-        (Coherent::new(world.layout), Queues::new(world.layout, Goal::Tolerance));
+        (Coherent::new(world.layout), Queues::new(world.ground(), Goal::Tolerance));
     for camera in path().step_by(9) {
         let seen = patches_in_view(world.ground(), &world.heights, &Frustum::of(&camera));
         let criterion = Spheres::new(world.ground(), &spheres, camera.eye());

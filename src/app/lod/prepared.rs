@@ -17,7 +17,7 @@ use crate::roam::ground::Ground;
 use crate::roam::layout::{DEFAULT_PATCH, Layout};
 use crate::roam::roughness::Roughness;
 use crate::roam::spheres::{SphereMap, reach};
-use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::lattice::Lattice;
 use crate::view::camera::Camera;
 
 /// How many posts a window of local roughness reaches: 3 × 3 posts.
@@ -73,7 +73,7 @@ impl Prepared {
         let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
         Ok(Self {
             heights: PatchHeights::new(ground),
-            whole: layout.patches().map(|corner| is_whole(ground, corner)).collect(),
+            whole: layout.patches().map(|corner| ground.is_whole(corner)).collect(),
             tolerance_px,
             exact: OnceLock::new(),
             midpoint: OnceLock::new(),
@@ -148,15 +148,4 @@ impl Prepared {
     fn relief(&self) -> &ErrorMap {
         self.relief.get_or_init(|| ErrorMap::relief(&self.lattice, &self.layout))
     }
-}
-
-/// See [`Prepared::is_whole`].
-fn is_whole(ground: Ground<'_>, corner: Vertex) -> bool {
-    let (lattice, far) = (ground.lattice, corner.moved(ground.layout.patch(), ground.layout.patch()));
-    let within = far.x < lattice.columns() as i32 && far.y < lattice.rows() as i32;
-    let row = |y: i32| {
-        let start = lattice.index(Post { column: corner.x as u32, row: y as u32 });
-        &lattice.heights()[start..=start + ground.layout.patch() as usize]
-    };
-    within && (corner.y..=far.y).all(|y| row(y).iter().all(|height| !height.is_nan()))
 }

@@ -21,27 +21,27 @@ use crate::view::camera::Camera;
 pub struct Refining<'a> {
     rule: Rule,
     terrain: &'a Prepared,
-    bits: Bits,
+    bits: Bits<'a>,
     writer: Writer<'a>,
     lists: Kept<IndexList>,
     view: Vec<Vertex>,
 }
 
 /// The refiners with what they remember.
-enum Bits {
+enum Bits<'a> {
     Rebuild(ActiveSet),
     Coherent(Box<Coherent>),
-    Queues(Box<Queues>),
+    Queues(Box<Queues<'a>>),
 }
 
 /// A refiner's update as something that is done with a criterion.
-struct Step<'s> {
-    bits: &'s mut Bits,
+struct Step<'s, 'a> {
+    bits: &'s mut Bits<'a>,
     layout: &'s Layout,
     patches: &'s [Vertex],
 }
 
-impl WithCriterion for Step<'_> {
+impl WithCriterion for Step<'_, '_> {
     /// What changed, where the refiner knows.
     type Out = Option<Changes>;
 
@@ -57,14 +57,15 @@ impl WithCriterion for Step<'_> {
     }
 }
 
-impl Bits {
-    fn new(refiner: Refiner, layout: Layout, budget: Option<usize>) -> Self {
+impl<'a> Bits<'a> {
+    fn new(refiner: Refiner, terrain: &'a Prepared, budget: Option<usize>) -> Self {
+        let layout = terrain.layout;
         match refiner {
             Refiner::Rebuild => Self::Rebuild(ActiveSet::new(layout)),
             Refiner::Coherent => Self::Coherent(Box::new(Coherent::new(layout))),
             Refiner::Queues => {
                 let goal = budget.map_or(Goal::Tolerance, Goal::Budget);
-                Self::Queues(Box::new(Queues::new(layout, goal)))
+                Self::Queues(Box::new(Queues::new(terrain.ground(), goal)))
             }
         }
     }
@@ -90,7 +91,7 @@ impl<'a> Refining<'a> {
         Self {
             rule,
             terrain,
-            bits: Bits::new(refiner, terrain.layout, budget),
+            bits: Bits::new(refiner, terrain, budget),
             writer: Writer::new(lists, terrain),
             lists: Kept::new(terrain.layout),
             view: Vec::new(),

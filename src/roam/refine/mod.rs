@@ -12,6 +12,7 @@
 pub mod changes;
 pub mod coherent;
 pub mod deferred;
+mod drawn;
 mod listed;
 mod members;
 pub mod queues;

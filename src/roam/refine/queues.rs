@@ -1,4 +1,4 @@
-//! Two priority queues and an exact budget of triangles: ROAM as Duchaineau et al. published it in 1997.
+//! Two priority queues and an exact budget of drawn triangles: ROAM as Duchaineau et al. published it in 1997.
 //!
 //! The split queue holds the vertices that could be activated next, one for each leaf triangle or pair of them;
 //! the merge queue those that could go next, the diamonds. A priority is the criterion's excess. While there are
@@ -12,6 +12,11 @@
 //!
 //! Two ways out of the published loop's known trouble, a budget that the view cannot use: what cannot be seen or
 //! has no error is never split for the budget's sake, and what has become so is merged at once.
+//!
+//! The budget is one of triangles that are drawn. Those over no data and beyond the border cost nothing, though
+//! what they are split into may; where no split ever draws anything, none is made for the budget's sake. A merge
+//! may then draw more than it takes away, at the edge of a hole: each trade is weighed with all its merges, down
+//! to those that have become idle, so that every trade leaves a better mesh and the loop ends.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -20,8 +25,10 @@ use crate::roam::active::ActiveSet;
 use crate::roam::bintree::Triangle;
 use crate::roam::criterion::Criterion;
 use crate::roam::graph::Vertex;
+use crate::roam::ground::Ground;
 use crate::roam::layout::Layout;
 use crate::roam::refine::changes::{Changes, Tally};
+use crate::roam::refine::drawn::{Count, Drawn};
 use crate::roam::refine::listed::Listed;
 use crate::roam::refine::members::Members;
 
@@ -29,23 +36,32 @@ use crate::roam::refine::members::Members;
 /// of the budget; trying every other leaf for them would cost more than the whole frame.
 const MOST_REFUSALS: usize = 32;
 
+/// So many leaf triangles, drawn or not, there are at most for each drawn one of the budget, the roots of listed
+/// patches not counted: the edges of holes may not take all the time, however long they are.
+pub const MOST_LEAVES: usize = 8;
+
 /// What the queues work towards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Goal {
     /// Every vertex that the criterion wants, however many triangles that takes. Where no vertex's excess is above
     /// its parents', the mesh is that of [`rebuild`](crate::roam::refine::rebuild::rebuild).
     Tolerance,
-    /// As fine as so many triangles allow, below the tolerance too.
+    /// As fine as so many drawn triangles allow, below the tolerance too.
     Budget(usize),
-    /// Every vertex that the criterion wants, but at most so many triangles.
+    /// Every vertex that the criterion wants, but at most so many drawn triangles.
     ToleranceWithin(usize),
 }
 
 impl Goal {
-    fn most_triangles(self) -> usize {
+    /// The most triangles in so many listed patches; none where there is no limit.
+    fn most(self, patches: usize) -> Option<Count> {
         match self {
-            Self::Tolerance => usize::MAX,
-            Self::Budget(most) | Self::ToleranceWithin(most) => most,
+            Self::Tolerance => None,
+            Self::Budget(most) | Self::ToleranceWithin(most) => {
+                let leaves = most.saturating_mul(MOST_LEAVES).saturating_add(2 * patches);
+                let [drawn, leaves] = [most, leaves].map(|count| i64::try_from(count).unwrap_or(i64::MAX));
+                Some(Count { drawn, leaves })
+            }
         }
     }
 
@@ -56,16 +72,32 @@ impl Goal {
             Self::Tolerance | Self::ToleranceWithin(_) => 1.0,
         }
     }
+
+    /// The excess of a vertex; under a budget 0 where splitting it can never draw anything. Where rounding leaves
+    /// open on which side of 1 it is, the criterion's plain answer settles it, so that this refiner wants what the
+    /// others want.
+    fn priority(self, drawn: &Drawn<'_>, listed: &Listed, criterion: &impl Criterion, vertex: Vertex) -> f32 {
+        if matches!(self, Self::Budget(_)) && !drawn.shows(listed, vertex) {
+            return 0.0;
+        }
+        let excess = criterion.excess(vertex);
+        match (excess - 1.0).abs() < 1e-4 {
+            true if criterion.wants(vertex) => excess.max(1f32.next_up()),
+            true => excess.min(1.0),
+            false => excess,
+        }
+    }
 }
 
 /// A mesh that follows the view by trading splits for merges.
 #[derive(Clone, Debug)]
-pub struct Queues {
+pub struct Queues<'a> {
     active: ActiveSet,
+    drawn: Drawn<'a>,
     goal: Goal,
     listed: Listed,
     tally: Tally,
-    triangles: usize,
+    count: Count,
     splittable: Members,
     mergeable: Members,
     splits: BinaryHeap<u64>,
@@ -75,15 +107,17 @@ pub struct Queues {
     aside: Vec<Reverse<u64>>,
 }
 
-impl Queues {
-    /// The roots of all patches.
-    pub fn new(layout: Layout, goal: Goal) -> Self {
+impl<'a> Queues<'a> {
+    /// The roots of all patches of a ground, whose heights say what is drawn.
+    pub fn new(ground: Ground<'a>, goal: Goal) -> Self {
+        let layout = *ground.layout;
         Self {
             active: ActiveSet::new(layout),
+            drawn: Drawn::new(ground),
             goal,
             listed: Listed::new(&layout),
             tally: Tally::new(&layout),
-            triangles: 0,
+            count: Count::default(),
             splittable: Members::new(&layout),
             mergeable: Members::new(&layout),
             splits: BinaryHeap::new(),
@@ -99,10 +133,16 @@ impl Queues {
         &self.active
     }
 
-    /// How many leaf triangles the listed patches have, those beyond the lattice's border or over no data
-    /// included. Never above the budget, but for the two roots of every listed patch: these are always there.
+    /// How many triangles of the listed patches are drawn: the leaves that have an area and data at their corners.
+    /// Never above the budget, but for the two roots of every listed patch: these are always there.
     pub fn triangles(&self) -> usize {
-        self.triangles
+        self.count.drawn as usize
+    }
+
+    /// How many leaf triangles the listed patches have, those beyond the lattice's border or over no data included.
+    /// Never above [`MOST_LEAVES`] times the budget and two for every listed patch.
+    pub fn leaves(&self) -> usize {
+        self.count.leaves as usize
     }
 
     /// Adjusts the mesh to a view; `patches` are the south-west corners of patches of the layout. A vertex
@@ -112,11 +152,9 @@ impl Queues {
         self.listed.renew(&layout, patches);
         self.recount(&layout);
         self.gather(criterion);
+        self.merge_what_must_go(criterion);
         let mut refusals = 0;
-        loop {
-            self.merge_the_idle(criterion);
-            self.merge_down_to_the_budget(criterion);
-            let Some((priority, vertex)) = self.next_split() else { break };
+        while let Some((priority, vertex)) = self.next_split() {
             if self.trade(criterion, priority, vertex) {
                 refusals = 0;
             } else if refusals == MOST_REFUSALS {
@@ -130,28 +168,29 @@ impl Queues {
 
     /// Counts the triangles of patches that came and went, and takes in the leaves of those that came.
     fn recount(&mut self, layout: &Layout) {
-        for (patches, came) in [(self.listed.left(), false), (self.listed.entered(), true)] {
-            for root in patches.iter().flat_map(|&corner| Triangle::roots(corner, layout.patch())) {
-                let mut leaves = 0;
+        for &corner in self.listed.left() {
+            self.count = self.count.minus(count(&self.active, &self.drawn, corner));
+        }
+        for &corner in self.listed.entered() {
+            self.count = self.count.plus(count(&self.active, &self.drawn, corner));
+            for root in Triangle::roots(corner, layout.patch()) {
                 visit_leaves(&self.active, &root, &mut |leaf| {
-                    leaves += 1;
-                    if came && !leaf.is_finest() {
+                    if !leaf.is_finest() {
                         self.splittable.insert(layout, leaf.split_vertex());
                     }
                 });
-                self.triangles = if came { self.triangles + leaves } else { self.triangles - leaves };
             }
         }
     }
 
     /// Fills both queues with this frame's priorities.
     fn gather(&mut self, criterion: &impl Criterion) {
-        let (goal, active, listed) = (self.goal, &self.active, &self.listed);
+        let (goal, active, drawn, listed) = (self.goal, &self.active, &self.drawn, &self.listed);
         let mut splits = std::mem::take(&mut self.splits).into_vec();
         splits.clear();
         self.splittable.retain(active.layout(), |vertex, index| {
             let leaf = !active.is_active(vertex) && has_leaf(active, listed, vertex);
-            let excess = if leaf { priority(criterion, vertex) } else { 0.0 };
+            let excess = if leaf { goal.priority(drawn, listed, criterion, vertex) } else { 0.0 };
             if excess > goal.floor() {
                 splits.push(entry(excess, index));
             }
@@ -161,11 +200,12 @@ impl Queues {
 
         let mut merges = std::mem::take(&mut self.merges).into_vec();
         merges.clear();
-        let capped = goal.most_triangles() < usize::MAX;
+        let capped = goal != Goal::Tolerance;
         self.mergeable.retain(active.layout(), |vertex, index| {
             let free = active.is_mergeable(vertex);
             if free {
-                let excess = excess_where_listed(active.layout(), listed, criterion, vertex);
+                let shown = listed_apexes(active.layout(), listed, vertex).next().is_some();
+                let excess = if shown { goal.priority(drawn, listed, criterion, vertex) } else { 0.0 };
                 if capped || excess <= goal.floor() {
                     merges.push(Reverse(entry(excess, index)));
                 }
@@ -175,34 +215,44 @@ impl Queues {
         self.merges = BinaryHeap::from(merges);
     }
 
-    fn merge_the_idle(&mut self, criterion: &impl Criterion) {
+    /// Merges what is idle, and whatever is lowest until the budget holds or only roots are left.
+    fn merge_what_must_go(&mut self, criterion: &impl Criterion) {
         while let Some((priority, vertex)) = self.lowest_diamond() {
-            if excess_of(priority) > self.goal.floor() {
+            if !self.is_idle(priority) && self.has_room(Count::default()) {
                 break;
             }
             self.merge_lowest(criterion, vertex);
         }
     }
 
-    /// Merges whatever is lowest until the budget holds, or only roots are left.
-    fn merge_down_to_the_budget(&mut self, criterion: &impl Criterion) {
-        while self.triangles > self.goal.most_triangles() {
-            let Some((_, vertex)) = self.lowest_diamond() else { break };
-            self.merge_lowest(criterion, vertex);
-        }
+    /// Whether a diamond of this priority goes without another's need.
+    fn is_idle(&self, priority: u64) -> bool {
+        excess_of(priority) <= self.goal.floor()
+    }
+
+    /// Whether so many triangles more are within the budget.
+    fn has_room(&self, more: Count) -> bool {
+        let after = self.count.plus(more);
+        let within = |most: Count| after.drawn <= most.drawn && after.leaves <= most.leaves;
+        self.goal.most(self.listed.now().len()).is_none_or(within)
     }
 
     /// Splits a vertex with what that forces, merging lower diamonds to make room; changes nothing and says
-    /// `false` where they make too little.
+    /// `false` where they make too little. What becomes idle by these merges goes with them.
     fn trade(&mut self, criterion: &impl Criterion, priority: u64, vertex: Vertex) -> bool {
         self.forced.clear();
         list_forced(&self.active, vertex, &mut self.forced);
         let layout = *self.active.layout();
-        let needed: usize = self.forced.iter().map(|&vertex| added(&layout, &self.listed, vertex)).sum();
+        let each = self.forced.iter().map(|&vertex| self.drawn.added(&self.listed, vertex));
+        let needed = each.fold(Count::default(), Count::plus);
         self.undo.clear();
         let mut fits = true;
-        while self.triangles + needed > self.goal.most_triangles() {
-            match self.lowest_diamond() {
+        loop {
+            let lowest = self.lowest_diamond();
+            if self.has_room(needed) && !lowest.is_some_and(|(lowest, _)| self.is_idle(lowest)) {
+                break;
+            }
+            match lowest {
                 Some((lowest, _)) if excess_of(lowest) >= excess_of(priority) => fits = false,
                 Some((lowest, diamond)) if self.is_needed(diamond) => {
                     self.merges.pop();
@@ -239,7 +289,7 @@ impl Queues {
             let vertex = self.forced[place];
             self.active.activate(vertex);
             self.tally.split(&layout, vertex);
-            self.triangles += added(&layout, &self.listed, vertex);
+            self.count = self.count.plus(self.drawn.added(&self.listed, vertex));
             for child in vertex.children().filter(|&child| layout.contains(child)) {
                 self.offer_split(criterion, child);
             }
@@ -252,7 +302,7 @@ impl Queues {
         while let Some((vertex, priority)) = self.undo.pop() {
             self.active.activate(vertex);
             self.tally.take_back_merge();
-            self.triangles += added(layout, &self.listed, vertex);
+            self.count = self.count.plus(self.drawn.added(&self.listed, vertex));
             self.mergeable.insert(layout, vertex);
             self.merges.push(Reverse(priority));
         }
@@ -264,7 +314,7 @@ impl Queues {
         self.merges.pop();
         self.active.merge(diamond);
         self.tally.merge(&layout, diamond);
-        self.triangles -= added(&layout, &self.listed, diamond);
+        self.count = self.count.minus(self.drawn.added(&self.listed, diamond));
         self.offer_split(criterion, diamond);
         for parent in diamond.parents() {
             self.offer_merge(criterion, parent);
@@ -277,7 +327,7 @@ impl Queues {
         }
         let layout = self.active.layout();
         self.splittable.insert(layout, vertex);
-        let excess = priority(criterion, vertex);
+        let excess = self.goal.priority(&self.drawn, &self.listed, criterion, vertex);
         if excess > self.goal.floor() {
             self.splits.push(entry(excess, layout.index(vertex)));
         }
@@ -289,7 +339,9 @@ impl Queues {
         }
         let layout = self.active.layout();
         self.mergeable.insert(layout, vertex);
-        let excess = excess_where_listed(layout, &self.listed, criterion, vertex);
+        let shown = listed_apexes(layout, &self.listed, vertex).next().is_some();
+        let excess =
+            if shown { self.goal.priority(&self.drawn, &self.listed, criterion, vertex) } else { 0.0 };
         self.merges.push(Reverse(entry(excess, layout.index(vertex))));
     }
 
@@ -324,12 +376,10 @@ impl Queues {
     pub fn check(&self) -> Result<(), String> {
         self.active.check()?;
         let layout = self.active.layout();
-        let mut triangles = 0;
-        for root in self.listed.now().iter().flat_map(|&corner| Triangle::roots(corner, layout.patch())) {
-            visit_leaves(&self.active, &root, &mut |_| triangles += 1);
-        }
-        if triangles != self.triangles {
-            return Err(format!("{} triangles are counted, {triangles} are there", self.triangles));
+        let each = self.listed.now().iter().map(|&corner| count(&self.active, &self.drawn, corner));
+        let there = each.fold(Count::default(), Count::plus);
+        if there != self.count {
+            return Err(format!("{:?} is counted, {there:?} is there", self.count));
         }
         for index in 0..layout.vertex_count() {
             let vertex = Vertex::new((index % layout.columns()) as i32, (index / layout.columns()) as i32);
@@ -369,30 +419,9 @@ fn listed_apexes(layout: &Layout, listed: &Listed, vertex: Vertex) -> impl Itera
     vertex.parents().into_iter().filter(inside)
 }
 
-/// How many triangles more the listed patches have once `vertex` is active.
-fn added(layout: &Layout, listed: &Listed, vertex: Vertex) -> usize {
-    listed_apexes(layout, listed, vertex).count()
-}
-
 /// Whether one of the triangles that `vertex` would split is there, in a listed patch.
 fn has_leaf(active: &ActiveSet, listed: &Listed, vertex: Vertex) -> bool {
     listed_apexes(active.layout(), listed, vertex).any(|apex| active.is_active(apex))
-}
-
-/// The excess of a vertex. Where rounding leaves open on which side of 1 it is, the criterion's plain answer
-/// settles it, so that this refiner wants what the others want.
-fn priority(criterion: &impl Criterion, vertex: Vertex) -> f32 {
-    let excess = criterion.excess(vertex);
-    match (excess - 1.0).abs() < 1e-4 {
-        true if criterion.wants(vertex) => excess.max(1f32.next_up()),
-        true => excess.min(1.0),
-        false => excess,
-    }
-}
-
-/// The excess of a vertex, 0 where it splits no triangle of a listed patch.
-fn excess_where_listed(layout: &Layout, listed: &Listed, criterion: &impl Criterion, vertex: Vertex) -> f32 {
-    if added(layout, listed, vertex) > 0 { priority(criterion, vertex) } else { 0.0 }
 }
 
 /// Lists the inactive vertices that activating `vertex` activates, parents before their children, each once.
@@ -404,6 +433,15 @@ fn list_forced(active: &ActiveSet, vertex: Vertex, forced: &mut Vec<Vertex>) {
         list_forced(active, parent, forced);
     }
     forced.push(vertex);
+}
+
+/// The triangles of the patch with south-west corner `corner`.
+fn count(active: &ActiveSet, drawn: &Drawn<'_>, corner: Vertex) -> Count {
+    let mut found = Count::default();
+    for root in Triangle::roots(corner, active.layout().patch()) {
+        visit_leaves(active, &root, &mut |leaf| found = found.plus(drawn.leaf(corner, leaf)));
+    }
+    found
 }
 
 fn visit_leaves(active: &ActiveSet, triangle: &Triangle, visit: &mut impl FnMut(&Triangle)) {

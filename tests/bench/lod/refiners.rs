@@ -119,13 +119,13 @@ impl World {
 }
 
 /// One method with its mesh.
-enum Method {
+enum Method<'a> {
     Rebuild(ActiveSet),
     Coherent(Box<Coherent>),
-    Queues(Box<Queues>),
+    Queues(Box<Queues<'a>>),
 }
 
-impl Method {
+impl Method<'_> {
     fn name(&self) -> &'static str {
         match self {
             Self::Rebuild(_) => "splits alone",
@@ -172,7 +172,7 @@ fn compare(world: &World, rule: Rule, triangles: usize) {
             let mut method = match which {
                 0 => Method::Rebuild(ActiveSet::new(world.layout)),
                 1 => Method::Coherent(Box::new(Coherent::new(world.layout))),
-                _ => Method::Queues(Box::new(Queues::new(world.layout, Goal::Budget(triangles)))),
+                _ => Method::Queues(Box::new(Queues::new(world.ground(), Goal::Budget(triangles)))),
             };
             flown.push(fly(world, rule, scale, &spheres, &mut method));
             if flown.len() == ROUNDS {
@@ -188,7 +188,7 @@ fn compare(world: &World, rule: Rule, triangles: usize) {
     );
 }
 
-fn fly(world: &World, rule: Rule, scale: f32, spheres: &SphereMap, method: &mut Method) -> Flown {
+fn fly(world: &World, rule: Rule, scale: f32, spheres: &SphereMap, method: &mut Method<'_>) -> Flown {
     let (mut flown, mut patches) = (Flown::default(), Vec::new());
     for frame in 0..FRAMES {
         let camera = world.camera(frame);
@@ -218,7 +218,7 @@ fn fly(world: &World, rule: Rule, scale: f32, spheres: &SphereMap, method: &mut 
     flown
 }
 
-fn report(method: &Method, rounds: &[Flown]) {
+fn report(method: &Method<'_>, rounds: &[Flown]) {
     let moving_ms = medians(rounds, |flown| &flown.moving);
     let resting_ms = medians(rounds, |flown| &flown.resting);
     let last = &rounds[rounds.len() - 1];

@@ -152,7 +152,7 @@ pub struct Queueing<'a> {
     spheres: &'a SphereMap,
     block: Block,
     seen: InView,
-    queues: Queues,
+    queues: Queues<'a>,
     indices: Vec<[u16; 3]>,
     work: usize,
     corners: Vec<Vertex>,
@@ -162,7 +162,7 @@ impl<'a> Queueing<'a> {
     /// With at most `budget` triangles.
     pub fn new(world: &'a World, spheres: &'a SphereMap, budget: usize) -> Self {
         let block = Block::of(&world.layout).expect("small patches");
-        let queues = Queues::new(world.layout, Goal::Budget(budget));
+        let queues = Queues::new(world.ground(), Goal::Budget(budget));
         let corners = world.layout.patches().collect();
         Self { world, spheres, block, seen: InView::default(), queues, indices: Vec::new(), work: 0, corners }
     }
