@@ -139,6 +139,16 @@ fn a_budget_is_used_and_never_exceeded_but_by_the_roots() {
 }
 
 #[test]
+fn a_budget_is_used_up_on_ground_with_slanted_margins_of_no_data() {
+    let flight = ["lod", "assets/jacksboro/dem.tif", "--frames", "4", "--json", "--criterion", "spheres"];
+    for budget in [1000.0, 5000.0] {
+        let reports = objects(&run(&[&flight[..], &["--budget", &format!("{budget}")]].concat()).ok());
+        let (mean, most) = (number(&reports[0], "triangles"), number(&reports[0], "triangles_max"));
+        assert!(most <= budget && mean >= 0.98 * budget, "{} of {budget}", reports[0]);
+    }
+}
+
+#[test]
 fn criteria_that_promise_it_keep_the_tolerance_at_every_post_of_the_picture() {
     for tolerance_px in [0.5, 2.0, 9.0] {
         let written = tolerance_px.to_string();

@@ -1,7 +1,7 @@
 //! Policies for setting the bits: one file per refiner.
 //!
 //! Whatever the policy, the mesh for one view is the same: the closure under parents of the vertices that are
-//! wanted and have a parent that is (see [`rebuild`]), unless a budget of triangles stops it earlier.
+//! wanted and have a parent that is (see [`rebuild`]), unless a budget of drawn triangles stops it earlier.
 //!
 //! - `rebuild`: splits alone, from the roots, for any criterion; nothing is remembered.
 //! - `coherent`: forced splits and merges from the last mesh, for any criterion, equal to `rebuild`.
