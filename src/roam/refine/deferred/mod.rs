@@ -12,8 +12,10 @@
 //! The mesh is exactly that of `rebuild` with the spheres as criterion, over the patches shown. Any nested spheres
 //! will do, and nothing else: other criteria have no distance within which they keep their mind.
 //!
-//! Cost, on one core: 60 to 100 ns a vertex that changes, 10 to 20 ns one looked at, 5 ns a patch in view. What is
-//! looked at each frame grows with the speed and with the logarithm of the distance to what may change.
+//! Cost, on one core: 3 µs a frame, 130 ns a vertex that changes and 26 ns one that is only looked at (a fit over
+//! frames with 9,000 triangles at five speeds). What is looked at each frame grows with the speed and with the
+//! logarithm of the distance to what may change. The longest frames, up to 0.15 ms, are those in which patches come into
+//! view that have no mesh of their own yet.
 
 mod check;
 pub mod patch;
