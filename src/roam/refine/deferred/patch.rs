@@ -105,7 +105,6 @@ pub struct PatchMesh {
     /// What the vertices were made from; an edit is what differs from it.
     block: Arc<PatchBlock>,
     indices: Vec<[u16; 3]>,
-    owners: Vec<u32>,
     /// What is to be looked at when the patch is listed again.
     missed: Vec<u16>,
 }
@@ -158,7 +157,6 @@ impl PatchMesh {
         let clipped = block.plan.iter().any(|along| along.windows(2).any(|pair| pair[0] == pair[1]));
         self.partial = clipped || block.z.iter().any(|z| z.is_nan());
         self.indices.clear();
-        self.owners.clear();
         for corner in topology.roots().into_iter().flatten() {
             self.flags[corner as usize] |= ACTIVE;
         }
@@ -327,7 +325,7 @@ impl PatchMesh {
             if parent == NONE {
                 continue;
             }
-            self.hide(triangle(vertex, 2 * side + 1));
+            self.hide(topology, triangle(vertex, 2 * side + 1));
             let whole = [parent, node.ring[(2 * side + 2) % 4], node.ring[2 * side]];
             self.replace(topology, triangle(vertex, 2 * side), node.splits[side], whole);
             let above = &mut self.flags[parent as usize];
@@ -342,14 +340,13 @@ impl PatchMesh {
     fn replace(&mut self, topology: &Topology, old: u32, new: u32, corners: [u16; 3]) {
         let slot = self.slots[(old / 4) as usize][(old % 4) as usize];
         if slot == NONE || self.partial {
-            self.hide(old);
+            self.hide(topology, old);
             self.show(topology, corners, new);
             return;
         }
         self.slots[(old / 4) as usize][(old % 4) as usize] = NONE;
         self.slots[(new / 4) as usize][(new % 4) as usize] = slot;
         self.indices[slot as usize] = corners;
-        self.owners[slot as usize] = new;
     }
 
     /// Adds a triangle to the index list, unless it lies over no data or has no area.
@@ -359,19 +356,18 @@ impl PatchMesh {
         }
         self.slots[(triangle / 4) as usize][(triangle % 4) as usize] = self.indices.len() as u16;
         self.indices.push(corners);
-        self.owners.push(triangle);
     }
 
     /// Takes a triangle out of the index list; the last one takes its place.
-    fn hide(&mut self, triangle: u32) {
+    fn hide(&mut self, topology: &Topology, triangle: u32) {
         let own = &mut self.slots[(triangle / 4) as usize][(triangle % 4) as usize];
         let slot = std::mem::replace(own, NONE);
         if slot == NONE {
             return;
         }
         self.indices.swap_remove(slot as usize);
-        self.owners.swap_remove(slot as usize);
-        if let Some(&moved) = self.owners.get(slot as usize) {
+        if let Some(&corners) = self.indices.get(slot as usize) {
+            let moved = topology.triangle_of(corners);
             self.slots[(moved / 4) as usize][(moved % 4) as usize] = slot;
         }
     }

@@ -118,6 +118,14 @@ impl Topology {
         if Self::is_corner(vertex) { CENTER } else { self.nodes[vertex as usize].children[side] }
     }
 
+    /// The number of the triangle with these corners, in the order of [`Topology::corners`].
+    pub fn triangle_of(&self, [apex, right, _]: [u16; 3]) -> u32 {
+        let ring = self.nodes[apex as usize].ring;
+        let side =
+            if Self::is_corner(apex) { 0 } else { (1..4).find(|&side| ring[side] == right).unwrap_or(0) };
+        triangle(apex, side)
+    }
+
     /// The corners of a triangle by number.
     pub fn corners(&self, triangle: u32) -> [u16; 3] {
         let (vertex, side) = ((triangle / 4) as u16, (triangle % 4) as usize);
@@ -238,6 +246,8 @@ mod tests {
                 let at = topology
                     .corners(triangle(number as u16, side))
                     .map(|corner| topology.places()[corner as usize].map(i32::from));
+                let named = topology.corners(triangle(number as u16, side));
+                assert_eq!(topology.triangle_of(named), triangle(number as u16, side));
                 let [a, b, c] = at;
                 assert!((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0, "{at:?}");
             }
