@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use crate::view::camera::Camera;
+use crate::view::planes;
 
 /// The left, right, top, bottom and far planes of a camera, normals inward.
 ///
@@ -42,20 +43,7 @@ impl Frustum {
     /// The planes of `among`, a bit each, that the box crosses; `None` where it lies outside one of them. Boxes
     /// within this one need be asked about these only.
     pub fn crossed(&self, min: Vec3, max: Vec3, among: u8) -> Option<u8> {
-        let mut crossed = 0;
-        for (place, &(normal, offset)) in self.planes.iter().enumerate() {
-            let bit = 1 << place;
-            if among & bit != 0 {
-                let rising = normal.cmpge(Vec3::ZERO);
-                if normal.dot(Vec3::select(rising, max, min)) + offset < 0.0 {
-                    return None;
-                }
-                if normal.dot(Vec3::select(rising, min, max)) + offset < 0.0 {
-                    crossed |= bit;
-                }
-            }
-        }
-        Some(crossed)
+        planes::crossed(&self.planes, min, max, among)
     }
 }
 

@@ -3,4 +3,5 @@
 pub mod camera;
 pub mod flight;
 pub mod frustum;
+pub mod planes;
 pub mod wedge;

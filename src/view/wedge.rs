@@ -20,6 +20,7 @@
 use glam::{Vec2, Vec3};
 
 use crate::view::camera::Camera;
+use crate::view::planes;
 
 /// The sides open and the far line recedes by this share, so that rounding never culls a box that the frustum just
 /// touches. A hundred times the rounding of f32.
@@ -29,7 +30,8 @@ const SLACK: f32 = 1e-5;
 /// behind, and the right one is nowhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wedge {
-    lines: [(Vec2, f32); 3],
+    /// As upright planes.
+    lines: [(Vec3, f32); 3],
 }
 
 impl Wedge {
@@ -46,13 +48,13 @@ impl Wedge {
         let (level, opening) = (along(camera.forward()), (tan.y * along(camera.up())).abs());
         let (nearest, farthest) = (level - opening, level + opening);
         let far_m = camera.planes().1 * (1.0 + SLACK);
-        let line = |normal: Vec2, distance_m: f32| (normal, distance_m - normal.dot(eye));
+        let line = |normal: Vec2, distance_m: f32| (normal.extend(0.0), distance_m - normal.dot(eye));
         let far = line(-heading, far_m * farthest);
         let lines = if nearest > 0.0 {
             let side = |normal: Vec2| line(heading * tan.x + normal * nearest, 0.0);
             [far, side(right), side(-right)]
         } else {
-            [far, line(heading, -far_m * nearest), (Vec2::ZERO, 0.0)]
+            [far, line(heading, -far_m * nearest), (Vec3::ZERO, 0.0)]
         };
         Self { lines }
     }
@@ -65,20 +67,7 @@ impl Wedge {
     /// The lines of `among`, a bit each, that the rectangle crosses; `None` where it lies outside one of them.
     /// What lies in the rectangle need be asked about these only.
     pub fn crossed(&self, min: Vec2, max: Vec2, among: u8) -> Option<u8> {
-        let mut crossed = 0;
-        for (place, &(normal, offset)) in self.lines.iter().enumerate() {
-            let bit = 1 << place;
-            if among & bit != 0 {
-                let rising = normal.cmpge(Vec2::ZERO);
-                if normal.dot(Vec2::select(rising, max, min)) + offset < 0.0 {
-                    return None;
-                }
-                if normal.dot(Vec2::select(rising, min, max)) + offset < 0.0 {
-                    crossed |= bit;
-                }
-            }
-        }
-        Some(crossed)
+        planes::crossed(&self.lines, min.extend(0.0), max.extend(0.0), among)
     }
 }
 
