@@ -1,16 +1,14 @@
 //! Nested spheres examined when due: cull patches, let the walk bring those in view up to date.
 //!
 //! The walk keeps index lists itself and changes them in place, with vertices numbered its own way; they are sent
-//! as they are. Triangles beyond the border or over no data are in them: they have no area or no height, and are not
-//! drawn.
+//! as they are, without triangles beyond the border or over no data.
 
 use crate::app::lod::follow::Follow;
 use crate::app::lod::kept::{Kept, Stale};
 use crate::app::lod::method::SphereRule;
 use crate::app::lod::prepared::Prepared;
 use crate::roam::block::WholeGround;
-use crate::roam::culling::{Culling, cull};
-use crate::roam::emit::world::drawn_posts;
+use crate::roam::culling::{Culling, InView};
 use crate::roam::graph::Vertex;
 use crate::roam::refine::deferred::Deferred;
 use crate::roam::shown::PatchList;
@@ -25,13 +23,13 @@ pub struct Deferring<'a> {
     terrain: &'a Prepared,
     walk: Option<Walk<'a>>,
     sent: Kept<()>,
-    view: Vec<Vertex>,
+    view: InView,
 }
 
 impl<'a> Deferring<'a> {
     /// By these spheres.
     pub fn new(spheres: SphereRule, terrain: &'a Prepared) -> Self {
-        Self { spheres, terrain, walk: None, sent: Kept::new(terrain.layout), view: Vec::new() }
+        Self { spheres, terrain, walk: None, sent: Kept::new(terrain.layout), view: InView::default() }
     }
 }
 
@@ -49,11 +47,11 @@ impl Follow for Deferring<'_> {
 
     fn update(&mut self, camera: &Camera) {
         let terrain = self.terrain;
-        cull(terrain.ground(), &terrain.heights, &Culling::frustum(camera), &mut self.view);
+        let view = self.view.update(terrain.ground(), &terrain.heights, Culling::frustum(camera));
         let walk = self.walk.get_or_insert_with(|| walk(terrain, self.spheres, camera));
-        walk.update(camera.eye(), &self.view).expect("a ground in memory has every patch");
+        walk.update(camera.eye(), view).expect("a ground in memory has every patch");
         let stale = Stale::Patches(&walk.changes().dirty);
-        self.sent.renew(&self.view, stale, |corner, ()| 3 * walk.indices(corner).len());
+        self.sent.renew(view, stale, |corner, ()| 3 * walk.indices(corner).len());
     }
 
     fn sent_bytes(&self) -> usize {
@@ -69,7 +67,6 @@ impl Follow for Deferring<'_> {
 /// What is drawn of a patch, with vertices numbered row by row.
 fn drawn(terrain: &Prepared, walk: &Walk<'_>, corner: Vertex) -> PatchList {
     let vertices = |numbers: &[u16; 3]| numbers.map(|number| walk.vertex(corner, number));
-    let is_drawn = |&corners: &[Vertex; 3]| drawn_posts(terrain.ground(), corners).is_some();
-    let triangles = walk.indices(corner).iter().map(vertices).filter(is_drawn);
+    let triangles = walk.indices(corner).iter().map(vertices);
     PatchList::of_vertices(&terrain.layout, corner, triangles)
 }
