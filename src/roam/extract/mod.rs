@@ -225,7 +225,6 @@ impl Emitter<'_> {
             for bit in places(word & EVEN & outer) {
                 self.around(first + bit as usize, y);
             }
-            let rank = |before: u32, word: u64, bit: u32| before + (word & ((1 << bit) - 1)).count_ones();
             for bit in places(word & EVEN & !outer) {
                 let own = rank(mid_before[place], word, bit);
                 let around = [
@@ -264,7 +263,6 @@ impl Emitter<'_> {
             }
             let (south, north) = (low[place], high[place]);
             let first = place * 64;
-            let rank = |before: u32, word: u64, bit: u32| before + (word & ((1 << bit) - 1)).count_ones();
             for bit in places(word & !EVEN) {
                 let own = rank(mid_before[place], word, bit);
                 let around = [
@@ -355,6 +353,12 @@ impl Emitter<'_> {
 
 /// The even places of a word.
 const EVEN: u64 = 0x5555_5555_5555_5555;
+
+/// The number of the vertex at `bit` of `word`, with `before` vertices in front of the word.
+#[inline]
+fn rank(before: u32, word: u64, bit: u32) -> u32 {
+    before + (word & ((1 << bit) - 1)).count_ones()
+}
 
 #[cfg(test)]
 mod tests {
