@@ -24,7 +24,8 @@ use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::terrain::earthwork;
 use sandtable::terrain::facets::Facets;
 use sandtable::terrain::lattice::Lattice;
-use sandtable::terrain::query::{Answer, HeightService, Interpolation, Surface};
+use sandtable::terrain::query::service::HeightService;
+use sandtable::terrain::query::{Answer, Interpolation, Surface};
 use sandtable::view::camera::Camera;
 use sandtable::view::frustum::Frustum;
 
@@ -182,6 +183,7 @@ fn displayed_heights_are_those_of_the_drawn_triangles_and_ground_heights_never_c
         map_from_grid: DAffine2::IDENTITY,
         crs: None,
         nodata: None,
+        vertical_datum: None,
         metres_per_z: 1.0,
         georeferenced: false,
     };

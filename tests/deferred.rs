@@ -233,6 +233,7 @@ fn raster_of(lattice: &Lattice) -> Raster {
         georeferenced: true,
         crs: None,
         nodata: None,
+        vertical_datum: None,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Midpoint errors and extracted meshes against those of other people's programs, on the same ground.
 
-#[path = "bench/lod/fields.rs"]
+#[path = "bench/common/fields.rs"]
 mod fields;
 
 use glam::DVec2;

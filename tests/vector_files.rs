@@ -4,7 +4,7 @@ use std::path::Path;
 
 use sandtable::geom::crs::Crs;
 use sandtable::vector::feature::{Geometry, Layer};
-use sandtable::vector::read::read;
+use sandtable::vector::read::{Hints, read};
 use serde_json::Value;
 
 #[allow(dead_code, reason = "each test uses its own part")]
@@ -18,7 +18,7 @@ use crate::common_data::data;
 fn layer(path: &Path) -> Layer {
     let bytes = std::fs::read(path).expect("the file is there");
     let name = path.to_string_lossy();
-    read(&name, &bytes, None).unwrap_or_else(|error| panic!("{name}: {error}"))
+    read(&name, &bytes, &Hints::default()).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 /// Vertices as GDAL counts them: a ring's first vertex twice.
@@ -85,7 +85,7 @@ fn odd_geojson_is_read_or_refused_but_never_a_panic() {
     for entry in std::fs::read_dir(&folder).expect("readable").flatten() {
         let bytes = std::fs::read(entry.path()).expect("readable");
         for cut in 0..bytes.len() {
-            let _ = read("a.geojson", &bytes[..cut], None);
+            let _ = read("a.geojson", &bytes[..cut], &Hints::default());
         }
     }
 }
@@ -101,7 +101,7 @@ fn other_formats_are_refused_by_name() {
     ] {
         let Some(path) = data(file) else { continue };
         let bytes = std::fs::read(&path).expect("readable");
-        let error = read(file, &bytes, None).expect_err(file).to_string();
+        let error = read(file, &bytes, &Hints::default()).expect_err(file).to_string();
         assert!(error.contains(format) && error.contains("ogr2ogr"), "{file}: {error}");
     }
 }

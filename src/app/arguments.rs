@@ -5,9 +5,15 @@ use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::app::convert::ConvertOptions;
+use crate::app::grid::GridOptions;
 use crate::app::lod::choice::Wanted;
 use crate::app::lod::method::{Emit, Refine, Rule};
 use crate::app::lod::way::Way;
+use crate::app::los::LosOptions;
+use crate::app::profile::ProfileOptions;
+use crate::app::serve::ServeOptions;
+use crate::app::viewshed::ViewshedOptions;
 use crate::terrain::query::Interpolation;
 
 /// Elevation models and what stands on them, made into scenes, and scenes into pictures.
@@ -41,6 +47,14 @@ pub enum Command {
     },
     /// Ask an elevation file for heights at points
     Height(HeightOptions),
+    /// The ground along a line, as a chart or a table
+    Profile(ProfileOptions),
+    /// Whether one point can be seen from another, and what stands between
+    Los(LosOptions),
+    /// What can be seen from a point, as a map or a raster
+    Viewshed(ViewshedOptions),
+    /// Answer questions about heights over HTTP
+    Serve(ServeOptions),
     /// Turn an elevation file into a mesh that is nowhere off by more than a given height
     Mesh(MeshOptions),
     /// Fly over an elevation file and compare the methods of showing it
@@ -52,6 +66,10 @@ pub enum Command {
 pub enum DemCommand {
     /// Print format, size, coordinate system, no-data value and statistics
     Info(DemInfoOptions),
+    /// Write elevation files in another format, coordinate system or cell size; several are joined
+    Convert(ConvertOptions),
+    /// Make a grid of scattered points
+    Grid(GridOptions),
 }
 
 /// What can be done with a model file.

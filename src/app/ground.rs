@@ -1,12 +1,16 @@
 //! From an elevation file to ground in metres, for commands that take no scene.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use crate::app::arguments::GreyHeights;
 use crate::app::dem::read_raster;
 use crate::app::failure::Failure;
+use crate::dem::raster::Raster;
 use crate::dem::warp::{self, WarpError};
+use crate::geom::crs::Crs;
 use crate::terrain::lattice::Lattice;
+use crate::terrain::query::service::HeightService;
 
 /// The lattice of the elevation file at `path`; one in degrees is brought to the UTM zone of its middle.
 ///
@@ -17,6 +21,17 @@ pub fn metric_lattice(path: &Path, heights: GreyHeights) -> Result<Lattice, Fail
     let wrong = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
     let metric = warp::to_metric(&raster, None).map_err(|error| wrong(explain(&error)))?;
     Lattice::from_raster(&metric).map_err(|error| wrong(error.to_string()))
+}
+
+/// A height service on the ground of an elevation file; one in degrees is brought to the UTM zone of its middle.
+///
+/// # Errors
+/// Why it has no place in metres.
+pub fn service(raster: &Arc<Raster>) -> Result<HeightService, String> {
+    let metric = warp::to_metric(raster, None).map_err(|error| explain(&error))?;
+    let lattice = Lattice::from_raster(&metric).map_err(|error| error.to_string())?;
+    let crs = metric.crs.unwrap_or_else(Crs::local);
+    Ok(HeightService::new(Arc::clone(raster), crs, Arc::new(lattice)))
 }
 
 /// What is wrong; where a scene file could state the place, a file beside it must.

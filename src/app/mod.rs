@@ -3,20 +3,27 @@
 
 pub mod arguments;
 pub mod check;
+pub mod convert;
+pub mod dataset;
 pub mod dem;
 pub mod failure;
 pub mod files;
+pub mod grid;
 pub mod ground;
 pub mod height;
 pub mod labels;
 pub mod load;
 pub mod lod;
+pub mod los;
 pub mod mesh;
 pub mod model;
 pub mod output;
 pub mod picture;
+pub mod profile;
 pub mod progress;
 pub mod render;
+pub mod serve;
+pub mod viewshed;
 
 use std::process::ExitCode;
 
@@ -45,6 +52,12 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Dem { command: DemCommand::Info(options) } => dem::info(options),
         Command::Model { command: ModelCommand::Info(options) } => model::info(options),
         Command::Height(options) => height::run(options),
+        Command::Dem { command: DemCommand::Convert(options) } => convert::run(options),
+        Command::Dem { command: DemCommand::Grid(options) } => grid::run(options),
+        Command::Profile(options) => profile::run(options),
+        Command::Los(options) => los::run(options),
+        Command::Viewshed(options) => viewshed::run(options),
+        Command::Serve(options) => serve::run(options),
         Command::Mesh(options) => mesh::run(options),
         Command::Lod(options) => lod::run(options),
     }

@@ -59,6 +59,7 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
         georeferenced: true,
         crs: source.crs_beside()?,
         nodata: nodata.or(replaced.then_some(DEFAULT_NODATA)),
+        vertical_datum: None,
     })
 }
 

@@ -64,6 +64,7 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
         georeferenced: true,
         crs,
         nodata: Some(NODATA),
+        vertical_datum: None,
     })
 }
 

@@ -91,6 +91,7 @@ pub(crate) fn describe<R: Read + Seek>(
         georeferenced: place.stated,
         crs,
         nodata: tags.nodata,
+        vertical_datum: None,
     };
     Ok(Described { bare, scale: band.scale, offset: band.offset })
 }

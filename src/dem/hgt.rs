@@ -50,6 +50,7 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
         georeferenced: true,
         crs: Some(source.hints.crs.clone().unwrap_or_else(Crs::wgs84)),
         nodata: Some(f64::from(VOID)),
+        vertical_datum: Some("EGM96 geoid".into()),
     })
 }
 

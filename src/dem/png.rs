@@ -43,6 +43,7 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
         georeferenced: place.stated,
         crs: source.crs_beside()?,
         nodata: header.transparent,
+        vertical_datum: None,
     })
 }
 

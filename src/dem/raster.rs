@@ -31,6 +31,9 @@ pub struct Raster {
     pub crs: Option<Crs>,
     /// The value that stood for no data in the file, before it became NaN and before scale and offset.
     pub nodata: Option<f64>,
+    /// What heights are counted from, in the file's words (`NAVD88`, `EGM96 geoid`); `None` where it does not say.
+    /// Carried along and printed, never computed with.
+    pub vertical_datum: Option<String>,
 }
 
 /// Elevations in the precision that keeps the file's values exact.
@@ -166,6 +169,7 @@ pub(crate) mod tests {
             georeferenced: true,
             crs: None,
             nodata: None,
+            vertical_datum: None,
         }
     }
 

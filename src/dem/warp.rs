@@ -262,6 +262,7 @@ fn resampled(raster: &Raster, from: Option<&Crs>, to: Option<&Crs>) -> Result<Ra
         georeferenced: true,
         crs: to.cloned(),
         nodata: raster.nodata,
+        vertical_datum: raster.vertical_datum.clone(),
     })
 }
 

@@ -18,7 +18,7 @@ use crate::scene::sources::Sources;
 use crate::scene::style;
 use crate::scene::views;
 use crate::terrain::lattice::Lattice;
-use crate::terrain::query::HeightService;
+use crate::terrain::query::service::HeightService;
 
 /// Builds the scene that `document` describes. `step` is called with what is done next, as each pass begins.
 ///

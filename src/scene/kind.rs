@@ -19,7 +19,7 @@ use crate::roam::errors::ErrorMap;
 use crate::roam::ground::Ground;
 use crate::roam::layout::Layout;
 use crate::terrain::lattice::Lattice;
-use crate::terrain::query::HeightService;
+use crate::terrain::query::service::HeightService;
 
 /// A digital terrain model: the ground, what lies and stands on it, and how it is to be seen.
 pub struct Scene {

@@ -14,7 +14,7 @@ use crate::scene::assets::Assets;
 use crate::scene::place::{Places, parse_crs};
 use crate::vector::feature::{Geometry, Layer, Polygon};
 use crate::vector::filter::{Condition, Filter};
-use crate::vector::read;
+use crate::vector::read::{self, Hints};
 
 /// A file's name and the system stated for it.
 type LayerKey = (String, Option<String>);
@@ -134,7 +134,9 @@ impl<'a> Sources<'a> {
         }
         let wrong = |reason: String| self.places.document.error(file, reason);
         let bytes = self.assets.read(file.get_ref()).map_err(|error| wrong(error.to_string()))?;
-        let layer = read::read(file.get_ref(), &bytes, stated).map_err(|error| wrong(error.to_string()))?;
+        let companions = |name: &str| self.assets.read(name).ok();
+        let hints = Hints { crs: stated, layer: None, companions: &companions };
+        let layer = read::read(file.get_ref(), &bytes, &hints).map_err(|error| wrong(error.to_string()))?;
         let layer = Rc::new(layer);
         self.layers.borrow_mut().insert(key, Rc::clone(&layer));
         Ok(layer)

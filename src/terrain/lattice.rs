@@ -239,9 +239,20 @@ impl Lattice {
         self.heights.iter().fold(start, |(low, high), &height| (low.min(height), high.max(height)))
     }
 
+    /// Map coordinates of a post.
+    pub fn map_position(&self, post: Post) -> DVec2 {
+        let grid = DVec2::new(f64::from(post.column), f64::from(post.row)) + self.skipped();
+        self.origin + grid * self.cell
+    }
+
+    /// A world position in columns and rows of posts from the lattice's first; may lie outside.
+    pub fn grid_at(&self, world: DVec2) -> DVec2 {
+        world / self.cell - self.skipped()
+    }
+
     /// The cell that holds a world position and the position within it, 0..=1 east and north; `None` outside.
     pub fn cell_at(&self, world: DVec2) -> Option<(Post, DVec2)> {
-        let grid = world / self.cell - self.skipped();
+        let grid = self.grid_at(world);
         let last = DVec2::new(f64::from(self.columns - 1), f64::from(self.rows - 1));
         if !(grid.cmpge(DVec2::ZERO).all() && grid.cmple(last).all()) {
             return None;

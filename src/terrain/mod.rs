@@ -6,4 +6,6 @@ pub mod earthwork;
 pub mod facets;
 pub mod lattice;
 pub mod light;
+pub mod profile;
 pub mod query;
+pub mod sight;

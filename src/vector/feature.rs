@@ -22,6 +22,9 @@ pub struct Layer {
 pub struct Feature {
     /// Its shape; multi-part shapes hold several lines, polygons or points.
     pub geometry: Geometry,
+    /// The elevation of every vertex, in the order of [`Geometry::vertices`] and the file's vertical unit, NaN for a
+    /// vertex without one; `None` where the file gives the feature no elevations.
+    pub elevations: Option<Vec<f64>>,
     /// Its properties, by name.
     pub properties: BTreeMap<String, serde_json::Value>,
 }
@@ -136,7 +139,7 @@ mod tests {
         };
         let polygon = Polygon { exterior: ring(0.1), holes: vec![ring(0.01)] };
         let geometry = Geometry::Polygons(vec![polygon]);
-        let feature = Feature { geometry, properties: BTreeMap::new() };
+        let feature = Feature { geometry, elevations: None, properties: BTreeMap::new() };
         let layer = Layer { features: vec![feature], crs: Crs::wgs84(), notes: Vec::new() };
         let utm = Crs::utm_at(15.0, 48.0);
         let moved = layer.transformed(&utm).expect("in the zone");

@@ -93,6 +93,7 @@ mod tests {
     fn layer(properties: &[Value]) -> Layer {
         let feature = |properties: &Value| Feature {
             geometry: Geometry::Points(Vec::new()),
+            elevations: None,
             properties: properties.as_object().expect("an object").clone().into_iter().collect(),
         };
         Layer { features: properties.iter().map(feature).collect(), crs: Crs::wgs84(), notes: Vec::new() }

@@ -95,7 +95,7 @@ fn layer(features: Vec<geojson::Feature>, crs: Crs) -> Result<Layer, VectorError
             feature.properties.unwrap_or_default().into_iter().collect();
         for geometry in parts.into_geometries() {
             check_degrees(&geometry, &crs, index + 1)?;
-            read.push(Feature { geometry, properties: properties.clone() });
+            read.push(Feature { geometry, elevations: None, properties: properties.clone() });
         }
     }
     Ok(Layer { features: read, crs, notes: left.notes() })

@@ -6,17 +6,34 @@ use crate::vector::error::VectorError;
 use crate::vector::feature::Layer;
 use crate::vector::geojson;
 
-/// All features of a vector file in the system `stated`, or else the one that the file names.
+/// What the caller knows of a vector file beyond its bytes.
+pub struct Hints<'a> {
+    /// The coordinate system, in place of what the file says or where it says nothing.
+    pub crs: Option<&'a Crs>,
+    /// Which layer of a file that may hold several; without it the file must hold one.
+    pub layer: Option<&'a str>,
+    /// The bytes of a file that lies beside this one, by its name: the name given to [`read`] with another extension.
+    /// `None` where there is none.
+    pub companions: &'a dyn Fn(&str) -> Option<Vec<u8>>,
+}
+
+impl Default for Hints<'_> {
+    fn default() -> Self {
+        Self { crs: None, layer: None, companions: &|_| None }
+    }
+}
+
+/// All features of a vector file, or of one of its layers.
 ///
 /// The content decides what format it is; `name` only where the content does not tell, and for messages.
 ///
 /// # Errors
 /// [`VectorError`], for a format that is not read with the command that converts it.
-pub fn read(name: &str, bytes: &[u8], stated: Option<&Crs>) -> Result<Layer, VectorError> {
+pub fn read(name: &str, bytes: &[u8], hints: &Hints) -> Result<Layer, VectorError> {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     match other_by_content(bytes, text).or_else(|| other_by_name(name, text)) {
         Some(format) => Err(VectorError::OtherFormat { format, command: conversion(name) }),
-        None if text.first() == Some(&b'{') => geojson::read_as(bytes, stated),
+        None if text.first() == Some(&b'{') => geojson::read_as(bytes, hints.crs),
         None => Err(VectorError::UnknownFormat),
     }
 }
@@ -80,14 +97,14 @@ mod tests {
     use super::*;
 
     fn refusal(name: &str, bytes: &[u8]) -> String {
-        read(name, bytes, None).expect_err(name).to_string()
+        read(name, bytes, &Hints::default()).expect_err(name).to_string()
     }
 
     #[test]
     fn content_decides_before_the_name() {
         let text = b"\xef\xbb\xbf \n{\"type\":\"Point\",\"coordinates\":[1,2]}";
         for name in ["a.geojson", "a.json", "a.xyzzy", "a"] {
-            assert_eq!(read(name, text, None).expect(name).features.len(), 1);
+            assert_eq!(read(name, text, &Hints::default()).expect(name).features.len(), 1);
         }
         assert!(refusal("a.geojson", b"SQLite format 3\0...").contains("GeoPackage"));
     }

@@ -10,7 +10,7 @@ mod bound;
 mod edits;
 #[path = "lod/emitters.rs"]
 mod emitters;
-#[path = "lod/fields.rs"]
+#[path = "common/fields.rs"]
 mod fields;
 #[path = "lod/flight.rs"]
 mod flight;
@@ -20,7 +20,7 @@ mod frame;
 mod paging;
 #[path = "lod/refiners.rs"]
 mod refiners;
-#[path = "lod/rounds.rs"]
+#[path = "common/rounds.rs"]
 mod rounds;
 #[path = "lod/rtin.rs"]
 mod rtin;
@@ -43,21 +43,5 @@ const SECTIONS: &[Section] = &[
 ];
 
 fn main() {
-    // cargo hands on flags of its own, such as --bench
-    let wanted: Vec<String> = std::env::args().skip(1).filter(|name| !name.starts_with('-')).collect();
-    let names: Vec<&str> = SECTIONS.iter().map(|&(name, _)| name).collect();
-    if let Some(unknown) = wanted.iter().find(|name| !names.contains(&name.as_str())) {
-        eprintln!("there is no section '{unknown}'; there are {}", names.join(", "));
-        std::process::exit(2);
-    }
-    println!("{}", rounds::machine());
-    if cfg!(debug_assertions) {
-        println!("This is a build for debugging: its times say nothing about a release.");
-    }
-    for (name, print) in SECTIONS {
-        if wanted.is_empty() || wanted.iter().any(|wanted| wanted == name) {
-            println!("\n== {name} (load {})\n", rounds::load());
-            print();
-        }
-    }
+    rounds::sections(SECTIONS);
 }

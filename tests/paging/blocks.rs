@@ -40,6 +40,7 @@ pub fn raster(width: u32, height: u32, seed: u64, holes: u32) -> Raster {
         georeferenced: true,
         crs: None,
         nodata: None,
+        vertical_datum: None,
     }
 }
 

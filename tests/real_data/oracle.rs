@@ -4,7 +4,8 @@ use std::path::Path;
 
 use glam::DVec2;
 use sandtable::geom::crs::Crs;
-use sandtable::terrain::query::{Answer, HeightService, Interpolation, Surface};
+use sandtable::terrain::query::service::HeightService;
+use sandtable::terrain::query::{Answer, Interpolation, Surface};
 
 /// One vertex of a real layer and the ground under it.
 #[derive(Clone, Debug)]

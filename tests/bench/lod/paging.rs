@@ -52,6 +52,7 @@ impl Rolling {
             georeferenced: true,
             crs: None,
             nodata: None,
+            vertical_datum: None,
         };
         let wave = |posts: f64| (0..POSTS).map(move |at| libm::sin(f64::from(at) / posts) as f32);
         let along =

@@ -7,6 +7,27 @@ use std::time::Instant;
 /// Rounds where a section has no reason for another number; odd, so that a median is a value that was measured.
 pub const ROUNDS: usize = 7;
 
+/// Prints the sections that the arguments name, or all of them.
+pub fn sections(sections: &[(&'static str, fn())]) {
+    // cargo hands on flags of its own, such as --bench
+    let wanted: Vec<String> = std::env::args().skip(1).filter(|name| !name.starts_with('-')).collect();
+    let names: Vec<&str> = sections.iter().map(|&(name, _)| name).collect();
+    if let Some(unknown) = wanted.iter().find(|name| !names.contains(&name.as_str())) {
+        eprintln!("there is no section '{unknown}'; there are {}", names.join(", "));
+        std::process::exit(2);
+    }
+    println!("{}", machine());
+    if cfg!(debug_assertions) {
+        println!("This is a build for debugging: its times say nothing about a release.");
+    }
+    for (name, print) in sections {
+        if wanted.is_empty() || wanted.iter().any(|wanted| wanted == name) {
+            println!("\n== {name} (load {})\n", load());
+            print();
+        }
+    }
+}
+
 /// Runs all contenders in turn, `rounds` times: for each the values that it returned, in the order of the rounds.
 pub fn interleaved(rounds: usize, contenders: &mut [&mut dyn FnMut() -> f64]) -> Vec<Vec<f64>> {
     let mut values = vec![Vec::with_capacity(rounds); contenders.len()];

@@ -14,15 +14,12 @@
 //! A query costs one look-up of a cell and its corners, whatever the size of the model; a batch is spread over
 //! all threads and allocates nothing per point.
 
-use std::sync::Arc;
+pub mod service;
 
 use glam::DVec2;
-use rayon::prelude::*;
 
 use crate::dem::raster::Raster;
 use crate::dem::sample::{self, Sampled};
-use crate::geom::crs::Crs;
-use crate::terrain::facets::Facets;
 use crate::terrain::lattice::Lattice;
 
 /// Which surface a height is asked of.
@@ -34,6 +31,8 @@ pub enum Surface {
     Ground,
     /// The triangles drawn now; always planar, whatever the interpolation.
     Displayed,
+    /// The ground, and the decks over it where there are any: what one stands on.
+    Scene,
 }
 
 /// How a height between posts is found; see the module's table.
@@ -78,101 +77,6 @@ impl Answer {
             Self::Outside => "Outside",
         }
     }
-}
-
-/// Answers height queries on the ground of one scene; cheap to clone, safe to share between threads.
-#[derive(Clone)]
-pub struct HeightService {
-    inner: Arc<Inner>,
-}
-
-struct Inner {
-    source: Arc<Raster>,
-    crs: Crs,
-    lattice: Arc<Lattice>,
-    displayed: Option<Displayed>,
-}
-
-/// What is drawn now.
-struct Displayed {
-    facets: Arc<dyn Facets>,
-    exaggeration: f64,
-}
-
-impl HeightService {
-    /// A service on a raster as read and the lattice made of it, asked in coordinates of `crs`.
-    pub fn new(source: Arc<Raster>, crs: Crs, lattice: Arc<Lattice>) -> Self {
-        Self { inner: Arc::new(Inner { source, crs, lattice, displayed: None }) }
-    }
-
-    /// The same service with the surface displayed now, whose Z is the height times `exaggeration`.
-    pub fn displaying(&self, facets: Arc<dyn Facets>, exaggeration: f64) -> Self {
-        let displayed = Some(Displayed { facets, exaggeration });
-        let Inner { source, crs, lattice, .. } = &*self.inner;
-        Self {
-            inner: Arc::new(Inner {
-                source: Arc::clone(source),
-                crs: crs.clone(),
-                lattice: Arc::clone(lattice),
-                displayed,
-            }),
-        }
-    }
-
-    /// The height of `surface` at map position `at`, in the scene's coordinates.
-    ///
-    /// [`Surface::Displayed`] answers [`Answer::Outside`] where nothing is displayed.
-    pub fn height(&self, surface: Surface, interpolation: Interpolation, at: DVec2) -> Answer {
-        match surface {
-            Surface::Source => self.source_height(interpolation, at),
-            Surface::Ground => ground_height(&self.inner.lattice, interpolation, at),
-            Surface::Displayed => self.displayed_height(at),
-        }
-    }
-
-    /// The heights at many positions, in order, spread over all threads.
-    ///
-    /// # Panics
-    /// Where `out` is not as long as `at`.
-    pub fn heights(&self, surface: Surface, interpolation: Interpolation, at: &[DVec2], out: &mut [Answer]) {
-        assert_eq!(at.len(), out.len(), "one answer per position");
-        const CHUNK: usize = 4096;
-        at.par_chunks(CHUNK).zip(out.par_chunks_mut(CHUNK)).for_each(|(at, out)| {
-            for (&at, out) in at.iter().zip(out) {
-                *out = self.height(surface, interpolation, at);
-            }
-        });
-    }
-
-    fn source_height(&self, interpolation: Interpolation, at: DVec2) -> Answer {
-        let Inner { source, crs, .. } = &*self.inner;
-        let in_source = match &source.crs {
-            Some(own) => crs.transform(own, at),
-            None => Ok(at),
-        };
-        let in_source = in_source.map(|at| match &source.crs {
-            // Longitudes come back within ±180°; a raster across the date line counts them on from there.
-            Some(own) if own.is_geographic() => at + DVec2::X * whole_turns(source.center().x - at.x),
-            _ => at,
-        });
-        in_source.map_or(Answer::Outside, |at| raster_height(source, interpolation, at))
-    }
-
-    fn displayed_height(&self, at: DVec2) -> Answer {
-        let Some(displayed) = &self.inner.displayed else {
-            return Answer::Outside;
-        };
-        let world = at - self.inner.lattice.origin();
-        match displayed.facets.displayed_z(world) {
-            Some(z) => Answer::Height(z / displayed.exaggeration),
-            None => Answer::Outside,
-        }
-    }
-}
-
-/// The whole turns, in degrees, nearest to `degrees`.
-fn whole_turns(degrees: f64) -> f64 {
-    360.0 * (degrees / 360.0).round()
 }
 
 /// The height of the ground lattice at a map position.
@@ -292,7 +196,6 @@ fn inverse_distance_weights(part: DVec2, cell: DVec2) -> [f64; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read;
 
     const ALL: [Interpolation; 4] = [
         Interpolation::Planar,
@@ -338,19 +241,6 @@ mod tests {
         assert_eq!(on_diagonal, Answer::Height(4.0), "the diagonal joins (0, 0) and (1, 1)");
         let beside = lattice(|column, row| if (column, row) == (1, 0) { 8.0 } else { 0.0 });
         assert_eq!(ground_height(&beside, Interpolation::Planar, at(5.0, 10.0)), Answer::Height(0.0));
-    }
-
-    #[test]
-    fn the_source_across_the_date_line_answers_on_both_sides() {
-        let text = "ncols 4\nnrows 2\nxllcorner 179.8\nyllcorner -16.1\ncellsize 0.1\n1 2 3 4\n1 2 3 4\n";
-        let hints = read::Hints { crs: Some(Crs::wgs84()), ..read::Hints::default() };
-        let source = read::read("a.asc", text.as_bytes(), &hints).expect("sound");
-        let utm = Crs::from_epsg(32701).expect("a zone");
-        let service = HeightService::new(Arc::new(source), utm.clone(), Arc::new(lattice(|_, _| 0.0)));
-        for (longitude, height) in [(179.85, 1.0), (179.95, 2.0), (-179.95, 3.0), (180.15, 4.0)] {
-            let at = Crs::wgs84().transform(&utm, DVec2::new(longitude, -16.0)).expect("inside");
-            assert_eq!(service.height(Surface::Source, Interpolation::Nearest, at), Answer::Height(height));
-        }
     }
 
     #[test]

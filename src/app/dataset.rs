@@ -1,0 +1,123 @@
+//! What a question about heights is asked of: an elevation file, or the ground of a scene.
+//!
+//! Every command and the HTTP service ask through here, so that they cannot but give the same answer.
+
+use std::ffi::OsStr;
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::app::arguments::{Access, GreyHeights};
+use crate::app::dem::read_raster;
+use crate::app::failure::Failure;
+use crate::app::{ground, load};
+use crate::dem::raster::Raster;
+use crate::geom::crs::Crs;
+use crate::terrain::query::service::{HeightService, source_height};
+use crate::terrain::query::{Answer, Interpolation, Surface};
+
+/// Positions per task of a batch.
+const CHUNK: usize = 4096;
+
+/// An elevation file, or a scene.
+pub struct Dataset {
+    name: String,
+    kind: Kind,
+}
+
+enum Kind {
+    /// The ground is made when it is first asked for: an elevation file in degrees must be warped for it.
+    File {
+        raster: Arc<Raster>,
+        crs: Crs,
+        ground: OnceLock<Result<HeightService, String>>,
+    },
+    Scene(HeightService),
+}
+
+impl Dataset {
+    /// Opens the elevation file or, where the name ends in `.toml`, the scene at `path`.
+    ///
+    /// # Errors
+    /// It cannot be had or read; the message names it.
+    pub fn open(path: &Path, heights: GreyHeights, access: &Access) -> Result<Self, Failure> {
+        let name = path.display().to_string();
+        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(OsStr::new("toml"))) {
+            let scene = load::scene(path, access, &|_| ())?;
+            return Ok(Self { name, kind: Kind::Scene(scene.heights) });
+        }
+        let raster = Arc::new(read_raster(path, heights)?);
+        let crs = raster.crs.clone().unwrap_or_else(Crs::local);
+        Ok(Self { name, kind: Kind::File { raster, crs, ground: OnceLock::new() } })
+    }
+
+    /// The system that positions are given in where nobody says another: the file's or the scene's.
+    pub fn crs(&self) -> Crs {
+        match &self.kind {
+            Kind::File { crs, .. } => crs.clone(),
+            Kind::Scene(service) => service.now().crs().clone(),
+        }
+    }
+
+    /// The service on the ground, in metres.
+    ///
+    /// # Errors
+    /// The elevation file has no place in metres; the message names it.
+    pub fn service(&self) -> Result<&HeightService, Failure> {
+        match &self.kind {
+            Kind::Scene(service) => Ok(service),
+            Kind::File { raster, ground, .. } => ground
+                .get_or_init(|| ground::service(raster))
+                .as_ref()
+                .map_err(|reason| Failure::input(format!("{}: {reason}", self.name))),
+        }
+    }
+
+    /// The heights at positions in coordinates of `from`, in order.
+    ///
+    /// A position that cannot be brought to the surface's system lies [`Answer::Outside`].
+    ///
+    /// # Errors
+    /// As for [`Dataset::service`], where a surface other than the source is asked for.
+    ///
+    /// # Panics
+    /// Where `out` is not as long as `at`.
+    pub fn heights(
+        &self,
+        surface: Surface,
+        interpolation: Interpolation,
+        from: &Crs,
+        at: &[DVec2],
+        out: &mut [Answer],
+    ) -> Result<(), Failure> {
+        assert_eq!(at.len(), out.len(), "one answer per position");
+        if surface == Surface::Source {
+            let raster = self.source();
+            each(at, out, |at| source_height(&raster, from, interpolation, at));
+            return Ok(());
+        }
+        let epoch = self.service()?.now();
+        each(at, out, |at| {
+            from.transform(epoch.crs(), at)
+                .map_or(Answer::Outside, |at| epoch.height(surface, interpolation, at))
+        });
+        Ok(())
+    }
+
+    fn source(&self) -> Arc<Raster> {
+        match &self.kind {
+            Kind::File { raster, .. } => Arc::clone(raster),
+            Kind::Scene(service) => Arc::clone(service.now().source()),
+        }
+    }
+}
+
+fn each(at: &[DVec2], out: &mut [Answer], answer: impl Fn(DVec2) -> Answer + Sync) {
+    at.par_chunks(CHUNK).zip(out.par_chunks_mut(CHUNK)).for_each(|(at, out)| {
+        for (&at, out) in at.iter().zip(out) {
+            *out = answer(at);
+        }
+    });
+}

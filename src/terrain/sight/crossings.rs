@@ -1,0 +1,224 @@
+//! Where a straight line over the ground crosses the edges of its finest triangles.
+//!
+//! Between two crossings the ground is one plane, so a function of the ground along the line is known exactly when it
+//! is known at the crossings: profiles, lines of sight and viewsheds all stand on this walk.
+//!
+//! The line is cut where it meets a column of posts, a row of posts, and the one diagonal of each cell that it passes
+//! through:
+//!
+//! ```text
+//!  o───────o──────b        from `a` to `b`: a column, then a diagonal, then a row of posts …
+//!  │ ╲     │   ╱ ╱│
+//!  │   ╲   │ ╱ ╱  │
+//!  │     ╲ │╱╱    │
+//!  a────────────  o
+//! ```
+
+use std::ops::ControlFlow;
+
+use glam::DVec2;
+
+use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::query::Diagonal;
+
+/// A place on a line where the ground bends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// How far along the line, 0 at its start and 1 at its end.
+    pub part: f64,
+    /// Grid position: columns and rows of posts from the lattice's first.
+    pub grid: DVec2,
+    /// The height of the ground there in metres, on the edge that is crossed; NaN where that edge has no data.
+    pub height_m: f64,
+}
+
+/// Visits every crossing of the line `from`..`to` with edges of the finest triangles, in order, ends excluded, until
+/// `visit` breaks. Both ends are grid positions on the lattice.
+///
+/// A line along an edge crosses the posts on it; a crossing at a post is visited once. Costs three crossings a cell.
+pub fn crossings<B>(
+    lattice: &Lattice,
+    from: DVec2,
+    to: DVec2,
+    mut visit: impl FnMut(Crossing) -> ControlFlow<B>,
+) -> ControlFlow<B> {
+    let mut last = 0.0;
+    let mut columns = Lines::new(from.x, to.x);
+    let mut rows = Lines::new(from.y, to.y);
+    loop {
+        let next = columns.part.min(rows.part).min(1.0);
+        if let Some(crossing) = diagonal_between(lattice, from, to, (last, next)) {
+            visit(crossing)?;
+        }
+        if next >= 1.0 {
+            return ControlFlow::Continue(());
+        }
+        let crossing = match (columns.part == next, rows.part == next) {
+            (true, true) => at_post(lattice, next, DVec2::new(columns.line, rows.line)),
+            (true, false) => on_column(lattice, next, columns.line, from.y + (to.y - from.y) * next),
+            _ => on_row(lattice, next, from.x + (to.x - from.x) * next, rows.line),
+        };
+        visit(crossing)?;
+        if columns.part == next {
+            columns.advance();
+        }
+        if rows.part == next {
+            rows.advance();
+        }
+        last = next;
+    }
+}
+
+/// The lines of posts that one coordinate passes, in order.
+struct Lines {
+    start: f64,
+    length: f64,
+    step: f64,
+    /// The next line.
+    line: f64,
+    /// Where it is met; beyond 1 where there is none.
+    part: f64,
+}
+
+impl Lines {
+    fn new(from: f64, to: f64) -> Self {
+        let length = to - from;
+        let (first, step) = if length > 0.0 { (from.floor() + 1.0, 1.0) } else { (from.ceil() - 1.0, -1.0) };
+        let mut lines = Self { start: from, length, step, line: first - step, part: 0.0 };
+        lines.advance();
+        lines
+    }
+
+    fn advance(&mut self) {
+        self.line += self.step;
+        self.part = if self.length == 0.0 { f64::INFINITY } else { (self.line - self.start) / self.length };
+    }
+}
+
+fn at_post(lattice: &Lattice, part: f64, grid: DVec2) -> Crossing {
+    let post = Post { column: grid.x as u32, row: grid.y as u32 };
+    Crossing { part, grid, height_m: f64::from(lattice.height(post)) }
+}
+
+/// On the column of posts `column`, at `y` rows.
+fn on_column(lattice: &Lattice, part: f64, column: f64, y: f64) -> Crossing {
+    let y = y.clamp(0.0, f64::from(lattice.rows() - 1));
+    let row = y.floor().min(f64::from(lattice.rows() - 2));
+    let south = Post { column: column as u32, row: row as u32 };
+    let north = Post { row: south.row + 1, ..south };
+    let height_m = between(lattice, south, north, y - row);
+    Crossing { part, grid: DVec2::new(column, y), height_m }
+}
+
+/// On the row of posts `row`, at `x` columns.
+fn on_row(lattice: &Lattice, part: f64, x: f64, row: f64) -> Crossing {
+    let x = x.clamp(0.0, f64::from(lattice.columns() - 1));
+    let column = x.floor().min(f64::from(lattice.columns() - 2));
+    let west = Post { column: column as u32, row: row as u32 };
+    let east = Post { column: west.column + 1, ..west };
+    let height_m = between(lattice, west, east, x - column);
+    Crossing { part, grid: DVec2::new(x, row), height_m }
+}
+
+/// The height `part` of the way from one post to another; at a post, that post's alone.
+fn between(lattice: &Lattice, from: Post, to: Post, part: f64) -> f64 {
+    let (low, high) = (f64::from(lattice.height(from)), f64::from(lattice.height(to)));
+    if part == 0.0 {
+        low
+    } else if part == 1.0 {
+        high
+    } else {
+        low + (high - low) * part
+    }
+}
+
+/// The crossing with the diagonal of the cell that the line passes between two parts of it, if it crosses it inside.
+fn diagonal_between(
+    lattice: &Lattice,
+    from: DVec2,
+    to: DVec2,
+    (first, last): (f64, f64),
+) -> Option<Crossing> {
+    let middle = from.lerp(to, 0.5 * (first + last));
+    let most = DVec2::new(f64::from(lattice.columns() - 2), f64::from(lattice.rows() - 2));
+    let corner = middle.floor().clamp(DVec2::ZERO, most);
+    let cell = Post { column: corner.x as u32, row: corner.y as u32 };
+    let (start, along) = (from - corner, to - from);
+    let rising = Diagonal::of_cell(u64::from(cell.column), u64::from(cell.row)) == Diagonal::Rising;
+    // On the rising diagonal x − y = 0, on the falling one x + y = 1.
+    let (offset, slope) = if rising {
+        (start.x - start.y, along.x - along.y)
+    } else {
+        (start.x + start.y - 1.0, along.x + along.y)
+    };
+    let part = -offset / slope;
+    if !(part > first && part < last) {
+        return None;
+    }
+    let grid = from + along * part;
+    let x = (grid.x - corner.x).clamp(0.0, 1.0);
+    let [sw, se, nw, ne] = lattice.corner_heights(cell).map(f64::from);
+    let height_m = if rising { sw + (ne - sw) * x } else { nw + (se - nw) * x };
+    Some(Crossing { part, grid, height_m })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::terrain::query::{Interpolation, ground_height};
+
+    fn rough(columns: u32, rows: u32) -> Lattice {
+        let height = |index: u32| ((index * 7919) % 101) as f32;
+        let heights = (0..columns * rows).map(height).collect();
+        Lattice::new(DVec2::ZERO, DVec2::new(10.0, 20.0), columns, heights).expect("sound")
+    }
+
+    fn walked(lattice: &Lattice, from: DVec2, to: DVec2) -> Vec<Crossing> {
+        let mut found = Vec::new();
+        let _ = crossings(lattice, from, to, |crossing| {
+            found.push(crossing);
+            ControlFlow::<()>::Continue(())
+        });
+        found
+    }
+
+    #[test]
+    fn between_crossings_the_ground_is_straight_and_on_them_it_is_the_planar_one() {
+        let lattice = rough(9, 7);
+        let mut seed = 1u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (seed >> 11) as f64 / (1u64 << 53) as f64
+        };
+        for _ in 0..500 {
+            let mut place = || DVec2::new(random() * 8.0, random() * 6.0);
+            let (from, to) = (place(), place());
+            let ground = |part: f64| {
+                let at = from.lerp(to, part) * lattice.cell();
+                ground_height(&lattice, Interpolation::Planar, at).height_m().expect("inside")
+            };
+            let mut parts = vec![(0.0, ground(0.0))];
+            parts
+                .extend(walked(&lattice, from, to).iter().map(|crossing| (crossing.part, crossing.height_m)));
+            parts.push((1.0, ground(1.0)));
+            for pair in parts.windows(2) {
+                let [(a, low), (b, high)] = [pair[0], pair[1]];
+                assert!(a <= b && (ground(b) - high).abs() < 1e-6, "{from} {to} at {b}");
+                assert!(
+                    (ground(0.5 * (a + b)) - 0.5 * (low + high)).abs() < 1e-6,
+                    "{from} {to} between {a} and {b}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_line_through_posts_meets_each_once() {
+        let lattice = rough(5, 5);
+        let along = walked(&lattice, DVec2::new(0.0, 2.0), DVec2::new(4.0, 2.0));
+        assert_eq!(along.iter().map(|crossing| crossing.grid.x).collect::<Vec<_>>(), [1.0, 2.0, 3.0]);
+        let diagonal = walked(&lattice, DVec2::new(4.0, 0.0), DVec2::new(0.0, 4.0));
+        assert!(diagonal.iter().all(|crossing| (crossing.grid.x + crossing.grid.y - 4.0).abs() < 1e-12));
+        assert_eq!(diagonal.iter().filter(|crossing| crossing.grid.x.fract() == 0.0).count(), 3);
+    }
+}
