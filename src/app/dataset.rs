@@ -106,7 +106,8 @@ impl Dataset {
         Ok(())
     }
 
-    fn source(&self) -> Arc<Raster> {
+    /// The raster as read.
+    pub fn source(&self) -> Arc<Raster> {
         match &self.kind {
             Kind::File { raster, .. } => Arc::clone(raster),
             Kind::Scene(service) => Arc::clone(service.now().source()),
