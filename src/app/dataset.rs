@@ -61,6 +61,14 @@ impl Dataset {
         }
     }
 
+    /// What is asked where nobody says: of a file, what it holds; of a scene, its ground.
+    pub fn usual_surface(&self) -> Surface {
+        match &self.kind {
+            Kind::File { .. } => Surface::Source,
+            Kind::Scene(_) => Surface::Ground,
+        }
+    }
+
     /// The service on the ground, in metres.
     ///
     /// # Errors

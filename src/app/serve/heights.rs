@@ -7,7 +7,7 @@
 //! | | |
 //! |---|---|
 //! | `status` per result | `Ok`, `NoData` or `Outside`: a hole is not the edge of the model |
-//! | `surface` | `source` (as read; the default), `ground` (after earthworks, in metres), `scene` (decks on top) |
+//! | `surface` | `source` (as read), `ground` (after earthworks, in metres), `scene` (decks on top); without it, of a file the source and of a scene the ground |
 //! | `interpolation` | also `planar` and `distance-weighted`; `cubic` is refused |
 //! | `crs` | coordinates in another system; see [`places`](crate::app::serve::places) |
 //!
@@ -16,7 +16,7 @@
 use glam::DVec2;
 
 use crate::app::failure::Failure;
-use crate::app::serve::datasets::Ground;
+use crate::app::serve::datasets::{Ground, Served};
 use crate::app::serve::places::Coordinates;
 use crate::app::serve::question::{Asked, Question, Service, Weight};
 use crate::app::serve::reply::{Form, Refusal, Reply, quoted};
@@ -35,7 +35,8 @@ pub struct Heights {
     datasets: Vec<usize>,
     coordinates: Coordinates,
     places: Vec<DVec2>,
-    surface: Surface,
+    /// Each dataset's usual one where it is `None`.
+    surface: Option<Surface>,
     interpolation: Interpolation,
     missing: Missing,
     form: Form,
@@ -55,7 +56,7 @@ impl Question for Heights {
         let params = &asked.params;
         let datasets = service.datasets.find_all(asked.dataset)?;
         let most = service.limits.points();
-        let surface = params.choice("surface", &SURFACES)?.unwrap_or(Surface::Source);
+        let surface = params.choice("surface", &SURFACES)?;
         let interpolation = interpolation(params.get("interpolation"))?;
         let form = params.choice("format", &FORMS)?.unwrap_or(Form::Json);
         let missing = missing(params.get("nodata_value"))?;
@@ -75,8 +76,10 @@ impl Question for Heights {
     }
 
     fn weight(&self, service: &Service) -> Weight {
-        let ready = self.surface == Surface::Source
-            || self.datasets.iter().all(|&index| service.datasets.at(index).ground() != Ground::Awaited);
+        let ready =
+            self.datasets.iter().map(|&index| service.datasets.at(index)).all(|served| {
+                self.surface_of(served) == Surface::Source || served.ground() != Ground::Awaited
+            });
         if ready && self.places.len() <= LIGHT_POINTS { Weight::Light } else { Weight::Heavy }
     }
 
@@ -180,6 +183,10 @@ fn rank(answer: Answer) -> u8 {
 }
 
 impl Heights {
+    fn surface_of(&self, served: &Served) -> Surface {
+        self.surface.unwrap_or_else(|| served.data.usual_surface())
+    }
+
     /// For each place the first dataset's height; where none has one, the first dataset that holds the place; where
     /// none does, the first.
     fn results(&self, service: &Service) -> Result<Vec<Found>, Refusal> {
@@ -211,13 +218,14 @@ impl Heights {
         answers: &mut [Answer],
     ) -> Result<(), Refusal> {
         let served = service.datasets.at(index);
-        if self.surface != Surface::Source {
+        let surface = self.surface_of(served);
+        if surface != Surface::Source {
             // Waits for the ground, and says why there is none.
             served.epoch()?;
         }
         served
             .data
-            .heights(self.surface, self.interpolation, &self.coordinates.crs, places, answers)
+            .heights(surface, self.interpolation, &self.coordinates.crs, places, answers)
             .map_err(|(Failure::Input(reason) | Failure::Usage(reason))| Refusal::wrong(reason))
     }
 

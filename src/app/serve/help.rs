@@ -20,7 +20,7 @@ GET or POST /v1/DATASET             heights; compatible with the Open Topo Data 
     samples=N                       so many places at equal distances along the path of the locations
     nodata_value=null               nan, or a number: what stands where there is no height
     format=json                     geojson
-    surface=source                  as read; ground: in metres, after earthworks; scene: with decks
+    surface=source|ground|scene     as read; in metres, after earthworks; decks on top [of a file source, else ground]
     crs=EPSG:N                      locations are x,y of that system; crs=native: of the dataset's own
 GET or POST /v1/los                 whether one point can be seen from another
     dataset, from, to, observer_height=2, target_height=0, refraction=0.142857, earth=round|flat, crs

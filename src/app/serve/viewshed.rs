@@ -138,7 +138,8 @@ impl Window {
             let inside = grid.clamp(DVec2::ZERO, most);
             Post { column: inside.x as u32, row: inside.y as u32 }
         };
-        Self { first: post((grid - reach).ceil()), last: post((grid + reach).floor()) }
+        // Rounded outward, so that no rounding leaves out a post right at the range.
+        Self { first: post((grid - reach).floor()), last: post((grid + reach).ceil()) }
     }
 
     fn columns(&self) -> u32 {
@@ -154,8 +155,8 @@ impl Window {
         if posts <= u64::from(most) {
             return Ok(());
         }
-        // The square of so many posts, half of its side.
-        let range = (0.5 * f64::from(most).sqrt() - 1.0) * lattice.cell().min_element();
+        // A square has two cells for each of the range, and up to three posts more.
+        let range = 0.5 * (f64::from(most).sqrt() - 3.0) * lattice.cell().min_element();
         Err(Refusal::wrong(format!(
             "the viewshed would have {posts} posts, {most} are the most of one request; ask for range={:.0} or less",
             range.max(0.0).floor()
