@@ -203,16 +203,10 @@ impl AsyncWrite for Watched {
 }
 
 /// Finds the blank line that ends a head, in bytes that come in any pieces.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct BlankLine {
-    /// Whether nothing but a carriage return has come since the last line ended. A head's first line may be blank.
+    /// Whether nothing but a carriage return has come since the last line ended; not so before the first has.
     empty: bool,
-}
-
-impl Default for BlankLine {
-    fn default() -> Self {
-        Self { empty: false }
-    }
 }
 
 impl BlankLine {
