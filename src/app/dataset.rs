@@ -61,6 +61,14 @@ impl Dataset {
         }
     }
 
+    /// What is asked where nobody says: of a file, what it holds; of a scene, its ground.
+    pub fn usual_surface(&self) -> Surface {
+        match &self.kind {
+            Kind::File { .. } => Surface::Source,
+            Kind::Scene(_) => Surface::Ground,
+        }
+    }
+
     /// The service on the ground, in metres.
     ///
     /// # Errors
@@ -106,7 +114,8 @@ impl Dataset {
         Ok(())
     }
 
-    fn source(&self) -> Arc<Raster> {
+    /// The raster as read.
+    pub fn source(&self) -> Arc<Raster> {
         match &self.kind {
             Kind::File { raster, .. } => Arc::clone(raster),
             Kind::Scene(service) => Arc::clone(service.now().source()),

@@ -1,6 +1,7 @@
 //! Mathematics on `glam` and `geo`: no terrain, no files.
 
 pub mod crs;
+pub mod geodesic;
 pub mod polygon;
 pub mod polyline;
 pub mod projection;
