@@ -16,9 +16,10 @@ use crate::dem::geokeys::GeoKeys;
 use crate::dem::georef::{self, Place, PlaceTags};
 use crate::dem::raster::{Raster, Samples};
 use crate::dem::read::Source;
-use crate::dem::tiff_blocks::{self, Storage, fault};
+use crate::dem::tiff_blocks;
 use crate::dem::tiff_mask;
 use crate::dem::tiff_neutral::neutralised;
+use crate::dem::tiff_storage::{Storage, fault};
 
 /// The most bytes of one tag: the offsets of a million blocks.
 const LARGEST_TAG: usize = 16 << 20;
@@ -40,10 +41,10 @@ pub(crate) fn recognises(bytes: &[u8]) -> bool {
 pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     let bytes = neutralised(source.bytes);
     let limits = limits(bytes.len(), LARGEST_BLOCK);
-    let mut decoder = Decoder::new(Cursor::new(&bytes[..])).map_err(fault)?.with_limits(limits);
+    let mut decoder = Decoder::new(Cursor::new(&bytes[..])).map_err(fault)?.with_limits(limits.clone());
     let storage = Storage::of(&mut decoder, bytes.len(), MOST_SAMPLES)?;
     let Described { bare, scale, offset } = describe(&mut decoder, &storage, source)?;
-    let mut samples = tiff_blocks::decode(&mut decoder, &storage, bare.nodata)?;
+    let mut samples = tiff_blocks::decode(&bytes, &storage, bare.nodata, &limits)?;
     tiff_mask::apply(&mut decoder, (storage.width, storage.height), bytes.len(), &mut samples)?;
     Ok(Raster { samples: samples.scaled(scale, offset), ..bare })
 }

@@ -7,7 +7,7 @@ use tiff::tags::Tag;
 
 use crate::dem::fault::{Fault, MOST_SAMPLES};
 use crate::dem::raster::Samples;
-use crate::dem::tiff_blocks::{FORMAT, Storage, fault};
+use crate::dem::tiff_storage::{Block, FORMAT, Storage, fault};
 
 /// Images after this many are not looked at.
 pub(crate) const MOST_IMAGES: usize = 64;
@@ -42,10 +42,10 @@ fn hide<R: Read + Seek>(
 ) -> Result<(), Fault> {
     let storage = Storage::of(decoder, file_bytes, MOST_SAMPLES)?;
     check(&storage)?;
-    for (index, column, row) in storage.blocks(decoder) {
-        let block = block(decoder, &storage, index)?;
+    for at in storage.blocks() {
+        let block = block(decoder, &storage, at)?;
         for (x, y) in block.hidden() {
-            samples.clear((row as usize + y) * storage.width as usize + column as usize + x);
+            samples.clear((at.row as usize + y) * storage.width as usize + at.column as usize + x);
         }
     }
     Ok(())
@@ -66,13 +66,12 @@ pub(crate) struct MaskBlock {
     bits: usize,
 }
 
-/// Decodes block `index` of a mask.
+/// Decodes a block of a mask.
 pub(crate) fn block<R: Read + Seek>(
     decoder: &mut Decoder<R>,
     storage: &Storage,
-    index: u32,
+    Block { index, width, height, .. }: Block,
 ) -> Result<MaskBlock, Fault> {
-    let (width, height) = decoder.chunk_data_dimensions(index);
     // What was never written hides what lies under it.
     let bytes = match storage.is_written(index).then(|| decoder.read_chunk(index)) {
         Some(Ok(DecodingResult::U8(bytes))) => bytes,
