@@ -94,6 +94,13 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
         heights.storage.check_samples()?;
         let source = Source { name, bytes: &[], hints };
         let described = geotiff::describe(&mut heights.decoder, &heights.storage, &source)?;
+        if geotiff::mask_beside(&source).is_some() {
+            return Err(Fault::Unsupported {
+                format: FORMAT,
+                what: "a mask in a file beside it (.msk), and is to be read in parts".into(),
+                remedy: "take the mask into it: gdal_translate --config GDAL_TIFF_INTERNAL_MASK YES FILE out.tif",
+            });
+        }
         let (overviews, masks) = images(&file, (described.bare.width, described.bare.height));
         Self::assemble(name, file, described, (overviews, masks), heights, cache_bytes)
     }

@@ -1,8 +1,11 @@
 //! Mathematics on `glam` and `geo`: no terrain, no files.
 
 pub mod crs;
+pub mod datum_shift;
 pub mod polygon;
 pub mod polyline;
+pub mod proj_words;
 pub mod projection;
 pub mod rect;
 pub mod wkt;
+pub mod wkt_text;
