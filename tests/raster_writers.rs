@@ -256,8 +256,8 @@ fn gdal_reads_what_is_written_as_we_do() {
     }
     let scratch = Scratch::new();
     for (crs, wanted) in [
-        ("EPSG:32612", "WGS 84 / UTM zone 12N"),
-        ("EPSG:27700", "British National Grid"),
+        ("EPSG:32612", "ID[\"EPSG\",32612]"),
+        ("EPSG:27700", "ID[\"EPSG\",27700]"),
         (
             "+proj=lcc +lat_1=36.5 +lat_2=34.25 +lat_0=33.75 +lon_0=-79 +x_0=609601.22 +datum=NAD83",
             "Lambert Conic Conformal (2SP)",

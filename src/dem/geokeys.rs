@@ -321,4 +321,20 @@ mod tests {
         assert!(keys(&[[4099, 0, 1, 9099]], &[]).metres_per_z().is_err());
         assert!(keys(&[[3086, 34736, 9, 65535]], &[1.0]).crs().is_ok_and(|crs| crs.is_none()));
     }
+
+    #[test]
+    fn what_heights_are_counted_from_is_told_by_code_or_by_citation() {
+        let told = |entries: &[[u16; 4]]| {
+            let mut directory = vec![1, 1, 0, entries.len() as u16];
+            directory.extend(entries.iter().flatten());
+            GeoKeys::new(&directory, &[], "old name|the harbour's gauge|").vertical_datum()
+        };
+        assert_eq!(told(&[[4096, 0, 1, 5703]]).as_deref(), Some("NAVD88"));
+        assert_eq!(told(&[[4098, 0, 1, 5103]]).as_deref(), Some("NAVD88"));
+        assert_eq!(
+            told(&[[4096, 0, 1, 32767], [4097, 34737, 20, 9]]).as_deref(),
+            Some("the harbour's gauge")
+        );
+        assert_eq!(told(&[[4097, 34737, 99, 9]]), None);
+    }
 }

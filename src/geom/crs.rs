@@ -249,8 +249,11 @@ impl Crs {
     /// [`Definition`] can express.
     pub fn definition(&self) -> Option<Definition> {
         let (major_m, minor_m) = self.ellipsoid();
-        let flattening = if major_m == minor_m { 0.0 } else { major_m / (major_m - minor_m) };
-        let ellipsoid = Ellipsoid { major_m, inverse_flattening: flattening };
+        // The nine decimals that ellipsoids are defined with come out of the axes with noise behind them.
+        let rounded = |value: f64| (value * 1e9).round() / 1e9;
+        let inverse_flattening =
+            if major_m == minor_m { 0.0 } else { rounded(major_m / (major_m - minor_m)) };
+        let ellipsoid = Ellipsoid { major_m, inverse_flattening };
         let meridian_deg = self.inner.proj.from_greenwich().to_degrees();
         let mut definition = proj_words::definition(&self.inner.text, ellipsoid, meridian_deg)?;
         definition.name = self.name().into();

@@ -94,3 +94,31 @@ fn trimmed(stated: &str) -> String {
 fn is_zero(numbers: &str) -> bool {
     numbers.split(',').all(|word| word.is_empty() || word.trim().parse() == Ok(0.0))
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::geom::crs::Crs;
+
+    fn shift(from: &str, to: &str) -> String {
+        let [from, to] = [from, to].map(|text| Crs::parse(text).expect("known"));
+        from.datum_shift_to(&to).map_or_else(|error| error.to_string(), |shift| shift.to_string())
+    }
+
+    #[test]
+    fn one_datum_needs_no_shift_and_modern_ones_are_taken_to_coincide() {
+        assert_eq!(shift("EPSG:4326", "EPSG:32612"), "none needed");
+        assert_eq!(shift("EPSG:26711", "EPSG:4267"), "none needed");
+        assert_eq!(shift("EPSG:27700", "EPSG:27700"), "none needed");
+        assert!(shift("EPSG:4269", "EPSG:32612").contains("taken to coincide"));
+    }
+
+    #[test]
+    fn numbers_are_told_in_the_direction_that_they_are_used() {
+        let old = "+proj=utm +zone=31 +ellps=intl +towgs84=-87,-98,-121,0,0,0,0";
+        assert_eq!(shift(old, "EPSG:4326"), "towgs84 -87,-98,-121");
+        assert_eq!(shift("EPSG:4326", old), "towgs84 -87,-98,-121 reversed");
+        let other = "+proj=longlat +ellps=bessel +towgs84=1,2,3";
+        assert_eq!(shift(old, other), "towgs84 -87,-98,-121, then towgs84 1,2,3 reversed");
+        assert!(shift("EPSG:26711", "EPSG:4326").contains("grid file"));
+    }
+}
