@@ -151,7 +151,7 @@ proptest! {
 fn hills(crs: &str) -> Raster {
     let value = |i: u32| {
         let (x, y) = (f64::from(i % 300), f64::from(i / 300));
-        if (i % 97) == 0 {
+        if i.is_multiple_of(97) {
             f32::NAN
         } else {
             (800.0 + 90.0 * (x / 31.0).sin() + 70.0 * (y / 23.0).cos()) as f32

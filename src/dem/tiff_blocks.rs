@@ -107,7 +107,7 @@ impl Image<'_> {
 
     fn reader(&self) -> Result<Reader<'_>, Fault> {
         if let Some(unpacker) = Unpacker::of(self.storage, self.nodata) {
-            return Ok(Reader::Straight(unpacker));
+            return Ok(Reader::Straight(Box::new(unpacker)));
         }
         let decoder = Decoder::new(Cursor::new(self.bytes)).map_err(fault)?;
         Ok(Reader::Decoder(Box::new(decoder.with_limits(self.limits.clone()))))
@@ -116,7 +116,7 @@ impl Image<'_> {
 
 /// What turns blocks into elevations.
 enum Reader<'a> {
-    Straight(Unpacker<'a>),
+    Straight(Box<Unpacker<'a>>),
     Decoder(Box<Decoder<Cursor<&'a [u8]>>>),
 }
 

@@ -154,8 +154,10 @@ macro_rules! words {
                 let plane = row.len() / $bytes;
                 let planes: [&[u8]; $bytes] = std::array::from_fn(|at| &row[at * plane..(at + 1) * plane]);
                 let mut sums = [0u8; $bytes];
-                for at in 1..$bytes {
-                    sums[at] = sums[at - 1].wrapping_add(sum(planes[at - 1], bands));
+                let mut before = 0u8;
+                for (start, plane) in sums.iter_mut().zip(planes) {
+                    *start = before;
+                    before = before.wrapping_add(sum(plane, bands));
                 }
                 if bands == 1 {
                     for (at, word) in words.iter_mut().enumerate().take(plane) {
