@@ -346,6 +346,40 @@ fn whatever_way_gdal_stores_a_raster_it_reads_the_same() {
     assert!(count >= 40, "only {count} ways");
 }
 
+/// Integers of every width and both signs, and floats of three widths.
+#[test]
+fn every_type_of_number_reads_the_same() {
+    if !gdal_is_there() {
+        return;
+    }
+    let scratch = Scratch::new();
+    let whole =
+        raster(70, Samples::F32((0..70 * 50).map(|i| (i % 120) as f32).collect()), Some("EPSG:32612"));
+    let plain = put(&scratch, "plain.tif", &write(&whole, Format::GeoTiff, "plain").expect("it can be"));
+    let mut count = 0;
+    for number in
+        ["Byte", "Int8", "UInt16", "Int16", "UInt32", "Int32", "UInt64", "Int64", "Float32", "Float64"]
+    {
+        for (packing, predictor) in [("NONE", 1), ("DEFLATE", 1), ("DEFLATE", 2), ("LZW", 2)] {
+            for order in ["LITTLE", "BIG"] {
+                let mut options = vec![
+                    format!("COMPRESS={packing}"),
+                    format!("ENDIANNESS={order}"),
+                    "TILED=YES".into(),
+                    "BLOCKXSIZE=32".into(),
+                    "BLOCKYSIZE=16".into(),
+                ];
+                options.extend((predictor == 2).then(|| "PREDICTOR=2".to_owned()));
+                count += usize::from(translated(&scratch, &plain, &options, &["-ot", number], &whole));
+            }
+        }
+    }
+    // 16-bit floats hold integers up to 2048.
+    let half = ["COMPRESS=DEFLATE".to_owned(), "NBITS=16".into()];
+    count += usize::from(translated(&scratch, &plain, &half, &["-ot", "Float32"], &whole));
+    assert!(count >= 50, "only {count} ways");
+}
+
 fn open(path: &Path) -> Raster {
     let bytes = std::fs::read(path).expect("it was written");
     let beside = |name: &str| std::fs::read(path.with_file_name(name)).ok();

@@ -17,6 +17,7 @@ pub mod sample;
 pub mod stats;
 pub mod tiff_blocks;
 pub mod tiff_file;
+pub mod tiff_lzw;
 pub mod tiff_mask;
 pub mod tiff_neutral;
 pub mod tiff_rows;

@@ -69,7 +69,9 @@ pub(crate) enum Packing {
     Plain,
     /// A zlib stream (RFC 1950).
     Deflate,
-    /// LZW, PackBits, ZSTD: what the decoder unpacks.
+    /// LZW (TIFF 6.0, section 13).
+    Lzw,
+    /// PackBits, ZSTD: what the decoder unpacks.
     Other,
 }
 
@@ -251,6 +253,7 @@ fn kind(format: u16) -> Kind {
 fn packing(compression: u16) -> Packing {
     match compression {
         1 => Packing::Plain,
+        5 => Packing::Lzw,
         8 | 32946 => Packing::Deflate,
         _ => Packing::Other,
     }

@@ -1,4 +1,4 @@
-//! Blocks of a TIFF that are stored in the common ways — plain or deflated — straight from their bytes.
+//! Blocks of a TIFF that are stored in the common ways — plain, deflated or by LZW — straight from their bytes.
 //!
 //! The decoder gives a block as a value of its own, unpacked through a chain of small reads; nearly all elevation is
 //! deflated, and a zlib stream that lies in memory can be inflated in one call into room that is kept. What is
@@ -7,10 +7,11 @@
 use flate2::{Decompress, FlushDecompress, Status};
 
 use crate::dem::fault::Fault;
+use crate::dem::tiff_lzw;
 use crate::dem::tiff_rows::{Elevation, Rows, Words};
 use crate::dem::tiff_storage::{Block, FORMAT, Packing, Storage};
 
-/// Packed bytes beyond twice what a block unpacks to are not looked at; neither packing needs a tenth more.
+/// Packed bytes beyond twice what a block unpacks to are not looked at; no packing needs more.
 const MOST_GROWTH: usize = 2;
 
 /// Bytes that even an empty stream may take.
@@ -66,6 +67,11 @@ impl<'a> Unpacker<'a> {
         let needed = self.bytes_within(block);
         let rows = match self.storage.packing {
             Packing::Plain => packed.get(..needed).ok_or_else(|| short(block, packed.len(), needed))?,
+            Packing::Lzw => {
+                self.unpacked.resize(needed, 0);
+                unpack_lzw(packed, block, &mut self.unpacked)?;
+                &self.unpacked
+            }
             Packing::Deflate | Packing::Other => {
                 self.unpacked.resize(needed, 0);
                 inflate(&mut self.inflater, packed, block, &mut self.unpacked)?;
@@ -103,6 +109,20 @@ fn inflate(inflater: &mut Decompress, packed: &[u8], block: Block, out: &mut [u8
         }
     }
     Ok(())
+}
+
+fn unpack_lzw(packed: &[u8], block: Block, out: &mut [u8]) -> Result<(), Fault> {
+    if tiff_lzw::is_ancient(packed) {
+        return Err(Fault::Unsupported {
+            format: FORMAT,
+            what: "LZW in the order of bits of before 1991".into(),
+            remedy: "convert it, for example with: gdal_translate -co COMPRESS=DEFLATE FILE out.tif",
+        });
+    }
+    match tiff_lzw::unpack(packed, out) {
+        written if written < out.len() => Err(short(block, written, out.len())),
+        _ => Ok(()),
+    }
 }
 
 fn short(block: Block, found: usize, wanted: usize) -> Fault {
