@@ -2,6 +2,8 @@
 
 mod common;
 
+#[path = "cli/convert.rs"]
+mod convert;
 #[path = "cli/heights.rs"]
 mod heights;
 #[path = "cli/info.rs"]

@@ -1,22 +1,236 @@
-//! `sandtable dem convert`: elevation files in another form.
+//! `sandtable dem convert`: an elevation file in another format, another system or with other cells.
+//!
+//! Without `--crs` and `--cell` the samples stay as they are, to the last bit where the format can hold them. What was
+//! done to them is told: the system, the shift between datums, how they were resampled, what was rounded.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use crate::app::arguments::GreyHeights;
 use crate::app::failure::Failure;
+use crate::app::progress::Steps;
+use crate::app::{files, output};
+use crate::dem::raster::Raster;
+use crate::dem::read::{self, Hints};
+use crate::dem::warp::WarpError;
+use crate::dem::warp_to::{self, Method, Warped};
+use crate::dem::write::{self, Companion, Format, Written};
+use crate::geom::crs::Crs;
+
+/// A cell of more degrees than this was meant in metres.
+const LARGEST_CELL_DEG: f64 = 1.0;
 
 /// `dem convert`.
 #[derive(Debug, Args)]
+#[command(
+    after_help = "Cells as large as the file's or finer lie bilinearly between its samples; from twice as large on they hold the mean\n\
+                  of the samples in them. A shift between datums goes by the numbers of the systems' definitions (towgs84),\n\
+                  good to some metres; one that needs a grid file is refused."
+)]
 pub struct ConvertOptions {
-    /// The elevation file or scene
-    pub file: PathBuf,
+    /// The elevation file, and the file to write: .tif, .asc, .bt, .hgt or .png
+    #[arg(required = true, num_args = 2.., value_names = ["IN", "OUT"])]
+    pub files: Vec<PathBuf>,
+    /// The system to bring it to, for example EPSG:32616 [default: its own]
+    #[arg(long, value_name = "CRS")]
+    pub crs: Option<String>,
+    /// The system that it is in, where it names none or the wrong one
+    #[arg(long, value_name = "CRS")]
+    pub source_crs: Option<String>,
+    /// Side of a cell in units of the system that it is brought to [default: its own]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = above_zero)]
+    pub cell: Option<f64>,
+    /// What grey values mean.
+    #[command(flatten)]
+    pub heights: GreyHeights,
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(side) if side.is_finite() && side > 0.0 => Ok(side),
+        _ => Err("write a number above 0".into()),
+    }
 }
 
 /// Runs the command.
 ///
 /// # Errors
-/// The file cannot be had or read.
+/// The file cannot be had, read or brought to the system; the output cannot be written or cannot hold it.
 pub fn run(options: &ConvertOptions) -> Result<(), Failure> {
-    Err(Failure::input(format!("{}: this command is not there yet", options.file.display())))
+    let (input, out) = places(options)?;
+    let format = format_of(out)?;
+    files::check_file_place(out, input, "this is the elevation file itself; name another to write to")?;
+    let target = parsed("--crs", options.crs.as_deref())?;
+    let steps = Steps::default();
+    steps.begin("reading");
+    let source = load(input, options)?;
+    steps.begin("resampling");
+    let Warped { raster, method } = brought(input, &source, target.as_ref(), options.cell)?;
+    steps.begin("writing");
+    let stem = out.file_stem().unwrap_or_default().to_string_lossy();
+    let about_out = |error: write::WriteError| Failure::input(format!("{}: {error}", out.display()));
+    let written = write::write(&raster, format, &stem).map_err(about_out)?;
+    put(input, out, &written)?;
+    steps.finish();
+    let shift = shift(&source, &raster).map_err(|reason| about(input, &reason))?;
+    output::print(&output::text_of(&summary(out, format, &raster, (method, shift), &written)))
+}
+
+fn about(file: &Path, reason: &str) -> Failure {
+    Failure::input(format!("{}: {reason}", file.display()))
+}
+
+/// What is read, and what is written.
+fn places(options: &ConvertOptions) -> Result<(&Path, &Path), Failure> {
+    match &options.files[..] {
+        [input, out] => Ok((input, out)),
+        _ => Err(Failure::Usage("several elevation files are not joined; convert one at a time".into())),
+    }
+}
+
+fn format_of(path: &Path) -> Result<Format, Failure> {
+    let extension = path.extension().unwrap_or_default().to_string_lossy();
+    Format::of_extension(&extension).ok_or_else(|| {
+        let place = path.display();
+        Failure::Usage(format!(
+            "{place}: elevation is written as .tif, .asc, .bt, .hgt or .png; name a file that ends so"
+        ))
+    })
+}
+
+fn parsed(option: &str, text: Option<&str>) -> Result<Option<Crs>, Failure> {
+    let crs = text.map(Crs::parse).transpose();
+    crs.map_err(|error| Failure::Usage(format!("{option}: {error}")))
+}
+
+fn load(input: &Path, options: &ConvertOptions) -> Result<Raster, Failure> {
+    let bytes = files::read(input)?;
+    let beside = files::beside(input);
+    let hints = Hints {
+        png_height_scale: options.heights.height_scale,
+        png_height_offset: options.heights.height_offset,
+        cell: options.cell,
+        crs: parsed("--source-crs", options.source_crs.as_deref())?,
+        companions: &beside,
+    };
+    let name = input.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
+    read::read(&name, &bytes, &hints).map_err(|error| about(input, &error.fault.to_string()))
+}
+
+/// The raster in the system and with the cells that are wanted; as it is where none are.
+fn brought(
+    input: &Path,
+    source: &Raster,
+    target: Option<&Crs>,
+    cell: Option<f64>,
+) -> Result<Warped, Failure> {
+    if target.is_none() && cell.is_none() {
+        return Ok(Warped { raster: source.clone(), method: Method::Kept });
+    }
+    if let (Some(target), None, true) = (target, &source.crs, source.georeferenced) {
+        let reason = format!(
+            "it names no coordinate system, so it cannot be brought to {}; name its own, for example --source-crs EPSG:4326",
+            target.name()
+        );
+        return Err(about(input, &reason));
+    }
+    let is_in_degrees = target.or(source.crs.as_ref()).is_some_and(Crs::is_geographic);
+    if let Some(cell) = cell.filter(|&cell| is_in_degrees && cell > LARGEST_CELL_DEG) {
+        return Err(about(input, &degrees(source, cell)));
+    }
+    warp_to::to_system(source, target, cell).map_err(|error| about(input, &remedy(&error)))
+}
+
+/// A cell in metres for a raster in degrees, and what would take it.
+fn degrees(source: &Raster, cell: f64) -> String {
+    let center = source.crs.as_ref().and_then(|crs| crs.transform(&Crs::wgs84(), source.center()).ok());
+    let zone = center.map_or_else(
+        || "a projected system".to_owned(),
+        |center| format!("its UTM zone, --crs {}", Crs::utm_at(center.x, center.y).name()),
+    );
+    format!(
+        "cells of {cell} degrees are too large: cells count in the units of the system, and this one is in degrees; for cells of {cell} m bring it to {zone}"
+    )
+}
+
+/// Warping speaks to those who write scene files; here its remedies are arguments.
+fn remedy(error: &WarpError) -> String {
+    match error {
+        WarpError::LooksLikeDegrees { min_x, max_x, min_y, max_y } => format!(
+            "no coordinate system is named, and the coordinates, {min_x} to {max_x} and {min_y} to {max_y}, look like degrees; name it, for example --source-crs EPSG:4326"
+        ),
+        WarpError::NoPlace => {
+            "it does not say where it lies or how far apart its samples are; give --cell METRES".into()
+        }
+        other => other.to_string(),
+    }
+}
+
+/// What was done to move positions between datums; `None` where the system stayed.
+fn shift(source: &Raster, raster: &Raster) -> Result<Option<String>, String> {
+    match (&source.crs, &raster.crs) {
+        (Some(from), Some(to)) if from != to => {
+            from.datum_shift_to(to).map(|shift| Some(shift.to_string())).map_err(|error| error.to_string())
+        }
+        _ => Ok(None),
+    }
+}
+
+/// Writes the companions, then the file: where it is there, all of it is.
+fn put(input: &Path, out: &Path, written: &Written) -> Result<(), Failure> {
+    let places: Vec<(PathBuf, &Companion)> = written
+        .companions
+        .iter()
+        .map(|companion| (out.with_extension(companion.extension), companion))
+        .collect();
+    for (place, companion) in &places {
+        let is_input = "the elevation file is this file; name another to write to";
+        files::check_file_place(place, input, is_input)?;
+        // A sidecar of the input has its name.
+        let is_sidecar = input.with_extension(companion.extension).canonicalize().ok();
+        if is_sidecar.is_some()
+            && is_sidecar == place.canonicalize().ok()
+            && files::read(place)? != companion.bytes
+        {
+            let reason = "this belongs to the elevation file and would be replaced; name another to write to";
+            return Err(Failure::input(format!("{}: {reason}", place.display())));
+        }
+    }
+    for (place, companion) in &places {
+        files::write_whole(place, &companion.bytes)?;
+    }
+    files::write_whole(out, &written.bytes)
+}
+
+fn summary(
+    out: &Path,
+    format: Format,
+    raster: &Raster,
+    (method, shift): (Method, Option<String>),
+    written: &Written,
+) -> Vec<String> {
+    let cell = raster.spacing();
+    let valid = raster.samples.iter().filter(|value| !value.is_nan()).count();
+    let how = match method {
+        Method::Kept => "no, the samples are the file's",
+        Method::Bilinear => "bilinear, between the four samples around each cell's centre",
+        Method::Average => "average of the samples in each cell",
+    };
+    let mut lines = vec![
+        format!("{}", out.display()),
+        format!("  format       {}, {}", format.name(), written.stored),
+        format!("  size         {} columns, {} rows", raster.width, raster.height),
+        format!("  crs          {}", raster.crs.as_ref().map_or("none stated", |crs| crs.name())),
+        format!("  cell         {} x {}", cell.x, cell.y),
+        format!("  resampled    {how}"),
+    ];
+    lines.extend(shift.map(|shift| format!("  datum shift  {shift}")));
+    lines.extend(raster.vertical_datum.as_ref().map(|datum| format!("  heights      from {datum}")));
+    lines.push(format!("  valid        {valid} of {} samples", raster.samples.len()));
+    lines.extend(written.notes.iter().map(|note| format!("  note         {note}")));
+    for companion in &written.companions {
+        lines.push(format!("  beside it    {}", out.with_extension(companion.extension).display()));
+    }
+    lines
 }

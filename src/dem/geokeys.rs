@@ -2,6 +2,7 @@
 
 use crate::dem::fault::Fault;
 use crate::dem::gdal_metadata::US_FOOT;
+use crate::dem::vertical;
 use crate::geom::crs::Crs;
 use crate::geom::projection::{Datum, Definition, Ellipsoid, Method};
 
@@ -10,9 +11,11 @@ const USER_DEFINED: u16 = 32767;
 
 const MODEL_TYPE: u16 = 1024;
 const RASTER_TYPE: u16 = 1025;
+const CITATION: u16 = 1026;
 const GEOGRAPHIC_TYPE: u16 = 2048;
 const GEODETIC_DATUM: u16 = 2050;
 const ANGULAR_UNITS: u16 = 2054;
+const ANGULAR_UNIT_SIZE: u16 = 2055;
 const SEMI_MAJOR: u16 = 2057;
 const SEMI_MINOR: u16 = 2058;
 const INVERSE_FLATTENING: u16 = 2059;
@@ -24,6 +27,8 @@ const TRANSFORMATION: u16 = 3075;
 const LINEAR_UNITS: u16 = 3076;
 const LINEAR_UNIT_SIZE: u16 = 3077;
 const VERTICAL_TYPE: u16 = 4096;
+const VERTICAL_CITATION: u16 = 4097;
+const VERTICAL_DATUM: u16 = 4098;
 const VERTICAL_UNITS: u16 = 4099;
 
 // A parameter may stand under any of several keys; the writers of GeoTIFF never agreed on one.
@@ -40,11 +45,12 @@ const PARALLEL_2: u16 = 3079;
 pub(crate) struct GeoKeys {
     codes: Vec<(u16, u16)>,
     numbers: Vec<(u16, Vec<f64>)>,
+    texts: Vec<(u16, String)>,
 }
 
 impl GeoKeys {
-    /// Takes the directory and the doubles it points into; keys that point outside are left out.
-    pub fn new(directory: &[u16], doubles: &[f64]) -> Self {
+    /// Takes the directory and the doubles and the text it points into; keys that point outside are left out.
+    pub fn new(directory: &[u16], doubles: &[f64], text: &str) -> Self {
         let mut keys = Self::default();
         let entries = directory.get(4..).unwrap_or_default().chunks_exact(4);
         for entry in entries.take(directory.get(3).copied().unwrap_or(0).into()) {
@@ -55,6 +61,12 @@ impl GeoKeys {
                     let at = usize::from(value);
                     if let Some(values) = doubles.get(at..at + count) {
                         keys.numbers.push((key, values.to_vec()));
+                    }
+                }
+                34737 => {
+                    let at = usize::from(value);
+                    if let Some(words) = text.get(at..at + count) {
+                        keys.texts.push((key, words.trim_end_matches(['|', '\0', ' ']).to_owned()));
                     }
                 }
                 _ => {}
@@ -79,6 +91,15 @@ impl GeoKeys {
         }
     }
 
+    /// What heights are counted from: by the code of the vertical system or of its datum, else as the citation has
+    /// it; `None` where not stated.
+    pub fn vertical_datum(&self) -> Option<String> {
+        let real = |key: u16| self.code(key).filter(|&code| code != USER_DEFINED && code != 0);
+        let cited = || self.text(VERTICAL_CITATION).filter(|words| !words.is_empty()).map(str::to_owned);
+        let system = real(VERTICAL_TYPE).map(vertical::words);
+        system.or_else(|| real(VERTICAL_DATUM).map(vertical::words)).or_else(cited)
+    }
+
     /// The coordinate system; `None` where the keys state none.
     pub fn crs(&self) -> Result<Option<Crs>, Fault> {
         let projected = self.code(PROJECTED_TYPE).is_some() || self.code(TRANSFORMATION).is_some();
@@ -95,13 +116,21 @@ impl GeoKeys {
         }
     }
 
+    /// The system whose proj string stands in the citation, as this program writes those without a code.
+    fn cited(&self) -> Option<Crs> {
+        Crs::parse(self.text(CITATION).filter(|words| words.starts_with("+proj="))?).ok()
+    }
+
     fn geographic(&self) -> Result<Crs, Fault> {
         self.check_degrees()?;
         match self.code(GEOGRAPHIC_TYPE) {
             Some(code) if code != USER_DEFINED && code != 0 => {
                 Crs::from_epsg(code.into()).map_err(Fault::Crs)
             }
-            _ => Crs::from_definition(&self.base()).map_err(Fault::Crs),
+            _ => match self.cited() {
+                Some(crs) => Ok(crs),
+                None => Crs::from_definition(&self.base()).map_err(Fault::Crs),
+            },
         }
     }
 
@@ -113,6 +142,9 @@ impl GeoKeys {
                 None => Crs::from_epsg(code.into()),
             };
             return found.map_err(Fault::Crs);
+        }
+        if let Some(crs) = self.cited() {
+            return Ok(crs);
         }
         self.check_degrees()?;
         let definition = match self.code(PROJECTION) {
@@ -193,6 +225,13 @@ impl GeoKeys {
     fn check_degrees(&self) -> Result<(), Fault> {
         match self.code(ANGULAR_UNITS) {
             None | Some(0 | 9102) => Ok(()),
+            Some(USER_DEFINED)
+                if self
+                    .number(ANGULAR_UNIT_SIZE)
+                    .is_some_and(|size| (size - 1f64.to_radians()).abs() < 1e-9) =>
+            {
+                Ok(())
+            }
             Some(other) => Err(unusable(&format!("angular unit {other} is not the degree"))),
         }
     }
@@ -207,6 +246,10 @@ impl GeoKeys {
 
     fn code(&self, key: u16) -> Option<u16> {
         self.codes.iter().find(|(known, _)| *known == key).map(|(_, value)| *value)
+    }
+
+    fn text(&self, key: u16) -> Option<&str> {
+        self.texts.iter().find(|(known, _)| *known == key).map(|(_, words)| words.as_str())
     }
 
     fn number(&self, key: u16) -> Option<f64> {
@@ -236,7 +279,7 @@ mod tests {
     fn keys(entries: &[[u16; 4]], doubles: &[f64]) -> GeoKeys {
         let mut directory = vec![1, 1, 0, entries.len() as u16];
         directory.extend(entries.iter().flatten());
-        GeoKeys::new(&directory, doubles)
+        GeoKeys::new(&directory, doubles, "")
     }
 
     #[test]
@@ -277,5 +320,21 @@ mod tests {
         assert!(keys(&[[4099, 0, 1, 9001]], &[]).metres_per_z().is_ok_and(|unit| unit == Some(1.0)));
         assert!(keys(&[[4099, 0, 1, 9099]], &[]).metres_per_z().is_err());
         assert!(keys(&[[3086, 34736, 9, 65535]], &[1.0]).crs().is_ok_and(|crs| crs.is_none()));
+    }
+
+    #[test]
+    fn what_heights_are_counted_from_is_told_by_code_or_by_citation() {
+        let told = |entries: &[[u16; 4]]| {
+            let mut directory = vec![1, 1, 0, entries.len() as u16];
+            directory.extend(entries.iter().flatten());
+            GeoKeys::new(&directory, &[], "old name|the harbour's gauge|").vertical_datum()
+        };
+        assert_eq!(told(&[[4096, 0, 1, 5703]]).as_deref(), Some("NAVD88"));
+        assert_eq!(told(&[[4098, 0, 1, 5103]]).as_deref(), Some("NAVD88"));
+        assert_eq!(
+            told(&[[4096, 0, 1, 32767], [4097, 34737, 20, 9]]).as_deref(),
+            Some("the harbour's gauge")
+        );
+        assert_eq!(told(&[[4097, 34737, 99, 9]]), None);
     }
 }

@@ -16,9 +16,10 @@ use crate::dem::geokeys::GeoKeys;
 use crate::dem::georef::{self, Place, PlaceTags};
 use crate::dem::raster::{Raster, Samples};
 use crate::dem::read::Source;
-use crate::dem::tiff_blocks::{self, Storage, fault};
-use crate::dem::tiff_mask;
+use crate::dem::tiff_blocks;
+use crate::dem::tiff_mask::{self, Found};
 use crate::dem::tiff_neutral::neutralised;
+use crate::dem::tiff_storage::{Storage, fault};
 
 /// The most bytes of one tag: the offsets of a million blocks.
 const LARGEST_TAG: usize = 16 << 20;
@@ -40,12 +41,22 @@ pub(crate) fn recognises(bytes: &[u8]) -> bool {
 pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     let bytes = neutralised(source.bytes);
     let limits = limits(bytes.len(), LARGEST_BLOCK);
-    let mut decoder = Decoder::new(Cursor::new(&bytes[..])).map_err(fault)?.with_limits(limits);
+    let mut decoder = Decoder::new(Cursor::new(&bytes[..])).map_err(fault)?.with_limits(limits.clone());
     let storage = Storage::of(&mut decoder, bytes.len(), MOST_SAMPLES)?;
     let Described { bare, scale, offset } = describe(&mut decoder, &storage, source)?;
-    let mut samples = tiff_blocks::decode(&mut decoder, &storage, bare.nodata)?;
-    tiff_mask::apply(&mut decoder, (storage.width, storage.height), bytes.len(), &mut samples)?;
+    let mut samples = tiff_blocks::decode(&bytes, &storage, bare.nodata, &limits)?;
+    let size = (storage.width, storage.height);
+    let found = tiff_mask::apply(&mut decoder, size, bytes.len(), &mut samples)?;
+    if let (Found::Nothing, Some(mask)) = (found, mask_beside(source)) {
+        let limits = |mask_bytes| self::limits(mask_bytes, LARGEST_BLOCK);
+        tiff_mask::apply_beside(&mask, limits, size, &mut samples)?;
+    }
     Ok(Raster { samples: samples.scaled(scale, offset), ..bare })
+}
+
+/// The bytes of the mask that GDAL keeps in a file of its own.
+pub(crate) fn mask_beside(source: &Source) -> Option<Vec<u8>> {
+    (source.hints.companions)(&format!("{}.msk", source.name))
 }
 
 /// What the decoder may allocate for a file of `file_bytes` bytes.
@@ -91,7 +102,7 @@ pub(crate) fn describe<R: Read + Seek>(
         georeferenced: place.stated,
         crs,
         nodata: tags.nodata,
-        vertical_datum: None,
+        vertical_datum: tags.keys.vertical_datum(),
     };
     Ok(Described { bare, scale: band.scale, offset: band.offset })
 }
@@ -108,7 +119,8 @@ impl Tags {
     fn read<R: Read + Seek>(decoder: &mut Decoder<R>) -> Self {
         let numbers = |decoder: &mut Decoder<R>, tag: Tag| decoder.get_tag_f64_vec(tag).unwrap_or_default();
         let directory = decoder.get_tag_u16_vec(Tag::GeoKeyDirectoryTag).unwrap_or_default();
-        let keys = GeoKeys::new(&directory, &numbers(decoder, Tag::GeoDoubleParamsTag));
+        let words = text(decoder, Tag::GeoAsciiParamsTag);
+        let keys = GeoKeys::new(&directory, &numbers(decoder, Tag::GeoDoubleParamsTag), &words);
         let nodata = text(decoder, Tag::GdalNodata);
         Self {
             place: PlaceTags {

@@ -14,10 +14,10 @@ use crate::geom::crs::Crs;
 const FORMAT: &str = "SRTM tile";
 
 /// What SRTM writes where the radar saw nothing.
-const VOID: i16 = -32768;
+pub(crate) const VOID: i16 = -32768;
 
 /// The sizes tiles come in: 3″, 1″, 1″ north of 50° with every other column, and 0.5″.
-const SIZES: [(u32, u32); 4] = [(1201, 1201), (3601, 3601), (1801, 3601), (7201, 7201)];
+pub(crate) const SIZES: [(u32, u32); 4] = [(1201, 1201), (3601, 3601), (1801, 3601), (7201, 7201)];
 
 /// Reads a tile.
 pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {

@@ -1,286 +1,233 @@
 //! Strips and tiles of a TIFF's first band to rows of elevations.
 //!
-//! Everything that a header can claim is held against the file's length here, before the decoder allocates
-//! for it: the size of the image, of one tile, and the number of blocks. Blocks are decoded one at a time, so
-//! a file that breaks off costs no more than the block in hand.
+//! Blocks stand alone, so rows of blocks are unpacked side by side, each straight into its own rows of the raster:
+//!
+//! ```text
+//! ┌────┬────┬────┐
+//! │ 0  │ 1  │ 2  │  one task
+//! ├────┼────┼────┤
+//! │ 3  │ 4  │ 5  │  another
+//! └────┴────┴────┘
+//! ```
+//!
+//! A task takes room for one block. The raster is the same for every number of threads, and so is the fault of a
+//! broken file: that of its first broken block.
 
-use std::io::{Read, Seek};
+use std::io::{Cursor, Read, Seek, SeekFrom};
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
-use tiff::TiffError;
-use tiff::decoder::{ChunkType, Decoder, DecodingResult};
-use tiff::tags::Tag;
+use rayon::prelude::*;
+use tiff::decoder::{Decoder, DecodingResult, Limits};
 
-use crate::dem::fault::{Fault, check_size, check_size_within};
+use crate::dem::fault::Fault;
 use crate::dem::raster::Samples;
+use crate::dem::tiff_rows::Elevation;
+use crate::dem::tiff_storage::{Block, FORMAT, Storage, fault};
+use crate::dem::tiff_unpack::Unpacker;
 
-pub(crate) const FORMAT: &str = "GeoTIFF";
+/// Tasks for each thread: several, since blocks over flat ground are done sooner; few, since each may have to read
+/// the file's tables of blocks.
+const TASKS_PER_THREAD: usize = 6;
 
-/// What an image says of how it is stored.
-#[derive(Clone, Debug)]
-pub(crate) struct Storage {
-    /// Samples per row.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// Bits of one sample.
-    pub bits: u16,
-    is_float: bool,
-    /// Bands that lie side by side in one block.
-    bands_per_block: u16,
-    /// Compressed bytes of each block; 0 for one that was never written.
-    block_bytes: Vec<u64>,
+/// The elevations of the first image's first band, `nodata` as NaN. `limits` are what a decoder may allocate.
+pub(crate) fn decode(
+    bytes: &[u8],
+    storage: &Storage,
+    nodata: Option<f64>,
+    limits: &Limits,
+) -> Result<Samples, Fault> {
+    storage.check_samples()?;
+    let image = Image { bytes, storage, nodata, limits };
+    if storage.is_wide() {
+        image.elevations().map(Samples::F64)
+    } else {
+        image.elevations().map(Samples::F32)
+    }
 }
 
-impl Storage {
-    /// Reads and checks the tags of the decoder's current image, of at most `most` samples.
-    pub fn of<R: Read + Seek>(decoder: &mut Decoder<R>, file_bytes: usize, most: u64) -> Result<Self, Fault> {
-        let (width, height) = decoder.dimensions().map_err(fault)?;
-        let short = |decoder: &mut Decoder<R>, tag: Tag, default: u16| {
-            decoder
-                .find_tag_unsigned_vec::<u16>(tag)
-                .map_err(fault)
-                .map(|found| found.and_then(|values| values.first().copied()).unwrap_or(default))
-        };
-        let expansion = expansion(short(decoder, Tag::Compression, 1)?)?;
-        let bits = short(decoder, Tag::BitsPerSample, 1)?;
-        let bands = short(decoder, Tag::SamplesPerPixel, 1)?;
-        if bands == 0 {
-            return Err(Fault::broken(FORMAT, "it has no band"));
-        }
-        let planar = short(decoder, Tag::PlanarConfiguration, 1)? == 2;
-        let is_float = short(decoder, Tag::SampleFormat, 1)? == 3;
-        let counts_tag = match decoder.get_chunk_type() {
-            ChunkType::Strip => Tag::StripByteCounts,
-            ChunkType::Tile => Tag::TileByteCounts,
-        };
-        let block_bytes = decoder.find_tag_unsigned_vec(counts_tag).map_err(fault)?.unwrap_or_default();
-        let bands_per_block = if planar { 1 } else { bands };
-        let storage = Self { width, height, bits, is_float, bands_per_block, block_bytes };
-        storage.check(decoder, (file_bytes, expansion), most)?;
-        Ok(storage)
+/// An image in memory.
+struct Image<'a> {
+    bytes: &'a [u8],
+    storage: &'a Storage,
+    nodata: Option<f64>,
+    limits: &'a Limits,
+}
+
+impl Image<'_> {
+    fn elevations<E: Elevation>(&self) -> Result<Vec<E>, Fault> {
+        let (width, height) = (self.storage.width as usize, self.storage.height as usize);
+        // Zeros come from the system as they are needed, in the task that overwrites them.
+        let mut values = vec![E::default(); width * height];
+        let (_, down) = self.storage.blocks_across_and_down();
+        let tasks = rayon::current_num_threads() * TASKS_PER_THREAD;
+        let per_task = down.div_ceil(tasks as u32).max(1);
+        let rows_per_task = per_task as usize * self.storage.block_size.1 as usize;
+        let first_failed = AtomicUsize::new(usize::MAX);
+        let outcomes: Vec<Result<(), Fault>> = values
+            .par_chunks_mut(width * rows_per_task)
+            .enumerate()
+            .map(|(task, rows)| {
+                if first_failed.load(Ordering::Relaxed) < task {
+                    return Ok(());
+                }
+                let first = task as u32 * per_task;
+                let outcome = self.fill(first..down.min(first + per_task), rows);
+                if outcome.is_err() {
+                    first_failed.fetch_min(task, Ordering::Relaxed);
+                }
+                outcome
+            })
+            .collect();
+        outcomes.into_iter().collect::<Result<(), Fault>>().map(|()| values)
     }
 
-    fn check<R: Read + Seek>(
-        &self,
-        decoder: &Decoder<R>,
-        (file, expansion): (usize, u64),
-        most: u64,
-    ) -> Result<(), Fault> {
-        // Blocks that were never written take no bytes: such a file may claim more than it holds.
-        let sparse = self.block_bytes.contains(&0);
-        let held = (file, if sparse { expansion.max(2) } else { expansion });
-        let bytes = u64::from(self.bits.div_ceil(8)) * u64::from(self.bands_per_block);
-        let size = (self.width.into(), self.height.into());
-        check_size_within(most, size, if self.bits < 8 { 0 } else { bytes }, held)?;
-        if decoder.get_chunk_type() == ChunkType::Tile {
-            let (across, down) = decoder.chunk_dimensions();
-            check_size((across.into(), down.into()), bytes, (file, expansion.max(2)))?;
+    /// Fills the rows of the raster that rows `down` of blocks hold.
+    fn fill<E: Elevation>(&self, down: Range<u32>, rows: &mut [E]) -> Result<(), Fault> {
+        let width = self.storage.width as usize;
+        let (across, _) = self.storage.blocks_across_and_down();
+        let first_row = down.start as usize * self.storage.block_size.1 as usize;
+        let mut reader = self.reader()?;
+        for block in down.flat_map(|y| (0..across).map(move |x| self.storage.block(x, y))) {
+            let start = (block.row as usize - first_row) * width + block.column as usize;
+            let out = &mut rows[start..];
+            match &mut reader {
+                _ if !self.storage.is_written(block.index) => blank(self.nodata, block, out, width),
+                Reader::Straight(unpacker) => {
+                    let range = unpacker.range(block, self.bytes.len())?;
+                    unpacker.fill(&self.bytes[range], block, out, width)?;
+                }
+                Reader::Decoder(decoder) => {
+                    decoded(decoder, self.storage, self.nodata, block, out, width)?;
+                }
+            }
         }
         Ok(())
     }
 
-    /// How many bytes a block of `samples` samples decodes to.
-    pub fn decoded_bytes(&self, samples: u64) -> u64 {
-        samples * u64::from(self.bits) * u64::from(self.bands_per_block) / 8
-    }
-
-    /// Whether samples need 64 bits to stay exact.
-    pub fn is_wide(&self) -> bool {
-        self.bits == 64 || (self.bits == 32 && !self.is_float)
-    }
-
-    /// A no-data value as a sample can equal it.
-    fn comparable(&self, nodata: Option<f64>) -> f64 {
-        match nodata {
-            Some(value) if self.is_float && self.bits <= 32 => f64::from(value as f32),
-            Some(value) => value,
-            None => f64::NAN,
+    fn reader(&self) -> Result<Reader<'_>, Fault> {
+        if let Some(unpacker) = Unpacker::of(self.storage, self.nodata) {
+            return Ok(Reader::Straight(Box::new(unpacker)));
         }
-    }
-
-    /// Whether samples of this kind are read.
-    pub fn check_samples(&self) -> Result<(), Fault> {
-        if [8, 16, 32, 64].contains(&self.bits) && !(self.is_float && self.bits == 8) {
-            return Ok(());
-        }
-        Err(Fault::Unsupported {
-            format: FORMAT,
-            what: format!("{}-bit {}", self.bits, if self.is_float { "floats" } else { "samples" }),
-            remedy: "convert it, for example with: gdal_translate -ot Float32 FILE out.tif",
-        })
-    }
-
-    /// Where each block of the first band starts in the image: index, column, row.
-    pub fn blocks<R: Read + Seek>(
-        &self,
-        decoder: &Decoder<R>,
-    ) -> impl Iterator<Item = (u32, u32, u32)> + use<R> {
-        let (across, down) = decoder.chunk_dimensions();
-        let (across, down) = (across.max(1), down.max(1));
-        let columns = self.width.div_ceil(across);
-        let blocks = u64::from(columns) * u64::from(self.height.div_ceil(down));
-        (0..blocks).map(move |index| {
-            let (row, column) = (index / u64::from(columns), index % u64::from(columns));
-            (index as u32, column as u32 * across, row as u32 * down)
-        })
-    }
-
-    /// Whether a block was written at all.
-    pub fn is_written(&self, index: u32) -> bool {
-        self.block_bytes.get(index as usize).is_none_or(|&bytes| bytes > 0)
+        let decoder = Decoder::new(Cursor::new(self.bytes)).map_err(fault)?;
+        Ok(Reader::Decoder(Box::new(decoder.with_limits(self.limits.clone()))))
     }
 }
 
-/// The elevations of the current image's first band, `nodata` as NaN.
-pub(crate) fn decode<R: Read + Seek>(
-    decoder: &mut Decoder<R>,
-    storage: &Storage,
-    nodata: Option<f64>,
-) -> Result<Samples, Fault> {
-    storage.check_samples()?;
-    let count = storage.width as usize * storage.height as usize;
-    let blank = blank(nodata);
-    if storage.is_wide() {
-        let mut values = vec![blank; count];
-        fill(decoder, storage, nodata, &mut values, |value| value)?;
-        return Ok(Samples::F64(values));
-    }
-    let mut values = vec![blank as f32; count];
-    fill(decoder, storage, nodata, &mut values, |value| value as f32)?;
-    Ok(Samples::F32(values))
+/// What turns blocks into elevations.
+enum Reader<'a> {
+    Straight(Box<Unpacker<'a>>),
+    Decoder(Box<Decoder<Cursor<&'a [u8]>>>),
 }
 
-fn fill<R: Read + Seek, T>(
-    decoder: &mut Decoder<R>,
-    storage: &Storage,
-    nodata: Option<f64>,
-    values: &mut [T],
-    narrow: impl Fn(f64) -> T + Copy,
-) -> Result<(), Fault> {
-    for (index, column, row) in storage.blocks(decoder) {
-        if storage.is_written(index) {
-            let (width, height) = decoder.chunk_data_dimensions(index);
-            let bands = usize::from(storage.bands_per_block);
-            let image_width = storage.width as usize;
-            let place = Place { bands, image_width, column, row, width, height };
-            decode_block(decoder, storage, nodata, index, values, &place, narrow)?;
-        }
-    }
-    Ok(())
-}
-
-/// The elevations of block `index` alone, row by row, `nodata` as NaN; blank where it was never written.
+/// The elevations of one block alone, row by row, `nodata` as NaN; blank where it was never written.
 pub(crate) fn block<R: Read + Seek>(
     decoder: &mut Decoder<R>,
     storage: &Storage,
     nodata: Option<f64>,
-    index: u32,
-) -> Result<Vec<f64>, Fault> {
-    let (width, height) = decoder.chunk_data_dimensions(index);
-    let mut values = vec![blank(nodata); width as usize * height as usize];
-    if storage.is_written(index) {
-        let bands = usize::from(storage.bands_per_block);
-        let place = Place { bands, image_width: width as usize, column: 0, row: 0, width, height };
-        decode_block(decoder, storage, nodata, index, &mut values, &place, |value| value)?;
+    block: Block,
+    file_bytes: usize,
+) -> Result<Samples, Fault> {
+    let mut file = File { decoder, storage, nodata, file_bytes };
+    if storage.is_wide() {
+        file.elevations(block).map(Samples::F64)
+    } else {
+        file.elevations(block).map(Samples::F32)
     }
-    Ok(values)
 }
 
-/// What stands where nothing was written: no data where the file knows such a value, else 0, as GDAL has it.
-fn blank(nodata: Option<f64>) -> f64 {
-    if nodata.is_some() { f64::NAN } else { 0.0 }
+/// An image that is not in memory.
+struct File<'a, R: Read + Seek> {
+    decoder: &'a mut Decoder<R>,
+    storage: &'a Storage,
+    nodata: Option<f64>,
+    file_bytes: usize,
 }
 
-fn decode_block<R: Read + Seek, T>(
+impl<R: Read + Seek> File<'_, R> {
+    fn elevations<E: Elevation>(&mut self, block: Block) -> Result<Vec<E>, Fault> {
+        let width = block.width as usize;
+        let mut values = vec![E::default(); width * block.height as usize];
+        if !self.storage.is_written(block.index) {
+            blank(self.nodata, block, &mut values, width);
+        } else if let Some(mut unpacker) = Unpacker::of(self.storage, self.nodata) {
+            let packed = self.bytes(unpacker.range(block, self.file_bytes)?)?;
+            unpacker.fill(&packed, block, &mut values, width)?;
+        } else {
+            decoded(self.decoder, self.storage, self.nodata, block, &mut values, width)?;
+        }
+        Ok(values)
+    }
+
+    fn bytes(&mut self, range: Range<usize>) -> Result<Vec<u8>, Fault> {
+        let file = self.decoder.inner();
+        let mut bytes = Vec::new();
+        let read = file
+            .seek(SeekFrom::Start(range.start as u64))
+            .and_then(|_| file.take(range.len() as u64).read_to_end(&mut bytes));
+        read.map_err(|error| Fault::broken(FORMAT, error.to_string()))?;
+        Ok(bytes)
+    }
+}
+
+/// What stands where nothing was written: no data where the file knows such a value, else the 0 that is there
+/// already, as GDAL has it.
+fn blank<E: Elevation>(nodata: Option<f64>, block: Block, out: &mut [E], stride: usize) {
+    if nodata.is_some() {
+        for row in out.chunks_mut(stride).take(block.height as usize) {
+            row[..block.width as usize].fill(E::NONE);
+        }
+    }
+}
+
+/// A block by way of the decoder, to `out`, whose rows lie `stride` apart and start where the block's do.
+fn decoded<R: Read + Seek, E: Elevation>(
     decoder: &mut Decoder<R>,
     storage: &Storage,
     nodata: Option<f64>,
-    index: u32,
-    values: &mut [T],
-    place: &Place,
-    narrow: impl Fn(f64) -> T + Copy,
+    block: Block,
+    out: &mut [E],
+    stride: usize,
 ) -> Result<(), Fault> {
     let hole = storage.comparable(nodata);
     let elevation =
-        move |value: f64| narrow(if value == hole || !value.is_finite() { f64::NAN } else { value });
-    let placed = match &decoder.read_chunk(index).map_err(fault)? {
-        DecodingResult::U8(v) => place.copy(values, v, |x| elevation(x.into())),
-        DecodingResult::I8(v) => place.copy(values, v, |x| elevation(x.into())),
-        DecodingResult::U16(v) => place.copy(values, v, |x| elevation(x.into())),
-        DecodingResult::I16(v) => place.copy(values, v, |x| elevation(x.into())),
-        DecodingResult::U32(v) => place.copy(values, v, |x| elevation(x.into())),
-        DecodingResult::I32(v) => place.copy(values, v, |x| elevation(x.into())),
-        DecodingResult::U64(v) => place.copy(values, v, |x| elevation(x as f64)),
-        DecodingResult::I64(v) => place.copy(values, v, |x| elevation(x as f64)),
-        DecodingResult::F16(v) => place.copy(values, v, |x| elevation(x.to_f64())),
-        DecodingResult::F32(v) => place.copy(values, v, |x| elevation(x.into())),
-        DecodingResult::F64(v) => place.copy(values, v, elevation),
+        move |value: f64| if value == hole || !value.is_finite() { E::NONE } else { E::of(value) };
+    let mut place = Place { bands: storage.bands_per_block.into(), block, out, stride };
+    let placed = match &decoder.read_chunk(block.index).map_err(fault)? {
+        DecodingResult::U8(v) => place.copy(v, |x| elevation(x.into())),
+        DecodingResult::I8(v) => place.copy(v, |x| elevation(x.into())),
+        DecodingResult::U16(v) => place.copy(v, |x| elevation(x.into())),
+        DecodingResult::I16(v) => place.copy(v, |x| elevation(x.into())),
+        DecodingResult::U32(v) => place.copy(v, |x| elevation(x.into())),
+        DecodingResult::I32(v) => place.copy(v, |x| elevation(x.into())),
+        DecodingResult::U64(v) => place.copy(v, |x| elevation(x as f64)),
+        DecodingResult::I64(v) => place.copy(v, |x| elevation(x as f64)),
+        DecodingResult::F16(v) => place.copy(v, |x| elevation(x.to_f64())),
+        DecodingResult::F32(v) => place.copy(v, |x| elevation(x.into())),
+        DecodingResult::F64(v) => place.copy(v, elevation),
     };
-    placed.ok_or_else(|| Fault::broken(FORMAT, format!("block {index} does not fit its image")))
+    placed.ok_or_else(|| Fault::broken(FORMAT, format!("block {} does not fit its image", block.index)))
 }
 
-/// Where a block lies in the image it is copied to, and how many bands it holds.
-struct Place {
+/// Where a block's elevations go, and how many bands it holds.
+struct Place<'a, E> {
     bands: usize,
-    image_width: usize,
-    column: u32,
-    row: u32,
-    width: u32,
-    height: u32,
+    block: Block,
+    out: &'a mut [E],
+    stride: usize,
 }
 
-impl Place {
+impl<E> Place<'_, E> {
     /// Copies the first band of a block; `None` where the two do not fit.
-    fn copy<S: Copy, T>(&self, image: &mut [T], block: &[S], to: impl Fn(S) -> T) -> Option<()> {
-        let (bands, width, image_width) = (self.bands, self.width as usize, self.image_width);
-        for row in 0..self.height as usize {
-            let source = block.get(row * width * bands..(row + 1) * width * bands)?;
-            let start = (self.row as usize + row) * image_width + self.column as usize;
-            let target = image.get_mut(start..start + width)?;
+    fn copy<S: Copy>(&mut self, samples: &[S], to: impl Fn(S) -> E) -> Option<()> {
+        let (bands, width) = (self.bands, self.block.width as usize);
+        for row in 0..self.block.height as usize {
+            let source = samples.get(row * width * bands..(row + 1) * width * bands)?;
+            let target = self.out.get_mut(row * self.stride..row * self.stride + width)?;
             for (target, source) in target.iter_mut().zip(source.chunks_exact(bands)) {
                 *target = to(source[0]);
             }
         }
         Some(())
-    }
-}
-
-/// How many bytes one compressed byte can become, by compression scheme.
-fn expansion(compression: u16) -> Result<u64, Fault> {
-    let what = match compression {
-        1 => return Ok(1),
-        // A code of 12 bits stands for up to 4 KiB.
-        5 => return Ok(2731),
-        8 | 32946 => return Ok(1032),
-        32773 => return Ok(64),
-        2..=4 => "fax compression".into(),
-        6 | 7 => "JPEG compression".into(),
-        34712 => "JPEG 2000 compression".into(),
-        34887 => "LERC compression".into(),
-        34925 => "LZMA compression".into(),
-        50000 => "ZSTD compression".into(),
-        50001 => "WebP compression".into(),
-        50002 | 52546 => "JPEG XL compression".into(),
-        other => format!("compression scheme {other}"),
-    };
-    Err(Fault::Unsupported {
-        format: FORMAT,
-        what,
-        remedy: "convert it, for example with: gdal_translate -co COMPRESS=DEFLATE FILE out.tif",
-    })
-}
-
-/// The decoder's error in our words.
-pub(crate) fn fault(error: TiffError) -> Fault {
-    match error {
-        TiffError::UnsupportedError(what) => Fault::Unsupported {
-            format: FORMAT,
-            what: what.to_string(),
-            remedy: "convert it, for example with: gdal_translate -co COMPRESS=DEFLATE FILE out.tif",
-        },
-        TiffError::LimitsExceeded => {
-            Fault::broken(FORMAT, "a tag or a block claims more than the file holds")
-        }
-        other => Fault::broken(FORMAT, other.to_string()),
     }
 }

@@ -1,13 +1,15 @@
-//! The internal mask of a TIFF: a second image of 1 or 8 bits whose zeros say "no data here".
+//! The mask of a TIFF: an image of 1 or 8 bits whose zeros say "no data here", within the file or in one of its own
+//! beside it (`.tif.msk`).
 
-use std::io::{Read, Seek};
+use std::io::{Cursor, Read, Seek};
 
-use tiff::decoder::{Decoder, DecodingResult};
+use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 
 use crate::dem::fault::{Fault, MOST_SAMPLES};
 use crate::dem::raster::Samples;
-use crate::dem::tiff_blocks::{FORMAT, Storage, fault};
+use crate::dem::tiff_neutral::neutralised;
+use crate::dem::tiff_storage::{Block, FORMAT, Storage, fault};
 
 /// Images after this many are not looked at.
 pub(crate) const MOST_IMAGES: usize = 64;
@@ -15,24 +17,51 @@ pub(crate) const MOST_IMAGES: usize = 64;
 /// NewSubfileType's bit for "mask of another image".
 pub(crate) const IS_MASK: u32 = 4;
 
+/// Whether there is a mask, within or beside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Found {
+    /// There is one, and it was applied.
+    Mask,
+    /// There is none.
+    Nothing,
+}
+
+/// Makes NaN of what the mask hides that lies in a file of its own; its bytes are `mask`.
+pub(crate) fn apply_beside(
+    mask: &[u8],
+    limits: impl Fn(usize) -> Limits,
+    size: (u32, u32),
+    samples: &mut Samples,
+) -> Result<(), Fault> {
+    let bytes = neutralised(mask);
+    let mut decoder = Decoder::new(Cursor::new(&bytes[..])).map_err(fault)?.with_limits(limits(bytes.len()));
+    let found = decoder.dimensions().map_err(fault)?;
+    if found != size {
+        let reason =
+            format!("the mask beside it has {} x {} samples, not {} x {}", found.0, found.1, size.0, size.1);
+        return Err(Fault::broken(FORMAT, reason));
+    }
+    hide(&mut decoder, bytes.len(), samples)
+}
+
 /// Looks for a mask of the same size among the images after the first and makes NaN of what it hides.
 pub(crate) fn apply<R: Read + Seek>(
     decoder: &mut Decoder<R>,
     size: (u32, u32),
     file_bytes: usize,
     samples: &mut Samples,
-) -> Result<(), Fault> {
+) -> Result<Found, Fault> {
     for _ in 0..MOST_IMAGES {
         // A broken overview or page is no reason to refuse the image before it.
         if !decoder.more_images() || decoder.next_image().is_err() {
-            return Ok(());
+            return Ok(Found::Nothing);
         }
         let kind = decoder.find_tag_unsigned::<u32>(Tag::NewSubfileType).ok().flatten().unwrap_or(0);
         if kind & IS_MASK != 0 && decoder.dimensions().is_ok_and(|found| found == size) {
-            return hide(decoder, file_bytes, samples);
+            return hide(decoder, file_bytes, samples).map(|()| Found::Mask);
         }
     }
-    Ok(())
+    Ok(Found::Nothing)
 }
 
 fn hide<R: Read + Seek>(
@@ -42,10 +71,10 @@ fn hide<R: Read + Seek>(
 ) -> Result<(), Fault> {
     let storage = Storage::of(decoder, file_bytes, MOST_SAMPLES)?;
     check(&storage)?;
-    for (index, column, row) in storage.blocks(decoder) {
-        let block = block(decoder, &storage, index)?;
+    for at in storage.blocks() {
+        let block = block(decoder, &storage, at)?;
         for (x, y) in block.hidden() {
-            samples.clear((row as usize + y) * storage.width as usize + column as usize + x);
+            samples.clear((at.row as usize + y) * storage.width as usize + at.column as usize + x);
         }
     }
     Ok(())
@@ -66,13 +95,12 @@ pub(crate) struct MaskBlock {
     bits: usize,
 }
 
-/// Decodes block `index` of a mask.
+/// Decodes a block of a mask.
 pub(crate) fn block<R: Read + Seek>(
     decoder: &mut Decoder<R>,
     storage: &Storage,
-    index: u32,
+    Block { index, width, height, .. }: Block,
 ) -> Result<MaskBlock, Fault> {
-    let (width, height) = decoder.chunk_data_dimensions(index);
     // What was never written hides what lies under it.
     let bytes = match storage.is_written(index).then(|| decoder.read_chunk(index)) {
         Some(Ok(DecodingResult::U8(bytes))) => bytes,

@@ -25,9 +25,10 @@ use crate::dem::geotiff::{self, Described};
 use crate::dem::raster::{Raster, scaled};
 use crate::dem::read::{Hints, Source};
 use crate::dem::recent::Recent;
-use crate::dem::tiff_blocks::{self, FORMAT, Storage, fault};
+use crate::dem::tiff_blocks;
 use crate::dem::tiff_file::TiffFile;
 use crate::dem::tiff_mask::{self, IS_MASK, MOST_IMAGES};
+use crate::dem::tiff_storage::{Block, FORMAT, Storage, fault};
 use crate::dem::windows::{Window, Windows};
 
 /// The most samples of an image that is read in windows: 262,144 a side. Nothing is allocated for them; it keeps the
@@ -93,6 +94,13 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
         heights.storage.check_samples()?;
         let source = Source { name, bytes: &[], hints };
         let described = geotiff::describe(&mut heights.decoder, &heights.storage, &source)?;
+        if geotiff::mask_beside(&source).is_some() {
+            return Err(Fault::Unsupported {
+                format: FORMAT,
+                what: "a mask in a file beside it (.msk), and is to be read in parts".into(),
+                remedy: "take the mask into it: gdal_translate --config GDAL_TIFF_INTERNAL_MASK YES FILE out.tif",
+            });
+        }
         let (overviews, masks) = images(&file, (described.bare.width, described.bare.height));
         Self::assemble(name, file, described, (overviews, masks), heights, cache_bytes)
     }
@@ -153,26 +161,20 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
         self.blocks.held()
     }
 
-    /// Block `index`, whose first sample is (`column`, `row`), in metres.
-    fn block(&mut self, index: u32, corner: (u32, u32)) -> Result<Arc<[f32]>, Fault> {
+    /// The heights of a block, in metres.
+    fn block(&mut self, at: Block) -> Result<Arc<[f32]>, Fault> {
+        let Block { index, column, row, width, height } = at;
         if let Some(block) = self.blocks.get(index) {
             return Ok(Arc::clone(block));
         }
-        let (width, height) = self.heights.decoder.chunk_data_dimensions(index);
         self.blocks.make_room(width as usize * height as usize * 4);
         let Plane { decoder, storage } = &mut self.heights;
-        let stored = tiff_blocks::block(decoder, storage, self.described.bare.nodata, index)?;
-        let wide = storage.is_wide();
         let Described { bare, scale, offset } = &self.described;
-        let metres = |stored: f64| {
-            // The whole reader keeps narrow samples as f32.
-            let exact = if wide { stored } else { f64::from(stored as f32) };
-            scaled(scaled(exact, *scale, *offset), bare.metres_per_z, 0.0) as f32
-        };
-        let mut heights: Vec<f32> = stored.into_iter().map(metres).collect();
+        let stored = tiff_blocks::block(decoder, storage, bare.nodata, at, self.file.length())?;
+        let metres = |stored: f64| scaled(scaled(stored, *scale, *offset), bare.metres_per_z, 0.0) as f32;
+        let mut heights: Vec<f32> = stored.iter().map(metres).collect();
         if let Some(mask) = &mut self.mask {
-            let window = Window { column: corner.0, row: corner.1, width, height };
-            mask.hide(window, &mut heights)?;
+            mask.hide(Window { column, row, width, height }, &mut heights)?;
         }
         let block: Arc<[f32]> = heights.into();
         self.blocks.put(index, Arc::clone(&block), block.len() * 4);
@@ -189,10 +191,9 @@ impl<R: Read + Seek> Windows for GeoTiffWindows<R> {
         window.assert_within(self.size());
         out.clear();
         out.resize(window.samples(), f32::NAN);
-        for (index, column, row) in self.heights.blocks_meeting(window) {
-            let block = self.block(index, (column, row))?;
-            let (width, height) = self.heights.decoder.chunk_data_dimensions(index);
-            let stored = Window { column, row, width, height };
+        for at in self.heights.blocks_meeting(window) {
+            let block = self.block(at)?;
+            let stored = Window { column: at.column, row: at.row, width: at.width, height: at.height };
             for (from, to) in overlap(stored, window) {
                 out[to].copy_from_slice(&block[from]);
             }
@@ -229,7 +230,7 @@ impl<R: Read + Seek> Plane<R> {
             decoder.next_image().map_err(fault)?;
         }
         let storage = Storage::of(&mut decoder, file.length(), MOST_WINDOWED)?;
-        let (across, down) = decoder.chunk_dimensions();
+        let (across, down) = storage.block_size;
         let (across, down) = (across.clamp(1, storage.width), down.clamp(1, storage.height));
         let samples = u64::from(across) * u64::from(down);
         if samples > MOST_BLOCK_SAMPLES || storage.decoded_bytes(samples) > LARGEST_BLOCK as u64 {
@@ -246,25 +247,23 @@ impl<R: Read + Seek> Plane<R> {
         Ok(Self { decoder, storage })
     }
 
-    /// The blocks that a window meets: index, first column, first row.
-    fn blocks_meeting(&self, window: Window) -> impl Iterator<Item = (u32, u32, u32)> + use<R> {
-        let (across, down) = self.decoder.chunk_dimensions();
-        let (across, down) = (across.max(1), down.max(1));
-        let blocks_across = self.storage.width.div_ceil(across);
+    /// The blocks that a window meets.
+    fn blocks_meeting(&self, window: Window) -> Vec<Block> {
+        let (width, height) = self.storage.block_size;
         let span = |first: u32, count: u32, block: u32| first / block..(first + count).div_ceil(block);
-        let columns = span(window.column, window.width, across);
-        span(window.row, window.height, down).flat_map(move |row| {
-            columns.clone().map(move |column| (row * blocks_across + column, column * across, row * down))
-        })
+        let columns = span(window.column, window.width, width);
+        span(window.row, window.height, height)
+            .flat_map(|down| columns.clone().map(move |across| self.storage.block(across, down)))
+            .collect()
     }
 
     /// Makes NaN of the heights of `window` that this mask hides.
     fn hide(&mut self, window: Window, heights: &mut [f32]) -> Result<(), Fault> {
-        for (index, column, row) in self.blocks_meeting(window) {
-            let block = tiff_mask::block(&mut self.decoder, &self.storage, index)?;
+        for at in self.blocks_meeting(window) {
+            let block = tiff_mask::block(&mut self.decoder, &self.storage, at)?;
             for (x, y) in block.hidden() {
-                let x = (column as usize + x).checked_sub(window.column as usize);
-                let y = (row as usize + y).checked_sub(window.row as usize);
+                let x = (at.column as usize + x).checked_sub(window.column as usize);
+                let y = (at.row as usize + y).checked_sub(window.row as usize);
                 if let (Some(x), Some(y)) = (x, y)
                     && x < window.width as usize
                     && y < window.height as usize

@@ -1,13 +1,10 @@
 //! A raster in whatever system its file used, to one in metres with north up.
 
-use glam::{DVec2, UVec2};
-use rayon::prelude::*;
+use glam::DVec2;
 
-use crate::dem::fault::MOST_SAMPLES;
 use crate::dem::raster::{Raster, Samples, north_up};
-use crate::dem::sample::bilinear_at_grid;
 use crate::dem::valid::{outline, valid_grid};
-use crate::dem::warp_line;
+use crate::dem::warp_frame::{Frame, Way};
 use crate::geom::crs::{Crs, CrsError};
 use crate::geom::rect::Rect;
 
@@ -17,9 +14,6 @@ const UTM_REACH_DEG: f64 = 9.0;
 
 /// UTM ends at 84° north and 80° south.
 const UTM_LATITUDES_DEG: (f64, f64) = (-80.0, 84.0);
-
-/// The output may have this many times the samples of the source: a raster turned by 45° needs 2.
-const GROWTH: u64 = 8;
 
 /// Why a raster cannot be brought to metres.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -70,7 +64,7 @@ pub enum WarpError {
     },
     /// The result would be too large.
     #[error(
-        "brought to {system} the elevation file would need {width} x {height} samples; choose a system that suits its place"
+        "in {system} the elevation file would need {width} x {height} samples; choose a system that suits its place, or larger cells"
     )]
     TooLarge {
         /// The wanted system.
@@ -79,6 +73,14 @@ pub enum WarpError {
         width: u64,
         /// Rows.
         height: u64,
+    },
+    /// Around a pole there is no east and west border to lay a raster in degrees out by.
+    #[error(
+        "the elevation file covers a pole, which a raster in degrees ({system}) cannot; cut it, or choose a polar system, for example EPSG:3413 or EPSG:3031"
+    )]
+    Pole {
+        /// The wanted system.
+        system: String,
     },
     /// A coordinate cannot be brought from one system to the other.
     #[error(transparent)]
@@ -122,7 +124,9 @@ pub fn to_metric(raster: &Raster, target: Option<&Crs>) -> Result<Raster, WarpEr
     let mut metric = if own == system.as_ref() && is_axis_aligned(raster) {
         turned_north_up(raster)
     } else {
-        resampled(raster, own, system.as_ref())?
+        let way = Way::new(raster, own, system.as_ref());
+        let frame = Frame::around(raster, &way, None)?;
+        frame.bilinear(raster, &way)
     };
     metric.samples = metric.samples.scaled(raster.metres_per_z, 0.0);
     metric.metres_per_z = 1.0;
@@ -143,7 +147,8 @@ pub fn check_metric(raster: &Raster) -> Result<(), WarpError> {
     }
 }
 
-fn check_source(raster: &Raster) -> Result<(), WarpError> {
+/// That a raster says where it lies, and in what.
+pub(crate) fn check_source(raster: &Raster) -> Result<(), WarpError> {
     if !raster.georeferenced {
         return Err(WarpError::NoPlace);
     }
@@ -180,13 +185,14 @@ fn zone(raster: &Raster, own: &Crs) -> Result<Crs, WarpError> {
     Ok(utm)
 }
 
-fn is_axis_aligned(raster: &Raster) -> bool {
+/// Whether rows and columns run along the axes of the map.
+pub(crate) fn is_axis_aligned(raster: &Raster) -> bool {
     let axes = raster.map_from_grid.matrix2;
     axes.x_axis.y == 0.0 && axes.y_axis.x == 0.0
 }
 
 /// The raster with columns and rows in the order that puts north up.
-fn turned_north_up(raster: &Raster) -> Raster {
+pub(crate) fn turned_north_up(raster: &Raster) -> Raster {
     let mut turned = raster.clone();
     if raster.is_north_up() {
         return turned;
@@ -212,114 +218,6 @@ fn mirrored<T: Copy>(values: &[T], width: u32, mirror_x: bool, mirror_y: bool) -
         values[row * width + column]
     };
     (0..values.len()).map(at).collect()
-}
-
-/// The way from one system to another; the identity where there is none or they are the same.
-struct Way<'a> {
-    from: Option<&'a Crs>,
-    to: Option<&'a Crs>,
-}
-
-impl Way<'_> {
-    fn forward(&self, at: DVec2) -> Result<DVec2, CrsError> {
-        match (self.from, self.to) {
-            (Some(from), Some(to)) => from.transform(to, at),
-            _ => Ok(at),
-        }
-    }
-
-    fn back(&self, at: DVec2) -> Option<DVec2> {
-        match (self.from, self.to) {
-            (Some(from), Some(to)) => to.transform(from, at).ok(),
-            _ => Some(at),
-        }
-    }
-}
-
-fn resampled(raster: &Raster, from: Option<&Crs>, to: Option<&Crs>) -> Result<Raster, WarpError> {
-    let way = Way { from, to };
-    let frame = Frame::around(raster, &way)?;
-    // Longitudes come back within ±180°; the raster may count them on from there.
-    let turn = from.filter(|from| from.is_geographic()).map(|_| raster.center().x);
-    let grid_of = |at: DVec2| {
-        let mut map = way.back(at)?;
-        if let Some(center) = turn {
-            map.x += 360.0 * ((center - map.x) / 360.0).round();
-        }
-        Some(raster.grid_from_map(map))
-    };
-    let samples = match &raster.samples {
-        Samples::F32(_) => Samples::F32(frame.filled(raster, &grid_of, |value| value as f32)),
-        Samples::F64(_) => Samples::F64(frame.filled(raster, &grid_of, |value| value)),
-    };
-    Ok(Raster {
-        driver: raster.driver,
-        width: frame.size.x,
-        height: frame.size.y,
-        samples,
-        metres_per_z: raster.metres_per_z,
-        map_from_grid: north_up(frame.corner, DVec2::splat(frame.cell)),
-        georeferenced: true,
-        crs: to.cloned(),
-        nodata: raster.nodata,
-        vertical_datum: raster.vertical_datum.clone(),
-    })
-}
-
-/// The lattice of the output.
-struct Frame {
-    /// Outer north-west corner.
-    corner: DVec2,
-    cell: f64,
-    size: UVec2,
-}
-
-impl Frame {
-    fn around(raster: &Raster, way: &Way) -> Result<Self, WarpError> {
-        let valid = valid_grid(raster).ok_or(WarpError::Empty)?;
-        let at = |grid: DVec2| way.forward(raster.map_from_grid.transform_point2(grid));
-        let cell = cell_size(valid.center(), &at)?;
-        let border = outline(valid).map(at).collect::<Result<Vec<_>, _>>()?;
-        let around = Rect::around(border);
-        let (low, high) = ((around.min / cell).floor(), (around.max / cell).ceil());
-        let size = high - low;
-        let [width, height] = [size.x as u64, size.y as u64];
-        let limit = MOST_SAMPLES.min(raster.samples.len() as u64 * GROWTH + 1024);
-        if !cell.is_normal() || width == 0 || height == 0 || width.saturating_mul(height) > limit {
-            let system = way.to.map_or("north up", Crs::name).into();
-            return Err(WarpError::TooLarge { system, width, height });
-        }
-        let corner = DVec2::new(low.x, high.y) * cell;
-        Ok(Self { corner, cell, size: UVec2::new(width as u32, height as u32) })
-    }
-
-    fn filled<T: Send>(
-        &self,
-        raster: &Raster,
-        grid_of: &(impl Fn(DVec2) -> Option<DVec2> + Sync),
-        narrow: impl Fn(f64) -> T + Sync,
-    ) -> Vec<T> {
-        let width = self.size.x as usize;
-        let rows = (0..self.size.y).into_par_iter().map(|row| {
-            let y = self.corner.y - (f64::from(row) + 0.5) * self.cell;
-            let center = |column: usize| DVec2::new(self.corner.x + (column as f64 + 0.5) * self.cell, y);
-            let mut positions = vec![DVec2::NAN; width];
-            warp_line::fill(&mut positions, &|column| grid_of(center(column)));
-            positions
-                .into_iter()
-                .map(|at| narrow(bilinear_at_grid(raster, at).value().unwrap_or(f64::NAN)))
-                .collect::<Vec<T>>()
-        });
-        rows.flatten_iter().collect()
-    }
-}
-
-/// The side of a square as large as one source cell is at `center`.
-fn cell_size(center: DVec2, at: &impl Fn(DVec2) -> Result<DVec2, CrsError>) -> Result<f64, WarpError> {
-    let half = DVec2::splat(0.5);
-    let east = at(center + half * DVec2::X)? - at(center - half * DVec2::X)?;
-    let south = at(center + half * DVec2::Y)? - at(center - half * DVec2::Y)?;
-    Ok(east.perp_dot(south).abs().sqrt())
 }
 
 #[cfg(test)]

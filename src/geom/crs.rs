@@ -14,7 +14,9 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use crate::geom::projection::Definition;
+use crate::geom::datum_shift::DatumShift;
+use crate::geom::proj_words;
+use crate::geom::projection::{Definition, Ellipsoid};
 use crate::geom::wkt;
 
 /// The longest text that is looked at: real WKT is a tenth of it.
@@ -33,6 +35,8 @@ pub struct Crs {
 struct Inner {
     name: String,
     epsg: Option<u32>,
+    /// The proj string that it was made from; empty where it has no place on Earth.
+    text: String,
     proj: proj4rs::Proj,
     datum: Datum,
 }
@@ -165,6 +169,7 @@ impl Crs {
         if !text.is_ascii() {
             return Err(refused("a proj string is plain ASCII"));
         }
+        let stated = text.to_owned();
         let (text, datum) = settle_datum(text);
         let proj = proj4rs::Proj::from_proj_string(&text).map_err(|error| refused(&error.to_string()))?;
         if proj.is_geocent() {
@@ -179,7 +184,7 @@ impl Crs {
             Datum::Adrift(_) => return Self::build(name, epsg, &format!("{text} +towgs84=0,0,0")),
             Datum::Tied => Datum::Tied,
         };
-        Ok(Self { inner: Arc::new(Inner { name, epsg, proj, datum }) })
+        Ok(Self { inner: Arc::new(Inner { name, epsg, text: stated, proj, datum }) })
     }
 
     /// WGS 84 longitude and latitude, EPSG:4326.
@@ -192,7 +197,15 @@ impl Crs {
     pub fn local() -> Self {
         let proj = Self::utm_at(0.0, 0.0).inner.proj.clone();
         let datum = Datum::Adrift("no place on Earth".into());
-        Self { inner: Arc::new(Inner { name: "local metres".into(), epsg: None, proj, datum }) }
+        Self {
+            inner: Arc::new(Inner {
+                name: "local metres".into(),
+                epsg: None,
+                text: String::new(),
+                proj,
+                datum,
+            }),
+        }
     }
 
     /// The UTM zone on WGS 84 that holds a longitude and latitude in degrees (the plain six-degree zones).
@@ -230,6 +243,46 @@ impl Crs {
     /// Semi-major and semi-minor axis of its ellipsoid in metres.
     pub fn ellipsoid(&self) -> (f64, f64) {
         self.inner.proj.ellipse_parameters()
+    }
+
+    /// Its parameters; `None` where it has no place on Earth, or where its projection is none that
+    /// [`Definition`] can express.
+    pub fn definition(&self) -> Option<Definition> {
+        let (major_m, minor_m) = self.ellipsoid();
+        // The nine decimals that ellipsoids are defined with come out of the axes with noise behind them.
+        let rounded = |value: f64| (value * 1e9).round() / 1e9;
+        let inverse_flattening =
+            if major_m == minor_m { 0.0 } else { rounded(major_m / (major_m - minor_m)) };
+        let ellipsoid = Ellipsoid { major_m, inverse_flattening };
+        let meridian_deg = self.inner.proj.from_greenwich().to_degrees();
+        let mut definition = proj_words::definition(&self.inner.text, ellipsoid, meridian_deg)?;
+        definition.name = self.name().into();
+        definition.metres_per_unit = self.metres_per_unit();
+        Some(definition)
+    }
+
+    /// The proj string that says the same; empty for [`Crs::local`].
+    pub fn proj_text(&self) -> &str {
+        &self.inner.text
+    }
+
+    /// What [`Crs::transform`] to `to` does to move positions from one datum to the other.
+    ///
+    /// # Errors
+    /// [`CrsError::Datum`] where the shift is not known.
+    ///
+    /// ```
+    /// use sandtable::geom::crs::Crs;
+    /// let british = Crs::from_epsg(27700).unwrap();
+    /// let shift = british.datum_shift_to(&Crs::wgs84()).unwrap();
+    /// assert!(shift.to_string().starts_with("towgs84 446.448,-125.157,542.06"));
+    /// ```
+    pub fn datum_shift_to(&self, to: &Self) -> Result<DatumShift, CrsError> {
+        self.check_datum(to)?;
+        if self == to || (self.inner.datum == to.inner.datum && self.inner.datum != Datum::Tied) {
+            return Ok(DatumShift::NotNeeded);
+        }
+        Ok(DatumShift::between(&self.inner.text, &to.inner.text))
     }
 
     /// Brings `at` from this system to `to`.

@@ -2,8 +2,11 @@
 
 pub mod crs;
 pub mod geodesic;
+pub mod datum_shift;
 pub mod polygon;
 pub mod polyline;
+pub mod proj_words;
 pub mod projection;
 pub mod rect;
 pub mod wkt;
+pub mod wkt_text;

@@ -11,6 +11,8 @@ mod fields;
 #[allow(dead_code, reason = "each bench uses its own part")]
 #[path = "common/peers.rs"]
 mod peers;
+#[path = "heights/reading.rs"]
+mod reading;
 #[allow(dead_code, reason = "each bench uses its own part")]
 #[path = "common/rounds.rs"]
 mod rounds;
@@ -21,7 +23,7 @@ mod service;
 /// A section's name and what prints it.
 type Section = (&'static str, fn());
 
-const SECTIONS: &[Section] = &[("service", service::print)];
+const SECTIONS: &[Section] = &[("service", service::print), ("reading", reading::print)];
 
 fn main() {
     rounds::sections(SECTIONS);
