@@ -15,10 +15,13 @@ mod peers;
 #[path = "common/rounds.rs"]
 mod rounds;
 
+#[path = "heights/queries.rs"]
+mod queries;
+
 /// A section's name and what prints it.
 type Section = (&'static str, fn());
 
-const SECTIONS: &[Section] = &[];
+const SECTIONS: &[Section] = &[("queries", queries::print)];
 
 fn main() {
     rounds::sections(SECTIONS);
