@@ -20,6 +20,8 @@
 //! Only the instructions that every x86-64 has are used (SSE2): choosing wider ones while running needs `unsafe` calls,
 //! which this crate forbids. Rounding down is therefore done by adding and taking away a large number.
 
+use std::array::TryFromSliceError;
+
 use glam::{DMat2, DVec2};
 use rayon::prelude::*;
 
@@ -118,10 +120,9 @@ pub fn bilinear_ground(
     for ((at, heights_m), statuses) in
         at.chunks(CHUNK).zip(heights_m.chunks_mut(CHUNK)).zip(statuses.chunks_mut(CHUNK))
     {
-        if let Ok(at) = <&[DVec2; CHUNK]>::try_from(at) {
-            let positions = bytemuck::cast_slice::<DVec2, f64>(at);
-            axes[0].place(&positions[..2 * CHUNK - 1], &mut places.column, &mut places.x);
-            axes[1].place(&positions[1..], &mut places.row, &mut places.y);
+        if let (Ok(at), Ok(heights_m)) = whole_chunk(at, heights_m) {
+            axes[0].place::<0>(at, &mut places.column, &mut places.x);
+            axes[1].place::<1>(at, &mut places.row, &mut places.y);
             let is_scattered = places.are_scattered();
             scattered += CHUNK * usize::from(is_scattered);
             match tiles.filter(|_| is_scattered) {
@@ -163,8 +164,8 @@ fn bilinear_samples<S: Copy + Default + Into<f64>>(
     for ((at, heights_m), statuses) in
         at.chunks(CHUNK).zip(heights_m.chunks_mut(CHUNK)).zip(statuses.chunks_mut(CHUNK))
     {
-        match <&[DVec2; CHUNK]>::try_from(at) {
-            Ok(at) if has_cells => {
+        match whole_chunk(at, heights_m) {
+            (Ok(at), Ok(heights_m)) if has_cells => {
                 place_between_samples(raster, grid_from_map, at, &mut places);
                 gather(samples, raster.width, &places, &mut corners);
                 mix_by_weights(&places, &corners, raster.metres_per_z, heights_m);
@@ -173,6 +174,15 @@ fn bilinear_samples<S: Copy + Default + Into<f64>>(
         }
         mend(at, heights_m, statuses, |at| raster_height(raster, Interpolation::Bilinear, at).parts());
     }
+}
+
+/// Slices as arrays, whose length the compiler knows; the last chunk of a batch may be shorter.
+type Chunk<'a> =
+    (Result<&'a [DVec2; CHUNK], TryFromSliceError>, Result<&'a mut [f64; CHUNK], TryFromSliceError>);
+
+#[inline(always)]
+fn whole_chunk<'a>(at: &'a [DVec2], heights_m: &'a mut [f64]) -> Chunk<'a> {
+    (at.try_into(), heights_m.try_into())
 }
 
 /// One axis of a lattice.
@@ -195,11 +205,16 @@ impl Axis {
         }
     }
 
-    /// The cell of each position on this axis and the part of it, by the steps of [`Lattice::cell_at`]; `positions` holds
-    /// every other number.
-    fn place(&self, positions: &[f64], cell: &mut [f64; CHUNK], part: &mut [f64; CHUNK]) {
-        for index in 0..CHUNK {
-            let grid = (positions[2 * index] - self.origin) / self.cell - self.skipped;
+    /// The cell of each position on this axis, 0 or 1, and the part of it, by the steps of [`Lattice::cell_at`].
+    #[inline(always)]
+    fn place<const AXIS: usize>(
+        &self,
+        at: &[DVec2; CHUNK],
+        cell: &mut [f64; CHUNK],
+        part: &mut [f64; CHUNK],
+    ) {
+        for (index, at) in at.iter().enumerate() {
+            let grid = (at.to_array()[AXIS] - self.origin) / self.cell - self.skipped;
             let held = held_within(grid, self.last);
             let floor = rounded_down(held);
             let corner = if floor < self.last - 1.0 { floor } else { self.last - 1.0 };
@@ -221,8 +236,8 @@ fn place_between_samples(raster: &Raster, grid_from_map: DMat2, at: &[DVec2; CHU
         let part = from_first - first;
         (first, if part > ON_CENTRE && part < 1.0 - ON_CENTRE { part } else { f64::NAN })
     };
-    for index in 0..CHUNK {
-        let grid = grid_from_map * (at[index] - translation);
+    for (index, &at) in at.iter().enumerate() {
+        let grid = grid_from_map * (at - translation);
         (places.column[index], places.x[index]) = part_of(grid.x, last[0]);
         (places.row[index], places.y[index]) = part_of(grid.y, last[1]);
     }
@@ -280,8 +295,8 @@ fn gather_tiles(tiles: &Tiles, places: &Places, corners: &mut Corners<f32>) {
 }
 
 /// The formula of [`crate::terrain::query::cell::bilinear`].
-fn mix(places: &Places, corners: &Corners<f32>, heights_m: &mut [f64]) {
-    for (index, height_m) in heights_m.iter_mut().enumerate().take(CHUNK) {
+fn mix(places: &Places, corners: &Corners<f32>, heights_m: &mut [f64; CHUNK]) {
+    for (index, height_m) in heights_m.iter_mut().enumerate() {
         let [[sw, se], [nw, ne]] = [corners.first[index].map(f64::from), corners.next[index].map(f64::from)];
         let (south, north) = (sw + (se - sw) * places.x[index], nw + (ne - nw) * places.x[index]);
         *height_m = south + (north - south) * places.y[index];
@@ -293,9 +308,9 @@ fn mix_by_weights<S: Copy + Into<f64>>(
     places: &Places,
     corners: &Corners<S>,
     metres_per_z: f64,
-    heights_m: &mut [f64],
+    heights_m: &mut [f64; CHUNK],
 ) {
-    for (index, height_m) in heights_m.iter_mut().enumerate().take(CHUNK) {
+    for (index, height_m) in heights_m.iter_mut().enumerate() {
         let (across, down) = (places.x[index], places.y[index]);
         let weights =
             [(1.0 - across) * (1.0 - down), across * (1.0 - down), (1.0 - across) * down, across * down];

@@ -26,6 +26,9 @@ pub struct OtherPosts;
 ///
 /// # Errors
 /// [`OtherPosts`], where origin, cell or size differ.
+///
+/// # Panics
+/// Where the region is one of a larger lattice.
 pub fn moved(before: &Lattice, after: &Lattice, region: &Region) -> Result<Moved, OtherPosts> {
     let frame = |lattice: &Lattice| {
         (lattice.origin(), lattice.cell(), lattice.first(), lattice.columns(), lattice.rows())

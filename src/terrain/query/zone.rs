@@ -54,7 +54,10 @@ impl Default for Sums {
     }
 }
 
-/// The planar ground within `region`, which must be one of this lattice.
+/// The planar ground within `region`.
+///
+/// # Panics
+/// Where the region is one of a larger lattice.
 pub fn zone(lattice: &Lattice, region: &Region) -> Zone {
     // Counted from a height nearby, squares keep their digits.
     let reference = lattice.heights().iter().copied().find(|height| !height.is_nan()).map_or(0.0, f64::from);
@@ -85,6 +88,9 @@ pub fn zone(lattice: &Lattice, region: &Region) -> Zone {
 
 /// What must be moved to bring the ground within `region` to `level_m`: cut from above it, filled below it. Ground without
 /// data counts as level.
+///
+/// # Panics
+/// Where the region is one of a larger lattice.
 pub fn volumes_to_level(lattice: &Lattice, region: &Region, level_m: f64) -> Volumes {
     let bands = region.fold(|volumes: &mut Volumes, piece| {
         let corners = lattice.corner_heights(piece.cell).map(|height| level_m - f64::from(height));

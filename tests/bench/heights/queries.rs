@@ -76,7 +76,7 @@ fn compare(field: &Field, what: &'static str, at: &[DVec2], peer: Option<&mut Pe
             &mut || rate(|| out.borrow_mut().apart(&fresh(&cold), Surface::Ground, at)),
             &mut || rate(|| out.borrow_mut().answers(&warm, at)),
             &mut || rate(|| out.borrow_mut().apart(&cold, Surface::Source, at)),
-            &mut || rate(|| drop(black_box(out.borrow_mut().plain(cold.lattice(), at)))),
+            &mut || rate(|| _ = black_box(out.borrow_mut().plain(cold.lattice(), at))),
             &mut || rate(|| out.borrow_mut().reads(cold.lattice(), &indices)),
             &mut || ask("numba"),
             &mut || ask("scipy"),
