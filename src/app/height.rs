@@ -24,8 +24,8 @@ use crate::terrain::query::{Answer, Surface};
 pub struct HeightOptions {
     /// The elevation file or scene
     pub file: PathBuf,
-    /// Points, each X,Y
-    #[arg(long, value_name = "X,Y", num_args = 1.., allow_hyphen_values = true, required_unless_present = "points")]
+    /// A point; may be given several times
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, required_unless_present = "points")]
     pub at: Vec<Position>,
     /// A CSV file of x,y, with or without a header; - reads standard input
     #[arg(long, value_name = "CSV", conflicts_with = "at")]

@@ -116,7 +116,11 @@ fn points_that_are_no_text_are_refused() {
 #[test]
 fn points_of_the_command_line_are_answered_like_those_of_a_file() {
     let scratch = grid();
-    let out = run_in(scratch.folder(), &["height", "grid.asc", "--at", "35,25", "-400, 1e3", "15,15"]).ok();
+    let out = run_in(
+        scratch.folder(),
+        &["height", "grid.asc", "--at", "35,25", "--at", "-400, 1e3", "--at", "15,15"],
+    )
+    .ok();
     assert_eq!(out, "x,y,height,status\n35,25,40,Ok\n-400,1e3,,Outside\n15,15,,NoData\n");
     for wrong in [&["--at", "35"][..], &["--at", "35,NaN"], &["--at", "35,25", "--points", "-"], &[]] {
         run_in(scratch.folder(), &[&["height", "grid.asc"], wrong].concat()).failed(2);
@@ -126,7 +130,7 @@ fn points_of_the_command_line_are_answered_like_those_of_a_file() {
 #[test]
 fn json_holds_what_csv_holds() {
     let scratch = grid();
-    let arguments = ["height", "grid.asc", "--json", "--at", "27.5,22.5", "15,15", "-400,1000"];
+    let arguments = ["height", "grid.asc", "--json", "--at=27.5,22.5", "--at=15,15", "--at=-400,1000"];
     let text = run_in(scratch.folder(), &arguments).ok();
     let found: Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(

@@ -36,7 +36,7 @@ pub fn raster_height(raster: &Raster, interpolation: Interpolation, at: DVec2) -
 /// A raster that names no system lies in `from`. A position that cannot be brought to the raster's system lies
 /// [`Answer::Outside`].
 pub fn source_height(source: &Raster, from: &Crs, interpolation: Interpolation, at: DVec2) -> Answer {
-    raster_height(source, interpolation, source_position(source, from, at))
+    raster_height(source, interpolation, Way::new(source, from).position(at))
 }
 
 /// [`source_height`] at many positions, in order, spread over all threads.
@@ -61,31 +61,62 @@ pub(in crate::terrain::query) fn source_task(
     at: &[DVec2],
     (heights_m, statuses): (&mut [f64], &mut [Status]),
 ) {
+    let way = Way::new(source, from);
     if interpolation != Interpolation::Bilinear {
         for ((&at, height_m), status) in at.iter().zip(heights_m).zip(statuses) {
-            (*height_m, *status) = source_height(source, from, interpolation, at).parts();
+            (*height_m, *status) = raster_height(source, interpolation, way.position(at)).parts();
         }
-    } else if source.crs.as_ref().is_none_or(|own| own == from && !own.is_geographic()) {
+    } else if way.is_straight() {
         batch::bilinear_raster(source, at, (heights_m, statuses));
     } else {
         let mut brought = [DVec2::NAN; BROUGHT];
         let outs = heights_m.chunks_mut(BROUGHT).zip(statuses.chunks_mut(BROUGHT));
         for (at, outs) in at.chunks(BROUGHT).zip(outs) {
             let brought = &mut brought[..at.len()];
-            brought.iter_mut().zip(at).for_each(|(to, &at)| *to = source_position(source, from, at));
+            brought.iter_mut().zip(at).for_each(|(to, &at)| *to = way.position(at));
             batch::bilinear_raster(source, brought, outs);
         }
     }
 }
 
-/// A position of `from` in the raster's own coordinates; NaN where it cannot be brought there.
-fn source_position(source: &Raster, from: &Crs, at: DVec2) -> DVec2 {
-    let Some(own) = &source.crs else { return at };
-    match from.transform(own, at) {
-        // Longitudes come back within ±180°; a raster across the date line counts them on from there.
-        Ok(at) if own.is_geographic() => at + DVec2::X * whole_turns(source.center().x - at.x),
-        Ok(at) => at,
-        Err(_) => DVec2::NAN,
+/// The way from one system's positions to a raster's own.
+struct Way<'a> {
+    from: &'a Crs,
+    /// The raster's system, where it is another.
+    to: Option<&'a Crs>,
+    /// West and east of a raster in degrees.
+    degrees: Option<(f64, f64)>,
+}
+
+impl<'a> Way<'a> {
+    fn new(source: &'a Raster, from: &'a Crs) -> Self {
+        let own = source.crs.as_ref();
+        let degrees = own.filter(|own| own.is_geographic()).map(|_| source.extent());
+        Self {
+            from,
+            to: own.filter(|&own| own != from),
+            degrees: degrees.map(|extent| (extent.min.x, extent.max.x)),
+        }
+    }
+
+    /// Whether every position stays as it is.
+    fn is_straight(&self) -> bool {
+        self.to.is_none() && self.degrees.is_none()
+    }
+
+    /// A position in the raster's own coordinates; NaN where it cannot be brought there.
+    fn position(&self, at: DVec2) -> DVec2 {
+        let at = match self.to {
+            Some(to) => self.from.transform(to, at).unwrap_or(DVec2::NAN),
+            None => at,
+        };
+        match self.degrees {
+            // A raster across the date line counts longitudes on from 180°; who asks may begin again at −180°.
+            Some((west, east)) if !(west..=east).contains(&at.x) => {
+                at + DVec2::X * whole_turns((west + east) / 2.0 - at.x)
+            }
+            _ => at,
+        }
     }
 }
 
