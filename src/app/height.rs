@@ -18,7 +18,7 @@ use crate::terrain::query::{Answer, Surface};
 /// `height`.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Heights are metres, whatever unit the file has. A point without one has a status that says why: \
+    after_help = "Heights are metres, whatever unit the file has. A point without one has a status that says why:\n\
                         NoData where the model has a hole, Outside beyond it."
 )]
 pub struct HeightOptions {
