@@ -1,6 +1,6 @@
 //! Many bilinear heights at once, to the last bit what single questions answer, several times as fast.
 //!
-//! Positions go through in chunks of [`CHUNK`], each in three passes over arrays on the stack, so that the compiler makes
+//! Positions go through in chunks of 128, each in three passes over arrays on the stack, so that the compiler makes
 //! vector code of the first and the last, and nothing but reads is left in the second, where many cache misses are then
 //! under way at once:
 //!
