@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::app::convert::ConvertOptions;
 use crate::app::grid::GridOptions;
+use crate::app::height::HeightOptions;
 use crate::app::lod::choice::Wanted;
 use crate::app::lod::method::{Emit, Refine, Rule};
 use crate::app::lod::way::Way;
@@ -45,7 +46,7 @@ pub enum Command {
         #[command(subcommand)]
         command: ModelCommand,
     },
-    /// Ask an elevation file for heights at points
+    /// Ask an elevation file or a scene for heights at points
     Height(HeightOptions),
     /// The ground along a line, as a chart or a table
     Profile(ProfileOptions),
@@ -152,22 +153,6 @@ pub struct GreyHeights {
     /// Height in metres of grey value 0 of a PNG [default: 0]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub height_offset: Option<f64>,
-}
-
-/// `height`.
-#[derive(Debug, Args)]
-pub struct HeightOptions {
-    /// The elevation file
-    pub file: PathBuf,
-    /// A CSV file of x,y in the file's coordinates, with or without a header; - reads standard input
-    #[arg(long, value_name = "CSV")]
-    pub points: PathBuf,
-    /// How heights between posts are found
-    #[arg(long, value_enum, default_value_t)]
-    pub interpolation: InterpolationChoice,
-    /// What grey values mean.
-    #[command(flatten)]
-    pub heights: GreyHeights,
 }
 
 /// `mesh`.

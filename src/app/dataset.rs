@@ -14,12 +14,10 @@ use crate::app::dem::read_raster;
 use crate::app::failure::Failure;
 use crate::app::{ground, load};
 use crate::dem::raster::Raster;
-use crate::geom::crs::Crs;
-use crate::terrain::query::service::{HeightService, source_height};
+use crate::geom::crs::{Crs, CrsError};
+use crate::terrain::query::service::HeightService;
+use crate::terrain::query::source::source_heights;
 use crate::terrain::query::{Answer, Interpolation, Surface};
-
-/// Positions per task of a batch.
-const CHUNK: usize = 4096;
 
 /// An elevation file, or a scene.
 pub struct Dataset {
@@ -85,10 +83,12 @@ impl Dataset {
 
     /// The heights at positions in coordinates of `from`, in order.
     ///
-    /// A position that cannot be brought to the surface's system lies [`Answer::Outside`].
+    /// The source of a file that names no system is taken to lie in `from`. A position that cannot be brought to the
+    /// surface's system lies [`Answer::Outside`].
     ///
     /// # Errors
-    /// As for [`Dataset::service`], where a surface other than the source is asked for.
+    /// The shift between the two datums is not known. As for [`Dataset::service`], where a surface other than the source is
+    /// asked for.
     ///
     /// # Panics
     /// Where `out` is not as long as `at`.
@@ -102,16 +102,30 @@ impl Dataset {
     ) -> Result<(), Failure> {
         assert_eq!(at.len(), out.len(), "one answer per position");
         if surface == Surface::Source {
-            let raster = self.source();
-            each(at, out, |at| source_height(&raster, from, interpolation, at));
+            let source = self.source();
+            let to = source.crs.as_ref().unwrap_or(from);
+            self.check_way(from, to)?;
+            source_heights(&source, from, interpolation, at, out);
             return Ok(());
         }
         let epoch = self.service()?.now();
-        each(at, out, |at| {
-            from.transform(epoch.crs(), at)
-                .map_or(Answer::Outside, |at| epoch.height(surface, interpolation, at))
-        });
+        if from == epoch.crs() {
+            epoch.heights(surface, interpolation, at, out);
+            return Ok(());
+        }
+        self.check_way(from, epoch.crs())?;
+        let brought = |&at: &DVec2| from.transform(epoch.crs(), at).unwrap_or(DVec2::NAN);
+        let brought: Vec<DVec2> = at.par_iter().map(brought).collect();
+        epoch.heights(surface, interpolation, &brought, out);
         Ok(())
+    }
+
+    /// Whether anything can be brought from one system to the other at all: what cannot is not merely outside.
+    fn check_way(&self, from: &Crs, to: &Crs) -> Result<(), Failure> {
+        match from.transform(to, DVec2::ZERO) {
+            Err(error @ CrsError::Datum { .. }) => Err(Failure::input(format!("{}: {error}", self.name))),
+            _ => Ok(()),
+        }
     }
 
     /// The raster as read.
@@ -121,12 +135,4 @@ impl Dataset {
             Kind::Scene(service) => Arc::clone(service.now().source()),
         }
     }
-}
-
-fn each(at: &[DVec2], out: &mut [Answer], answer: impl Fn(DVec2) -> Answer + Sync) {
-    at.par_chunks(CHUNK).zip(out.par_chunks_mut(CHUNK)).for_each(|(at, out)| {
-        for (&at, out) in at.iter().zip(out) {
-            *out = answer(at);
-        }
-    });
 }

@@ -14,7 +14,7 @@ const BORDER: f64 = 1e-6;
 
 /// A position nearer than this, in samples, to a row or column of centres lies on it: rounding in map
 /// coordinates must not give a neighbour, or a hole beside it, a say in an exact value.
-const ON_CENTRE: f64 = 1e-7;
+pub(crate) const ON_CENTRE: f64 = 1e-7;
 
 /// What a raster says of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]

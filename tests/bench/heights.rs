@@ -19,11 +19,13 @@ mod rounds;
 
 #[path = "heights/service.rs"]
 mod service;
+#[path = "heights/queries.rs"]
+mod queries;
 
 /// A section's name and what prints it.
 type Section = (&'static str, fn());
 
-const SECTIONS: &[Section] = &[("service", service::print), ("reading", reading::print)];
+const SECTIONS: &[Section] = &[("service", service::print), ("reading", reading::print), ("queries", queries::print)];
 
 fn main() {
     rounds::sections(SECTIONS);

@@ -1,26 +1,67 @@
-//! The height query service: one contract for the library, the command line and every room above.
+//! The height contract: what a question about heights means, for the library, the command line and the service alike.
 //!
-//! A question names a surface, an interpolation and a map position; the answer is a height or the reason why
-//! there is none. Within a cell, with the position `(x, y)` in 0..=1 from its south-west corner and the corner
+//! A question names a [`Surface`], an [`Interpolation`] and a map position; the answer is a height **in metres**,
+//! without vertical exaggeration, or the reason why there is none ([`Answer`], or a number and a [`Status`] side by
+//! side). A hole is never answered by a bare number.
+//!
+//! **Surfaces.**
+//!
+//! | surface | what it is | its grid |
+//! |---|---|---|
+//! | source | the raster as read; vertical units other than metres are converted in the answer | the raster's own, rotated ones too |
+//! | ground | the lattice in metres after earthworks: what is measured, built on and exported | posts, north up |
+//! | displayed | the triangles drawn now, whichever the camera and the level of detail | the drawn triangles |
+//! | scene | the higher of the ground and the decks over it ([`deck::Deck`]): what one stands on | the ground's, and the decks' triangles |
+//!
+//! Source and ground never depend on what is drawn; displayed is always planar, whatever the interpolation.
+//!
+//! **Interpolations.** Within a cell, with the position `(x, y)` in 0..=1 from its south-west corner and the corner
 //! heights `sw, se, nw, ne`:
+//!
+//! ```text
+//!  nw ─────── ne
+//!  │           │      x east, y north; the diagonal of the cell north-east of post (column, row)
+//!  │ (x, y)    │      joins the corners whose coordinates are both even or both odd
+//!  sw ─────── se
+//! ```
 //!
 //! | interpolation | formula | continuity | no-data corners |
 //! |---|---|---|---|
-//! | planar | the plane of the finest bintree triangle that holds the point | continuous | no answer where the triangle has one |
-//! | bilinear | `(1−x)(1−y)·sw + x(1−y)·se + (1−x)y·nw + xy·ne`, as GDAL | continuous | left out, weights renormalised |
-//! | nearest | the corner nearest to the point: a constant round each post | steps | no answer |
-//! | distance-weighted | `Σ hᵢ/dᵢ ÷ Σ 1/dᵢ` over the four corners, `d` in metres | continuous within a cell | left out, weights renormalised |
+//! | planar | rising diagonal, `x ≥ y`: `(1−x)·sw + (x−y)·se + y·ne`, and likewise on the other three triangles | continuous, bends at edges and diagonals | no answer where the triangle has one that counts |
+//! | bilinear | `s + (n − s)·y` with `s = sw + (se − sw)·x`, `n = nw + (ne − nw)·x`; the source's as GDAL, [`crate::dem::sample`] | continuous, bends at cell edges | left out, weights renormalised |
+//! | nearest | the post nearest to the point: a constant cell round each post | steps halfway between posts | no answer |
+//! | distance-weighted | `Σ hᵢ/dᵢ ÷ Σ 1/dᵢ` over the four corners, `d` in metres; at a corner, its height | continuous within a cell, steps across its edges | left out, weights renormalised |
 //!
-//! A query costs one look-up of a cell and its corners, whatever the size of the model; a batch is spread over
-//! all threads and allocates nothing per point.
+//! All four answer a post's own height at the post, and none overshoots: an answer lies between the lowest and the
+//! highest corner that counts, but for rounding.
+//!
+//! **Where the model ends.** The ground, and the source's planar and distance-weighted surfaces, end at the outer posts,
+//! which belong to them. The source's nearest and bilinear reach half a sample further, to the outer edge of the outer
+//! samples, as GDAL counts pixels. Beyond, the answer is [`Answer::Outside`]; so it is for a position that is not
+//! finite, or that cannot be brought to the surface's coordinate system.
+//!
+//! **Cost.** A query is one look-up of a cell and its corners, whatever the size of the model; a batch is spread over
+//! all threads, allocates nothing per point and answers to the last bit what single questions answer ([`batch`]). Edits
+//! come as whole epochs ([`service`]).
+//!
+//! Beside heights: how the surface lies at a point ([`gradient`]), what lies within a polygon ([`zone`]), and what was
+//! cut and filled between two epochs ([`change`]).
 
+pub mod batch;
+pub mod cell;
+pub mod change;
+pub mod deck;
+pub mod gradient;
+pub mod pieces;
 pub mod service;
+pub mod source;
+pub mod tiles;
+pub mod zone;
 
 use glam::DVec2;
 
-use crate::dem::raster::Raster;
-use crate::dem::sample::{self, Sampled};
 use crate::terrain::lattice::Lattice;
+use crate::terrain::query::cell::interpolate;
 
 /// Which surface a height is asked of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +72,7 @@ pub enum Surface {
     Ground,
     /// The triangles drawn now; always planar, whatever the interpolation.
     Displayed,
-    /// The ground, and the decks over it where there are any: what one stands on.
+    /// The higher of the ground and the decks over it: what one stands on.
     Scene,
 }
 
@@ -60,6 +101,39 @@ pub enum Answer {
     Outside,
 }
 
+/// Why an answer is a height or none, beside a height in a slice of its own.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Status {
+    /// The height holds.
+    #[default]
+    Ok,
+    /// The position lies on the model, where it holds no data; the height is NaN.
+    NoData,
+    /// The position lies outside the model; the height is NaN.
+    Outside,
+}
+
+impl Status {
+    /// `Ok`, `NoData` or `Outside`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ok => "Ok",
+            Self::NoData => "NoData",
+            Self::Outside => "Outside",
+        }
+    }
+
+    /// The answer that this status and a height side by side stand for.
+    pub fn with_height(self, height_m: f64) -> Answer {
+        match self {
+            Self::Ok => Answer::Height(height_m),
+            Self::NoData => Answer::NoData,
+            Self::Outside => Answer::Outside,
+        }
+    }
+}
+
 impl Answer {
     /// The height in metres, where there is one.
     pub fn height_m(self) -> Option<f64> {
@@ -71,11 +145,21 @@ impl Answer {
 
     /// `Ok`, `NoData` or `Outside`.
     pub fn status(self) -> &'static str {
+        self.kind().name()
+    }
+
+    /// The status alone.
+    pub fn kind(self) -> Status {
         match self {
-            Self::Height(_) => "Ok",
-            Self::NoData => "NoData",
-            Self::Outside => "Outside",
+            Self::Height(_) => Status::Ok,
+            Self::NoData => Status::NoData,
+            Self::Outside => Status::Outside,
         }
+    }
+
+    /// The height in metres, NaN where there is none, and the status beside it.
+    pub fn parts(self) -> (f64, Status) {
+        (self.height_m().unwrap_or(f64::NAN), self.kind())
     }
 }
 
@@ -87,42 +171,6 @@ pub fn ground_height(lattice: &Lattice, interpolation: Interpolation, at: DVec2)
     let corners = lattice.corner_heights(cell).map(f64::from);
     let diagonal = Diagonal::of_cell(u64::from(cell.column), u64::from(cell.row));
     interpolate(interpolation, corners, part, diagonal, lattice.cell())
-}
-
-/// The height of a raster at a position in its own coordinates.
-///
-/// Nearest and bilinear reach half a sample beyond the outer samples, as GDAL counts pixels; planar and
-/// distance-weighted end at the outer samples.
-pub fn raster_height(raster: &Raster, interpolation: Interpolation, at: DVec2) -> Answer {
-    let answer = |sampled: Sampled| match sampled {
-        Sampled::Ok(height) => Answer::Height(height),
-        Sampled::NoData => Answer::NoData,
-        Sampled::Outside => Answer::Outside,
-    };
-    match interpolation {
-        Interpolation::Nearest => answer(sample::nearest(raster, at)),
-        Interpolation::Bilinear => answer(sample::bilinear(raster, at)),
-        Interpolation::Planar | Interpolation::DistanceWeighted4 => {
-            between_samples(raster, interpolation, at)
-        }
-    }
-}
-
-/// Planar and distance-weighted heights of a raster, on the grid of its sample centres.
-fn between_samples(raster: &Raster, interpolation: Interpolation, at: DVec2) -> Answer {
-    let grid = raster.grid_from_map(at) - 0.5;
-    let last = DVec2::new(f64::from(raster.width) - 1.0, f64::from(raster.height) - 1.0);
-    if !(grid.cmpge(DVec2::ZERO).all() && grid.cmple(last).all()) || last.min_element() < 1.0 {
-        return Answer::Outside;
-    }
-    let first = grid.floor().min(last - 1.0);
-    let (column, row) = (first.x as u32, first.y as u32);
-    let corners = [(0, 1), (1, 1), (0, 0), (1, 0)].map(|(x, y)| raster.at(column + x, row + y));
-    let part = DVec2::new(grid.x - first.x, 1.0 - (grid.y - first.y));
-    let from_south = u64::from(raster.height) - 2 - u64::from(row);
-    let matrix = raster.map_from_grid.matrix2;
-    let cell = DVec2::new(matrix.x_axis.length(), matrix.y_axis.length());
-    interpolate(interpolation, corners, part, Diagonal::of_cell(u64::from(column), from_south), cell)
 }
 
 /// Which corners of a cell its diagonal joins.
@@ -139,57 +187,6 @@ impl Diagonal {
     /// are both even or both odd.
     pub fn of_cell(column: u64, row: u64) -> Self {
         if column % 2 == row % 2 { Self::Rising } else { Self::Falling }
-    }
-}
-
-fn interpolate(
-    interpolation: Interpolation,
-    corners: [f64; 4],
-    part: DVec2,
-    diagonal: Diagonal,
-    cell: DVec2,
-) -> Answer {
-    let weights = match interpolation {
-        Interpolation::Planar => planar_weights(part, diagonal),
-        Interpolation::Bilinear => bilinear_weights(part),
-        Interpolation::Nearest => bilinear_weights((part + 0.5).floor()),
-        Interpolation::DistanceWeighted4 => inverse_distance_weights(part, cell),
-    };
-    let fills_gaps = matches!(interpolation, Interpolation::Bilinear | Interpolation::DistanceWeighted4);
-    let (mut sum, mut total) = (0.0, 0.0);
-    for (weight, height) in weights.into_iter().zip(corners).filter(|&(weight, _)| weight > 0.0) {
-        if !height.is_nan() {
-            sum += weight * height;
-            total += weight;
-        } else if !fills_gaps {
-            return Answer::NoData;
-        }
-    }
-    if total == 0.0 { Answer::NoData } else { Answer::Height(if fills_gaps { sum / total } else { sum }) }
-}
-
-/// Weights of south-west, south-east, north-west and north-east.
-fn bilinear_weights(part: DVec2) -> [f64; 4] {
-    let DVec2 { x, y } = part;
-    [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y]
-}
-
-fn planar_weights(part: DVec2, diagonal: Diagonal) -> [f64; 4] {
-    let DVec2 { x, y } = part;
-    match diagonal {
-        Diagonal::Rising if x >= y => [1.0 - x, x - y, 0.0, y],
-        Diagonal::Rising => [1.0 - y, 0.0, y - x, x],
-        Diagonal::Falling if x + y <= 1.0 => [1.0 - x - y, x, y, 0.0],
-        Diagonal::Falling => [0.0, 1.0 - y, 1.0 - x, x + y - 1.0],
-    }
-}
-
-fn inverse_distance_weights(part: DVec2, cell: DVec2) -> [f64; 4] {
-    let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
-    let distances = corners.map(|corner| ((part - corner) * cell).length());
-    match distances.iter().position(|&distance| distance == 0.0) {
-        Some(on_post) => std::array::from_fn(|corner| f64::from(u8::from(corner == on_post))),
-        None => distances.map(f64::recip),
     }
 }
 

@@ -13,7 +13,14 @@ use crate::dem::raster::Raster;
 use crate::geom::crs::Crs;
 use crate::terrain::facets::Facets;
 use crate::terrain::lattice::Lattice;
-use crate::terrain::query::{Answer, Interpolation, Surface, ground_height, raster_height};
+use crate::terrain::query::batch::{self, TASK};
+use crate::terrain::query::deck::Deck;
+use crate::terrain::query::source::{source_height, source_task};
+use crate::terrain::query::tiles::LazyTiles;
+use crate::terrain::query::{Answer, Interpolation, Status, Surface, ground_height};
+
+/// Positions between two looks at whether tiles should be made, so that a single long batch gets them too.
+const STRETCH: usize = 1 << 20;
 
 /// Answers height queries on the ground of one scene; cheap to clone, safe to share between threads while the ground
 /// is edited.
@@ -29,6 +36,9 @@ pub struct Epoch {
     source: Arc<Raster>,
     crs: Crs,
     lattice: Arc<Lattice>,
+    /// Always those of `lattice`.
+    tiles: Arc<LazyTiles>,
+    decks: Option<Arc<Deck>>,
     displayed: Option<Displayed>,
 }
 
@@ -42,7 +52,8 @@ struct Displayed {
 impl HeightService {
     /// A service on a raster as read and the lattice made of it, asked in coordinates of `crs`.
     pub fn new(source: Arc<Raster>, crs: Crs, lattice: Arc<Lattice>) -> Self {
-        Self::at(Epoch { number: 0, source, crs, lattice, displayed: None })
+        let tiles = Arc::default();
+        Self::at(Epoch { number: 0, source, crs, lattice, tiles, decks: None, displayed: None })
     }
 
     fn at(epoch: Epoch) -> Self {
@@ -57,10 +68,25 @@ impl HeightService {
 
     /// Puts an edited lattice in place of the ground, for every clone of this service; returns the new epoch.
     pub fn publish(&self, lattice: Arc<Lattice>) -> Arc<Epoch> {
+        self.replace(|now| Epoch { lattice, tiles: Arc::default(), ..Epoch::clone(now) })
+    }
+
+    /// Puts decks in place of those there are, for every clone of this service; returns the new epoch.
+    pub fn publish_decks(&self, decks: Arc<Deck>) -> Arc<Epoch> {
+        self.replace(|now| Epoch { decks: Some(decks), ..Epoch::clone(now) })
+    }
+
+    /// Puts the next epoch in place.
+    fn replace(&self, next: impl FnOnce(&Epoch) -> Epoch) -> Arc<Epoch> {
         let mut now = self.now.write().unwrap_or_else(PoisonError::into_inner);
-        let next = Arc::new(Epoch { number: now.number + 1, lattice, ..Epoch::clone(&now) });
+        let next = Arc::new(Epoch { number: now.number + 1, ..next(&now) });
         *now = Arc::clone(&next);
         next
+    }
+
+    /// A service of its own, on the epoch in use now, with decks over the ground.
+    pub fn with_decks(&self, decks: Arc<Deck>) -> Self {
+        Self::at(Epoch { decks: Some(decks), ..Epoch::clone(&self.now()) })
     }
 
     /// A service of its own, on the epoch in use now, with the surface displayed now, whose Z is the height times
@@ -78,6 +104,17 @@ impl HeightService {
     /// [`Epoch::heights`] of the epoch in use: one epoch for the whole batch.
     pub fn heights(&self, surface: Surface, interpolation: Interpolation, at: &[DVec2], out: &mut [Answer]) {
         self.now().heights(surface, interpolation, at, out);
+    }
+
+    /// [`Epoch::heights_apart`] of the epoch in use: one epoch for the whole batch.
+    pub fn heights_apart(
+        &self,
+        surface: Surface,
+        interpolation: Interpolation,
+        at: &[DVec2],
+        out: (&mut [f64], &mut [Status]),
+    ) {
+        self.now().heights_apart(surface, interpolation, at, out);
     }
 }
 
@@ -102,33 +139,86 @@ impl Epoch {
         &self.lattice
     }
 
+    /// The decks over the ground, if there are any.
+    pub fn decks(&self) -> Option<&Arc<Deck>> {
+        self.decks.as_ref()
+    }
+
     /// The height of `surface` at map position `at`, in the scene's coordinates.
     ///
     /// [`Surface::Displayed`] answers [`Answer::Outside`] where nothing is displayed.
     pub fn height(&self, surface: Surface, interpolation: Interpolation, at: DVec2) -> Answer {
         match surface {
-            Surface::Source => self.source_height(interpolation, at),
-            Surface::Ground | Surface::Scene => ground_height(&self.lattice, interpolation, at),
+            Surface::Source => source_height(&self.source, &self.crs, interpolation, at),
+            Surface::Ground => ground_height(&self.lattice, interpolation, at),
+            Surface::Scene => self.or_deck(at, ground_height(&self.lattice, interpolation, at)),
             Surface::Displayed => self.displayed_height(at),
         }
     }
 
-    /// The heights at many positions, in order, spread over all threads.
+    /// The heights at many positions, in order, spread over all threads: to the last bit [`Epoch::height`] of each.
     ///
     /// # Panics
     /// Where `out` is not as long as `at`.
     pub fn heights(&self, surface: Surface, interpolation: Interpolation, at: &[DVec2], out: &mut [Answer]) {
         assert_eq!(at.len(), out.len(), "one answer per position");
-        const CHUNK: usize = 4096;
-        at.par_chunks(CHUNK).zip(out.par_chunks_mut(CHUNK)).for_each(|(at, out)| {
-            for (&at, out) in at.iter().zip(out) {
-                *out = self.height(surface, interpolation, at);
-            }
-        });
+        for (at, out) in at.chunks(STRETCH).zip(out.chunks_mut(STRETCH)) {
+            self.tiles.make_if_worthwhile(&self.lattice);
+            batch::answers(at, out, |at, parts| self.task(surface, interpolation, at, parts));
+        }
     }
 
-    fn source_height(&self, interpolation: Interpolation, at: DVec2) -> Answer {
-        source_height(&self.source, &self.crs, interpolation, at)
+    /// [`Epoch::heights`] as heights in metres, NaN where there is none, and statuses in slices of their own: the fastest
+    /// way to ask, since less is written.
+    ///
+    /// # Panics
+    /// Where the three slices are not equally long.
+    pub fn heights_apart(
+        &self,
+        surface: Surface,
+        interpolation: Interpolation,
+        at: &[DVec2],
+        (heights_m, statuses): (&mut [f64], &mut [Status]),
+    ) {
+        assert_eq!((at.len(), at.len()), (heights_m.len(), statuses.len()), "one answer per position");
+        let outs = heights_m.chunks_mut(STRETCH).zip(statuses.chunks_mut(STRETCH));
+        for (at, (heights_m, statuses)) in at.chunks(STRETCH).zip(outs) {
+            self.tiles.make_if_worthwhile(&self.lattice);
+            let outs = heights_m.par_chunks_mut(TASK).zip(statuses.par_chunks_mut(TASK));
+            at.par_chunks(TASK).zip(outs).for_each(|(at, outs)| self.task(surface, interpolation, at, outs));
+        }
+    }
+
+    /// One task of a batch, on this thread.
+    fn task(
+        &self,
+        surface: Surface,
+        interpolation: Interpolation,
+        at: &[DVec2],
+        (heights_m, statuses): (&mut [f64], &mut [Status]),
+    ) {
+        if surface == Surface::Source {
+            return source_task(&self.source, &self.crs, interpolation, at, (heights_m, statuses));
+        }
+        let of_ground = surface == Surface::Ground || (surface == Surface::Scene && self.decks.is_none());
+        if of_ground && interpolation == Interpolation::Bilinear {
+            let scattered =
+                batch::bilinear_ground(&self.lattice, self.tiles.get(), at, (heights_m, statuses));
+            return self.tiles.count(scattered);
+        }
+        for ((&at, height_m), status) in at.iter().zip(heights_m).zip(statuses) {
+            (*height_m, *status) = self.height(surface, interpolation, at).parts();
+        }
+    }
+
+    /// The higher of the ground's answer and the deck over it; the deck's own where the ground has none.
+    fn or_deck(&self, at: DVec2, ground: Answer) -> Answer {
+        let deck = self.decks.as_ref().and_then(|decks| decks.height_m(at - self.lattice.origin()));
+        match (deck, ground) {
+            (Some(deck), Answer::Height(ground)) => Answer::Height(deck.max(ground)),
+            (Some(deck), _) => Answer::Height(deck),
+            (None, ground) => ground,
+        }
     }
 
     fn displayed_height(&self, at: DVec2) -> Answer {
@@ -136,6 +226,9 @@ impl Epoch {
             return Answer::Outside;
         };
         let world = at - self.lattice.origin();
+        if !world.is_finite() {
+            return Answer::Outside;
+        }
         match displayed.facets.displayed_z(world) {
             Some(z) => Answer::Height(z / displayed.exaggeration),
             None => Answer::Outside,
@@ -143,45 +236,63 @@ impl Epoch {
     }
 }
 
-/// The height of a raster as read at a position in coordinates of `from`; a raster without a system lies in `from`.
-pub fn source_height(source: &Raster, from: &Crs, interpolation: Interpolation, at: DVec2) -> Answer {
-    let in_source = match &source.crs {
-        Some(own) => from.transform(own, at),
-        None => Ok(at),
-    };
-    let in_source = in_source.map(|at| match &source.crs {
-        // Longitudes come back within ±180°; a raster across the date line counts them on from there.
-        Some(own) if own.is_geographic() => at + DVec2::X * whole_turns(source.center().x - at.x),
-        _ => at,
-    });
-    in_source.map_or(Answer::Outside, |at| raster_height(source, interpolation, at))
-}
-
-/// The whole turns, in degrees, nearest to `degrees`.
-fn whole_turns(degrees: f64) -> f64 {
-    360.0 * (degrees / 360.0).round()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read;
+    use crate::terrain::facets::Facet;
+    use glam::Vec3;
 
-    fn lattice(height: impl Fn(u32, u32) -> f32) -> Lattice {
-        let heights = (0..36).map(|index| height(index % 6, index / 6)).collect();
-        Lattice::new(DVec2::new(1000.0, 2000.0), DVec2::new(10.0, 20.0), 6, heights).expect("sound")
+    fn service(height: impl Fn(u32, u32) -> f32) -> HeightService {
+        let heights: Vec<f32> = (0..36).map(|index| height(index % 6, index / 6)).collect();
+        let lattice =
+            Lattice::new(DVec2::new(1000.0, 2000.0), DVec2::new(10.0, 20.0), 6, heights).expect("sound");
+        let text = "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1\n";
+        let source = crate::dem::read::read("a.asc", text.as_bytes(), &Default::default()).expect("sound");
+        HeightService::new(Arc::new(source), Crs::local(), Arc::new(lattice))
+    }
+
+    fn bridge(z: f32) -> Arc<Deck> {
+        let at = |x: f32, y: f32| Vec3::new(x, y, z);
+        let facets: [Facet; 2] = [
+            [at(10.0, 30.0), at(60.0, 30.0), at(60.0, 50.0)],
+            [at(10.0, 30.0), at(60.0, 50.0), at(10.0, 50.0)],
+        ];
+        Arc::new(Deck::new(&facets).expect("sound"))
     }
 
     #[test]
-    fn the_source_across_the_date_line_answers_on_both_sides() {
-        let text = "ncols 4\nnrows 2\nxllcorner 179.8\nyllcorner -16.1\ncellsize 0.1\n1 2 3 4\n1 2 3 4\n";
-        let hints = read::Hints { crs: Some(Crs::wgs84()), ..read::Hints::default() };
-        let source = read::read("a.asc", text.as_bytes(), &hints).expect("sound");
-        let utm = Crs::from_epsg(32701).expect("a zone");
-        let service = HeightService::new(Arc::new(source), utm.clone(), Arc::new(lattice(|_, _| 0.0)));
-        for (longitude, height) in [(179.85, 1.0), (179.95, 2.0), (-179.95, 3.0), (180.15, 4.0)] {
-            let at = Crs::wgs84().transform(&utm, DVec2::new(longitude, -16.0)).expect("inside");
-            assert_eq!(service.height(Surface::Source, Interpolation::Nearest, at), Answer::Height(height));
+    fn the_scene_is_the_higher_of_the_ground_and_the_deck_over_it() {
+        let plain = service(|column, _| if column == 2 { f32::NAN } else { column as f32 * 10.0 });
+        let bridged = plain.with_decks(bridge(15.0));
+        let ask = |service: &HeightService, surface, x: f64| {
+            service.height(surface, Interpolation::Nearest, DVec2::new(1000.0 + x, 2040.0))
+        };
+        for (x, ground, scene) in [
+            (0.0, Answer::Height(0.0), Answer::Height(0.0)),
+            (12.0, Answer::Height(10.0), Answer::Height(15.0)),
+            (20.0, Answer::NoData, Answer::Height(15.0)),
+            (40.0, Answer::Height(40.0), Answer::Height(40.0)),
+            (55.0, Answer::Outside, Answer::Height(15.0)),
+            (65.0, Answer::Outside, Answer::Outside),
+        ] {
+            assert_eq!(ask(&bridged, Surface::Ground, x), ground, "at {x}");
+            assert_eq!(ask(&bridged, Surface::Scene, x), scene, "at {x}");
+            assert_eq!(ask(&plain, Surface::Scene, x), ground, "no deck was put in place of the other's");
         }
+    }
+
+    #[test]
+    fn decks_stay_when_the_ground_changes_and_are_an_epoch_of_their_own() {
+        let service = service(|_, _| 0.0);
+        let clone = service.clone();
+        let (first, at) = (service.now(), DVec2::new(1030.0, 2040.0));
+        assert_eq!(service.publish_decks(bridge(9.0)).number(), 1);
+        let flat = vec![2.0; 36];
+        let lattice = Lattice::new(first.lattice().origin(), first.lattice().cell(), 6, flat).expect("sound");
+        assert_eq!(service.publish(Arc::new(lattice)).number(), 2);
+        let ask = |surface| clone.height(surface, Interpolation::Bilinear, at);
+        assert_eq!(ask(Surface::Scene), Answer::Height(9.0));
+        assert_eq!(ask(Surface::Ground), Answer::Height(2.0));
+        assert_eq!(first.height(Surface::Scene, Interpolation::Bilinear, at), Answer::Height(0.0));
     }
 }

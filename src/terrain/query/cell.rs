@@ -1,0 +1,106 @@
+//! Heights within one cell: the formulas of the contract, each in one place.
+//!
+//! Corners are always given south-west, south-east, north-west, north-east; NaN stands for no data.
+
+use glam::DVec2;
+
+use crate::terrain::query::{Answer, Diagonal, Interpolation};
+
+/// The height at `part` of a cell, 0..=1 east and north from its south-west corner, or [`Answer::NoData`].
+///
+/// `cell` is the cell's size in metres, `diagonal` its own.
+pub fn interpolate(
+    interpolation: Interpolation,
+    corners: [f64; 4],
+    part: DVec2,
+    diagonal: Diagonal,
+    cell: DVec2,
+) -> Answer {
+    match interpolation {
+        Interpolation::Planar => without_gaps(planar_weights(part, diagonal), corners),
+        Interpolation::Nearest => without_gaps(bilinear_weights((part + 0.5).floor()), corners),
+        Interpolation::Bilinear => {
+            let height = bilinear(corners, part);
+            if height.is_nan() { over_gaps(bilinear_weights(part), corners) } else { Answer::Height(height) }
+        }
+        Interpolation::DistanceWeighted4 => over_gaps(inverse_distance_weights(part, cell), corners),
+    }
+}
+
+/// The bilinear height, NaN where a corner has none.
+///
+/// Written so that a level cell answers its level exactly.
+#[inline]
+pub fn bilinear([sw, se, nw, ne]: [f64; 4], part: DVec2) -> f64 {
+    let (south, north) = (sw + (se - sw) * part.x, nw + (ne - nw) * part.x);
+    south + (north - south) * part.y
+}
+
+/// The sum of the corners that weigh anything; no answer where one of them has no data.
+fn without_gaps(weights: [f64; 4], corners: [f64; 4]) -> Answer {
+    let mut sum = 0.0;
+    for (weight, height) in weights.into_iter().zip(corners) {
+        if weight > 0.0 {
+            sum += weight * height;
+        }
+    }
+    if sum.is_nan() { Answer::NoData } else { Answer::Height(sum) }
+}
+
+/// The mean of the corners that have data; no answer where none of those weighs anything.
+fn over_gaps(weights: [f64; 4], corners: [f64; 4]) -> Answer {
+    let (mut sum, mut total) = (0.0, 0.0);
+    for (weight, height) in weights.into_iter().zip(corners) {
+        if weight > 0.0 && !height.is_nan() {
+            sum += weight * height;
+            total += weight;
+        }
+    }
+    if total == 0.0 { Answer::NoData } else { Answer::Height(sum / total) }
+}
+
+fn bilinear_weights(part: DVec2) -> [f64; 4] {
+    let DVec2 { x, y } = part;
+    [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y]
+}
+
+fn planar_weights(part: DVec2, diagonal: Diagonal) -> [f64; 4] {
+    let DVec2 { x, y } = part;
+    match diagonal {
+        Diagonal::Rising if x >= y => [1.0 - x, x - y, 0.0, y],
+        Diagonal::Rising => [1.0 - y, 0.0, y - x, x],
+        Diagonal::Falling if x + y <= 1.0 => [1.0 - x - y, x, y, 0.0],
+        Diagonal::Falling => [0.0, 1.0 - y, 1.0 - x, x + y - 1.0],
+    }
+}
+
+fn inverse_distance_weights(part: DVec2, cell: DVec2) -> [f64; 4] {
+    let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
+    let distances = corners.map(|corner| ((part - corner) * cell).length());
+    match distances.iter().position(|&distance| distance == 0.0) {
+        Some(on_post) => std::array::from_fn(|corner| f64::from(u8::from(corner == on_post))),
+        None => distances.map(f64::recip),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_level_cell_answers_its_level_to_the_last_bit() {
+        for step in 0..1000 {
+            let part = DVec2::new(f64::from(step) / 999.0, f64::from(step * 7 % 1000) / 999.0);
+            assert_eq!(bilinear([371.25; 4], part), 371.25);
+        }
+    }
+
+    #[test]
+    fn a_position_where_all_weights_are_none_of_those_with_data_has_no_answer() {
+        let corners = [f64::NAN, 1.0, 2.0, 3.0];
+        for interpolation in [Interpolation::Bilinear, Interpolation::DistanceWeighted4] {
+            let answer = interpolate(interpolation, corners, DVec2::ZERO, Diagonal::Rising, DVec2::ONE);
+            assert_eq!(answer, Answer::NoData, "{interpolation:?} at the post without data");
+        }
+    }
+}

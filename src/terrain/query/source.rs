@@ -1,0 +1,189 @@
+//! Heights of the raster as read, in its own grid.
+//!
+//! Nearest and bilinear are GDAL's ([`crate::dem::sample`]): they reach half a sample beyond the outer samples. Planar
+//! and distance-weighted stand on the grid of sample centres and end at the outer ones. Where the file's heights are
+//! not metres, they are made metres here: an answer is always in metres.
+
+use glam::DVec2;
+
+use crate::dem::raster::Raster;
+use crate::dem::sample::{self, Sampled};
+use crate::geom::crs::Crs;
+use crate::terrain::query::batch;
+use crate::terrain::query::cell::interpolate;
+use crate::terrain::query::{Answer, Diagonal, Interpolation, Status};
+
+/// Positions that are brought to the raster's system at a time, on the stack.
+const BROUGHT: usize = 512;
+
+/// The height of a raster at a position in its own coordinates, in metres.
+pub fn raster_height(raster: &Raster, interpolation: Interpolation, at: DVec2) -> Answer {
+    let answer = match interpolation {
+        Interpolation::Nearest => answer(sample::nearest(raster, at)),
+        Interpolation::Bilinear => answer(sample::bilinear(raster, at)),
+        Interpolation::Planar | Interpolation::DistanceWeighted4 => {
+            between_samples(raster, interpolation, at)
+        }
+    };
+    match answer {
+        Answer::Height(height) => Answer::Height(height * raster.metres_per_z),
+        none => none,
+    }
+}
+
+/// The height of a raster as read at a position in coordinates of `from`, in metres.
+///
+/// A raster that names no system lies in `from`. A position that cannot be brought to the raster's system lies
+/// [`Answer::Outside`].
+pub fn source_height(source: &Raster, from: &Crs, interpolation: Interpolation, at: DVec2) -> Answer {
+    raster_height(source, interpolation, Way::new(source, from).position(at))
+}
+
+/// [`source_height`] at many positions, in order, spread over all threads.
+///
+/// # Panics
+/// Where `out` is not as long as `at`.
+pub fn source_heights(
+    source: &Raster,
+    from: &Crs,
+    interpolation: Interpolation,
+    at: &[DVec2],
+    out: &mut [Answer],
+) {
+    batch::answers(at, out, |at, parts| source_task(source, from, interpolation, at, parts));
+}
+
+/// [`source_height`] at many positions, on this thread: heights in metres, NaN where there is none, and statuses.
+pub(in crate::terrain::query) fn source_task(
+    source: &Raster,
+    from: &Crs,
+    interpolation: Interpolation,
+    at: &[DVec2],
+    (heights_m, statuses): (&mut [f64], &mut [Status]),
+) {
+    let way = Way::new(source, from);
+    if interpolation != Interpolation::Bilinear {
+        for ((&at, height_m), status) in at.iter().zip(heights_m).zip(statuses) {
+            (*height_m, *status) = raster_height(source, interpolation, way.position(at)).parts();
+        }
+    } else if way.is_straight() {
+        batch::bilinear_raster(source, at, (heights_m, statuses));
+    } else {
+        let mut brought = [DVec2::NAN; BROUGHT];
+        let outs = heights_m.chunks_mut(BROUGHT).zip(statuses.chunks_mut(BROUGHT));
+        for (at, outs) in at.chunks(BROUGHT).zip(outs) {
+            let brought = &mut brought[..at.len()];
+            brought.iter_mut().zip(at).for_each(|(to, &at)| *to = way.position(at));
+            batch::bilinear_raster(source, brought, outs);
+        }
+    }
+}
+
+/// The way from one system's positions to a raster's own.
+struct Way<'a> {
+    from: &'a Crs,
+    /// The raster's system, where it is another.
+    to: Option<&'a Crs>,
+    /// West and east of a raster in degrees.
+    degrees: Option<(f64, f64)>,
+}
+
+impl<'a> Way<'a> {
+    fn new(source: &'a Raster, from: &'a Crs) -> Self {
+        let own = source.crs.as_ref();
+        let degrees = own.filter(|own| own.is_geographic()).map(|_| source.extent());
+        Self {
+            from,
+            to: own.filter(|&own| own != from),
+            degrees: degrees.map(|extent| (extent.min.x, extent.max.x)),
+        }
+    }
+
+    /// Whether every position stays as it is.
+    fn is_straight(&self) -> bool {
+        self.to.is_none() && self.degrees.is_none()
+    }
+
+    /// A position in the raster's own coordinates; NaN where it cannot be brought there.
+    fn position(&self, at: DVec2) -> DVec2 {
+        let at = match self.to {
+            Some(to) => self.from.transform(to, at).unwrap_or(DVec2::NAN),
+            None => at,
+        };
+        match self.degrees {
+            // A raster across the date line counts longitudes on from 180°; who asks may begin again at −180°.
+            Some((west, east)) if !(west..=east).contains(&at.x) => {
+                at + DVec2::X * whole_turns((west + east) / 2.0 - at.x)
+            }
+            _ => at,
+        }
+    }
+}
+
+/// The whole turns, in degrees, nearest to `degrees`.
+fn whole_turns(degrees: f64) -> f64 {
+    360.0 * (degrees / 360.0).round()
+}
+
+fn answer(sampled: Sampled) -> Answer {
+    match sampled {
+        Sampled::Ok(height) => Answer::Height(height),
+        Sampled::NoData => Answer::NoData,
+        Sampled::Outside => Answer::Outside,
+    }
+}
+
+/// Planar and distance-weighted heights of a raster, on the grid of its sample centres, in its vertical unit.
+fn between_samples(raster: &Raster, interpolation: Interpolation, at: DVec2) -> Answer {
+    let grid = raster.grid_from_map(at) - 0.5;
+    let last = DVec2::new(f64::from(raster.width) - 1.0, f64::from(raster.height) - 1.0);
+    if !(grid.cmpge(DVec2::ZERO).all() && grid.cmple(last).all()) || last.min_element() < 1.0 {
+        return Answer::Outside;
+    }
+    let first = grid.floor().min(last - 1.0);
+    let (column, row) = (first.x as u32, first.y as u32);
+    let corners = [(0, 1), (1, 1), (0, 0), (1, 0)].map(|(x, y)| raster.at(column + x, row + y));
+    let part = DVec2::new(grid.x - first.x, 1.0 - (grid.y - first.y));
+    let from_south = u64::from(raster.height) - 2 - u64::from(row);
+    let diagonal = Diagonal::of_cell(u64::from(column), from_south);
+    interpolate(interpolation, corners, part, diagonal, raster.spacing())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dem::read;
+
+    fn read_grid(text: &str, crs: Option<Crs>) -> Raster {
+        let hints = read::Hints { crs, ..read::Hints::default() };
+        read::read("a.asc", text.as_bytes(), &hints).expect("sound")
+    }
+
+    #[test]
+    fn the_source_across_the_date_line_answers_on_both_sides() {
+        let text = "ncols 4\nnrows 2\nxllcorner 179.8\nyllcorner -16.1\ncellsize 0.1\n1 2 3 4\n1 2 3 4\n";
+        let source = read_grid(text, Some(Crs::wgs84()));
+        let utm = Crs::from_epsg(32701).expect("a zone");
+        for (longitude, height) in [(179.85, 1.0), (179.95, 2.0), (-179.95, 3.0), (180.15, 4.0)] {
+            let at = Crs::wgs84().transform(&utm, DVec2::new(longitude, -16.0)).expect("inside");
+            let answer = source_height(&source, &utm, Interpolation::Nearest, at);
+            assert_eq!(answer, Answer::Height(height));
+        }
+    }
+
+    #[test]
+    fn heights_in_feet_are_answered_in_metres() {
+        let text = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n100 100\n100 100\n";
+        let mut source = read_grid(text, None);
+        source.metres_per_z = 0.3048;
+        for interpolation in [
+            Interpolation::Planar,
+            Interpolation::Bilinear,
+            Interpolation::Nearest,
+            Interpolation::DistanceWeighted4,
+        ] {
+            let answer = raster_height(&source, interpolation, DVec2::splat(10.0));
+            assert_eq!(answer, Answer::Height(100.0 * 0.3048), "{interpolation:?}");
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! A copy of the heights in tiles the size of a cache line, for scattered queries on large grounds.
+//!
+//! ```text
+//!  12 13 14 15 │ 12            a line of 64 bytes holds 4 × 4 posts, 3 × 3 cells; the last
+//!   8  9 10 11 │  8            column and row are the next tile's first, so that the four
+//!   4  5  6  7 │  4  …         corners of a cell never lie in two lines
+//!   0  1  2  3 │  0
+//! ```
+//!
+//! The overlap costs memory: 16 posts for every 9, 78 % more than the lattice itself, beside the lattice. What it saves is
+//! the second cache line, and the second page, of every query. Making it reads and writes every post once, so it is made
+//! when as many scattered positions have been asked as there are posts: whoever asks less has paid at most twice what
+//! the better choice would have cost, and whoever asks much more pays little more than it.
+
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::query::batch::{index_of, rounded};
+
+/// Cells along a tile's side.
+const CELLS: u32 = 3;
+
+/// Grounds with fewer posts than this (4 MiB) are mostly in the second cache, where rows are as fast as tiles.
+const LEAST_POSTS: usize = 1 << 20;
+
+/// The heights of a lattice in tiles.
+pub struct Tiles {
+    /// Tiles per row of tiles.
+    across: u32,
+    lines: Vec<Line>,
+}
+
+/// A tile, in one cache line.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Line([f32; 16]);
+
+/// Where a cell's corners lie: the tile's number times 16, and the south-west corner's in it.
+#[derive(Clone, Copy, Default)]
+pub struct Slot(usize);
+
+impl Tiles {
+    /// The tiles of a lattice.
+    pub fn new(lattice: &Lattice) -> Self {
+        let across = (lattice.columns() - 1).div_ceil(CELLS);
+        let down = (lattice.rows() - 1).div_ceil(CELLS);
+        let mut lines = vec![Line([f32::NAN; 16]); across as usize * down as usize];
+        lines.par_chunks_mut(across as usize).enumerate().for_each(|(row, lines)| {
+            for (line, column) in lines.iter_mut().zip(0u32..) {
+                *line = line_at(lattice, Post { column: column * CELLS, row: row as u32 * CELLS });
+            }
+        });
+        Self { across, lines }
+    }
+
+    /// Where the corners of the cell at `column` and `row`, whole numbers, lie.
+    #[inline(always)]
+    pub fn slot(&self, column: f64, row: f64) -> Slot {
+        const THIRD: f64 = 1.0 / 3.0;
+        // (n − 1)/3 rounded to the nearest is n/3 rounded down: it never lies midway between two whole numbers.
+        let tile = |at: f64| rounded((at - 1.0) * THIRD);
+        let (x, y) = (tile(column), tile(row));
+        let (east, north) = (column - 3.0 * x, row - 3.0 * y);
+        Slot(index_of((y * f64::from(self.across) + x) * 16.0 + north * 4.0 + east))
+    }
+
+    /// The corners of a cell: south-west and south-east, north-west and north-east.
+    #[inline(always)]
+    pub fn corners(&self, slot: Slot) -> [[f32; 2]; 2] {
+        let line = &self.lines[slot.0 >> 4].0;
+        // A cell's south-west corner is at most in the third column and row: the hold is for the compiler.
+        let cell = &line[(slot.0 & 15).min(10)..][..6];
+        [[cell[0], cell[1]], [cell[4], cell[5]]]
+    }
+
+    /// Whether every cell's corners are the lattice's, bit for bit.
+    pub fn check(&self, lattice: &Lattice) -> Result<(), String> {
+        for row in 0..lattice.rows() - 1 {
+            for column in 0..lattice.columns() - 1 {
+                let ours = self.corners(self.slot(f64::from(column), f64::from(row)));
+                let theirs = lattice.corner_heights(Post { column, row });
+                if ours.as_flattened().iter().zip(theirs).any(|(a, b)| a.to_bits() != b.to_bits()) {
+                    return Err(format!("the cell at ({column}, {row}) has {ours:?}, not {theirs:?}"));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The tile whose south-west post is `first`; posts beyond the lattice are no data.
+fn line_at(lattice: &Lattice, first: Post) -> Line {
+    let mut line = Line([f32::NAN; 16]);
+    let width = (lattice.columns() - first.column).min(4) as usize;
+    let heights = lattice.heights();
+    for row in 0..(lattice.rows() - first.row).min(4) {
+        let from = lattice.index(Post { row: first.row + row, ..first });
+        let slot = 4 * row as usize;
+        line.0[slot..slot + width].copy_from_slice(&heights[from..from + width]);
+    }
+    line
+}
+
+/// Tiles that are made when they pay; see the module.
+#[derive(Default)]
+pub struct LazyTiles {
+    tiles: OnceLock<Tiles>,
+    scattered: AtomicUsize,
+    is_making: AtomicBool,
+}
+
+impl LazyTiles {
+    /// The tiles, if they are made.
+    pub fn get(&self) -> Option<&Tiles> {
+        self.tiles.get()
+    }
+
+    /// Counts scattered positions that were asked.
+    pub fn count(&self, scattered: usize) {
+        self.scattered.fetch_add(scattered, Ordering::Relaxed);
+    }
+
+    /// Makes the tiles of `lattice`, always the same one, where they pay and nobody else is making them. Who finds them
+    /// being made goes on without: waiting for another thread here could wait for itself.
+    pub fn make_if_worthwhile(&self, lattice: &Lattice) {
+        let posts = lattice.heights().len();
+        let pays = posts >= LEAST_POSTS && self.scattered.load(Ordering::Relaxed) >= posts;
+        if pays && self.tiles.get().is_none() && !self.is_making.swap(true, Ordering::Relaxed) {
+            // Nobody else sets it: `is_making` never becomes false again.
+            let _ = self.tiles.set(Tiles::new(lattice));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+
+    #[test]
+    fn tiles_hold_every_cell_whatever_the_size_of_the_lattice() {
+        for columns in 2..12u32 {
+            for rows in 2..12u32 {
+                let heights = (0..columns * rows).map(|index| index as f32).collect();
+                let lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, columns, heights).expect("sound");
+                Tiles::new(&lattice).check(&lattice).expect("every cell");
+            }
+        }
+    }
+
+    #[test]
+    fn tiles_are_made_when_as_much_was_asked_as_they_cost() {
+        let lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 1024, vec![1.0; 1 << 20]).expect("sound");
+        let lazy = LazyTiles::default();
+        lazy.make_if_worthwhile(&lattice);
+        lazy.count((1 << 20) - 1);
+        lazy.make_if_worthwhile(&lattice);
+        assert!(lazy.get().is_none());
+        lazy.count(1);
+        lazy.make_if_worthwhile(&lattice);
+        assert!(lazy.get().is_some());
+    }
+}
