@@ -1,8 +1,8 @@
 //! Mathematics on `glam` and `geo`: no terrain, no files.
 
 pub mod crs;
-pub mod geodesic;
 pub mod datum_shift;
+pub mod geodesic;
 pub mod polygon;
 pub mod polyline;
 pub mod proj_words;

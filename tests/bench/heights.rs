@@ -17,15 +17,16 @@ mod reading;
 #[path = "common/rounds.rs"]
 mod rounds;
 
-#[path = "heights/service.rs"]
-mod service;
 #[path = "heights/queries.rs"]
 mod queries;
+#[path = "heights/service.rs"]
+mod service;
 
 /// A section's name and what prints it.
 type Section = (&'static str, fn());
 
-const SECTIONS: &[Section] = &[("service", service::print), ("reading", reading::print), ("queries", queries::print)];
+const SECTIONS: &[Section] =
+    &[("service", service::print), ("reading", reading::print), ("queries", queries::print)];
 
 fn main() {
     rounds::sections(SECTIONS);
