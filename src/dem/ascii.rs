@@ -48,9 +48,10 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     let cell = header.cell()?;
     let corner = header.south_west(cell)?;
     let nodata = header.get("nodata_value");
-    let (values, replaced) = samples(&mut words, count, nodata.unwrap_or(DEFAULT_NODATA))?;
+    let Found { values, replaced, whole } = samples(&mut words, count, nodata.unwrap_or(DEFAULT_NODATA))?;
     Ok(Raster {
         driver: "AAIGrid",
+        data_type: if whole { "Int32" } else { "Float32" },
         width: width as u32,
         height: height as u32,
         samples: Samples::F32(values),
@@ -63,10 +64,18 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     })
 }
 
-/// The samples, and whether any of them was no data.
-fn samples(words: &mut Words, count: usize, nodata: f64) -> Result<(Vec<f32>, bool), Fault> {
+/// The samples as the text holds them.
+struct Found {
+    values: Vec<f32>,
+    /// Whether any of them was no data.
+    replaced: bool,
+    /// Whether all are written as whole numbers.
+    whole: bool,
+}
+
+fn samples(words: &mut Words, count: usize, nodata: f64) -> Result<Found, Fault> {
     let mut values = Vec::with_capacity(count);
-    let mut replaced = false;
+    let (mut replaced, mut whole) = (false, true);
     for word in words {
         if values.len() == count {
             return Err(Fault::broken(
@@ -80,12 +89,13 @@ fn samples(words: &mut Words, count: usize, nodata: f64) -> Result<(Vec<f32>, bo
         })?;
         let hole = value == nodata || !value.is_finite();
         replaced |= hole;
+        whole = whole && word.iter().all(|byte| matches!(byte, b'0'..=b'9' | b'-' | b'+'));
         values.push(if hole { f32::NAN } else { value as f32 });
     }
     if values.len() < count {
         return Err(Fault::broken(FORMAT, format!("it ends after {} of {count} values", values.len())));
     }
-    Ok((values, replaced))
+    Ok(Found { values, replaced, whole })
 }
 
 /// The `key value` pairs.

@@ -35,6 +35,7 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     let place = georef::beside(source, header.height, &["pgw", "pngw", "wld"])?;
     Ok(Raster {
         driver: "PNG",
+        data_type: if header.bits == 8 { "Byte" } else { "UInt16" },
         width: header.width,
         height: header.height,
         samples: Samples::F32(values).scaled(scale, offset),

@@ -14,6 +14,9 @@ use crate::geom::rect::Rect;
 pub struct Raster {
     /// The format it was read from, as GDAL names its drivers: `GTiff`, `AAIGrid`, `PNG`, `BT`, `SRTMHGT`.
     pub driver: &'static str,
+    /// The type of a stored sample, as GDAL names its types: `Byte`, `Int8`, `UInt16`, `Int16`, `UInt32`, `Int32`,
+    /// `UInt64`, `Int64`, `Float32`, `Float64`. What text holds is told by its values.
+    pub data_type: &'static str,
     /// Samples per row; at least 1.
     pub width: u32,
     /// Rows; at least 1.
@@ -158,6 +161,7 @@ pub(crate) mod tests {
         assert_eq!(values.len(), (width * height) as usize);
         Raster {
             driver: "test",
+            data_type: "Float32",
             width,
             height,
             samples: Samples::F32(values),

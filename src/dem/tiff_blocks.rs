@@ -25,6 +25,7 @@ pub(crate) struct Storage {
     /// Bits of one sample.
     pub bits: u16,
     is_float: bool,
+    is_signed: bool,
     /// Bands that lie side by side in one block.
     bands_per_block: u16,
     /// Compressed bytes of each block; 0 for one that was never written.
@@ -48,14 +49,15 @@ impl Storage {
             return Err(Fault::broken(FORMAT, "it has no band"));
         }
         let planar = short(decoder, Tag::PlanarConfiguration, 1)? == 2;
-        let is_float = short(decoder, Tag::SampleFormat, 1)? == 3;
+        let format = short(decoder, Tag::SampleFormat, 1)?;
+        let (is_float, is_signed) = (format == 3, format == 2);
         let counts_tag = match decoder.get_chunk_type() {
             ChunkType::Strip => Tag::StripByteCounts,
             ChunkType::Tile => Tag::TileByteCounts,
         };
         let block_bytes = decoder.find_tag_unsigned_vec(counts_tag).map_err(fault)?.unwrap_or_default();
         let bands_per_block = if planar { 1 } else { bands };
-        let storage = Self { width, height, bits, is_float, bands_per_block, block_bytes };
+        let storage = Self { width, height, bits, is_float, is_signed, bands_per_block, block_bytes };
         storage.check(decoder, (file_bytes, expansion), most)?;
         Ok(storage)
     }
@@ -82,6 +84,22 @@ impl Storage {
     /// How many bytes a block of `samples` samples decodes to.
     pub fn decoded_bytes(&self, samples: u64) -> u64 {
         samples * u64::from(self.bits) * u64::from(self.bands_per_block) / 8
+    }
+
+    /// The type of a sample, as GDAL names it.
+    pub fn data_type(&self) -> &'static str {
+        match (self.is_float, self.is_signed, self.bits) {
+            (true, _, ..=32) => "Float32",
+            (true, ..) => "Float64",
+            (_, true, ..=8) => "Int8",
+            (_, true, ..=16) => "Int16",
+            (_, true, ..=32) => "Int32",
+            (_, true, _) => "Int64",
+            (.., ..=8) => "Byte",
+            (.., ..=16) => "UInt16",
+            (.., ..=32) => "UInt32",
+            _ => "UInt64",
+        }
     }
 
     /// Whether samples need 64 bits to stay exact.

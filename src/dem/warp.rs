@@ -254,6 +254,7 @@ fn resampled(raster: &Raster, from: Option<&Crs>, to: Option<&Crs>) -> Result<Ra
     };
     Ok(Raster {
         driver: raster.driver,
+        data_type: raster.data_type,
         width: frame.size.x,
         height: frame.size.y,
         samples,
