@@ -14,6 +14,8 @@ use crate::app::los::LosOptions;
 use crate::app::profile::ProfileOptions;
 use crate::app::serve::ServeOptions;
 use crate::app::viewshed::ViewshedOptions;
+use crate::dem::raw::RawLayout;
+use crate::dem::rgb_png::HeightEncoding;
 use crate::terrain::query::Interpolation;
 
 /// Elevation models and what stands on them, made into scenes, and scenes into pictures.
@@ -143,15 +145,23 @@ pub struct DemInfoOptions {
     pub heights: GreyHeights,
 }
 
-/// What the grey values of a picture mean in metres.
+/// What an elevation file does not say of its heights: what grey values and colours mean in metres, and how samples
+/// without a header are laid out.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct GreyHeights {
-    /// Metres per grey value of a PNG; needed for one
+    /// Metres per grey value of a PNG, which needs it, or per value of a RAW file [default there: 1]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub height_scale: Option<f64>,
-    /// Height in metres of grey value 0 of a PNG [default: 0]
+    /// Height in metres of value 0 of a grey PNG or a RAW file [default: 0]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub height_offset: Option<f64>,
+    /// What the colours of a PNG mean: terrain-rgb (Mapbox) or terrarium (Mapzen)
+    #[arg(long, value_name = "ENCODING", conflicts_with_all = ["height_scale", "height_offset"])]
+    pub height_encoding: Option<HeightEncoding>,
+    /// That the file is RAW, and what it holds: columns x rows, type and byte order, as in 1201x1201:i16be; where
+    /// needed with :skip=BYTES and :nodata=VALUE
+    #[arg(long, value_name = "WxH:TYPE")]
+    pub raw: Option<RawLayout>,
 }
 
 /// `height`.

@@ -10,17 +10,39 @@ use crate::app::{files, output};
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, Hints};
 use crate::dem::stats::{self, Stats};
+use crate::geom::crs::Crs;
+
+/// What the caller says of the place of an elevation file that does not say it.
+#[derive(Clone, Debug, Default)]
+pub struct StatedPlace {
+    /// Metres between its posts.
+    pub cell: Option<f64>,
+    /// Its coordinate system.
+    pub crs: Option<Crs>,
+}
 
 /// Reads the elevation file at `path`, its sidecars beside it.
 ///
 /// # Errors
 /// It cannot be had or read; the message names it.
 pub fn read_raster(path: &Path, heights: GreyHeights) -> Result<Raster, Failure> {
+    read_raster_placed(path, heights, &StatedPlace::default())
+}
+
+/// [`read_raster`] where the caller states the place.
+///
+/// # Errors
+/// As [`read_raster`].
+pub fn read_raster_placed(path: &Path, heights: GreyHeights, place: &StatedPlace) -> Result<Raster, Failure> {
     let bytes = files::read(path)?;
     let beside = files::beside(path);
     let hints = Hints {
         png_height_scale: heights.height_scale,
         png_height_offset: heights.height_offset,
+        height_encoding: heights.height_encoding,
+        raw: heights.raw,
+        cell: place.cell,
+        crs: place.crs.clone(),
         companions: &beside,
         ..Hints::default()
     };

@@ -39,11 +39,11 @@ pub(crate) fn recognises(bytes: &[u8]) -> bool {
 /// Reads a grid; its coordinate system comes from a `.prj` companion.
 pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     let bytes = source.bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(source.bytes);
-    let mut words = Words { bytes, at: 0 };
+    let mut words = Words::new(bytes);
     let header = Header::read(&mut words)?;
     let (width, height) = (header.size("ncols")?, header.size("nrows")?);
     // Every sample needs a digit, and all but the last a blank.
-    let room = bytes.len() - words.at;
+    let room = words.rest().len();
     let count = check_size((width, height), 2, (room + 1, 1))?;
     let cell = header.cell()?;
     let corner = header.south_west(cell)?;
@@ -165,9 +165,21 @@ impl Header {
 }
 
 /// The words of a text, as bytes.
-struct Words<'a> {
+pub(crate) struct Words<'a> {
     bytes: &'a [u8],
     at: usize,
+}
+
+impl<'a> Words<'a> {
+    /// The words of `bytes`, which blanks, line ends and NULs stand between.
+    pub fn new(bytes: &'a [u8]) -> Self {
+        Self { bytes, at: 0 }
+    }
+
+    /// What has not been read yet.
+    pub fn rest(&self) -> &'a [u8] {
+        &self.bytes[self.at..]
+    }
 }
 
 impl<'a> Iterator for Words<'a> {
@@ -184,7 +196,7 @@ impl<'a> Iterator for Words<'a> {
 }
 
 /// A number, with a decimal point or a single decimal comma; `nan` in any case and GDAL's `-1.#IND` are NaN.
-fn number(word: &[u8]) -> Option<f64> {
+pub(crate) fn number(word: &[u8]) -> Option<f64> {
     let text = std::str::from_utf8(word).ok()?;
     if let Ok(value) = text.parse() {
         return Some(value);

@@ -3,15 +3,24 @@
 use crate::dem::archive;
 use crate::dem::fault::{DemError, Fault};
 use crate::dem::raster::Raster;
-use crate::dem::{ascii, bt, geotiff, hgt, png};
+use crate::dem::raw::{self, RawLayout};
+use crate::dem::rgb_png::HeightEncoding;
+use crate::dem::{ascii, bt, dted, ehdr, envi, geotiff, hgt, png, surfer, terragen, usgs, xyz};
 use crate::geom::crs::Crs;
 
 /// What the caller knows of a file beyond its bytes.
 pub struct Hints<'a> {
-    /// Metres per grey value of a PNG; a PNG is refused without it, other formats do not look at it.
+    /// Metres per grey value of a PNG, which is refused without it, or per value of a RAW file. Default 1 there; other
+    /// formats do not look at it.
     pub png_height_scale: Option<f64>,
-    /// Elevation in metres of grey value 0. Default 0.
+    /// Elevation in metres of value 0. Default 0.
     pub png_height_offset: Option<f64>,
+    /// What the colours of a PNG mean; a colour PNG is refused without it.
+    pub height_encoding: Option<HeightEncoding>,
+    /// That the file is RAW, and how it is laid out.
+    pub raw: Option<RawLayout>,
+    /// What heights are counted from, in place of what the file says.
+    pub vertical_datum: Option<String>,
     /// Distance in metres between samples of a file without georeference; its south-west sample then stands
     /// at (0, 0). Files with a georeference keep theirs.
     pub cell: Option<f64>,
@@ -24,7 +33,16 @@ pub struct Hints<'a> {
 
 impl Default for Hints<'_> {
     fn default() -> Self {
-        Self { png_height_scale: None, png_height_offset: None, cell: None, crs: None, companions: &|_| None }
+        Self {
+            png_height_scale: None,
+            png_height_offset: None,
+            height_encoding: None,
+            raw: None,
+            vertical_datum: None,
+            cell: None,
+            crs: None,
+            companions: &|_| None,
+        }
     }
 }
 
@@ -66,6 +84,31 @@ impl Source<'_> {
         Crs::parse(&String::from_utf8_lossy(&bytes)).map(Some).map_err(Fault::Crs)
     }
 
+    /// The content of the `.hdr` beside the file: `a.hdr` for `a.bil`, or `a.img.hdr` for `a.img`.
+    pub fn header(&self) -> Option<Vec<u8>> {
+        self.companion("hdr").or_else(|| (self.hints.companions)(&format!("{}.hdr", self.name)))
+    }
+
+    /// The hinted metres per value, checked.
+    pub fn height_scale(&self) -> Result<Option<f64>, Fault> {
+        match self.hints.png_height_scale {
+            Some(scale) if !(scale.is_finite() && scale != 0.0) => Err(Fault::Hint {
+                what: "height_scale",
+                value: scale,
+                wanted: "a finite number other than 0",
+            }),
+            scale => Ok(scale),
+        }
+    }
+
+    /// The hinted height of value 0, checked; 0 where there is none.
+    pub fn height_offset(&self) -> Result<f64, Fault> {
+        match self.hints.png_height_offset.unwrap_or(0.0) {
+            offset if offset.is_finite() => Ok(offset),
+            offset => Err(Fault::Hint { what: "height_offset", value: offset, wanted: "a finite number" }),
+        }
+    }
+
     /// The hinted distance between samples, checked.
     pub fn cell(&self) -> Result<Option<f64>, Fault> {
         match self.hints.cell {
@@ -84,7 +127,12 @@ impl Source<'_> {
 /// # Errors
 /// [`DemError`] with the name and what was wrong; an unknown format lists what can be read.
 pub fn read(name: &str, bytes: &[u8], hints: &Hints) -> Result<Raster, DemError> {
-    read_source(&Source { name, bytes, hints }).map_err(|fault| DemError { name: name.into(), fault })
+    let mut raster =
+        read_source(&Source { name, bytes, hints }).map_err(|fault| DemError { name: name.into(), fault })?;
+    if hints.vertical_datum.is_some() {
+        raster.vertical_datum.clone_from(&hints.vertical_datum);
+    }
+    Ok(raster)
 }
 
 fn read_source(source: &Source) -> Result<Raster, Fault> {
@@ -95,25 +143,60 @@ fn read_source(source: &Source) -> Result<Raster, Fault> {
     if archive::is_zip(bytes) {
         return read_zip(source);
     }
-    if geotiff::recognises(bytes) {
-        return geotiff::read(source);
+    if source.extension() == "hdr" {
+        return Err(Fault::UnknownFormat {
+            found: "it is the header of a file beside it: name that one".into(),
+        });
     }
-    if png::recognises(bytes) {
-        return png::read(source);
+    if let Some(layout) = &source.hints.raw {
+        return raw::read(source, layout);
     }
-    if bt::recognises(bytes) {
-        return bt::read(source);
+    match FORMATS.iter().find(|(recognises, _)| recognises(bytes)) {
+        Some((_, read)) => read(source),
+        None => read_by_name(source),
     }
-    if ascii::recognises(bytes) {
-        return ascii::read(source);
+}
+
+/// Whether content is that of a format.
+type Recognises = fn(&[u8]) -> bool;
+
+/// Reads content of a format.
+type Reads = fn(&Source) -> Result<Raster, Fault>;
+
+/// The formats whose content says what they are.
+const FORMATS: [(Recognises, Reads); 8] = [
+    (geotiff::recognises, geotiff::read),
+    (png::recognises, png::read),
+    (bt::recognises, bt::read),
+    (ascii::recognises, ascii::read),
+    (dted::recognises, dted::read),
+    (terragen::recognises, terragen::read),
+    (surfer::recognises, surfer::read),
+    (usgs::recognises, usgs::read),
+];
+
+/// Reads content that does not say what it is: by the header beside it, or else by its extension.
+fn read_by_name(source: &Source) -> Result<Raster, Fault> {
+    let extension = source.extension();
+    // Not for files that have a meaning without one: an .hgt beside a stray .hdr is still a tile.
+    let header = if extension == "hgt" { None } else { source.header() };
+    match &header {
+        Some(header) if envi::is_header(header) => return envi::read(source, header),
+        Some(header) if ehdr::is_header(header) => return ehdr::read(source, header),
+        _ => {}
     }
-    match source.extension().as_str() {
+    match extension.as_str() {
         "hgt" => hgt::read(source),
         "tif" | "tiff" => Err(Fault::broken("GeoTIFF", "it does not start as a TIFF file does")),
         "asc" => Err(Fault::broken("ESRI ASCII grid", "it does not start with ncols")),
         "bt" => Err(Fault::broken("BT terrain", "it does not start with 'binterr1.' and a digit")),
         "png" => Err(Fault::broken("PNG", "it does not start as a PNG file does")),
-        extension => Err(Fault::UnknownFormat { found: describe(bytes, extension) }),
+        "ter" => Err(Fault::broken("Terragen terrain", "it does not start with TERRAGENTERRAIN")),
+        "dt0" | "dt1" | "dt2" => Err(Fault::broken("DTED", "it does not start with UHL1")),
+        "raw" | "r16" if header.is_none() => Err(Fault::NoRawLayout),
+        text if xyz::EXTENSIONS.contains(&text) => xyz::read(source),
+        grid if ehdr::EXTENSIONS.contains(&grid) => Err(Fault::NoHeader { format: "ESRI binary grid" }),
+        extension => Err(Fault::UnknownFormat { found: describe(source.bytes, extension) }),
     }
 }
 
@@ -136,16 +219,13 @@ fn read_zip(source: &Source) -> Result<Raster, Fault> {
 
 /// What an unknown file seems to be.
 fn describe(bytes: &[u8], extension: &str) -> String {
-    const KNOWN: [(&[u8], &str); 9] = [
+    const KNOWN: [(&[u8], &str); 6] = [
         (b"SQLite format 3", "it is an SQLite database, perhaps a GeoPackage"),
         (b"EHFA_HEADER_TAG", "it is an Erdas Imagine file"),
-        (b"TERRAGEN", "it is a Terragen terrain"),
-        (b"DSRB", "it is a Surfer 7 grid"),
-        (b"DSBB", "it is a Surfer 6 grid"),
-        (b"DSAA", "it is a Surfer text grid"),
-        (b"UHL1", "it is DTED"),
         (b"\xff\xd8\xff", "it is a JPEG picture"),
         (b"\x89HDF", "it is an HDF 5 or NetCDF file"),
+        (b"CDF", "it is a NetCDF file"),
+        (b"LASF", "it is a point cloud, of which `sandtable dem grid` makes a grid"),
     ];
     let found = KNOWN.iter().find(|(start, _)| bytes.starts_with(start));
     match (found, bytes.is_empty(), extension) {
@@ -172,10 +252,13 @@ mod tests {
     fn an_unknown_file_is_refused_with_what_it_is_and_what_is_read() {
         let said =
             |name: &str, bytes: &[u8]| read(name, bytes, &Hints::default()).expect_err("refused").to_string();
-        assert!(said("a/b.ter", b"TERRAGENTERRAIN ").contains("Terragen"));
-        for wanted in ["x.xyz", ".xyz is not read", "GeoTIFF", ".asc", ".png", ".bt", ".hgt"] {
-            assert!(said("x.xyz", b"1 2 3").contains(wanted), "{wanted}");
+        assert!(said("a/b.las", b"LASF").contains("dem grid"));
+        for wanted in ["x.adf", ".adf is not read", "GeoTIFF", ".asc", ".png", ".bt", ".hgt", ".dem", ".bil"]
+        {
+            assert!(said("x.adf", b"1 2 3").contains(wanted), "{wanted}");
         }
+        assert!(said("x.hdr", b"NROWS 3\n").contains("name that one"));
+        assert!(said("x.raw", b"123").contains("--raw"));
         assert!(said("x", b"").contains("empty"));
     }
 

@@ -39,6 +39,7 @@ pub fn load(document: &Document, assets: &Assets) -> Result<LoadedGround, Diagno
         cell: value(&terrain.cell),
         crs: parse_crs(document, terrain.crs.as_ref())?,
         companions: &companions,
+        ..Hints::default()
     };
     let source = read::read(dem.get_ref(), &bytes, &hints).map_err(|error| wrong(error.to_string()))?;
     let target = parse_crs(document, document.crs.as_ref())?;
