@@ -83,6 +83,14 @@ impl Samples {
         }
     }
 
+    /// Puts `value`, NaN for no data, at `index`; nothing beyond the end.
+    pub(crate) fn set(&mut self, index: usize, value: f64) {
+        match self {
+            Self::F32(values) => values.get_mut(index).map_or((), |old| *old = value as f32),
+            Self::F64(values) => values.get_mut(index).map_or((), |old| *old = value),
+        }
+    }
+
     /// These values times `factor` plus `offset`, in 64 bits; unchanged where that changes nothing.
     pub(crate) fn scaled(self, factor: f64, offset: f64) -> Self {
         if factor == 1.0 && offset == 0.0 {
