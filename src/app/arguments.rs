@@ -136,6 +136,7 @@ pub struct InfoOptions {
 
 /// `dem info`.
 #[derive(Debug, Args)]
+#[command(after_help = FOLDER_HELP)]
 pub struct DemInfoOptions {
     /// The file and the form of the answer.
     #[command(flatten)]
@@ -144,6 +145,12 @@ pub struct DemInfoOptions {
     #[command(flatten)]
     pub heights: GreyHeights,
 }
+
+/// What the help of a command that reads elevation says of folders.
+pub const FOLDER_HELP: &str = "\
+Where an elevation file is wanted a folder may be named: the elevation files in it, sorted by name, are then tiles of
+one raster and are joined. Of values that tiles share the first tile's is kept; grey or colour pictures, tables and RAW
+files in it are passed over.";
 
 /// What an elevation file does not say of its heights: what grey values and colours mean in metres, and how samples
 /// without a header are laid out.

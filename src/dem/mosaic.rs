@@ -17,6 +17,9 @@ use crate::geom::crs::Crs;
 /// How far, in cells, a tile's samples may lie from the places of the first tile's grid.
 pub const ALIGNMENT: f64 = 1e-3;
 
+/// The most samples of all tiles together: twice a raster's, since tiles overlap.
+const MOST_OF_ALL: u64 = 2 * MOST_SAMPLES;
+
 /// Tiles joined to one raster, and what was found in joining.
 #[derive(Clone, Debug)]
 pub struct Mosaic {
@@ -35,6 +38,10 @@ pub struct Mosaic {
 }
 
 impl Mosaic {
+    fn of_one(raster: Raster) -> Self {
+        Self { raster, tiles: 1, overlaps: 0, differing: 0, greatest_difference: 0.0, gaps: 0 }
+    }
+
     /// What a user should know of the joining, in one line.
     pub fn note(&self) -> String {
         let mut note = format!("{} tiles joined; {} samples are shared", self.tiles, self.overlaps);
@@ -78,6 +85,11 @@ pub enum MosaicError {
         /// By how many cells, from −0.5 to 0.5.
         off: DVec2,
     },
+    /// The tiles hold more samples together than are taken.
+    TooMany {
+        /// How many the tiles up to the one too many hold.
+        samples: u64,
+    },
     /// The rectangle around all tiles has more samples than are taken.
     TooLarge {
         /// Samples per row.
@@ -113,6 +125,11 @@ impl MosaicError {
                 off.x,
                 off.y
             ),
+            Self::TooMany { samples } => {
+                format!(
+                    "the tiles hold {samples} samples, more than the {MOST_OF_ALL} that are taken; join fewer"
+                )
+            }
             Self::TooLarge { width, height } => format!(
                 "the tiles span {width} x {height} samples, more than the {MOST_SAMPLES} that are taken; join fewer"
             ),
@@ -128,6 +145,15 @@ impl std::fmt::Display for MosaicError {
 
 impl std::error::Error for MosaicError {}
 
+/// Whether the tiles read so far are no more than can be joined; for asking before the next is read.
+///
+/// # Errors
+/// [`MosaicError::TooMany`].
+pub fn check_total(tiles: &[Raster]) -> Result<(), MosaicError> {
+    let samples = tiles.iter().map(|tile| tile.samples.len() as u64).sum();
+    if samples > MOST_OF_ALL { Err(MosaicError::TooMany { samples }) } else { Ok(()) }
+}
+
 /// Joins `tiles`, given in the order in which they win.
 ///
 /// One tile is returned as it is. The mosaic's format, stored type and no-data value are the first tile's; its
@@ -136,11 +162,11 @@ impl std::error::Error for MosaicError {}
 /// # Errors
 /// [`MosaicError`]; nothing is allocated before all tiles were found alike.
 pub fn mosaic(tiles: Vec<Raster>) -> Result<Mosaic, MosaicError> {
+    let tiles = match <[Raster; 1]>::try_from(tiles) {
+        Ok([raster]) => return Ok(Mosaic::of_one(raster)),
+        Err(tiles) => tiles,
+    };
     let first = tiles.first().ok_or(MosaicError::Empty)?;
-    if tiles.len() == 1 {
-        let raster = first.clone();
-        return Ok(Mosaic { raster, tiles: 1, overlaps: 0, differing: 0, greatest_difference: 0.0, gaps: 0 });
-    }
     for (index, tile) in tiles.iter().enumerate() {
         alike(first, tile, index)?;
     }

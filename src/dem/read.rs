@@ -46,6 +46,19 @@ impl Default for Hints<'_> {
     }
 }
 
+/// The ends of names of files that are taken for elevation where a folder of tiles is read. Names that pictures and
+/// tables go by as well are not among them.
+const TILE_NAMES: [&str; 18] = [
+    ".tif", ".tiff", ".asc", ".hgt", ".hgt.zip", ".hgt.gz", ".bt", ".bt.gz", ".btz", ".dem", ".dt0", ".dt1",
+    ".dt2", ".flt", ".bil", ".ter", ".grd", ".xyz",
+];
+
+/// Whether a file of this name in a folder of tiles is one of them, as far as its name tells.
+pub fn is_tile_name(name: &str) -> bool {
+    let lower = name.to_ascii_lowercase();
+    !lower.starts_with('.') && TILE_NAMES.iter().any(|end| lower.ends_with(end))
+}
+
 /// A file while it is read: its name, bytes and hints.
 pub(crate) struct Source<'a> {
     /// The name as given, for the extension and the companions.

@@ -220,7 +220,6 @@ fn heights_7(grid: &Section7, data: &[u8]) -> Result<Grid, Fault> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::dem::read::{Hints, read};
 
     fn binary_6(heights: &[f32]) -> Vec<u8> {
