@@ -9,6 +9,7 @@ use crate::dem::{ascii, bt, dted, ehdr, envi, geotiff, hgt, png, surfer, terrage
 use crate::geom::crs::Crs;
 
 /// What the caller knows of a file beyond its bytes.
+#[derive(Clone)]
 pub struct Hints<'a> {
     /// Metres per grey value of a PNG, which is refused without it, or per value of a RAW file. Default 1 there; other
     /// formats do not look at it.
@@ -46,16 +47,16 @@ impl Default for Hints<'_> {
     }
 }
 
-/// The ends of names of files that are taken for elevation where a folder of tiles is read. Names that pictures and
+/// The ends of names of files that are taken for elevation in a folder of tiles or an archive. Names that pictures and
 /// tables go by as well are not among them.
 const TILE_NAMES: [&str; 18] = [
     ".tif", ".tiff", ".asc", ".hgt", ".hgt.zip", ".hgt.gz", ".bt", ".bt.gz", ".btz", ".dem", ".dt0", ".dt1",
     ".dt2", ".flt", ".bil", ".ter", ".grd", ".xyz",
 ];
 
-/// Whether a file of this name in a folder of tiles is one of them, as far as its name tells.
+/// Whether a file of this name in a folder of tiles or an archive is one of them, as far as its name tells.
 pub fn is_tile_name(name: &str) -> bool {
-    let lower = name.to_ascii_lowercase();
+    let lower = name.rsplit(['/', '\\']).next().unwrap_or(name).to_ascii_lowercase();
     !lower.starts_with('.') && TILE_NAMES.iter().any(|end| lower.ends_with(end))
 }
 
@@ -223,11 +224,21 @@ fn read_gzip(source: &Source) -> Result<Raster, Fault> {
     read_source(&Source { name: &inner, bytes: &content, hints: source.hints })
 }
 
+/// Reads the first elevation file in an archive, with its companions there.
 fn read_zip(source: &Source) -> Result<Raster, Fault> {
-    match archive::unzip_first(source.bytes, ".hgt")? {
-        Some((name, content)) => hgt::read(&Source { name: &name, bytes: &content, hints: source.hints }),
-        None => Err(Fault::UnknownFormat { found: "it is a zip archive without an .hgt tile in it".into() }),
+    let Some((name, content)) = archive::unzip_first(source.bytes, is_tile_name)? else {
+        return Err(Fault::UnknownFormat {
+            found: "it is a zip archive without an .hgt tile or another elevation file in it".into(),
+        });
+    };
+    if archive::is_gzip(&content) || archive::is_zip(&content) {
+        return Err(Fault::UnknownFormat { found: "it is packed twice".into() });
     }
+    let beside = |wanted: &str| {
+        archive::unzip_first(source.bytes, |name| name == wanted).ok().flatten().map(|(_, content)| content)
+    };
+    let hints = Hints { companions: &beside, ..source.hints.clone() };
+    read_source(&Source { name: &name, bytes: &content, hints: &hints })
 }
 
 /// What an unknown file seems to be.
@@ -273,6 +284,33 @@ mod tests {
         assert!(said("x.hdr", b"NROWS 3\n").contains("name that one"));
         assert!(said("x.raw", b"123").contains("--raw"));
         assert!(said("x", b"").contains("empty"));
+    }
+
+    /// An archive of stored members.
+    fn zip(members: &[(&str, &[u8])]) -> Vec<u8> {
+        let (mut bytes, mut directory) = (Vec::new(), Vec::new());
+        for (name, content) in members {
+            let (at, size) = ((bytes.len() as u32).to_le_bytes(), (content.len() as u32).to_le_bytes());
+            let length = (name.len() as u16).to_le_bytes();
+            bytes.extend([&b"PK\x03\x04"[..], &[0; 22], &length, &[0; 2], name.as_bytes(), content].concat());
+            directory.extend([&b"PK\x01\x02"[..], &[0; 16], &size, &size, &length, &[0; 12], &at].concat());
+            directory.extend(name.as_bytes());
+        }
+        let (start, count) = ((bytes.len() as u32).to_le_bytes(), (members.len() as u16).to_le_bytes());
+        let end = [&b"PK\x05\x06\0\0\0\0"[..], &count, &count, &[0; 4], &start, &[0; 2]].concat();
+        [bytes, directory, end].concat()
+    }
+
+    #[test]
+    fn the_elevation_file_in_an_archive_is_read_with_its_companions() {
+        let grid = b"ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n5\n";
+        let archive = zip(&[("readme.txt", b"1 2 3"), ("d/a.asc", grid), ("d/a.prj", b"EPSG:32612")]);
+        let raster = read("a.zip", &archive, &Hints::default()).expect("a grid in it");
+        assert_eq!(raster.crs.and_then(|crs| crs.epsg()), Some(32612));
+        let nested = zip(&[("a.hgt.zip", &archive)]);
+        assert!(read("b.zip", &nested, &Hints::default()).expect_err("nested").to_string().contains("twice"));
+        let without = zip(&[("readme.txt", b"1 2 3")]);
+        assert!(read("c.zip", &without, &Hints::default()).expect_err("none").to_string().contains(".hgt"));
     }
 
     #[test]
