@@ -156,7 +156,7 @@ files in it are passed over.";
 /// without a header are laid out.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct GreyHeights {
-    /// Metres per grey value of a PNG, which needs it, or per value of a RAW file [default there: 1]
+    /// Metres per grey value of a PNG, which needs it, or of a RAW file [default: 1]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub height_scale: Option<f64>,
     /// Height in metres of value 0 of a grey PNG or a RAW file [default: 0]
@@ -165,8 +165,7 @@ pub struct GreyHeights {
     /// What the colours of a PNG mean: terrain-rgb (Mapbox) or terrarium (Mapzen)
     #[arg(long, value_name = "ENCODING", conflicts_with_all = ["height_scale", "height_offset"])]
     pub height_encoding: Option<HeightEncoding>,
-    /// That the file is RAW, and what it holds: columns x rows, type and byte order, as in 1201x1201:i16be; where
-    /// needed with :skip=BYTES and :nodata=VALUE
+    /// That the file is RAW, and its layout: 1201x1201:i16be[:skip=BYTES][:nodata=VALUE]
     #[arg(long, value_name = "WxH:TYPE")]
     pub raw: Option<RawLayout>,
 }

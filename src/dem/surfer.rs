@@ -101,7 +101,9 @@ fn text(bytes: &[u8]) -> Result<Grid, Fault> {
     };
     let (columns, rows) = (head("the number of columns")?, head("the number of rows")?);
     let [x0, x1, y0, y1] = [head("x from")?, head("x to")?, head("y from")?, head("y to")?];
-    (head("z from")?, head("z to")?);
+    for unused in ["z from", "z to"] {
+        head(unused)?;
+    }
     let whole = |value: f64| if value.fract() == 0.0 && value >= 0.0 { value as u64 } else { 0 };
     let size = (whole(columns), whole(rows));
     let count = check_size(size, 2, (words.rest().len() + 1, 1))?;

@@ -54,7 +54,8 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
 }
 
 fn last_row_first(samples: &Samples, width: usize) -> Samples {
-    let turned = |index: usize| samples.get(samples.len() - width - index + 2 * (index % width)) as f32;
+    let last = samples.len() / width - 1;
+    let turned = |index: usize| samples.get((last - index / width) * width + index % width) as f32;
     Samples::F32((0..samples.len()).map(turned).collect())
 }
 

@@ -161,7 +161,7 @@ impl Survey {
         if self.points == 0 {
             return Err(Fault::broken(FORMAT, "it holds no point"));
         }
-        if !(self.step.min_element() > 0.0) {
+        if self.step.min_element() == 0.0 {
             return Err(scattered("all of its points stand in one line".into()));
         }
         let sides = ((self.max - self.min) / self.step).round();
