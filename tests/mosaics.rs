@@ -133,8 +133,8 @@ fn scene(scratch: &scratch::Scratch, terrain: &str) -> Result<(Vec<String>, f64,
     let tile = |west: u32, heights: &str| {
         format!("ncols 3\nnrows 3\nxllcorner {west}\nyllcorner 0\ncellsize 10\n{heights}\n")
     };
-    scratch.write("s/a.asc", &tile(500_000, "1 2 3 1 2 3 1 2 3"));
-    scratch.write("s/b.asc", &tile(500_020, "3 4 5 3 -9999 5 4 4 5"));
+    scratch.write("s/a.asc", tile(500_000, "1 2 3 1 2 3 1 2 3"));
+    scratch.write("s/b.asc", tile(500_020, "3 4 5 3 -9999 5 4 4 5"));
     scratch.write("s/a.toml", terrain);
     let path = scratch.folder().join("s/a.toml");
     let document = parse_bytes("a.toml", terrain.as_bytes()).map_err(|error| error.to_string())?;

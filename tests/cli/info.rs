@@ -119,8 +119,8 @@ fn a_folder_of_tiles_is_one_raster() {
     let tile = |west: u32, heights: &str| {
         format!("ncols 2\nnrows 1\nxllcorner {west}\nyllcorner 0\ncellsize 10\n{heights}\n")
     };
-    scratch.write("tiles/a.asc", &tile(0, "1 2"));
-    scratch.write("tiles/b.asc", &tile(10, "2.5 3"));
+    scratch.write("tiles/a.asc", tile(0, "1 2"));
+    scratch.write("tiles/b.asc", tile(10, "2.5 3"));
     scratch.write("tiles/readme.txt", "not a tile");
     let out = run_in(scratch.folder(), &["dem", "info", "tiles", "--json"]).ok();
     let about: Value = serde_json::from_str(&out).expect("JSON");
@@ -130,7 +130,7 @@ fn a_folder_of_tiles_is_one_raster() {
         "{about}"
     );
 
-    scratch.write("tiles/c.asc", &tile(23, "4 5"));
+    scratch.write("tiles/c.asc", tile(23, "4 5"));
     let refused = run_in(scratch.folder(), &["dem", "info", "tiles"]).failed(1);
     assert!(refused.contains("a.asc and c.asc") && refused.contains("(0.3000, 0.0000)"), "{refused}");
     scratch.write("empty/readme.txt", "nothing");
@@ -142,7 +142,7 @@ fn a_folder_of_tiles_is_one_raster() {
 fn dem_info_tells_type_datum_unit_and_voids() {
     let scratch = Scratch::new();
     let heights = "1 1 1\n1 -9999 1\n1 1 1\n";
-    scratch.write("a.asc", &format!("ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n{heights}"));
+    scratch.write("a.asc", format!("ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n{heights}"));
     let out = run_in(scratch.folder(), &["dem", "info", "a.asc", "--json"]).ok();
     let about: Value = serde_json::from_str(&out).expect("JSON");
     assert_eq!((&about["type"], &about["enclosed_voids"]), (&Value::from("Int32"), &Value::from(1)));
