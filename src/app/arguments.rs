@@ -165,7 +165,7 @@ pub struct GreyHeights {
     /// What the colours of a PNG mean: terrain-rgb (Mapbox) or terrarium (Mapzen)
     #[arg(long, value_name = "ENCODING", conflicts_with_all = ["height_scale", "height_offset"])]
     pub height_encoding: Option<HeightEncoding>,
-    /// That the file is RAW, and its layout: 1201x1201:i16be[:skip=BYTES][:nodata=VALUE]
+    /// That the file is RAW, and its layout: 1201x1201:i16be, then :skip=BYTES and :nodata=VALUE
     #[arg(long, value_name = "WxH:TYPE")]
     pub raw: Option<RawLayout>,
 }
