@@ -177,6 +177,7 @@ fn displayed_heights_are_those_of_the_drawn_triangles_and_ground_heights_never_c
     let lattice = hills();
     let raster = Raster {
         driver: "AAIGrid",
+        data_type: "Float32",
         width: COLUMNS,
         height: ROWS,
         samples: Samples::F32(lattice.heights().to_vec()),

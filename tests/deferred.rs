@@ -225,6 +225,7 @@ fn raster_of(lattice: &Lattice) -> Raster {
     let axes = DMat2::from_diagonal(lattice.cell() * DVec2::new(1.0, -1.0));
     Raster {
         driver: "test",
+        data_type: "Float32",
         width: columns,
         height: rows,
         samples: Samples::F32(samples.collect()),

@@ -28,6 +28,7 @@ fn raster(width: u32, samples: Samples, crs: Option<&str>) -> Raster {
         if in_degrees { (0.25, DVec2::new(7.0, 44.0)) } else { (12.5, DVec2::new(5e5, 4e6)) };
     Raster {
         driver: "test",
+        data_type: "Float32",
         width,
         height,
         samples,

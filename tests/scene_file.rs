@@ -128,7 +128,7 @@ fn a_scene_with_every_key_is_read_completely() {
 fn the_ground_and_its_look_are_read() {
     let document = read(COMPLETE).expect("a valid scene");
     let terrain = &document.terrain;
-    assert_eq!(terrain.dem.get_ref(), "data/hill.tif");
+    assert_eq!(*terrain.dem.get_ref(), ["data/hill.tif"]);
     let number = |value: &Option<toml::Spanned<f64>>| value.as_ref().map(|value| *value.get_ref());
     assert_eq!(number(&terrain.height_scale), Some(0.5));
     assert_eq!(number(&terrain.height_offset), Some(-10.0));

@@ -32,7 +32,7 @@ pub struct Legend {
     pub vertical_exaggeration: f32,
     /// Height between contour lines in metres, where there are any.
     pub contour_interval: Option<f32>,
-    /// What heights count from, for instance `NAVD88`.
+    /// A line that says what heights count from, for instance `Heights: NAVD88`.
     pub vertical_datum: Option<String>,
 }
 

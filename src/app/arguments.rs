@@ -15,6 +15,8 @@ use crate::app::los::LosOptions;
 use crate::app::profile::ProfileOptions;
 use crate::app::serve::ServeOptions;
 use crate::app::viewshed::ViewshedOptions;
+use crate::dem::raw::RawLayout;
+use crate::dem::rgb_png::HeightEncoding;
 use crate::terrain::query::Interpolation;
 
 /// Elevation models and what stands on them, made into scenes, and scenes into pictures.
@@ -135,24 +137,38 @@ pub struct InfoOptions {
 
 /// `dem info`.
 #[derive(Debug, Args)]
+#[command(after_help = FOLDER_HELP)]
 pub struct DemInfoOptions {
     /// The file and the form of the answer.
     #[command(flatten)]
     pub info: InfoOptions,
     /// What grey values mean.
     #[command(flatten)]
-    pub heights: GreyHeights,
+    pub heights: StatedHeights,
 }
 
-/// What the grey values of a picture mean in metres.
-#[derive(Clone, Copy, Debug, Args)]
-pub struct GreyHeights {
-    /// Metres per grey value of a PNG; needed for one
+/// What the help of a command that reads elevation says of folders.
+pub const FOLDER_HELP: &str = "\
+Where an elevation file is wanted a folder may be named: the elevation files in it, sorted by name, are then tiles of
+one raster and are joined. Of values that tiles share the first tile's is kept; grey or colour pictures, tables and RAW
+files in it are passed over.";
+
+/// What an elevation file does not say of its heights: what grey values and colours mean in metres, and how samples
+/// without a header are laid out.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub struct StatedHeights {
+    /// Metres per grey value of a PNG, which needs it, or of a RAW file [default: 1]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub height_scale: Option<f64>,
-    /// Height in metres of grey value 0 of a PNG [default: 0]
+    /// Height in metres of value 0 of a grey PNG or a RAW file [default: 0]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub height_offset: Option<f64>,
+    /// What the colours of a PNG mean: terrain-rgb (Mapbox) or terrarium (Mapzen)
+    #[arg(long, value_name = "ENCODING", conflicts_with_all = ["height_scale", "height_offset"])]
+    pub height_encoding: Option<HeightEncoding>,
+    /// That the file is RAW, and its layout: 1201x1201:i16be, then :skip=BYTES and :nodata=VALUE
+    #[arg(long, value_name = "WxH:TYPE")]
+    pub raw: Option<RawLayout>,
 }
 
 /// `mesh`.
@@ -178,7 +194,7 @@ pub struct MeshOptions {
     pub cell: Option<f64>,
     /// What grey values mean.
     #[command(flatten)]
-    pub heights: GreyHeights,
+    pub heights: StatedHeights,
 }
 
 /// `lod`.
@@ -213,7 +229,7 @@ pub struct LodOptions {
     pub json: bool,
     /// What grey values mean.
     #[command(flatten)]
-    pub heights: GreyHeights,
+    pub heights: StatedHeights,
 }
 
 fn metres_from_zero(text: &str) -> Result<f64, String> {

@@ -7,12 +7,13 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::app::arguments::GreyHeights;
+use crate::app::arguments::StatedHeights;
+use crate::app::dem::{self, StatedPlace};
 use crate::app::failure::Failure;
 use crate::app::progress::Steps;
 use crate::app::{files, output};
 use crate::dem::raster::Raster;
-use crate::dem::read::{self, Hints};
+use crate::dem::voids;
 use crate::dem::warp::WarpError;
 use crate::dem::warp_to::{self, Method, Warped};
 use crate::dem::write::{self, Companion, Format, Written};
@@ -29,9 +30,13 @@ const LARGEST_CELL_DEG: f64 = 1.0;
                   good to some metres; one that needs a grid file is refused."
 )]
 pub struct ConvertOptions {
-    /// The elevation file, and the file to write: .tif, .asc, .bt, .hgt or .png
+    /// The elevation files, tiles of one raster where there are several, and the file to write: .tif, .asc, .bt, .hgt or
+    /// .png
     #[arg(required = true, num_args = 2.., value_names = ["IN", "OUT"])]
     pub files: Vec<PathBuf>,
+    /// Fill voids that samples enclose, with a membrane from their rims; the filled samples are counted
+    #[arg(long)]
+    pub fill_voids: bool,
     /// The system to bring it to, for example EPSG:32616 [default: its own]
     #[arg(long, value_name = "CRS")]
     pub crs: Option<String>,
@@ -43,7 +48,7 @@ pub struct ConvertOptions {
     pub cell: Option<f64>,
     /// What grey values mean.
     #[command(flatten)]
-    pub heights: GreyHeights,
+    pub heights: StatedHeights,
 }
 
 fn above_zero(text: &str) -> Result<f64, String> {
@@ -58,23 +63,28 @@ fn above_zero(text: &str) -> Result<f64, String> {
 /// # Errors
 /// The file cannot be had, read or brought to the system; the output cannot be written or cannot hold it.
 pub fn run(options: &ConvertOptions) -> Result<(), Failure> {
-    let (input, out) = places(options)?;
+    let (inputs, out) = places(options)?;
     let format = format_of(out)?;
-    files::check_file_place(out, input, "this is the elevation file itself; name another to write to")?;
+    for input in inputs {
+        files::check_file_place(out, input, "this is the elevation file itself; name another to write to")?;
+    }
+    let input = inputs[0].as_path();
     let target = parsed("--crs", options.crs.as_deref())?;
     let steps = Steps::default();
     steps.begin("reading");
-    let source = load(input, options)?;
+    let (source, notes) = load(inputs, options)?;
     steps.begin("resampling");
     let Warped { raster, method } = brought(input, &source, target.as_ref(), options.cell)?;
     steps.begin("writing");
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
     let about_out = |error: write::WriteError| Failure::input(format!("{}: {error}", out.display()));
     let written = write::write(&raster, format, &stem).map_err(about_out)?;
-    put(input, out, &written)?;
+    put(inputs, out, &written)?;
     steps.finish();
     let shift = shift(&source, &raster).map_err(|reason| about(input, &reason))?;
-    output::print(&output::text_of(&summary(out, format, &raster, (method, shift), &written)))
+    let mut lines = summary(out, format, &raster, (method, shift), &written);
+    lines.extend(notes.iter().map(|note| format!("  note         {note}")));
+    output::print(&output::text_of(&lines))
 }
 
 fn about(file: &Path, reason: &str) -> Failure {
@@ -82,10 +92,10 @@ fn about(file: &Path, reason: &str) -> Failure {
 }
 
 /// What is read, and what is written.
-fn places(options: &ConvertOptions) -> Result<(&Path, &Path), Failure> {
-    match &options.files[..] {
-        [input, out] => Ok((input, out)),
-        _ => Err(Failure::Usage("several elevation files are not joined; convert one at a time".into())),
+fn places(options: &ConvertOptions) -> Result<(&[PathBuf], &Path), Failure> {
+    match options.files.split_last() {
+        Some((out, inputs @ [_, ..])) => Ok((inputs, out)),
+        _ => Err(Failure::Usage("name an elevation file and the file to write".into())),
     }
 }
 
@@ -104,18 +114,23 @@ fn parsed(option: &str, text: Option<&str>) -> Result<Option<Crs>, Failure> {
     crs.map_err(|error| Failure::Usage(format!("{option}: {error}")))
 }
 
-fn load(input: &Path, options: &ConvertOptions) -> Result<Raster, Failure> {
-    let bytes = files::read(input)?;
-    let beside = files::beside(input);
-    let hints = Hints {
-        png_height_scale: options.heights.height_scale,
-        png_height_offset: options.heights.height_offset,
-        cell: options.cell,
-        crs: parsed("--source-crs", options.source_crs.as_deref())?,
-        companions: &beside,
+/// The raster, and what was done to make it one without voids.
+fn load(inputs: &[PathBuf], options: &ConvertOptions) -> Result<(Raster, Vec<String>), Failure> {
+    let crs = parsed("--source-crs", options.source_crs.as_deref())?;
+    let place = StatedPlace { cell: options.cell, crs };
+    let mut notes = Vec::new();
+    let mut raster = match inputs {
+        [input] => dem::read_raster_placed(input, options.heights, &place)?,
+        tiles => {
+            let mosaic = dem::read_mosaic(tiles, options.heights, &place)?;
+            notes.push(mosaic.note());
+            mosaic.raster
+        }
     };
-    let name = input.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
-    read::read(&name, &bytes, &hints).map_err(|error| about(input, &error.fault.to_string()))
+    if options.fill_voids {
+        notes.push(voids::fill(&mut raster).note());
+    }
+    Ok((raster, notes))
 }
 
 /// The raster in the system and with the cells that are wanted; as it is where none are.
@@ -178,13 +193,15 @@ fn shift(source: &Raster, raster: &Raster) -> Result<Option<String>, String> {
 }
 
 /// Writes the companions, then the file: where it is there, all of it is.
-fn put(input: &Path, out: &Path, written: &Written) -> Result<(), Failure> {
+fn put(inputs: &[PathBuf], out: &Path, written: &Written) -> Result<(), Failure> {
     let places: Vec<(PathBuf, &Companion)> = written
         .companions
         .iter()
         .map(|companion| (out.with_extension(companion.extension), companion))
         .collect();
-    for (place, companion) in &places {
+    for ((place, companion), input) in
+        places.iter().flat_map(|place| inputs.iter().map(move |input| (place, input)))
+    {
         let is_input = "the elevation file is this file; name another to write to";
         files::check_file_place(place, input, is_input)?;
         // A sidecar of the input has its name.

@@ -9,7 +9,7 @@ use std::sync::{Arc, OnceLock};
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::app::arguments::{Access, GreyHeights};
+use crate::app::arguments::{Access, StatedHeights};
 use crate::app::dem::read_raster;
 use crate::app::failure::Failure;
 use crate::app::{ground, load};
@@ -40,7 +40,7 @@ impl Dataset {
     ///
     /// # Errors
     /// It cannot be had or read; the message names it.
-    pub fn open(path: &Path, heights: GreyHeights, access: &Access) -> Result<Self, Failure> {
+    pub fn open(path: &Path, heights: StatedHeights, access: &Access) -> Result<Self, Failure> {
         let name = path.display().to_string();
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(OsStr::new("toml"))) {
             let scene = load::scene(path, access, &|_| ())?;

@@ -49,6 +49,23 @@ pub fn text_name(path: &Path) -> String {
     if path == Path::new("-") { "standard input".into() } else { path.display().to_string() }
 }
 
+/// The files in a folder, sorted by name; folders in it are left out.
+///
+/// # Errors
+/// It cannot be read; the message names it.
+pub fn in_folder(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let wrong = |error: io::Error| Failure::input(format!("{}: {}", folder.display(), describe(&error)));
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).map_err(wrong)? {
+        let path = entry.map_err(wrong)?.path();
+        if path.is_file() {
+            found.push(path);
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
 /// The file beside `path` with another name, if it can be read: a sidecar.
 pub fn beside(path: &Path) -> impl Fn(&str) -> Option<Vec<u8>> + '_ {
     move |name: &str| {

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::app::arguments::GreyHeights;
+use crate::app::arguments::StatedHeights;
 use crate::app::dem::read_raster;
 use crate::app::failure::Failure;
 use crate::dem::raster::Raster;
@@ -16,7 +16,7 @@ use crate::terrain::query::service::HeightService;
 ///
 /// # Errors
 /// The file cannot be had or read, or has no place in metres; the message names it.
-pub fn metric_lattice(path: &Path, heights: GreyHeights) -> Result<Lattice, Failure> {
+pub fn metric_lattice(path: &Path, heights: StatedHeights) -> Result<Lattice, Failure> {
     let raster = read_raster(path, heights)?;
     let wrong = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
     let metric = warp::to_metric(&raster, None).map_err(|error| wrong(explain(&error)))?;

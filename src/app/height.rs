@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use glam::DVec2;
 use serde_json::json;
 
-use crate::app::arguments::{Access, GreyHeights, InterpolationChoice};
+use crate::app::arguments::{Access, InterpolationChoice, StatedHeights};
 use crate::app::dataset::Dataset;
 use crate::app::failure::Failure;
 use crate::app::{files, output};
@@ -45,7 +45,7 @@ pub struct HeightOptions {
     pub json: bool,
     /// What grey values mean.
     #[command(flatten)]
-    pub heights: GreyHeights,
+    pub heights: StatedHeights,
     /// What may be read.
     #[command(flatten)]
     pub access: Access,

@@ -75,6 +75,12 @@ fn legend(scene: &Scene) -> Legend {
         high_m,
         vertical_exaggeration: scene.terrain.exaggeration,
         contour_interval: scene.map.contours.map(|contours| contours.interval_m),
-        vertical_datum: None,
+        vertical_datum: scene
+            .heights
+            .now()
+            .source()
+            .vertical_datum
+            .as_ref()
+            .map(|name| format!("Heights: {name}")),
     }
 }

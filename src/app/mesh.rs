@@ -10,11 +10,11 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use crate::app::arguments::MeshOptions;
+use crate::app::dem::{StatedPlace, read_raster_placed};
 use crate::app::failure::Failure;
 use crate::app::progress::Steps;
 use crate::app::{files, output};
 use crate::dem::raster::Raster;
-use crate::dem::read::{self, Hints};
 use crate::dem::warp::{self, WarpError};
 use crate::geom::crs::Crs;
 use crate::mesh::trimesh::TriMesh;
@@ -85,19 +85,10 @@ struct Ground {
 
 fn load(options: &MeshOptions) -> Result<Ground, Failure> {
     let wrong = |reason: String| about(&options.file, &reason);
-    let bytes = files::read(&options.file)?;
-    let beside = files::beside(&options.file);
     let stated = options.crs.as_deref().map(Crs::parse).transpose();
     let stated = stated.map_err(|error| Failure::Usage(format!("--crs: {error}")))?;
-    let hints = Hints {
-        png_height_scale: options.heights.height_scale,
-        png_height_offset: options.heights.height_offset,
-        cell: options.cell,
-        crs: stated,
-        companions: &beside,
-    };
-    let name = options.file.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
-    let raster = read::read(&name, &bytes, &hints).map_err(|error| wrong(error.fault.to_string()))?;
+    let place = StatedPlace { cell: options.cell, crs: stated };
+    let raster = read_raster_placed(&options.file, options.heights, &place)?;
     let metric = warp::to_metric(&raster, None).map_err(|error| wrong(remedy(&error)))?;
     let lattice = Lattice::from_raster(&metric).map_err(|error| wrong(error.to_string()))?;
     let notes =

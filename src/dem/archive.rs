@@ -1,5 +1,5 @@
-//! Files that arrive compressed: gzip (`.bt.gz`, `.btz`, `.hgt.gz`) and the zip archives SRTM tiles are
-//! handed out in.
+//! Files that arrive compressed: gzip (`.bt.gz`, `.btz`, `.hgt.gz`) and the zip archives that SRTM tiles and
+//! national grids are handed out in.
 
 use std::io::Read;
 
@@ -39,11 +39,14 @@ fn inflate(decoder: impl Read, packed: usize, format: &'static str) -> Result<Ve
     Ok(unpacked)
 }
 
-/// The first member of a zip archive whose name ends in `extension` (in any case), with its name.
+/// The first member of a zip archive whose name is `wanted`, with its name.
 ///
 /// `None` where there is no such member. Members are found by the central directory (APPNOTE 6.3, sections
 /// 4.3.12 and 4.3.16); stored and deflated ones are read.
-pub(crate) fn unzip_first(bytes: &[u8], extension: &str) -> Result<Option<(String, Vec<u8>)>, Fault> {
+pub(crate) fn unzip_first(
+    bytes: &[u8],
+    wanted: impl Fn(&str) -> bool,
+) -> Result<Option<(String, Vec<u8>)>, Fault> {
     const FORMAT: &str = "zip archive";
     let cut = || Fault::broken(FORMAT, "it ends before its directory does");
     let end = find_end(bytes).ok_or_else(cut)?;
@@ -52,7 +55,7 @@ pub(crate) fn unzip_first(bytes: &[u8], extension: &str) -> Result<Option<(Strin
     for _ in 0..members {
         let member = Member::at(bytes, at).ok_or_else(cut)?;
         at = member.next;
-        if member.name.to_ascii_lowercase().ends_with(extension) {
+        if wanted(&member.name) {
             let data = member.data(bytes).ok_or_else(cut)?;
             let content = match member.method {
                 0 => data.to_vec(),
@@ -131,7 +134,7 @@ mod tests {
     fn an_archive_cut_anywhere_is_an_error_or_empty() {
         let zip = b"PK\x03\x04 nothing PK\x05\x06\0\0\0\0\x01\0\x01\0\0\0\0\0\0\0\0\0\0\0";
         for end in 0..=zip.len() {
-            assert!(!matches!(unzip_first(&zip[..end], ".hgt"), Ok(Some(_))));
+            assert!(!matches!(unzip_first(&zip[..end], |_| true), Ok(Some(_))));
         }
     }
 }

@@ -39,18 +39,19 @@ pub(crate) fn recognises(bytes: &[u8]) -> bool {
 /// Reads a grid; its coordinate system comes from a `.prj` companion.
 pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     let bytes = source.bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(source.bytes);
-    let mut words = Words { bytes, at: 0 };
+    let mut words = Words::new(bytes);
     let header = Header::read(&mut words)?;
     let (width, height) = (header.size("ncols")?, header.size("nrows")?);
     // Every sample needs a digit, and all but the last a blank.
-    let room = bytes.len() - words.at;
+    let room = words.rest().len();
     let count = check_size((width, height), 2, (room + 1, 1))?;
     let cell = header.cell()?;
     let corner = header.south_west(cell)?;
     let nodata = header.get("nodata_value");
-    let (values, replaced) = samples(&mut words, count, nodata.unwrap_or(DEFAULT_NODATA))?;
+    let Found { values, replaced, whole } = samples(&mut words, count, nodata.unwrap_or(DEFAULT_NODATA))?;
     Ok(Raster {
         driver: "AAIGrid",
+        data_type: if whole { "Int32" } else { "Float32" },
         width: width as u32,
         height: height as u32,
         samples: Samples::F32(values),
@@ -63,10 +64,18 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     })
 }
 
-/// The samples, and whether any of them was no data.
-fn samples(words: &mut Words, count: usize, nodata: f64) -> Result<(Vec<f32>, bool), Fault> {
+/// The samples as the text holds them.
+struct Found {
+    values: Vec<f32>,
+    /// Whether any of them was no data.
+    replaced: bool,
+    /// Whether all are written as whole numbers.
+    whole: bool,
+}
+
+fn samples(words: &mut Words, count: usize, nodata: f64) -> Result<Found, Fault> {
     let mut values = Vec::with_capacity(count);
-    let mut replaced = false;
+    let (mut replaced, mut whole) = (false, true);
     for word in words {
         if values.len() == count {
             return Err(Fault::broken(
@@ -80,12 +89,13 @@ fn samples(words: &mut Words, count: usize, nodata: f64) -> Result<(Vec<f32>, bo
         })?;
         let hole = value == nodata || !value.is_finite();
         replaced |= hole;
+        whole = whole && word.iter().all(|byte| matches!(byte, b'0'..=b'9' | b'-' | b'+'));
         values.push(if hole { f32::NAN } else { value as f32 });
     }
     if values.len() < count {
         return Err(Fault::broken(FORMAT, format!("it ends after {} of {count} values", values.len())));
     }
-    Ok((values, replaced))
+    Ok(Found { values, replaced, whole })
 }
 
 /// The `key value` pairs.
@@ -155,9 +165,21 @@ impl Header {
 }
 
 /// The words of a text, as bytes.
-struct Words<'a> {
+pub(crate) struct Words<'a> {
     bytes: &'a [u8],
     at: usize,
+}
+
+impl<'a> Words<'a> {
+    /// The words of `bytes`, which blanks, line ends and NULs stand between.
+    pub fn new(bytes: &'a [u8]) -> Self {
+        Self { bytes, at: 0 }
+    }
+
+    /// What has not been read yet.
+    pub fn rest(&self) -> &'a [u8] {
+        &self.bytes[self.at..]
+    }
 }
 
 impl<'a> Iterator for Words<'a> {
@@ -174,7 +196,7 @@ impl<'a> Iterator for Words<'a> {
 }
 
 /// A number, with a decimal point or a single decimal comma; `nan` in any case and GDAL's `-1.#IND` are NaN.
-fn number(word: &[u8]) -> Option<f64> {
+pub(crate) fn number(word: &[u8]) -> Option<f64> {
     let text = std::str::from_utf8(word).ok()?;
     if let Ok(value) = text.parse() {
         return Some(value);

@@ -56,6 +56,7 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     }
     Ok(Raster {
         driver: "BT",
+        data_type: header.value.name(),
         width: header.columns,
         height: header.rows,
         samples: header.samples(data),
@@ -77,6 +78,14 @@ enum Kind {
 }
 
 impl Kind {
+    fn name(self) -> &'static str {
+        match self {
+            Self::I16 => "Int16",
+            Self::I32 => "Int32",
+            Self::F32 => "Float32",
+        }
+    }
+
     fn bytes(self) -> usize {
         if matches!(self, Self::I16) { 2 } else { 4 }
     }

@@ -27,7 +27,7 @@ pub struct DemError {
 pub enum Fault {
     /// Neither the content nor the extension is that of a format that is read.
     #[error(
-        "{found}; elevation is read from GeoTIFF (.tif), ESRI ASCII grid (.asc), 16-bit or 8-bit grey PNG (.png), VTP terrain (.bt, .bt.gz) and SRTM (.hgt, .hgt.zip); convert it, for example with: gdal_translate FILE out.tif"
+        "{found}; elevation is read from GeoTIFF (.tif), ESRI ASCII grid (.asc), ESRI binary grid (.bil, .flt with .hdr), ENVI (.hdr), SRTM (.hgt, .hgt.zip), DTED (.dt0 to .dt2), USGS (.dem), VTP terrain (.bt, .bt.gz), Terragen (.ter), Surfer (.grd), text grids (.xyz), PNG (.png) and RAW with a stated size; convert it, for example with: gdal_translate FILE out.tif"
     )]
     UnknownFormat {
         /// What the file seems to be.
@@ -77,6 +77,22 @@ pub enum Fault {
         "a PNG holds grey values, not metres: state height_scale (metres per grey value) and, where value 0 is not at 0 m, height_offset, under [terrain], or --height-scale and --height-offset on the command line"
     )]
     NoHeightScale,
+    /// A colour picture whose colours may be heights.
+    #[error(
+        "this PNG uses colours, and nothing in it says what they mean: if it is a map tile of heights, state height_encoding = \"terrain-rgb\" (Mapbox) or \"terrarium\" (Mapzen) under [terrain], or --height-encoding on the command line; if not, give the elevation as 16-bit grey, or as a GeoTIFF"
+    )]
+    NoHeightEncoding,
+    /// Samples without a header.
+    #[error(
+        "a RAW file does not say what it holds: state raw = \"1201x1201:i16be\" under [terrain], or --raw 1201x1201:i16be on the command line (columns, rows, type and byte order)"
+    )]
+    NoRawLayout,
+    /// A file that its header, a file beside it, belongs to is missing.
+    #[error("this {format} needs its header, a file of the same name with .hdr, beside it; put it there")]
+    NoHeader {
+        /// The format.
+        format: &'static str,
+    },
     /// A hint that is not usable.
     #[error("{what} is {value}; it must be {wanted}")]
     Hint {

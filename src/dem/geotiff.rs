@@ -94,6 +94,7 @@ pub(crate) fn describe<R: Read + Seek>(
     let metres_per_z = band.metres_per_z.or(tags.keys.metres_per_z()?).unwrap_or(1.0);
     let bare = Raster {
         driver: "GTiff",
+        data_type: storage.data_type(),
         width: storage.width,
         height: storage.height,
         samples: Samples::F32(Vec::new()),

@@ -42,6 +42,7 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     let north_west = DVec2::new(corner.x, corner.y + 1.0);
     Ok(Raster {
         driver: "SRTMHGT",
+        data_type: "Int16",
         width,
         height,
         samples: Samples::F32(source.bytes.chunks_exact(2).map(|pair| value([pair[0], pair[1]])).collect()),

@@ -1,7 +1,7 @@
 //! Grey PNG as a height map: 8 or 16 bits per value, metres by a stated scale and offset.
 //!
 //! The picture's own transparency (a grey value that stands for "nothing", or an alpha channel) is no data.
-//! Colour pictures are refused: what their channels mean differs from maker to maker.
+//! What colours mean differs from maker to maker: they are heights by a stated [`HeightEncoding`], or else refused.
 
 use std::io::Cursor;
 
@@ -11,6 +11,7 @@ use crate::dem::fault::{Fault, bytes_at, check_size};
 use crate::dem::georef;
 use crate::dem::raster::{Raster, Samples};
 use crate::dem::read::Source;
+use crate::dem::rgb_png::HeightEncoding;
 
 const FORMAT: &str = "PNG";
 
@@ -27,17 +28,31 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     let header = Header::read(source.bytes)?;
     let count = check_size(
         (u64::from(header.width), u64::from(header.height)),
-        u64::from(header.bits / 8),
+        u64::from(header.bits / 8).max(1),
         (source.bytes.len(), EXPANSION),
     )?;
-    let (scale, offset) = heights(source)?;
-    let values = decode(source.bytes, count)?;
+    let samples = match (header.is_coloured, source.hints.height_encoding) {
+        (true, Some(encoding)) => Samples::F64(decode_colours(source.bytes, count, encoding)?),
+        (true, None) => return Err(Fault::NoHeightEncoding),
+        (false, Some(encoding)) => {
+            return Err(Fault::Unsupported {
+                format: FORMAT,
+                what: format!("grey values, where {encoding} is stated"),
+                remedy: "state height_scale (--height-scale) instead of the encoding",
+            });
+        }
+        (false, None) => {
+            let (scale, offset) = heights(source)?;
+            Samples::F32(decode(source.bytes, count)?).scaled(scale, offset)
+        }
+    };
     let place = georef::beside(source, header.height, &["pgw", "pngw", "wld"])?;
     Ok(Raster {
         driver: "PNG",
+        data_type: if header.bits == 8 { "Byte" } else { "UInt16" },
         width: header.width,
         height: header.height,
-        samples: Samples::F32(values).scaled(scale, offset),
+        samples,
         metres_per_z: 1.0,
         map_from_grid: place.map_from_grid,
         georeferenced: place.stated,
@@ -47,26 +62,16 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     })
 }
 
+/// Metres per grey value, and the height of value 0.
 fn heights(source: &Source) -> Result<(f64, f64), Fault> {
-    let scale = source.hints.png_height_scale.ok_or(Fault::NoHeightScale)?;
-    let offset = source.hints.png_height_offset.unwrap_or(0.0);
-    if !(scale.is_finite() && scale != 0.0) {
-        return Err(Fault::Hint {
-            what: "height_scale",
-            value: scale,
-            wanted: "a finite number other than 0",
-        });
-    }
-    if !offset.is_finite() {
-        return Err(Fault::Hint { what: "height_offset", value: offset, wanted: "a finite number" });
-    }
-    Ok((scale, offset))
+    Ok((source.height_scale()?.ok_or(Fault::NoHeightScale)?, source.height_offset()?))
 }
 
 struct Header {
     width: u32,
     height: u32,
     bits: u8,
+    is_coloured: bool,
     transparent: Option<f64>,
 }
 
@@ -79,10 +84,11 @@ impl Header {
             return Err(Fault::broken(FORMAT, "its first chunk is not IHDR"));
         }
         let what = match (colour, bits) {
-            (0 | 4, 8 | 16) => None,
+            (0 | 4, 8 | 16) | (2 | 6, 8) => None,
+            // Encoders may pack a tile of few heights.
+            (3, 1 | 2 | 4 | 8) => None,
             (0, 1 | 2 | 4) => Some(format!("{bits} bits per grey value")),
-            (2 | 6, _) => Some("colours".into()),
-            (3, _) => Some("a palette".into()),
+            (2 | 6, 16) => Some("colours of 16 bits".into()),
             _ => {
                 return Err(Fault::broken(
                     FORMAT,
@@ -97,7 +103,8 @@ impl Header {
                 remedy: "give the elevation as 16-bit grey, or as a GeoTIFF",
             });
         }
-        Ok(Self { width: long(16)?, height: long(20)?, bits, transparent: transparent(bytes) })
+        let is_coloured = matches!(colour, 2 | 3 | 6);
+        Ok(Self { width: long(16)?, height: long(20)?, bits, is_coloured, transparent: transparent(bytes) })
     }
 }
 
@@ -116,15 +123,39 @@ fn transparent(bytes: &[u8]) -> Option<f64> {
     }
 }
 
-fn decode(bytes: &[u8], count: usize) -> Result<Vec<f32>, Fault> {
+/// The pixels, with no more memory than so many need.
+fn pixels(bytes: &[u8], count: usize) -> Result<DynamicImage, Fault> {
     let broken = |error: image::ImageError| Fault::broken(FORMAT, error.to_string());
     let mut decoder = image::codecs::png::PngDecoder::new(Cursor::new(bytes)).map_err(broken)?;
     let mut limits = Limits::default();
     // Four bytes a sample with alpha, and as much again for rows and the inflater.
     limits.max_alloc = Some(count as u64 * 8 + (1 << 20));
     decoder.set_limits(limits).map_err(broken)?;
-    let picture = DynamicImage::from_decoder(decoder).map_err(broken)?;
-    let values: Vec<f32> = match picture {
+    DynamicImage::from_decoder(decoder).map_err(broken)
+}
+
+fn decode_colours(bytes: &[u8], count: usize, encoding: HeightEncoding) -> Result<Vec<f64>, Fault> {
+    let values: Vec<f64> = match pixels(bytes, count)? {
+        DynamicImage::ImageRgb8(picture) => picture.pixels().map(|pixel| encoding.metres(pixel.0)).collect(),
+        DynamicImage::ImageRgba8(picture) => {
+            let metres = |[red, green, blue, alpha]: [u8; 4]| match alpha {
+                0 => f64::NAN,
+                _ => encoding.metres([red, green, blue]),
+            };
+            picture.pixels().map(|pixel| metres(pixel.0)).collect()
+        }
+        other => {
+            return Err(Fault::broken(FORMAT, format!("it decodes to {:?}, not to colours", other.color())));
+        }
+    };
+    if values.len() != count {
+        return Err(Fault::broken(FORMAT, format!("it decodes to {} of {count} values", values.len())));
+    }
+    Ok(values)
+}
+
+fn decode(bytes: &[u8], count: usize) -> Result<Vec<f32>, Fault> {
+    let values: Vec<f32> = match pixels(bytes, count)? {
         DynamicImage::ImageLuma8(grey) => grey.as_raw().iter().map(|&v| f32::from(v)).collect(),
         DynamicImage::ImageLuma16(grey) => grey.as_raw().iter().map(|&v| f32::from(v)).collect(),
         DynamicImage::ImageLumaA8(both) => {
@@ -146,6 +177,7 @@ fn decode(bytes: &[u8], count: usize) -> Result<Vec<f32>, Fault> {
 #[cfg(test)]
 mod tests {
     use crate::dem::read::{Hints, read};
+    use crate::dem::rgb_png::HeightEncoding;
     use image::ImageEncoder;
 
     fn picture(values: &[u16]) -> Vec<u8> {
@@ -176,6 +208,22 @@ mod tests {
     fn a_picture_without_a_scale_is_refused_with_the_keys_that_give_it() {
         let error = read("a.png", &picture(&[1, 2]), &Hints::default()).expect_err("refused").to_string();
         assert!(error.contains("height_scale") && error.contains("--height-scale"), "{error}");
+    }
+
+    #[test]
+    fn colours_are_heights_by_the_stated_encoding_and_a_clear_pixel_none() {
+        let mut bytes = Vec::new();
+        image::codecs::png::PngEncoder::new(&mut bytes)
+            .write_image(&[1, 134, 170, 255, 1, 134, 170, 0], 2, 1, image::ExtendedColorType::Rgba8)
+            .expect("memory");
+        let hints = |height_encoding| Hints { height_encoding, cell: Some(1.0), ..Hints::default() };
+        let tile = read("a.png", &bytes, &hints(Some(HeightEncoding::TerrainRgb))).expect("a tile");
+        assert_eq!((tile.at(0, 0), tile.data_type), (1.0, "Byte"));
+        assert!(tile.at(1, 0).is_nan());
+        let refused = read("a.png", &bytes, &hints(None)).expect_err("refused").to_string();
+        assert!(refused.contains("terrain-rgb") && refused.contains("terrarium"), "{refused}");
+        let grey = read("a.png", &picture(&[1, 2]), &hints(Some(HeightEncoding::Terrarium)));
+        assert!(grey.expect_err("grey").to_string().contains("grey values, where terrarium"));
     }
 
     #[test]

@@ -14,6 +14,9 @@ use crate::geom::rect::Rect;
 pub struct Raster {
     /// The format it was read from, as GDAL names its drivers: `GTiff`, `AAIGrid`, `PNG`, `BT`, `SRTMHGT`.
     pub driver: &'static str,
+    /// The type of a stored sample, as GDAL names its types: `Byte`, `Int8`, `UInt16`, `Int16`, `UInt32`, `Int32`,
+    /// `UInt64`, `Int64`, `Float32`, `Float64`. What text holds is told by its values.
+    pub data_type: &'static str,
     /// Samples per row; at least 1.
     pub width: u32,
     /// Rows; at least 1.
@@ -77,6 +80,14 @@ impl Samples {
         match self {
             Self::F32(values) => values.get_mut(index).map_or((), |value| *value = f32::NAN),
             Self::F64(values) => values.get_mut(index).map_or((), |value| *value = f64::NAN),
+        }
+    }
+
+    /// Puts `value`, NaN for no data, at `index`; nothing beyond the end.
+    pub(crate) fn set(&mut self, index: usize, value: f64) {
+        match self {
+            Self::F32(values) => values.get_mut(index).map_or((), |old| *old = value as f32),
+            Self::F64(values) => values.get_mut(index).map_or((), |old| *old = value),
         }
     }
 
@@ -158,6 +169,7 @@ pub(crate) mod tests {
         assert_eq!(values.len(), (width * height) as usize);
         Raster {
             driver: "test",
+            data_type: "Float32",
             width,
             height,
             samples: Samples::F32(values),

@@ -3,15 +3,25 @@
 use crate::dem::archive;
 use crate::dem::fault::{DemError, Fault};
 use crate::dem::raster::Raster;
-use crate::dem::{ascii, bt, geotiff, hgt, png};
+use crate::dem::raw::{self, RawLayout};
+use crate::dem::rgb_png::HeightEncoding;
+use crate::dem::{ascii, bt, dted, ehdr, envi, geotiff, hgt, png, surfer, terragen, usgs, xyz};
 use crate::geom::crs::Crs;
 
 /// What the caller knows of a file beyond its bytes.
+#[derive(Clone)]
 pub struct Hints<'a> {
-    /// Metres per grey value of a PNG; a PNG is refused without it, other formats do not look at it.
+    /// Metres per grey value of a PNG, which is refused without it, or per value of a RAW file. Default 1 there; other
+    /// formats do not look at it.
     pub png_height_scale: Option<f64>,
-    /// Elevation in metres of grey value 0. Default 0.
+    /// Elevation in metres of value 0. Default 0.
     pub png_height_offset: Option<f64>,
+    /// What the colours of a PNG mean; a colour PNG is refused without it.
+    pub height_encoding: Option<HeightEncoding>,
+    /// That the file is RAW, and how it is laid out.
+    pub raw: Option<RawLayout>,
+    /// What heights are counted from, in place of what the file says.
+    pub vertical_datum: Option<String>,
     /// Distance in metres between samples of a file without georeference; its south-west sample then stands
     /// at (0, 0). Files with a georeference keep theirs.
     pub cell: Option<f64>,
@@ -24,8 +34,30 @@ pub struct Hints<'a> {
 
 impl Default for Hints<'_> {
     fn default() -> Self {
-        Self { png_height_scale: None, png_height_offset: None, cell: None, crs: None, companions: &|_| None }
+        Self {
+            png_height_scale: None,
+            png_height_offset: None,
+            height_encoding: None,
+            raw: None,
+            vertical_datum: None,
+            cell: None,
+            crs: None,
+            companions: &|_| None,
+        }
     }
+}
+
+/// The ends of names of files that are taken for elevation in a folder of tiles or an archive. Names that pictures and
+/// tables go by as well are not among them.
+const TILE_NAMES: [&str; 18] = [
+    ".tif", ".tiff", ".asc", ".hgt", ".hgt.zip", ".hgt.gz", ".bt", ".bt.gz", ".btz", ".dem", ".dt0", ".dt1",
+    ".dt2", ".flt", ".bil", ".ter", ".grd", ".xyz",
+];
+
+/// Whether a file of this name in a folder of tiles or an archive is one of them, as far as its name tells.
+pub fn is_tile_name(name: &str) -> bool {
+    let lower = name.rsplit(['/', '\\']).next().unwrap_or(name).to_ascii_lowercase();
+    !lower.starts_with('.') && TILE_NAMES.iter().any(|end| lower.ends_with(end))
 }
 
 /// A file while it is read: its name, bytes and hints.
@@ -66,6 +98,31 @@ impl Source<'_> {
         Crs::parse(&String::from_utf8_lossy(&bytes)).map(Some).map_err(Fault::Crs)
     }
 
+    /// The content of the `.hdr` beside the file: `a.hdr` for `a.bil`, or `a.img.hdr` for `a.img`.
+    pub fn header(&self) -> Option<Vec<u8>> {
+        self.companion("hdr").or_else(|| (self.hints.companions)(&format!("{}.hdr", self.name)))
+    }
+
+    /// The hinted metres per value, checked.
+    pub fn height_scale(&self) -> Result<Option<f64>, Fault> {
+        match self.hints.png_height_scale {
+            Some(scale) if !(scale.is_finite() && scale != 0.0) => Err(Fault::Hint {
+                what: "height_scale",
+                value: scale,
+                wanted: "a finite number other than 0",
+            }),
+            scale => Ok(scale),
+        }
+    }
+
+    /// The hinted height of value 0, checked; 0 where there is none.
+    pub fn height_offset(&self) -> Result<f64, Fault> {
+        match self.hints.png_height_offset.unwrap_or(0.0) {
+            offset if offset.is_finite() => Ok(offset),
+            offset => Err(Fault::Hint { what: "height_offset", value: offset, wanted: "a finite number" }),
+        }
+    }
+
     /// The hinted distance between samples, checked.
     pub fn cell(&self) -> Result<Option<f64>, Fault> {
         match self.hints.cell {
@@ -84,7 +141,12 @@ impl Source<'_> {
 /// # Errors
 /// [`DemError`] with the name and what was wrong; an unknown format lists what can be read.
 pub fn read(name: &str, bytes: &[u8], hints: &Hints) -> Result<Raster, DemError> {
-    read_source(&Source { name, bytes, hints }).map_err(|fault| DemError { name: name.into(), fault })
+    let mut raster =
+        read_source(&Source { name, bytes, hints }).map_err(|fault| DemError { name: name.into(), fault })?;
+    if hints.vertical_datum.is_some() {
+        raster.vertical_datum.clone_from(&hints.vertical_datum);
+    }
+    Ok(raster)
 }
 
 fn read_source(source: &Source) -> Result<Raster, Fault> {
@@ -95,25 +157,60 @@ fn read_source(source: &Source) -> Result<Raster, Fault> {
     if archive::is_zip(bytes) {
         return read_zip(source);
     }
-    if geotiff::recognises(bytes) {
-        return geotiff::read(source);
+    if source.extension() == "hdr" {
+        return Err(Fault::UnknownFormat {
+            found: "it is the header of a file beside it: name that one".into(),
+        });
     }
-    if png::recognises(bytes) {
-        return png::read(source);
+    if let Some(layout) = &source.hints.raw {
+        return raw::read(source, layout);
     }
-    if bt::recognises(bytes) {
-        return bt::read(source);
+    match FORMATS.iter().find(|(recognises, _)| recognises(bytes)) {
+        Some((_, read)) => read(source),
+        None => read_by_name(source),
     }
-    if ascii::recognises(bytes) {
-        return ascii::read(source);
+}
+
+/// Whether content is that of a format.
+type Recognises = fn(&[u8]) -> bool;
+
+/// Reads content of a format.
+type Reads = fn(&Source) -> Result<Raster, Fault>;
+
+/// The formats whose content says what they are.
+const FORMATS: [(Recognises, Reads); 8] = [
+    (geotiff::recognises, geotiff::read),
+    (png::recognises, png::read),
+    (bt::recognises, bt::read),
+    (ascii::recognises, ascii::read),
+    (dted::recognises, dted::read),
+    (terragen::recognises, terragen::read),
+    (surfer::recognises, surfer::read),
+    (usgs::recognises, usgs::read),
+];
+
+/// Reads content that does not say what it is: by the header beside it, or else by its extension.
+fn read_by_name(source: &Source) -> Result<Raster, Fault> {
+    let extension = source.extension();
+    // Not for files that have a meaning without one: an .hgt beside a stray .hdr is still a tile.
+    let header = if extension == "hgt" { None } else { source.header() };
+    match &header {
+        Some(header) if envi::is_header(header) => return envi::read(source, header),
+        Some(header) if ehdr::is_header(header) => return ehdr::read(source, header),
+        _ => {}
     }
-    match source.extension().as_str() {
+    match extension.as_str() {
         "hgt" => hgt::read(source),
         "tif" | "tiff" => Err(Fault::broken("GeoTIFF", "it does not start as a TIFF file does")),
         "asc" => Err(Fault::broken("ESRI ASCII grid", "it does not start with ncols")),
         "bt" => Err(Fault::broken("BT terrain", "it does not start with 'binterr1.' and a digit")),
         "png" => Err(Fault::broken("PNG", "it does not start as a PNG file does")),
-        extension => Err(Fault::UnknownFormat { found: describe(bytes, extension) }),
+        "ter" => Err(Fault::broken("Terragen terrain", "it does not start with TERRAGENTERRAIN")),
+        "dt0" | "dt1" | "dt2" => Err(Fault::broken("DTED", "it does not start with UHL1")),
+        "raw" | "r16" if header.is_none() => Err(Fault::NoRawLayout),
+        text if xyz::EXTENSIONS.contains(&text) => xyz::read(source),
+        grid if ehdr::EXTENSIONS.contains(&grid) => Err(Fault::NoHeader { format: "ESRI binary grid" }),
+        extension => Err(Fault::UnknownFormat { found: describe(source.bytes, extension) }),
     }
 }
 
@@ -127,25 +224,32 @@ fn read_gzip(source: &Source) -> Result<Raster, Fault> {
     read_source(&Source { name: &inner, bytes: &content, hints: source.hints })
 }
 
+/// Reads the first elevation file in an archive, with its companions there.
 fn read_zip(source: &Source) -> Result<Raster, Fault> {
-    match archive::unzip_first(source.bytes, ".hgt")? {
-        Some((name, content)) => hgt::read(&Source { name: &name, bytes: &content, hints: source.hints }),
-        None => Err(Fault::UnknownFormat { found: "it is a zip archive without an .hgt tile in it".into() }),
+    let Some((name, content)) = archive::unzip_first(source.bytes, is_tile_name)? else {
+        return Err(Fault::UnknownFormat {
+            found: "it is a zip archive without an .hgt tile or another elevation file in it".into(),
+        });
+    };
+    if archive::is_gzip(&content) || archive::is_zip(&content) {
+        return Err(Fault::UnknownFormat { found: "it is packed twice".into() });
     }
+    let beside = |wanted: &str| {
+        archive::unzip_first(source.bytes, |name| name == wanted).ok().flatten().map(|(_, content)| content)
+    };
+    let hints = Hints { companions: &beside, ..source.hints.clone() };
+    read_source(&Source { name: &name, bytes: &content, hints: &hints })
 }
 
 /// What an unknown file seems to be.
 fn describe(bytes: &[u8], extension: &str) -> String {
-    const KNOWN: [(&[u8], &str); 9] = [
+    const KNOWN: [(&[u8], &str); 6] = [
         (b"SQLite format 3", "it is an SQLite database, perhaps a GeoPackage"),
         (b"EHFA_HEADER_TAG", "it is an Erdas Imagine file"),
-        (b"TERRAGEN", "it is a Terragen terrain"),
-        (b"DSRB", "it is a Surfer 7 grid"),
-        (b"DSBB", "it is a Surfer 6 grid"),
-        (b"DSAA", "it is a Surfer text grid"),
-        (b"UHL1", "it is DTED"),
         (b"\xff\xd8\xff", "it is a JPEG picture"),
         (b"\x89HDF", "it is an HDF 5 or NetCDF file"),
+        (b"CDF", "it is a NetCDF file"),
+        (b"LASF", "it is a point cloud, of which `sandtable dem grid` makes a grid"),
     ];
     let found = KNOWN.iter().find(|(start, _)| bytes.starts_with(start));
     match (found, bytes.is_empty(), extension) {
@@ -172,11 +276,41 @@ mod tests {
     fn an_unknown_file_is_refused_with_what_it_is_and_what_is_read() {
         let said =
             |name: &str, bytes: &[u8]| read(name, bytes, &Hints::default()).expect_err("refused").to_string();
-        assert!(said("a/b.ter", b"TERRAGENTERRAIN ").contains("Terragen"));
-        for wanted in ["x.xyz", ".xyz is not read", "GeoTIFF", ".asc", ".png", ".bt", ".hgt"] {
-            assert!(said("x.xyz", b"1 2 3").contains(wanted), "{wanted}");
+        assert!(said("a/b.las", b"LASF").contains("dem grid"));
+        for wanted in ["x.adf", ".adf is not read", "GeoTIFF", ".asc", ".png", ".bt", ".hgt", ".dem", ".bil"]
+        {
+            assert!(said("x.adf", b"1 2 3").contains(wanted), "{wanted}");
         }
+        assert!(said("x.hdr", b"NROWS 3\n").contains("name that one"));
+        assert!(said("x.raw", b"123").contains("--raw"));
         assert!(said("x", b"").contains("empty"));
+    }
+
+    /// An archive of stored members.
+    fn zip(members: &[(&str, &[u8])]) -> Vec<u8> {
+        let (mut bytes, mut directory) = (Vec::new(), Vec::new());
+        for (name, content) in members {
+            let (at, size) = ((bytes.len() as u32).to_le_bytes(), (content.len() as u32).to_le_bytes());
+            let length = (name.len() as u16).to_le_bytes();
+            bytes.extend([&b"PK\x03\x04"[..], &[0; 22], &length, &[0; 2], name.as_bytes(), content].concat());
+            directory.extend([&b"PK\x01\x02"[..], &[0; 16], &size, &size, &length, &[0; 12], &at].concat());
+            directory.extend(name.as_bytes());
+        }
+        let (start, count) = ((bytes.len() as u32).to_le_bytes(), (members.len() as u16).to_le_bytes());
+        let end = [&b"PK\x05\x06\0\0\0\0"[..], &count, &count, &[0; 4], &start, &[0; 2]].concat();
+        [bytes, directory, end].concat()
+    }
+
+    #[test]
+    fn the_elevation_file_in_an_archive_is_read_with_its_companions() {
+        let grid = b"ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n5\n";
+        let archive = zip(&[("readme.txt", b"1 2 3"), ("d/a.asc", grid), ("d/a.prj", b"EPSG:32612")]);
+        let raster = read("a.zip", &archive, &Hints::default()).expect("a grid in it");
+        assert_eq!(raster.crs.and_then(|crs| crs.epsg()), Some(32612));
+        let nested = zip(&[("a.hgt.zip", &archive)]);
+        assert!(read("b.zip", &nested, &Hints::default()).expect_err("nested").to_string().contains("twice"));
+        let without = zip(&[("readme.txt", b"1 2 3")]);
+        assert!(read("c.zip", &without, &Hints::default()).expect_err("none").to_string().contains(".hgt"));
     }
 
     #[test]

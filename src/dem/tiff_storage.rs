@@ -175,6 +175,23 @@ impl Storage {
         self.decoded_bytes(self.block_size.0.into()) as usize
     }
 
+    /// The type of a sample, as GDAL names it.
+    pub fn data_type(&self) -> &'static str {
+        match (self.kind, self.bits) {
+            (Kind::Float, ..=32) => "Float32",
+            (Kind::Float, _) => "Float64",
+            (Kind::Signed, ..=8) => "Int8",
+            (Kind::Signed, ..=16) => "Int16",
+            (Kind::Signed, ..=32) => "Int32",
+            (Kind::Signed, _) => "Int64",
+            // What is neither is refused before anybody asks.
+            (Kind::Unsigned | Kind::Other, ..=8) => "Byte",
+            (Kind::Unsigned | Kind::Other, ..=16) => "UInt16",
+            (Kind::Unsigned | Kind::Other, ..=32) => "UInt32",
+            (Kind::Unsigned | Kind::Other, _) => "UInt64",
+        }
+    }
+
     /// Whether samples need 64 bits to stay exact.
     pub fn is_wide(&self) -> bool {
         self.bits == 64 || (self.bits == 32 && self.kind != Kind::Float)

@@ -193,6 +193,7 @@ impl Frame {
     fn with(&self, samples: Samples, raster: &Raster, way: &Way) -> Raster {
         Raster {
             driver: raster.driver,
+            data_type: raster.data_type,
             width: self.size.x,
             height: self.size.y,
             samples,

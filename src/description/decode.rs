@@ -56,14 +56,30 @@ pub(super) fn document(reader: &mut Reader<'_, '_>, source: Arc<SourceText>) -> 
 }
 
 fn terrain(reader: &mut Reader<'_, '_>) -> Option<Terrain> {
-    let dem = reader.require("dem", |item| item.filled_text());
+    let dem = reader.require("dem", |item| item.one_or_more_texts());
     let crs = any_crs(reader, "crs");
     let height_scale = number(reader, "height_scale", Bounds::Above(0.0, 1e6));
     let height_offset = number(reader, "height_offset", ELEVATION);
+    let height_encoding = reader.get("height_encoding", |item| item.word());
+    let raw = reader.get("raw", |item| item.filled_text());
+    let vertical_datum = reader.get("vertical_datum", |item| item.filled_text());
+    let fill_voids = reader.get("fill_voids", |item| item.switch());
     let cell = number(reader, "cell", Bounds::Above(0.0, 1e6));
     let vertical_exaggeration = number(reader, "vertical_exaggeration", Bounds::Above(0.0, 1000.0));
     let tolerance_px = number(reader, "tolerance_px", Bounds::Above(0.0, 1000.0));
-    Some(Terrain { dem: dem?, crs, height_scale, height_offset, cell, vertical_exaggeration, tolerance_px })
+    Some(Terrain {
+        dem: dem?,
+        crs,
+        height_scale,
+        height_offset,
+        height_encoding,
+        raw,
+        vertical_datum,
+        fill_voids,
+        cell,
+        vertical_exaggeration,
+        tolerance_px,
+    })
 }
 
 fn style(reader: &mut Reader<'_, '_>) -> Style {

@@ -41,7 +41,7 @@ use toml::Spanned;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::source_text::SourceText;
-use crate::description::words::{Clamp, LabelKind, Ramp, Surface};
+use crate::description::words::{Clamp, HeightEncoding, LabelKind, Ramp, Surface};
 
 /// A whole scene file.
 #[derive(Clone, Debug)]
@@ -94,15 +94,25 @@ impl Document {
 /// `[terrain]`: the elevation model.
 #[derive(Clone, Debug)]
 pub struct Terrain {
-    /// `dem`, needed: the elevation file.
-    pub dem: Spanned<String>,
+    /// `dem`, needed: the elevation file, or a list of up to 256 that are tiles of one raster; the first tile with a
+    /// value wins.
+    pub dem: Spanned<Vec<String>>,
     /// `crs`: the DEM's coordinate system where the file names none or a wrong one. Default: what it names.
     pub crs: Option<Spanned<String>>,
-    /// `height_scale`: metres per unit of a 16-bit PNG's sample value, in (0, 10⁶]; needed for PNG, refused
-    /// for others.
+    /// `height_scale`: metres per unit of a sample's value, in (0, 10⁶]; needed for grey PNG, 1 by default for RAW,
+    /// not looked at for others.
     pub height_scale: Option<Spanned<f64>>,
-    /// `height_offset`: height in metres of sample value 0 of a 16-bit PNG, in [−10⁷, 10⁷]. Default 0.
+    /// `height_offset`: height in metres of sample value 0 of a grey PNG or RAW, in [−10⁷, 10⁷]. Default 0.
     pub height_offset: Option<Spanned<f64>>,
+    /// `height_encoding`: what the colours of a PNG mean, `"terrain-rgb"` or `"terrarium"`; needed for colour PNG.
+    pub height_encoding: Option<Spanned<HeightEncoding>>,
+    /// `raw`: that the file is RAW and how it is laid out, such as `"1201x1201:i16be"`.
+    pub raw: Option<Spanned<String>>,
+    /// `vertical_datum`: what heights are counted from, such as `"NAVD88"`; printed, never computed with. Default:
+    /// what the file says, if anything.
+    pub vertical_datum: Option<Spanned<String>>,
+    /// `fill_voids`: whether samples without data that others enclose are filled by a membrane. Default: no.
+    pub fill_voids: Option<Spanned<bool>>,
     /// `cell`: distance in metres between samples of a file without georeference, in (0, 10⁶]; its south-west
     /// sample then stands at (0, 0).
     pub cell: Option<Spanned<f64>>,

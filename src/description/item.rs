@@ -19,7 +19,7 @@ const MAX_COORDINATE: f64 = 1e9;
 const MAX_POINTS: usize = 100_000;
 /// The longest text, in characters.
 const MAX_TEXT: usize = 4096;
-/// The most stops of a ramp and the most values of a filter's list.
+/// The most stops of a ramp, values of a filter's list, and files of a mosaic.
 const MAX_LIST: usize = 256;
 
 /// A value, the key it was given for, and where to say what is wrong with it.
@@ -191,6 +191,22 @@ impl<'i> Item<'_, 'i> {
             return None;
         }
         Some(text)
+    }
+
+    /// Text with something in it, or a list of such texts.
+    pub fn one_or_more_texts(mut self) -> Option<Vec<String>> {
+        match self.value.get_ref() {
+            DeValue::Array(list) if (1..=MAX_LIST).contains(&list.len()) => {
+                let texts: Vec<_> = list.iter().map(|text| self.element(text).filled_text()).collect();
+                texts.into_iter().collect()
+            }
+            DeValue::Array(list) => {
+                let message = format!("`{}` lists {} texts", self.key, list.len());
+                self.wrong(message, format!("list from 1 to {MAX_LIST}"));
+                None
+            }
+            _ => self.filled_text().map(|text| vec![text]),
+        }
     }
 
     /// Text that names a coordinate reference system; `check` may refuse what it names.

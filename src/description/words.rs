@@ -75,3 +75,17 @@ impl Word for Ramp {
     const ALL: &'static [(&'static str, Self)] =
         &[("atlas", Self::Atlas), ("desert", Self::Desert), ("grey", Self::Grey)];
 }
+
+/// What the colours of a PNG mean in metres.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum HeightEncoding {
+    /// `terrain-rgb`: Mapbox's.
+    TerrainRgb,
+    /// `terrarium`: Mapzen's.
+    Terrarium,
+}
+
+impl Word for HeightEncoding {
+    const ALL: &'static [(&'static str, Self)] =
+        &[("terrain-rgb", Self::TerrainRgb), ("terrarium", Self::Terrarium)];
+}

@@ -32,7 +32,7 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
 
     step("laying features");
     let sources = Sources::new(&places, assets);
-    let mut collected = Collected::default();
+    let mut collected = Collected { notes: loaded.notes, ..Collected::default() };
     features::lakes(document, &sources, &mut lattice, &mut collected)?;
     let extent = lattice.extent();
     features::rivers(document, &sources, &extent, &mut collected)?;

@@ -1,12 +1,17 @@
-//! The first pass: the elevation file to the ground lattice.
+//! The first pass: the elevation file, or the tiles of one, to the ground lattice.
 
 use std::sync::Arc;
 
+use crate::dem::mosaic;
 use crate::dem::raster::Raster;
+use crate::dem::raw::RawLayout;
 use crate::dem::read::{self, Hints};
+use crate::dem::rgb_png::HeightEncoding;
+use crate::dem::voids;
 use crate::dem::warp;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
+use crate::description::words;
 use crate::geom::crs::Crs;
 use crate::scene::assets::Assets;
 use crate::scene::place::parse_crs;
@@ -14,36 +19,71 @@ use crate::terrain::lattice::Lattice;
 
 /// The raster as read and the lattice made of it.
 pub struct LoadedGround {
-    /// As the file holds it.
+    /// As the files hold it, joined and filled as the scene asks.
     pub source: Arc<Raster>,
     /// In the scene's system, before earthworks.
     pub lattice: Lattice,
     /// The scene's system.
     pub crs: Crs,
+    /// What was done that a user should know.
+    pub notes: Vec<String>,
 }
 
-/// Reads the document's elevation file and brings it to a metric system.
+/// Reads the document's elevation files and brings them to a metric system.
 ///
 /// # Errors
-/// The file cannot be had or read, or cannot be brought to the scene's system.
+/// A file cannot be had or read, several are not tiles of one raster, or they cannot be brought to the scene's
+/// system.
 pub fn load(document: &Document, assets: &Assets) -> Result<LoadedGround, Diagnostic> {
+    let wrong = |reason: String| document.error(&document.terrain.dem, reason);
+    let mut notes = Vec::new();
+    let mut source = joined(document, assets, &mut notes)?;
+    if document.terrain.fill_voids.as_ref().is_some_and(|fill| *fill.get_ref()) {
+        notes.push(voids::fill(&mut source).note());
+    }
+    let target = parse_crs(document, document.crs.as_ref())?;
+    let metric = warp::to_metric(&source, target.as_ref()).map_err(|error| wrong(error.to_string()))?;
+    let lattice = Lattice::from_raster(&metric).map_err(|error| wrong(error.to_string()))?;
+    let crs = metric.crs.or(target).unwrap_or_else(Crs::local);
+    Ok(LoadedGround { source: Arc::new(source), lattice, crs, notes })
+}
+
+/// The one raster that the document's files are, or are tiles of.
+fn joined(document: &Document, assets: &Assets, notes: &mut Vec<String>) -> Result<Raster, Diagnostic> {
     let terrain = &document.terrain;
-    let dem = &terrain.dem;
-    let wrong = |reason: String| document.error(dem, reason);
-    let bytes = assets.read(dem.get_ref()).map_err(|error| wrong(error.to_string()))?;
+    let wrong = |reason: String| document.error(&terrain.dem, reason);
     let companions = |name: &str| assets.read(name).ok();
     let value = |stated: &Option<toml::Spanned<f64>>| stated.as_ref().map(|value| *value.get_ref());
     let hints = Hints {
         png_height_scale: value(&terrain.height_scale),
         png_height_offset: value(&terrain.height_offset),
+        height_encoding: terrain.height_encoding.as_ref().map(|encoding| match encoding.get_ref() {
+            words::HeightEncoding::TerrainRgb => HeightEncoding::TerrainRgb,
+            words::HeightEncoding::Terrarium => HeightEncoding::Terrarium,
+        }),
+        raw: raw_layout(document)?,
+        vertical_datum: terrain.vertical_datum.as_ref().map(|datum| datum.get_ref().clone()),
         cell: value(&terrain.cell),
         crs: parse_crs(document, terrain.crs.as_ref())?,
         companions: &companions,
     };
-    let source = read::read(dem.get_ref(), &bytes, &hints).map_err(|error| wrong(error.to_string()))?;
-    let target = parse_crs(document, document.crs.as_ref())?;
-    let metric = warp::to_metric(&source, target.as_ref()).map_err(|error| wrong(error.to_string()))?;
-    let lattice = Lattice::from_raster(&metric).map_err(|error| wrong(error.to_string()))?;
-    let crs = metric.crs.or(target).unwrap_or_else(Crs::local);
-    Ok(LoadedGround { source: Arc::new(source), lattice, crs })
+    let names = terrain.dem.get_ref();
+    let mut tiles = Vec::new();
+    for name in names {
+        let bytes = assets.read(name).map_err(|error| wrong(error.to_string()))?;
+        tiles.push(read::read(name, &bytes, &hints).map_err(|error| wrong(error.to_string()))?);
+        mosaic::check_total(&tiles).map_err(|error| wrong(error.named(names)))?;
+    }
+    let mosaic = mosaic::mosaic(tiles).map_err(|error| wrong(error.named(names)))?;
+    if names.len() > 1 {
+        notes.push(mosaic.note());
+    }
+    Ok(mosaic.raster)
+}
+
+fn raw_layout(document: &Document) -> Result<Option<RawLayout>, Diagnostic> {
+    let Some(stated) = &document.terrain.raw else { return Ok(None) };
+    stated.get_ref().parse().map(Some).map_err(|help: String| {
+        document.error(stated, "this does not say how a RAW file is laid out").with_help(help)
+    })
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::DVec2;
-use sandtable::app::arguments::{Access, GreyHeights};
+use sandtable::app::arguments::{Access, StatedHeights};
 use sandtable::app::dataset::Dataset;
 use sandtable::geom::crs::Crs;
 use sandtable::terrain::query::{Answer, Interpolation, Surface};
@@ -192,7 +192,7 @@ fn a_scene_is_asked_for_its_ground_and_a_file_for_what_it_holds() {
 }
 
 fn open(path: &Path) -> Dataset {
-    let heights = GreyHeights { height_scale: Some(1.0), height_offset: None };
+    let heights = StatedHeights { height_scale: Some(1.0), ..StatedHeights::default() };
     Dataset::open(path, heights, &Access { allow: Vec::new() }).unwrap_or_else(|error| panic!("{error:?}"))
 }
 

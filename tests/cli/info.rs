@@ -102,7 +102,7 @@ fn missing_empty_and_strange_files_are_refused() {
         (["dem", "info", "nowhere.tif"], "no such file"),
         (["dem", "info", "empty.tif"], "empty.tif"),
         (["dem", "info", "empty"], "empty"),
-        (["dem", "info", "."], "not a file"),
+        (["dem", "info", "."], "empty.tif"),
         (["model", "info", "nowhere.obj"], "no such file"),
         (["model", "info", "empty.obj"], "empty.obj"),
         (["model", "info", "."], "not a file"),
@@ -111,4 +111,58 @@ fn missing_empty_and_strange_files_are_refused() {
         let refused = run_in(scratch.folder(), &arguments).failed(1);
         assert!(refused.contains(wanted), "{arguments:?}: {refused}");
     }
+}
+
+#[test]
+fn a_folder_of_tiles_is_one_raster() {
+    let scratch = Scratch::new();
+    let tile = |west: u32, heights: &str| {
+        format!("ncols 2\nnrows 1\nxllcorner {west}\nyllcorner 0\ncellsize 10\n{heights}\n")
+    };
+    scratch.write("tiles/a.asc", tile(0, "1 2"));
+    scratch.write("tiles/b.asc", tile(10, "2.5 3"));
+    scratch.write("tiles/readme.txt", "not a tile");
+    let out = run_in(scratch.folder(), &["dem", "info", "tiles", "--json"]).ok();
+    let about: Value = serde_json::from_str(&out).expect("JSON");
+    assert_eq!((&about["width"], &about["max"]), (&Value::from(3), &Value::from(3.0)));
+    assert!(
+        about["notes"][0].as_str().expect("a note").contains("1 of them differ, by up to 0.5"),
+        "{about}"
+    );
+
+    scratch.write("tiles/c.asc", tile(23, "4 5"));
+    let refused = run_in(scratch.folder(), &["dem", "info", "tiles"]).failed(1);
+    assert!(refused.contains("a.asc and c.asc") && refused.contains("(0.3000, 0.0000)"), "{refused}");
+    scratch.write("empty/readme.txt", "nothing");
+    let refused = run_in(scratch.folder(), &["dem", "info", "empty"]).failed(1);
+    assert!(refused.contains("no elevation file"), "{refused}");
+}
+
+#[test]
+fn dem_info_tells_type_datum_unit_and_voids() {
+    let scratch = Scratch::new();
+    let heights = "1 1 1\n1 -9999 1\n1 1 1\n";
+    scratch.write("a.asc", format!("ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n{heights}"));
+    let out = run_in(scratch.folder(), &["dem", "info", "a.asc", "--json"]).ok();
+    let about: Value = serde_json::from_str(&out).expect("JSON");
+    assert_eq!((&about["type"], &about["enclosed_voids"]), (&Value::from("Int32"), &Value::from(1)));
+    assert_eq!((&about["vertical_datum"], &about["metres_per_z"]), (&Value::Null, &Value::from(1.0)));
+    let table = run_in(scratch.folder(), &["dem", "info", "a.asc"]).ok();
+    for wanted in ["type     Int32", "1 samples, 1 of them enclosed", "datum    none stated", "unit     1 m"]
+    {
+        assert!(table.contains(wanted), "{wanted} in\n{table}");
+    }
+}
+
+#[test]
+fn a_raw_file_is_what_the_command_line_says() {
+    let scratch = Scratch::new();
+    scratch.write("a.raw", "AB");
+    let refused = run_in(scratch.folder(), &["dem", "info", "a.raw"]).failed(1);
+    assert!(refused.contains("--raw 1201x1201:i16be"), "{refused}");
+    let stated = ["dem", "info", "a.raw", "--json", "--raw", "2x1:u8", "--height-scale", "2"];
+    let about: Value = serde_json::from_str(&run_in(scratch.folder(), &stated).ok()).expect("JSON");
+    assert_eq!((&about["driver"], &about["max"]), (&Value::from("RAW"), &Value::from(132.0)));
+    let wrong = run_in(scratch.folder(), &["dem", "info", "a.raw", "--raw", "2x1"]).failed(2);
+    assert!(wrong.contains("1201x1201:i16be"), "{wrong}");
 }

@@ -32,6 +32,7 @@ pub fn raster(width: u32, height: u32, seed: u64, holes: u32) -> Raster {
     let axes = DMat2::from_diagonal(DVec2::new(10.3, -7.1));
     Raster {
         driver: "test",
+        data_type: "Float32",
         width,
         height,
         samples: Samples::F32((0..width * height).map(sample).collect()),

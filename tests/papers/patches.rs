@@ -322,6 +322,7 @@ fn raster(world: &World) -> Raster {
     let axes = DMat2::from_diagonal(DVec2::new(10.0, -10.0));
     Raster {
         driver: "test",
+        data_type: "Float32",
         width: columns,
         height: rows,
         samples: Samples::F32(from_north.collect()),

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use glam::DVec2;
-use sandtable::app::arguments::{Access, GreyHeights};
+use sandtable::app::arguments::{Access, StatedHeights};
 use sandtable::app::dataset::Dataset;
 use sandtable::geom::crs::Crs;
 use sandtable::terrain::query::{Answer, Interpolation, Surface};
@@ -175,6 +175,6 @@ fn a_scene_is_asked_for_its_ground_and_its_source_in_its_own_coordinates() {
 }
 
 fn open(file: &Path) -> Dataset {
-    let grey = GreyHeights { height_scale: None, height_offset: None };
+    let grey = StatedHeights::default();
     Dataset::open(file, grey, &Access { allow: Vec::new() }).expect("sound")
 }

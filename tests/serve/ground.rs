@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use glam::DVec2;
-use sandtable::app::arguments::{Access, GreyHeights};
+use sandtable::app::arguments::{Access, StatedHeights};
 use sandtable::app::dataset::Dataset;
 use sandtable::terrain::profile::profile;
 use sandtable::terrain::sight::Curvature;
@@ -108,7 +108,7 @@ fn a_viewshed_too_large_is_refused_with_the_range_that_is_not() {
 #[test]
 fn on_a_real_model_profile_and_viewshed_are_the_librarys() {
     let Some(file) = data("dem/bigtujunga_utm11_i16_tiled.tif") else { return };
-    let grey = GreyHeights { height_scale: None, height_offset: None };
+    let grey = StatedHeights::default();
     let dataset = Dataset::open(&file, grey, &Access { allow: Vec::new() }).expect("sound");
     let epoch = dataset.service().expect("in metres").now();
     let lattice = epoch.lattice();

@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use crate::app::arguments::{Access, GreyHeights};
+use crate::app::arguments::{Access, StatedHeights};
 use crate::app::dataset::Dataset;
 use crate::app::failure::Failure;
 use crate::app::serve::json;
@@ -45,7 +45,7 @@ impl Served {
     ///
     /// # Errors
     /// The file cannot be had or read, or its name cannot be part of an address.
-    pub fn open(argument: &str, heights: GreyHeights, access: &Access) -> Result<Self, Failure> {
+    pub fn open(argument: &str, heights: StatedHeights, access: &Access) -> Result<Self, Failure> {
         let (name, path) = named(argument);
         check_name(&name, argument)?;
         let data = Dataset::open(&path, heights, access)?;
@@ -95,7 +95,7 @@ impl Datasets {
     ///
     /// # Errors
     /// As for [`Served::open`]; or two have the same name.
-    pub fn open(arguments: &[String], heights: GreyHeights, access: &Access) -> Result<Self, Failure> {
+    pub fn open(arguments: &[String], heights: StatedHeights, access: &Access) -> Result<Self, Failure> {
         let mut all: Vec<Served> = Vec::with_capacity(arguments.len());
         for argument in arguments {
             let next = Served::open(argument, heights, access)?;

@@ -43,7 +43,7 @@ use clap::Args;
 use tokio::net::TcpListener;
 use tokio::runtime::{Builder, Runtime};
 
-use crate::app::arguments::{Access, GreyHeights};
+use crate::app::arguments::{Access, StatedHeights};
 use crate::app::failure::Failure;
 use crate::app::output;
 use crate::app::serve::datasets::Datasets;
@@ -74,7 +74,7 @@ pub struct ServeOptions {
     pub limits: Limits,
     /// What grey values mean.
     #[command(flatten)]
-    pub heights: GreyHeights,
+    pub heights: StatedHeights,
     /// What may be read.
     #[command(flatten)]
     pub access: Access,

@@ -44,6 +44,7 @@ impl Rolling {
         let axes = DMat2::from_diagonal(DVec2::new(CELL_M, -CELL_M));
         let bare = Raster {
             driver: "formula",
+            data_type: "Float32",
             width: POSTS,
             height: POSTS,
             samples: Samples::F32(Vec::new()),

@@ -1,0 +1,290 @@
+//! Voids: samples without data, enclosed by samples with data, and the filling of them.
+//!
+//! A void is a set of samples without data that are neighbours along rows and columns, none of them on the raster's
+//! border: what reaches the border is where the data ends, and is left.
+//!
+//! Filling stretches a **membrane** over each void from its rim: heights inside solve Laplace's equation, so that each
+//! is the mean of its four neighbours, weighted by nearness where cells are not square. It passes through the rim
+//! without a step, has no hill or hollow of its own, and reproduces a plane exactly; ridges and valleys across a wide
+//! void are lost, which is why voids above a size are left. Solved by successive over-relaxation (Young 1954) in the
+//! order of the samples, so that the same bits come out everywhere.
+
+use glam::DVec2;
+
+use crate::dem::raster::Raster;
+use crate::geom::crs::Crs;
+
+/// Voids of more samples than this are left: three hundred posts across, where a membrane is no guess at the ground
+/// any more. Also bounds the time, which grows with the power of one and a half.
+pub const MOST_CELLS: u64 = 100_000;
+
+/// The membrane is at rest when no height moves more than this in a sweep, in the vertical unit: far below what any
+/// survey resolves.
+const AT_REST: f64 = 1e-6;
+
+/// Sweeps per sample of a void's longer side, after which it is taken as it is. Over-relaxation needs about two.
+const SWEEPS_PER_SIDE: usize = 12;
+
+/// What filling did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Filled {
+    /// Voids filled.
+    pub voids: u64,
+    /// Samples filled.
+    pub cells: u64,
+    /// Voids left because they are too large.
+    pub voids_left: u64,
+    /// Samples in those.
+    pub cells_left: u64,
+}
+
+impl Filled {
+    /// What a user should know of it, in one line.
+    pub fn note(&self) -> String {
+        let mut note =
+            format!("{} samples in {} voids filled by a membrane from their rims", self.cells, self.voids);
+        if self.voids_left > 0 {
+            note.push_str(&format!(
+                "; {} samples in {} voids of more than {MOST_CELLS} left",
+                self.cells_left, self.voids_left
+            ));
+        }
+        note
+    }
+}
+
+/// Fills the voids of `raster` of up to [`MOST_CELLS`] samples; all other samples keep their values.
+pub fn fill(raster: &mut Raster) -> Filled {
+    let mut filled = Filled::default();
+    let mut heights: Vec<(usize, f64)> = Vec::new();
+    let weights = weights(raster);
+    each(raster, |void| {
+        if void.count > MOST_CELLS {
+            filled.voids_left += 1;
+            filled.cells_left += void.count;
+            return;
+        }
+        filled.voids += 1;
+        filled.cells += void.count;
+        let solved = Membrane::new(raster, &void.cells, weights).solve();
+        heights.extend(void.cells.iter().copied().zip(solved));
+    });
+    for (index, height) in heights {
+        raster.samples.set(index, height);
+    }
+    filled
+}
+
+/// How many voids there are, and how many samples in all of them.
+pub fn count(raster: &Raster) -> (u64, u64) {
+    let (mut voids, mut cells) = (0, 0);
+    each(raster, |void| {
+        voids += 1;
+        cells += void.count;
+    });
+    (voids, cells)
+}
+
+/// A void.
+struct Void {
+    /// Its samples in order; cut off at [`MOST_CELLS`].
+    cells: Vec<usize>,
+    /// How many there are.
+    count: u64,
+}
+
+/// Calls `visit` with every void, in the order of their first samples.
+fn each(raster: &Raster, mut visit: impl FnMut(Void)) {
+    let (width, height) = (raster.width as usize, raster.height as usize);
+    let mut seen = vec![false; raster.samples.len()];
+    let mut open = Vec::new();
+    for start in 0..seen.len() {
+        if seen[start] || !raster.samples.get(start).is_nan() {
+            continue;
+        }
+        let mut void = Void { cells: Vec::new(), count: 0 };
+        let mut on_border = false;
+        seen[start] = true;
+        open.push(start);
+        while let Some(at) = open.pop() {
+            void.count += 1;
+            if void.count <= MOST_CELLS {
+                void.cells.push(at);
+            }
+            let (column, row) = (at % width, at / width);
+            let inside = column > 0 && row > 0 && column + 1 < width && row + 1 < height;
+            on_border |= !inside;
+            let around = [
+                (column > 0).then(|| at - 1),
+                (column + 1 < width).then_some(at + 1),
+                (row > 0).then(|| at - width),
+                (row + 1 < height).then_some(at + width),
+            ];
+            for next in around.into_iter().flatten() {
+                if !seen[next] && raster.samples.get(next).is_nan() {
+                    seen[next] = true;
+                    open.push(next);
+                }
+            }
+        }
+        if !on_border {
+            void.cells.sort_unstable();
+            visit(void);
+        }
+    }
+}
+
+/// How much a neighbour along a row and one along a column count: as the inverse squares of their distances, halved
+/// so that the four add up to 1.
+fn weights(raster: &Raster) -> DVec2 {
+    let mut spacing = raster.spacing();
+    if raster.crs.as_ref().is_some_and(Crs::is_geographic) {
+        spacing.x *= libm::cos(raster.center().y.to_radians()).abs();
+    }
+    let weights = (spacing * spacing).recip();
+    let weights = weights / (2.0 * (weights.x + weights.y));
+    if weights.is_finite() { weights } else { DVec2::splat(0.25) }
+}
+
+/// The heights over one void, and of its rim.
+struct Membrane {
+    /// Those of the void's samples, then those of the rim, which stay.
+    heights: Vec<f64>,
+    /// Per sample of the void: where its west, east, north and south neighbours stand in `heights`.
+    around: Vec<[u32; 4]>,
+    weights: DVec2,
+    /// The lowest and the highest of the rim: no height of a membrane lies beyond.
+    range: (f64, f64),
+    /// Samples along the longer side of the void's rectangle.
+    side: usize,
+}
+
+impl Membrane {
+    /// At the rim's mean height. `cells` are in order, and none is on the raster's border.
+    fn new(raster: &Raster, cells: &[usize], weights: DVec2) -> Self {
+        let width = raster.width as usize;
+        let mut rim: Vec<f64> = Vec::new();
+        let mut place = |index: usize| match cells.binary_search(&index) {
+            Ok(at) => at as u32,
+            Err(_) => {
+                rim.push(raster.samples.get(index));
+                (cells.len() + rim.len() - 1) as u32
+            }
+        };
+        let around: Vec<[u32; 4]> =
+            cells.iter().map(|&at| [at - 1, at + 1, at - width, at + width].map(&mut place)).collect();
+        let mean = rim.iter().sum::<f64>() / rim.len() as f64;
+        let range = rim.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), height| {
+            (low.min(*height), high.max(*height))
+        });
+        let span = |of: fn(usize, usize) -> usize| {
+            let all = cells.iter().map(|&at| of(at, width));
+            let (low, high) = all.fold((usize::MAX, 0), |(low, high), at| (low.min(at), high.max(at)));
+            high - low + 1
+        };
+        let side = span(|at, width| at % width).max(span(|at, width| at / width));
+        let heights = vec![mean; cells.len()].into_iter().chain(rim).collect();
+        Self { heights, around, weights, range, side }
+    }
+
+    /// The heights of the void's samples, at rest.
+    fn solve(mut self) -> Vec<f64> {
+        // The factor that is best for a square void of this side.
+        let factor = 2.0 / (1.0 + libm::sin(std::f64::consts::PI / (self.side + 1) as f64));
+        for _ in 0..SWEEPS_PER_SIDE * (self.side + 2) {
+            if self.sweep(factor) <= AT_REST {
+                break;
+            }
+        }
+        self.heights.truncate(self.around.len());
+        self.heights
+    }
+
+    /// Moves every height once; returns the farthest that any moved.
+    fn sweep(&mut self, factor: f64) -> f64 {
+        let mut farthest: f64 = 0.0;
+        for (at, around) in self.around.iter().enumerate() {
+            let [west, east, north, south] = around.map(|index| self.heights[index as usize]);
+            let mean = self.weights.x * (west + east) + self.weights.y * (north + south);
+            let old = self.heights[at];
+            let new = (old + factor * (mean - old)).clamp(self.range.0, self.range.1);
+            self.heights[at] = new;
+            farthest = farthest.max((new - old).abs());
+        }
+        farthest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dem::raster::tests::small;
+
+    /// A plane with the samples cleared that `hole` names by column and row.
+    fn plane(side: u32, hole: impl Fn(u32, u32) -> bool) -> Raster {
+        let at = |index: u32| (index % side, index / side);
+        let height = |(column, row): (u32, u32)| 100.0 + 3.0 * column as f32 - 2.0 * row as f32;
+        let values = (0..side * side).map(at);
+        small(side, side, values.map(|at| if hole(at.0, at.1) { f32::NAN } else { height(at) }).collect())
+    }
+
+    #[test]
+    fn a_void_in_a_plane_becomes_the_plane() {
+        let disc = |column: u32, row: u32| column.abs_diff(32).pow(2) + row.abs_diff(30).pow(2) < 500;
+        let mut raster = plane(64, disc);
+        let before = raster.clone();
+        let filled = fill(&mut raster);
+        assert_eq!((filled.voids, filled.voids_left), (1, 0));
+        assert_eq!(filled.cells, before.samples.iter().filter(|height| height.is_nan()).count() as u64);
+        let whole = plane(64, |_, _| false);
+        for (index, (ours, wanted)) in raster.samples.iter().zip(whole.samples.iter()).enumerate() {
+            assert!((ours - wanted).abs() < 1e-4, "sample {index}: {ours} for {wanted}");
+        }
+    }
+
+    #[test]
+    fn what_reaches_the_border_is_left() {
+        let mut raster = plane(8, |column, row| (column == 3 && row < 4) || (column == 6 && row == 6));
+        assert_eq!(count(&raster), (1, 1));
+        assert_eq!(fill(&mut raster), Filled { voids: 1, cells: 1, ..Filled::default() });
+        assert_eq!(raster.at(6, 6), 106.0);
+        assert!(raster.at(3, 0).is_nan() && raster.at(3, 3).is_nan());
+    }
+
+    #[test]
+    fn voids_that_touch_at_a_corner_are_two() {
+        let raster = plane(8, |column, row| column == row && (2..4).contains(&column));
+        assert_eq!(count(&raster), (2, 2));
+    }
+
+    #[test]
+    fn a_membrane_is_the_mean_of_its_neighbours_and_stays_within_its_rim() {
+        let mut raster = plane(40, |_, _| false);
+        let rough = |index: usize| ((index * 7919) % 1009) as f64;
+        for index in 0..raster.samples.len() {
+            let (column, row) = (index % 40, index / 40);
+            let hole = (5..33).contains(&column) && (8..30).contains(&row) && (column + row) % 11 != 0;
+            raster.samples.set(index, if hole { f64::NAN } else { rough(index) });
+        }
+        let holes: Vec<bool> = raster.samples.iter().map(f64::is_nan).collect();
+        let filled = fill(&mut raster);
+        assert_eq!(filled.cells, holes.iter().filter(|hole| **hole).count() as u64);
+        for index in (0..1600).filter(|&index| holes[index]) {
+            let around = [index - 1, index + 1, index - 40, index + 40].map(|at| raster.samples.get(at));
+            let mean = around.iter().sum::<f64>() / 4.0;
+            let height = raster.samples.get(index);
+            assert!((height - mean).abs() < 2e-4, "sample {index}: {height} for {mean}");
+            assert!((0.0..=1008.0).contains(&height));
+        }
+    }
+
+    #[test]
+    fn a_void_that_is_too_large_is_left_and_counted() {
+        let side = 400;
+        let mut raster = plane(side, |column, row| (1..399).contains(&column) && (1..399).contains(&row));
+        let filled = fill(&mut raster);
+        assert_eq!(filled, Filled { voids_left: 1, cells_left: 398 * 398, ..Filled::default() });
+        assert!(filled.note().contains("158404 samples in 1 voids"), "{}", filled.note());
+        assert!(raster.at(200, 200).is_nan());
+    }
+}
