@@ -60,6 +60,7 @@ fn raster_of(lattice: &Lattice) -> Raster {
     let corner = lattice.origin() + DVec2::new(-0.5, f64::from(lattice.rows()) - 0.5) * cell;
     Raster {
         driver: "test",
+        data_type: "Float32",
         width: lattice.columns(),
         height: lattice.rows(),
         samples: Samples::F32(rows.flatten().copied().collect()),
