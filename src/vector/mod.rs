@@ -1,5 +1,6 @@
 //! Lines, polygons and points with properties: what maps are made of, one file per format.
 
+mod collect;
 pub mod error;
 pub mod feature;
 pub mod filter;
