@@ -76,8 +76,7 @@ impl Collector {
         let mut shapes = parts.into_shapes().peekable();
         while let Some((geometry, elevations)) = shapes.next() {
             check_degrees(&geometry, &self.crs, self.seen)?;
-            let properties =
-                if shapes.peek().is_some() { properties.clone() } else { properties.take() };
+            let properties = if shapes.peek().is_some() { properties.clone() } else { properties.take() };
             let properties = properties.expect("taken only for the last shape");
             self.features.push(Feature { geometry, elevations, properties });
         }
@@ -158,9 +157,10 @@ impl Parts {
             (Geometry::Lines(self.lines.into_iter().map(flat).collect()), elevations)
         });
         let polygons = (!self.polygons.is_empty()).then(|| {
-            let vertices = self.polygons.iter().flat_map(|polygon| {
-                polygon.exterior.iter().chain(polygon.holes.iter().flatten())
-            });
+            let vertices = self
+                .polygons
+                .iter()
+                .flat_map(|polygon| polygon.exterior.iter().chain(polygon.holes.iter().flatten()));
             let elevations = elevations(vertices);
             let polygon = |rings: Rings| Polygon {
                 exterior: flat(rings.exterior),
@@ -246,7 +246,8 @@ mod tests {
 
     #[test]
     fn elevations_stand_in_the_order_of_the_vertices_and_rings_lose_their_last() {
-        let ring = |z: f64| [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.0, 0.0)].map(|(x, y)| DVec3::new(x, y, z));
+        let ring =
+            |z: f64| [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.0, 0.0)].map(|(x, y)| DVec3::new(x, y, z));
         let mut parts = Parts::default();
         parts.polygon([ring(1.0).to_vec(), ring(f64::NAN).to_vec(), ring(3.0).to_vec()]);
         let layer = layer(parts);

@@ -6,6 +6,8 @@
 //! latitude) or (easting, northing) whatever axis order the named system prescribes, which is what all
 //! writers do. Nesting is limited by `serde_json` to 128 levels.
 
+pub(super) mod sequence;
+
 use geojson::{GeoJson, GeometryValue, Position};
 use glam::DVec3;
 use serde::Deserialize;
@@ -72,7 +74,7 @@ fn layer(features: Vec<geojson::Feature>, crs: Crs) -> Result<Layer, VectorError
 ///
 /// # Errors
 /// As of [`Collector::add`].
-pub(super) fn add(collector: &mut Collector, feature: geojson::Feature) -> Result<(), VectorError> {
+fn add(collector: &mut Collector, feature: geojson::Feature) -> Result<(), VectorError> {
     let mut parts = Parts::default();
     if let Some(geometry) = feature.geometry {
         add_shape(&mut parts, geometry.value);
