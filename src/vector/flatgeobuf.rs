@@ -24,7 +24,7 @@ const NODE_BYTES: u64 = 40;
 
 /// Whether `bytes` are FlatGeobuf, of any version.
 pub(super) fn is_flatgeobuf(bytes: &[u8]) -> bool {
-    bytes.starts_with(b"fgb") && bytes.get(4..7) == Some(b"fgb")
+    bytes.starts_with(b"fgb\x03") || (bytes.starts_with(b"fgb") && bytes.get(4..7) == Some(b"fgb"))
 }
 
 /// All features of a FlatGeobuf file.

@@ -12,6 +12,9 @@
 //! opened from memory, read only, without extensions or functions that do anything but compute, with limits on
 //! the length of values and statements, and stopped after so many steps as no honest file takes.
 
+use std::io::Read;
+use std::ops::Range;
+
 use rusqlite::limits::Limit;
 use rusqlite::types::ValueRef;
 use rusqlite::{Connection, ErrorCode, Row};
@@ -73,7 +76,7 @@ fn open(bytes: &[u8]) -> rusqlite::Result<Connection> {
         (Limit::SQLITE_LIMIT_TRIGGER_DEPTH, 1),
         (Limit::SQLITE_LIMIT_WORKER_THREADS, 0),
     ];
-    connection.deserialize_read_exact("main", bytes, bytes.len(), true)?;
+    connection.deserialize_read_exact("main", without_log(bytes), bytes.len(), true)?;
     for (limit, value) in limits {
         connection.set_limit(limit, value)?;
     }
@@ -87,6 +90,16 @@ fn open(bytes: &[u8]) -> rusqlite::Result<Connection> {
     connection
         .execute_batch("PRAGMA trusted_schema = OFF; PRAGMA query_only = ON; PRAGMA cell_size_check = ON;")?;
     Ok(connection)
+}
+
+/// The database as one that keeps no write-ahead log (database file format, section 1.3: bytes 18 and 19), since
+/// there is no file beside it that the log could lie in. What a program left in such a file is not seen.
+fn without_log(bytes: &[u8]) -> impl Read {
+    const VERSIONS: Range<usize> = 18..20;
+    const NO_LOG: [u8; 2] = [1, 1];
+    let before = &bytes[..bytes.len().min(VERSIONS.start)];
+    let after = bytes.get(VERSIONS.end..).unwrap_or_default();
+    before.chain(&NO_LOG[..]).chain(after)
 }
 
 fn refusal(place: &str, error: &rusqlite::Error) -> VectorError {
@@ -175,13 +188,14 @@ fn system(connection: &Connection, id: i64) -> Result<Crs, VectorError> {
 fn features(connection: &Connection, table: &Table, collector: &mut Collector) -> Result<(), VectorError> {
     let place = format!("its layer '{}'", table.name.chars().take(60).collect::<String>());
     let refused = |error: rusqlite::Error| refusal(&place, &error);
-    let booleans = booleans(connection, &table.name).map_err(refused)?;
-    let query = format!("SELECT * FROM \"{}\"", table.name.replace('"', "\"\""));
-    let mut statement = connection.prepare(&query).map_err(refused)?;
-    let names: Vec<String> = statement.column_names().into_iter().map(String::from).collect();
-    let Some(geometry) = names.iter().position(|name| name.eq_ignore_ascii_case(&table.geometry)) else {
+    let columns = columns(connection, &table.name).map_err(refused)?;
+    let Some(geometry) = columns.iter().position(|column| column.name.eq_ignore_ascii_case(&table.geometry))
+    else {
         return Err(VectorError::broken(FORMAT, place, format!("it has no column '{}'", table.geometry)));
     };
+    let named: Vec<String> = columns.iter().map(|column| quoted(&column.name)).collect();
+    let query = format!("SELECT {} FROM {}", named.join(", "), quoted(&table.name));
+    let mut statement = connection.prepare(&query).map_err(refused)?;
     let mut rows = statement.query([]).map_err(refused)?;
     while let Some(row) = rows.next().map_err(refused)? {
         let mut parts = Parts::default();
@@ -189,9 +203,9 @@ fn features(connection: &Connection, table: &Table, collector: &mut Collector) -
             shape(blob, &mut parts).map_err(|error| not_read(error, &place, collector.seen() + 1))?;
         }
         let mut properties = Properties::new();
-        for (index, name) in names.iter().enumerate().filter(|&(index, _)| index != geometry) {
-            let value = value(row.get_ref(index).map_err(refused)?, booleans.contains(name));
-            properties.insert(name.clone(), value);
+        for (index, column) in columns.iter().enumerate().filter(|&(index, _)| index != geometry) {
+            let value = value(row.get_ref(index).map_err(refused)?, column.kind);
+            properties.insert(column.name.clone(), value);
         }
         collector.add(parts, properties)?;
     }
@@ -213,16 +227,40 @@ fn not_read(error: WkbError, place: &str, feature: usize) -> VectorError {
     }
 }
 
-/// The columns that are declared to hold true and false, which SQLite keeps as 1 and 0.
-fn booleans(connection: &Connection, table: &str) -> rusqlite::Result<Vec<String>> {
-    let mut statement =
-        connection.prepare("SELECT name FROM pragma_table_info(?1) WHERE upper(type) = 'BOOLEAN'")?;
-    statement.query_map([table], |row| row.get(0))?.collect()
+/// A name as SQL quotes it.
+fn quoted(name: &str) -> String {
+    format!("\"{}\"", name.replace('"', "\"\""))
 }
 
-fn value(value: ValueRef<'_>, is_boolean: bool) -> Value {
+/// A column of a layer.
+struct Column {
+    name: String,
+    kind: Kind,
+}
+
+/// What a column's numbers mean.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// Declared to hold true and false, which SQLite keeps as 1 and 0.
+    Boolean,
+    /// Themselves.
+    Other,
+}
+
+/// The columns of a table or view. Asked for by a query, since a statement's own names may be no text, which
+/// `rusqlite` takes for a mistake of the program's.
+fn columns(connection: &Connection, table: &str) -> rusqlite::Result<Vec<Column>> {
+    let mut statement = connection.prepare("SELECT name, upper(type) FROM pragma_table_info(?1)")?;
+    let column = |row: &Row<'_>| {
+        let is_boolean = row.get::<_, Option<String>>(1)?.as_deref() == Some("BOOLEAN");
+        Ok(Column { name: row.get(0)?, kind: if is_boolean { Kind::Boolean } else { Kind::Other } })
+    };
+    statement.query_map([table], column)?.collect()
+}
+
+fn value(value: ValueRef<'_>, kind: Kind) -> Value {
     match value {
-        ValueRef::Integer(number) if is_boolean => Value::Bool(number != 0),
+        ValueRef::Integer(number) if kind == Kind::Boolean => Value::Bool(number != 0),
         ValueRef::Integer(number) => number.into(),
         ValueRef::Real(number) => Number::from_f64(number).map_or(Value::Null, Value::Number),
         ValueRef::Text(text) => String::from_utf8_lossy(text).into(),

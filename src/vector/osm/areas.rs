@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use crate::vector::error::VectorError;
 use crate::vector::osm::Positions;
 use crate::vector::osm::data::{Data, Relation, Role, Tags, Way};
-use crate::vector::osm::{IGNORED_ON_AREAS, says_something};
+use crate::vector::osm::saying;
 use crate::vector::rings::{self, Rule};
 
 /// The most vertices that the areas of one extract may have: far more than any has, and a gigabyte. Relations can
@@ -18,8 +18,8 @@ const MOST_VERTICES: usize = 1 << 25;
 /// Makes areas, and knows which ways they stand for.
 pub(super) struct Areas<'a> {
     data: &'a Data,
-    /// By the way's index: whether a relation has its tags in its stead.
-    used: Vec<bool>,
+    /// By the way's index: whether an area of a relation stands for it.
+    stood_for: Vec<bool>,
     steps: u64,
     vertices_left: usize,
 }
@@ -27,34 +27,35 @@ pub(super) struct Areas<'a> {
 impl<'a> Areas<'a> {
     /// None yet.
     pub fn new(data: &'a Data) -> Self {
-        let used = vec![false; data.ways().len()];
-        Self { data, used, steps: rings::MOST_STEPS, vertices_left: MOST_VERTICES }
+        let stood_for = vec![false; data.ways().len()];
+        Self { data, stood_for, steps: rings::MOST_STEPS, vertices_left: MOST_VERTICES }
     }
 
-    /// Whether an area has this way's tags, so that it is no area of its own.
-    pub fn has_used(&self, way: &Way) -> bool {
-        self.data.way(way.id).is_some_and(|index| self.used[index])
+    /// Whether an area of a relation stands for this way, so that it is none of its own.
+    pub fn stand_for(&self, way: &Way) -> bool {
+        self.data.way(way.id).is_some_and(|index| self.stood_for[index])
+    }
+
+    /// Lets the area of a relation with these tags stand for those of its outer ways that say nothing else. An outer
+    /// way that says more, as the building that a named site is made of, stays an area of its own; GDAL drops it.
+    pub fn stand_for_outer_ways(&mut self, relation: &Relation, tags: Tags) {
+        let data = self.data;
+        for index in outer_ways(data, relation) {
+            let mut own = saying(data, data.ways()[index].tags);
+            self.stood_for[index] |= own.all(|(key, value)| data.value(tags, key) == Some(value));
+        }
     }
 
     /// The tags of a relation or, where it has none but its type, those of the first of its outer ways that has any:
     /// old relations are tagged so.
-    pub fn tags_of(&mut self, relation: &Relation) -> Tags {
+    pub fn tags_of(&self, relation: &Relation) -> Tags {
         let data = self.data;
-        let own = data.tags(relation.tags).filter(|tag| tag.0 != "type").count();
-        if own > 0 {
+        if data.tags(relation.tags).any(|tag| tag.0 != "type") {
             return relation.tags;
         }
-        let outer = data.members(relation).iter().filter(|member| member.1 == Role::Outer);
-        let mut tagged = outer
-            .filter_map(|member| data.way(member.0))
-            .filter(|&index| says_something(data, data.ways()[index].tags, &IGNORED_ON_AREAS));
-        match tagged.next() {
-            Some(index) => {
-                self.used[index] = true;
-                data.ways()[index].tags
-            }
-            None => relation.tags,
-        }
+        let tags = outer_ways(data, relation).map(|index| data.ways()[index].tags);
+        let mut telling = tags.filter(|&tags| saying(data, tags).next().is_some());
+        telling.next().unwrap_or(relation.tags)
     }
 
     /// The polygons of a relation, each its rings, the outer one first; `None` where it is not whole.
@@ -88,6 +89,12 @@ impl<'a> Areas<'a> {
         }
         rings::polygons(rings, Rule::Nesting, &mut self.steps).map(Some).map_err(|_| too_much())
     }
+}
+
+/// The indices of the outer ways of a relation that the extract has.
+fn outer_ways<'a>(data: &'a Data, relation: &'a Relation) -> impl Iterator<Item = usize> + 'a {
+    let outer = data.members(relation).iter().filter(|member| member.1 == Role::Outer);
+    outer.filter_map(|member| data.way(member.0))
 }
 
 /// The closed lists of nodes that the ways make, joined at their ends; `None` where some are left over.

@@ -112,13 +112,8 @@ const AREA_KEYS: [&str; 16] = [
 ];
 /// Keys and values that do.
 const AREA_TAGS: [(&str, &str); 2] = [("highway", "platform"), ("public_transport", "platform")];
-/// Keys that say nothing of what a thing is (`ignore`).
-const IGNORED: [&str; 9] =
-    ["created_by", "converted_by", "source", "time", "ele", "note", "todo", "fixme", "FIXME"];
-/// Keys that say nothing on a node besides (`unsignificant`).
-const IGNORED_ON_NODES: [&str; 1] = ["attribution"];
-/// Keys that say nothing on an area besides.
-const IGNORED_ON_AREAS: [&str; 1] = ["area"];
+/// Keys that say nothing of what a thing is (`unsignificant`).
+const SAYING_NOTHING: [&str; 6] = ["created_by", "converted_by", "source", "time", "ele", "attribution"];
 
 impl Kind {
     fn named(wanted: Option<&str>) -> Result<Self, VectorError> {
@@ -131,9 +126,7 @@ impl Kind {
     /// Whether things with these tags, of the right shape, belong to it.
     fn holds(self, data: &Data, tags: Tags) -> bool {
         match self {
-            Self::Points => says_something(data, tags, &IGNORED_ON_NODES),
-            Self::Lines => says_something(data, tags, &[]),
-            Self::Multipolygons => says_something(data, tags, &IGNORED_ON_AREAS),
+            Self::Points | Self::Lines | Self::Multipolygons => saying(data, tags).next().is_some(),
             Self::Roads => data.value(tags, "highway").is_some(),
             Self::Railways => data.value(tags, "railway").is_some(),
             Self::Waterways => data.value(tags, "waterway").is_some(),
@@ -146,10 +139,9 @@ impl Kind {
     }
 }
 
-fn says_something(data: &Data, tags: Tags, besides: &[&str]) -> bool {
-    let is_ignored =
-        |key: &str| IGNORED.contains(&key) || besides.contains(&key) || key.starts_with("openGeoDB:");
-    data.tags(tags).any(|(key, _)| !is_ignored(key))
+/// The tags that say what a thing is.
+fn saying(data: &Data, tags: Tags) -> impl Iterator<Item = (&str, &str)> {
+    data.tags(tags).filter(|(key, _)| !SAYING_NOTHING.contains(key))
 }
 
 /// Whether a closed way with these tags is an area.
@@ -221,13 +213,14 @@ fn areas(data: &Data, kind: Kind, collector: &mut Collector) -> Result<(), Vecto
                 let mut parts = Parts::default();
                 polygons.into_iter().for_each(|rings| parts.polygon(rings));
                 collector.add(parts, properties(data, tags, "osm_id", relation.id))?;
+                areas.stand_for_outer_ways(relation, tags);
             }
             None => incomplete += 1,
         }
     }
     collector.left_out(incomplete, "areas of relations that leave the extract or do not close");
     for way in data.ways() {
-        if !kind.holds(data, way.tags) || !is_area(data, way) || areas.has_used(way) {
+        if !kind.holds(data, way.tags) || !is_area(data, way) || areas.stand_for(way) {
             continue;
         }
         let mut parts = Parts::default();
@@ -314,6 +307,17 @@ mod tests {
         assert_eq!(layer(&content, "multipolygons").features.len(), 2, "the wood is an area of its own");
         let cut = layer(&content.replace("ref='2'", "ref='7'"), "water");
         assert!(cut.features.is_empty() && cut.notes[0].contains("1 areas"), "{:?}", cut.notes);
+    }
+
+    #[test]
+    fn an_outer_way_that_says_more_than_its_relation_stays_an_area() {
+        let relation = "<relation id='9'><member type='way' ref='1' role='outer'/>\
+            <tag k='type' v='multipolygon'/><tag k='name' v='Palace'/></relation>";
+        let palace = way(1, &SQUARE, &[("building", "yes")]) + relation;
+        assert_eq!(layer(&palace, "buildings").features.len(), 1);
+        assert_eq!(layer(&palace, "multipolygons").features.len(), 2);
+        let same = palace.replace("k='name' v='Palace'", "k='building' v='yes'");
+        assert_eq!(layer(&same, "multipolygons").features.len(), 1);
     }
 
     #[test]

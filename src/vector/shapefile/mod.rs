@@ -10,7 +10,7 @@
 //! ```
 //!
 //! Where the index is there, it says which records there are and where: a file that was edited in place keeps
-//! the old ones between. Measures (m) are not kept. Which ring is a hole in which is told by direction and
+//! the old ones between. An index of another version of the file is not followed ([`indexed_or_whole`]). Measures (m) are not kept. Which ring is a hole in which is told by direction and
 //! containment ([`rings`]).
 //!
 //! Read by hand: the counts of a forged record must be held against its length before anything is allocated,
@@ -71,24 +71,33 @@ pub(super) fn read(files: &Files<'_>, stated: Option<&Crs>) -> Result<Layer, Vec
     let encoding = encoding(files, &mut collector);
     let table = files.table.as_deref().map(|bytes| Table::open(bytes, encoding)).transpose()?;
     let places = match &files.index {
-        Some(index) => indexed(index)?,
+        Some(index) => indexed_or_whole(files.shapes, index, &mut collector)?,
         None => one_after_another(files.shapes)?,
     };
     let rows = table.as_ref().map_or(0, Table::rows);
     if table.is_some() && rows != places.len() {
         collector.note(format!("{} shapes, but {rows} rows in the .dbf file", places.len()));
     }
-    let (mut steps, mut deleted) = (rings::MOST_STEPS, 0);
+    let (mut steps, mut deleted, mut outside) = (rings::MOST_STEPS, 0, 0);
     for (index, &place) in places.iter().enumerate() {
         let row = table.as_ref().and_then(|table| table.row(index));
         if row.as_ref().is_some_and(dbf::Row::is_deleted) {
             deleted += 1;
             continue;
         }
-        let shape = shape(files.shapes, index, place, &mut steps)?;
+        let shape = match content(files.shapes, place) {
+            Some(content) => shape(content, index, &mut steps)?,
+            None => {
+                outside += 1;
+                Parts::default()
+            }
+        };
         collector.add(shape, row.map_or_else(Properties::new, |row| row.properties()))?;
     }
     collector.left_out(deleted, "features marked as deleted");
+    if outside > 0 {
+        collector.note(format!("{outside} records lie past the end of the file, says its .shx file"));
+    }
     Ok(collector.finish())
 }
 
@@ -104,6 +113,36 @@ fn encoding(files: &Files<'_>, collector: &mut Collector) -> Option<Encoding> {
         ));
     }
     encoding.or(Some(Encoding::Utf8))
+}
+
+/// Where each record starts, by the index, unless it belongs to another version of the file.
+///
+/// An index that points where no record with its number starts, beside shapes that are whole and numbered through, is
+/// out of date: followed, it would lose shapes. GDAL follows it.
+fn indexed_or_whole(
+    shapes: &[u8],
+    index: &[u8],
+    collector: &mut Collector,
+) -> Result<Vec<usize>, VectorError> {
+    let is_record = |(index, &at): (usize, &usize)| {
+        content(shapes, at).is_some() && number(shapes, at) == Some(index + 1)
+    };
+    let indexed = indexed(index)?;
+    if !indexed.iter().enumerate().all(is_record)
+        && let Ok(whole) = one_after_another(shapes)
+        && whole.iter().enumerate().all(is_record)
+    {
+        collector
+            .note("its .shx file is of another version of it: records are read one after another".into());
+        return Ok(whole);
+    }
+    Ok(indexed)
+}
+
+/// The number of the record at `at`, from 1.
+fn number(shapes: &[u8], at: usize) -> Option<usize> {
+    let bytes = *shapes.get(at..)?.first_chunk::<4>()?;
+    Some(u32::from_be_bytes(bytes) as usize)
 }
 
 /// Where each record starts, by the index.
@@ -143,9 +182,8 @@ fn broken(index: usize, reason: impl Into<String>) -> VectorError {
     VectorError::broken(FORMAT, format!("record {}", index + 1), reason)
 }
 
-/// The shape of the record at `at`.
-fn shape(shapes: &[u8], index: usize, at: usize, steps: &mut u64) -> Result<Parts, VectorError> {
-    let content = content(shapes, at).ok_or_else(|| out_of_file(index, at))?;
+/// The shape that a record's content is.
+fn shape(content: &[u8], index: usize, steps: &mut u64) -> Result<Parts, VectorError> {
     let short = || broken(index, "its counts of parts and points do not fit its length");
     let mut cursor = Cursor::new(content);
     let kind = cursor.u32_le().ok_or_else(short)?;
