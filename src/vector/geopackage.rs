@@ -288,3 +288,102 @@ fn shape(blob: &[u8], parts: &mut Parts) -> Result<(), WkbError> {
     let is_empty = flags & 0x10 != 0;
     if is_empty { Ok(()) } else { wkb::read(cursor.rest(), parts) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    const TABLES: &str = "
+        CREATE TABLE gpkg_spatial_ref_sys (srs_id INTEGER PRIMARY KEY, organization TEXT,
+            organization_coordsys_id INTEGER, definition TEXT);
+        INSERT INTO gpkg_spatial_ref_sys VALUES (4326, 'EPSG', 4326, 'undefined'),
+            (100001, 'NONE', 1, '+proj=tmerc +lat_0=0 +lon_0=9 +x_0=500000 +ellps=GRS80 +towgs84=0,0,0 +units=m');
+        CREATE TABLE gpkg_geometry_columns (table_name TEXT, column_name TEXT, srs_id INTEGER);
+        CREATE TABLE \"my roads\" (fid INTEGER PRIMARY KEY, geom BLOB, name TEXT, lanes INTEGER, width REAL,
+            bridge BOOLEAN, built DATE, photo BLOB);";
+
+    /// The bytes of a database made by `statements`.
+    fn database(statements: &str) -> Vec<u8> {
+        let connection = Connection::open_in_memory().expect("memory");
+        connection.execute_batch(TABLES).expect("sound SQL");
+        connection.execute_batch(statements).expect("sound SQL");
+        connection.serialize("main").expect("memory").to_vec()
+    }
+
+    /// The header and the WKB of a line from (1, 2) at 7 to (3, 4) at 8, as SQL writes bytes.
+    fn line() -> String {
+        let mut bytes = b"GP\0\x01\xe6\x10\0\0\x01\xea\x03\0\0\x02\0\0\0".to_vec();
+        bytes.extend([1f64, 2.0, 7.0, 3.0, 4.0, 8.0].iter().flat_map(|number| number.to_le_bytes()));
+        let digits: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+        format!("x'{digits}'")
+    }
+
+    fn roads(system: i64) -> String {
+        let line = line();
+        format!(
+            "INSERT INTO gpkg_geometry_columns VALUES ('my roads', 'geom', {system});
+             INSERT INTO \"my roads\" VALUES (1, {line}, 'Main', 2, 7.5, 1, '2020-01-31', x'00'),
+                (2, NULL, NULL, NULL, NULL, NULL, NULL, NULL);"
+        )
+    }
+
+    #[test]
+    fn values_keep_their_kind_and_shapes_their_elevations() {
+        let layer = read(&database(&roads(4326)), None, None).expect("sound");
+        let [road] = &layer.features[..] else { panic!("one has a shape") };
+        assert_eq!(road.elevations, Some(vec![7.0, 8.0]));
+        let expected = json!({"fid": 1, "name": "Main", "lanes": 2, "width": 7.5, "bridge": true,
+            "built": "2020-01-31", "photo": null});
+        assert_eq!(json!(road.properties), expected);
+        assert_eq!(layer.notes, ["left out: 1 features without a usable geometry"]);
+        assert_eq!(layer.crs.epsg(), Some(4326));
+    }
+
+    #[test]
+    fn systems_are_known_by_their_definition_too_and_undefined_ones_must_be_stated() {
+        let own = read(&database(&roads(100_001)), None, None).expect("sound");
+        assert!(own.crs.is_metric() && own.crs.epsg().is_none());
+        for undefined in [-1, 0, 7] {
+            let bytes = database(&roads(undefined));
+            let error = read(&bytes, None, None).expect_err("undefined").to_string();
+            assert!(error.contains("with the key 'crs'"), "{error}");
+            assert!(read(&bytes, Some(&Crs::local()), None).is_ok());
+        }
+    }
+
+    #[test]
+    fn views_are_layers_and_one_that_never_ends_is_stopped() {
+        let views = "CREATE VIEW named AS SELECT * FROM \"my roads\" WHERE name IS NOT NULL;
+            CREATE VIEW endless AS WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n)
+                SELECT x'00' AS geom FROM n WHERE x < 0;
+            INSERT INTO gpkg_geometry_columns VALUES ('named', 'geom', 4326), ('endless', 'geom', 4326);";
+        let bytes = database(&(roads(4326) + views));
+        assert_eq!(read(&bytes, None, Some("named")).expect("sound").features.len(), 1);
+        let error = read(&bytes, None, Some("endless")).expect_err("endless").to_string();
+        assert!(error.contains("more steps"), "{error}");
+        let error = read(&bytes, None, None).expect_err("three layers").to_string();
+        assert!(error.contains("3 layers; say which with 'layer': my roads, named, endless"), "{error}");
+    }
+
+    #[test]
+    fn a_database_that_is_no_geopackage_is_told_so() {
+        let connection = Connection::open_in_memory().expect("memory");
+        connection.execute_batch("CREATE TABLE a (b)").expect("sound SQL");
+        let bytes = connection.serialize("main").expect("memory").to_vec();
+        let error = read(&bytes, None, None).expect_err("no tables").to_string();
+        assert!(error.contains("gpkg_geometry_columns"), "{error}");
+        assert!(read(b"SQLite format 3\0", None, None).is_err());
+    }
+
+    #[test]
+    fn a_file_cut_anywhere_or_with_bytes_turned_is_read_or_refused() {
+        let bytes = database(&roads(4326));
+        for at in (0..bytes.len()).step_by(37) {
+            let _ = read(&bytes[..at], None, None);
+            let mut turned = bytes.clone();
+            turned[at] ^= 0xff;
+            let _ = read(&turned, None, None);
+        }
+    }
+}

@@ -131,10 +131,12 @@ fn check_header(header: &[u8]) -> Result<(), VectorError> {
     Ok(())
 }
 
+/// A text of a block, and its number in the data once it is used there.
+type Entry<'a> = (&'a [u8], Option<Text>);
+
 /// One block while it is read.
 struct Block<'a> {
-    /// Its texts, and their numbers in the data once they are used there.
-    texts: Vec<(&'a [u8], Option<Text>)>,
+    texts: Vec<Entry<'a>>,
     granularity: i64,
     offset: [i64; 2],
     tags: Vec<(Text, Text)>,
@@ -177,7 +179,7 @@ fn block(message: &[u8], data: &mut Data) -> Result<(), Fault> {
     Ok(())
 }
 
-fn texts(table: &[u8]) -> Result<Vec<(&[u8], Option<Text>)>, Fault> {
+fn texts(table: &[u8]) -> Result<Vec<Entry<'_>>, Fault> {
     let mut texts = Vec::new();
     for field in fields(table) {
         if let (1, value) = field? {
@@ -254,21 +256,27 @@ impl Block<'_> {
                 place[axis] = place[axis].wrapping_add(steps.next_signed().ok_or(Fault::Malformed)?);
             }
             self.tags.clear();
-            while has_tags {
-                match tags.next_unsigned().ok_or(Fault::Malformed)? {
-                    0 => break,
-                    key => {
-                        let value = tags.next_unsigned().ok_or(Fault::Malformed)?;
-                        let tag = (self.text(key, data)?, self.text(value, data)?);
-                        self.tags.push(tag);
-                    }
-                }
+            if has_tags {
+                self.read_dense_tags(&mut tags, data)?;
             }
             let place = self.place(place)?;
             let tags = data.add_tags(&self.tags)?;
             data.add_node(id, place, tags)?;
         }
         if ids.is_whole() { Ok(()) } else { Err(Fault::Malformed) }
+    }
+
+    /// Reads the tags of one dense node: keys and values in turn, until a 0.
+    fn read_dense_tags(&mut self, tags: &mut Packed<'_>, data: &mut Data) -> Result<(), Fault> {
+        loop {
+            let key = tags.next_unsigned().ok_or(Fault::Malformed)?;
+            if key == 0 {
+                return Ok(());
+            }
+            let value = tags.next_unsigned().ok_or(Fault::Malformed)?;
+            let tag = (self.text(key, data)?, self.text(value, data)?);
+            self.tags.push(tag);
+        }
     }
 
     fn way(&mut self, message: &[u8], data: &mut Data) -> Result<(), Fault> {
