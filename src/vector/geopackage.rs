@@ -305,7 +305,7 @@ mod tests {
 
     /// The bytes of a database made by `statements`.
     fn database(statements: &str) -> Vec<u8> {
-        let connection = Connection::open_in_memory().expect("memory");
+        let mut connection = Connection::open_in_memory().expect("memory");
         connection.execute_batch(TABLES).expect("sound SQL");
         connection.execute_batch(statements).expect("sound SQL");
         connection.serialize("main").expect("memory").to_vec()
@@ -368,7 +368,7 @@ mod tests {
 
     #[test]
     fn a_database_that_is_no_geopackage_is_told_so() {
-        let connection = Connection::open_in_memory().expect("memory");
+        let mut connection = Connection::open_in_memory().expect("memory");
         connection.execute_batch("CREATE TABLE a (b)").expect("sound SQL");
         let bytes = connection.serialize("main").expect("memory").to_vec();
         let error = read(&bytes, None, None).expect_err("no tables").to_string();

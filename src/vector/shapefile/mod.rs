@@ -326,18 +326,29 @@ mod tests {
     }
 
     #[test]
-    fn the_index_decides_which_records_there_are() {
+    fn the_index_decides_which_records_there_are_unless_it_points_astray() {
         let line = |x: f64| content(3, &[&[[x, 2.0], [3.0, 4.0]]], &[]);
-        let shapes = file(&[line(1.0), line(5.0)]);
-        let second = (HEADER_BYTES + 8 + line(1.0).len()) as u32 / 2;
-        let mut index = 9994u32.to_be_bytes().to_vec();
-        index.resize(HEADER_BYTES, 0);
-        index.extend(second.to_be_bytes());
-        index.extend([0; 4]);
-        let layer =
-            read(&Files { index: Some(index), ..files(&shapes) }, Some(&Crs::local())).expect("sound");
-        assert_eq!(layer.features.len(), 1);
-        assert_eq!(layer.features[0].lines()[0][0].x, 5.0);
+        let index = |places: &[usize]| {
+            let mut index = 9994u32.to_be_bytes().to_vec();
+            index.resize(HEADER_BYTES, 0);
+            for &place in places {
+                index.extend((place as u32 / 2).to_be_bytes());
+                index.extend([0; 4]);
+            }
+            Some(index)
+        };
+        let read = |shapes: &[u8], places: &[usize]| {
+            let files = Files { index: index(places), ..files(shapes) };
+            let layer = super::read(&files, Some(&Crs::local())).expect("sound");
+            let starts = layer.features.iter().map(|feature| feature.lines()[0][0].x);
+            (starts.collect::<Vec<_>>(), layer.notes.len())
+        };
+        let second = HEADER_BYTES + 8 + line(1.0).len();
+        let mut shapes = file(&[line(1.0), line(5.0)]);
+        assert_eq!(read(&shapes, &[HEADER_BYTES, second + 4]), (vec![1.0, 5.0], 1), "astray");
+        // The second record is the new version of the first.
+        shapes[second + 3] = 1;
+        assert_eq!(read(&shapes, &[second]), (vec![5.0], 0));
     }
 
     #[test]
