@@ -12,6 +12,8 @@ mod oracle;
 mod places;
 #[path = "real_data/swellendam.rs"]
 mod swellendam;
+#[path = "real_data/vectors.rs"]
+mod vectors;
 
 use std::path::{Path, PathBuf};
 

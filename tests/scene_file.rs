@@ -320,6 +320,10 @@ const BROKEN: &[(&str, &[&str])] = &[
         "[[road]]\npoints = [[0, 0], [1, 1]]\nwhere = { a = 1 }\n",
         &["hill.toml:5:1:", "`where` chooses features of a file"],
     ),
+    (
+        "[[road]]\npoints = [[0, 0], [1, 1]]\nlayer = \"a\"\n",
+        &["hill.toml:5:1:", "`layer` names a layer of a file"],
+    ),
     ("[[model]]\nfile = \"m\"\nat = [0, 0]\nheight = 3\n", &["hill.toml:6:1:", "`clamp = \"relative\"`"]),
     (
         "[[model]]\nfile = \"m\"\nat = [0, 0]\nclamp = \"absolute\"\n",

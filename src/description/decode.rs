@@ -127,27 +127,30 @@ fn lake(reader: &mut Reader<'_, '_>) -> Option<Lake> {
     Some(Lake { name, source: source?, level })
 }
 
-/// The four keys that say where a feature's coordinates come from: `points` or `file`, not both; a filter
-/// only for a file.
+/// The five keys that say where a feature's coordinates come from: `points` or `file`, not both; a layer and a
+/// filter only for a file.
 fn source(reader: &mut Reader<'_, '_>, least_points: usize) -> Option<Source> {
-    let given = [reader.has("points"), reader.has("file"), reader.has("where")];
+    let given = [reader.has("points"), reader.has("file")];
+    let choosing = [
+        (reader.has("layer"), "`layer` names a layer of a file, but the points are given here"),
+        (reader.has("where"), "`where` chooses features of a file, but the points are given here"),
+    ];
     let points = reader.get("points", |item| item.points(least_points));
     let file = reader.get("file", |item| item.filled_text());
+    let layer = reader.get("layer", |item| item.filled_text());
     let filter = reader.get("where", |item| item.filter());
     let crs = any_crs(reader, "crs");
     let title = reader.title();
     match given {
-        [Some(_), Some(file), _] => {
+        [Some(_), Some(file)] => {
             reader.error(file, format!("{title} has both `points` and `file`"), "keep one of them");
         }
-        [Some(_), None, Some(filter)] => {
-            reader.error(
-                filter,
-                "`where` chooses features of a file, but the points are given here",
-                "remove it",
-            );
+        [Some(_), None] => {
+            for (place, message) in choosing {
+                place.into_iter().for_each(|place| reader.error(place, message, "remove it"));
+            }
         }
-        [None, None, _] => {
+        [None, None] => {
             let help = "add `points = [[x, y], ...]` or `file = \"name.geojson\"`";
             reader.error_if_unexplained(
                 &["points", "file"],
@@ -157,7 +160,7 @@ fn source(reader: &mut Reader<'_, '_>, least_points: usize) -> Option<Source> {
         }
         _ => {}
     }
-    Some(Source { points, file, filter, crs })
+    Some(Source { points, file, layer, filter, crs })
 }
 
 fn model(reader: &mut Reader<'_, '_>) -> Option<ModelPlacement> {

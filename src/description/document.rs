@@ -197,8 +197,10 @@ pub struct Source {
     /// `points`: inline coordinates, at least two for a line and three for a lake, at most 100 000, each in
     /// ±10⁹. A lake's last point may repeat its first.
     pub points: Option<Spanned<Vec<[f64; 2]>>>,
-    /// `file`: a vector file.
+    /// `file`: a vector file, of any format that `vector/read.rs` lists.
     pub file: Option<Spanned<String>>,
+    /// `layer`, only with `file`: which layer of a file that holds several; needed there, unless it holds one.
+    pub layer: Option<Spanned<String>>,
     /// `where`, only with `file`: only features whose properties match all of it, each by a value or by one
     /// of a list of up to 256 values. Default: all features.
     pub filter: Option<Spanned<BTreeMap<String, Match>>>,
@@ -250,7 +252,7 @@ pub enum Scalar {
 pub struct Road {
     /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
-    /// `points`, `file`, `where` and `crs`: the centreline.
+    /// `points`, `file`, `layer`, `where` and `crs`: the centreline.
     pub source: Source,
     /// `width`: of the carriageway, in (0, 10 000]. Default 6.
     pub width: Option<Spanned<f64>>,
@@ -263,7 +265,7 @@ pub struct Road {
 pub struct River {
     /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
-    /// `points`, `file`, `where` and `crs`: the centreline.
+    /// `points`, `file`, `layer`, `where` and `crs`: the centreline.
     pub source: Source,
     /// `width`: of the water, in (0, 10 000]. Default 8.
     pub width: Option<Spanned<f64>>,

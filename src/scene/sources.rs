@@ -12,12 +12,13 @@ use crate::description::document::{Match, Scalar, Source};
 use crate::geom::crs::Crs;
 use crate::scene::assets::Assets;
 use crate::scene::place::{Places, parse_crs};
+use crate::vector::error::VectorError;
 use crate::vector::feature::{Geometry, Layer, Polygon};
 use crate::vector::filter::{Condition, Filter};
 use crate::vector::read::{self, Hints};
 
-/// A file's name and the system stated for it.
-type LayerKey = (String, Option<String>);
+/// A file's name, the layer asked for and the system stated for it.
+type LayerKey = (String, Option<String>, Option<String>);
 
 /// Reads vector files, each once.
 pub struct Sources<'a> {
@@ -86,7 +87,7 @@ impl<'a> Sources<'a> {
             return Ok((self.places.crs.clone(), Vec::new()));
         };
         let stated = parse_crs(self.places.document, source.crs.as_ref())?;
-        let layer = self.layer(file, stated.as_ref())?;
+        let layer = self.layer(file, source.layer.as_ref(), stated.as_ref())?;
         let filter = filter_of(source);
         let named = |name: &str, shape| Named { name: name.to_owned(), shape };
         let shapes: Vec<_> = filter
@@ -127,19 +128,47 @@ impl<'a> Sources<'a> {
         }
     }
 
-    fn layer(&self, file: &Spanned<String>, stated: Option<&Crs>) -> Result<Rc<Layer>, Diagnostic> {
-        let key = (file.get_ref().clone(), stated.map(|crs| crs.name().to_owned()));
+    fn layer(
+        &self,
+        file: &Spanned<String>,
+        wanted: Option<&Spanned<String>>,
+        stated: Option<&Crs>,
+    ) -> Result<Rc<Layer>, Diagnostic> {
+        let name = wanted.map(|wanted| wanted.get_ref().as_str());
+        let key = (file.get_ref().clone(), name.map(String::from), stated.map(|crs| crs.name().to_owned()));
         if let Some(layer) = self.layers.borrow().get(&key) {
             return Ok(Rc::clone(layer));
         }
         let wrong = |reason: String| self.places.document.error(file, reason);
         let bytes = self.assets.read(file.get_ref()).map_err(|error| wrong(error.to_string()))?;
         let companions = |name: &str| self.assets.read(name).ok();
-        let hints = Hints { crs: stated, layer: None, companions: &companions };
-        let layer = read::read(file.get_ref(), &bytes, &hints).map_err(|error| wrong(error.to_string()))?;
+        let hints = Hints { crs: stated, layer: name, companions: &companions };
+        let layer =
+            read::read(file.get_ref(), &bytes, &hints).map_err(|error| self.unread(file, wanted, &error))?;
         let layer = Rc::new(layer);
         self.layers.borrow_mut().insert(key, Rc::clone(&layer));
         Ok(layer)
+    }
+
+    /// The message about a file that cannot be read, at the key that is to blame.
+    fn unread(
+        &self,
+        file: &Spanned<String>,
+        wanted: Option<&Spanned<String>>,
+        error: &VectorError,
+    ) -> Diagnostic {
+        let document = self.places.document;
+        match (error, wanted) {
+            (VectorError::NoSuchLayer { wanted, meant, found }, Some(key)) => {
+                let message = format!("'{}' has no layer '{wanted}'{meant}", file.get_ref());
+                document.error(key, message).with_help(format!("its layers are {found}"))
+            }
+            (VectorError::WhichLayer { count, found }, _) => {
+                let message = format!("'{}' holds {count} layers", file.get_ref());
+                document.error(file, message).with_help(format!("add `layer = \"...\"` with one of {found}"))
+            }
+            _ => document.error(file, error.to_string()),
+        }
     }
 
     /// Brings every shape to the world.

@@ -2,6 +2,9 @@
 
 use crate::geom::crs::CrsError;
 
+/// As many layers as a message lists.
+const LAYERS_SHOWN: usize = 20;
+
 /// Why a vector file cannot be read; the file's name is for the caller to add.
 #[derive(Debug, thiserror::Error)]
 pub enum VectorError {
@@ -33,6 +36,55 @@ pub enum VectorError {
         /// What to do about it.
         remedy: String,
     },
+    /// The file contradicts itself or ends too early.
+    #[error("the {format} is broken at {place}: {reason}; fetch or export the file again")]
+    Broken {
+        /// The format's name.
+        format: &'static str,
+        /// Where, as its readers count: a byte, a line, a record.
+        place: String,
+        /// What was found there.
+        reason: String,
+    },
+    /// The format is read, but not this kind of it.
+    #[error("this {format} holds {what}, which is not read; {remedy}")]
+    Unsupported {
+        /// The format's name.
+        format: &'static str,
+        /// What is not read.
+        what: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// The file does not say which system its coordinates are in, and its format has no default.
+    #[error("this {format} {wanting}, so that its coordinate system is not known; say it with the key 'crs'")]
+    NoCrs {
+        /// The format's name.
+        format: &'static str,
+        /// What is not there.
+        wanting: &'static str,
+    },
+    /// The file names a system that is not understood.
+    #[error("its coordinate system cannot be used: {0}; or say the right one with the key 'crs'")]
+    Crs(CrsError),
+    /// Several layers, and none was asked for.
+    #[error("it holds {count} layers; say which with 'layer': {found}")]
+    WhichLayer {
+        /// How many.
+        count: usize,
+        /// Their names, as many as fit.
+        found: String,
+    },
+    /// The layer that was asked for is not there.
+    #[error("it has no layer '{wanted}'{meant}; its layers are {found}")]
+    NoSuchLayer {
+        /// What was asked for, shortened.
+        wanted: String,
+        /// `; did you mean 'roads'?`, or nothing.
+        meant: String,
+        /// The names of those that are there, as many as fit.
+        found: String,
+    },
     /// A format that is known but not read.
     #[error("this is {format}, which is not read; convert it: {command}")]
     OtherFormat {
@@ -43,7 +95,7 @@ pub enum VectorError {
     },
     /// Nothing that is known.
     #[error(
-        "neither its content nor its name says what format it is; GeoJSON is read, which starts with '{{'"
+        "neither its content nor its name says what format it is; GeoJSON is read, and ESRI shapefiles, GeoPackage, FlatGeobuf, GPX, KML, KMZ and OpenStreetMap (.osm, .osm.pbf)"
     )]
     UnknownFormat,
     /// The file's `crs` member is not understood.
@@ -69,4 +121,38 @@ pub enum VectorError {
         /// The system it was taken for.
         crs: String,
     },
+}
+
+impl VectorError {
+    /// A [`VectorError::Broken`].
+    pub(crate) fn broken(
+        format: &'static str,
+        place: impl std::fmt::Display,
+        reason: impl Into<String>,
+    ) -> Self {
+        Self::Broken { format, place: place.to_string(), reason: reason.into() }
+    }
+
+    /// A [`VectorError::WhichLayer`] among `names`.
+    pub(crate) fn which_layer(names: &[&str]) -> Self {
+        Self::WhichLayer { count: names.len(), found: listed(names) }
+    }
+
+    /// A [`VectorError::NoSuchLayer`] among `names`; one that is most like it is proposed.
+    pub(crate) fn no_such_layer(wanted: &str, names: &[&str]) -> Self {
+        let close = |name: &&&str| strsim::osa_distance(&name.to_lowercase(), &wanted.to_lowercase()) <= 2;
+        let meant = names.iter().find(close).map(|name| format!("; did you mean '{name}'?"));
+        let wanted = wanted.chars().take(60).collect();
+        Self::NoSuchLayer { wanted, meant: meant.unwrap_or_default(), found: listed(names) }
+    }
+}
+
+/// The names, as many as fit, each shortened.
+fn listed(names: &[&str]) -> String {
+    if names.is_empty() {
+        return "none".into();
+    }
+    let shown = names.iter().take(LAYERS_SHOWN).map(|name| name.chars().take(60).collect::<String>());
+    let more = if names.len() > LAYERS_SHOWN { ", ..." } else { "" };
+    shown.collect::<Vec<_>>().join(", ") + more
 }

@@ -2,20 +2,21 @@
 //!
 //! Parsing is the `geojson` crate's; here its values become [`Layer`]s. A geometry collection becomes up to
 //! three features with the same properties, one each for its points, lines and polygons, however deep they
-//! lie. Third coordinates are ignored: heights come from the ground. Coordinates are taken as (longitude,
+//! lie. A third coordinate is the elevation, any further ones are ignored. Coordinates are taken as (longitude,
 //! latitude) or (easting, northing) whatever axis order the named system prescribes, which is what all
 //! writers do. Nesting is limited by `serde_json` to 128 levels.
 
-use std::collections::BTreeMap;
+pub(super) mod sequence;
 
 use geojson::{GeoJson, GeometryValue, Position};
-use glam::DVec2;
+use glam::DVec3;
 use serde::Deserialize;
 use serde_json::Value;
 
 use crate::geom::crs::Crs;
+use crate::vector::collect::{Collector, Parts, position};
 use crate::vector::error::VectorError;
-use crate::vector::feature::{Feature, Geometry, Layer, Polygon};
+use crate::vector::feature::Layer;
 
 /// The largest file read. A file of vertices costs ten bytes of memory for each of its own, a hostile one
 /// (measured: a list of a single unknown member) thirty-five, which this keeps to some two gigabytes.
@@ -60,137 +61,69 @@ pub fn read_as(bytes: &[u8], stated: Option<&Crs>) -> Result<Layer, VectorError>
     }
 }
 
-/// What was left out of a layer.
-#[derive(Default)]
-struct Left {
-    without_geometry: usize,
-    short_positions: usize,
-    short_lines: usize,
-    small_rings: usize,
-}
-
-impl Left {
-    fn notes(&self) -> Vec<String> {
-        let counted = [
-            (self.without_geometry, "features without a usable geometry"),
-            (self.short_positions, "positions of less than two numbers"),
-            (self.short_lines, "lines of less than two vertices"),
-            (self.small_rings, "rings of less than three vertices"),
-        ];
-        let said = |(count, what)| (count > 0).then(|| format!("left out: {count} {what}"));
-        counted.into_iter().filter_map(said).collect()
-    }
-}
-
+/// What of a feature collection its features become.
 fn layer(features: Vec<geojson::Feature>, crs: Crs) -> Result<Layer, VectorError> {
-    let mut left = Left::default();
-    let mut read = Vec::new();
-    for (index, feature) in features.into_iter().enumerate() {
-        let mut parts = Parts::default();
-        if let Some(geometry) = feature.geometry {
-            parts.add(geometry.value, &mut left);
-        }
-        left.without_geometry += usize::from(parts.is_empty());
-        let properties: BTreeMap<String, Value> =
-            feature.properties.unwrap_or_default().into_iter().collect();
-        for geometry in parts.into_geometries() {
-            check_degrees(&geometry, &crs, index + 1)?;
-            read.push(Feature { geometry, elevations: None, properties: properties.clone() });
-        }
+    let mut collector = Collector::new(crs);
+    for feature in features {
+        add(&mut collector, feature)?;
     }
-    Ok(Layer { features: read, crs, notes: left.notes() })
+    Ok(collector.finish())
 }
 
-/// A feature's geometries, sorted by kind.
-#[derive(Default)]
-struct Parts {
-    points: Vec<DVec2>,
-    lines: Vec<Vec<DVec2>>,
-    polygons: Vec<Polygon>,
+/// Hands one feature over.
+///
+/// # Errors
+/// As of [`Collector::add`].
+fn add(collector: &mut Collector, feature: geojson::Feature) -> Result<(), VectorError> {
+    let mut parts = Parts::default();
+    if let Some(geometry) = feature.geometry {
+        add_shape(&mut parts, geometry.value);
+    }
+    collector.add(parts, feature.properties.unwrap_or_default().into_iter().collect())
 }
 
-impl Parts {
-    fn is_empty(&self) -> bool {
-        self.points.is_empty() && self.lines.is_empty() && self.polygons.is_empty()
-    }
-
-    fn add(&mut self, value: GeometryValue, left: &mut Left) {
-        match value {
-            GeometryValue::Point { coordinates } => self.points.extend(vertices(&[coordinates], left)),
-            GeometryValue::MultiPoint { coordinates } => self.points.extend(vertices(&coordinates, left)),
-            GeometryValue::LineString { coordinates } => self.add_line(&coordinates, left),
-            GeometryValue::MultiLineString { coordinates } => {
-                coordinates.iter().for_each(|line| self.add_line(line, left));
-            }
-            GeometryValue::Polygon { coordinates } => self.add_polygon(&coordinates, left),
-            GeometryValue::MultiPolygon { coordinates } => {
-                coordinates.iter().for_each(|polygon| self.add_polygon(polygon, left));
-            }
-            GeometryValue::GeometryCollection { geometries } => {
-                geometries.into_iter().for_each(|geometry| self.add(geometry.value, left));
-            }
+fn add_shape(parts: &mut Parts, value: GeometryValue) {
+    match value {
+        GeometryValue::Point { coordinates } => add_points(parts, &[coordinates]),
+        GeometryValue::MultiPoint { coordinates } => add_points(parts, &coordinates),
+        GeometryValue::LineString { coordinates } => add_line(parts, &coordinates),
+        GeometryValue::MultiLineString { coordinates } => {
+            coordinates.iter().for_each(|line| add_line(parts, line));
         }
-    }
-
-    fn add_line(&mut self, line: &[Position], left: &mut Left) {
-        let vertices = vertices(line, left);
-        match vertices.len() {
-            0 | 1 => left.short_lines += 1,
-            _ => self.lines.push(vertices),
+        GeometryValue::Polygon { coordinates } => add_polygon(parts, &coordinates),
+        GeometryValue::MultiPolygon { coordinates } => {
+            coordinates.iter().for_each(|polygon| add_polygon(parts, polygon));
         }
-    }
-
-    fn add_polygon(&mut self, rings: &[Vec<Position>], left: &mut Left) {
-        let mut rings = rings.iter().map(|ring| open_ring(vertices(ring, left)));
-        let exterior = rings.next().flatten();
-        let all: Vec<_> = rings.collect();
-        left.small_rings +=
-            usize::from(exterior.is_none()) + all.iter().filter(|hole| hole.is_none()).count();
-        let holes = all.into_iter().flatten().collect();
-        if let Some(exterior) = exterior {
-            self.polygons.push(Polygon { exterior, holes });
+        GeometryValue::GeometryCollection { geometries } => {
+            geometries.into_iter().for_each(|geometry| add_shape(parts, geometry.value));
         }
-    }
-
-    fn into_geometries(self) -> impl Iterator<Item = Geometry> {
-        let points = (!self.points.is_empty()).then_some(Geometry::Points(self.points));
-        let lines = (!self.lines.is_empty()).then_some(Geometry::Lines(self.lines));
-        let polygons = (!self.polygons.is_empty()).then_some(Geometry::Polygons(self.polygons));
-        points.into_iter().chain(lines).chain(polygons)
     }
 }
 
-/// The first two numbers of each position; those that have fewer are left out.
-fn vertices(positions: &[Position], left: &mut Left) -> Vec<DVec2> {
-    let all: Vec<DVec2> = positions
-        .iter()
-        .filter_map(|position| match position.as_slice() {
-            [x, y, ..] => Some(DVec2::new(*x, *y)),
-            _ => None,
-        })
-        .collect();
-    left.short_positions += positions.len() - all.len();
+fn add_points(parts: &mut Parts, positions: &[Position]) {
+    vertices(positions, parts).into_iter().for_each(|at| parts.point(at));
+}
+
+fn add_line(parts: &mut Parts, line: &[Position]) {
+    let vertices = vertices(line, parts);
+    parts.line(vertices);
+}
+
+fn add_polygon(parts: &mut Parts, rings: &[Vec<Position>]) {
+    let rings: Vec<_> = rings.iter().map(|ring| vertices(ring, parts)).collect();
+    parts.polygon(rings);
+}
+
+/// The first three numbers of each position, the third NaN where there are two; those that have fewer are left out.
+fn vertices(positions: &[Position], parts: &mut Parts) -> Vec<DVec3> {
+    let mut all = Vec::with_capacity(positions.len());
+    for given in positions {
+        match given.as_slice() {
+            [x, y, rest @ ..] => all.push(position(*x, *y, rest.first().copied())),
+            _ => parts.short_position(),
+        }
+    }
     all
-}
-
-/// A ring without its closing vertex, closed in the file or not; `None` where fewer than three remain.
-fn open_ring(mut vertices: Vec<DVec2>) -> Option<Vec<DVec2>> {
-    while vertices.len() > 1 && vertices.first() == vertices.last() {
-        vertices.pop();
-    }
-    (vertices.len() >= 3).then_some(vertices)
-}
-
-fn check_degrees(geometry: &Geometry, crs: &Crs, feature: usize) -> Result<(), VectorError> {
-    /// Twice round from the prime meridian, for lines that cross the antimeridian.
-    const MAX_LONGITUDE: f64 = 360.0;
-    let outside = |vertex: &&DVec2| vertex.x.abs() > MAX_LONGITUDE || vertex.y.abs() > 90.0;
-    match geometry.vertices().find(outside) {
-        Some(at) if crs.is_geographic() => {
-            Err(VectorError::NotDegrees { feature, x: at.x, y: at.y, crs: crs.name().into() })
-        }
-        _ => Ok(()),
-    }
 }
 
 /// The system that a `crs` member names (GeoJSON 2008, section 3.1): a URN of the OGC, or `EPSG:n`.
@@ -258,6 +191,8 @@ fn malformed(bytes: &[u8], error: &serde_json::Error) -> VectorError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vector::feature::{Geometry, Polygon};
+    use glam::DVec2;
 
     fn layer_of(geometry: &str) -> Layer {
         let text = format!(r#"{{"type":"Feature","properties":{{"a":1}},"geometry":{geometry}}}"#);
@@ -306,9 +241,14 @@ mod tests {
     }
 
     #[test]
-    fn heights_are_ignored() {
-        let line = only(r#"{"type":"LineString","coordinates":[[1,2,99],[3,4,99,7]]}"#);
-        assert_eq!(line, Geometry::Lines(vec![vec![A, B]]));
+    fn a_third_coordinate_is_the_elevation_and_a_fourth_nothing() {
+        let layer = layer_of(r#"{"type":"LineString","coordinates":[[1,2,99],[3,4],[5,0,98,7]]}"#);
+        let feature = &layer.features[0];
+        assert_eq!(feature.geometry, Geometry::Lines(vec![vec![A, B, C]]));
+        let elevations = feature.elevations.as_ref().expect("two are known");
+        assert_eq!((elevations[0], elevations[2]), (99.0, 98.0));
+        assert!(elevations[1].is_nan());
+        assert_eq!(layer_of(r#"{"type":"Point","coordinates":[1,2]}"#).features[0].elevations, None);
     }
 
     #[test]
