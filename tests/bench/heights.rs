@@ -15,10 +15,13 @@ mod peers;
 #[path = "common/rounds.rs"]
 mod rounds;
 
+#[path = "heights/rays.rs"]
+mod rays;
+
 /// A section's name and what prints it.
 type Section = (&'static str, fn());
 
-const SECTIONS: &[Section] = &[];
+const SECTIONS: &[Section] = &[("rays", rays::print)];
 
 fn main() {
     rounds::sections(SECTIONS);

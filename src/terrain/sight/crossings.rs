@@ -13,6 +13,11 @@
 //!  │     ╲ │╱╱    │
 //!  a────────────  o
 //! ```
+//!
+//! The part of the line at which it meets a column or a row is one division of whole numbers and the line's own, never
+//! a sum over the columns before: a walk that begins half-way ([`crossings_within`]) meets the same crossings to the
+//! last bit. A line may begin and end anywhere; only what lies on the lattice is walked, so that even one from far away
+//! meets no more crossings than the lattice has columns, rows and cells for it.
 
 use std::ops::ControlFlow;
 
@@ -20,6 +25,10 @@ use glam::DVec2;
 
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::query::Diagonal;
+
+/// How exactly a position on a line is known, in cells; it is off by rounding alone, some 1e-10 on the largest lattices
+/// that memory holds. What lies nearer than this to a line of posts may lie on either side of it.
+pub(in crate::terrain) const POSITION_ERROR: f64 = 1e-8;
 
 /// A place on a line where the ground bends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,25 +41,72 @@ pub struct Crossing {
     pub height_m: f64,
 }
 
+/// The parts of a line between which it is walked: from the first to the second, 0..=1.
+pub(in crate::terrain) type Parts = (f64, f64);
+
 /// Visits every crossing of the line `from`..`to` with edges of the finest triangles, in order, ends excluded, until
-/// `visit` breaks. Both ends are grid positions on the lattice.
+/// `visit` breaks. Both ends are grid positions and may lie off the lattice, where there are no crossings; a line that
+/// is not finite has none at all.
 ///
 /// A line along an edge crosses the posts on it; a crossing at a post is visited once. Costs three crossings a cell.
 pub fn crossings<B>(
     lattice: &Lattice,
     from: DVec2,
     to: DVec2,
+    visit: impl FnMut(Crossing) -> ControlFlow<B>,
+) -> ControlFlow<B> {
+    match parts_on(lattice, from, to) {
+        Some(parts) => crossings_within(lattice, from, to, parts, visit),
+        None => ControlFlow::Continue(()),
+    }
+}
+
+/// The parts of the line between which it lies on the lattice, its border included; `None` where it does not, or is not
+/// finite. Where the line comes in or leaves, the part is that of the crossing with the border.
+pub(in crate::terrain) fn parts_on(lattice: &Lattice, from: DVec2, to: DVec2) -> Option<Parts> {
+    if !(from.is_finite() && to.is_finite() && (to - from).is_finite()) {
+        return None;
+    }
+    let columns = parts_between(from.x, to.x, f64::from(lattice.columns() - 1))?;
+    let rows = parts_between(from.y, to.y, f64::from(lattice.rows() - 1))?;
+    let parts = (columns.0.max(rows.0), columns.1.min(rows.1));
+    (parts.0 <= parts.1).then_some(parts)
+}
+
+/// The parts between which a coordinate that runs `from`..`to` lies within 0..=`last`.
+fn parts_between(from: f64, to: f64, last: f64) -> Option<Parts> {
+    let inside = |at: f64| (0.0..=last).contains(&at);
+    if from == to {
+        return inside(from).then_some((0.0, 1.0));
+    }
+    let (near, far) = if to > from { (0.0, last) } else { (last, 0.0) };
+    let part = |line: f64| (line - from) / (to - from);
+    let first = if inside(from) { 0.0 } else { part(near) };
+    let last = if inside(to) { 1.0 } else { part(far) };
+    (first >= 0.0 && first <= 1.0 && last >= 0.0 && last <= 1.0).then_some((first, last))
+}
+
+/// [`crossings`] from one part of the line to another, both included unless they are the line's ends.
+///
+/// The first is 0 or the part of a crossing with a column or a row, and both lie within [`parts_on`]: the crossings are
+/// then those of the whole walk, to the last bit.
+pub(in crate::terrain) fn crossings_within<B>(
+    lattice: &Lattice,
+    from: DVec2,
+    to: DVec2,
+    (first, through): Parts,
     mut visit: impl FnMut(Crossing) -> ControlFlow<B>,
 ) -> ControlFlow<B> {
-    let mut last = 0.0;
-    let mut columns = Lines::new(from.x, to.x);
-    let mut rows = Lines::new(from.y, to.y);
+    let mut last = first;
+    let mut columns = Lines::from_part(from.x, to.x, lattice.columns(), first);
+    let mut rows = Lines::from_part(from.y, to.y, lattice.rows(), first);
     loop {
         let next = columns.part.min(rows.part).min(1.0);
-        if let Some(crossing) = diagonal_between(lattice, from, to, (last, next)) {
+        let ahead = next.min(through);
+        if let Some(crossing) = diagonal_between(lattice, from, to, (last, ahead)) {
             visit(crossing)?;
         }
-        if next >= 1.0 {
+        if next >= 1.0 || next > through {
             return ControlFlow::Continue(());
         }
         let crossing = match (columns.part == next, rows.part == next) {
@@ -59,6 +115,9 @@ pub fn crossings<B>(
             _ => on_row(lattice, next, from.x + (to.x - from.x) * next, rows.line),
         };
         visit(crossing)?;
+        if next >= through {
+            return ControlFlow::Continue(());
+        }
         if columns.part == next {
             columns.advance();
         }
@@ -74,6 +133,8 @@ struct Lines {
     start: f64,
     length: f64,
     step: f64,
+    /// The last line of the lattice.
+    most: f64,
     /// The next line.
     line: f64,
     /// Where it is met; beyond 1 where there is none.
@@ -81,17 +142,33 @@ struct Lines {
 }
 
 impl Lines {
-    fn new(from: f64, to: f64) -> Self {
+    /// The lines of a lattice with `count` of them, from the first that is met after the line's start and not before
+    /// `part` of it.
+    fn from_part(from: f64, to: f64, count: u32, part: f64) -> Self {
         let length = to - from;
-        let (first, step) = if length > 0.0 { (from.floor() + 1.0, 1.0) } else { (from.ceil() - 1.0, -1.0) };
-        let mut lines = Self { start: from, length, step, line: first - step, part: 0.0 };
-        lines.advance();
+        let at = from + length * part;
+        let (line, step) = if length > 0.0 {
+            ((at - POSITION_ERROR).ceil().max(from.floor() + 1.0).max(0.0), 1.0)
+        } else {
+            let most = f64::from(count - 1);
+            ((at + POSITION_ERROR).floor().min(from.ceil() - 1.0).min(most), -1.0)
+        };
+        let mut lines = Self { start: from, length, step, most: f64::from(count - 1), line, part: 0.0 };
+        lines.meet();
+        while lines.part < part {
+            lines.advance();
+        }
         lines
     }
 
     fn advance(&mut self) {
         self.line += self.step;
-        self.part = if self.length == 0.0 { f64::INFINITY } else { (self.line - self.start) / self.length };
+        self.meet();
+    }
+
+    fn meet(&mut self) {
+        let is_there = self.length != 0.0 && self.line >= 0.0 && self.line <= self.most;
+        self.part = if is_there { (self.line - self.start) / self.length } else { f64::INFINITY };
     }
 }
 

@@ -10,7 +10,12 @@
 //! answer to the last bit, and tests hold it to that.
 
 pub mod crossings;
+pub(in crate::terrain) mod descent;
+pub mod ground;
 pub mod line;
+pub mod pyramid;
+pub mod ray;
+pub mod rise;
 pub mod viewshed;
 
 /// How the Earth's shape and its air bend a line of sight.
