@@ -1,7 +1,7 @@
 //! How high and how low the ground goes, block by block: a pyramid of maxima and minima over the lattice's cells.
 //!
 //! A line that stays above a block's highest post cannot meet the ground in it, and the block is passed in one step.
-//! Blocks of the lowest level are [`FINEST`] cells wide, those of each level above [`FACTOR`] times as wide; the last
+//! Blocks of the lowest level are [`FINEST`] cells wide, those of each level above twice as wide; the last
 //! level is a single block. A block's extremes are those of its posts *with its border*, so that all edges that a line
 //! crosses within the block lie between them, and neighbours share the posts between them:
 //!
@@ -23,14 +23,12 @@ use rayon::prelude::*;
 use crate::terrain::lattice::{Lattice, Post};
 
 /// Cells along a side of a block of level 0, as a power of two.
-const FINEST_BITS: u32 = 2;
+pub(in crate::terrain) const FINEST_BITS: u32 = 2;
 /// Blocks along a side that make one of the level above, as a power of two.
-const FACTOR_BITS: u32 = 1;
+pub(in crate::terrain) const FACTOR_BITS: u32 = 1;
 /// Cells along a side of a block of level 0. Smaller ones cost memory (2: two thirds of the heights), larger ones more
 /// walking where a line passes close over the ground.
 pub const FINEST: u32 = 1 << FINEST_BITS;
-/// Blocks along a side that make one block of the level above.
-pub const FACTOR: u32 = 1 << FACTOR_BITS;
 
 /// The highest and lowest posts of blocks of cells, level by level.
 #[derive(Clone, Debug, PartialEq)]
@@ -138,22 +136,30 @@ impl Pyramid {
     }
 
     /// Cells along a side of a level's blocks, as a power of two.
-    #[inline]
-    pub(in crate::terrain) fn side_bits(level: usize) -> u32 {
+    fn side_bits(level: usize) -> u32 {
         FINEST_BITS + FACTOR_BITS * level as u32
     }
 
-    /// The highest post of a block, −∞ where it has no data.
+    /// Cells along the side of the one block of the last level, as a power of two.
+    pub(in crate::terrain) fn top_bits(&self) -> u32 {
+        Self::side_bits(self.levels.len() - 1)
+    }
+
+    fn level(&self, bits: u32) -> &Level {
+        &self.levels[((bits - FINEST_BITS) / FACTOR_BITS) as usize]
+    }
+
+    /// The highest post of a block with sides of 2^`bits` cells, −∞ where it has no data.
     #[inline]
-    pub(in crate::terrain) fn highest(&self, level: usize, [column, row]: [u32; 2]) -> f32 {
-        let level = &self.levels[level];
+    pub(in crate::terrain) fn highest(&self, bits: u32, [column, row]: [u32; 2]) -> f32 {
+        let level = self.level(bits);
         level.highest[level.index(column, row)]
     }
 
-    /// The lowest post of a block, +∞ where it has no data.
+    /// The lowest post of a block with sides of 2^`bits` cells, +∞ where it has no data.
     #[inline]
-    pub(in crate::terrain) fn lowest(&self, level: usize, [column, row]: [u32; 2]) -> f32 {
-        let level = &self.levels[level];
+    pub(in crate::terrain) fn lowest(&self, bits: u32, [column, row]: [u32; 2]) -> f32 {
+        let level = self.level(bits);
         level.lowest[level.index(column, row)]
     }
 
@@ -169,7 +175,7 @@ impl Pyramid {
         for (number, level) in self.levels.iter().enumerate() {
             for index in 0..level.highest.len() as u32 {
                 let (column, row) = (index % level.columns, index / level.columns);
-                let found = (self.lowest(number, [column, row]), self.highest(number, [column, row]));
+                let found = (level.lowest[index as usize], level.highest[index as usize]);
                 let expected = extremes(lattice, Self::side_bits(number), column, row);
                 if found != expected {
                     return Err(PyramidFault::Block { level: number, column, row, found, expected });

@@ -178,7 +178,7 @@ struct Picking<'a> {
     span: &'a Span,
     /// The crossing before, where the triangles since were looked at, and the ray's height over the ground there.
     before: Option<(f64, f64)>,
-    /// Whether the last block that was not ruled out holds the span's end.
+    /// Whether that crossing is the last of the span.
     reaches_end: bool,
 }
 
@@ -216,10 +216,12 @@ impl Probe for Picking<'_> {
         ends.0.min(ends.1) > highest_m + margin_m || ends.0.max(ends.1) < lowest_m() - margin_m
     }
 
-    fn enter(&mut self, parts: Parts) {
-        // The first crossing of the block is the last of the one before: nothing between them is missed.
-        self.before = (parts.0 > 0.0).then_some((parts.0, f64::NAN));
-        self.reaches_end = parts.1 >= 1.0;
+    fn resume(&mut self, part: f64) {
+        self.before = (part > 0.0).then_some((part, f64::NAN));
+    }
+
+    fn finish(&mut self) {
+        self.reaches_end = true;
     }
 
     #[inline]
