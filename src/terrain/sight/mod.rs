@@ -13,6 +13,7 @@ pub mod crossings;
 pub(in crate::terrain) mod descent;
 pub mod ground;
 pub mod line;
+pub mod outlook;
 pub mod pyramid;
 pub mod ray;
 pub mod rise;
