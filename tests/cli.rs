@@ -8,12 +8,16 @@ mod heights;
 mod info;
 #[path = "cli/lod.rs"]
 mod lod;
+#[path = "cli/los.rs"]
+mod los;
 #[path = "cli/manners.rs"]
 mod manners;
 #[path = "cli/meshes.rs"]
 mod meshes;
 #[path = "cli/pictures.rs"]
 mod pictures;
+#[path = "cli/profile.rs"]
+mod profile;
 #[path = "cli/wrong_scenes.rs"]
 mod wrong_scenes;
 

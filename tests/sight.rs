@@ -55,9 +55,13 @@ fn grounds() -> Vec<(&'static str, Lattice)> {
         ("stepped", lattice(65, 65, |(column, _)| (column / 9 * 20) as f32)),
         (
             "holed",
-            lattice(101, 77, |at| {
-                if holes.part() < 0.1 { f32::NAN } else { hills(at) + noise.part() as f32 }
-            }),
+            lattice(
+                101,
+                77,
+                |at| {
+                    if holes.part() < 0.1 { f32::NAN } else { hills(at) + noise.part() as f32 }
+                },
+            ),
         ),
         ("narrow", lattice(2, 200, |(_, row)| (row % 17) as f32)),
         ("tiny", lattice(2, 2, |(column, row)| (column + row) as f32)),
@@ -140,7 +144,8 @@ fn the_rise_that_is_needed_is_the_plain_walks_to_the_last_bit_and_just_enough() 
                 let plain = required_rise(lattice, observer, target, curvature, raised);
                 assert_eq!(plain, ground.required_rise(observer, target, curvature, raised), "{name}");
                 let Ok(Some(rise)) = plain else { continue };
-                let blocked = matches!(line_of_sight(lattice, observer, target, curvature), Sight::Blocked(_));
+                let blocked =
+                    matches!(line_of_sight(lattice, observer, target, curvature), Sight::Blocked(_));
                 assert_eq!(blocked, rise.rise_m > 0.0, "{name}: {observer:?} {target:?} {rise:?}");
                 // An end decides nothing about ground right under the other one, and no rise is enough for it.
                 if rise.rise_m.abs() > 1e4 {
@@ -155,7 +160,10 @@ fn the_rise_that_is_needed_is_the_plain_walks_to_the_last_bit_and_just_enough() 
                 // Of heights of millions of metres an f64 keeps some 1e-9, and an end far from the ground lifts it little.
                 let little_m = 1e-3;
                 assert_eq!(risen(little_m), Sight::Clear, "{name}: {observer:?} {target:?} {rise:?}");
-                assert!(matches!(risen(-little_m), Sight::Blocked(_)), "{name}: {observer:?} {target:?} {rise:?}");
+                assert!(
+                    matches!(risen(-little_m), Sight::Blocked(_)),
+                    "{name}: {observer:?} {target:?} {rise:?}"
+                );
             }
         }
     }
@@ -204,8 +212,11 @@ fn brute_force(lattice: &Lattice, ray: Ray, farthest_m: f64) -> Option<(f64, DVe
         for column in 0..lattice.columns() - 1 {
             let [sw, se] = [corner(column, row), corner(column + 1, row)];
             let [nw, ne] = [corner(column, row + 1), corner(column + 1, row + 1)];
-            let triangles =
-                if column % 2 == row % 2 { [[sw, se, ne], [sw, ne, nw]] } else { [[sw, se, nw], [se, ne, nw]] };
+            let triangles = if column % 2 == row % 2 {
+                [[sw, se, ne], [sw, ne, nw]]
+            } else {
+                [[sw, se, nw], [se, ne, nw]]
+            };
             for [a, b, c] in triangles {
                 let (u, v) = (b - a, c - a);
                 let across = direction.cross(v);
@@ -246,7 +257,8 @@ fn a_ray_meets_the_triangle_that_trying_every_one_finds() {
         let (mut met, mut missed) = (0, 0);
         for _ in 0..500 {
             let mut spot = |spread: f64| {
-                let plan = extent * DVec2::new(random.part(), random.part()) * spread - extent * (spread - 1.0) / 2.0;
+                let plan = extent * DVec2::new(random.part(), random.part()) * spread
+                    - extent * (spread - 1.0) / 2.0;
                 plan.extend(low + (high - low) * random.part())
             };
             let (origin, toward) = (spot(1.4), spot(1.0));
@@ -302,7 +314,11 @@ fn what_is_no_ray_meets_nothing() {
         (origin, DVec3::NEG_Z, -1.0),
         (origin, DVec3::NEG_Z, 9.9),
     ] {
-        assert_eq!(ground.pick(Ray { origin, direction }, farthest_m), None, "{origin} {direction} {farthest_m}");
+        assert_eq!(
+            ground.pick(Ray { origin, direction }, farthest_m),
+            None,
+            "{origin} {direction} {farthest_m}"
+        );
     }
     assert!(ground.pick(Ray { origin, direction: DVec3::NEG_Z }, 10.0).is_some());
     let far = Ray { origin: DVec3::new(1e12, 40.0, 10.0), direction: DVec3::new(-1e12, 0.0, -10.0) };
@@ -313,10 +329,8 @@ fn what_is_no_ray_meets_nothing() {
 fn a_ray_passes_through_a_hole_and_meets_what_lies_behind_it() {
     let holed = lattice(41, 9, |(column, _)| if (10..=14).contains(&column) { f32::NAN } else { 0.0 });
     let ground = SightGround::new(Arc::new(holed));
-    let toward = |x: f64| Ray {
-        origin: DVec3::new(x - 50.0, 45.0, 50.0),
-        direction: DVec3::new(1.0, 0.01, -1.0),
-    };
+    let toward =
+        |x: f64| Ray { origin: DVec3::new(x - 50.0, 45.0, 50.0), direction: DVec3::new(1.0, 0.01, -1.0) };
     assert!(ground.pick(toward(85.0), f64::INFINITY).is_some());
     assert_eq!(ground.pick(toward(95.0), f64::INFINITY), None, "a triangle with a corner in the hole");
     assert_eq!(ground.pick(toward(120.0), f64::INFINITY), None);
@@ -393,7 +407,10 @@ fn lines_from_afar_from_nowhere_and_of_no_length_end() {
         let _ = crossings(&ground, from, to, |crossing| {
             parts.push(crossing.part);
             let last = DVec2::new(8.0, 6.0);
-            assert!(crossing.grid.cmpge(DVec2::ZERO).all() && crossing.grid.cmple(last).all(), "{crossing:?}");
+            assert!(
+                crossing.grid.cmpge(DVec2::ZERO).all() && crossing.grid.cmple(last).all(),
+                "{crossing:?}"
+            );
             ControlFlow::<()>::Continue(())
         });
         assert!(parts.is_sorted(), "{from} {to}: {parts:?}");
@@ -408,7 +425,10 @@ fn lines_from_afar_from_nowhere_and_of_no_length_end() {
     // Across from outside: both borders, every column and diagonal between.
     assert_eq!(met(DVec2::new(-4.0, 2.5), DVec2::new(12.0, 2.5)), 9 + 8);
     assert_eq!(met(DVec2::new(12.0, 2.5), DVec2::new(-4.0, 2.5)), 9 + 8);
-    assert_eq!(met(DVec2::new(-4.0, 2.5), DVec2::new(12.0, 30.0)), met(DVec2::new(12.0, 30.0), DVec2::new(-4.0, 2.5)));
+    assert_eq!(
+        met(DVec2::new(-4.0, 2.5), DVec2::new(12.0, 30.0)),
+        met(DVec2::new(12.0, 30.0), DVec2::new(-4.0, 2.5))
+    );
     assert_eq!(met(DVec2::new(-1.0, 7.0), DVec2::new(9.0, 6.5)), 0, "beside it");
 }
 
@@ -420,14 +440,20 @@ fn a_profile_over_a_sinusoid_has_its_length_its_ascent_and_its_extremes() {
     });
     let line = [ORIGIN + DVec2::new(0.0, 20.0), ORIGIN + DVec2::new(6400.0, 20.0)];
     let summary = Summary::of(&profile(&wave, &line));
-    assert!((summary.ascent_m - 1000.0).abs() < 1e-3 && (summary.descent_m - 1000.0).abs() < 1e-3, "{summary:?}");
+    assert!(
+        (summary.ascent_m - 1000.0).abs() < 1e-3 && (summary.descent_m - 1000.0).abs() < 1e-3,
+        "{summary:?}"
+    );
     let (lowest, highest) = (summary.lowest.expect("ground"), summary.highest.expect("ground"));
     assert_eq!((lowest.height_m, highest.height_m), (-50.0, 50.0));
     assert_eq!((highest.station_m, lowest.station_m), (160.0, 480.0), "the first of each");
     // ∫√(1 + (dz/dx)²) dx by steps of a millimetre.
     let amplitude = 50.0 * std::f64::consts::TAU / 640.0;
     let exact: f64 = (0..640_000)
-        .map(|step| (amplitude * (std::f64::consts::TAU * (f64::from(step) + 0.5) / 640_000.0).cos()).hypot(1.0) * 1e-3)
+        .map(|step| {
+            (amplitude * (std::f64::consts::TAU * (f64::from(step) + 0.5) / 640_000.0).cos()).hypot(1.0)
+                * 1e-3
+        })
         .sum();
     assert!((summary.ground_length_m / (10.0 * exact) - 1.0).abs() < 1e-4, "{summary:?} {exact}");
     assert_eq!(summary.length_m, 6400.0);

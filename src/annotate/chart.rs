@@ -117,7 +117,8 @@ pub fn begin(size: (u32, u32), around: &Surroundings, length_m: f64, (low_m, hig
 
 /// The heights at the plot's edges.
 fn range((low_m, high_m): (f64, f64), length_m: f64) -> (f64, f64) {
-    let (low_m, high_m) = if low_m <= high_m && (high_m - low_m).is_finite() { (low_m, high_m) } else { (0.0, 1.0) };
+    let (low_m, high_m) =
+        if low_m <= high_m && (high_m - low_m).is_finite() { (low_m, high_m) } else { (0.0, 1.0) };
     let least_m = (length_m * LEAST_RELIEF).max(1.0);
     let short_m = (least_m - (high_m - low_m)).max(0.0);
     let (low_m, high_m) = (low_m - short_m * 0.5, high_m + short_m * 0.5);
@@ -146,7 +147,7 @@ fn plot_box(
         + if around.subtitle.is_empty() { 0.0 } else { sheet.type_px(17.0) * 1.5 }
         + sheet.px(26.0);
     // Above the plot its height's label; below it figures and the line of start, axis label and end.
-    let top = (margin + titles + figure_px * 1.2).round();
+    let top = (margin + titles + figure_px * 1.5).round();
     let bottom = (sheet.size.y - margin - figure_px * 3.6).round().max(top + 8.0);
     let (heights, decimals) = height_ticks(sheet, heights_m, bottom - top);
     let widest = heights
@@ -177,7 +178,7 @@ impl Chart {
                 write(&mut self.below, &[(&line, at)], SOFT_INK);
             }
         }
-        let at = Vec2::new(plot.max.x - note.advance, plot.min.y - note.face.size_px * 0.6);
+        let at = Vec2::new(plot.max.x - note.advance, plot.min.y - note.face.size_px * 0.95);
         write(&mut self.below, &[(&note, at.round())], SOFT_INK);
     }
 
@@ -195,7 +196,7 @@ impl Chart {
         }
         let room = frame.plot.size().x * 0.7;
         if let Some(label) = fitted(&mut self.setter, &around.height_axis, face, room) {
-            let at = Vec2::new(sheet.whole_px(30.0), frame.plot.min.y - face.size_px * 0.6);
+            let at = Vec2::new(sheet.whole_px(30.0), frame.plot.min.y - face.size_px * 0.95);
             write(&mut self.below, &[(&label, at.round())], SOFT_INK);
         }
     }
@@ -245,6 +246,7 @@ impl Chart {
         let x = (at.x - line.advance * 0.5).clamp(plot.min.x, most);
         let y = match side {
             Side::Above => at.y - away,
+            Side::WellAbove => at.y - away - face.size_px * 2.4,
             Side::Below => at.y + away + face.size_px * CAP_HEIGHT,
         };
         let least = plot.min.y + face.size_px * CAP_HEIGHT;
@@ -289,6 +291,73 @@ impl Chart {
 pub enum Side {
     /// Above its point.
     Above,
+    /// Above what may stand above its point.
+    WellAbove,
     /// Below it.
     Below,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::annotate::chart_ground::{Ground, Point};
+    use crate::annotate::chart_profile::{ProfileChart, paint};
+
+    fn chart(heights: &[f64]) -> ProfileChart {
+        let point = |(index, &height): (usize, &f64)| Point {
+            along_m: index as f64 * 100.0,
+            ground: if height.is_nan() { Ground::NoData } else { Ground::Height(height) },
+        };
+        let around = Surroundings { title: "Profile".into(), ..Surroundings::default() };
+        ProfileChart { around, points: heights.iter().enumerate().map(point).collect(), bends_m: vec![] }
+    }
+
+    #[test]
+    fn heights_rise_upward_and_distances_to_the_right_within_the_plot() {
+        let chart = begin((800, 400), &Surroundings::default(), 1000.0, (100.0, 300.0));
+        let (low, high) = (chart.frame.at(0.0, 100.0), chart.frame.at(1000.0, 300.0));
+        assert!(low.x == chart.frame.plot.min.x && high.x == chart.frame.plot.max.x);
+        assert!(high.y < low.y && chart.frame.plot.contains(Vec2::new(low.x + 1.0, high.y)));
+    }
+
+    #[test]
+    fn the_stretch_of_heights_is_that_of_the_scales() {
+        let frame = begin((800, 400), &Surroundings::default(), 1000.0, (0.0, 100.0)).frame;
+        let right = frame.at(1.0, 0.0).x - frame.at(0.0, 0.0).x;
+        let up = frame.at(0.0, 0.0).y - frame.at(0.0, 1.0).y;
+        assert!((frame.exaggeration() / f64::from(up / right) - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn level_ground_is_not_stretched_into_mountains() {
+        let frame = begin((800, 400), &Surroundings::default(), 10_000.0, (50.0, 50.001)).frame;
+        assert!(frame.exaggeration() < 400.0);
+    }
+
+    #[test]
+    fn ground_is_filled_sky_is_not_and_a_gap_is_neither() {
+        let pixels = paint((800, 400), &chart(&[100.0, 100.0, f64::NAN, 100.0, 100.0]));
+        let frame = begin(
+            (800, 400),
+            &Surroundings { title: "Profile".into(), ..Surroundings::default() },
+            400.0,
+            (100.0, 100.0),
+        )
+        .frame;
+        let color = |along_m: f64, up: f32| {
+            let at = frame.at(along_m, 100.0) - Vec2::new(0.0, up);
+            pixels.at(at.x as u32, at.y as u32)
+        };
+        let (ground, sky, gap) = (color(50.0, -20.0), color(50.0, 20.0), color(203.0, -20.0));
+        assert!(ground != sky && gap != ground, "{ground:?} {sky:?} {gap:?}");
+    }
+
+    #[test]
+    fn the_smallest_and_the_emptiest_charts_are_painted() {
+        for size in [(16, 16), (40, 16), (16, 300)] {
+            for heights in [&[][..], &[1.0], &[f64::NAN, f64::NAN], &[1e7, -1e7]] {
+                assert_eq!(paint(size, &chart(heights)).width(), size.0);
+            }
+        }
+    }
 }

@@ -174,6 +174,8 @@ fn name(chart: &mut Chart, area: PixelBox, why: &str) {
     }
     let at = (area.center() - Vec2::new(line.advance * 0.5, 0.0)).round();
     let half = Vec2::new(line.advance * 0.5 + padding, face.size_px * 0.5 + padding);
-    chart.plotted.rect(PixelBox::around(Vec2::new(area.center().x, at.y - face.size_px * 0.3), half), UNKNOWN);
+    chart
+        .plotted
+        .rect(PixelBox::around(Vec2::new(area.center().x, at.y - face.size_px * 0.3), half), UNKNOWN);
     write(&mut chart.plotted, &[(&line, at)], SOFT_INK);
 }

@@ -13,11 +13,13 @@ use crate::draw::pixels::Pixels;
 /// Ground in sight.
 const LIT: Srgba = Srgba::opaque(0xe2, 0xd3, 0xa8);
 /// Ground out of sight.
-const DARK: Srgba = Srgba::opaque(0x8a, 0x80, 0x70);
+const DARK: Srgba = Srgba::opaque(0x9c, 0x92, 0x82);
 /// The line up to its end, or to what blocks it.
 const LINE: Srgba = WATER_INK;
 /// What blocks it.
 const BLOCK: Srgba = Srgba::opaque(0xb0, 0x35, 0x22);
+/// Labels nearer to each other than this share of the plot's width are set one above the other.
+const CROWDED: f32 = 0.15;
 /// Pixels of a dash and of the gap after it, as designed.
 const DASH: (f32, f32) = (10.0, 7.0);
 
@@ -91,7 +93,11 @@ fn line(chart: &mut Chart, sight: &SightChart, length_m: f64) {
             chart.plotted.line(Segment { from: eye, to: *on_line }, width, LINE);
             dashed(chart, *on_line, target, width);
             chart.dot(*top, BLOCK);
-            chart.label(said, *top, Side::Above, BLOCK);
+            // Near an end its label would stand over the end's.
+            let near = chart.frame.plot.size().x * CROWDED;
+            let is_crowded = top.x - eye.x < near || target.x - top.x < near;
+            let side = if is_crowded { Side::WellAbove } else { Side::Above };
+            chart.label(said, *top, side, BLOCK);
         }
         None => chart.plotted.line(Segment { from: eye, to: target }, width, LINE),
     }

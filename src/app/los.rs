@@ -90,10 +90,15 @@ pub fn run(options: &LosOptions) -> Result<(), Failure> {
     let look = Look::new(options, &crs, (epoch.crs(), epoch.lattice()))?;
     if let Some(path) = &options.output {
         let datum = epoch.source().vertical_datum.as_deref();
-        let pixels = paint((options.size.width, options.size.height), &look.chart(options, epoch.lattice(), datum));
+        let pixels =
+            paint((options.size.width, options.size.height), &look.chart(options, epoch.lattice(), datum));
         files::write_whole(path, &picture::png(&pixels)?)?;
     }
-    if options.json { output::print(&format!("{}\n", look.describe()?)) } else { output::print(&look.tell()?) }
+    if options.json {
+        output::print(&format!("{}\n", look.describe()?))
+    } else {
+        output::print(&look.tell()?)
+    }
 }
 
 /// What was asked and what came of it.
@@ -116,7 +121,8 @@ impl<'a> Look<'a> {
         crs: &'a Crs,
         (ground, lattice): (&'a Crs, &Lattice),
     ) -> Result<Self, Failure> {
-        let asked = [("--from", options.from, options.observer_height), ("--to", options.to, options.target_height)];
+        let asked =
+            [("--from", options.from, options.observer_height), ("--to", options.to, options.target_height)];
         let mut ends = [End { at: DVec2::ZERO, above_m: 0.0 }; 2];
         let mut feet_m = [0.0; 2];
         for (index, (name, stand, usual_m)) in asked.into_iter().enumerate() {
@@ -172,7 +178,9 @@ impl<'a> Look<'a> {
         let at = self.asked(self.ends[index].at)?;
         let above_m = self.ends[index].above_m;
         let height_m = self.feet_m[index] + above_m;
-        Ok(json!({"x": at.x, "y": at.y, "ground_m": self.feet_m[index], "above_m": above_m, "height_m": height_m}))
+        Ok(
+            json!({"x": at.x, "y": at.y, "ground_m": self.feet_m[index], "above_m": above_m, "height_m": height_m}),
+        )
     }
 
     fn describe(&self) -> Result<Value, Failure> {
@@ -232,7 +240,8 @@ impl<'a> Look<'a> {
         if self.curvature == Curvature::FLAT {
             return "flat".into();
         }
-        let (radius_km, k) = (self.curvature.radius_m / 1000.0, nice::short_number(self.curvature.refraction, 3));
+        let (radius_km, k) =
+            (self.curvature.radius_m / 1000.0, nice::short_number(self.curvature.refraction, 3));
         format!("curved, radius {} km, refraction {k}", nice::number(radius_km, 0))
     }
 
@@ -275,7 +284,9 @@ impl<'a> Look<'a> {
         let far = nice::distance(length_m);
         let came = match (&self.blocker, self.target_rise, self.both_rise) {
             (Some(_), Some(rise), _) => format!("hidden; seen if {} m higher", nice::number(rise.rise_m, 1)),
-            (None, _, Some(rise)) => format!("visible, {} m clear of the ground", nice::number(-rise.rise_m, 1)),
+            (None, _, Some(rise)) => {
+                format!("visible, {} m clear of the ground", nice::number(-rise.rise_m, 1))
+            }
             (Some(_), None, _) => "hidden".into(),
             (None, _, None) => "visible".into(),
         };

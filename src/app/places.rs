@@ -11,9 +11,9 @@ use crate::app::files;
 use crate::geom::crs::Crs;
 use crate::vector::read::{self, Hints};
 
-/// `X,Y` as written on the command line, both finite.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Position(pub DVec2);
+/// One or more `X,Y` with spaces between them, as written on the command line; all finite.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Positions(pub Vec<DVec2>);
 
 /// `X,Y` or `X,Y,H`: a position and metres above the ground there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,13 +24,18 @@ pub struct Stand {
     pub above_m: Option<f64>,
 }
 
-impl FromStr for Position {
+impl FromStr for Positions {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        match numbers(text).as_deref() {
-            Some(&[x, y]) => Ok(Self(DVec2::new(x, y))),
-            _ => Err("write a position as X,Y, for example 731500,4017200".into()),
+        let position = |text: &str| match numbers(text).as_deref() {
+            Some(&[x, y]) => Some(DVec2::new(x, y)),
+            _ => None,
+        };
+        let positions: Option<Vec<DVec2>> = text.split_whitespace().map(position).collect();
+        match positions {
+            Some(positions) if !positions.is_empty() => Ok(Self(positions)),
+            _ => Err("write positions as X,Y, for example 731500,4017200".into()),
         }
     }
 }
@@ -49,7 +54,9 @@ impl FromStr for Stand {
 
 /// Finite numbers between commas.
 fn numbers(text: &str) -> Option<Vec<f64>> {
-    text.split(',').map(|number| number.trim().parse().ok().filter(|number: &f64| number.is_finite())).collect()
+    text.split(',')
+        .map(|number| number.trim().parse().ok().filter(|number: &f64| number.is_finite()))
+        .collect()
 }
 
 /// A line and the system of its coordinates.
@@ -127,7 +134,11 @@ fn csv_vertices(text: &str) -> Result<Vec<DVec2>, (usize, String)> {
         let fields = fields(line);
         let Some([x, y]) = columns else {
             let is_header = fields.iter().all(|field| field.parse::<f64>().is_err());
-            columns = Some(if is_header { named_columns(&fields).ok_or((index + 1, unnamed(line)))? } else { [0, 1] });
+            columns = Some(if is_header {
+                named_columns(&fields).ok_or((index + 1, unnamed(line)))?
+            } else {
+                [0, 1]
+            });
             if !is_header {
                 vertices.push(vertex(&fields, [0, 1]).ok_or((index + 1, no_vertex(line)))?);
             }
@@ -185,7 +196,10 @@ pub fn check_picture_place(path: &Path, input: &Path) -> Result<(), Failure> {
     if is_png {
         return Ok(());
     }
-    Err(Failure::input(format!("{}: pictures are written as PNG; name one that ends in .png", path.display())))
+    Err(Failure::input(format!(
+        "{}: pictures are written as PNG; name one that ends in .png",
+        path.display()
+    )))
 }
 
 #[cfg(test)]
@@ -194,8 +208,9 @@ mod tests {
 
     #[test]
     fn positions_are_two_finite_numbers_and_stands_may_have_a_height() {
-        assert_eq!("1.5,-2e3".parse(), Ok(Position(DVec2::new(1.5, -2e3))));
-        assert_eq!("-84.1, 36.2".parse(), Ok(Position(DVec2::new(-84.1, 36.2))));
+        assert_eq!("1.5,-2e3".parse(), Ok(Positions(vec![DVec2::new(1.5, -2e3)])));
+        let two = vec![DVec2::new(-84.1, 36.2), DVec2::new(-84.0, 36.0)];
+        assert_eq!("-84.1,36.2 -84,36".parse(), Ok(Positions(two)));
         assert_eq!("1,2,30".parse(), Ok(Stand { at: DVec2::new(1.0, 2.0), above_m: Some(30.0) }));
         assert_eq!("1,2".parse(), Ok(Stand { at: DVec2::new(1.0, 2.0), above_m: None }));
         for wrong in ["", "1", "1,2,3,4", "a,b", "NaN,1", "1,inf", "1;2"] {
@@ -206,9 +221,12 @@ mod tests {
     #[test]
     fn vertices_come_with_or_without_a_header_and_in_any_columns() {
         let expected = Ok(vec![DVec2::new(1.5, 2.0), DVec2::new(-3.0, 4e3)]);
-        for text in
-            ["1.5,2\n-3,4e3\n", "x,y\r\n1.5,2\r\n\r\n-3,4e3", "id;lat;lon\n7;2;1.5\n8;4e3;-3", "# a line\n1.5 2\n-3 4e3"]
-        {
+        for text in [
+            "1.5,2\n-3,4e3\n",
+            "x,y\r\n1.5,2\r\n\r\n-3,4e3",
+            "id;lat;lon\n7;2;1.5\n8;4e3;-3",
+            "# a line\n1.5 2\n-3 4e3",
+        ] {
             assert_eq!(csv_vertices(text), expected, "{text}");
         }
     }

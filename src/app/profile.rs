@@ -17,7 +17,7 @@ use crate::annotate::nice;
 use crate::app::arguments::{Access, GreyHeights, InterpolationChoice, Size};
 use crate::app::dataset::Dataset;
 use crate::app::failure::Failure;
-use crate::app::places::{Position, Way, check_picture_place, on_ground, read_way, spoken, stated_crs};
+use crate::app::places::{Positions, Way, check_picture_place, on_ground, read_way, spoken, stated_crs};
 use crate::app::{files, output, picture};
 use crate::geom::crs::Crs;
 use crate::terrain::profile::{Extreme, Sampling, Station, Summary, sampled_profile};
@@ -35,12 +35,12 @@ const MOST_STEPS: f64 = 1e7;
 pub struct ProfileOptions {
     /// The elevation file or scene
     pub file: PathBuf,
-    /// The line: --line X,Y X,Y and so on
+    /// The line: --line X,Y X,Y and so on; in quotes where one begins with a minus sign
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, required_unless_present = "points")]
-    pub line: Option<Position>,
+    pub line: Vec<Positions>,
     /// The line's other vertices
-    #[arg(value_name = "X,Y", allow_hyphen_values = true, requires = "line", hide = true)]
-    pub rest: Vec<Position>,
+    #[arg(value_name = "X,Y", requires = "line", hide = true)]
+    pub rest: Vec<Positions>,
     /// A file with the line: x,y a line of CSV, or the first line of a vector file; - reads CSV from standard input
     #[arg(long, value_name = "FILE", conflicts_with = "line")]
     pub points: Option<PathBuf>,
@@ -108,7 +108,8 @@ fn way(options: &ProfileOptions, dataset: &Dataset) -> Result<Way, Failure> {
     if let Some(path) = &options.points {
         return read_way(path, stated, dataset);
     }
-    let vertices: Vec<DVec2> = options.line.iter().chain(&options.rest).map(|position| position.0).collect();
+    let vertices: Vec<DVec2> =
+        options.line.iter().chain(&options.rest).flat_map(|given| given.0.clone()).collect();
     if vertices.len() < 2 {
         return Err(Failure::Usage("--line needs at least two positions: --line X,Y X,Y".into()));
     }
@@ -222,7 +223,11 @@ fn chart(
         nice::number(summary.descent_m, 0)
     );
     let missing_m = summary.length_m - summary.covered_m;
-    let bare = if missing_m > 0.5 { format!("; {} without ground", nice::distance(missing_m)) } else { String::new() };
+    let bare = if missing_m > 0.5 {
+        format!("; {} without ground", nice::distance(missing_m))
+    } else {
+        String::new()
+    };
     ProfileChart {
         around: Surroundings {
             title: file_title("Profile", &options.file),

@@ -179,7 +179,8 @@ impl Summary {
                 summary.step(here.station_m - before.station_m, here.height_m - before.height_m);
             }
             if let Some(here) = here {
-                summary.lowest = summary.lowest.filter(|lowest| lowest.height_m <= here.height_m).or(Some(here));
+                summary.lowest =
+                    summary.lowest.filter(|lowest| lowest.height_m <= here.height_m).or(Some(here));
                 summary.highest =
                     summary.highest.filter(|highest| highest.height_m >= here.height_m).or(Some(here));
             }
@@ -244,7 +245,9 @@ mod tests {
         let stations = sampled_profile(&peak(), &[DVec2::new(0.0, 15.0), DVec2::new(40.0, 15.0)], sampling);
         let along: Vec<f64> = stations.iter().map(|at| at.station_m).collect();
         assert_eq!(along, [0.0, 5.0, 7.0, 10.0, 14.0, 15.0, 20.0, 21.0, 25.0, 28.0, 30.0, 35.0, 35.0, 40.0]);
-        assert!(stations.iter().all(|at| at.ground == ground_height(&peak(), Interpolation::Bilinear, at.at)));
+        assert!(
+            stations.iter().all(|at| at.ground == ground_height(&peak(), Interpolation::Bilinear, at.at))
+        );
     }
 
     #[test]

@@ -47,7 +47,9 @@ pub struct Blocker {
 /// less.
 pub fn line_of_sight(lattice: &Lattice, observer: End, target: End, curvature: Curvature) -> Sight {
     match Look::new(lattice, observer, target, curvature) {
-        Ok(look) => look.sight(crossings(lattice, look.grid.0, look.grid.1, |crossing| look.blocked(crossing))),
+        Ok(look) => {
+            look.sight(crossings(lattice, look.grid.0, look.grid.1, |crossing| look.blocked(crossing)))
+        }
         Err(missing) => Sight::NoGround(missing),
     }
 }

@@ -72,7 +72,8 @@ fn builds(n: usize, ground: &SightGround, peers: &mut [Embree]) {
 
 fn lines(ground: &SightGround, pairs: &[[u32; 4]], peers: &mut [Embree]) {
     let end = |x: u32, y: u32| End { at: DVec2::new(f64::from(x), f64::from(y)) * CELL_M, above_m: ABOVE_M };
-    let asked: Vec<(End, End)> = pairs.iter().map(|&[x, y, to_x, to_y]| (end(x, y), end(to_x, to_y))).collect();
+    let asked: Vec<(End, End)> =
+        pairs.iter().map(|&[x, y, to_x, to_y]| (end(x, y), end(to_x, to_y))).collect();
     let mut blocked = 0;
     let mut ours = || {
         one_thread(|| {
@@ -112,7 +113,11 @@ fn table(count: usize, found: usize, what: &str, all: &[(Vec<f64>, f64)], peers:
     let rate = |times: &[f64]| count as f64 / median(times) / 1e3;
     let best = |times: &[f64]| count as f64 / quantile(times, 0.0) / 1e3;
     let row = |name: &str, times: &[f64], found: f64, more: String| {
-        println!("  {name:<18} {:>7.3} M/s ({:>7.3} at best)   {found:>7} {what}   {more}", rate(times), best(times));
+        println!(
+            "  {name:<18} {:>7.3} M/s ({:>7.3} at best)   {found:>7} {what}   {more}",
+            rate(times),
+            best(times)
+        );
     };
     row("sandtable", &all[0].0, found as f64, String::new());
     for (peer, (times, found)) in peers.iter().zip(&all[1..]) {
@@ -121,7 +126,12 @@ fn table(count: usize, found: usize, what: &str, all: &[(Vec<f64>, f64)], peers:
 }
 
 /// Ours and the peers in turn: times in milliseconds, and what was found in the last round (not of ours).
-fn run(rounds: usize, ours: &mut dyn FnMut() -> f64, peers: &mut [Embree], what: &str) -> Vec<(Vec<f64>, f64)> {
+fn run(
+    rounds: usize,
+    ours: &mut dyn FnMut() -> f64,
+    peers: &mut [Embree],
+    what: &str,
+) -> Vec<(Vec<f64>, f64)> {
     let mut found = vec![0.0; peers.len()];
     let mut asks: Vec<Box<dyn FnMut() -> f64 + '_>> = vec![Box::new(ours)];
     for (peer, found) in peers.iter_mut().zip(&mut found) {
