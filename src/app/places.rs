@@ -214,7 +214,7 @@ mod tests {
         assert_eq!("1,2,30".parse(), Ok(Stand { at: DVec2::new(1.0, 2.0), above_m: Some(30.0) }));
         assert_eq!("1,2".parse(), Ok(Stand { at: DVec2::new(1.0, 2.0), above_m: None }));
         for wrong in ["", "1", "1,2,3,4", "a,b", "NaN,1", "1,inf", "1;2"] {
-            assert!(wrong.parse::<Position>().is_err() && wrong.parse::<Stand>().is_err(), "{wrong}");
+            assert!(wrong.parse::<Positions>().is_err() && wrong.parse::<Stand>().is_err(), "{wrong}");
         }
     }
 

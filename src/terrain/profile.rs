@@ -89,7 +89,7 @@ impl Profiler<'_> {
         let grid = |at: DVec2| self.lattice.grid_at(at - self.lattice.origin());
         let mut breaks = Vec::new();
         let _ = crossings(self.lattice, grid(from), grid(to), |crossing| {
-            let at = from.lerp(to, crossing.part);
+            let at = from + (to - from) * crossing.part;
             let ground = match self.sampling.interpolation {
                 Interpolation::Planar if crossing.height_m.is_nan() => Answer::NoData,
                 Interpolation::Planar => Answer::Height(crossing.height_m),
@@ -113,7 +113,7 @@ impl Profiler<'_> {
         let mut count = (self.walked_m / step_m).floor() + 1.0;
         while count * step_m < end_m {
             let station_m = count * step_m;
-            let at = from.lerp(to, (station_m - self.walked_m) / length_m);
+            let at = from + (to - from) * ((station_m - self.walked_m) / length_m);
             self.stations.push(Station { station_m, at, ground: self.ground(at) });
             count += 1.0;
         }

@@ -82,7 +82,8 @@ fn parts_between(from: f64, to: f64, last: f64) -> Option<Parts> {
     let part = |line: f64| (line - from) / (to - from);
     let first = if inside(from) { 0.0 } else { part(near) };
     let last = if inside(to) { 1.0 } else { part(far) };
-    (first >= 0.0 && first <= 1.0 && last >= 0.0 && last <= 1.0).then_some((first, last))
+    let all = 0.0..=1.0;
+    (all.contains(&first) && all.contains(&last)).then_some((first, last))
 }
 
 /// Which edge a line crosses.

@@ -1,11 +1,11 @@
 //! The ground made ready for looking over it: a lattice and the pyramid of its heights.
 //!
-//! The answers are those of the plain walk along the whole line ([`line_of_sight`](fn@line_of_sight) and
-//! [`required_rise`](fn@required_rise)), to the last bit; what is saved is looking where the ground cannot matter.
+//! The answers are those of the plain walk along the whole line ([`line_of_sight`](crate::terrain::sight::line::line_of_sight) and
+//! [`required_rise`](crate::terrain::sight::rise::required_rise)), to the last bit; what is saved is looking where the ground cannot matter.
 //!
 //! **Why a block may be passed.** A line passes a block when the block's highest post lies below the line's lowest
-//! place over it by more than the two can be mistaken: the line by rounding ([`SightLine::rounding_m`]), a crossing's
-//! height by rounding and by where it lies, which is known to [`POSITION_ERROR`] of a cell, and so no more than that
+//! place over it by more than the two can be mistaken: the line by rounding (`SightLine::rounding_m`), a crossing's
+//! height by rounding and by where it lies, which is known to `POSITION_ERROR` of a cell, and so no more than that
 //! share of the ground's relief.
 
 use std::ops::ControlFlow;

@@ -227,8 +227,8 @@ impl Probe for Picking<'_> {
     #[inline]
     fn see(&mut self, crossing: Crossing) -> ControlFlow<Met> {
         let over = self.span.z(crossing.part) - crossing.height_m;
-        let same_side = self.before.is_some_and(|(_, before)| !(before * over <= 0.0));
-        if !same_side && let Some(met) = self.between(self.before, (crossing.part, Some(over))) {
+        let changes_side = self.before.is_none_or(|(_, before)| before * over <= 0.0);
+        if changes_side && let Some(met) = self.between(self.before, (crossing.part, Some(over))) {
             return ControlFlow::Break(met);
         }
         self.before = Some((crossing.part, over));
