@@ -10,6 +10,8 @@ mod heights;
 mod info;
 #[path = "cli/lod.rs"]
 mod lod;
+#[path = "cli/los.rs"]
+mod los;
 #[path = "cli/manners.rs"]
 mod manners;
 #[path = "cli/meshes.rs"]
@@ -18,6 +20,8 @@ mod meshes;
 mod pictures;
 #[path = "cli/serve.rs"]
 mod serve;
+#[path = "cli/profile.rs"]
+mod profile;
 #[path = "cli/wrong_scenes.rs"]
 mod wrong_scenes;
 

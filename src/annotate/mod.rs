@@ -14,6 +14,10 @@
 
 pub mod annotation;
 pub mod canvas;
+pub mod chart;
+pub mod chart_ground;
+pub mod chart_profile;
+pub mod chart_sight;
 pub mod credit;
 pub mod drawing;
 pub mod labels;

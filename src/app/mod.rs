@@ -19,6 +19,7 @@ pub mod mesh;
 pub mod model;
 pub mod output;
 pub mod picture;
+pub mod places;
 pub mod profile;
 pub mod progress;
 pub mod render;

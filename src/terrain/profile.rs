@@ -1,4 +1,7 @@
 //! The ground along a line: every place where it bends, not only steps.
+//!
+//! Where the line leaves the model or comes back, there is a station on the model's border; where it runs into a hole,
+//! the last station with a height is the hole's rim. Between two stations with heights there is ground all the way.
 
 use std::ops::ControlFlow;
 
@@ -19,57 +22,239 @@ pub struct Station {
     pub ground: Answer,
 }
 
+/// How a profile is sampled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampling {
+    /// How heights between posts are found. Only the planar ground is straight between stations.
+    pub interpolation: Interpolation,
+    /// Also a station every so many metres from the line's start, above 0; none where `None`.
+    pub step_m: Option<f64>,
+}
+
+impl Default for Sampling {
+    /// The planar ground, which needs no more stations than its own.
+    fn default() -> Self {
+        Self { interpolation: Interpolation::Planar, step_m: None }
+    }
+}
+
 /// The ground along `line` (map coordinates in metres, at least one vertex): its vertices and every crossing with an
 /// edge of the finest triangles, in order. Between two stations in a row the planar ground is straight.
 ///
-/// Costs three stations a cell.
+/// Costs three stations a cell. A vertex that is not finite has no ground, nor has the line to and from it.
 pub fn profile(lattice: &Lattice, line: &[DVec2]) -> Vec<Station> {
-    let mut stations = Vec::new();
-    let mut walked_m = 0.0;
-    for pair in line.windows(2) {
-        let [from, to] = [pair[0], pair[1]];
-        let length = from.distance(to);
-        stations.push(station(lattice, walked_m, from));
-        let grid = |at: DVec2| lattice.grid_at(at - lattice.origin());
-        if lattice.cell_at(from - lattice.origin()).is_some()
-            && lattice.cell_at(to - lattice.origin()).is_some()
-        {
-            let _ = crossings(lattice, grid(from), grid(to), |crossing| {
-                let ground = if crossing.height_m.is_nan() {
-                    Answer::NoData
-                } else {
-                    Answer::Height(crossing.height_m)
-                };
-                let at = from.lerp(to, crossing.part);
-                stations.push(Station { station_m: walked_m + length * crossing.part, at, ground });
-                ControlFlow::<()>::Continue(())
-            });
-        }
-        walked_m += length;
-    }
-    stations.extend(line.last().map(|&last| station(lattice, walked_m, last)));
-    stations
+    sampled_profile(lattice, line, Sampling::default())
 }
 
-fn station(lattice: &Lattice, station_m: f64, at: DVec2) -> Station {
-    Station { station_m, at, ground: ground_height(lattice, Interpolation::Planar, at) }
+/// [`profile`] by another interpolation, at the same stations and at steps between them.
+///
+/// # Panics
+/// Where the step is not above 0.
+pub fn sampled_profile(lattice: &Lattice, line: &[DVec2], sampling: Sampling) -> Vec<Station> {
+    assert!(sampling.step_m.is_none_or(|step_m| step_m > 0.0), "steps go forward: {sampling:?}");
+    let mut profiler = Profiler { lattice, sampling, walked_m: 0.0, stations: Vec::new() };
+    for pair in line.windows(2) {
+        profiler.segment(pair[0], pair[1]);
+    }
+    if let Some(&last) = line.last() {
+        profiler.vertex(last);
+    }
+    profiler.stations
+}
+
+struct Profiler<'a> {
+    lattice: &'a Lattice,
+    sampling: Sampling,
+    walked_m: f64,
+    stations: Vec<Station>,
+}
+
+impl Profiler<'_> {
+    fn vertex(&mut self, at: DVec2) {
+        let station_m = self.walked_m;
+        self.stations.push(Station { station_m, at, ground: self.ground(at) });
+    }
+
+    fn ground(&self, at: DVec2) -> Answer {
+        ground_height(self.lattice, self.sampling.interpolation, at)
+    }
+
+    fn segment(&mut self, from: DVec2, to: DVec2) {
+        self.vertex(from);
+        let (start_m, length_m) = (self.walked_m, from.distance(to));
+        if !length_m.is_finite() {
+            return;
+        }
+        let first = self.stations.len();
+        let grid = |at: DVec2| self.lattice.grid_at(at - self.lattice.origin());
+        let mut breaks = Vec::new();
+        let _ = crossings(self.lattice, grid(from), grid(to), |crossing| {
+            let at = from + (to - from) * crossing.part;
+            let ground = match self.sampling.interpolation {
+                Interpolation::Planar if crossing.height_m.is_nan() => Answer::NoData,
+                Interpolation::Planar => Answer::Height(crossing.height_m),
+                // Rounding may put a crossing with the border beside the model, where the model yet is.
+                _ => self.ground(self.on_model(at)),
+            };
+            breaks.push(Station { station_m: start_m + length_m * crossing.part, at, ground });
+            ControlFlow::<()>::Continue(())
+        });
+        self.stations.append(&mut breaks);
+        self.steps(from, to, length_m);
+        // Both kinds of stations rise along the line; where one of each falls together the sort keeps their order.
+        self.stations[first..].sort_by(|a, b| a.station_m.total_cmp(&b.station_m));
+        self.walked_m += length_m;
+    }
+
+    /// The stations at whole steps from the line's start that lie within the segment that begins where was walked to.
+    fn steps(&mut self, from: DVec2, to: DVec2, length_m: f64) {
+        let Some(step_m) = self.sampling.step_m else { return };
+        let end_m = self.walked_m + length_m;
+        let mut count = (self.walked_m / step_m).floor() + 1.0;
+        while count * step_m < end_m {
+            let station_m = count * step_m;
+            let at = from + (to - from) * ((station_m - self.walked_m) / length_m);
+            self.stations.push(Station { station_m, at, ground: self.ground(at) });
+            count += 1.0;
+        }
+    }
+
+    /// The nearest map position on the model.
+    fn on_model(&self, at: DVec2) -> DVec2 {
+        let (origin, extent) = (self.lattice.origin(), self.lattice.extent());
+        origin + (at - origin).clamp(extent.min, extent.max)
+    }
+}
+
+/// The lowest or the highest place of a profile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extreme {
+    /// Metres along the line from its start; the first such place.
+    pub station_m: f64,
+    /// Map coordinates.
+    pub at: DVec2,
+    /// Metres.
+    pub height_m: f64,
+}
+
+/// What a profile comes to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Summary {
+    /// The line's length in the plane, metres.
+    pub length_m: f64,
+    /// How much of it has ground under it, metres in the plane.
+    pub covered_m: f64,
+    /// The way over the ground, up and down, where there is ground; metres.
+    pub ground_length_m: f64,
+    /// Metres climbed, added up.
+    pub ascent_m: f64,
+    /// Metres gone down, added up; not negative.
+    pub descent_m: f64,
+    /// The lowest place; `None` where the line has no ground at all.
+    pub lowest: Option<Extreme>,
+    /// The highest place.
+    pub highest: Option<Extreme>,
+}
+
+impl Summary {
+    /// Of the stations of a profile, in order.
+    pub fn of(stations: &[Station]) -> Self {
+        let mut summary = Self {
+            length_m: stations.last().map_or(0.0, |last| last.station_m),
+            covered_m: 0.0,
+            ground_length_m: 0.0,
+            ascent_m: 0.0,
+            descent_m: 0.0,
+            lowest: None,
+            highest: None,
+        };
+        let mut before: Option<Extreme> = None;
+        for station in stations {
+            let here = station.ground.height_m().map(|height_m| Extreme {
+                station_m: station.station_m,
+                at: station.at,
+                height_m,
+            });
+            if let (Some(before), Some(here)) = (before, here) {
+                summary.step(here.station_m - before.station_m, here.height_m - before.height_m);
+            }
+            if let Some(here) = here {
+                summary.lowest =
+                    summary.lowest.filter(|lowest| lowest.height_m <= here.height_m).or(Some(here));
+                summary.highest =
+                    summary.highest.filter(|highest| highest.height_m >= here.height_m).or(Some(here));
+            }
+            before = here;
+        }
+        summary
+    }
+
+    fn step(&mut self, along_m: f64, up_m: f64) {
+        self.covered_m += along_m;
+        self.ground_length_m += libm::hypot(along_m, up_m);
+        self.ascent_m += up_m.max(0.0);
+        self.descent_m += (-up_m).max(0.0);
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn peak() -> Lattice {
+        let heights = (0..25).map(|index| if index == 12 { 8.0 } else { 0.0 }).collect();
+        Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 5, heights).expect("sound")
+    }
+
     #[test]
     fn a_profile_holds_its_vertices_and_every_break_between() {
-        let heights = (0..25).map(|index| if index == 12 { 8.0 } else { 0.0 }).collect();
-        let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 5, heights).expect("sound");
         let stations =
-            profile(&lattice, &[DVec2::new(0.0, 20.0), DVec2::new(40.0, 20.0), DVec2::new(40.0, 0.0)]);
+            profile(&peak(), &[DVec2::new(0.0, 20.0), DVec2::new(40.0, 20.0), DVec2::new(40.0, 0.0)]);
         let along: Vec<_> = stations.iter().map(|at| (at.station_m, at.ground.height_m())).collect();
         assert_eq!(
             along[..5],
             [0.0, 10.0, 20.0, 30.0, 40.0].map(|m| (m, Some(if m == 20.0 { 8.0 } else { 0.0 })))
         );
         assert_eq!(along.len(), 7);
+    }
+
+    #[test]
+    fn a_line_from_outside_has_stations_where_it_meets_the_border() {
+        let stations = profile(&peak(), &[DVec2::new(-30.0, 20.0), DVec2::new(70.0, 20.0)]);
+        let along: Vec<_> = stations.iter().map(|at| (at.station_m, at.ground)).collect();
+        assert_eq!(along.first(), Some(&(0.0, Answer::Outside)));
+        assert_eq!(along[1..3], [(30.0, Answer::Height(0.0)), (40.0, Answer::Height(0.0))]);
+        assert_eq!(along[5..], [(70.0, Answer::Height(0.0)), (100.0, Answer::Outside)]);
+        let summary = Summary::of(&stations);
+        assert_eq!((summary.length_m, summary.covered_m), (100.0, 40.0));
+        assert_eq!((summary.ascent_m, summary.descent_m), (8.0, 8.0));
+    }
+
+    #[test]
+    fn over_a_hole_nothing_is_counted() {
+        let heights = (0..25).map(|index| if index == 12 { f32::NAN } else { 1.0 }).collect();
+        let holed = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 5, heights).expect("sound");
+        let stations = profile(&holed, &[DVec2::new(0.0, 20.0), DVec2::new(40.0, 20.0)]);
+        assert_eq!(stations[2].ground, Answer::NoData);
+        assert_eq!(Summary::of(&stations).covered_m, 20.0);
+    }
+
+    #[test]
+    fn other_interpolations_keep_the_breaks_and_add_their_steps() {
+        let sampling = Sampling { interpolation: Interpolation::Bilinear, step_m: Some(7.0) };
+        let stations = sampled_profile(&peak(), &[DVec2::new(0.0, 15.0), DVec2::new(40.0, 15.0)], sampling);
+        let along: Vec<f64> = stations.iter().map(|at| at.station_m).collect();
+        assert_eq!(along, [0.0, 5.0, 7.0, 10.0, 14.0, 15.0, 20.0, 21.0, 25.0, 28.0, 30.0, 35.0, 35.0, 40.0]);
+        assert!(
+            stations.iter().all(|at| at.ground == ground_height(&peak(), Interpolation::Bilinear, at.at))
+        );
+    }
+
+    #[test]
+    fn a_vertex_that_is_no_place_ends_nothing_but_its_own_segments() {
+        let stations = profile(&peak(), &[DVec2::new(5.0, 5.0), DVec2::NAN, DVec2::new(15.0, 5.0)]);
+        assert_eq!(stations.iter().filter(|at| at.ground == Answer::Outside).count(), 1);
+        assert_eq!(stations.len(), 3);
+        assert_eq!(profile(&peak(), &[]), []);
     }
 }

@@ -21,12 +21,13 @@ mod rounds;
 mod queries;
 #[path = "heights/service.rs"]
 mod service;
+#[path = "heights/rays.rs"]
+mod rays;
 
 /// A section's name and what prints it.
 type Section = (&'static str, fn());
 
-const SECTIONS: &[Section] =
-    &[("service", service::print), ("reading", reading::print), ("queries", queries::print)];
+const SECTIONS: &[Section] = &[("service", service::print), ("reading", reading::print), ("queries", queries::print), ("rays", rays::print)];
 
 fn main() {
     rounds::sections(SECTIONS);

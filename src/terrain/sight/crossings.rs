@@ -13,6 +13,10 @@
 //!  │     ╲ │╱╱    │
 //!  a────────────  o
 //! ```
+//!
+//! The part of the line at which it meets a column or a row is one division, never a sum over the columns before: whoever
+//! begins half-way meets the same crossings to the last bit. A line may begin and end anywhere; only what lies on the lattice is walked, so that even one from far away
+//! meets no more crossings than the lattice has columns, rows and cells for it.
 
 use std::ops::ControlFlow;
 
@@ -20,6 +24,10 @@ use glam::DVec2;
 
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::query::Diagonal;
+
+/// How exactly a position on a line is known, in cells; it is off by rounding alone, some 1e-10 on the largest lattices
+/// that memory holds. What lies nearer than this to a line of posts may lie on either side of it.
+pub(in crate::terrain) const POSITION_ERROR: f64 = 1e-8;
 
 /// A place on a line where the ground bends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,33 +40,104 @@ pub struct Crossing {
     pub height_m: f64,
 }
 
+/// The parts of a line between which it is walked: from the first to the second, 0..=1.
+pub(in crate::terrain) type Parts = (f64, f64);
+
 /// Visits every crossing of the line `from`..`to` with edges of the finest triangles, in order, ends excluded, until
-/// `visit` breaks. Both ends are grid positions on the lattice.
+/// `visit` breaks. Both ends are grid positions and may lie off the lattice, where there are no crossings; a line that
+/// is not finite has none at all.
 ///
 /// A line along an edge crosses the posts on it; a crossing at a post is visited once. Costs three crossings a cell.
 pub fn crossings<B>(
     lattice: &Lattice,
     from: DVec2,
     to: DVec2,
+    visit: impl FnMut(Crossing) -> ControlFlow<B>,
+) -> ControlFlow<B> {
+    match parts_on(lattice, from, to) {
+        Some(parts) => crossings_within(lattice, from, to, parts, visit),
+        None => ControlFlow::Continue(()),
+    }
+}
+
+/// The parts of the line between which it lies on the lattice, its border included; `None` where it does not, or is not
+/// finite. Where the line comes in or leaves, the part is that of the crossing with the border.
+fn parts_on(lattice: &Lattice, from: DVec2, to: DVec2) -> Option<Parts> {
+    if !(from.is_finite() && to.is_finite() && (to - from).is_finite()) {
+        return None;
+    }
+    let columns = parts_between(from.x, to.x, f64::from(lattice.columns() - 1))?;
+    let rows = parts_between(from.y, to.y, f64::from(lattice.rows() - 1))?;
+    let parts = (columns.0.max(rows.0), columns.1.min(rows.1));
+    (parts.0 <= parts.1).then_some(parts)
+}
+
+/// The parts between which a coordinate that runs `from`..`to` lies within 0..=`last`.
+fn parts_between(from: f64, to: f64, last: f64) -> Option<Parts> {
+    let inside = |at: f64| (0.0..=last).contains(&at);
+    if from == to {
+        return inside(from).then_some((0.0, 1.0));
+    }
+    let (near, far) = if to > from { (0.0, last) } else { (last, 0.0) };
+    let part = |line: f64| (line - from) / (to - from);
+    let first = if inside(from) { 0.0 } else { part(near) };
+    let last = if inside(to) { 1.0 } else { part(far) };
+    let all = 0.0..=1.0;
+    (all.contains(&first) && all.contains(&last)).then_some((first, last))
+}
+
+/// Which edge a line crosses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::terrain) enum Edge {
+    /// Along this column of posts.
+    Column(f64),
+    /// Along this row of posts.
+    Row(f64),
+    /// Two at once, at the post of this column and row.
+    Post(DVec2),
+}
+
+/// The crossing with an edge of a cell's border, at the part of the line where it meets the edge's column or row.
+#[inline]
+pub(in crate::terrain) fn crossing_at(
+    lattice: &Lattice,
+    (from, to): (DVec2, DVec2),
+    part: f64,
+    edge: Edge,
+) -> Crossing {
+    match edge {
+        Edge::Column(column) => on_column(lattice, part, column, from.y + (to.y - from.y) * part),
+        Edge::Row(row) => on_row(lattice, part, from.x + (to.x - from.x) * part, row),
+        Edge::Post(post) => at_post(lattice, part, post),
+    }
+}
+
+fn crossings_within<B>(
+    lattice: &Lattice,
+    from: DVec2,
+    to: DVec2,
+    (first, through): Parts,
     mut visit: impl FnMut(Crossing) -> ControlFlow<B>,
 ) -> ControlFlow<B> {
-    let mut last = 0.0;
-    let mut columns = Lines::new(from.x, to.x);
-    let mut rows = Lines::new(from.y, to.y);
+    let mut last = first;
+    let mut columns = Lines::new(from.x, to.x, lattice.columns());
+    let mut rows = Lines::new(from.y, to.y, lattice.rows());
+    columns.pass(first);
+    rows.pass(first);
     loop {
         let next = columns.part.min(rows.part).min(1.0);
-        if let Some(crossing) = diagonal_between(lattice, from, to, (last, next)) {
+        if let Some(crossing) = diagonal_between(lattice, from, to, (last, next.min(through))) {
             visit(crossing)?;
         }
-        if next >= 1.0 {
+        if next >= 1.0 || next > through {
             return ControlFlow::Continue(());
         }
-        let crossing = match (columns.part == next, rows.part == next) {
-            (true, true) => at_post(lattice, next, DVec2::new(columns.line, rows.line)),
-            (true, false) => on_column(lattice, next, columns.line, from.y + (to.y - from.y) * next),
-            _ => on_row(lattice, next, from.x + (to.x - from.x) * next, rows.line),
+        let edge = match (columns.part == next, rows.part == next) {
+            (true, true) => Edge::Post(DVec2::new(columns.line, rows.line)),
+            (true, false) => Edge::Column(columns.line),
+            _ => Edge::Row(rows.line),
         };
-        visit(crossing)?;
+        visit(crossing_at(lattice, (from, to), next, edge))?;
         if columns.part == next {
             columns.advance();
         }
@@ -69,11 +148,13 @@ pub fn crossings<B>(
     }
 }
 
-/// The lines of posts that one coordinate passes, in order.
+/// The lines of posts of a lattice that one coordinate passes, in order.
 struct Lines {
     start: f64,
     length: f64,
     step: f64,
+    /// The lattice's last line.
+    most: f64,
     /// The next line.
     line: f64,
     /// Where it is met; beyond 1 where there is none.
@@ -81,17 +162,34 @@ struct Lines {
 }
 
 impl Lines {
-    fn new(from: f64, to: f64) -> Self {
-        let length = to - from;
-        let (first, step) = if length > 0.0 { (from.floor() + 1.0, 1.0) } else { (from.ceil() - 1.0, -1.0) };
-        let mut lines = Self { start: from, length, step, line: first - step, part: 0.0 };
-        lines.advance();
+    /// From the first line after the line's start.
+    fn new(from: f64, to: f64, count: u32) -> Self {
+        let (length, most) = (to - from, f64::from(count - 1));
+        let (line, step) = if length > 0.0 {
+            ((from.floor() + 1.0).max(0.0), 1.0)
+        } else {
+            ((from.ceil() - 1.0).min(most), -1.0)
+        };
+        let mut lines = Self { start: from, length, step, most, line, part: 0.0 };
+        lines.meet();
         lines
     }
 
     fn advance(&mut self) {
         self.line += self.step;
-        self.part = if self.length == 0.0 { f64::INFINITY } else { (self.line - self.start) / self.length };
+        self.meet();
+    }
+
+    fn meet(&mut self) {
+        let is_there = self.length != 0.0 && self.line >= 0.0 && self.line <= self.most;
+        self.part = if is_there { (self.line - self.start) / self.length } else { f64::INFINITY };
+    }
+
+    /// Leaves out the lines that are met before `part`.
+    fn pass(&mut self, part: f64) {
+        while self.part < part {
+            self.advance();
+        }
     }
 }
 
@@ -103,20 +201,18 @@ fn at_post(lattice: &Lattice, part: f64, grid: DVec2) -> Crossing {
 /// On the column of posts `column`, at `y` rows.
 fn on_column(lattice: &Lattice, part: f64, column: f64, y: f64) -> Crossing {
     let y = y.clamp(0.0, f64::from(lattice.rows() - 1));
-    let row = y.floor().min(f64::from(lattice.rows() - 2));
-    let south = Post { column: column as u32, row: row as u32 };
+    let south = Post { column: column as u32, row: (y as u32).min(lattice.rows() - 2) };
     let north = Post { row: south.row + 1, ..south };
-    let height_m = between(lattice, south, north, y - row);
+    let height_m = between(lattice, south, north, y - f64::from(south.row));
     Crossing { part, grid: DVec2::new(column, y), height_m }
 }
 
 /// On the row of posts `row`, at `x` columns.
 fn on_row(lattice: &Lattice, part: f64, x: f64, row: f64) -> Crossing {
     let x = x.clamp(0.0, f64::from(lattice.columns() - 1));
-    let column = x.floor().min(f64::from(lattice.columns() - 2));
-    let west = Post { column: column as u32, row: row as u32 };
+    let west = Post { column: (x as u32).min(lattice.columns() - 2), row: row as u32 };
     let east = Post { column: west.column + 1, ..west };
-    let height_m = between(lattice, west, east, x - column);
+    let height_m = between(lattice, west, east, x - f64::from(west.column));
     Crossing { part, grid: DVec2::new(x, row), height_m }
 }
 
@@ -133,16 +229,20 @@ fn between(lattice: &Lattice, from: Post, to: Post, part: f64) -> f64 {
 }
 
 /// The crossing with the diagonal of the cell that the line passes between two parts of it, if it crosses it inside.
-fn diagonal_between(
+#[inline]
+pub(in crate::terrain) fn diagonal_between(
     lattice: &Lattice,
     from: DVec2,
     to: DVec2,
-    (first, last): (f64, f64),
+    (first, last): Parts,
 ) -> Option<Crossing> {
     let middle = from.lerp(to, 0.5 * (first + last));
-    let most = DVec2::new(f64::from(lattice.columns() - 2), f64::from(lattice.rows() - 2));
-    let corner = middle.floor().clamp(DVec2::ZERO, most);
-    let cell = Post { column: corner.x as u32, row: corner.y as u32 };
+    // Casting rounds down, and what is below 0 becomes 0.
+    let cell = Post {
+        column: (middle.x as u32).min(lattice.columns() - 2),
+        row: (middle.y as u32).min(lattice.rows() - 2),
+    };
+    let corner = DVec2::new(f64::from(cell.column), f64::from(cell.row));
     let (start, along) = (from - corner, to - from);
     let rising = Diagonal::of_cell(u64::from(cell.column), u64::from(cell.row)) == Diagonal::Rising;
     // On the rising diagonal x − y = 0, on the falling one x + y = 1.

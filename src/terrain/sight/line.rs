@@ -7,7 +7,7 @@ use glam::DVec2;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Answer, Interpolation, ground_height};
 use crate::terrain::sight::Curvature;
-use crate::terrain::sight::crossings::crossings;
+use crate::terrain::sight::crossings::{Crossing, crossings};
 
 /// One end of a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,27 +42,81 @@ pub struct Blocker {
 
 /// Whether `target` can be seen from `observer`. Ground without data blocks nothing.
 ///
-/// Costs three crossings a cell of the way to the first blocker.
+/// Costs three crossings a cell of the way to the first blocker;
+/// [`SightGround::line_of_sight`](crate::terrain::sight::ground::SightGround::line_of_sight) gives the same answer for
+/// less.
 pub fn line_of_sight(lattice: &Lattice, observer: End, target: End, curvature: Curvature) -> Sight {
-    let ground = |end: End| ground_height(lattice, Interpolation::Planar, end.at);
-    let (from, to) = match (ground(observer), ground(target)) {
-        (Answer::Height(from), Answer::Height(to)) => (from + observer.above_m, to + target.above_m),
-        (Answer::Height(_), missing) | (missing, _) => return Sight::NoGround(missing),
-    };
-    let length = observer.at.distance(target.at);
-    let line = SightLine::new(from, to, length, curvature);
-    let grid = |at: DVec2| lattice.grid_at(at - lattice.origin());
-    let looked = crossings(lattice, grid(observer.at), grid(target.at), |crossing| {
-        if line.is_below(crossing.height_m, crossing.part) {
-            let at = observer.at.lerp(target.at, crossing.part);
-            let distance_m = length * crossing.part;
-            return ControlFlow::Break(Blocker { at, distance_m, height_m: crossing.height_m });
+    match Look::new(lattice, observer, target, curvature) {
+        Ok(look) => {
+            look.sight(crossings(lattice, look.grid.0, look.grid.1, |crossing| look.blocked(crossing)))
+        }
+        Err(missing) => Sight::NoGround(missing),
+    }
+}
+
+/// A line of sight between two ends that have ground under them.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::terrain) struct Look {
+    observer: DVec2,
+    target: DVec2,
+    /// Both as grid positions.
+    pub(in crate::terrain) grid: (DVec2, DVec2),
+    length_m: f64,
+    /// The line.
+    pub(in crate::terrain) line: SightLine,
+}
+
+impl Look {
+    /// The line from one end to the other.
+    ///
+    /// # Errors
+    /// What the ground answers at the first end, the observer's before the target's, that has none.
+    pub(in crate::terrain) fn new(
+        lattice: &Lattice,
+        observer: End,
+        target: End,
+        curvature: Curvature,
+    ) -> Result<Self, Answer> {
+        let ground = |end: End| match ground_height(lattice, Interpolation::Planar, end.at) {
+            Answer::Height(height_m) => Ok(height_m + end.above_m),
+            missing => Err(missing),
+        };
+        let (from, to) = (ground(observer)?, ground(target)?);
+        let length_m = observer.at.distance(target.at);
+        let grid = |at: DVec2| lattice.grid_at(at - lattice.origin());
+        Ok(Self {
+            observer: observer.at,
+            target: target.at,
+            grid: (grid(observer.at), grid(target.at)),
+            length_m,
+            line: SightLine::new(from, to, length_m, curvature),
+        })
+    }
+
+    /// Breaks where the ground at a crossing stands higher than the line.
+    #[inline]
+    pub(in crate::terrain) fn blocked(&self, crossing: Crossing) -> ControlFlow<Crossing> {
+        if self.line.is_below(crossing.height_m, crossing.part) {
+            return ControlFlow::Break(crossing);
         }
         ControlFlow::Continue(())
-    });
-    match looked {
-        ControlFlow::Break(blocker) => Sight::Blocked(blocker),
-        ControlFlow::Continue(()) => Sight::Clear,
+    }
+
+    /// What came of looking along the whole line.
+    pub(in crate::terrain) fn sight(&self, looked: ControlFlow<Crossing>) -> Sight {
+        match looked {
+            ControlFlow::Break(crossing) => Sight::Blocked(self.place(crossing)),
+            ControlFlow::Continue(()) => Sight::Clear,
+        }
+    }
+
+    /// A crossing as a place on the map.
+    pub(in crate::terrain) fn place(&self, crossing: Crossing) -> Blocker {
+        Blocker {
+            at: self.observer.lerp(self.target, crossing.part),
+            distance_m: self.length_m * crossing.part,
+            height_m: crossing.height_m,
+        }
     }
 }
 
@@ -91,6 +145,24 @@ impl SightLine {
     /// Whether ground of this height stands higher than the line; ground without data (NaN) never does.
     pub fn is_below(&self, ground_m: f64, part: f64) -> bool {
         ground_m > self.height_m(part)
+    }
+
+    /// A height that the line is nowhere below between two parts of it, but for rounding; at the best no more than
+    /// `sag/4` times the square of their distance too low.
+    ///
+    /// The line is a parabola that opens upward (downward where light bends more than the Earth does): it hangs below
+    /// its chord by no more than that.
+    #[inline]
+    pub fn lowest_m(&self, (first, last): (f64, f64)) -> f64 {
+        let span = last - first;
+        let hang = 0.25 * self.sag.max(0.0) * span * span;
+        self.height_m(first).min(self.height_m(last)) - hang
+    }
+
+    /// How far rounding may mistake the line's height, in metres, and more than that.
+    pub(in crate::terrain) fn rounding_m(&self) -> f64 {
+        // Four operations, each off by half an epsilon of what is no larger than the sum of all three.
+        8.0 * f64::EPSILON * (self.from.abs() + self.rise.abs() + self.sag.abs())
     }
 }
 

@@ -7,10 +7,23 @@
 //! less than `(1 − k) l² / 8R` for crossings `l` apart, 2 µm at 10 m.
 //!
 //! **One definition.** [`line::line_of_sight`] is it. Whatever answers the same question faster must give the same
-//! answer to the last bit, and tests hold it to that.
+//! answer to the last bit, and tests hold it to that: [`ground::SightGround`] does, by a [`pyramid::Pyramid`] of the
+//! highest and lowest posts.
+//!
+//! ```text
+//! crossings ─► line, rise (one line, all of it) ─► outlook (what of the ground is seen)
+//!     │         ║ the same answers
+//!     └─► descent ─► ground (batches), ray ◄─ pyramid
+//! ```
 
 pub mod crossings;
+pub(in crate::terrain) mod descent;
+pub mod ground;
 pub mod line;
+pub mod outlook;
+pub mod pyramid;
+pub mod ray;
+pub mod rise;
 pub mod viewshed;
 
 /// How the Earth's shape and its air bend a line of sight.

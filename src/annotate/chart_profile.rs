@@ -1,0 +1,46 @@
+//! The chart of a profile: the ground along a line, its lowest and highest place marked.
+
+use crate::annotate::chart::{self, Side, Surroundings};
+use crate::annotate::chart_ground::{Point, fill, hatch_gaps, height_range, rim};
+use crate::annotate::nice::number;
+use crate::annotate::sheet::INK;
+use crate::draw::color::Srgba;
+use crate::draw::pixels::Pixels;
+
+/// The ground in section.
+const EARTH: Srgba = Srgba::opaque(0xc8, 0xb8, 0x96);
+
+/// What is charted.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ProfileChart {
+    /// What stands around the plot.
+    pub around: Surroundings,
+    /// The ground, in order along the line.
+    pub points: Vec<Point>,
+    /// Where the line has vertices between its ends, metres along it.
+    pub bends_m: Vec<f64>,
+}
+
+/// A picture of the chart, `size` pixels wide and high. The same chart gives the same bytes on every machine.
+pub fn paint(size: (u32, u32), profile: &ProfileChart) -> Pixels {
+    let points = &profile.points;
+    let length_m = points.last().map_or(0.0, |last| last.along_m);
+    let mut chart = chart::begin(size, &profile.around, length_m, height_range(points));
+    hatch_gaps(&mut chart, points);
+    fill(&mut chart, points, EARTH);
+    rim(&mut chart, points);
+    for &along_m in &profile.bends_m {
+        chart.tick_below(along_m);
+    }
+    let heights = || points.iter().filter_map(|point| Some((point.along_m, point.ground.height_m()?)));
+    // The first of several as low or as high.
+    let lowest = heights().reduce(|best, next| if next.1 < best.1 { next } else { best });
+    let highest = heights().reduce(|best, next| if next.1 > best.1 { next } else { best });
+    for (place, side) in [(lowest, Side::Below), (highest, Side::Above)] {
+        let Some((along_m, height_m)) = place else { continue };
+        let at = chart.frame.at(along_m, height_m);
+        chart.dot(at, INK);
+        chart.label(&format!("{} m", number(height_m, 1)), at, side, INK);
+    }
+    chart.finish()
+}

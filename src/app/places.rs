@@ -1,0 +1,240 @@
+//! Positions and lines as users name them: on the command line, in a CSV file, or as the line of a vector file.
+
+use std::path::Path;
+use std::str::FromStr;
+
+use glam::DVec2;
+
+use crate::app::dataset::Dataset;
+use crate::app::failure::Failure;
+use crate::app::files;
+use crate::geom::crs::Crs;
+use crate::vector::read::{self, Hints};
+
+/// One or more `X,Y` with spaces between them, as written on the command line; all finite.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Positions(pub Vec<DVec2>);
+
+/// `X,Y` or `X,Y,H`: a position and metres above the ground there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stand {
+    /// The position.
+    pub at: DVec2,
+    /// Metres above the ground, where they are given.
+    pub above_m: Option<f64>,
+}
+
+impl FromStr for Positions {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let position = |text: &str| match numbers(text).as_deref() {
+            Some(&[x, y]) => Some(DVec2::new(x, y)),
+            _ => None,
+        };
+        let positions: Option<Vec<DVec2>> = text.split_whitespace().map(position).collect();
+        match positions {
+            Some(positions) if !positions.is_empty() => Ok(Self(positions)),
+            _ => Err("write positions as X,Y, for example 731500,4017200".into()),
+        }
+    }
+}
+
+impl FromStr for Stand {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match numbers(text).as_deref() {
+            Some(&[x, y]) => Ok(Self { at: DVec2::new(x, y), above_m: None }),
+            Some(&[x, y, above_m]) => Ok(Self { at: DVec2::new(x, y), above_m: Some(above_m) }),
+            _ => Err("write a position as X,Y or, with metres above the ground, X,Y,H".into()),
+        }
+    }
+}
+
+/// Finite numbers between commas.
+fn numbers(text: &str) -> Option<Vec<f64>> {
+    text.split(',')
+        .map(|number| number.trim().parse().ok().filter(|number: &f64| number.is_finite()))
+        .collect()
+}
+
+/// A line and the system of its coordinates.
+#[derive(Clone, Debug)]
+pub struct Way {
+    /// Its vertices, at least two.
+    pub vertices: Vec<DVec2>,
+    /// What they are coordinates of.
+    pub crs: Crs,
+}
+
+/// The system that `--crs` names, if it is given.
+///
+/// # Errors
+/// There is no such system.
+pub fn stated_crs(text: Option<&str>) -> Result<Option<Crs>, Failure> {
+    text.map(Crs::parse).transpose().map_err(|error| Failure::Usage(format!("--crs: {error}")))
+}
+
+/// A position in the ground's system.
+///
+/// # Errors
+/// It cannot be expressed there; `name` is what the user calls it.
+pub fn on_ground(name: &str, from: &Crs, ground: &Crs, at: DVec2) -> Result<DVec2, Failure> {
+    from.transform(ground, at).map_err(|error| Failure::input(format!("{name} {},{}: {error}", at.x, at.y)))
+}
+
+/// The line in the file at `path` (`-` for standard input): the vertices of a CSV text in their order, or the first line
+/// of a vector file. `stated` is the system of its coordinates, where the user says one; without it a vector file's is its
+/// own, and that of a CSV text the dataset's.
+///
+/// # Errors
+/// The file cannot be had or read, or holds no line.
+pub fn read_way(path: &Path, stated: Option<Crs>, dataset: &Dataset) -> Result<Way, Failure> {
+    let is_csv = path.extension().is_none_or(|extension| {
+        ["csv", "txt", "xy", "xyz"].iter().any(|known| extension.eq_ignore_ascii_case(known))
+    });
+    if !is_csv {
+        return vector_way(path, stated);
+    }
+    let text = files::read_text(path)?;
+    let vertices = csv_vertices(&text)
+        .map_err(|(line, reason)| Failure::input(format!("{}:{line}: {reason}", files::text_name(path))))?;
+    if vertices.len() < 2 {
+        let found = vertices.len();
+        let name = files::text_name(path);
+        return Err(Failure::input(format!("{name}: a line needs at least two positions, found {found}")));
+    }
+    Ok(Way { vertices, crs: stated.unwrap_or_else(|| dataset.crs()) })
+}
+
+fn vector_way(path: &Path, stated: Option<Crs>) -> Result<Way, Failure> {
+    let wrong = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
+    let bytes = files::read(path)?;
+    let beside = files::beside(path);
+    let name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
+    let hints = Hints { crs: stated.as_ref(), layer: None, companions: &beside };
+    let layer = read::read(&name, &bytes, &hints).map_err(|error| wrong(error.to_string()))?;
+    let line = layer.features.iter().find_map(|feature| feature.lines().first().cloned());
+    match line {
+        Some(vertices) => Ok(Way { vertices, crs: layer.crs }),
+        None => Err(wrong("it holds no line; a profile follows the first line of a vector file".into())),
+    }
+}
+
+/// The positions of a CSV text: x,y in the first two columns, or where a header names x and y (lon and lat); else the
+/// number of the line that is wrong, from 1, and why.
+fn csv_vertices(text: &str) -> Result<Vec<DVec2>, (usize, String)> {
+    let mut columns: Option<[usize; 2]> = None;
+    let mut vertices = Vec::new();
+    for (index, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
+        if line.trim().is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let fields = fields(line);
+        let Some([x, y]) = columns else {
+            let is_header = fields.iter().all(|field| field.parse::<f64>().is_err());
+            columns = Some(if is_header {
+                named_columns(&fields).ok_or((index + 1, unnamed(line)))?
+            } else {
+                [0, 1]
+            });
+            if !is_header {
+                vertices.push(vertex(&fields, [0, 1]).ok_or((index + 1, no_vertex(line)))?);
+            }
+            continue;
+        };
+        vertices.push(vertex(&fields, [x, y]).ok_or((index + 1, no_vertex(line)))?);
+    }
+    Ok(vertices)
+}
+
+fn unnamed(line: &str) -> String {
+    format!("the header '{line}' must name columns x and y, or lon and lat")
+}
+
+fn no_vertex(line: &str) -> String {
+    format!("found '{line}', each line must hold numbers x,y")
+}
+
+fn fields(line: &str) -> Vec<&str> {
+    let separator = [',', ';'].into_iter().find(|&separator| line.contains(separator));
+    let split: Vec<&str> = match separator {
+        Some(separator) => line.split(separator).collect(),
+        None => line.split_whitespace().collect(),
+    };
+    split.into_iter().map(|field| field.trim().trim_matches('"')).collect()
+}
+
+fn named_columns(fields: &[&str]) -> Option<[usize; 2]> {
+    let find = |known: &[&str]| {
+        fields.iter().position(|field| known.iter().any(|known| field.eq_ignore_ascii_case(known)))
+    };
+    let x = find(&["x", "lon", "long", "longitude", "easting", "east"])?;
+    let y = find(&["y", "lat", "latitude", "northing", "north"])?;
+    Some([x, y])
+}
+
+fn vertex(fields: &[&str], [x, y]: [usize; 2]) -> Option<DVec2> {
+    let at = DVec2::new(fields.get(x)?.parse().ok()?, fields.get(y)?.parse().ok()?);
+    at.is_finite().then_some(at)
+}
+
+/// `x, y` as a reader wants them: degrees to a metre or so, metres to the metre.
+pub fn spoken(crs: &Crs, at: DVec2) -> String {
+    let decimals = if crs.is_geographic() { 5 } else { 0 };
+    format!("{:.decimals$}, {:.decimals$}", at.x, at.y)
+}
+
+/// Checks that a picture could be written to `path`.
+///
+/// # Errors
+/// The folder is not there, `path` is no file or `input` itself, or its name is that of another format than PNG.
+pub fn check_picture_place(path: &Path, input: &Path) -> Result<(), Failure> {
+    files::check_file_place(path, input, "this is the input itself; name another with -o")?;
+    let is_png = path.extension().is_none_or(|extension| extension.eq_ignore_ascii_case("png"));
+    if is_png {
+        return Ok(());
+    }
+    Err(Failure::input(format!(
+        "{}: pictures are written as PNG; name one that ends in .png",
+        path.display()
+    )))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_are_two_finite_numbers_and_stands_may_have_a_height() {
+        assert_eq!("1.5,-2e3".parse(), Ok(Positions(vec![DVec2::new(1.5, -2e3)])));
+        let two = vec![DVec2::new(-84.1, 36.2), DVec2::new(-84.0, 36.0)];
+        assert_eq!("-84.1,36.2 -84,36".parse(), Ok(Positions(two)));
+        assert_eq!("1,2,30".parse(), Ok(Stand { at: DVec2::new(1.0, 2.0), above_m: Some(30.0) }));
+        assert_eq!("1,2".parse(), Ok(Stand { at: DVec2::new(1.0, 2.0), above_m: None }));
+        for wrong in ["", "1", "1,2,3,4", "a,b", "NaN,1", "1,inf", "1;2"] {
+            assert!(wrong.parse::<Positions>().is_err() && wrong.parse::<Stand>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn vertices_come_with_or_without_a_header_and_in_any_columns() {
+        let expected = Ok(vec![DVec2::new(1.5, 2.0), DVec2::new(-3.0, 4e3)]);
+        for text in [
+            "1.5,2\n-3,4e3\n",
+            "x,y\r\n1.5,2\r\n\r\n-3,4e3",
+            "id;lat;lon\n7;2;1.5\n8;4e3;-3",
+            "# a line\n1.5 2\n-3 4e3",
+        ] {
+            assert_eq!(csv_vertices(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_line_that_is_no_vertex_is_named() {
+        assert_eq!(csv_vertices("x,y\n1,2\n3,north\n").map_err(|(line, _)| line), Err(3));
+        assert_eq!(csv_vertices("1,2\n3\n").map_err(|(line, _)| line), Err(2));
+        assert_eq!(csv_vertices("a,b\n1,2\n").map_err(|(line, _)| line), Err(1));
+    }
+}

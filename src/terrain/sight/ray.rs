@@ -1,0 +1,299 @@
+//! Where a ray meets the ground.
+//!
+//! A ray is cut down to what of it lies over the lattice and between its lowest and highest post. What is left runs over
+//! the finest triangles as a line of sight does, and between two crossings in a row both it and the ground are straight:
+//! it meets the ground where its height over the ground changes sign, and the place follows exactly.
+//!
+//! Triangles have two sides; a ray from below meets the ground as one from above does. Triangles with a corner without
+//! data are holes. The model has no sides and no bottom: a ray that comes in below the ground may meet it from below.
+
+use std::ops::ControlFlow;
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::query::{Diagonal, Interpolation, ground_height};
+use crate::terrain::sight::crossings::{Crossing, Parts};
+use crate::terrain::sight::descent::{Probe, descend};
+use crate::terrain::sight::ground::SightGround;
+
+/// Rays per task of a batch: some ten microseconds' work at the least.
+const CHUNK: usize = 1024;
+
+/// A half-line in world space, metres from the lattice's origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where it begins.
+    pub origin: DVec3,
+    /// Where it goes; of any length but none.
+    pub direction: DVec3,
+}
+
+/// Where a ray meets the ground first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Metres along the ray.
+    pub distance_m: f64,
+    /// World space, metres; its Z is the ground's height.
+    pub at: DVec3,
+    /// That of the triangle, of length 1 and upward whichever side was met.
+    pub normal: DVec3,
+}
+
+impl SightGround {
+    /// Where `ray` first meets a finest triangle, borders included, no further than `farthest_m` along it; `None` where
+    /// it does not, or where the ray is none: not finite, or without a direction.
+    ///
+    /// A ray within a triangle's plane meets it where it comes to it.
+    pub fn pick(&self, ray: Ray, farthest_m: f64) -> Option<Hit> {
+        let span = Span::new(self, ray, farthest_m)?;
+        let lattice = self.lattice();
+        if span.grid.0 == span.grid.1 {
+            return span.plumb(lattice, ray);
+        }
+        let mut picking = Picking { lattice, span: &span, before: None, reaches_end: false };
+        let met = match descend(lattice, self.pyramid(), span.grid, &mut picking) {
+            ControlFlow::Break(met) => met,
+            ControlFlow::Continue(()) => picking.at_end()?,
+        };
+        Some(span.hit(lattice, met))
+    }
+
+    /// [`SightGround::pick`] for many rays, in order, on all threads.
+    ///
+    /// # Panics
+    /// Where `out` is not as long as `rays`.
+    pub fn picks(&self, rays: &[Ray], farthest_m: f64, out: &mut [Option<Hit>]) {
+        assert_eq!(rays.len(), out.len(), "one answer per ray");
+        rays.par_chunks(CHUNK).zip(out.par_chunks_mut(CHUNK)).for_each(|(rays, out)| {
+            for (&ray, out) in rays.iter().zip(out) {
+                *out = self.pick(ray, farthest_m);
+            }
+        });
+    }
+}
+
+/// What of a ray can meet the ground.
+struct Span {
+    /// Metres along the ray, where it begins and ends.
+    metres: (f64, f64),
+    /// Both ends' grid positions, on the lattice.
+    grid: (DVec2, DVec2),
+    /// Both ends' heights.
+    z: (f64, f64),
+    /// How far the ray and the ground under it may be mistaken, in metres.
+    margin_m: f64,
+}
+
+/// A triangle that a ray meets, and at which part of its span.
+struct Met {
+    part: f64,
+    facet: Facet,
+}
+
+impl Span {
+    fn new(ground: &SightGround, ray: Ray, farthest_m: f64) -> Option<Self> {
+        let lattice = ground.lattice();
+        let direction = ray.direction.try_normalize()?;
+        if !ray.origin.is_finite() || farthest_m.is_nan() {
+            return None;
+        }
+        let extent = lattice.extent();
+        let (low, high) = ground.pyramid().height_range();
+        let (low, high) = (f64::from(low), f64::from(high));
+        // Room for rounding, so that what lies in the highest post's plane is not cut away.
+        let room = 1e-3 + 1e-9 * (low.abs().max(high.abs()) + ray.origin.z.abs());
+        let (min, max) = (extent.min.extend(low - room), extent.max.extend(high + room));
+        let mut metres = (0.0, farthest_m);
+        for axis in 0..3 {
+            let (at, along) = (ray.origin[axis], direction[axis]);
+            if along == 0.0 {
+                if !(at >= min[axis] && at <= max[axis]) {
+                    return None;
+                }
+                continue;
+            }
+            let (near, far) = if along > 0.0 { (min[axis], max[axis]) } else { (max[axis], min[axis]) };
+            metres = (f64::max(metres.0, (near - at) / along), f64::min(metres.1, (far - at) / along));
+        }
+        if metres.0 > metres.1 {
+            return None;
+        }
+        let last = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
+        let at = |metres: f64| ray.origin + direction * metres;
+        let (first, end) = (at(metres.0), at(metres.1));
+        // Rounding may leave an end on the border just beside it.
+        let grid = |at: DVec3| lattice.grid_at(at.truncate()).clamp(DVec2::ZERO, last);
+        let z = (first.z, end.z);
+        let margin_m = ground.slack_m() + 8.0 * f64::EPSILON * (z.0.abs() + z.1.abs());
+        Some(Self { metres, grid: (grid(first), grid(end)), z, margin_m })
+    }
+
+    /// The ray's height at a part of the span.
+    #[inline]
+    fn z(&self, part: f64) -> f64 {
+        self.z.0 + (self.z.1 - self.z.0) * part
+    }
+
+    fn grid(&self, part: f64) -> DVec2 {
+        self.grid.0 + (self.grid.1 - self.grid.0) * part
+    }
+
+    /// Where a ray straight up or down meets the ground.
+    fn plumb(&self, lattice: &Lattice, ray: Ray) -> Option<Hit> {
+        let grid = self.grid.0;
+        let height = planar(lattice, grid)?;
+        let (low, high) = (self.z.0.min(self.z.1), self.z.0.max(self.z.1));
+        if !(low..=high).contains(&height) {
+            return None;
+        }
+        let along = (height - ray.origin.z) / ray.direction.try_normalize()?.z;
+        let facet = Facet::near(lattice, grid)?;
+        let at = ray.origin.truncate().extend(height);
+        Some(Hit { distance_m: along, at, normal: facet.normal(lattice) })
+    }
+
+    fn hit(&self, lattice: &Lattice, met: Met) -> Hit {
+        let grid = self.grid(met.part);
+        let skipped = DVec2::new(f64::from(lattice.first().column), f64::from(lattice.first().row));
+        Hit {
+            distance_m: self.metres.0 + (self.metres.1 - self.metres.0) * met.part,
+            at: ((grid + skipped) * lattice.cell()).extend(met.facet.height_m(grid)),
+            normal: met.facet.normal(lattice),
+        }
+    }
+}
+
+/// The height at a grid position, on an edge that of the posts it joins alone.
+fn planar(lattice: &Lattice, grid: DVec2) -> Option<f64> {
+    let skipped = DVec2::new(f64::from(lattice.first().column), f64::from(lattice.first().row));
+    let at = lattice.origin() + (grid + skipped) * lattice.cell();
+    ground_height(lattice, Interpolation::Planar, at).height_m()
+}
+
+/// The search for the triangle that a ray meets first.
+struct Picking<'a> {
+    lattice: &'a Lattice,
+    span: &'a Span,
+    /// The crossing before, where the triangles since were looked at, and the ray's height over the ground there.
+    before: Option<(f64, f64)>,
+    /// Whether that crossing is the last of the span.
+    reaches_end: bool,
+}
+
+impl Picking<'_> {
+    /// Where the ray meets the triangle between the crossing before and this one.
+    fn between(&self, before: Option<(f64, f64)>, here: (f64, Option<f64>)) -> Option<Met> {
+        let start = before.map_or(0.0, |(part, _)| part);
+        let (end, over) = here;
+        let facet = || Facet::between(self.lattice, self.span.grid(start), self.span.grid(end));
+        // The span's ends lie within a triangle, whose plane tells the ground there.
+        let over_at = |part: f64| Some(self.span.z(part) - facet()?.height_m(self.span.grid(part)));
+        let first = before.map(|(_, over)| over).or_else(|| over_at(start))?;
+        let second = over.or_else(|| over_at(end))?;
+        let changes = (first <= 0.0 && second >= 0.0) || (first >= 0.0 && second <= 0.0);
+        if !changes {
+            return None;
+        }
+        let share = if first == second { 0.0 } else { first / (first - second) };
+        Some(Met { part: start + (end - start) * share, facet: facet()? })
+    }
+
+    /// Where the ray meets the last triangle of its span.
+    fn at_end(&self) -> Option<Met> {
+        if self.reaches_end { self.between(self.before, (1.0, None)) } else { None }
+    }
+}
+
+impl Probe for Picking<'_> {
+    type Found = Met;
+
+    #[inline]
+    fn rules_out(&self, parts: Parts, highest_m: f64, lowest_m: impl FnOnce() -> f64) -> bool {
+        let ends = (self.span.z(parts.0), self.span.z(parts.1));
+        let margin_m = self.span.margin_m;
+        ends.0.min(ends.1) > highest_m + margin_m || ends.0.max(ends.1) < lowest_m() - margin_m
+    }
+
+    fn resume(&mut self, part: f64) {
+        self.before = (part > 0.0).then_some((part, f64::NAN));
+    }
+
+    fn finish(&mut self) {
+        self.reaches_end = true;
+    }
+
+    #[inline]
+    fn see(&mut self, crossing: Crossing) -> ControlFlow<Met> {
+        let over = self.span.z(crossing.part) - crossing.height_m;
+        let changes_side = self.before.is_none_or(|(_, before)| before * over <= 0.0);
+        if changes_side && let Some(met) = self.between(self.before, (crossing.part, Some(over))) {
+            return ControlFlow::Break(met);
+        }
+        self.before = Some((crossing.part, over));
+        ControlFlow::Continue(())
+    }
+}
+
+/// The plane of a finest triangle, over grid positions.
+struct Facet {
+    corner: DVec2,
+    south_west_m: f64,
+    /// Metres of rise per cell, eastward and northward.
+    slope: DVec2,
+}
+
+impl Facet {
+    /// The triangle that a line between two grid positions runs over, which meets no edge between them; `None` where it
+    /// has no data. Of the two that a line along an edge runs over, one that has.
+    fn between(lattice: &Lattice, from: DVec2, to: DVec2) -> Option<Self> {
+        let aside = (to - from).perp().normalize_or_zero() * BESIDE;
+        let middle = 0.5 * (from + to);
+        [middle, middle + aside, middle - aside].into_iter().find_map(|at| Self::at(lattice, at))
+    }
+
+    /// The triangle at a grid position; on an edge or at a post any that has data.
+    fn near(lattice: &Lattice, at: DVec2) -> Option<Self> {
+        const AROUND: [DVec2; 8] = [
+            DVec2::new(2.0, 1.0),
+            DVec2::new(1.0, 2.0),
+            DVec2::new(-1.0, 2.0),
+            DVec2::new(-2.0, 1.0),
+            DVec2::new(-2.0, -1.0),
+            DVec2::new(-1.0, -2.0),
+            DVec2::new(1.0, -2.0),
+            DVec2::new(2.0, -1.0),
+        ];
+        let around = AROUND.into_iter().map(|aside| at + aside * BESIDE);
+        std::iter::once(at).chain(around).find_map(|at| Self::at(lattice, at))
+    }
+
+    /// The triangle at a grid position, of those that share it the one to the south or east.
+    fn at(lattice: &Lattice, at: DVec2) -> Option<Self> {
+        let most = DVec2::new(f64::from(lattice.columns() - 2), f64::from(lattice.rows() - 2));
+        let corner = at.floor().clamp(DVec2::ZERO, most);
+        let cell = Post { column: corner.x as u32, row: corner.y as u32 };
+        let DVec2 { x, y } = at - corner;
+        let [sw, se, nw, ne] = lattice.corner_heights(cell).map(f64::from);
+        let (south_west_m, slope) = match Diagonal::of_cell(u64::from(cell.column), u64::from(cell.row)) {
+            Diagonal::Rising if x >= y => (sw, DVec2::new(se - sw, ne - se)),
+            Diagonal::Rising => (sw, DVec2::new(ne - nw, nw - sw)),
+            Diagonal::Falling if x + y <= 1.0 => (sw, DVec2::new(se - sw, nw - sw)),
+            Diagonal::Falling => (se + nw - ne, DVec2::new(ne - nw, ne - se)),
+        };
+        let facet = Self { corner, south_west_m, slope };
+        (!facet.south_west_m.is_nan() && !facet.slope.is_nan()).then_some(facet)
+    }
+
+    fn height_m(&self, grid: DVec2) -> f64 {
+        self.south_west_m + self.slope.dot(grid - self.corner)
+    }
+
+    fn normal(&self, lattice: &Lattice) -> DVec3 {
+        (-self.slope / lattice.cell()).extend(1.0).normalize()
+    }
+}
+
+/// So far beside an edge, in cells, the triangle at its side is looked for: more than rounding, less than any triangle.
+const BESIDE: f64 = 1e-6;
