@@ -78,7 +78,10 @@ fn differences(lattice: &Lattice, options: &ViewshedOptions) -> Vec<(Post, Seen,
         }
     };
     let pairs = lattice.posts().zip(swept.posts.iter().zip(&lines.posts));
-    pairs.filter(|(_, (swept, line))| swept != line).map(|(post, (&swept, &line))| (post, swept, line)).collect()
+    pairs
+        .filter(|(_, (swept, line))| swept != line)
+        .map(|(post, (&swept, &line))| (post, swept, line))
+        .collect()
 }
 
 proptest! {
@@ -150,9 +153,7 @@ fn real(name: &str, bytes: &[u8], first: Post, size: u32) -> Lattice {
     let whole = Lattice::from_raster(&raster).expect("sound");
     let (columns, rows) = (size.min(whole.columns() - first.column), size.min(whole.rows() - first.row));
     let posts = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
-    let height = |(column, row)| {
-        whole.height(Post { column: first.column + column, row: first.row + row })
-    };
+    let height = |(column, row)| whole.height(Post { column: first.column + column, row: first.row + row });
     Lattice::new(whole.origin(), whole.cell(), columns, posts.map(height).collect()).expect("sound")
 }
 

@@ -44,7 +44,9 @@ impl Frame {
     pub fn all(lattice: &Lattice, eye: DVec2) -> impl Iterator<Item = Self> {
         const SIGNS: [(i64, i64); 4] = [(1, 1), (1, -1), (-1, 1), (-1, -1)];
         let frame = move |axis, signs| Self::new(lattice, eye, axis, signs);
-        let frames = [Axis::Columns, Axis::Rows].into_iter().flat_map(move |axis| SIGNS.map(|signs| frame(axis, signs)));
+        let frames = [Axis::Columns, Axis::Rows]
+            .into_iter()
+            .flat_map(move |axis| SIGNS.map(|signs| frame(axis, signs)));
         frames.filter(|frame| frame.rings > 1 && frame.last > 0)
     }
 

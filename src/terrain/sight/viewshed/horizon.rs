@@ -315,8 +315,7 @@ impl Merged {
             self.winner(Tag::New, new, old.error, first.min(last), start);
         } else {
             let middle = (start + (end - start) * (first / (first - last))).clamp(start, end);
-            let (early, late) =
-                if first > 0.0 { (Tag::New, Tag::Old(at)) } else { (Tag::Old(at), Tag::New) };
+            let (early, late) = if first > 0.0 { (Tag::New, Tag::Old(at)) } else { (Tag::Old(at), Tag::New) };
             for (tag, u) in [(early, start), (late, middle)] {
                 let (piece, other) = if tag == Tag::New { (new, old) } else { (old, new) };
                 self.winner(tag, piece, other.error, 0.0, u);

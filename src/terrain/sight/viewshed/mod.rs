@@ -124,7 +124,10 @@ pub fn viewshed(lattice: &Lattice, options: &ViewshedOptions) -> Result<Viewshed
     let wedges = wedges(Frame::all(lattice, looking.eye), &options.sector);
     let looked_at = AtomicUsize::new(0);
     wedges.par_iter().with_max_len(1).for_each(|(frame, rays)| {
-        looked_at.fetch_add(sweep(&scene, frame, *rays, Lines { exact: &exact, sure: &sure }, &visible), Ordering::Relaxed);
+        looked_at.fetch_add(
+            sweep(&scene, frame, *rays, Lines { exact: &exact, sure: &sure }, &visible),
+            Ordering::Relaxed,
+        );
     });
     for post in looking.own_posts() {
         visible[lattice.index(post)].store(exact(post), Ordering::Relaxed);
@@ -219,7 +222,8 @@ impl<'a> Looking<'a> {
         let columns = self.lattice.columns();
         let is_everywhere = self.options.range_m.is_infinite() && self.options.sector.width_deg >= 360.0;
         let mut posts = vec![Seen::Beyond; self.lattice.heights().len()];
-        let rows = posts.par_chunks_mut(columns as usize).zip(self.lattice.heights().par_chunks(columns as usize));
+        let rows =
+            posts.par_chunks_mut(columns as usize).zip(self.lattice.heights().par_chunks(columns as usize));
         rows.enumerate().for_each(|(row, (posts, heights))| {
             for (column, (seen, height)) in posts.iter_mut().zip(heights).enumerate() {
                 let post = Post { column: column as u32, row: row as u32 };

@@ -49,7 +49,7 @@ const NEAREST: f64 = 1.0 / 16.0;
 
 /// The last ray of the last wedge of an eighth, with what rounding may add: a post on the border of two eighths may be
 /// looked at twice, but not by neither.
-const LAST: f64 = 1.0 + 1e-12;
+const LAST: f64 = 1.0 + 4.0 * f64::EPSILON;
 
 /// Rings read at once: where rings run across the rows of the lattice, a cache line holds the heights of so many.
 const CHUNK: usize = 16;
@@ -106,7 +106,10 @@ pub(super) fn sweep(
 
 fn bend(scene: &Scene<'_>, frame: &Frame) -> Bend {
     let drop = scene.drop_per_square_m;
-    Bend { along: drop * frame.ring_cell_m * frame.ring_cell_m, across: drop * frame.cross_cell_m * frame.cross_cell_m }
+    Bend {
+        along: drop * frame.ring_cell_m * frame.ring_cell_m,
+        across: drop * frame.cross_cell_m * frame.cross_cell_m,
+    }
 }
 
 /// What curvature takes from heights, per square cell along and across.
@@ -255,7 +258,8 @@ impl Sweep<'_> {
         into.u.extend((0..count).map(|index| ((first + index as i64) as f64 - offset) * inverse));
         into.v.clear();
         let (along, across) = (self.bend.along * x, self.bend.across * x);
-        let sunk = |(&height, &u): (&f64, &f64)| (height - self.scene.eye_m) * inverse - (along + across * u * u);
+        let sunk =
+            |(&height, &u): (&f64, &f64)| (height - self.scene.eye_m) * inverse - (along + across * u * u);
         into.v.extend(into.heights.iter().zip(&into.u).map(sunk));
         let near = (x - 1.0).max(NEAREST);
         into.error = (self.scene.margins.height_m + self.scene.margins.bend_m * x / near) / near;
@@ -432,7 +436,8 @@ impl Sweep<'_> {
     fn rung_is_under(&self, j: i64, a: Mark, b: Mark) -> bool {
         let within = self.ring.get(j + 1).is_some_and(|c| a.u <= c.u);
         within && a.v <= self.ring.between(j, a.u)
-            || self.before.get(j - 1).is_some_and(|near| near.u <= b.u) && b.v <= self.before.between(j - 1, b.u)
+            || self.before.get(j - 1).is_some_and(|near| near.u <= b.u)
+                && b.v <= self.before.between(j - 1, b.u)
     }
 
     /// The same for the diagonal from `a` out to the next post's `c`.
@@ -467,7 +472,11 @@ impl Sweep<'_> {
         if width * far_x < NARROW {
             // exactly along a ray it hides no more than its ends do
             if width > 0.0 {
-                self.horizon.doubt(Doubt { u0: from.u - shake, u1: to.u + shake, v: from.v.max(to.v) + error });
+                self.horizon.doubt(Doubt {
+                    u0: from.u - shake,
+                    u1: to.u + shake,
+                    v: from.v.max(to.v) + error,
+                });
             }
             return;
         }
@@ -506,7 +515,9 @@ impl Sweep<'_> {
     fn near_edge(&mut self, from: Corner, to: Corner) {
         if (from.height + to.height).is_nan() {
             // its ends are posts of rings; one nearer than NEAREST still hides what lies right behind it
-            for end in [from, to].into_iter().filter(|end| end.x < NEAREST && end.x > 0.0 && !end.height.is_nan()) {
+            for end in
+                [from, to].into_iter().filter(|end| end.x < NEAREST && end.x > 0.0 && !end.height.is_nan())
+            {
                 self.stand_near(end.height);
             }
             return;
@@ -522,7 +533,8 @@ impl Sweep<'_> {
         let Some((start, end)) = in_wedge else { return };
         if inside(start).x < NEAREST || inside(end).x < NEAREST {
             let near = cut((start, end), (NEAREST - from.x, NEAREST - to.x));
-            let high = near.map_or(f64::NEG_INFINITY, |(start, end)| inside(start).height.max(inside(end).height));
+            let high =
+                near.map_or(f64::NEG_INFINITY, |(start, end)| inside(start).height.max(inside(end).height));
             self.stand_near(high);
         }
         let Some((start, end)) = cut((start, end), (from.x - NEAREST, to.x - NEAREST)) else { return };
