@@ -14,6 +14,8 @@ mod manners;
 mod meshes;
 #[path = "cli/pictures.rs"]
 mod pictures;
+#[path = "cli/viewshed.rs"]
+mod viewshed;
 #[path = "cli/wrong_scenes.rs"]
 mod wrong_scenes;
 

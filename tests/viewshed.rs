@@ -187,7 +187,7 @@ fn on_the_jacksboro_ground_it_is_exact() {
 
 #[test]
 fn on_crater_lake_with_its_level_water_it_is_exact() {
-    let Some(path) = data("scenes/crater_lake/crater.bt") else { return };
+    let Some(path) = data("scenes/crater_lake_bt/crater.bt") else { return };
     let bytes = fs::read(path).expect("readable");
     holds_on("crater", &real("crater.bt", &bytes, Post { column: 250, row: 250 }, 513));
 }

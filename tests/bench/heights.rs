@@ -15,10 +15,15 @@ mod peers;
 #[path = "common/rounds.rs"]
 mod rounds;
 
+#[path = "heights/hillshade.rs"]
+mod hillshade;
+#[path = "heights/viewshed.rs"]
+mod viewshed;
+
 /// A section's name and what prints it.
 type Section = (&'static str, fn());
 
-const SECTIONS: &[Section] = &[];
+const SECTIONS: &[Section] = &[("viewshed", viewshed::print), ("hillshade", hillshade::print)];
 
 fn main() {
     rounds::sections(SECTIONS);

@@ -84,17 +84,13 @@ impl Frame {
 
     /// Where post `j` of a ring stands in the order of the lattice's heights.
     pub fn index(&self, ring: usize, j: i64) -> usize {
-        let Post { column, row } = self.post_of(ring as i64, j);
+        let Post { column, row } = self.post(ring, j);
         (i64::from(row) * self.columns + i64::from(column)) as usize
     }
 
-    /// Post `j` of the ring at `x`.
-    pub fn post(&self, x: f64, j: i64) -> Post {
-        self.post_of(self.ring_at(x), j)
-    }
-
-    fn post_of(&self, ring: i64, j: i64) -> Post {
-        let ring = (self.ring_start + self.ring_sign * ring) as u32;
+    /// Post `j` of a ring.
+    pub fn post(&self, ring: usize, j: i64) -> Post {
+        let ring = (self.ring_start + self.ring_sign * ring as i64) as u32;
         let cross = (self.cross_start + self.cross_sign * j) as u32;
         match self.ring_axis {
             Axis::Columns => Post { column: ring, row: cross },
@@ -102,18 +98,9 @@ impl Frame {
         }
     }
 
-    fn ring_at(&self, x: f64) -> i64 {
-        (x - self.x_of(0)).round() as i64
-    }
-
     /// 0 where the even posts of a ring are those that diagonals join, 1 where the odd ones are.
     pub fn parity(&self, ring: usize) -> i64 {
         (self.ring_start + self.ring_sign * ring as i64 + self.cross_start).rem_euclid(2)
-    }
-
-    /// Whether diagonals join post `j` of the ring at `x`: both of its coordinates are even or both odd.
-    pub fn is_even(&self, x: f64, j: i64) -> bool {
-        (self.parity(self.ring_at(x) as usize) + j) % 2 == 0
     }
 
     /// The directions of the rays `from` and `to` on the map, metres east and north.

@@ -174,7 +174,7 @@ impl Horizon {
 
     /// For each of the equal buckets of 0..=1 a height that the horizon is nowhere below, in it and as far around as
     /// an edge reaches that ends in it.
-    pub fn floor(&mut self) -> &[f64] {
+    pub fn floor(&mut self) -> &mut Vec<f64> {
         if self.floor_is_stale {
             self.floor_is_stale = false;
             for (index, floor) in self.floor.iter_mut().enumerate() {
@@ -182,7 +182,7 @@ impl Horizon {
                 *floor = self.low[around].iter().fold(f64::INFINITY, |least, &low| least.min(low));
             }
         }
-        &self.floor
+        &mut self.floor
     }
 
     fn bucket_of(&self, u: f64) -> usize {

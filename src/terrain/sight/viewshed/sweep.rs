@@ -139,6 +139,7 @@ struct Sweep<'a> {
 /// A ring of posts within the wedge, and a few beyond.
 #[derive(Default)]
 struct Ring {
+    number: usize,
     x: f64,
     first: i64,
     /// Metres.
@@ -248,7 +249,7 @@ impl Sweep<'_> {
         let count = (posts.end() - posts.start() + 1).max(0) as usize;
         let heights = &chunk.heights[start..start + count];
         let into = &mut self.ring;
-        (into.x, into.first) = (x, *posts.start());
+        (into.number, into.x, into.first) = (ring, x, *posts.start());
         into.heights.clear();
         into.heights.extend(heights.iter().map(|&height| f64::from(height)));
         into.loud.clear();
@@ -313,35 +314,39 @@ impl Sweep<'_> {
     /// Looks at the posts of the ring.
     fn decide(&mut self) {
         let lift = self.scene.target_m / self.ring.x;
-        let error = self.ring.error;
         let is_near = self.ring.x <= NEAR;
+        let floor = std::mem::take(self.horizon.floor());
+        let (count, last) = (floor.len() as f64, floor.len() - 1);
         for index in 0..self.ring.v.len() {
-            let (u, v) = (self.ring.u[index], self.ring.v[index] + lift);
+            let target = Mark { u: self.ring.u[index], v: self.ring.v[index] + lift };
+            let floor = floor[((target.u * count) as usize).min(last)];
+            let is_low = !is_near && target.v + self.ring.error < floor;
             // a border belongs to the wedge that it begins
-            let is_inside = u >= self.from && (u < self.to || self.to == 1.0 && u <= LAST);
-            if !is_inside || v.is_nan() {
-                continue;
+            let is_inside =
+                target.u >= self.from && (target.u < self.to || self.to == 1.0 && target.u <= LAST);
+            if !is_low && is_inside && !target.v.is_nan() {
+                self.look(self.ring.first + index as i64, target);
             }
-            let j = self.ring.first + index as i64;
-            let post = self.frame.post(self.ring.x, j);
-            let seen = if is_near { None } else { self.seen(j, Mark { u, v }, error) };
-            let seen = seen.filter(|&seen| !seen || (self.lines.sure)(post)).unwrap_or_else(|| {
-                self.looked += 1;
-                (self.lines.exact)(post)
-            });
-            if seen {
-                self.visible[self.scene.lattice.index(post)].store(true, Ordering::Relaxed);
-            }
+        }
+        *self.horizon.floor() = floor;
+    }
+
+    /// Looks at post `j` of the ring.
+    fn look(&mut self, j: i64, target: Mark) {
+        let post = self.frame.post(self.ring.number, j);
+        let seen = if self.ring.x <= NEAR { None } else { self.seen(j, target, self.ring.error) };
+        let seen = seen.filter(|&seen| !seen || (self.lines.sure)(post)).unwrap_or_else(|| {
+            self.looked += 1;
+            (self.lines.exact)(post)
+        });
+        if seen {
+            self.visible[self.scene.lattice.index(post)].store(true, Ordering::Relaxed);
         }
     }
 
     /// Whether the target on post `j` can be seen; `None` where only looking can tell.
-    fn seen(&mut self, j: i64, target: Mark, error: f64) -> Option<bool> {
+    fn seen(&self, j: i64, target: Mark, error: f64) -> Option<bool> {
         let Mark { u, v } = target;
-        let floor = self.horizon.floor();
-        if v + error < floor[((u * floor.len() as f64) as usize).min(floor.len() - 1)] {
-            return Some(false);
-        }
         let span = self.horizon.span(u, v - error, self.scene.margins.across / self.ring.x)?;
         if v + error < span.low {
             return Some(false);
@@ -358,7 +363,7 @@ impl Sweep<'_> {
     /// What the diagonal of the last cell on the way to post `j` has on the post's ray, where it does not end at the
     /// post; NaN where it does.
     fn last_diagonal(&self, j: i64, u: f64) -> f64 {
-        let joins_post = self.frame.is_even(self.ring.x, j);
+        let joins_post = (self.frame.parity(self.ring.number) + j) % 2 == 0;
         match (self.before.get(j), self.ring.get(j - 1)) {
             (Some(near), Some(far)) if !joins_post => {
                 far.v + (near.v - far.v) * ((u - far.u) / (near.u - far.u))
@@ -410,9 +415,12 @@ impl Sweep<'_> {
     /// Takes in the rungs and diagonals of the strip before the ring.
     fn strip(&mut self, ring: usize) {
         let parity = self.frame.parity(ring - 1);
-        for j in self.ring.first..self.ring.end().min(self.before.end()) {
-            let (a_loud, b_loud) = (self.before.is_loud(j), self.ring.is_loud(j));
+        let first = self.ring.first;
+        let (mut a_loud, mut b_loud) = (self.before.is_loud(first), self.ring.is_loud(first));
+        for j in first..self.ring.end().min(self.before.end()) {
             let (d_loud, c_loud) = (self.before.is_loud(j + 1), self.ring.is_loud(j + 1));
+            let (a_loud, b_loud) =
+                (std::mem::replace(&mut a_loud, d_loud), std::mem::replace(&mut b_loud, c_loud));
             if !(a_loud || b_loud || c_loud || d_loud) {
                 continue;
             }
