@@ -82,11 +82,10 @@ pub fn draw_outlook(map: &mut Pixels, outlook: &Outlook, sheet_px: (u32, u32)) {
         outline.push(outlook.at_px);
     }
     let mut drawing = Drawing::default();
-    if outlook.range_px.is_some() || outlook.sector_deg.is_some() {
-        if let Some(path) = polyline(&outline) {
-            drawing.stroke(&path, sheet.px(4.5), HALO);
-            drawing.stroke(&path, sheet.px(2.0), SIGNAL);
-        }
+    let is_limited = outlook.range_px.is_some() || outlook.sector_deg.is_some();
+    if let Some(path) = polyline(&outline).filter(|_| is_limited) {
+        drawing.stroke(&path, sheet.px(4.5), HALO);
+        drawing.stroke(&path, sheet.px(2.0), SIGNAL);
     }
     observer(&mut drawing, outlook.at_px, &sheet);
     let mut canvas = Canvas::over(map);

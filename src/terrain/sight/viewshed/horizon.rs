@@ -330,3 +330,53 @@ impl Merged {
         self.push(tag, &Piece { error, ..*piece }, u);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Seeded(u64);
+
+    impl Seeded {
+        fn part(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (self.0 >> 11) as f64 / (1u64 << 53) as f64
+        }
+    }
+
+    #[test]
+    fn it_is_the_greatest_of_all_edges_however_often_it_is_split() {
+        let mut seeded = Seeded(5);
+        let mut horizon = Horizon::new(0.0, 1.0);
+        let mut edges: Vec<Edge> = Vec::new();
+        for turn in 1..=200 {
+            if turn % 40 == 0 {
+                horizon.grow(f64::from(turn) / 10.0);
+            }
+            let start = seeded.part() * 1.1 - 0.1;
+            let end = start + seeded.part() * 0.2 + 1e-6;
+            let edge = Edge { u0: start, v0: seeded.part(), u1: end, v1: seeded.part(), error: 1e-9 };
+            horizon.insert(&edge);
+            edges.push(edge);
+            horizon.check().expect("sound");
+        }
+        for _ in 0..2000 {
+            let u = seeded.part();
+            let over = edges.iter().filter(|edge| edge.u0 <= u && u <= edge.u1);
+            let true_v =
+                over.map(|edge| edge.v0 + edge.slope() * (u - edge.u0)).fold(f64::NEG_INFINITY, f64::max);
+            let span = horizon.span(u, 0.0, 0.0).expect("nothing is doubted");
+            assert!(span.low <= true_v && true_v <= span.high, "{u}: {true_v} not in {span:?}");
+        }
+    }
+
+    #[test]
+    fn a_doubt_leaves_open_what_is_lower_than_it_and_not_hidden() {
+        let mut horizon = Horizon::new(0.0, 1.0);
+        horizon.insert(&Edge { u0: 0.0, v0: 1.0, u1: 1.0, v1: 1.0, error: 0.0 });
+        horizon.doubt(Doubt { u0: 0.3, u1: 0.3001, v: 2.0 });
+        assert_eq!(horizon.span(0.30005, 1.5, 0.0), None);
+        assert!(horizon.span(0.30005, 2.5, 0.0).is_some() && horizon.span(0.30005, 0.5, 0.0).is_some());
+        assert!(horizon.span(0.31, 1.5, 0.0).is_some());
+    }
+}

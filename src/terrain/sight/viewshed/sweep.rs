@@ -356,7 +356,8 @@ impl Sweep<'_> {
         if v + error < diagonal - error {
             return Some(false);
         }
-        let clear = v - error > span.high && v - error > self.near && !(v - error <= diagonal + error);
+        let is_over = diagonal.is_nan() || v - error > diagonal + error;
+        let clear = is_over && v - error > span.high && v - error > self.near;
         clear.then_some(true)
     }
 
