@@ -22,6 +22,8 @@ mod pictures;
 mod serve;
 #[path = "cli/profile.rs"]
 mod profile;
+#[path = "cli/viewshed.rs"]
+mod viewshed;
 #[path = "cli/wrong_scenes.rs"]
 mod wrong_scenes;
 

@@ -22,6 +22,7 @@ pub mod credit;
 pub mod drawing;
 pub mod labels;
 pub mod legend;
+pub mod map;
 pub mod nice;
 pub mod north;
 pub mod paint;

@@ -62,24 +62,50 @@ pub fn measure(bar: &ScaleBar, longest_px: f32) -> Option<Measure> {
 /// The scale bar on its panel with the upper left corner at the origin; `None` where [`measure`] has none.
 pub fn compose(bar: &ScaleBar, sheet: &Sheet, setter: &mut Typesetter) -> Option<Drawing> {
     let measure = measure(bar, sheet.px(LONGEST))?;
-    let face = Face::upright(sheet.type_px(16.0), Face::REGULAR);
     let note = Face::upright(sheet.type_px(14.0), Face::REGULAR);
-    let figures = figures(&measure.length).map(|text| setter.line(&text, face));
-    let unit = setter.line(&format!(" {}", unit(&measure.length).0), face);
     let where_true = setter.line(&format!("at {} from the eye", distance(f64::from(bar.distance_m))), note);
-    Some(lay_out(&measure, &figures, &unit, &where_true, sheet))
+    Some(labelled(&measure, Some(&where_true), sheet, setter))
 }
 
-fn lay_out(measure: &Measure, figures: &[Line; 3], unit: &Line, note: &Line, sheet: &Sheet) -> Drawing {
+/// The scale bar of a map, which has one scale all over; otherwise as [`compose`], no longer than `longest_px`.
+pub fn compose_on_map(
+    pixels_per_metre: f32,
+    longest_px: f32,
+    sheet: &Sheet,
+    setter: &mut Typesetter,
+) -> Option<Drawing> {
+    // every distance will do
+    let measure = measure(&ScaleBar { pixels_per_metre, distance_m: 1.0 }, longest_px)?;
+    Some(labelled(&measure, None, sheet, setter))
+}
+
+fn labelled(measure: &Measure, note: Option<&Line>, sheet: &Sheet, setter: &mut Typesetter) -> Drawing {
+    let face = Face::upright(sheet.type_px(16.0), Face::REGULAR);
+    let figures = figures(&measure.length).map(|text| setter.line(&text, face));
+    let unit = setter.line(&format!(" {}", unit(&measure.length).0), face);
+    lay_out(measure, &figures, &unit, note, sheet)
+}
+
+fn lay_out(
+    measure: &Measure,
+    figures: &[Line; 3],
+    unit: &Line,
+    note: Option<&Line>,
+    sheet: &Sheet,
+) -> Drawing {
     let padding = sheet.padding();
     let size = figures[0].face.size_px;
     let left = padding.max((padding * 0.6 + figures[0].advance * 0.5).round());
     let baseline = padding + (size * CAP_HEIGHT).round();
     let top = baseline + (size * 0.42).round();
     let bar = PixelBox::at(Vec2::new(left, top), Vec2::new(measure.length_px, sheet.whole_px(8.0)));
-    let note_at = Vec2::new(left, (bar.max.y + note.face.size_px * (CAP_HEIGHT + 0.55)).round());
-    let right = (bar.max.x + figures[2].advance * 0.5 + unit.advance).max(note_at.x + note.advance);
-    let bottom = note_at.y + padding - (note.face.size_px * DESCENT * 0.3).round();
+    let note = note
+        .map(|note| (note, Vec2::new(left, (bar.max.y + note.face.size_px * (CAP_HEIGHT + 0.55)).round())));
+    let figures_right = bar.max.x + figures[2].advance * 0.5 + unit.advance;
+    let right = note.map_or(figures_right, |(line, at)| figures_right.max(at.x + line.advance));
+    let bottom = note.map_or(bar.max.y + padding, |(line, at)| {
+        at.y + padding - (line.face.size_px * DESCENT * 0.3).round()
+    });
     let mut drawing = Drawing::default();
     drawing.panel(
         PixelBox { min: Vec2::ZERO, max: Vec2::new((right + padding).ceil(), bottom) },
@@ -95,7 +121,9 @@ fn lay_out(measure: &Measure, figures: &[Line; 3], unit: &Line, note: &Line, she
     write(&mut drawing, &at, INK);
     let unit_x = at[2].1.x + figures[2].advance;
     write(&mut drawing, &[(unit, Vec2::new(unit_x, baseline))], INK);
-    write(&mut drawing, &[(note, note_at)], SOFT_INK);
+    if let Some(note) = note {
+        write(&mut drawing, &[note], SOFT_INK);
+    }
     drawing
 }
 

@@ -15,6 +15,7 @@ pub mod labels;
 pub mod load;
 pub mod lod;
 pub mod los;
+pub mod map;
 pub mod mesh;
 pub mod model;
 pub mod output;

@@ -1,22 +1,303 @@
-//! `sandtable viewshed`: what can be seen from a point.
+//! `sandtable viewshed`: what can be seen from a point, as a map, a raster or a few figures.
 
-use std::path::PathBuf;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use clap::Args;
+use glam::DVec2;
 
+use crate::app::arguments::{Access, GreyHeights};
+use crate::app::dataset::Dataset;
 use crate::app::failure::Failure;
+use crate::app::map::{Words, viewshed_map};
+use crate::app::picture::png;
+use crate::app::progress::Steps;
+use crate::app::{files, output};
+use crate::geom::crs::Crs;
+use crate::terrain::lattice::Lattice;
+use crate::terrain::query::Answer;
+use crate::terrain::sight::Curvature;
+use crate::terrain::sight::line::End;
+use crate::terrain::sight::viewshed::ViewshedOptions as Question;
+use crate::terrain::sight::viewshed::{Counts, Sector, Seen, Viewshed, viewshed};
 
 /// `viewshed`.
 #[derive(Debug, Args)]
+#[command(
+    after_help = "A raster holds 1 where a target can be seen, 0 where it is hidden, and 255, its no-data value, beyond the \
+                  range, out of the sector and where there is no elevation."
+)]
 pub struct ViewshedOptions {
     /// The elevation file or scene
     pub file: PathBuf,
+    /// Where the observer stands, in the file's or scene's coordinates
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub at: Pair,
+    /// The coordinate system of the position, for instance EPSG:4326 [default: the file's or scene's]
+    #[arg(long, value_name = "CRS")]
+    pub crs: Option<String>,
+    /// Metres of the eye above the ground
+    #[arg(long, value_name = "METRES", default_value_t = 2.0, value_parser = metres)]
+    pub observer_height: f64,
+    /// Metres of what is looked for above the ground
+    #[arg(long, value_name = "METRES", default_value_t = 0.0, value_parser = metres)]
+    pub target_height: f64,
+    /// How far to look, in metres [default: without limit]
+    #[arg(long, value_name = "METRES", value_parser = metres_above_zero)]
+    pub range: Option<f64>,
+    /// Look only between two azimuths, in degrees clockwise from north
+    #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true)]
+    pub sector: Option<Pair>,
+    /// The refraction coefficient: the share of the Earth's curvature that the air takes back
+    #[arg(long, value_name = "K", default_value_t = 1.0 / 7.0, value_parser = below_one)]
+    pub refraction: f64,
+    /// Take the Earth for flat and without air
+    #[arg(long, conflicts_with = "refraction")]
+    pub flat: bool,
+    /// Where the answer goes: a map as .png, or a raster as .asc
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+    /// What the grey values of a picture mean.
+    #[command(flatten)]
+    pub heights: GreyHeights,
+    /// What may be read.
+    #[command(flatten)]
+    pub access: Access,
 }
 
-/// Runs the command.
+/// Two numbers with a comma between.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair(pub f64, pub f64);
+
+impl FromStr for Pair {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+        let pair =
+            text.split_once(',').and_then(|(first, second)| Some(Self(number(first)?, number(second)?)));
+        pair.ok_or_else(|| "write two numbers with a comma between".into())
+    }
+}
+
+fn metres(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|metres| (0.0..=1e5).contains(metres));
+    number.ok_or_else(|| "write metres as a number from 0 to 100000".into())
+}
+
+fn metres_above_zero(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|metres| metres.is_finite() && *metres > 0.0);
+    number.ok_or_else(|| "write metres as a number above 0".into())
+}
+
+fn below_one(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|k| (-1.0..1.0).contains(k));
+    number.ok_or_else(|| "write a number from -1 to below 1; 0.13 to 0.17 is usual".into())
+}
+
+/// What the answer is written as.
+#[derive(Clone, Copy)]
+enum Form {
+    Map,
+    TextGrid,
+}
+
+/// Looks, writes the map or the raster, and prints how much can be seen.
 ///
 /// # Errors
-/// The file cannot be had or read.
+/// The file or the position cannot be had, or the answer not be written.
 pub fn run(options: &ViewshedOptions) -> Result<(), Failure> {
-    Err(Failure::input(format!("{}: this command is not there yet", options.file.display())))
+    let form = options.output.as_deref().map(|path| form_of(path, &options.file)).transpose()?;
+    let steps = Steps::default();
+    steps.begin("reading the ground");
+    let dataset = Dataset::open(&options.file, options.heights, &options.access)?;
+    let epoch = dataset.service()?.now();
+    let lattice = epoch.lattice();
+    let question = question(options, &dataset, epoch.crs())?;
+    steps.begin("looking around");
+    let seen = viewshed(lattice, &question).map_err(|answer| no_ground(options, answer))?;
+    if let (Some(form), Some(path)) = (form, &options.output) {
+        steps.begin("writing");
+        write(
+            form,
+            path,
+            &Shown {
+                options,
+                lattice,
+                question: &question,
+                seen: &seen,
+                datum: epoch.source().vertical_datum.clone(),
+            },
+        )?;
+    }
+    steps.finish();
+    let summary = Summary::new(lattice, &seen);
+    let text = if options.json { summary.json(options, &question) } else { summary.text(options) };
+    output::print(&text)
+}
+
+fn form_of(path: &Path, input: &Path) -> Result<Form, Failure> {
+    files::check_file_place(path, input, "this is the elevation file itself; name another with -o")?;
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    match extension.to_ascii_lowercase().as_str() {
+        "png" => Ok(Form::Map),
+        "asc" => Ok(Form::TextGrid),
+        _ => Err(Failure::Usage(format!("{}: name a map .png or a raster .asc", path.display()))),
+    }
+}
+
+fn question(options: &ViewshedOptions, dataset: &Dataset, ground: &Crs) -> Result<Question, Failure> {
+    let from = match &options.crs {
+        Some(text) => Crs::parse(text).map_err(|error| Failure::Usage(format!("--crs {text}: {error}")))?,
+        None => dataset.crs(),
+    };
+    let Pair(x, y) = options.at;
+    let at = from
+        .transform(ground, DVec2::new(x, y))
+        .map_err(|error| Failure::input(format!("--at {x},{y}: {error}")))?;
+    let curvature = match options.flat {
+        true => Curvature::FLAT,
+        false => Curvature { refraction: options.refraction, ..Curvature::default() },
+    };
+    Ok(Question {
+        observer: End { at, above_m: options.observer_height },
+        target_above_m: options.target_height,
+        range_m: options.range.unwrap_or(f64::INFINITY),
+        sector: options.sector.map_or(Sector::ALL, |Pair(from, to)| Sector::between(from, to)),
+        curvature,
+    })
+}
+
+fn no_ground(options: &ViewshedOptions, answer: Answer) -> Failure {
+    let Pair(x, y) = options.at;
+    let why = match answer {
+        Answer::NoData => "there is no elevation at the observer",
+        _ => "the observer stands outside the elevation model",
+    };
+    Failure::input(format!("{}: --at {x},{y}: {why}; name a place on the ground", options.file.display()))
+}
+
+/// What is written.
+struct Shown<'a> {
+    options: &'a ViewshedOptions,
+    lattice: &'a Lattice,
+    question: &'a Question,
+    seen: &'a Viewshed,
+    datum: Option<String>,
+}
+
+fn write(form: Form, path: &Path, shown: &Shown<'_>) -> Result<(), Failure> {
+    match form {
+        Form::TextGrid => files::write_whole(path, text_grid(shown.lattice, shown.seen)?.as_bytes()),
+        Form::Map => {
+            let map = viewshed_map(shown.lattice, shown.seen, shown.question, words(shown));
+            files::write_whole(path, &png(&map)?)
+        }
+    }
+}
+
+fn words(shown: &Shown<'_>) -> Words {
+    let options = shown.options;
+    let name = options.file.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let share = Summary::new(shown.lattice, shown.seen).share();
+    let mut subtitle = format!("Eye {} m above ground", options.observer_height);
+    if options.target_height > 0.0 {
+        let _ = write!(subtitle, ", target {} m", options.target_height);
+    }
+    if let Some(range) = options.range {
+        let _ = write!(subtitle, ", within {range} m");
+    }
+    if let Some(Pair(from, to)) = options.sector {
+        let _ = write!(subtitle, ", azimuth {from}° to {to}°");
+    }
+    let _ = write!(subtitle, "; {:.1} % in sight", share * 100.0);
+    subtitle.push_str(if options.flat { "; flat Earth" } else { "; curvature and refraction applied" });
+    Words { title: format!("Viewshed · {name}"), subtitle, vertical_datum: shown.datum.clone() }
+}
+
+/// The value of what was not looked at, or has no data.
+const NO_ANSWER: u8 = 255;
+
+/// An ESRI text grid of the answer; square cells only, as that format has it.
+fn text_grid(lattice: &Lattice, seen: &Viewshed) -> Result<String, Failure> {
+    let (origin, cell) =
+        (lattice.map_position(crate::terrain::lattice::Post { column: 0, row: 0 }), lattice.cell());
+    if (cell.x - cell.y).abs() > 1e-9 * cell.x {
+        let reason = "a text grid has square cells, and this ground's are";
+        return Err(Failure::input(format!("{reason} {} by {} m", cell.x, cell.y)));
+    }
+    let mut text = format!(
+        "ncols {}\nnrows {}\nxllcenter {}\nyllcenter {}\ncellsize {}\nNODATA_value {NO_ANSWER}\n",
+        seen.columns, seen.rows, origin.x, origin.y, cell.x
+    );
+    for row in seen.posts.chunks_exact(seen.columns as usize).rev() {
+        for (index, seen) in row.iter().enumerate() {
+            text.push_str(if index > 0 { " " } else { "" });
+            text.push_str(match seen {
+                Seen::Visible => "1",
+                Seen::Hidden => "0",
+                Seen::Beyond | Seen::NoData => "255",
+            });
+        }
+        text.push('\n');
+    }
+    Ok(text)
+}
+
+/// How much can be seen.
+struct Summary {
+    counts: Counts,
+    cell_m2: f64,
+}
+
+impl Summary {
+    fn new(lattice: &Lattice, seen: &Viewshed) -> Self {
+        Self { counts: seen.counts(), cell_m2: lattice.cell().element_product() }
+    }
+
+    /// Of the posts that were looked at, the share in sight; 0 where there are none.
+    fn share(&self) -> f64 {
+        let looked = self.counts.visible + self.counts.hidden;
+        if looked == 0 { 0.0 } else { self.counts.visible as f64 / looked as f64 }
+    }
+
+    fn visible_m2(&self) -> f64 {
+        self.counts.visible as f64 * self.cell_m2
+    }
+
+    fn json(&self, options: &ViewshedOptions, question: &Question) -> String {
+        let Counts { visible, hidden, no_data, beyond } = self.counts;
+        let range = options.range;
+        let object = serde_json::json!({
+            "observer": { "x": question.observer.at.x, "y": question.observer.at.y, "above_m": options.observer_height },
+            "target_above_m": options.target_height,
+            "range_m": range,
+            "sector_deg": options.sector.map(|Pair(from, to)| [from, to]),
+            "refraction": (!options.flat).then_some(options.refraction),
+            "posts": { "visible": visible, "hidden": hidden, "no_data": no_data, "beyond": beyond },
+            "visible_m2": self.visible_m2(),
+            "visible_share": self.share(),
+            "output": options.output.as_ref().map(|path| path.display().to_string()),
+        });
+        format!("{object:#}\n")
+    }
+
+    fn text(&self, options: &ViewshedOptions) -> String {
+        let Counts { visible, hidden, no_data, beyond } = self.counts;
+        let mut lines = Vec::new();
+        lines.extend(options.output.as_ref().map(|path| path.display().to_string()));
+        lines.push(format!(
+            "  in sight  {:.3} km², {:.2} % of what was looked at",
+            self.visible_m2() / 1e6,
+            self.share() * 100.0
+        ));
+        lines.push(format!(
+            "  posts     {visible} visible, {hidden} hidden, {no_data} without data, {beyond} beyond"
+        ));
+        output::text_of(&lines)
+    }
 }

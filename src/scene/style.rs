@@ -62,6 +62,11 @@ pub fn ramp(
     }
 }
 
+/// The ramp of an atlas over the ground's range of heights: what is taken where nobody chooses another.
+pub fn atlas(lattice: &Lattice) -> Ramp {
+    stretched(&ATLAS, lattice)
+}
+
 fn stretched(stops: &[(f32, [u8; 3])], lattice: &Lattice) -> Ramp {
     let (low, high) = lattice.height_range();
     // Level ground far from 0 still needs stops that an f32 can tell apart.

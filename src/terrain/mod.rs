@@ -4,6 +4,7 @@
 pub mod brush;
 pub mod earthwork;
 pub mod facets;
+pub mod hillshade;
 pub mod lattice;
 pub mod light;
 pub mod profile;

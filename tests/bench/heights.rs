@@ -23,11 +23,15 @@ mod queries;
 mod service;
 #[path = "heights/rays.rs"]
 mod rays;
+#[path = "heights/hillshade.rs"]
+mod hillshade;
+#[path = "heights/viewshed.rs"]
+mod viewshed;
 
 /// A section's name and what prints it.
 type Section = (&'static str, fn());
 
-const SECTIONS: &[Section] = &[("service", service::print), ("reading", reading::print), ("queries", queries::print), ("rays", rays::print)];
+const SECTIONS: &[Section] = &[("service", service::print), ("reading", reading::print), ("queries", queries::print), ("rays", rays::print), ("viewshed", viewshed::print), ("hillshade", hillshade::print)];
 
 fn main() {
     rounds::sections(SECTIONS);

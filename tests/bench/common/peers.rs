@@ -48,3 +48,25 @@ pub fn run(program: &str, arguments: &[&str]) {
     let ran = Command::new(program).args(arguments).output().expect("the program starts");
     assert!(ran.status.success(), "{program}: {}", String::from_utf8_lossy(&ran.stderr));
 }
+
+/// Writes square heights, row by row from the south-west, as a raw file that GDAL reads (ENVI: rows from the north, a
+/// header beside). Posts `cell_m` apart are pixel centres, the south-west one at `origin`.
+pub fn write_envi(path: &Path, heights: &[f32], size: usize, origin: glam::DVec2, cell_m: f64) {
+    let bytes: Vec<u8> =
+        heights.chunks_exact(size).rev().flatten().flat_map(|height| height.to_le_bytes()).collect();
+    let (west, north) = (origin.x - cell_m / 2.0, origin.y + cell_m * (size as f64 - 0.5));
+    let header = format!(
+        "ENVI\nsamples = {size}\nlines = {size}\nbands = 1\nheader offset = 0\nfile type = ENVI Standard\n\
+         data type = 4\ninterleave = bsq\nbyte order = 0\n\
+         map info = {{UTM, 1, 1, {west}, {north}, {cell_m}, {cell_m}, 33, North, WGS-84}}\n"
+    );
+    let written =
+        std::fs::write(path, bytes).and_then(|()| std::fs::write(path.with_extension("hdr"), header));
+    written.expect("the target directory can be written");
+}
+
+/// The bytes of a square raw raster with one byte a pixel, row by row from the south.
+pub fn read_bytes_from_south(path: &Path, size: usize) -> Vec<u8> {
+    let bytes = std::fs::read(path).expect("the peer wrote it");
+    bytes.chunks_exact(size).rev().flatten().copied().collect()
+}

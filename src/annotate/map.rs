@@ -1,0 +1,271 @@
+//! A map as a sheet: the map in its frame, and beside it, on paper, what a reader must know.
+//!
+//! ```text
+//! ┌──────────────────────────────────┐
+//! │ Title                            │   Furniture stands beside the map and not on it: on a map every place
+//! │ subtitle                         │   may be the one that is asked about.
+//! │ ┌─────────────────────┐   N      │
+//! │ │                     │   ▲      │
+//! │ │         map         │  key     │
+//! │ │                     │  heights │
+//! │ └─────────────────────┘  ├──┼──┤ │
+//! └──────────────────────────────────┘
+//! ```
+
+use glam::Vec2;
+
+use crate::annotate::canvas::Canvas;
+use crate::annotate::drawing::{Drawing, polyline};
+use crate::annotate::legend::{self, Legend};
+use crate::annotate::north::{self, NorthArrow};
+use crate::annotate::paragraph::fitted;
+use crate::annotate::pixel_box::PixelBox;
+use crate::annotate::report::Report;
+use crate::annotate::scale_bar;
+use crate::annotate::sheet::{FRAME, HALO, INK, PAPER, SOFT_INK, Sheet};
+use crate::annotate::text::{CAP_HEIGHT, Face, Line, Typesetter, write};
+use crate::draw::color::Srgba;
+use crate::draw::pixels::Pixels;
+
+/// Width of the column beside the map, in design pixels.
+const COLUMN: f32 = 268.0;
+/// Least height of the column: what the furniture needs.
+const COLUMN_HEIGHT: f32 = 560.0;
+/// Height of title and subtitle, in design pixels.
+const HEAD: f32 = 72.0;
+/// The red of the observer: no ground and no water has it.
+const SIGNAL: Srgba = Srgba::opaque(0xc8, 0x1e, 0x2a);
+/// Straight lines that stand for a full circle: no corner shows on a sheet.
+const CIRCLE_SIDES: usize = 720;
+
+/// What stands on the sheet beside the map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MapFurniture {
+    /// The title.
+    pub title: String,
+    /// The line below it.
+    pub subtitle: String,
+    /// What the map's colours mean beside heights, from the top.
+    pub key: Vec<(Srgba, String)>,
+    /// What the ground's colours mean.
+    pub heights: Legend,
+    /// Pixels that one metre spans on the map.
+    pub pixels_per_metre: f32,
+}
+
+/// Where somebody looks from, and how far; all lengths in pixels of the map, Y down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outlook {
+    /// The place on the map.
+    pub at_px: Vec2,
+    /// How far is looked; `None` without limit.
+    pub range_px: Option<f32>,
+    /// The azimuth at which the sector begins and how far it turns clockwise, degrees; `None` all around.
+    pub sector_deg: Option<(f32, f32)>,
+}
+
+/// Draws the observer, the range and the sector on a map; what lies off it is not drawn.
+pub fn draw_outlook(map: &mut Pixels, outlook: &Outlook, sheet_px: (u32, u32)) {
+    let sheet = Sheet::new(sheet_px.0, sheet_px.1);
+    let far = Vec2::new(map.width() as f32, map.height() as f32).length() * 2.0;
+    let reach = outlook.range_px.unwrap_or(far).min(far);
+    let at = |degrees: f32| {
+        let (sin, cos) = (libm::sinf(degrees.to_radians()), libm::cosf(degrees.to_radians()));
+        outlook.at_px + Vec2::new(sin, -cos) * reach
+    };
+    let (start, width) = outlook.sector_deg.unwrap_or((0.0, 360.0));
+    let sides = (CIRCLE_SIDES as f32 * width / 360.0).ceil().max(1.0) as usize;
+    let arc = (0..=sides).map(|side| at(start + width * side as f32 / sides as f32));
+    let mut outline: Vec<Vec2> = arc.collect();
+    if outlook.sector_deg.is_some() {
+        outline.insert(0, outlook.at_px);
+        outline.push(outlook.at_px);
+    }
+    let mut drawing = Drawing::default();
+    let is_limited = outlook.range_px.is_some() || outlook.sector_deg.is_some();
+    if let Some(path) = polyline(&outline).filter(|_| is_limited) {
+        drawing.stroke(&path, sheet.px(4.5), HALO);
+        drawing.stroke(&path, sheet.px(2.0), SIGNAL);
+    }
+    observer(&mut drawing, outlook.at_px, &sheet);
+    let mut canvas = Canvas::over(map);
+    canvas.draw(&drawing);
+    canvas.finish();
+}
+
+/// A dot in a ring: one sees the very place, and finds it from across a room.
+fn observer(drawing: &mut Drawing, at: Vec2, sheet: &Sheet) {
+    for (radius, color) in [(10.0, PAPER), (8.0, SIGNAL), (4.4, PAPER), (2.6, INK)] {
+        drawing.disc(at, sheet.px(radius), color);
+    }
+}
+
+/// The size of the sheet for a map of this size.
+pub fn sheet_size(map: (u32, u32)) -> (u32, u32) {
+    // a sheet's sizes depend on its own: taken from the map's, which is most of it
+    let sheet = Sheet::new(map.0, map.1);
+    let margin = sheet.margin();
+    let column = sheet.px(COLUMN);
+    let width = map.0 as f32 + column + 3.0 * margin;
+    let height = (map.1 as f32).max(sheet.px(COLUMN_HEIGHT)) + sheet.px(HEAD) + 2.5 * margin;
+    (width.ceil() as u32, height.ceil() as u32)
+}
+
+/// The sheet with the map on it; and what could not be written as it was given.
+pub fn compose(map: &Pixels, furniture: &MapFurniture) -> (Pixels, Report) {
+    let (width, height) = sheet_size((map.width(), map.height()));
+    let sheet = Sheet::new(map.width(), map.height());
+    let (mut setter, mut report) = (Typesetter::new(), Report::default());
+    let margin = sheet.margin().round();
+    let corner = Vec2::new(margin, (margin * 1.5 + sheet.px(HEAD)).round());
+    let frame = PixelBox::at(corner, Vec2::new(map.width() as f32, map.height() as f32));
+    let mut pixels = Pixels::filled(width, height, PAPER);
+    paste(&mut pixels, map, (corner.x as usize, corner.y as usize));
+    let mut drawing = Drawing::default();
+    drawing.frame(frame.grown(1.0), 1.0, INK);
+    head(&mut drawing, furniture, (margin, width as f32 - 2.0 * margin), &sheet, (&mut setter, &mut report));
+    let column = PixelBox {
+        min: Vec2::new(frame.max.x + margin, frame.min.y),
+        max: Vec2::new(width as f32 - margin, height as f32 - margin),
+    };
+    beside(&mut drawing, furniture, column, &sheet, (&mut setter, &mut report));
+    let mut canvas = Canvas::over(&mut pixels);
+    canvas.draw(&drawing);
+    canvas.finish();
+    (pixels, report)
+}
+
+fn paste(pixels: &mut Pixels, map: &Pixels, (x, y): (usize, usize)) {
+    let (stride, width) = (pixels.width() as usize, map.width() as usize);
+    for (row, from) in map.data().chunks_exact(width.max(1)).enumerate() {
+        let start = (y + row) * stride + x;
+        pixels.data_mut()[start..start + width].copy_from_slice(from);
+    }
+}
+
+/// Title and subtitle.
+fn head(
+    drawing: &mut Drawing,
+    furniture: &MapFurniture,
+    (left, room): (f32, f32),
+    sheet: &Sheet,
+    (setter, report): (&mut Typesetter, &mut Report),
+) {
+    let mut baseline = sheet.margin();
+    let lines = [
+        (&furniture.title, Face::upright(sheet.type_px(30.0), Face::MEDIUM), INK, 0.95),
+        (&furniture.subtitle, Face::upright(sheet.type_px(17.0), Face::REGULAR), SOFT_INK, 1.75),
+    ];
+    for (text, face, color, lead) in lines {
+        baseline = (baseline + face.size_px * lead).round();
+        if let Some(line) = fitted(setter, text, face, room) {
+            report.set(text, line.missing, line.shortened);
+            write(drawing, &[(&line, Vec2::new(left, baseline))], color);
+        }
+    }
+}
+
+/// The column beside the map: what fits, from the top; the scale bar at its foot.
+fn beside(
+    drawing: &mut Drawing,
+    furniture: &MapFurniture,
+    column: PixelBox,
+    sheet: &Sheet,
+    (setter, report): (&mut Typesetter, &mut Report),
+) {
+    let gap = sheet.px(22.0);
+    let arrow = NorthArrow { direction: Vec2::new(0.0, -1.0), foreshortening: 1.0 };
+    let pieces = [
+        north::compose(&arrow, sheet, setter),
+        Some(key(&furniture.key, column.size().x, sheet, (setter, report))),
+        legend::compose(&furniture.heights, sheet, setter, report),
+        scale_bar::compose_on_map(furniture.pixels_per_metre, column.size().x * 0.72, sheet, setter),
+    ];
+    let mut top = column.min.y;
+    for piece in pieces.into_iter().flatten() {
+        let bounds = piece.bounds();
+        if top + bounds.size().y <= column.max.y {
+            drawing.append(&piece, (Vec2::new(column.min.x, top) - bounds.min).round());
+            top = (top + bounds.size().y + gap).round();
+        }
+    }
+}
+
+/// Swatches with what they mean.
+fn key(
+    entries: &[(Srgba, String)],
+    room: f32,
+    sheet: &Sheet,
+    (setter, report): (&mut Typesetter, &mut Report),
+) -> Drawing {
+    let face = Face::upright(sheet.type_px(16.0), Face::REGULAR);
+    let (swatch, lead) = (Vec2::new(sheet.whole_px(30.0), sheet.whole_px(20.0)), sheet.whole_px(32.0));
+    let mut drawing = Drawing::default();
+    let text_left = swatch.x + sheet.whole_px(12.0);
+    for (index, (color, text)) in entries.iter().enumerate() {
+        let top = lead * index as f32;
+        let area = PixelBox::at(Vec2::new(0.0, top), swatch);
+        drawing.rect(area, *color);
+        drawing.frame(area, sheet.hairline().round().max(1.0), FRAME);
+        let line: Option<Line> = fitted(setter, text, face, room - text_left);
+        if let Some(line) = line {
+            report.set(text, line.missing, line.shortened);
+            let baseline = (top + (swatch.y + face.size_px * CAP_HEIGHT) * 0.5).round();
+            write(&mut drawing, &[(&line, Vec2::new(text_left, baseline))], INK);
+        }
+    }
+    let symbol = Vec2::new(swatch.x * 0.5, lead * entries.len() as f32 + swatch.y * 0.5);
+    observer(&mut drawing, symbol, sheet);
+    let line = setter.line("Observer", face);
+    write(
+        &mut drawing,
+        &[(&line, Vec2::new(text_left, (symbol.y + face.size_px * CAP_HEIGHT * 0.5).round()))],
+        INK,
+    );
+    drawing
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::ground::Ramp;
+
+    fn furniture() -> MapFurniture {
+        MapFurniture {
+            title: "What can be seen".into(),
+            subtitle: "from 2 m above the ground".into(),
+            key: vec![(SIGNAL, "In sight".into()), (INK, "Hidden".into())],
+            heights: Legend {
+                ramp: Ramp::new(vec![(0.0, INK), (100.0, PAPER)]).expect("rising"),
+                low_m: 0.0,
+                high_m: 100.0,
+                vertical_exaggeration: 1.0,
+                contour_interval: None,
+                vertical_datum: None,
+            },
+            pixels_per_metre: 0.1,
+        }
+    }
+
+    #[test]
+    fn the_map_stands_on_the_sheet_pixel_for_pixel() {
+        let green = Srgba::opaque(0, 200, 0);
+        for size in [(900, 700), (400, 1200), (1200, 90)] {
+            let map = Pixels::filled(size.0, size.1, green);
+            let (sheet, report) = compose(&map, &furniture());
+            let kept = sheet.data().iter().filter(|&&color| color == green).count();
+            assert_eq!(kept, (size.0 * size.1) as usize, "{size:?}");
+            assert_eq!(report, Report::default());
+        }
+    }
+
+    #[test]
+    fn an_outlook_far_off_the_map_leaves_it_as_it_is() {
+        let mut map = Pixels::filled(60, 40, INK);
+        let far = Outlook { at_px: Vec2::splat(1e5), range_px: Some(50.0), sector_deg: Some((10.0, 90.0)) };
+        draw_outlook(&mut map, &far, (300, 300));
+        assert_eq!(map, Pixels::filled(60, 40, INK));
+        draw_outlook(&mut map, &Outlook { at_px: Vec2::new(30.0, 20.0), ..far }, (300, 300));
+        assert_ne!(map, Pixels::filled(60, 40, INK));
+    }
+}

@@ -1,0 +1,196 @@
+//! A map of what can be seen: the ground in the house's tints and shaded, what is hidden in the dark.
+//!
+//! Every post has one colour; a pixel is the mean of the posts under it where it is larger than the distance between
+//! posts, and a bilinear blend of the four around where it is smaller. Means are taken in linear light.
+
+use glam::{DVec2, Vec2, Vec3};
+use rayon::prelude::*;
+
+use crate::annotate::legend::Legend;
+use crate::annotate::map::{MapFurniture, Outlook, compose, draw_outlook, sheet_size};
+use crate::draw::color::Srgba;
+use crate::draw::ground::Ramp;
+use crate::draw::pixels::Pixels;
+use crate::scene::style;
+use crate::terrain::hillshade::{HillshadeOptions, NO_DATA, hillshade};
+use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::sight::viewshed::{Seen, Viewshed, ViewshedOptions};
+
+/// The map fits into so many pixels: with its furniture a sheet no wider than a screen of 1920.
+const LARGEST_PX: DVec2 = DVec2::new(1560.0, 1560.0);
+/// No side is shorter, however long and thin the ground is.
+const LEAST_PX: f64 = 48.0;
+/// Heights are stretched by this for the shading alone: true heights leave most ground too flat to read.
+const RELIEF: f64 = 2.0;
+/// The share of light that shade leaves.
+const AMBIENT: f32 = 0.32;
+/// The grey of level ground in the standard light, whose tint is shown as it is.
+const LEVEL: f32 = 180.6;
+/// What stands in for hidden ground's tint, and how much of it: dusk, dark enough to tell and light enough to read.
+const DUSK: Srgba = Srgba::opaque(0x3a, 0x42, 0x5c);
+const DUSK_SHARE: f32 = 0.66;
+/// Ground that was not looked at: faded towards paper.
+const FADED: Srgba = Srgba::opaque(0xf4, 0xf2, 0xec);
+const FADED_SHARE: f32 = 0.62;
+/// Where there is no data.
+const EMPTY: Srgba = Srgba::opaque(0xe6, 0xe4, 0xde);
+
+/// What the sheet says of itself.
+pub struct Words {
+    /// The title.
+    pub title: String,
+    /// The line below it.
+    pub subtitle: String,
+    /// What heights count from, where the file says so.
+    pub vertical_datum: Option<String>,
+}
+
+/// The sheet with the map of a viewshed.
+pub fn viewshed_map(
+    lattice: &Lattice,
+    viewshed: &Viewshed,
+    options: &ViewshedOptions,
+    words: Words,
+) -> Pixels {
+    let ramp = style::atlas(lattice);
+    let colors = colors(lattice, viewshed, &ramp);
+    let frame = Frame::fitted(lattice);
+    let mut map = frame.resampled(&colors);
+    let outlook = outlook(lattice, options, &frame);
+    draw_outlook(&mut map, &outlook, sheet_size((frame.width, frame.height)));
+    let (low_m, high_m) = lattice.height_range();
+    let furniture = MapFurniture {
+        title: words.title,
+        subtitle: words.subtitle,
+        key: key(viewshed, ramp.linear_at(low_m + 0.3 * (high_m - low_m))),
+        heights: Legend {
+            ramp,
+            low_m,
+            high_m,
+            vertical_exaggeration: 1.0,
+            contour_interval: None,
+            vertical_datum: words.vertical_datum,
+        },
+        pixels_per_metre: frame.pixels_per_m as f32,
+    };
+    compose(&map, &furniture).0
+}
+
+/// Swatches of what occurs, on ground of this tint.
+fn key(viewshed: &Viewshed, tint: Vec3) -> Vec<(Srgba, String)> {
+    let counts = viewshed.counts();
+    let entries = [
+        (Seen::Visible, counts.visible, "In sight"),
+        (Seen::Hidden, counts.hidden, "Hidden"),
+        (Seen::Beyond, counts.beyond, "Not looked at"),
+        (Seen::NoData, counts.no_data, "No data"),
+    ];
+    let entries = entries.into_iter().filter(|&(_, count, _)| count > 0);
+    entries.map(|(seen, _, text)| (Srgba::from_linear(shown(seen, tint)), text.to_owned())).collect()
+}
+
+/// A tint as ground that is seen or not shows it.
+fn shown(seen: Seen, tint: Vec3) -> Vec3 {
+    match seen {
+        Seen::Visible => tint,
+        Seen::Hidden => (tint * 0.55).lerp(DUSK.linear(), DUSK_SHARE),
+        Seen::Beyond => tint.lerp(FADED.linear(), FADED_SHARE),
+        Seen::NoData => EMPTY.linear(),
+    }
+}
+
+/// The colour of every post in linear light.
+fn colors(lattice: &Lattice, viewshed: &Viewshed, ramp: &Ramp) -> Vec<Vec3> {
+    const STEPS: usize = 512;
+    let table = ramp.table(STEPS);
+    let (low, high) = ramp.range();
+    let greys = hillshade(lattice, &HillshadeOptions { exaggeration: RELIEF, ..HillshadeOptions::default() });
+    let color = |((&height, &grey), &seen): ((&f32, &u8), &Seen)| {
+        if height.is_nan() || grey == NO_DATA {
+            return EMPTY.linear();
+        }
+        let step = (height - low) / (high - low) * (STEPS - 1) as f32;
+        let light = AMBIENT + (1.0 - AMBIENT) * f32::from(grey) / LEVEL;
+        shown(seen, table[(step as usize).min(STEPS - 1)]) * light
+    };
+    lattice.heights().par_iter().zip(&greys).zip(&viewshed.posts).map(color).collect()
+}
+
+/// The map's pixels over the lattice: north up, square, half a cell beyond the outer posts.
+struct Frame {
+    width: u32,
+    height: u32,
+    pixels_per_m: f64,
+    /// Posts per pixel, eastward and northward.
+    step: DVec2,
+    columns: u32,
+    rows: u32,
+}
+
+impl Frame {
+    fn fitted(lattice: &Lattice) -> Self {
+        let (columns, rows) = (lattice.columns(), lattice.rows());
+        let extent_m = DVec2::new(f64::from(columns), f64::from(rows)) * lattice.cell();
+        let pixels_per_m = (LARGEST_PX / extent_m).min_element();
+        let size = (extent_m * pixels_per_m).round().max(DVec2::splat(LEAST_PX));
+        let step = DVec2::new(f64::from(columns), f64::from(rows)) / size;
+        Self { width: size.x as u32, height: size.y as u32, pixels_per_m, step, columns, rows }
+    }
+
+    /// Pixels of a grid position; Y down.
+    fn pixel_at(&self, grid: DVec2) -> Vec2 {
+        let across = (grid + 0.5) / self.step;
+        Vec2::new(across.x as f32, (f64::from(self.height) - across.y) as f32)
+    }
+
+    fn resampled(&self, colors: &[Vec3]) -> Pixels {
+        let mut pixels = Pixels::filled(self.width, self.height, EMPTY);
+        let rows = pixels.data_mut().par_chunks_mut(self.width as usize);
+        rows.enumerate().for_each(|(y, row)| {
+            let north = self.under(f64::from(self.height) - y as f64 - 1.0, self.step.y, self.rows);
+            for (x, pixel) in row.iter_mut().enumerate() {
+                let east = self.under(x as f64, self.step.x, self.columns);
+                *pixel = Srgba::from_linear(self.mean(colors, &east, &north));
+            }
+        });
+        pixels
+    }
+
+    /// The posts under a pixel along one axis, and what each weighs, which sums to 1.
+    fn under(&self, pixel: f64, step: f64, count: u32) -> Vec<(u32, f32)> {
+        let last = count - 1;
+        if step <= 1.0 {
+            let at = ((pixel + 0.5) * step - 0.5).clamp(0.0, f64::from(last));
+            let (low, part) = (at.floor(), at.fract() as f32);
+            return vec![(low as u32, 1.0 - part), ((low as u32 + 1).min(last), part)];
+        }
+        let (start, end) = (pixel * step, (pixel + 1.0) * step);
+        (start as u32..=(end as u32).min(last))
+            .map(|post| {
+                let covered = (f64::from(post) + 1.0).min(end) - f64::from(post).max(start);
+                (post, (covered.max(0.0) / step) as f32)
+            })
+            .collect()
+    }
+
+    fn mean(&self, colors: &[Vec3], east: &[(u32, f32)], north: &[(u32, f32)]) -> Vec3 {
+        let mut sum = Vec3::ZERO;
+        for &(row, share) in north {
+            let row = &colors[row as usize * self.columns as usize..];
+            for &(column, weight) in east {
+                sum += row[column as usize] * (weight * share);
+            }
+        }
+        sum
+    }
+}
+
+fn outlook(lattice: &Lattice, options: &ViewshedOptions, frame: &Frame) -> Outlook {
+    let grid = lattice.grid_at(options.observer.at - lattice.map_position(Post { column: 0, row: 0 }));
+    let sector = options.sector;
+    Outlook {
+        at_px: frame.pixel_at(grid),
+        range_px: options.range_m.is_finite().then_some((options.range_m * frame.pixels_per_m) as f32),
+        sector_deg: (sector.width_deg < 360.0).then_some((sector.from_deg as f32, sector.width_deg as f32)),
+    }
+}
