@@ -8,6 +8,8 @@
 #[allow(dead_code, reason = "each bench uses its own part")]
 #[path = "common/fields.rs"]
 mod fields;
+#[path = "heights/gridding.rs"]
+mod gridding;
 #[allow(dead_code, reason = "each bench uses its own part")]
 #[path = "common/peers.rs"]
 mod peers;
@@ -18,7 +20,7 @@ mod rounds;
 /// A section's name and what prints it.
 type Section = (&'static str, fn());
 
-const SECTIONS: &[Section] = &[];
+const SECTIONS: &[Section] = &[("gridding", gridding::print)];
 
 fn main() {
     rounds::sections(SECTIONS);
