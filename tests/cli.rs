@@ -2,6 +2,8 @@
 
 mod common;
 
+#[path = "cli/grid.rs"]
+mod grid;
 #[path = "cli/heights.rs"]
 mod heights;
 #[path = "cli/info.rs"]

@@ -115,7 +115,9 @@ impl FromStr for Extent {
     fn from_str(text: &str) -> Result<Self, String> {
         let sides: Result<Vec<f64>, _> = text.split(',').map(|side| side.trim().parse::<f64>()).collect();
         match sides.as_deref() {
-            Ok(&[west, south, east, north]) if west < east && south < north && (east - west + north - south).is_finite() => {
+            Ok(&[west, south, east, north])
+                if west < east && south < north && (east - west + north - south).is_finite() =>
+            {
                 Ok(Self(Rect { min: DVec2::new(west, south), max: DVec2::new(east, north) }))
             }
             Ok(&[_, _, _, _]) => Err("west must lie below east and south below north".into()),
@@ -184,7 +186,10 @@ fn check_output(out: &Path, inputs: &[PathBuf], breaklines: &[PathBuf]) -> Resul
     if out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("asc")) {
         return Ok(());
     }
-    Err(Failure::input(format!("{}: grids are written as ESRI ASCII grids; name one that ends in .asc", out.display())))
+    Err(Failure::input(format!(
+        "{}: grids are written as ESRI ASCII grids; name one that ends in .asc",
+        out.display()
+    )))
 }
 
 /// All points and breaklines, in the system of the first file.
@@ -197,7 +202,8 @@ fn read_all(inputs: &[PathBuf], options: &GridOptions) -> Result<PointCloud, Fai
     for path in inputs {
         let cloud = read_points(path, stated.as_ref(), &options.class)?;
         all = Some(match all {
-            Some(all) => joined(all, cloud).map_err(|reason| Failure::input(format!("{}: {reason}", path.display())))?,
+            Some(all) => joined(all, cloud)
+                .map_err(|reason| Failure::input(format!("{}: {reason}", path.display())))?,
             None => cloud,
         });
     }
@@ -217,7 +223,8 @@ fn read_points(path: &Path, crs: Option<&Crs>, classes: &[u8]) -> Result<PointCl
         return points::read(&bytes, &points::Hints { crs, classes }).map_err(wrong);
     }
     let layer = read_layer(path, &name, &bytes, crs)?;
-    let points: Vec<DVec3> = layer.features.iter().flat_map(|feature| vertices(feature).collect::<Vec<_>>()).collect();
+    let points: Vec<DVec3> =
+        layer.features.iter().flat_map(|feature| vertices(feature).collect::<Vec<_>>()).collect();
     if points.is_empty() {
         let reason = "no point in it has an elevation; points with a z are needed";
         return Err(Failure::input(format!("{}: {reason}", path.display())));
@@ -272,7 +279,8 @@ fn breaklines(feature: &Feature) -> Vec<Vec<DVec3>> {
         Geometry::Points(_) => Vec::new(),
         Geometry::Lines(lines) => lines.iter().map(|part| line(part)).collect(),
         Geometry::Polygons(polygons) => {
-            let rings = polygons.iter().flat_map(|polygon| std::iter::once(&polygon.exterior).chain(&polygon.holes));
+            let rings =
+                polygons.iter().flat_map(|polygon| std::iter::once(&polygon.exterior).chain(&polygon.holes));
             let closed = |mut ring: Vec<DVec3>| {
                 ring.extend(ring.first().copied());
                 ring
@@ -294,7 +302,9 @@ fn joined(mut first: PointCloud, mut second: PointCloud) -> Result<PointCloud, S
         }
     }
     let factor = second.metres_per_z / first.metres_per_z;
-    for point in second.points.iter_mut().chain(second.breaklines.iter_mut().flatten()).filter(|_| factor != 1.0) {
+    for point in
+        second.points.iter_mut().chain(second.breaklines.iter_mut().flatten()).filter(|_| factor != 1.0)
+    {
         point.z *= factor;
     }
     first.points.append(&mut second.points);
@@ -352,7 +362,8 @@ fn summary(cloud: &PointCloud, gridded: &Gridded, method: MethodChoice, out: &Pa
     let crossings = report.crossings;
     if crossings.count > 0 {
         let gap = crossings.largest_gap * raster.metres_per_z;
-        let told = format!("breaklines cross {} times, up to {gap:.3} m apart: the mean was taken", crossings.count);
+        let told =
+            format!("breaklines cross {} times, up to {gap:.3} m apart: the mean was taken", crossings.count);
         rows.push(("note", told));
     }
     rows.extend(cloud.notes.iter().map(|note| ("note", note.clone())));

@@ -108,6 +108,9 @@ mod tests {
         let line = [DVec3::ZERO, DVec3::new(3.0, 4.0, 10.0), DVec3::new(3.0, 4.0, 10.0)];
         let points = points_along(&line, 2.0);
         assert_eq!(points.len(), 5);
-        assert!(points.iter().all(|point| (point.z - point.truncate().length() * 2.0).abs() < 1e-12), "{points:?}");
+        assert!(
+            points.iter().all(|point| (point.z - point.truncate().length() * 2.0).abs() < 1e-12),
+            "{points:?}"
+        );
     }
 }

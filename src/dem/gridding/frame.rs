@@ -29,7 +29,9 @@ pub enum FrameError {
     #[error("the extent from {}, {} to {}, {} holds nothing: give west, south, east, north", .0.min.x, .0.min.y, .0.max.x, .0.max.y)]
     Empty(Rect),
     /// More cells than are made.
-    #[error("{columns} x {rows} cells are more than the {MOST_SAMPLES} that are made; a cell size of {enough:.3} is enough")]
+    #[error(
+        "{columns} x {rows} cells are more than the {MOST_SAMPLES} that are made; a cell size of {enough:.3} is enough"
+    )]
     TooMany {
         /// Cells a row.
         columns: f64,

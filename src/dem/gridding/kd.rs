@@ -8,6 +8,8 @@
 //! Each level halves its sites at their median along the longer side, so that ranges need no storage: a subtree is a
 //! range of `at` and its planes a range of `planes`, its own first, the left half's next, then the right half's.
 
+use std::cmp::Ordering;
+
 use glam::DVec2;
 
 /// Sites in a leaf at most: below some eight, walking the tree costs more than looking at all of a leaf.
@@ -31,46 +33,70 @@ pub(super) struct KdTree {
     depth: u32,
 }
 
-/// The sites found so far, nearest first; of two equally far the one that comes first among the sites.
+/// A site and its squared distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Near {
+    /// From the place that was asked about.
+    pub distance2: f64,
+    /// The site.
+    pub site: u32,
+}
+
+impl Near {
+    /// Nearer first; of two equally far the one that comes first among the sites.
+    fn order(&self, other: &Self) -> Ordering {
+        self.distance2.total_cmp(&other.distance2).then(self.site.cmp(&other.site))
+    }
+}
+
+/// How many sites more than wanted are gathered before the farthest are thrown out. Keeping them sorted all the time
+/// costs more than the search; a search that starts with a good bound never throws any out before its end.
+const SPARE: usize = 32;
+
+/// The sites that a search finds.
 pub(super) struct Found {
-    /// Squared distances, rising.
-    pub distances2: Vec<f64>,
-    /// The sites at them.
-    pub sites: Vec<u32>,
+    near: Vec<Near>,
     wanted: usize,
     /// Nothing farther is wanted.
     limit2: f64,
 }
 
 impl Found {
-    /// Room for the `wanted` nearest, at least 1.
+    /// For searches of the `wanted` nearest, at least 1.
     pub fn new(wanted: usize) -> Self {
-        let room = wanted.min(1 << 16) + 1;
-        Self { distances2: Vec::with_capacity(room), sites: Vec::with_capacity(room), wanted, limit2: 0.0 }
+        Self { near: Vec::new(), wanted, limit2: 0.0 }
     }
 
-    fn offer(&mut self, distance2: f64, site: u32) {
-        let full = self.distances2.len() == self.wanted;
-        let after = |index: usize| {
-            self.distances2[index] > distance2
-                || (self.distances2[index] == distance2 && self.sites[index] > site)
-        };
-        let mut place = self.distances2.len();
-        if full && !after(place - 1) {
-            return;
+    /// What the last search found, nearest first.
+    pub fn near(&self) -> &[Near] {
+        &self.near
+    }
+
+    /// Searches a list of sites instead of a tree; `limit2` as for [`KdTree::nearest_k`].
+    pub fn choose(&mut self, q: DVec2, limit2: f64, candidates: &[(DVec2, u32)]) {
+        self.near.clear();
+        self.limit2 = limit2;
+        for &(at, site) in candidates {
+            let distance2 = (at - q).length_squared();
+            if distance2 <= self.limit2 {
+                self.take(Near { distance2, site });
+            }
         }
-        while place > 0 && after(place - 1) {
-            place -= 1;
+        self.finish();
+    }
+
+    fn take(&mut self, near: Near) {
+        self.near.push(near);
+        if self.near.len() == self.wanted + SPARE {
+            let (_, last, _) = self.near.select_nth_unstable_by(self.wanted - 1, Near::order);
+            self.limit2 = last.distance2;
+            self.near.truncate(self.wanted);
         }
-        if full {
-            self.distances2.pop();
-            self.sites.pop();
-        }
-        self.distances2.insert(place, distance2);
-        self.sites.insert(place, site);
-        if self.distances2.len() == self.wanted {
-            self.limit2 = self.distances2[self.wanted - 1];
-        }
+    }
+
+    fn finish(&mut self) {
+        self.near.sort_unstable_by(Near::order);
+        self.near.truncate(self.wanted);
     }
 }
 
@@ -120,17 +146,18 @@ impl KdTree {
     pub fn nearest(&self, q: DVec2) -> Option<u32> {
         let mut found = Found::new(1);
         self.nearest_k(q, f64::INFINITY, &mut found);
-        found.sites.first().copied()
+        found.near.first().map(|near| near.site)
     }
 
     /// Puts the sites nearest to `q` into `found`, as many as it wants and there are.
     ///
-    /// `within` is a distance inside which so many are known to lie, infinite where nothing is known.
-    pub fn nearest_k(&self, q: DVec2, within: f64, found: &mut Found) {
-        found.distances2.clear();
-        found.sites.clear();
-        found.limit2 = within * within;
+    /// `limit2` is a squared distance inside which, or at which, so many are known to lie; infinite where nothing is
+    /// known.
+    pub fn nearest_k(&self, q: DVec2, limit2: f64, found: &mut Found) {
+        found.near.clear();
+        found.limit2 = limit2;
         self.visit(self.root(), q, DVec2::ZERO, found);
+        found.finish();
     }
 
     /// `offset` is how far the subtree's box is from `q` along each axis, as far as the planes above tell.
@@ -139,7 +166,7 @@ impl KdTree {
             for (at, &site) in self.at[part.start..part.end].iter().zip(&self.sites[part.start..part.end]) {
                 let distance2 = (*at - q).length_squared();
                 if distance2 <= found.limit2 {
-                    found.offer(distance2, site);
+                    found.take(Near { distance2, site });
                 }
             }
             return;
@@ -157,6 +184,38 @@ impl KdTree {
         }
     }
 
+    /// Puts all sites at most as far from `q` as the root of `limit2` into `gathered`, or more than `most`.
+    pub fn gather(&self, q: DVec2, limit2: f64, most: usize, gathered: &mut Vec<(DVec2, u32)>) {
+        gathered.clear();
+        self.visit_all(self.root(), q, DVec2::ZERO, (limit2, most), gathered);
+    }
+
+    fn visit_all(
+        &self,
+        part: Subtree,
+        q: DVec2,
+        offset: DVec2,
+        (limit2, most): (f64, usize),
+        gathered: &mut Vec<(DVec2, u32)>,
+    ) {
+        if part.depth == 0 {
+            let sites = self.at[part.start..part.end].iter().zip(&self.sites[part.start..part.end]);
+            let near = sites.filter(|(at, _)| (**at - q).length_squared() <= limit2);
+            gathered.extend(near.map(|(&at, &site)| (at, site)));
+            return;
+        }
+        let plane = self.planes[part.plane];
+        let to_plane = q[plane.axis] - plane.at;
+        let [left, right] = part.halves();
+        let (near, far) = if to_plane < 0.0 { (left, right) } else { (right, left) };
+        self.visit_all(near, q, offset, (limit2, most), gathered);
+        let mut offset = offset;
+        offset[plane.axis] = to_plane;
+        if offset.length_squared() <= limit2 && gathered.len() <= most {
+            self.visit_all(far, q, offset, (limit2, most), gathered);
+        }
+    }
+
     /// The nearest site of each quadrant around `q`.
     pub fn quadrants(&self, q: DVec2) -> Quadrants {
         let mut found = [None; 4];
@@ -165,7 +224,14 @@ impl KdTree {
     }
 
     /// `open` are the quadrants that the subtree may have sites in.
-    fn visit_quadrants(&self, part: Subtree, q: DVec2, offset: DVec2, open: [bool; 4], found: &mut Quadrants) {
+    fn visit_quadrants(
+        &self,
+        part: Subtree,
+        q: DVec2,
+        offset: DVec2,
+        open: [bool; 4],
+        found: &mut Quadrants,
+    ) {
         if part.depth == 0 {
             for (at, &site) in self.at[part.start..part.end].iter().zip(&self.sites[part.start..part.end]) {
                 let quadrant = usize::from(at.x >= q.x) + 2 * usize::from(at.y >= q.y);
@@ -202,9 +268,9 @@ impl KdTree {
 
 fn build(order: &mut [(DVec2, u32)], planes: &mut [Plane]) {
     let Some((plane, below)) = planes.split_first_mut() else { return };
-    let (low, high) = order.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (at, _)| {
-        (low.min(*at), high.max(*at))
-    });
+    let (low, high) = order
+        .iter()
+        .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (at, _)| (low.min(*at), high.max(*at)));
     let axis = usize::from(high.y - low.y > high.x - low.x);
     let middle = middle(0, order.len());
     let (left_planes, right_planes) = below.split_at_mut(below.len() / 2);
@@ -212,7 +278,8 @@ fn build(order: &mut [(DVec2, u32)], planes: &mut [Plane]) {
         // No site left of the plane; it stands at the only one there is, or nowhere.
         *plane = Plane { axis, at: order.first().map_or(0.0, |(at, _)| at[axis]) };
     } else {
-        let by_axis = |a: &(DVec2, u32), b: &(DVec2, u32)| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1));
+        let by_axis =
+            |a: &(DVec2, u32), b: &(DVec2, u32)| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1));
         let (_, (at, _), _) = order.select_nth_unstable_by(middle, by_axis);
         *plane = Plane { axis, at: at[axis] };
     }
@@ -240,7 +307,8 @@ mod tests {
     }
 
     fn sorted(at: &[DVec2], q: DVec2) -> Vec<(f64, u32)> {
-        let mut all: Vec<(f64, u32)> = at.iter().zip(0..).map(|(at, site)| ((*at - q).length_squared(), site)).collect();
+        let mut all: Vec<(f64, u32)> =
+            at.iter().zip(0..).map(|(at, site)| ((*at - q).length_squared(), site)).collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         all
     }
@@ -254,9 +322,10 @@ mod tests {
             for q in places(40, 99).into_iter().map(|q| q * 1.1 - 1.0) {
                 tree.nearest_k(q, f64::INFINITY, &mut found);
                 let all = sorted(&at, q);
-                let wanted: Vec<u32> = all.iter().take(12).map(|(_, site)| *site).collect();
-                assert_eq!(found.sites, wanted, "{count} places, {q}");
-                assert_eq!(tree.nearest(q), wanted.first().copied());
+                let near: Vec<(f64, u32)> =
+                    found.near().iter().map(|near| (near.distance2, near.site)).collect();
+                assert_eq!(near, all[..all.len().min(12)], "{count} places, {q}");
+                assert_eq!(tree.nearest(q), all.first().map(|(_, site)| *site));
             }
         }
     }
@@ -268,8 +337,8 @@ mod tests {
         let (mut free, mut bounded) = (Found::new(5), Found::new(5));
         for q in places(40, 12) {
             tree.nearest_k(q, f64::INFINITY, &mut free);
-            tree.nearest_k(q, free.distances2[4].sqrt() * (1.0 + 1e-9), &mut bounded);
-            assert_eq!((&free.sites, &free.distances2), (&bounded.sites, &bounded.distances2));
+            tree.nearest_k(q, free.near()[4].distance2, &mut bounded);
+            assert_eq!(free.near(), bounded.near());
         }
     }
 

@@ -58,7 +58,8 @@ impl Positions {
         while first < self.x.len() && self.x[first] < low {
             first += 1;
         }
-        let mut end = ((((high - self.x[0]) * self.per_cell) as usize).saturating_add(1)).clamp(first, self.x.len());
+        let mut end =
+            ((((high - self.x[0]) * self.per_cell) as usize).saturating_add(1)).clamp(first, self.x.len());
         while end > first && self.x[end - 1] > high {
             end -= 1;
         }
@@ -77,7 +78,8 @@ impl Positions {
         while first < self.y.len() && self.y[first] > high {
             first += 1;
         }
-        let mut end = ((((self.y[0] - low) * self.per_cell) as usize).saturating_add(1)).clamp(first, self.y.len());
+        let mut end =
+            ((((self.y[0] - low) * self.per_cell) as usize).saturating_add(1)).clamp(first, self.y.len());
         while end > first && self.y[end - 1] < low {
             end -= 1;
         }
@@ -113,12 +115,14 @@ fn cut(low: DVec3, high: DVec3, y: f64) -> (f64, f64) {
 pub(super) fn fill(tin: &Tin, cells: &Positions, out: &mut [f64]) {
     let width = cells.x.len();
     let bands = bands(tin, cells);
-    out.par_chunks_mut(BAND_ROWS * width).zip(bands.par_iter()).enumerate().for_each(|(band, (out, triangles))| {
-        let rows = band * BAND_ROWS..(band + 1) * BAND_ROWS;
-        for &triangle in triangles {
-            fill_triangle(tin.corners(triangle as usize), cells, &rows, out);
-        }
-    });
+    out.par_chunks_mut(BAND_ROWS * width).zip(bands.par_iter()).enumerate().for_each(
+        |(band, (out, triangles))| {
+            let rows = band * BAND_ROWS..(band + 1) * BAND_ROWS;
+            for &triangle in triangles {
+                fill_triangle(tin.corners(triangle as usize), cells, &rows, out);
+            }
+        },
+    );
 }
 
 /// The triangles that meet each band of rows, in their order.

@@ -144,12 +144,7 @@ pub enum GridError {
 ///
 /// # Errors
 /// [`GridError`]: a point that is not finite, points that all lie on one line, a parameter out of range.
-pub fn grid(
-    cloud: &PointCloud,
-    frame: &Frame,
-    method: Method,
-    beyond: Beyond,
-) -> Result<Gridded, GridError> {
+pub fn grid(cloud: &PointCloud, frame: &Frame, method: Method, beyond: Beyond) -> Result<Gridded, GridError> {
     check(method)?;
     let (heights, mut report) = heights(cloud, frame, method, beyond)?;
     report.filled = heights.iter().filter(|height| !height.is_nan()).count();
@@ -190,7 +185,11 @@ fn heights(
 ) -> Result<(Vec<f64>, Report), GridError> {
     let along: Vec<DVec3> = match method {
         Method::Tin => cloud.breaklines.iter().flatten().copied().collect(),
-        _ => cloud.breaklines.iter().flat_map(|line| breaklines::points_along(line, frame.cell() * 0.5)).collect(),
+        _ => cloud
+            .breaklines
+            .iter()
+            .flat_map(|line| breaklines::points_along(line, frame.cell() * 0.5))
+            .collect(),
     };
     let sites = Sites::new(&cloud.points, &along)?;
     let mut report = Report {

@@ -112,9 +112,10 @@ impl Naturals {
         for _ in 0..self.cells.len() {
             let cell = &self.cells[at as usize];
             let [a, b, c] = cell.corners.map(|corner| self.at[corner as usize] - q);
-            let beyond = [(a, b), (b, c), (c, a)].iter().zip(cell.neighbours).find_map(|((from, to), neighbour)| {
-                (neighbour != OUTSIDE && from.perp_dot(*to) < 0.0).then_some(neighbour)
-            });
+            let beyond =
+                [(a, b), (b, c), (c, a)].iter().zip(cell.neighbours).find_map(|((from, to), neighbour)| {
+                    (neighbour != OUTSIDE && from.perp_dot(*to) < 0.0).then_some(neighbour)
+                });
             match beyond {
                 Some(neighbour) => at = neighbour,
                 None => break,

@@ -27,7 +27,7 @@ pub(super) struct Sites {
 impl Sites {
     /// The sites of points and of vertices of breaklines.
     pub fn new(points: &[DVec3], vertices: &[DVec3]) -> Result<Self, GridError> {
-        let sound = |point: &DVec3| point.abs().max_element() < LARGEST;
+        let sound = |point: &DVec3| point.abs().cmplt(DVec3::splat(LARGEST)).all();
         if let Some(point) = points.iter().chain(vertices).find(|point| !sound(point)) {
             return Err(GridError::Unplaceable { x: point.x, y: point.y, z: point.z });
         }
@@ -39,8 +39,12 @@ impl Sites {
         sorted.par_sort_unstable_by(|a, b| {
             a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z))
         });
-        let mut sites =
-            Self { origin, at: Vec::with_capacity(sorted.len()), z: Vec::with_capacity(sorted.len()), duplicates: 0 };
+        let mut sites = Self {
+            origin,
+            at: Vec::with_capacity(sorted.len()),
+            z: Vec::with_capacity(sorted.len()),
+            duplicates: 0,
+        };
         for same in sorted.chunk_by(|a, b| a.truncate() == b.truncate()) {
             sites.at.push(same[0].truncate());
             sites.z.push(mean(same));
@@ -86,7 +90,9 @@ mod tests {
 
     #[test]
     fn points_without_a_place_are_refused() {
-        for wrong in [DVec3::new(f64::NAN, 0.0, 0.0), DVec3::new(0.0, 1e80, 0.0), DVec3::new(0.0, 0.0, f64::INFINITY)] {
+        for wrong in
+            [DVec3::new(f64::NAN, 0.0, 0.0), DVec3::new(0.0, 1e80, 0.0), DVec3::new(0.0, 0.0, f64::INFINITY)]
+        {
             assert!(matches!(Sites::new(&[wrong], &[]), Err(GridError::Unplaceable { .. })), "{wrong}");
         }
     }

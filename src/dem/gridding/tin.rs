@@ -59,9 +59,8 @@ impl Tin {
     /// The triangles of what `spade` made.
     pub fn of<T: Triangulation<Vertex = Vertex>>(web: &T) -> Self {
         let vertices = web.vertices().map(|vertex| vertex.data().at.extend(vertex.data().z)).collect();
-        let corners = |face: [spade::handles::VertexHandle<'_, Vertex, T::DirectedEdge, T::UndirectedEdge, T::Face>; 3]| {
-            face.map(|vertex| vertex.fix().index() as u32)
-        };
+        let corners = |face: [spade::handles::VertexHandle<'_, Vertex, T::DirectedEdge, T::UndirectedEdge, T::Face>;
+                           3]| { face.map(|vertex| vertex.fix().index() as u32) };
         Self { vertices, triangles: web.inner_faces().map(|face| corners(face.vertices())).collect() }
     }
 
@@ -93,7 +92,8 @@ fn load<T: Triangulation<Vertex = Vertex>>(sites: &Sites) -> Result<T, GridError
     let unplaceable = |_| {
         // Offsets from a whole number are far below spade's limit and either zero or far above its smallest, unless
         // they were given as such.
-        let tiny = sites.at.iter().position(|at| at.abs().cmplt(DVec2::splat(1e-60)).any() && *at != DVec2::ZERO);
+        let tiny =
+            sites.at.iter().position(|at| at.abs().cmplt(DVec2::splat(1e-60)).any() && *at != DVec2::ZERO);
         let index = tiny.unwrap_or(0);
         let at = sites.at[index] + sites.origin;
         GridError::Unplaceable { x: at.x, y: at.y, z: sites.z[index] }

@@ -97,12 +97,24 @@ impl<'a> Found<'a> {
         let wanted = match wanted {
             [] if has_ground => &[GROUND][..],
             [] => {
-                notes.push(format!("no point is classified as ground: all {all} were taken, whatever they hit"));
-                return if all == 0 { Err(PointsError::Empty { why: String::new() }) } else { Ok(self.points) };
+                notes.push(format!(
+                    "no point is classified as ground: all {all} were taken, whatever they hit"
+                ));
+                return if all == 0 {
+                    Err(PointsError::Empty { why: String::new() })
+                } else {
+                    Ok(self.points)
+                };
             }
             wanted => wanted,
         };
-        let taken: Vec<DVec3> = self.points.iter().zip(&self.classes).filter(|(_, class)| wanted.contains(class)).map(|(point, _)| *point).collect();
+        let taken: Vec<DVec3> = self
+            .points
+            .iter()
+            .zip(&self.classes)
+            .filter(|(_, class)| wanted.contains(class))
+            .map(|(point, _)| *point)
+            .collect();
         let named = wanted.iter().map(u8::to_string).collect::<Vec<_>>().join(", ");
         if taken.is_empty() {
             let why = format!(" of class {named}; it has {}", census(&self.classes));
@@ -119,7 +131,8 @@ fn census(classes: &[u8]) -> String {
     for &class in classes {
         *counts.entry(class).or_default() += 1;
     }
-    let words: Vec<String> = counts.iter().map(|(class, count)| format!("{count} of class {class}")).collect();
+    let words: Vec<String> =
+        counts.iter().map(|(class, count)| format!("{count} of class {class}")).collect();
     if words.is_empty() { "none at all".into() } else { words.join(", ") }
 }
 

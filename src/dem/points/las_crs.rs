@@ -62,7 +62,8 @@ fn crs_of(wkt: &str) -> Result<Crs, PointsError> {
 }
 
 fn keys(directory: &[u8], doubles: &[u8]) -> GeoKeys {
-    let directory: Vec<u16> = directory.chunks_exact(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]])).collect();
+    let directory: Vec<u16> =
+        directory.chunks_exact(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]])).collect();
     let double = |eight: &[u8]| eight.try_into().map(f64::from_le_bytes).unwrap_or(f64::NAN);
     let doubles: Vec<f64> = doubles.chunks_exact(8).map(double).collect();
     GeoKeys::new(&directory, &doubles)

@@ -223,5 +223,6 @@ fn vector_at(bytes: &[u8], at: usize) -> Result<DVec3, PointsError> {
 }
 
 fn field<const N: usize>(bytes: &[u8], at: usize) -> Result<[u8; N], PointsError> {
-    bytes_at(bytes, at).ok_or_else(|| broken(format!("it ends after {} bytes, inside its header", bytes.len())))
+    bytes_at(bytes, at)
+        .ok_or_else(|| broken(format!("it ends after {} bytes, inside its header", bytes.len())))
 }

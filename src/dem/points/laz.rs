@@ -112,7 +112,11 @@ impl Items {
         let needed = header.count.div_ceil(u64::from(self.chunk_points.max(1)));
         let variable = VARIABLE.contains(&self.chunk_points);
         if chunks as usize > room || (!variable && u64::from(chunks) < needed) || (variable && chunks == 0) {
-            return Err(broken(format!("it states {chunks} chunks for {} points, in {} bytes", header.count, table - first)));
+            return Err(broken(format!(
+                "it states {chunks} chunks for {} points, in {} bytes",
+                header.count,
+                table - first
+            )));
         }
         if self.layers > 0 { self.check_layers(&bytes[first..table], header.record) } else { Ok(()) }
     }
@@ -128,7 +132,9 @@ impl Items {
                 end = length.map_or(usize::MAX, |length| end.saturating_add(length as usize));
             }
             if end > chunks.len() {
-                return Err(broken(format!("the layers of a chunk at byte {at} of its points run beyond them")));
+                return Err(broken(format!(
+                    "the layers of a chunk at byte {at} of its points run beyond them"
+                )));
             }
             at = end;
         }

@@ -92,7 +92,9 @@ pub enum PointsError {
         reason: String,
     },
     /// A LAS or LAZ file of a kind that is not read.
-    #[error("this {format} file {what}, which is not read; write it again with another program, for example: pdal translate IN OUT.las")]
+    #[error(
+        "this {format} file {what}, which is not read; write it again with another program, for example: pdal translate IN OUT.las"
+    )]
     Unsupported {
         /// `LAS` or `LAZ`.
         format: &'static str,

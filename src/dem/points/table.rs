@@ -11,8 +11,7 @@ use crate::dem::points::{Hints, MOST_POINTS, PointCloud, PointsError};
 
 const X: [&str; 9] = ["x", "lon", "long", "longitude", "lng", "easting", "east", "e", "rechtswert"];
 const Y: [&str; 8] = ["y", "lat", "latitude", "northing", "north", "n", "hochwert", "lati"];
-const Z: [&str; 9] =
-    ["z", "elevation", "elev", "height", "h", "alt", "altitude", "ele", "hoehe"];
+const Z: [&str; 9] = ["z", "elevation", "elev", "height", "h", "alt", "altitude", "ele", "hoehe"];
 
 /// What a line must hold, for messages.
 const WANTED: &str = "numbers x, y, z";
@@ -41,7 +40,9 @@ pub fn read(bytes: &[u8], hints: &Hints) -> Result<PointCloud, PointsError> {
         match point(text, columns) {
             Some(point) if point.z.is_nan() => without_height += 1,
             Some(point) if points.len() as u64 == MOST_POINTS => {
-                return Err(PointsError::TooMany { count: points.len() as u64 + u64::from(point.is_finite()) });
+                return Err(PointsError::TooMany {
+                    count: points.len() as u64 + u64::from(point.is_finite()),
+                });
             }
             Some(point) => points.push(point),
             None => return Err(PointsError::Line { line, found: quote(text), wanted: WANTED }),

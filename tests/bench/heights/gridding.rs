@@ -11,7 +11,8 @@ use sandtable::dem::gridding::{self, Beyond, Method};
 use sandtable::dem::points::PointCloud;
 use sandtable::geom::rect::Rect;
 use spade::{
-    DelaunayTriangulation, FloatTriangulation, HasPosition, LastUsedVertexHintGenerator, Point2, Triangulation,
+    DelaunayTriangulation, FloatTriangulation, HasPosition, LastUsedVertexHintGenerator, Point2,
+    Triangulation,
 };
 
 use crate::rounds::{ROUNDS, interleaved, median, ratio, time_ms};
@@ -39,7 +40,9 @@ pub fn print() {
     let frame = Frame::within(extent, 1.0).expect("a lattice");
     let ours = |method: Method| gridding::grid(&cloud, &frame, method, Beyond::NoData).expect("a grid");
     let by_distance = Method::InverseDistance { k: 12, power: 2.0 };
-    println!("{POINTS} points to {SIDE} x {SIDE} cells; medians of {ROUNDS} rounds, ratio = peer / ours in a round\n");
+    println!(
+        "{POINTS} points to {SIDE} x {SIDE} cells; medians of {ROUNDS} rounds, ratio = peer / ours in a round\n"
+    );
 
     let values = interleaved(
         ROUNDS,
@@ -66,10 +69,19 @@ pub fn print() {
     ];
     for (index, (name, heights)) in rows.iter().enumerate() {
         let peer = name.starts_with("  ");
-        let ratio = if peer { format!("  {:.2}x", ratio(&values[index], &values[index - 1])) } else { String::new() };
-        println!("{name:<28} {:>9.1} ms   RMS error {:.4}{ratio}", median(&values[index]), rms(heights, &field));
+        let ratio =
+            if peer { format!("  {:.2}x", ratio(&values[index], &values[index - 1])) } else { String::new() };
+        println!(
+            "{name:<28} {:>9.1} ms   RMS error {:.4}{ratio}",
+            median(&values[index]),
+            rms(heights, &field)
+        );
     }
-    println!("{:<28} {:>9.1} ms   of spade's two, and of ours by triangles", "Delaunay by spade", median(&values[7]));
+    println!(
+        "{:<28} {:>9.1} ms   of spade's two, and of ours by triangles",
+        "Delaunay by spade",
+        median(&values[7])
+    );
     for (one, other) in [(0, 1), (2, 3)] {
         let (ours, spades) = (&rows[one].1, &rows[other].1);
         println!("{} differs from spade's by at most {:.2e}", rows[one].0, largest_difference(ours, spades));
@@ -110,8 +122,32 @@ fn beside_gdal(points: &[DVec3], ours: &dyn Fn(Method) -> gridding::Gridded, by_
     let gdal = |algorithm: &str| {
         let last = format!("{}", SIDE as f64 - 0.5);
         let size = SIDE.to_string();
-        let arguments = ["-q", "-ot", "Float32", "-of", "GTiff", "-zfield", "z", "-oo", "X_POSSIBLE_NAMES=x", "-oo",
-            "Y_POSSIBLE_NAMES=y", "-outsize", &size, &size, "-txe", "-0.5", &last, "-tye", "-0.5", &last, "-a", algorithm, &table, &out];
+        let arguments = [
+            "-q",
+            "-ot",
+            "Float32",
+            "-of",
+            "GTiff",
+            "-zfield",
+            "z",
+            "-oo",
+            "X_POSSIBLE_NAMES=x",
+            "-oo",
+            "Y_POSSIBLE_NAMES=y",
+            "-outsize",
+            &size,
+            &size,
+            "-txe",
+            "-0.5",
+            &last,
+            "-tye",
+            "-0.5",
+            &last,
+            "-a",
+            algorithm,
+            &table,
+            &out,
+        ];
         time_ms(|| peers::run("gdal_grid", &arguments))
     };
     let values = interleaved(
@@ -128,7 +164,12 @@ fn beside_gdal(points: &[DVec3], ours: &dyn Fn(Method) -> gridding::Gridded, by_
 }
 
 fn row(name: &str, theirs: &[f64], ours: &[f64]) {
-    println!("  {name:<26} {:>9.1} ms  {:.1}x of ours, {:.1} ms beside it", median(theirs), ratio(theirs, ours), median(ours));
+    println!(
+        "  {name:<26} {:>9.1} ms  {:.1}x of ours, {:.1} ms beside it",
+        median(theirs),
+        ratio(theirs, ours),
+        median(ours)
+    );
 }
 
 /// The points as text, written once a run.
@@ -214,5 +255,9 @@ fn rms(heights: &[f64], field: &[f32]) -> f64 {
 }
 
 fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
-    one.iter().zip(other).map(|(one, other)| (one - other).abs()).filter(|gap| !gap.is_nan()).fold(0.0, f64::max)
+    one.iter()
+        .zip(other)
+        .map(|(one, other)| (one - other).abs())
+        .filter(|gap| !gap.is_nan())
+        .fold(0.0, f64::max)
 }
