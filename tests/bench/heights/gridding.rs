@@ -117,37 +117,14 @@ fn beside_gdal(points: &[DVec3], ours: &dyn Fn(Method) -> gridding::Gridded, by_
     if !peers::is_there("gdal_grid") {
         return;
     }
-    let table = table(points);
+    let layer = layer(&table(points));
     let out = peers::folder().join("gridding.tif").display().to_string();
     let gdal = |algorithm: &str| {
         let last = format!("{}", SIDE as f64 - 0.5);
         let size = SIDE.to_string();
-        let arguments = [
-            "-q",
-            "-ot",
-            "Float32",
-            "-of",
-            "GTiff",
-            "-zfield",
-            "z",
-            "-oo",
-            "X_POSSIBLE_NAMES=x",
-            "-oo",
-            "Y_POSSIBLE_NAMES=y",
-            "-outsize",
-            &size,
-            &size,
-            "-txe",
-            "-0.5",
-            &last,
-            "-tye",
-            "-0.5",
-            &last,
-            "-a",
-            algorithm,
-            &table,
-            &out,
-        ];
+        let mut arguments =
+            vec!["-q", "-ot", "Float32", "-zfield", "z", "-l", "gridding", "-outsize", &size, &size];
+        arguments.extend(["-txe", "-0.5", &last, "-tye", "-0.5", &last, "-a", algorithm, &layer, &out]);
         time_ms(|| peers::run("gdal_grid", &arguments))
     };
     let values = interleaved(
@@ -179,6 +156,18 @@ fn table(points: &[DVec3]) -> String {
         text.push_str(&format!("{:.4},{:.4},{:.4}\n", point.x, point.y, point.z));
     }
     let path = peers::folder().join("gridding.csv");
+    std::fs::write(&path, text).expect("the folder can be written");
+    path.display().to_string()
+}
+
+/// What tells GDAL which columns of the table are coordinates.
+fn layer(table: &str) -> String {
+    let text = format!(
+        "<OGRVRTDataSource><OGRVRTLayer name=\"gridding\"><SrcDataSource>{table}</SrcDataSource>\
+         <GeometryType>wkbPoint</GeometryType><GeometryField encoding=\"PointFromColumns\" x=\"x\" y=\"y\"/>\
+         <Field name=\"z\" type=\"Real\"/></OGRVRTLayer></OGRVRTDataSource>"
+    );
+    let path = peers::folder().join("gridding.vrt");
     std::fs::write(&path, text).expect("the folder can be written");
     path.display().to_string()
 }
