@@ -59,9 +59,9 @@ impl Tin {
     /// The triangles of what `spade` made.
     pub fn of<T: Triangulation<Vertex = Vertex>>(web: &T) -> Self {
         let vertices = web.vertices().map(|vertex| vertex.data().at.extend(vertex.data().z)).collect();
-        let corners = |face: [spade::handles::VertexHandle<'_, Vertex, T::DirectedEdge, T::UndirectedEdge, T::Face>;
-                           3]| { face.map(|vertex| vertex.fix().index() as u32) };
-        Self { vertices, triangles: web.inner_faces().map(|face| corners(face.vertices())).collect() }
+        let triangles =
+            web.inner_faces().map(|face| face.vertices().map(|vertex| vertex.fix().index() as u32));
+        Self { vertices, triangles: triangles.collect() }
     }
 
     /// The corners of a triangle.
