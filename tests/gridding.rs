@@ -387,6 +387,59 @@ fn text_of_a_grid_gives_the_grid_back() {
     }
 }
 
+/// Points of a format as the crate that unpacks them packs them, the first of every three of the ground.
+fn packed(format: u8, count: u32) -> Vec<u8> {
+    let mut builder = las::Builder::from((1, 4));
+    builder.point_format = las::point::Format::new(format).expect("a format");
+    builder.point_format.is_compressed = true;
+    let header = builder.into_header().expect("a header");
+    let mut writer = las::Writer::new(std::io::Cursor::new(Vec::new()), header).expect("a writer");
+    for index in 0..count {
+        let class = if index % 3 == 0 { 2 } else { 1 };
+        let point = las::Point {
+            x: f64::from(index % 100),
+            y: f64::from(index / 100),
+            z: f64::from(index % 17),
+            classification: las::point::Classification::new(class).expect("a class"),
+            gps_time: (format > 0).then_some(f64::from(index)),
+            color: (format == 3 || format == 7).then_some(las::Color::new(1, 2, index as u16)),
+            ..las::Point::default()
+        };
+        writer.write_point(point).expect("a point of its format");
+    }
+    writer.close().expect("written");
+    writer.into_inner().expect("the bytes").into_inner()
+}
+
+#[test]
+fn chunks_and_layers_of_all_packings_are_unpacked() {
+    for format in [0, 1, 3, 6, 7] {
+        let count = 120_000;
+        let cloud = read(&packed(format, count), &Hints::default())
+            .unwrap_or_else(|error| panic!("{format}: {error}"));
+        assert_eq!(cloud.points.len(), 40_000, "format {format}");
+        for (index, point) in cloud.points.iter().enumerate().step_by(777) {
+            let index = 3 * index as u32;
+            let wanted = DVec3::new(f64::from(index % 100), f64::from(index / 100), f64::from(index % 17));
+            assert!((*point - wanted).abs().max_element() < 1e-9, "format {format}, point {index}: {point}");
+        }
+    }
+}
+
+#[test]
+fn a_forged_length_of_a_layer_is_refused_before_it_is_allocated() {
+    let mut bytes = packed(6, 1000);
+    let points_at = u32::from_le_bytes([bytes[96], bytes[97], bytes[98], bytes[99]]) as usize;
+    // The offset of the table, the first point, how many points, then the layers' lengths.
+    let lengths = points_at + 8 + 30 + 4;
+    bytes[lengths..lengths + 4].fill(0xff);
+    let refused = read(&bytes, &Hints::default());
+    assert!(
+        matches!(&refused, Err(PointsError::Broken { reason, .. }) if reason.contains("layers")),
+        "{refused:?}"
+    );
+}
+
 fn hostile() -> Vec<PathBuf> {
     data("broken/las_pdal").map(|folder| common_data::files_below(&folder)).unwrap_or_default()
 }
