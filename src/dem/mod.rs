@@ -1,4 +1,5 @@
-//! Elevation rasters: their georeference, one file per format, warping to a metric system.
+//! Elevation rasters: their georeference, one file per format, warping to a metric system; scattered points, and grids
+//! of them.
 
 pub mod archive;
 pub mod ascii;
