@@ -359,6 +359,9 @@ fn summary(cloud: &PointCloud, gridded: &Gridded, method: MethodChoice, out: &Pa
         ("cells with data", format!("{} of {cells}", report.filled)),
         ("coordinates", crs.to_owned()),
     ];
+    if report.filled == 0 {
+        rows.push(("note", "no cell's centre lies between the points: choose a smaller --cell".into()));
+    }
     let crossings = report.crossings;
     if crossings.count > 0 {
         let gap = crossings.largest_gap * raster.metres_per_z;

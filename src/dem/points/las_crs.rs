@@ -9,7 +9,7 @@ use crate::dem::points::las_header::{Header, Record};
 use crate::geom::crs::Crs;
 
 /// Who defined the records of coordinate systems.
-const USER: &[u8] = b"LASF_Projection";
+const OWNER: &[u8] = b"LASF_Projection";
 const KEYS: u16 = 34735;
 const DOUBLES: u16 = 34736;
 const WKT: u16 = 2112;
@@ -29,7 +29,7 @@ pub(super) struct System {
 /// The system that the records state; for x and y `stated` instead, where the caller knows better.
 pub(super) fn read(records: &[Record], header: &Header, stated: Option<&Crs>) -> Result<System, PointsError> {
     let content = |id: u16| {
-        let found = records.iter().find(|record| record.user == USER && record.id == id);
+        let found = records.iter().find(|record| record.owner == OWNER && record.id == id);
         found.map(|record| record.content).filter(|content| !content.is_empty())
     };
     let wkt = content(WKT).map(text).filter(|text| !text.is_empty());

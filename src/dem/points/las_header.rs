@@ -55,8 +55,8 @@ pub(super) struct Header {
 /// A variable length record.
 pub(super) struct Record<'a> {
     /// Who defined it.
-    pub user: &'a [u8],
-    /// Its number among those of the same user.
+    pub owner: &'a [u8],
+    /// Its number among those of the same owner.
     pub id: u16,
     /// The record with its own header.
     pub whole: &'a [u8],
@@ -181,9 +181,9 @@ fn record(bytes: &[u8], at: usize, length: Length) -> Option<Record<'_>> {
     };
     let end = at.checked_add(header)?.checked_add(usize::try_from(length).ok()?)?;
     let whole = bytes.get(at..end)?;
-    let user = &whole[2..18];
-    let user = &user[..user.iter().position(|&byte| byte == 0).unwrap_or(user.len())];
-    Some(Record { user, id: u16::from_le_bytes(bytes_at(whole, 18)?), whole, content: &whole[header..] })
+    let owner = &whole[2..18];
+    let owner = &owner[..owner.iter().position(|&byte| byte == 0).unwrap_or(owner.len())];
+    Some(Record { owner, id: u16::from_le_bytes(bytes_at(whole, 18)?), whole, content: &whole[header..] })
 }
 
 fn version(bytes: &[u8]) -> Result<u8, PointsError> {

@@ -28,7 +28,7 @@ const VARIABLE: [u32; 2] = [0, u32::MAX];
 pub(super) fn unpack(bytes: &[u8], header: &Header, take: &mut dyn FnMut(&[u8])) -> Result<(), PointsError> {
     check_not_empty(header)?;
     let records = header.records(bytes);
-    let is_laszip = |record: &&Record| record.user == b"laszip encoded" && record.id == 22204;
+    let is_laszip = |record: &&Record| record.owner == b"laszip encoded" && record.id == 22204;
     let laszip = records.iter().find(is_laszip).ok_or_else(|| broken("it has no LASzip record"))?;
     let items = Items::read(laszip.content, header)?;
     items.check_chunks(bytes, header)?;
