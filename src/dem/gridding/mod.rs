@@ -12,7 +12,7 @@
 //! in any order and on any number of threads give the same bits. Cells whose centre lies outside the convex hull of
 //! the points hold no data unless it is asked for: there, every method guesses.
 
-mod breaklines;
+pub mod breaklines;
 pub mod frame;
 mod hull;
 mod kd;

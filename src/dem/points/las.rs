@@ -1,7 +1,7 @@
 //! LAS and LAZ: points of laser scanners.
 //!
 //! Uncompressed points are read here: of each record only x, y, z, the class and the flag "withheld" matter, and they
-//! stand at fixed places. Compressed ones are unpacked by the `las` crate (see [`super::laz`]) into the same records.
+//! stand at fixed places. Compressed ones are unpacked by the `las` crate into the same records.
 //!
 //! A scanner's points are of all that it met. Without a choice of classes the ground's (class 2) are taken where there
 //! are any; a file that nobody has classified gives all its points, roofs and treetops among them, and says so.
