@@ -4,6 +4,8 @@ mod common;
 
 #[path = "cli/convert.rs"]
 mod convert;
+#[path = "cli/grid.rs"]
+mod grid;
 #[path = "cli/heights.rs"]
 mod heights;
 #[path = "cli/info.rs"]

@@ -1,4 +1,5 @@
-//! Elevation rasters: their georeference, one file per format, warping to a metric system.
+//! Elevation rasters: their georeference, one file per format, warping to a metric system; scattered points, and grids
+//! of them.
 
 pub mod archive;
 pub mod ascii;
@@ -11,10 +12,12 @@ pub mod gdal_metadata;
 pub mod geokeys;
 pub mod georef;
 pub mod geotiff;
+pub mod gridding;
 pub mod hgt;
 pub mod mosaic;
 pub mod plain;
 pub mod png;
+pub mod points;
 pub mod raster;
 pub mod raw;
 pub mod read;

@@ -8,6 +8,8 @@
 #[allow(dead_code, reason = "each bench uses its own part")]
 #[path = "common/fields.rs"]
 mod fields;
+#[path = "heights/gridding.rs"]
+mod gridding;
 #[allow(dead_code, reason = "each bench uses its own part")]
 #[path = "common/peers.rs"]
 mod peers;
@@ -31,7 +33,7 @@ mod viewshed;
 /// A section's name and what prints it.
 type Section = (&'static str, fn());
 
-const SECTIONS: &[Section] = &[("service", service::print), ("reading", reading::print), ("queries", queries::print), ("rays", rays::print), ("viewshed", viewshed::print), ("hillshade", hillshade::print)];
+const SECTIONS: &[Section] = &[("service", service::print), ("reading", reading::print), ("queries", queries::print), ("rays", rays::print), ("viewshed", viewshed::print), ("hillshade", hillshade::print), ("gridding", gridding::print)];
 
 fn main() {
     rounds::sections(SECTIONS);

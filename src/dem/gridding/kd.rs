@@ -1,0 +1,361 @@
+//! The sites nearest to a place: a k-d tree (Bentley 1975) over halves, searched by the offsets to its planes (Arya
+//! and Mount 1993).
+//!
+//! A grid of buckets is as fast where points lie evenly. Surveys do not: a bucket sized for the mean holds half the
+//! points of a dense patch, and a lake is a desert of empty ones. The tree's leaves follow the points, and a search
+//! costs about the same everywhere.
+//!
+//! Each level halves its sites at their median along the longer side, so that ranges need no storage: a subtree is a
+//! range of `at` and its planes a range of `planes`, its own first, the left half's next, then the right half's.
+
+use std::cmp::Ordering;
+
+use glam::DVec2;
+
+/// Sites in a leaf at most: below some eight, walking the tree costs more than looking at all of a leaf.
+const LEAF: usize = 8;
+
+/// Subtrees of more sites are built by two threads.
+const PARALLEL: usize = 16_384;
+
+/// A line that parts a subtree: no site of its left half lies above it, none of its right half below.
+#[derive(Clone, Copy, Debug, Default)]
+struct Plane {
+    axis: usize,
+    at: f64,
+}
+
+/// Sites in the order of a tree.
+pub(super) struct KdTree {
+    at: Vec<DVec2>,
+    sites: Vec<u32>,
+    planes: Vec<Plane>,
+    depth: u32,
+}
+
+/// A site and its squared distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Near {
+    /// From the place that was asked about.
+    pub distance2: f64,
+    /// The site.
+    pub site: u32,
+}
+
+impl Near {
+    /// Nearer first; of two equally far the one that comes first among the sites.
+    fn order(&self, other: &Self) -> Ordering {
+        self.distance2.total_cmp(&other.distance2).then(self.site.cmp(&other.site))
+    }
+}
+
+/// How many sites more than wanted are gathered before the farthest are thrown out. Keeping them sorted all the time
+/// costs more than the search; a search that starts with a good bound never throws any out before its end.
+const SPARE: usize = 32;
+
+/// The sites that a search finds.
+pub(super) struct Found {
+    near: Vec<Near>,
+    wanted: usize,
+    /// Nothing farther is wanted.
+    limit2: f64,
+}
+
+impl Found {
+    /// For searches of the `wanted` nearest, at least 1.
+    pub fn new(wanted: usize) -> Self {
+        Self { near: Vec::new(), wanted, limit2: 0.0 }
+    }
+
+    /// What the last search found, nearest first.
+    pub fn near(&self) -> &[Near] {
+        &self.near
+    }
+
+    /// Searches a list of sites instead of a tree; `limit2` as for [`KdTree::nearest_k`].
+    pub fn choose(&mut self, q: DVec2, limit2: f64, candidates: &[(DVec2, u32)]) {
+        self.near.clear();
+        self.limit2 = limit2;
+        for &(at, site) in candidates {
+            let distance2 = (at - q).length_squared();
+            if distance2 <= self.limit2 {
+                self.take(Near { distance2, site });
+            }
+        }
+        self.finish();
+    }
+
+    fn take(&mut self, near: Near) {
+        self.near.push(near);
+        if self.near.len() == self.wanted + SPARE {
+            let (_, last, _) = self.near.select_nth_unstable_by(self.wanted - 1, Near::order);
+            self.limit2 = last.distance2;
+            self.near.truncate(self.wanted);
+        }
+    }
+
+    fn finish(&mut self) {
+        self.near.sort_unstable_by(Near::order);
+        self.near.truncate(self.wanted);
+    }
+}
+
+/// The nearest site of each quadrant: south-west, south-east, north-west, north-east. A site due east counts as
+/// north-east, one due north as north-east, one due west as north-west and one due south as south-east.
+pub(super) type Quadrants = [Option<(f64, u32)>; 4];
+
+/// Part of the tree while it is searched.
+#[derive(Clone, Copy)]
+struct Subtree {
+    start: usize,
+    end: usize,
+    plane: usize,
+    depth: u32,
+}
+
+impl Subtree {
+    fn halves(self) -> [Self; 2] {
+        let middle = middle(self.start, self.end);
+        let depth = self.depth - 1;
+        let left = Self { end: middle, plane: self.plane + 1, depth, ..self };
+        let right = Self { start: middle, plane: self.plane + (1 << depth), depth, ..self };
+        [left, right]
+    }
+}
+
+fn middle(start: usize, end: usize) -> usize {
+    start + (end - start) / 2
+}
+
+impl KdTree {
+    /// The tree of positions, which are sites by their index.
+    pub fn new(at: &[DVec2]) -> Self {
+        let depth = at.len().div_ceil(LEAF).next_power_of_two().ilog2();
+        let mut order: Vec<(DVec2, u32)> = at.iter().zip(0..).map(|(&at, site)| (at, site)).collect();
+        let mut planes = vec![Plane::default(); (1 << depth) - 1];
+        build(&mut order, &mut planes);
+        let (at, sites) = order.into_iter().unzip();
+        Self { at, sites, planes, depth }
+    }
+
+    fn root(&self) -> Subtree {
+        Subtree { start: 0, end: self.at.len(), plane: 0, depth: self.depth }
+    }
+
+    /// The site nearest to `q`; `None` where there is none at all.
+    pub fn nearest(&self, q: DVec2) -> Option<u32> {
+        let mut found = Found::new(1);
+        self.nearest_k(q, f64::INFINITY, &mut found);
+        found.near.first().map(|near| near.site)
+    }
+
+    /// Puts the sites nearest to `q` into `found`, as many as it wants and there are.
+    ///
+    /// `limit2` is a squared distance inside which, or at which, so many are known to lie; infinite where nothing is
+    /// known.
+    pub fn nearest_k(&self, q: DVec2, limit2: f64, found: &mut Found) {
+        found.near.clear();
+        found.limit2 = limit2;
+        self.visit(self.root(), q, DVec2::ZERO, found);
+        found.finish();
+    }
+
+    /// `offset` is how far the subtree's box is from `q` along each axis, as far as the planes above tell.
+    fn visit(&self, part: Subtree, q: DVec2, offset: DVec2, found: &mut Found) {
+        if part.depth == 0 {
+            for (at, &site) in self.at[part.start..part.end].iter().zip(&self.sites[part.start..part.end]) {
+                let distance2 = (*at - q).length_squared();
+                if distance2 <= found.limit2 {
+                    found.take(Near { distance2, site });
+                }
+            }
+            return;
+        }
+        let plane = self.planes[part.plane];
+        let to_plane = q[plane.axis] - plane.at;
+        let [left, right] = part.halves();
+        let (near, far) = if to_plane < 0.0 { (left, right) } else { (right, left) };
+        self.visit(near, q, offset, found);
+        let mut offset = offset;
+        offset[plane.axis] = to_plane;
+        // Rounding only ever lowers it: each step is rounded as a site's own distance is, from a smaller number.
+        if offset.length_squared() <= found.limit2 {
+            self.visit(far, q, offset, found);
+        }
+    }
+
+    /// Puts all sites at most as far from `q` as the root of `limit2` into `gathered`, or more than `most`.
+    pub fn gather(&self, q: DVec2, limit2: f64, most: usize, gathered: &mut Vec<(DVec2, u32)>) {
+        gathered.clear();
+        self.visit_all(self.root(), q, DVec2::ZERO, (limit2, most), gathered);
+    }
+
+    fn visit_all(
+        &self,
+        part: Subtree,
+        q: DVec2,
+        offset: DVec2,
+        (limit2, most): (f64, usize),
+        gathered: &mut Vec<(DVec2, u32)>,
+    ) {
+        if part.depth == 0 {
+            let sites = self.at[part.start..part.end].iter().zip(&self.sites[part.start..part.end]);
+            let near = sites.filter(|(at, _)| (**at - q).length_squared() <= limit2);
+            gathered.extend(near.map(|(&at, &site)| (at, site)));
+            return;
+        }
+        let plane = self.planes[part.plane];
+        let to_plane = q[plane.axis] - plane.at;
+        let [left, right] = part.halves();
+        let (near, far) = if to_plane < 0.0 { (left, right) } else { (right, left) };
+        self.visit_all(near, q, offset, (limit2, most), gathered);
+        let mut offset = offset;
+        offset[plane.axis] = to_plane;
+        if offset.length_squared() <= limit2 && gathered.len() <= most {
+            self.visit_all(far, q, offset, (limit2, most), gathered);
+        }
+    }
+
+    /// The nearest site of each quadrant around `q`.
+    pub fn quadrants(&self, q: DVec2) -> Quadrants {
+        let mut found = [None; 4];
+        self.visit_quadrants(self.root(), q, DVec2::ZERO, [true; 4], &mut found);
+        found
+    }
+
+    /// `open` are the quadrants that the subtree may have sites in.
+    fn visit_quadrants(
+        &self,
+        part: Subtree,
+        q: DVec2,
+        offset: DVec2,
+        open: [bool; 4],
+        found: &mut Quadrants,
+    ) {
+        if part.depth == 0 {
+            for (at, &site) in self.at[part.start..part.end].iter().zip(&self.sites[part.start..part.end]) {
+                let quadrant = usize::from(at.x >= q.x) + 2 * usize::from(at.y >= q.y);
+                let candidate = ((*at - q).length_squared(), site);
+                let nearest = &mut found[quadrant];
+                let nearer = |best: (f64, u32)| {
+                    candidate.0 < best.0 || (candidate.0 == best.0 && candidate.1 < best.1)
+                };
+                if nearest.is_none_or(nearer) {
+                    *nearest = Some(candidate);
+                }
+            }
+            return;
+        }
+        let plane = self.planes[part.plane];
+        let to_plane = q[plane.axis] - plane.at;
+        let [left, right] = part.halves();
+        let (near, far) = if to_plane < 0.0 { (left, right) } else { (right, left) };
+        self.visit_quadrants(near, q, offset, open, found);
+        let mut offset = offset;
+        offset[plane.axis] = to_plane;
+        let mut open = open;
+        for (quadrant, open) in open.iter_mut().enumerate() {
+            let above = quadrant >> plane.axis & 1 == 1;
+            *open &= if to_plane < 0.0 { above } else { !above || to_plane == 0.0 };
+        }
+        let distance2 = offset.length_squared();
+        let mut wanted = open.iter().zip(found.iter());
+        if wanted.any(|(&open, found)| open && found.is_none_or(|(nearest2, _)| distance2 <= nearest2)) {
+            self.visit_quadrants(far, q, offset, open, found);
+        }
+    }
+}
+
+fn build(order: &mut [(DVec2, u32)], planes: &mut [Plane]) {
+    let Some((plane, below)) = planes.split_first_mut() else { return };
+    let (low, high) = order
+        .iter()
+        .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (at, _)| (low.min(*at), high.max(*at)));
+    let axis = usize::from(high.y - low.y > high.x - low.x);
+    let middle = middle(0, order.len());
+    let (left_planes, right_planes) = below.split_at_mut(below.len() / 2);
+    if middle == 0 {
+        // No site left of the plane; it stands at the only one there is, or nowhere.
+        *plane = Plane { axis, at: order.first().map_or(0.0, |(at, _)| at[axis]) };
+    } else {
+        let by_axis =
+            |a: &(DVec2, u32), b: &(DVec2, u32)| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1));
+        let (_, (at, _), _) = order.select_nth_unstable_by(middle, by_axis);
+        *plane = Plane { axis, at: at[axis] };
+    }
+    let (left, right) = order.split_at_mut(middle);
+    if left.len() > PARALLEL {
+        rayon::join(|| build(left, left_planes), || build(right, right_planes));
+    } else {
+        build(left, left_planes);
+        build(right, right_planes);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Places on a coarse lattice, so that many are equally far.
+    fn places(count: u32, seed: u32) -> Vec<DVec2> {
+        let mut state = seed;
+        let mut next = move || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 24 & 31)
+        };
+        (0..count).map(|_| DVec2::new(next(), next())).collect()
+    }
+
+    fn sorted(at: &[DVec2], q: DVec2) -> Vec<(f64, u32)> {
+        let mut all: Vec<(f64, u32)> =
+            at.iter().zip(0..).map(|(at, site)| ((*at - q).length_squared(), site)).collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        all
+    }
+
+    #[test]
+    fn the_nearest_are_those_of_a_full_search_in_the_same_order() {
+        for count in [0, 1, 2, 7, 9, 100, 777] {
+            let at = places(count, count + 5);
+            let tree = KdTree::new(&at);
+            let mut found = Found::new(12);
+            for q in places(40, 99).into_iter().map(|q| q * 1.1 - 1.0) {
+                tree.nearest_k(q, f64::INFINITY, &mut found);
+                let all = sorted(&at, q);
+                let near: Vec<(f64, u32)> =
+                    found.near().iter().map(|near| (near.distance2, near.site)).collect();
+                assert_eq!(near, all[..all.len().min(12)], "{count} places, {q}");
+                assert_eq!(tree.nearest(q), all.first().map(|(_, site)| *site));
+            }
+        }
+    }
+
+    #[test]
+    fn a_known_distance_changes_nothing() {
+        let at = places(500, 3);
+        let tree = KdTree::new(&at);
+        let (mut free, mut bounded) = (Found::new(5), Found::new(5));
+        for q in places(40, 12) {
+            tree.nearest_k(q, f64::INFINITY, &mut free);
+            tree.nearest_k(q, free.near()[4].distance2, &mut bounded);
+            assert_eq!(free.near(), bounded.near());
+        }
+    }
+
+    #[test]
+    fn quadrants_are_those_of_a_full_search() {
+        for count in [0, 1, 30, 600] {
+            let at = places(count, 41);
+            let tree = KdTree::new(&at);
+            for q in places(60, 8) {
+                let mut wanted = [None; 4];
+                for (distance2, site) in sorted(&at, q) {
+                    let place = at[site as usize];
+                    let quadrant = usize::from(place.x >= q.x) + 2 * usize::from(place.y >= q.y);
+                    wanted[quadrant] = wanted[quadrant].or(Some((distance2, site)));
+                }
+                assert_eq!(tree.quadrants(q), wanted, "{count} places, {q}");
+            }
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! Triangles to heights of cells, row by row: where a row of cell centres enters and leaves a triangle, x and z are
+//! taken along its edges, and between the two z runs straight.
+//!
+//! ```text
+//!            c             at row y:  x and z on edge ac (left), x and z on edge bc (right)
+//!           ╱ ╲
+//!   row ───L───R───        every centre from L to R:  z = zL + (x − xL) · (zR − zL) / (xR − xL)
+//!         ╱     ╲
+//!        a ───── b
+//! ```
+//!
+//! An edge is always taken from its lower end to its upper one, so that both its triangles get the very same crossing:
+//! no centre falls between them. Heights are means of the corners at every step and stay in their range, however thin
+//! the triangle is; a plane's gradient, the usual way, is boundless there.
+
+use std::ops::Range;
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use crate::dem::gridding::frame::Frame;
+use crate::dem::gridding::tin::Tin;
+
+/// Rows a task: enough that few triangles lie in two, few enough that all cores stay busy to the end.
+const BAND_ROWS: usize = 16;
+
+/// Where cells' centres lie, from the sites' origin.
+pub(super) struct Positions {
+    /// Of columns, rising.
+    pub x: Vec<f64>,
+    /// Of rows, falling.
+    pub y: Vec<f64>,
+    per_cell: f64,
+}
+
+impl Positions {
+    /// The centres of a frame's cells.
+    pub fn new(frame: &Frame, origin: DVec2) -> Self {
+        let corner = frame.corner() - origin;
+        let cell = frame.cell();
+        let x = (0..frame.width()).map(|column| corner.x + (f64::from(column) + 0.5) * cell);
+        let y = (0..frame.height()).map(|row| corner.y - (f64::from(row) + 0.5) * cell);
+        Self { x: x.collect(), y: y.collect(), per_cell: cell.recip() }
+    }
+
+    /// How many cells there are.
+    pub fn len(&self) -> usize {
+        self.x.len() * self.y.len()
+    }
+
+    /// The columns whose centres lie from `low` to `high`, both included.
+    pub fn columns_between(&self, low: f64, high: f64) -> Range<usize> {
+        // The division only guesses; the comparison with the centres themselves decides.
+        let mut first = (((low - self.x[0]) * self.per_cell) as usize).min(self.x.len());
+        while first > 0 && self.x[first - 1] >= low {
+            first -= 1;
+        }
+        while first < self.x.len() && self.x[first] < low {
+            first += 1;
+        }
+        let mut end =
+            ((((high - self.x[0]) * self.per_cell) as usize).saturating_add(1)).clamp(first, self.x.len());
+        while end > first && self.x[end - 1] > high {
+            end -= 1;
+        }
+        while end < self.x.len() && self.x[end] <= high {
+            end += 1;
+        }
+        first..end
+    }
+
+    /// The rows whose centres lie from `low` to `high`, both included.
+    pub fn rows_between(&self, low: f64, high: f64) -> Range<usize> {
+        let mut first = (((self.y[0] - high) * self.per_cell) as usize).min(self.y.len());
+        while first > 0 && self.y[first - 1] <= high {
+            first -= 1;
+        }
+        while first < self.y.len() && self.y[first] > high {
+            first += 1;
+        }
+        let mut end =
+            ((((self.y[0] - low) * self.per_cell) as usize).saturating_add(1)).clamp(first, self.y.len());
+        while end > first && self.y[end - 1] < low {
+            end -= 1;
+        }
+        while end < self.y.len() && self.y[end] >= low {
+            end += 1;
+        }
+        first..end
+    }
+}
+
+/// The x of a side at height `y`, which lies between its ends: twice the same, or both ends of a level side.
+pub(super) fn crossing(from: DVec2, to: DVec2, y: f64) -> (f64, f64) {
+    let (low, high) = if from.y <= to.y { (from, to) } else { (to, from) };
+    if low.y == high.y {
+        return (low.x.min(high.x), low.x.max(high.x));
+    }
+    let x = cut(low.extend(0.0), high.extend(0.0), y).0;
+    (x, x)
+}
+
+/// The x and z of an edge from its lower to its upper end at height `y`; at an end exactly the end's.
+fn cut(low: DVec3, high: DVec3, y: f64) -> (f64, f64) {
+    if y == high.y {
+        return (high.x, high.z);
+    }
+    let part = (y - low.y) / (high.y - low.y);
+    (low.x + part * (high.x - low.x), low.z + part * (high.z - low.z))
+}
+
+/// Gives every cell whose centre lies in a triangle the triangle's height there; other cells are left as they are.
+///
+/// A centre on an edge takes the height of the later of its triangles, which is the same but for rounding.
+pub(super) fn fill(tin: &Tin, cells: &Positions, out: &mut [f64]) {
+    let width = cells.x.len();
+    let bands = bands(tin, cells);
+    out.par_chunks_mut(BAND_ROWS * width).zip(bands.par_iter()).enumerate().for_each(
+        |(band, (out, triangles))| {
+            let rows = band * BAND_ROWS..(band + 1) * BAND_ROWS;
+            for &triangle in triangles {
+                fill_triangle(tin.corners(triangle as usize), cells, &rows, out);
+            }
+        },
+    );
+}
+
+/// The triangles that meet each band of rows, in their order.
+fn bands(tin: &Tin, cells: &Positions) -> Vec<Vec<u32>> {
+    let count = cells.y.len().div_ceil(BAND_ROWS);
+    let mut bands = vec![Vec::with_capacity(tin.triangles.len() / count + 1); count];
+    for index in 0..tin.triangles.len() {
+        let [a, b, c] = tin.corners(index).map(|corner| corner.y);
+        let rows = cells.rows_between(a.min(b).min(c), a.max(b).max(c));
+        if !rows.is_empty() {
+            for band in &mut bands[rows.start / BAND_ROWS..=(rows.end - 1) / BAND_ROWS] {
+                band.push(index as u32);
+            }
+        }
+    }
+    bands
+}
+
+fn fill_triangle(corners: [DVec3; 3], cells: &Positions, band: &Range<usize>, out: &mut [f64]) {
+    let [mut low, mut middle, mut high] = corners;
+    if middle.y < low.y {
+        std::mem::swap(&mut low, &mut middle);
+    }
+    if high.y < middle.y {
+        std::mem::swap(&mut middle, &mut high);
+    }
+    if middle.y < low.y {
+        std::mem::swap(&mut low, &mut middle);
+    }
+    let rows = cells.rows_between(low.y, high.y);
+    for row in rows.start.max(band.start)..rows.end.min(band.end) {
+        let y = cells.y[row];
+        let (long, short) = if low.y == high.y {
+            // No area, but its row must not be left out: it is some neighbour's border.
+            ((low.x, low.z), (high.x, high.z))
+        } else if y < middle.y || middle.y == high.y {
+            (cut(low, high, y), if low.y == middle.y { (middle.x, middle.z) } else { cut(low, middle, y) })
+        } else {
+            (cut(low, high, y), cut(middle, high, y))
+        };
+        let (left, right) = if long.0 <= short.0 { (long, short) } else { (short, long) };
+        let columns = cells.columns_between(left.0, right.0);
+        let slope = if right.0 > left.0 { (right.1 - left.1) / (right.0 - left.0) } else { 0.0 };
+        let start = (row - band.start) * cells.x.len();
+        let out = &mut out[start + columns.start..start + columns.end];
+        for (height, &x) in out.iter_mut().zip(&cells.x[columns]) {
+            *height = left.1 + (x - left.0) * slope;
+        }
+    }
+}

@@ -1,0 +1,239 @@
+//! Grids of scattered points: the ground between points that were measured, at the centre of every cell.
+//!
+//! ```text
+//!   PointCloud ──► sites ──────────────┬──► hull ──► which cells lie between the points
+//!   (any order,    (sorted, one per    │
+//!    doubles)       position)          ├──► tin ──► linear   planes between three sites (breaklines hold)
+//!                                      │      └───► natural  Sibson's natural neighbours
+//!                                      └──► kd ───► weighted inverse distance, quadrants, nearest
+//! ```
+//!
+//! Everything is computed from the sites in sorted order and cell by cell from a fixed start, so that the same points
+//! in any order and on any number of threads give the same bits. Cells whose centre lies outside the convex hull of
+//! the points hold no data unless it is asked for: there, every method guesses.
+
+pub mod breaklines;
+pub mod frame;
+mod hull;
+mod kd;
+mod linear;
+mod natural;
+mod sites;
+mod tin;
+mod weighted;
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use crate::dem::gridding::breaklines::Crossings;
+use crate::dem::gridding::frame::{Frame, FrameError};
+use crate::dem::gridding::hull::Hull;
+use crate::dem::gridding::kd::KdTree;
+use crate::dem::gridding::linear::Positions;
+use crate::dem::gridding::natural::Naturals;
+use crate::dem::gridding::sites::Sites;
+use crate::dem::gridding::tin::Tin;
+use crate::dem::gridding::weighted::Weighted;
+use crate::dem::points::PointCloud;
+use crate::dem::raster::{Raster, Samples};
+
+/// How the height at a cell's centre comes from the points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Method {
+    /// On the plane through the corners of the Delaunay triangle around it, breaklines kept as edges of triangles.
+    /// Continuous, with creases at the edges; reproduces planes.
+    Tin,
+    /// Sibson's natural neighbours (Sibson 1981): each neighbour weighs as the share of the cell's Voronoi region that
+    /// it would lose to a site there. Continuous, and smooth except at the points; reproduces planes.
+    Natural,
+    /// The mean of the nearest points, each weighing as its distance to the power of −`power` (Shepard 1968).
+    /// Discontinuous where the set of nearest points changes.
+    InverseDistance {
+        /// How many points; at least 1.
+        k: u32,
+        /// The power; above 0.
+        power: f64,
+    },
+    /// The mean of the four points around, weighted by distance, as the DTM paper reads a grid from its samples: the
+    /// nearest point of each quadrant, weighing as its distance to the power of −`power`. It draws on all sides also
+    /// where points lie along lines, as contours and cross-sections do. Quadrants without points are left out.
+    Quadrant {
+        /// The power; above 0.
+        power: f64,
+    },
+    /// The nearest point's.
+    Nearest,
+}
+
+/// What a cell outside the convex hull of the points holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Beyond {
+    /// No data.
+    #[default]
+    NoData,
+    /// The height of the nearest point.
+    Nearest,
+}
+
+/// A grid of points, and how it came about.
+#[derive(Clone, Debug)]
+pub struct Gridded {
+    /// The grid, in 64 bits and the points' vertical unit.
+    pub raster: Raster,
+    /// Counts.
+    pub report: Report,
+}
+
+/// What a grid was made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Report {
+    /// Points as given, vertices of breaklines not among them.
+    pub points: usize,
+    /// Points and vertices of breaklines that shared their x and y with an earlier one; each position took the mean
+    /// of its heights.
+    pub duplicates: usize,
+    /// Breaklines.
+    pub breaklines: usize,
+    /// Where breaklines crossed each other away from their vertices, and by how much they disagreed there.
+    pub crossings: Crossings,
+    /// Cells that hold a height.
+    pub filled: usize,
+}
+
+/// Why no grid was made.
+#[derive(Debug, thiserror::Error)]
+pub enum GridError {
+    /// The lattice of cells cannot be had.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// A parameter of the method out of range.
+    #[error("{what} is {value}; it must be {wanted}")]
+    Parameter {
+        /// Which.
+        what: &'static str,
+        /// What it was.
+        value: f64,
+        /// What it must be.
+        wanted: &'static str,
+    },
+    /// A point or a vertex of a breakline that has no place.
+    #[error("a point at {x}, {y} with the height {z} has no place: all three must be finite and below 1e60")]
+    Unplaceable {
+        /// Its x.
+        x: f64,
+        /// Its y.
+        y: f64,
+        /// Its height.
+        z: f64,
+    },
+    /// Nothing lies between the points.
+    #[error(
+        "all {sites} positions lie on one line: no cell lies between them; give more points, or grid by distance (idw, quadrant or nearest) with the nearest point's height beyond the hull"
+    )]
+    Collinear {
+        /// Different positions.
+        sites: usize,
+    },
+}
+
+/// Makes a grid of a cloud.
+///
+/// The heights of a [`Raster`] of the same size and place as `frame`, NaN where there is no data; the cloud's system,
+/// unit and datum go with it. Breaklines are edges of triangles for [`Method::Tin`]; the other methods know no edges
+/// and take points along them, at most half a cell apart.
+///
+/// # Errors
+/// [`GridError`]: a point that is not finite, points that all lie on one line, a parameter out of range.
+pub fn grid(cloud: &PointCloud, frame: &Frame, method: Method, beyond: Beyond) -> Result<Gridded, GridError> {
+    check(method)?;
+    let (heights, mut report) = heights(cloud, frame, method, beyond)?;
+    report.filled = heights.iter().filter(|height| !height.is_nan()).count();
+    let raster = Raster {
+        driver: "grid",
+        width: frame.width(),
+        height: frame.height(),
+        samples: Samples::F64(heights),
+        metres_per_z: cloud.metres_per_z,
+        map_from_grid: frame.map_from_grid(),
+        georeferenced: true,
+        crs: cloud.crs.clone(),
+        nodata: None,
+        vertical_datum: cloud.vertical_datum.clone(),
+    };
+    Ok(Gridded { raster, report })
+}
+
+fn check(method: Method) -> Result<(), GridError> {
+    let power = match method {
+        Method::InverseDistance { k: 0, .. } => {
+            return Err(GridError::Parameter { what: "k", value: 0.0, wanted: "at least 1" });
+        }
+        Method::InverseDistance { power, .. } | Method::Quadrant { power } => power,
+        Method::Tin | Method::Natural | Method::Nearest => return Ok(()),
+    };
+    if power > 0.0 && power.is_finite() {
+        return Ok(());
+    }
+    Err(GridError::Parameter { what: "power", value: power, wanted: "a number above 0" })
+}
+
+fn heights(
+    cloud: &PointCloud,
+    frame: &Frame,
+    method: Method,
+    beyond: Beyond,
+) -> Result<(Vec<f64>, Report), GridError> {
+    let along: Vec<DVec3> = match method {
+        Method::Tin => cloud.breaklines.iter().flatten().copied().collect(),
+        _ => cloud
+            .breaklines
+            .iter()
+            .flat_map(|line| breaklines::points_along(line, frame.cell() * 0.5))
+            .collect(),
+    };
+    let sites = Sites::new(&cloud.points, &along)?;
+    let mut report = Report {
+        points: cloud.points.len(),
+        duplicates: sites.duplicates,
+        breaklines: cloud.breaklines.len(),
+        ..Report::default()
+    };
+    let cells = Positions::new(frame, sites.origin);
+    let mut out = vec![f64::NAN; cells.len()];
+    match method {
+        Method::Tin => {
+            let (tin, crossings) = Tin::new(&sites, &cloud.breaklines)?;
+            report.crossings = crossings;
+            linear::fill(&tin, &cells, &mut out);
+        }
+        Method::Natural => {
+            let naturals = Naturals::new(&sites)?;
+            naturals.fill(&Hull::new(&sites), &cells, &mut out);
+        }
+        Method::InverseDistance { .. } | Method::Quadrant { .. } | Method::Nearest => {
+            let hull = Hull::new(&sites);
+            if hull.is_flat() && beyond == Beyond::NoData {
+                return Err(GridError::Collinear { sites: sites.len() });
+            }
+            Weighted::new(&sites, method).fill(&hull, &cells, &mut out);
+        }
+    }
+    if beyond == Beyond::Nearest {
+        fill_with_nearest(&sites, &cells, &mut out);
+    }
+    Ok((out, report))
+}
+
+/// Gives every cell without data the height of the nearest site.
+fn fill_with_nearest(sites: &Sites, cells: &Positions, out: &mut [f64]) {
+    if !out.iter().any(|height| height.is_nan()) {
+        return;
+    }
+    let tree = KdTree::new(&sites.at);
+    out.par_chunks_mut(cells.x.len()).zip(&cells.y).for_each(|(row, &y)| {
+        for (height, &x) in row.iter_mut().zip(&cells.x).filter(|(height, _)| height.is_nan()) {
+            let nearest = tree.nearest(DVec2::new(x, y));
+            *height = nearest.map_or(f64::NAN, |site| sites.z[site as usize]);
+        }
+    });
+}

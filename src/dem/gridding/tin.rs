@@ -1,0 +1,117 @@
+//! The Delaunay triangulation of the sites (`spade`), as flat lists.
+//!
+//! `spade` triangulates with exact predicates, which no grid of survey points (all on circles with their neighbours)
+//! confuses. What it makes is a web of half-edges; the methods read triangles by the hundred thousand, so corners and
+//! neighbours are copied into lists once.
+
+use glam::{DVec2, DVec3};
+use spade::handles::FixedVertexHandle;
+use spade::{ConstrainedDelaunayTriangulation, DelaunayTriangulation, HasPosition, Point2, Triangulation};
+
+use crate::dem::gridding::GridError;
+use crate::dem::gridding::breaklines::{self, Crossings};
+use crate::dem::gridding::sites::Sites;
+
+/// In place of a triangle's neighbour: beyond the hull.
+pub(super) const OUTSIDE: u32 = u32::MAX;
+
+/// A site as `spade` holds it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Vertex {
+    /// From the sites' origin.
+    pub at: DVec2,
+    /// Its height.
+    pub z: f64,
+    /// Its place among the sites; `None` for one that was made where breaklines cross.
+    pub site: Option<u32>,
+}
+
+impl HasPosition for Vertex {
+    type Scalar = f64;
+
+    fn position(&self) -> Point2<f64> {
+        Point2::new(self.at.x, self.at.y)
+    }
+}
+
+/// A triangulation that keeps edges.
+pub(super) type Constrained = ConstrainedDelaunayTriangulation<Vertex>;
+
+/// Triangles over vertices.
+pub(super) struct Tin {
+    /// Position (from the sites' origin) and height of every vertex.
+    pub vertices: Vec<DVec3>,
+    /// The corners of every triangle, counter-clockwise.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Tin {
+    /// The triangulation of the sites in which the breaklines, whose vertices are among the sites, are edges.
+    pub fn new(sites: &Sites, lines: &[Vec<DVec3>]) -> Result<(Self, Crossings), GridError> {
+        if lines.is_empty() {
+            return Ok((Self::of(&delaunay(sites)?), Crossings::default()));
+        }
+        let mut constrained: Constrained = load(sites)?;
+        let crossings = breaklines::constrain(&mut constrained, sites, lines);
+        Ok((Self::of(&constrained), crossings))
+    }
+
+    /// The triangles of what `spade` made.
+    pub fn of<T: Triangulation<Vertex = Vertex>>(web: &T) -> Self {
+        let vertices = web.vertices().map(|vertex| vertex.data().at.extend(vertex.data().z)).collect();
+        let triangles =
+            web.inner_faces().map(|face| face.vertices().map(|vertex| vertex.fix().index() as u32));
+        Self { vertices, triangles: triangles.collect() }
+    }
+
+    /// The corners of a triangle.
+    pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|vertex| self.vertices[vertex as usize])
+    }
+}
+
+/// The neighbours of every triangle, in the order of [`Tin::of`]: for each side from corner i to corner i + 1 the
+/// triangle beyond, or [`OUTSIDE`].
+pub(super) fn neighbours(web: &DelaunayTriangulation<Vertex>) -> Vec<[u32; 3]> {
+    // Face 0 is what lies beyond the hull; the inner faces follow.
+    let beyond = |index: usize| index.checked_sub(1).map_or(OUTSIDE, |index| index as u32);
+    web.inner_faces()
+        .map(|face| face.adjacent_edges().map(|edge| beyond(edge.rev().face().fix().index())))
+        .collect()
+}
+
+/// The Delaunay triangulation of the sites.
+pub(super) fn delaunay(sites: &Sites) -> Result<DelaunayTriangulation<Vertex>, GridError> {
+    load(sites)
+}
+
+fn load<T: Triangulation<Vertex = Vertex>>(sites: &Sites) -> Result<T, GridError> {
+    let vertices = sites.at.iter().zip(&sites.z).enumerate();
+    let vertices: Vec<Vertex> =
+        vertices.map(|(index, (&at, &z))| Vertex { at, z, site: Some(index as u32) }).collect();
+    let unplaceable = |_| {
+        // Offsets from a whole number are far below spade's limit and either zero or far above its smallest, unless
+        // they were given as such.
+        let tiny =
+            sites.at.iter().position(|at| at.abs().cmplt(DVec2::splat(1e-60)).any() && *at != DVec2::ZERO);
+        let index = tiny.unwrap_or(0);
+        let at = sites.at[index] + sites.origin;
+        GridError::Unplaceable { x: at.x, y: at.y, z: sites.z[index] }
+    };
+    let web = T::bulk_load(vertices).map_err(unplaceable)?;
+    if web.num_inner_faces() == 0 {
+        return Err(GridError::Collinear { sites: sites.len() });
+    }
+    Ok(web)
+}
+
+/// For every site the vertex of `spade` that holds it; `spade` loads in an order of its own.
+pub(super) fn vertex_of_site(web: &Constrained, sites: &Sites) -> Vec<FixedVertexHandle> {
+    let mut found = vec![FixedVertexHandle::from_index(0); sites.len()];
+    for vertex in web.vertices() {
+        if let Some(site) = vertex.data().site {
+            found[site as usize] = vertex.fix();
+        }
+    }
+    found
+}

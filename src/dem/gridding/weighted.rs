@@ -1,0 +1,220 @@
+//! Heights by distance: k nearest sites, one of each quadrant, or the nearest alone.
+//!
+//! Weights are taken relative to the nearest site's, (d₀/d)^power, which is the same mean and never overflows next to
+//! a site; a centre on a site takes its height.
+
+use std::ops::Range;
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::dem::gridding::Method;
+use crate::dem::gridding::hull::Hull;
+use crate::dem::gridding::kd::{Found, KdTree};
+use crate::dem::gridding::linear::Positions;
+use crate::dem::gridding::sites::Sites;
+
+/// Cells along the side of a tile whose cells share a search.
+const TILE: usize = 8;
+
+/// Candidates that the cells of a tile may share for each site that one of them wants, and at least. Looking at so many
+/// costs about as much as a search of the tree for each cell.
+const CROWD_PER_SITE: usize = 10;
+const CROWD: usize = 64;
+
+/// What a bound on distances is widened by, against rounding.
+const SLACK: f64 = 1.0 + 1e-9;
+
+/// Cells that share a search.
+struct Tile<'a> {
+    /// The first column.
+    left: usize,
+    /// Of its columns.
+    x: &'a [f64],
+    /// Of its rows.
+    y: &'a [f64],
+    /// For each row, which columns of the whole row lie in the hull.
+    columns: &'a [Range<usize>],
+}
+
+impl Tile<'_> {
+    /// Those of `columns` that are the tile's.
+    fn part(&self, columns: &Range<usize>) -> Range<usize> {
+        columns.start.max(self.left)..columns.end.min(self.left + self.x.len())
+    }
+
+    /// The middle of its cells' centres, and how far the farthest is from it.
+    fn circle(&self) -> (DVec2, f64) {
+        let corner = DVec2::new(self.x[0], self.y[0]);
+        let opposite = DVec2::new(self.x[self.x.len() - 1], self.y[self.y.len() - 1]);
+        let centre = (corner + opposite) * 0.5;
+        (centre, centre.distance(corner).max(centre.distance(opposite)))
+    }
+}
+
+/// What a task fills again for every tile.
+struct Scratch {
+    found: Found,
+    candidates: Vec<(DVec2, u32)>,
+}
+
+impl Scratch {
+    fn new(wanted: usize) -> Self {
+        Self { found: Found::new(wanted), candidates: Vec::new() }
+    }
+}
+
+/// Sites that can be asked by distance.
+pub(super) struct Weighted<'a> {
+    sites: &'a Sites,
+    tree: KdTree,
+    method: Method,
+}
+
+impl<'a> Weighted<'a> {
+    /// Sites for a method that goes by distance; any other is taken as the nearest.
+    pub fn new(sites: &'a Sites, method: Method) -> Self {
+        Self { sites, tree: KdTree::new(&sites.at), method }
+    }
+
+    /// Gives every cell in the hull its height; other cells are left as they are.
+    pub fn fill(&self, hull: &Hull, cells: &Positions, out: &mut [f64]) {
+        let columns = hull.columns(cells);
+        let width = cells.x.len();
+        if let Method::Quadrant { power } = self.method {
+            out.par_chunks_mut(width).zip(&cells.y).zip(columns).for_each(|((row, &y), columns)| {
+                for column in columns {
+                    row[column] = self.by_quadrants(DVec2::new(cells.x[column], y), power);
+                }
+            });
+            return;
+        }
+        let bands =
+            out.par_chunks_mut(TILE * width).zip(cells.y.par_chunks(TILE)).zip(columns.par_chunks(TILE));
+        bands.for_each_init(
+            || Scratch::new(self.wanted()),
+            |scratch, ((out, y), columns)| {
+                for left in (0..width).step_by(TILE) {
+                    let x = &cells.x[left..(left + TILE).min(width)];
+                    self.fill_tile(&Tile { left, x, y, columns }, width, scratch, out);
+                }
+            },
+        );
+    }
+
+    fn wanted(&self) -> usize {
+        match self.method {
+            Method::InverseDistance { k, .. } => k as usize,
+            _ => 1,
+        }
+    }
+
+    /// Searches the tree once for all cells of a tile, where the tile is not much larger than what a cell needs.
+    fn fill_tile(&self, tile: &Tile, width: usize, scratch: &mut Scratch, out: &mut [f64]) {
+        if tile.columns.iter().all(|columns| tile.part(columns).is_empty()) {
+            return;
+        }
+        let Scratch { found, candidates } = scratch;
+        let wanted = self.wanted();
+        let (centre, half) = tile.circle();
+        self.tree.nearest_k(centre, f64::INFINITY, found);
+        let enough = found.near().get(wanted - 1).map_or(f64::INFINITY, |near| near.distance2.sqrt());
+        // So many sites lie within `enough` of the centre, so within `enough + half` of any cell; those that a cell
+        // needs lie half a tile farther from the centre at most.
+        let reach = (enough + 2.0 * half) * SLACK;
+        let most = CROWD.max(CROWD_PER_SITE * wanted);
+        let expected = wanted as f64 * (reach / enough).powi(2);
+        let shared = expected <= most as f64 || self.sites.len() <= most;
+        if shared {
+            self.tree.gather(centre, reach * reach, 2 * most, candidates);
+        }
+        let shared = shared && candidates.len() <= 2 * most;
+        for (row, (&y, columns)) in tile.y.iter().zip(tile.columns).enumerate() {
+            let mut limit2 = f64::INFINITY;
+            for column in tile.part(columns) {
+                let q = DVec2::new(tile.x[column - tile.left], y);
+                if shared {
+                    found.choose(q, limit2, candidates);
+                } else {
+                    self.tree.nearest_k(q, limit2, found);
+                }
+                out[row * width + column] = self.by_nearest(found);
+                limit2 = match tile.x.get(column + 1 - tile.left) {
+                    Some(&x) if found.near().len() == wanted => self.farthest2(found, DVec2::new(x, y)),
+                    _ => f64::INFINITY,
+                };
+            }
+        }
+    }
+
+    /// The squared distance from `q` to the farthest of the sites found for the cell before: as many as are wanted lie
+    /// within it.
+    fn farthest2(&self, found: &Found, q: DVec2) -> f64 {
+        let distances2 =
+            found.near().iter().map(|near| (self.sites.at[near.site as usize] - q).length_squared());
+        distances2.fold(0.0, f64::max)
+    }
+
+    fn by_nearest(&self, found: &Found) -> f64 {
+        let z = |site: u32| self.sites.z[site as usize];
+        match self.method {
+            Method::InverseDistance { power, .. } => {
+                mean(found.near().iter().map(|near| (near.distance2, z(near.site))), power)
+            }
+            _ => found.near().first().map_or(f64::NAN, |near| z(near.site)),
+        }
+    }
+
+    fn by_quadrants(&self, q: DVec2, power: f64) -> f64 {
+        let mut found = self.tree.quadrants(q);
+        found.sort_by(|a, b| match (a, b) {
+            (Some(a), Some(b)) => a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)),
+            (a, b) => a.is_none().cmp(&b.is_none()),
+        });
+        mean(found.iter().flatten().map(|&(distance2, site)| (distance2, self.sites.z[site as usize])), power)
+    }
+}
+
+/// The mean of heights at squared distances, nearest first; NaN for none.
+fn mean(sites: impl Iterator<Item = (f64, f64)>, power: f64) -> f64 {
+    let mut sites = sites;
+    let Some((nearest2, nearest_z)) = sites.next() else { return f64::NAN };
+    if nearest2 == 0.0 {
+        return nearest_z;
+    }
+    // Differences from the nearest keep a level plain level.
+    let (mut sum, mut total) = (0.0, 1.0);
+    for (distance2, z) in sites {
+        let weight = weight(nearest2 / distance2, power);
+        sum += weight * (z - nearest_z);
+        total += weight;
+    }
+    nearest_z + sum / total
+}
+
+/// A ratio of squared distances to the power of half of `power`.
+fn weight(ratio2: f64, power: f64) -> f64 {
+    if power == 2.0 {
+        ratio2
+    } else if power == 1.0 {
+        ratio2.sqrt()
+    } else {
+        libm::pow(ratio2, power * 0.5)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn weights_fall_with_the_power_of_the_distance() {
+        let two = |power| mean([(1.0, 0.0), (9.0, 1.0)].into_iter(), power);
+        assert!((two(1.0) - 0.25).abs() < 1e-15);
+        assert!((two(2.0) - 0.1).abs() < 1e-15);
+        assert!((two(3.0) - 1.0 / 28.0).abs() < 1e-12);
+        assert_eq!(mean([(0.0, 7.0), (1.0, 9.0)].into_iter(), 2.0), 7.0);
+        assert_eq!(mean([(1e-300, 7.0), (1e-300, 9.0)].into_iter(), 3.0), 8.0);
+        assert!(mean(std::iter::empty(), 2.0).is_nan());
+    }
+}
