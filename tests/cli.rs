@@ -20,10 +20,10 @@ mod manners;
 mod meshes;
 #[path = "cli/pictures.rs"]
 mod pictures;
-#[path = "cli/serve.rs"]
-mod serve;
 #[path = "cli/profile.rs"]
 mod profile;
+#[path = "cli/serve.rs"]
+mod serve;
 #[path = "cli/viewshed.rs"]
 mod viewshed;
 #[path = "cli/wrong_scenes.rs"]

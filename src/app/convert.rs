@@ -11,12 +11,12 @@ use crate::app::arguments::StatedHeights;
 use crate::app::dem::{self, StatedPlace};
 use crate::app::failure::Failure;
 use crate::app::progress::Steps;
-use crate::app::{files, output};
+use crate::app::{output, rasters};
 use crate::dem::raster::Raster;
 use crate::dem::voids;
 use crate::dem::warp::WarpError;
 use crate::dem::warp_to::{self, Method, Warped};
-use crate::dem::write::{self, Companion, Format, Written};
+use crate::dem::write::{Format, Written};
 use crate::geom::crs::Crs;
 
 /// A cell of more degrees than this was meant in metres.
@@ -64,10 +64,7 @@ fn above_zero(text: &str) -> Result<f64, String> {
 /// The file cannot be had, read or brought to the system; the output cannot be written or cannot hold it.
 pub fn run(options: &ConvertOptions) -> Result<(), Failure> {
     let (inputs, out) = places(options)?;
-    let format = format_of(out)?;
-    for input in inputs {
-        files::check_file_place(out, input, "this is the elevation file itself; name another to write to")?;
-    }
+    let format = rasters::format_of(out, inputs)?;
     let input = inputs[0].as_path();
     let target = parsed("--crs", options.crs.as_deref())?;
     let steps = Steps::default();
@@ -76,10 +73,7 @@ pub fn run(options: &ConvertOptions) -> Result<(), Failure> {
     steps.begin("resampling");
     let Warped { raster, method } = brought(input, &source, target.as_ref(), options.cell)?;
     steps.begin("writing");
-    let stem = out.file_stem().unwrap_or_default().to_string_lossy();
-    let about_out = |error: write::WriteError| Failure::input(format!("{}: {error}", out.display()));
-    let written = write::write(&raster, format, &stem).map_err(about_out)?;
-    put(inputs, out, &written)?;
+    let written = rasters::write(&raster, format, out, inputs)?;
     steps.finish();
     let shift = shift(&source, &raster).map_err(|reason| about(input, &reason))?;
     let mut lines = summary(out, format, &raster, (method, shift), &written);
@@ -97,16 +91,6 @@ fn places(options: &ConvertOptions) -> Result<(&[PathBuf], &Path), Failure> {
         Some((out, inputs @ [_, ..])) => Ok((inputs, out)),
         _ => Err(Failure::Usage("name an elevation file and the file to write".into())),
     }
-}
-
-fn format_of(path: &Path) -> Result<Format, Failure> {
-    let extension = path.extension().unwrap_or_default().to_string_lossy();
-    Format::of_extension(&extension).ok_or_else(|| {
-        let place = path.display();
-        Failure::Usage(format!(
-            "{place}: elevation is written as .tif, .asc, .bt, .hgt or .png; name a file that ends so"
-        ))
-    })
 }
 
 fn parsed(option: &str, text: Option<&str>) -> Result<Option<Crs>, Failure> {
@@ -190,34 +174,6 @@ fn shift(source: &Raster, raster: &Raster) -> Result<Option<String>, String> {
         }
         _ => Ok(None),
     }
-}
-
-/// Writes the companions, then the file: where it is there, all of it is.
-fn put(inputs: &[PathBuf], out: &Path, written: &Written) -> Result<(), Failure> {
-    let places: Vec<(PathBuf, &Companion)> = written
-        .companions
-        .iter()
-        .map(|companion| (out.with_extension(companion.extension), companion))
-        .collect();
-    for ((place, companion), input) in
-        places.iter().flat_map(|place| inputs.iter().map(move |input| (place, input)))
-    {
-        let is_input = "the elevation file is this file; name another to write to";
-        files::check_file_place(place, input, is_input)?;
-        // A sidecar of the input has its name.
-        let is_sidecar = input.with_extension(companion.extension).canonicalize().ok();
-        if is_sidecar.is_some()
-            && is_sidecar == place.canonicalize().ok()
-            && files::read(place)? != companion.bytes
-        {
-            let reason = "this belongs to the elevation file and would be replaced; name another to write to";
-            return Err(Failure::input(format!("{}: {reason}", place.display())));
-        }
-    }
-    for (place, companion) in &places {
-        files::write_whole(place, &companion.bytes)?;
-    }
-    files::write_whole(out, &written.bytes)
 }
 
 fn summary(

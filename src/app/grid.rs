@@ -1,6 +1,5 @@
 //! `sandtable dem grid`: a grid of scattered points.
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -9,11 +8,11 @@ use glam::{DVec2, DVec3};
 
 use crate::app::failure::Failure;
 use crate::app::progress::Steps;
-use crate::app::{files, output};
+use crate::app::{files, output, rasters};
 use crate::dem::gridding::frame::Frame;
 use crate::dem::gridding::{self, Beyond, Gridded, Method};
 use crate::dem::points::{self, PointCloud};
-use crate::dem::raster::Raster;
+use crate::dem::write::Written;
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::vector::feature::{Feature, Geometry, Layer};
@@ -23,8 +22,8 @@ use crate::vector::read as vector;
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub struct GridOptions {
-    /// Files of points, one or more, then the grid to write
-    #[arg(value_names = ["POINTS", "OUT.asc"], num_args = 2.., required = true)]
+    /// Files of points, one or more, then the grid to write: .tif, .asc, .bt, .hgt or .png
+    #[arg(value_names = ["POINTS", "OUT"], num_args = 2.., required = true)]
     pub files: Vec<PathBuf>,
     /// The side of a cell, in the unit of the points' x and y
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
@@ -133,7 +132,8 @@ impl FromStr for Extent {
 pub fn run(options: &GridOptions) -> Result<(), Failure> {
     let (out, inputs) = options.files.split_last().ok_or_else(|| Failure::input("name points and a grid"))?;
     let method = method(options)?;
-    check_output(out, inputs, &options.breaklines)?;
+    let read: Vec<PathBuf> = inputs.iter().chain(&options.breaklines).cloned().collect();
+    let format = rasters::format_of(out, &read)?;
     let steps = Steps::default();
     steps.begin("reading points");
     let cloud = read_all(inputs, options)?;
@@ -152,9 +152,9 @@ pub fn run(options: &GridOptions) -> Result<(), Failure> {
         .and_then(|frame| gridding::grid(&cloud, &frame, method, beyond))
         .map_err(|error| Failure::input(format!("{}: {error}", inputs[0].display())))?;
     steps.begin("writing");
-    encode(&gridded.raster, out)?;
+    let written = rasters::write(&gridded.raster, format, out, &read)?;
     steps.finish();
-    output::print(&summary(&cloud, &gridded, options.method, out))
+    output::print(&summary(&cloud, &gridded, options.method, (out, &written)))
 }
 
 fn method(options: &GridOptions) -> Result<Method, Failure> {
@@ -177,19 +177,6 @@ fn method(options: &GridOptions) -> Result<Method, Failure> {
         MethodChoice::Quadrant => Method::Quadrant { power: power(1.0) },
         MethodChoice::Nearest => Method::Nearest,
     })
-}
-
-fn check_output(out: &Path, inputs: &[PathBuf], breaklines: &[PathBuf]) -> Result<(), Failure> {
-    for input in inputs.iter().chain(breaklines) {
-        files::check_file_place(out, input, "this is one of the files to read; name another for the grid")?;
-    }
-    if out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("asc")) {
-        return Ok(());
-    }
-    Err(Failure::input(format!(
-        "{}: grids are written as ESRI ASCII grids; name one that ends in .asc",
-        out.display()
-    )))
 }
 
 /// All points and breaklines, in the system of the first file.
@@ -315,37 +302,12 @@ fn joined(mut first: PointCloud, mut second: PointCloud) -> Result<PointCloud, S
     Ok(first)
 }
 
-/// Writes a grid, and its coordinate system beside it.
-fn encode(raster: &Raster, path: &Path) -> Result<(), Failure> {
-    /// What stands for no data; lower than any height on Earth in any unit.
-    const NODATA: &str = "-99999";
-    let corner = raster.extent().min;
-    let mut text = format!(
-        "ncols {}\nnrows {}\nxllcorner {}\nyllcorner {}\ncellsize {}\nNODATA_value {NODATA}\n",
-        raster.width,
-        raster.height,
-        corner.x,
-        corner.y,
-        raster.spacing().x
-    );
-    for (index, height) in raster.samples.iter().enumerate() {
-        let end = if (index + 1) % raster.width as usize == 0 { '\n' } else { ' ' };
-        // A tenth of a millimetre is finer than any survey and a third of the text.
-        let written = if height.is_nan() {
-            write!(text, "{NODATA}{end}")
-        } else {
-            write!(text, "{:.4}{end}", height * raster.metres_per_z)
-        };
-        written.map_err(|_| Failure::input("the grid cannot be written as text"))?;
-    }
-    files::write_whole(path, text.as_bytes())?;
-    match &raster.crs {
-        Some(crs) => files::write_whole(&path.with_extension("prj"), crs.name().as_bytes()),
-        None => Ok(()),
-    }
-}
-
-fn summary(cloud: &PointCloud, gridded: &Gridded, method: MethodChoice, out: &Path) -> String {
+fn summary(
+    cloud: &PointCloud,
+    gridded: &Gridded,
+    method: MethodChoice,
+    (out, written): (&Path, &Written),
+) -> String {
     let (report, raster) = (&gridded.report, &gridded.raster);
     let crs = raster.crs.as_ref().map_or("not stated", Crs::name);
     let cells = u64::from(raster.width) * u64::from(raster.height);
@@ -369,7 +331,7 @@ fn summary(cloud: &PointCloud, gridded: &Gridded, method: MethodChoice, out: &Pa
             format!("breaklines cross {} times, up to {gap:.3} m apart: the mean was taken", crossings.count);
         rows.push(("note", told));
     }
-    rows.extend(cloud.notes.iter().map(|note| ("note", note.clone())));
+    rows.extend(cloud.notes.iter().chain(&written.notes).map(|note| ("note", note.clone())));
     rows.iter().map(|(name, value)| format!("{name:<16} {value}\n")).collect()
 }
 

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::annotate::chart::Surroundings;
 use crate::annotate::chart_sight::{SightChart, paint};
 use crate::annotate::nice;
-use crate::app::arguments::{Access, GreyHeights, Size};
+use crate::app::arguments::{Access, Size, StatedHeights};
 use crate::app::dataset::Dataset;
 use crate::app::failure::Failure;
 use crate::app::places::{Stand, check_picture_place, on_ground, spoken, stated_crs};
@@ -65,7 +65,7 @@ pub struct LosOptions {
     pub json: bool,
     /// What grey values mean.
     #[command(flatten)]
-    pub heights: GreyHeights,
+    pub heights: StatedHeights,
     /// What may be read.
     #[command(flatten)]
     pub access: Access,

@@ -23,6 +23,7 @@ pub mod picture;
 pub mod places;
 pub mod profile;
 pub mod progress;
+pub mod rasters;
 pub mod render;
 pub mod serve;
 pub mod viewshed;

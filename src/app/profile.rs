@@ -14,7 +14,7 @@ use crate::annotate::chart::Surroundings;
 use crate::annotate::chart_ground::{Ground, Point};
 use crate::annotate::chart_profile::{ProfileChart, paint};
 use crate::annotate::nice;
-use crate::app::arguments::{Access, GreyHeights, InterpolationChoice, Size};
+use crate::app::arguments::{Access, InterpolationChoice, Size, StatedHeights};
 use crate::app::dataset::Dataset;
 use crate::app::failure::Failure;
 use crate::app::places::{Positions, Way, check_picture_place, on_ground, read_way, spoken, stated_crs};
@@ -64,7 +64,7 @@ pub struct ProfileOptions {
     pub json: bool,
     /// What grey values mean.
     #[command(flatten)]
-    pub heights: GreyHeights,
+    pub heights: StatedHeights,
     /// What may be read.
     #[command(flatten)]
     pub access: Access,

@@ -5,17 +5,19 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::Args;
-use glam::DVec2;
+use glam::{DAffine2, DMat2, DVec2};
 
-use crate::app::arguments::{Access, GreyHeights};
+use crate::app::arguments::{Access, StatedHeights};
 use crate::app::dataset::Dataset;
 use crate::app::failure::Failure;
 use crate::app::map::{Words, viewshed_map};
 use crate::app::picture::png;
 use crate::app::progress::Steps;
-use crate::app::{files, output};
+use crate::app::{files, output, rasters};
+use crate::dem::raster::{Raster, Samples};
+use crate::dem::write::Format;
 use crate::geom::crs::Crs;
-use crate::terrain::lattice::Lattice;
+use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::query::Answer;
 use crate::terrain::sight::Curvature;
 use crate::terrain::sight::line::End;
@@ -55,7 +57,7 @@ pub struct ViewshedOptions {
     /// Take the Earth for flat and without air
     #[arg(long, conflicts_with = "refraction")]
     pub flat: bool,
-    /// Where the answer goes: a map as .png, or a raster as .asc
+    /// Where the answer goes: a map as .png, or a raster as .tif, .asc or .bt
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// Print one JSON object
@@ -63,7 +65,7 @@ pub struct ViewshedOptions {
     pub json: bool,
     /// What the grey values of a picture mean.
     #[command(flatten)]
-    pub heights: GreyHeights,
+    pub heights: StatedHeights,
     /// What may be read.
     #[command(flatten)]
     pub access: Access,
@@ -103,7 +105,7 @@ fn below_one(text: &str) -> Result<f64, String> {
 #[derive(Clone, Copy)]
 enum Form {
     Map,
-    TextGrid,
+    Raster(Format),
 }
 
 /// Looks, writes the map or the raster, and prints how much can be seen.
@@ -128,6 +130,7 @@ pub fn run(options: &ViewshedOptions) -> Result<(), Failure> {
             &Shown {
                 options,
                 lattice,
+                crs: epoch.crs(),
                 question: &question,
                 seen: &seen,
                 datum: epoch.source().vertical_datum.clone(),
@@ -141,13 +144,12 @@ pub fn run(options: &ViewshedOptions) -> Result<(), Failure> {
 }
 
 fn form_of(path: &Path, input: &Path) -> Result<Form, Failure> {
-    files::check_file_place(path, input, "this is the elevation file itself; name another with -o")?;
-    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-    match extension.to_ascii_lowercase().as_str() {
-        "png" => Ok(Form::Map),
-        "asc" => Ok(Form::TextGrid),
-        _ => Err(Failure::Usage(format!("{}: name a map .png or a raster .asc", path.display()))),
+    let is_map = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+    if is_map {
+        files::check_file_place(path, input, "this is the elevation file itself; name another with -o")?;
+        return Ok(Form::Map);
     }
+    rasters::format_of(path, &[input.to_owned()]).map(Form::Raster)
 }
 
 fn question(options: &ViewshedOptions, dataset: &Dataset, ground: &Crs) -> Result<Question, Failure> {
@@ -185,6 +187,7 @@ fn no_ground(options: &ViewshedOptions, answer: Answer) -> Failure {
 struct Shown<'a> {
     options: &'a ViewshedOptions,
     lattice: &'a Lattice,
+    crs: &'a Crs,
     question: &'a Question,
     seen: &'a Viewshed,
     datum: Option<String>,
@@ -192,7 +195,10 @@ struct Shown<'a> {
 
 fn write(form: Form, path: &Path, shown: &Shown<'_>) -> Result<(), Failure> {
     match form {
-        Form::TextGrid => files::write_whole(path, text_grid(shown.lattice, shown.seen)?.as_bytes()),
+        Form::Raster(format) => {
+            let raster = raster(shown.lattice, shown.seen, shown.crs);
+            rasters::write(&raster, format, path, std::slice::from_ref(&shown.options.file)).map(|_| ())
+        }
         Form::Map => {
             let map = viewshed_map(shown.lattice, shown.seen, shown.question, words(shown));
             files::write_whole(path, &png(&map)?)
@@ -220,32 +226,34 @@ fn words(shown: &Shown<'_>) -> Words {
 }
 
 /// The value of what was not looked at, or has no data.
-const NO_ANSWER: u8 = 255;
+const NO_ANSWER: f64 = 255.0;
 
-/// An ESRI text grid of the answer; square cells only, as that format has it.
-fn text_grid(lattice: &Lattice, seen: &Viewshed) -> Result<String, Failure> {
-    let (origin, cell) =
-        (lattice.map_position(crate::terrain::lattice::Post { column: 0, row: 0 }), lattice.cell());
-    if (cell.x - cell.y).abs() > 1e-9 * cell.x {
-        let reason = "a text grid has square cells, and this ground's are";
-        return Err(Failure::input(format!("{reason} {} by {} m", cell.x, cell.y)));
+/// The answer as a raster: 1 in sight, 0 hidden, no data elsewhere.
+fn raster(lattice: &Lattice, seen: &Viewshed, crs: &Crs) -> Raster {
+    let value = |seen: &Seen| match seen {
+        Seen::Visible => 1.0,
+        Seen::Hidden => 0.0,
+        Seen::Beyond | Seen::NoData => f32::NAN,
+    };
+    let rows = seen.posts.chunks_exact(seen.columns as usize).rev();
+    let cell = lattice.cell();
+    let north_west = lattice.map_position(Post { column: 0, row: lattice.rows() - 1 });
+    Raster {
+        driver: "viewshed",
+        data_type: "Byte",
+        width: seen.columns,
+        height: seen.rows,
+        samples: Samples::F32(rows.flatten().map(value).collect()),
+        metres_per_z: 1.0,
+        map_from_grid: DAffine2 {
+            matrix2: DMat2::from_diagonal(DVec2::new(cell.x, -cell.y)),
+            translation: north_west + DVec2::new(-0.5, 0.5) * cell,
+        },
+        georeferenced: true,
+        crs: (*crs != Crs::local()).then(|| crs.clone()),
+        nodata: Some(NO_ANSWER),
+        vertical_datum: None,
     }
-    let mut text = format!(
-        "ncols {}\nnrows {}\nxllcenter {}\nyllcenter {}\ncellsize {}\nNODATA_value {NO_ANSWER}\n",
-        seen.columns, seen.rows, origin.x, origin.y, cell.x
-    );
-    for row in seen.posts.chunks_exact(seen.columns as usize).rev() {
-        for (index, seen) in row.iter().enumerate() {
-            text.push_str(if index > 0 { " " } else { "" });
-            text.push_str(match seen {
-                Seen::Visible => "1",
-                Seen::Hidden => "0",
-                Seen::Beyond | Seen::NoData => "255",
-            });
-        }
-        text.push('\n');
-    }
-    Ok(text)
 }
 
 /// How much can be seen.

@@ -19,21 +19,29 @@ mod reading;
 #[path = "common/rounds.rs"]
 mod rounds;
 
-#[path = "heights/queries.rs"]
-mod queries;
-#[path = "heights/service.rs"]
-mod service;
-#[path = "heights/rays.rs"]
-mod rays;
 #[path = "heights/hillshade.rs"]
 mod hillshade;
+#[path = "heights/queries.rs"]
+mod queries;
+#[path = "heights/rays.rs"]
+mod rays;
+#[path = "heights/service.rs"]
+mod service;
 #[path = "heights/viewshed.rs"]
 mod viewshed;
 
 /// A section's name and what prints it.
 type Section = (&'static str, fn());
 
-const SECTIONS: &[Section] = &[("service", service::print), ("reading", reading::print), ("queries", queries::print), ("rays", rays::print), ("viewshed", viewshed::print), ("hillshade", hillshade::print), ("gridding", gridding::print)];
+const SECTIONS: &[Section] = &[
+    ("service", service::print),
+    ("reading", reading::print),
+    ("queries", queries::print),
+    ("rays", rays::print),
+    ("viewshed", viewshed::print),
+    ("hillshade", hillshade::print),
+    ("gridding", gridding::print),
+];
 
 fn main() {
     rounds::sections(SECTIONS);

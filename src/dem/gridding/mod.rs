@@ -150,6 +150,7 @@ pub fn grid(cloud: &PointCloud, frame: &Frame, method: Method, beyond: Beyond) -
     report.filled = heights.iter().filter(|height| !height.is_nan()).count();
     let raster = Raster {
         driver: "grid",
+        data_type: "Float64",
         width: frame.width(),
         height: frame.height(),
         samples: Samples::F64(heights),

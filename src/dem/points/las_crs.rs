@@ -12,6 +12,8 @@ use crate::geom::crs::Crs;
 const OWNER: &[u8] = b"LASF_Projection";
 const KEYS: u16 = 34735;
 const DOUBLES: u16 = 34736;
+/// Records with text that keys point into.
+const TEXTS: u16 = 34737;
 const WKT: u16 = 2112;
 
 /// What a file says of its coordinates.
@@ -33,7 +35,9 @@ pub(super) fn read(records: &[Record], header: &Header, stated: Option<&Crs>) ->
         found.map(|record| record.content).filter(|content| !content.is_empty())
     };
     let wkt = content(WKT).map(text).filter(|text| !text.is_empty());
-    let keys = content(KEYS).map(|directory| keys(directory, content(DOUBLES).unwrap_or_default()));
+    let keys = content(KEYS).map(|directory| {
+        keys(directory, content(DOUBLES).unwrap_or_default(), content(TEXTS).unwrap_or_default())
+    });
     let by_wkt = wkt.as_deref().filter(|_| header.says_wkt || keys.is_none());
     let (crs, unit) = match (by_wkt, &keys, stated) {
         (Some(text), _, None) => (Some(crs_of(text)?), vertical_unit(text)),
@@ -61,12 +65,12 @@ fn crs_of(wkt: &str) -> Result<Crs, PointsError> {
     Crs::parse(wkt).map_err(|error| PointsError::Crs { reason: error.to_string() })
 }
 
-fn keys(directory: &[u8], doubles: &[u8]) -> GeoKeys {
+fn keys(directory: &[u8], doubles: &[u8], text: &[u8]) -> GeoKeys {
     let directory: Vec<u16> =
         directory.chunks_exact(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]])).collect();
     let double = |eight: &[u8]| eight.try_into().map(f64::from_le_bytes).unwrap_or(f64::NAN);
     let doubles: Vec<f64> = doubles.chunks_exact(8).map(double).collect();
-    GeoKeys::new(&directory, &doubles)
+    GeoKeys::new(&directory, &doubles, &String::from_utf8_lossy(text))
 }
 
 /// The vertical part of a compound system, from its keyword on.

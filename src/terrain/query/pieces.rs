@@ -371,7 +371,7 @@ mod tests {
     fn star(center: DVec2, reach: f64, count: u32) -> Vec<DVec2> {
         let vertex = |index: u32| {
             let angle = f64::from(index) * std::f64::consts::TAU / f64::from(count);
-            let reach = if index % 2 == 0 { reach } else { reach * 0.4 };
+            let reach = if index.is_multiple_of(2) { reach } else { reach * 0.4 };
             center + DVec2::new(libm::cos(angle), libm::sin(angle)) * reach
         };
         (0..count).map(vertex).collect()

@@ -189,6 +189,7 @@ impl Field {
         let corner = ORIGIN + DVec2::new(-0.5, f64::from(n) - 0.5) * CELL_M;
         let raster = Raster {
             driver: "bench",
+            data_type: "Float32",
             width: n,
             height: n,
             samples: Samples::F32(southward),
