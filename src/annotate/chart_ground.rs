@@ -150,7 +150,7 @@ fn gaps(points: &[Point]) -> Vec<(f64, f64, &'static str)> {
 
 /// Draws rising hatches, cut at the area's edges.
 fn hatch(chart: &mut Chart, area: PixelBox) {
-    let (step, size) = (chart.sheet.px(HATCH_STEP), area.size());
+    let step = chart.sheet.px(HATCH_STEP);
     // A hatch runs along x + y = sum. Hatches stand in the same places whatever the gap.
     let least = area.min.x + area.min.y;
     let mut sum = (least / step).ceil() * step;
