@@ -37,7 +37,9 @@ pub fn seen_along(stations: &[Station], eye_m: f64, curvature: Curvature) -> Vec
         if !rises {
             continue;
         }
-        let from_m = if from.0 == 0.0 { 0.0 } else { edge(from, to, steepest) };
+        // Where the ground before was seen up to here, no rounding may cut the two apart.
+        let is_seen = from.0 == 0.0 || direction(from) >= steepest;
+        let from_m = if is_seen { from.0 } else { edge(from, to, steepest) };
         steepest = steepest.max(direction(to));
         match seen.last_mut().filter(|last| last.to_m == from_m) {
             Some(last) => last.to_m = to.0,
@@ -52,7 +54,7 @@ fn edge(from: (f64, f64), to: (f64, f64), direction: f64) -> f64 {
     let over = |(along_m, above_m): (f64, f64)| above_m - direction * along_m;
     let (first, second) = (over(from), over(to));
     let share = if second > first { (-first / (second - first)).clamp(0.0, 1.0) } else { 0.0 };
-    if share == 0.0 { from.0 } else { from.0 + (to.0 - from.0) * share }
+    from.0 + (to.0 - from.0) * share
 }
 
 #[cfg(test)]
