@@ -5,6 +5,9 @@
 //! not know how to run, and that is not among those it knows to leave alone, fails: an example nobody runs is an
 //! example that stops working.
 
+#[allow(dead_code, reason = "each test uses its own part")]
+#[path = "serve/client.rs"]
+mod client;
 #[path = "readme/command.rs"]
 mod command;
 #[path = "readme/links.rs"]
@@ -21,6 +24,7 @@ use sandtable::description::parse::parse;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 
+use crate::client::Server;
 use crate::command::{Command, Line};
 use crate::sandbox::Sandbox;
 
@@ -37,13 +41,23 @@ fn page(name: &str) -> String {
 #[test]
 fn every_command_of_the_readme_runs_and_writes_what_it_says() {
     let sandbox = Sandbox::new("readme");
-    let mut ran = 0;
+    let (mut ran, mut server) = (0, None);
     for Line { number, text } in command::lines_of(&page("README.md")) {
         match Command::parse(&text) {
             Some(Command::LeftAlone) => {}
             Some(Command::Sandtable { arguments, input }) => {
                 let result = sandbox.run(&arguments, input.as_deref());
                 result.unwrap_or_else(|reason| panic!("README.md:{number}: {text}\n{reason}"));
+                ran += 1;
+            }
+            Some(Command::Serve { arguments }) => {
+                let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+                server = Some(Server::start(sandbox.folder(), &arguments));
+            }
+            Some(Command::Ask { path }) => {
+                let server = server.as_ref().unwrap_or_else(|| panic!("README.md:{number}: nothing serves yet"));
+                let answer = server.get(&path);
+                assert_eq!(answer.status, 200, "README.md:{number}: {text}\n{answer:?}");
                 ran += 1;
             }
             None => panic!("README.md:{number}: the test knows no way to run this line: {text}"),

@@ -42,7 +42,20 @@ pub enum Command {
         /// What `echo` or `printf` pipes into it.
         input: Option<String>,
     },
+    /// The program as a service, which the questions after it are put to.
+    Serve {
+        /// Its arguments after `serve`, without the address.
+        arguments: Vec<String>,
+    },
+    /// A question to the service: what follows its address.
+    Ask {
+        /// Path and query.
+        path: String,
+    },
 }
+
+/// Where the service listens unless told otherwise.
+const SERVICE: &str = "http://127.0.0.1:8080";
 
 impl Command {
     /// What `text` asks for; `None` where it is nothing known.
@@ -56,8 +69,17 @@ impl Command {
             input = Some(piped(&words[..pipe])?);
             words.drain(..=pipe);
         }
+        if let [Word::Plain(program), Word::Plain(url)] = &words[..]
+            && program == "curl"
+        {
+            return Some(Self::Ask { path: url.strip_prefix(SERVICE)?.to_owned() });
+        }
         let start = PROGRAMS.iter().find(|start| begins(&words, start))?;
-        let arguments = words.into_iter().skip(start.len()).map(Word::plain).collect::<Option<_>>()?;
+        let mut arguments: Vec<String> =
+            words.into_iter().skip(start.len()).map(Word::plain).collect::<Option<_>>()?;
+        if arguments.first().is_some_and(|first| first == "serve") {
+            return Some(Self::Serve { arguments: arguments.split_off(1) });
+        }
         Some(Self::Sandtable { arguments, input })
     }
 }

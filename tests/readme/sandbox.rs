@@ -24,6 +24,11 @@ impl Sandbox {
         Self { folder }
     }
 
+    /// Where commands run.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
     /// Runs the program and checks that the picture it is to write is there.
     ///
     /// # Errors
