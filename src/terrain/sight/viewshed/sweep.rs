@@ -317,7 +317,11 @@ impl Sweep<'_> {
         let is_near = self.ring.x <= NEAR;
         let floor = std::mem::take(self.horizon.floor());
         let (count, last) = (floor.len() as f64, floor.len() - 1);
+        let is_ground = lift == 0.0 && !is_near;
         for index in 0..self.ring.v.len() {
+            if is_ground && !self.ring.loud[index] {
+                continue;
+            }
             let target = Mark { u: self.ring.u[index], v: self.ring.v[index] + lift };
             let floor = floor[((target.u * count) as usize).min(last)];
             let is_low = !is_near && target.v + self.ring.error < floor;
