@@ -31,8 +31,10 @@ use crate::draw::pixels::Pixels;
 const COLUMN: f32 = 268.0;
 /// Least height of the column: what the furniture needs.
 const COLUMN_HEIGHT: f32 = 560.0;
-/// Height of title and subtitle, in design pixels.
-const HEAD: f32 = 72.0;
+/// Sizes of title and subtitle, in design pixels of type.
+const HEAD: [f32; 2] = [30.0, 17.0];
+/// From the top to the title's baseline, on to the subtitle's, and on below it, each in ems of its line.
+const LEADING: [f32; 3] = [0.95, 1.75, 0.6];
 /// The red of the observer: no ground and no water has it.
 const SIGNAL: Srgba = Srgba::opaque(0xc8, 0x1e, 0x2a);
 /// Straight lines that stand for a full circle: no corner shows on a sheet.
@@ -107,8 +109,14 @@ pub fn sheet_size(map: (u32, u32)) -> (u32, u32) {
     let margin = sheet.margin();
     let column = sheet.px(COLUMN);
     let width = map.0 as f32 + column + 3.0 * margin;
-    let height = (map.1 as f32).max(sheet.px(COLUMN_HEIGHT)) + sheet.px(HEAD) + 2.5 * margin;
+    let height = (map.1 as f32).max(sheet.px(COLUMN_HEIGHT)) + head_px(&sheet) + 2.5 * margin;
     (width.ceil() as u32, height.ceil() as u32)
+}
+
+/// Height of title and subtitle: type shrinks more slowly than the sheet.
+fn head_px(sheet: &Sheet) -> f32 {
+    let [title, subtitle] = HEAD.map(|size| sheet.type_px(size));
+    title * LEADING[0] + subtitle * (LEADING[1] + LEADING[2])
 }
 
 /// The sheet with the map on it; and what could not be written as it was given.
@@ -117,7 +125,7 @@ pub fn compose(map: &Pixels, furniture: &MapFurniture) -> (Pixels, Report) {
     let sheet = Sheet::new(map.width(), map.height());
     let (mut setter, mut report) = (Typesetter::new(), Report::default());
     let margin = sheet.margin().round();
-    let corner = Vec2::new(margin, (margin * 1.5 + sheet.px(HEAD)).round());
+    let corner = Vec2::new(margin, (margin * 1.5 + head_px(&sheet)).round());
     let frame = PixelBox::at(corner, Vec2::new(map.width() as f32, map.height() as f32));
     let mut pixels = Pixels::filled(width, height, PAPER);
     paste(&mut pixels, map, (corner.x as usize, corner.y as usize));
@@ -153,8 +161,8 @@ fn head(
 ) {
     let mut baseline = sheet.margin();
     let lines = [
-        (&furniture.title, Face::upright(sheet.type_px(30.0), Face::MEDIUM), INK, 0.95),
-        (&furniture.subtitle, Face::upright(sheet.type_px(17.0), Face::REGULAR), SOFT_INK, 1.75),
+        (&furniture.title, Face::upright(sheet.type_px(HEAD[0]), Face::MEDIUM), INK, LEADING[0]),
+        (&furniture.subtitle, Face::upright(sheet.type_px(HEAD[1]), Face::REGULAR), SOFT_INK, LEADING[1]),
     ];
     for (text, face, color, lead) in lines {
         baseline = (baseline + face.size_px * lead).round();

@@ -154,7 +154,8 @@ impl Horizon {
 
     fn measure_all(&mut self) {
         self.low = (0..self.count).map(|index| self.least(index)).collect();
-        self.floor.resize(self.count, Piece::NOTHING);
+        self.floor.clear();
+        self.floor.resize(self.count, f64::INFINITY);
         self.floor_is_stale = true;
     }
 
@@ -177,9 +178,11 @@ impl Horizon {
     pub fn floor(&mut self) -> &mut Vec<f64> {
         if self.floor_is_stale {
             self.floor_is_stale = false;
-            for (index, floor) in self.floor.iter_mut().enumerate() {
+            // where no edge reaches the wedge from, lows are infinite, and so are floors
+            let (first, last) = (self.bucket_of(self.from), self.bucket_of(self.to));
+            for index in first.saturating_sub(REACH)..(last + REACH + 1).min(self.count) {
                 let around = index.saturating_sub(REACH)..(index + REACH + 1).min(self.count);
-                *floor = self.low[around].iter().fold(f64::INFINITY, |least, &low| least.min(low));
+                self.floor[index] = self.low[around].iter().fold(f64::INFINITY, |least, &low| least.min(low));
             }
         }
         &mut self.floor
@@ -227,10 +230,26 @@ impl Horizon {
         for index in self.bucket_of(edge.u0)..=self.bucket_of(edge.u1) {
             // an edge may end where a bucket begins
             let (start, end) = (edge.u0.max(self.border(index)), edge.u1.min(self.border(index + 1)));
-            if start < end && high > self.low[index] {
+            if start < end && high > self.low[index] && self.stands_out(index, &line, start, end) {
                 self.insert_in(index, &line, start, end);
             }
         }
+    }
+
+    /// Whether a line changes a bucket from `start` to `end`: most do not, and need no bucket made anew.
+    fn stands_out(&self, index: usize, line: &Piece, start: f64, end: f64) -> bool {
+        let pieces = &self.buckets[index].pieces;
+        let (line_start, line_end) = (line.at(start), line.at(end));
+        let ends = pieces.iter().skip(1).map(|next| next.u).chain([f64::INFINITY]);
+        pieces.iter().zip(ends).any(|(old, stop)| {
+            if stop <= start || old.u >= end {
+                return false;
+            }
+            let first = if old.u <= start { line_start - old.at(start) } else { line.at(old.u) - old.v };
+            let last = if stop >= end { line_end - old.at(end) } else { line.at(stop) - old.at(stop) };
+            let above = first.max(last);
+            above > 0.0 || line.error > old.error && -above < line.error
+        })
     }
 
     fn insert_in(&mut self, index: usize, line: &Piece, start: f64, end: f64) {

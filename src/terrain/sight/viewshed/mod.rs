@@ -11,6 +11,7 @@
 
 mod frame;
 mod horizon;
+mod near;
 mod sector;
 mod sweep;
 
@@ -109,9 +110,9 @@ impl Viewshed {
 /// is clear, as [`line_of_sight`](crate::terrain::sight::line::line_of_sight) has it. Targets stand on the posts
 /// themselves: their columns and rows are whole numbers, whatever rounding their map coordinates suffer.
 ///
-/// Where there are far more posts than ties, the cost is some 20 ns a post on one thread, less where much is hidden,
-/// and it is spread over all threads; the answer is the same for any number of them. Ground that is one plane seen
-/// along itself is all ties, and costs a line for each post.
+/// Costs some 15 ns a post on one thread where most is hidden and up to 200 where most is seen, spread over all threads;
+/// the answer is the same for any number of them. Ground that is one plane seen along itself is all ties, and costs a
+/// line for each post.
 ///
 /// # Errors
 /// What the ground answers at the observer, where it has no height there.

@@ -45,7 +45,7 @@ const NEAR: f64 = 3.0;
 const NARROW: f64 = 1.0 / 64.0;
 
 /// Nearer than this share of a cell `rise / x` says nothing; what stands there is doubted for the whole wedge.
-const NEAREST: f64 = 1.0 / 16.0;
+pub(super) const NEAREST: f64 = 1.0 / 16.0;
 
 /// The last ray of the last wedge of an eighth, with what rounding may add: a post on the border of two eighths may be
 /// looked at twice, but not by neither.
@@ -114,36 +114,36 @@ fn bend(scene: &Scene<'_>, frame: &Frame) -> Bend {
 
 /// What curvature takes from heights, per square cell along and across.
 #[derive(Clone, Copy)]
-struct Bend {
-    along: f64,
-    across: f64,
+pub(super) struct Bend {
+    pub(super) along: f64,
+    pub(super) across: f64,
 }
 
-struct Sweep<'a> {
-    scene: &'a Scene<'a>,
-    frame: &'a Frame,
+pub(super) struct Sweep<'a> {
+    pub(super) scene: &'a Scene<'a>,
+    pub(super) frame: &'a Frame,
     from: f64,
     to: f64,
     lines: Lines<'a>,
     visible: &'a [AtomicBool],
     horizon: Horizon,
     /// As high as anything nearer than [`NEAREST`] may stand.
-    near: f64,
-    bend: Bend,
+    pub(super) near: f64,
+    pub(super) bend: Bend,
     chunk: Chunk,
-    before: Ring,
-    ring: Ring,
+    pub(super) before: Ring,
+    pub(super) ring: Ring,
     looked: usize,
 }
 
 /// A ring of posts within the wedge, and a few beyond.
 #[derive(Default)]
-struct Ring {
+pub(super) struct Ring {
     number: usize,
-    x: f64,
-    first: i64,
+    pub(super) x: f64,
+    pub(super) first: i64,
     /// Metres.
-    heights: Vec<f64>,
+    pub(super) heights: Vec<f64>,
     /// Which ray each post stands on.
     u: Vec<f64>,
     /// Rise over `x`, sunk by curvature; NaN where there is no data.
@@ -157,13 +157,13 @@ struct Ring {
 
 /// A post of a ring as the observer sees it.
 #[derive(Clone, Copy)]
-struct Mark {
-    u: f64,
-    v: f64,
+pub(super) struct Mark {
+    pub(super) u: f64,
+    pub(super) v: f64,
 }
 
 impl Ring {
-    fn end(&self) -> i64 {
+    pub(super) fn end(&self) -> i64 {
         self.first + self.v.len() as i64
     }
 
@@ -317,7 +317,11 @@ impl Sweep<'_> {
         let is_near = self.ring.x <= NEAR;
         let floor = std::mem::take(self.horizon.floor());
         let (count, last) = (floor.len() as f64, floor.len() - 1);
+        let is_ground = lift == 0.0 && !is_near;
         for index in 0..self.ring.v.len() {
+            if is_ground && !self.ring.loud[index] {
+                continue;
+            }
             let target = Mark { u: self.ring.u[index], v: self.ring.v[index] + lift };
             let floor = floor[((target.u * count) as usize).min(last)];
             let is_low = !is_near && target.v + self.ring.error < floor;
@@ -471,7 +475,7 @@ impl Sweep<'_> {
         self.cross(from, to, (self.before.x, self.ring.x), error);
     }
 
-    fn cross(&mut self, from: Mark, to: Mark, (near_x, far_x): (f64, f64), error: f64) {
+    pub(super) fn cross(&mut self, from: Mark, to: Mark, (near_x, far_x): (f64, f64), error: f64) {
         let (from, to) = if from.u <= to.u { (from, to) } else { (to, from) };
         if (from.v + to.v).is_nan() {
             return;
@@ -499,101 +503,4 @@ impl Sweep<'_> {
             error,
         });
     }
-
-    /// Takes in the strip that the observer stands in, or stands just before: its edges are cut to the wedge.
-    fn near_strip(&mut self, ring: usize) {
-        let parity = self.frame.parity(ring - 1);
-        for j in 0..self.ring.end().min(self.before.end()) {
-            let corner = |ring: &Ring, j: i64| {
-                let height = *ring.heights.get(usize::try_from(j - ring.first).ok()?)?;
-                Some(Corner { x: ring.x, y: j as f64 - self.frame.offset, height })
-            };
-            let (a, d) = (corner(&self.before, j), corner(&self.before, j + 1));
-            let (b, c) = (corner(&self.ring, j), corner(&self.ring, j + 1));
-            let diagonal = if (j + parity) % 2 == 0 { (a, c) } else { (b, d) };
-            // a ring nearer than NEAREST is not taken in as a ring
-            let along = (self.ring.x < NEAREST, (b, c));
-            for (counts, edge) in [(true, (a, b)), (true, diagonal), along] {
-                if let (true, (Some(from), Some(to))) = (counts, edge) {
-                    self.near_edge(from, to);
-                }
-            }
-        }
-    }
-
-    fn near_edge(&mut self, from: Corner, to: Corner) {
-        if (from.height + to.height).is_nan() {
-            // its ends are posts of rings; one nearer than NEAREST still hides what lies right behind it
-            for end in
-                [from, to].into_iter().filter(|end| end.x < NEAREST && end.x > 0.0 && !end.height.is_nan())
-            {
-                self.stand_near(end.height);
-            }
-            return;
-        }
-        let is_observer = |corner: &Corner| corner.x == 0.0 && corner.y == 0.0;
-        if is_observer(&from) || is_observer(&to) {
-            return;
-        }
-        let slack = 4.0 * self.scene.margins.across;
-        let inside = |t: f64| from.toward(&to, t);
-        let in_wedge = cut((0.0, 1.0), (from.y + slack, to.y + slack));
-        let in_wedge = in_wedge.and_then(|part| cut(part, (from.x - from.y + slack, to.x - to.y + slack)));
-        let Some((start, end)) = in_wedge else { return };
-        if inside(start).x < NEAREST || inside(end).x < NEAREST {
-            let near = cut((start, end), (NEAREST - from.x, NEAREST - to.x));
-            let high =
-                near.map_or(f64::NEG_INFINITY, |(start, end)| inside(start).height.max(inside(end).height));
-            self.stand_near(high);
-        }
-        let Some((start, end)) = cut((start, end), (from.x - NEAREST, to.x - NEAREST)) else { return };
-        let (from, to) = (inside(start), inside(end));
-        if from.x >= NEAREST && to.x >= NEAREST {
-            let (near_x, far_x) = (from.x.min(to.x), from.x.max(to.x));
-            let margins = self.scene.margins;
-            let error = (margins.height_m + margins.bend_m * far_x / near_x) / near_x;
-            self.cross(self.mark(&from), self.mark(&to), (near_x, far_x), error);
-        }
-    }
-
-    fn mark(&self, corner: &Corner) -> Mark {
-        let u = corner.y / corner.x;
-        let sag = corner.x * (self.bend.along + self.bend.across * u * u);
-        Mark { u, v: (corner.height - self.scene.eye_m) / corner.x - sag }
-    }
-
-    /// Ground of this height stands nearer than [`NEAREST`] somewhere in the wedge.
-    fn stand_near(&mut self, height_m: f64) {
-        let margin = self.scene.margins.height_m + (self.bend.along + self.bend.across).abs();
-        let rise = height_m - self.scene.eye_m + margin;
-        self.near = self.near.max(if rise >= 0.0 { f64::INFINITY } else { rise / NEAREST });
-    }
-}
-
-/// A post, or a place on an edge, in the frame of the wedge.
-#[derive(Clone, Copy)]
-struct Corner {
-    x: f64,
-    y: f64,
-    height: f64,
-}
-
-impl Corner {
-    fn toward(&self, to: &Self, t: f64) -> Self {
-        let blend = |from: f64, to: f64| from + (to - from) * t;
-        Self { x: blend(self.x, to.x), y: blend(self.y, to.y), height: blend(self.height, to.height) }
-    }
-}
-
-/// The part of `part` where what runs evenly from `ends.0` at 0 to `ends.1` at 1 is not negative.
-fn cut(part: (f64, f64), ends: (f64, f64)) -> Option<(f64, f64)> {
-    let (first, last) = ends;
-    let zero = first / (first - last);
-    let part = match (first >= 0.0, last >= 0.0) {
-        (true, true) => part,
-        (false, false) => return None,
-        (true, false) => (part.0, part.1.min(zero)),
-        (false, true) => (part.0.max(zero), part.1),
-    };
-    (part.0 <= part.1).then_some(part)
 }
