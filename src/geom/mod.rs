@@ -5,4 +5,5 @@ pub mod polygon;
 pub mod polyline;
 pub mod projection;
 pub mod rect;
+pub mod region;
 pub mod wkt;
