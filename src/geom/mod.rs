@@ -8,5 +8,6 @@ pub mod polyline;
 pub mod proj_words;
 pub mod projection;
 pub mod rect;
+pub mod region;
 pub mod wkt;
 pub mod wkt_text;

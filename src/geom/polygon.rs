@@ -70,20 +70,45 @@ fn counter_clockwise([a, b, c]: [DVec2; 3]) -> Option<[DVec2; 3]> {
 ///
 /// `polygon` and `scratch` are working space: the result is left in `polygon`.
 pub fn clip_convex(polygon: &mut Vec<DVec2>, scratch: &mut Vec<DVec2>, window: &[DVec2]) {
-    for (from, to) in edges(window) {
-        let side = |point: DVec2| (to - from).perp_dot(point - from);
-        scratch.clear();
-        for (index, &here) in polygon.iter().enumerate() {
-            let before = polygon[(index + polygon.len() - 1) % polygon.len()];
-            let (side_before, side_here) = (side(before), side(here));
-            if (side_before < 0.0) != (side_here < 0.0) {
-                scratch.push(before.lerp(here, side_before / (side_before - side_here)));
-            }
-            if side_here >= 0.0 {
-                scratch.push(here);
-            }
+    for side in edges(window) {
+        clip_half_plane(polygon, scratch, side);
+    }
+}
+
+/// Leaves in `polygon` what lies to the left of the line `from`..`to` or on it.
+fn clip_half_plane(polygon: &mut Vec<DVec2>, scratch: &mut Vec<DVec2>, (from, to): (DVec2, DVec2)) {
+    let side = |point: DVec2| (to - from).perp_dot(point - from);
+    scratch.clear();
+    for (index, &here) in polygon.iter().enumerate() {
+        let before = polygon[(index + polygon.len() - 1) % polygon.len()];
+        let (side_before, side_here) = (side(before), side(here));
+        if (side_before < 0.0) != (side_here < 0.0) {
+            scratch.push(before.lerp(here, side_before / (side_before - side_here)));
         }
-        std::mem::swap(polygon, scratch);
+        if side_here >= 0.0 {
+            scratch.push(here);
+        }
+    }
+    std::mem::swap(polygon, scratch);
+}
+
+/// Adds the parts of a convex counter-clockwise `polygon` that lie outside a convex counter-clockwise `window` to
+/// `outside`, as convex polygons that do not overlap; what lies inside is gone.
+///
+/// The lines through the window's sides cut the parts off one after the other, so there are at most as many as it has
+/// sides.
+pub fn cut_away(mut polygon: Vec<DVec2>, window: &[DVec2], outside: &mut Vec<Vec<DVec2>>) {
+    let mut scratch = Vec::new();
+    for (from, to) in edges(window) {
+        let mut beyond = polygon.clone();
+        clip_half_plane(&mut beyond, &mut scratch, (to, from));
+        clip_half_plane(&mut polygon, &mut scratch, (from, to));
+        if beyond.len() > 2 {
+            outside.push(beyond);
+        }
+        if polygon.len() < 3 {
+            return;
+        }
     }
 }
 
@@ -115,6 +140,19 @@ mod tests {
         assert!(contains(rings, DVec2::new(2.0, 5.0)));
         assert!(!contains(rings, DVec2::new(5.0, 5.0)));
         assert!(!contains(rings, DVec2::new(-1.0, 5.0)));
+    }
+
+    #[test]
+    fn what_is_cut_away_and_what_is_clipped_make_up_the_whole() {
+        let window = [DVec2::new(1.0, 1.0), DVec2::new(6.0, 2.0), DVec2::new(2.0, 3.5)];
+        let mut inside = square(0.0, 4.0);
+        clip_convex(&mut inside, &mut Vec::new(), &window);
+        let mut outside = Vec::new();
+        cut_away(square(0.0, 4.0), &window, &mut outside);
+        let area = |polygon: &[DVec2]| doubled_area(polygon) / 2.0;
+        let parts: f64 = outside.iter().map(|part| area(part)).sum();
+        assert!((parts + area(&inside) - 16.0).abs() < 1e-12);
+        assert!(outside.len() <= 3 && outside.iter().all(|part| area(part) > 0.0));
     }
 
     #[test]

@@ -14,7 +14,7 @@ use crate::draw::list::{DrawMesh, DrawVertex};
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::mesh::sink::{MeshSink, VertexId};
-use crate::ribbon::plan::{PlanMesh, PlanVertex};
+use crate::ribbon::plan::{PlanMesh, TextureMap};
 use crate::terrain::facets::{Facet, Facets, plane_z};
 
 /// Pieces smaller than this are rounding left over where edges coincide.
@@ -44,35 +44,13 @@ fn write_piece(piece: &[DVec2], facet: &Facet, texture: &TextureMap, sink: &mut 
         sink.vertex(DrawVertex {
             position: [at.x as f32, at.y as f32, plane_z(facet, at) as f32],
             normal: [0.0, 0.0, 1.0],
-            uv: texture.at(at),
+            uv: texture.at(at).to_array(),
             color: Srgba::WHITE,
         })
     };
     let ids: Vec<_> = piece.iter().map(|&at| vertex(at)).collect();
     for pair in ids[1..].windows(2) {
         sink.triangle([ids[0], pair[0], pair[1]]);
-    }
-}
-
-/// The affine map from world to texture coordinates over one plan triangle.
-struct TextureMap {
-    origin: PlanVertex,
-    per_x: glam::DVec2,
-    per_y: glam::DVec2,
-}
-
-impl TextureMap {
-    fn of([a, b, c]: [PlanVertex; 3]) -> Self {
-        let (p, q) = (b.at - a.at, c.at - a.at);
-        let (s, t) = ((b.uv - a.uv).as_dvec2(), (c.uv - a.uv).as_dvec2());
-        let inverse = 1.0 / p.perp_dot(q);
-        Self { origin: a, per_x: (s * q.y - t * p.y) * inverse, per_y: (t * p.x - s * q.x) * inverse }
-    }
-
-    fn at(&self, at: DVec2) -> [f32; 2] {
-        let offset = at - self.origin.at;
-        let uv = self.origin.uv.as_dvec2() + self.per_x * offset.x + self.per_y * offset.y;
-        uv.as_vec2().to_array()
     }
 }
 

@@ -5,6 +5,8 @@
 
 pub mod area;
 pub mod drape;
+pub mod junction;
+pub mod partition;
 pub mod plan;
 pub mod stroke;
 pub mod texture;

@@ -45,3 +45,25 @@ impl MeshSink<PlanVertex> for PlanMesh {
         self.triangles.push(corners);
     }
 }
+
+/// The affine map from world to texture coordinates over one plan triangle.
+pub(in crate::ribbon) struct TextureMap {
+    origin: PlanVertex,
+    per_x: DVec2,
+    per_y: DVec2,
+}
+
+impl TextureMap {
+    pub fn of([a, b, c]: [PlanVertex; 3]) -> Self {
+        let (p, q) = (b.at - a.at, c.at - a.at);
+        let (s, t) = ((b.uv - a.uv).as_dvec2(), (c.uv - a.uv).as_dvec2());
+        let inverse = 1.0 / p.perp_dot(q);
+        Self { origin: a, per_x: (s * q.y - t * p.y) * inverse, per_y: (t * p.x - s * q.x) * inverse }
+    }
+
+    pub fn at(&self, at: DVec2) -> Vec2 {
+        let offset = at - self.origin.at;
+        let uv = self.origin.uv.as_dvec2() + self.per_x * offset.x + self.per_y * offset.y;
+        uv.as_vec2()
+    }
+}

@@ -36,17 +36,37 @@ impl Default for StrokeOptions {
     }
 }
 
+/// The lines that go on where this one ends: the vertex of each beyond the one they share. Two ribbons of one width
+/// that know of each other end on one edge, as if they were one ribbon.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Continuations {
+    /// Before its first vertex; `None` where nothing goes on there.
+    pub before: Option<DVec2>,
+    /// After its last.
+    pub after: Option<DVec2>,
+}
+
 /// Writes the ribbon along `line` to `sink`, triangles counter-clockwise.
 ///
-/// Where a bevelled turn's inner sides overlap, both quads are there: draped, they lie in one plane and show one
-/// material.
-pub fn stroke(line: &Polyline, options: &StrokeOptions, sink: &mut impl MeshSink<PlanVertex>) {
+/// Where a bevelled turn's inner sides overlap, both quads are there; [`crate::ribbon::partition`] takes them apart.
+pub fn stroke(
+    line: &Polyline,
+    beyond: Continuations,
+    options: &StrokeOptions,
+    sink: &mut impl MeshSink<PlanVertex>,
+) {
     let points = line.points();
     let last = points.len() - 1;
-    let mut start = end_edge(line, 0, 0, options, sink);
+    let mut start = match shared_end(beyond.before, points[0], Some(points[1]), options) {
+        Some(to_left) => edge_along(line, 0, to_left, options, sink),
+        None => end_edge(line, 0, 0, options, sink),
+    };
     for segment in 0..last {
         let end = if segment + 1 == last {
-            Joint::Shared(end_edge(line, last, segment, options, sink))
+            Joint::Shared(match shared_end(Some(points[last - 1]), points[last], beyond.after, options) {
+                Some(to_left) => edge_along(line, last, to_left, options, sink),
+                None => end_edge(line, last, segment, options, sink),
+            })
         } else {
             joint(line, segment + 1, options, sink)
         };
@@ -104,16 +124,10 @@ fn joint(
     options: &StrokeOptions,
     sink: &mut impl MeshSink<PlanVertex>,
 ) -> Joint {
-    let half = options.width_m / 2.0;
+    let points = line.points();
     let (before, after) = (direction(line, index - 1), direction(line, index));
-    if let Some(mitre) = mitre(before, after).filter(|mitre| mitre.length() <= options.mitre_limit) {
-        let reach = (mitre.length_squared() - 1.0).max(0.0).sqrt() * half;
-        let points = line.points();
-        let shortest =
-            points[index].distance(points[index - 1]).min(points[index].distance(points[index + 1]));
-        if reach <= shortest {
-            return Joint::Shared(edge_along(line, index, mitre * half, options, sink));
-        }
+    if let Some(to_left) = mitred([points[index - 1], points[index], points[index + 1]], options) {
+        return Joint::Shared(edge_along(line, index, to_left, options, sink));
     }
     let closing = end_edge(line, index, index - 1, options, sink);
     let opening = end_edge(line, index, index, options, sink);
@@ -134,6 +148,27 @@ fn mitre(before: DVec2, after: DVec2) -> Option<DVec2> {
     (square > 1e-12).then(|| sum * (2.0 / square))
 }
 
+/// The edge at `at` that a ribbon shares with the one that goes on there, as the way from the line to its left side.
+fn shared_end(
+    before: Option<DVec2>,
+    at: DVec2,
+    after: Option<DVec2>,
+    options: &StrokeOptions,
+) -> Option<DVec2> {
+    mitred([before?, at, after?], options)
+}
+
+/// The way from the middle one of three vertices to the left side of a mitred ribbon; `None` where the mitre would be
+/// longer than it may be, or its inner corner would reach beyond the middle of either segment, where the next one's may.
+pub(in crate::ribbon) fn mitred([before, at, after]: [DVec2; 3], options: &StrokeOptions) -> Option<DVec2> {
+    let half = options.width_m / 2.0;
+    let mitre = mitre((at - before).normalize_or_zero(), (after - at).normalize_or_zero())?;
+    let reach = (mitre.length_squared() - 1.0).max(0.0).sqrt() * half;
+    let shortest = at.distance(before).min(at.distance(after));
+    let fits = mitre.length() <= options.mitre_limit && 2.0 * reach <= shortest;
+    fits.then(|| mitre * half)
+}
+
 fn direction(line: &Polyline, segment: usize) -> DVec2 {
     (line.points()[segment + 1] - line.points()[segment]).normalize_or_zero()
 }
@@ -150,7 +185,7 @@ mod tests {
     fn stroked(points: &[(f64, f64)], options: &StrokeOptions) -> PlanMesh {
         let line = Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line");
         let mut mesh = PlanMesh::default();
-        stroke(&line, options, &mut mesh);
+        stroke(&line, Continuations::default(), options, &mut mesh);
         mesh
     }
 

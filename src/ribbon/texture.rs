@@ -12,10 +12,23 @@ pub enum Surface {
     Gravel,
     /// Two wheel tracks with grass between.
     Track,
+    /// Where paved roads meet: the carriageway without lines.
+    AsphaltJunction,
+    /// Where gravel roads meet.
+    GravelJunction,
+    /// Where tracks meet.
+    TrackJunction,
     /// Running water: light in the stream, dark along the banks.
     River,
     /// Still water.
     Lake,
+}
+
+impl Surface {
+    /// Whether it joins roads rather than being one.
+    pub fn is_junction(self) -> bool {
+        matches!(self, Self::AsphaltJunction | Self::GravelJunction | Self::TrackJunction)
+    }
 }
 
 const SIZE: u32 = 128;
@@ -29,6 +42,9 @@ pub fn texture(surface: Surface) -> Pixels {
             Surface::Asphalt => asphalt(u, v, grain),
             Surface::Gravel => gravel(u, grain),
             Surface::Track => track(u, grain),
+            Surface::AsphaltJunction => shade(ASPHALT, (grain - 0.5) * 14.0),
+            Surface::GravelJunction => shade(GRAVEL, (grain - 0.5) * 34.0),
+            Surface::TrackJunction => shade(WORN, (grain - 0.5) * 30.0),
             Surface::River => river(u, grain),
             Surface::Lake => shade([74, 124, 158], (grain - 0.5) * 5.0),
         }
@@ -43,6 +59,15 @@ pub fn texture_length_m(surface: Surface, width_m: f64) -> f64 {
     }
 }
 
+/// A carriageway.
+const ASPHALT: [u8; 3] = [126, 116, 110];
+
+/// A gravel road between its verges.
+const GRAVEL: [u8; 3] = [214, 194, 154];
+
+/// Where wheels go.
+const WORN: [u8; 3] = [176, 148, 108];
+
 fn asphalt(u: f32, v: f32, grain: f32) -> Srgba {
     let from_edge = u.min(1.0 - u);
     let dash = (u - 0.5).abs() < 0.028 && v < 0.55;
@@ -51,22 +76,18 @@ fn asphalt(u: f32, v: f32, grain: f32) -> Srgba {
     } else if from_edge < 0.115 || dash {
         shade([243, 238, 222], 0.0)
     } else {
-        shade([126, 116, 110], (grain - 0.5) * 14.0)
+        shade(ASPHALT, (grain - 0.5) * 14.0)
     }
 }
 
 fn gravel(u: f32, grain: f32) -> Srgba {
     let from_edge = u.min(1.0 - u);
-    if from_edge < 0.09 { shade([112, 92, 66], 0.0) } else { shade([214, 194, 154], (grain - 0.5) * 34.0) }
+    if from_edge < 0.09 { shade([112, 92, 66], 0.0) } else { shade(GRAVEL, (grain - 0.5) * 34.0) }
 }
 
 fn track(u: f32, grain: f32) -> Srgba {
     let wheel = ((u - 0.5).abs() - 0.27).abs() < 0.15;
-    if wheel {
-        shade([176, 148, 108], (grain - 0.5) * 30.0)
-    } else {
-        shade([122, 124, 82], (grain - 0.5) * 30.0)
-    }
+    if wheel { shade(WORN, (grain - 0.5) * 30.0) } else { shade([122, 124, 82], (grain - 0.5) * 30.0) }
 }
 
 fn river(u: f32, grain: f32) -> Srgba {

@@ -14,6 +14,7 @@ use crate::scene::ground;
 use crate::scene::kind::{Scene, Terrain};
 use crate::scene::models;
 use crate::scene::place::{Places, parse_crs};
+use crate::scene::roads;
 use crate::scene::sources::Sources;
 use crate::scene::style;
 use crate::scene::views;
@@ -36,7 +37,8 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     features::lakes(document, &sources, &mut lattice, &mut collected)?;
     let extent = lattice.extent();
     features::rivers(document, &sources, &extent, &mut collected)?;
-    features::roads(document, &sources, &extent, &mut collected)?;
+    roads::roads(document, &sources, &extent, &mut collected)?;
+    collected.take_apart();
 
     step("loading models");
     let (models, placements) = models::place(document, &places, assets, &lattice, &mut collected)?;

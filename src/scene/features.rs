@@ -1,19 +1,20 @@
-//! Lakes, rivers and roads: lakes level the ground, then everything becomes a ribbon in plan.
+//! Lakes and rivers, and what all that lies on the ground has in common: lakes level the ground, then everything becomes
+//! a ribbon in plan, and what overlaps is taken apart.
 
 use glam::DVec2;
 use toml::Spanned;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::{Document, Lake};
-use crate::description::words;
 use crate::draw::list::FeatureId;
 use crate::geom::polygon;
 use crate::geom::polyline::Polyline;
 use crate::geom::rect::Rect;
 use crate::mesh::sink::MeshSink;
 use crate::ribbon::area;
+use crate::ribbon::partition;
 use crate::ribbon::plan::{PlanMesh, PlanVertex};
-use crate::ribbon::stroke::{StrokeOptions, stroke};
+use crate::ribbon::stroke::{Continuations, StrokeOptions, stroke};
 use crate::ribbon::texture::{Surface, texture_length_m};
 use crate::scene::kind::{Feature, FeatureKind, Ribbon};
 use crate::scene::sources::{Named, Sources};
@@ -38,6 +39,24 @@ impl Collected {
     pub fn add(&mut self, kind: FeatureKind, name: String) -> FeatureId {
         self.features.push(Feature { kind, name });
         FeatureId(FeatureId::GROUND.0 + self.features.len() as u32)
+    }
+
+    /// Lays a plan over what was laid before in its class and below.
+    pub fn lay(&mut self, plan: PlanMesh, surface: Surface, feature: FeatureId) {
+        self.ribbons.push(Ribbon { plan, surface, layer: layer_of(surface), feature });
+    }
+
+    /// Takes apart what lies over one another, so that no two ribbons share any ground: what covers what goes by class,
+    /// and within a class the junctions come first and then what was laid last.
+    pub fn take_apart(&mut self) {
+        let order = |ribbon: &Ribbon| (ribbon.layer, ribbon.surface.is_junction());
+        self.ribbons.sort_by_key(order);
+        let from_above: Vec<&PlanMesh> = self.ribbons.iter().rev().map(|ribbon| &ribbon.plan).collect();
+        let parts = partition::apart(from_above.iter().copied());
+        for (ribbon, plan) in self.ribbons.iter_mut().rev().zip(parts) {
+            ribbon.plan = plan;
+        }
+        self.ribbons.retain(|ribbon| !ribbon.plan.triangles.is_empty());
     }
 }
 
@@ -93,7 +112,7 @@ fn add_lake(
         volumes.fill_m3
     ));
     let feature = collected.add(FeatureKind::Lake, name);
-    collected.ribbons.push(Ribbon { plan, surface: Surface::Lake, layer: layer_of(Surface::Lake), feature });
+    collected.lay(plan, Surface::Lake, feature);
 }
 
 /// Metres in one repeat of the water's texture: fine enough not to be seen as a pattern.
@@ -133,70 +152,42 @@ pub fn rivers(
 ) -> Result<(), Diagnostic> {
     for river in &document.rivers {
         let width_m = value(river.width.as_ref(), 8.0);
+        let options = StrokeOptions {
+            width_m,
+            texture_length_m: texture_length_m(Surface::River, width_m),
+            ..StrokeOptions::default()
+        };
         let lines = sources.lines(&river.source)?;
-        add_lines(
-            collected,
-            extent,
-            FeatureKind::River,
-            river.name.as_deref(),
-            lines,
-            (Surface::River, width_m),
-        );
+        for (name, line) in
+            near(lines, extent, &options, (FeatureKind::River, river.name.as_deref()), collected)
+        {
+            let mut plan = Clipped { plan: PlanMesh::default(), extent };
+            stroke(&line, Continuations::default(), &options, &mut plan);
+            let feature = collected.add(FeatureKind::River, name);
+            collected.lay(plan.plan, Surface::River, feature);
+        }
     }
     Ok(())
 }
 
-/// Adds the document's roads.
-///
-/// # Errors
-/// A source cannot be had.
-pub fn roads(
-    document: &Document,
-    sources: &Sources<'_>,
-    extent: &Rect,
-    collected: &mut Collected,
-) -> Result<(), Diagnostic> {
-    for road in &document.roads {
-        let surface = match road.surface.as_ref().map(Spanned::get_ref).copied().unwrap_or_default() {
-            words::Surface::Asphalt => Surface::Asphalt,
-            words::Surface::Gravel => Surface::Gravel,
-            words::Surface::Track => Surface::Track,
-        };
-        let width_m = value(road.width.as_ref(), 6.0);
-        let lines = sources.lines(&road.source)?;
-        add_lines(collected, extent, FeatureKind::Road, road.name.as_deref(), lines, (surface, width_m));
-    }
-    Ok(())
-}
-
-/// Makes a ribbon of every line that comes near the ground's `extent`.
-fn add_lines(
-    collected: &mut Collected,
-    extent: &Rect,
-    kind: FeatureKind,
-    given: Option<&str>,
+/// The lines that come near the ground's `extent`, with their names; the others are noted.
+pub(super) fn near(
     lines: Vec<Named<Vec<DVec2>>>,
-    (surface, width_m): (Surface, f64),
-) {
-    let options = StrokeOptions {
-        width_m,
-        texture_length_m: texture_length_m(surface, width_m),
-        ..StrokeOptions::default()
-    };
-    let mut off = 0;
-    for Named { name, shape } in lines {
-        let reach = Rect::around(shape.iter().copied()).grown(width_m * options.mitre_limit);
-        let line = Polyline::new(shape, MERGE_M).filter(|_| reach.meets(extent));
-        let Some(line) = line else {
-            off += 1;
-            continue;
-        };
-        let mut plan = Clipped { plan: PlanMesh::default(), extent };
-        stroke(&line, &options, &mut plan);
-        let feature = collected.add(kind, named(given, name));
-        let layer = layer_of(surface);
-        collected.ribbons.push(Ribbon { plan: plan.plan, surface, layer, feature });
-    }
+    extent: &Rect,
+    options: &StrokeOptions,
+    (kind, given): (FeatureKind, Option<&str>),
+    collected: &mut Collected,
+) -> Vec<(String, Polyline)> {
+    let count = lines.len();
+    let near: Vec<_> = lines
+        .into_iter()
+        .filter_map(|Named { name, shape }| {
+            let reach = Rect::around(shape.iter().copied()).grown(options.width_m * options.mitre_limit);
+            let line = Polyline::new(shape, MERGE_M).filter(|_| reach.meets(extent))?;
+            Some((named(given, name), line))
+        })
+        .collect();
+    let off = count - near.len();
     if off > 0 {
         let what = given.map(|name| format!(" of '{name}'")).unwrap_or_default();
         collected.notes.push(format!(
@@ -204,12 +195,15 @@ fn add_lines(
             kind.noun(off)
         ));
     }
+    near
 }
 
 /// A plan mesh that leaves out triangles that cannot meet the ground.
-struct Clipped<'a> {
-    plan: PlanMesh,
-    extent: &'a Rect,
+pub(super) struct Clipped<'a> {
+    /// What was not left out.
+    pub plan: PlanMesh,
+    /// Where the ground is.
+    pub extent: &'a Rect,
 }
 
 impl MeshSink<PlanVertex> for Clipped<'_> {
@@ -230,9 +224,9 @@ fn layer_of(surface: Surface) -> u8 {
     match surface {
         Surface::River => 0,
         Surface::Lake => 1,
-        Surface::Track => 2,
-        Surface::Gravel => 3,
-        Surface::Asphalt => 4,
+        Surface::Track | Surface::TrackJunction => 2,
+        Surface::Gravel | Surface::GravelJunction => 3,
+        Surface::Asphalt | Surface::AsphaltJunction => 4,
     }
 }
 
@@ -241,10 +235,12 @@ fn called(name: &str) -> String {
     if name.is_empty() { "a lake without a name".into() } else { format!("lake '{name}'") }
 }
 
-fn named(given: Option<&str>, in_file: String) -> String {
+/// The name given in the scene file, or the one in the vector file.
+pub(super) fn named(given: Option<&str>, in_file: String) -> String {
     given.map_or(in_file, str::to_owned)
 }
 
-fn value(stated: Option<&Spanned<f64>>, default: f64) -> f64 {
+/// What is stated, or the default.
+pub(super) fn value(stated: Option<&Spanned<f64>>, default: f64) -> f64 {
     stated.map_or(default, |value| *value.get_ref())
 }

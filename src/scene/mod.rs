@@ -13,6 +13,7 @@ pub mod models;
 pub mod picture;
 pub mod place;
 pub mod plinth;
+pub mod roads;
 pub mod sources;
 pub mod style;
 pub mod views;
