@@ -55,7 +55,8 @@ fn every_command_of_the_readme_runs_and_writes_what_it_says() {
                 server = Some(Server::start(sandbox.folder(), &arguments));
             }
             Some(Command::Ask { path }) => {
-                let server = server.as_ref().unwrap_or_else(|| panic!("README.md:{number}: nothing serves yet"));
+                let server =
+                    server.as_ref().unwrap_or_else(|| panic!("README.md:{number}: nothing serves yet"));
                 let answer = server.get(&path);
                 assert_eq!(answer.status, 200, "README.md:{number}: {text}\n{answer:?}");
                 ran += 1;

@@ -96,7 +96,7 @@ fn no_input_is_written_over_and_nothing_is_left_of_what_fails() {
         (&["grid.asc", "out.xyz"], 2),
         (&["grid.asc", "out"], 2),
         (&["grid.asc"], 2),
-        (&["grid.asc", "degrees.asc", "out.tif"], 2),
+        (&["grid.asc", "degrees.asc", "out.tif"], 1),
         (&["grid.asc", "out.tif", "--cell", "0"], 2),
         (&["grid.asc", "out.tif", "--crs", "EPSG:0"], 2),
         (&["grid.asc", "out.hgt"], 1),

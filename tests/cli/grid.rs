@@ -67,11 +67,18 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
     scratch.write("line.geojson", LINE);
     scratch.write("plane.geojson", LINE.replace(",25]", "]"));
     let grid = |more: &[&str]| run_in(scratch.folder(), &[&["dem", "grid"], more].concat()).failed(1);
+    scratch.write("points.tif", "1,2,3");
+    for name in ["out.xyz", "points.csv"] {
+        let arguments = ["dem", "grid", "points.csv", name, "--cell", "1"];
+        assert!(
+            run_in(scratch.folder(), &arguments).failed(2).contains("name a file that ends so"),
+            "{name}"
+        );
+    }
     for (arguments, wanted) in [
-        (&["bad.csv", "out.asc", "--cell", "1"][..], "bad.csv: line 2: found '4,5,six'"),
+        (&["points.tif", "points.tif", "--cell", "1"][..], "this is a file that is read"),
+        (&["bad.csv", "out.asc", "--cell", "1"], "bad.csv: line 2: found '4,5,six'"),
         (&["points.csv", "out.asc", "--cell", "0"], "the cell size is 0"),
-        (&["points.csv", "out.xyz", "--cell", "1"], "out.xyz:"),
-        (&["points.csv", "points.csv", "--cell", "1"], "one of the files to read"),
         (&["points.csv", "out.asc", "--cell", "1", "--k", "3"], "--k goes with --method idw"),
         (&["points.csv", "out.asc", "--cell", "1", "--power", "3"], "--power goes with"),
         (&["points.csv", "out.asc", "--cell", "1", "--method", "idw", "--power", "0"], "power is 0"),

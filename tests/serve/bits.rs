@@ -14,12 +14,13 @@ use crate::client::{Server, numbers, strings};
 use crate::common::data::data;
 
 /// Elevation models in degrees and in metres, with and without a system, with no-data.
-const FILES: [&str; 5] = [
+const FILES: [&str; 6] = [
     "dem/zion_srtm_u16_deflate.tif",
     "dem/bigtujunga_utm11_i16_tiled.tif",
     "dem/boulder_SRTMGL3.asc",
     "dem/eudem_laea_f32_deflate.tif",
     "dem_formats/f32_strip_none_nan.tif",
+    "dem/etopo1_1deg_global.tif",
 ];
 
 const INTERPOLATIONS: [(&str, Interpolation); 4] = [
