@@ -13,7 +13,7 @@ use sandtable::mesh::trimesh::TriMesh;
 use sandtable::ribbon::area;
 use sandtable::ribbon::drape::{check_clearance, drape};
 use sandtable::ribbon::plan::PlanMesh;
-use sandtable::ribbon::stroke::{StrokeOptions, stroke};
+use sandtable::ribbon::stroke::{Continuations, StrokeOptions, stroke};
 use sandtable::roam::criterion::screen::ScreenError;
 use sandtable::roam::culling::{PatchHeights, patches_in_view};
 use sandtable::roam::displayed::DisplayedTerrain;
@@ -102,7 +102,7 @@ proptest! {
         prop_assume!(camera.is_some() && line.is_some());
         let terrain = WORLD.seen_by(&camera.expect("checked"), tolerance_px);
         let mut plan = PlanMesh::default();
-        stroke(&line.expect("checked"), &StrokeOptions { width_m, ..StrokeOptions::default() }, &mut plan);
+        stroke(&line.expect("checked"), Continuations::default(), &StrokeOptions { width_m, ..StrokeOptions::default() }, &mut plan);
         let clearance = check_clearance(&draped(&plan, &terrain), &terrain);
         prop_assert!(clearance < 2e-3, "{clearance} m");
     }
