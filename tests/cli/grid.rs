@@ -95,5 +95,5 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
     }
     assert_eq!(run_in(scratch.folder(), &["dem", "grid", "points.csv", "--cell", "1"]).code, 2);
     assert_eq!(run_in(scratch.folder(), &["dem", "grid", "points.csv", "out.asc"]).code, 2);
-    assert_eq!(scratch.names(), ["bad.csv", "line.geojson", "plane.geojson", "points.csv"]);
+    assert_eq!(scratch.names(), ["bad.csv", "line.geojson", "plane.geojson", "points.csv", "points.tif"]);
 }
