@@ -119,10 +119,11 @@ fn requests_beyond_those_at_once_are_told_to_come_back() {
     slow.write_all(b"POST /v1/grid HTTP/1.1\r\nhost: a\r\ncontent-length: 25\r\n\r\nlocations=")
         .expect("it reads");
     let mut refused = server.get("/v1/grid?locations=50,10");
-    for _ in 0..100 {
+    for _ in 0..300 {
         if refused.status == 503 {
             break;
         }
+        std::thread::sleep(Duration::from_millis(10));
         refused = server.get("/v1/grid?locations=50,10");
     }
     refused.refused(503);
