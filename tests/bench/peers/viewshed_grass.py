@@ -19,5 +19,5 @@ if os.environ.get("GISRC"):
          f"observer_elevation={eye}", "memory=4000"], **quiet)
     print((time.perf_counter() - start) * 1e3)
 else:
-    subprocess.run(["grass", "--tmp-project", "XY", "--exec", sys.executable, __file__] + sys.argv[1:], check=True,
+    subprocess.run(["grass", "--tmp-location", "XY", "--exec", sys.executable, __file__] + sys.argv[1:], check=True,
                    stderr=subprocess.DEVNULL)
