@@ -1,7 +1,7 @@
 //! Which posts can be seen from one point.
 //!
-//! The definition is one line of sight for each post ([`Looking::sees`]). What is run is a [`sweep`] outward through
-//! wedges of the circle, which holds each post against the [`horizon`] of what lies before it and looks along the line
+//! The definition is one line of sight for each post (`Looking::sees`). What is run is a `sweep` outward through
+//! wedges of the circle, which holds each post against the `horizon` of what lies before it and looks along the line
 //! only where the two are too close to tell apart. Both give the same answer on every post.
 //!
 //! Other programs make this fast by giving up the answer: propagating one reference plane or one interpolated slope
