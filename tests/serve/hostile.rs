@@ -115,17 +115,16 @@ fn one_connection_too_many_is_told_so() {
 #[test]
 fn requests_beyond_those_at_once_are_told_to_come_back() {
     let (_scratch, server) = server(&["--max-requests", "1", "--timeout", "5"]);
-    let mut slow = server.connect();
-    slow.write_all(b"POST /v1/grid HTTP/1.1\r\nhost: a\r\ncontent-length: 25\r\n\r\nlocations=")
-        .expect("it reads");
-    let mut refused = server.get("/v1/grid?locations=50,10");
-    for _ in 0..300 {
-        if refused.status == 503 {
-            break;
-        }
-        std::thread::sleep(Duration::from_millis(10));
-        refused = server.get("/v1/grid?locations=50,10");
-    }
+    // The slow one may itself come while another is being answered, and is then the one to be refused.
+    let occupied = (0..50).find_map(|_| {
+        let mut slow = server.connect();
+        slow.write_all(b"POST /v1/grid HTTP/1.1\r\nhost: a\r\ncontent-length: 25\r\n\r\nlocations=")
+            .expect("it reads");
+        std::thread::sleep(Duration::from_millis(100));
+        let refused = server.get("/v1/grid?locations=50,10");
+        (refused.status == 503).then_some((slow, refused))
+    });
+    let (mut slow, refused) = occupied.expect("the second is refused");
     refused.refused(503);
     assert_eq!(refused.header("retry-after"), "1");
     slow.write_all(b"50.005,10.005  ").expect("it reads");
