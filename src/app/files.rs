@@ -81,7 +81,15 @@ pub fn beside(path: &Path) -> impl Fn(&str) -> Option<Vec<u8>> + '_ {
 /// The folder is not there, `path` is a folder or a device, it is the scene file itself, or its name is that of
 /// another format.
 pub fn check_place(path: &Path, scene: &Path) -> Result<(), Failure> {
-    check_file_place(path, scene, "this is the scene file itself; name another with -o")?;
+    check_picture_place(path, scene, "this is the scene file itself; name another with -o")
+}
+
+/// Whether a picture could be written to `path`, as far as can be told without writing it.
+///
+/// # Errors
+/// As for [`check_file_place`]; or its name is that of another format than PNG.
+pub fn check_picture_place(path: &Path, input: &Path, is_input: &str) -> Result<(), Failure> {
+    check_file_place(path, input, is_input)?;
     if !is_png_name(path) {
         let reason = "pictures are written as PNG; name one that ends in .png";
         return Err(Failure::input(format!("{}: {reason}", path.display())));

@@ -11,8 +11,9 @@ use serde_json::json;
 use crate::app::arguments::{Access, InterpolationChoice, StatedHeights};
 use crate::app::dataset::Dataset;
 use crate::app::failure::Failure;
+use crate::app::places::stated_crs;
+use crate::app::points::{Point, parse_points};
 use crate::app::{files, output};
-use crate::geom::crs::Crs;
 use crate::terrain::query::{Answer, Surface};
 
 /// `height`.
@@ -97,13 +98,12 @@ impl FromStr for Position {
 /// # Errors
 /// The file, the scene or the points cannot be had or read, or the points cannot be brought to its coordinate system.
 pub fn run(options: &HeightOptions) -> Result<(), Failure> {
-    let stated = options.crs.as_deref().map(Crs::parse).transpose();
-    let stated = stated.map_err(|error| Failure::Usage(format!("--crs: {error}")))?;
+    let stated = stated_crs(options.crs.as_deref())?;
     let dataset = Dataset::open(&options.file, options.heights, &options.access)?;
     let text = options.points.as_deref().map(files::read_text).transpose()?;
     let points = match (&options.points, &text) {
         (Some(path), Some(text)) => parse_points(&files::text_name(path), text)?,
-        _ => options.at.iter().map(Point::of).collect(),
+        _ => options.at.iter().map(Position::point).collect(),
     };
     let at: Vec<DVec2> = points.iter().map(|point| point.at).collect();
     let surface = options.surface.map_or(dataset.usual_surface(), Surface::from);
@@ -142,99 +142,9 @@ fn write_json(out: &mut impl Write, points: &[Point<'_>], answers: &[Answer]) ->
     out.flush()
 }
 
-/// A point and how it was written.
-#[derive(Debug, PartialEq)]
-struct Point<'a> {
-    at: DVec2,
-    written: [&'a str; 2],
-}
-
-impl<'a> Point<'a> {
-    fn of(position: &'a Position) -> Self {
-        let [x, y] = &position.written;
-        Self { at: position.at, written: [x, y] }
-    }
-}
-
-/// The points of a CSV text: a header that names columns `x` and `y` (or `lon` and `lat`), or none and x, y first.
-fn parse_points<'a>(name: &str, text: &'a str) -> Result<Vec<Point<'a>>, Failure> {
-    let mut lines = text
-        .trim_start_matches('\u{feff}')
-        .lines()
-        .enumerate()
-        .filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'))
-        .peekable();
-    let columns = match lines.peek() {
-        Some(&(index, line)) if is_header(line) => {
-            lines.next();
-            columns(line).ok_or_else(|| {
-                let place = index + 1;
-                Failure::input(format!(
-                    "{name}:{place}: the header '{line}' must name columns x and y, or lon and lat"
-                ))
-            })?
-        }
-        _ => [0, 1],
-    };
-    lines
-        .map(|(index, line)| {
-            parse_point(line, columns).ok_or_else(|| {
-                let place = index + 1;
-                Failure::input(format!("{name}:{place}: found '{line}', each line must hold numbers x,y"))
-            })
-        })
-        .collect()
-}
-
-fn parse_point(line: &str, columns: [usize; 2]) -> Option<Point<'_>> {
-    let fields: Vec<&str> = fields(line).collect();
-    let written = [*fields.get(columns[0])?, *fields.get(columns[1])?];
-    let at = DVec2::new(written[0].parse().ok()?, written[1].parse().ok()?);
-    at.is_finite().then_some(Point { at, written })
-}
-
-/// Whether a first line holds names; one with a number in it is a point, or meant to be one.
-fn is_header(line: &str) -> bool {
-    fields(line).all(|field| field.parse::<f64>().is_err())
-}
-
-/// The columns of x and y that a header names.
-fn columns(header: &str) -> Option<[usize; 2]> {
-    let names: Vec<String> = fields(header).map(str::to_lowercase).collect();
-    let find = |accepted: &[&str]| names.iter().position(|name| accepted.contains(&name.as_str()));
-    let x = find(&["x", "lon", "long", "longitude", "easting", "east"])?;
-    let y = find(&["y", "lat", "latitude", "northing", "north"])?;
-    Some([x, y])
-}
-
-fn fields(line: &str) -> impl Iterator<Item = &str> {
-    let separator = [',', ';'].into_iter().find(|&separator| line.contains(separator));
-    line.split(move |at: char| separator.map_or(at.is_whitespace(), |separator| at == separator))
-        .map(|field| field.trim().trim_matches('"'))
-        .filter(move |field| separator.is_some() || !field.is_empty())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn points_come_with_or_without_a_header_and_in_any_columns() {
-        let at = |text: &str| {
-            parse_points("p.csv", text).expect("sound").iter().map(|point| point.at).collect::<Vec<_>>()
-        };
-        let expected = vec![DVec2::new(1.5, 2.0), DVec2::new(-3.0, 4e3)];
-        assert_eq!(at("1.5,2\n-3,4e3\n"), expected);
-        assert_eq!(at("x,y\r\n1.5,2\r\n\r\n-3,4e3"), expected);
-        assert_eq!(at("id;lat;lon\n7;2;1.5\n8;4e3;-3"), expected);
-        assert_eq!(at("1.5  2\n-3 4e3"), expected);
-    }
-
-    #[test]
-    fn a_line_that_is_no_point_is_named() {
-        let Err(Failure::Input(reason)) = parse_points("p.csv", "x,y\n1,2\n3,north\n") else {
-            panic!("accepted");
-        };
-        assert!(reason.contains("p.csv:3:") && reason.contains("3,north"), "{reason}");
+impl Position {
+    fn point(&self) -> Point<'_> {
+        let [x, y] = &self.written;
+        Point { at: self.at, written: [x, y] }
     }
 }

@@ -21,6 +21,7 @@ pub mod model;
 pub mod output;
 pub mod picture;
 pub mod places;
+pub mod points;
 pub mod profile;
 pub mod progress;
 pub mod rasters;

@@ -8,6 +8,7 @@ use glam::DVec2;
 use crate::app::dataset::Dataset;
 use crate::app::failure::Failure;
 use crate::app::files;
+use crate::app::points::parse_points;
 use crate::geom::crs::Crs;
 use crate::vector::read::{self, Hints};
 
@@ -98,8 +99,8 @@ pub fn read_way(path: &Path, stated: Option<Crs>, dataset: &Dataset) -> Result<W
         return vector_way(path, stated);
     }
     let text = files::read_text(path)?;
-    let vertices = csv_vertices(&text)
-        .map_err(|(line, reason)| Failure::input(format!("{}:{line}: {reason}", files::text_name(path))))?;
+    let points = parse_points(&files::text_name(path), &text)?;
+    let vertices: Vec<DVec2> = points.iter().map(|point| point.at).collect();
     if vertices.len() < 2 {
         let found = vertices.len();
         let name = files::text_name(path);
@@ -122,64 +123,6 @@ fn vector_way(path: &Path, stated: Option<Crs>) -> Result<Way, Failure> {
     }
 }
 
-/// The positions of a CSV text: x,y in the first two columns, or where a header names x and y (lon and lat); else the
-/// number of the line that is wrong, from 1, and why.
-fn csv_vertices(text: &str) -> Result<Vec<DVec2>, (usize, String)> {
-    let mut columns: Option<[usize; 2]> = None;
-    let mut vertices = Vec::new();
-    for (index, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
-        if line.trim().is_empty() || line.starts_with('#') {
-            continue;
-        }
-        let fields = fields(line);
-        let Some([x, y]) = columns else {
-            let is_header = fields.iter().all(|field| field.parse::<f64>().is_err());
-            columns = Some(if is_header {
-                named_columns(&fields).ok_or((index + 1, unnamed(line)))?
-            } else {
-                [0, 1]
-            });
-            if !is_header {
-                vertices.push(vertex(&fields, [0, 1]).ok_or((index + 1, no_vertex(line)))?);
-            }
-            continue;
-        };
-        vertices.push(vertex(&fields, [x, y]).ok_or((index + 1, no_vertex(line)))?);
-    }
-    Ok(vertices)
-}
-
-fn unnamed(line: &str) -> String {
-    format!("the header '{line}' must name columns x and y, or lon and lat")
-}
-
-fn no_vertex(line: &str) -> String {
-    format!("found '{line}', each line must hold numbers x,y")
-}
-
-fn fields(line: &str) -> Vec<&str> {
-    let separator = [',', ';'].into_iter().find(|&separator| line.contains(separator));
-    let split: Vec<&str> = match separator {
-        Some(separator) => line.split(separator).collect(),
-        None => line.split_whitespace().collect(),
-    };
-    split.into_iter().map(|field| field.trim().trim_matches('"')).collect()
-}
-
-fn named_columns(fields: &[&str]) -> Option<[usize; 2]> {
-    let find = |known: &[&str]| {
-        fields.iter().position(|field| known.iter().any(|known| field.eq_ignore_ascii_case(known)))
-    };
-    let x = find(&["x", "lon", "long", "longitude", "easting", "east"])?;
-    let y = find(&["y", "lat", "latitude", "northing", "north"])?;
-    Some([x, y])
-}
-
-fn vertex(fields: &[&str], [x, y]: [usize; 2]) -> Option<DVec2> {
-    let at = DVec2::new(fields.get(x)?.parse().ok()?, fields.get(y)?.parse().ok()?);
-    at.is_finite().then_some(at)
-}
-
 /// `x, y` as a reader wants them: degrees to a metre or so, metres to the metre.
 pub fn spoken(crs: &Crs, at: DVec2) -> String {
     let decimals = if crs.is_geographic() { 5 } else { 0 };
@@ -191,15 +134,7 @@ pub fn spoken(crs: &Crs, at: DVec2) -> String {
 /// # Errors
 /// The folder is not there, `path` is no file or `input` itself, or its name is that of another format than PNG.
 pub fn check_picture_place(path: &Path, input: &Path) -> Result<(), Failure> {
-    files::check_file_place(path, input, "this is the input itself; name another with -o")?;
-    let is_png = path.extension().is_none_or(|extension| extension.eq_ignore_ascii_case("png"));
-    if is_png {
-        return Ok(());
-    }
-    Err(Failure::input(format!(
-        "{}: pictures are written as PNG; name one that ends in .png",
-        path.display()
-    )))
+    files::check_picture_place(path, input, "this is the input itself; name another with -o")
 }
 
 #[cfg(test)]
@@ -216,25 +151,5 @@ mod tests {
         for wrong in ["", "1", "1,2,3,4", "a,b", "NaN,1", "1,inf", "1;2"] {
             assert!(wrong.parse::<Positions>().is_err() && wrong.parse::<Stand>().is_err(), "{wrong}");
         }
-    }
-
-    #[test]
-    fn vertices_come_with_or_without_a_header_and_in_any_columns() {
-        let expected = Ok(vec![DVec2::new(1.5, 2.0), DVec2::new(-3.0, 4e3)]);
-        for text in [
-            "1.5,2\n-3,4e3\n",
-            "x,y\r\n1.5,2\r\n\r\n-3,4e3",
-            "id;lat;lon\n7;2;1.5\n8;4e3;-3",
-            "# a line\n1.5 2\n-3 4e3",
-        ] {
-            assert_eq!(csv_vertices(text), expected, "{text}");
-        }
-    }
-
-    #[test]
-    fn a_line_that_is_no_vertex_is_named() {
-        assert_eq!(csv_vertices("x,y\n1,2\n3,north\n").map_err(|(line, _)| line), Err(3));
-        assert_eq!(csv_vertices("1,2\n3\n").map_err(|(line, _)| line), Err(2));
-        assert_eq!(csv_vertices("a,b\n1,2\n").map_err(|(line, _)| line), Err(1));
     }
 }
