@@ -12,6 +12,7 @@ pub mod render;
 pub mod ribbon;
 pub mod roam;
 pub mod scene;
+pub mod structure;
 pub mod terrain;
 pub mod vector;
 pub mod view;

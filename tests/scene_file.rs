@@ -2,7 +2,9 @@
 
 use proptest::prelude::{ProptestConfig, any};
 use sandtable::description::diagnostic::Diagnostics;
-use sandtable::description::document::{Color, Document, Match, RampChoice, Scalar};
+use sandtable::description::document::{Color, Document, RampChoice};
+use sandtable::description::expression::{Choice, Quantity};
+use sandtable::description::features::{Match, Scalar};
 use sandtable::description::parse::{MAX_BYTES, parse, parse_bytes};
 use sandtable::description::words::{Clamp, LabelKind, Ramp, Surface};
 
@@ -158,16 +160,25 @@ fn features_are_read_with_their_sources() {
     let points = first.source.points.as_ref().expect("points");
     assert_eq!(points.get_ref(), &[[-87.0, 42.0], [-87.1, 42.1], [-87.2, 42.0]]);
     assert_eq!(first.source.span(), points.span());
-    assert_eq!(first.surface.as_ref().map(|surface| *surface.get_ref()), Some(Surface::Gravel));
+    assert_eq!(
+        first.surface.as_ref().map(|surface| surface.get_ref().clone()),
+        Some(Choice::Fixed(Surface::Gravel))
+    );
     assert_eq!(second.source.file.as_ref().map(|file| file.get_ref().as_str()), Some("roads.geojson"));
     let filter = second.source.filter.as_ref().expect("a filter").get_ref();
     assert_eq!(filter["lanes"], Match::Is(Scalar::Number(2.0)));
     assert_eq!(filter["bridge"].values(), [Scalar::Bool(false)]);
     let kinds = ["primary", "secondary"].map(|kind| Scalar::Text(kind.into()));
     assert_eq!(filter["highway"], Match::AnyOf(kinds.to_vec()));
-    assert_eq!(document.lakes[0].level.as_ref().map(|level| *level.get_ref()), Some(412.5));
+    assert_eq!(
+        document.lakes[0].level.as_ref().map(|level| level.get_ref().clone()),
+        Some(Quantity::fixed(412.5))
+    );
     let model = &document.models[0];
-    assert_eq!((model.file.get_ref().as_str(), *model.at.get_ref()), ("models/barn.3ds", [1.0, 2.0]));
+    assert_eq!(
+        (model.file.get_ref().as_str(), *model.at.as_ref().expect("one place").get_ref()),
+        ("models/barn.3ds", [1.0, 2.0])
+    );
     assert_eq!(model.clamp.as_ref().map(|clamp| *clamp.get_ref()), Some(Clamp::Relative));
     assert_eq!(document.labels[0].kind.as_ref().map(|kind| *kind.get_ref()), Some(LabelKind::Summit));
     assert_eq!(document.cameras[1].eye_elevation.as_ref().map(|eye| *eye.get_ref()), Some(3000.0));

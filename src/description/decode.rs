@@ -5,20 +5,17 @@ use std::sync::Arc;
 
 use toml::Spanned;
 
+use crate::description::bounds::{Bounds, ELEVATION};
+use crate::description::decode_features as features;
 use crate::description::document::{
-    CameraTable, ContourTable, Document, Furniture, Label, Lake, Light, ModelPlacement, River, Road, Source,
-    Style, Terrain,
+    CameraTable, ContourTable, Document, Furniture, Label, Light, Style, Terrain,
 };
-use crate::description::item::{Bounds, ELEVATION};
 use crate::description::reader::Reader;
 use crate::description::source_text::SourceText;
-use crate::description::words::Clamp;
 use crate::geom::crs::Crs;
 
-/// Widths of roads and rivers in metres.
-const WIDTH: Bounds = Bounds::Above(0.0, 10_000.0);
 /// Compass directions in degrees.
-const DIRECTION: Bounds = Bounds::Within(-360.0, 360.0);
+pub(super) const DIRECTION: Bounds = Bounds::Within(-360.0, 360.0);
 
 /// The whole file.
 pub(super) fn document(reader: &mut Reader<'_, '_>, source: Arc<SourceText>) -> Option<Document> {
@@ -28,10 +25,15 @@ pub(super) fn document(reader: &mut Reader<'_, '_>, source: Arc<SourceText>) -> 
     let points_crs = any_crs(reader, "points_crs");
     let terrain = reader.require_table("terrain", terrain);
     let style = reader.table("style", style).unwrap_or_default();
-    let roads = reader.tables("road", road);
-    let rivers = reader.tables("river", river);
-    let lakes = reader.tables("lake", lake);
-    let models = reader.tables("model", model);
+    let roads = reader.tables("road", features::road);
+    let bridges = reader.tables("bridge", features::bridge);
+    let rivers = reader.tables("river", features::river);
+    let lakes = reader.tables("lake", features::lake);
+    let areas = reader.tables("area", features::area);
+    let buildings = reader.tables("building", features::building);
+    let fences = reader.tables("fence", features::fence);
+    let models = reader.tables("model", features::model);
+    let scatters = reader.tables("scatter", features::scatter);
     let labels = reader.tables("label", label);
     let cameras = reader.tables("camera", camera);
     distinct_names(reader, &source, &cameras);
@@ -46,9 +48,14 @@ pub(super) fn document(reader: &mut Reader<'_, '_>, source: Arc<SourceText>) -> 
         terrain,
         style,
         roads,
+        bridges,
         rivers,
         lakes,
+        areas,
+        buildings,
+        fences,
         models,
+        scatters,
         labels,
         cameras,
         furniture,
@@ -105,87 +112,6 @@ fn light(reader: &mut Reader<'_, '_>) -> Light {
     }
 }
 
-fn road(reader: &mut Reader<'_, '_>) -> Option<Road> {
-    let name = plain_text(reader, "name");
-    let source = source(reader, 2);
-    let width = number(reader, "width", WIDTH);
-    let surface = reader.get("surface", |item| item.word());
-    Some(Road { name, source: source?, width, surface })
-}
-
-fn river(reader: &mut Reader<'_, '_>) -> Option<River> {
-    let name = plain_text(reader, "name");
-    let source = source(reader, 2);
-    let width = number(reader, "width", WIDTH);
-    Some(River { name, source: source?, width })
-}
-
-fn lake(reader: &mut Reader<'_, '_>) -> Option<Lake> {
-    let name = plain_text(reader, "name");
-    let source = source(reader, 3);
-    let level = number(reader, "level", ELEVATION);
-    Some(Lake { name, source: source?, level })
-}
-
-/// The five keys that say where a feature's coordinates come from: `points` or `file`, not both; a layer and a
-/// filter only for a file.
-fn source(reader: &mut Reader<'_, '_>, least_points: usize) -> Option<Source> {
-    let given = [reader.has("points"), reader.has("file")];
-    let choosing = [
-        (reader.has("layer"), "`layer` names a layer of a file, but the points are given here"),
-        (reader.has("where"), "`where` chooses features of a file, but the points are given here"),
-    ];
-    let points = reader.get("points", |item| item.points(least_points));
-    let file = reader.get("file", |item| item.filled_text());
-    let layer = reader.get("layer", |item| item.filled_text());
-    let filter = reader.get("where", |item| item.filter());
-    let crs = any_crs(reader, "crs");
-    let title = reader.title();
-    match given {
-        [Some(_), Some(file)] => {
-            reader.error(file, format!("{title} has both `points` and `file`"), "keep one of them");
-        }
-        [Some(_), None] => {
-            for (place, message) in choosing {
-                place.into_iter().for_each(|place| reader.error(place, message, "remove it"));
-            }
-        }
-        [None, None] => {
-            let help = "add `points = [[x, y], ...]` or `file = \"name.geojson\"`";
-            reader.error_if_unexplained(
-                &["points", "file"],
-                format!("{title} has neither `points` nor `file`"),
-                help,
-            );
-        }
-        _ => {}
-    }
-    Some(Source { points, file, layer, filter, crs })
-}
-
-fn model(reader: &mut Reader<'_, '_>) -> Option<ModelPlacement> {
-    let name = plain_text(reader, "name");
-    let file = reader.require("file", |item| item.filled_text());
-    let at = reader.require("at", |item| item.point());
-    let crs = any_crs(reader, "crs");
-    let heading = number(reader, "heading", DIRECTION);
-    let scale = number(reader, "scale", Bounds::Above(0.0, 1e6));
-    let clamp = reader.get("clamp", |item| item.word());
-    let has_height = reader.has("height");
-    let height = number(reader, "height", ELEVATION);
-    match (clamp.as_ref().map_or(Clamp::Ground, |clamp| *clamp.get_ref()), has_height, &clamp) {
-        (Clamp::Ground, Some(span), _) => {
-            let help = "add `clamp = \"relative\"` or `clamp = \"absolute\"`, or remove it";
-            reader.error(span, "`height` says nothing for a model that stands on the ground", help);
-        }
-        (Clamp::Relative | Clamp::Absolute, None, Some(clamp)) => {
-            reader.error(clamp.span(), "this needs a `height`", "add `height = ...` in metres");
-        }
-        _ => {}
-    }
-    Some(ModelPlacement { name, file: file?, at: at?, crs, heading, scale, clamp, height })
-}
-
 fn label(reader: &mut Reader<'_, '_>) -> Option<Label> {
     let text = reader.require("text", |item| item.filled_text());
     let at = reader.require("at", |item| item.point());
@@ -238,15 +164,15 @@ fn distinct_names(reader: &mut Reader<'_, '_>, source: &SourceText, cameras: &[C
     }
 }
 
-fn plain_text(reader: &mut Reader<'_, '_>, key: &'static str) -> Option<String> {
+pub(super) fn plain_text(reader: &mut Reader<'_, '_>, key: &'static str) -> Option<String> {
     reader.get(key, |item| item.text()).map(Spanned::into_inner)
 }
 
-fn number(reader: &mut Reader<'_, '_>, key: &'static str, bounds: Bounds) -> Option<Spanned<f64>> {
+pub(super) fn number(reader: &mut Reader<'_, '_>, key: &'static str, bounds: Bounds) -> Option<Spanned<f64>> {
     reader.get(key, |item| item.number(bounds))
 }
 
-fn any_crs(reader: &mut Reader<'_, '_>, key: &'static str) -> Option<Spanned<String>> {
+pub(super) fn any_crs(reader: &mut Reader<'_, '_>, key: &'static str) -> Option<Spanned<String>> {
     reader.get(key, |item| item.crs(|_| Ok(())))
 }
 

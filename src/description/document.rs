@@ -1,4 +1,5 @@
-//! The scene file's tables, one struct each: the reference of what a scene file may say.
+//! The scene file's tables, one struct each: the reference of what a scene file may say. The tables of features stand in
+//! [`crate::description::features`].
 //!
 //! A scene file is TOML in UTF-8. Lengths and heights are metres, angles degrees, compass directions
 //! clockwise from north, coordinates `[easting, northing]` or `[longitude, latitude]`, and file names
@@ -33,15 +34,17 @@
 //! then (a file that is not there, a point off the terrain) are [`Spanned`]; [`Document::error`] makes a
 //! message that points at one.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
 use toml::Spanned;
 
 use crate::description::diagnostic::Diagnostic;
+use crate::description::features::{
+    Area, Bridge, Building, Fence, Lake, ModelPlacement, River, Road, Scatter,
+};
 use crate::description::source_text::SourceText;
-use crate::description::words::{Clamp, HeightEncoding, LabelKind, Ramp, Surface};
+use crate::description::words::{HeightEncoding, LabelKind, Ramp};
 
 /// A whole scene file.
 #[derive(Clone, Debug)]
@@ -64,12 +67,22 @@ pub struct Document {
     pub style: Style,
     /// `[[road]]`: in drawing order; at most 10 000, as of every repeated table.
     pub roads: Vec<Road>,
+    /// `[[bridge]]`: bridges that belong to no road of the scene.
+    pub bridges: Vec<Bridge>,
     /// `[[river]]`: in drawing order.
     pub rivers: Vec<River>,
     /// `[[lake]]`.
     pub lakes: Vec<Lake>,
+    /// `[[area]]`: what covers the ground, in drawing order.
+    pub areas: Vec<Area>,
+    /// `[[building]]`: footprints raised to a height.
+    pub buildings: Vec<Building>,
+    /// `[[fence]]`: what stands or runs along a line.
+    pub fences: Vec<Fence>,
     /// `[[model]]`: what stands on the ground.
     pub models: Vec<ModelPlacement>,
+    /// `[[scatter]]`: models strewn over areas.
+    pub scatters: Vec<Scatter>,
     /// `[[label]]`: names and heights on the picture.
     pub labels: Vec<Label>,
     /// `[[camera]]`: views; the first is the default. Without any, one is made that sees the
@@ -188,120 +201,6 @@ pub struct Light {
     pub azimuth: Option<Spanned<f64>>,
     /// `altitude`: how high it stands above the horizon, in (0, 90]. Default 45.
     pub altitude: Option<Spanned<f64>>,
-}
-
-/// Where a feature's coordinates come from: inline `points`, or `file` with an optional filter; exactly one
-/// of the two. These keys stand in the feature's own table.
-#[derive(Clone, Debug, Default)]
-pub struct Source {
-    /// `points`: inline coordinates, at least two for a line and three for a lake, at most 100 000, each in
-    /// ±10⁹. A lake's last point may repeat its first.
-    pub points: Option<Spanned<Vec<[f64; 2]>>>,
-    /// `file`: a vector file, of any format that `vector/read.rs` lists.
-    pub file: Option<Spanned<String>>,
-    /// `layer`, only with `file`: which layer of a file that holds several; needed there, unless it holds one.
-    pub layer: Option<Spanned<String>>,
-    /// `where`, only with `file`: only features whose properties match all of it, each by a value or by one
-    /// of a list of up to 256 values. Default: all features.
-    pub filter: Option<Spanned<BTreeMap<String, Match>>>,
-    /// `crs`: the coordinate system of `points`, or of a file that names none or a wrong one. Default: the
-    /// scene's `points_crs`, or what the file names.
-    pub crs: Option<Spanned<String>>,
-}
-
-impl Source {
-    /// The place of the coordinates or of the file's name, for messages.
-    pub fn span(&self) -> Range<usize> {
-        let points = self.points.as_ref().map(Spanned::span);
-        points.or_else(|| self.file.as_ref().map(Spanned::span)).unwrap_or(0..0)
-    }
-}
-
-/// What a property must equal.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Match {
-    /// One of several values.
-    AnyOf(Vec<Scalar>),
-    /// One value.
-    Is(Scalar),
-}
-
-impl Match {
-    /// The values of which the property must equal one.
-    pub fn values(&self) -> &[Scalar] {
-        match self {
-            Self::AnyOf(values) => values,
-            Self::Is(value) => std::slice::from_ref(value),
-        }
-    }
-}
-
-/// A property's value.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Scalar {
-    /// True or false.
-    Bool(bool),
-    /// A number, whole or not.
-    Number(f64),
-    /// Text.
-    Text(String),
-}
-
-/// `[[road]]`.
-#[derive(Clone, Debug)]
-pub struct Road {
-    /// `name`: for messages and the feature list. Default: none.
-    pub name: Option<String>,
-    /// `points`, `file`, `layer`, `where` and `crs`: the centreline.
-    pub source: Source,
-    /// `width`: of the carriageway, in (0, 10 000]. Default 6.
-    pub width: Option<Spanned<f64>>,
-    /// `surface`: `"asphalt"`, `"gravel"` or `"track"`. Default `"asphalt"`.
-    pub surface: Option<Spanned<Surface>>,
-}
-
-/// `[[river]]`.
-#[derive(Clone, Debug)]
-pub struct River {
-    /// `name`: for messages and the feature list. Default: none.
-    pub name: Option<String>,
-    /// `points`, `file`, `layer`, `where` and `crs`: the centreline.
-    pub source: Source,
-    /// `width`: of the water, in (0, 10 000]. Default 8.
-    pub width: Option<Spanned<f64>>,
-}
-
-/// `[[lake]]`.
-#[derive(Clone, Debug)]
-pub struct Lake {
-    /// `name`: for messages and the feature list. Default: none.
-    pub name: Option<String>,
-    /// `points`, `file`, `where` and `crs`: the shore.
-    pub source: Source,
-    /// `level`: the water's elevation, in [−10⁷, 10⁷]. Default: the lowest ground along the shore.
-    pub level: Option<Spanned<f64>>,
-}
-
-/// `[[model]]`.
-#[derive(Clone, Debug)]
-pub struct ModelPlacement {
-    /// `name`: for messages and the feature list. Default: none.
-    pub name: Option<String>,
-    /// `file`, needed: the model file.
-    pub file: Spanned<String>,
-    /// `at`, needed: where its origin stands.
-    pub at: Spanned<[f64; 2]>,
-    /// `crs`: the coordinate system of `at`. Default: the scene's `points_crs`.
-    pub crs: Option<Spanned<String>>,
-    /// `heading`: which way its front points, in [−360, 360]. Default 0 (north).
-    pub heading: Option<Spanned<f64>>,
-    /// `scale`: metres per unit of the model file, in (0, 10⁶]. Default 1.
-    pub scale: Option<Spanned<f64>>,
-    /// `clamp`: `"ground"`, its lowest point on the ground; `"relative"`, `height` above the ground;
-    /// `"absolute"`, at elevation `height`. Default `"ground"`.
-    pub clamp: Option<Spanned<Clamp>>,
-    /// `height`, in [−10⁷, 10⁷]: needed for `"relative"` and `"absolute"`, refused for `"ground"`.
-    pub height: Option<Spanned<f64>>,
 }
 
 /// `[[label]]`.

@@ -1,14 +1,16 @@
 //! One value of the scene file on its way from TOML to a type: what it may be, and what to say if it is not.
 
 use std::collections::BTreeMap;
-use std::fmt;
 use std::ops::RangeInclusive;
 
 use toml::Spanned;
 use toml::de::{DeArray, DeValue};
 
+use crate::description::bounds::{Bounds, ELEVATION, Short};
 use crate::description::diagnostic::Report;
-use crate::description::document::{Color, Match, RampChoice, Scalar};
+use crate::description::document::{Color, RampChoice};
+use crate::description::expression::{Choice, Expression, Quantity};
+use crate::description::features::{Match, Scalar};
 use crate::description::suggest::{quoted, remedy};
 use crate::description::words::Word;
 use crate::geom::crs::Crs;
@@ -27,49 +29,6 @@ pub(super) struct Item<'a, 'i> {
     pub report: &'a mut Report,
     pub key: &'a str,
     pub value: &'a Spanned<DeValue<'i>>,
-}
-
-/// The numbers a key allows; never NaN or infinite.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Bounds {
-    /// Greater than the first, up to the second.
-    Above(f64, f64),
-    /// From the first to the second.
-    Within(f64, f64),
-}
-
-impl Bounds {
-    fn hold(self, number: f64) -> bool {
-        match self {
-            Self::Above(low, high) => number > low && number <= high,
-            Self::Within(low, high) => number >= low && number <= high,
-        }
-    }
-}
-
-impl fmt::Display for Bounds {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Above(low, high) => {
-                write!(out, "greater than {} and at most {}", Short(*low), Short(*high))
-            }
-            Self::Within(low, high) => write!(out, "from {} to {}", Short(*low), Short(*high)),
-        }
-    }
-}
-
-/// A number as people write it: without a tail of zeros.
-struct Short(f64);
-
-impl fmt::Display for Short {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let size = self.0.abs();
-        if size.is_finite() && (size >= 1e7 || (size > 0.0 && size < 1e-6)) {
-            write!(out, "{:e}", self.0)
-        } else {
-            write!(out, "{}", self.0)
-        }
-    }
 }
 
 /// What a value is, in the words of messages.
@@ -155,6 +114,99 @@ impl<'i> Item<'_, 'i> {
             _ => format!("give a number {wanted}"),
         };
         self.wrong_kind("a number", help);
+    }
+
+    /// A number within `bounds`, or an expression that gives one.
+    pub fn quantity(mut self, bounds: Bounds) -> Option<Quantity> {
+        match self.value.get_ref() {
+            DeValue::String(_) => {
+                self.expression().map(|expression| Quantity::of_features(expression, bounds))
+            }
+            _ => self.number(bounds).map(Quantity::fixed),
+        }
+    }
+
+    /// One of `W`'s words, or an expression that gives one.
+    pub fn choice<W: Word>(mut self) -> Option<Choice<W>> {
+        match self.value.get_ref() {
+            DeValue::String(text)
+                if W::ALL.iter().all(|(word, _)| word != text) && Expression::computes(text) =>
+            {
+                self.expression().map(Choice::of_features)
+            }
+            _ => self.word().map(Choice::Fixed),
+        }
+    }
+
+    /// An expression over a feature's properties.
+    pub fn expression(&mut self) -> Option<Expression> {
+        let text = self.element(self.value).filled_text()?;
+        match Expression::parse(&text) {
+            Ok(expression) => Some(expression),
+            Err(error) => {
+                self.wrong(format!("`{}`: {}", self.key, error.message), error.help);
+                None
+            }
+        }
+    }
+
+    /// Two numbers within `bounds`, the second not less than the first.
+    pub fn range(mut self, bounds: Bounds) -> Option<[f64; 2]> {
+        let help = "write [from, to]";
+        let DeValue::Array(list) = self.value.get_ref() else {
+            self.wrong_kind("two numbers", help);
+            return None;
+        };
+        let numbers: Vec<_> = list.iter().map(|number| self.element(number).number(bounds)).collect();
+        match numbers[..] {
+            [Some(from), Some(to)] if from <= to => Some([from, to]),
+            [Some(_), Some(_)] => {
+                self.wrong(format!("`{}` ends below where it begins", self.key), help);
+                None
+            }
+            [_, _] => None,
+            _ => {
+                self.wrong(format!("`{}` holds {} numbers", self.key, numbers.len()), help);
+                None
+            }
+        }
+    }
+
+    /// As many numbers as points may be, each within `bounds`.
+    pub fn numbers(mut self, bounds: Bounds) -> Option<Vec<f64>> {
+        match self.value.get_ref() {
+            DeValue::Array(list) if list.len() <= MAX_POINTS => {
+                let numbers: Vec<_> = list.iter().map(|number| self.element(number).number(bounds)).collect();
+                numbers.into_iter().collect()
+            }
+            _ => {
+                self.wrong_kind(&format!("a list of up to {MAX_POINTS} numbers"), "write [8, 8.5, ...]");
+                None
+            }
+        }
+    }
+
+    /// A table of texts.
+    pub fn texts(mut self) -> Option<BTreeMap<String, String>> {
+        match self.value.get_ref() {
+            DeValue::Table(table) if (1..=MAX_LIST).contains(&table.len()) => {
+                let texts: Vec<_> = table
+                    .iter()
+                    .map(|(key, text)| {
+                        let item = Item { report: self.report, key: key.get_ref(), value: text };
+                        Some((key.get_ref().to_string(), item.filled_text()?))
+                    })
+                    .collect();
+                texts.into_iter().collect()
+            }
+            _ => {
+                self.wrong_kind(
+                    &format!("a table of 1 to {MAX_LIST} texts"),
+                    "write { name = \"text\", ... }",
+                );
+                None
+            }
+        }
     }
 
     /// True or false.
@@ -391,6 +443,3 @@ impl<'i> Item<'_, 'i> {
         }
     }
 }
-
-/// Heights in metres: from below any sea to above any camera's orbit.
-pub(super) const ELEVATION: Bounds = Bounds::Within(-1e7, 1e7);

@@ -89,3 +89,257 @@ impl Word for HeightEncoding {
     const ALL: &'static [(&'static str, Self)] =
         &[("terrain-rgb", Self::TerrainRgb), ("terrarium", Self::Terrarium)];
 }
+
+/// How two segments of a road meet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Join {
+    /// `mitre`: both edges go on until they meet.
+    #[default]
+    Mitre,
+    /// `bevel`: the outer corner is cut off.
+    Bevel,
+    /// `round`: the outer corner is an arc.
+    Round,
+}
+
+impl Word for Join {
+    const ALL: &'static [(&'static str, Self)] =
+        &[("mitre", Self::Mitre), ("bevel", Self::Bevel), ("round", Self::Round)];
+}
+
+/// The lines on a paved road.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Markings {
+    /// `dashed`: edge lines and a dashed centre line.
+    #[default]
+    Dashed,
+    /// `solid`: edge lines and a solid centre line.
+    Solid,
+    /// `edges`: edge lines only.
+    Edges,
+    /// `none`: no lines.
+    None,
+}
+
+impl Word for Markings {
+    const ALL: &'static [(&'static str, Self)] =
+        &[("dashed", Self::Dashed), ("solid", Self::Solid), ("edges", Self::Edges), ("none", Self::None)];
+}
+
+/// Which of road and ground follows the other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Profile {
+    /// `drape`: the road follows the ground.
+    #[default]
+    Drape,
+    /// `conform`: the ground follows the road.
+    Conform,
+}
+
+impl Word for Profile {
+    const ALL: &'static [(&'static str, Self)] = &[("drape", Self::Drape), ("conform", Self::Conform)];
+}
+
+/// Where a river's water lies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Water {
+    /// `falls`: its level never rises downstream, and the ground is cut to it.
+    #[default]
+    Falls,
+    /// `drape`: it lies on the ground as it is.
+    Drape,
+}
+
+impl Word for Water {
+    const ALL: &'static [(&'static str, Self)] = &[("falls", Self::Falls), ("drape", Self::Drape)];
+}
+
+/// Which height along its shore is a lake's level.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum LevelRule {
+    /// `lowest`: the lowest.
+    #[default]
+    Lowest,
+    /// `median`: the middle one.
+    Median,
+    /// `mean`: the mean.
+    Mean,
+}
+
+impl Word for LevelRule {
+    const ALL: &'static [(&'static str, Self)] =
+        &[("lowest", Self::Lowest), ("median", Self::Median), ("mean", Self::Mean)];
+}
+
+/// What an area is covered with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Cover {
+    /// `forest`: trees.
+    Forest,
+    /// `scrub`: bushes.
+    Scrub,
+    /// `meadow`: grass.
+    Meadow,
+    /// `field`: crops in rows.
+    Field,
+    /// `orchard`: fruit trees or vines in rows.
+    Orchard,
+    /// `wetland`: marsh.
+    Wetland,
+    /// `sand`: sand or beach.
+    Sand,
+    /// `rock`: bare rock.
+    Rock,
+    /// `built-up`: houses and yards.
+    BuiltUp,
+    /// `industry`: halls and yards.
+    Industry,
+    /// `restricted`: hatched: what may not be entered.
+    Restricted,
+}
+
+impl Word for Cover {
+    const ALL: &'static [(&'static str, Self)] = &[
+        ("forest", Self::Forest),
+        ("scrub", Self::Scrub),
+        ("meadow", Self::Meadow),
+        ("field", Self::Field),
+        ("orchard", Self::Orchard),
+        ("wetland", Self::Wetland),
+        ("sand", Self::Sand),
+        ("rock", Self::Rock),
+        ("built-up", Self::BuiltUp),
+        ("industry", Self::Industry),
+        ("restricted", Self::Restricted),
+    ];
+}
+
+/// The line along an area's outline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Border {
+    /// `none`: no line.
+    None,
+    /// `solid`: an unbroken line.
+    Solid,
+    /// `dashed`: dashes.
+    Dashed,
+}
+
+impl Word for Border {
+    const ALL: &'static [(&'static str, Self)] =
+        &[("none", Self::None), ("solid", Self::Solid), ("dashed", Self::Dashed)];
+}
+
+/// Which ground a building stands on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum BaseRule {
+    /// `lowest`: the lowest under its footprint.
+    #[default]
+    Lowest,
+    /// `mean`: the mean under its footprint.
+    Mean,
+    /// `highest`: the highest under its footprint.
+    Highest,
+    /// `pad`: the ground is levelled to its mean.
+    Pad,
+}
+
+impl Word for BaseRule {
+    const ALL: &'static [(&'static str, Self)] =
+        &[("lowest", Self::Lowest), ("mean", Self::Mean), ("highest", Self::Highest), ("pad", Self::Pad)];
+}
+
+/// The shape of a roof.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Roof {
+    /// `flat`: level.
+    #[default]
+    Flat,
+    /// `gabled`: two slopes and two gables.
+    Gabled,
+    /// `hipped`: four slopes.
+    Hipped,
+    /// `pyramidal`: slopes that meet in one point.
+    Pyramidal,
+}
+
+impl Word for Roof {
+    const ALL: &'static [(&'static str, Self)] = &[
+        ("flat", Self::Flat),
+        ("gabled", Self::Gabled),
+        ("hipped", Self::Hipped),
+        ("pyramidal", Self::Pyramidal),
+    ];
+}
+
+/// What stands or runs along a line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum FenceKind {
+    /// `fence`: posts and rails.
+    #[default]
+    Fence,
+    /// `wall`: masonry.
+    Wall,
+    /// `hedge`: a row of bushes.
+    Hedge,
+    /// `power-line`: pylons and sagging wires.
+    PowerLine,
+    /// `trench`: a trench with a parapet.
+    Trench,
+    /// `obstacles`: a belt of obstacles.
+    Obstacles,
+    /// `boundary`: a dashed line on the ground.
+    Boundary,
+}
+
+impl Word for FenceKind {
+    const ALL: &'static [(&'static str, Self)] = &[
+        ("fence", Self::Fence),
+        ("wall", Self::Wall),
+        ("hedge", Self::Hedge),
+        ("power-line", Self::PowerLine),
+        ("trench", Self::Trench),
+        ("obstacles", Self::Obstacles),
+        ("boundary", Self::Boundary),
+    ];
+}
+
+/// Which ground counts as the ground a model stands on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Anchor {
+    /// `origin`: that under its origin.
+    #[default]
+    Origin,
+    /// `lowest`: the lowest under its footprint.
+    Lowest,
+    /// `highest`: the highest under its footprint.
+    Highest,
+    /// `mean`: the mean under its footprint.
+    Mean,
+}
+
+impl Word for Anchor {
+    const ALL: &'static [(&'static str, Self)] = &[
+        ("origin", Self::Origin),
+        ("lowest", Self::Lowest),
+        ("highest", Self::Highest),
+        ("mean", Self::Mean),
+    ];
+}
+
+/// What fills the gap between a model and the ground.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Footing {
+    /// `none`: nothing.
+    #[default]
+    None,
+    /// `plinth`: a block down to the ground.
+    Plinth,
+    /// `pad`: the ground is levelled.
+    Pad,
+}
+
+impl Word for Footing {
+    const ALL: &'static [(&'static str, Self)] =
+        &[("none", Self::None), ("plinth", Self::Plinth), ("pad", Self::Pad)];
+}

@@ -9,16 +9,19 @@ use crate::roam::errors::ErrorMap;
 use crate::roam::ground::Ground;
 use crate::roam::layout::{DEFAULT_PATCH, Layout};
 use crate::scene::assets::Assets;
-use crate::scene::features::{self, Collected};
+use crate::scene::attributes;
+use crate::scene::collected::Collected;
 use crate::scene::ground;
 use crate::scene::kind::{Scene, Terrain};
 use crate::scene::models;
 use crate::scene::place::{Places, parse_crs};
-use crate::scene::roads;
+use crate::scene::roads::{centreline, network};
 use crate::scene::sources::Sources;
 use crate::scene::style;
 use crate::scene::views;
+use crate::scene::water;
 use crate::terrain::lattice::Lattice;
+use crate::terrain::query::deck::Deck;
 use crate::terrain::query::service::HeightService;
 
 /// Builds the scene that `document` describes. `step` is called with what is done next, as each pass begins.
@@ -34,14 +37,18 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     step("laying features");
     let sources = Sources::new(&places, assets);
     let mut collected = Collected { notes: loaded.notes, ..Collected::default() };
-    features::lakes(document, &sources, &mut lattice, &mut collected)?;
     let extent = lattice.extent();
-    features::rivers(document, &sources, &extent, &mut collected)?;
-    roads::roads(document, &sources, &extent, &mut collected)?;
+    water::lakes(document, &sources, &mut lattice, &mut collected)?;
+    water::rivers(document, &sources, &extent, &mut collected)?;
+    let roads = centreline::collect(document, &sources, &extent, &mut collected)?;
+    network::lay(&roads, &extent, &mut collected);
     collected.take_apart();
 
     step("loading models");
     let (models, placements) = models::place(document, &places, assets, &lattice, &mut collected)?;
+
+    let defaulted: Vec<String> = attributes::notes(&collected.defaulted).collect();
+    collected.notes.extend(defaulted);
 
     step("measuring terrain");
     let terrain = terrain(document, lattice)?;
@@ -62,6 +69,8 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     );
 
     let heights = HeightService::new(loaded.source, crs.clone(), Arc::clone(&terrain.lattice));
+    let decks = Deck::new(&collected.decks).map_err(|error| document.error_at(0..0, error.to_string()))?;
+    let heights = if decks.facets().is_empty() { heights } else { heights.with_decks(Arc::new(decks)) };
     Ok(Scene {
         title: document.title.clone(),
         subtitle: document.subtitle.clone(),
@@ -70,6 +79,7 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
         map: Arc::new(map),
         lighting,
         ribbons: collected.ribbons,
+        solids: collected.solids,
         models,
         placements,
         labels,
@@ -77,6 +87,7 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
         furniture: document.furniture,
         features: collected.features,
         notes: collected.notes,
+        report: collected.report,
         crs,
         files: assets.files_read(),
     })

@@ -8,7 +8,7 @@ use crate::description::document::Furniture;
 use crate::description::words::{Clamp, LabelKind};
 use crate::draw::ground::GroundMap;
 use crate::draw::lighting::Lighting;
-use crate::draw::list::FeatureId;
+use crate::draw::list::{DrawMesh, FeatureId};
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::model::kind::Model;
@@ -18,6 +18,7 @@ use crate::roam::culling::PatchHeights;
 use crate::roam::errors::ErrorMap;
 use crate::roam::ground::Ground;
 use crate::roam::layout::Layout;
+use crate::scene::report::Report;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::service::HeightService;
 
@@ -39,6 +40,8 @@ pub struct Scene {
     pub lighting: Lighting,
     /// Lakes, rivers and roads, in drawing order.
     pub ribbons: Vec<Ribbon>,
+    /// What has a shape of its own: buildings, bridges.
+    pub solids: Vec<Solid>,
     /// Model files, each loaded once.
     pub models: Vec<Model>,
     /// What stands on the ground.
@@ -53,6 +56,8 @@ pub struct Scene {
     pub features: Vec<Feature>,
     /// What was done that a user should know: features off the model, missing textures, earth moved.
     pub notes: Vec<String>,
+    /// What was found out about single features.
+    pub report: Report,
     /// The files it was made of, besides the scene file itself.
     pub files: Vec<std::path::PathBuf>,
 }
@@ -97,23 +102,52 @@ pub enum FeatureKind {
     River,
     /// A road.
     Road,
+    /// A bridge.
+    Bridge,
+    /// A tunnel.
+    Tunnel,
+    /// Something that covers the ground.
+    Area,
+    /// A building.
+    Building,
+    /// A fence, or something else that runs along a line.
+    Fence,
     /// A model.
     Model,
+    /// A model strewn with others over an area.
+    Scattered,
 }
 
 impl FeatureKind {
+    /// Every kind, in the order in which they are told.
+    pub const ALL: [Self; 10] = [
+        Self::Lake,
+        Self::River,
+        Self::Road,
+        Self::Bridge,
+        Self::Tunnel,
+        Self::Area,
+        Self::Building,
+        Self::Fence,
+        Self::Model,
+        Self::Scattered,
+    ];
+
     /// Its name for a count of one, or of several.
     pub fn noun(self, count: usize) -> &'static str {
-        match (self, count) {
-            (Self::Lake, 1) => "lake",
-            (Self::Lake, _) => "lakes",
-            (Self::River, 1) => "river",
-            (Self::River, _) => "rivers",
-            (Self::Road, 1) => "road",
-            (Self::Road, _) => "roads",
-            (Self::Model, 1) => "model",
-            (Self::Model, _) => "models",
-        }
+        let (one, several) = match self {
+            Self::Lake => ("lake", "lakes"),
+            Self::River => ("river", "rivers"),
+            Self::Road => ("road", "roads"),
+            Self::Bridge => ("bridge", "bridges"),
+            Self::Tunnel => ("tunnel", "tunnels"),
+            Self::Area => ("area", "areas"),
+            Self::Building => ("building", "buildings"),
+            Self::Fence => ("line", "lines"),
+            Self::Model => ("model", "models"),
+            Self::Scattered => ("scattered model", "scattered models"),
+        };
+        if count == 1 { one } else { several }
     }
 }
 
@@ -136,6 +170,25 @@ pub struct Ribbon {
     pub layer: u8,
     /// The feature it belongs to.
     pub feature: FeatureId,
+}
+
+/// Something built with a shape of its own.
+pub struct Solid {
+    /// Its triangles in world space, heights drawn times the scene's exaggeration.
+    pub mesh: DrawMesh,
+    /// What its triangles show.
+    pub coat: Coat,
+    /// The feature it belongs to.
+    pub feature: FeatureId,
+}
+
+/// What a solid's triangles show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Coat {
+    /// The colours of their vertices.
+    Painted,
+    /// A surface's texture, times the colours of their vertices.
+    Surface(Surface),
 }
 
 /// A model in its place.
@@ -193,8 +246,7 @@ impl Scene {
 
     /// How many features there are of each kind, kinds in order, only those present.
     pub fn census(&self) -> Vec<(FeatureKind, usize)> {
-        let kinds = [FeatureKind::Lake, FeatureKind::River, FeatureKind::Road, FeatureKind::Model];
         let count = |kind| self.features.iter().filter(|feature| feature.kind == kind).count();
-        kinds.map(|kind| (kind, count(kind))).into_iter().filter(|&(_, count)| count > 0).collect()
+        FeatureKind::ALL.map(|kind| (kind, count(kind))).into_iter().filter(|&(_, count)| count > 0).collect()
     }
 }

@@ -1,19 +1,23 @@
 //! From the scene file to what a renderer draws.
 //!
-//! `build` turns a document and its assets into a [`kind::Scene`], one pass a file: the ground (`ground`),
-//! lakes, rivers and roads (`features`), models (`models`), labels and cameras (`views`). `picture` turns a
-//! scene and a camera into a draw list.
+//! `build` turns a document and its assets into a [`kind::Scene`], one pass a file: the ground (`ground`), what lies on
+//! it (`water`, `roads`), models (`models`), labels and cameras (`views`); the passes gather what they make in
+//! `collected`. `picture` turns a scene and a camera into a draw list.
 
 pub mod assets;
+pub mod attributes;
 pub mod build;
-pub mod features;
+pub mod collected;
 pub mod ground;
 pub mod kind;
 pub mod models;
+pub mod near;
 pub mod picture;
 pub mod place;
 pub mod plinth;
+pub mod report;
 pub mod roads;
 pub mod sources;
 pub mod style;
 pub mod views;
+pub mod water;

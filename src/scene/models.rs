@@ -6,10 +6,12 @@ use toml::Spanned;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
+use crate::description::expression::Quantity;
 use crate::model::kind::Model;
 use crate::model::read;
 use crate::scene::assets::Assets;
-use crate::scene::features::Collected;
+use crate::scene::attributes::Attributes;
+use crate::scene::collected::Collected;
 use crate::scene::kind::{FeatureKind, Placement};
 use crate::scene::place::Places;
 use crate::terrain::lattice::Lattice;
@@ -36,10 +38,12 @@ pub fn place(
                 *loaded.entry(file).or_insert(models.len() - 1)
             }
         };
-        let world = places.point(&table.at, table.crs.as_ref())?;
-        places.on_ground(lattice, &table.at, world)?;
-        let number = |stated: &Option<Spanned<f64>>, default: f64| {
-            stated.as_ref().map_or(default, |value| *value.get_ref()) as f32
+        let Some(at) = &table.at else { continue };
+        let world = places.point(at, table.crs.as_ref())?;
+        places.on_ground(lattice, at, world)?;
+        let none = Attributes::default();
+        let number = |stated: &Option<Spanned<Quantity>>, default: f64| {
+            none.number(stated.as_ref()).unwrap_or(default) as f32
         };
         placements.push(Placement {
             model,

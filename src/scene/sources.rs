@@ -2,15 +2,16 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use glam::DVec2;
 use toml::Spanned;
 
 use crate::description::diagnostic::Diagnostic;
-use crate::description::document::{Match, Scalar, Source};
+use crate::description::features::{Match, Scalar, Source};
 use crate::geom::crs::Crs;
 use crate::scene::assets::Assets;
+use crate::scene::attributes::Attributes;
 use crate::scene::place::{Places, parse_crs};
 use crate::vector::error::VectorError;
 use crate::vector::feature::{Geometry, Layer, Polygon};
@@ -24,13 +25,13 @@ type LayerKey = (String, Option<String>, Option<String>);
 pub struct Sources<'a> {
     places: &'a Places<'a>,
     assets: &'a Assets,
-    layers: RefCell<BTreeMap<LayerKey, Rc<Layer>>>,
+    layers: RefCell<BTreeMap<LayerKey, Arc<Layer>>>,
 }
 
-/// A shape with the name it has in its file, if any.
-pub struct Named<T> {
-    /// The `name` property of the feature; empty for inline points.
-    pub name: String,
+/// A shape with what its file says of it.
+pub struct Sourced<T> {
+    /// The properties of the feature it is, or is a part of; none for inline points.
+    pub attributes: Attributes,
     /// The shape, in world coordinates.
     pub shape: T,
 }
@@ -46,7 +47,7 @@ impl<'a> Sources<'a> {
     /// # Errors
     /// The file cannot be had or read, holds no line that matches, or its coordinates cannot be brought to the
     /// scene's system.
-    pub fn lines(&self, source: &Source) -> Result<Vec<Named<Vec<DVec2>>>, Diagnostic> {
+    pub fn lines(&self, source: &Source) -> Result<Vec<Sourced<Vec<DVec2>>>, Diagnostic> {
         let lines = self.shapes(source, |geometry| match geometry {
             Geometry::Lines(lines) => lines.clone(),
             Geometry::Points(_) | Geometry::Polygons(_) => Vec::new(),
@@ -58,7 +59,7 @@ impl<'a> Sources<'a> {
     ///
     /// # Errors
     /// As for [`Sources::lines`].
-    pub fn polygons(&self, source: &Source) -> Result<Vec<Named<Polygon>>, Diagnostic> {
+    pub fn polygons(&self, source: &Source) -> Result<Vec<Sourced<Polygon>>, Diagnostic> {
         let polygons = self.shapes(source, |geometry| match geometry {
             Geometry::Polygons(polygons) => polygons.clone(),
             Geometry::Lines(lines) => lines.iter().cloned().filter_map(closed).collect(),
@@ -71,17 +72,31 @@ impl<'a> Sources<'a> {
         })
     }
 
+    /// The points of a source.
+    ///
+    /// # Errors
+    /// As for [`Sources::lines`].
+    pub fn points(&self, source: &Source) -> Result<Vec<Sourced<DVec2>>, Diagnostic> {
+        let points = self.shapes(source, |geometry| match geometry {
+            Geometry::Points(points) => points.clone(),
+            // Inline points are handed in as a line.
+            Geometry::Lines(lines) if source.points.is_some() => lines.concat(),
+            Geometry::Lines(_) | Geometry::Polygons(_) => Vec::new(),
+        })?;
+        self.place_all(source, points, |point, place| place(point))
+    }
+
     /// The shapes that `pick` takes from every feature that matches, unplaced.
     fn shapes<T>(
         &self,
         source: &Source,
         pick: impl Fn(&Geometry) -> Vec<T>,
-    ) -> Result<(Crs, Vec<Named<T>>), Diagnostic> {
+    ) -> Result<(Crs, Vec<Sourced<T>>), Diagnostic> {
         if let Some(points) = &source.points {
             let line = points.get_ref().iter().map(|&point| DVec2::from(point)).collect();
             let shape = pick(&Geometry::Lines(vec![line]));
-            let named = |shape| Named { name: String::new(), shape };
-            return Ok((self.places.crs_of(source.crs.as_ref())?, shape.into_iter().map(named).collect()));
+            let sourced = |shape| Sourced { attributes: Attributes::default(), shape };
+            return Ok((self.places.crs_of(source.crs.as_ref())?, shape.into_iter().map(sourced).collect()));
         }
         let Some(file) = &source.file else {
             return Ok((self.places.crs.clone(), Vec::new()));
@@ -89,12 +104,13 @@ impl<'a> Sources<'a> {
         let stated = parse_crs(self.places.document, source.crs.as_ref())?;
         let layer = self.layer(file, source.layer.as_ref(), stated.as_ref())?;
         let filter = filter_of(source);
-        let named = |name: &str, shape| Named { name: name.to_owned(), shape };
         let shapes: Vec<_> = filter
             .select(&layer)
-            .flat_map(|feature| {
-                let name = feature.properties.get("name").and_then(|name| name.as_str()).unwrap_or("");
-                pick(&feature.geometry).into_iter().map(move |shape| named(name, shape))
+            .flat_map(|(index, feature)| {
+                let attributes = Attributes::new(Arc::clone(&layer), index);
+                pick(&feature.geometry)
+                    .into_iter()
+                    .map(move |shape| Sourced { attributes: attributes.clone(), shape })
             })
             .collect();
         if shapes.is_empty() {
@@ -133,11 +149,11 @@ impl<'a> Sources<'a> {
         file: &Spanned<String>,
         wanted: Option<&Spanned<String>>,
         stated: Option<&Crs>,
-    ) -> Result<Rc<Layer>, Diagnostic> {
+    ) -> Result<Arc<Layer>, Diagnostic> {
         let name = wanted.map(|wanted| wanted.get_ref().as_str());
         let key = (file.get_ref().clone(), name.map(String::from), stated.map(|crs| crs.name().to_owned()));
         if let Some(layer) = self.layers.borrow().get(&key) {
-            return Ok(Rc::clone(layer));
+            return Ok(Arc::clone(layer));
         }
         let wrong = |reason: String| self.places.document.error(file, reason);
         let bytes = self.assets.read(file.get_ref()).map_err(|error| wrong(error.to_string()))?;
@@ -145,8 +161,8 @@ impl<'a> Sources<'a> {
         let hints = Hints { crs: stated, layer: name, companions: &companions };
         let layer =
             read::read(file.get_ref(), &bytes, &hints).map_err(|error| self.unread(file, wanted, &error))?;
-        let layer = Rc::new(layer);
-        self.layers.borrow_mut().insert(key, Rc::clone(&layer));
+        let layer = Arc::new(layer);
+        self.layers.borrow_mut().insert(key, Arc::clone(&layer));
         Ok(layer)
     }
 
@@ -175,13 +191,15 @@ impl<'a> Sources<'a> {
     fn place_all<T, U>(
         &self,
         source: &Source,
-        (from, shapes): (Crs, Vec<Named<T>>),
+        (from, shapes): (Crs, Vec<Sourced<T>>),
         transform: impl Fn(T, &dyn Fn(DVec2) -> Result<DVec2, String>) -> Result<U, String>,
-    ) -> Result<Vec<Named<U>>, Diagnostic> {
+    ) -> Result<Vec<Sourced<U>>, Diagnostic> {
         let place = |at: DVec2| self.places.world(&from, at);
         shapes
             .into_iter()
-            .map(|Named { name, shape }| transform(shape, &place).map(|shape| Named { name, shape }))
+            .map(|Sourced { attributes, shape }| {
+                transform(shape, &place).map(|shape| Sourced { attributes, shape })
+            })
             .collect::<Result<_, _>>()
             .map_err(|reason| self.places.document.error_at(source.span(), reason))
     }

@@ -31,9 +31,9 @@ impl Filter {
         })
     }
 
-    /// The layer's features that match, in its order.
-    pub fn select<'a>(&'a self, layer: &'a Layer) -> impl Iterator<Item = &'a Feature> + 'a {
-        layer.features.iter().filter(|feature| self.matches(feature))
+    /// The layer's features that match, in its order, each with its place in [`Layer::features`].
+    pub fn select<'a>(&'a self, layer: &'a Layer) -> impl Iterator<Item = (usize, &'a Feature)> + 'a {
+        layer.features.iter().enumerate().filter(|(_, feature)| self.matches(feature))
     }
 
     /// Why no feature of the layer matches: for each condition that never holds, the values that there are
@@ -119,7 +119,7 @@ mod tests {
         let wanted =
             filter(&[("highway", &[json!("primary"), json!("secondary")]), ("lanes", &[json!(2.0)])]);
         let chosen: Vec<_> = wanted.select(&roads).collect();
-        assert_eq!(chosen, [&roads.features[0], &roads.features[1]]);
+        assert_eq!(chosen, [(0, &roads.features[0]), (1, &roads.features[1])]);
     }
 
     #[test]

@@ -1,5 +1,8 @@
 //! Procedural textures for what lies on the ground; the same pixels on every machine.
 
+mod road;
+mod water;
+
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 
@@ -39,13 +42,13 @@ pub fn texture(surface: Surface) -> Pixels {
         let (u, v) = ((x as f32 + 0.5) / SIZE as f32, (y as f32 + 0.5) / SIZE as f32);
         let grain = grain(x, y);
         match surface {
-            Surface::Asphalt => asphalt(u, v, grain),
-            Surface::Gravel => gravel(u, grain),
-            Surface::Track => track(u, grain),
-            Surface::AsphaltJunction => shade(ASPHALT, (grain - 0.5) * 14.0),
-            Surface::GravelJunction => shade(GRAVEL, (grain - 0.5) * 34.0),
-            Surface::TrackJunction => shade(WORN, (grain - 0.5) * 30.0),
-            Surface::River => river(u, grain),
+            Surface::Asphalt => road::asphalt(u, v, grain),
+            Surface::Gravel => road::gravel(u, grain),
+            Surface::Track => road::track(u, grain),
+            Surface::AsphaltJunction => shade(road::ASPHALT, (grain - 0.5) * 14.0),
+            Surface::GravelJunction => shade(road::GRAVEL, (grain - 0.5) * 34.0),
+            Surface::TrackJunction => shade(road::WORN, (grain - 0.5) * 30.0),
+            Surface::River => water::river(u, grain),
             Surface::Lake => shade([74, 124, 158], (grain - 0.5) * 5.0),
         }
     })
@@ -57,44 +60,6 @@ pub fn texture_length_m(surface: Surface, width_m: f64) -> f64 {
         Surface::Asphalt => width_m * 2.5,
         _ => width_m * 2.0,
     }
-}
-
-/// A carriageway.
-const ASPHALT: [u8; 3] = [126, 116, 110];
-
-/// A gravel road between its verges.
-const GRAVEL: [u8; 3] = [214, 194, 154];
-
-/// Where wheels go.
-const WORN: [u8; 3] = [176, 148, 108];
-
-fn asphalt(u: f32, v: f32, grain: f32) -> Srgba {
-    let from_edge = u.min(1.0 - u);
-    let dash = (u - 0.5).abs() < 0.028 && v < 0.55;
-    if from_edge < 0.055 {
-        shade([58, 54, 50], 0.0)
-    } else if from_edge < 0.115 || dash {
-        shade([243, 238, 222], 0.0)
-    } else {
-        shade(ASPHALT, (grain - 0.5) * 14.0)
-    }
-}
-
-fn gravel(u: f32, grain: f32) -> Srgba {
-    let from_edge = u.min(1.0 - u);
-    if from_edge < 0.09 { shade([112, 92, 66], 0.0) } else { shade(GRAVEL, (grain - 0.5) * 34.0) }
-}
-
-fn track(u: f32, grain: f32) -> Srgba {
-    let wheel = ((u - 0.5).abs() - 0.27).abs() < 0.15;
-    if wheel { shade(WORN, (grain - 0.5) * 30.0) } else { shade([122, 124, 82], (grain - 0.5) * 30.0) }
-}
-
-fn river(u: f32, grain: f32) -> Srgba {
-    let depth = 1.0 - (2.0 * u - 1.0).abs();
-    let light = (depth * 2.2).min(1.0);
-    let mix = |bank: f32, stream: f32| bank + (stream - bank) * light;
-    shade([mix(38.0, 92.0) as u8, mix(84.0, 150.0) as u8, mix(118.0, 190.0) as u8], (grain - 0.5) * 8.0)
 }
 
 fn shade(color: [u8; 3], by: f32) -> Srgba {

@@ -1,21 +1,14 @@
-//! Roads: lines become ribbons that go on in one another and meet in junctions.
+//! Roads on the ground: lines become ribbons that go on in one another and meet in junctions.
 
-use toml::Spanned;
-
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::words;
-use crate::draw::list::FeatureId;
-use crate::geom::polyline::Polyline;
 use crate::geom::rect::Rect;
 use crate::mesh::sink::MeshSink;
 use crate::ribbon::junction::{self, Street};
 use crate::ribbon::plan::{PlanMesh, PlanVertex};
-use crate::ribbon::stroke::{StrokeOptions, stroke};
-use crate::ribbon::texture::{Surface, texture_length_m};
-use crate::scene::features::{Clipped, Collected, near, value};
-use crate::scene::kind::FeatureKind;
-use crate::scene::sources::Sources;
+use crate::ribbon::stroke::stroke;
+use crate::ribbon::texture::Surface;
+use crate::scene::collected::Collected;
+use crate::scene::near::Clipped;
+use crate::scene::roads::centreline::Centreline;
 
 /// Metres in one repeat of a junction's surface.
 const JUNCTION_TEXTURE_M: f64 = 15.0;
@@ -27,50 +20,12 @@ const PAVEMENTS: [(Surface, Surface); 3] = [
     (Surface::Asphalt, Surface::AsphaltJunction),
 ];
 
-/// A road's centreline, ready to be a ribbon.
-struct Centreline {
-    line: Polyline,
-    options: StrokeOptions,
-    surface: Surface,
-    feature: FeatureId,
-}
-
-/// Adds the document's roads.
-///
-/// # Errors
-/// A source cannot be had.
-pub fn roads(
-    document: &Document,
-    sources: &Sources<'_>,
-    extent: &Rect,
-    collected: &mut Collected,
-) -> Result<(), Diagnostic> {
-    let mut all = Vec::new();
-    for road in &document.roads {
-        let surface = match road.surface.as_ref().map(Spanned::get_ref).copied().unwrap_or_default() {
-            words::Surface::Asphalt => Surface::Asphalt,
-            words::Surface::Gravel => Surface::Gravel,
-            words::Surface::Track => Surface::Track,
-        };
-        let width_m = value(road.width.as_ref(), 6.0);
-        let options = StrokeOptions {
-            width_m,
-            texture_length_m: texture_length_m(surface, width_m),
-            ..StrokeOptions::default()
-        };
-        let lines = sources.lines(&road.source)?;
-        for (name, line) in
-            near(lines, extent, &options, (FeatureKind::Road, road.name.as_deref()), collected)
-        {
-            let feature = collected.add(FeatureKind::Road, name);
-            all.push(Centreline { line, options, surface, feature });
-        }
-    }
+/// Lays roads on the ground, whatever carries them.
+pub fn lay(all: &[Centreline], extent: &Rect, collected: &mut Collected) {
     for (surface, joint) in PAVEMENTS {
         let roads: Vec<&Centreline> = all.iter().filter(|road| road.surface == surface).collect();
         join(&roads, joint, extent, collected);
     }
-    Ok(())
 }
 
 /// Lays the roads of one pavement and their junctions.

@@ -1,0 +1,35 @@
+//! Roads.
+
+use crate::draw::color::Srgba;
+use crate::ribbon::texture::shade;
+
+/// A carriageway.
+pub(super) const ASPHALT: [u8; 3] = [126, 116, 110];
+
+/// A gravel road between its verges.
+pub(super) const GRAVEL: [u8; 3] = [214, 194, 154];
+
+/// Where wheels go.
+pub(super) const WORN: [u8; 3] = [176, 148, 108];
+
+pub(super) fn asphalt(u: f32, v: f32, grain: f32) -> Srgba {
+    let from_edge = u.min(1.0 - u);
+    let dash = (u - 0.5).abs() < 0.028 && v < 0.55;
+    if from_edge < 0.055 {
+        shade([58, 54, 50], 0.0)
+    } else if from_edge < 0.115 || dash {
+        shade([243, 238, 222], 0.0)
+    } else {
+        shade(ASPHALT, (grain - 0.5) * 14.0)
+    }
+}
+
+pub(super) fn gravel(u: f32, grain: f32) -> Srgba {
+    let from_edge = u.min(1.0 - u);
+    if from_edge < 0.09 { shade([112, 92, 66], 0.0) } else { shade(GRAVEL, (grain - 0.5) * 34.0) }
+}
+
+pub(super) fn track(u: f32, grain: f32) -> Srgba {
+    let wheel = ((u - 0.5).abs() - 0.27).abs() < 0.15;
+    if wheel { shade(WORN, (grain - 0.5) * 30.0) } else { shade([122, 124, 82], (grain - 0.5) * 30.0) }
+}

@@ -1,0 +1,66 @@
+//! What the passes over a document gather: features with their ids, what lies and stands, and what there is to say.
+
+use crate::draw::list::FeatureId;
+use crate::ribbon::partition;
+use crate::ribbon::plan::PlanMesh;
+use crate::ribbon::texture::Surface;
+use crate::scene::attributes::Defaulted;
+use crate::scene::kind::{Feature, FeatureKind, Ribbon, Solid};
+use crate::scene::report::Report;
+use crate::terrain::facets::Facet;
+
+/// Features with their ids, and what there is to say about them.
+#[derive(Default)]
+pub struct Collected {
+    /// What lies on the ground.
+    pub ribbons: Vec<Ribbon>,
+    /// Every feature so far; ids count from 2.
+    pub features: Vec<Feature>,
+    /// What has a shape of its own.
+    pub solids: Vec<Solid>,
+    /// What one can stand on above the ground: triangles in world space, heights in metres without exaggeration.
+    pub decks: Vec<Facet>,
+    /// For the user.
+    pub notes: Vec<String>,
+    /// Where expressions gave nothing.
+    pub defaulted: Defaulted,
+    /// What was found out about single features.
+    pub report: Report,
+}
+
+impl Collected {
+    /// Notes a feature and returns its id.
+    pub fn add(&mut self, kind: FeatureKind, name: String) -> FeatureId {
+        self.features.push(Feature { kind, name });
+        FeatureId(FeatureId::GROUND.0 + self.features.len() as u32)
+    }
+
+    /// Lays a plan over what was laid before in its class and below.
+    pub fn lay(&mut self, plan: PlanMesh, surface: Surface, feature: FeatureId) {
+        self.ribbons.push(Ribbon { plan, surface, layer: layer_of(surface), feature });
+    }
+
+    /// Takes apart what lies over one another, so that no two ribbons share any ground: what covers what goes by class,
+    /// and within a class the junctions come first and then what was laid last.
+    pub fn take_apart(&mut self) {
+        let order = |ribbon: &Ribbon| (ribbon.layer, ribbon.surface.is_junction());
+        self.ribbons.sort_by_key(order);
+        let from_above: Vec<&PlanMesh> = self.ribbons.iter().rev().map(|ribbon| &ribbon.plan).collect();
+        let parts = partition::apart(from_above.iter().copied());
+        for (ribbon, plan) in self.ribbons.iter_mut().rev().zip(parts) {
+            ribbon.plan = plan;
+        }
+        self.ribbons.retain(|ribbon| !ribbon.plan.triangles.is_empty());
+    }
+}
+
+/// What covers what, by class: still water over streams, roads over water, better roads over lesser.
+fn layer_of(surface: Surface) -> u8 {
+    match surface {
+        Surface::River => 0,
+        Surface::Lake => 1,
+        Surface::Track | Surface::TrackJunction => 2,
+        Surface::Gravel | Surface::GravelJunction => 3,
+        Surface::Asphalt | Surface::AsphaltJunction => 4,
+    }
+}

@@ -1,0 +1,64 @@
+//! Leaving out what does not come near the ground.
+
+use glam::DVec2;
+
+use crate::geom::polyline::Polyline;
+use crate::geom::rect::Rect;
+use crate::mesh::sink::{MeshSink, VertexId};
+use crate::ribbon::plan::{PlanMesh, PlanVertex};
+use crate::scene::attributes::Attributes;
+use crate::scene::collected::Collected;
+use crate::scene::kind::FeatureKind;
+use crate::scene::sources::Sourced;
+
+/// Vertices nearer to each other than this have no direction worth a joint, in metres.
+const MERGE_M: f64 = 0.01;
+
+/// The lines of `kind` of which some part lies within `reach_m` of the ground's `extent`, with their attributes; the
+/// others, and those that are a single point, are noted. `given` is the name in the scene file.
+pub fn lines(
+    lines: Vec<Sourced<Vec<DVec2>>>,
+    (extent, reach_m): (&Rect, f64),
+    (kind, given): (FeatureKind, Option<&str>),
+    collected: &mut Collected,
+) -> Vec<(Attributes, Polyline)> {
+    let count = lines.len();
+    let near: Vec<_> = lines
+        .into_iter()
+        .filter_map(|Sourced { attributes, shape }| {
+            let reach = Rect::around(shape.iter().copied()).grown(reach_m);
+            let line = Polyline::new(shape, MERGE_M).filter(|_| reach.meets(extent))?;
+            Some((attributes, line))
+        })
+        .collect();
+    let off = count - near.len();
+    if off > 0 {
+        let what = given.map(|name| format!(" of '{name}'")).unwrap_or_default();
+        collected.notes.push(format!(
+            "{off} {}{what} left out: off the elevation model or a single point",
+            kind.noun(off)
+        ));
+    }
+    near
+}
+
+/// A plan mesh that leaves out triangles that cannot meet the ground.
+pub struct Clipped<'a> {
+    /// What was not left out.
+    pub plan: PlanMesh,
+    /// Where the ground is.
+    pub extent: &'a Rect,
+}
+
+impl MeshSink<PlanVertex> for Clipped<'_> {
+    fn vertex(&mut self, vertex: PlanVertex) -> VertexId {
+        self.plan.vertex(vertex)
+    }
+
+    fn triangle(&mut self, corners: [VertexId; 3]) {
+        let reach = Rect::around(corners.map(|id| self.plan.vertices[id.index()].at));
+        if reach.meets(self.extent) {
+            self.plan.triangle(corners);
+        }
+    }
+}

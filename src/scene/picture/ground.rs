@@ -1,0 +1,51 @@
+//! The displayed ground and the block it stands on.
+
+use glam::Vec3;
+
+use crate::draw::color::Srgba;
+use crate::draw::list::{DrawList, DrawMesh, DrawVertex, FeatureId, Layer};
+use crate::draw::material::{Albedo, Material, Normals};
+use crate::mesh::sink::{MeshSink, VertexId};
+use crate::roam::displayed::DisplayedTerrain;
+use crate::scene::kind::Terrain;
+use crate::scene::picture::add_mesh;
+use crate::scene::plinth::plinth;
+
+/// Makes draw vertices of bare positions.
+struct GroundSink(DrawMesh);
+
+impl MeshSink<Vec3> for GroundSink {
+    fn vertex(&mut self, position: Vec3) -> VertexId {
+        self.0.vertex(DrawVertex {
+            position: position.to_array(),
+            normal: [0.0, 0.0, 1.0],
+            uv: [0.0; 2],
+            color: Srgba::WHITE,
+        })
+    }
+
+    fn triangle(&mut self, corners: [VertexId; 3]) {
+        self.0.triangle(corners);
+    }
+}
+
+/// Adds the ground and returns the walls below its edge.
+pub(super) fn add(list: &mut DrawList, terrain: &Terrain, displayed: &DisplayedTerrain) -> DrawMesh {
+    let mut sink = GroundSink(DrawMesh::default());
+    displayed.emit(&mut sink);
+    let walls = plinth(&sink.0, &terrain.lattice, terrain.exaggeration);
+    let material = list.add_material(Material {
+        name: "ground".into(),
+        normals: Normals::Ground,
+        albedo: Albedo::GroundMap,
+        ..Material::default()
+    });
+    add_mesh(list, sink.0, material, Layer::Ground, FeatureId::GROUND);
+    walls
+}
+
+/// Adds the walls.
+pub(super) fn add_plinth(list: &mut DrawList, walls: DrawMesh) {
+    let material = list.add_material(Material { name: "plinth".into(), ..Material::default() });
+    add_mesh(list, walls, material, Layer::Solid, FeatureId::GROUND);
+}

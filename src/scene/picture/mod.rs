@@ -1,0 +1,83 @@
+//! A scene and a camera to a draw list: refine, emit, drape, set solids and models.
+
+mod drapes;
+mod ground;
+mod models;
+mod solids;
+
+use std::sync::Arc;
+
+use glam::{Mat4, Vec3};
+
+use crate::draw::list::{DrawItem, DrawList, DrawMesh, FeatureId, Layer, MaterialId};
+use crate::roam::criterion::screen::ScreenError;
+use crate::roam::culling::patches_in_view;
+use crate::roam::displayed::DisplayedTerrain;
+use crate::roam::refine::rebuild::rebuild;
+use crate::scene::kind::{Scene, Terrain, View};
+use crate::view::camera::{Camera, CameraError};
+use crate::view::frustum::Frustum;
+
+/// What one camera sees of a scene.
+pub struct Shot {
+    /// What to draw.
+    pub list: DrawList,
+    /// The displayed ground.
+    pub displayed: Arc<DisplayedTerrain>,
+    /// Triangles of the ground among those drawn.
+    pub ground_triangles: usize,
+}
+
+/// The camera for a view on a picture of `size` pixels, its far plane behind the whole scene.
+///
+/// # Errors
+/// See [`CameraError`].
+pub fn camera(scene: &Scene, view: &View, size: (u32, u32)) -> Result<Camera, CameraError> {
+    let (min, max) = scene.terrain.bounds();
+    let farthest = Vec3::select((view.eye - min).abs().cmpgt((view.eye - max).abs()), min, max);
+    let far = view.eye.distance(farthest) * 1.5 + 1000.0;
+    Camera::new(view.eye, view.target, view.fov_y_rad, size, (0.5, far))
+}
+
+/// The draw list for one camera. `step` is called with what is done next.
+pub fn shoot(scene: &Scene, camera: &Camera, step: &dyn Fn(&'static str)) -> Shot {
+    step("refining terrain");
+    let displayed = Arc::new(display(&scene.terrain, camera));
+    let (list, ground_triangles) = draw_list(scene, &displayed, step);
+    Shot { list, displayed, ground_triangles }
+}
+
+/// What is to be drawn of a scene whose terrain is shown as `displayed`, and how many triangles of it are ground. `step`
+/// is called with what is done next.
+pub fn draw_list(
+    scene: &Scene,
+    displayed: &DisplayedTerrain,
+    step: &dyn Fn(&'static str),
+) -> (DrawList, usize) {
+    let mut list =
+        DrawList { ground: Some(Arc::clone(&scene.map)), lighting: scene.lighting, ..DrawList::default() };
+    let walls = ground::add(&mut list, &scene.terrain, displayed);
+    let ground_triangles = list.triangle_count();
+    step("draping features");
+    drapes::add(&mut list, scene, displayed);
+    step("setting models");
+    ground::add_plinth(&mut list, walls);
+    solids::add(&mut list, scene);
+    models::add(&mut list, scene, displayed);
+    (list, ground_triangles)
+}
+
+/// The terrain as `camera` shows it.
+pub fn display(terrain: &Terrain, camera: &Camera) -> DisplayedTerrain {
+    let (ground, heights) = (terrain.ground(), &terrain.patch_heights);
+    let patches = patches_in_view(ground, heights, &Frustum::of(camera));
+    let criterion = ScreenError::new(ground, &terrain.errors, heights, camera, terrain.tolerance_px);
+    let active = rebuild(&terrain.layout, &criterion, patches.iter().copied());
+    DisplayedTerrain::new(Arc::clone(&terrain.lattice), active, terrain.exaggeration, patches)
+}
+
+fn add_mesh(list: &mut DrawList, mesh: DrawMesh, material: MaterialId, layer: Layer, feature: FeatureId) {
+    let triangles = 0..mesh.triangles.len() as u32;
+    let mesh = list.add_mesh(mesh);
+    list.items.push(DrawItem { mesh, triangles, material, world_from_mesh: Mat4::IDENTITY, layer, feature });
+}

@@ -1,0 +1,28 @@
+//! What has a shape of its own.
+
+use std::collections::BTreeMap;
+
+use crate::draw::list::{DrawList, Layer};
+use crate::draw::material::Material;
+use crate::ribbon::texture::texture;
+use crate::scene::kind::{Coat, Scene};
+use crate::scene::picture::add_mesh;
+
+/// Adds all solids.
+pub(super) fn add(list: &mut DrawList, scene: &Scene) {
+    let mut materials = BTreeMap::new();
+    for solid in &scene.solids {
+        let material = *materials.entry(solid.coat).or_insert_with(|| {
+            let material = match solid.coat {
+                Coat::Painted => Material { name: "painted".into(), ..Material::default() },
+                Coat::Surface(surface) => Material {
+                    name: format!("{surface:?} of a solid").to_lowercase(),
+                    texture: Some(list.add_texture(texture(surface))),
+                    ..Material::default()
+                },
+            };
+            list.add_material(material)
+        });
+        add_mesh(list, solid.mesh.clone(), material, Layer::Solid, solid.feature);
+    }
+}
