@@ -119,7 +119,7 @@ impl<'i> Item<'_, 'i> {
     /// A number within `bounds`, or an expression that gives one.
     pub fn quantity(mut self, bounds: Bounds) -> Option<Quantity> {
         match self.value.get_ref() {
-            DeValue::String(_) => {
+            DeValue::String(text) if text.trim().parse::<f64>().is_err() => {
                 self.expression().map(|expression| Quantity::of_features(expression, bounds))
             }
             _ => self.number(bounds).map(Quantity::fixed),
