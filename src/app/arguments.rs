@@ -6,6 +6,7 @@ use std::str::FromStr;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::app::convert::ConvertOptions;
+use crate::app::export::ExportOptions;
 use crate::app::grid::GridOptions;
 use crate::app::height::HeightOptions;
 use crate::app::lod::choice::Wanted;
@@ -58,6 +59,8 @@ pub enum Command {
     Viewshed(ViewshedOptions),
     /// Answer questions about heights over HTTP
     Serve(ServeOptions),
+    /// Write a scene as a file that modelling programs open
+    Export(ExportOptions),
     /// Turn an elevation file into a mesh that is nowhere off by more than a given height
     Mesh(MeshOptions),
     /// Fly over an elevation file and compare the methods of showing it
@@ -232,7 +235,7 @@ pub struct LodOptions {
     pub heights: StatedHeights,
 }
 
-fn metres_from_zero(text: &str) -> Result<f64, String> {
+pub(in crate::app) fn metres_from_zero(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(metres) if metres.is_finite() && metres >= 0.0 => Ok(metres),
         _ => Err("write metres as a number from 0 on".into()),

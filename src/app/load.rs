@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::app::arguments::Access;
 use crate::app::failure::Failure;
 use crate::app::files;
+use crate::description::document::Document;
 use crate::description::parse::parse_bytes;
 use crate::scene::assets::Assets;
 use crate::scene::build::build;
@@ -16,8 +17,24 @@ use crate::scene::kind::Scene;
 /// Everything wrong with the scene file, or the first thing wrong with what it names.
 pub fn scene(path: &Path, access: &Access, step: &dyn Fn(&'static str)) -> Result<Scene, Failure> {
     step("reading the scene file");
+    let (document, assets) = document(path, access)?;
+    build(&document, &assets, step).map_err(Failure::input)
+}
+
+/// As [`scene`], with heights true to scale whatever exaggeration the scene file asks for.
+///
+/// # Errors
+/// As for [`scene`].
+pub fn unstretched(path: &Path, access: &Access, step: &dyn Fn(&'static str)) -> Result<Scene, Failure> {
+    step("reading the scene file");
+    let (mut document, assets) = document(path, access)?;
+    document.terrain.vertical_exaggeration = None;
+    build(&document, &assets, step).map_err(Failure::input)
+}
+
+fn document(path: &Path, access: &Access) -> Result<(Document, Assets), Failure> {
     let bytes = files::read(path)?;
     let document = parse_bytes(&path.to_string_lossy(), &bytes).map_err(Failure::input)?;
     let assets = Assets::new(path, &access.allow).map_err(Failure::input)?;
-    build(&document, &assets, step).map_err(Failure::input)
+    Ok((document, assets))
 }

@@ -6,6 +6,7 @@ pub mod check;
 pub mod convert;
 pub mod dataset;
 pub mod dem;
+pub mod export;
 pub mod failure;
 pub mod files;
 pub mod grid;
@@ -62,6 +63,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Los(options) => los::run(options),
         Command::Viewshed(options) => viewshed::run(options),
         Command::Serve(options) => serve::run(options),
+        Command::Export(options) => export::run(options),
         Command::Mesh(options) => mesh::run(options),
         Command::Lod(options) => lod::run(options),
     }

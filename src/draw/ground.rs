@@ -108,6 +108,30 @@ pub struct Contours {
     pub width_px: f32,
 }
 
+impl Contours {
+    /// How much of a pixel a contour covers, 0..=1, faded: the formula above for ground at `height_m` that changes by
+    /// `change_m` across the pixel.
+    ///
+    /// Ground that is level over the pixel has none: a lake at the very height of a line is no line.
+    pub fn strength(&self, height_m: f32, change_m: f32) -> f32 {
+        let interval = self.interval_m;
+        if !(interval > 0.0 && change_m > interval * 1e-6) {
+            return 0.0;
+        }
+        let number = (height_m / interval).round();
+        let is_major = self.major_every > 0 && (number as i64).rem_euclid(self.major_every.into()) == 0;
+        let fade = |spacing: f32| ((spacing / change_m - 4.0) / 6.0).clamp(0.0, 1.0);
+        let minor = fade(interval);
+        let (width, strength) = if is_major {
+            (self.width_px * (1.0 + minor), fade(interval * self.major_every as f32))
+        } else {
+            (self.width_px, minor)
+        };
+        let away_px = (height_m - number * interval).abs() / change_m;
+        (width / 2.0 + 0.5 - away_px).clamp(0.0, 1.0) * strength
+    }
+}
+
 impl GroundMap {
     /// Whether there is a post for every place and distances are those of a grid: what a renderer relies on.
     ///
@@ -189,5 +213,20 @@ mod tests {
             assert!(fault(GroundMap { cell, ..map.clone() }).contains("has cells of"), "{cell}");
         }
         assert!(fault(GroundMap { origin: Vec2::NAN, ..map.clone() }).contains("from [NaN, NaN]"));
+    }
+
+    #[test]
+    fn contours_follow_their_formula_and_survive_odd_settings() {
+        let plain = Contours { interval_m: 10.0, major_every: 5, color: Srgba::WHITE, width_px: 1.0 };
+        assert_eq!(plain.strength(20.0, 0.5), 1.0);
+        assert!((plain.strength(20.3, 0.5) - 0.4).abs() < 1e-5);
+        assert!((plain.strength(50.7, 0.5) - 0.1).abs() < 1e-5, "the fifth is twice as wide");
+        assert_eq!(plain.strength(20.0, 4.0), 0.0, "too close together");
+        assert_eq!(plain.strength(50.0, 4.0), 1.0, "every fifth line outlasts the others");
+        assert_eq!(plain.strength(50.0, 15.0), 0.0, "and vanishes in its turn");
+        for interval_m in [0.0, -1.0, f32::NAN] {
+            assert_eq!(Contours { interval_m, ..plain }.strength(20.0, 0.5), 0.0);
+        }
+        assert!(Contours { major_every: 0, ..plain }.strength(f32::NAN, 0.5).is_nan());
     }
 }

@@ -5,7 +5,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::draw::ground::{Contours, GroundMap, GroundPost};
+use crate::draw::ground::{GroundMap, GroundPost};
 use crate::render::cpu::hit::Hit;
 use crate::render::cpu::texture::Footprint;
 use crate::render::ground_levels::{Level, Size, add, smaller_levels};
@@ -60,7 +60,7 @@ impl<'a> Ground<'a> {
         let Some(contours) = &self.map.contours else { return color };
         let change = |step: Vec3| point.gradient.dot(step.truncate());
         let across = Vec2::new(change(hit.right), change(hit.down)).length();
-        let strength = contour_strength(contours, height, across);
+        let strength = contours.strength(height, across);
         color.lerp(contours.color.linear(), strength * contours.color.alpha())
     }
 
@@ -113,27 +113,6 @@ impl GroundPoint {
 fn split(coordinate: f32, count: usize) -> (usize, f32) {
     let cell = (coordinate as usize).min(count.saturating_sub(2));
     (cell, coordinate - cell as f32)
-}
-
-/// How much of a pixel a contour covers, 0..=1, faded; see [`Contours`] for the formula.
-///
-/// Ground that is level over the pixel has none: a lake at the very height of a line is no line.
-fn contour_strength(contours: &Contours, height_m: f32, change_m: f32) -> f32 {
-    let interval = contours.interval_m;
-    if !(interval > 0.0 && change_m > interval * 1e-6) {
-        return 0.0;
-    }
-    let number = (height_m / interval).round();
-    let is_major = contours.major_every > 0 && (number as i64).rem_euclid(contours.major_every.into()) == 0;
-    let fade = |spacing: f32| ((spacing / change_m - 4.0) / 6.0).clamp(0.0, 1.0);
-    let minor = fade(interval);
-    let (width, strength) = if is_major {
-        (contours.width_px * (1.0 + minor), fade(interval * contours.major_every as f32))
-    } else {
-        (contours.width_px, minor)
-    };
-    let away_px = (height_m - number * interval).abs() / change_m;
-    (width / 2.0 + 0.5 - away_px).clamp(0.0, 1.0) * strength
 }
 
 #[cfg(test)]
@@ -203,20 +182,5 @@ mod tests {
         for height in [-5.0, 0.0, 3.3, 9.0, 14.2, 20.0, 99.0] {
             assert!((ground.ramp_at(height) - map.ramp.linear_at(height)).length() < 1e-6, "{height}");
         }
-    }
-
-    #[test]
-    fn contours_follow_their_formula_and_survive_odd_settings() {
-        let plain = Contours { interval_m: 10.0, major_every: 5, color: Srgba::WHITE, width_px: 1.0 };
-        assert_eq!(contour_strength(&plain, 20.0, 0.5), 1.0);
-        assert!((contour_strength(&plain, 20.3, 0.5) - 0.4).abs() < 1e-5);
-        assert!((contour_strength(&plain, 50.7, 0.5) - 0.1).abs() < 1e-5, "the fifth is twice as wide");
-        assert_eq!(contour_strength(&plain, 20.0, 4.0), 0.0, "too close together");
-        assert_eq!(contour_strength(&plain, 50.0, 4.0), 1.0, "every fifth line outlasts the others");
-        assert_eq!(contour_strength(&plain, 50.0, 15.0), 0.0, "and vanishes in its turn");
-        for interval_m in [0.0, -1.0, f32::NAN] {
-            assert_eq!(contour_strength(&Contours { interval_m, ..plain }, 20.0, 0.5), 0.0);
-        }
-        assert!(contour_strength(&Contours { major_every: 0, ..plain }, f32::NAN, 0.5).is_nan());
     }
 }

@@ -1,0 +1,106 @@
+//! The ground map as a texture: tints and contours as seen from straight above, without light and shadow, which the
+//! program that shows it casts itself.
+
+use glam::Vec2;
+use rayon::prelude::*;
+
+use crate::draw::color::Srgba;
+use crate::draw::ground::GroundMap;
+use crate::draw::pixels::Pixels;
+
+/// The longest side in pixels: what every graphics adapter takes.
+const LONGEST_PX: u32 = 4096;
+
+/// Pixels a cell: contours between posts are smooth from two on.
+const PIXELS_PER_CELL: f32 = 2.0;
+
+/// A ground map as pixels, with the place they cover.
+pub struct Baked {
+    /// North up.
+    pub pixels: Pixels,
+    origin: Vec2,
+    size: Vec2,
+}
+
+impl Baked {
+    /// Texture coordinates of a world position.
+    pub fn uv(&self, at: Vec2) -> Vec2 {
+        let part = (at - self.origin) / self.size;
+        Vec2::new(part.x, 1.0 - part.y)
+    }
+}
+
+/// The whole of `map`, which has passed its check.
+pub fn bake(map: &GroundMap) -> Baked {
+    let cells = Vec2::new((map.columns.max(2) - 1) as f32, (map.rows.max(2) - 1) as f32);
+    let size = cells * map.cell;
+    // As many pixels east as north to the metre, as many to the cell as there is room for.
+    let metres_per_px =
+        (map.cell.min_element() / PIXELS_PER_CELL).max(size.max_element() / LONGEST_PX as f32);
+    let pixels = (size / metres_per_px).round().max(Vec2::ONE);
+    let (width, height) = (pixels.x as u32, pixels.y as u32);
+    let step = size / pixels;
+    let rows: Vec<Vec<Srgba>> = (0..height)
+        .into_par_iter()
+        .map(|y| {
+            let north = size.y - (y as f32 + 0.5) * step.y;
+            (0..width)
+                .map(|x| color(map, map.origin + Vec2::new((x as f32 + 0.5) * step.x, north), step))
+                .collect()
+        })
+        .collect();
+    let pixels =
+        Pixels::from_data(width, height, rows.concat()).expect("a row of pixels for each of `height`");
+    Baked { pixels, origin: map.origin, size }
+}
+
+fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
+    let height_m = |offset: Vec2| map.sample(at + offset).height_m;
+    let here = height_m(Vec2::ZERO);
+    let color = map.ramp.linear_at(here);
+    let Some(contours) = &map.contours else { return Srgba::from_linear(color) };
+    let half = step / 2.0;
+    let east = height_m(Vec2::new(half.x, 0.0)) - height_m(Vec2::new(-half.x, 0.0));
+    let north = height_m(Vec2::new(0.0, half.y)) - height_m(Vec2::new(0.0, -half.y));
+    let strength = contours.strength(here, Vec2::new(east, north).length()) * contours.color.alpha();
+    Srgba::from_linear(color.lerp(contours.color.linear(), strength))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::ground::{Contours, GroundPost, Ramp};
+
+    /// Ground that rises eastward, 10 m a post of 20 m, coloured dark below and light above.
+    fn map(contours: Option<Contours>) -> GroundMap {
+        let post = |index: u32| GroundPost { height_m: (index % 5) as f32 * 10.0, ..GroundPost::default() };
+        GroundMap {
+            origin: Vec2::new(100.0, 50.0),
+            cell: Vec2::new(20.0, 40.0),
+            columns: 5,
+            rows: 3,
+            posts: (0..15).map(post).collect(),
+            ramp: Ramp::new(vec![(0.0, Srgba::opaque(0, 0, 0)), (40.0, Srgba::WHITE)]).expect("rising"),
+            contours,
+        }
+    }
+
+    #[test]
+    fn west_is_left_and_north_is_up() {
+        let baked = bake(&map(None));
+        assert_eq!((baked.pixels.width(), baked.pixels.height()), (8, 8));
+        assert!(baked.pixels.at(0, 3).0[0] < baked.pixels.at(7, 3).0[0]);
+        assert_eq!(baked.uv(Vec2::new(100.0, 50.0)), Vec2::new(0.0, 1.0));
+        assert_eq!(baked.uv(Vec2::new(180.0, 130.0)), Vec2::new(1.0, 0.0));
+    }
+
+    #[test]
+    fn contours_are_painted_where_they_run() {
+        let red = Srgba::opaque(255, 0, 0);
+        let contours = Contours { interval_m: 400.0, major_every: 5, color: red, width_px: 1.0 };
+        let painted = bake(&map(Some(Contours { interval_m: 20.0, ..contours })));
+        let is_red = |x: u32| painted.pixels.at(x, 2).0[1] < painted.pixels.at(x, 2).0[0];
+        assert!(!is_red(1), "at 7 m");
+        assert_eq!(bake(&map(Some(contours))).pixels.at(4, 2), bake(&map(None)).pixels.at(4, 2));
+    }
+}
