@@ -4,6 +4,8 @@ mod common;
 
 #[path = "cli/convert.rs"]
 mod convert;
+#[path = "cli/export.rs"]
+mod export;
 #[path = "cli/grid.rs"]
 mod grid;
 #[path = "cli/heights.rs"]

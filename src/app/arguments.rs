@@ -14,6 +14,7 @@ use crate::app::lod::method::{Emit, Refine, Rule};
 use crate::app::lod::way::Way;
 use crate::app::los::LosOptions;
 use crate::app::profile::ProfileOptions;
+use crate::app::report::ReportOptions;
 use crate::app::serve::ServeOptions;
 use crate::app::viewshed::ViewshedOptions;
 use crate::dem::raw::RawLayout;
@@ -59,6 +60,8 @@ pub enum Command {
     Viewshed(ViewshedOptions),
     /// Answer questions about heights over HTTP
     Serve(ServeOptions),
+    /// What building a scene found out about single features: earth moved, gaps left, levels taken
+    Report(ReportOptions),
     /// Write a scene as a file that modelling programs open
     Export(ExportOptions),
     /// Turn an elevation file into a mesh that is nowhere off by more than a given height

@@ -10,7 +10,7 @@ use crate::app::failure::Failure;
 use crate::app::progress::Steps;
 use crate::app::{files, load, output};
 use crate::draw::list::{DrawList, FeatureId};
-use crate::export::{gltf, obj, prepare};
+use crate::export::{glb, obj, prepare};
 use crate::roam::criterion::flat::Flat;
 use crate::roam::displayed::DisplayedTerrain;
 use crate::roam::refine::rebuild::rebuild;
@@ -108,7 +108,7 @@ fn write(
     let name = |feature| name_of(&scene.features, feature);
     let mut written = vec![path.to_owned()];
     match format {
-        Format::Glb => files::write_whole_with(path, |out| gltf::write(list, &name, remarks, out))?,
+        Format::Glb => files::write_whole_with(path, |out| glb::write(list, &name, remarks, out))?,
         Format::Obj => {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             for (name, bytes) in obj::companions(list, &stem) {

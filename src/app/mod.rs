@@ -27,6 +27,7 @@ pub mod profile;
 pub mod progress;
 pub mod rasters;
 pub mod render;
+pub mod report;
 pub mod serve;
 pub mod viewshed;
 
@@ -64,6 +65,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Viewshed(options) => viewshed::run(options),
         Command::Serve(options) => serve::run(options),
         Command::Export(options) => export::run(options),
+        Command::Report(options) => report::run(options),
         Command::Mesh(options) => mesh::run(options),
         Command::Lod(options) => lod::run(options),
     }

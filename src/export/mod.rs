@@ -7,11 +7,11 @@
 //! ```text
 //!  DrawList ─► bake   the ground map as a texture
 //!           ─► inlay  the ground without what lies on it
-//!           ─► prepare: normals, and nothing without area  ─► gltf | obj
+//!           ─► prepare: normals, and nothing without area  ─► glb | obj
 //! ```
 
 pub mod bake;
-pub mod gltf;
+pub mod glb;
 pub mod inlay;
 pub mod obj;
 pub mod png;

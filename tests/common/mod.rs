@@ -9,3 +9,4 @@ pub mod scratch;
 pub mod shapefile;
 pub mod skip;
 pub mod synthetic;
+pub mod validator;
