@@ -7,6 +7,7 @@ pub mod area;
 pub mod drape;
 pub mod junction;
 pub mod partition;
+pub mod patches;
 pub mod plan;
 pub mod stroke;
 pub mod texture;

@@ -3,6 +3,7 @@
 mod drapes;
 mod ground;
 mod models;
+pub mod recut;
 mod solids;
 
 use std::sync::Arc;

@@ -1,0 +1,218 @@
+//! Everything that lies on the ground, cut patch by patch, so that a frame cuts again only what changed.
+//!
+//! Plans are divided once along the borders of the terrain's patches. A patch's part can then be cut to the displayed
+//! triangles without a look at its neighbours, and stays right until one of its own triangles changes:
+//!
+//! ```text
+//!   ┌────────┬────────┬────────┐
+//!   │      ══╪════════╪══      │   a road in three parts; the middle patch changed,
+//!   │        │▒▒▒▒▒▒▒▒│        │   so its part alone is cut again
+//!   └────────┴────────┴────────┘
+//! ```
+//!
+//! Cost: memory grows with the parts, time of [`Drapes::recut`] with the displayed triangles under the parts of the
+//! patches that are named; nothing is looked at in the others.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::draw::list::DrawMesh;
+use crate::geom::polygon;
+use crate::geom::rect::Rect;
+use crate::mesh::sink::MeshSink;
+use crate::ribbon::drape::{check_clearance, drape};
+use crate::ribbon::plan::{PlanMesh, PlanVertex, TextureMap};
+use crate::terrain::facets::Facets;
+
+/// Parts smaller than this are rounding, in square metres.
+const SLIVER_M2: f64 = 1e-7;
+
+/// Where patches meet: rising world X of the borders that run north, and Y of those that run east, the outermost among
+/// them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Borders {
+    /// One more than there are columns of patches.
+    pub east: Vec<f64>,
+    /// One more than there are rows.
+    pub north: Vec<f64>,
+}
+
+impl Borders {
+    /// Patches side by side.
+    fn columns(&self) -> usize {
+        self.east.len().saturating_sub(1)
+    }
+
+    fn patch_count(&self) -> usize {
+        self.columns() * self.north.len().saturating_sub(1)
+    }
+
+    /// Columns and rows of the patches that a rectangle meets.
+    fn meeting(&self, rect: &Rect) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let span = |borders: &[f64], low: f64, high: f64| {
+            let first = borders.partition_point(|&border| border <= low).saturating_sub(1);
+            let end = borders.partition_point(|&border| border < high).min(borders.len().saturating_sub(1));
+            first..end
+        };
+        let columns = span(&self.east, rect.min.x, rect.max.x);
+        let rows = span(&self.north, rect.min.y, rect.max.y);
+        rows.flat_map(move |row| columns.clone().map(move |column| (column, row)))
+    }
+
+    /// The corners of a patch, counter-clockwise.
+    fn window(&self, (column, row): (usize, usize)) -> [DVec2; 4] {
+        let [west, east] = [self.east[column], self.east[column + 1]];
+        let [south, north] = [self.north[row], self.north[row + 1]];
+        [(west, south), (east, south), (east, north), (west, north)].map(DVec2::from)
+    }
+}
+
+/// What lies on the ground, by patch.
+#[derive(Clone, Debug)]
+pub struct Drapes {
+    patches: Vec<Patch>,
+}
+
+/// What lies in one patch.
+#[derive(Clone, Debug, Default)]
+struct Patch {
+    /// The parts of ribbons, by their places among the plans given.
+    parts: Vec<(usize, PlanMesh)>,
+    /// Each part cut to the ground as it was displayed when the patch was last cut.
+    cut: Vec<DrawMesh>,
+}
+
+impl Drapes {
+    /// Divides `plans` along the borders; nothing is cut to the ground yet. Patches are numbered row by row from the
+    /// south-west.
+    pub fn new<'a>(borders: &Borders, plans: impl IntoIterator<Item = &'a PlanMesh>) -> Self {
+        let mut patches = vec![Patch::default(); borders.patch_count()];
+        for (ribbon, plan) in plans.into_iter().enumerate() {
+            divide((ribbon, plan), borders, &mut patches);
+        }
+        Self { patches }
+    }
+
+    /// Cuts the parts in `patches` to what is displayed there now. Which patches those are the refiner tells: those it
+    /// changed, those that came into view, and those that went.
+    ///
+    /// # Panics
+    /// Where a number is not that of a patch.
+    pub fn recut(&mut self, patches: &[usize], ground: &dyn Facets) {
+        let cut: Vec<Vec<DrawMesh>> = patches
+            .par_iter()
+            .map(|&patch| {
+                let laid = |(_, plan): &(usize, PlanMesh)| {
+                    let mut mesh = DrawMesh::default();
+                    drape(plan, ground, &mut mesh);
+                    mesh
+                };
+                self.patches[patch].parts.iter().map(laid).collect()
+            })
+            .collect();
+        for (&patch, cut) in patches.iter().zip(cut) {
+            self.patches[patch].cut = cut;
+        }
+    }
+
+    /// The ribbons in a patch, as places among the plans given, and what was cut of each.
+    ///
+    /// # Panics
+    /// Where the number is not that of a patch.
+    pub fn in_patch(&self, patch: usize) -> impl Iterator<Item = (usize, &DrawMesh)> {
+        let Patch { parts, cut } = &self.patches[patch];
+        parts.iter().zip(cut).map(|(&(ribbon, _), mesh)| (ribbon, mesh))
+    }
+
+    /// How many patches hold something.
+    pub fn occupied(&self) -> usize {
+        self.patches.iter().filter(|patch| !patch.parts.is_empty()).count()
+    }
+
+    /// The largest clearance in metres between what was cut and what is displayed now: 0 but for rounding where every
+    /// patch that changed was cut again. See [`check_clearance`].
+    pub fn check(&self, ground: &dyn Facets) -> f64 {
+        let cut: Vec<&DrawMesh> = self.patches.iter().flat_map(|patch| &patch.cut).collect();
+        cut.par_iter().map(|mesh| check_clearance(mesh, ground)).reduce(|| 0.0, f64::max)
+    }
+}
+
+impl Patch {
+    /// The part that a ribbon has here; ribbons are handed in one after the other.
+    fn part(&mut self, ribbon: usize) -> &mut PlanMesh {
+        if self.parts.last().is_none_or(|(last, _)| *last != ribbon) {
+            self.parts.push((ribbon, PlanMesh::default()));
+        }
+        &mut self.parts.last_mut().expect("there is one now").1
+    }
+}
+
+/// Adds each triangle of a plan to the parts it has in the patches it meets.
+fn divide((ribbon, plan): (usize, &PlanMesh), borders: &Borders, patches: &mut [Patch]) {
+    let (mut piece, mut scratch) = (Vec::new(), Vec::new());
+    for corners in plan.corners() {
+        let texture = TextureMap::of(corners);
+        for (column, row) in borders.meeting(&Rect::around(corners.map(|corner| corner.at))) {
+            piece.clear();
+            piece.extend(corners.map(|corner| corner.at));
+            polygon::clip_convex(&mut piece, &mut scratch, &borders.window((column, row)));
+            if piece.len() < 3 || polygon::doubled_area(&piece) < 2.0 * SLIVER_M2 {
+                continue;
+            }
+            let part = patches[row * borders.columns() + column].part(ribbon);
+            let ids: Vec<_> =
+                piece.iter().map(|&at| part.vertex(PlanVertex { at, uv: texture.at(at) })).collect();
+            for pair in ids[1..].windows(2) {
+                part.triangle([ids[0], pair[0], pair[1]]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::polyline::Polyline;
+    use crate::ribbon::stroke::{Continuations, StrokeOptions, stroke};
+
+    fn borders() -> Borders {
+        Borders { east: vec![0.0, 40.0, 80.0, 100.0], north: vec![0.0, 40.0, 70.0] }
+    }
+
+    fn road() -> PlanMesh {
+        let line = Polyline::new([(5.0, 10.0), (60.0, 38.0), (95.0, 66.0)].map(DVec2::from), 0.0);
+        let mut plan = PlanMesh::default();
+        stroke(&line.expect("a line"), Continuations::default(), &StrokeOptions::default(), &mut plan);
+        plan
+    }
+
+    #[test]
+    fn the_parts_are_the_whole_and_each_lies_in_its_patch() {
+        let (borders, road) = (borders(), road());
+        let drapes = Drapes::new(&borders, [&road]);
+        let mut area = 0.0;
+        for (index, patch) in drapes.patches.iter().enumerate() {
+            let [low, _, high, _] = borders.window((index % 3, index / 3));
+            for (ribbon, part) in &patch.parts {
+                assert_eq!(*ribbon, 0);
+                area += part.area_m2();
+                assert!(
+                    part.vertices
+                        .iter()
+                        .all(|v| v.at.cmpge(low - 1e-9).all() && v.at.cmple(high + 1e-9).all())
+                );
+            }
+        }
+        assert!((area - road.area_m2()).abs() < 1e-6, "{area}");
+        assert!(drapes.occupied() >= 4);
+    }
+
+    #[test]
+    fn what_lies_off_the_patches_has_no_part() {
+        let mut plan = PlanMesh::default();
+        let ids = [(-20.0, -9.0), (-10.0, -9.0), (-15.0, 0.0)]
+            .map(|at| plan.vertex(PlanVertex { at: DVec2::from(at), uv: glam::Vec2::ZERO }));
+        plan.triangle(ids);
+        assert_eq!(Drapes::new(&borders(), [&plan]).occupied(), 0);
+    }
+}

@@ -1,0 +1,23 @@
+//! What lies on the ground of a scene, by patch: for those who walk through it and cut again only what changed.
+
+use crate::ribbon::patches::{Borders, Drapes};
+use crate::roam::graph::Vertex;
+use crate::scene::kind::{Scene, Terrain};
+
+/// The scene's ribbons divided along its patches, numbered as [`crate::roam::layout::Layout::patches`] lists them;
+/// the places of ribbons are those in [`Scene::ribbons`].
+pub fn drapes(scene: &Scene) -> Drapes {
+    Drapes::new(&borders(&scene.terrain), scene.ribbons.iter().map(|ribbon| &ribbon.plan))
+}
+
+/// The borders as f32 has them, where the displayed triangles end.
+fn borders(terrain: &Terrain) -> Borders {
+    let (layout, ground) = (&terrain.layout, terrain.ground());
+    let (columns, rows) = layout.patch_grid();
+    let at =
+        |x: usize, y: usize| ground.plan(Vertex::new(x as i32 * layout.patch(), y as i32 * layout.patch()));
+    Borders {
+        east: (0..=columns).map(|column| f64::from(at(column, 0).x)).collect(),
+        north: (0..=rows).map(|row| f64::from(at(0, row).y)).collect(),
+    }
+}
