@@ -1,91 +1,122 @@
 //! Takes ribbons that overlap apart, so that no two triangles lie over one another.
 //!
 //! Plans are handed in from the one that lies over all others down. Each triangle loses what the triangles before it
-//! cover, those of its own plan included (the inner side of a bevelled bend, a line that crosses itself), and what is
-//! left of it keeps its texture. Triangles are convex, so what one takes away from another is cut off along its three
-//! sides: exact to rounding, with no grid that vertices are snapped to, and the same on every machine.
+//! cover, those of its own plan included (the inner side of a sharp bend, a line that crosses itself), and what is left
+//! of it keeps its texture. Triangles are convex, so what one takes away from another is cut off along its three sides:
+//! exact to rounding, with no grid that vertices are snapped to, and the same on every machine.
 //!
-//! A grid of squares finds the triangles that may overlap: the cost grows with the triangles and with how many of them
-//! lie over one another, not with their square.
+//! What is taken away is what the triangles before cover as they were handed in, not what was left of them: both cover
+//! the same ground, and so each triangle is cut without waiting for any other. A tree of rectangles finds the triangles
+//! that may overlap: the cost grows with the triangles and with how many of them lie over one another, not with their
+//! square.
 
 use std::collections::BTreeMap;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
+use crate::geom::convex;
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
+use crate::geom::rect_tree::RectTree;
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::ribbon::plan::{PlanMesh, PlanVertex, TextureMap};
 
 /// Triangles, overlaps and leftovers smaller than this are rounding, in square metres: a sliver of 10 m by 0.1 mm.
 const SLIVER_M2: f64 = 1e-3;
 
+/// How many triangles are cut in one go by a thread: a few thousand cuts, against a hand-over of a microsecond.
+const CHUNK: usize = 256;
+
 /// The same plans without what those before them cover.
 pub fn apart<'a>(plans: impl IntoIterator<Item = &'a PlanMesh> + Clone) -> Vec<PlanMesh> {
-    let mut covered = Covered::new(plans.clone());
-    plans.into_iter().map(|plan| covered.lay(plan)).collect()
+    let covering = Covering::new(plans.clone());
+    let rests: Vec<Rest> = covering.each(|triangle| covering.rest(triangle));
+    let mut rests = rests.into_iter();
+    plans.into_iter().map(|plan| left_of(plan, &mut rests)).collect()
 }
 
 /// The area in square metres that more than one triangle of `plans` covers, counted once for every pair: 0 but for
 /// rounding after [`apart`].
-pub fn overlap_m2<'a>(plans: impl IntoIterator<Item = &'a PlanMesh> + Clone) -> f64 {
-    let mut covered = Covered::new(plans.clone());
-    let mut overlap = 0.0;
-    for triangle in plans.into_iter().flat_map(PlanMesh::corners) {
-        let corners = triangle.map(|corner| corner.at);
-        for over in covered.near(&corners) {
-            overlap += shared_m2(&corners, &covered.triangles[over]);
-        }
-        covered.add(corners);
-    }
-    overlap
+pub fn overlap_m2<'a>(plans: impl IntoIterator<Item = &'a PlanMesh>) -> f64 {
+    let covering = Covering::new(plans);
+    covering.each(|triangle| covering.overlap_m2(triangle)).into_iter().sum()
 }
 
-/// The triangles laid so far.
-struct Covered {
-    triangles: Vec<[DVec2; 3]>,
-    squares: BTreeMap<(i64, i64), Vec<usize>>,
-    side: f64,
+/// What is left of a triangle.
+enum Rest {
+    /// All of it.
+    Whole,
+    /// Convex pieces, counter-clockwise; none where it is covered.
+    Pieces(Vec<Vec<DVec2>>),
 }
 
-impl Covered {
-    /// Nothing yet, in a grid that suits the triangles to come.
-    fn new<'a>(plans: impl IntoIterator<Item = &'a PlanMesh>) -> Self {
-        let (mut sum, mut count) = (0.0, 0.0);
-        for triangle in plans.into_iter().flat_map(PlanMesh::corners) {
-            sum += Rect::around(triangle.map(|corner| corner.at)).size().max_element();
-            count += 1.0;
-        }
-        // A square as large as a triangle holds a few of them, and a triangle lies in a few squares.
-        let side = if count > 0.0 { f64::max(sum / count, 1.0) } else { 1.0 };
-        Self { triangles: Vec::new(), squares: BTreeMap::new(), side }
-    }
-
-    /// What is left of a plan over which everything so far lies; it is then a part of everything.
-    fn lay(&mut self, plan: &PlanMesh) -> PlanMesh {
-        let mut left = PlanMesh::default();
-        let mut kept: BTreeMap<VertexId, VertexId> = BTreeMap::new();
-        for (&ids, triangle) in plan.triangles.iter().zip(plan.corners()) {
-            let corners = triangle.map(|corner| corner.at);
-            let over = self.near(&corners);
-            if !over.iter().any(|&over| shared_m2(&corners, &self.triangles[over]) > SLIVER_M2) {
+/// What is left of a plan, given what is left of each of its triangles.
+fn left_of(plan: &PlanMesh, rests: &mut impl Iterator<Item = Rest>) -> PlanMesh {
+    let mut left = PlanMesh::default();
+    let mut kept: BTreeMap<VertexId, VertexId> = BTreeMap::new();
+    for ((&ids, triangle), rest) in plan.triangles.iter().zip(plan.corners()).zip(rests) {
+        match rest {
+            Rest::Whole => {
                 let mut keep =
                     |id: VertexId| *kept.entry(id).or_insert_with(|| left.vertex(plan.vertices[id.index()]));
                 let ids = ids.map(&mut keep);
                 left.triangle(ids);
-                self.add(corners);
-                continue;
             }
-            let texture = TextureMap::of(triangle);
-            for piece in self.uncovered(&corners, &over) {
-                for corners in fan(&piece) {
+            Rest::Pieces(pieces) => {
+                let texture = TextureMap::of(triangle);
+                for corners in pieces.iter().flat_map(|piece| fan(piece)) {
                     let ids = corners.map(|at| left.vertex(PlanVertex { at, uv: texture.at(at) }));
                     left.triangle(ids);
-                    self.add(corners);
                 }
             }
         }
-        left
+    }
+    left
+}
+
+/// All triangles of some plans, in their order.
+struct Covering {
+    triangles: Vec<[DVec2; 3]>,
+    tree: RectTree,
+}
+
+impl Covering {
+    fn new<'a>(plans: impl IntoIterator<Item = &'a PlanMesh>) -> Self {
+        let corners = plans.into_iter().flat_map(PlanMesh::corners);
+        let triangles: Vec<[DVec2; 3]> = corners.map(|triangle| triangle.map(|corner| corner.at)).collect();
+        let rects: Vec<Rect> = triangles.iter().map(|&corners| Rect::around(corners)).collect();
+        Self { tree: RectTree::new(&rects), triangles }
+    }
+
+    /// What `found` says of every triangle, in their order.
+    fn each<T: Send>(&self, found: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
+        (0..self.triangles.len()).into_par_iter().with_min_len(CHUNK).map(found).collect()
+    }
+
+    /// The triangles before this one that may overlap it, in their order.
+    fn over(&self, triangle: usize) -> Vec<usize> {
+        let corners = &self.triangles[triangle];
+        let mut over = Vec::new();
+        self.tree.visit(&Rect::around(*corners), &mut |other| {
+            if other < triangle && convex::overlap(corners, &self.triangles[other]) {
+                over.push(other);
+            }
+        });
+        over.sort_unstable();
+        over
+    }
+
+    fn overlap_m2(&self, triangle: usize) -> f64 {
+        let shared = |over: usize| shared_m2(&self.triangles[triangle], &self.triangles[over]);
+        self.over(triangle).into_iter().map(shared).sum()
+    }
+
+    fn rest(&self, triangle: usize) -> Rest {
+        let corners = &self.triangles[triangle];
+        let mut over = self.over(triangle);
+        over.retain(|&over| shared_m2(corners, &self.triangles[over]) > SLIVER_M2);
+        if over.is_empty() { Rest::Whole } else { Rest::Pieces(self.uncovered(corners, &over)) }
     }
 
     /// The convex pieces of a triangle that none of the triangles `over` covers.
@@ -95,7 +126,7 @@ impl Covered {
             let window = &self.triangles[over];
             let mut kept = Vec::with_capacity(pieces.len());
             for piece in pieces {
-                if shared_m2(&piece, window) > SLIVER_M2 {
+                if convex::overlap(&piece, window) && shared_m2(&piece, window) > SLIVER_M2 {
                     polygon::cut_away(piece, window, &mut kept);
                 } else {
                     kept.push(piece);
@@ -106,40 +137,10 @@ impl Covered {
         pieces.retain(|piece| polygon::doubled_area(piece) > 2.0 * SLIVER_M2);
         pieces
     }
-
-    fn add(&mut self, corners: [DVec2; 3]) {
-        let index = self.triangles.len();
-        self.triangles.push(corners);
-        for square in squares(&corners, self.side) {
-            self.squares.entry(square).or_default().push(index);
-        }
-    }
-
-    /// The triangles that may overlap this one, in the order in which they were laid.
-    fn near(&self, corners: &[DVec2; 3]) -> Vec<usize> {
-        let mut near: Vec<usize> = squares(corners, self.side)
-            .filter_map(|square| self.squares.get(&square))
-            .flatten()
-            .copied()
-            .collect();
-        near.sort_unstable();
-        near.dedup();
-        near
-    }
-}
-
-/// The squares that the rectangle around a triangle meets.
-fn squares(corners: &[DVec2; 3], side: f64) -> impl Iterator<Item = (i64, i64)> + use<> {
-    let bounds = Rect::around(*corners);
-    let (low, high) = ((bounds.min / side).floor(), (bounds.max / side).floor());
-    (low.y as i64..=high.y as i64).flat_map(move |y| (low.x as i64..=high.x as i64).map(move |x| (x, y)))
 }
 
 /// The area that two convex polygons share.
-fn shared_m2(polygon: &[DVec2], window: &[DVec2; 3]) -> f64 {
-    if !polygon::bounds(polygon).meets(&polygon::bounds(window)) {
-        return 0.0;
-    }
+fn shared_m2(polygon: &[DVec2], window: &[DVec2]) -> f64 {
     let (mut piece, mut scratch) = (polygon.to_vec(), Vec::new());
     polygon::clip_convex(&mut piece, &mut scratch, window);
     if piece.len() < 3 { 0.0 } else { polygon::doubled_area(&piece) / 2.0 }

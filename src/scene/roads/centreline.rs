@@ -1,13 +1,15 @@
 //! The document's roads as centrelines, each with what it is to become.
 
+use glam::DVec2;
+
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::{Road, Scalar};
-use crate::description::words;
+use crate::description::words::{self, Markings};
 use crate::draw::list::FeatureId;
-use crate::geom::polyline::Polyline;
+use crate::geom::polyline::{Polyline, kept};
 use crate::geom::rect::Rect;
-use crate::ribbon::stroke::StrokeOptions;
+use crate::ribbon::stroke::{StrokeOptions, Widths};
 use crate::ribbon::texture::{Surface, texture_length_m};
 use crate::scene::attributes::Attributes;
 use crate::scene::collected::Collected;
@@ -37,8 +39,12 @@ pub struct Centreline {
     /// The road's elevation in metres at each vertex of `line`, where it has one of its own: on the ground it conforms
     /// to, on a bridge, in a tunnel. `None` where it lies on the ground as it is.
     pub levels_m: Option<Vec<f64>>,
-    /// Its carriageway's width and joints.
+    /// Its carriageway's width and joints; the width is the mean one where it changes along the line.
     pub options: StrokeOptions,
+    /// Its carriageway's width in metres at each vertex of `line`, where it changes; `None` where it does not.
+    pub widths_m: Option<Vec<f64>>,
+    /// How wide the unpaved strip on either side is, in metres; 0 where there is none.
+    pub shoulder_m: f64,
     /// What it is paved with.
     pub surface: Surface,
     /// What carries it.
@@ -66,38 +72,90 @@ pub fn collect(
     let mut all = Vec::new();
     for (table, road) in document.roads.iter().enumerate() {
         let lines = sources.lines(&road.source)?;
-        let given = road.name.as_deref();
-        for (attributes, line) in near::lines(lines, (extent, REACH_M), (FeatureKind::Road, given), collected)
-        {
-            let surface = match attributes.word(road.surface.as_ref()).unwrap_or_default() {
-                words::Surface::Asphalt => Surface::Asphalt,
-                words::Surface::Gravel => Surface::Gravel,
-                words::Surface::Track => Surface::Track,
-            };
-            let stated = ("[[road]] width", road.width.as_ref());
-            let width_m = attributes.number_or(stated, 6.0, &mut collected.defaulted);
-            let options = StrokeOptions {
-                width_m,
-                texture_length_m: texture_length_m(surface, width_m),
-                ..StrokeOptions::default()
-            };
-            let carried = carried(road, &attributes);
-            let level = level(road, &attributes, carried);
-            let feature = collected.add(FeatureKind::Road, attributes.name(given));
-            all.push(Centreline {
-                line,
-                levels_m: None,
-                options,
-                surface,
-                carried,
-                level,
-                feature,
-                table,
-                attributes,
-            });
+        let widths_m = lines.first().and_then(|line| widths_m(road, &line.shape));
+        let given = (FeatureKind::Road, road.name.as_deref());
+        for (attributes, line) in near::lines(lines, (extent, REACH_M), given, collected) {
+            let mut centreline = centreline((table, road), attributes, line, collected);
+            if let Some(widths_m) = &widths_m {
+                centreline.vary(widths_m);
+            }
+            all.push(centreline);
         }
     }
     Ok(all)
+}
+
+impl Centreline {
+    /// How wide its carriageway is along its line.
+    pub fn widths(&self) -> Widths<'_> {
+        match &self.widths_m {
+            Some(widths_m) => Widths::PerVertex(widths_m),
+            None => Widths::Constant(self.options.width_m),
+        }
+    }
+
+    /// Gives it a width at each vertex.
+    fn vary(&mut self, widths_m: &[f64]) {
+        self.options.width_m = widths_m.iter().sum::<f64>() / widths_m.len() as f64;
+        self.options.texture_length_m = texture_length_m(self.surface, self.options.width_m);
+        self.widths_m = Some(widths_m.to_vec());
+    }
+}
+
+/// One road line with all that its table says of it.
+fn centreline(
+    (table, road): (usize, &Road),
+    attributes: Attributes,
+    line: Polyline,
+    collected: &mut Collected,
+) -> Centreline {
+    let defaulted = &mut collected.defaulted;
+    let surface = surface(road, &attributes);
+    let width_m = attributes.number_or(("[[road]] width", road.width.as_ref()), 6.0, defaulted);
+    let shoulder_m = attributes.number_or(("[[road]] shoulder", road.shoulder.as_ref()), 0.0, defaulted);
+    let standard = StrokeOptions::default();
+    let options = StrokeOptions {
+        width_m,
+        join: road.join.as_ref().map_or(standard.join, |join| *join.get_ref()),
+        mitre_limit: road.mitre_limit.as_ref().map_or(standard.mitre_limit, |limit| *limit.get_ref()),
+        texture_length_m: texture_length_m(surface, width_m),
+    };
+    let carried = carried(road, &attributes);
+    Centreline {
+        line,
+        levels_m: None,
+        options,
+        widths_m: None,
+        shoulder_m,
+        surface,
+        carried,
+        level: level(road, &attributes, carried),
+        feature: collected.add(FeatureKind::Road, attributes.name(road.name.as_deref())),
+        table,
+        attributes,
+    }
+}
+
+/// The widths stated for the points of an inline line, at the vertices that are left of it.
+fn widths_m(road: &Road, shape: &[DVec2]) -> Option<Vec<f64>> {
+    let stated = road.widths.as_ref()?.get_ref();
+    let widths_m: Option<Vec<f64>> =
+        kept(shape, near::MERGE_M).into_iter().map(|index| stated.get(index).copied()).collect();
+    widths_m.filter(|widths_m| widths_m.len() >= 2)
+}
+
+/// What it is paved with and what is painted on it.
+fn surface(road: &Road, attributes: &Attributes) -> Surface {
+    match attributes.word(road.surface.as_ref()).unwrap_or_default() {
+        words::Surface::Gravel => Surface::Gravel,
+        words::Surface::Track => Surface::Track,
+        words::Surface::Asphalt => match attributes.word(road.markings.as_ref()).unwrap_or_default() {
+            Markings::Dashed => Surface::Asphalt,
+            Markings::Solid => Surface::AsphaltSolid,
+            Markings::Edges => Surface::AsphaltEdges,
+            Markings::None => Surface::AsphaltPlain,
+        },
+    }
 }
 
 /// What carries a road, by the expressions stated for it, else by its properties as OpenStreetMap has them.
