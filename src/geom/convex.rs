@@ -18,8 +18,9 @@ pub fn overlap(one: &[DVec2], other: &[DVec2]) -> bool {
 fn parts(one: &[DVec2], other: &[DVec2]) -> bool {
     polygon::edges(one).any(|(from, to)| {
         let along = to - from;
-        let touching = TOUCHING_M * along.length();
-        other.iter().all(|&point| along.perp_dot(point - from) <= touching)
+        let (length, touching) = (along.length(), TOUCHING_M * along.length());
+        // Clipping leaves corners twice, and what lies between such two has no direction.
+        length > TOUCHING_M && other.iter().all(|&point| along.perp_dot(point - from) <= touching)
     })
 }
 
@@ -81,6 +82,8 @@ mod tests {
         assert!(!overlap(&one, &triangle([(6.0, 6.0), (9.0, 6.0), (6.0, 9.0)])), "boxes alone overlap");
         assert!(overlap(&one, &triangle([(4.0, 4.0), (9.0, 4.0), (4.0, 9.0)])));
         assert!(overlap(&one, &one));
+        let [a, b, c] = one;
+        assert!(overlap(&[a, b, b, c], &one), "a corner that stands twice is no side");
     }
 
     #[test]

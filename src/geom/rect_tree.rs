@@ -12,6 +12,8 @@
 //! Sizes may differ as they like: unlike a grid of squares, a lake among footpaths costs one entry. Making it takes
 //! n log n steps, a question about log n and as many as it finds.
 
+use std::ops::ControlFlow;
+
 use rayon::prelude::*;
 
 use crate::geom::rect::Rect;
@@ -50,10 +52,22 @@ impl RectTree {
         Self { levels, order }
     }
 
-    /// Calls `found` with every rectangle that meets `window`, each once, in the tree's order.
-    pub fn visit(&self, window: &Rect, found: &mut impl FnMut(usize)) {
+    /// Calls `found` with the rectangles that meet `window`, each once, in the tree's order, until it breaks.
+    pub fn visit(&self, window: &Rect, found: &mut impl FnMut(usize) -> ControlFlow<()>) {
         let top = self.levels.len() - 1;
-        self.visit_level((top, 0), self.levels[top].len(), window, found);
+        // Whether it was broken off is known to who broke it off.
+        let _ = self.visit_level((top, 0), self.levels[top].len(), window, found);
+    }
+
+    /// The rectangles that meet `window` and of which `wanted` holds, from the least up.
+    pub fn found(&self, window: &Rect, wanted: impl Fn(usize) -> bool) -> Vec<usize> {
+        let mut found = Vec::new();
+        self.visit(window, &mut |index| {
+            found.extend(wanted(index).then_some(index));
+            ControlFlow::Continue(())
+        });
+        found.sort_unstable();
+        found
     }
 
     /// Visits `count` places of a level from `first` on.
@@ -62,20 +76,21 @@ impl RectTree {
         (level, first): (usize, usize),
         count: usize,
         window: &Rect,
-        found: &mut impl FnMut(usize),
-    ) {
+        found: &mut impl FnMut(usize) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
         for place in first..first + count {
             if !self.levels[level][place].meets(window) {
                 continue;
             }
             if level == 0 {
-                found(self.order[place] as usize);
+                found(self.order[place] as usize)?;
             } else {
                 let below = place * FAN;
                 let count = FAN.min(self.levels[level - 1].len() - below);
-                self.visit_level((level - 1, below), count, window, found);
+                self.visit_level((level - 1, below), count, window, found)?;
             }
         }
+        ControlFlow::Continue(())
     }
 }
 
@@ -113,18 +128,11 @@ mod tests {
     use glam::DVec2;
     use proptest::prelude::*;
 
-    fn found(tree: &RectTree, window: &Rect) -> Vec<usize> {
-        let mut found = Vec::new();
-        tree.visit(window, &mut |index| found.push(index));
-        found.sort_unstable();
-        found
-    }
-
     #[test]
     fn nothing_is_found_among_nothing() {
         let everything = Rect { min: DVec2::splat(-1e300), max: DVec2::splat(1e300) };
-        assert!(found(&RectTree::new(&[]), &everything).is_empty());
-        assert!(found(&RectTree::new(&[Rect::EMPTY; 20]), &everything).is_empty());
+        assert!(RectTree::new(&[]).found(&everything, |_| true).is_empty());
+        assert!(RectTree::new(&[Rect::EMPTY; 20]).found(&everything, |_| true).is_empty());
     }
 
     proptest! {
@@ -139,7 +147,14 @@ mod tests {
             let rects: Vec<Rect> = corners.into_iter().map(rect).collect();
             let window = rect(window);
             let expected: Vec<usize> = (0..rects.len()).filter(|&index| rects[index].meets(&window)).collect();
-            prop_assert_eq!(found(&RectTree::new(&rects), &window), expected);
+            let tree = RectTree::new(&rects);
+            prop_assert_eq!(&tree.found(&window, |_| true), &expected);
+            let mut first = None;
+            tree.visit(&window, &mut |index| {
+                assert_eq!(first.replace(index), None, "it was broken off");
+                ControlFlow::Break(())
+            });
+            prop_assert_eq!(first.is_some(), !expected.is_empty());
         }
     }
 }

@@ -3,6 +3,8 @@
 //! Ribbons are convex pieces, so what two of them share is a convex polygon: found pair by pair, with a tree of rectangles
 //! that leaves out the pairs that are far apart. What lies in a junction already is left out too.
 
+use std::ops::ControlFlow;
+
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -16,6 +18,10 @@ use crate::ribbon::plan::PlanMesh;
 /// Ground smaller than this is rounding, in square metres: a sliver of 10 m by 0.1 mm.
 const SLIVER_M2: f64 = 1e-3;
 
+/// A piece that shares ground with more others than this is shared whole: where so many lie over one another, nothing
+/// that is painted on one can be read, and their number must not grow with its square.
+const MOST: usize = 64;
+
 /// Ground that two ribbons share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crossing {
@@ -25,42 +31,44 @@ pub struct Crossing {
     pub ribbons: [usize; 2],
 }
 
+/// What the `ribbons` share that are of one class, outside `nodes`: in the order of the ribbons. Crossings may overlap one
+/// another.
+pub fn crossings<C: PartialEq + Sync>(ribbons: &[(PlanMesh, C)], nodes: &[Node]) -> Vec<Crossing> {
+    let pieces: Vec<Piece> = ribbons.par_iter().enumerate().flat_map_iter(pieces_of).collect();
+    let rects: Vec<Rect> = pieces.iter().map(|piece| polygon::bounds(&piece.outline)).collect();
+    let (tree, joined) = (RectTree::new(&rects), Joined::new(nodes));
+    let shared = |one: &Piece| {
+        let mut found = Vec::new();
+        tree.visit(&polygon::bounds(&one.outline), &mut |other| {
+            let other = &pieces[other];
+            if other.ribbon < one.ribbon && ribbons[other.ribbon].1 == ribbons[one.ribbon].1 {
+                found.extend(crossing([other, one]).filter(|crossing| !joined.holds(&crossing.outline)));
+            }
+            if found.len() > MOST { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        if found.len() > MOST {
+            found.truncate(1);
+            found[0].outline.clone_from(&one.outline);
+        }
+        found.sort_by_key(|crossing| crossing.ribbons);
+        found
+    };
+    pieces.par_iter().flat_map_iter(shared).collect()
+}
+
 /// A convex piece of a ribbon.
 struct Piece {
     outline: Vec<DVec2>,
     ribbon: usize,
 }
 
-/// What the `ribbons` share that are alike by `class`, outside `nodes`: in the order of the ribbons. Crossings may
-/// overlap one another.
-pub fn crossings<C: PartialEq + Sync>(ribbons: &[(PlanMesh, C)], nodes: &[Node]) -> Vec<Crossing> {
-    let pieces: Vec<Piece> = ribbons
-        .par_iter()
-        .enumerate()
-        .flat_map_iter(|(ribbon, (plan, _))| {
-            plan.convex_parts().into_iter().map(move |outline| Piece { outline, ribbon })
-        })
-        .collect();
-    let rects: Vec<Rect> = pieces.iter().map(|piece| polygon::bounds(&piece.outline)).collect();
-    let tree = RectTree::new(&rects);
-    let joined = Joined::new(nodes);
-    let of_piece = |index: usize| {
-        let one = &pieces[index];
-        let mut before = Vec::new();
-        tree.visit(&rects[index], &mut |other| {
-            if pieces[other].ribbon < one.ribbon && ribbons[pieces[other].ribbon].1 == ribbons[one.ribbon].1 {
-                before.push(other);
-            }
-        });
-        before.sort_unstable();
-        let crossing = |other: usize| {
-            let outline = convex::shared(&one.outline, &pieces[other].outline, SLIVER_M2)?;
-            (!joined.holds(&outline))
-                .then_some(Crossing { outline, ribbons: [pieces[other].ribbon, one.ribbon] })
-        };
-        before.into_iter().filter_map(crossing).collect::<Vec<_>>()
-    };
-    (0..pieces.len()).into_par_iter().flat_map_iter(of_piece).collect()
+fn pieces_of<C>((ribbon, (plan, _)): (usize, &(PlanMesh, C))) -> impl Iterator<Item = Piece> + use<C> {
+    plan.convex_parts().into_iter().map(move |outline| Piece { outline, ribbon })
+}
+
+fn crossing([one, other]: [&Piece; 2]) -> Option<Crossing> {
+    let outline = convex::shared(&one.outline, &other.outline, SLIVER_M2)?;
+    Some(Crossing { outline, ribbons: [one.ribbon, other.ribbon] })
 }
 
 /// The junctions there are.
@@ -80,7 +88,8 @@ impl<'a> Joined<'a> {
         let mut held = false;
         self.tree.visit(&polygon::bounds(outline), &mut |node| {
             let node = &self.nodes[node].outline;
-            held = held || outline.iter().all(|&corner| convex::contains(node, corner));
+            held = outline.iter().all(|&corner| convex::contains(node, corner));
+            if held { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         held
     }

@@ -148,14 +148,20 @@ impl Network {
         match arms {
             &[a, b] if streets.go_on([a, b]) => self.link(streets, [a, b]),
             _ if is_bend(arms) => {}
-            _ if is_bend(&better) && better.len() == 2 => self.add_node(streets, arms, streets.best(&lesser)),
-            _ => match better[..] {
-                [a, b] if streets.go_on([a, b]) => {
-                    self.link(streets, [a, b]);
-                    self.add_node(streets, arms, streets.best(&lesser));
-                }
-                _ => self.add_node(streets, arms, best),
-            },
+            _ => {
+                let (above, below) = match better[..] {
+                    _ if is_bend(&better) && better.len() == 2 => (None, Some(arms)),
+                    [a, b] if streets.go_on([a, b]) => {
+                        self.link(streets, [a, b]);
+                        (None, Some(arms))
+                    }
+                    // A better road that ends among lesser ones takes them in.
+                    [_] => (Some(arms), None),
+                    _ => (Some(&better[..]), Some(arms).filter(|_| !lesser.is_empty())),
+                };
+                above.into_iter().for_each(|arms| self.add_node(streets, arms, best));
+                below.into_iter().for_each(|arms| self.add_node(streets, arms, streets.best(&lesser)));
+            }
         }
     }
 

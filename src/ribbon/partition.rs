@@ -11,6 +11,7 @@
 //! square.
 
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -24,6 +25,9 @@ use crate::ribbon::plan::{PlanMesh, PlanVertex, TextureMap};
 
 /// Triangles, overlaps and leftovers smaller than this are rounding, in square metres: a sliver of 10 m by 0.1 mm.
 const SLIVER_M2: f64 = 1e-3;
+
+/// Pieces smaller than this are dropped while a triangle is being cut: many of them may still lie side by side.
+const NOTHING_M2: f64 = 1e-9;
 
 /// How many triangles are cut in one go by a thread: a few thousand cuts, against a hand-over of a microsecond.
 const CHUNK: usize = 256;
@@ -94,56 +98,49 @@ impl Covering {
         (0..self.triangles.len()).into_par_iter().with_min_len(CHUNK).map(found).collect()
     }
 
-    /// The triangles before this one that may overlap it, in their order.
-    fn over(&self, triangle: usize) -> Vec<usize> {
-        let corners = &self.triangles[triangle];
-        let mut over = Vec::new();
-        self.tree.visit(&Rect::around(*corners), &mut |other| {
-            if other < triangle && convex::overlap(corners, &self.triangles[other]) {
-                over.push(other);
-            }
-        });
-        over.sort_unstable();
-        over
-    }
-
     fn overlap_m2(&self, triangle: usize) -> f64 {
-        let shared = |over: usize| shared_m2(&self.triangles[triangle], &self.triangles[over]);
-        self.over(triangle).into_iter().map(shared).sum()
+        let corners = &self.triangles[triangle];
+        let over = self.tree.found(&Rect::around(*corners), |other| other < triangle);
+        let shared = |over: usize| shared_m2(corners, &self.triangles[over]);
+        over.into_iter().map(shared).sum()
     }
 
+    /// What no triangle before this one covers. It stops where nothing is left, so that many over one another cost no
+    /// more than a few.
     fn rest(&self, triangle: usize) -> Rest {
         let corners = &self.triangles[triangle];
-        let mut over = self.over(triangle);
-        over.retain(|&over| shared_m2(corners, &self.triangles[over]) > SLIVER_M2);
-        if over.is_empty() { Rest::Whole } else { Rest::Pieces(self.uncovered(corners, &over)) }
-    }
-
-    /// The convex pieces of a triangle that none of the triangles `over` covers.
-    fn uncovered(&self, corners: &[DVec2; 3], over: &[usize]) -> Vec<Vec<DVec2>> {
         let mut pieces = vec![corners.to_vec()];
-        for &over in over {
-            let window = &self.triangles[over];
-            let mut kept = Vec::with_capacity(pieces.len());
-            for piece in pieces {
-                if convex::overlap(&piece, window) && shared_m2(&piece, window) > SLIVER_M2 {
-                    polygon::cut_away(piece, window, &mut kept);
-                } else {
-                    kept.push(piece);
-                }
+        let mut is_whole = true;
+        self.tree.visit(&Rect::around(*corners), &mut |other| {
+            let window = &self.triangles[other];
+            if other < triangle && shared_m2(corners, window) > SLIVER_M2 {
+                is_whole = false;
+                pieces = outside(std::mem::take(&mut pieces), window);
             }
-            pieces = kept;
-        }
+            if pieces.is_empty() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
         pieces.retain(|piece| polygon::doubled_area(piece) > 2.0 * SLIVER_M2);
-        pieces
+        if is_whole { Rest::Whole } else { Rest::Pieces(pieces) }
     }
 }
 
+/// The parts of convex pieces that lie outside `window`.
+fn outside(pieces: Vec<Vec<DVec2>>, window: &[DVec2; 3]) -> Vec<Vec<DVec2>> {
+    let mut outside = Vec::with_capacity(pieces.len());
+    for piece in pieces {
+        if shared_m2(&piece, window) > SLIVER_M2 {
+            polygon::cut_away(piece, window, &mut outside);
+        } else {
+            outside.push(piece);
+        }
+    }
+    outside.retain(|piece| polygon::doubled_area(piece) > 2.0 * NOTHING_M2);
+    outside
+}
+
 /// The area that two convex polygons share.
-fn shared_m2(polygon: &[DVec2], window: &[DVec2]) -> f64 {
-    let (mut piece, mut scratch) = (polygon.to_vec(), Vec::new());
-    polygon::clip_convex(&mut piece, &mut scratch, window);
-    if piece.len() < 3 { 0.0 } else { polygon::doubled_area(&piece) / 2.0 }
+fn shared_m2(one: &[DVec2], other: &[DVec2]) -> f64 {
+    convex::shared(one, other, 0.0).map_or(0.0, |piece| polygon::doubled_area(&piece) / 2.0)
 }
 
 /// A convex polygon in triangles; those without an area, which cutting at a corner leaves, are left out.

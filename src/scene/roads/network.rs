@@ -178,13 +178,13 @@ fn joints(
         let empty = || Clipped { plan: PlanMesh::default(), extent };
         write_convex(outline, joints[strip].entry(rank).or_insert_with(empty));
     };
+    for node in &network.nodes {
+        add(node.street, node.rank, &node.outline);
+    }
     for crossing in crossings(ribbons, &network.nodes) {
         let [one, other] = crossing.ribbons;
         let wider = if strips[other].options.width_m > strips[one].options.width_m { other } else { one };
         add(wider, strips[wider].rank, &crossing.outline);
-    }
-    for node in &network.nodes {
-        add(node.street, node.rank, &node.outline);
     }
     let plans = |joints: BTreeMap<u8, Clipped<'_>>| {
         joints.into_iter().map(|(rank, joint)| (rank, joint.plan)).collect()
