@@ -1,8 +1,8 @@
 //! A centreline and a width to a ribbon in plan.
 //!
-//! Each segment becomes a quad between the edges that [`crate::ribbon::joint`] finds at its ends; fans fill the outer
-//! sides of bends that are not mitred. U runs from the left edge (0) to the right edge (1), V along the centreline in
-//! texture lengths, so that a texture's lines keep their share of the width and its dashes their length.
+//! Each segment becomes a quad between the edges that its joints (`joint`) end on; fans fill the outer sides of bends that
+//! are not mitred. U runs from the left edge (0) to the right edge (1), V along the centreline in texture lengths, so that
+//! a texture's lines keep their share of the width and its dashes their length.
 
 use glam::{DVec2, Vec2};
 

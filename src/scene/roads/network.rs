@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 use rayon::prelude::*;
 
+use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::mesh::sink::MeshSink;
 use crate::ribbon::chain::stations;
@@ -23,6 +24,9 @@ use crate::scene::roads::centreline::{Carried, Centreline};
 
 /// Metres in one repeat of a junction's surface.
 const JUNCTION_TEXTURE_M: f64 = 15.0;
+
+/// Triangles of a junction smaller than this are what clipping left at a corner, in square metres.
+const NOTHING_M2: f64 = 1e-6;
 
 /// Joints by the rank of their pavement, from the least: where a lesser road meets a better one, the better one goes
 /// through.
@@ -51,8 +55,6 @@ struct Strip<'a> {
     widths_m: Option<Vec<f64>>,
     options: StrokeOptions,
     surface: Surface,
-    /// The surface where strips meet.
-    joint: Surface,
     rank: u8,
 }
 
@@ -70,14 +72,7 @@ impl<'a> Strip<'a> {
             Surface::Gravel => 1,
             _ => 2,
         };
-        Self {
-            road,
-            widths_m: road.widths_m.clone(),
-            options: road.options,
-            surface: road.surface,
-            joint: JOINTS[usize::from(rank)],
-            rank,
-        }
+        Self { road, widths_m: road.widths_m.clone(), options: road.options, surface: road.surface, rank }
     }
 
     /// The carriageway and what lies beside it.
@@ -89,7 +84,6 @@ impl<'a> Strip<'a> {
             widths_m: road.widths_m.as_ref().map(widen),
             options: StrokeOptions { width_m: road.options.width_m + more_m, ..road.options },
             surface: Surface::Shoulder,
-            joint: Surface::Shoulder,
             rank: 0,
         }
     }
@@ -128,8 +122,10 @@ fn lay_strips(strips: &[Strip<'_>], extent: &Rect, collected: &mut Collected) {
     let ribbons = ribbons(strips, &network, extent);
     for (strip, joints) in strips.iter().zip(joints(strips, &ribbons, &network, extent)) {
         for (rank, plan) in joints {
-            let joint =
-                if strip.surface == Surface::Shoulder { strip.joint } else { JOINTS[usize::from(rank)] };
+            let joint = match strip.surface {
+                Surface::Shoulder => Surface::Shoulder,
+                _ => JOINTS[usize::from(rank)],
+            };
             collected.lay(plan, joint, strip.road.feature);
         }
     }
@@ -194,8 +190,11 @@ fn joints(
 
 fn write_convex(outline: &[DVec2], sink: &mut impl MeshSink<PlanVertex>) {
     let vertex = |at: DVec2| PlanVertex { at, uv: (at / JUNCTION_TEXTURE_M).as_vec2() };
-    let ids: Vec<_> = outline.iter().map(|&at| sink.vertex(vertex(at))).collect();
-    for pair in ids[1..].windows(2) {
-        sink.triangle([ids[0], pair[0], pair[1]]);
+    let corners: Vec<_> = outline.iter().map(|&at| (sink.vertex(vertex(at)), at)).collect();
+    for pair in corners[1..].windows(2) {
+        let triangle = [corners[0], pair[0], pair[1]];
+        if polygon::doubled_area(&triangle.map(|(_, at)| at)) > 2.0 * NOTHING_M2 {
+            sink.triangle(triangle.map(|(id, _)| id));
+        }
     }
 }
