@@ -53,6 +53,13 @@ pub struct Street<'a> {
     pub rank: u8,
 }
 
+impl<'a> Street<'a> {
+    /// One of a width that does not change, on the ground, like every other.
+    pub fn new(line: &'a Polyline, options: StrokeOptions) -> Self {
+        Self { line, widths: Widths::Constant(options.width_m), options, bed: Bed::Ground, level: 0, rank: 0 }
+    }
+}
+
 /// What carries a street.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bed {
@@ -336,14 +343,7 @@ mod tests {
     }
 
     fn street(line: &Polyline, width_m: f64) -> Street<'_> {
-        Street {
-            line,
-            widths: Widths::Constant(width_m),
-            options: StrokeOptions { width_m, ..StrokeOptions::default() },
-            bed: Bed::Ground,
-            level: 0,
-            rank: 0,
-        }
+        Street::new(line, StrokeOptions { width_m, ..StrokeOptions::default() })
     }
 
     fn network(lines: &[Polyline], widths: &[f64]) -> Network {

@@ -47,6 +47,23 @@ pub fn overlap_m2<'a>(plans: impl IntoIterator<Item = &'a PlanMesh>) -> f64 {
     covering.each(|triangle| covering.overlap_m2(triangle)).into_iter().sum()
 }
 
+/// What of `plan` lies on `ground`, whose own triangles do not overlap; its texture is kept.
+pub fn within(plan: &PlanMesh, ground: &PlanMesh) -> PlanMesh {
+    let covering = Covering::new([ground]);
+    let mut inside = PlanMesh::default();
+    for triangle in plan.corners() {
+        let (corners, texture) = (triangle.map(|corner| corner.at), TextureMap::of(triangle));
+        for under in covering.tree.found(&Rect::around(corners), |_| true) {
+            let piece = convex::shared(&corners, &covering.triangles[under], SLIVER_M2).unwrap_or_default();
+            for corners in fan(&piece) {
+                let ids = corners.map(|at| inside.vertex(PlanVertex { at, uv: texture.at(at) }));
+                inside.triangle(ids);
+            }
+        }
+    }
+    inside
+}
+
 /// What is left of a triangle.
 enum Rest {
     /// All of it.
@@ -145,7 +162,7 @@ fn shared_m2(one: &[DVec2], other: &[DVec2]) -> f64 {
 
 /// A convex polygon in triangles; those without an area, which cutting at a corner leaves, are left out.
 fn fan(piece: &[DVec2]) -> impl Iterator<Item = [DVec2; 3]> + '_ {
-    let pairs = piece[1..].windows(2).map(|pair| [piece[0], pair[0], pair[1]]);
+    let pairs = piece.get(1..).unwrap_or_default().windows(2).map(|pair| [piece[0], pair[0], pair[1]]);
     pairs.filter(|corners| polygon::doubled_area(corners) > 2.0 * SLIVER_M2)
 }
 
@@ -182,6 +199,17 @@ mod tests {
             assert!((f64::from(corner.uv.x) - across).abs() < 1e-5, "{corner:?}");
             assert!((f64::from(corner.uv.y) - along).abs() < 1e-5, "{corner:?}");
         }
+    }
+
+    #[test]
+    fn what_lies_within_is_what_both_cover_with_its_texture() {
+        let plans = [ribbon(&[(0.0, 50.0), (100.0, 50.0)], 10.0), ribbon(&[(50.0, 0.0), (50.0, 100.0)], 4.0)];
+        let inside = within(&plans[1], &plans[0]);
+        assert!((inside.area_m2() - 40.0).abs() < 1e-6, "{}", inside.area_m2());
+        for corner in inside.corners().flatten() {
+            assert!((f64::from(corner.uv.x) - (corner.at.x - 48.0) / 4.0).abs() < 1e-5, "{corner:?}");
+        }
+        assert!(within(&plans[1], &PlanMesh::default()).triangles.is_empty());
     }
 
     #[test]

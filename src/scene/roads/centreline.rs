@@ -86,12 +86,25 @@ pub fn collect(
 }
 
 impl Centreline {
-    /// How wide its carriageway is along its line.
+    /// How wide its carriageway is along its line; the mean width where there are not as many widths as vertices.
     pub fn widths(&self) -> Widths<'_> {
         match &self.widths_m {
-            Some(widths_m) => Widths::PerVertex(widths_m),
-            None => Widths::Constant(self.options.width_m),
+            Some(widths_m) if widths_m.len() == self.line.points().len() => Widths::PerVertex(widths_m),
+            _ => Widths::Constant(self.options.width_m),
         }
+    }
+
+    /// The widths at the vertices of `part`, the part of its line that begins at station `from_m`; `None` where the
+    /// width does not change.
+    pub fn widths_along(&self, part: &Polyline, from_m: f64) -> Option<Vec<f64>> {
+        let widths_m = self.widths_m.as_ref()?;
+        let stations = self.line.stations();
+        let width_m = |station: f64| {
+            let after = stations.partition_point(|&reached| reached < station).clamp(1, stations.len() - 1);
+            let way = (station - stations[after - 1]) / (stations[after] - stations[after - 1]);
+            widths_m[after - 1] + (widths_m[after] - widths_m[after - 1]) * way.clamp(0.0, 1.0)
+        };
+        Some(part.stations().iter().map(|&station| width_m(from_m + station)).collect())
     }
 
     /// Gives it a width at each vertex.
@@ -186,4 +199,35 @@ fn level(road: &Road, attributes: &Attributes, carried: Carried) -> i32 {
     };
     let level = attributes.number(road.level.as_ref()).or_else(tagged).unwrap_or(by_kind);
     level.round().clamp(-20.0, 20.0) as i32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(points: &[(f64, f64)]) -> Polyline {
+        Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line")
+    }
+
+    #[test]
+    fn a_part_of_a_road_is_as_wide_as_the_road_there() {
+        let mut road = centreline(
+            (0, &Road::default()),
+            Attributes::default(),
+            line(&[(0.0, 0.0), (10.0, 0.0), (30.0, 0.0)]),
+            &mut Collected::default(),
+        );
+        let part = line(&[(5.0, 0.0), (10.0, 0.0), (20.0, 0.0)]);
+        assert_eq!(road.widths_along(&part, 5.0), None);
+        road.vary(&[4.0, 8.0, 4.0]);
+        assert_eq!(road.widths_along(&part, 5.0), Some(vec![6.0, 8.0, 6.0]));
+    }
+
+    #[test]
+    fn widths_stay_with_their_points_where_points_are_merged() {
+        let widths = toml::Spanned::new(0..0, vec![3.0, 4.0, 5.0]);
+        let road = Road { widths: Some(widths), ..Road::default() };
+        let shape = [DVec2::ZERO, DVec2::X * 0.001, DVec2::X * 9.0];
+        assert_eq!(widths_m(&road, &shape), Some(vec![3.0, 5.0]));
+    }
 }

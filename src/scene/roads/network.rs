@@ -78,10 +78,9 @@ impl<'a> Strip<'a> {
     /// The carriageway and what lies beside it.
     fn with_shoulders(road: &'a Centreline) -> Self {
         let more_m = 2.0 * road.shoulder_m;
-        let widen = |widths_m: &Vec<f64>| widths_m.iter().map(|width_m| width_m + more_m).collect();
         Self {
             road,
-            widths_m: road.widths_m.as_ref().map(widen),
+            widths_m: widths_m(road, more_m),
             options: StrokeOptions { width_m: road.options.width_m + more_m, ..road.options },
             surface: Surface::Shoulder,
             rank: 0,
@@ -112,6 +111,14 @@ impl<'a> Strip<'a> {
 
     fn class(&self) -> Class {
         Class { rank: self.rank, level: self.road.level }
+    }
+}
+
+/// The widths of a road at its vertices where they change, each `more_m` wider.
+fn widths_m(road: &Centreline, more_m: f64) -> Option<Vec<f64>> {
+    match road.widths() {
+        Widths::Constant(_) => None,
+        Widths::PerVertex(widths_m) => Some(widths_m.iter().map(|width_m| width_m + more_m).collect()),
     }
 }
 
