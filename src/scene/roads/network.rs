@@ -72,7 +72,7 @@ impl<'a> Strip<'a> {
             Surface::Gravel => 1,
             _ => 2,
         };
-        Self { road, widths_m: road.widths_m.clone(), options: road.options, surface: road.surface, rank }
+        Self { road, widths_m: widths_m(road, 0.0), options: road.options, surface: road.surface, rank }
     }
 
     /// The carriageway and what lies beside it.
