@@ -1,5 +1,6 @@
 //! Mathematics on `glam` and `geo`: no terrain, no files.
 
+pub mod convex;
 pub mod crs;
 pub mod datum_shift;
 pub mod geodesic;
@@ -8,6 +9,7 @@ pub mod polyline;
 pub mod proj_words;
 pub mod projection;
 pub mod rect;
+pub mod rect_tree;
 pub mod region;
 pub mod wkt;
 pub mod wkt_text;

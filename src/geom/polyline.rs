@@ -13,23 +13,15 @@ impl Polyline {
     /// The line through `points`; vertices nearer than `merge_m` to the one before are dropped, so that every
     /// segment has a direction. `None` where fewer than two vertices remain or one is not finite.
     pub fn new(points: impl IntoIterator<Item = DVec2>, merge_m: f64) -> Option<Self> {
+        let given: Vec<DVec2> = points.into_iter().collect();
+        if !given.iter().all(|point| point.is_finite()) {
+            return None;
+        }
         let mut line = Self { points: Vec::new(), stations: Vec::new() };
-        for point in points {
-            if !point.is_finite() {
-                return None;
-            }
-            let station = match (line.points.last(), line.stations.last()) {
-                (Some(&last), Some(station)) => {
-                    let step = last.distance(point);
-                    if step <= merge_m {
-                        continue;
-                    }
-                    station + step
-                }
-                _ => 0.0,
-            };
+        for point in kept(&given, merge_m).into_iter().map(|index| given[index]) {
+            let step = line.points.last().map_or(0.0, |last| last.distance(point));
+            line.stations.push(line.stations.last().map_or(0.0, |station| station + step));
             line.points.push(point);
-            line.stations.push(station);
         }
         (line.points.len() >= 2).then_some(line)
     }
@@ -57,6 +49,18 @@ impl Polyline {
         let part = ((station - from) / (to - from)).clamp(0.0, 1.0);
         self.points[after - 1].lerp(self.points[after], part)
     }
+}
+
+/// Which of `points` are vertices of the line through them: those further than `merge_m` from the vertex before. What
+/// is known of every point is so known of every vertex.
+pub fn kept(points: &[DVec2], merge_m: f64) -> Vec<usize> {
+    let mut kept: Vec<usize> = Vec::with_capacity(points.len());
+    for (index, point) in points.iter().enumerate() {
+        if kept.last().is_none_or(|&last| points[last].distance(*point) > merge_m) {
+            kept.push(index);
+        }
+    }
+    kept
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! Where roads meet: which lines go on in one another, and the surface that joins those that do not.
 //!
-//! Lines that share a vertex meet there. Where two ends of one width meet and nothing else does, the ribbons go on in
-//! one another and share an edge. Where three or more arms meet, and where two do that cannot go on, the junction is the
-//! hull of all arms cut square where the kerbs of neighbouring arms meet:
+//! Lines that share a vertex meet there, if they lie on one level; a line that ends there meets what goes on, whatever
+//! the level. Where two ends of one width meet and nothing else does, the ribbons go on in one another and share an edge.
+//! Where three or more arms meet, and where two do that cannot go on, the junction is the hull of all arms cut square
+//! where the kerbs of neighbouring arms meet:
 //!
 //! ```text
 //!          │   │
@@ -12,21 +13,24 @@
 //!   ───────┴───┴───
 //! ```
 //!
-//! Lines that cross without a shared vertex are joined where they cover the same ground. Ribbons lose what the junction
-//! covers by [`crate::ribbon::partition`], and their markings stop there.
-
-use std::collections::BTreeMap;
+//! A better road that goes through is not broken by lesser ones: their junction lies below it. Ribbons lose what a
+//! junction covers by [`crate::ribbon::partition`], and their markings stop there. Lines that cross without a shared
+//! vertex are found by [`crate::ribbon::crossing`].
 
 use glam::DVec2;
+use rayon::prelude::*;
 
+use crate::geom::convex;
 use crate::geom::polyline::Polyline;
-use crate::geom::region::Region;
-use crate::ribbon::plan::PlanMesh;
-use crate::ribbon::stroke::{Continuations, StrokeOptions, mitred};
+use crate::ribbon::joint::Bend;
+use crate::ribbon::stroke::{Continuations, StrokeOptions, Widths};
 
 /// Vertices nearer to each other than this are one, in metres: files that mean one point write the same numbers, up to
 /// the rounding of a change of system.
 const SAME_M: f64 = 0.01;
+
+/// Widths that differ by less than this are one, in metres: what two file formats make of one number.
+const SAME_WIDTH_M: f64 = 1e-6;
 
 /// How far a junction may reach along an arm, in widths of its widest arm: where two arms leave at a small angle their
 /// kerbs meet far away, and the ground between them is better left to their ribbons.
@@ -38,7 +42,31 @@ pub struct Street<'a> {
     /// The centreline.
     pub line: &'a Polyline,
     /// Metres from kerb to kerb.
+    pub widths: Widths<'a>,
+    /// How it is stroked.
     pub options: StrokeOptions,
+    /// What carries it.
+    pub bed: Bed,
+    /// What passes over what.
+    pub level: i32,
+    /// How good its pavement is: where it meets lesser ones it goes through.
+    pub rank: u8,
+}
+
+impl<'a> Street<'a> {
+    /// One of a width that does not change, on the ground, like every other.
+    pub fn new(line: &'a Polyline, options: StrokeOptions) -> Self {
+        Self { line, widths: Widths::Constant(options.width_m), options, bed: Bed::Ground, level: 0, rank: 0 }
+    }
+}
+
+/// What carries a street.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bed {
+    /// The ground.
+    Ground,
+    /// Something that leaves it: a bridge, a tunnel. Junctions do not reach onto it.
+    Structure,
 }
 
 /// Streets with what they meet.
@@ -46,8 +74,39 @@ pub struct Street<'a> {
 pub struct Network {
     /// For each street, what goes on at its ends.
     pub continuations: Vec<Continuations>,
-    /// The hulls of the nodes where streets do not simply go on.
-    pub nodes: Vec<Region>,
+    /// The pairs of ends that go on in one another.
+    pub links: Vec<[End; 2]>,
+    /// Where streets do not simply go on.
+    pub nodes: Vec<Node>,
+}
+
+/// An end of a street.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct End {
+    /// Which street.
+    pub street: usize,
+    /// Whether it is its first vertex or its last.
+    pub which: Which,
+}
+
+/// One of a line's two ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Which {
+    /// The first vertex.
+    First,
+    /// The last.
+    Last,
+}
+
+/// A junction at a vertex that streets share.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    /// Convex, counter-clockwise.
+    pub outline: Vec<DVec2>,
+    /// The widest of its streets on the ground.
+    pub street: usize,
+    /// The pavement it has.
+    pub rank: u8,
 }
 
 /// What leaves a node along one street.
@@ -57,114 +116,242 @@ struct Arm {
     /// The street's vertex at the node.
     vertex: usize,
     /// Its next vertex, away from the node.
-    next: DVec2,
+    next: usize,
 }
 
 /// Finds which streets go on in one another, and the nodes of those that do not.
 pub fn connect(streets: &[Street<'_>]) -> Network {
-    let mut meetings: BTreeMap<(i64, i64), Vec<Arm>> = BTreeMap::new();
-    for (index, street) in streets.iter().enumerate() {
-        let points = street.line.points();
-        for (vertex, &at) in points.iter().enumerate() {
-            let place = (at / SAME_M).round();
-            let arms = meetings.entry((place.x as i64, place.y as i64)).or_default();
-            let neighbours = [vertex.checked_sub(1), (vertex + 1 < points.len()).then_some(vertex + 1)];
-            let arm = |next: usize| Arm { street: index, vertex, next: points[next] };
-            arms.extend(neighbours.into_iter().flatten().map(arm));
+    let streets = Streets(streets);
+    let mut arms: Vec<((i64, i64), Arm)> =
+        (0..streets.0.len()).flat_map(|street| streets.arms(street)).collect();
+    arms.par_sort_unstable_by_key(|&(place, arm)| (place, arm.street, arm.vertex, arm.next));
+    let mut network = Network {
+        continuations: vec![Continuations::default(); streets.0.len()],
+        links: Vec::new(),
+        nodes: Vec::new(),
+    };
+    for meeting in arms.chunk_by(|(place, _), (other, _)| place == other) {
+        let meeting: Vec<Arm> = meeting.iter().map(|&(_, arm)| arm).collect();
+        if matches!(meeting[..], [_] | [_, _]) && is_bend(&meeting) {
+            continue;
         }
-    }
-    let mut network =
-        Network { continuations: vec![Continuations::default(); streets.len()], nodes: Vec::new() };
-    for arms in meetings.values() {
-        network.join(streets, arms);
+        for group in streets.groups(meeting) {
+            network.join(streets, &group);
+        }
     }
     network
 }
 
+/// Whether all arms are one street's that passes.
+fn is_bend(arms: &[Arm]) -> bool {
+    arms.iter().all(|arm| arm.street == arms[0].street && arm.vertex == arms[0].vertex)
+}
+
 impl Network {
-    fn join(&mut self, streets: &[Street<'_>], arms: &[Arm]) {
-        let is_bend = |[a, b]: [Arm; 2]| a.street == b.street && a.vertex == b.vertex;
-        match *arms {
-            [] | [_] => {}
-            [a, b] if is_bend([a, b]) => {}
-            [a, b] if goes_on(streets, [a, b]) => {
-                for (arm, other) in [(a, b), (b, a)] {
-                    let ends = &mut self.continuations[arm.street];
-                    let end = if arm.vertex == 0 { &mut ends.before } else { &mut ends.after };
-                    *end = Some(other.next);
-                }
+    /// Joins the arms that meet at one place.
+    fn join(&mut self, streets: Streets<'_>, arms: &[Arm]) {
+        let best = streets.best(arms);
+        let (better, lesser): (Vec<Arm>, Vec<Arm>) = arms.iter().partition(|arm| streets.rank(arm) == best);
+        match arms {
+            &[a, b] if streets.go_on([a, b]) => self.link(streets, [a, b]),
+            _ if is_bend(arms) => {}
+            _ => {
+                let (above, below) = match better[..] {
+                    _ if is_bend(&better) && better.len() == 2 => (None, Some(arms)),
+                    [a, b] if streets.go_on([a, b]) => {
+                        self.link(streets, [a, b]);
+                        (None, Some(arms))
+                    }
+                    // A better road that ends among lesser ones takes them in.
+                    [_] => (Some(arms), None),
+                    _ => (Some(&better[..]), Some(arms).filter(|_| !lesser.is_empty())),
+                };
+                above.into_iter().for_each(|arms| self.add_node(streets, arms, best));
+                below.into_iter().for_each(|arms| self.add_node(streets, arms, streets.best(&lesser)));
             }
-            _ => self.nodes.push(hull(streets, arms)),
+        }
+    }
+
+    fn link(&mut self, streets: Streets<'_>, [a, b]: [Arm; 2]) {
+        for (arm, other) in [(a, b), (b, a)] {
+            let ends = &mut self.continuations[arm.street];
+            let beyond = Some(streets.0[other.street].line.points()[other.next]);
+            match arm.end().which {
+                Which::First => ends.before = beyond,
+                Which::Last => ends.after = beyond,
+            }
+        }
+        self.links.push([a.end(), b.end()]);
+    }
+
+    fn add_node(&mut self, streets: Streets<'_>, arms: &[Arm], rank: u8) {
+        let on_ground = arms.iter().filter(|arm| streets.0[arm.street].bed == Bed::Ground);
+        let widest = on_ground.max_by(|a, b| {
+            let by_width = streets.half_m(a).total_cmp(&streets.half_m(b));
+            by_width.then(b.street.cmp(&a.street))
+        });
+        let Some(widest) = widest else { return };
+        let outline = streets.hull(arms);
+        if !outline.is_empty() {
+            self.nodes.push(Node { outline, street: widest.street, rank });
         }
     }
 }
 
-/// Whether two ends make one ribbon.
-fn goes_on(streets: &[Street<'_>], [a, b]: [Arm; 2]) -> bool {
-    let (one, other) = (&streets[a.street], &streets[b.street]);
-    let at = one.line.points()[a.vertex];
-    one.options == other.options && mitred([a.next, at, b.next], &one.options).is_some()
-}
-
-/// The junction of several arms.
-fn hull(streets: &[Street<'_>], arms: &[Arm]) -> Region {
-    let at = streets[arms[0].street].line.points()[arms[0].vertex];
-    let half = |arm: &Arm| streets[arm.street].options.width_m / 2.0;
-    let direction = |arm: &Arm| (arm.next - at).normalize_or_zero();
-    let mut around: Vec<&Arm> = arms.iter().collect();
-    let turn = |arm: &Arm| libm::atan2(direction(arm).y, direction(arm).x);
-    around.sort_by(|a, b| turn(a).total_cmp(&turn(b)));
-    let widest = arms.iter().map(half).fold(0.0, f64::max);
-    let mut corners = Vec::with_capacity(2 * arms.len());
-    for (index, arm) in around.iter().enumerate() {
-        let neighbours =
-            [around[(index + 1) % around.len()], around[(index + around.len() - 1) % around.len()]];
-        let meets = |other: &Arm| kerbs_meet((direction(arm), half(arm)), (direction(other), half(other)));
-        let wanted = neighbours.into_iter().map(meets).fold(0.0, f64::max);
-        // An arm shorter than the junction is the junction's whole.
-        let reach = wanted.min(2.0 * widest * LONGEST_REACH).min(arm.next.distance(at));
-        let aside = direction(arm).perp() * half(arm);
-        corners.extend([at + direction(arm) * reach + aside, at + direction(arm) * reach - aside]);
+impl Arm {
+    /// The end it leaves; only for arms that do not pass.
+    fn end(&self) -> End {
+        let which = if self.vertex == 0 { Which::First } else { Which::Last };
+        End { street: self.street, which }
     }
-    Region::hull(&corners)
 }
 
-/// How far along the first of two arms their kerbs meet, on the side where the arms are neighbours; 0 where they part.
-fn kerbs_meet((along, half): (DVec2, f64), (other, other_half): (DVec2, f64)) -> f64 {
-    let sine = along.perp_dot(other).abs();
-    if sine < 1e-9 {
-        return 0.0;
+/// What the arms' numbers mean.
+#[derive(Clone, Copy)]
+struct Streets<'a>(&'a [Street<'a>]);
+
+impl Streets<'_> {
+    /// The arms of a street, with the place each leaves.
+    fn arms(&self, street: usize) -> impl Iterator<Item = ((i64, i64), Arm)> + '_ {
+        let points = self.0[street].line.points();
+        points.iter().enumerate().flat_map(move |(vertex, &at)| {
+            let place = (at / SAME_M).round();
+            let next = [vertex.checked_sub(1), (vertex + 1 < points.len()).then_some(vertex + 1)];
+            let arm = move |next| ((place.x as i64, place.y as i64), Arm { street, vertex, next });
+            next.into_iter().flatten().map(arm)
+        })
     }
-    (other_half + half * along.dot(other)) / sine
+
+    /// The arms at one place, parted by what meets: streets that pass on one level, with those that end there. An end
+    /// of another level goes on in what passes on the ground; a bridge begins so.
+    fn groups(&self, arms: Vec<Arm>) -> Vec<Vec<Arm>> {
+        let level = |arm: &Arm| self.0[arm.street].level;
+        let first = level(&arms[0]);
+        if arms.iter().all(|arm| level(arm) == first) {
+            return vec![arms];
+        }
+        let (mut ends, passing): (Vec<Arm>, Vec<Arm>) = arms.into_iter().partition(|arm| self.is_end(arm));
+        let mut levels: Vec<i32> = passing.iter().map(level).collect();
+        levels.sort_unstable_by_key(|&level| (level.abs(), level));
+        levels.dedup();
+        let mut groups: Vec<Vec<Arm>> = levels
+            .iter()
+            .map(|&passed| {
+                let same = |arm: &Arm| level(arm) == passed;
+                passing.iter().copied().filter(same).chain(ends.extract_if(.., |arm| same(arm))).collect()
+            })
+            .collect();
+        let carrying = |group: &&mut Vec<Arm>| group.iter().any(|arm| self.0[arm.street].bed == Bed::Ground);
+        match groups.iter_mut().find(carrying) {
+            Some(group) => group.append(&mut ends),
+            None => groups.push(ends),
+        }
+        groups.retain(|group| !group.is_empty());
+        groups
+    }
+
+    fn is_end(&self, arm: &Arm) -> bool {
+        arm.vertex == 0 || arm.vertex + 1 == self.0[arm.street].line.points().len()
+    }
+
+    fn half_m(&self, arm: &Arm) -> f64 {
+        self.0[arm.street].widths.at(arm.vertex) / 2.0
+    }
+
+    fn rank(&self, arm: &Arm) -> u8 {
+        self.0[arm.street].rank
+    }
+
+    fn best(&self, arms: &[Arm]) -> u8 {
+        arms.iter().map(|arm| self.rank(arm)).max().unwrap_or_default()
+    }
+
+    /// Whether two ends make one ribbon.
+    fn go_on(&self, [a, b]: [Arm; 2]) -> bool {
+        let (one, other) = (&self.0[a.street], &self.0[b.street]);
+        let half_m = self.half_m(&a);
+        let limit = one.options.mitre_limit.min(other.options.mitre_limit);
+        let points = [one.line.points()[a.next], one.line.points()[a.vertex], other.line.points()[b.next]];
+        self.is_end(&a)
+            && self.is_end(&b)
+            && (half_m - self.half_m(&b)).abs() < SAME_WIDTH_M
+            && Bend { points, half_m }.mitred(limit).is_some()
+    }
+
+    /// The junction of several arms.
+    fn hull(&self, arms: &[Arm]) -> Vec<DVec2> {
+        let points = |arm: &Arm| self.0[arm.street].line.points();
+        let at = points(&arms[0])[arms[0].vertex];
+        let way = |arm: &Arm| points(arm)[arm.next] - at;
+        let mut around: Vec<Spoke> = arms
+            .iter()
+            .map(|arm| Spoke {
+                along: way(arm).normalize_or_zero(),
+                half_m: self.half_m(arm),
+                longest_m: match self.0[arm.street].bed {
+                    // An arm shorter than the junction is the junction's whole.
+                    Bed::Ground => way(arm).length(),
+                    Bed::Structure => 0.0,
+                },
+            })
+            .collect();
+        let turn = |spoke: &Spoke| libm::atan2(spoke.along.y, spoke.along.x);
+        around.sort_by(|a, b| turn(a).total_cmp(&turn(b)));
+        let widest = around.iter().map(|spoke| spoke.half_m).fold(0.0, f64::max);
+        let mut corners = Vec::with_capacity(2 * around.len());
+        for (index, spoke) in around.iter().enumerate() {
+            let neighbours =
+                [&around[(index + 1) % around.len()], &around[(index + around.len() - 1) % around.len()]];
+            let wanted = neighbours.into_iter().map(|other| spoke.kerbs_meet(other)).fold(0.0, f64::max);
+            let reach = wanted.min(2.0 * widest * LONGEST_REACH).min(spoke.longest_m);
+            let (end, aside) = (at + spoke.along * reach, spoke.along.perp() * spoke.half_m);
+            corners.extend([end + aside, end - aside]);
+        }
+        convex::hull(&corners)
+    }
 }
 
-/// The surface of all junctions: the nodes, and the ground that more than one of the ribbons covers.
-pub fn surface<'a>(ribbons: impl IntoIterator<Item = &'a PlanMesh>, nodes: &[Region]) -> Region {
-    let outline = |plan: &PlanMesh| {
-        let triangles: Vec<[DVec2; 3]> =
-            plan.corners().map(|corners| corners.map(|corner| corner.at)).collect();
-        Region::covered(triangles.iter().map(|triangle| &triangle[..]))
-    };
-    let outlines: Vec<Region> = ribbons.into_iter().map(outline).collect();
-    let crossings = Region::covered_twice(&outlines);
-    Region::any_of(nodes.iter().chain([&crossings]))
+/// An arm as the hull sees it.
+struct Spoke {
+    along: DVec2,
+    half_m: f64,
+    longest_m: f64,
+}
+
+impl Spoke {
+    /// How far along it its kerb meets that of a neighbour; 0 where they part. Kerbs of unequal arms that are nearly
+    /// one line meet far away, where neither is any more: no further than the wider one's half.
+    fn kerbs_meet(&self, other: &Self) -> f64 {
+        let (sine, cosine) = (self.along.perp_dot(other.along).abs(), self.along.dot(other.along));
+        if sine < 1e-9 {
+            return 0.0;
+        }
+        let meet = (other.half_m + self.half_m * cosine) / sine;
+        if cosine < 0.0 { meet.min(self.half_m.max(other.half_m)) } else { meet }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geom::polygon;
+    use crate::ribbon::plan::PlanMesh;
     use crate::ribbon::stroke::stroke;
 
     fn line(points: &[(f64, f64)]) -> Polyline {
         Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line")
     }
 
+    fn street(line: &Polyline, width_m: f64) -> Street<'_> {
+        Street::new(line, StrokeOptions { width_m, ..StrokeOptions::default() })
+    }
+
     fn network(lines: &[Polyline], widths: &[f64]) -> Network {
-        let street = |(line, &width_m)| Street {
-            line,
-            options: StrokeOptions { width_m, ..StrokeOptions::default() },
-        };
-        connect(&lines.iter().zip(widths).map(street).collect::<Vec<_>>())
+        connect(&lines.iter().zip(widths).map(|(line, &width_m)| street(line, width_m)).collect::<Vec<_>>())
+    }
+
+    fn area(node: &Node) -> f64 {
+        polygon::doubled_area(&node.outline) / 2.0
     }
 
     #[test]
@@ -177,6 +364,7 @@ mod tests {
             Continuations { before: None, after: Some(DVec2::new(100.0, 20.0)) }
         );
         assert_eq!(joined.continuations[1].after, Some(DVec2::ZERO));
+        assert_eq!(joined.links, [[0, 1].map(|street| End { street, which: Which::Last })]);
         let mut area = 0.0;
         for (line, beyond) in lines.iter().zip(&joined.continuations) {
             let mut plan = PlanMesh::default();
@@ -199,7 +387,8 @@ mod tests {
                 [turned(&[(-50.0, 0.0), (0.0, 0.0), (50.0, 0.0)]), turned(&[(0.0, 0.0), (0.0, 60.0)])];
             let joined = network(&lines, &[8.0, 6.0]);
             assert_eq!(joined.nodes.len(), 1);
-            assert!((joined.nodes[0].area() - 48.0).abs() < 1e-9, "6 m by 8 m: {}", joined.nodes[0].area());
+            assert!((area(&joined.nodes[0]) - 48.0).abs() < 1e-9, "6 m by 8 m: {}", area(&joined.nodes[0]));
+            assert_eq!(joined.nodes[0].street, 0, "the wider one");
         }
     }
 
@@ -211,24 +400,78 @@ mod tests {
             line(&[(0.0, 0.0), (-90.0, 0.0)]),
         ];
         let joined = network(&lines, &[6.0, 6.0, 6.0]);
-        assert!(joined.nodes[0].bounds().max.x <= 6.0 * LONGEST_REACH + 3.0);
+        let farthest = polygon::bounds(&joined.nodes[0].outline).max.x;
+        assert!(farthest <= 6.0 * LONGEST_REACH + 3.0, "{farthest}");
     }
 
     #[test]
-    fn streets_that_cross_without_a_vertex_are_joined_where_they_cover_the_same() {
-        let lines = [line(&[(-50.0, 0.0), (50.0, 0.0)]), line(&[(0.0, -50.0), (0.0, 60.0)])];
-        let joined = network(&lines, &[8.0, 6.0]);
-        let plans: Vec<PlanMesh> = lines
-            .iter()
-            .zip([8.0, 6.0])
-            .map(|(line, width_m)| {
-                let mut plan = PlanMesh::default();
-                let options = StrokeOptions { width_m, ..StrokeOptions::default() };
-                stroke(line, Continuations::default(), &options, &mut plan);
-                plan
-            })
-            .collect();
-        let joint = surface(&plans, &joined.nodes);
-        assert!((joint.area() - 48.0).abs() < 1e-6, "{}", joint.area());
+    fn nearly_straight_arms_of_unequal_width_meet_in_a_short_junction() {
+        let lines = [line(&[(-300.0, 0.0), (0.0, 0.0)]), line(&[(0.0, 0.0), (300.0, 3.0)])];
+        let joined = network(&lines, &[6.0, 14.0]);
+        let size = polygon::bounds(&joined.nodes[0].outline).size();
+        assert!(size.x <= 14.1, "{size}");
+    }
+
+    #[test]
+    fn a_better_road_goes_through_and_a_lesser_one_s_junction_lies_below() {
+        let lines = [
+            line(&[(-50.0, 0.0), (0.0, 0.0)]),
+            line(&[(50.0, 0.0), (0.0, 0.0)]),
+            line(&[(0.0, 0.0), (0.0, 60.0)]),
+        ];
+        let mut streets: Vec<Street<'_>> = lines.iter().map(|line| street(line, 6.0)).collect();
+        streets[0].rank = 2;
+        streets[1].rank = 2;
+        let joined = connect(&streets);
+        assert_eq!(joined.continuations[0].after, Some(DVec2::X * 50.0));
+        assert_eq!(joined.nodes.iter().map(|node| node.rank).collect::<Vec<_>>(), [0]);
+        streets[1].rank = 0;
+        let joined = connect(&streets);
+        assert!(joined.links.is_empty());
+        assert_eq!(
+            joined.nodes.iter().map(|node| node.rank).collect::<Vec<_>>(),
+            [2],
+            "it ends: all meet on its like"
+        );
+    }
+
+    #[test]
+    fn a_bridge_goes_on_in_the_road_before_it_and_meets_nothing_that_passes_below() {
+        let lines = [
+            line(&[(-50.0, 0.0), (0.0, 0.0)]),
+            line(&[(0.0, 0.0), (40.0, 5.0), (80.0, 0.0)]),
+            line(&[(40.0, -60.0), (40.0, 5.0), (40.0, 60.0)]),
+        ];
+        let mut streets: Vec<Street<'_>> = lines.iter().map(|line| street(line, 6.0)).collect();
+        streets[1] = Street { bed: Bed::Structure, level: 1, ..streets[1] };
+        let joined = connect(&streets);
+        assert_eq!(joined.continuations[0].after, Some(DVec2::new(40.0, 5.0)));
+        assert_eq!(joined.continuations[1].before, Some(DVec2::X * -50.0));
+        assert!(joined.nodes.is_empty(), "an overpass is no junction: {:?}", joined.nodes);
+    }
+
+    #[test]
+    fn a_junction_does_not_reach_onto_a_bridge() {
+        let lines = [
+            line(&[(-50.0, 30.0), (0.0, 0.0)]),
+            line(&[(-50.0, -30.0), (0.0, 0.0)]),
+            line(&[(0.0, 0.0), (80.0, 0.0)]),
+        ];
+        let mut streets: Vec<Street<'_>> = lines.iter().map(|line| street(line, 6.0)).collect();
+        streets[2] = Street { bed: Bed::Structure, level: 1, ..streets[2] };
+        let joined = connect(&streets);
+        assert_eq!(joined.nodes.len(), 1);
+        let farthest = polygon::bounds(&joined.nodes[0].outline).max.x;
+        assert!(farthest < 3.1, "{farthest}");
+    }
+
+    #[test]
+    fn roads_of_two_levels_that_pass_a_vertex_do_not_meet() {
+        let lines =
+            [line(&[(-50.0, 0.0), (0.0, 0.0), (50.0, 0.0)]), line(&[(0.0, -50.0), (0.0, 0.0), (0.0, 50.0)])];
+        let mut streets: Vec<Street<'_>> = lines.iter().map(|line| street(line, 6.0)).collect();
+        assert_eq!(connect(&streets).nodes.len(), 1);
+        streets[1].level = 1;
+        assert_eq!(connect(&streets).nodes, []);
     }
 }

@@ -4,7 +4,10 @@
 //! that every piece lies in the plane of one of them and nothing sinks or floats, whatever the level of detail.
 
 pub mod area;
+pub mod chain;
+pub mod crossing;
 pub mod drape;
+mod joint;
 pub mod junction;
 pub mod partition;
 pub mod patches;

@@ -1,153 +1,168 @@
 //! Takes ribbons that overlap apart, so that no two triangles lie over one another.
 //!
 //! Plans are handed in from the one that lies over all others down. Each triangle loses what the triangles before it
-//! cover, those of its own plan included (the inner side of a bevelled bend, a line that crosses itself), and what is
-//! left of it keeps its texture. Triangles are convex, so what one takes away from another is cut off along its three
-//! sides: exact to rounding, with no grid that vertices are snapped to, and the same on every machine.
+//! cover, those of its own plan included (the inner side of a sharp bend, a line that crosses itself), and what is left
+//! of it keeps its texture. Triangles are convex, so what one takes away from another is cut off along its three sides:
+//! exact to rounding, with no grid that vertices are snapped to, and the same on every machine.
 //!
-//! A grid of squares finds the triangles that may overlap: the cost grows with the triangles and with how many of them
-//! lie over one another, not with their square.
+//! What is taken away is what the triangles before cover as they were handed in, not what was left of them: both cover
+//! the same ground, and so each triangle is cut without waiting for any other. A tree of rectangles finds the triangles
+//! that may overlap: the cost grows with the triangles and with how many of them lie over one another, not with their
+//! square.
 
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
+use crate::geom::convex;
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
+use crate::geom::rect_tree::RectTree;
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::ribbon::plan::{PlanMesh, PlanVertex, TextureMap};
 
 /// Triangles, overlaps and leftovers smaller than this are rounding, in square metres: a sliver of 10 m by 0.1 mm.
 const SLIVER_M2: f64 = 1e-3;
 
+/// Pieces smaller than this are dropped while a triangle is being cut: many of them may still lie side by side.
+const NOTHING_M2: f64 = 1e-9;
+
+/// How many triangles are cut in one go by a thread: a few thousand cuts, against a hand-over of a microsecond.
+const CHUNK: usize = 256;
+
 /// The same plans without what those before them cover.
 pub fn apart<'a>(plans: impl IntoIterator<Item = &'a PlanMesh> + Clone) -> Vec<PlanMesh> {
-    let mut covered = Covered::new(plans.clone());
-    plans.into_iter().map(|plan| covered.lay(plan)).collect()
+    let covering = Covering::new(plans.clone());
+    let rests: Vec<Rest> = covering.each(|triangle| covering.rest(triangle));
+    let mut rests = rests.into_iter();
+    plans.into_iter().map(|plan| left_of(plan, &mut rests)).collect()
 }
 
 /// The area in square metres that more than one triangle of `plans` covers, counted once for every pair: 0 but for
 /// rounding after [`apart`].
-pub fn overlap_m2<'a>(plans: impl IntoIterator<Item = &'a PlanMesh> + Clone) -> f64 {
-    let mut covered = Covered::new(plans.clone());
-    let mut overlap = 0.0;
-    for triangle in plans.into_iter().flat_map(PlanMesh::corners) {
-        let corners = triangle.map(|corner| corner.at);
-        for over in covered.near(&corners) {
-            overlap += shared_m2(&corners, &covered.triangles[over]);
-        }
-        covered.add(corners);
-    }
-    overlap
+pub fn overlap_m2<'a>(plans: impl IntoIterator<Item = &'a PlanMesh>) -> f64 {
+    let covering = Covering::new(plans);
+    covering.each(|triangle| covering.overlap_m2(triangle)).into_iter().sum()
 }
 
-/// The triangles laid so far.
-struct Covered {
-    triangles: Vec<[DVec2; 3]>,
-    squares: BTreeMap<(i64, i64), Vec<usize>>,
-    side: f64,
+/// What of `plan` lies on `ground`, whose own triangles do not overlap; its texture is kept.
+pub fn within(plan: &PlanMesh, ground: &PlanMesh) -> PlanMesh {
+    let covering = Covering::new([ground]);
+    let mut inside = PlanMesh::default();
+    for triangle in plan.corners() {
+        let (corners, texture) = (triangle.map(|corner| corner.at), TextureMap::of(triangle));
+        for under in covering.tree.found(&Rect::around(corners), |_| true) {
+            let piece = convex::shared(&corners, &covering.triangles[under], SLIVER_M2).unwrap_or_default();
+            for corners in fan(&piece) {
+                let ids = corners.map(|at| inside.vertex(PlanVertex { at, uv: texture.at(at) }));
+                inside.triangle(ids);
+            }
+        }
+    }
+    inside
 }
 
-impl Covered {
-    /// Nothing yet, in a grid that suits the triangles to come.
-    fn new<'a>(plans: impl IntoIterator<Item = &'a PlanMesh>) -> Self {
-        let (mut sum, mut count) = (0.0, 0.0);
-        for triangle in plans.into_iter().flat_map(PlanMesh::corners) {
-            sum += Rect::around(triangle.map(|corner| corner.at)).size().max_element();
-            count += 1.0;
-        }
-        // A square as large as a triangle holds a few of them, and a triangle lies in a few squares.
-        let side = if count > 0.0 { f64::max(sum / count, 1.0) } else { 1.0 };
-        Self { triangles: Vec::new(), squares: BTreeMap::new(), side }
-    }
+/// What is left of a triangle.
+enum Rest {
+    /// All of it.
+    Whole,
+    /// Convex pieces, counter-clockwise; none where it is covered.
+    Pieces(Vec<Vec<DVec2>>),
+}
 
-    /// What is left of a plan over which everything so far lies; it is then a part of everything.
-    fn lay(&mut self, plan: &PlanMesh) -> PlanMesh {
-        let mut left = PlanMesh::default();
-        let mut kept: BTreeMap<VertexId, VertexId> = BTreeMap::new();
-        for (&ids, triangle) in plan.triangles.iter().zip(plan.corners()) {
-            let corners = triangle.map(|corner| corner.at);
-            let over = self.near(&corners);
-            if !over.iter().any(|&over| shared_m2(&corners, &self.triangles[over]) > SLIVER_M2) {
+/// What is left of a plan, given what is left of each of its triangles.
+fn left_of(plan: &PlanMesh, rests: &mut impl Iterator<Item = Rest>) -> PlanMesh {
+    let mut left = PlanMesh::default();
+    let mut kept: BTreeMap<VertexId, VertexId> = BTreeMap::new();
+    for ((&ids, triangle), rest) in plan.triangles.iter().zip(plan.corners()).zip(rests) {
+        match rest {
+            Rest::Whole => {
                 let mut keep =
                     |id: VertexId| *kept.entry(id).or_insert_with(|| left.vertex(plan.vertices[id.index()]));
                 let ids = ids.map(&mut keep);
                 left.triangle(ids);
-                self.add(corners);
-                continue;
             }
-            let texture = TextureMap::of(triangle);
-            for piece in self.uncovered(&corners, &over) {
-                for corners in fan(&piece) {
+            Rest::Pieces(pieces) => {
+                let texture = TextureMap::of(triangle);
+                for corners in pieces.iter().flat_map(|piece| fan(piece)) {
                     let ids = corners.map(|at| left.vertex(PlanVertex { at, uv: texture.at(at) }));
                     left.triangle(ids);
-                    self.add(corners);
                 }
             }
         }
-        left
+    }
+    left
+}
+
+/// All triangles of some plans, in their order.
+struct Covering {
+    triangles: Vec<[DVec2; 3]>,
+    tree: RectTree,
+}
+
+impl Covering {
+    fn new<'a>(plans: impl IntoIterator<Item = &'a PlanMesh>) -> Self {
+        let corners = plans.into_iter().flat_map(PlanMesh::corners);
+        let triangles: Vec<[DVec2; 3]> = corners.map(|triangle| triangle.map(|corner| corner.at)).collect();
+        let rects: Vec<Rect> = triangles.iter().map(|&corners| Rect::around(corners)).collect();
+        Self { tree: RectTree::new(&rects), triangles }
     }
 
-    /// The convex pieces of a triangle that none of the triangles `over` covers.
-    fn uncovered(&self, corners: &[DVec2; 3], over: &[usize]) -> Vec<Vec<DVec2>> {
+    /// What `found` says of every triangle, in their order.
+    fn each<T: Send>(&self, found: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
+        (0..self.triangles.len()).into_par_iter().with_min_len(CHUNK).map(found).collect()
+    }
+
+    fn overlap_m2(&self, triangle: usize) -> f64 {
+        let corners = &self.triangles[triangle];
+        let over = self.tree.found(&Rect::around(*corners), |other| other < triangle);
+        let shared = |over: usize| shared_m2(corners, &self.triangles[over]);
+        over.into_iter().map(shared).sum()
+    }
+
+    /// What no triangle before this one covers. It stops where nothing is left, so that many over one another cost no
+    /// more than a few.
+    fn rest(&self, triangle: usize) -> Rest {
+        let corners = &self.triangles[triangle];
         let mut pieces = vec![corners.to_vec()];
-        for &over in over {
-            let window = &self.triangles[over];
-            let mut kept = Vec::with_capacity(pieces.len());
-            for piece in pieces {
-                if shared_m2(&piece, window) > SLIVER_M2 {
-                    polygon::cut_away(piece, window, &mut kept);
-                } else {
-                    kept.push(piece);
-                }
+        let mut is_whole = true;
+        self.tree.visit(&Rect::around(*corners), &mut |other| {
+            let window = &self.triangles[other];
+            if other < triangle && shared_m2(corners, window) > SLIVER_M2 {
+                is_whole = false;
+                pieces = outside(std::mem::take(&mut pieces), window);
             }
-            pieces = kept;
-        }
+            if pieces.is_empty() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
         pieces.retain(|piece| polygon::doubled_area(piece) > 2.0 * SLIVER_M2);
-        pieces
-    }
-
-    fn add(&mut self, corners: [DVec2; 3]) {
-        let index = self.triangles.len();
-        self.triangles.push(corners);
-        for square in squares(&corners, self.side) {
-            self.squares.entry(square).or_default().push(index);
-        }
-    }
-
-    /// The triangles that may overlap this one, in the order in which they were laid.
-    fn near(&self, corners: &[DVec2; 3]) -> Vec<usize> {
-        let mut near: Vec<usize> = squares(corners, self.side)
-            .filter_map(|square| self.squares.get(&square))
-            .flatten()
-            .copied()
-            .collect();
-        near.sort_unstable();
-        near.dedup();
-        near
+        if is_whole { Rest::Whole } else { Rest::Pieces(pieces) }
     }
 }
 
-/// The squares that the rectangle around a triangle meets.
-fn squares(corners: &[DVec2; 3], side: f64) -> impl Iterator<Item = (i64, i64)> + use<> {
-    let bounds = Rect::around(*corners);
-    let (low, high) = ((bounds.min / side).floor(), (bounds.max / side).floor());
-    (low.y as i64..=high.y as i64).flat_map(move |y| (low.x as i64..=high.x as i64).map(move |x| (x, y)))
+/// The parts of convex pieces that lie outside `window`.
+fn outside(pieces: Vec<Vec<DVec2>>, window: &[DVec2; 3]) -> Vec<Vec<DVec2>> {
+    let mut outside = Vec::with_capacity(pieces.len());
+    for piece in pieces {
+        if shared_m2(&piece, window) > SLIVER_M2 {
+            polygon::cut_away(piece, window, &mut outside);
+        } else {
+            outside.push(piece);
+        }
+    }
+    outside.retain(|piece| polygon::doubled_area(piece) > 2.0 * NOTHING_M2);
+    outside
 }
 
 /// The area that two convex polygons share.
-fn shared_m2(polygon: &[DVec2], window: &[DVec2; 3]) -> f64 {
-    if !polygon::bounds(polygon).meets(&polygon::bounds(window)) {
-        return 0.0;
-    }
-    let (mut piece, mut scratch) = (polygon.to_vec(), Vec::new());
-    polygon::clip_convex(&mut piece, &mut scratch, window);
-    if piece.len() < 3 { 0.0 } else { polygon::doubled_area(&piece) / 2.0 }
+fn shared_m2(one: &[DVec2], other: &[DVec2]) -> f64 {
+    convex::shared(one, other, 0.0).map_or(0.0, |piece| polygon::doubled_area(&piece) / 2.0)
 }
 
 /// A convex polygon in triangles; those without an area, which cutting at a corner leaves, are left out.
 fn fan(piece: &[DVec2]) -> impl Iterator<Item = [DVec2; 3]> + '_ {
-    let pairs = piece[1..].windows(2).map(|pair| [piece[0], pair[0], pair[1]]);
+    let pairs = piece.get(1..).unwrap_or_default().windows(2).map(|pair| [piece[0], pair[0], pair[1]]);
     pairs.filter(|corners| polygon::doubled_area(corners) > 2.0 * SLIVER_M2)
 }
 
@@ -187,8 +202,19 @@ mod tests {
     }
 
     #[test]
+    fn what_lies_within_is_what_both_cover_with_its_texture() {
+        let plans = [ribbon(&[(0.0, 50.0), (100.0, 50.0)], 10.0), ribbon(&[(50.0, 0.0), (50.0, 100.0)], 4.0)];
+        let inside = within(&plans[1], &plans[0]);
+        assert!((inside.area_m2() - 40.0).abs() < 1e-6, "{}", inside.area_m2());
+        for corner in inside.corners().flatten() {
+            assert!((f64::from(corner.uv.x) - (corner.at.x - 48.0) / 4.0).abs() < 1e-5, "{corner:?}");
+        }
+        assert!(within(&plans[1], &PlanMesh::default()).triangles.is_empty());
+    }
+
+    #[test]
     fn a_bevelled_bend_lies_over_itself_no_more() {
-        let bend = [ribbon(&[(0.0, 0.0), (100.0, 0.0), (20.0, 30.0)], 12.0)];
+        let bend = [ribbon(&[(0.0, 0.0), (100.0, 0.0), (60.0, 8.0)], 12.0)];
         assert!(overlap_m2(&bend) > 10.0);
         assert!(overlap_m2(&apart(&bend)) < 1e-2);
     }

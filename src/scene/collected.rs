@@ -59,8 +59,13 @@ fn layer_of(surface: Surface) -> u8 {
     match surface {
         Surface::River => 0,
         Surface::Lake => 1,
-        Surface::Track | Surface::TrackJunction => 2,
+        // Shoulders are laid before tracks and so lie below them.
+        Surface::Shoulder | Surface::Track | Surface::TrackJunction => 2,
         Surface::Gravel | Surface::GravelJunction => 3,
-        Surface::Asphalt | Surface::AsphaltJunction => 4,
+        Surface::Asphalt
+        | Surface::AsphaltSolid
+        | Surface::AsphaltEdges
+        | Surface::AsphaltPlain
+        | Surface::AsphaltJunction => 4,
     }
 }

@@ -12,7 +12,7 @@ use crate::scene::kind::FeatureKind;
 use crate::scene::sources::Sourced;
 
 /// Vertices nearer to each other than this have no direction worth a joint, in metres.
-const MERGE_M: f64 = 0.01;
+pub const MERGE_M: f64 = 0.01;
 
 /// The lines of `kind` of which some part lies within `reach_m` of the ground's `extent`, with their attributes; the
 /// others, and those that are a single point, are noted. `given` is the name in the scene file.

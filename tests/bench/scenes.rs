@@ -1,7 +1,8 @@
 //! `cargo bench --bench scenes`: what it costs to build what lies and stands on the ground.
 //!
-//! Sections, chosen by name: `growth` builds towns of 1, 4 and 16 times as many roads, rivers and buildings; `recut` says
-//! what one dirty patch costs; `cities` builds real places where their data is at hand.
+//! Sections, chosen by name: `growth` builds whole towns of 1, 4 and 16 times as many streets and houses; `roads` lays
+//! streets alone, with what a real city of them takes; `recut` says what one dirty patch costs; `cities` builds real
+//! places where their data is at hand.
 
 #[path = "scenes/cities.rs"]
 mod cities;
@@ -9,6 +10,8 @@ mod cities;
 mod growth;
 #[path = "scenes/recut.rs"]
 mod recut;
+#[path = "scenes/roads.rs"]
+mod roads;
 #[path = "common/rounds.rs"]
 #[allow(dead_code, reason = "each benchmark uses its own part")]
 mod rounds;
@@ -19,7 +22,7 @@ mod steps;
 mod tests_common;
 
 fn main() {
-    rounds::sections(&[("growth", growth::print), ("recut", recut::print), ("cities", cities::print)]);
+    rounds::sections(&[("growth", growth::print), ("roads", roads::print), ("recut", recut::print), ("cities", cities::print)]);
 }
 
 /// A scene built from a text, with the time and the peak memory of every step.

@@ -5,16 +5,25 @@ mod water;
 
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
+use crate::ribbon::texture::road::{Center, Lines};
 
 /// What a ribbon is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Surface {
     /// A paved road: dark carriageway, light edge lines and a dashed centre line.
     Asphalt,
+    /// A paved road with a solid centre line.
+    AsphaltSolid,
+    /// A paved road with edge lines only.
+    AsphaltEdges,
+    /// A paved road without lines.
+    AsphaltPlain,
     /// A gravel road.
     Gravel,
     /// Two wheel tracks with grass between.
     Track,
+    /// The unpaved strip beside a carriageway.
+    Shoulder,
     /// Where paved roads meet: the carriageway without lines.
     AsphaltJunction,
     /// Where gravel roads meet.
@@ -42,7 +51,11 @@ pub fn texture(surface: Surface) -> Pixels {
         let (u, v) = ((x as f32 + 0.5) / SIZE as f32, (y as f32 + 0.5) / SIZE as f32);
         let grain = grain(x, y);
         match surface {
-            Surface::Asphalt => road::asphalt(u, v, grain),
+            Surface::Asphalt => road::asphalt(u, Lines::Edges { center: Some(Center::Dashed(v)) }, grain),
+            Surface::AsphaltSolid => road::asphalt(u, Lines::Edges { center: Some(Center::Solid) }, grain),
+            Surface::AsphaltEdges => road::asphalt(u, Lines::Edges { center: None }, grain),
+            Surface::AsphaltPlain => road::asphalt(u, Lines::None, grain),
+            Surface::Shoulder => shade(road::SHOULDER, (grain - 0.5) * 34.0),
             Surface::Gravel => road::gravel(u, grain),
             Surface::Track => road::track(u, grain),
             Surface::AsphaltJunction => shade(road::ASPHALT, (grain - 0.5) * 14.0),
@@ -54,10 +67,16 @@ pub fn texture(surface: Surface) -> Pixels {
     })
 }
 
-/// Metres along a ribbon of `width_m` in one repeat of its texture: dashes keep their proportion to the width.
+/// Metres along a ribbon of `width_m` in one repeat of its texture.
+///
+/// A line of a road is a twentieth of the road's width, and a dash with its gap two and a half widths: what is painted
+/// keeps its proportion to the road, as on a sand table, where roads are drawn wider than they are to be seen at all. A
+/// line of the 15 cm that is painted on real roads would be lost in any picture of more than a street.
 pub fn texture_length_m(surface: Surface, width_m: f64) -> f64 {
     match surface {
-        Surface::Asphalt => width_m * 2.5,
+        Surface::Asphalt | Surface::AsphaltSolid | Surface::AsphaltEdges | Surface::AsphaltPlain => {
+            width_m * 2.5
+        }
         _ => width_m * 2.0,
     }
 }
@@ -78,6 +97,23 @@ fn grain(x: u32, y: u32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn markings_are_where_their_names_say() {
+        let light = |surface, x: u32, y: u32| texture(surface).at(x, y).0[0] > 230;
+        let (edge, center, in_dash, in_gap) = (SIZE / 12, SIZE / 2, 4, SIZE - 4);
+        for (surface, expected) in [
+            (Surface::Asphalt, [true, true, false]),
+            (Surface::AsphaltSolid, [true, true, true]),
+            (Surface::AsphaltEdges, [true, false, false]),
+            (Surface::AsphaltPlain, [false; 3]),
+            (Surface::AsphaltJunction, [false; 3]),
+        ] {
+            let found =
+                [(edge, in_gap), (center, in_dash), (center, in_gap)].map(|(x, y)| light(surface, x, y));
+            assert_eq!(found, expected, "{surface:?}");
+        }
+    }
 
     #[test]
     fn a_road_has_light_edge_lines_and_water_none() {

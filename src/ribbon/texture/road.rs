@@ -12,12 +12,45 @@ pub(super) const GRAVEL: [u8; 3] = [214, 194, 154];
 /// Where wheels go.
 pub(super) const WORN: [u8; 3] = [176, 148, 108];
 
-pub(super) fn asphalt(u: f32, v: f32, grain: f32) -> Srgba {
+/// Beside a carriageway.
+pub(super) const SHOULDER: [u8; 3] = [186, 172, 142];
+
+/// What is painted on a carriageway.
+#[derive(Clone, Copy)]
+pub(super) enum Lines {
+    /// Nothing.
+    None,
+    /// Edge lines, and what there is in the middle.
+    Edges { center: Option<Center> },
+}
+
+/// A centre line.
+#[derive(Clone, Copy)]
+pub(super) enum Center {
+    /// Unbroken.
+    Solid,
+    /// Broken, at this part of a dash and its gap.
+    Dashed(f32),
+}
+
+pub(super) fn asphalt(u: f32, lines: Lines, grain: f32) -> Srgba {
     let from_edge = u.min(1.0 - u);
-    let dash = (u - 0.5).abs() < 0.028 && v < 0.55;
+    let in_middle = (u - 0.5).abs() < 0.028;
+    let painted = match lines {
+        Lines::None => false,
+        Lines::Edges { center } => {
+            from_edge < 0.115
+                || in_middle
+                    && match center {
+                        Some(Center::Solid) => true,
+                        Some(Center::Dashed(v)) => v < 0.55,
+                        None => false,
+                    }
+        }
+    };
     if from_edge < 0.055 {
         shade([58, 54, 50], 0.0)
-    } else if from_edge < 0.115 || dash {
+    } else if painted {
         shade([243, 238, 222], 0.0)
     } else {
         shade(ASPHALT, (grain - 0.5) * 14.0)

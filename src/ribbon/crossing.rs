@@ -1,0 +1,128 @@
+//! The ground that ribbons share where their lines cross, or run beside one another, without a vertex in common.
+//!
+//! Ribbons are convex pieces, so what two of them share is a convex polygon: found pair by pair, with a tree of rectangles
+//! that leaves out the pairs that are far apart. What lies in a junction already is left out too.
+
+use std::ops::ControlFlow;
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::geom::convex;
+use crate::geom::polygon;
+use crate::geom::rect::Rect;
+use crate::geom::rect_tree::RectTree;
+use crate::ribbon::junction::Node;
+use crate::ribbon::plan::PlanMesh;
+
+/// Ground smaller than this is rounding, in square metres: a sliver of 10 m by 0.1 mm.
+const SLIVER_M2: f64 = 1e-3;
+
+/// A piece that shares ground with more others than this is shared whole: where so many lie over one another, nothing
+/// that is painted on one can be read, and their number must not grow with its square.
+const MOST: usize = 64;
+
+/// Ground that two ribbons share.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Crossing {
+    /// Convex, counter-clockwise.
+    pub outline: Vec<DVec2>,
+    /// Which two, the lesser number first.
+    pub ribbons: [usize; 2],
+}
+
+/// What the `ribbons` share that are of one class, outside `nodes`: in the order of the ribbons. Crossings may overlap one
+/// another.
+pub fn crossings<C: PartialEq + Sync>(ribbons: &[(PlanMesh, C)], nodes: &[Node]) -> Vec<Crossing> {
+    let pieces: Vec<Piece> = ribbons.par_iter().enumerate().flat_map_iter(pieces_of).collect();
+    let rects: Vec<Rect> = pieces.iter().map(|piece| polygon::bounds(&piece.outline)).collect();
+    let (tree, joined) = (RectTree::new(&rects), Joined::new(nodes));
+    let shared = |one: &Piece| {
+        let mut found = Vec::new();
+        tree.visit(&polygon::bounds(&one.outline), &mut |other| {
+            let other = &pieces[other];
+            if other.ribbon < one.ribbon && ribbons[other.ribbon].1 == ribbons[one.ribbon].1 {
+                found.extend(crossing([other, one]).filter(|crossing| !joined.holds(&crossing.outline)));
+            }
+            if found.len() > MOST { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        if found.len() > MOST {
+            found.truncate(1);
+            found[0].outline.clone_from(&one.outline);
+        }
+        found.sort_by_key(|crossing| crossing.ribbons);
+        found
+    };
+    pieces.par_iter().flat_map_iter(shared).collect()
+}
+
+/// A convex piece of a ribbon.
+struct Piece {
+    outline: Vec<DVec2>,
+    ribbon: usize,
+}
+
+fn pieces_of<C>((ribbon, (plan, _)): (usize, &(PlanMesh, C))) -> impl Iterator<Item = Piece> + use<C> {
+    plan.convex_parts().into_iter().map(move |outline| Piece { outline, ribbon })
+}
+
+fn crossing([one, other]: [&Piece; 2]) -> Option<Crossing> {
+    let outline = convex::shared(&one.outline, &other.outline, SLIVER_M2)?;
+    Some(Crossing { outline, ribbons: [one.ribbon, other.ribbon] })
+}
+
+/// The junctions there are.
+struct Joined<'a> {
+    nodes: &'a [Node],
+    tree: RectTree,
+}
+
+impl<'a> Joined<'a> {
+    fn new(nodes: &'a [Node]) -> Self {
+        let rects: Vec<Rect> = nodes.iter().map(|node| polygon::bounds(&node.outline)).collect();
+        Self { nodes, tree: RectTree::new(&rects) }
+    }
+
+    /// Whether one of them covers all of a convex polygon.
+    fn holds(&self, outline: &[DVec2]) -> bool {
+        let mut held = false;
+        self.tree.visit(&polygon::bounds(outline), &mut |node| {
+            let node = &self.nodes[node].outline;
+            held = outline.iter().all(|&corner| convex::contains(node, corner));
+            if held { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        held
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::polyline::Polyline;
+    use crate::ribbon::stroke::{Continuations, StrokeOptions, stroke};
+
+    fn ribbon(points: [(f64, f64); 2], width_m: f64) -> PlanMesh {
+        let line = Polyline::new(points.map(DVec2::from), 0.0).expect("a line");
+        let mut plan = PlanMesh::default();
+        let options = StrokeOptions { width_m, ..StrokeOptions::default() };
+        stroke(&line, Continuations::default(), &options, &mut plan);
+        plan
+    }
+
+    #[test]
+    fn a_crossing_is_what_both_cover_however_it_is_turned() {
+        for quarter in 0..4 {
+            let turn = |point: (f64, f64)| (0..quarter).fold(point, |(x, y), _| (-y, x));
+            let along = ribbon([(-50.0, 0.0), (50.0, 0.0)].map(turn), 8.0);
+            let across = ribbon([(0.0, -50.0), (0.0, 60.0)].map(turn), 6.0);
+            let found = crossings(&[(along.clone(), 0), (across.clone(), 0)], &[]);
+            let area: f64 = found.iter().map(|crossing| polygon::doubled_area(&crossing.outline) / 2.0).sum();
+            assert!((area - 48.0).abs() < 1e-9, "{area}");
+            assert!(found.iter().all(|crossing| crossing.ribbons == [0, 1]));
+            assert!(crossings(&[(along.clone(), 0), (across.clone(), 1)], &[]).is_empty(), "not alike");
+            let square = [(-9.0, -9.0), (9.0, -9.0), (9.0, 9.0), (-9.0, 9.0)].map(DVec2::from).to_vec();
+            let node = Node { outline: square, street: 0, rank: 0 };
+            assert!(crossings(&[(along, 0), (across, 0)], &[node]).is_empty(), "joined already");
+        }
+    }
+}
