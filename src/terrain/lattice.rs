@@ -29,6 +29,7 @@ pub struct Lattice {
     columns: u32,
     rows: u32,
     first: Post,
+    doublings: u32,
     heights: Vec<f32>,
     pinned: Vec<bool>,
 }
@@ -139,7 +140,7 @@ impl Lattice {
             return Err(LatticeError::TooHigh { height });
         }
         let pinned = vec![false; heights.len()];
-        Ok(Self { origin, cell, columns, rows, first, heights, pinned })
+        Ok(Self { origin, cell, columns, rows, first, doublings: 0, heights, pinned })
     }
 
     /// Map coordinates of the south-west post: the origin of world space.
@@ -160,6 +161,17 @@ impl Lattice {
     /// Rows of posts.
     pub fn rows(&self) -> u32 {
         self.rows
+    }
+
+    /// How often posts were doubled on the planes between those that were measured; see
+    /// [`crate::terrain::densify`].
+    pub fn doublings(&self) -> u32 {
+        self.doublings
+    }
+
+    /// Notes that posts were doubled so many times.
+    pub(in crate::terrain) fn resampled(&mut self, doublings: u32) {
+        self.doublings = doublings;
     }
 
     /// All heights, row by row from the south-west.
