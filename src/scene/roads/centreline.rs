@@ -129,3 +129,25 @@ fn level(road: &Road, attributes: &Attributes, carried: Carried) -> i32 {
     let level = attributes.number(road.level.as_ref()).or_else(tagged).unwrap_or(by_kind);
     level.round().clamp(-20.0, 20.0) as i32
 }
+
+#[cfg(test)]
+pub(in crate::scene::roads) mod tests {
+    use super::*;
+    use glam::DVec2;
+
+    /// A road along these points, six metres wide, from the document's first table.
+    pub fn road(points: &[(f64, f64)], carried: Carried, level: i32) -> Centreline {
+        let line = Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line");
+        Centreline {
+            line,
+            levels_m: None,
+            options: StrokeOptions::default(),
+            surface: Surface::Asphalt,
+            carried,
+            level,
+            feature: FeatureId(2),
+            table: 0,
+            attributes: Attributes::default(),
+        }
+    }
+}
