@@ -15,7 +15,10 @@ const SMALLEST_SQUARE_M: f64 = 20.0;
 
 /// No more pairs of legs are compared. A city of 100 000 legs has some hundred thousand pairs; only lines drawn all over
 /// each other have more than this, and comparing those would take minutes.
-const MOST_PAIRS: usize = 50_000_000;
+const MOST_PAIRS: usize = 20_000_000;
+
+/// Nor are more crossings kept: each parts two roads.
+const MOST_CROSSINGS: usize = 1_000_000;
 
 /// A road and a station on it.
 pub type Place = (usize, f64);
@@ -41,7 +44,8 @@ pub fn crossings(roads: &[Centreline], counts: impl Fn(&Centreline) -> bool) -> 
         each_square(leg, square_m, &mut |square| squares.entry(square).or_default().push(index));
     }
     let pairs: usize = squares.values().map(|inside| inside.len() * inside.len() / 2).sum();
-    (pairs <= MOST_PAIRS).then(|| compare(&legs, squares.values()))
+    let found = (pairs <= MOST_PAIRS).then(|| compare(&legs, squares.values()));
+    found.filter(|found| found.len() <= MOST_CROSSINGS)
 }
 
 /// The crossings of legs that share a square, each once.

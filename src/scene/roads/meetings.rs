@@ -65,12 +65,9 @@ pub fn meetings(roads: &[Centreline], crosses: impl Fn(&Centreline) -> bool) -> 
         }
         by_level.values().filter(|alike| alike.len() > 1).for_each(|alike| found.join(roads, alike));
     }
+    found.sort();
     found.cross(roads, crosses);
-    for stops in &mut found.stops {
-        stops.sort_by(|a, b| a.station_m.total_cmp(&b.station_m));
-        // A crossing may lie on a vertex where the roads meet already.
-        stops.dedup_by(|later, first| later.station_m - first.station_m < SAME_M && later.node == first.node);
-    }
+    found.sort();
     found
 }
 
@@ -99,11 +96,13 @@ impl Meetings {
             self.is_tangled = true;
             return;
         };
+        let at_vertices: Vec<usize> = self.stops.iter().map(Vec::len).collect();
         for crossing in crossings {
-            let stop_at = |road: usize, station_m: f64| {
-                self.stops[road].iter().find(|stop| (stop.station_m - station_m).abs() < SAME_M).copied()
-            };
-            let held = crossing.map(|(road, station_m)| stop_at(road, station_m));
+            let held = crossing.map(|(road, station_m)| {
+                let stops = &self.stops[road][..at_vertices[road]];
+                let place = stops.partition_point(|stop| stop.station_m < station_m - SAME_M);
+                stops.get(place).filter(|stop| stop.station_m <= station_m + SAME_M).copied()
+            });
             let node = match held {
                 [Some(_), Some(_)] => continue,
                 [Some(stop), None] | [None, Some(stop)] => stop.node,
@@ -115,6 +114,10 @@ impl Meetings {
                 }
             }
         }
+    }
+
+    fn sort(&mut self) {
+        self.stops.iter_mut().for_each(|stops| stops.sort_by(|a, b| a.station_m.total_cmp(&b.station_m)));
     }
 }
 

@@ -112,9 +112,12 @@ fn at(stations_m: &[f64], values: &[f64], station_m: f64) -> f64 {
 
 /// The vertices of a line from one station to another, both ends with them.
 pub fn points_between(line: &Polyline, from_m: f64, to_m: f64) -> Vec<DVec2> {
-    let inner = line.points().iter().zip(line.stations());
-    let inner = inner.filter(|&(_, &at)| at > from_m && at < to_m).map(|(&point, _)| point);
-    std::iter::once(line.at(from_m)).chain(inner).chain([line.at(to_m)]).collect()
+    let (first, past) = (
+        line.stations().partition_point(|&at| at <= from_m),
+        line.stations().partition_point(|&at| at < to_m),
+    );
+    let inner = line.points().get(first..past).unwrap_or_default();
+    std::iter::once(line.at(from_m)).chain(inner.iter().copied()).chain([line.at(to_m)]).collect()
 }
 
 #[cfg(test)]

@@ -94,19 +94,26 @@ impl Chain {
         self.joined(along)
     }
 
-    /// What stands at the chain's stations.
+    /// What stands at the chain's stations; where two sections share one, what either says of it.
     pub fn gather(&self, levels: &Levels) -> Vec<f64> {
         self.joined(|link| levels[link.section].clone())
     }
 
     fn joined(&self, of: impl Fn(&Link) -> Vec<f64>) -> Vec<f64> {
-        let mut all = Vec::new();
+        let mut all: Vec<f64> = Vec::new();
         for (index, link) in self.links.iter().enumerate() {
             let mut own = of(link);
             if link.direction == Direction::Backward {
                 own.reverse();
             }
-            all.extend(own.into_iter().skip(usize::from(index > 0)));
+            let mut own = own.into_iter();
+            if index > 0
+                && let (Some(shared), Some(again)) = (all.last_mut(), own.next())
+                && shared.is_nan()
+            {
+                *shared = again;
+            }
+            all.extend(own);
         }
         all
     }

@@ -81,8 +81,9 @@ fn straighten(stations: &[f64], targets: &[f64], levels: &mut [f64]) {
             continue;
         }
         let (run, rise) = (stations[to] - stations[from], levels[to] - levels[from]);
+        let grade = if run > 0.0 { rise / run } else { 0.0 };
         for between in from + 1..to {
-            levels[between] = levels[from] + rise * ((stations[between] - stations[from]) / run);
+            levels[between] = levels[from] + grade * (stations[between] - stations[from]);
         }
         from = to;
     }

@@ -1,14 +1,15 @@
 //! A stretch of road on the ground, as grading sees it: where a place lies beside it, and how high the road is there.
 //!
-//! A place beside a bend has no one station: on the inner side the nearest point of the centreline leaps from one leg to
-//! the other. So legs are parted by the line that halves their angle, and across a leg stations run evenly from one such
-//! line to the next, which is what a mitred ribbon does. Then levels are continuous across the bend:
+//! Beside a straight leg a place has the station of its foot on the centreline, so that the road is flat across. Beside a
+//! bend that would leap: on the inner side the nearest point goes from one leg straight to the other. So legs are parted
+//! by the line that halves their angle, as mitred ribbons are, and near it stations are squeezed, or stretched, until the
+//! bend's own station lies on that line for both legs:
 //!
 //! ```text
-//!   station 0 │             ╱ station 40      both legs have station 40 on the line between them;
-//!             │────────────╱                  along the inner kerb 40 m of road are fewer metres
-//!             │───────────╱ ╲
-//!             │──────────╱   ╲
+//!   station 0 │        20 ┊    ╱ 40         both legs have station 40 on the line between them;
+//!             │───────────┊───╱             up to the ease, here 20 m before, the road is flat across
+//!             │───────────┊──╱ ╲
+//!             │───────────┊─╱   ╲
 //! ```
 
 use glam::DVec2;
@@ -18,6 +19,11 @@ use crate::geom::polyline::Polyline;
 /// The steepest line between two legs, metres along for each metre aside: that of a square turn. Further, legs are
 /// nearly opposite, and hardly any of the ground beside them belongs to both.
 const STEEPEST_LEAN: f64 = 1.0;
+
+/// How far from a bend stations are squeezed, in the metres by which they must be at the formation's edge. There the
+/// road is then steeper by a third than along its centreline; with less it would be steeper yet, with more the road would
+/// lie aslant for longer.
+const EASE: f64 = 4.0;
 
 /// What a road's cross section looks like.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,11 +101,27 @@ impl Strip {
         } else {
             libm::hypot(left, before.max(after).max(0.0)) - reach
         };
-        let lean = [self.lean(leg, leg), self.lean(leg + 1, leg)].map(|lean| lean * left);
-        let span = length + lean[1] - lean[0];
-        let part = if span > 1e-6 { (along - lean[0]) / span } else { along / length };
-        let station_m = self.line.stations()[leg] + part.clamp(0.0, 1.0) * length;
+        let from_start = along + self.squeezed(leg, leg, left, along);
+        let to_end = length - along + self.squeezed(leg + 1, leg, -left, length - along);
+        // Each end's ease reaches to the middle at most, so that one of the two is no more than the distance itself.
+        let within = if along < length / 2.0 { from_start } else { length - to_end };
+        let station_m = self.line.stations()[leg] + within.clamp(0.0, length);
         Beside { out_m, station_m, aside_m: left.abs(), beyond_m }
+    }
+
+    /// What the station of a place `distance` metres along a leg from one of its vertices differs by from that, where the
+    /// place lies `aside` metres to the side, to the left seen from the leg's start and to the right seen from its end.
+    fn squeezed(&self, vertex: usize, leg: usize, aside: f64, distance: f64) -> f64 {
+        let lean = self.lean(vertex, leg);
+        let points = self.line.points();
+        let half = points[leg].distance(points[leg + 1]) / 2.0;
+        let reach = self.section.half_width_m + self.section.shoulder_m;
+        let ease = (EASE * reach * lean.abs()).min(half);
+        if distance >= ease {
+            return 0.0;
+        }
+        let border = (lean * aside).clamp(-ease / 2.0, ease / 2.0);
+        ease * (distance - border) / (ease - border) - distance
     }
 
     /// How far along a leg the line between it and its neighbour at a vertex goes for each metre to the left.
@@ -186,6 +208,16 @@ pub(in crate::terrain::grading) mod tests {
                 let levels = [0, 1].map(|leg| strip.level(strip.beside(leg, at).station_m));
                 assert!((levels[0] - levels[1]).abs() < 1e-9, "{levels:?} at {aside} m aside");
             }
+        }
+    }
+
+    #[test]
+    fn a_road_is_flat_across_away_from_its_bends() {
+        let points = [DVec2::ZERO, DVec2::new(100.0, 0.0), DVec2::new(150.0, 50.0)];
+        let strip = strip(&points, [0.0, 17.0], FLAT);
+        for left in [-6.0, -3.0, 0.0, 3.0, 6.0] {
+            let beside = strip.beside(0, DVec2::new(80.0, left));
+            assert!((beside.station_m - 80.0).abs() < 1e-9, "{beside:?}");
         }
     }
 
