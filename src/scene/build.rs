@@ -15,7 +15,7 @@ use crate::scene::ground;
 use crate::scene::kind::{Scene, Terrain};
 use crate::scene::models;
 use crate::scene::place::{Places, parse_crs};
-use crate::scene::roads::{centreline, network};
+use crate::scene::roads::{centreline, conform, network};
 use crate::scene::sources::Sources;
 use crate::scene::style;
 use crate::scene::views;
@@ -40,7 +40,8 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     let extent = lattice.extent();
     water::lakes(document, &sources, &mut lattice, &mut collected)?;
     water::rivers(document, &sources, &extent, &mut collected)?;
-    let roads = centreline::collect(document, &sources, &extent, &mut collected)?;
+    let mut roads = centreline::collect(document, &sources, &extent, &mut collected)?;
+    conform::conform(document, &mut lattice, &mut roads, &mut collected)?;
     network::lay(&roads, &extent, &mut collected);
     collected.take_apart();
 
@@ -88,6 +89,7 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
         features: collected.features,
         notes: collected.notes,
         report: collected.report,
+        profiles: collected.profiles,
         crs,
         files: assets.files_read(),
     })

@@ -7,6 +7,7 @@ use crate::ribbon::texture::Surface;
 use crate::scene::attributes::Defaulted;
 use crate::scene::kind::{Feature, FeatureKind, Ribbon, Solid};
 use crate::scene::report::Report;
+use crate::scene::roads::profiles::RoadProfile;
 use crate::terrain::facets::Facet;
 
 /// Features with their ids, and what there is to say about them.
@@ -26,6 +27,8 @@ pub struct Collected {
     pub defaulted: Defaulted,
     /// What was found out about single features.
     pub report: Report,
+    /// Of every road that the ground follows.
+    pub profiles: Vec<RoadProfile>,
 }
 
 impl Collected {
@@ -33,6 +36,12 @@ impl Collected {
     pub fn add(&mut self, kind: FeatureKind, name: String) -> FeatureId {
         self.features.push(Feature { kind, name });
         FeatureId(FeatureId::GROUND.0 + self.features.len() as u32)
+    }
+
+    /// The name of a feature that was added; may be empty.
+    pub fn name(&self, feature: FeatureId) -> &str {
+        let place = feature.0.checked_sub(FeatureId::GROUND.0 + 1);
+        place.and_then(|place| self.features.get(place as usize)).map_or("", |feature| &feature.name)
     }
 
     /// Lays a plan over what was laid before in its class and below.

@@ -19,6 +19,7 @@ use crate::roam::errors::ErrorMap;
 use crate::roam::ground::Ground;
 use crate::roam::layout::Layout;
 use crate::scene::report::Report;
+use crate::scene::roads::profiles::RoadProfile;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::service::HeightService;
 
@@ -58,6 +59,8 @@ pub struct Scene {
     pub notes: Vec<String>,
     /// What was found out about single features.
     pub report: Report,
+    /// The longitudinal profiles of the roads that the ground follows.
+    pub profiles: Vec<RoadProfile>,
     /// The files it was made of, besides the scene file itself.
     pub files: Vec<std::path::PathBuf>,
 }

@@ -29,6 +29,7 @@ pub struct Lattice {
     columns: u32,
     rows: u32,
     first: Post,
+    doublings: u32,
     heights: Vec<f32>,
     pinned: Vec<bool>,
 }
@@ -139,7 +140,7 @@ impl Lattice {
             return Err(LatticeError::TooHigh { height });
         }
         let pinned = vec![false; heights.len()];
-        Ok(Self { origin, cell, columns, rows, first, heights, pinned })
+        Ok(Self { origin, cell, columns, rows, first, doublings: 0, heights, pinned })
     }
 
     /// Map coordinates of the south-west post: the origin of world space.
@@ -160,6 +161,17 @@ impl Lattice {
     /// Rows of posts.
     pub fn rows(&self) -> u32 {
         self.rows
+    }
+
+    /// How often posts were doubled on the planes between those that were measured; see
+    /// [`crate::terrain::densify`].
+    pub fn doublings(&self) -> u32 {
+        self.doublings
+    }
+
+    /// Notes that posts were doubled so many times.
+    pub(in crate::terrain) fn resampled(&mut self, doublings: u32) {
+        self.doublings = doublings;
     }
 
     /// All heights, row by row from the south-west.
@@ -276,24 +288,44 @@ impl Lattice {
     /// The slopes at a post, rise per metre eastward and northward: Horn's weighting of the eight neighbours
     /// (Horn 1981, as `gdaldem` and most hillshades use); missing neighbours take the post's own height.
     /// Zero where the post has no data.
+    ///
+    /// Where posts were put in between those measured, and nothing was built, the neighbours are as far away as measured
+    /// ones are: nearer ones lie on the planes between, and would show the planes and not the land.
     pub fn slopes(&self, post: Post) -> Vec2 {
         let own = self.height(post);
         if own.is_nan() {
             return Vec2::ZERO;
         }
+        let step = if self.lies_as_measured(post) { 1 << self.doublings } else { 1 };
         let at = |east: i64, north: i64| -> f32 {
-            let column = (i64::from(post.column) + east).clamp(0, i64::from(self.columns) - 1);
-            let row = (i64::from(post.row) + north).clamp(0, i64::from(self.rows) - 1);
-            let height = self.height(Post { column: column as u32, row: row as u32 });
+            let height = self.height(self.beside(post, east * step, north * step));
             if height.is_nan() { own } else { height }
         };
         let east = (at(1, 1) + 2.0 * at(1, 0) + at(1, -1)) - (at(-1, 1) + 2.0 * at(-1, 0) + at(-1, -1));
         let north = (at(1, 1) + 2.0 * at(0, 1) + at(-1, 1)) - (at(1, -1) + 2.0 * at(0, -1) + at(-1, -1));
-        let span = |index: u32, count: u32| if index == 0 || index + 1 == count { 4.0 } else { 8.0 };
+        let (low, high) = (self.beside(post, -step, -step), self.beside(post, step, step));
+        let span = |low: u32, high: u32| 4.0 * (high - low) as f32;
         Vec2::new(
-            east / (span(post.column, self.columns) * self.cell.x as f32),
-            north / (span(post.row, self.rows) * self.cell.y as f32),
+            east / (span(low.column, high.column) * self.cell.x as f32),
+            north / (span(low.row, high.row) * self.cell.y as f32),
         )
+    }
+
+    /// The post so many columns east and rows north, or the last one that way.
+    fn beside(&self, post: Post, east: i64, north: i64) -> Post {
+        let column = (i64::from(post.column) + east).clamp(0, i64::from(self.columns) - 1);
+        let row = (i64::from(post.row) + north).clamp(0, i64::from(self.rows) - 1);
+        Post { column: column as u32, row: row as u32 }
+    }
+
+    /// Whether posts were put in about a post and neither it nor its neighbours, near and measured, were built on.
+    fn lies_as_measured(&self, post: Post) -> bool {
+        let around = |step: i64| {
+            [(0, 0), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)]
+                .into_iter()
+                .all(|(east, north)| !self.is_pinned(self.beside(post, east * step, north * step)))
+        };
+        self.doublings > 0 && around(1) && around(1 << self.doublings)
     }
 
     /// All posts, row by row from the south-west.

@@ -1,9 +1,12 @@
 //! The ground: one lattice of heights, the earthworks and brushes that change it, the light that reaches it, and the height query
 //! service.
 
+pub mod alignment;
 pub mod brush;
+pub mod densify;
 pub mod earthwork;
 pub mod facets;
+pub mod grading;
 pub mod hillshade;
 pub mod lattice;
 pub mod light;

@@ -202,8 +202,26 @@ fn level(road: &Road, attributes: &Attributes, carried: Carried) -> i32 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(in crate::scene::roads) mod tests {
     use super::*;
+
+    /// A road along these points, six metres wide, from the document's first table.
+    pub fn road(points: &[(f64, f64)], carried: Carried, level: i32) -> Centreline {
+        let line = Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line");
+        Centreline {
+            line,
+            levels_m: None,
+            options: StrokeOptions::default(),
+            widths_m: None,
+            shoulder_m: 0.0,
+            surface: Surface::Asphalt,
+            carried,
+            level,
+            feature: FeatureId(2),
+            table: 0,
+            attributes: Attributes::default(),
+        }
+    }
 
     fn line(points: &[(f64, f64)]) -> Polyline {
         Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line")

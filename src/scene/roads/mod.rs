@@ -1,8 +1,16 @@
 //! Roads: centrelines from the document, the ground they want, the ribbons and junctions they make.
 //!
 //! ```text
-//!  centreline::collect ─► (conform: the ground follows, stretches become bridges and tunnels) ─► network::lay
+//!  centreline::collect ─► conform: the ground follows, stretches become bridges and tunnels ─► network::lay
 //! ```
 
 pub mod centreline;
+pub mod conform;
+pub mod crossings;
+pub mod levels;
+pub mod meetings;
 pub mod network;
+pub mod profiles;
+pub mod route;
+pub mod stretches;
+pub mod survey;

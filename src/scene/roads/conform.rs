@@ -1,0 +1,265 @@
+//! Roads that the ground follows.
+//!
+//! ```text
+//!  meetings ─► survey ─► terrain/alignment: design ─► denser posts ─► terrain/grading ─► report, profiles
+//!                                               └─► stretches: ground, bridges, tunnels
+//! ```
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::Document;
+use crate::geom::polyline::Polyline;
+use crate::scene::collected::Collected;
+use crate::scene::report::{Cell, Column};
+use crate::scene::roads::centreline::{Carried, Centreline};
+use crate::scene::roads::meetings::{Meetings, meetings};
+use crate::scene::roads::profiles::RoadProfile;
+use crate::scene::roads::route::{Route, Stretch, points_between};
+use crate::scene::roads::survey::{Rules, Survey, conforms};
+use crate::scene::roads::{levels, stretches};
+use crate::terrain::alignment::design::design;
+use crate::terrain::alignment::network::NodeId;
+use crate::terrain::densify;
+use crate::terrain::earthwork::Volumes;
+use crate::terrain::grading::grade;
+use crate::terrain::grading::strip::{End, Strip};
+use crate::terrain::lattice::Lattice;
+
+/// The length of a vertical curve in metres: for a crest between grades of 4 % up and down at 50 km/h.
+const CURVE_M: f64 = 50.0;
+
+/// A vertical curve is at least so many cells long: the kinks of the ground's own planes are no kinks of the land.
+const CURVE_CELLS: f64 = 2.0;
+
+/// How many posts should stand across the narrowest carriageway that the ground follows: fewer, and its formation is
+/// wider than itself; more, and the lattice grows with the square.
+const POSTS_ACROSS: f64 = 4.0;
+
+/// What is reported of each road.
+const COLUMNS: [Column; 9] = [
+    Column { name: "name", unit: "" },
+    Column { name: "length", unit: "m" },
+    Column { name: "highest grade", unit: "%" },
+    Column { name: "cut", unit: "m3" },
+    Column { name: "fill", unit: "m3" },
+    Column { name: "highest fill", unit: "m" },
+    Column { name: "deepest cut", unit: "m" },
+    Column { name: "bridges", unit: "" },
+    Column { name: "tunnels", unit: "" },
+];
+
+/// Designs the roads that the ground follows, grades the ground for them and cuts them where bridges and tunnels begin;
+/// gives the bridges and tunnels of all other roads their levels.
+///
+/// The lattice may get more posts; its origin, its extent and all heights beside the earthworks stay as they are.
+///
+/// # Errors
+/// More roads conform than can be held.
+pub fn conform(
+    document: &Document,
+    lattice: &mut Lattice,
+    roads: &mut Vec<Centreline>,
+    collected: &mut Collected,
+) -> Result<(), Diagnostic> {
+    let rules: Vec<Option<Rules>> =
+        roads.iter().map(|road| Rules::of(document, road, &mut collected.defaulted)).collect();
+    let is_carried = |road: &Centreline| road.carried == Carried::Ground;
+    if rules.iter().all(Option::is_none) && roads.iter().all(is_carried) {
+        return Ok(());
+    }
+    let meetings = meetings(roads, |road| is_carried(road) && conforms(&document.roads[road.table]));
+    if meetings.is_tangled {
+        let note = "conforming roads cross each other too often to find every place: they meet at their vertices only";
+        collected.notes.push(note.into());
+    }
+    let survey = Survey::of(document, lattice, roads, &rules, &meetings)?;
+    let curve_m = CURVE_M.max(CURVE_CELLS * lattice.cell().max_element());
+    let design = design(&survey.network, &survey.courses, &survey.pins, curve_m);
+    let routes: Vec<Route> = survey.routes(&design).into_iter().map(Route::with_ends).collect();
+    let works = Earthworks { roads, rules: &rules, portals: portals(roads, &routes, &meetings), meetings: &meetings };
+    let volumes = works.build(lattice, &routes, collected);
+    for (route, volumes) in routes.iter().zip(&volumes) {
+        tell(&roads[route.road], route, volumes, collected);
+    }
+    total(document, roads, (&routes, &volumes), collected);
+    replace(roads, &routes, |roads| levels::settle(lattice, roads, &meetings, &survey.node_levels(&design)));
+    Ok(())
+}
+
+/// The ground to be graded for roads.
+struct Earthworks<'a> {
+    roads: &'a [Centreline],
+    rules: &'a [Option<Rules>],
+    /// The nodes where tunnels begin.
+    portals: BTreeSet<NodeId>,
+    meetings: &'a Meetings,
+}
+
+impl Earthworks<'_> {
+    /// Grades the ground for every stretch on it; the earth moved for each route.
+    fn build(&self, lattice: &mut Lattice, routes: &[Route], collected: &mut Collected) -> Vec<Volumes> {
+        let strips: Vec<(usize, Strip)> = routes
+            .iter()
+            .enumerate()
+            .flat_map(|(index, route)| self.strips(route).into_iter().map(move |strip| (index, strip)))
+            .collect();
+        let (owners, strips): (Vec<usize>, Vec<Strip>) = strips.into_iter().unzip();
+        make_denser(lattice, &strips, collected);
+        let mut volumes = vec![Volumes::default(); routes.len()];
+        if !strips.is_empty() {
+            for (owner, moved) in owners.into_iter().zip(grade(lattice, &strips)) {
+                volumes[owner].cut_m3 += moved.cut_m3;
+                volumes[owner].fill_m3 += moved.fill_m3;
+            }
+        }
+        volumes
+    }
+
+    fn strips(&self, route: &Route) -> Vec<Strip> {
+        let Some(rules) = &self.rules[route.road] else { return Vec::new() };
+        let all = route.stretches();
+        let on_ground = all.iter().enumerate().filter(|(_, stretch)| stretch.carried == Carried::Ground);
+        let strip = |(index, stretch): (usize, &Stretch)| {
+            let points = points_between(&self.roads[route.road].line, stretch.from_m, stretch.to_m);
+            let (stations_m, levels_m) = route.levels_along(stretch);
+            let beside = [index.checked_sub(1).and_then(|before| all.get(before)), all.get(index + 1)];
+            let ends = [self.end(route, beside[0], 0), self.end(route, beside[1], usize::MAX)];
+            let line = Polyline::new(points, 0.0)?;
+            Some(Strip { line, stations_m, levels_m, section: rules.section, ends })
+        };
+        on_ground.filter_map(strip).collect()
+    }
+
+    /// What stands at an end of a stretch: by the stretch beyond, or by what meets the road at its own end.
+    fn end(&self, route: &Route, beyond: Option<&Stretch>, stop: usize) -> End {
+        let stops = &self.meetings.stops[route.road];
+        let is_portal = match beyond {
+            Some(stretch) => stretch.carried == Carried::Tunnel,
+            None => self.portals.contains(&stops[stop.min(stops.len() - 1)].node),
+        };
+        if is_portal { End::Portal } else { End::Open }
+    }
+}
+
+/// The nodes where a tunnel of one road ends that may go on as another on the ground.
+fn portals(roads: &[Centreline], routes: &[Route], meetings: &Meetings) -> BTreeSet<NodeId> {
+    let mut nodes = BTreeSet::new();
+    for (road, stops) in roads.iter().zip(&meetings.stops) {
+        if road.carried == Carried::Tunnel {
+            nodes.extend([stops[0].node, stops[stops.len() - 1].node]);
+        }
+    }
+    for route in routes {
+        let (all, stops) = (route.stretches(), &meetings.stops[route.road]);
+        let ends = [(&all[0], stops[0]), (&all[all.len() - 1], stops[stops.len() - 1])];
+        nodes.extend(ends.iter().filter(|(end, _)| end.carried == Carried::Tunnel).map(|(_, stop)| stop.node));
+    }
+    nodes
+}
+
+/// Puts more posts between those there are, where the carriageways are narrower than a few cells.
+fn make_denser(lattice: &mut Lattice, strips: &[Strip], collected: &mut Collected) {
+    let widths = strips.iter().map(|strip| 2.0 * strip.section.half_width_m);
+    let narrowest_m = widths.fold(f64::INFINITY, f64::min);
+    let wanted = densify::doublings_for(lattice, narrowest_m / POSTS_ACROSS);
+    let times = densify::affordable(lattice, wanted);
+    if times > 0 && let Ok(dense) = densify::densified(lattice, times) {
+        *lattice = dense;
+    }
+    let spacing_m = lattice.cell().max_element();
+    let mut note = match times {
+        0 => String::new(),
+        _ => format!("posts every {spacing_m:.3} m were put in for conforming roads; the ground stays as it was"),
+    };
+    if spacing_m > narrowest_m {
+        let reason = "; a model of a smaller area could have more posts";
+        let wide = format!("a conforming road of {narrowest_m} m lies on posts {spacing_m:.3} m apart and is graded wider");
+        note = if note.is_empty() { wide + reason } else { format!("{note}; {wide}{reason}") };
+    }
+    if !note.is_empty() {
+        collected.notes.push(note);
+    }
+}
+
+/// Reports a road and keeps its profile.
+fn tell(road: &Centreline, route: &Route, volumes: &Volumes, collected: &mut Collected) {
+    let name = collected.name(road.feature).to_owned();
+    let all = route.stretches();
+    let carried_at = |station: f64| all.iter().find(|at| station < at.to_m).unwrap_or(&all[all.len() - 1]).carried;
+    let carried: Vec<Carried> = route.stations_m.iter().map(|&station| carried_at(station)).collect();
+    let rises: Vec<f64> = (0..carried.len())
+        .filter(|&index| carried[index] == Carried::Ground)
+        .map(|index| route.design_m[index] - route.ground_m[index])
+        .collect();
+    let steepest = route.stations_m.windows(2).zip(route.design_m.windows(2)).fold(0.0, |most: f64, (at, level)| {
+        let run = at[1] - at[0];
+        // A thinner step has rounding for a grade.
+        if run > 1e-3 { most.max((level[1] - level[0]).abs() / run) } else { most }
+    });
+    let count = |kind| all.iter().filter(|stretch| stretch.carried == kind).count();
+    let highest = |sign: f64| rises.iter().fold(0.0, |most: f64, rise| most.max(rise * sign));
+    let row = vec![
+        Cell::Text(name.clone()),
+        Cell::Number(road.line.length()),
+        Cell::Number(steepest * 100.0),
+        Cell::Number(volumes.cut_m3),
+        Cell::Number(volumes.fill_m3),
+        Cell::Number(highest(1.0)),
+        Cell::Number(highest(-1.0)),
+        Cell::Count(count(Carried::Bridge)),
+        Cell::Count(count(Carried::Tunnel)),
+    ];
+    collected.report.add(("conformed roads", &COLUMNS), row);
+    collected.profiles.push(RoadProfile {
+        feature: road.feature,
+        name,
+        stations_m: route.stations_m.clone(),
+        ground_m: route.ground_m.clone(),
+        design_m: route.design_m.clone(),
+        carried,
+    });
+}
+
+/// Notes what the roads of each table come to.
+fn total(
+    document: &Document,
+    roads: &[Centreline],
+    (routes, volumes): (&[Route], &[Volumes]),
+    collected: &mut Collected,
+) {
+    let mut tables: BTreeMap<usize, (usize, Volumes, [usize; 2])> = BTreeMap::new();
+    for (route, moved) in routes.iter().zip(volumes) {
+        let (count, sum, spans) = tables.entry(roads[route.road].table).or_default();
+        *count += 1;
+        sum.cut_m3 += moved.cut_m3;
+        sum.fill_m3 += moved.fill_m3;
+        for stretch in route.stretches() {
+            spans[0] += usize::from(stretch.carried == Carried::Bridge);
+            spans[1] += usize::from(stretch.carried == Carried::Tunnel);
+        }
+    }
+    for (table, (count, Volumes { cut_m3, fill_m3 }, [bridges, tunnels])) in tables {
+        let of = document.roads[table].name.as_deref().map(|name| format!(" of '{name}'")).unwrap_or_default();
+        let roads = if count == 1 { "1 road".to_owned() } else { format!("{count} roads") };
+        let mut note = format!("the ground follows {roads}{of}: {cut_m3:.0} m³ cut, {fill_m3:.0} m³ filled");
+        if bridges + tunnels > 0 {
+            note += &format!("; on bridges {bridges} times and in tunnels {tunnels} times");
+        }
+        collected.notes.push(note);
+    }
+}
+
+/// Puts the stretches of every route in the place of its road, after `settle` has seen to the others.
+fn replace(roads: &mut Vec<Centreline>, routes: &[Route], settle: impl FnOnce(&mut [Centreline])) {
+    let mut cut: BTreeMap<usize, Vec<Centreline>> = BTreeMap::new();
+    for route in routes {
+        let parts = stretches::cut(&roads[route.road], route);
+        // Whoever has its levels is not settled anew.
+        roads[route.road].levels_m = Some(Vec::new());
+        cut.insert(route.road, parts);
+    }
+    settle(roads);
+    let parts = std::mem::take(roads).into_iter().enumerate();
+    *roads = parts.flat_map(|(index, road)| cut.remove(&index).unwrap_or_else(|| vec![road])).collect();
+}

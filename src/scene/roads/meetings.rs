@@ -1,0 +1,159 @@
+//! Where roads end and meet, along their centrelines.
+//!
+//! Lines meet where they share a vertex. An end meets whatever is there: a bridge meets the road that leads to it though
+//! they have different levels. Lines that both go on meet only where their level is the same, and such lines of one level
+//! meet also where they cross without a vertex.
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+
+use crate::scene::roads::centreline::Centreline;
+use crate::scene::roads::crossings::crossings;
+use crate::terrain::alignment::network::NodeId;
+
+/// Vertices nearer to each other than this are one, in metres; as for [`crate::ribbon::junction`].
+const SAME_M: f64 = 0.01;
+
+/// A node on a centreline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stop {
+    /// Metres along the centreline.
+    pub station_m: f64,
+    /// The node.
+    pub node: NodeId,
+}
+
+/// The nodes of all roads.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Meetings {
+    /// For each road its nodes in order of station: its ends first and last, and between them where others meet it.
+    pub stops: Vec<Vec<Stop>>,
+    /// How many nodes there are.
+    pub nodes: usize,
+    /// Whether the lines were too tangled to find where they cross without a vertex.
+    pub is_tangled: bool,
+}
+
+/// A vertex of a road.
+#[derive(Clone, Copy)]
+struct Vertex {
+    road: usize,
+    index: usize,
+    is_end: bool,
+}
+
+/// Finds where the roads end and meet. Only roads for which `crosses` holds meet where they cross without a vertex.
+pub fn meetings(roads: &[Centreline], crosses: impl Fn(&Centreline) -> bool) -> Meetings {
+    let mut places: BTreeMap<(i64, i64), Vec<Vertex>> = BTreeMap::new();
+    for (road, centreline) in roads.iter().enumerate() {
+        let points = centreline.line.points();
+        for (index, at) in points.iter().enumerate() {
+            let is_end = index == 0 || index + 1 == points.len();
+            places.entry(key(*at)).or_default().push(Vertex { road, index, is_end });
+        }
+    }
+    let mut found = Meetings { stops: vec![Vec::new(); roads.len()], ..Meetings::default() };
+    for vertices in places.values() {
+        if vertices.iter().any(|vertex| vertex.is_end) {
+            found.join(roads, vertices);
+            continue;
+        }
+        let mut by_level: BTreeMap<i32, Vec<Vertex>> = BTreeMap::new();
+        for vertex in vertices {
+            by_level.entry(roads[vertex.road].level).or_default().push(*vertex);
+        }
+        by_level.values().filter(|alike| alike.len() > 1).for_each(|alike| found.join(roads, alike));
+    }
+    found.sort();
+    found.cross(roads, crosses);
+    found.sort();
+    found
+}
+
+fn key(at: DVec2) -> (i64, i64) {
+    let place = (at / SAME_M).round();
+    (place.x as i64, place.y as i64)
+}
+
+impl Meetings {
+    fn node(&mut self) -> NodeId {
+        self.nodes += 1;
+        NodeId(self.nodes as u32 - 1)
+    }
+
+    fn join(&mut self, roads: &[Centreline], vertices: &[Vertex]) {
+        let node = self.node();
+        for vertex in vertices {
+            let station_m = roads[vertex.road].line.stations()[vertex.index];
+            self.stops[vertex.road].push(Stop { station_m, node });
+        }
+    }
+
+    /// Adds the crossings that have no vertex on both roads.
+    fn cross(&mut self, roads: &[Centreline], crosses: impl Fn(&Centreline) -> bool) {
+        let Some(crossings) = crossings(roads, crosses) else {
+            self.is_tangled = true;
+            return;
+        };
+        let at_vertices: Vec<usize> = self.stops.iter().map(Vec::len).collect();
+        for crossing in crossings {
+            let held = crossing.map(|(road, station_m)| {
+                let stops = &self.stops[road][..at_vertices[road]];
+                let place = stops.partition_point(|stop| stop.station_m < station_m - SAME_M);
+                stops.get(place).filter(|stop| stop.station_m <= station_m + SAME_M).copied()
+            });
+            let node = match held {
+                [Some(_), Some(_)] => continue,
+                [Some(stop), None] | [None, Some(stop)] => stop.node,
+                [None, None] => self.node(),
+            };
+            for ((road, station_m), held) in crossing.into_iter().zip(held) {
+                if held.is_none() {
+                    self.stops[road].push(Stop { station_m, node });
+                }
+            }
+        }
+    }
+
+    fn sort(&mut self) {
+        self.stops.iter_mut().for_each(|stops| stops.sort_by(|a, b| a.station_m.total_cmp(&b.station_m)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::roads::centreline::{Carried, tests::road};
+
+    #[test]
+    fn ends_meet_whatever_is_there_and_through_roads_only_their_own_level() {
+        let east = road(&[(0.0, 0.0), (50.0, 0.0), (100.0, 0.0)], Carried::Ground, 0);
+        let over = road(&[(50.0, -50.0), (50.0, 0.0), (50.0, 50.0)], Carried::Bridge, 1);
+        let on = road(&[(50.0, 50.0), (50.0, 90.0)], Carried::Ground, 0);
+        let found = meetings(&[east, over, on], |_| true);
+        assert_eq!(found.nodes, 5);
+        assert_eq!(found.stops.iter().map(Vec::len).collect::<Vec<_>>(), [2, 2, 2]);
+        assert_eq!(found.stops[1][1].node, found.stops[2][0].node);
+    }
+
+    #[test]
+    fn a_t_is_a_node_in_the_middle_of_the_road_that_goes_on() {
+        let through = road(&[(0.0, 0.0), (50.0, 0.0), (100.0, 0.0)], Carried::Ground, 0);
+        let side = road(&[(50.0, 0.0), (50.0, 80.0)], Carried::Ground, 0);
+        let found = meetings(&[through, side], |_| true);
+        assert_eq!(found.nodes, 4);
+        assert_eq!(found.stops[0][1], Stop { station_m: 50.0, node: found.stops[1][0].node });
+    }
+
+    #[test]
+    fn roads_that_cross_without_a_vertex_meet_once() {
+        let east = road(&[(0.0, 0.0), (100.0, 0.0)], Carried::Ground, 0);
+        let north = road(&[(40.0, -50.0), (40.0, 50.0)], Carried::Ground, 0);
+        let high = road(&[(60.0, -50.0), (60.0, 50.0)], Carried::Bridge, 1);
+        let found = meetings(&[east, north, high], |_| true);
+        assert_eq!(found.nodes, 7);
+        assert_eq!(found.stops[0][1], Stop { station_m: 40.0, node: found.stops[1][1].node });
+        assert_eq!(found.stops[2].len(), 2);
+    }
+}

@@ -1,0 +1,63 @@
+//! The longitudinal profile of a road that the ground follows: ground and design along it.
+
+use std::fmt::Write;
+
+use crate::draw::list::FeatureId;
+use crate::scene::roads::centreline::Carried;
+
+/// A road's longitudinal profile.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoadProfile {
+    /// The road.
+    pub feature: FeatureId,
+    /// Its name; may be empty.
+    pub name: String,
+    /// Metres along the road from its start, rising.
+    pub stations_m: Vec<f64>,
+    /// The ground on the centreline before the road was built, in metres; NaN where there is none. Straight between
+    /// stations.
+    pub ground_m: Vec<f64>,
+    /// The road's level on the centreline in metres.
+    pub design_m: Vec<f64>,
+    /// What carries the road at each station; where that changes, what carries it from there on.
+    pub carried: Vec<Carried>,
+}
+
+impl RoadProfile {
+    /// The profile as a table of comma-separated values, one line a station in metres to the millimetre, under a line
+    /// of names. Nothing stands where there is no ground.
+    pub fn csv(&self) -> String {
+        let mut text = String::from("station_m,ground_m,design_m,carried\n");
+        for (index, station_m) in self.stations_m.iter().enumerate() {
+            let ground = Some(self.ground_m[index]).filter(|ground| !ground.is_nan());
+            let ground = ground.map(|ground| format!("{ground:.3}")).unwrap_or_default();
+            let carried = match self.carried[index] {
+                Carried::Ground => "ground",
+                Carried::Bridge => "bridge",
+                Carried::Tunnel => "tunnel",
+            };
+            let design_m = self.design_m[index];
+            writeln!(text, "{station_m:.3},{ground},{design_m:.3},{carried}").expect("text takes all that is written");
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_profile_s_table_has_a_line_a_station() {
+        let profile = RoadProfile {
+            feature: FeatureId(2),
+            name: "pass road".into(),
+            stations_m: vec![0.0, 12.5],
+            ground_m: vec![101.25, f64::NAN],
+            design_m: vec![101.25, 102.0],
+            carried: vec![Carried::Ground, Carried::Bridge],
+        };
+        let table = "station_m,ground_m,design_m,carried\n0.000,101.250,101.250,ground\n12.500,,102.000,bridge\n";
+        assert_eq!(profile.csv(), table);
+    }
+}
