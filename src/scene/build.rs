@@ -10,6 +10,7 @@ use crate::roam::ground::Ground;
 use crate::roam::layout::{DEFAULT_PATCH, Layout};
 use crate::scene::assets::Assets;
 use crate::scene::attributes;
+use crate::scene::bridges;
 use crate::scene::collected::Collected;
 use crate::scene::ground;
 use crate::scene::kind::{Scene, Terrain};
@@ -40,7 +41,9 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     let extent = lattice.extent();
     water::lakes(document, &sources, &mut lattice, &mut collected)?;
     water::rivers(document, &sources, &extent, &mut collected)?;
-    let roads = centreline::collect(document, &sources, &extent, &mut collected)?;
+    let mut roads = centreline::collect(document, &sources, &extent, &mut collected)?;
+    bridges::build(document, &sources, (&lattice, places.exaggeration), &mut roads, &mut collected)?;
+    roads.retain(|road| road.carried == centreline::Carried::Ground);
     network::lay(&roads, &extent, &mut collected);
     collected.take_apart();
 

@@ -319,7 +319,7 @@ mod tests {
                 let soffit = profile.level_m(station) * 1.5 - depth_m(30.0);
                 let near = bridge.body.vertices.iter().map(|vertex| Vec3::from(vertex.position));
                 let near: Vec<Vec3> =
-                    near.filter(|corner| corner.truncate().as_dvec2().distance(at) < 1.4).collect();
+                    near.filter(|corner| corner.truncate().as_dvec2().distance(at) < 3.5).collect();
                 assert!(near.iter().any(|corner| f64::from(corner.z) < ground - 2.9));
                 assert!(near.iter().any(|corner| (f64::from(corner.z) - soffit).abs() < 0.5));
             }

@@ -97,7 +97,7 @@ impl DeckProfile {
         let after = self.points.partition_point(|point| point.station_m < station_m).clamp(1, last);
         let (from, to) = (self.points[after - 1], self.points[after]);
         let part = ((station_m - from.station_m) / (to.station_m - from.station_m)).clamp(0.0, 1.0);
-        from.level_m + (to.level_m - from.level_m) * part
+        from.level_m * (1.0 - part) + to.level_m * part
     }
 
     /// Where it bends.

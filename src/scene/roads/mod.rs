@@ -5,4 +5,8 @@
 //! ```
 
 pub mod centreline;
+pub mod chains;
+pub mod crossings;
+pub mod levels;
 pub mod network;
+pub mod spans;

@@ -1,0 +1,340 @@
+//! How high bridges and tunnels run: each chain's elevations, from what it starts on, leads to and passes over.
+//!
+//! A chain that ends on the ground starts at its height; where chains meet in the air, the meeting's level is such that
+//! all of them rise evenly there (the levels of the meetings solve Laplace's equation on the network, each chain weighing
+//! as the inverse of its length). Chains of lower level come first, so that those above know what they pass over.
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+
+use crate::scene::roads::centreline::{Carried, Centreline};
+use crate::scene::roads::chains::{Chain, End};
+use crate::scene::roads::crossings::{self, Crossing, Way};
+use crate::scene::roads::spans::{Place, Span, place};
+use crate::structure::bridge::depth_m;
+use crate::structure::deck_profile::{DeckProfile, Floor};
+use crate::terrain::lattice::Lattice;
+use crate::terrain::query::deck::Deck;
+use crate::terrain::query::{Interpolation, ground_height};
+
+/// The room over roads and water that a bridge gives where it can be climbed to, in metres: 4.5 m for traffic and some
+/// to spare.
+pub const CLEARANCE_M: f64 = 5.0;
+
+/// The steepest way up to that, rise over run.
+pub const STEEPEST: f64 = 0.10;
+
+/// The widest span between piers of a low bridge where nothing is stated, in metres.
+pub const PIER_SPACING_M: f64 = 25.0;
+
+/// A high bridge's spans grow with its height, as its piers cost more: this part of it.
+const SPACING_PER_HEIGHT: f64 = 0.6;
+
+/// They grow up to this, in metres, the longest that a girder without haunches carries.
+const WIDEST_SPACING_M: f64 = 70.0;
+
+/// The most places at which the ground under a chain is looked at.
+const MOST_SAMPLES: f64 = 4096.0;
+
+/// How often levels of meetings are evened out: changes die off as fast as chains between two grounds are few.
+const EVENINGS: usize = 200;
+
+/// What lies under bridges.
+pub struct Site<'a> {
+    /// The ground.
+    pub lattice: &'a Lattice,
+    /// Where there is water; its heights mean nothing.
+    pub water: &'a Deck,
+    /// How many times heights are stretched when drawn.
+    pub exaggeration: f32,
+}
+
+impl Site<'_> {
+    /// The ground's elevation at a world position in metres, on the finest triangles.
+    pub fn ground_m(&self, at: DVec2) -> Option<f64> {
+        ground_height(self.lattice, Interpolation::Planar, at + self.lattice.origin()).height_m()
+    }
+}
+
+/// What passes below a chain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passage {
+    /// From where to where along the chain, in metres.
+    pub reach_m: [f64; 2],
+    /// Its elevation in metres.
+    pub level_m: f64,
+}
+
+/// How a chain runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Its elevations by station.
+    pub profile: DeckProfile,
+    /// The ground below it, at stations rising, where there is some.
+    pub ground: Vec<Floor>,
+    /// What passes below; none below a tunnel.
+    pub passages: Vec<Passage>,
+    /// The widest span between piers, in metres.
+    pub spacing_m: f64,
+    /// How deep its deck is, in metres.
+    pub depth_m: f64,
+}
+
+/// How every chain runs; `None` where there is no ground along it.
+pub fn settle(spans: &[Span], chains: &[Chain], roads: &[Centreline], site: &Site<'_>) -> Vec<Option<Run>> {
+    let below = Below::new(spans, chains, roads);
+    let samples: Vec<Vec<Floor>> = chains.iter().map(|chain| sampled(chain, spans, site)).collect();
+    let meetings = meetings(spans, chains, &samples, &below);
+    let mut order: Vec<usize> = (0..chains.len()).collect();
+    order.sort_by_key(|&chain| (below.leans_on_another(&chains[chain]), top_level(&chains[chain], spans), chain));
+    let mut runs: Vec<Option<Run>> = vec![None; chains.len()];
+    for index in order {
+        let run = below.run((index, &samples[index]), (spans, chains), &meetings, &runs, site);
+        runs[index] = run;
+    }
+    runs
+}
+
+fn top_level(chain: &Chain, spans: &[Span]) -> i32 {
+    chain.links.iter().map(|link| spans[link.span].level).max().unwrap_or(0)
+}
+
+/// The widest span between piers of a bridge as high as this.
+fn by_height(profile: &DeckProfile, ground: &[Floor]) -> f64 {
+    let above = |floor: &Floor| profile.level_m(floor.station_m) - floor.level_m;
+    let highest = ground.iter().map(above).fold(0.0, f64::max);
+    (SPACING_PER_HEIGHT * highest).clamp(PIER_SPACING_M, WIDEST_SPACING_M)
+}
+
+/// The ground along a chain: twice a cell, and often enough on short ones.
+fn sampled(chain: &Chain, spans: &[Span], site: &Site<'_>) -> Vec<Floor> {
+    let step = (site.lattice.cell().min_element() / 2.0).min(chain.length_m / 16.0).max(chain.length_m / MOST_SAMPLES);
+    let count = (chain.length_m / step).ceil().clamp(2.0, MOST_SAMPLES) as usize;
+    let station = |index: usize| chain.length_m * index as f64 / count as f64;
+    let floor = |station_m: f64| {
+        let level_m = site.ground_m(chain.at(spans, station_m))?;
+        Some(Floor { station_m, level_m })
+    };
+    (0..=count).filter_map(|index| floor(station(index))).collect()
+}
+
+/// What chains pass over and lean on.
+struct Below {
+    /// Where spans cross lower ways: the roads on the ground first, then the spans.
+    crossings: Vec<Crossing>,
+    /// Which span each of the crossings' upper ways is.
+    bridges: Vec<usize>,
+    /// Which road each of the first lower ways is.
+    roads: Vec<usize>,
+    widths_m: Vec<f64>,
+    /// Which chain and link each span is.
+    link_of: Vec<(usize, usize)>,
+    /// The vertices inside spans, by place: span and station.
+    inside: BTreeMap<Place, (usize, f64)>,
+}
+
+impl Below {
+    fn new(spans: &[Span], chains: &[Chain], all_roads: &[Centreline]) -> Self {
+        let bridges: Vec<usize> =
+            (0..spans.len()).filter(|&span| spans[span].carried == Carried::Bridge).collect();
+        let roads: Vec<usize> =
+            (0..all_roads.len()).filter(|&road| all_roads[road].carried == Carried::Ground).collect();
+        let over = |&span: &usize| Way {
+            line: &spans[span].line,
+            width_m: spans[span].options.width_m,
+            level: spans[span].level,
+        };
+        let upper: Vec<Way<'_>> = bridges.iter().map(over).collect();
+        let on_ground = roads.iter().map(|&road| {
+            let road = &all_roads[road];
+            Way { line: &road.line, width_m: road.options.width_m, level: road.level }
+        });
+        let lower: Vec<Way<'_>> = on_ground.chain(upper.iter().copied()).collect();
+        let mut link_of = vec![(0, 0); spans.len()];
+        for (index, chain) in chains.iter().enumerate() {
+            for (link, placed) in chain.links.iter().enumerate() {
+                link_of[placed.span] = (index, link);
+            }
+        }
+        let mut inside = BTreeMap::new();
+        for (index, span) in spans.iter().enumerate() {
+            let (points, stations) = (span.line.points(), span.line.stations());
+            let between = 1..points.len() - 1;
+            inside.extend(between.map(|vertex| (place(points[vertex]), (index, stations[vertex]))));
+        }
+        Self {
+            crossings: crossings::find(&upper, &lower),
+            widths_m: lower.iter().map(|way| way.width_m).collect(),
+            bridges,
+            roads,
+            link_of,
+            inside,
+        }
+    }
+
+    /// The chain and station on it of a place inside another chain's line.
+    fn host(&self, at: Place, chains: &[Chain]) -> Option<(usize, f64)> {
+        let &(span, on_span_m) = self.inside.get(&at)?;
+        let (chain, link) = self.link_of[span];
+        Some((chain, Chain::station_m(&chains[chain].links[link], on_span_m)))
+    }
+
+    fn leans_on_another(&self, chain: &Chain) -> bool {
+        chain.ends.iter().any(|end| matches!(end, End::Onward(at) if self.inside.contains_key(at)))
+    }
+
+    fn run(
+        &self,
+        (index, ground): (usize, &[Floor]),
+        (spans, chains): (&[Span], &[Chain]),
+        meetings: &BTreeMap<Place, f64>,
+        runs: &[Option<Run>],
+        site: &Site<'_>,
+    ) -> Option<Run> {
+        let chain = &chains[index];
+        let own = ground_ends(ground)?;
+        let end_m = |end: usize| match chain.ends[end] {
+            End::Ground => own[end],
+            End::Onward(at) => {
+                let host = self.host(at, chains).filter(|&(host, _)| host != index);
+                let on_host =
+                    host.and_then(|(host, station)| Some(runs[host].as_ref()?.profile.level_m(station)));
+                on_host.or_else(|| meetings.get(&at).copied()).unwrap_or(own[end])
+            }
+        };
+        let first = &spans[chain.links[0].span];
+        let ends_m = [end_m(0), end_m(1)];
+        let stated = chain.links.iter().filter_map(|link| spans[link.span].pier_spacing_m).reduce(f64::min);
+        let spacing_m = stated.unwrap_or_else(|| by_height(&DeckProfile::straight(chain.length_m, ends_m), ground));
+        let depth_m = depth_m(spacing_m.min(chain.length_m));
+        let is_bridge = first.carried == Carried::Bridge;
+        let passages = if is_bridge { self.passages(index, (spans, chains), runs, site) } else { Vec::new() };
+        let stated = first.levels_m.as_ref().and_then(|levels| {
+            let stations = first.line.stations().iter();
+            let points = stations.zip(levels).map(|(&station_m, &level_m)| Floor { station_m, level_m });
+            DeckProfile::stated(points.collect())
+        });
+        let profile = stated.unwrap_or_else(|| {
+            if !is_bridge {
+                return DeckProfile::straight(chain.length_m, ends_m);
+            }
+            let room = CLEARANCE_M + depth_m / f64::from(site.exaggeration);
+            let floors = passages.iter().flat_map(|passage| {
+                passage.reach_m.map(|station_m| Floor { station_m, level_m: passage.level_m + room })
+            });
+            DeckProfile::clearing((chain.length_m, ends_m), ground, &floors.collect::<Vec<_>>(), STEEPEST)
+        });
+        Some(Run { profile, ground: ground.to_vec(), passages, spacing_m, depth_m })
+    }
+
+    /// What passes below a chain, by station.
+    fn passages(
+        &self,
+        index: usize,
+        (spans, chains): (&[Span], &[Chain]),
+        runs: &[Option<Run>],
+        site: &Site<'_>,
+    ) -> Vec<Passage> {
+        let chain = &chains[index];
+        let mut all = wet(chain, spans, site);
+        for crossing in &self.crossings {
+            let (of, link) = self.link_of[self.bridges[crossing.upper]];
+            if of != index {
+                continue;
+            }
+            let level_m = match crossing.lower.checked_sub(self.roads.len()) {
+                None => site.ground_m(crossing.at),
+                Some(lower) => {
+                    let (host, link) = self.link_of[self.bridges[lower]];
+                    let station = Chain::station_m(&chains[host].links[link], crossing.lower_m);
+                    runs[host].as_ref().map(|run| run.profile.level_m(station))
+                }
+            };
+            let station = Chain::station_m(&chain.links[link], crossing.upper_m);
+            let half = crossing.half_m.min(self.widths_m[crossing.lower] * 3.0);
+            let reach_m = [(station - half).max(0.0), (station + half).min(chain.length_m)];
+            all.extend(level_m.map(|level_m| Passage { reach_m, level_m }));
+        }
+        all.sort_by(|a, b| a.reach_m[0].total_cmp(&b.reach_m[0]));
+        all
+    }
+}
+
+/// The stretches of a chain over water, each with the highest ground under it.
+fn wet(chain: &Chain, spans: &[Span], site: &Site<'_>) -> Vec<Passage> {
+    let mut all: Vec<Passage> = Vec::new();
+    if site.water.facets().is_empty() {
+        return all;
+    }
+    let step = (chain.length_m / MOST_SAMPLES).max(1.0);
+    let count = (chain.length_m / step).ceil().max(1.0) as usize;
+    let mut was_wet = false;
+    for index in 0..=count {
+        let station = chain.length_m * index as f64 / count as f64;
+        let at = chain.at(spans, station);
+        let level_m = site.water.height_m(at).and_then(|_| site.ground_m(at));
+        match (level_m, all.last_mut()) {
+            (Some(level), Some(last)) if was_wet => {
+                last.reach_m[1] = station;
+                last.level_m = last.level_m.max(level);
+            }
+            (Some(level_m), _) => all.push(Passage { reach_m: [station; 2], level_m }),
+            (None, _) => {}
+        }
+        was_wet = level_m.is_some();
+    }
+    all
+}
+
+/// The ground at both ends of a chain, or where there is some nearest to them.
+fn ground_ends(ground: &[Floor]) -> Option<[f64; 2]> {
+    Some([ground.first()?.level_m, ground.last()?.level_m])
+}
+
+/// The levels of the places where chains meet above or below the ground.
+fn meetings(spans: &[Span], chains: &[Chain], samples: &[Vec<Floor>], below: &Below) -> BTreeMap<Place, f64> {
+    let mut levels: BTreeMap<Place, f64> = BTreeMap::new();
+    let mut lowest: BTreeMap<Place, f64> = BTreeMap::new();
+    // What pulls at a place: the level at the other end of a chain, fixed or a place's, and the chain's length.
+    let mut pulls: Vec<(Place, (Option<Place>, f64), f64)> = Vec::new();
+    for (chain, ground) in chains.iter().zip(samples) {
+        let Some(own) = ground_ends(ground) else { continue };
+        let settled = spans[chain.links[0].span].levels_m.as_ref();
+        let own = match settled.map(|levels| (levels.first(), levels.last())) {
+            Some((Some(&first), Some(&last))) => [first, last],
+            _ => own,
+        };
+        for end in 0..2 {
+            let End::Onward(at) = chain.ends[end] else { continue };
+            let other = match chain.ends[1 - end] {
+                End::Onward(other) if settled.is_none() => (Some(other), own[1 - end]),
+                _ => (None, own[1 - end]),
+            };
+            levels.entry(at).or_insert(own[end]);
+            if spans[chain.links[0].span].carried == Carried::Bridge && settled.is_none() {
+                lowest.insert(at, own[end]);
+            }
+            let pull = if settled.is_some() { ((None, own[end]), 1e-3) } else { (other, chain.length_m) };
+            pulls.push((at, pull.0, pull.1));
+            if let Some((host, station)) = below.host(at, chains) {
+                let ends = ground_ends(&samples[host]).unwrap_or(own);
+                pulls.push((at, (None, ends[0]), station.max(1e-3)));
+                pulls.push((at, (None, ends[1]), (chains[host].length_m - station).max(1e-3)));
+            }
+        }
+    }
+    pulls.sort_by_key(|pull| pull.0);
+    for _ in 0..EVENINGS {
+        for group in pulls.chunk_by(|a, b| a.0 == b.0) {
+            let level = |&(other, level): &(Option<Place>, f64)| other.map_or(level, |at| levels[&at]);
+            let weight: f64 = group.iter().map(|pull| 1.0 / pull.2).sum();
+            let sum: f64 = group.iter().map(|pull| level(&pull.1) / pull.2).sum();
+            levels.insert(group[0].0, sum / weight);
+        }
+    }
+    for (at, ground_m) in lowest {
+        levels.entry(at).and_modify(|level| *level = level.max(ground_m));
+    }
+    levels
+}
