@@ -41,8 +41,8 @@ const TILT_WIDTHS: f64 = 2.0;
 /// The steepest fall across that a deck takes over from the ground at its end: between a steep road and a warped deck.
 const MOST_TILT: f64 = 0.25;
 
-const CONCRETE: Srgba = Srgba::opaque(203, 198, 187);
-const WEATHERED: Srgba = Srgba::opaque(176, 170, 158);
+const CONCRETE: Srgba = Srgba::opaque(236, 231, 219);
+const WEATHERED: Srgba = Srgba::opaque(214, 207, 193);
 
 /// How a bridge is built.
 #[derive(Clone, Debug, PartialEq)]

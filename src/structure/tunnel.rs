@@ -31,8 +31,8 @@ const ARCH_PARTS: u32 = 16;
 /// How many times its own height the roof may reach back into the hill: on a gentler slope it ends in the open.
 const LONGEST_ROOF: f64 = 4.0;
 
-const STONE: Srgba = Srgba::opaque(186, 176, 160);
-const DRESSED: Srgba = Srgba::opaque(208, 200, 186);
+const STONE: Srgba = Srgba::opaque(206, 196, 178);
+const DRESSED: Srgba = Srgba::opaque(234, 227, 212);
 const SHADE: Srgba = Srgba::opaque(74, 70, 66);
 const DARK: Srgba = Srgba::opaque(22, 21, 22);
 
