@@ -8,8 +8,10 @@
 //!
 //! **Tunnels.** Nothing is drawn of a tunnel but its portals, and a portal only where the hill rises over it. A short
 //! tunnel under ground that is hardly higher than its ends is an underpass: what it passes under, a railway or a house,
-//! is not in the elevation model, and a portal there would open into nothing. The road stays on the ground then, so that
+//! is not in the elevation model, and a portal there would open into nothing; so would one where no road comes out. The road stays on the ground then, so that
 //! the course of the road is seen, as a map would show it.
+
+use std::collections::BTreeSet;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
@@ -21,10 +23,11 @@ use crate::scene::report::{Cell, Column};
 use crate::scene::roads::centreline::{Carried, Centreline};
 use crate::scene::roads::chains::{self, Chain, End, Link};
 use crate::scene::roads::levels::{self, Run, Site};
-use crate::scene::roads::spans::{self, Span};
+use crate::scene::roads::spans::{self, Place, Span};
 use crate::scene::sources::Sources;
-use crate::structure::bridge::{self, BridgeOptions, magnified};
+use crate::structure::bridge::{self, Across, BridgeOptions, magnified};
 use crate::structure::deck::Course;
+use crate::structure::deck_profile::{DeckProfile, Floor};
 use crate::structure::tunnel::Portal;
 use crate::terrain::facets::Facet;
 use crate::terrain::lattice::Lattice;
@@ -87,17 +90,31 @@ pub fn build(
     let site = Site { lattice, water: &water, exaggeration };
     let chains = chains::join(&spans, roads);
     let runs = levels::settle(&spans, &chains, roads, &site);
+    let mouths: BTreeSet<Place> = spans
+        .iter()
+        .filter(|span| span.carried == Carried::Tunnel)
+        .flat_map(|span| [0, 1].map(|end| spans::place(span.end(end))))
+        .collect();
+    let mut bridges: Vec<(Built<'_>, &Link, BridgeOptions)> = Vec::new();
     for (chain, run) in chains.iter().zip(&runs) {
         let Some(run) = run else {
             collected.notes.push(format!("{} left out: no ground lies along it", called(&spans, chain)));
             continue;
         };
-        let built = Built { spans: &spans, chain, run, site: &site };
+        let built = Built { spans: &spans, chain, run, site: &site, mouths: &mouths };
         match spans[chain.links[0].span].carried {
-            Carried::Bridge => built.bridges(&extent, collected),
+            Carried::Bridge => {
+                bridges.extend(built.planned(&extent).map(|(link, options)| (built, link, options)))
+            }
             Carried::Tunnel => built.tunnel(&extent, roads, collected),
             Carried::Ground => {}
         }
+    }
+    let decks = bridges.iter().flat_map(|(built, link, options)| built.deck(link, options));
+    let decks = Deck::new(&decks.collect::<Vec<_>>());
+    let decks = decks.map_err(|error| document.error_at(0..0, error.to_string()))?;
+    for (built, link, options) in &bridges {
+        built.bridge((link, options), &decks, collected);
     }
     Ok(())
 }
@@ -109,7 +126,8 @@ fn check_piers(document: &Document, spans: &[Span]) -> Result<(), Diagnostic> {
     let most = bridges.max_by(|a, b| wanted(a).total_cmp(&wanted(b)));
     match most {
         Some(span) if count > MOST_PIERS => {
-            let message = format!("the scene's bridges ask for {count:.0} piers, at most {MOST_PIERS} are built");
+            let message =
+                format!("the scene's bridges ask for {count:.0} piers, at most {MOST_PIERS} are built");
             let help = "give a wider pier_spacing, or fewer or shorter bridges";
             Err(document.error_at(span.place.clone(), message).with_help(help))
         }
@@ -119,7 +137,8 @@ fn check_piers(document: &Document, spans: &[Span]) -> Result<(), Diagnostic> {
 
 /// Where there is water, at height 0.
 fn water(collected: &Collected) -> Result<Deck, String> {
-    let of_water = collected.ribbons.iter().filter(|ribbon| matches!(ribbon.surface, Surface::River | Surface::Lake));
+    let of_water =
+        collected.ribbons.iter().filter(|ribbon| matches!(ribbon.surface, Surface::River | Surface::Lake));
     let corners = of_water.flat_map(|ribbon| ribbon.plan.corners());
     let facets: Vec<Facet> =
         corners.map(|corners| corners.map(|corner| corner.at.as_vec2().extend(0.0))).collect();
@@ -133,20 +152,24 @@ fn called(spans: &[Span], chain: &Chain) -> String {
 }
 
 /// A chain with all that is known of it.
+#[derive(Clone, Copy)]
 struct Built<'a> {
     spans: &'a [Span],
     chain: &'a Chain,
     run: &'a Run,
     site: &'a Site<'a>,
+    /// Where tunnels end.
+    mouths: &'a BTreeSet<Place>,
 }
 
-impl Built<'_> {
-    /// The bridges of the chain, one a span.
-    fn bridges(&self, extent: &Rect, collected: &mut Collected) {
-        let widest = self.chain.links.iter().map(|link| self.spans[link.span].options.width_m).fold(0.0, f64::max);
+impl<'a> Built<'a> {
+    /// How the bridges of the chain are to be built, one a span.
+    fn planned(self, extent: &Rect) -> impl Iterator<Item = (&'a Link, BridgeOptions)> {
+        let widest =
+            self.chain.links.iter().map(|link| self.spans[link.span].options.width_m).fold(0.0, f64::max);
         let abutments = [0, 1].map(|end| self.abutment_m(end, widest, extent));
         let piers = self.piers(abutments);
-        for (index, link) in self.chain.links.iter().enumerate() {
+        self.chain.links.iter().enumerate().map(move |(index, link)| {
             let span = &self.spans[link.span];
             let is_backward = link.reach_m[1] < link.reach_m[0];
             let own_ends = [index == 0, index + 1 == self.chain.links.len()];
@@ -156,18 +179,24 @@ impl Built<'_> {
             }
             let (low, high) = (link.reach_m[0].min(link.reach_m[1]), link.reach_m[0].max(link.reach_m[1]));
             let here = piers.iter().filter(|&&station| station >= low && station < high);
+            let across = [0, 1].map(|end| {
+                let is_mouth = self.mouths.contains(&spans::place(span.end(end)));
+                if of_link[end].is_some() && !is_mouth { Across::AsGround } else { Across::Level }
+            });
             let options = BridgeOptions {
                 depth_m: self.run.depth_m,
                 piers_m: here.map(|station| (station - link.reach_m[0]).abs()).collect(),
                 abutments_m: of_link.map(|length| length.map(|length| length.min(span.line.length() / 2.0))),
+                across,
                 texture_length_m: span.options.texture_length_m,
                 exaggeration: self.site.exaggeration,
             };
-            self.bridge(link, &options, collected);
-        }
+            (link, options)
+        })
     }
 
-    fn bridge(&self, link: &Link, options: &BridgeOptions, collected: &mut Collected) {
+    /// The course and the elevations of a bridge.
+    fn course(&self, link: &Link) -> (Course<'a>, DeckProfile) {
         let span = &self.spans[link.span];
         let course = Course {
             line: &span.line,
@@ -175,8 +204,18 @@ impl Built<'_> {
             width_m: span.options.width_m,
             mitre_limit: span.options.mitre_limit,
         };
-        let profile = self.run.profile.part(link.reach_m[0], link.reach_m[1]);
-        let built = bridge::build(&course, &profile, options, &|at| self.site.ground_m(at));
+        (course, self.run.profile.part(link.reach_m[0], link.reach_m[1]))
+    }
+
+    fn deck(&self, link: &Link, options: &BridgeOptions) -> Vec<Facet> {
+        let (course, profile) = self.course(link);
+        bridge::deck(&course, &profile, options, &|at| self.site.ground_m(at))
+    }
+
+    fn bridge(&self, (link, options): (&Link, &BridgeOptions), decks: &Deck, collected: &mut Collected) {
+        let span = &self.spans[link.span];
+        let (course, profile) = self.course(link);
+        let built = bridge::build(&course, &profile, options, (&|at| self.site.ground_m(at), decks));
         let feature = collected.add(FeatureKind::Bridge, span.name.clone());
         collected.solids.push(Solid { mesh: built.carriageway, coat: Coat::Surface(span.surface), feature });
         collected.solids.push(Solid { mesh: built.body, coat: Coat::Painted, feature });
@@ -195,8 +234,11 @@ impl Built<'_> {
         let by = magnified(width_m);
         let longest = (LONGEST_ABUTMENT * length_m).max(length_m.min(by));
         let open = |from_end: f64| {
-            let Some(ground_m) = self.site.ground_m(self.chain.at(self.spans, at(from_end))) else { return true };
-            let above = (self.run.profile.level_m(at(from_end)) - ground_m) * f64::from(self.site.exaggeration);
+            let Some(ground_m) = self.site.ground_m(self.chain.at(self.spans, at(from_end))) else {
+                return true;
+            };
+            let above =
+                (self.run.profile.level_m(at(from_end)) - ground_m) * f64::from(self.site.exaggeration);
             above - self.run.depth_m > ABUTMENT_M * by
         };
         let least = (1.2 * by).min(longest);
@@ -231,12 +273,10 @@ impl Built<'_> {
 
     /// The portals of the chain, or a road on the ground in its place.
     fn tunnel(&self, extent: &Rect, roads: &mut [Centreline], collected: &mut Collected) {
-        let cover = |floor: &crate::structure::deck_profile::Floor| {
-            floor.level_m - self.run.profile.level_m(floor.station_m)
-        };
+        let cover = |floor: &Floor| floor.level_m - self.run.profile.level_m(floor.station_m);
         let cover_m = self.run.ground.iter().map(cover).fold(f64::NEG_INFINITY, f64::max);
         let is_shallow = cover_m < LEAST_COVER_M;
-        let open_ends = self.chain.ends.iter().all(|&end| end == End::Ground);
+        let open_ends = !self.chain.ends.iter().any(|end| matches!(end, End::Onward(_)));
         if is_shallow && open_ends && self.chain.length_m <= LONGEST_UNDERPASS_M {
             for link in &self.chain.links {
                 if let Some(road) = self.spans[link.span].road {
@@ -285,16 +325,29 @@ impl Built<'_> {
     }
 
     /// Adds a span's row to the report; `counts` are its piers and portals.
-    fn tell(&self, link: &Link, counts: (Option<usize>, Option<usize>), grade: f64, collected: &mut Collected) {
+    fn tell(
+        &self,
+        link: &Link,
+        counts: (Option<usize>, Option<usize>),
+        grade: f64,
+        collected: &mut Collected,
+    ) {
         let span = &self.spans[link.span];
         let (low, high) = (link.reach_m[0].min(link.reach_m[1]), link.reach_m[0].max(link.reach_m[1]));
         let under = self.run.ground.iter().filter(|floor| floor.station_m >= low && floor.station_m <= high);
         let above = under.map(|floor| self.run.profile.level_m(floor.station_m) - floor.level_m);
-        let (least, most) = above.fold((0.0f64, 0.0f64), |(least, most), here| (least.min(here), most.max(here)));
+        let (least, most) =
+            above.fold((0.0f64, 0.0f64), |(least, most), here| (least.min(here), most.max(here)));
         let depth_m = self.run.depth_m / f64::from(self.site.exaggeration);
-        let here = self.run.passages.iter().filter(|passage| passage.reach_m[1] >= low && passage.reach_m[0] <= high);
+        let here = self
+            .run
+            .passages
+            .iter()
+            .filter(|passage| passage.reach_m[1] >= low && passage.reach_m[0] <= high);
         let clearance = here
-            .flat_map(|passage| passage.reach_m.map(|at| self.run.profile.level_m(at) - depth_m - passage.level_m))
+            .flat_map(|passage| {
+                passage.reach_m.map(|at| self.run.profile.level_m(at) - depth_m - passage.level_m)
+            })
             .reduce(f64::min);
         let count = |count: Option<usize>| count.map_or(Cell::Empty, Cell::Count);
         let kind = match (span.carried, counts.1) {

@@ -24,6 +24,7 @@ use crate::structure::deck_profile::DeckProfile;
 use crate::structure::faces::Faces;
 use crate::structure::pier;
 use crate::terrain::facets::Facet;
+use crate::terrain::query::deck::Deck;
 
 /// The elevation of the ground at a world position in metres; `None` where there is none.
 pub type GroundHeight<'a> = dyn Fn(DVec2) -> Option<f64> + 'a;
@@ -38,11 +39,27 @@ const WIDEST_REAL_M: f64 = 20.0;
 /// Over how many widths a deck turns from how the ground lies across its end to level.
 const TILT_WIDTHS: f64 = 2.0;
 
+/// Where bridges meet, sections stand an eighth of the width apart for three widths, so that parapets end where they
+/// should.
+const MEETING_BREAKS: u32 = 24;
+
+/// How far above or below a parapet's foot a carriageway lies that it would stand in the way of, in metres.
+const SAME_DECK_M: f64 = 1.5;
+
 /// The steepest fall across that a deck takes over from the ground at its end: between a steep road and a warped deck.
 const MOST_TILT: f64 = 0.25;
 
 const CONCRETE: Srgba = Srgba::opaque(236, 231, 219);
 const WEATHERED: Srgba = Srgba::opaque(214, 207, 193);
+
+/// How a deck's end lies across.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Across {
+    /// As the ground does, on which the road goes on.
+    AsGround,
+    /// Level, as in a tunnel or on the next bridge.
+    Level,
+}
 
 /// How a bridge is built.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,6 +70,8 @@ pub struct BridgeOptions {
     pub piers_m: Vec<f64>,
     /// How far the abutments at its start and end reach below it, in metres; `None` where it goes on in another bridge.
     pub abutments_m: [Option<f64>; 2],
+    /// How its start and end lie across.
+    pub across: [Across; 2],
     /// Metres along the carriageway in one repeat of its texture, above 0.
     pub texture_length_m: f64,
     /// How many times elevations are stretched when drawn.
@@ -82,21 +101,33 @@ pub fn magnified(width_m: f64) -> f64 {
     (width_m / WIDEST_REAL_M).max(1.0)
 }
 
-/// Builds the bridge along `course` at the elevations of `profile`, whose stations are the course's.
-pub fn build(
+/// The carriageway alone of the bridge that [`build`] builds.
+pub fn deck(
     course: &Course<'_>,
     profile: &DeckProfile,
     options: &BridgeOptions,
     ground: &GroundHeight<'_>,
+) -> Vec<Facet> {
+    lay_carriageway(&sections(course, profile, options, ground), options).deck
+}
+
+/// Builds the bridge along `course` at the elevations of `profile`, whose stations are the course's. Its parapets stop
+/// where one of the other carriageways of `decks` goes on beside it.
+pub fn build(
+    course: &Course<'_>,
+    profile: &DeckProfile,
+    options: &BridgeOptions,
+    (ground, decks): (&GroundHeight<'_>, &Deck),
 ) -> Bridge {
     let sections = sections(course, profile, options, ground);
     let mut body = Faces::default();
     let mut bridge = lay_carriageway(&sections, options);
-    draw_out(&sections, &Rings::new(course.width_m, options), &mut body);
+    draw_out(&sections, &Rings::new(course.width_m, options), decks, &mut body);
     for (end, length_m) in options.abutments_m.iter().enumerate() {
         let Some(length_m) = *length_m else { continue };
         let reach = |section: &&Section| {
-            let from_end = if end == 0 { section.station_m } else { course.line.length() - section.station_m };
+            let from_end =
+                if end == 0 { section.station_m } else { course.line.length() - section.station_m };
             from_end <= length_m + 1e-6
         };
         let under: Vec<Section> = sections.iter().filter(reach).copied().collect();
@@ -108,7 +139,8 @@ pub fn build(
     }
     for &station in &options.piers_m {
         let section = nearest(&sections, station);
-        bridge.piers += usize::from(pier::pier(section, (course.width_m, options), ground, CONCRETE, &mut body));
+        bridge.piers +=
+            usize::from(pier::pier(section, (course.width_m, options), ground, CONCRETE, &mut body));
     }
     bridge.body = body.into_mesh();
     bridge
@@ -116,7 +148,8 @@ pub fn build(
 
 /// The section that stands nearest to a station; there is one at every pier unless it stands on a mitre.
 fn nearest(sections: &[Section], station_m: f64) -> &Section {
-    let after = sections.partition_point(|section| section.station_m < station_m).clamp(1, sections.len() - 1);
+    let after =
+        sections.partition_point(|section| section.station_m < station_m).clamp(1, sections.len() - 1);
     let (before, after) = (&sections[after - 1], &sections[after]);
     if station_m - before.station_m < after.station_m - station_m { before } else { after }
 }
@@ -136,10 +169,16 @@ fn sections(
     breaks.extend([0.25, 0.5, 0.75, 1.0].map(|part| part * fade_m));
     breaks.extend([0.25, 0.5, 0.75, 1.0].map(|part| length_m - part * fade_m));
     breaks.extend(&options.piers_m);
+    for (end, abutment) in options.abutments_m.iter().enumerate() {
+        if abutment.is_none() {
+            let from_end = (1..=MEETING_BREAKS).map(|step| f64::from(step) * course.width_m / 8.0);
+            breaks.extend(from_end.map(|from_end| if end == 0 { from_end } else { length_m - from_end }));
+        }
+    }
     let mut sections = course.sections(&breaks, &|station| profile.level_m(station));
     let last = sections.len() - 1;
     for (index, end) in [0, last].into_iter().enumerate() {
-        if options.abutments_m[index].is_none() {
+        if options.across[index] == Across::Level {
             continue;
         }
         let tilt = tilt(&sections[end], course.width_m, ground);
@@ -181,7 +220,13 @@ fn lay_carriageway(sections: &[Section], options: &BridgeOptions) -> Bridge {
         let at = |section: Section, side: usize| {
             let v = (section.station_m / options.texture_length_m) as f32;
             let world = section.edges()[side];
-            (section.at + section.aside[side], section.drawn(side, 1.0, 0.0, options.exaggeration), world, side, v)
+            (
+                section.at + section.aside[side],
+                section.drawn(side, 1.0, 0.0, options.exaggeration),
+                world,
+                side,
+                v,
+            )
         };
         let quad = [at(from, 0), at(from, 1), at(to, 1), at(to, 0)];
         for triangle in quad_corners(quad.map(|corner| corner.0)) {
@@ -223,8 +268,19 @@ impl Rings {
         Self { points, exaggeration: options.exaggeration }
     }
 
-    fn at(&self, section: &Section) -> [Vec3; 12] {
-        self.points.map(|(side, part, above)| section.drawn(side, part, above, self.exaggeration))
+    fn at(&self, section: &Section, decks: &Deck) -> [Vec3; 12] {
+        let stands = [0, 1].map(|side| self.stands(section, side, decks));
+        self.points.map(|(side, part, above)| {
+            let above = if above > 0.0 && !stands[side] { 0.0 } else { above };
+            section.drawn(side, part, above, self.exaggeration)
+        })
+    }
+
+    /// Whether no other carriageway goes on where a parapet would stand.
+    fn stands(&self, section: &Section, side: usize, decks: &Deck) -> bool {
+        let middle = (1.0 + self.points[0].1) / 2.0;
+        let other_m = decks.height_m(section.at + section.aside[side] * middle);
+        other_m.is_none_or(|other_m| (other_m - section.edges_m[side]).abs() > SAME_DECK_M)
     }
 }
 
@@ -236,11 +292,11 @@ pub(in crate::structure) const PARAPET_THICK_M: f64 = 0.4;
 pub(in crate::structure) const GIRDER: f64 = 0.62;
 
 /// Draws the cross-section out along the sections and closes its ends.
-fn draw_out(sections: &[Section], rings: &Rings, faces: &mut Faces) {
+fn draw_out(sections: &[Section], rings: &Rings, decks: &Deck, faces: &mut Faces) {
     /// The side between points 2 and 3 is the carriageway.
     const CARRIAGEWAY: usize = 2;
     for pair in sections.windows(2) {
-        let (from, to) = (rings.at(&pair[0]), rings.at(&pair[1]));
+        let (from, to) = (rings.at(&pair[0], decks), rings.at(&pair[1], decks));
         for side in (0..12).filter(|&side| side != CARRIAGEWAY) {
             let next = (side + 1) % 12;
             faces.polygon(&[from[side], from[next], to[next], to[side]], CONCRETE);
@@ -248,7 +304,7 @@ fn draw_out(sections: &[Section], rings: &Rings, faces: &mut Faces) {
     }
     // Both parapets, and the slab, cut so that no triangle is a line.
     let caps: [&[usize]; 3] = [&[0, 1, 2, 11], &[3, 4, 5, 6], &[8, 9, 10, 11, 2, 3, 6, 7]];
-    let (first, last) = (rings.at(&sections[0]), rings.at(&sections[sections.len() - 1]));
+    let (first, last) = (rings.at(&sections[0], decks), rings.at(&sections[sections.len() - 1], decks));
     for cap in caps {
         let back: Vec<Vec3> = cap.iter().rev().map(|&point| first[point]).collect();
         let front: Vec<Vec3> = cap.iter().map(|&point| last[point]).collect();
@@ -290,6 +346,7 @@ mod tests {
             depth_m: depth_m(30.0),
             piers_m: vec![length_m / 3.0, length_m / 1.5],
             abutments_m: [Some(6.0), Some(6.0)],
+            across: [Across::AsGround; 2],
             texture_length_m: 15.0,
             exaggeration: 1.5,
         }
@@ -297,6 +354,29 @@ mod tests {
 
     fn course(line: &Polyline) -> Course<'_> {
         Course { line, beyond: [None; 2], width_m: 8.0, mitre_limit: 2.0 }
+    }
+
+    fn none() -> Deck {
+        Deck::new(&[]).expect("no triangle is wrong")
+    }
+
+    #[test]
+    fn parapets_stop_where_another_deck_goes_on() {
+        let at = |x: f32, y: f32| Vec3::new(x, y, 50.0);
+        let beside =
+            [[at(20.0, 4.0), at(60.0, 4.0), at(60.0, 9.0)], [at(20.0, 4.0), at(60.0, 9.0), at(20.0, 9.0)]];
+        let line = Polyline::new([DVec2::ZERO, DVec2::new(90.0, 0.0)], 0.0).expect("a line");
+        let options = BridgeOptions { piers_m: vec![40.0], ..options(90.0) };
+        let decks = Deck::new(&beside).expect("sound");
+        let level = DeckProfile::straight(90.0, [50.0; 2]);
+        let bridge = build(&course(&line), &level, &options, (&|_| Some(50.0), &decks));
+        bridge.check().expect("sound");
+        let highest = |side: f32| {
+            let corners = bridge.body.vertices.iter().map(|vertex| vertex.position);
+            let here = corners.filter(|at| (at[0] - 40.0).abs() < 0.1 && at[1] * side > 3.9);
+            here.map(|at| at[2]).fold(f32::NEG_INFINITY, f32::max) - 75.0
+        };
+        assert!(highest(1.0) < 1e-3 && highest(-1.0) > 1.0, "{} {}", highest(1.0), highest(-1.0));
     }
 
     fn valley(at: DVec2) -> Option<f64> {
@@ -310,7 +390,7 @@ mod tests {
             let points = [DVec2::ZERO, DVec2::new(120.0, 0.0)].map(turn);
             let line = Polyline::new(points, 0.0).expect("a line");
             let profile = DeckProfile::straight(120.0, [100.0, 102.4]);
-            let bridge = build(&course(&line), &profile, &options(120.0), &valley);
+            let bridge = build(&course(&line), &profile, &options(120.0), (&valley, &none()));
             bridge.check().expect("sound");
             assert_eq!(bridge.piers, 2);
             for station in [40.0, 80.0] {
@@ -330,7 +410,8 @@ mod tests {
     fn the_deck_s_ends_lie_as_the_ground_does_across_them() {
         let line = Polyline::new([DVec2::ZERO, DVec2::new(90.0, 0.0)], 0.0).expect("a line");
         let slope = |at: DVec2| Some(50.0 + at.y * 0.1);
-        let bridge = build(&course(&line), &DeckProfile::straight(90.0, [50.0; 2]), &options(90.0), &slope);
+        let bridge =
+            build(&course(&line), &DeckProfile::straight(90.0, [50.0; 2]), &options(90.0), (&slope, &none()));
         let height = |x: f32, y: f32| {
             let mut corners = bridge.deck.iter().flatten().filter(|corner| corner.x == x && corner.y == y);
             corners.next().expect("a corner").z
@@ -358,7 +439,7 @@ mod tests {
                 .map(|(&station_m, &level_m)| Floor { station_m, level_m }).collect();
             let ends = [floors[0].level_m, floors[floors.len() - 1].level_m];
             let profile = DeckProfile::clearing((line.length(), ends), &floors, &[], 0.1);
-            let bridge = build(&course(&line), &profile, &options(line.length()), &|_| Some(95.0));
+            let bridge = build(&course(&line), &profile, &options(line.length()), (&|_| Some(95.0), &none()));
             prop_assert_eq!(bridge.check(), Ok(()));
             let plan = |facet: &Facet| (facet[1] - facet[0]).truncate().perp_dot((facet[2] - facet[0]).truncate());
             let area: f32 = bridge.deck.iter().map(plan).sum::<f32>() / 2.0;

@@ -63,10 +63,13 @@ impl Course<'_> {
         let mut sections = Vec::with_capacity(points.len() + breaks.len());
         for (index, &at) in points.iter().enumerate() {
             sections.push(section(stations[index], at, asides[index], level_m));
-            let (Some(&next), Some(&end_m)) = (points.get(index + 1), stations.get(index + 1)) else { continue };
+            let (Some(&next), Some(&end_m)) = (points.get(index + 1), stations.get(index + 1)) else {
+                continue;
+            };
             let along = (next - at).normalize_or_zero();
             let reach = |index: usize| {
-                asides[index].iter().map(|aside| aside.dot(along).abs()).fold(0.0, f64::max) + self.width_m * 1e-3
+                asides[index].iter().map(|aside| aside.dot(along).abs()).fold(0.0, f64::max)
+                    + self.width_m * 1e-3
             };
             let (from_m, to_m) = (stations[index] + reach(index), end_m - reach(index + 1));
             let square = along.perp() * (self.width_m / 2.0);
@@ -158,7 +161,8 @@ mod tests {
         let quads = sections.windows(2).flat_map(|pair| {
             let [a, b] = [pair[0], pair[1]].map(|section| section.aside.map(|aside| section.at + aside));
             let quad = [a[0], a[1], b[1], b[0]];
-            let triangles = crate::structure::bridge::quad_corners(quad).map(|corners| corners.map(|at| quad[at]));
+            let triangles =
+                crate::structure::bridge::quad_corners(quad).map(|corners| corners.map(|at| quad[at]));
             triangles.map(|[p, q, r]| (q - p).perp_dot(r - p))
         });
         quads.collect()

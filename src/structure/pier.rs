@@ -119,8 +119,8 @@ pub(in crate::structure) fn end_posts(
         let across = section.aside[side].normalize_or(DVec2::X);
         let frame = Frame { at: section.at + section.aside[side] * part, across };
         let road = f64::from(section.drawn(side, part, 0.0, options.exaggeration).z);
-        let rings = [-0.5 * options.depth_m - by, 1.6 * by]
-            .map(|above| frame.ring((half, half), road + above));
+        let rings =
+            [-0.5 * options.depth_m - by, 1.6 * by].map(|above| frame.ring((half, half), road + above));
         stack(&rings, color, faces);
     }
 }
@@ -136,11 +136,20 @@ impl Frame {
     fn ring(&self, (across, along): (f64, f64), z: f64) -> [Vec3; 8] {
         let chamfer = 0.3 * across.min(along);
         let (x, y) = (across - chamfer, along - chamfer);
-        [(across, -y), (across, y), (x, along), (-x, along), (-across, y), (-across, -y), (-x, -along), (x, -along)]
-            .map(|(aside, ahead)| {
-                let at = self.at + self.across * aside + self.across.perp() * ahead;
-                at.as_vec2().extend(z as f32)
-            })
+        [
+            (across, -y),
+            (across, y),
+            (x, along),
+            (-x, along),
+            (-across, y),
+            (-across, -y),
+            (-x, -along),
+            (x, -along),
+        ]
+        .map(|(aside, ahead)| {
+            let at = self.at + self.across * aside + self.across.perp() * ahead;
+            at.as_vec2().extend(z as f32)
+        })
     }
 }
 

@@ -29,10 +29,11 @@ const SPRINGING: f64 = 0.5;
 /// Into how many parts the arch is cut.
 const ARCH_PARTS: u32 = 16;
 /// How many times its own height the roof may reach back into the hill: on a gentler slope it ends in the open.
-const LONGEST_ROOF: f64 = 4.0;
+const LONGEST_ROOF: f64 = 2.5;
 
 const STONE: Srgba = Srgba::opaque(206, 196, 178);
 const DRESSED: Srgba = Srgba::opaque(234, 227, 212);
+const ROOF: Srgba = Srgba::opaque(158, 154, 132);
 const SHADE: Srgba = Srgba::opaque(74, 70, 66);
 const DARK: Srgba = Srgba::opaque(22, 21, 22);
 
@@ -132,7 +133,10 @@ impl Portal {
         let mouth = self.mouth();
         for pair in mouth.windows(2) {
             let [(x0, z0), (x1, z1)] = [pair[0], pair[1]];
-            faces.polygon(&[(x0, z0), (x0, top), (x1, top), (x1, z1)].map(|(x, z)| self.drawn(x, 0.0, z)), STONE);
+            faces.polygon(
+                &[(x0, z0), (x0, top), (x1, top), (x1, z1)].map(|(x, z)| self.drawn(x, 0.0, z)),
+                STONE,
+            );
             let inner = [
                 self.drawn(x0, 0.0, z0),
                 self.drawn(x1, 0.0, z1),
@@ -183,11 +187,12 @@ impl Portal {
         let ring = [(-wall, 0.0), (-wall, -back.max(behind)), (wall, -back.max(behind)), (wall, 0.0)];
         for pair in ring.windows(2) {
             let [(x0, y0), (x1, y1)] = [pair[0], pair[1]];
-            let corners = [(x1, y1, levels[0]), (x0, y0, levels[0]), (x0, y0, levels[1]), (x1, y1, levels[1])];
+            let corners =
+                [(x1, y1, levels[0]), (x0, y0, levels[0]), (x0, y0, levels[1]), (x1, y1, levels[1])];
             faces.polygon(&corners.map(|(x, y, z)| self.drawn(x, y, z)), STONE);
         }
         let lid = [ring[0], ring[3], ring[2], ring[1]];
-        faces.polygon(&lid.map(|(x, y)| self.drawn(x, y, top)), STONE);
+        faces.polygon(&lid.map(|(x, y)| self.drawn(x, y, top)), ROOF);
     }
 
     /// The wall that holds the slope beside the road, on the left (−1) or right (1) seen from outside: from the portal
@@ -205,10 +210,15 @@ impl Portal {
         let near = [(inner, 0.0), (inner + side * thick, 0.0)];
         let far = near.map(|(right, out)| (right + flare, out + length));
         let low = far.map(|(right, out)| above(right, out)).into_iter().fold(f64::INFINITY, f64::min);
+        // Where the ground falls away from the portal, as beside a bridge, there is no slope to hold.
+        if low < -0.4 * self.height_m() {
+            return;
+        }
         let tops = [0.75 * self.height_m(), (low + 0.6 * by).min(0.7 * self.height_m())];
         let foot = low.min(above(near[1].0, 0.0)).min(0.0) - FOUNDED_M;
         // Counter-clockwise from above, beginning at the portal.
-        let ring = if side > 0.0 { [near[1], near[0], far[0], far[1]] } else { [near[0], near[1], far[1], far[0]] };
+        let ring =
+            if side > 0.0 { [near[1], near[0], far[0], far[1]] } else { [near[0], near[1], far[1], far[0]] };
         let top = |index: usize| if index < 2 { tops[0] } else { tops[1] };
         let corner = |index: usize, z: f64| self.drawn(ring[index].0, ring[index].1, z);
         for index in 0..4 {
@@ -225,7 +235,14 @@ impl Portal {
     }
 
     /// A closed block: from left to right, from back to front, from bottom to top.
-    fn block(&self, (left, right): (f64, f64), (back, front): (f64, f64), [low, high]: [f64; 2], color: Srgba, faces: &mut Faces) {
+    fn block(
+        &self,
+        (left, right): (f64, f64),
+        (back, front): (f64, f64),
+        [low, high]: [f64; 2],
+        color: Srgba,
+        faces: &mut Faces,
+    ) {
         // Counter-clockwise from above, where right lies to the left of outward.
         let ring = [(left, front), (right, front), (right, back), (left, back)];
         for index in 0..4 {

@@ -6,8 +6,8 @@
 //!                    ┃ branch                       a span that meets it: a chain of its own that ends on it
 //! ```
 //!
-//! A chain's end lies on the ground wherever a road on the ground has a vertex, or something of another kind ends, or
-//! nothing goes on.
+//! A chain's end lies on the ground wherever a road on the ground has a vertex, or something of another kind ends; so it
+//! does where nothing goes on, for want of anything better.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -39,8 +39,10 @@ pub struct Link {
 /// What a chain meets at an end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// The ground.
+    /// A road on the ground, or something that ends on it.
     Ground,
+    /// Nothing: the file ends there.
+    Loose,
     /// Others of its kind, and no ground.
     Onward(Place),
 }
@@ -117,7 +119,8 @@ struct Meetings {
 impl Meetings {
     fn new(spans: &[Span], roads: &[Centreline]) -> Self {
         let kind = |span: &Span| span.carried == Carried::Tunnel;
-        let places: Vec<[Place; 2]> = spans.iter().map(|span| [0, 1].map(|end| place(span.end(end)))).collect();
+        let places: Vec<[Place; 2]> =
+            spans.iter().map(|span| [0, 1].map(|end| place(span.end(end)))).collect();
         let mut ends: BTreeMap<(bool, Place), Vec<(usize, usize)>> = BTreeMap::new();
         let mut inside = BTreeSet::new();
         for (index, span) in spans.iter().enumerate() {
@@ -130,7 +133,9 @@ impl Meetings {
         let mut held: BTreeSet<Place> = BTreeSet::new();
         for road in roads.iter().filter(|road| road.carried == Carried::Ground) {
             let touched = road.line.points().iter().map(|&at| place(at));
-            held.extend(touched.filter(|&at| [false, true].iter().any(|&kind| ends.contains_key(&(kind, at)))));
+            held.extend(
+                touched.filter(|&at| [false, true].iter().any(|&kind| ends.contains_key(&(kind, at)))),
+            );
         }
         let mixed: Vec<Place> =
             ends.keys().filter(|&&(kind, at)| ends.contains_key(&(!kind, at))).map(|&(_, at)| at).collect();
@@ -171,6 +176,10 @@ impl Meetings {
         let at = self.places[span][end];
         let key = (self.kinds[span], at);
         let meets_others = self.ends[&key].len() > 1 || self.inside.contains(&key);
-        if meets_others && !self.held.contains(&at) { End::Onward(at) } else { End::Ground }
+        match (self.held.contains(&at), meets_others) {
+            (true, _) => End::Ground,
+            (false, true) => End::Onward(at),
+            (false, false) => End::Loose,
+        }
     }
 }

@@ -99,7 +99,8 @@ fn cross((piece, over): (&Piece, &Way<'_>), (other, under): (&Piece, &Way<'_>), 
                 let stations = line.stations();
                 stations[segment] + (stations[segment + 1] - stations[segment]) * part
             };
-            let (upper_m, lower_m) = (station(over.line, above, parts.0), station(under.line, below, parts.1));
+            let (upper_m, lower_m) =
+                (station(over.line, above, parts.0), station(under.line, below, parts.1));
             if is_end(over.line, upper_m) && is_end(under.line, lower_m) {
                 continue;
             }
@@ -155,7 +156,10 @@ mod tests {
         let lower = [way(&below, 0), way(&onward, 0), way(&above, 2)];
         let found = find(&[way(&bridge, 1)], &lower);
         assert_eq!(found.len(), 1);
-        assert_eq!((found[0].lower, found[0].upper_m, found[0].lower_m, found[0].half_m), (0, 10.0, 50.0, 3.0));
+        assert_eq!(
+            (found[0].lower, found[0].upper_m, found[0].lower_m, found[0].half_m),
+            (0, 10.0, 50.0, 3.0)
+        );
     }
 
     proptest! {

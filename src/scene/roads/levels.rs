@@ -87,7 +87,9 @@ pub fn settle(spans: &[Span], chains: &[Chain], roads: &[Centreline], site: &Sit
     let samples: Vec<Vec<Floor>> = chains.iter().map(|chain| sampled(chain, spans, site)).collect();
     let meetings = meetings(spans, chains, &samples, &below);
     let mut order: Vec<usize> = (0..chains.len()).collect();
-    order.sort_by_key(|&chain| (below.leans_on_another(&chains[chain]), top_level(&chains[chain], spans), chain));
+    order.sort_by_key(|&chain| {
+        (below.leans_on_another(&chains[chain]), top_level(&chains[chain], spans), chain)
+    });
     let mut runs: Vec<Option<Run>> = vec![None; chains.len()];
     for index in order {
         let run = below.run((index, &samples[index]), (spans, chains), &meetings, &runs, site);
@@ -109,7 +111,9 @@ fn by_height(profile: &DeckProfile, ground: &[Floor]) -> f64 {
 
 /// The ground along a chain: twice a cell, and often enough on short ones.
 fn sampled(chain: &Chain, spans: &[Span], site: &Site<'_>) -> Vec<Floor> {
-    let step = (site.lattice.cell().min_element() / 2.0).min(chain.length_m / 16.0).max(chain.length_m / MOST_SAMPLES);
+    let step = (site.lattice.cell().min_element() / 2.0)
+        .min(chain.length_m / 16.0)
+        .max(chain.length_m / MOST_SAMPLES);
     let count = (chain.length_m / step).ceil().clamp(2.0, MOST_SAMPLES) as usize;
     let station = |index: usize| chain.length_m * index as f64 / count as f64;
     let floor = |station_m: f64| {
@@ -195,7 +199,7 @@ impl Below {
         let chain = &chains[index];
         let own = ground_ends(ground)?;
         let end_m = |end: usize| match chain.ends[end] {
-            End::Ground => own[end],
+            End::Ground | End::Loose => own[end],
             End::Onward(at) => {
                 let host = self.host(at, chains).filter(|&(host, _)| host != index);
                 let on_host =
@@ -206,7 +210,8 @@ impl Below {
         let first = &spans[chain.links[0].span];
         let ends_m = [end_m(0), end_m(1)];
         let stated = chain.links.iter().filter_map(|link| spans[link.span].pier_spacing_m).reduce(f64::min);
-        let spacing_m = stated.unwrap_or_else(|| by_height(&DeckProfile::straight(chain.length_m, ends_m), ground));
+        let spacing_m =
+            stated.unwrap_or_else(|| by_height(&DeckProfile::straight(chain.length_m, ends_m), ground));
         let depth_m = depth_m(spacing_m.min(chain.length_m));
         let is_bridge = first.carried == Carried::Bridge;
         let passages = if is_bridge { self.passages(index, (spans, chains), runs, site) } else { Vec::new() };

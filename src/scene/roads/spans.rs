@@ -152,7 +152,9 @@ fn of_tables(
     for bridge in &document.bridges {
         let given = bridge.name.as_deref();
         let lines = sources.lines(&bridge.source)?;
-        for (attributes, line) in near::lines(lines, (extent, REACH_M), (FeatureKind::Bridge, given), collected) {
+        for (attributes, line) in
+            near::lines(lines, (extent, REACH_M), (FeatureKind::Bridge, given), collected)
+        {
             let Some((line, _)) = within(&line, None, extent) else { continue };
             let surface = surface(attributes.word(bridge.surface.as_ref()).unwrap_or_default());
             let stated = ("[[bridge]] width", bridge.width.as_ref());
@@ -209,7 +211,8 @@ fn within(line: &Polyline, levels_m: Option<&[f64]>, extent: &Rect) -> Option<(P
     let level = |levels: &[f64], station: f64| {
         let after = line.stations().partition_point(|&reached| reached < station).clamp(1, points.len() - 1);
         let (from, to) = (line.stations()[after - 1], line.stations()[after]);
-        levels[after - 1] + (levels[after] - levels[after - 1]) * ((station - from) / (to - from)).clamp(0.0, 1.0)
+        levels[after - 1]
+            + (levels[after] - levels[after - 1]) * ((station - from) / (to - from)).clamp(0.0, 1.0)
     };
     let levels_m = levels_m
         .filter(|levels| levels.len() == points.len())
@@ -219,13 +222,13 @@ fn within(line: &Polyline, levels_m: Option<&[f64]>, extent: &Rect) -> Option<(P
 
 /// Finds what goes on at the spans' ends, so that their edges are those of the ribbons there.
 fn go_on(spans: &mut [Span], roads: &[Centreline]) {
-    let ends: BTreeSet<Place> = spans.iter().flat_map(|span| [place(span.end(0)), place(span.end(1))]).collect();
+    let ends: BTreeSet<Place> =
+        spans.iter().flat_map(|span| [place(span.end(0)), place(span.end(1))]).collect();
     let meets = |road: &&Centreline| {
         road.carried == Carried::Ground && road.line.points().iter().any(|&at| ends.contains(&place(at)))
     };
     let of_spans = spans.iter().map(|span| Street { line: &span.line, options: span.options });
-    let of_roads =
-        roads.iter().filter(meets).map(|road| Street { line: &road.line, options: road.options });
+    let of_roads = roads.iter().filter(meets).map(|road| Street { line: &road.line, options: road.options });
     let streets: Vec<Street<'_>> = of_spans.chain(of_roads).collect();
     let network = junction::connect(&streets);
     for (span, beyond) in spans.iter_mut().zip(network.continuations) {
