@@ -10,6 +10,7 @@ use crate::roam::ground::Ground;
 use crate::roam::layout::{DEFAULT_PATCH, Layout};
 use crate::scene::assets::Assets;
 use crate::scene::attributes;
+use crate::scene::bridges;
 use crate::scene::collected::Collected;
 use crate::scene::ground;
 use crate::scene::kind::{Scene, Terrain};
@@ -42,6 +43,7 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     water::rivers(document, &sources, &extent, &mut collected)?;
     let mut roads = centreline::collect(document, &sources, &extent, &mut collected)?;
     conform::conform(document, &mut lattice, &mut roads, &mut collected)?;
+    bridges::build(document, &sources, (&lattice, places.exaggeration), &mut roads, &mut collected)?;
     network::lay(&roads, &extent, &mut collected);
     collected.take_apart();
 

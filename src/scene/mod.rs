@@ -6,6 +6,7 @@
 
 pub mod assets;
 pub mod attributes;
+pub mod bridges;
 pub mod build;
 pub mod collected;
 pub mod ground;

@@ -3,4 +3,10 @@
 //! Positions are world space; heights are handed in as they are drawn, times the scene's exaggeration, so that a solid
 //! meets the ground it stands on.
 
+pub mod bridge;
+pub mod deck;
+pub mod deck_check;
+pub mod deck_profile;
 pub mod faces;
+pub mod pier;
+pub mod tunnel;

@@ -22,7 +22,12 @@ mod steps;
 mod tests_common;
 
 fn main() {
-    rounds::sections(&[("growth", growth::print), ("roads", roads::print), ("recut", recut::print), ("cities", cities::print)]);
+    rounds::sections(&[
+        ("growth", growth::print),
+        ("roads", roads::print),
+        ("recut", recut::print),
+        ("cities", cities::print),
+    ]);
 }
 
 /// A scene built from a text, with the time and the peak memory of every step.

@@ -172,7 +172,7 @@ fn surface(road: &Road, attributes: &Attributes) -> Surface {
 }
 
 /// What carries a road, by the expressions stated for it, else by its properties as OpenStreetMap has them.
-fn carried(road: &Road, attributes: &Attributes) -> Carried {
+pub(in crate::scene) fn carried(road: &Road, attributes: &Attributes) -> Carried {
     let tagged = |property: &str| match attributes.get(property) {
         None => false,
         Some(Scalar::Bool(value)) => value,

@@ -1,140 +1,182 @@
-//! Where centrelines of one level cross, whether or not they have a vertex there.
+//! What passes below bridges: where other ways' centrelines cross theirs.
 //!
-//! Legs are sorted into the squares of a grid that they pass through, and only legs of one square are compared. Squares
-//! are about as wide as a leg is long, so that a city's legs meet a few others each.
+//! Lines are cut into pieces of a few segments with a box round each, the pieces below sorted by their western edge; a
+//! piece of a bridge is compared only with those whose boxes it may meet, so that the work grows with what is near each
+//! other, not with all pairs of segments.
 
-use std::collections::BTreeMap;
+use std::ops::Range;
 
 use glam::DVec2;
 
+use crate::geom::polyline::Polyline;
 use crate::geom::rect::Rect;
-use crate::scene::roads::centreline::Centreline;
 
-/// No square is smaller, in metres: a file of very short legs would fill more squares than it has legs.
-const SMALLEST_SQUARE_M: f64 = 20.0;
+/// Segments in a piece: enough to make boxes cheap, few enough to keep them small.
+const SEGMENTS: usize = 8;
 
-/// No more pairs of legs are compared. A city of 100 000 legs has some hundred thousand pairs; only lines drawn all over
-/// each other have more than this, and comparing those would take minutes.
-const MOST_PAIRS: usize = 20_000_000;
+/// A crossing at a smaller angle than this sine counts as this one: its room would have no end.
+const LEAST_SINE: f64 = 0.25;
 
-/// Nor are more crossings kept: each parts two roads.
-const MOST_CROSSINGS: usize = 1_000_000;
-
-/// A road and a station on it.
-pub type Place = (usize, f64);
-
-/// A leg of a road.
-#[derive(Clone, Copy)]
-struct Leg {
-    road: usize,
-    start_m: f64,
-    ends: [DVec2; 2],
-    level: i32,
+/// A way that others may pass over.
+#[derive(Clone, Copy, Debug)]
+pub struct Way<'a> {
+    /// Its centreline in world coordinates.
+    pub line: &'a Polyline,
+    /// Its width in metres.
+    pub width_m: f64,
+    /// What passes over what.
+    pub level: i32,
 }
 
-/// The crossings of those roads for which `counts` holds: the same place on both roads, each pair of places once, in
-/// order of the roads. `None` where the lines are too tangled to compare all that may cross.
-pub fn crossings(roads: &[Centreline], counts: impl Fn(&Centreline) -> bool) -> Option<Vec<[Place; 2]>> {
-    let chosen = roads.iter().enumerate().filter(|(_, road)| counts(road));
-    let legs: Vec<Leg> = chosen.flat_map(|(index, road)| legs(index, road)).collect();
-    let total_m: f64 = legs.iter().map(|leg| leg.ends[0].distance(leg.ends[1])).sum();
-    let square_m = (2.0 * total_m / legs.len().max(1) as f64).max(SMALLEST_SQUARE_M);
-    let mut squares: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
-    for (index, leg) in legs.iter().enumerate() {
-        each_square(leg, square_m, &mut |square| squares.entry(square).or_default().push(index));
-    }
-    let pairs: usize = squares.values().map(|inside| inside.len() * inside.len() / 2).sum();
-    let found = (pairs <= MOST_PAIRS).then(|| compare(&legs, squares.values()));
-    found.filter(|found| found.len() <= MOST_CROSSINGS)
+/// Where a way passes over another one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// Which of the upper ways.
+    pub upper: usize,
+    /// Which of the lower ways.
+    pub lower: usize,
+    /// The place.
+    pub at: DVec2,
+    /// The station on the upper way, in metres.
+    pub upper_m: f64,
+    /// The station on the lower way, in metres.
+    pub lower_m: f64,
+    /// Half of the length of the upper way that lies over the lower one's width, in metres.
+    pub half_m: f64,
 }
 
-/// The crossings of legs that share a square, each once.
-fn compare<'a>(legs: &[Leg], squares: impl Iterator<Item = &'a Vec<usize>>) -> Vec<[Place; 2]> {
+/// A run of a line's segments.
+struct Piece {
+    way: usize,
+    segments: Range<usize>,
+    rect: Rect,
+}
+
+/// Every place where one of `upper` crosses one of `lower` whose level is lower, by upper way and station. Lines that
+/// only touch end to end do not cross.
+pub fn find(upper: &[Way<'_>], lower: &[Way<'_>]) -> Vec<Crossing> {
+    let mut below = pieces(lower);
+    below.sort_by(|a, b| a.rect.min.x.total_cmp(&b.rect.min.x));
+    let widest = below.iter().map(|piece| piece.rect.size().x).fold(0.0, f64::max);
     let mut found = Vec::new();
-    for inside in squares {
-        for (position, &one) in inside.iter().enumerate() {
-            let crosses = |&other: &usize| Some(((one, other), crossing(&legs[one], &legs[other])?));
-            found.extend(inside[position + 1..].iter().filter_map(crosses));
+    for piece in pieces(upper) {
+        let first = below.partition_point(|other| other.rect.min.x < piece.rect.min.x - widest);
+        let near = below[first..].iter().take_while(|other| other.rect.min.x <= piece.rect.max.x);
+        for other in near.filter(|other| other.rect.meets(&piece.rect)) {
+            if lower[other.way].level < upper[piece.way].level {
+                cross((&piece, &upper[piece.way]), (other, &lower[other.way]), &mut found);
+            }
         }
     }
-    // Two legs may share several squares.
-    found.sort_by_key(|(pair, _)| *pair);
-    found.dedup_by_key(|(pair, _)| *pair);
-    found.into_iter().map(|(_, places)| places).collect()
+    found.sort_by(|a, b| {
+        a.upper.cmp(&b.upper).then(a.upper_m.total_cmp(&b.upper_m)).then(a.lower.cmp(&b.lower))
+    });
+    found.dedup_by(|next, kept| {
+        (next.upper, next.lower) == (kept.upper, kept.lower) && next.upper_m - kept.upper_m < 1e-6
+    });
+    found
 }
 
-fn legs(road: usize, centreline: &Centreline) -> impl Iterator<Item = Leg> + '_ {
-    let (points, stations) = (centreline.line.points(), centreline.line.stations());
-    let leg = move |(ends, &start_m): (&[DVec2], &f64)| Leg {
-        road,
-        start_m,
-        ends: [ends[0], ends[1]],
-        level: centreline.level,
-    };
-    points.windows(2).zip(stations).map(leg)
-}
-
-/// Visits the squares that a leg passes through, row by row.
-fn each_square(leg: &Leg, square_m: f64, visit: &mut impl FnMut((i64, i64))) {
-    let [from, to] = leg.ends;
-    let index = |at: f64| (at / square_m).floor() as i64;
-    let (low, high) = (from.y.min(to.y), from.y.max(to.y));
-    for row in index(low)..=index(high) {
-        let band = Rect {
-            min: DVec2::new(f64::NEG_INFINITY, row as f64 * square_m),
-            max: DVec2::new(f64::INFINITY, (row + 1) as f64 * square_m),
+fn pieces(ways: &[Way<'_>]) -> Vec<Piece> {
+    let cut = |(way, line): (usize, &Polyline)| {
+        let count = line.points().len() - 1;
+        let piece = move |from: usize, points: &[DVec2]| {
+            let segments = from..(from + SEGMENTS).min(count);
+            let rect = Rect::around(points[segments.start..=segments.end].iter().copied());
+            Piece { way, segments, rect }
         };
-        let Some((enter, leave)) = band.clip_line(from, to) else { continue };
-        for column in index(enter.x.min(leave.x))..=index(enter.x.max(leave.x)) {
-            visit((column, row));
+        (0..count).step_by(SEGMENTS).map(|from| piece(from, line.points())).collect::<Vec<_>>()
+    };
+    ways.iter().enumerate().flat_map(|(index, way)| cut((index, way.line))).collect()
+}
+
+fn cross((piece, over): (&Piece, &Way<'_>), (other, under): (&Piece, &Way<'_>), found: &mut Vec<Crossing>) {
+    for above in piece.segments.clone() {
+        for below in other.segments.clone() {
+            let ends = |line: &Polyline, segment: usize| [line.points()[segment], line.points()[segment + 1]];
+            let Some(parts) = meet(ends(over.line, above), ends(under.line, below)) else { continue };
+            let station = |line: &Polyline, segment: usize, part: f64| {
+                let stations = line.stations();
+                stations[segment] + (stations[segment + 1] - stations[segment]) * part
+            };
+            let (upper_m, lower_m) =
+                (station(over.line, above, parts.0), station(under.line, below, parts.1));
+            if is_end(over.line, upper_m) && is_end(under.line, lower_m) {
+                continue;
+            }
+            let direction = |line, segment| {
+                let [from, to]: [DVec2; 2] = ends(line, segment);
+                (to - from).normalize_or_zero()
+            };
+            let sine = direction(over.line, above).perp_dot(direction(under.line, below)).abs();
+            found.push(Crossing {
+                upper: piece.way,
+                lower: other.way,
+                at: over.line.at(upper_m),
+                upper_m,
+                lower_m,
+                half_m: under.width_m / 2.0 / sine.max(LEAST_SINE),
+            });
         }
     }
 }
 
-/// Where two legs of one level cross or touch; `None` where they do not, and for legs side by side.
-fn crossing(one: &Leg, other: &Leg) -> Option<[Place; 2]> {
-    if one.level != other.level {
-        return None;
-    }
-    let (a, b) = (one.ends[1] - one.ends[0], other.ends[1] - other.ends[0]);
-    let (between, turn) = (other.ends[0] - one.ends[0], a.perp_dot(b));
-    if turn.abs() < 1e-9 * a.length() * b.length() {
-        return None;
-    }
-    let parts = [between.perp_dot(b) / turn, between.perp_dot(a) / turn];
-    let is_on = parts.iter().all(|part| (0.0..=1.0).contains(part));
-    // Legs of one road that follow each other touch at their vertex.
-    let follows = one.road == other.road && (one.ends[1] == other.ends[0] || other.ends[1] == one.ends[0]);
-    let place = |leg: &Leg, part: f64| (leg.road, leg.start_m + leg.ends[0].distance(leg.ends[1]) * part);
-    (is_on && !follows).then(|| [place(one, parts[0]), place(other, parts[1])])
+fn is_end(line: &Polyline, station_m: f64) -> bool {
+    station_m < 0.01 || station_m > line.length() - 0.01
+}
+
+/// Where two segments meet, as parts of the way along both; `None` where they do not, or are parallel.
+fn meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Option<(f64, f64)> {
+    let (one, other) = (b - a, d - c);
+    let area = one.perp_dot(other);
+    let parts = ((c - a).perp_dot(other) / area, (c - a).perp_dot(one) / area);
+    let within = |part: f64| (0.0..=1.0).contains(&part);
+    (area != 0.0 && within(parts.0) && within(parts.1)).then_some(parts)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::roads::centreline::{Carried, tests::road};
+    use proptest::prelude::*;
 
-    #[test]
-    fn every_pair_of_a_dense_web_is_found_once() {
-        for quarter in 0..4 {
-            let turned = |(x, y): (f64, f64)| (0..quarter).fold((x, y), |(x, y), _| (-y, x));
-            let ends = |index: u32| 10.0 * f64::from(index);
-            let east = |index| road(&[(-5.0, ends(index)), (200.0, ends(index) + 3.0)].map(turned), Carried::Ground, 0);
-            let north = |index| road(&[(ends(index), -5.0), (ends(index) + 2.0, 200.0)].map(turned), Carried::Ground, 0);
-            let roads: Vec<Centreline> = (0..15).map(east).chain((0..15).map(north)).collect();
-            let found = crossings(&roads, |_| true).expect("not too tangled");
-            assert_eq!(found.len(), 15 * 15);
-            for [(one, at), (other, there)] in found {
-                let apart = roads[one].line.at(at).distance(roads[other].line.at(there));
-                assert!(apart < 1e-9, "{apart}");
-            }
-        }
+    fn line(points: &[(f64, f64)]) -> Polyline {
+        Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line")
+    }
+
+    fn way(line: &Polyline, level: i32) -> Way<'_> {
+        Way { line, width_m: 6.0, level }
     }
 
     #[test]
-    fn lines_all_over_each_other_are_not_compared() {
-        let back_and_forth = |index: u32| (f64::from(index % 2) * 1e4, f64::from(index) * 0.01);
-        let points: Vec<(f64, f64)> = (0..12_000).map(back_and_forth).collect();
-        assert_eq!(crossings(&[road(&points, Carried::Ground, 0)], |_| true), None);
+    fn a_bridge_crosses_the_road_below_and_not_the_one_it_leads_on_to() {
+        let bridge = line(&[(0.0, 0.0), (40.0, 0.0)]);
+        let below = line(&[(10.0, -50.0), (10.0, 50.0)]);
+        let onward = line(&[(40.0, 0.0), (90.0, 5.0)]);
+        let above = line(&[(20.0, -50.0), (20.0, 50.0)]);
+        let lower = [way(&below, 0), way(&onward, 0), way(&above, 2)];
+        let found = find(&[way(&bridge, 1)], &lower);
+        assert_eq!(found.len(), 1);
+        assert_eq!(
+            (found[0].lower, found[0].upper_m, found[0].lower_m, found[0].half_m),
+            (0, 10.0, 50.0, 3.0)
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn pieces_find_what_all_pairs_of_segments_do(
+            over in prop::collection::vec((0.0..100.0f64, 0.0..100.0f64), 2..40),
+            under in prop::collection::vec((0.0..100.0f64, 0.0..100.0f64), 2..40),
+        ) {
+            let (over, under) = (line(&over), line(&under));
+            let segments = |line: &Polyline| -> Vec<[DVec2; 2]> {
+                line.points().windows(2).map(|pair| [pair[0], pair[1]]).collect()
+            };
+            let pairs = segments(&over).into_iter()
+                .flat_map(|one| segments(&under).into_iter().map(move |other| (one, other)))
+                .filter(|&(one, other)| meet(one, other).is_some())
+                .count();
+            prop_assert_eq!(find(&[way(&over, 1)], &[way(&under, 0)]).len(), pairs);
+        }
     }
 }

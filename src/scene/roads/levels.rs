@@ -1,161 +1,345 @@
-//! The levels of bridges and tunnels that are stated on roads which follow the ground.
+//! How high bridges and tunnels run: each chain's elevations, from what it starts on, leads to and passes over.
 //!
-//! Such a bridge knows the level of its ends: that of the ground or of the road that leads there. Between, it runs
-//! straight. Files cut bridges into several lines, and lines meet on them; then no end in the middle is known, and each
-//! such node takes the mean of its neighbours, weighted by nearness. Along one bridge of many lines that is a straight
-//! line from end to end; where bridges meet on a bridge, it is where as many taut strings would hold each other.
+//! A chain that ends on the ground starts at its height; where chains meet in the air, the meeting's level is such that
+//! all of them rise evenly there (the levels of the meetings solve Laplace's equation on the network, each chain weighing
+//! as the inverse of its length). Chains of lower level come first, so that those above know what they pass over.
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
 
 use crate::scene::roads::centreline::{Carried, Centreline};
-use crate::scene::roads::meetings::Meetings;
+use crate::scene::roads::chains::{Chain, End};
+use crate::scene::roads::crossings::{self, Crossing, Way};
+use crate::scene::roads::spans::{Place, Span, place};
+use crate::structure::bridge::depth_m;
+use crate::structure::deck_profile::{DeckProfile, Floor};
 use crate::terrain::lattice::Lattice;
+use crate::terrain::query::deck::Deck;
 use crate::terrain::query::{Interpolation, ground_height};
 
-/// Levels are settled when none moves by more than this, in metres.
-const SETTLED_M: f64 = 1e-5;
+/// The room over roads and water that a bridge gives where it can be climbed to, in metres: 4.5 m for traffic and some
+/// to spare.
+pub const CLEARANCE_M: f64 = 5.0;
 
-/// No more than so many levels are taken anew, whatever the number of nodes: enough for a bridge of a thousand lines.
-const MOST_STEPS: usize = 100_000_000;
+/// The steepest way up to that, rise over run.
+pub const STEEPEST: f64 = 0.10;
 
-/// A stretch of bridge or tunnel between two nodes.
-struct Strut {
-    ends: [usize; 2],
-    length_m: f64,
+/// The widest span between piers of a low bridge where nothing is stated, in metres.
+pub const PIER_SPACING_M: f64 = 25.0;
+
+/// A high bridge's spans grow with its height, as its piers cost more: this part of it.
+const SPACING_PER_HEIGHT: f64 = 0.6;
+
+/// They grow up to this, in metres, the longest that a girder without haunches carries.
+const WIDEST_SPACING_M: f64 = 70.0;
+
+/// The most places at which the ground under a chain is looked at.
+const MOST_SAMPLES: f64 = 4096.0;
+
+/// How often levels of meetings are evened out: changes die off as fast as chains between two grounds are few.
+const EVENINGS: usize = 200;
+
+/// What lies under bridges.
+pub struct Site<'a> {
+    /// The ground.
+    pub lattice: &'a Lattice,
+    /// Where there is water; its heights mean nothing.
+    pub water: &'a Deck,
+    /// How many times heights are stretched when drawn.
+    pub exaggeration: f32,
 }
 
-/// Gives bridges and tunnels without levels theirs, where some ground is near that their ends can stand on. `known` are
-/// levels of nodes that are settled already, NaN for others.
-pub fn settle(lattice: &Lattice, roads: &mut [Centreline], meetings: &Meetings, known: &[f64]) {
-    let is_open = |road: &Centreline| road.carried != Carried::Ground && road.levels_m.is_none();
-    if !roads.iter().any(is_open) {
-        return;
-    }
-    let mut nodes = grounded(lattice, roads, meetings, known);
-    relax(&mut nodes, &struts(roads, meetings, is_open));
-    for (road, stops) in roads.iter_mut().zip(&meetings.stops) {
-        if !is_open(road) {
-            continue;
-        }
-        let level_at = |&station: &f64| {
-            let after = stops.partition_point(|stop| stop.station_m < station).clamp(1, stops.len() - 1);
-            let (from, to) = (stops[after - 1], stops[after]);
-            let part = ((station - from.station_m) / (to.station_m - from.station_m)).clamp(0.0, 1.0);
-            let levels = [from, to].map(|stop| nodes[stop.node.index()]);
-            levels[0] + (levels[1] - levels[0]) * part
-        };
-        let levels: Vec<f64> = road.line.stations().iter().map(level_at).collect();
-        road.levels_m = Some(levels).filter(|levels| levels.iter().all(|level| level.is_finite()));
+impl Site<'_> {
+    /// The ground's elevation at a world position in metres, on the finest triangles.
+    pub fn ground_m(&self, at: DVec2) -> Option<f64> {
+        ground_height(self.lattice, Interpolation::Planar, at + self.lattice.origin()).height_m()
     }
 }
 
-/// The levels of the nodes that stand on something: where a road on the ground comes, or nothing else does.
-fn grounded(lattice: &Lattice, roads: &[Centreline], meetings: &Meetings, known: &[f64]) -> Vec<f64> {
-    let mut nodes = known.to_vec();
-    nodes.resize(meetings.nodes, f64::NAN);
-    let mut arms = vec![0usize; meetings.nodes];
-    let mut stands = vec![false; meetings.nodes];
-    let mut places = vec![None; meetings.nodes];
-    for (road, stops) in roads.iter().zip(&meetings.stops) {
-        for (index, stop) in stops.iter().enumerate() {
-            let node = stop.node.index();
-            arms[node] += if index == 0 || index + 1 == stops.len() { 1 } else { 2 };
-            stands[node] |= road.carried == Carried::Ground;
-            places[node] = Some(road.line.at(stop.station_m));
-        }
-    }
-    for (node, level) in nodes.iter_mut().enumerate() {
-        if let Some(at) = places[node].filter(|_| level.is_nan() && (stands[node] || arms[node] == 1)) {
-            let ground = ground_height(lattice, Interpolation::Planar, at + lattice.origin());
-            *level = ground.height_m().unwrap_or(f64::NAN);
-        }
-    }
-    nodes
+/// What passes below a chain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passage {
+    /// From where to where along the chain, in metres.
+    pub reach_m: [f64; 2],
+    /// Its elevation in metres.
+    pub level_m: f64,
 }
 
-fn struts(roads: &[Centreline], meetings: &Meetings, counts: impl Fn(&Centreline) -> bool) -> Vec<Strut> {
-    let chosen = roads.iter().zip(&meetings.stops).filter(|(road, _)| counts(road));
-    let between = chosen.flat_map(|(_, stops)| stops.windows(2));
-    let strut = |pair: &[crate::scene::roads::meetings::Stop]| Strut {
-        ends: [pair[0].node.index(), pair[1].node.index()],
-        length_m: pair[1].station_m - pair[0].station_m,
+/// How a chain runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Its elevations by station.
+    pub profile: DeckProfile,
+    /// The ground below it, at stations rising, where there is some.
+    pub ground: Vec<Floor>,
+    /// What passes below; none below a tunnel.
+    pub passages: Vec<Passage>,
+    /// The widest span between piers, in metres.
+    pub spacing_m: f64,
+    /// How deep its deck is, in metres.
+    pub depth_m: f64,
+}
+
+/// How every chain runs; `None` where there is no ground along it.
+pub fn settle(spans: &[Span], chains: &[Chain], roads: &[Centreline], site: &Site<'_>) -> Vec<Option<Run>> {
+    let below = Below::new(spans, chains, roads);
+    let samples: Vec<Vec<Floor>> = chains.iter().map(|chain| sampled(chain, spans, site)).collect();
+    let meetings = meetings(spans, chains, &samples, &below);
+    let mut order: Vec<usize> = (0..chains.len()).collect();
+    order.sort_by_key(|&chain| {
+        (below.leans_on_another(&chains[chain]), top_level(&chains[chain], spans), chain)
+    });
+    let mut runs: Vec<Option<Run>> = vec![None; chains.len()];
+    for index in order {
+        let run = below.run((index, &samples[index]), (spans, chains), &meetings, &runs, site);
+        runs[index] = run;
+    }
+    runs
+}
+
+fn top_level(chain: &Chain, spans: &[Span]) -> i32 {
+    chain.links.iter().map(|link| spans[link.span].level).max().unwrap_or(0)
+}
+
+/// The widest span between piers of a bridge as high as this.
+fn by_height(profile: &DeckProfile, ground: &[Floor]) -> f64 {
+    let above = |floor: &Floor| profile.level_m(floor.station_m) - floor.level_m;
+    let highest = ground.iter().map(above).fold(0.0, f64::max);
+    (SPACING_PER_HEIGHT * highest).clamp(PIER_SPACING_M, WIDEST_SPACING_M)
+}
+
+/// The ground along a chain: twice a cell, and often enough on short ones.
+fn sampled(chain: &Chain, spans: &[Span], site: &Site<'_>) -> Vec<Floor> {
+    let step = (site.lattice.cell().min_element() / 2.0)
+        .min(chain.length_m / 16.0)
+        .max(chain.length_m / MOST_SAMPLES);
+    let count = (chain.length_m / step).ceil().clamp(2.0, MOST_SAMPLES) as usize;
+    let station = |index: usize| chain.length_m * index as f64 / count as f64;
+    let floor = |station_m: f64| {
+        let level_m = site.ground_m(chain.at(spans, station_m))?;
+        Some(Floor { station_m, level_m })
     };
-    between.map(strut).filter(|strut| strut.length_m > 0.0 && strut.ends[0] != strut.ends[1]).collect()
+    (0..=count).filter_map(|index| floor(station(index))).collect()
 }
 
-/// Settles every node without a level among its neighbours; those that no level reaches stay without.
-fn relax(nodes: &mut [f64], struts: &[Strut]) {
-    let mut neighbours = vec![Vec::new(); nodes.len()];
-    for strut in struts {
-        let [one, other] = strut.ends;
-        neighbours[one].push((other, 1.0 / strut.length_m));
-        neighbours[other].push((one, 1.0 / strut.length_m));
-    }
-    let open: Vec<usize> = (0..nodes.len()).filter(|&node| nodes[node].is_nan() && !neighbours[node].is_empty()).collect();
-    if open.is_empty() {
-        return;
-    }
-    for _ in 0..MOST_STEPS / open.len() {
-        let mut moved_m: f64 = 0.0;
-        for &node in &open {
-            let reached = neighbours[node].iter().filter(|(other, _)| !nodes[*other].is_nan());
-            let sum = |(level, weight): (f64, f64), (other, pull): &(usize, f64)| (level + nodes[*other] * pull, weight + pull);
-            let (level, weight) = reached.fold((0.0, 0.0), sum);
-            if weight > 0.0 {
-                let before = std::mem::replace(&mut nodes[node], level / weight);
-                moved_m = moved_m.max(if before.is_nan() { f64::INFINITY } else { (nodes[node] - before).abs() });
-            }
-        }
-        if moved_m < SETTLED_M {
-            return;
-        }
-    }
+/// What chains pass over and lean on.
+struct Below {
+    /// Where spans cross lower ways: the roads on the ground first, then the spans.
+    crossings: Vec<Crossing>,
+    /// Which span each of the crossings' upper ways is.
+    bridges: Vec<usize>,
+    /// Which road each of the first lower ways is.
+    roads: Vec<usize>,
+    widths_m: Vec<f64>,
+    /// Which chain and link each span is.
+    link_of: Vec<(usize, usize)>,
+    /// The vertices inside spans, by place: span and station.
+    inside: BTreeMap<Place, (usize, f64)>,
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::roads::centreline::tests::road;
-    use crate::scene::roads::meetings::meetings;
-    use glam::DVec2;
-
-    /// Ground that rises by a tenth eastward and holds a ravine from 40 m to 160 m.
-    fn ravine() -> Lattice {
-        let height = |index: u32| {
-            let x = f64::from(index % 21) * 10.0;
-            (if x > 40.0 && x < 160.0 { -30.0 } else { x / 10.0 }) as f32
+impl Below {
+    fn new(spans: &[Span], chains: &[Chain], all_roads: &[Centreline]) -> Self {
+        let bridges: Vec<usize> =
+            (0..spans.len()).filter(|&span| spans[span].carried == Carried::Bridge).collect();
+        let roads: Vec<usize> =
+            (0..all_roads.len()).filter(|&road| all_roads[road].carried == Carried::Ground).collect();
+        let over = |&span: &usize| Way {
+            line: &spans[span].line,
+            width_m: spans[span].options.width_m,
+            level: spans[span].level,
         };
-        Lattice::new(DVec2::new(5e5, 4e6), DVec2::splat(10.0), 21, (0..21 * 11).map(height).collect()).expect("sound")
-    }
-
-    #[test]
-    fn a_bridge_of_several_lines_runs_straight_from_end_to_end() {
-        let mut roads = vec![
-            road(&[(0.0, 50.0), (40.0, 50.0)], Carried::Ground, 0),
-            road(&[(100.0, 50.0), (40.0, 50.0)], Carried::Bridge, 1),
-            road(&[(100.0, 50.0), (130.0, 50.0)], Carried::Bridge, 1),
-            road(&[(130.0, 50.0), (145.0, 50.0), (160.0, 50.0)], Carried::Bridge, 1),
-            road(&[(160.0, 50.0), (200.0, 50.0)], Carried::Ground, 0),
-        ];
-        let found = meetings(&roads, |_| false);
-        settle(&ravine(), &mut roads, &found, &[]);
-        for road in &roads[1..4] {
-            for (at, level) in road.line.points().iter().zip(road.levels_m.as_ref().expect("levels")) {
-                assert!((level - at.x / 10.0).abs() < 0.01, "{level} at {at}");
+        let upper: Vec<Way<'_>> = bridges.iter().map(over).collect();
+        let on_ground = roads.iter().map(|&road| {
+            let road = &all_roads[road];
+            Way { line: &road.line, width_m: road.options.width_m, level: road.level }
+        });
+        let lower: Vec<Way<'_>> = on_ground.chain(upper.iter().copied()).collect();
+        let mut link_of = vec![(0, 0); spans.len()];
+        for (index, chain) in chains.iter().enumerate() {
+            for (link, placed) in chain.links.iter().enumerate() {
+                link_of[placed.span] = (index, link);
             }
         }
-        assert_eq!(roads[0].levels_m, None);
+        let mut inside = BTreeMap::new();
+        for (index, span) in spans.iter().enumerate() {
+            let (points, stations) = (span.line.points(), span.line.stations());
+            let between = 1..points.len() - 1;
+            inside.extend(between.map(|vertex| (place(points[vertex]), (index, stations[vertex]))));
+        }
+        Self {
+            crossings: crossings::find(&upper, &lower),
+            widths_m: lower.iter().map(|way| way.width_m).collect(),
+            bridges,
+            roads,
+            link_of,
+            inside,
+        }
     }
 
-    #[test]
-    fn what_is_settled_already_holds_and_off_the_ground_there_is_nothing() {
-        let mut roads = vec![
-            road(&[(10.0, 50.0), (30.0, 50.0)], Carried::Bridge, 1),
-            road(&[(900.0, 50.0), (990.0, 50.0)], Carried::Tunnel, -1),
-        ];
-        let found = meetings(&roads, |_| false);
-        let mut known = vec![f64::NAN; found.nodes];
-        known[found.stops[0][1].node.index()] = 9.0;
-        settle(&ravine(), &mut roads, &found, &known);
-        assert_eq!(roads[0].levels_m, Some(vec![1.0, 9.0]));
-        assert_eq!(roads[1].levels_m, None);
+    /// The chain and station on it of a place inside another chain's line.
+    fn host(&self, at: Place, chains: &[Chain]) -> Option<(usize, f64)> {
+        let &(span, on_span_m) = self.inside.get(&at)?;
+        let (chain, link) = self.link_of[span];
+        Some((chain, Chain::station_m(&chains[chain].links[link], on_span_m)))
     }
+
+    fn leans_on_another(&self, chain: &Chain) -> bool {
+        chain.ends.iter().any(|end| matches!(end, End::Onward(at) if self.inside.contains_key(at)))
+    }
+
+    fn run(
+        &self,
+        (index, ground): (usize, &[Floor]),
+        (spans, chains): (&[Span], &[Chain]),
+        meetings: &BTreeMap<Place, f64>,
+        runs: &[Option<Run>],
+        site: &Site<'_>,
+    ) -> Option<Run> {
+        let chain = &chains[index];
+        let own = ground_ends(ground)?;
+        let end_m = |end: usize| match chain.ends[end] {
+            End::Ground | End::Loose => own[end],
+            End::Onward(at) => {
+                let host = self.host(at, chains).filter(|&(host, _)| host != index);
+                let on_host =
+                    host.and_then(|(host, station)| Some(runs[host].as_ref()?.profile.level_m(station)));
+                on_host.or_else(|| meetings.get(&at).copied()).unwrap_or(own[end])
+            }
+        };
+        let first = &spans[chain.links[0].span];
+        let ends_m = [end_m(0), end_m(1)];
+        let stated = chain.links.iter().filter_map(|link| spans[link.span].pier_spacing_m).reduce(f64::min);
+        let spacing_m =
+            stated.unwrap_or_else(|| by_height(&DeckProfile::straight(chain.length_m, ends_m), ground));
+        let depth_m = depth_m(spacing_m.min(chain.length_m));
+        let is_bridge = first.carried == Carried::Bridge;
+        let passages = if is_bridge { self.passages(index, (spans, chains), runs, site) } else { Vec::new() };
+        let stated = first.levels_m.as_ref().and_then(|levels| {
+            let stations = first.line.stations().iter();
+            let points = stations.zip(levels).map(|(&station_m, &level_m)| Floor { station_m, level_m });
+            DeckProfile::stated(points.collect())
+        });
+        let profile = stated.unwrap_or_else(|| {
+            if !is_bridge {
+                return DeckProfile::straight(chain.length_m, ends_m);
+            }
+            let room = CLEARANCE_M + depth_m / f64::from(site.exaggeration);
+            let floors = passages.iter().flat_map(|passage| {
+                passage.reach_m.map(|station_m| Floor { station_m, level_m: passage.level_m + room })
+            });
+            DeckProfile::clearing((chain.length_m, ends_m), ground, &floors.collect::<Vec<_>>(), STEEPEST)
+        });
+        Some(Run { profile, ground: ground.to_vec(), passages, spacing_m, depth_m })
+    }
+
+    /// What passes below a chain, by station.
+    fn passages(
+        &self,
+        index: usize,
+        (spans, chains): (&[Span], &[Chain]),
+        runs: &[Option<Run>],
+        site: &Site<'_>,
+    ) -> Vec<Passage> {
+        let chain = &chains[index];
+        let mut all = wet(chain, spans, site);
+        for crossing in &self.crossings {
+            let (of, link) = self.link_of[self.bridges[crossing.upper]];
+            if of != index {
+                continue;
+            }
+            let level_m = match crossing.lower.checked_sub(self.roads.len()) {
+                None => site.ground_m(crossing.at),
+                Some(lower) => {
+                    let (host, link) = self.link_of[self.bridges[lower]];
+                    let station = Chain::station_m(&chains[host].links[link], crossing.lower_m);
+                    runs[host].as_ref().map(|run| run.profile.level_m(station))
+                }
+            };
+            let station = Chain::station_m(&chain.links[link], crossing.upper_m);
+            let half = crossing.half_m.min(self.widths_m[crossing.lower] * 3.0);
+            let reach_m = [(station - half).max(0.0), (station + half).min(chain.length_m)];
+            all.extend(level_m.map(|level_m| Passage { reach_m, level_m }));
+        }
+        all.sort_by(|a, b| a.reach_m[0].total_cmp(&b.reach_m[0]));
+        all
+    }
+}
+
+/// The stretches of a chain over water, each with the highest ground under it.
+fn wet(chain: &Chain, spans: &[Span], site: &Site<'_>) -> Vec<Passage> {
+    let mut all: Vec<Passage> = Vec::new();
+    if site.water.facets().is_empty() {
+        return all;
+    }
+    let step = (chain.length_m / MOST_SAMPLES).max(1.0);
+    let count = (chain.length_m / step).ceil().max(1.0) as usize;
+    let mut was_wet = false;
+    for index in 0..=count {
+        let station = chain.length_m * index as f64 / count as f64;
+        let at = chain.at(spans, station);
+        let level_m = site.water.height_m(at).and_then(|_| site.ground_m(at));
+        match (level_m, all.last_mut()) {
+            (Some(level), Some(last)) if was_wet => {
+                last.reach_m[1] = station;
+                last.level_m = last.level_m.max(level);
+            }
+            (Some(level_m), _) => all.push(Passage { reach_m: [station; 2], level_m }),
+            (None, _) => {}
+        }
+        was_wet = level_m.is_some();
+    }
+    all
+}
+
+/// The ground at both ends of a chain, or where there is some nearest to them.
+fn ground_ends(ground: &[Floor]) -> Option<[f64; 2]> {
+    Some([ground.first()?.level_m, ground.last()?.level_m])
+}
+
+/// The levels of the places where chains meet above or below the ground.
+fn meetings(spans: &[Span], chains: &[Chain], samples: &[Vec<Floor>], below: &Below) -> BTreeMap<Place, f64> {
+    let mut levels: BTreeMap<Place, f64> = BTreeMap::new();
+    let mut lowest: BTreeMap<Place, f64> = BTreeMap::new();
+    // What pulls at a place: the level at the other end of a chain, fixed or a place's, and the chain's length.
+    let mut pulls: Vec<(Place, (Option<Place>, f64), f64)> = Vec::new();
+    for (chain, ground) in chains.iter().zip(samples) {
+        let Some(own) = ground_ends(ground) else { continue };
+        let settled = spans[chain.links[0].span].levels_m.as_ref();
+        let own = match settled.map(|levels| (levels.first(), levels.last())) {
+            Some((Some(&first), Some(&last))) => [first, last],
+            _ => own,
+        };
+        for end in 0..2 {
+            let End::Onward(at) = chain.ends[end] else { continue };
+            let other = match chain.ends[1 - end] {
+                End::Onward(other) if settled.is_none() => (Some(other), own[1 - end]),
+                _ => (None, own[1 - end]),
+            };
+            levels.entry(at).or_insert(own[end]);
+            if spans[chain.links[0].span].carried == Carried::Bridge && settled.is_none() {
+                lowest.insert(at, own[end]);
+            }
+            let pull = if settled.is_some() { ((None, own[end]), 1e-3) } else { (other, chain.length_m) };
+            pulls.push((at, pull.0, pull.1));
+            if let Some((host, station)) = below.host(at, chains) {
+                let ends = ground_ends(&samples[host]).unwrap_or(own);
+                pulls.push((at, (None, ends[0]), station.max(1e-3)));
+                pulls.push((at, (None, ends[1]), (chains[host].length_m - station).max(1e-3)));
+            }
+        }
+    }
+    pulls.sort_by_key(|pull| pull.0);
+    for _ in 0..EVENINGS {
+        for group in pulls.chunk_by(|a, b| a.0 == b.0) {
+            let level = |&(other, level): &(Option<Place>, f64)| other.map_or(level, |at| levels[&at]);
+            let weight: f64 = group.iter().map(|pull| 1.0 / pull.2).sum();
+            let sum: f64 = group.iter().map(|pull| level(&pull.1) / pull.2).sum();
+            levels.insert(group[0].0, sum / weight);
+        }
+    }
+    for (at, ground_m) in lowest {
+        levels.entry(at).and_modify(|level| *level = level.max(ground_m));
+    }
+    levels
 }

@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
+use crate::scene::roads::at_grade::crossings;
 use crate::scene::roads::centreline::Centreline;
-use crate::scene::roads::crossings::crossings;
 use crate::terrain::alignment::network::NodeId;
 
 /// Vertices nearer to each other than this are one, in metres; as for [`crate::ribbon::junction`].

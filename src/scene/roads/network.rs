@@ -48,6 +48,15 @@ pub fn connect(all: &[Centreline]) -> Network {
     junction::connect(&strips.iter().map(Strip::street).collect::<Vec<_>>())
 }
 
+/// How good a pavement is among roads that meet.
+pub fn rank_of(surface: Surface) -> u8 {
+    match surface {
+        Surface::Track => 0,
+        Surface::Gravel => 1,
+        _ => 2,
+    }
+}
+
 /// A strip of one surface along a road.
 struct Strip<'a> {
     road: &'a Centreline,
@@ -67,11 +76,7 @@ struct Class {
 
 impl<'a> Strip<'a> {
     fn carriageway(road: &'a Centreline) -> Self {
-        let rank = match road.surface {
-            Surface::Track => 0,
-            Surface::Gravel => 1,
-            _ => 2,
-        };
+        let rank = rank_of(road.surface);
         Self { road, widths_m: widths_m(road, 0.0), options: road.options, surface: road.surface, rank }
     }
 

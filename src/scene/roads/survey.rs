@@ -180,16 +180,6 @@ impl Survey {
         }
         route
     }
-
-    /// The levels of the nodes that roads of the network reach; NaN elsewhere.
-    pub fn node_levels(&self, design: &Design) -> Vec<f64> {
-        let mut nodes = vec![f64::NAN; self.network.nodes];
-        for (section, levels) in self.network.sections.iter().zip(&design.levels_m) {
-            nodes[section.ends[0].index()] = levels[0];
-            nodes[section.ends[1].index()] = levels[levels.len() - 1];
-        }
-        nodes
-    }
 }
 
 fn stated(carried: Carried) -> Option<SpanKind> {

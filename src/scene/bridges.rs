@@ -1,0 +1,372 @@
+//! Bridges and tunnels: from spans to solids, decks to stand on, and rows of the report.
+//!
+//! ```text
+//!  spans::collect ─► chains::join ─► levels::settle ─┬─► a bridge for each span: structure::bridge
+//!                                                    ├─► portals where a tunnel's chain enters a hill
+//!                                                    └─► an underpass: the road stays on the ground
+//! ```
+//!
+//! **Tunnels.** Nothing is drawn of a tunnel but its portals, and a portal only where the hill rises over it. A short
+//! tunnel under ground that is hardly higher than its ends is an underpass: what it passes under, a railway or a house,
+//! is not in the elevation model, and a portal there would open into nothing; so would one where no road comes out. The road stays on the ground then, so that
+//! the course of the road is seen, as a map would show it.
+
+use std::collections::BTreeSet;
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::Document;
+use crate::geom::rect::Rect;
+use crate::ribbon::texture::Surface;
+use crate::scene::collected::Collected;
+use crate::scene::kind::{Coat, FeatureKind, Solid};
+use crate::scene::report::{Cell, Column};
+use crate::scene::roads::centreline::{Carried, Centreline};
+use crate::scene::roads::chains::{self, Chain, End, Link};
+use crate::scene::roads::levels::{self, Run, Site};
+use crate::scene::roads::spans::{self, Place, Span};
+use crate::scene::sources::Sources;
+use crate::structure::bridge::{self, Across, BridgeOptions, magnified};
+use crate::structure::deck::Course;
+use crate::structure::deck_profile::{DeckProfile, Floor};
+use crate::structure::tunnel::Portal;
+use crate::terrain::facets::Facet;
+use crate::terrain::lattice::Lattice;
+use crate::terrain::query::deck::Deck;
+
+/// The most piers in a scene.
+const MOST_PIERS: f64 = 200_000.0;
+
+/// The longest underpass, in metres: under a broad road or a railway yard.
+const LONGEST_UNDERPASS_M: f64 = 60.0;
+
+/// The ground that a tunnel has over it somewhere, at least, in metres; less is an underpass, or too little to show.
+const LEAST_COVER_M: f64 = 3.0;
+
+/// How far up a portal's wall the hill has to rise behind it.
+const BURIED: f64 = 0.6;
+
+/// How high the soffit is over the ground where an abutment ends, in metres: high enough to see through below.
+const ABUTMENT_M: f64 = 1.5;
+
+/// The longest part of a bridge that an abutment takes.
+const LONGEST_ABUTMENT: f64 = 0.25;
+
+/// What the report says of bridges and tunnels.
+const TABLE: (&str, &[Column]) = (
+    "bridges and tunnels",
+    &[
+        Column { name: "name", unit: "" },
+        Column { name: "kind", unit: "" },
+        Column { name: "by", unit: "" },
+        Column { name: "length", unit: "m" },
+        Column { name: "greatest height above ground", unit: "m" },
+        Column { name: "greatest depth below ground", unit: "m" },
+        Column { name: "steepest grade", unit: "%" },
+        Column { name: "piers", unit: "" },
+        Column { name: "portals", unit: "" },
+        Column { name: "lowest clearance", unit: "m" },
+    ],
+);
+
+/// Builds what carries the document's roads and its tables of bridges. Roads through underpasses become roads on the
+/// ground; all others that are not on the ground are done with.
+///
+/// # Errors
+/// A source cannot be had, or asks for too many piers.
+pub fn build(
+    document: &Document,
+    sources: &Sources<'_>,
+    (lattice, exaggeration): (&Lattice, f32),
+    roads: &mut [Centreline],
+    collected: &mut Collected,
+) -> Result<(), Diagnostic> {
+    let extent = lattice.extent();
+    let spans = spans::collect(document, sources, roads, &extent, collected)?;
+    if spans.is_empty() {
+        return Ok(());
+    }
+    check_piers(document, &spans)?;
+    let water = water(collected).map_err(|error| document.error_at(0..0, error))?;
+    let site = Site { lattice, water: &water, exaggeration };
+    let chains = chains::join(&spans, roads);
+    let runs = levels::settle(&spans, &chains, roads, &site);
+    let mouths: BTreeSet<Place> = spans
+        .iter()
+        .filter(|span| span.carried == Carried::Tunnel)
+        .flat_map(|span| [0, 1].map(|end| spans::place(span.end(end))))
+        .collect();
+    let mut bridges: Vec<(Built<'_>, &Link, BridgeOptions)> = Vec::new();
+    for (chain, run) in chains.iter().zip(&runs) {
+        let Some(run) = run else {
+            collected.notes.push(format!("{} left out: no ground lies along it", called(&spans, chain)));
+            continue;
+        };
+        let built = Built { spans: &spans, chain, run, site: &site, mouths: &mouths };
+        match spans[chain.links[0].span].carried {
+            Carried::Bridge => {
+                bridges.extend(built.planned(&extent).map(|(link, options)| (built, link, options)))
+            }
+            Carried::Tunnel => built.tunnel(&extent, roads, collected),
+            Carried::Ground => {}
+        }
+    }
+    let decks = bridges.iter().flat_map(|(built, link, options)| built.deck(link, options));
+    let decks = Deck::new(&decks.collect::<Vec<_>>());
+    let decks = decks.map_err(|error| document.error_at(0..0, error.to_string()))?;
+    for (built, link, options) in &bridges {
+        built.bridge((link, options), &decks, collected);
+    }
+    Ok(())
+}
+
+fn check_piers(document: &Document, spans: &[Span]) -> Result<(), Diagnostic> {
+    let wanted = |span: &&Span| span.line.length() / span.pier_spacing_m.unwrap_or(levels::PIER_SPACING_M);
+    let bridges = spans.iter().filter(|span| span.carried == Carried::Bridge);
+    let count: f64 = bridges.clone().map(|span| wanted(&span)).sum();
+    let most = bridges.max_by(|a, b| wanted(a).total_cmp(&wanted(b)));
+    match most {
+        Some(span) if count > MOST_PIERS => {
+            let message =
+                format!("the scene's bridges ask for {count:.0} piers, at most {MOST_PIERS} are built");
+            let help = "give a wider pier_spacing, or fewer or shorter bridges";
+            Err(document.error_at(span.place.clone(), message).with_help(help))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Where there is water, at height 0.
+fn water(collected: &Collected) -> Result<Deck, String> {
+    let of_water =
+        collected.ribbons.iter().filter(|ribbon| matches!(ribbon.surface, Surface::River | Surface::Lake));
+    let corners = of_water.flat_map(|ribbon| ribbon.plan.corners());
+    let facets: Vec<Facet> =
+        corners.map(|corners| corners.map(|corner| corner.at.as_vec2().extend(0.0))).collect();
+    Deck::new(&facets).map_err(|error| format!("water under bridges: {error}"))
+}
+
+fn called(spans: &[Span], chain: &Chain) -> String {
+    let span = &spans[chain.links[0].span];
+    let kind = if span.carried == Carried::Tunnel { "tunnel" } else { "bridge" };
+    if span.name.is_empty() { format!("a {kind} without a name") } else { format!("{kind} '{}'", span.name) }
+}
+
+/// A chain with all that is known of it.
+#[derive(Clone, Copy)]
+struct Built<'a> {
+    spans: &'a [Span],
+    chain: &'a Chain,
+    run: &'a Run,
+    site: &'a Site<'a>,
+    /// Where tunnels end.
+    mouths: &'a BTreeSet<Place>,
+}
+
+impl<'a> Built<'a> {
+    /// How the bridges of the chain are to be built, one a span.
+    fn planned(self, extent: &Rect) -> impl Iterator<Item = (&'a Link, BridgeOptions)> {
+        let widest =
+            self.chain.links.iter().map(|link| self.spans[link.span].options.width_m).fold(0.0, f64::max);
+        let abutments = [0, 1].map(|end| self.abutment_m(end, widest, extent));
+        let piers = self.piers(abutments);
+        self.chain.links.iter().enumerate().map(move |(index, link)| {
+            let span = &self.spans[link.span];
+            let is_backward = link.reach_m[1] < link.reach_m[0];
+            let own_ends = [index == 0, index + 1 == self.chain.links.len()];
+            let mut of_link = [0, 1].map(|end| abutments[end].filter(|_| own_ends[end]));
+            if is_backward {
+                of_link.reverse();
+            }
+            let (low, high) = (link.reach_m[0].min(link.reach_m[1]), link.reach_m[0].max(link.reach_m[1]));
+            let here = piers.iter().filter(|&&station| station >= low && station < high);
+            let across = [0, 1].map(|end| {
+                let is_mouth = self.mouths.contains(&spans::place(span.end(end)));
+                if of_link[end].is_some() && !is_mouth { Across::AsGround } else { Across::Level }
+            });
+            let options = BridgeOptions {
+                depth_m: self.run.depth_m,
+                piers_m: here.map(|station| (station - link.reach_m[0]).abs()).collect(),
+                abutments_m: of_link.map(|length| length.map(|length| length.min(span.line.length() / 2.0))),
+                across,
+                texture_length_m: span.options.texture_length_m,
+                exaggeration: self.site.exaggeration,
+            };
+            (link, options)
+        })
+    }
+
+    /// The course and the elevations of a bridge.
+    fn course(&self, link: &Link) -> (Course<'a>, DeckProfile) {
+        let span = &self.spans[link.span];
+        let course = Course {
+            line: &span.line,
+            beyond: span.beyond,
+            width_m: span.options.width_m,
+            mitre_limit: span.options.mitre_limit,
+        };
+        (course, self.run.profile.part(link.reach_m[0], link.reach_m[1]))
+    }
+
+    fn deck(&self, link: &Link, options: &BridgeOptions) -> Vec<Facet> {
+        let (course, profile) = self.course(link);
+        bridge::deck(&course, &profile, options, &|at| self.site.ground_m(at))
+    }
+
+    fn bridge(&self, (link, options): (&Link, &BridgeOptions), decks: &Deck, collected: &mut Collected) {
+        let span = &self.spans[link.span];
+        let (course, profile) = self.course(link);
+        let built = bridge::build(&course, &profile, options, (&|at| self.site.ground_m(at), decks));
+        let feature = collected.add(FeatureKind::Bridge, span.name.clone());
+        collected.solids.push(Solid { mesh: built.carriageway, coat: Coat::Surface(span.surface), feature });
+        collected.solids.push(Solid { mesh: built.body, coat: Coat::Painted, feature });
+        collected.decks.extend(built.deck);
+        self.tell(link, (Some(built.piers), None), profile.steepest(), collected);
+    }
+
+    /// How far the abutment at an end of the chain reaches under it; `None` where the chain goes on or leaves the model.
+    fn abutment_m(&self, end: usize, width_m: f64, extent: &Rect) -> Option<f64> {
+        let length_m = self.chain.length_m;
+        let at = |from_end: f64| if end == 0 { from_end } else { length_m - from_end };
+        let leaves = !extent.grown(-1e-3).contains(self.chain.at(self.spans, at(0.0)));
+        if matches!(self.chain.ends[end], End::Onward(_)) || leaves {
+            return None;
+        }
+        let by = magnified(width_m);
+        let longest = (LONGEST_ABUTMENT * length_m).max(length_m.min(by));
+        let open = |from_end: f64| {
+            let Some(ground_m) = self.site.ground_m(self.chain.at(self.spans, at(from_end))) else {
+                return true;
+            };
+            let above =
+                (self.run.profile.level_m(at(from_end)) - ground_m) * f64::from(self.site.exaggeration);
+            above - self.run.depth_m > ABUTMENT_M * by
+        };
+        let least = (1.2 * by).min(longest);
+        let place = |step: i32| least + (longest - least) * f64::from(step) / 32.0;
+        Some((0..32).map(place).find(|&from_end| open(from_end)).unwrap_or(longest))
+    }
+
+    /// The stations of the piers along the chain: evenly between the abutments, half a span from where the chain goes on,
+    /// beside what passes below rather than in it.
+    fn piers(&self, abutments: [Option<f64>; 2]) -> Vec<f64> {
+        let from = abutments[0].unwrap_or(0.0);
+        let clear = self.chain.length_m - from - abutments[1].unwrap_or(0.0);
+        let [first, last] = abutments.map(|abutment| if abutment.is_some() { 1.0 } else { 0.5 });
+        // Between n piers are n − 1 spans, and `first` and `last` of one beyond them.
+        let count = (clear / self.run.spacing_m - first - last + 1.0).ceil().clamp(0.0, MOST_PIERS);
+        let spacing = clear / (first + last + count - 1.0).max(1e-9);
+        let even = (0..count as usize).map(|pier| from + spacing * (first + pier as f64));
+        even.map(|station| self.beside(station, spacing)).collect()
+    }
+
+    /// A pier's station moved out of what passes below, where that takes it no farther than a third of a span.
+    fn beside(&self, station: f64, spacing: f64) -> f64 {
+        let room = 1.5;
+        let in_way = |passage: &&levels::Passage| {
+            station > passage.reach_m[0] - room && station < passage.reach_m[1] + room
+        };
+        let Some(passage) = self.run.passages.iter().find(in_way) else { return station };
+        let [before, after] = [passage.reach_m[0] - room, passage.reach_m[1] + room];
+        let nearest = if station - before < after - station { before } else { after };
+        if (nearest - station).abs() <= spacing / 3.0 { nearest } else { station }
+    }
+
+    /// The portals of the chain, or a road on the ground in its place.
+    fn tunnel(&self, extent: &Rect, roads: &mut [Centreline], collected: &mut Collected) {
+        let cover = |floor: &Floor| floor.level_m - self.run.profile.level_m(floor.station_m);
+        let cover_m = self.run.ground.iter().map(cover).fold(f64::NEG_INFINITY, f64::max);
+        let is_shallow = cover_m < LEAST_COVER_M;
+        let open_ends = !self.chain.ends.iter().any(|end| matches!(end, End::Onward(_)));
+        if is_shallow && open_ends && self.chain.length_m <= LONGEST_UNDERPASS_M {
+            for link in &self.chain.links {
+                if let Some(road) = self.spans[link.span].road {
+                    roads[road].carried = Carried::Ground;
+                }
+                self.tell(link, (None, Some(0)), self.run.profile.steepest(), collected);
+            }
+            return;
+        }
+        for link in &self.chain.links {
+            let feature = collected.add(FeatureKind::Tunnel, self.spans[link.span].name.clone());
+            let portals: Vec<Portal> = if is_shallow {
+                Vec::new()
+            } else {
+                (0..2).filter_map(|end| self.portal(link, end, extent)).collect()
+            };
+            for portal in &portals {
+                let mesh = portal.build(&|at| self.site.ground_m(at));
+                collected.solids.push(Solid { mesh, coat: Coat::Painted, feature });
+            }
+            let grade = self.run.profile.part(link.reach_m[0], link.reach_m[1]).steepest();
+            self.tell(link, (None, Some(portals.len())), grade, collected);
+        }
+    }
+
+    /// The portal at an end of a span, where it comes out of a hill there.
+    fn portal(&self, link: &Link, end: usize, extent: &Rect) -> Option<Portal> {
+        let span = &self.spans[link.span];
+        let station = link.reach_m[end];
+        let corner = if station <= 0.0 { 0 } else { 1 };
+        let is_chain_end = station <= 0.0 || station >= self.chain.length_m;
+        let at = span.end(end);
+        if !is_chain_end || self.chain.ends[corner] != End::Ground || !extent.grown(-1e-3).contains(at) {
+            return None;
+        }
+        let points = span.line.points();
+        let inner = if end == 0 { points[1] } else { points[points.len() - 2] };
+        let portal = Portal {
+            at,
+            level_m: self.run.profile.level_m(station),
+            outward: (at - inner).normalize_or_zero(),
+            width_m: span.options.width_m,
+            exaggeration: self.site.exaggeration,
+        };
+        portal.covered_after_m(BURIED, &|at| self.site.ground_m(at)).map(|_| portal)
+    }
+
+    /// Adds a span's row to the report; `counts` are its piers and portals.
+    fn tell(
+        &self,
+        link: &Link,
+        counts: (Option<usize>, Option<usize>),
+        grade: f64,
+        collected: &mut Collected,
+    ) {
+        let span = &self.spans[link.span];
+        let (low, high) = (link.reach_m[0].min(link.reach_m[1]), link.reach_m[0].max(link.reach_m[1]));
+        let under = self.run.ground.iter().filter(|floor| floor.station_m >= low && floor.station_m <= high);
+        let above = under.map(|floor| self.run.profile.level_m(floor.station_m) - floor.level_m);
+        let (least, most) =
+            above.fold((0.0f64, 0.0f64), |(least, most), here| (least.min(here), most.max(here)));
+        let depth_m = self.run.depth_m / f64::from(self.site.exaggeration);
+        let here = self
+            .run
+            .passages
+            .iter()
+            .filter(|passage| passage.reach_m[1] >= low && passage.reach_m[0] <= high);
+        let clearance = here
+            .flat_map(|passage| {
+                passage.reach_m.map(|at| self.run.profile.level_m(at) - depth_m - passage.level_m)
+            })
+            .reduce(f64::min);
+        let count = |count: Option<usize>| count.map_or(Cell::Empty, Cell::Count);
+        let kind = match (span.carried, counts.1) {
+            (Carried::Tunnel, Some(0)) if -least < LEAST_COVER_M => "underpass",
+            (Carried::Tunnel, _) => "tunnel",
+            _ => "bridge",
+        };
+        let row = vec![
+            Cell::Text(span.name.clone()),
+            Cell::Text(kind.into()),
+            Cell::Text(span.by.word().into()),
+            Cell::Number(span.line.length()),
+            Cell::Number(most),
+            Cell::Number(-least),
+            Cell::Number(grade * 100.0),
+            count(counts.0),
+            count(counts.1),
+            clearance.map_or(Cell::Empty, Cell::Number),
+        ];
+        collected.report.add(TABLE, row);
+    }
+}

@@ -1,0 +1,449 @@
+//! A bridge: a deck with parapets drawn out along its course, abutments at its ends, piers under it.
+//!
+//! The cross-section at each section of the course, looking along it; the carriageway is a mesh of its own, since it
+//! carries the road's texture, and closes the rest:
+//!
+//! ```text
+//!    0─1                 4─5     parapets, outside the carriageway
+//!    │ │                 │ │
+//!   11 2─────────────────3 6     carriageway: the profile's elevation
+//!   10 ╲                 ╱ 7     edge beams
+//!        ╲9───────────8╱         soffit
+//! ```
+//!
+//! Elevations are stretched as the ground is; what is built on them is not. A road may be drawn much wider than any is,
+//! to be seen on a small picture; then what is built for it is magnified as well.
+
+use glam::{DVec2, Vec2, Vec3};
+
+use crate::draw::color::Srgba;
+use crate::draw::list::DrawMesh;
+use crate::structure::deck::{Course, Section};
+use crate::structure::deck_check;
+use crate::structure::deck_profile::DeckProfile;
+use crate::structure::faces::Faces;
+use crate::structure::pier;
+use crate::terrain::facets::Facet;
+use crate::terrain::query::deck::Deck;
+
+/// The elevation of the ground at a world position in metres; `None` where there is none.
+pub type GroundHeight<'a> = dyn Fn(DVec2) -> Option<f64> + 'a;
+
+/// How far below the ground walls and piers are founded, in metres: the ground is drawn coarser when it is far away, by
+/// about a pixel, and nothing may show its foot then.
+pub const FOUNDED_M: f64 = 3.0;
+
+/// The width of the widest bridges that are built, about, in metres: a wider one is a symbol, drawn larger than life.
+const WIDEST_REAL_M: f64 = 20.0;
+
+/// Over how many widths a deck turns from how the ground lies across its end to level.
+const TILT_WIDTHS: f64 = 2.0;
+
+/// Where bridges meet, sections stand an eighth of the width apart for three widths, so that parapets end where they
+/// should.
+const MEETING_BREAKS: u32 = 24;
+
+/// How far above or below a parapet's foot a carriageway lies that it would stand in the way of, in metres.
+const SAME_DECK_M: f64 = 1.5;
+
+/// The steepest fall across that a deck takes over from the ground at its end: between a steep road and a warped deck.
+const MOST_TILT: f64 = 0.25;
+
+const CONCRETE: Srgba = Srgba::opaque(236, 231, 219);
+const WEATHERED: Srgba = Srgba::opaque(214, 207, 193);
+
+/// How a deck's end lies across.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Across {
+    /// As the ground does, on which the road goes on.
+    AsGround,
+    /// Level, as in a tunnel or on the next bridge.
+    Level,
+}
+
+/// How a bridge is built.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BridgeOptions {
+    /// Metres from the carriageway to the soffit, above 0; see [`depth_m`].
+    pub depth_m: f64,
+    /// Stations of the piers, in metres.
+    pub piers_m: Vec<f64>,
+    /// How far the abutments at its start and end reach below it, in metres; `None` where it goes on in another bridge.
+    pub abutments_m: [Option<f64>; 2],
+    /// How its start and end lie across.
+    pub across: [Across; 2],
+    /// Metres along the carriageway in one repeat of its texture, above 0.
+    pub texture_length_m: f64,
+    /// How many times elevations are stretched when drawn.
+    pub exaggeration: f32,
+}
+
+/// The solids of a bridge, in world space with drawn heights.
+#[derive(Clone, Debug, Default)]
+pub struct Bridge {
+    /// What traffic runs on, with a road's texture coordinates.
+    pub carriageway: DrawMesh,
+    /// All the rest.
+    pub body: DrawMesh,
+    /// The carriageway's triangles, elevations in metres without exaggeration.
+    pub deck: Vec<Facet>,
+    /// How many piers stand.
+    pub piers: usize,
+}
+
+/// How deep a deck is for its longest span: an eighteenth of it, as for girders of concrete, from 0.6 to 4 metres.
+pub fn depth_m(longest_span_m: f64) -> f64 {
+    (longest_span_m / 18.0).clamp(0.6, 4.0)
+}
+
+/// How many times larger than life what is built for a road of this width is drawn, at least 1.
+pub fn magnified(width_m: f64) -> f64 {
+    (width_m / WIDEST_REAL_M).max(1.0)
+}
+
+/// The carriageway alone of the bridge that [`build`] builds.
+pub fn deck(
+    course: &Course<'_>,
+    profile: &DeckProfile,
+    options: &BridgeOptions,
+    ground: &GroundHeight<'_>,
+) -> Vec<Facet> {
+    lay_carriageway(&sections(course, profile, options, ground), options).deck
+}
+
+/// Builds the bridge along `course` at the elevations of `profile`, whose stations are the course's. Its parapets stop
+/// where one of the other carriageways of `decks` goes on beside it.
+pub fn build(
+    course: &Course<'_>,
+    profile: &DeckProfile,
+    options: &BridgeOptions,
+    (ground, decks): (&GroundHeight<'_>, &Deck),
+) -> Bridge {
+    let sections = sections(course, profile, options, ground);
+    let mut body = Faces::default();
+    let mut bridge = lay_carriageway(&sections, options);
+    draw_out(&sections, &Rings::new(course.width_m, options), decks, &mut body);
+    for (end, length_m) in options.abutments_m.iter().enumerate() {
+        let Some(length_m) = *length_m else { continue };
+        let reach = |section: &&Section| {
+            let from_end =
+                if end == 0 { section.station_m } else { course.line.length() - section.station_m };
+            from_end <= length_m + 1e-6
+        };
+        let under: Vec<Section> = sections.iter().filter(reach).copied().collect();
+        pier::abutment(&under, (course.width_m, options), ground, WEATHERED, &mut body);
+        let last = if end == 0 { sections.first() } else { sections.last() };
+        if let Some(section) = last {
+            pier::end_posts(section, (course.width_m, options), WEATHERED, &mut body);
+        }
+    }
+    for &station in &options.piers_m {
+        let section = nearest(&sections, station);
+        bridge.piers +=
+            usize::from(pier::pier(section, (course.width_m, options), ground, CONCRETE, &mut body));
+    }
+    bridge.body = body.into_mesh();
+    bridge
+}
+
+/// The section that stands nearest to a station; there is one at every pier unless it stands on a mitre.
+fn nearest(sections: &[Section], station_m: f64) -> &Section {
+    let after =
+        sections.partition_point(|section| section.station_m < station_m).clamp(1, sections.len() - 1);
+    let (before, after) = (&sections[after - 1], &sections[after]);
+    if station_m - before.station_m < after.station_m - station_m { before } else { after }
+}
+
+/// The course's sections, turned at its ends as the ground lies across.
+fn sections(
+    course: &Course<'_>,
+    profile: &DeckProfile,
+    options: &BridgeOptions,
+    ground: &GroundHeight<'_>,
+) -> Vec<Section> {
+    let length_m = course.line.length();
+    let fade_m = (course.width_m * TILT_WIDTHS).min(length_m / 2.0);
+    let abutments = options.abutments_m.map(|length| length.unwrap_or(0.0));
+    let mut breaks: Vec<f64> = profile.stations().collect();
+    breaks.extend([abutments[0], length_m - abutments[1]]);
+    breaks.extend([0.25, 0.5, 0.75, 1.0].map(|part| part * fade_m));
+    breaks.extend([0.25, 0.5, 0.75, 1.0].map(|part| length_m - part * fade_m));
+    breaks.extend(&options.piers_m);
+    for (end, abutment) in options.abutments_m.iter().enumerate() {
+        if abutment.is_none() {
+            let from_end = (1..=MEETING_BREAKS).map(|step| f64::from(step) * course.width_m / 8.0);
+            breaks.extend(from_end.map(|from_end| if end == 0 { from_end } else { length_m - from_end }));
+        }
+    }
+    let mut sections = course.sections(&breaks, &|station| profile.level_m(station));
+    let last = sections.len() - 1;
+    for (index, end) in [0, last].into_iter().enumerate() {
+        if options.across[index] == Across::Level {
+            continue;
+        }
+        let tilt = tilt(&sections[end], course.width_m, ground);
+        for section in &mut sections {
+            let from_end = (section.station_m - if index == 0 { 0.0 } else { length_m }).abs();
+            // Smooth at both ends.
+            let part = (1.0 - from_end / fade_m).clamp(0.0, 1.0);
+            let share = part * part * (3.0 - 2.0 * part);
+            for side in 0..2 {
+                section.edges_m[side] += tilt[side] * share;
+            }
+        }
+    }
+    sections
+}
+
+/// How far the ground lies above either edge of a section, within what a deck takes over.
+fn tilt(section: &Section, width_m: f64, ground: &GroundHeight<'_>) -> [f64; 2] {
+    let most = MOST_TILT * width_m / 2.0;
+    [0, 1].map(|side| {
+        let above = ground(section.at + section.aside[side]).map(|height| height - section.edges_m[side]);
+        above.unwrap_or(0.0).clamp(-most, most)
+    })
+}
+
+/// How a quad of plan positions, counter-clockwise, is cut into two triangles that both face up wherever that can be.
+pub(in crate::structure) fn quad_corners(quad: [DVec2; 4]) -> [[usize; 3]; 2] {
+    let area = |[a, b, c]: [usize; 3]| (quad[b] - quad[a]).perp_dot(quad[c] - quad[a]);
+    let cuts = [[[0, 1, 2], [0, 2, 3]], [[0, 1, 3], [1, 2, 3]]];
+    let worst = |cut: [[usize; 3]; 2]| cut.map(area).into_iter().fold(f64::INFINITY, f64::min);
+    if worst(cuts[0]) >= worst(cuts[1]).min(1e-9) { cuts[0] } else { cuts[1] }
+}
+
+fn lay_carriageway(sections: &[Section], options: &BridgeOptions) -> Bridge {
+    let mut faces = Faces::default();
+    let mut deck = Vec::new();
+    for pair in sections.windows(2) {
+        let [from, to] = [pair[0], pair[1]];
+        let at = |section: Section, side: usize| {
+            let v = (section.station_m / options.texture_length_m) as f32;
+            let world = section.edges()[side];
+            (
+                section.at + section.aside[side],
+                section.drawn(side, 1.0, 0.0, options.exaggeration),
+                world,
+                side,
+                v,
+            )
+        };
+        let quad = [at(from, 0), at(from, 1), at(to, 1), at(to, 0)];
+        for triangle in quad_corners(quad.map(|corner| corner.0)) {
+            let corner = |index: usize| (quad[index].1, Vec2::new(quad[index].3 as f32, quad[index].4));
+            faces.textured(triangle.map(corner), Srgba::WHITE);
+            deck.push(triangle.map(|index| quad[index].2));
+        }
+    }
+    Bridge { carriageway: faces.into_mesh(), deck, ..Bridge::default() }
+}
+
+/// The cross-section, as points on a section.
+struct Rings {
+    /// Side, part of the way to the carriageway's edge, metres above it.
+    points: [(usize, f64, f64); 12],
+    exaggeration: f32,
+}
+
+impl Rings {
+    fn new(width_m: f64, options: &BridgeOptions) -> Self {
+        let by = magnified(width_m);
+        let (parapet, thick) = (PARAPET_M * by, PARAPET_THICK_M * by);
+        let outer = 1.0 + thick / (width_m / 2.0);
+        let (edge, depth) = (-0.4 * options.depth_m, -options.depth_m);
+        let points = [
+            (0, outer, parapet),
+            (0, 1.0, parapet),
+            (0, 1.0, 0.0),
+            (1, 1.0, 0.0),
+            (1, 1.0, parapet),
+            (1, outer, parapet),
+            (1, outer, 0.0),
+            (1, outer, edge),
+            (1, GIRDER, depth),
+            (0, GIRDER, depth),
+            (0, outer, edge),
+            (0, outer, 0.0),
+        ];
+        Self { points, exaggeration: options.exaggeration }
+    }
+
+    fn at(&self, section: &Section, decks: &Deck) -> [Vec3; 12] {
+        let stands = [0, 1].map(|side| self.stands(section, side, decks));
+        self.points.map(|(side, part, above)| {
+            let above = if above > 0.0 && !stands[side] { 0.0 } else { above };
+            section.drawn(side, part, above, self.exaggeration)
+        })
+    }
+
+    /// Whether no other carriageway goes on where a parapet would stand.
+    fn stands(&self, section: &Section, side: usize, decks: &Deck) -> bool {
+        let middle = (1.0 + self.points[0].1) / 2.0;
+        let other_m = decks.height_m(section.at + section.aside[side] * middle);
+        other_m.is_none_or(|other_m| (other_m - section.edges_m[side]).abs() > SAME_DECK_M)
+    }
+}
+
+/// How high parapets stand over the carriageway, in metres.
+const PARAPET_M: f64 = 1.1;
+/// How thick they are, in metres.
+pub(in crate::structure) const PARAPET_THICK_M: f64 = 0.4;
+/// How wide the soffit is, as a part of the carriageway.
+pub(in crate::structure) const GIRDER: f64 = 0.62;
+
+/// Draws the cross-section out along the sections and closes its ends.
+fn draw_out(sections: &[Section], rings: &Rings, decks: &Deck, faces: &mut Faces) {
+    /// The side between points 2 and 3 is the carriageway.
+    const CARRIAGEWAY: usize = 2;
+    for pair in sections.windows(2) {
+        let (from, to) = (rings.at(&pair[0], decks), rings.at(&pair[1], decks));
+        for side in (0..12).filter(|&side| side != CARRIAGEWAY) {
+            let next = (side + 1) % 12;
+            faces.polygon(&[from[side], from[next], to[next], to[side]], CONCRETE);
+        }
+    }
+    // Both parapets, and the slab, cut so that no triangle is a line.
+    let caps: [&[usize]; 3] = [&[0, 1, 2, 11], &[3, 4, 5, 6], &[8, 9, 10, 11, 2, 3, 6, 7]];
+    let (first, last) = (rings.at(&sections[0], decks), rings.at(&sections[sections.len() - 1], decks));
+    for cap in caps {
+        let back: Vec<Vec3> = cap.iter().rev().map(|&point| first[point]).collect();
+        let front: Vec<Vec3> = cap.iter().map(|&point| last[point]).collect();
+        // Both begin at point 8 or at a parapet's top, from which every other corner is seen.
+        faces.polygon(&rotated(&back, cap.len() - 1), CONCRETE);
+        faces.polygon(&front, CONCRETE);
+    }
+}
+
+fn rotated(ring: &[Vec3], by: usize) -> Vec<Vec3> {
+    ring[by..].iter().chain(&ring[..by]).copied().collect()
+}
+
+impl Bridge {
+    /// Whether every triangle of the deck faces up, and the carriageway closes the body: nothing shows from inside.
+    ///
+    /// # Errors
+    /// A sentence that names the first thing out of place.
+    pub fn check(&self) -> Result<(), String> {
+        for (index, [a, b, c]) in self.deck.iter().enumerate() {
+            let up = (*b - *a).truncate().perp_dot((*c - *a).truncate());
+            if up < 0.0 {
+                return Err(format!("triangle {index} of the deck faces down at {a}"));
+            }
+        }
+        deck_check::closed(&[&self.carriageway, &self.body])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::polyline::Polyline;
+    use crate::structure::deck_profile::Floor;
+    use proptest::prelude::*;
+
+    fn options(length_m: f64) -> BridgeOptions {
+        BridgeOptions {
+            depth_m: depth_m(30.0),
+            piers_m: vec![length_m / 3.0, length_m / 1.5],
+            abutments_m: [Some(6.0), Some(6.0)],
+            across: [Across::AsGround; 2],
+            texture_length_m: 15.0,
+            exaggeration: 1.5,
+        }
+    }
+
+    fn course(line: &Polyline) -> Course<'_> {
+        Course { line, beyond: [None; 2], width_m: 8.0, mitre_limit: 2.0 }
+    }
+
+    fn none() -> Deck {
+        Deck::new(&[]).expect("no triangle is wrong")
+    }
+
+    #[test]
+    fn parapets_stop_where_another_deck_goes_on() {
+        let at = |x: f32, y: f32| Vec3::new(x, y, 50.0);
+        let beside =
+            [[at(20.0, 4.0), at(60.0, 4.0), at(60.0, 9.0)], [at(20.0, 4.0), at(60.0, 9.0), at(20.0, 9.0)]];
+        let line = Polyline::new([DVec2::ZERO, DVec2::new(90.0, 0.0)], 0.0).expect("a line");
+        let options = BridgeOptions { piers_m: vec![40.0], ..options(90.0) };
+        let decks = Deck::new(&beside).expect("sound");
+        let level = DeckProfile::straight(90.0, [50.0; 2]);
+        let bridge = build(&course(&line), &level, &options, (&|_| Some(50.0), &decks));
+        bridge.check().expect("sound");
+        let highest = |side: f32| {
+            let corners = bridge.body.vertices.iter().map(|vertex| vertex.position);
+            let here = corners.filter(|at| (at[0] - 40.0).abs() < 0.1 && at[1] * side > 3.9);
+            here.map(|at| at[2]).fold(f32::NEG_INFINITY, f32::max) - 75.0
+        };
+        assert!(highest(1.0) < 1e-3 && highest(-1.0) > 1.0, "{} {}", highest(1.0), highest(-1.0));
+    }
+
+    fn valley(at: DVec2) -> Option<f64> {
+        Some(100.0 + at.length() * 0.02 - 30.0 * (1.0 - (at.length() - 60.0).abs() / 60.0).max(0.0))
+    }
+
+    #[test]
+    fn piers_end_below_the_ground_and_reach_the_soffit() {
+        for quarter in 0..4 {
+            let turn = |at: DVec2| (0..quarter).fold(at, |at, _| at.perp());
+            let points = [DVec2::ZERO, DVec2::new(120.0, 0.0)].map(turn);
+            let line = Polyline::new(points, 0.0).expect("a line");
+            let profile = DeckProfile::straight(120.0, [100.0, 102.4]);
+            let bridge = build(&course(&line), &profile, &options(120.0), (&valley, &none()));
+            bridge.check().expect("sound");
+            assert_eq!(bridge.piers, 2);
+            for station in [40.0, 80.0] {
+                let at = line.at(station);
+                let ground = valley(at).expect("ground") * 1.5;
+                let soffit = profile.level_m(station) * 1.5 - depth_m(30.0);
+                let near = bridge.body.vertices.iter().map(|vertex| Vec3::from(vertex.position));
+                let near: Vec<Vec3> =
+                    near.filter(|corner| corner.truncate().as_dvec2().distance(at) < 3.5).collect();
+                assert!(near.iter().any(|corner| f64::from(corner.z) < ground - 2.9));
+                assert!(near.iter().any(|corner| (f64::from(corner.z) - soffit).abs() < 0.5));
+            }
+        }
+    }
+
+    #[test]
+    fn the_deck_s_ends_lie_as_the_ground_does_across_them() {
+        let line = Polyline::new([DVec2::ZERO, DVec2::new(90.0, 0.0)], 0.0).expect("a line");
+        let slope = |at: DVec2| Some(50.0 + at.y * 0.1);
+        let bridge =
+            build(&course(&line), &DeckProfile::straight(90.0, [50.0; 2]), &options(90.0), (&slope, &none()));
+        let height = |x: f32, y: f32| {
+            let mut corners = bridge.deck.iter().flatten().filter(|corner| corner.x == x && corner.y == y);
+            corners.next().expect("a corner").z
+        };
+        assert!((height(0.0, 4.0) - 50.4).abs() < 1e-4 && (height(0.0, -4.0) - 49.6).abs() < 1e-4);
+        assert!((height(30.0, 4.0) - 50.0).abs() < 1e-4);
+    }
+
+    proptest! {
+        #[test]
+        fn every_bridge_is_closed_and_its_deck_faces_up(
+            turns in prop::collection::vec((5.0..50.0f64, -1.5..1.5f64), 1..12),
+            heights in prop::collection::vec(90.0..130.0f64, 13),
+            quarter in 0u32..4,
+        ) {
+            let (mut heading, mut at) = (f64::from(quarter) * std::f64::consts::FRAC_PI_2, DVec2::new(3000.0, 900.0));
+            let mut points = vec![at];
+            for (length, turn) in turns {
+                heading += turn;
+                at += DVec2::new(libm::cos(heading), libm::sin(heading)) * length;
+                points.push(at);
+            }
+            let line = Polyline::new(points, 0.01).expect("a line");
+            let floors: Vec<Floor> = line.stations().iter().zip(&heights)
+                .map(|(&station_m, &level_m)| Floor { station_m, level_m }).collect();
+            let ends = [floors[0].level_m, floors[floors.len() - 1].level_m];
+            let profile = DeckProfile::clearing((line.length(), ends), &floors, &[], 0.1);
+            let bridge = build(&course(&line), &profile, &options(line.length()), (&|_| Some(95.0), &none()));
+            prop_assert_eq!(bridge.check(), Ok(()));
+            let plan = |facet: &Facet| (facet[1] - facet[0]).truncate().perp_dot((facet[2] - facet[0]).truncate());
+            let area: f32 = bridge.deck.iter().map(plan).sum::<f32>() / 2.0;
+            prop_assert!(f64::from(area) < 8.0 * line.length() * 1.3, "{} m²", area);
+        }
+    }
+}

@@ -1,0 +1,221 @@
+//! The course of a deck: lines across it, from which everything along a bridge is drawn out.
+//!
+//! At every vertex of the centreline stands a section, on the mitre as a ribbon's is; between vertices more stand where
+//! the deck's height bends. A deck is a closed solid, so a turn never splits it: where a mitre would reach too far, it
+//! is shortened on the outer side, and where its inner corner would pass the next one's, on the inner side.
+//!
+//! ```text
+//!            left
+//!      ┬──────┬──────┬╲
+//!      │      │      │  ╲      a section: its place on the centreline,
+//!      ┼──────┼──────┼    ╲    the ways from there to both edges, and
+//!      │      │      │╲     ╲  the elevations of both edges
+//!      ┴──────┴──────┴  ╲    ╱
+//!            right        ╲╱
+//! ```
+
+use glam::{DVec2, Vec3};
+
+use crate::geom::polyline::Polyline;
+
+/// How far along a segment the inner corner of a mitre may reach, as a part of it: below a half, so that the corners at
+/// its two ends never pass each other.
+const LONGEST_INNER: f64 = 0.45;
+
+/// The most sections that are put in between the vertices of one centreline: enough for one every metre of a long
+/// bridge, and a bound for lines that go on and on.
+const MOST_BREAKS: usize = 4096;
+
+/// A line across a deck.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Section {
+    /// Where it stands along the centreline, in metres.
+    pub station_m: f64,
+    /// Its place on the centreline, in the world.
+    pub at: DVec2,
+    /// The ways from there to the left and to the right edge of the carriageway.
+    pub aside: [DVec2; 2],
+    /// The elevations of the left and the right edge, in metres.
+    pub edges_m: [f64; 2],
+}
+
+/// What a deck is drawn out along.
+#[derive(Clone, Copy, Debug)]
+pub struct Course<'a> {
+    /// The centreline in world coordinates.
+    pub line: &'a Polyline,
+    /// The vertices beyond its first and its last one, of the roads that go on there.
+    pub beyond: [Option<DVec2>; 2],
+    /// From edge to edge of the carriageway, in metres, above 0.
+    pub width_m: f64,
+    /// How long a mitre may be, in half widths, at least 1.
+    pub mitre_limit: f64,
+}
+
+impl Course<'_> {
+    /// Sections at every vertex and, where they do not come in the way of a mitre, at the stations `breaks_m`, stations
+    /// rising. `level_m` gives the elevation at a station.
+    pub fn sections(&self, breaks_m: &[f64], level_m: &dyn Fn(f64) -> f64) -> Vec<Section> {
+        let mut breaks: Vec<f64> = breaks_m.iter().copied().take(MOST_BREAKS).collect();
+        breaks.sort_by(f64::total_cmp);
+        let (points, stations) = (self.line.points(), self.line.stations());
+        let asides: Vec<[DVec2; 2]> = (0..points.len()).map(|index| self.aside(index)).collect();
+        let mut sections = Vec::with_capacity(points.len() + breaks.len());
+        for (index, &at) in points.iter().enumerate() {
+            sections.push(section(stations[index], at, asides[index], level_m));
+            let (Some(&next), Some(&end_m)) = (points.get(index + 1), stations.get(index + 1)) else {
+                continue;
+            };
+            let along = (next - at).normalize_or_zero();
+            let reach = |index: usize| {
+                asides[index].iter().map(|aside| aside.dot(along).abs()).fold(0.0, f64::max)
+                    + self.width_m * 1e-3
+            };
+            let (from_m, to_m) = (stations[index] + reach(index), end_m - reach(index + 1));
+            let square = along.perp() * (self.width_m / 2.0);
+            let first = breaks.partition_point(|&station| station <= from_m);
+            let mut last_m = from_m;
+            for &station in breaks[first..].iter().take_while(|&&station| station < to_m) {
+                if station - last_m > self.width_m * 1e-3 {
+                    let at = at + along * (station - stations[index]);
+                    sections.push(section(station, at, [square, -square], level_m));
+                    last_m = station;
+                }
+            }
+        }
+        sections
+    }
+
+    /// The ways to both edges at a vertex.
+    fn aside(&self, index: usize) -> [DVec2; 2] {
+        let points = self.line.points();
+        let before = if index > 0 { Some(points[index - 1]) } else { self.beyond[0] };
+        let after = points.get(index + 1).copied().or(self.beyond[1]);
+        let is_end = index == 0 || index + 1 == points.len();
+        let along = |from: Option<DVec2>, to: Option<DVec2>| Some((to? - from?).normalize_or_zero());
+        let at = Some(points[index]);
+        let (arriving, leaving) = (along(before, at), along(at, after));
+        let half = self.width_m / 2.0;
+        let own = if index == 0 { leaving } else { arriving };
+        let square = own.unwrap_or(DVec2::X).perp() * half;
+        let (Some(arriving), Some(leaving)) = (arriving, leaving) else { return [square, -square] };
+        let Some(mitre) = mitre(arriving, leaving) else { return [square, -square] };
+        let shortest = [before, after]
+            .into_iter()
+            .flatten()
+            .map(|other| other.distance(points[index]))
+            .fold(f64::INFINITY, f64::min);
+        let reach = (mitre.length_squared() - 1.0).max(0.0).sqrt() * half;
+        if mitre.length() <= self.mitre_limit && 2.0 * reach <= shortest {
+            return [mitre * half, mitre * -half];
+        }
+        // What goes on beyond an end does so with an edge of its own; see `ribbon::stroke`.
+        if is_end {
+            return [square, -square];
+        }
+        let outer = mitre * half * (self.mitre_limit / mitre.length()).min(1.0);
+        let inner = mitre * half * (LONGEST_INNER * shortest / reach).min(1.0);
+        if arriving.perp_dot(leaving) > 0.0 { [inner, -outer] } else { [outer, -inner] }
+    }
+}
+
+fn section(station_m: f64, at: DVec2, aside: [DVec2; 2], level_m: &dyn Fn(f64) -> f64) -> Section {
+    Section { station_m, at, aside, edges_m: [level_m(station_m); 2] }
+}
+
+/// The way to the left end of the mitre, in half widths; `None` where the line turns back on itself.
+fn mitre(arriving: DVec2, leaving: DVec2) -> Option<DVec2> {
+    let sum = arriving.perp() + leaving.perp();
+    let square = sum.length_squared();
+    (square > 1e-12).then(|| sum * (2.0 / square))
+}
+
+impl Section {
+    /// The point at `part` of the way to the left (0) or right (1) edge and `above_m` over that edge, as it is drawn.
+    /// A part above 1 lies beyond the carriageway.
+    pub fn drawn(&self, side: usize, part: f64, above_m: f64, exaggeration: f32) -> Vec3 {
+        let plan = self.at + self.aside[side] * part;
+        let edge = self.edges_m[side] * f64::from(exaggeration);
+        let middle = (self.edges_m[0] + self.edges_m[1]) / 2.0 * f64::from(exaggeration);
+        plan.as_vec2().extend((middle + (edge - middle) * part + above_m) as f32)
+    }
+
+    /// The carriageway's left and right edge in the world, elevations in metres.
+    pub fn edges(&self) -> [Vec3; 2] {
+        [0, 1].map(|side| (self.at + self.aside[side]).as_vec2().extend(self.edges_m[side] as f32))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn turned(points: &[(f64, f64)], quarter: u32) -> Polyline {
+        let turn = |&(x, y): &(f64, f64)| (0..quarter).fold(DVec2::new(x, y), |at, _| at.perp());
+        Polyline::new(points.iter().map(turn), 0.01).expect("a line")
+    }
+
+    /// Twice the signed areas of both triangles of each quad between sections.
+    fn doubled_areas(sections: &[Section]) -> Vec<f64> {
+        let quads = sections.windows(2).flat_map(|pair| {
+            let [a, b] = [pair[0], pair[1]].map(|section| section.aside.map(|aside| section.at + aside));
+            let quad = [a[0], a[1], b[1], b[0]];
+            let triangles =
+                crate::structure::bridge::quad_corners(quad).map(|corners| corners.map(|at| quad[at]));
+            triangles.map(|[p, q, r]| (q - p).perp_dot(r - p))
+        });
+        quads.collect()
+    }
+
+    #[test]
+    fn a_gentle_course_covers_width_times_length_however_it_is_turned() {
+        for quarter in 0..4 {
+            let line = turned(&[(0.0, 0.0), (80.0, 0.0), (150.0, 30.0), (190.0, 90.0)], quarter);
+            let course = Course { line: &line, beyond: [None; 2], width_m: 8.0, mitre_limit: 2.0 };
+            let breaks: Vec<f64> = (0..40).map(|index| f64::from(index) * 7.0).collect();
+            let sections = course.sections(&breaks, &|_| 0.0);
+            assert!(sections.len() > 25);
+            let area: f64 = doubled_areas(&sections).iter().sum::<f64>() / 2.0;
+            assert!((area - 8.0 * line.length()).abs() < 1e-9, "{area}");
+        }
+    }
+
+    #[test]
+    fn an_end_is_mitred_with_what_goes_on_there() {
+        let line = turned(&[(0.0, 0.0), (50.0, 0.0)], 0);
+        let beyond = [Some(DVec2::new(-30.0, 30.0)), None];
+        let sections = Course { line: &line, beyond, width_m: 6.0, mitre_limit: 2.0 }.sections(&[], &|_| 0.0);
+        let [left, right] = sections[0].aside;
+        assert_eq!(left, -right);
+        assert!((left.y - 3.0).abs() < 1e-12 && left.x > 1.0 || left.x < -1.0, "{left}");
+        assert_eq!(sections[1].aside[0], DVec2::new(0.0, 3.0));
+    }
+
+    proptest! {
+        #[test]
+        fn no_course_folds_over_itself(
+            turns in prop::collection::vec((2.0..60.0f64, -1.9..1.9f64), 2..30),
+            width_m in 3.0..30.0f64,
+            quarter in 0u32..4,
+        ) {
+            let mut points = vec![(0.0, 0.0)];
+            let (mut heading, mut at) = (0.0, DVec2::ZERO);
+            for (length, turn) in turns {
+                heading += turn;
+                at += DVec2::new(libm::cos(heading), libm::sin(heading)) * length;
+                points.push((at.x, at.y));
+            }
+            let line = turned(&points, quarter);
+            let course = Course { line: &line, beyond: [None; 2], width_m, mitre_limit: 2.0 };
+            let breaks: Vec<f64> = (0..200).map(|index| f64::from(index) * 3.0).collect();
+            let sections = course.sections(&breaks, &|_| 0.0);
+            for pair in sections.windows(2) {
+                prop_assert!(pair[0].station_m < pair[1].station_m);
+            }
+            for (index, area) in doubled_areas(&sections).into_iter().enumerate() {
+                prop_assert!(area > 0.0, "triangle {}: {}", index, area);
+            }
+        }
+    }
+}

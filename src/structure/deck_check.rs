@@ -1,0 +1,56 @@
+//! Whether meshes together enclose what they are the surface of.
+
+use std::collections::BTreeMap;
+
+use crate::draw::list::DrawMesh;
+
+/// A position, bit by bit.
+type Corner = [u32; 3];
+
+/// Whether every edge of a triangle is run along once in each direction, or as often in one as in the other: then the
+/// meshes are the whole surface of one or several solids. Positions are compared bit by bit, whichever mesh and vertex
+/// they belong to.
+///
+/// # Errors
+/// A sentence that names an edge where the surface is open.
+pub fn closed(meshes: &[&DrawMesh]) -> Result<(), String> {
+    let mut edges: BTreeMap<(Corner, Corner), i32> = BTreeMap::new();
+    for mesh in meshes {
+        for triangle in &mesh.triangles {
+            // Adding zero makes one number of both zeros.
+            let corners = triangle.map(|id| mesh.vertices[id.index()].position.map(|x| (x + 0.0).to_bits()));
+            for (from, to) in [(0, 1), (1, 2), (2, 0)].map(|(from, to)| (corners[from], corners[to])) {
+                let (edge, way) = if from <= to { ((from, to), 1) } else { ((to, from), -1) };
+                *edges.entry(edge).or_default() += way;
+            }
+        }
+    }
+    match edges.into_iter().find(|&((from, to), count)| count != 0 && from != to) {
+        None => Ok(()),
+        Some(((from, to), _)) => {
+            let [from, to] = [from, to].map(|corner| corner.map(f32::from_bits));
+            Err(format!("the surface is open along the edge from {from:?} to {to:?}"))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::color::Srgba;
+    use crate::structure::faces::Faces;
+    use glam::{DVec2, Vec3};
+
+    #[test]
+    fn a_box_is_closed_and_one_without_its_lid_is_not() {
+        let ring = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)].map(|(x, y)| DVec2::new(x, y));
+        let level = |z: f32| ring.map(|at| at.as_vec2().extend(z));
+        let mut faces = Faces::default();
+        faces.walls(&ring, (0.0, 3.0), Srgba::WHITE);
+        let floor: Vec<Vec3> = level(0.0).into_iter().rev().collect();
+        faces.polygon(&floor, Srgba::WHITE);
+        assert!(closed(&[&faces.clone().into_mesh()]).is_err());
+        faces.polygon(&level(3.0), Srgba::WHITE);
+        assert_eq!(closed(&[&faces.into_mesh()]), Ok(()));
+    }
+}

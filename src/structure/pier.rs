@@ -1,0 +1,177 @@
+//! What carries a deck: piers, abutments, and the posts that end its parapets.
+//!
+//! ```text
+//!      ═══════════════════        deck
+//!        ╲_____________╱          head: as wide as the soffit
+//!             │   │
+//!             │   │               shaft: a chamfered rectangle that widens downward
+//!  ▓▓▓▓▓▓▓▓▓▓╱▓▓▓▓▓╲▓▓▓▓▓▓▓▓
+//!            ╵     ╵              founded below the ground
+//! ```
+
+use glam::{DVec2, Vec3};
+
+use crate::draw::color::Srgba;
+use crate::structure::bridge::{BridgeOptions, FOUNDED_M, GIRDER, GroundHeight, PARAPET_THICK_M, magnified};
+use crate::structure::deck::Section;
+use crate::structure::faces::Faces;
+
+/// How much a shaft widens downward on each side, metres a metre.
+const BATTER: f64 = 0.02;
+
+/// The lowest pier that is worth building, in metres from the ground to the soffit.
+const LOWEST_M: f64 = 0.5;
+
+/// How far what carries the deck reaches into it, in metres, so that no slit shows.
+const INTO_DECK_M: f64 = 0.1;
+
+/// How wide a shaft is, as a part of the soffit.
+const SHAFT: f64 = 0.5;
+
+/// Adds a pier under a section; `false` where it would be lower than is worth building, or where there is no ground.
+pub(in crate::structure) fn pier(
+    section: &Section,
+    (width_m, options): (f64, &BridgeOptions),
+    ground: &GroundHeight<'_>,
+    color: Srgba,
+    faces: &mut Faces,
+) -> bool {
+    let across = (section.aside[0] - section.aside[1]).normalize_or(DVec2::X);
+    let frame = Frame { at: section.at, across };
+    let head = GIRDER * width_m / 2.0;
+    let Some(ground_m) = lowest(ground, [0.0, head, -head].map(|aside| frame.at + across * aside)) else {
+        return false;
+    };
+    let stretched = f64::from(options.exaggeration);
+    let middle_m = (section.edges_m[0] + section.edges_m[1]) / 2.0;
+    let soffit = middle_m * stretched - options.depth_m;
+    let height = soffit - ground_m * stretched;
+    if height < LOWEST_M {
+        return false;
+    }
+    let (top, foot) = (soffit + INTO_DECK_M, ground_m * stretched - FOUNDED_M);
+    let by = magnified(width_m);
+    let along = (0.5 + 0.012 * height).clamp(0.5, 1.6) * by;
+    let shaft = head * SHAFT;
+    let flare = (head - shaft) * 0.7;
+    let has_head = height > 2.0 * flare;
+    let neck = if has_head { top - INTO_DECK_M - flare } else { top };
+    let widened = BATTER * (neck - foot);
+    let mut rings = vec![
+        frame.ring((shaft + widened, along + widened), foot),
+        frame.ring((if has_head { shaft } else { head * 0.8 }, along), neck),
+    ];
+    if has_head {
+        let lip = flare * 0.25;
+        rings.extend([frame.ring((head, along), top - lip), frame.ring((head, along), top)]);
+    }
+    stack(&rings, color, faces);
+    true
+}
+
+/// Adds the abutment under the sections: a block from within the deck to below the ground, whose sides are its wing walls.
+pub(in crate::structure) fn abutment(
+    under: &[Section],
+    (width_m, options): (f64, &BridgeOptions),
+    ground: &GroundHeight<'_>,
+    color: Srgba,
+    faces: &mut Faces,
+) {
+    let edges = under.iter().flat_map(|section| section.aside.map(|aside| section.at + aside));
+    let Some(lowest_m) = lowest(ground, edges.chain(under.iter().map(|section| section.at))) else { return };
+    // Inside the edge beams' faces, so that they stand out.
+    let part = 1.0 + 0.6 * PARAPET_THICK_M * magnified(width_m) / (width_m / 2.0);
+    let into = -0.3 * options.depth_m;
+    let tops: Vec<[Vec3; 2]> = under
+        .iter()
+        .map(|section| [0, 1].map(|side| section.drawn(side, part, into, options.exaggeration)))
+        .collect();
+    let below = tops.iter().flatten().map(|corner| f64::from(corner.z)).fold(f64::INFINITY, f64::min) - 0.1;
+    let foot = (lowest_m * f64::from(options.exaggeration) - FOUNDED_M).min(below) as f32;
+    let rings: Vec<[Vec3; 4]> = tops
+        .iter()
+        .map(|&[left, right]| [left, right, right.truncate().extend(foot), left.truncate().extend(foot)])
+        .collect();
+    let (Some(first), Some(last)) = (rings.first(), rings.last()) else { return };
+    for pair in rings.windows(2) {
+        for side in 0..4 {
+            let next = (side + 1) % 4;
+            faces.polygon(&[pair[0][side], pair[0][next], pair[1][next], pair[1][side]], color);
+        }
+    }
+    if rings.len() > 1 {
+        faces.polygon(&[first[3], first[2], first[1], first[0]], color);
+        faces.polygon(last, color);
+    }
+}
+
+/// Adds the posts in which both parapets end.
+pub(in crate::structure) fn end_posts(
+    section: &Section,
+    (width_m, options): (f64, &BridgeOptions),
+    color: Srgba,
+    faces: &mut Faces,
+) {
+    let by = magnified(width_m);
+    let half = 0.5 * by;
+    for side in 0..2 {
+        let part = 1.0 + half / (width_m / 2.0);
+        let across = section.aside[side].normalize_or(DVec2::X);
+        let frame = Frame { at: section.at + section.aside[side] * part, across };
+        let road = f64::from(section.drawn(side, part, 0.0, options.exaggeration).z);
+        let rings =
+            [-0.5 * options.depth_m - by, 1.6 * by].map(|above| frame.ring((half, half), road + above));
+        stack(&rings, color, faces);
+    }
+}
+
+/// Where something upright stands, and which way it lies.
+struct Frame {
+    at: DVec2,
+    across: DVec2,
+}
+
+impl Frame {
+    /// A chamfered rectangle at height `z`, counter-clockwise from above: half its size across and along.
+    fn ring(&self, (across, along): (f64, f64), z: f64) -> [Vec3; 8] {
+        let chamfer = 0.3 * across.min(along);
+        let (x, y) = (across - chamfer, along - chamfer);
+        [
+            (across, -y),
+            (across, y),
+            (x, along),
+            (-x, along),
+            (-across, y),
+            (-across, -y),
+            (-x, -along),
+            (x, -along),
+        ]
+        .map(|(aside, ahead)| {
+            let at = self.at + self.across * aside + self.across.perp() * ahead;
+            at.as_vec2().extend(z as f32)
+        })
+    }
+}
+
+/// Adds the closed solid between rings that lie over each other.
+fn stack(rings: &[[Vec3; 8]], color: Srgba, faces: &mut Faces) {
+    for pair in rings.windows(2) {
+        for side in 0..8 {
+            let next = (side + 1) % 8;
+            faces.polygon(&[pair[0][side], pair[0][next], pair[1][next], pair[1][side]], color);
+        }
+    }
+    if let (Some(first), Some(last)) = (rings.first(), rings.last()) {
+        let bottom: Vec<Vec3> = first.iter().rev().copied().collect();
+        faces.polygon(&bottom, color);
+        faces.polygon(last, color);
+    }
+}
+
+/// The lowest ground at the places; `None` where there is none at any.
+pub(in crate::structure) fn lowest(
+    ground: &GroundHeight<'_>,
+    places: impl IntoIterator<Item = DVec2>,
+) -> Option<f64> {
+    places.into_iter().filter_map(ground).reduce(f64::min)
+}

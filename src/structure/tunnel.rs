@@ -1,0 +1,257 @@
+//! A tunnel's portal: a wall with a dark mouth where the road enters the hill, a roof behind it until the hill has
+//! risen over it, and wing walls in front.
+//!
+//! ```text
+//!     ╔═══════════════════════╗ ─ coping
+//!     ║      ╭─────────╮      ║
+//!     ║    ╭╯ ▓▓▓▓▓▓▓▓▓ ╰╮    ║      the mouth: dark, set back by the reveal;
+//!    ╱║    │ ▓▓▓▓▓▓▓▓▓▓▓ │    ║╲     an upright part, an elliptic arch on it
+//!  ╱  ║    │ ▓▓▓▓▓▓▓▓▓▓▓ │    ║  ╲
+//! ────╨────┴─────────────┴────╨────  the road's elevation
+//! ```
+//!
+//! Nothing is drawn of the way between two portals: it is out of sight.
+
+use glam::{DVec2, Vec3};
+
+use crate::draw::color::Srgba;
+use crate::draw::list::DrawMesh;
+use crate::structure::bridge::{FOUNDED_M, GroundHeight, magnified};
+use crate::structure::faces::Faces;
+use crate::structure::pier::lowest;
+
+/// The height of a mouth six metres wide, in metres: 4.5 m for traffic and the curve of the arch.
+const MOUTH_M: f64 = 6.0;
+/// How much higher a mouth is for each metre that its road is wider.
+const MOUTH_PER_M: f64 = 0.25;
+/// How far the upright part of a mouth reaches, as a part of its height.
+const SPRINGING: f64 = 0.5;
+/// Into how many parts the arch is cut.
+const ARCH_PARTS: u32 = 16;
+/// How many times its own height the roof may reach back into the hill: on a gentler slope it ends in the open.
+const LONGEST_ROOF: f64 = 2.5;
+
+const STONE: Srgba = Srgba::opaque(206, 196, 178);
+const DRESSED: Srgba = Srgba::opaque(234, 227, 212);
+const ROOF: Srgba = Srgba::opaque(158, 154, 132);
+const SHADE: Srgba = Srgba::opaque(74, 70, 66);
+const DARK: Srgba = Srgba::opaque(22, 21, 22);
+
+/// Where a portal stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Portal {
+    /// The middle of its mouth in world coordinates.
+    pub at: DVec2,
+    /// The road's elevation there in metres.
+    pub level_m: f64,
+    /// The direction out of the tunnel, of length 1.
+    pub outward: DVec2,
+    /// The carriageway's width in metres, above 0.
+    pub width_m: f64,
+    /// How many times elevations are stretched when drawn.
+    pub exaggeration: f32,
+}
+
+impl Portal {
+    /// The height of its wall in metres.
+    pub fn height_m(&self) -> f64 {
+        self.mouth_m() + 1.6 * magnified(self.width_m)
+    }
+
+    fn mouth_m(&self) -> f64 {
+        MOUTH_M + MOUTH_PER_M * (self.width_m - 6.0).max(0.0)
+    }
+
+    /// Half the width of the mouth, and of the wall round it.
+    fn halves_m(&self) -> (f64, f64) {
+        let mouth = self.width_m / 2.0 + 0.6;
+        (mouth, mouth + 1.4 * magnified(self.width_m))
+    }
+
+    /// How far behind the mouth the hill has risen to the part `share` of the wall's height; `None` where it has not
+    /// within what the roof may reach.
+    pub fn covered_after_m(&self, share: f64, ground: &GroundHeight<'_>) -> Option<f64> {
+        let wanted = share * self.height_m() / f64::from(self.exaggeration);
+        let longest = LONGEST_ROOF * self.height_m();
+        let across = self.outward.perp() * self.halves_m().1;
+        (1..=40).map(|step| longest * f64::from(step) / 40.0).find(|&back| {
+            let middle = self.at - self.outward * back;
+            let places = [middle - across, middle, middle + across];
+            places.into_iter().all(|at| ground(at).is_some_and(|height| height - self.level_m >= wanted))
+        })
+    }
+
+    /// A point in the world, drawn: so far to the right seen from outside, outward, and above the road.
+    fn drawn(&self, right: f64, out: f64, above: f64) -> Vec3 {
+        let plan = self.at + self.outward.perp() * right + self.outward * out;
+        let z = self.level_m * f64::from(self.exaggeration) + above;
+        plan.as_vec2().extend(z as f32)
+    }
+
+    /// The portal's solids in world space, heights as drawn.
+    pub fn build(&self, ground: &GroundHeight<'_>) -> DrawMesh {
+        let back = self.covered_after_m(1.0, ground).unwrap_or(LONGEST_ROOF * self.height_m());
+        let foot = self.foot(ground, back);
+        let mut faces = Faces::default();
+        self.front(foot, &mut faces);
+        self.roof(foot, back, &mut faces);
+        for side in [-1.0, 1.0] {
+            self.wing(side, ground, &mut faces);
+        }
+        faces.into_mesh()
+    }
+
+    /// How far below the road all is founded, as a height above the road: negative.
+    fn foot(&self, ground: &GroundHeight<'_>, back: f64) -> f64 {
+        let (_, wall) = self.halves_m();
+        let corners = [(-wall, 0.0), (wall, 0.0), (-wall, -back), (wall, -back)];
+        let places = corners.map(|(right, out)| self.at + self.outward.perp() * right + self.outward * out);
+        let low_m = lowest(ground, places).unwrap_or(self.level_m);
+        (low_m - self.level_m).min(0.0) * f64::from(self.exaggeration) - FOUNDED_M
+    }
+
+    /// The mouth's outline from the right foot over the arch to the left, counter-clockwise seen from outside.
+    fn mouth(&self) -> Vec<(f64, f64)> {
+        let (half, height) = (self.halves_m().0, self.mouth_m());
+        let springing = SPRINGING * height;
+        let arch = (0..=ARCH_PARTS).map(|part| {
+            let turn = std::f64::consts::PI * f64::from(part) / f64::from(ARCH_PARTS);
+            (half * libm::cos(turn), springing + (height - springing) * libm::sin(turn))
+        });
+        std::iter::once((half, 0.0)).chain(arch).chain([(-half, 0.0)]).collect()
+    }
+
+    /// The wall round the mouth, the reveal and the dark.
+    fn front(&self, foot: f64, faces: &mut Faces) {
+        let (half, wall) = self.halves_m();
+        let top = self.height_m();
+        let reveal = -0.8 * magnified(self.width_m);
+        for (left, right) in [(-wall, -half), (half, wall)] {
+            let corners = [(left, foot), (right, foot), (right, top), (left, top)];
+            faces.polygon(&corners.map(|(x, z)| self.drawn(x, 0.0, z)), STONE);
+        }
+        let mouth = self.mouth();
+        for pair in mouth.windows(2) {
+            let [(x0, z0), (x1, z1)] = [pair[0], pair[1]];
+            faces.polygon(
+                &[(x0, z0), (x0, top), (x1, top), (x1, z1)].map(|(x, z)| self.drawn(x, 0.0, z)),
+                STONE,
+            );
+            let inner = [
+                self.drawn(x0, 0.0, z0),
+                self.drawn(x1, 0.0, z1),
+                self.drawn(x1, reveal, z1),
+                self.drawn(x0, reveal, z0),
+            ];
+            faces.polygon(&inner, SHADE);
+        }
+        let below = [(-half, foot), (half, foot)];
+        // Without the left foot, which lies on the way back to the first corner.
+        let above = &mouth[..mouth.len() - 1];
+        let dark = below.iter().chain(above).map(|&(x, z)| self.drawn(x, reveal, z));
+        faces.polygon(&dark.collect::<Vec<_>>(), DARK);
+        self.voussoirs(faces);
+        self.coping(faces);
+    }
+
+    /// A ring of dressed stone round the mouth, standing out a little.
+    fn voussoirs(&self, faces: &mut Faces) {
+        let by = magnified(self.width_m);
+        let (thick, out) = (0.6 * by, 0.15 * by);
+        let (half, height) = (self.halves_m().0, self.mouth_m());
+        let grown = |(x, z): (f64, f64)| (x * (1.0 + thick / half), z * (1.0 + thick / height));
+        for pair in self.mouth().windows(2) {
+            let [from, to] = [pair[0], pair[1]];
+            let [outer_from, outer_to] = [grown(from), grown(to)];
+            let at = |(x, z): (f64, f64), out: f64| self.drawn(x, out, z);
+            faces.polygon(&[at(from, out), at(outer_from, out), at(outer_to, out), at(to, out)], DRESSED);
+            faces.polygon(&[at(from, 0.0), at(from, out), at(to, out), at(to, 0.0)], DRESSED);
+            let edge = [at(outer_from, out), at(outer_from, 0.0), at(outer_to, 0.0), at(outer_to, out)];
+            faces.polygon(&edge, DRESSED);
+        }
+    }
+
+    /// The band on top of the wall.
+    fn coping(&self, faces: &mut Faces) {
+        let by = magnified(self.width_m);
+        let (wall, top) = (self.halves_m().1 + 0.3 * by, self.height_m());
+        self.block((-wall, wall), (-0.6 * by, 0.3 * by), [top - 0.1 * by, top + 0.5 * by], DRESSED, faces);
+    }
+
+    /// What keeps the hill off the wall's back: its roof and sides, as far as they may show.
+    fn roof(&self, foot: f64, back: f64, faces: &mut Faces) {
+        let (wall, top) = (self.halves_m().1, self.height_m());
+        let behind = 0.8 * magnified(self.width_m);
+        let levels = [foot, top];
+        // The front is drawn already; behind it, sides and roof reach as far as the wall's back or the hill.
+        let ring = [(-wall, 0.0), (-wall, -back.max(behind)), (wall, -back.max(behind)), (wall, 0.0)];
+        for pair in ring.windows(2) {
+            let [(x0, y0), (x1, y1)] = [pair[0], pair[1]];
+            let corners =
+                [(x1, y1, levels[0]), (x0, y0, levels[0]), (x0, y0, levels[1]), (x1, y1, levels[1])];
+            faces.polygon(&corners.map(|(x, y, z)| self.drawn(x, y, z)), STONE);
+        }
+        let lid = [ring[0], ring[3], ring[2], ring[1]];
+        faces.polygon(&lid.map(|(x, y)| self.drawn(x, y, top)), ROOF);
+    }
+
+    /// The wall that holds the slope beside the road, on the left (−1) or right (1) seen from outside: from the portal
+    /// outward, its top falling to the ground.
+    fn wing(&self, side: f64, ground: &GroundHeight<'_>, faces: &mut Faces) {
+        let by = magnified(self.width_m);
+        let (_, wall) = self.halves_m();
+        let (length, thick) = (0.9 * self.height_m(), 0.5 * by);
+        let (inner, flare) = (side * (wall - thick), side * 0.55 * length);
+        let stretched = f64::from(self.exaggeration);
+        let above = |right: f64, out: f64| {
+            let at = self.at + self.outward.perp() * right + self.outward * out;
+            (ground(at).unwrap_or(self.level_m) - self.level_m) * stretched
+        };
+        let near = [(inner, 0.0), (inner + side * thick, 0.0)];
+        let far = near.map(|(right, out)| (right + flare, out + length));
+        let low = far.map(|(right, out)| above(right, out)).into_iter().fold(f64::INFINITY, f64::min);
+        // Where the ground falls away from the portal, as beside a bridge, there is no slope to hold.
+        if low < -0.4 * self.height_m() {
+            return;
+        }
+        let tops = [0.75 * self.height_m(), (low + 0.6 * by).min(0.7 * self.height_m())];
+        let foot = low.min(above(near[1].0, 0.0)).min(0.0) - FOUNDED_M;
+        // Counter-clockwise from above, beginning at the portal.
+        let ring =
+            if side > 0.0 { [near[1], near[0], far[0], far[1]] } else { [near[0], near[1], far[1], far[0]] };
+        let top = |index: usize| if index < 2 { tops[0] } else { tops[1] };
+        let corner = |index: usize, z: f64| self.drawn(ring[index].0, ring[index].1, z);
+        for index in 0..4 {
+            let next = (index + 1) % 4;
+            let wall = [
+                corner(index, foot),
+                corner(next, foot),
+                corner(next, top(next).max(foot)),
+                corner(index, top(index).max(foot)),
+            ];
+            faces.polygon(&wall, STONE);
+        }
+        faces.polygon(&[0, 1, 2, 3].map(|index| corner(index, top(index).max(foot))), DRESSED);
+    }
+
+    /// A closed block: from left to right, from back to front, from bottom to top.
+    fn block(
+        &self,
+        (left, right): (f64, f64),
+        (back, front): (f64, f64),
+        [low, high]: [f64; 2],
+        color: Srgba,
+        faces: &mut Faces,
+    ) {
+        // Counter-clockwise from above, where right lies to the left of outward.
+        let ring = [(left, front), (right, front), (right, back), (left, back)];
+        for index in 0..4 {
+            let [(x0, y0), (x1, y1)] = [ring[index], ring[(index + 1) % 4]];
+            let corners = [(x0, y0, low), (x1, y1, low), (x1, y1, high), (x0, y0, high)];
+            faces.polygon(&corners.map(|(x, y, z)| self.drawn(x, y, z)), color);
+        }
+        faces.polygon(&ring.map(|(x, y)| self.drawn(x, y, high)), color);
+        let bottom = [ring[3], ring[2], ring[1], ring[0]];
+        faces.polygon(&bottom.map(|(x, y)| self.drawn(x, y, low)), color);
+    }
+}
