@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::app::arguments::Access;
 use crate::app::failure::Failure;
 use crate::app::files;
-use crate::description::parse::parse_bytes;
+use crate::description::parse::parse_bytes_including;
 use crate::scene::assets::Assets;
 use crate::scene::build::build;
 use crate::scene::kind::Scene;
@@ -17,7 +17,9 @@ use crate::scene::kind::Scene;
 pub fn scene(path: &Path, access: &Access, step: &dyn Fn(&'static str)) -> Result<Scene, Failure> {
     step("reading the scene file");
     let bytes = files::read(path)?;
-    let document = parse_bytes(&path.to_string_lossy(), &bytes).map_err(Failure::input)?;
     let assets = Assets::new(path, &access.allow).map_err(Failure::input)?;
+    let load = |name: &str| assets.read(name).map_err(|error| error.to_string());
+    let document =
+        parse_bytes_including(&path.to_string_lossy(), &bytes, &load).map_err(Failure::input)?;
     build(&document, &assets, step).map_err(Failure::input)
 }
