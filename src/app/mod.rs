@@ -18,6 +18,7 @@ pub mod los;
 pub mod map;
 pub mod mesh;
 pub mod model;
+pub mod new;
 pub mod output;
 pub mod picture;
 pub mod places;
@@ -26,6 +27,7 @@ pub mod profile;
 pub mod progress;
 pub mod rasters;
 pub mod render;
+pub mod schema;
 pub mod serve;
 pub mod viewshed;
 
@@ -63,6 +65,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Viewshed(options) => viewshed::run(options),
         Command::Serve(options) => serve::run(options),
         Command::Mesh(options) => mesh::run(options),
+        Command::Schema => schema::run(),
+        Command::New(options) => new::run(options),
         Command::Lod(options) => lod::run(options),
     }
 }

@@ -196,7 +196,7 @@ impl<'a> Sources<'a> {
                 let message = format!("'{}' has no layer '{wanted}'{meant}", file.get_ref());
                 document.error(key, message).with_help(format!("its layers are {found}"))
             }
-            (VectorError::WhichLayer { count, found }, _) => {
+            (VectorError::WhichLayer { count, found, .. }, _) => {
                 let message = format!("'{}' holds {count} layers", file.get_ref());
                 document.error(file, message).with_help(format!("add `layer = \"...\"` with one of {found}"))
             }
