@@ -19,7 +19,6 @@ pub fn scene(path: &Path, access: &Access, step: &dyn Fn(&'static str)) -> Resul
     let bytes = files::read(path)?;
     let assets = Assets::new(path, &access.allow).map_err(Failure::input)?;
     let load = |name: &str| assets.read(name).map_err(|error| error.to_string());
-    let document =
-        parse_bytes_including(&path.to_string_lossy(), &bytes, &load).map_err(Failure::input)?;
+    let document = parse_bytes_including(&path.to_string_lossy(), &bytes, &load).map_err(Failure::input)?;
     build(&document, &assets, step).map_err(Failure::input)
 }

@@ -34,8 +34,16 @@ const USED_UP: [(&str, &str, &str); 3] = [
         "`include`: a scene file, or a list of them, whose tables come before this one's; what this one states counts. \
          Names are relative to the file that they stand in. Default: none.",
     ),
-    ("", "styles", "`[styles.NAME]`: keys for the tables of features that name it with `style`. Default: none."),
-    (SHARED, "style", "`style`: the keys of that `[styles.NAME]` are taken that this table does not state. Default: none."),
+    (
+        "",
+        "styles",
+        "`[styles.NAME]`: keys for the tables of features that name it with `style`. Default: none.",
+    ),
+    (
+        SHARED,
+        "style",
+        "`style`: the keys of that `[styles.NAME]` are taken that this table does not state. Default: none.",
+    ),
 ];
 
 /// What is said of every key.
@@ -87,7 +95,9 @@ impl Documentation {
 
     /// Keeps what a comment says, unless it is about several keys.
     fn add(&mut self, table: &str, comment: &str) {
-        let Some((key, rest)) = comment.strip_prefix('`').and_then(|rest| rest.split_once('`')) else { return };
+        let Some((key, rest)) = comment.strip_prefix('`').and_then(|rest| rest.split_once('`')) else {
+            return;
+        };
         let rest = rest.trim_start_matches([':', '.', ',', ' ']);
         if rest.starts_with('`') {
             return;
@@ -126,7 +136,9 @@ pub(super) fn default_of(text: &str) -> Option<Value> {
 /// The text with a capital at its beginning.
 fn sentence(text: &str) -> String {
     let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
+    letters
+        .next()
+        .map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
 }
 
 #[cfg(test)]

@@ -102,7 +102,8 @@ impl Gathering<'_> {
         if !self.seen.insert(path.clone()) {
             return Ok(None);
         }
-        let wrong = |reason: String| (format!("'{}' cannot be included: {reason}", quoted(named)), HELP.into());
+        let wrong =
+            |reason: String| (format!("'{}' cannot be included: {reason}", quoted(named)), HELP.into());
         let bytes = (self.load)(&path).map_err(wrong)?;
         if self.gathered.source.text().len() + bytes.len() > self.max_bytes {
             return Err(wrong(format!("with it the scene has more than {} bytes", self.max_bytes)));
@@ -118,7 +119,8 @@ impl Gathering<'_> {
     /// Lays a file behind the others; returns its place in the list and where its text starts.
     fn append(&mut self, path: &str, text: &str) -> (usize, usize) {
         let folder = path.rfind('/').map_or("", |slash| &path[..=slash]);
-        let shown = if path.starts_with('/') { path.to_owned() } else { format!("{}{path}", self.shown_folder) };
+        let shown =
+            if path.starts_with('/') { path.to_owned() } else { format!("{}{path}", self.shown_folder) };
         let start = self.gathered.source.append(shown, folder.to_owned(), text);
         self.gathered.includes.push(Vec::new());
         (self.gathered.includes.len() - 1, start)
@@ -172,11 +174,7 @@ pub(super) fn merged<'i>(tables: Vec<DeTable<'i>>, includes: &[Vec<usize>]) -> D
     merged_from(0, &mut tables, includes)
 }
 
-fn merged_from<'i>(
-    file: usize,
-    tables: &mut [Option<DeTable<'i>>],
-    includes: &[Vec<usize>],
-) -> DeTable<'i> {
+fn merged_from<'i>(file: usize, tables: &mut [Option<DeTable<'i>>], includes: &[Vec<usize>]) -> DeTable<'i> {
     let mut before = DeTable::new();
     for &included in &includes[file] {
         let mut table = merged_from(included, tables, includes);
@@ -234,7 +232,9 @@ pub(super) fn moved(table: DeTable<'_>, by: usize) -> DeTable<'_> {
 fn moved_value(value: Spanned<DeValue<'_>>, by: usize) -> Spanned<DeValue<'_>> {
     let span = value.span().start + by..value.span().end + by;
     let value = match value.into_inner() {
-        DeValue::Array(list) => DeValue::Array(list.into_iter().map(|value| moved_value(value, by)).collect()),
+        DeValue::Array(list) => {
+            DeValue::Array(list.into_iter().map(|value| moved_value(value, by)).collect())
+        }
         DeValue::Table(table) => DeValue::Table(moved(table, by)),
         other => other,
     };

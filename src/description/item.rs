@@ -224,7 +224,8 @@ impl<'i> Item<'_, 'i> {
     /// The names of one or more files, as seen from the scene file; what is one of `built_in` is none.
     pub fn files(self, built_in: &[&str]) -> Option<Vec<String>> {
         let folder = self.folder();
-        let seen = |name: String| if built_in.contains(&name.as_str()) { name } else { seen_from(&folder, name) };
+        let seen =
+            |name: String| if built_in.contains(&name.as_str()) { name } else { seen_from(&folder, name) };
         self.one_or_more_texts().map(|names| names.into_iter().map(seen).collect())
     }
 

@@ -44,7 +44,8 @@ pub fn parse_including(file_name: &str, text: &str, load: Load<'_>) -> Result<Do
     let tables: Vec<_> = source.texts().map(|placed| toml_table(placed, &mut report)).collect();
     let table = tables.into_iter().collect::<Option<Vec<_>>>();
     let table = table.map(|tables| merged(tables, &gathered.includes));
-    let decode = |table| Reader::read_root(&mut report, table, |reader| document(reader, Arc::clone(&source)));
+    let decode =
+        |table| Reader::read_root(&mut report, table, |reader| document(reader, Arc::clone(&source)));
     let parsed = table.and_then(decode);
     match (report.into_diagnostics(), parsed) {
         (None, Some(document)) => Ok(document),
@@ -64,11 +65,7 @@ pub fn parse_bytes(file_name: &str, bytes: &[u8]) -> Result<Document, Diagnostic
 ///
 /// # Errors
 /// As [`parse_including`], and where the bytes are not UTF-8.
-pub fn parse_bytes_including(
-    file_name: &str,
-    bytes: &[u8],
-    load: Load<'_>,
-) -> Result<Document, Diagnostics> {
+pub fn parse_bytes_including(file_name: &str, bytes: &[u8], load: Load<'_>) -> Result<Document, Diagnostics> {
     if bytes.len() > MAX_BYTES {
         return Err(too_large(file_name, bytes.len()));
     }

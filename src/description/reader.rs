@@ -301,7 +301,8 @@ impl<'r, 'i> Reader<'r, 'i> {
         value: &Spanned<DeValue<'i>>,
         decode: impl FnOnce(Item<'_, 'i>) -> Option<T>,
     ) -> Option<Spanned<T>> {
-        decode(Item { report: self.report, key, value, asked: None }).map(|decoded| Spanned::new(value.span(), decoded))
+        decode(Item { report: self.report, key, value, asked: None })
+            .map(|decoded| Spanned::new(value.span(), decoded))
     }
 
     fn nested<T>(

@@ -102,7 +102,9 @@ impl SourceText {
         let file = self.file_at(offset).start;
         let start = match self.text[file..offset].rfind('\n') {
             Some(feed) => file + feed + 1,
-            None if offset > file && self.text[file..].starts_with('\u{feff}') => file + '\u{feff}'.len_utf8(),
+            None if offset > file && self.text[file..].starts_with('\u{feff}') => {
+                file + '\u{feff}'.len_utf8()
+            }
             None => file,
         };
         let end = self.text[offset..].find('\n').map_or(self.text.len(), |feed| offset + feed);
@@ -140,7 +142,10 @@ mod tests {
         let second = text.append("b".into(), "more/".into(), "\u{feff}z = 3\nw = 4\n");
         let third = text.append("c".into(), String::new(), "");
         assert_eq!((text.name_at(0), text.name_at(second - 1), text.name_at(second)), ("a", "a", "b"));
-        assert_eq!((text.name_at(third), text.name_at(usize::MAX), text.folder_at(second)), ("c", "c", "more/"));
+        assert_eq!(
+            (text.name_at(third), text.name_at(usize::MAX), text.folder_at(second)),
+            ("c", "c", "more/")
+        );
         let at = |needle: &str| text.line_column(text.text().find(needle).expect("it is there"));
         assert_eq!(at("z"), LineColumn { line: 1, column: 1 });
         assert_eq!(at("w"), LineColumn { line: 2, column: 1 });

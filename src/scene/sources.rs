@@ -133,9 +133,8 @@ impl<'a> Sources<'a> {
     ) -> Diagnostic {
         let name = file.get_ref();
         if let Some(condition) = &source.condition
-            && !(0..layer.features.len()).any(|index| {
-                Attributes::new(Arc::clone(layer), index).holds(condition.get_ref())
-            })
+            && !(0..layer.features.len())
+                .any(|index| Attributes::new(Arc::clone(layer), index).holds(condition.get_ref()))
         {
             let message = format!("no feature of '{name}' matches");
             let error = self.places.document.error(condition, message);

@@ -85,7 +85,8 @@ pub fn run(options: &NewOptions) -> Result<(), Failure> {
     let made = !options.folder.exists();
     fs::create_dir_all(&options.folder).map_err(|error| wrong(&error.to_string()))?;
     let title = options.title.clone().unwrap_or_else(|| title_of(&options.dem[0]));
-    let ground = ground(&scene_file, Ground { title, dem, crs: options.crs.clone(), ..Ground::default() }, &allow);
+    let ground =
+        ground(&scene_file, Ground { title, dem, crs: options.crs.clone(), ..Ground::default() }, &allow);
     let ground = ground.inspect_err(|_| {
         if made {
             // Only where nobody has put anything into it meanwhile.
@@ -127,7 +128,8 @@ fn surveyed(file: &Path, place: &Place) -> Result<Vectors, Failure> {
 fn ground(scene_file: &Path, mut ground: Ground, allow: &[PathBuf]) -> Result<Ground, Failure> {
     let assets = Assets::new(scene_file, allow).map_err(Failure::input)?;
     let built = |ground: &Ground| {
-        let document = parse(&scene_file.to_string_lossy(), &text::terrain(ground)).map_err(Failure::input)?;
+        let document =
+            parse(&scene_file.to_string_lossy(), &text::terrain(ground)).map_err(Failure::input)?;
         build(&document, &assets, &|_| ()).map_err(Failure::input)
     };
     let plain = built(&ground)?;

@@ -64,7 +64,7 @@ pub(super) struct Rule {
 pub(super) static RULES: [Rule; 12] = [
     Rule {
         table: "area",
-        what: "land cover",
+        what: "Land cover",
         shape: "polygons",
         condition: "(landuse in ('forest', 'meadow', 'grass', 'farmland', 'farm', 'orchard', 'vineyard', \
                     'residential', 'commercial', 'retail', 'industrial', 'military', 'village_green', \
@@ -72,16 +72,18 @@ pub(super) static RULES: [Rule; 12] = [
                     'beach', 'bare_rock', 'scree') or leisure in ('park', 'garden', 'pitch', 'golf_course', \
                     'nature_reserve')) and not building",
         width: None,
-        keys: &["cover = \"match(landuse ?? natural ?? leisure, 'forest', 'forest', 'wood', 'forest', 'scrub', \
+        keys: &[
+            "cover = \"match(landuse ?? natural ?? leisure, 'forest', 'forest', 'wood', 'forest', 'scrub', \
                  'scrub', 'heath', 'scrub', 'farmland', 'field', 'farm', 'field', 'orchard', 'orchard', 'vineyard', \
                  'orchard', 'residential', 'built-up', 'commercial', 'built-up', 'retail', 'built-up', \
                  'industrial', 'industry', 'military', 'restricted', 'wetland', 'wetland', 'sand', 'sand', \
-                 'beach', 'sand', 'bare_rock', 'rock', 'scree', 'rock', 'meadow')\""],
+                 'beach', 'sand', 'bare_rock', 'rock', 'scree', 'rock', 'meadow')\"",
+        ],
         names: &[],
     },
     Rule {
         table: "lake",
-        what: "lakes",
+        what: "Lakes",
         shape: "polygons",
         condition: "natural = 'water' or landuse = 'reservoir' or waterway = 'riverbank'",
         width: None,
@@ -90,7 +92,7 @@ pub(super) static RULES: [Rule; 12] = [
     },
     Rule {
         table: "river",
-        what: "streams",
+        what: "Streams",
         shape: "lines",
         condition: "waterway in ('stream', 'ditch', 'drain', 'brook')",
         width: Some("3"),
@@ -99,7 +101,7 @@ pub(super) static RULES: [Rule; 12] = [
     },
     Rule {
         table: "river",
-        what: "rivers",
+        what: "Rivers",
         shape: "lines",
         condition: "waterway in ('river', 'canal')",
         width: Some("12"),
@@ -108,7 +110,7 @@ pub(super) static RULES: [Rule; 12] = [
     },
     Rule {
         table: "road",
-        what: "tracks and paths",
+        what: "Tracks and paths",
         shape: "lines",
         condition: "highway in ('track', 'path', 'footway', 'cycleway', 'bridleway', 'steps')",
         width: Some("2.5"),
@@ -117,7 +119,7 @@ pub(super) static RULES: [Rule; 12] = [
     },
     Rule {
         table: "road",
-        what: "streets",
+        what: "Streets",
         shape: "lines",
         condition: "highway in ('unclassified', 'residential', 'living_street', 'pedestrian', 'service', 'road')",
         width: Some("5"),
@@ -126,7 +128,7 @@ pub(super) static RULES: [Rule; 12] = [
     },
     Rule {
         table: "road",
-        what: "country roads",
+        what: "Country roads",
         shape: "lines",
         condition: "highway in ('secondary', 'secondary_link', 'tertiary', 'tertiary_link')",
         width: Some("7"),
@@ -135,7 +137,7 @@ pub(super) static RULES: [Rule; 12] = [
     },
     Rule {
         table: "road",
-        what: "main roads",
+        what: "Main roads",
         shape: "lines",
         condition: "highway in ('motorway', 'motorway_link', 'trunk', 'trunk_link', 'primary', 'primary_link')",
         width: Some("10"),
@@ -144,7 +146,7 @@ pub(super) static RULES: [Rule; 12] = [
     },
     Rule {
         table: "building",
-        what: "buildings",
+        what: "Buildings",
         shape: "polygons",
         condition: "building",
         width: None,
@@ -153,7 +155,7 @@ pub(super) static RULES: [Rule; 12] = [
     },
     Rule {
         table: "fence",
-        what: "fences, walls and hedges",
+        what: "Fences, walls and hedges",
         shape: "lines",
         condition: "barrier in ('fence', 'wall', 'hedge', 'city_wall', 'retaining_wall')",
         width: None,
@@ -162,7 +164,7 @@ pub(super) static RULES: [Rule; 12] = [
     },
     Rule {
         table: "fence",
-        what: "power lines",
+        what: "Power lines",
         shape: "lines",
         condition: "power in ('line', 'minor_line')",
         width: None,
@@ -171,7 +173,7 @@ pub(super) static RULES: [Rule; 12] = [
     },
     Rule {
         table: "fence",
-        what: "boundaries",
+        what: "Boundaries",
         shape: "lines",
         condition: "boundary = 'administrative' and not highway and not waterway",
         width: None,
@@ -188,18 +190,38 @@ pub(super) fn layers(file: &Path) -> Result<Vec<Surveyed>, Failure> {
     let bytes = files::read(file)?;
     let name = file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let beside = files::beside(file);
-    let read = |layer: Option<&str>| {
-        read::read(&name, &bytes, &Hints { crs: None, layer, companions: &beside })
-    };
+    let read =
+        |layer: Option<&str>| read::read(&name, &bytes, &Hints { crs: None, layer, companions: &beside });
     let wrong = |error: VectorError| Failure::input(format!("{}: {error}", file.display()));
     match read(None) {
         Ok(layer) => Ok(vec![surveyed(Arc::new(layer), None, &name)]),
-        Err(VectorError::WhichLayer { names, .. }) => distinct(names)
-            .into_iter()
-            .map(|layer| Ok(surveyed(Arc::new(read(Some(&layer)).map_err(wrong)?), Some(layer.clone()), &layer)))
-            .collect(),
+        Err(VectorError::WhichLayer { names, .. }) => {
+            let layers = distinct(names).into_iter().map(|layer| {
+                let content = read(Some(&layer)).map_err(wrong)?;
+                Ok(surveyed(Arc::new(content), Some(layer.clone()), &layer))
+            });
+            layers.collect::<Result<_, _>>().map(without_repeats)
+        }
         Err(error) => Err(wrong(error)),
     }
+}
+
+/// The layers of one file without what another of them is named after: the schools of a file with all buildings are
+/// among these.
+fn without_repeats(mut layers: Vec<Surveyed>) -> Vec<Surveyed> {
+    let named_after = |layer: &Surveyed, rule: &Rule| {
+        let called = layer.layer.as_deref().unwrap_or_default().to_lowercase();
+        rule.names.iter().any(|name| called.contains(name))
+    };
+    for rule in &RULES {
+        let takes = |layer: &Surveyed| layer.found.iter().any(|found| found.rule.what == rule.what);
+        if layers.iter().any(|layer| named_after(layer, rule) && takes(layer)) {
+            for layer in layers.iter_mut().filter(|layer| !named_after(layer, rule)) {
+                layer.found.retain(|found| found.rule.what != rule.what);
+            }
+        }
+    }
+    layers
 }
 
 /// Those of the layers that hold different features: of OpenStreetMap's the whole ones, not the excerpts of them; of
@@ -217,7 +239,8 @@ fn surveyed(layer: Arc<Layer>, name: Option<String>, called: &str) -> Surveyed {
     let mut taken = vec![false; layer.features.len()];
     let mut found = Vec::new();
     for rule in &RULES {
-        let condition = Expression::parse(rule.condition).expect("the rules are expressions, as a test shows");
+        let condition =
+            Expression::parse(rule.condition).expect("the rules are expressions, as a test shows");
         let mut count = 0;
         for (index, feature) in layer.features.iter().enumerate() {
             let takes = is_shaped(&feature.geometry, rule.shape)
@@ -240,7 +263,8 @@ fn surveyed(layer: Arc<Layer>, name: Option<String>, called: &str) -> Surveyed {
         }
     }
     let rest = ["lines", "polygons", "points"].map(|kind| {
-        let left = |(index, taken): &(usize, &bool)| !**taken && layer.features[*index].geometry.kind() == kind;
+        let left =
+            |(index, taken): &(usize, &bool)| !**taken && layer.features[*index].geometry.kind() == kind;
         (kind, taken.iter().enumerate().filter(left).count())
     });
     Surveyed { layer: name, found, rest: rest.into_iter().filter(|rest| rest.1 > 0).collect() }

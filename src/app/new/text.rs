@@ -67,7 +67,11 @@ pub(super) fn scene(ground: &Ground, vectors: &[Vectors]) -> String {
     for rule in &RULES {
         for (file, layer) in layers() {
             let of_this_rule = |found: &&Found| found.rule.what == rule.what;
-            layer.found.iter().filter(of_this_rule).for_each(|found| table(&mut out, file, layer, found, factor));
+            layer
+                .found
+                .iter()
+                .filter(of_this_rule)
+                .for_each(|found| table(&mut out, file, layer, found, factor));
         }
     }
     layers().for_each(|(file, layer)| rest(&mut out, file, layer));
@@ -119,7 +123,7 @@ fn style(ground: &Ground) -> String {
 
 fn table(out: &mut String, file: &Vectors, layer: &Surveyed, found: &Found, factor: f64) {
     let (rule, count) = (found.rule, found.count);
-    let _ = writeln!(out, "\n# {count} {}.\n[[{}]]\nfile = {}", rule.what, rule.table, quoted(&file.file));
+    let _ = writeln!(out, "\n# {} ({count}).\n[[{}]]\nfile = {}", rule.what, rule.table, quoted(&file.file));
     if let Some(layer) = &layer.layer {
         let _ = writeln!(out, "layer = {}", quoted(layer));
     }
@@ -137,7 +141,7 @@ fn table(out: &mut String, file: &Vectors, layer: &Surveyed, found: &Found, fact
 /// What could be made of the rest.
 fn rest(out: &mut String, file: &Vectors, layer: &Surveyed) {
     for (kind, count) in &layer.rest {
-        let _ = writeln!(out, "\n# {count} {kind} of this file are in no table; to draw them:");
+        let _ = writeln!(out, "\n# In no table of this file ({count} {kind}); to draw them:");
         let instances = *kind == "points";
         let head = match *kind {
             "lines" => "# [[fence]]\n# kind = \"boundary\"",
@@ -148,7 +152,8 @@ fn rest(out: &mut String, file: &Vectors, layer: &Surveyed) {
         if let Some(layer) = &layer.layer {
             let _ = writeln!(out, "# layer = {}", quoted(layer));
         }
-        let _ = writeln!(out, "# where = \"{}\"", if instances { "natural = 'tree'" } else { "name = '...'" });
+        let _ =
+            writeln!(out, "# where = \"{}\"", if instances { "natural = 'tree'" } else { "name = '...'" });
     }
 }
 

@@ -156,7 +156,8 @@ impl<'t> Parser<'t> {
     /// A name without quotes and brackets: a property, unless it is a text that misses its quotes.
     fn bare(&self, name: String, place: Range<usize>) -> Parsed {
         if self.words.contains(&name.as_str()) {
-            let help = format!("write '{name}' for the word, `{name}` in backticks for a property of that name");
+            let help =
+                format!("write '{name}' for the word, `{name}` in backticks for a property of that name");
             return Err(self.wrong(place, format!("the word {name} must be in quotes"), help));
         }
         Ok((Node::Property(name), 1))
@@ -166,7 +167,8 @@ impl<'t> Parser<'t> {
         if name == "property" {
             return self.named_property();
         }
-        let Some((_, function, fewest, most, example)) = FUNCTIONS.iter().find(|known| known.0 == name) else {
+        let Some((_, function, fewest, most, example)) = FUNCTIONS.iter().find(|known| known.0 == name)
+        else {
             let names = FUNCTIONS.map(|known| known.0);
             let all = names.into_iter().chain(["property"]).collect::<Vec<_>>();
             let help = match nearest(name, names) {
@@ -314,8 +316,12 @@ impl<'t> Parser<'t> {
         self.wrong(place, format!("expected {wanted}, but found {found}"), help)
     }
 
-    fn wrong(&self, at: Range<usize>, message: impl Into<String>, help: impl Into<String>) -> ExpressionError {
+    fn wrong(
+        &self,
+        at: Range<usize>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> ExpressionError {
         wrong(self.text, at, message, help)
     }
 }
-

@@ -142,7 +142,15 @@ fn comparisons_compare_numbers_as_numbers_and_texts_as_texts() {
     ] {
         assert!(holds(text), "{text}");
     }
-    for text in ["highway = 'Primary'", "lanes = '2.0'", "tunnel", "speed", "not lanes", "speed != 3", "oneway = false"] {
+    for text in [
+        "highway = 'Primary'",
+        "lanes = '2.0'",
+        "tunnel",
+        "speed",
+        "not lanes",
+        "speed != 3",
+        "oneway = false",
+    ] {
         assert!(!holds(text), "{text}");
     }
 }

@@ -21,7 +21,8 @@ pub(super) enum Token {
 }
 
 /// The marks, longer ones before what they start with.
-const MARKS: [&str; 16] = ["??", "!=", "<=", ">=", "==", "<>", "=", "<", ">", "+", "-", "*", "/", "(", ")", ","];
+const MARKS: [&str; 16] =
+    ["??", "!=", "<=", ">=", "==", "<>", "=", "<", ">", "+", "-", "*", "/", "(", ")", ","];
 
 /// A token and the bytes it takes.
 pub(super) type Placed = (Token, Range<usize>);
@@ -44,7 +45,8 @@ pub(super) fn wrong(
 /// It is too long, a quotation is not closed, or a character is none of the language's.
 pub(super) fn tokens(text: &str) -> Result<Vec<Placed>, ExpressionError> {
     if text.len() > MAX_TEXT_BYTES {
-        let message = format!("this expression has {} bytes, more than the {MAX_TEXT_BYTES} allowed", text.len());
+        let message =
+            format!("this expression has {} bytes, more than the {MAX_TEXT_BYTES} allowed", text.len());
         return Err(wrong(text, 0..0, message, "make several tables of it, each with a `where` of its own"));
     }
     let mut tokens = Vec::new();

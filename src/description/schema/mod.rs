@@ -144,7 +144,10 @@ fn common() -> Map<String, Value> {
             json!({ "type": "string", "pattern": "[^\\w-]", "maxLength": MAX_TEXT_BYTES,
                     "description": "An expression that gives one of the words, such as \"property('surface')\"." }),
         ),
-        ("color", json!({ "type": "string", "pattern": "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6}|[0-9a-fA-F]{8})$" })),
+        (
+            "color",
+            json!({ "type": "string", "pattern": "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6}|[0-9a-fA-F]{8})$" }),
+        ),
         ("point", json!({ "type": "array", "items": coordinate, "minItems": 2, "maxItems": 2 })),
         ("scalar", scalar),
     ];
