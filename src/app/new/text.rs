@@ -46,8 +46,8 @@ pub(super) struct Vectors {
 }
 
 /// The extent up to which things are drawn as wide as they are: on a picture a thousand pixels wide a pixel is then
-/// eight metres, and a road of seven just shows.
-const TRUE_TO_SCALE_M: f64 = 8000.0;
+/// four metres, and a street of five just shows.
+const TRUE_TO_SCALE_M: f64 = 4000.0;
 
 /// The text of the scene file.
 pub(super) fn scene(ground: &Ground, vectors: &[Vectors]) -> String {
