@@ -5,7 +5,7 @@
 //! value within its range the default is taken, and the scene's notes say how often.
 //!
 //! Every table of features may have the key `style`: the keys of that `[styles.NAME]` count as its own where it does not
-//! state them itself ([`crate::description::styles`]).
+//! state them itself. A style is judged where it is used; of two keys that exclude each other the table's own counts.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -257,6 +257,6 @@ fn a_mistake_in_an_expression_is_underlined_in_it() {
     refused(
         &format!("{LEAST}[[area]]\nfile = \"r\"\ncover = \"match(landuse, 'forest', 'forrest')\"\n"),
         &[],
-        &["hill.toml:5:36:", "cannot be \"forrest\"", "did you mean `forest`?"],
+        &["hill.toml:5:35:", "cannot be \"forrest\"", "did you mean `forest`?"],
     );
 }

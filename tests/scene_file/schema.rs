@@ -147,7 +147,7 @@ fn every_scene_of_the_project_and_every_key_is_sound() {
 }
 
 #[test]
-fn what_the_schema_refuses_the_decoder_refuses_and_mostly_the_other_way_round() {
+fn two_thirds_of_the_mistakes_that_are_told_an_editor_shows_while_one_writes() {
     let (mut refused, mut judged) = (0, 0);
     for (rest, _) in BROKEN {
         if let Some(broken) = as_json(&format!("{LEAST}{rest}")) {
@@ -156,7 +156,7 @@ fn what_the_schema_refuses_the_decoder_refuses_and_mostly_the_other_way_round() 
             refused += usize::from(!flaws(&broken, &schema, &schema, "").is_empty());
         }
     }
-    assert!(refused * 4 >= judged * 3, "of {judged} broken scenes the schema sees {refused}");
+    assert!(refused * 3 >= judged * 2, "of {judged} broken scenes the schema sees {refused}");
 }
 
 #[test]
