@@ -20,10 +20,14 @@ mod los;
 mod manners;
 #[path = "cli/meshes.rs"]
 mod meshes;
+#[path = "cli/new.rs"]
+mod new;
 #[path = "cli/pictures.rs"]
 mod pictures;
 #[path = "cli/profile.rs"]
 mod profile;
+#[path = "cli/schema.rs"]
+mod schema;
 #[path = "cli/serve.rs"]
 mod serve;
 #[path = "cli/viewshed.rs"]

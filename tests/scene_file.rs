@@ -1,5 +1,10 @@
 //! Scene files as users write them: complete, and broken in every way that has a message of its own.
 
+#[path = "scene_file/layers.rs"]
+mod layers;
+#[path = "scene_file/schema.rs"]
+mod schema;
+
 use proptest::prelude::{ProptestConfig, any};
 use sandtable::description::diagnostic::Diagnostics;
 use sandtable::description::document::{Color, Document, RampChoice};
@@ -94,6 +99,102 @@ title = true
 north_arrow = false
 scale_bar = true
 legend = false
+"##;
+
+/// Features of every kind, with values of every kind.
+const FEATURES: &str = r##"
+[styles.wide]
+width = "width ?? 12"
+
+[[road]]
+style = "wide"
+file = "roads.gpkg"
+layer = "roads"
+where = "highway in ('primary', 'secondary')"
+surface = "if(surface = 'gravel', 'gravel', 'asphalt')"
+shoulder = 1.5
+markings = "solid"
+join = "round"
+mitre_limit = 3
+profile = "conform"
+max_grade = "max_grade ?? 6"
+crown = 2.5
+fill_slope = 1.5
+cut_slope = 1
+max_fill = 12
+max_cut = 15
+bridge = "bridge and not tunnel"
+tunnel = "tunnel"
+level = "layer ?? 0"
+
+[[road]]
+points = [[0, 0], [1, 1]]
+widths = [6, 8]
+
+[[bridge]]
+points = [[0, 0], [1, 1]]
+width = 9
+deck = 312.5
+pier_spacing = 30
+
+[[river]]
+file = "rivers.shp"
+width = 4
+mouth_width = 9
+bank = 1
+water = "drape"
+
+[[lake]]
+file = "lakes.geojson"
+level_rule = "median"
+
+[[area]]
+file = "landuse.geojson"
+where = { landuse = ["forest", "meadow"] }
+cover = "match(landuse, 'forest', 'forest', 'meadow')"
+color = "#80a06080"
+border = "dashed"
+border_width = 2
+
+[[building]]
+file = "buildings.geojson"
+height = "height ?? `building:levels` * 3 ?? 6"
+base = "pad"
+roof = "hipped"
+roof_height = 2
+wall_color = "#eee"
+roof_color = "#a54"
+
+[[fence]]
+file = "power.geojson"
+kind = "power-line"
+height = 25
+width = 6
+spacing = 200
+sag = 0.02
+
+[[model]]
+file = "tree.glb"
+variants = { oak = "oak.glb", fir = "fir.glb" }
+variant = "species"
+heading = "heading ?? 0"
+anchor = "lowest"
+tilt = 10
+sink = 0.2
+footing = "plinth"
+[model.instances]
+file = "trees.geojson"
+where = "natural = 'tree'"
+
+[[scatter]]
+file = "woods.geojson"
+of = ["conifer", "broadleaf"]
+density = 200
+spacing = 3
+scale = [0.7, 1.3]
+slope = [0, 40]
+elevation = [100, 900]
+seed = 7
 "##;
 
 /// The least there can be; broken files below are this and something after it.
@@ -247,8 +348,12 @@ const BROKEN: &[(&str, &[&str])] = &[
     ("[style]\nhaze = [3]\n", &["hill.toml:4:8:", "but this is a list"]),
     ("[[road]]\nfile = \"r\"\nwhere = { a = { b = 1 } }\n", &["hill.toml:5:15:", "`a` cannot equal a table"]),
     (
-        "[[road]]\nfile = \"r\"\nwhere = \"a = 1\"\n",
-        &["hill.toml:5:9:", "`where` must be a table", "{ property = value }"],
+        "[[road]]\nfile = \"r\"\nwhere = 1\n",
+        &["hill.toml:5:9:", "`where` must be a table or an expression", "{ property = value }"],
+    ),
+    (
+        "[[road]]\nfile = \"r\"\nwhere = \"a == 1\"\n",
+        &["hill.toml:5:12:", "\"==\" means nothing here", "write = to compare"],
     ),
     // missing keys
     (

@@ -13,6 +13,7 @@ use crate::app::lod::choice::Wanted;
 use crate::app::lod::method::{Emit, Refine, Rule};
 use crate::app::lod::way::Way;
 use crate::app::los::LosOptions;
+use crate::app::new::NewOptions;
 use crate::app::profile::ProfileOptions;
 use crate::app::report::ReportOptions;
 use crate::app::serve::ServeOptions;
@@ -38,6 +39,10 @@ pub enum Command {
     Render(RenderOptions),
     /// Load and validate a scene file without rendering it
     Check(CheckOptions),
+    /// Write a first scene file for an elevation file and vector files
+    New(NewOptions),
+    /// Print the JSON Schema of scene files, with which editors complete and check them
+    Schema,
     /// Look at elevation files
     Dem {
         /// What to do with the file.

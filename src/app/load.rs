@@ -6,7 +6,7 @@ use crate::app::arguments::Access;
 use crate::app::failure::Failure;
 use crate::app::files;
 use crate::description::document::Document;
-use crate::description::parse::parse_bytes;
+use crate::description::parse::parse_bytes_including;
 use crate::scene::assets::Assets;
 use crate::scene::build::build;
 use crate::scene::kind::Scene;
@@ -34,7 +34,8 @@ pub fn unstretched(path: &Path, access: &Access, step: &dyn Fn(&'static str)) ->
 
 fn document(path: &Path, access: &Access) -> Result<(Document, Assets), Failure> {
     let bytes = files::read(path)?;
-    let document = parse_bytes(&path.to_string_lossy(), &bytes).map_err(Failure::input)?;
     let assets = Assets::new(path, &access.allow).map_err(Failure::input)?;
+    let load = |name: &str| assets.read(name).map_err(|error| error.to_string());
+    let document = parse_bytes_including(&path.to_string_lossy(), &bytes, &load).map_err(Failure::input)?;
     Ok((document, assets))
 }

@@ -19,6 +19,7 @@ pub mod los;
 pub mod map;
 pub mod mesh;
 pub mod model;
+pub mod new;
 pub mod output;
 pub mod picture;
 pub mod places;
@@ -28,6 +29,7 @@ pub mod progress;
 pub mod rasters;
 pub mod render;
 pub mod report;
+pub mod schema;
 pub mod serve;
 pub mod viewshed;
 
@@ -67,6 +69,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Export(options) => export::run(options),
         Command::Report(options) => report::run(options),
         Command::Mesh(options) => mesh::run(options),
+        Command::Schema => schema::run(),
+        Command::New(options) => new::run(options),
         Command::Lod(options) => lod::run(options),
     }
 }

@@ -12,6 +12,7 @@ use crate::description::document::{
 };
 use crate::description::reader::Reader;
 use crate::description::source_text::SourceText;
+use crate::description::styles::Styles;
 use crate::geom::crs::Crs;
 
 /// Compass directions in degrees.
@@ -19,21 +20,24 @@ pub(super) const DIRECTION: Bounds = Bounds::Within(-360.0, 360.0);
 
 /// The whole file.
 pub(super) fn document(reader: &mut Reader<'_, '_>, source: Arc<SourceText>) -> Option<Document> {
+    // Gathered before anything is read.
+    let _ = reader.get("include", |item| item.one_or_more_texts());
     let title = plain_text(reader, "title");
     let subtitle = plain_text(reader, "subtitle");
     let crs = reader.get("crs", |item| item.crs(metric));
     let points_crs = any_crs(reader, "points_crs");
     let terrain = reader.require_table("terrain", terrain);
     let style = reader.table("style", style).unwrap_or_default();
-    let roads = reader.tables("road", features::road);
-    let bridges = reader.tables("bridge", features::bridge);
-    let rivers = reader.tables("river", features::river);
-    let lakes = reader.tables("lake", features::lake);
-    let areas = reader.tables("area", features::area);
-    let buildings = reader.tables("building", features::building);
-    let fences = reader.tables("fence", features::fence);
-    let models = reader.tables("model", features::model);
-    let scatters = reader.tables("scatter", features::scatter);
+    let styles = Styles::read_all(reader);
+    let roads = styles.read(reader, "road", features::road);
+    let bridges = styles.read(reader, "bridge", features::bridge);
+    let rivers = styles.read(reader, "river", features::river);
+    let lakes = styles.read(reader, "lake", features::lake);
+    let areas = styles.read(reader, "area", features::area);
+    let buildings = styles.read(reader, "building", features::building);
+    let fences = styles.read(reader, "fence", features::fence);
+    let models = styles.read(reader, "model", features::model);
+    let scatters = styles.read(reader, "scatter", features::scatter);
     let labels = reader.tables("label", label);
     let cameras = reader.tables("camera", camera);
     distinct_names(reader, &source, &cameras);
@@ -63,7 +67,7 @@ pub(super) fn document(reader: &mut Reader<'_, '_>, source: Arc<SourceText>) -> 
 }
 
 fn terrain(reader: &mut Reader<'_, '_>) -> Option<Terrain> {
-    let dem = reader.require("dem", |item| item.one_or_more_texts());
+    let dem = reader.require("dem", |item| item.files(&[]));
     let crs = any_crs(reader, "crs");
     let height_scale = number(reader, "height_scale", Bounds::Above(0.0, 1e6));
     let height_offset = number(reader, "height_offset", ELEVATION);
@@ -156,7 +160,11 @@ fn distinct_names(reader: &mut Reader<'_, '_>, source: &SourceText, cameras: &[C
         let name = camera.name.get_ref();
         if let Some(first) = seen.get(name) {
             let line = source.line_column(*first).line;
-            let message = format!("the camera on line {line} already has this name");
+            let other = match source.name_at(*first) {
+                file if file == source.name_at(camera.name.span().start) => String::new(),
+                file => format!(" of {file}"),
+            };
+            let message = format!("the camera on line {line}{other} already has this name");
             reader.error(camera.name.span(), message, "give each camera a name of its own");
         } else {
             seen.insert(name, camera.name.span().start);

@@ -8,6 +8,7 @@ use crate::description::expression::{Choice, Expression, Quantity};
 use crate::description::features::{
     Area, Bridge, Building, Fence, Lake, ModelPlacement, River, Road, Scatter, Source,
 };
+use crate::description::item::Selection;
 use crate::description::reader::Reader;
 use crate::description::words::{Clamp, Profile, Word};
 
@@ -25,6 +26,9 @@ const BATTER: Bounds = Bounds::Within(0.0, 20.0);
 const SLOPE: Bounds = Bounds::Within(0.0, 90.0);
 /// Metres per unit of a model.
 const SCALE: Bounds = Bounds::Above(0.0, 1e6);
+
+/// What may be scattered without a file.
+const BUILT_IN: [&str; 4] = ["conifer", "broadleaf", "shrub", "rock"];
 
 pub(super) fn road(reader: &mut Reader<'_, '_>) -> Option<Road> {
     let name = plain_text(reader, "name");
@@ -145,7 +149,7 @@ pub(super) fn fence(reader: &mut Reader<'_, '_>) -> Option<Fence> {
 
 pub(super) fn model(reader: &mut Reader<'_, '_>) -> Option<ModelPlacement> {
     let name = plain_text(reader, "name");
-    let file = reader.require("file", |item| item.filled_text());
+    let file = reader.require("file", |item| item.file());
     let given = [reader.has("at"), reader.has("instances")];
     let at = reader.get("at", |item| item.point());
     let crs = any_crs(reader, "crs");
@@ -160,7 +164,7 @@ pub(super) fn model(reader: &mut Reader<'_, '_>) -> Option<ModelPlacement> {
         }
         _ => {}
     }
-    let variants = reader.get("variants", |item| item.texts());
+    let variants = reader.get("variants", |item| item.files_by_word());
     let variant = expression(reader, "variant");
     let heading = quantity(reader, "heading", DIRECTION);
     let scale = quantity(reader, "scale", SCALE);
@@ -206,7 +210,7 @@ pub(super) fn model(reader: &mut Reader<'_, '_>) -> Option<ModelPlacement> {
 pub(super) fn scatter(reader: &mut Reader<'_, '_>) -> Option<Scatter> {
     let name = plain_text(reader, "name");
     let source = source(reader, 3);
-    let of = reader.require("of", |item| item.one_or_more_texts());
+    let of = reader.require("of", |item| item.files(&BUILT_IN));
     let density = quantity(reader, "density", Bounds::Above(0.0, 1e5));
     let spacing = quantity(reader, "spacing", Bounds::Within(0.0, 10_000.0));
     let scale = reader.get("scale", |item| item.range(SCALE));
@@ -251,9 +255,9 @@ fn source(reader: &mut Reader<'_, '_>, least_points: usize) -> Option<Source> {
         (reader.has("where"), "`where` chooses features of a file, but the points are given here"),
     ];
     let points = reader.get("points", |item| item.points(least_points));
-    let file = reader.get("file", |item| item.filled_text());
+    let file = reader.get("file", |item| item.file());
     let layer = reader.get("layer", |item| item.filled_text());
-    let filter = reader.get("where", |item| item.filter());
+    let selection = reader.get("where", |item| item.filter());
     let crs = any_crs(reader, "crs");
     let title = reader.title();
     match given {
@@ -275,5 +279,10 @@ fn source(reader: &mut Reader<'_, '_>, least_points: usize) -> Option<Source> {
         }
         _ => {}
     }
-    Some(Source { points, file, layer, filter, crs })
+    let (filter, condition) = match selection.map(|selection| (selection.span(), selection.into_inner())) {
+        Some((span, Selection::Matching(filter))) => (Some(Spanned::new(span, filter)), None),
+        Some((span, Selection::Holding(condition))) => (None, Some(Spanned::new(span, condition))),
+        None => (None, None),
+    };
+    Some(Source { points, file, layer, filter, condition, crs })
 }

@@ -79,7 +79,7 @@ impl fmt::Display for Diagnostic {
         let shown = snippet(&self.source.text()[line], mark);
         let number = at.line.to_string();
         let gutter = " ".repeat(number.len());
-        let (name, message) = (harmless(self.source.name()), harmless(&self.message));
+        let (name, message) = (harmless(self.source.name_at(self.span.start)), harmless(&self.message));
         writeln!(out, "{name}:{}:{}: error: {message}", at.line, at.column)?;
         writeln!(out, "{gutter} |")?;
         writeln!(out, "{}", format!("{number} | {}", shown.line).trim_end())?;
@@ -185,8 +185,11 @@ impl Report {
             self.omitted += 1;
             return;
         }
-        let error = Diagnostic::new(&self.source, span, message);
-        self.list.push(Diagnostic { help, ..error });
+        let error = Diagnostic { help, ..Diagnostic::new(&self.source, span, message) };
+        // A style is read once for each table that takes its keys.
+        if !self.list.contains(&error) {
+            self.list.push(error);
+        }
     }
 
     /// Everything noted, in the order of the file; `None` where there was nothing.
@@ -225,8 +228,8 @@ mod tests {
     #[test]
     fn errors_beyond_the_limit_are_counted() {
         let mut report = Report::new(SourceText::new("a", "x"));
-        for _ in 0..MAX_ERRORS + 3 {
-            report.error(0..1, "m", None);
+        for number in 0..MAX_ERRORS + 3 {
+            report.error(0..1, format!("m{number}"), None);
         }
         let all = report.into_diagnostics().expect("errors");
         assert_eq!((all.as_slice().len(), all.omitted()), (MAX_ERRORS, 3));

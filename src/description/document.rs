@@ -3,8 +3,15 @@
 //!
 //! A scene file is TOML in UTF-8. Lengths and heights are metres, angles degrees, compass directions
 //! clockwise from north, coordinates `[easting, northing]` or `[longitude, latitude]`, and file names
-//! relative to the scene file, unless a key says otherwise. Keys that are not listed here are errors. Every
+//! relative to the file they stand in, unless a key says otherwise. Keys that are not listed here are errors. Every
 //! number is finite; the range of each is stated, with `(` where the end itself is not allowed.
+//!
+//! Three more keys say how a scene file is put together: `include`, at the top, names files whose tables come before
+//! its own ([`crate::description::include`]); `[styles.NAME]` holds keys that features share, and `style = "NAME"` in
+//! a feature's table takes them ([`crate::description::features`]).
+//!
+//! The documentation of each field begins with its key and ends with its default: editors are shown just that
+//! ([`crate::description::schema`]).
 //!
 //! ```toml
 //! title = "The hill"
@@ -20,7 +27,7 @@
 //! [[road]]
 //! file = "roads.geojson"
 //! where = { highway = ["primary", "secondary"] }
-//! width = 8
+//! width = "lanes * 3.5 ?? 8"
 //!
 //! [[camera]]
 //! name = "south"

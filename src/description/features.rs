@@ -3,6 +3,9 @@
 //! A number that may differ from feature to feature is a [`Quantity`], a word that may a [`Choice`]: written as such, or
 //! as an expression over the feature's properties ([`crate::description::expression`]). Where the properties give no
 //! value within its range the default is taken, and the scene's notes say how often.
+//!
+//! Every table of features may have the key `style`: the keys of that `[styles.NAME]` count as its own where it does not
+//! state them itself. A style is judged where it is used; of two keys that exclude each other the table's own counts.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -23,13 +26,15 @@ pub struct Source {
     /// `points`: inline coordinates, at least two for a line and three for a lake, at most 100 000, each in
     /// ±10⁹. A lake's last point may repeat its first.
     pub points: Option<Spanned<Vec<[f64; 2]>>>,
-    /// `file`: a vector file, of any format that `vector/read.rs` lists.
+    /// `file`: a vector file: GeoJSON, shapefile, GeoPackage, FlatGeobuf, GPX, KML or OpenStreetMap.
     pub file: Option<Spanned<String>>,
     /// `layer`, only with `file`: which layer of a file that holds several; needed there, unless it holds one.
     pub layer: Option<Spanned<String>>,
     /// `where`, only with `file`: only features whose properties match all of it, each by a value or by one
-    /// of a list of up to 256 values. Default: all features.
+    /// of a list of up to 256 values; or a text, an expression that must hold. Default: all features.
     pub filter: Option<Spanned<BTreeMap<String, Match>>>,
+    /// `where`, if it is a text: only features for which it holds.
+    pub condition: Option<Spanned<Expression>>,
     /// `crs`: the coordinate system of `points`, or of a file that names none or a wrong one. Default: the
     /// scene's `points_crs`, or what the file names.
     pub crs: Option<Spanned<String>>,

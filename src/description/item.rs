@@ -1,7 +1,7 @@
 //! One value of the scene file on its way from TOML to a type: what it may be, and what to say if it is not.
 
 use std::collections::BTreeMap;
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 
 use toml::Spanned;
 use toml::de::{DeArray, DeValue};
@@ -9,18 +9,20 @@ use toml::de::{DeArray, DeValue};
 use crate::description::bounds::{Bounds, ELEVATION, Short};
 use crate::description::diagnostic::Report;
 use crate::description::document::{Color, RampChoice};
-use crate::description::expression::{Choice, Expression, Quantity};
+use crate::description::expression::{Choice, Expression, ExpressionError, Quantity};
 use crate::description::features::{Match, Scalar};
+use crate::description::include::joined;
+use crate::description::sketch::Shape;
 use crate::description::suggest::{quoted, remedy};
-use crate::description::words::Word;
+use crate::description::words::{Ramp, Word};
 use crate::geom::crs::Crs;
 
 /// The largest coordinate, in any unit: beyond it centimetres are lost to rounding.
-const MAX_COORDINATE: f64 = 1e9;
+pub(super) const MAX_COORDINATE: f64 = 1e9;
 /// The most inline points of one feature; longer lines belong in a file.
 const MAX_POINTS: usize = 100_000;
 /// The longest text, in characters.
-const MAX_TEXT: usize = 4096;
+pub(super) const MAX_TEXT: usize = 4096;
 /// The most stops of a ramp, values of a filter's list, and files of a mosaic.
 const MAX_LIST: usize = 256;
 
@@ -29,6 +31,21 @@ pub(super) struct Item<'a, 'i> {
     pub report: &'a mut Report,
     pub key: &'a str,
     pub value: &'a Spanned<DeValue<'i>>,
+    /// Where to write down what is asked for, in place of reading it.
+    pub asked: Option<&'a mut Option<Shape>>,
+}
+
+/// Which features of a file are meant.
+pub(super) enum Selection {
+    /// Those with these values.
+    Matching(BTreeMap<String, Match>),
+    /// Those for which this holds.
+    Holding(Expression),
+}
+
+/// `name`, which is relative to `folder`, as seen from the scene file.
+fn seen_from(folder: &str, name: String) -> String {
+    if folder.is_empty() { name } else { joined(folder, &name) }
 }
 
 /// What a value is, in the words of messages.
@@ -54,7 +71,23 @@ fn as_number(value: &DeValue<'_>) -> Option<f64> {
     }
 }
 
+/// The words that may be written for a `W`.
+fn words<W: Word>() -> Vec<&'static str> {
+    W::ALL.iter().map(|(word, _)| *word).collect()
+}
+
 impl<'i> Item<'_, 'i> {
+    /// Writes down what is asked for; whether that is all that is wanted.
+    fn sketched(&mut self, shape: impl FnOnce() -> Shape) -> bool {
+        match &mut self.asked {
+            Some(asked) => {
+                **asked = Some(shape());
+                true
+            }
+            None => false,
+        }
+    }
+
     fn wrong(&mut self, message: impl Into<String>, help: impl Into<String>) {
         self.report.error(self.value.span(), message, Some(help.into()));
     }
@@ -65,11 +98,14 @@ impl<'i> Item<'_, 'i> {
     }
 
     fn element<'b>(&'b mut self, value: &'b Spanned<DeValue<'i>>) -> Item<'b, 'i> {
-        Item { report: self.report, key: self.key, value }
+        Item { report: self.report, key: self.key, value, asked: None }
     }
 
     /// A finite number within `bounds`.
     pub fn number(mut self, bounds: Bounds) -> Option<f64> {
+        if self.sketched(|| Shape::Number(bounds)) {
+            return None;
+        }
         match as_number(self.value.get_ref()) {
             Some(number) if bounds.hold(number) => Some(number),
             Some(number) => {
@@ -86,6 +122,9 @@ impl<'i> Item<'_, 'i> {
 
     /// A whole number within `bounds`.
     pub fn whole(mut self, bounds: RangeInclusive<u32>) -> Option<u32> {
+        if self.sketched(|| Shape::Whole(bounds.clone())) {
+            return None;
+        }
         let wanted = format!("from {} to {}", bounds.start(), bounds.end());
         match as_number(self.value.get_ref()) {
             Some(number)
@@ -118,6 +157,9 @@ impl<'i> Item<'_, 'i> {
 
     /// A number within `bounds`, or an expression that gives one.
     pub fn quantity(mut self, bounds: Bounds) -> Option<Quantity> {
+        if self.sketched(|| Shape::Quantity(bounds)) {
+            return None;
+        }
         match self.value.get_ref() {
             DeValue::String(text) if text.trim().parse::<f64>().is_err() => {
                 self.expression().map(|expression| Quantity::of_features(expression, bounds))
@@ -128,11 +170,14 @@ impl<'i> Item<'_, 'i> {
 
     /// One of `W`'s words, or an expression that gives one.
     pub fn choice<W: Word>(mut self) -> Option<Choice<W>> {
+        if self.sketched(|| Shape::Choice(words::<W>())) {
+            return None;
+        }
         match self.value.get_ref() {
             DeValue::String(text)
                 if W::ALL.iter().all(|(word, _)| word != text) && Expression::computes(text) =>
             {
-                self.expression().map(Choice::of_features)
+                self.expression_among(&words::<W>()).map(Choice::of_features)
             }
             _ => self.word().map(Choice::Fixed),
         }
@@ -140,18 +185,67 @@ impl<'i> Item<'_, 'i> {
 
     /// An expression over a feature's properties.
     pub fn expression(&mut self) -> Option<Expression> {
+        if self.sketched(|| Shape::Expression) {
+            return None;
+        }
+        self.expression_among(&[])
+    }
+
+    /// An expression that gives one of `words`, or anything where they are none.
+    fn expression_among(&mut self, words: &[&str]) -> Option<Expression> {
         let text = self.element(self.value).filled_text()?;
-        match Expression::parse(&text) {
+        match Expression::parse_among(&text, words) {
             Ok(expression) => Some(expression),
             Err(error) => {
-                self.wrong(format!("`{}`: {}", self.key, error.message), error.help);
+                let (place, message) = match self.place_in_text(&text, &error) {
+                    Some(place) => (place, error.message),
+                    None => (self.value.span(), error.to_string()),
+                };
+                self.report.error(place, format!("`{}`: {message}", self.key), Some(error.help));
                 None
             }
         }
     }
 
+    /// Where in the file the error stands, where the text stands there letter by letter.
+    fn place_in_text(&self, text: &str, error: &ExpressionError) -> Option<Range<usize>> {
+        let span = self.value.span();
+        let written = self.report.source().text().get(span.start + 1..span.end.checked_sub(1)?)?;
+        let within = (error.at.start + span.start + 1)..(error.at.end + span.start + 1);
+        (written == text).then_some(within)
+    }
+
+    /// The name of a file, as seen from the scene file.
+    pub fn file(self) -> Option<String> {
+        let folder = self.folder();
+        self.filled_text().map(|name| seen_from(&folder, name))
+    }
+
+    /// The names of one or more files, as seen from the scene file; what is one of `built_in` is none.
+    pub fn files(self, built_in: &[&str]) -> Option<Vec<String>> {
+        let folder = self.folder();
+        let seen =
+            |name: String| if built_in.contains(&name.as_str()) { name } else { seen_from(&folder, name) };
+        self.one_or_more_texts().map(|names| names.into_iter().map(seen).collect())
+    }
+
+    /// The names of files by words of the user's, as seen from the scene file.
+    pub fn files_by_word(self) -> Option<BTreeMap<String, String>> {
+        let folder = self.folder();
+        let names = self.texts()?.into_iter();
+        Some(names.map(|(word, name)| (word, seen_from(&folder, name))).collect())
+    }
+
+    /// The folder of the file that the value stands in, as seen from the scene file.
+    fn folder(&self) -> String {
+        self.report.source().folder_at(self.value.span().start).to_owned()
+    }
+
     /// Two numbers within `bounds`, the second not less than the first.
     pub fn range(mut self, bounds: Bounds) -> Option<[f64; 2]> {
+        if self.sketched(|| Shape::Range(bounds)) {
+            return None;
+        }
         let help = "write [from, to]";
         let DeValue::Array(list) = self.value.get_ref() else {
             self.wrong_kind("two numbers", help);
@@ -174,6 +268,9 @@ impl<'i> Item<'_, 'i> {
 
     /// As many numbers as points may be, each within `bounds`.
     pub fn numbers(mut self, bounds: Bounds) -> Option<Vec<f64>> {
+        if self.sketched(|| Shape::Numbers(bounds, MAX_POINTS)) {
+            return None;
+        }
         match self.value.get_ref() {
             DeValue::Array(list) if list.len() <= MAX_POINTS => {
                 let numbers: Vec<_> = list.iter().map(|number| self.element(number).number(bounds)).collect();
@@ -187,13 +284,16 @@ impl<'i> Item<'_, 'i> {
     }
 
     /// A table of texts.
-    pub fn texts(mut self) -> Option<BTreeMap<String, String>> {
+    fn texts(mut self) -> Option<BTreeMap<String, String>> {
+        if self.sketched(|| Shape::Texts(MAX_LIST)) {
+            return None;
+        }
         match self.value.get_ref() {
             DeValue::Table(table) if (1..=MAX_LIST).contains(&table.len()) => {
                 let texts: Vec<_> = table
                     .iter()
                     .map(|(key, text)| {
-                        let item = Item { report: self.report, key: key.get_ref(), value: text };
+                        let item = Item { report: self.report, key: key.get_ref(), value: text, asked: None };
                         Some((key.get_ref().to_string(), item.filled_text()?))
                     })
                     .collect();
@@ -211,6 +311,9 @@ impl<'i> Item<'_, 'i> {
 
     /// True or false.
     pub fn switch(mut self) -> Option<bool> {
+        if self.sketched(|| Shape::Switch) {
+            return None;
+        }
         match self.value.get_ref() {
             DeValue::Boolean(on) => Some(*on),
             _ => {
@@ -222,6 +325,9 @@ impl<'i> Item<'_, 'i> {
 
     /// Text of bounded length; may be empty.
     pub fn text(mut self) -> Option<String> {
+        if self.sketched(|| Shape::Text) {
+            return None;
+        }
         match self.value.get_ref() {
             DeValue::String(text) if text.chars().nth(MAX_TEXT).is_none() => Some(text.to_string()),
             DeValue::String(_) => {
@@ -237,6 +343,9 @@ impl<'i> Item<'_, 'i> {
 
     /// Text with something in it.
     pub fn filled_text(mut self) -> Option<String> {
+        if self.sketched(|| Shape::FilledText) {
+            return None;
+        }
         let text = self.element(self.value).text()?;
         if text.trim().is_empty() {
             self.wrong(format!("`{}` is empty", self.key), "write something in it, or leave the key out");
@@ -247,6 +356,9 @@ impl<'i> Item<'_, 'i> {
 
     /// Text with something in it, or a list of such texts.
     pub fn one_or_more_texts(mut self) -> Option<Vec<String>> {
+        if self.sketched(|| Shape::OneOrMoreTexts(MAX_LIST)) {
+            return None;
+        }
         match self.value.get_ref() {
             DeValue::Array(list) if (1..=MAX_LIST).contains(&list.len()) => {
                 let texts: Vec<_> = list.iter().map(|text| self.element(text).filled_text()).collect();
@@ -263,6 +375,9 @@ impl<'i> Item<'_, 'i> {
 
     /// Text that names a coordinate reference system; `check` may refuse what it names.
     pub fn crs(mut self, check: impl FnOnce(&Crs) -> Result<(), String>) -> Option<String> {
+        if self.sketched(|| Shape::FilledText) {
+            return None;
+        }
         let text = self.element(self.value).filled_text()?;
         let refused = match Crs::parse(&text).map_err(|error| error.to_string()) {
             Ok(crs) => check(&crs).err(),
@@ -280,7 +395,10 @@ impl<'i> Item<'_, 'i> {
 
     /// One of `W`'s words.
     pub fn word<W: Word>(mut self) -> Option<W> {
-        let words: Vec<&str> = W::ALL.iter().map(|(word, _)| *word).collect();
+        if self.sketched(|| Shape::Word(words::<W>())) {
+            return None;
+        }
+        let words = words::<W>();
         let DeValue::String(text) = self.value.get_ref() else {
             self.wrong_kind("a word in quotes", remedy("", &words, "it may be"));
             return None;
@@ -295,6 +413,9 @@ impl<'i> Item<'_, 'i> {
 
     /// `#rgb`, `#rrggbb` or `#rrggbbaa`.
     pub fn color(mut self) -> Option<Color> {
+        if self.sketched(|| Shape::Color) {
+            return None;
+        }
         let help = "write \"#rgb\", \"#rrggbb\" or \"#rrggbbaa\" in hexadecimal digits";
         let DeValue::String(text) = self.value.get_ref() else {
             self.wrong_kind("a colour in quotes", help);
@@ -309,6 +430,9 @@ impl<'i> Item<'_, 'i> {
 
     /// A coordinate pair.
     pub fn point(mut self) -> Option<[f64; 2]> {
+        if self.sketched(|| Shape::Point) {
+            return None;
+        }
         let help =
             "write [easting, northing], or [longitude, latitude] in degrees; heights come from the ground";
         match self.value.get_ref() {
@@ -333,6 +457,9 @@ impl<'i> Item<'_, 'i> {
     /// At least `least` coordinate pairs; a closing point that repeats the first one is not counted where
     /// `least` asks for a ring of three.
     pub fn points(mut self, least: usize) -> Option<Vec<[f64; 2]>> {
+        if self.sketched(|| Shape::Points(least, MAX_POINTS)) {
+            return None;
+        }
         let help = format!("write at least {least} points as [[x1, y1], [x2, y2], ...]");
         let DeValue::Array(list) = self.value.get_ref() else {
             self.wrong_kind("a list of points", help);
@@ -356,6 +483,9 @@ impl<'i> Item<'_, 'i> {
 
     /// A ramp's name, or its stops from low to high.
     pub fn ramp(mut self) -> Option<RampChoice> {
+        if self.sketched(|| Shape::Ramp(words::<Ramp>(), MAX_LIST)) {
+            return None;
+        }
         match self.value.get_ref() {
             DeValue::Array(stops) => self.stops(stops).map(RampChoice::Stops),
             _ => self.word().map(RampChoice::Named),
@@ -391,12 +521,19 @@ impl<'i> Item<'_, 'i> {
         }
     }
 
-    /// A filter: properties and the values they may have.
-    pub fn filter(mut self) -> Option<BTreeMap<String, Match>> {
-        let help = "write { property = value } or { property = [value, value] }";
-        let DeValue::Table(table) = self.value.get_ref() else {
-            self.wrong_kind("a table", help);
+    /// A filter: properties and the values they may have, or an expression.
+    pub fn filter(mut self) -> Option<Selection> {
+        if self.sketched(|| Shape::Filter(MAX_LIST)) {
             return None;
+        }
+        let help = "write { property = value } or \"property = 'value' and ...\"";
+        let table = match self.value.get_ref() {
+            DeValue::Table(table) => table,
+            DeValue::String(_) => return self.expression().map(Selection::Holding),
+            _ => {
+                self.wrong_kind("a table or an expression", help);
+                return None;
+            }
         };
         if table.is_empty() {
             self.wrong(format!("`{}` names no property", self.key), help);
@@ -405,11 +542,11 @@ impl<'i> Item<'_, 'i> {
         let matches: Vec<_> = table
             .iter()
             .map(|(property, wanted)| {
-                let item = Item { report: self.report, key: property.get_ref(), value: wanted };
+                let item = Item { report: self.report, key: property.get_ref(), value: wanted, asked: None };
                 Some((property.get_ref().to_string(), item.wanted()?))
             })
             .collect();
-        matches.into_iter().collect()
+        matches.into_iter().collect::<Option<_>>().map(Selection::Matching)
     }
 
     fn wanted(mut self) -> Option<Match> {

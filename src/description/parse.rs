@@ -9,6 +9,7 @@ use toml::de::DeTable;
 use crate::description::decode::document;
 use crate::description::diagnostic::{Diagnostic, Diagnostics, Report};
 use crate::description::document::Document;
+use crate::description::include::{Load, gather, merged, moved};
 use crate::description::reader::Reader;
 use crate::description::source_text::SourceText;
 use crate::description::suggest::quoted;
@@ -23,14 +24,29 @@ pub const MAX_BYTES: usize = 4 << 20;
 /// Everything wrong in the file as far as it can be told without another file. Where the text is not TOML,
 /// only that is reported, since what the rest means is then a guess.
 pub fn parse(file_name: &str, text: &str) -> Result<Document, Diagnostics> {
+    parse_including(file_name, text, ALONE)
+}
+
+/// As [`parse`], for a scene file that may include others, which `load` gives.
+///
+/// # Errors
+/// As [`parse`], of all the files, and where one cannot be included.
+pub fn parse_including(file_name: &str, text: &str, load: Load<'_>) -> Result<Document, Diagnostics> {
     if text.len() > MAX_BYTES {
         return Err(too_large(file_name, text.len()));
     }
-    let source = SourceText::new(file_name, text);
+    let gathered = gather(file_name, text, load, MAX_BYTES);
+    let source = Arc::new(gathered.source);
     let mut report = Report::new(Arc::clone(&source));
-    let table = toml_table(text, &mut report);
-    let parsed =
-        table.and_then(|table| Reader::read_root(&mut report, table, |reader| document(reader, source)));
+    for (span, message, help) in gathered.refused {
+        report.error(span, message, Some(help));
+    }
+    let tables: Vec<_> = source.texts().map(|placed| toml_table(placed, &mut report)).collect();
+    let table = tables.into_iter().collect::<Option<Vec<_>>>();
+    let table = table.map(|tables| merged(tables, &gathered.includes));
+    let decode =
+        |table| Reader::read_root(&mut report, table, |reader| document(reader, Arc::clone(&source)));
+    let parsed = table.and_then(decode);
     match (report.into_diagnostics(), parsed) {
         (None, Some(document)) => Ok(document),
         (errors, _) => Err(errors.unwrap_or_else(|| unread(file_name))),
@@ -42,11 +58,19 @@ pub fn parse(file_name: &str, text: &str) -> Result<Document, Diagnostics> {
 /// # Errors
 /// As [`parse`], and where the bytes are not UTF-8.
 pub fn parse_bytes(file_name: &str, bytes: &[u8]) -> Result<Document, Diagnostics> {
+    parse_bytes_including(file_name, bytes, ALONE)
+}
+
+/// As [`parse_including`], for bytes as they come from a disk.
+///
+/// # Errors
+/// As [`parse_including`], and where the bytes are not UTF-8.
+pub fn parse_bytes_including(file_name: &str, bytes: &[u8], load: Load<'_>) -> Result<Document, Diagnostics> {
     if bytes.len() > MAX_BYTES {
         return Err(too_large(file_name, bytes.len()));
     }
     match std::str::from_utf8(bytes) {
-        Ok(text) => parse(file_name, text),
+        Ok(text) => parse_including(file_name, text, load),
         Err(error) => {
             let source = SourceText::new(file_name, String::from_utf8_lossy(bytes));
             let at = error.valid_up_to();
@@ -56,6 +80,9 @@ pub fn parse_bytes(file_name: &str, bytes: &[u8]) -> Result<Document, Diagnostic
     }
 }
 
+/// For a scene file that stands alone.
+const ALONE: Load<'static> = &|_| Err("other files are not read here".into());
+
 /// What the TOML parser says of a key that is there already.
 const DUPLICATE: &str = "duplicate key";
 
@@ -63,9 +90,9 @@ const DUPLICATE: &str = "duplicate key";
 /// hundreds of bytes for each.
 const MAX_BYTES_RECOVERED: usize = 256 << 10;
 
-/// The text as a table, where nothing is wrong with it but a key given twice. Reports one syntax error for
+/// The text that starts at the first byte given as a table, where nothing is wrong with it but a key given twice. Reports one syntax error for
 /// each line, since what follows an error is often caused by it.
-fn toml_table<'i>(text: &'i str, report: &mut Report) -> Option<DeTable<'i>> {
+fn toml_table<'i>((start, text): (usize, &'i str), report: &mut Report) -> Option<DeTable<'i>> {
     let (table, mut errors) = if text.len() <= MAX_BYTES_RECOVERED {
         DeTable::parse_recoverable(text)
     } else {
@@ -81,13 +108,13 @@ fn toml_table<'i>(text: &'i str, report: &mut Report) -> Option<DeTable<'i>> {
         let same_line = last_end.is_some_and(|end| span.start <= end);
         if !same_line {
             let (message, help) = syntax(error.message(), &text[clamped(&span, text)]);
-            report.error(span.clone(), message, help);
-            last_end = Some(report.source().line_at(span.start).end);
+            report.error(span.start + start..span.end + start, message, help);
+            last_end = Some(report.source().line_at(span.start + start).end - start);
         }
     }
     let recovered = text.len() <= MAX_BYTES_RECOVERED || errors.is_empty();
     let readable = recovered && errors.iter().all(|error| error.message() == DUPLICATE);
-    readable.then(|| table.into_inner())
+    readable.then(|| if start == 0 { table.into_inner() } else { moved(table.into_inner(), start) })
 }
 
 /// A sentence and a remedy for the TOML parser's message about the text `found`.

@@ -11,12 +11,14 @@ use toml::de::{DeTable, DeValue};
 
 use crate::description::diagnostic::Report;
 use crate::description::item::{Item, kind_of};
+use crate::description::sketch::{Key, Needed, Part, Sketch};
+use crate::description::source_text::SourceText;
 use crate::description::suggest::{listed, nearest, quoted};
 
 /// The most tables of one kind (`[[road]]`, `[[label]]` …) in a scene; far above what a picture can show.
 const MAX_TABLES: usize = 10_000;
 /// Keys that stand before the first table, and end up in the wrong one when written after it.
-const TOP_KEYS: [&str; 4] = ["title", "subtitle", "crs", "points_crs"];
+const TOP_KEYS: [&str; 5] = ["include", "title", "subtitle", "crs", "points_crs"];
 
 /// One table while it is read.
 pub(super) struct Reader<'r, 'i> {
@@ -26,6 +28,8 @@ pub(super) struct Reader<'r, 'i> {
     span: Range<usize>,
     known: Vec<&'static str>,
     missing: Vec<&'static str>,
+    /// What was asked for, where nothing is read.
+    sketch: Option<Sketch>,
 }
 
 /// What a table is called.
@@ -68,10 +72,51 @@ impl<'r, 'i> Reader<'r, 'i> {
         span: Range<usize>,
         decode: impl FnOnce(&mut Reader<'_, 'i>) -> T,
     ) -> T {
-        let mut reader = Reader { report, table, path, span, known: Vec::new(), missing: Vec::new() };
+        let (known, missing) = (Vec::new(), Vec::new());
+        let mut reader = Reader { report, table, path, span, known, missing, sketch: None };
         let value = decode(&mut reader);
         reader.finish();
         value
+    }
+
+    /// What `decode` asks of the whole file's table. It is given nothing, and what it says is not listened to.
+    pub fn sketch_root<T>(decode: impl FnOnce(&mut Reader<'_, 'i>) -> T) -> Sketch {
+        let mut report = Report::new(SourceText::new("", ""));
+        Reader::sketch(&mut report, Path::default(), decode)
+    }
+
+    fn sketch<T>(report: &mut Report, path: Path, decode: impl FnOnce(&mut Reader<'_, 'i>) -> T) -> Sketch {
+        let mut reader = Reader {
+            report,
+            table: DeTable::new(),
+            path,
+            span: 0..0,
+            known: Vec::new(),
+            missing: Vec::new(),
+            sketch: Some(Sketch::default()),
+        };
+        decode(&mut reader);
+        reader.sketch.unwrap_or_default()
+    }
+
+    /// Writes down a key.
+    fn note(&mut self, name: &'static str, needed: Needed, part: Part) {
+        if let Some(sketch) = &mut self.sketch {
+            sketch.keys.push(Key { name, needed, part });
+        }
+    }
+
+    /// Writes down a key with a value, where nothing is read.
+    fn note_value<T>(
+        &mut self,
+        (key, needed): (&'static str, Needed),
+        decode: impl FnOnce(Item<'_, 'i>) -> Option<T>,
+    ) {
+        let nothing = Spanned::new(0..0, DeValue::Boolean(false));
+        let mut shape = None;
+        decode(Item { report: self.report, key, value: &nothing, asked: Some(&mut shape) });
+        let shape = shape.expect("every way to read a value begins by writing down what it asks for");
+        self.note(key, needed, Part::Value(shape));
     }
 
     /// The table's header or, for an inline table, all of it.
@@ -109,6 +154,10 @@ impl<'r, 'i> Reader<'r, 'i> {
         key: &'static str,
         decode: impl FnOnce(Item<'_, 'i>) -> Option<T>,
     ) -> Option<Spanned<T>> {
+        if self.sketch.is_some() {
+            self.note_value((key, Needed::No), decode);
+            return None;
+        }
         let (_, value) = self.take(key)?;
         self.decode(key, &value, decode)
     }
@@ -119,6 +168,10 @@ impl<'r, 'i> Reader<'r, 'i> {
         key: &'static str,
         decode: impl FnOnce(Item<'_, 'i>) -> Option<T>,
     ) -> Option<Spanned<T>> {
+        if self.sketch.is_some() {
+            self.note_value((key, Needed::Yes), decode);
+            return None;
+        }
         let Some((_, value)) = self.take(key) else {
             self.missing.push(key);
             return None;
@@ -132,9 +185,7 @@ impl<'r, 'i> Reader<'r, 'i> {
         key: &'static str,
         decode: impl FnOnce(&mut Reader<'_, 'i>) -> T,
     ) -> Option<T> {
-        let (_, value) = self.take(key)?;
-        let path = self.path.inside(key, false);
-        self.nested(value, path, decode)
+        self.one_table((key, Needed::No), decode)
     }
 
     /// As [`Self::table`], but the table must be there.
@@ -146,7 +197,57 @@ impl<'r, 'i> Reader<'r, 'i> {
         if !self.table.contains_key(key) {
             self.missing.push(key);
         }
-        self.table(key, decode)
+        self.one_table((key, Needed::Yes), decode)
+    }
+
+    fn one_table<T>(
+        &mut self,
+        (key, needed): (&'static str, Needed),
+        decode: impl FnOnce(&mut Reader<'_, 'i>) -> T,
+    ) -> Option<T> {
+        let path = self.path.inside(key, false);
+        if self.sketch.is_some() {
+            let sketch = Reader::sketch(self.report, path, decode);
+            self.note(key, needed, Part::Table(sketch));
+            return None;
+        }
+        let (_, value) = self.take(key)?;
+        self.nested(value, path, decode)
+    }
+
+    /// The tables of `key`, each under a name of the user's, with the place of their names; those that are none are left
+    /// out.
+    pub fn named_tables(&mut self, key: &'static str) -> Vec<(Spanned<String>, DeTable<'i>)> {
+        self.note(key, Needed::No, Part::Named);
+        let path = self.path.inside(key, false);
+        let Some((_, value)) = self.take(key) else { return Vec::new() };
+        let wrong = format!("`{key}` must hold tables");
+        let DeValue::Table(tables) = value.get_ref() else {
+            self.error(value.span(), wrong, format!("start each with [{}.NAME]", path.dotted));
+            return Vec::new();
+        };
+        let mut named = Vec::new();
+        for (name, table) in tables {
+            match table.get_ref() {
+                DeValue::Table(table) => {
+                    named.push((Spanned::new(name.span(), name.get_ref().to_string()), table.clone()));
+                }
+                _ => self.error(name.span(), &wrong, format!("start each with [{}.NAME]", path.dotted)),
+            }
+        }
+        named
+    }
+
+    /// Adds keys, each unless it is there or `unless` says so.
+    pub fn add_keys(&mut self, keys: &DeTable<'i>, unless: impl Fn(&DeTable<'i>, &str) -> bool) {
+        let stated: DeTable<'i> = keys
+            .iter()
+            .filter(|(key, _)| {
+                !self.table.contains_key(key.get_ref().as_ref()) && !unless(&self.table, key.get_ref())
+            })
+            .map(|(key, value)| (key.clone(), value.clone()))
+            .collect();
+        self.table.extend(stated);
     }
 
     /// All tables `[[key]]`; those that are wrong are left out.
@@ -155,8 +256,13 @@ impl<'r, 'i> Reader<'r, 'i> {
         key: &'static str,
         decode: impl Fn(&mut Reader<'_, 'i>) -> Option<T>,
     ) -> Vec<T> {
-        let Some((name, value)) = self.take(key) else { return Vec::new() };
         let path = self.path.inside(key, true);
+        if self.sketch.is_some() {
+            let sketch = Reader::sketch(self.report, path, &decode);
+            self.note(key, Needed::No, Part::Tables(sketch));
+            return Vec::new();
+        }
+        let Some((name, value)) = self.take(key) else { return Vec::new() };
         let span = value.span();
         match value.into_inner() {
             DeValue::Array(rows) if rows.len() > MAX_TABLES => {
@@ -195,7 +301,8 @@ impl<'r, 'i> Reader<'r, 'i> {
         value: &Spanned<DeValue<'i>>,
         decode: impl FnOnce(Item<'_, 'i>) -> Option<T>,
     ) -> Option<Spanned<T>> {
-        decode(Item { report: self.report, key, value }).map(|decoded| Spanned::new(value.span(), decoded))
+        decode(Item { report: self.report, key, value, asked: None })
+            .map(|decoded| Spanned::new(value.span(), decoded))
     }
 
     fn nested<T>(

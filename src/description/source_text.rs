@@ -1,13 +1,32 @@
-//! A file's name and text, and where in it a byte stands.
+//! A file's name and text, and where in it a byte stands; also several files laid end to end.
+//!
+//! A scene file may include others. Their texts are laid end to end, each with a line feed after it that belongs to none
+//! of them, so that one plain range of bytes still says of a value both in which file and where in it it stands:
+//!
+//! ```text
+//!  0            start of the second    start of the third
+//!  ▼            ▼                      ▼
+//!  scene.toml ␊ common/roads.toml    ␊ common/trees.toml ␊
+//! ```
 
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A text file as it was read, shared by everything that points into it.
+/// Text files as they were read, shared by everything that points into them.
 #[derive(Debug, PartialEq, Eq)]
 pub struct SourceText {
-    name: String,
+    /// In the order of their texts; never empty, the first starts at 0.
+    files: Vec<File>,
     text: String,
+}
+
+/// One of the files.
+#[derive(Debug, PartialEq, Eq)]
+struct File {
+    name: String,
+    /// Its folder as seen from the first file's, empty or with a `/` at its end.
+    folder: String,
+    start: usize,
 }
 
 /// A place in a text as people count: the first character of a file is line 1, column 1.
@@ -22,23 +41,57 @@ pub struct LineColumn {
 impl SourceText {
     /// `text` under the `name` that messages call it by.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Arc<Self> {
-        Arc::new(Self { name: name.into(), text: text.into() })
+        Arc::new(Self::alone(name, text))
     }
 
-    /// What messages call it; usually its path as the user gave it.
+    /// As [`Self::new`], for other files to be laid behind it.
+    pub(super) fn alone(name: impl Into<String>, text: impl Into<String>) -> Self {
+        let file = File { name: name.into(), folder: String::new(), start: 0 };
+        Self { files: vec![file], text: text.into() }
+    }
+
+    /// Lays another file behind those that are there; `folder` as seen from the first file's, empty or with a `/` at its
+    /// end. Returns where its text starts.
+    pub(super) fn append(&mut self, name: String, folder: String, text: &str) -> usize {
+        self.text.push('\n');
+        let start = self.text.len();
+        self.files.push(File { name, folder, start });
+        self.text.push_str(text);
+        start
+    }
+
+    /// What messages call the first file; usually its path as the user gave it.
     pub fn name(&self) -> &str {
-        &self.name
+        &self.files[0].name
     }
 
-    /// The whole text.
+    /// What messages call the file that byte `offset` belongs to.
+    pub fn name_at(&self, offset: usize) -> &str {
+        &self.file_at(offset).name
+    }
+
+    /// The folder of the file that byte `offset` belongs to, as seen from the first file's: empty, or with a `/` at its
+    /// end.
+    pub fn folder_at(&self, offset: usize) -> &str {
+        &self.file_at(offset).folder
+    }
+
+    /// The whole text of all files.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// Line and column of byte `offset`; past the end gives the end, inside a character its start.
+    /// Each file's text and where it starts.
+    pub(super) fn texts(&self) -> impl Iterator<Item = (usize, &str)> {
+        let ends = self.files.iter().skip(1).map(|next| next.start - 1).chain([self.text.len()]);
+        self.files.iter().zip(ends).map(|(file, end)| (file.start, &self.text[file.start..end]))
+    }
+
+    /// Line and column of byte `offset` in its file; past the end gives the end, inside a character its start.
     pub fn line_column(&self, offset: usize) -> LineColumn {
         let offset = self.text.floor_char_boundary(offset);
-        let line = self.text[..offset].bytes().filter(|&byte| byte == b'\n').count() + 1;
+        let file = self.file_at(offset).start;
+        let line = self.text[file..offset].bytes().filter(|&byte| byte == b'\n').count() + 1;
         let start = self.line_at(offset).start;
         LineColumn { line, column: self.text[start..offset].chars().count() + 1 }
     }
@@ -46,14 +99,22 @@ impl SourceText {
     /// The bytes of the line that holds `offset`, without its line ending and without a byte order mark.
     pub fn line_at(&self, offset: usize) -> Range<usize> {
         let offset = self.text.floor_char_boundary(offset);
-        let start = match self.text[..offset].rfind('\n') {
-            Some(feed) => feed + 1,
-            None if offset > 0 && self.text.starts_with('\u{feff}') => '\u{feff}'.len_utf8(),
-            None => 0,
+        let file = self.file_at(offset).start;
+        let start = match self.text[file..offset].rfind('\n') {
+            Some(feed) => file + feed + 1,
+            None if offset > file && self.text[file..].starts_with('\u{feff}') => {
+                file + '\u{feff}'.len_utf8()
+            }
+            None => file,
         };
         let end = self.text[offset..].find('\n').map_or(self.text.len(), |feed| offset + feed);
         let line = self.text[start..end].trim_end_matches('\r');
         start..start + line.len()
+    }
+
+    fn file_at(&self, offset: usize) -> &File {
+        let after = self.files.partition_point(|file| file.start <= offset);
+        &self.files[after.saturating_sub(1)]
     }
 }
 
@@ -73,5 +134,24 @@ mod tests {
     fn a_byte_order_mark_is_no_column() {
         let text = SourceText::new("a", "\u{feff}key = 3");
         assert_eq!(text.line_column(3), LineColumn { line: 1, column: 1 });
+    }
+
+    #[test]
+    fn files_laid_end_to_end_keep_their_names_and_lines() {
+        let mut text = SourceText::alone("a", "x = 1\ny = 2");
+        let second = text.append("b".into(), "more/".into(), "\u{feff}z = 3\nw = 4\n");
+        let third = text.append("c".into(), String::new(), "");
+        assert_eq!((text.name_at(0), text.name_at(second - 1), text.name_at(second)), ("a", "a", "b"));
+        assert_eq!(
+            (text.name_at(third), text.name_at(usize::MAX), text.folder_at(second)),
+            ("c", "c", "more/")
+        );
+        let at = |needle: &str| text.line_column(text.text().find(needle).expect("it is there"));
+        assert_eq!(at("z"), LineColumn { line: 1, column: 1 });
+        assert_eq!(at("w"), LineColumn { line: 2, column: 1 });
+        assert_eq!(text.line_column(second - 1), LineColumn { line: 2, column: 6 }, "the end of the first");
+        assert_eq!(&text.text()[text.line_at(second - 1)], "y = 2");
+        let texts: Vec<&str> = text.texts().map(|(_, text)| text).collect();
+        assert_eq!(texts, ["x = 1\ny = 2", "\u{feff}z = 3\nw = 4\n", ""]);
     }
 }

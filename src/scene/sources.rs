@@ -8,6 +8,7 @@ use glam::DVec2;
 use toml::Spanned;
 
 use crate::description::diagnostic::Diagnostic;
+use crate::description::expression::Expression;
 use crate::description::features::{Match, Scalar, Source};
 use crate::geom::crs::Crs;
 use crate::scene::assets::Assets;
@@ -104,10 +105,14 @@ impl<'a> Sources<'a> {
         let stated = parse_crs(self.places.document, source.crs.as_ref())?;
         let layer = self.layer(file, source.layer.as_ref(), stated.as_ref())?;
         let filter = filter_of(source);
+        let holds = |attributes: &Attributes| {
+            source.condition.as_ref().is_none_or(|condition| attributes.holds(condition.get_ref()))
+        };
         let shapes: Vec<_> = filter
             .select(&layer)
-            .flat_map(|(index, feature)| {
-                let attributes = Attributes::new(Arc::clone(&layer), index);
+            .map(|(index, feature)| (Attributes::new(Arc::clone(&layer), index), feature))
+            .filter(|(attributes, _)| holds(attributes))
+            .flat_map(|(attributes, feature)| {
                 pick(&feature.geometry)
                     .into_iter()
                     .map(move |shape| Sourced { attributes: attributes.clone(), shape })
@@ -124,9 +129,20 @@ impl<'a> Sources<'a> {
         source: &Source,
         file: &Spanned<String>,
         filter: &Filter,
-        layer: &Layer,
+        layer: &Arc<Layer>,
     ) -> Diagnostic {
         let name = file.get_ref();
+        if let Some(condition) = &source.condition
+            && !(0..layer.features.len())
+                .any(|index| Attributes::new(Arc::clone(layer), index).holds(condition.get_ref()))
+        {
+            let message = format!("no feature of '{name}' matches");
+            let error = self.places.document.error(condition, message);
+            return match values_of(condition.get_ref()).explain_none(layer) {
+                Some(reason) => error.with_help(reason),
+                None => error,
+            };
+        }
         match (filter.explain_none(layer), &source.filter) {
             (Some(reason), Some(place)) => {
                 let message = format!("no feature of '{name}' matches");
@@ -179,7 +195,7 @@ impl<'a> Sources<'a> {
                 let message = format!("'{}' has no layer '{wanted}'{meant}", file.get_ref());
                 document.error(key, message).with_help(format!("its layers are {found}"))
             }
-            (VectorError::WhichLayer { count, found }, _) => {
+            (VectorError::WhichLayer { count, found, .. }, _) => {
                 let message = format!("'{}' holds {count} layers", file.get_ref());
                 document.error(file, message).with_help(format!("add `layer = \"...\"` with one of {found}"))
             }
@@ -211,6 +227,13 @@ fn closed(mut ring: Vec<DVec2>) -> Option<Polygon> {
         ring.pop();
     }
     (ring.len() >= 3).then_some(Polygon { exterior: ring, holes: Vec::new() })
+}
+
+/// A filter that no feature matches, so that it explains which values the properties of an expression have.
+fn values_of(condition: &Expression) -> Filter {
+    let properties = condition.properties().into_iter();
+    let none = |property: &str| Condition { property: property.to_owned(), any_of: Vec::new() };
+    Filter { conditions: properties.map(none).collect() }
 }
 
 fn filter_of(source: &Source) -> Filter {

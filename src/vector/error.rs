@@ -74,6 +74,8 @@ pub enum VectorError {
         count: usize,
         /// Their names, as many as fit.
         found: String,
+        /// All their names.
+        names: Vec<String>,
     },
     /// The layer that was asked for is not there.
     #[error("it has no layer '{wanted}'{meant}; its layers are {found}")]
@@ -135,7 +137,8 @@ impl VectorError {
 
     /// A [`VectorError::WhichLayer`] among `names`.
     pub(crate) fn which_layer(names: &[&str]) -> Self {
-        Self::WhichLayer { count: names.len(), found: listed(names) }
+        let all = names.iter().map(|&name| name.to_owned()).collect();
+        Self::WhichLayer { count: names.len(), found: listed(names), names: all }
     }
 
     /// A [`VectorError::NoSuchLayer`] among `names`; one that is most like it is proposed.

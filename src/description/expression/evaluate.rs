@@ -1,0 +1,143 @@
+//! What an expression is for a feature.
+//!
+//! Every part is asked for its value together with what can be used in its place, so that `??` knows when to give way:
+//! in `width ?? 6` a width of `"narrow"` is no number and gives way, whereas in `name ?? ref` any text will do.
+
+use std::cmp::Ordering;
+
+use crate::description::expression::syntax::{Binary, Function, Node, arms};
+use crate::description::expression::{Properties, as_number};
+use crate::description::features::Scalar;
+
+/// Says of a value whether it can be used.
+type Usable<'u> = &'u dyn Fn(&Scalar) -> bool;
+
+/// The evaluation for one feature.
+pub(super) struct Evaluation<'p> {
+    pub properties: Properties<'p>,
+}
+
+/// Anything can be used.
+pub(super) fn any(_: &Scalar) -> bool {
+    true
+}
+
+/// Only what is a number can be used.
+fn numeric(value: &Scalar) -> bool {
+    as_number(value).is_some()
+}
+
+/// Whether a value is true, a number other than 0, or a text that does not say no.
+pub(super) fn holds(value: &Scalar) -> bool {
+    match value {
+        Scalar::Bool(value) => *value,
+        Scalar::Number(number) => *number != 0.0,
+        Scalar::Text(text) => !["", "no", "false", "0"].contains(&text.as_str()),
+    }
+}
+
+impl Evaluation<'_> {
+    /// The value of `node`; only of a fallback's sides, also those in its branches, is it asked whether they are usable.
+    pub fn value(&self, node: &Node, usable: Usable<'_>) -> Option<Scalar> {
+        match node {
+            Node::Literal(value) => Some(value.clone()),
+            Node::Property(name) => (self.properties)(name),
+            Node::Negative(of) => self.number(of).and_then(|number| finite(-number)),
+            Node::Not(of) => Some(Scalar::Bool(!self.holds(of))),
+            Node::Binary(binary, left, right) => self.binary(*binary, (left, right), usable),
+            Node::In(of, list) => {
+                let of = self.value(of, &any)?;
+                let found = |part| self.value(part, &any).is_some_and(|part| equal(&of, &part));
+                Some(Scalar::Bool(list.iter().any(found)))
+            }
+            Node::Call(function, parts) => self.call(*function, parts, usable),
+        }
+    }
+
+    fn holds(&self, node: &Node) -> bool {
+        self.value(node, &any).is_some_and(|value| holds(&value))
+    }
+
+    fn number(&self, node: &Node) -> Option<f64> {
+        self.value(node, &numeric).as_ref().and_then(as_number)
+    }
+
+    fn binary(&self, binary: Binary, (left, right): (&Node, &Node), usable: Usable<'_>) -> Option<Scalar> {
+        let numbers = || Some((self.number(left)?, self.number(right)?));
+        let compared = |wanted: fn(Ordering) -> bool| {
+            let (left, right) = (self.value(left, &any)?, self.value(right, &any)?);
+            order(&left, &right).map(|order| Scalar::Bool(wanted(order)))
+        };
+        let equals = || Some(equal(&self.value(left, &any)?, &self.value(right, &any)?));
+        match binary {
+            Binary::Or => Some(Scalar::Bool(self.holds(left) || self.holds(right))),
+            Binary::And => Some(Scalar::Bool(self.holds(left) && self.holds(right))),
+            Binary::Equal => equals().map(Scalar::Bool),
+            Binary::Unequal => equals().map(|equal| Scalar::Bool(!equal)),
+            Binary::Less => compared(Ordering::is_lt),
+            Binary::LessOrEqual => compared(Ordering::is_le),
+            Binary::Greater => compared(Ordering::is_gt),
+            Binary::GreaterOrEqual => compared(Ordering::is_ge),
+            Binary::Fallback => self.value(left, usable).filter(usable).or_else(|| self.value(right, usable)),
+            Binary::Plus => numbers().and_then(|(left, right)| finite(left + right)),
+            Binary::Minus => numbers().and_then(|(left, right)| finite(left - right)),
+            Binary::Times => numbers().and_then(|(left, right)| finite(left * right)),
+            Binary::Over => numbers().and_then(|(left, right)| finite(left / right)),
+        }
+    }
+
+    fn call(&self, function: Function, parts: &[Node], usable: Usable<'_>) -> Option<Scalar> {
+        match function {
+            Function::If if self.holds(&parts[0]) => self.value(&parts[1], usable),
+            Function::If => self.value(&parts[2], usable),
+            Function::Match => self.matched(parts, usable),
+            Function::Min => self.folded(parts, f64::min),
+            Function::Max => self.folded(parts, f64::max),
+            Function::Clamp => {
+                let (low, high) = (self.number(&parts[1])?, self.number(&parts[2])?);
+                self.number(&parts[0]).and_then(|number| finite(number.max(low).min(high)))
+            }
+            Function::Round => self.number(&parts[0]).and_then(|number| finite(number.round())),
+            Function::Number => self.number(&parts[0]).and_then(finite),
+            Function::Has => Some(Scalar::Bool(self.value(&parts[0], &any).is_some())),
+        }
+    }
+
+    fn matched(&self, parts: &[Node], usable: Usable<'_>) -> Option<Scalar> {
+        let (mut pairs, otherwise) = arms(parts);
+        let of = self.value(&parts[0], &any);
+        let is = |case: &Node| {
+            of.as_ref().is_some_and(|of| self.value(case, &any).is_some_and(|case| equal(of, &case)))
+        };
+        let chosen = pairs.find(|(case, _)| is(case)).map(|(_, then)| then).or(otherwise)?;
+        self.value(chosen, usable)
+    }
+
+    fn folded(&self, parts: &[Node], fold: fn(f64, f64) -> f64) -> Option<Scalar> {
+        let numbers: Option<Vec<f64>> = parts.iter().map(|part| self.number(part)).collect();
+        numbers?.into_iter().reduce(fold).and_then(finite)
+    }
+}
+
+/// The number, unless it is none: what was divided by zero, or grew out of range.
+fn finite(number: f64) -> Option<Scalar> {
+    // −0 is 0: nobody who writes it means another number.
+    number.is_finite().then_some(Scalar::Number(number + 0.0))
+}
+
+fn equal(left: &Scalar, right: &Scalar) -> bool {
+    match (left, right) {
+        (Scalar::Text(left), Scalar::Text(right)) => left == right,
+        (Scalar::Bool(wanted), other) | (other, Scalar::Bool(wanted)) => holds(other) == *wanted,
+        _ => as_number(left).zip(as_number(right)).is_some_and(|(left, right)| left == right),
+    }
+}
+
+/// Which is greater; `None` where they cannot be ordered.
+fn order(left: &Scalar, right: &Scalar) -> Option<Ordering> {
+    match (as_number(left).zip(as_number(right)), left, right) {
+        (Some((left, right)), ..) => left.partial_cmp(&right),
+        (None, Scalar::Text(left), Scalar::Text(right)) => Some(left.cmp(right)),
+        _ => None,
+    }
+}

@@ -1,0 +1,257 @@
+//! Values that come from a feature's properties: a small language, total, without loops and without surprises.
+//!
+//! ```toml
+//! where    = "highway in ('primary', 'secondary') and not tunnel"
+//! width    = "width ?? lanes * 3.25 ?? 6"
+//! height   = "clamp(height ?? `building:levels` * 3, 2.5, 120)"
+//! surface  = "if(surface = 'gravel' or tracktype, 'gravel', 'asphalt')"
+//! cover    = "match(landuse, 'forest', 'forest', 'farmland', 'field', 'meadow')"
+//! ```
+//!
+//! The grammar, loosest first; `{x}` is any number of x, `[x]` one or none:
+//!
+//! ```text
+//! expression  conjunction { "or" conjunction }
+//! conjunction negation { "and" negation }
+//! negation    "not" negation | comparison
+//! comparison  fallback [ ("=" | "!=" | "<" | "<=" | ">" | ">=") fallback | ["not"] "in" "(" list ")" ]
+//! fallback    sum { "??" sum }
+//! sum         product { ("+" | "-") product }
+//! product     factor { ("*" | "/") factor }
+//! factor      "-" factor | primary
+//! primary     number | 'text' | true | false | name | `any name` | "any name" | call | "(" expression ")"
+//! call        function "(" list ")"
+//! list        expression { "," expression }
+//! name        a letter or "_", then letters, digits, "_" and ":"
+//! ```
+//!
+//! A quotation mark is doubled where it stands in what it quotes: `'Queen''s Road'`.
+//!
+//! | function | gives |
+//! |---|---|
+//! | `if(c, a, b)` | `a` where `c` holds, else `b` |
+//! | `match(x, 'a', p, 'b', q, r)` | `p` where `x = 'a'`, `q` where `x = 'b'`, else `r`; nothing without an `r` |
+//! | `min(a, b, …)`, `max(a, b, …)` | the least, the greatest |
+//! | `clamp(x, low, high)` | `x`, but not below `low` nor above `high` |
+//! | `round(x)` | the nearest whole number; halves away from zero |
+//! | `number(x)` | the number that a text writes |
+//! | `has(x)` | true where `x` has a value, else false |
+//! | `property('name')` | the property of that name, whatever characters are in it |
+//!
+//! **What is missing stays missing.** A property that a feature does not have, a text where a number is needed, a
+//! division by zero: all have no value, and so has every computation and comparison with one of them. `a ?? b` is `b`
+//! where `a` has no value that can be used in its place: no number where one is needed, no word that the key knows.
+//!
+//! **To hold** is to be true, a number other than 0, or a text other than ``, `no`, `false` and `0`; what has no value
+//! does not hold. `and`, `or`, `not`, `if` and `where` ask whether a thing holds, so `not bridge` is true of a road
+//! without the property, and `lanes < 2` holds for no road of which the lanes are unknown.
+//!
+//! **Texts as numbers.** Many files write numbers as texts. Where a number is needed, or the other side of a comparison
+//! is one, a text that is a number is that number, metres (`"4.5 m"`) or feet (`"12 ft"`, `"12'6\""`) where it says so.
+//! Two texts are equal letter by letter, and ordered as numbers where both are numbers, else letter by letter. `true`
+//! equals what holds, `false` what does not.
+//!
+//! Reading is bounded: a text has at most [`MAX_TEXT_BYTES`], nesting at most [`MAX_DEPTH`]; evaluating takes time in
+//! proportion to the text.
+
+mod evaluate;
+mod parser;
+mod syntax;
+mod token;
+
+use std::fmt;
+use std::ops::Range;
+
+use crate::description::bounds::Bounds;
+use crate::description::expression::evaluate::{Evaluation, any};
+use crate::description::expression::parser::Parser;
+use crate::description::expression::syntax::Node;
+use crate::description::features::Scalar;
+use crate::description::words::Word;
+
+/// The longest text of an expression: a screen full. Far above what anybody can read, and it bounds the work.
+pub const MAX_TEXT_BYTES: usize = 4096;
+/// The deepest nesting, of brackets as of chains of operators: it bounds the stack, and nobody reads deeper.
+pub const MAX_DEPTH: usize = 200;
+
+/// Gives the value of a feature's property by its name; `None` where the feature has none.
+pub type Properties<'a> = &'a dyn Fn(&str) -> Option<Scalar>;
+
+/// A computation over a feature's properties. Shown, it is a text that reads as the same expression.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expression {
+    root: Node,
+}
+
+/// Why a text is no expression.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message} at column {column}")]
+pub struct ExpressionError {
+    /// What is wrong.
+    pub message: String,
+    /// What to do.
+    pub help: String,
+    /// The bytes of the text that it is about.
+    pub at: Range<usize>,
+    /// Where that starts: the first character of the text is column 1.
+    pub column: usize,
+}
+
+impl Expression {
+    /// The expression that `text` writes.
+    ///
+    /// # Errors
+    /// See [`ExpressionError`].
+    pub fn parse(text: &str) -> Result<Self, ExpressionError> {
+        Self::parse_among(text, &[])
+    }
+
+    /// As [`Self::parse`], for an expression that gives one of `words`: a bare name that is one of them is taken for a
+    /// text without its quotes, and so is a text that is none of them where the result is written out.
+    ///
+    /// # Errors
+    /// See [`ExpressionError`].
+    pub fn parse_among(text: &str, words: &[&str]) -> Result<Self, ExpressionError> {
+        Parser::new(text, words)?.whole().map(|root| Self { root })
+    }
+
+    /// Whether `text` can only be meant as an expression, not as a word: it holds more than letters, digits, `_` and
+    /// `-`. A word that a key does not know is thus told as one misspelt, and not taken for a property.
+    pub fn computes(text: &str) -> bool {
+        !text.chars().all(|letter| letter.is_alphanumeric() || "_-".contains(letter))
+    }
+
+    /// The properties that it looks at, in alphabetical order, each once.
+    pub fn properties(&self) -> Vec<&str> {
+        let mut names = Vec::new();
+        self.root.visit(&mut |node| {
+            if let Node::Property(name) = node {
+                names.push(name.as_str());
+            }
+        });
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+
+    /// Its value for a feature; `None` where a property that it needs is missing or of another kind.
+    pub fn value(&self, properties: Properties<'_>) -> Option<Scalar> {
+        self.value_for(properties, &any)
+    }
+
+    /// As [`Self::value`], where only what `usable` says can be used: a fallback is taken for anything else.
+    pub fn value_for(&self, properties: Properties<'_>, usable: &dyn Fn(&Scalar) -> bool) -> Option<Scalar> {
+        Evaluation { properties }.value(&self.root, usable).filter(usable)
+    }
+
+    /// Whether it holds for a feature: its value is true, a number that is not 0, or a text that is neither empty nor
+    /// `no`, `false` or `0`.
+    pub fn holds(&self, properties: Properties<'_>) -> bool {
+        self.value(properties).is_some_and(|value| evaluate::holds(&value))
+    }
+}
+
+impl fmt::Display for Expression {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.root.fmt(out)
+    }
+}
+
+/// A number, the same for all features or computed for each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity(Given<f64>);
+
+#[derive(Clone, Debug, PartialEq)]
+enum Given<T> {
+    Fixed(T),
+    OfFeatures(Expression, Bounds),
+}
+
+impl Quantity {
+    /// The same number for all.
+    pub fn fixed(number: f64) -> Self {
+        Self(Given::Fixed(number))
+    }
+
+    /// What `expression` gives, where that lies within `bounds`.
+    pub fn of_features(expression: Expression, bounds: Bounds) -> Self {
+        Self(Given::OfFeatures(expression, bounds))
+    }
+
+    /// The number for a feature; `None` where its properties give none within the key's bounds. A text that is a number,
+    /// or a number of metres (`"4.5 m"`) or feet (`"12 ft"`), is that number.
+    pub fn number(&self, properties: Properties<'_>) -> Option<f64> {
+        match &self.0 {
+            Given::Fixed(number) => Some(*number),
+            Given::OfFeatures(expression, bounds) => {
+                let usable = |value: &Scalar| as_number(value).is_some_and(|number| bounds.hold(number));
+                expression.value_for(properties, &usable).as_ref().and_then(as_number)
+            }
+        }
+    }
+}
+
+/// A word, the same for all features or computed for each.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Choice<W> {
+    /// The same for all.
+    Fixed(W),
+    /// What an expression gives.
+    OfFeatures(Expression),
+}
+
+impl<W: Word> Choice<W> {
+    /// What `expression` gives.
+    pub fn of_features(expression: Expression) -> Self {
+        Self::OfFeatures(expression)
+    }
+
+    /// The word for a feature; `None` where its properties give none of `W`'s words.
+    pub fn word(&self, properties: Properties<'_>) -> Option<W> {
+        let known = |value: &Scalar| match value {
+            Scalar::Text(text) => W::ALL.iter().find(|(word, _)| word == text).map(|(_, value)| *value),
+            Scalar::Bool(_) | Scalar::Number(_) => None,
+        };
+        match self {
+            Self::Fixed(word) => Some(*word),
+            Self::OfFeatures(expression) => {
+                expression.value_for(properties, &|value| known(value).is_some()).as_ref().and_then(known)
+            }
+        }
+    }
+}
+
+/// The number that a value is: a text that is one too, in metres where it ends in `m`, and made metres of where it is in
+/// feet (`ft`, `'`) and inches (`"`). Never NaN or infinite.
+pub fn as_number(value: &Scalar) -> Option<f64> {
+    match value {
+        Scalar::Number(number) => Some(*number).filter(|number| number.is_finite()),
+        Scalar::Text(text) => text_as_number(text.trim()),
+        Scalar::Bool(_) => None,
+    }
+}
+
+/// Metres in a foot: the international one, exactly.
+const METRES_PER_FOOT: f64 = 0.3048;
+
+fn text_as_number(text: &str) -> Option<f64> {
+    let plain = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    let feet = |text: &str| plain(text).map(|feet| feet * METRES_PER_FOOT);
+    if let Some(metres) = text.strip_suffix('m') {
+        return plain(metres);
+    }
+    if let Some(number) = text.strip_suffix("ft") {
+        return feet(number);
+    }
+    match text.split_once('\'') {
+        Some((whole, "")) => feet(whole),
+        Some((whole, inches)) => {
+            let inches = plain(inches.strip_suffix('"')?).filter(|inches| (0.0..12.0).contains(inches))?;
+            plain(whole).map(|whole| (whole + inches / 12.0) * METRES_PER_FOOT)
+        }
+        None => plain(text),
+    }
+}
+
+#[cfg(test)]
+mod tests;
