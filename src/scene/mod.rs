@@ -7,7 +7,10 @@
 pub mod assets;
 pub mod attributes;
 pub mod build;
+pub mod building_colors;
+pub mod buildings;
 pub mod collected;
+pub mod fences;
 pub mod ground;
 pub mod kind;
 pub mod models;

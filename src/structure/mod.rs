@@ -3,4 +3,19 @@
 //! Positions are world space; heights are handed in as they are drawn, times the scene's exaggeration, so that a solid
 //! meets the ground it stands on.
 
+pub mod building;
+pub mod building_footing;
+pub mod building_footprint;
 pub mod faces;
+pub mod fence;
+pub mod fence_band;
+pub mod fence_track;
+pub mod hedge;
+pub mod obstacle;
+pub mod power;
+pub mod power_beam;
+pub mod roof;
+pub mod roof_hipped;
+pub mod trench;
+pub mod upright;
+pub mod wall;

@@ -4,6 +4,7 @@ mod drapes;
 mod ground;
 mod models;
 mod solids;
+mod uprights;
 
 use std::sync::Arc;
 
@@ -63,6 +64,7 @@ pub fn draw_list(
     step("setting models");
     ground::add_plinth(&mut list, walls);
     solids::add(&mut list, scene);
+    uprights::add(&mut list, scene, displayed);
     models::add(&mut list, scene, displayed);
     (list, ground_triangles)
 }
