@@ -283,7 +283,7 @@ mod tests {
         let ground = Finest { lattice: &lattice, exaggeration: 1.0 };
         let (pylons, added) = clear(&[stand(350.0), stand(650.0)], 30.0, &ground);
         assert_eq!(added, 1);
-        assert_eq!(pylons[1].at, DVec2::new(500.0, 50.0));
+        assert!(pylons[1].at.distance(DVec2::new(500.0, 50.0)) < 1e-3, "{pylons:?}");
         assert_eq!(clear(&[stand(0.0), stand(300.0)], 30.0, &ground).1, 0);
     }
 
