@@ -42,7 +42,8 @@ impl Region {
 
     /// The rings of its polygons, the outer one of each before its holes; none closed by repeating its first vertex.
     pub fn rings(&self) -> Vec<Vec<Vec<DVec2>>> {
-        let points = |ring: &geo::LineString| ring.0.iter().skip(1).map(|at| DVec2::new(at.x, at.y)).collect();
+        let points =
+            |ring: &geo::LineString| ring.0.iter().skip(1).map(|at| DVec2::new(at.x, at.y)).collect();
         let of = |polygon: &geo::Polygon| {
             std::iter::once(polygon.exterior()).chain(polygon.interiors()).map(points).collect()
         };

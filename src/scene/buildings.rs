@@ -329,9 +329,5 @@ fn paint(building: &Building, attributes: &Attributes, part: &Footprint, made: &
     let solid = |Srgba([red, green, blue, _]): Srgba| Srgba::opaque(red, green, blue);
     let wall = color(&building.wall_color, ["building:colour", "building:color"]);
     let roof = color(&building.roof_color, ["roof:colour", "roof:color"]);
-    Paint {
-        wall: wall.map_or(by_place.wall, solid),
-        roof: roof.map_or(by_place.roof, solid),
-        ..by_place
-    }
+    Paint { wall: wall.map_or(by_place.wall, solid), roof: roof.map_or(by_place.roof, solid), ..by_place }
 }

@@ -89,7 +89,11 @@ impl Paint {
         };
         let tint = noise(at, 7) as f32 * 5.0;
         let roof = if roof.run_m > 0.0 { pick(&TILES, 1) } else { pick(&FLATS, 2) };
-        Self { wall: shaded(pick(&PLASTERS, 3), tint), roof: shaded(roof, tint * 1.4), foundation: FOUNDATION }
+        Self {
+            wall: shaded(pick(&PLASTERS, 3), tint),
+            roof: shaded(roof, tint * 1.4),
+            foundation: FOUNDATION,
+        }
     }
 }
 

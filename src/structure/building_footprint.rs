@@ -108,7 +108,10 @@ fn without_needless(ring: &[DVec2]) -> Vec<DVec2> {
 fn lies_between(from: DVec2, at: DVec2, to: DVec2) -> bool {
     let way = to - from;
     let (along, length) = ((at - from).dot(way), way.length());
-    length > 0.0 && along > 0.0 && along < length * length && (at - from).perp_dot(way).abs() < MERGE_M / 2.0 * length
+    length > 0.0
+        && along > 0.0
+        && along < length * length
+        && (at - from).perp_dot(way).abs() < MERGE_M / 2.0 * length
 }
 
 #[cfg(test)]
@@ -121,7 +124,8 @@ mod tests {
 
     #[test]
     fn a_clockwise_ring_with_doubled_and_needless_vertices_is_turned_and_cleaned() {
-        let ring = at(&[(0.0, 0.0), (0.0, 8.0), (0.0, 8.0), (5.0, 8.0), (10.0, 8.0), (10.0, 0.0), (0.0, 0.0)]);
+        let ring =
+            at(&[(0.0, 0.0), (0.0, 8.0), (0.0, 8.0), (5.0, 8.0), (10.0, 8.0), (10.0, 0.0), (0.0, 0.0)]);
         let parts = Footprint::parts(&ring, &[]);
         assert_eq!(parts.len(), 1);
         assert_eq!(parts[0].exterior().len(), 4);

@@ -73,9 +73,7 @@ impl Track {
                 joints.push(end(around.unwrap_or_else(|| square(at, points[1]))));
             } else if index == last && last > 0 {
                 joints.push(end(around.unwrap_or_else(|| square(points[last - 1], at))));
-            } else if let Some(to_left) =
-                mitre([points[index - 1], at, points[index + 1]], half_width_m)
-            {
+            } else if let Some(to_left) = mitre([points[index - 1], at, points[index + 1]], half_width_m) {
                 joints.push(end(to_left));
             } else {
                 joints.push(end(square(points[index - 1], at)));
@@ -125,8 +123,13 @@ mod tests {
     fn a_line_that_turns_back_ends_square_and_begins_anew() {
         let track = Track::new(&turned(&[(0.0, 0.0), (10.0, 0.0), (0.0, 1.0)], 0), 1.0);
         assert_eq!(track.stretches.len(), 2);
-        let lengths = track.stretches.iter().flat_map(|stretch| &stretch.joints).map(|joint| joint.to_left.length());
-        assert!(lengths.clone().all(|length| (length - 1.0).abs() < 1e-12), "{:?}", lengths.collect::<Vec<_>>());
+        let lengths =
+            track.stretches.iter().flat_map(|stretch| &stretch.joints).map(|joint| joint.to_left.length());
+        assert!(
+            lengths.clone().all(|length| (length - 1.0).abs() < 1e-12),
+            "{:?}",
+            lengths.collect::<Vec<_>>()
+        );
     }
 
     #[test]

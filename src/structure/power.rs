@@ -121,7 +121,9 @@ impl PowerLine {
             let (a, b) = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)][corner % 4];
             stand.at + (stand.along * a + stand.along.perp() * b) * half
         };
-        let at = |corner: usize, level: (f64, f64)| plan(corner, level.1 * height).extend(z + level.0 * height).as_vec3();
+        let at = |corner: usize, level: (f64, f64)| {
+            plan(corner, level.1 * height).extend(z + level.0 * height).as_vec3()
+        };
         for corner in 0..4 {
             let foot = plan(corner, LEVELS[0].1 * height);
             let foot_z = under.z(foot).unwrap_or(z) - 0.01 * height;
@@ -132,8 +134,18 @@ impl PowerLine {
                 beam(faces, (at(corner, levels[0]), at(corner, levels[1])), (thick, thick * 0.8), STEEL);
             }
             for levels in LEVELS.windows(2) {
-                beam(faces, (at(corner, levels[0]), at(corner + 1, levels[1])), (thick * 0.5, thick * 0.5), STEEL);
-                beam(faces, (at(corner + 1, levels[0]), at(corner, levels[1])), (thick * 0.5, thick * 0.5), STEEL);
+                beam(
+                    faces,
+                    (at(corner, levels[0]), at(corner + 1, levels[1])),
+                    (thick * 0.5, thick * 0.5),
+                    STEEL,
+                );
+                beam(
+                    faces,
+                    (at(corner + 1, levels[0]), at(corner, levels[1])),
+                    (thick * 0.5, thick * 0.5),
+                    STEEL,
+                );
             }
         }
         for (reach, up) in [(0.5, LOWEST_WIRE + 0.03), (0.35, 0.85)] {
@@ -236,7 +248,8 @@ pub fn check_wires(line: &PowerLine, under: Underfoot<'_>) -> f64 {
             let ends = (pair[0].at.extend(from_z + up), pair[1].at.extend(to_z + up));
             let sag_m = sag(ends, line.sag * ends.0.distance(ends.1), &ground, clearance_m);
             for (part, z) in looks(&ground) {
-                let lacks = clearance_m.min(hanging(ends, 0.0, part).z - z) - (hanging(ends, sag_m, part).z - z);
+                let lacks =
+                    clearance_m.min(hanging(ends, 0.0, part).z - z) - (hanging(ends, sag_m, part).z - z);
                 most = most.max(lacks);
             }
         }
@@ -247,14 +260,15 @@ pub fn check_wires(line: &PowerLine, under: Underfoot<'_>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec2;
     use crate::terrain::finest::Finest;
     use crate::terrain::lattice::Lattice;
+    use glam::DVec2;
 
     /// A ridge of `height_m` across the middle of a kilometre of level ground.
     fn ridge(height_m: f32) -> Lattice {
         let height = |index: u32| if index % 101 == 50 { height_m } else { 0.0 };
-        Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 101, (0..101 * 11).map(height).collect()).expect("sound")
+        Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 101, (0..101 * 11).map(height).collect())
+            .expect("sound")
     }
 
     fn stand(x: f64) -> Stand {
@@ -297,7 +311,8 @@ mod tests {
             line.build(Underfoot { displayed: &ground, ground }, &mut faces);
             let mesh = faces.into_mesh();
             let heights = mesh.vertices.iter().map(|vertex| f64::from(vertex.position[2]));
-            let (low, high) = heights.fold((9e9, -9e9), |(low, high), z| (f64::min(low, z), f64::max(high, z)));
+            let (low, high) =
+                heights.fold((9e9, -9e9), |(low, high), z| (f64::min(low, z), f64::max(high, z)));
             assert!(low < 0.0 && (high - height_m).abs() < 0.02 * height_m, "{low} to {high}");
         }
     }

@@ -43,10 +43,14 @@ mod tests {
             beam(&mut faces, (Vec3::ONE, Vec3::ONE + way * 4.0), (0.3, 0.1), Srgba::WHITE);
             let mesh = faces.into_mesh();
             let corner = |id: VertexId| Vec3::from(mesh.vertices[id.index()].position) - Vec3::ONE;
-            let volume: f32 = mesh.triangles.iter().map(|t| {
-                let [a, b, c] = t.map(corner);
-                a.cross(b).dot(c) / 6.0
-            }).sum();
+            let volume: f32 = mesh
+                .triangles
+                .iter()
+                .map(|t| {
+                    let [a, b, c] = t.map(corner);
+                    a.cross(b).dot(c) / 6.0
+                })
+                .sum();
             // A frustum: length times (A + B + √(AB)) / 3.
             let expected = (way * 4.0).length() * (0.36 + 0.04 + 0.12) / 3.0;
             assert!((volume - expected).abs() < 1e-3, "{volume} {expected} along {way}");

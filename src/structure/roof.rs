@@ -241,7 +241,16 @@ mod tests {
 
     #[test]
     fn a_house_with_a_bay_is_still_gabled_and_covered() {
-        let bay = [(0.0, 0.0), (12.0, 0.0), (12.0, 8.0), (8.0, 8.0), (8.0, 8.8), (5.0, 8.8), (5.0, 8.0), (0.0, 8.0)];
+        let bay = [
+            (0.0, 0.0),
+            (12.0, 0.0),
+            (12.0, 8.0),
+            (8.0, 8.0),
+            (8.0, 8.8),
+            (5.0, 8.8),
+            (5.0, 8.0),
+            (0.0, 8.0),
+        ];
         for turn in TURNS {
             let roof = roof(&footprint(&bay, turn), words::Roof::Gabled);
             assert_eq!(roof.shape, words::Roof::Gabled);

@@ -58,7 +58,8 @@ pub(in crate::structure) fn hipped(footprint: &Footprint) -> Option<Roof> {
     let run_m = corners.iter().map(|corner| corner.z).fold(0.0, f64::max);
     let risen = |&index: &usize| DVec3 { z: corners[index].z / run_m, ..corners[index] };
     let faces = faces.iter().filter(|face| face.len() > 2).map(|face| face.iter().map(risen).collect());
-    let roof = Roof { shape: words::Roof::Hipped, edge: level_edge(footprint), faces: faces.collect(), run_m };
+    let roof =
+        Roof { shape: words::Roof::Hipped, edge: level_edge(footprint), faces: faces.collect(), run_m };
     (run_m > WELD_M).then_some(roof)
 }
 
