@@ -210,9 +210,9 @@ pub struct Building {
     /// `roof_height`: how much of the height is roof, in [0, 1000]. Default: the property `roof:height`, else by a pitch
     /// of 30 degrees.
     pub roof_height: Option<Spanned<Quantity>>,
-    /// `wall_color`. Default: one of a few plasters, chosen by where it stands.
+    /// `wall_color`. Default: the property `building:colour`, else one of a few plasters, chosen by where it stands.
     pub wall_color: Option<Spanned<Color>>,
-    /// `roof_color`. Default: one of a few, chosen by where it stands.
+    /// `roof_color`. Default: the property `roof:colour`, else one of a few, chosen by where it stands.
     pub roof_color: Option<Spanned<Color>>,
 }
 

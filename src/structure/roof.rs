@@ -60,8 +60,12 @@ fn flat(footprint: &Footprint) -> Roof {
     let [outer, courtyards @ ..] = footprint.rings() else {
         return Roof { shape: words::Roof::Flat, edge: Vec::new(), faces: Vec::new(), run_m: 0.0 };
     };
-    let triangles = polygon::triangulate(outer, courtyards);
-    let faces = triangles.iter().map(|corners| corners.map(|at| at.extend(0.0)).to_vec()).collect();
+    let level = |points: &[DVec2]| points.iter().map(|at| at.extend(0.0)).collect();
+    let faces = if courtyards.is_empty() {
+        vec![level(outer)]
+    } else {
+        polygon::triangulate(outer, courtyards).iter().map(|corners| level(corners)).collect()
+    };
     Roof { shape: words::Roof::Flat, edge: level_edge(footprint), faces, run_m: 0.0 }
 }
 
@@ -87,14 +91,17 @@ fn gabled(footprint: &Footprint) -> Option<Roof> {
     Some(Roof { shape: words::Roof::Gabled, edge: vec![edge], faces: vec![side, other], run_m })
 }
 
+/// No vertex of a gabled roof's footprint may lie nearer to the ridge, metres.
+const LEAST_ASIDE_M: f64 = 0.02;
+
 /// The ring with a vertex where it crosses the line on which `aside` is 0, and the two places of these in it; `None`
-/// where it crosses it more than twice.
+/// where it crosses it more than twice, or a vertex lies on it.
 fn crossed(ring: &[DVec2], aside: impl Fn(DVec2) -> f64) -> Option<(Vec<DVec2>, [usize; 2])> {
     let (mut with, mut crossings) = (Vec::with_capacity(ring.len() + 2), Vec::new());
     for (from, to) in polygon::edges(ring) {
         let (before, after) = (aside(from), aside(to));
-        // A vertex on the ridge, or within rounding of it, leaves it to chance which edge crosses.
-        if before.abs() < 1e-6 {
+        // A vertex on the ridge leaves it to chance which edge crosses, and one beside it makes a sliver of a gable.
+        if before.abs() < LEAST_ASIDE_M {
             return None;
         }
         with.push(from);

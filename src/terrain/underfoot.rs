@@ -90,14 +90,12 @@ pub fn runs(ground: &dyn Facets, from: DVec2, to: DVec2) -> Vec<Run> {
 fn joined(over: &[[Station; 2]], gap: f64) -> Vec<Run> {
     let mut found: Vec<Run> = Vec::new();
     for &[enter, leave] in over {
-        match found.last_mut().map(|run| &mut run.stations) {
-            Some(stations) if enter.part <= stations[stations.len() - 1].part + gap => {
-                if leave.part > stations[stations.len() - 1].part + gap {
-                    stations.push(leave);
-                }
+        if let Some(run) = found.last_mut().filter(|run| enter.part <= run.span().1 + gap) {
+            if leave.part > run.span().1 + gap {
+                run.stations.push(leave);
             }
-            _ if leave.part - enter.part > gap => found.push(Run { stations: vec![enter, leave] }),
-            _ => {}
+        } else if leave.part - enter.part > gap {
+            found.push(Run { stations: vec![enter, leave] });
         }
     }
     found
