@@ -33,6 +33,23 @@ impl Region {
         Self::wound(rings.into_iter().map(ring).collect())
     }
 
+    /// What an odd number of `rings` run around, whichever way each runs and however they cross.
+    pub fn enclosed<'a>(rings: impl IntoIterator<Item = &'a [DVec2]>) -> Self {
+        let nothing = MultiPolygon::<f64>(Vec::new());
+        let all = MultiPolygon(rings.into_iter().map(ring).collect());
+        Self { polygons: all.boolean_op_with_fill_rule(&nothing, OpType::Union, FillRule::EvenOdd) }
+    }
+
+    /// The rings of its polygons, the outer one of each before its holes; none closed by repeating its first vertex.
+    pub fn rings(&self) -> Vec<Vec<Vec<DVec2>>> {
+        let points =
+            |ring: &geo::LineString| ring.0.iter().skip(1).map(|at| DVec2::new(at.x, at.y)).collect();
+        let of = |polygon: &geo::Polygon| {
+            std::iter::once(polygon.exterior()).chain(polygon.interiors()).map(points).collect()
+        };
+        self.polygons.iter().map(of).collect()
+    }
+
     /// What at least two of `regions` cover.
     pub fn covered_twice<'a>(regions: impl IntoIterator<Item = &'a Self>) -> Self {
         let mut polygons: Vec<_> =
@@ -163,6 +180,18 @@ mod tests {
         assert!((area - 800.0).abs() < 1e-6 && (ring.area() - 800.0).abs() < 1e-6);
         assert!(triangles.iter().all(|[a, b, c]| (b - a).perp_dot(c - a) > 0.0));
         assert_eq!(ring.bounds(), Rect { min: DVec2::ZERO, max: DVec2::splat(30.0) });
+    }
+
+    #[test]
+    fn a_ring_that_crosses_itself_encloses_both_its_lobes_and_a_ring_in_a_ring_is_a_hole() {
+        let at = |x: f64, y: f64| DVec2::new(x, y);
+        let bow = [at(0.0, 0.0), at(10.0, 10.0), at(10.0, 0.0), at(0.0, 10.0)];
+        let lobes = Region::enclosed([&bow[..]]);
+        assert_eq!(lobes.rings().len(), 2);
+        assert!((lobes.area() - 50.0).abs() < 1e-6);
+        let (outer, inner) = (rect(0.0, 0.0, 10.0, 10.0), rect(4.0, 4.0, 2.0, 2.0));
+        let holed = Region::enclosed([&outer[..], &inner[..]]).rings();
+        assert_eq!((holed.len(), holed[0].len(), holed[0][1].len()), (1, 2, 4));
     }
 
     #[test]

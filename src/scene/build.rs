@@ -11,7 +11,9 @@ use crate::roam::layout::{DEFAULT_PATCH, Layout};
 use crate::scene::assets::Assets;
 use crate::scene::attributes;
 use crate::scene::bridges;
+use crate::scene::buildings;
 use crate::scene::collected::Collected;
+use crate::scene::fences;
 use crate::scene::ground;
 use crate::scene::kind::{Scene, Terrain};
 use crate::scene::models;
@@ -21,6 +23,7 @@ use crate::scene::sources::Sources;
 use crate::scene::style;
 use crate::scene::views;
 use crate::scene::water;
+use crate::terrain::finest::Finest;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::deck::Deck;
 use crate::terrain::query::service::HeightService;
@@ -43,8 +46,13 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     water::rivers(document, &sources, &extent, &mut collected)?;
     let mut roads = centreline::collect(document, &sources, &extent, &mut collected)?;
     conform::conform(document, &mut lattice, &mut roads, &mut collected)?;
+    let plots = buildings::lay_out(document, &sources, &mut lattice, &mut collected)?;
+    let lines = fences::lay_out(document, &sources, &mut lattice, &mut collected)?;
     bridges::build(document, &sources, (&lattice, places.exaggeration), &mut roads, &mut collected)?;
     network::lay(&roads, &extent, &mut collected);
+    let finest = Finest { lattice: &lattice, exaggeration: places.exaggeration };
+    fences::set(&lines, finest, &mut collected);
+    buildings::raise(document, &plots, finest, &mut collected);
     collected.take_apart();
 
     step("loading models");
@@ -83,6 +91,7 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
         lighting,
         ribbons: collected.ribbons,
         solids: collected.solids,
+        uprights: collected.uprights,
         models,
         placements,
         labels,

@@ -5,7 +5,7 @@ use crate::ribbon::partition;
 use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::Surface;
 use crate::scene::attributes::Defaulted;
-use crate::scene::kind::{Feature, FeatureKind, Ribbon, Solid};
+use crate::scene::kind::{Feature, FeatureKind, Ribbon, Solid, Standing};
 use crate::scene::report::Report;
 use crate::scene::roads::profiles::RoadProfile;
 use crate::terrain::facets::Facet;
@@ -19,6 +19,8 @@ pub struct Collected {
     pub features: Vec<Feature>,
     /// What has a shape of its own.
     pub solids: Vec<Solid>,
+    /// What is set on the displayed ground for every picture.
+    pub uprights: Vec<Standing>,
     /// What one can stand on above the ground: triangles in world space, heights in metres without exaggeration.
     pub decks: Vec<Facet>,
     /// For the user.
@@ -76,5 +78,7 @@ fn layer_of(surface: Surface) -> u8 {
         | Surface::AsphaltEdges
         | Surface::AsphaltPlain
         | Surface::AsphaltJunction => 4,
+        Surface::Trench => 5,
+        Surface::Boundary => 6,
     }
 }

@@ -20,6 +20,7 @@ use crate::roam::ground::Ground;
 use crate::roam::layout::Layout;
 use crate::scene::report::Report;
 use crate::scene::roads::profiles::RoadProfile;
+use crate::structure::upright::Upright;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::service::HeightService;
 
@@ -43,6 +44,8 @@ pub struct Scene {
     pub ribbons: Vec<Ribbon>,
     /// What has a shape of its own: buildings, bridges.
     pub solids: Vec<Solid>,
+    /// What is set on the displayed ground for every picture: walls, fences, lines, footings.
+    pub uprights: Vec<Standing>,
     /// Model files, each loaded once.
     pub models: Vec<Model>,
     /// What stands on the ground.
@@ -181,6 +184,14 @@ pub struct Solid {
     pub mesh: DrawMesh,
     /// What its triangles show.
     pub coat: Coat,
+    /// The feature it belongs to.
+    pub feature: FeatureId,
+}
+
+/// Something that stands on the ground as it is displayed.
+pub struct Standing {
+    /// What it is.
+    pub upright: Upright,
     /// The feature it belongs to.
     pub feature: FeatureId,
 }

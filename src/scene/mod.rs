@@ -1,14 +1,17 @@
 //! From the scene file to what a renderer draws.
 //!
 //! `build` turns a document and its assets into a [`kind::Scene`], one pass a file: the ground (`ground`), what lies on
-//! it (`water`, `roads`), models (`models`), labels and cameras (`views`); the passes gather what they make in
-//! `collected`. `picture` turns a scene and a camera into a draw list.
+//! it (`water`, `roads`), what stands on it (`buildings`, `fences`), models (`models`), labels and cameras (`views`); the
+//! passes gather what they make in `collected`. `picture` turns a scene and a camera into a draw list.
 
 pub mod assets;
 pub mod attributes;
 pub mod bridges;
 pub mod build;
+pub mod building_colors;
+pub mod buildings;
 pub mod collected;
+pub mod fences;
 pub mod ground;
 pub mod kind;
 pub mod models;

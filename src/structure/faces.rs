@@ -39,6 +39,21 @@ impl Faces {
         }
     }
 
+    /// Adds a flat polygon of any shape in triangles, triples of positions in `corners`, all counter-clockwise seen from
+    /// where it faces; nothing where it has no area.
+    pub fn flat(&mut self, corners: &[Vec3], triangles: &[[usize; 3]], color: Srgba) {
+        let around: Vec<(Vec3, Vec2)> = corners.iter().map(|&at| (at, Vec2::ZERO)).collect();
+        let Some(normal) = normal(&around) else { return };
+        let vertex = |&at: &Vec3| DrawVertex {
+            position: at.to_array(),
+            normal: normal.to_array(),
+            uv: [0.0; 2],
+            color,
+        };
+        let ids: Vec<VertexId> = corners.iter().map(|at| self.mesh.vertex(vertex(at))).collect();
+        triangles.iter().for_each(|triangle| self.mesh.triangle(triangle.map(|index| ids[index])));
+    }
+
     /// Adds upright walls under a closed ring, counter-clockwise in plan, facing outward: from `foot` to `top`, both
     /// drawn heights.
     pub fn walls(&mut self, ring: &[DVec2], (foot, top): (f32, f32), color: Srgba) {

@@ -4,9 +4,24 @@
 //! meets the ground it stands on.
 
 pub mod bridge;
+pub mod building;
+pub mod building_footing;
+pub mod building_footprint;
 pub mod deck;
 pub mod deck_check;
 pub mod deck_profile;
 pub mod faces;
+pub mod fence;
+pub mod fence_band;
+pub mod fence_track;
+pub mod hedge;
+pub mod obstacle;
 pub mod pier;
+pub mod power;
+pub mod power_beam;
+pub mod roof;
+pub mod roof_hipped;
+pub mod trench;
 pub mod tunnel;
+pub mod upright;
+pub mod wall;

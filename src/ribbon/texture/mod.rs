@@ -1,5 +1,6 @@
 //! Procedural textures for what lies on the ground; the same pixels on every machine.
 
+mod boundary;
 mod road;
 mod water;
 
@@ -34,6 +35,10 @@ pub enum Surface {
     River,
     /// Still water.
     Lake,
+    /// The floor of a trench.
+    Trench,
+    /// The dashes of a boundary.
+    Boundary,
 }
 
 impl Surface {
@@ -62,6 +67,8 @@ pub fn texture(surface: Surface) -> Pixels {
             Surface::GravelJunction => shade(road::GRAVEL, (grain - 0.5) * 34.0),
             Surface::TrackJunction => shade(road::WORN, (grain - 0.5) * 30.0),
             Surface::River => water::river(u, grain),
+            Surface::Trench => boundary::trench(u, grain),
+            Surface::Boundary => boundary::boundary(u, grain),
             Surface::Lake => shade([74, 124, 158], (grain - 0.5) * 5.0),
         }
     })

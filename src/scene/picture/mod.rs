@@ -5,6 +5,7 @@ mod ground;
 mod models;
 pub mod recut;
 mod solids;
+mod uprights;
 
 use std::sync::Arc;
 
@@ -64,6 +65,7 @@ pub fn draw_list(
     step("setting models");
     ground::add_plinth(&mut list, walls);
     solids::add(&mut list, scene);
+    uprights::add(&mut list, scene, displayed);
     models::add(&mut list, scene, displayed);
     (list, ground_triangles)
 }

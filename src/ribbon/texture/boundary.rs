@@ -1,0 +1,19 @@
+//! Boundaries and the floors of trenches.
+
+use crate::draw::color::Srgba;
+use crate::ribbon::texture::shade;
+
+/// A dash of a boundary: the violet that maps keep for what cannot be seen on the ground.
+pub(super) fn boundary(u: f32, grain: f32) -> Srgba {
+    let from_edge = u.min(1.0 - u);
+    let ink = if from_edge < 0.12 { [92, 38, 72] } else { [122, 52, 94] };
+    shade(ink, (grain - 0.5) * 8.0)
+}
+
+/// A trench seen from above: its sides catch some light, its floor lies in their shade.
+pub(super) fn trench(u: f32, grain: f32) -> Srgba {
+    let from_edge = u.min(1.0 - u) * 2.0;
+    let depth = (from_edge * 1.9).min(1.0);
+    let color = [132.0 - 74.0 * depth, 104.0 - 62.0 * depth, 74.0 - 46.0 * depth];
+    shade(color.map(|channel: f32| channel as u8), (grain - 0.5) * 16.0)
+}

@@ -1,0 +1,333 @@
+//! Buildings: footprints from the document, pads under those that want one, and their solids on the finished ground.
+//!
+//! Two passes, since the ground is not finished before the roads have moved it:
+//!
+//! ```text
+//!  lay_out: footprints, pads levelled ─► (roads conform) ─► raise: bases from the ground as it is now, solids
+//! ```
+
+use glam::DVec2;
+use toml::Spanned;
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::{Color, Document};
+use crate::description::expression::as_number;
+use crate::description::features::{Building, Scalar};
+use crate::description::words::{BaseRule, Roof as RoofWord, Word};
+use crate::draw::color::Srgba;
+use crate::draw::list::FeatureId;
+use crate::geom::rect::Rect;
+use crate::scene::attributes::Attributes;
+use crate::scene::building_colors::color_named;
+use crate::scene::collected::Collected;
+use crate::scene::kind::{Coat, FeatureKind, Solid, Standing};
+use crate::scene::report::{Cell, Column};
+use crate::scene::sources::{Sourced, Sources};
+use crate::structure::building::{Levels, Paint, raise as raised};
+use crate::structure::building_footing::Footing;
+use crate::structure::building_footprint::Footprint;
+use crate::structure::roof::{Roof, roof};
+use crate::structure::upright::Upright;
+use crate::terrain::earthwork;
+use crate::terrain::finest::Finest;
+use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::query::pieces::Region;
+use crate::terrain::query::zone::zone;
+
+/// The height of a building that nothing is known of, metres.
+const HEIGHT_M: f64 = 6.0;
+/// A storey, metres.
+const STOREY_M: f64 = 3.0;
+/// The tallest that a property may say, metres; as `height` in a scene file.
+const TALLEST_M: f64 = 1000.0;
+/// Rise over run of a roof of 30 degrees.
+const PITCH: f64 = 0.577_350_269;
+/// The most of a building's height that is roof where nobody says how much, so that wide halls keep their walls.
+const MOST_ROOF: f64 = 0.5;
+/// How deep walls go below the lowest ground under them, metres.
+const FOUNDATION_M: f64 = 1.0;
+
+/// A building with its place found, not raised yet.
+pub struct Plot {
+    table: usize,
+    attributes: Attributes,
+    parts: Vec<Footprint>,
+    pad_m: Option<f64>,
+    feature: FeatureId,
+}
+
+/// How often what happened to buildings that a user should know.
+#[derive(Default)]
+struct Tally {
+    off: usize,
+    empty: usize,
+    mended: usize,
+    pads_refused: usize,
+    roofs_replaced: usize,
+    raised_whole: usize,
+}
+
+impl Tally {
+    fn tell(&self, notes: &mut Vec<String>) {
+        let sentences = [
+            (self.off, "left out: not wholly on the elevation model's data"),
+            (self.empty, "left out: the footprint encloses no area"),
+            (self.mended, "mended: the footprint crossed itself"),
+            (self.pads_refused, "without its pad: the ground there is shaped for something else already"),
+            (self.roofs_replaced, "with another roof than asked for: the footprint does not take it"),
+            (self.raised_whole, "without a min_height, which is not below the height"),
+        ];
+        for (count, sentence) in sentences.into_iter().filter(|(count, _)| *count > 0) {
+            notes.push(format!("{count} {} {sentence}", FeatureKind::Building.noun(count)));
+        }
+    }
+}
+
+const PADS: (&str, &[Column]) = (
+    "building pads",
+    &[
+        Column { name: "name", unit: "" },
+        Column { name: "level", unit: "m" },
+        Column { name: "cut", unit: "m3" },
+        Column { name: "fill", unit: "m3" },
+    ],
+);
+
+/// The document's buildings with their footprints mended, and the ground levelled under those whose base is a pad.
+///
+/// # Errors
+/// A source cannot be had.
+pub fn lay_out(
+    document: &Document,
+    sources: &Sources<'_>,
+    lattice: &mut Lattice,
+    collected: &mut Collected,
+) -> Result<Vec<Plot>, Diagnostic> {
+    let (mut plots, mut tally) = (Vec::new(), Tally::default());
+    for (table, building) in document.buildings.iter().enumerate() {
+        let wants_pad = base_rule(building) == BaseRule::Pad;
+        for Sourced { attributes, shape } in sources.polygons(&building.source)? {
+            let parts = Footprint::parts(&shape.exterior, &shape.holes);
+            if parts.is_empty() {
+                tally.empty += 1;
+                continue;
+            }
+            let Some(ground) = GroundUnder::parts(lattice, &parts) else {
+                tally.off += 1;
+                continue;
+            };
+            tally.mended += usize::from(parts.len() > 1);
+            let name = attributes.name(building.name.as_deref());
+            let pad_m = wants_pad.then(|| pad(lattice, &parts, ground.mean_m, &name, collected)).flatten();
+            tally.pads_refused += usize::from(wants_pad && pad_m.is_none());
+            let feature = collected.add(FeatureKind::Building, name);
+            plots.push(Plot { table, attributes, parts, pad_m, feature });
+        }
+    }
+    tally.tell(&mut collected.notes);
+    Ok(plots)
+}
+
+/// Levels the ground under a building and returns its level; `None` where some of that ground belongs to a lake, or to a
+/// pad laid before.
+fn pad(
+    lattice: &mut Lattice,
+    parts: &[Footprint],
+    mean_m: f64,
+    name: &str,
+    collected: &mut Collected,
+) -> Option<f64> {
+    if parts.iter().any(|part| is_taken(lattice, part)) {
+        return None;
+    }
+    let mut volumes = earthwork::Volumes::default();
+    for part in parts {
+        let moved = earthwork::level(lattice, part.rings(), mean_m as f32);
+        volumes.cut_m3 += moved.cut_m3;
+        volumes.fill_m3 += moved.fill_m3;
+    }
+    let numbers = [mean_m, volumes.cut_m3, volumes.fill_m3].map(Cell::Number);
+    collected.report.add(PADS, std::iter::once(Cell::Text(name.to_owned())).chain(numbers).collect());
+    Some(f64::from(mean_m as f32))
+}
+
+/// Whether any post of the cells round a footprint is shaped for something already.
+fn is_taken(lattice: &Lattice, footprint: &Footprint) -> bool {
+    let bounds = Rect::around(footprint.exterior().iter().copied());
+    let span = |low: f64, high: f64, posts: u32| {
+        let post = |at: f64| at.clamp(0.0, f64::from(posts - 1)) as u32;
+        post(low.floor())..=post(high.floor() + 1.0)
+    };
+    let (low, high) = (lattice.grid_at(bounds.min), lattice.grid_at(bounds.max));
+    span(low.y, high.y, lattice.rows()).any(|row| {
+        span(low.x, high.x, lattice.columns()).any(|column| lattice.is_pinned(Post { column, row }))
+    })
+}
+
+/// The heights of the ground under a building, metres.
+#[derive(Clone, Copy)]
+struct GroundUnder {
+    low_m: f64,
+    mean_m: f64,
+    high_m: f64,
+}
+
+impl GroundUnder {
+    /// Exact: over all of the finest triangles that the footprints meet. `None` where some lies off the model or has no
+    /// data.
+    fn parts(lattice: &Lattice, parts: &[Footprint]) -> Option<Self> {
+        let mut under = Self { low_m: f64::INFINITY, mean_m: 0.0, high_m: f64::NEG_INFINITY };
+        let (mut area_m2, mut sum) = (0.0, 0.0);
+        for part in parts {
+            let to_map = |ring: &Vec<DVec2>| ring.iter().map(|at| *at + lattice.origin()).collect();
+            let rings: Vec<Vec<DVec2>> = part.rings().iter().map(to_map).collect();
+            let found = zone(lattice, &Region::new(lattice, &rings).ok()?);
+            let heights = found.heights?;
+            if found.no_data_m2 + found.outside_m2 > NO_DATA_SHARE * part.area_m2() {
+                return None;
+            }
+            under.low_m = under.low_m.min(heights.min_m);
+            under.high_m = under.high_m.max(heights.max_m);
+            sum += heights.mean_m * found.area_m2;
+            area_m2 += found.area_m2;
+        }
+        (area_m2 > 0.0).then(|| Self { mean_m: sum / area_m2, ..under })
+    }
+}
+
+/// How much of a footprint may lie off the data: rounding.
+const NO_DATA_SHARE: f64 = 1e-6;
+
+/// Raises the buildings on the ground as it is now.
+pub fn raise(document: &Document, plots: &[Plot], ground: Finest<'_>, collected: &mut Collected) {
+    let mut tally = Tally::default();
+    for plot in plots {
+        let building = &document.buildings[plot.table];
+        let Some(under) = GroundUnder::parts(ground.lattice, &plot.parts) else {
+            tally.off += 1;
+            continue;
+        };
+        let base_m = match (plot.pad_m, base_rule(building)) {
+            (Some(level_m), _) => level_m,
+            (None, BaseRule::Lowest) => under.low_m,
+            (None, BaseRule::Highest) => under.high_m,
+            (None, BaseRule::Mean | BaseRule::Pad) => under.mean_m,
+        };
+        let stretch = f64::from(ground.exaggeration);
+        let base_z = base_m * stretch;
+        let ground_z = (base_z, (under.low_m.min(base_m) * stretch) - FOUNDATION_M);
+        raise_parts(building, plot, ground_z, collected, &mut tally);
+    }
+    tally.tell(&mut collected.notes);
+}
+
+/// Raises the parts of one building, given the world Z of its base and of the foot of its walls.
+fn raise_parts(
+    building: &Building,
+    plot: &Plot,
+    (base_z, foot_z): (f64, f64),
+    collected: &mut Collected,
+    tally: &mut Tally,
+) {
+    let (low_m, height_m) = heights(building, &plot.attributes, collected, tally);
+    let wanted = wanted_roof(building, &plot.attributes);
+    let mut replaced = false;
+    for part in &plot.parts {
+        let made = roof(part, wanted);
+        replaced |= made.shape != wanted;
+        let roof_m = roof_height(building, &plot.attributes, &made, height_m - low_m);
+        let top_z = base_z + height_m;
+        let mut levels = Levels { foot_z, base_z, eaves_z: top_z - roof_m, top_z };
+        if low_m > 0.0 {
+            levels = Levels { foot_z: base_z + low_m, base_z: base_z + low_m, ..levels };
+        } else if base_z - foot_z <= FOUNDATION_M + 1e-6 {
+            // On its lowest ground no foundation shows, and the plaster goes on down.
+            levels.base_z = foot_z;
+        }
+        let paint = paint(building, &plot.attributes, part, &made);
+        let mesh = raised(part, &made, levels, paint);
+        collected.solids.push(Solid { mesh, coat: Coat::Painted, feature: plot.feature });
+        if low_m == 0.0 {
+            let color = if levels.base_z > foot_z { paint.foundation } else { paint.wall };
+            let footing = Footing { rings: part.rings().to_vec(), foot_z: foot_z as f32, color };
+            collected.uprights.push(Standing { upright: Upright::Footing(footing), feature: plot.feature });
+        }
+    }
+    tally.roofs_replaced += usize::from(replaced);
+}
+
+fn base_rule(building: &Building) -> BaseRule {
+    building.base.as_ref().map(|base| *base.get_ref()).unwrap_or_default()
+}
+
+/// A property as a number within its bounds.
+fn property(attributes: &Attributes, names: &[&str], (low, high): (f64, f64)) -> Option<f64> {
+    names
+        .iter()
+        .filter_map(|name| attributes.get(name).as_ref().and_then(as_number))
+        .find(|&number| number > low && number <= high)
+}
+
+/// How high above its base a building begins, 0 for nearly all, and how high it ends, metres.
+fn heights(
+    building: &Building,
+    attributes: &Attributes,
+    collected: &mut Collected,
+    tally: &mut Tally,
+) -> (f64, f64) {
+    let storeys = |names: &[&str]| property(attributes, names, (0.0, TALLEST_M / STOREY_M));
+    let known = property(attributes, &["height"], (0.0, TALLEST_M))
+        .or_else(|| storeys(&["building:levels", "levels"]).map(|levels| levels * STOREY_M))
+        .unwrap_or(HEIGHT_M);
+    let stated = ("[[building]] height", building.height.as_ref());
+    let height_m = attributes.number_or(stated, known, &mut collected.defaulted);
+    let low_m = property(attributes, &["min_height"], (0.0, TALLEST_M))
+        .or_else(|| storeys(&["building:min_level"]).map(|levels| levels * STOREY_M))
+        .unwrap_or(0.0);
+    if low_m >= height_m {
+        tally.raised_whole += 1;
+        return (0.0, height_m);
+    }
+    (low_m, height_m)
+}
+
+/// The roof stated, else that of OpenStreetMap's property; half-hipped and the like count as what they are nearest to.
+fn wanted_roof(building: &Building, attributes: &Attributes) -> RoofWord {
+    let tagged = || match attributes.get("roof:shape") {
+        Some(Scalar::Text(text)) => match text.as_str() {
+            "half-hipped" | "mansard" | "side_hipped" => Some(RoofWord::Hipped),
+            "gambrel" | "saltbox" | "round" => Some(RoofWord::Gabled),
+            "dome" | "onion" | "cone" => Some(RoofWord::Pyramidal),
+            other => RoofWord::ALL.iter().find(|(word, _)| *word == other).map(|(_, shape)| *shape),
+        },
+        _ => None,
+    };
+    attributes.word(building.roof.as_ref()).or_else(tagged).unwrap_or_default()
+}
+
+/// How much of a building's height is roof, metres.
+fn roof_height(building: &Building, attributes: &Attributes, made: &Roof, height_m: f64) -> f64 {
+    if made.run_m <= 0.0 {
+        return 0.0;
+    }
+    let stated = attributes
+        .number(building.roof_height.as_ref())
+        .or_else(|| property(attributes, &["roof:height"], (0.0, TALLEST_M)));
+    match stated {
+        Some(roof_m) => roof_m.min(height_m),
+        None => (made.run_m * PITCH).min(height_m * MOST_ROOF),
+    }
+}
+
+fn paint(building: &Building, attributes: &Attributes, part: &Footprint, made: &Roof) -> Paint {
+    let by_place = Paint::by_place(part, made);
+    let color = |stated: &Option<Spanned<Color>>, names: [&str; 2]| {
+        let tagged = || names.iter().find_map(|name| color_named(&attributes.get(name)?));
+        stated.as_ref().map(|color| Srgba(color.get_ref().0)).or_else(tagged)
+    };
+    // Walls and roofs are solid, whatever the colour's alpha says.
+    let solid = |Srgba([red, green, blue, _]): Srgba| Srgba::opaque(red, green, blue);
+    let wall = color(&building.wall_color, ["building:colour", "building:color"]);
+    let roof = color(&building.roof_color, ["roof:colour", "roof:color"]);
+    Paint { wall: wall.map_or(by_place.wall, solid), roof: roof.map_or(by_place.roof, solid), ..by_place }
+}

@@ -1,0 +1,345 @@
+//! What stands or runs along lines: fences, walls, hedges, power lines, trenches, obstacle belts and boundaries.
+//!
+//! Two passes, as for buildings: trenches are dug before the roads come, everything is set where the ground is finished.
+//! What stands is only planned here; [`crate::structure::upright`] sets it on the displayed ground for every picture.
+
+use glam::DVec2;
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::Document;
+use crate::description::expression::as_number;
+use crate::description::features::{Fence, Scalar};
+use crate::description::words::FenceKind;
+use crate::draw::list::FeatureId;
+use crate::geom::polyline::Polyline;
+use crate::geom::rect::Rect;
+use crate::ribbon::plan::PlanMesh;
+use crate::ribbon::stroke::{Continuations, StrokeOptions, stroke};
+use crate::ribbon::texture::{Surface, texture_length_m};
+use crate::scene::attributes::Attributes;
+use crate::scene::collected::Collected;
+use crate::scene::kind::{FeatureKind, Standing};
+use crate::scene::near::{self, Clipped};
+use crate::scene::report::{Cell, Column};
+use crate::scene::sources::Sources;
+use crate::structure::fence::{Posts, rails, spans, stands};
+use crate::structure::hedge::hedge;
+use crate::structure::obstacle::{self, Obstacles};
+use crate::structure::power::{PowerLine, clear};
+use crate::structure::trench::parapets;
+use crate::structure::upright::Upright;
+use crate::structure::wall::wall;
+use crate::terrain::brush::Trench;
+use crate::terrain::earthwork::Volumes;
+use crate::terrain::facets::Facets;
+use crate::terrain::finest::Finest;
+use crate::terrain::lattice::Lattice;
+
+/// The most posts, pylons, obstacles, dashes and lengths of hedge in a scene: a few hundred megabytes of triangles.
+const MOST_PIECES: f64 = 300_000.0;
+
+/// A line is dug where its trench is at least as many cells wide; on coarser ground it would be a row of pits.
+const LEAST_CELLS: f64 = 3.0;
+
+/// A trench's bottom as a share of its width.
+const BOTTOM: f64 = 0.55;
+
+/// A line with what is to stand along it.
+pub struct Line {
+    kind: FenceKind,
+    /// Its parts on the elevation model, at least two distinct points each.
+    parts: Vec<Vec<DVec2>>,
+    height_m: f64,
+    width_m: f64,
+    spacing_m: f64,
+    sag: f64,
+    feature: FeatureId,
+}
+
+/// The sizes of a kind that nobody states.
+struct Sizes {
+    height_m: f64,
+    width_m: f64,
+    spacing_m: f64,
+}
+
+fn default_sizes(kind: FenceKind) -> Sizes {
+    let (height_m, width_m, spacing_m) = match kind {
+        FenceKind::Fence => (1.2, 0.12, 3.0),
+        FenceKind::Wall => (2.0, 0.4, 4.0),
+        FenceKind::Hedge => (1.8, 1.2, 1.2),
+        FenceKind::PowerLine => (30.0, 10.0, 300.0),
+        FenceKind::Trench => (1.5, 1.5, 1.5),
+        FenceKind::Obstacles => (1.2, 9.0, 3.0),
+        FenceKind::Boundary => (1.0, 2.0, 18.0),
+    };
+    Sizes { height_m, width_m, spacing_m }
+}
+
+const TRENCHES: (&str, &[Column]) = (
+    "trenches",
+    &[
+        Column { name: "name", unit: "" },
+        Column { name: "length", unit: "m" },
+        Column { name: "cut", unit: "m3" },
+    ],
+);
+
+/// The document's lines, and the ground dug where they are trenches and its cells are fine enough.
+///
+/// # Errors
+/// A source cannot be had, or more is to stand than a scene may hold.
+pub fn lay_out(
+    document: &Document,
+    sources: &Sources<'_>,
+    lattice: &mut Lattice,
+    collected: &mut Collected,
+) -> Result<Vec<Line>, Diagnostic> {
+    let (mut lines, mut pieces, mut undug) = (Vec::new(), 0.0, 0);
+    let extent = lattice.extent();
+    for fence in &document.fences {
+        let given = fence.name.as_deref();
+        let found = sources.lines(&fence.source)?;
+        for (attributes, line) in near::lines(found, (&extent, 0.0), (FeatureKind::Fence, given), collected) {
+            let name = attributes.name(given);
+            let feature = collected.add(FeatureKind::Fence, name.clone());
+            let line = line_of(fence, &attributes, (&line, &extent), feature, collected);
+            pieces += line.pieces();
+            if pieces > MOST_PIECES {
+                return Err(too_many(document, fence, line.kind));
+            }
+            if line.kind == FenceKind::Trench {
+                undug += usize::from(!dig(&line, &name, lattice, collected));
+            }
+            lines.push(line);
+        }
+    }
+    if undug > 0 {
+        let trenches = if undug == 1 { "trench" } else { "trenches" };
+        collected.notes.push(format!(
+            "{undug} {trenches} drawn on the ground, not dug: the elevation model's posts are too far apart"
+        ));
+    }
+    Ok(lines)
+}
+
+fn too_many(document: &Document, fence: &Fence, kind: FenceKind) -> Diagnostic {
+    let what = match kind {
+        FenceKind::PowerLine => "pylons",
+        FenceKind::Obstacles => "obstacles",
+        FenceKind::Boundary => "dashes",
+        FenceKind::Hedge | FenceKind::Trench | FenceKind::Wall => "lengths of it",
+        FenceKind::Fence => "posts",
+    };
+    let message = format!("with the {what} along this, more than {MOST_PIECES} pieces stand along lines");
+    let place = fence.spacing.as_ref().map_or_else(|| fence.source.span(), toml::Spanned::span);
+    document.error_at(place, message).with_help("give it a wider `spacing`, or choose fewer lines by `where`")
+}
+
+fn line_of(
+    fence: &Fence,
+    attributes: &Attributes,
+    (line, extent): (&Polyline, &Rect),
+    feature: FeatureId,
+    collected: &mut Collected,
+) -> Line {
+    let kind = attributes.word(fence.kind.as_ref()).unwrap_or_else(|| tagged_kind(fence, attributes));
+    let sizes = default_sizes(kind);
+    let tagged = attributes.get("height").as_ref().and_then(as_number).filter(|height| *height > 0.0);
+    let tagged = tagged.filter(|height| *height <= 1000.0 && fence.height.is_none());
+    let mut size = |key: &'static str, stated: Option<&_>, default: f64| {
+        attributes.number_or((key, stated), default, &mut collected.defaulted)
+    };
+    Line {
+        kind,
+        parts: within(line.points(), extent),
+        height_m: size("[[fence]] height", fence.height.as_ref(), tagged.unwrap_or(sizes.height_m)),
+        width_m: size("[[fence]] width", fence.width.as_ref(), sizes.width_m),
+        spacing_m: size("[[fence]] spacing", fence.spacing.as_ref(), sizes.spacing_m),
+        sag: fence.sag.as_ref().map_or(0.03, |sag| *sag.get_ref()),
+        feature,
+    }
+}
+
+/// What a line is that the scene file says nothing of, by its properties as OpenStreetMap has them.
+fn tagged_kind(fence: &Fence, attributes: &Attributes) -> FenceKind {
+    let text = |name: &str| match attributes.get(name) {
+        Some(Scalar::Text(text)) => text,
+        _ => String::new(),
+    };
+    if fence.kind.is_some() {
+        return FenceKind::default();
+    }
+    match (text("barrier").as_str(), text("power").as_str(), text("boundary").as_str()) {
+        ("wall" | "city_wall" | "retaining_wall", _, _) => FenceKind::Wall,
+        ("hedge", _, _) => FenceKind::Hedge,
+        ("", "line" | "minor_line", _) => FenceKind::PowerLine,
+        ("", "", boundary) if !boundary.is_empty() => FenceKind::Boundary,
+        _ => FenceKind::default(),
+    }
+}
+
+/// The parts of a line that lie on the elevation model.
+fn within(points: &[DVec2], extent: &Rect) -> Vec<Vec<DVec2>> {
+    let mut parts: Vec<Vec<DVec2>> = Vec::new();
+    for pair in points.windows(2) {
+        let Some((from, to)) = extent.clip_line(pair[0], pair[1]).filter(|(from, to)| from != to) else {
+            continue;
+        };
+        match parts.last_mut() {
+            Some(part) if part.last() == Some(&from) => part.push(to),
+            _ => parts.push(vec![from, to]),
+        }
+    }
+    parts
+}
+
+impl Line {
+    fn length_m(&self) -> f64 {
+        let pairs = self.parts.iter().flat_map(|part| part.windows(2));
+        pairs.map(|pair| pair[0].distance(pair[1])).sum()
+    }
+
+    /// How many pieces stand along it, before any is made.
+    fn pieces(&self) -> f64 {
+        let segments = self.parts.iter().flat_map(|part| part.windows(2));
+        let along: f64 =
+            segments.map(|pair| f64::from(spans(pair[0].distance(pair[1]), self.spacing_m))).sum();
+        match self.kind {
+            FenceKind::Obstacles => along * f64::from(obstacle::rows(self.width_m, self.spacing_m)),
+            // A pylon has as many triangles as twenty posts, and its wires as many again.
+            FenceKind::PowerLine => along * 40.0,
+            FenceKind::Boundary => along * 2.0,
+            _ => along,
+        }
+    }
+}
+
+/// Digs a trench; `false` where the ground's cells are too coarse for it. What is shaped for something else stays.
+fn dig(line: &Line, name: &str, lattice: &mut Lattice, collected: &mut Collected) -> bool {
+    if lattice.cell().max_element() * LEAST_CELLS > line.width_m {
+        return false;
+    }
+    let mut volumes = Volumes::default();
+    let area_m2 = lattice.cell().x * lattice.cell().y;
+    for part in &line.parts {
+        let trench = Trench {
+            line: part.clone(),
+            bottom_m: line.width_m * BOTTOM,
+            top_m: line.width_m,
+            depth_m: line.height_m,
+        };
+        for change in trench.apply(lattice).pieces {
+            let changed: Vec<_> = change.changed(lattice).collect();
+            for (post, before) in changed {
+                let dug = lattice.height(post);
+                if lattice.is_pinned(post) {
+                    lattice.pin(post, before);
+                } else {
+                    volumes.cut_m3 += f64::from(before - dug) * area_m2;
+                    lattice.pin(post, dug);
+                }
+            }
+        }
+    }
+    let cells =
+        vec![Cell::Text(name.to_owned()), Cell::Number(line.length_m()), Cell::Number(volumes.cut_m3)];
+    collected.report.add(TRENCHES, cells);
+    true
+}
+
+/// Sets the lines on the ground as it is now: boundaries and the floors of trenches as ribbons, the rest upright.
+pub fn set(lines: &[Line], ground: Finest<'_>, collected: &mut Collected) {
+    let mut added = 0;
+    let extent = ground.lattice.extent();
+    for line in lines {
+        for points in &line.parts {
+            match line.kind {
+                FenceKind::Boundary => {
+                    let plan = dashes(points, line, &extent);
+                    collected.lay(plan, Surface::Boundary, line.feature);
+                }
+                FenceKind::Trench => {
+                    let plan = ribbon(points, line.width_m, Surface::Trench, &extent);
+                    collected.lay(plan, Surface::Trench, line.feature);
+                }
+                _ => {}
+            }
+            let uprights = uprights(points, line, &ground, &mut added);
+            let feature = line.feature;
+            collected.uprights.extend(uprights.into_iter().map(|upright| Standing { upright, feature }));
+        }
+    }
+    if added > 0 {
+        let pylons = if added == 1 { "pylon" } else { "pylons" };
+        collected.notes.push(format!("{added} {pylons} added to keep wires off the ground"));
+    }
+}
+
+/// What stands along one part of a line; `added` counts pylons that nobody asked for.
+fn uprights(points: &[DVec2], line: &Line, ground: &dyn Facets, added: &mut usize) -> Vec<Upright> {
+    let Line { height_m, width_m, spacing_m, sag, .. } = *line;
+    match line.kind {
+        FenceKind::Fence => {
+            let posts = Posts { stands: stands(points, spacing_m), width_m, height_m };
+            let [low, high] = rails(points, width_m, height_m);
+            vec![Upright::Posts(posts), Upright::Band(low), Upright::Band(high)]
+        }
+        FenceKind::Wall => vec![Upright::Band(wall(points, (width_m, height_m), spacing_m))],
+        FenceKind::Hedge => vec![Upright::Band(hedge(points, (width_m, height_m), spacing_m))],
+        FenceKind::PowerLine => {
+            let (pylons, more) = clear(&stands(points, spacing_m), height_m, ground);
+            *added += more;
+            vec![Upright::PowerLine(PowerLine { pylons, height_m, width_m, sag })]
+        }
+        FenceKind::Trench => parapets(points, (width_m, height_m), spacing_m).map(Upright::Band).to_vec(),
+        FenceKind::Obstacles => {
+            let stands = obstacle::belt(points, width_m, spacing_m);
+            vec![Upright::Obstacles(Obstacles { stands, height_m })]
+        }
+        FenceKind::Boundary => Vec::new(),
+    }
+}
+
+fn ribbon(points: &[DVec2], width_m: f64, surface: Surface, extent: &Rect) -> PlanMesh {
+    let mut clipped = Clipped { plan: PlanMesh::default(), extent };
+    if let Some(line) = Polyline::new(points.iter().copied(), 0.0) {
+        let texture_length_m = texture_length_m(surface, width_m);
+        let options = StrokeOptions { width_m, texture_length_m, ..StrokeOptions::default() };
+        stroke(&line, Continuations::default(), &options, &mut clipped);
+    }
+    clipped.plan
+}
+
+/// A boundary's dashes and dots: in each spacing a dash of a half, and a dot as long as the line is wide.
+fn dashes(points: &[DVec2], line: &Line, extent: &Rect) -> PlanMesh {
+    let mut all = PlanMesh::default();
+    let Some(whole) = Polyline::new(points.iter().copied(), 0.0) else { return all };
+    let count = spans(whole.length(), line.spacing_m);
+    let period_m = whole.length() / f64::from(count);
+    let dot_m = line.width_m.min(period_m / 6.0);
+    for index in 0..count {
+        let start_m = f64::from(index) * period_m;
+        let dash = (start_m, start_m + period_m / 2.0);
+        let dot = (start_m + period_m * 0.75 - dot_m / 2.0, start_m + period_m * 0.75 + dot_m / 2.0);
+        for (from, to) in [dash, dot] {
+            append(&mut all, ribbon(&between(&whole, from, to), line.width_m, Surface::Boundary, extent));
+        }
+    }
+    all
+}
+
+/// The points of a line from one station to another.
+fn between(line: &Polyline, from: f64, to: f64) -> Vec<DVec2> {
+    let first = line.stations().partition_point(|&station| station <= from);
+    let last = line.stations().partition_point(|&station| station < to);
+    let inner = line.points().get(first..last.max(first)).unwrap_or_default();
+    std::iter::once(line.at(from)).chain(inner.iter().copied()).chain(std::iter::once(line.at(to))).collect()
+}
+
+fn append(all: &mut PlanMesh, more: PlanMesh) {
+    let offset = all.vertices.len();
+    all.vertices.extend(more.vertices);
+    let moved = |id: crate::mesh::sink::VertexId| crate::mesh::sink::VertexId::new(id.index() + offset);
+    all.triangles.extend(more.triangles.into_iter().map(|triangle| triangle.map(moved)));
+}

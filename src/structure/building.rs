@@ -1,0 +1,283 @@
+//! Buildings: a footprint, its heights and its roof become one closed solid.
+//!
+//! ```text
+//!            ╱╲          top_z    ridge
+//!          ╱____╲        eaves_z
+//!          │    │        plaster
+//!          ├────┤        base_z   shown only where the building does not stand on its lowest ground
+//!          │    │        foundation, in the ground
+//!          └────┘        foot_z
+//! ```
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, DVec3, Vec3};
+
+use crate::draw::color::Srgba;
+use crate::draw::list::DrawMesh;
+use crate::geom::polygon;
+use crate::structure::building_footprint::Footprint;
+use crate::structure::faces::Faces;
+use crate::structure::fence_band::{noise, shaded};
+use crate::structure::roof::{Roof, centroid};
+
+/// The heights of a building in world Z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Levels {
+    /// Where its walls end below.
+    pub foot_z: f64,
+    /// Where the plaster begins.
+    pub base_z: f64,
+    /// Where the roof begins.
+    pub eaves_z: f64,
+    /// The ridge.
+    pub top_z: f64,
+}
+
+/// What a building is painted with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Paint {
+    /// The walls.
+    pub wall: Srgba,
+    /// The roof.
+    pub roof: Srgba,
+    /// The walls below the base.
+    pub foundation: Srgba,
+}
+
+/// A foundation of stone.
+const FOUNDATION: Srgba = Srgba::opaque(150, 144, 136);
+
+/// Plasters of which a building takes one by where it stands.
+const PLASTERS: [Srgba; 7] = [
+    Srgba::opaque(238, 230, 214),
+    Srgba::opaque(232, 220, 194),
+    Srgba::opaque(226, 206, 172),
+    Srgba::opaque(222, 214, 204),
+    Srgba::opaque(234, 214, 196),
+    Srgba::opaque(214, 204, 190),
+    Srgba::opaque(242, 238, 228),
+];
+
+/// Roofs of tile and slate.
+const TILES: [Srgba; 6] = [
+    Srgba::opaque(178, 98, 72),
+    Srgba::opaque(162, 86, 66),
+    Srgba::opaque(188, 112, 80),
+    Srgba::opaque(148, 92, 78),
+    Srgba::opaque(120, 108, 104),
+    Srgba::opaque(172, 104, 84),
+];
+
+/// Flat roofs of gravel, felt and concrete.
+const FLATS: [Srgba; 5] = [
+    Srgba::opaque(190, 184, 176),
+    Srgba::opaque(176, 170, 164),
+    Srgba::opaque(202, 196, 186),
+    Srgba::opaque(184, 172, 160),
+    Srgba::opaque(166, 162, 158),
+];
+
+impl Paint {
+    /// What a building wears that nobody painted: a plaster and a roof chosen by where its middle stands, so that it is
+    /// the same in every picture.
+    pub fn by_place(footprint: &Footprint, roof: &Roof) -> Self {
+        let at = centroid(footprint.exterior()).round();
+        let pick = |colors: &[Srgba], salt: u64| {
+            let share = (noise(at, salt) + 1.0) / 2.0;
+            colors[((share * colors.len() as f64) as usize).min(colors.len() - 1)]
+        };
+        let tint = noise(at, 7) as f32 * 5.0;
+        let roof = if roof.run_m > 0.0 { pick(&TILES, 1) } else { pick(&FLATS, 2) };
+        Self {
+            wall: shaded(pick(&PLASTERS, 3), tint),
+            roof: shaded(roof, tint * 1.4),
+            foundation: FOUNDATION,
+        }
+    }
+}
+
+/// The building as a closed solid, faces outward.
+pub fn raise(footprint: &Footprint, roof: &Roof, levels: Levels, paint: Paint) -> DrawMesh {
+    let mut faces = Faces::default();
+    let rise = levels.top_z - levels.eaves_z;
+    let on_roof = |at: &DVec3| DVec3 { z: levels.eaves_z + at.z * rise, ..*at }.as_vec3();
+    for ring in &roof.edge {
+        for (index, from) in ring.iter().enumerate() {
+            walls(&mut faces, [*from, ring[(index + 1) % ring.len()]], &on_roof, levels, paint);
+        }
+    }
+    for face in &roof.faces {
+        let plan: Vec<DVec2> = face.iter().map(|at| at.truncate()).collect();
+        let corners: Vec<Vec3> = face.iter().map(on_roof).collect();
+        match face.len() {
+            3 => faces.polygon(&corners, paint.roof),
+            _ => faces.flat(&corners, &polygon::triangulate_ring(&plan), paint.roof),
+        }
+    }
+    floor(&mut faces, footprint, roof, levels.foot_z, paint);
+    faces.into_mesh()
+}
+
+/// The wall over one side of the footprint, from its foot to the roof.
+fn walls(
+    faces: &mut Faces,
+    [from, to]: [DVec3; 2],
+    on_roof: &dyn Fn(&DVec3) -> Vec3,
+    levels: Levels,
+    paint: Paint,
+) {
+    let at = |plan: DVec3, z: f64| DVec3 { z, ..plan }.as_vec3();
+    let mut foot_z = levels.foot_z;
+    if levels.base_z > foot_z {
+        let corners = [at(from, foot_z), at(to, foot_z), at(to, levels.base_z), at(from, levels.base_z)];
+        faces.polygon(&corners, paint.foundation);
+        foot_z = levels.base_z;
+    }
+    faces.polygon(&[at(from, foot_z), at(to, foot_z), on_roof(&to), on_roof(&from)], paint.wall);
+}
+
+/// What closes it below, facing down: the footprint with the vertices that the roof's edge added.
+fn floor(faces: &mut Faces, footprint: &Footprint, roof: &Roof, foot_z: f64, paint: Paint) {
+    let down = |[a, b, c]: [DVec2; 3]| [c, b, a].map(|at| at.extend(foot_z).as_vec3());
+    let rings: Vec<Vec<DVec2>> =
+        roof.edge.iter().map(|ring| ring.iter().map(|at| at.truncate()).collect()).collect();
+    let [outer, courtyards @ ..] = &rings[..] else { return };
+    if footprint.has_courtyards() {
+        for triangle in polygon::triangulate(outer, courtyards) {
+            faces.polygon(&down(triangle), paint.foundation);
+        }
+        return;
+    }
+    let corners: Vec<Vec3> = outer.iter().rev().map(|at| at.extend(foot_z).as_vec3()).collect();
+    let last = outer.len() - 1;
+    let turned = |[a, b, c]: [usize; 3]| [last - c, last - b, last - a];
+    let triangles: Vec<[usize; 3]> = polygon::triangulate_ring(outer).into_iter().map(turned).collect();
+    faces.flat(&corners, &triangles, paint.foundation);
+}
+
+/// What a sound building measures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measures {
+    /// Cubic metres within its faces.
+    pub volume_m3: f64,
+    /// Square metres of plan under its roof.
+    pub roof_m2: f64,
+}
+
+/// Checks that a building's mesh is closed: every edge of a triangle is that of another, the other way round; and faces
+/// outward.
+///
+/// # Errors
+/// A sentence about the first fault found.
+pub fn check(mesh: &DrawMesh) -> Result<Measures, String> {
+    let bits = |at: Vec3| at.to_array().map(f32::to_bits);
+    let mut open: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
+    let (mut volume_m3, mut roof_m2) = (0.0, 0.0);
+    let middle = mesh.vertices.first().map_or(DVec3::ZERO, |vertex| Vec3::from(vertex.position).as_dvec3());
+    for triangle in &mesh.triangles {
+        let corners = triangle.map(|id| Vec3::from(mesh.vertices[id.index()].position));
+        for side in 0..3 {
+            let (from, to) = (bits(corners[side]), bits(corners[(side + 1) % 3]));
+            *open.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
+        }
+        let [a, b, c] = corners.map(|corner| corner.as_dvec3() - middle);
+        volume_m3 += a.cross(b).dot(c) / 6.0;
+        roof_m2 += ((b - a).truncate().perp_dot((c - a).truncate()) / 2.0).max(0.0);
+    }
+    if let Some((edge, _)) = open.iter().find(|(edge, uses)| edge[0] != edge[1] && **uses != 0) {
+        let [from, to] = edge.map(|end| Vec3::from(end.map(f32::from_bits)));
+        return Err(format!("the edge from {from} to {to} belongs to one side only"));
+    }
+    if volume_m3 <= 0.0 {
+        return Err(format!("it holds {volume_m3} m³: its faces look inward"));
+    }
+    Ok(Measures { volume_m3, roof_m2 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::description::words;
+    use crate::structure::roof::roof;
+    use proptest::prelude::*;
+
+    const SHAPES: [words::Roof; 4] =
+        [words::Roof::Flat, words::Roof::Gabled, words::Roof::Hipped, words::Roof::Pyramidal];
+
+    fn built(footprint: &Footprint, shape: words::Roof) -> (Roof, DrawMesh) {
+        let roof = roof(footprint, shape);
+        let top_z = if roof.run_m > 0.0 { 9.0 } else { 6.0 };
+        let levels = Levels { foot_z: -1.0, base_z: 0.0, eaves_z: 6.0, top_z };
+        let paint = Paint::by_place(footprint, &roof);
+        let mesh = raise(footprint, &roof, levels, paint);
+        (roof, mesh)
+    }
+
+    #[test]
+    fn every_house_is_closed_and_holds_what_it_should_however_it_is_turned() {
+        for quarter in 0..4 {
+            let ring: Vec<DVec2> = [(2.0, 1.0), (14.0, 1.0), (14.0, 9.0), (2.0, 9.0)]
+                .map(|(x, y)| (0..quarter).fold(DVec2::new(x, y), |at, _| at.perp()))
+                .to_vec();
+            let house = Footprint::parts(&ring, &[]).remove(0);
+            // Below the eaves 96 m² × 7 m; roofs over them a half, a half less two sixths of the ends, a third.
+            for (shape, above) in SHAPES.into_iter().zip([0.0, 144.0, 112.0, 96.0]) {
+                let (made, mesh) = built(&house, shape);
+                let measures = check(&mesh).unwrap_or_else(|fault| panic!("{shape:?}: {fault}"));
+                assert_eq!(made.shape, shape);
+                assert!((measures.volume_m3 - (672.0 + above)).abs() < 0.01, "{shape:?} {measures:?}");
+                assert!((measures.roof_m2 - 96.0).abs() < 0.01);
+            }
+        }
+    }
+
+    #[test]
+    fn a_courtyard_stays_open() {
+        let at = |x: f64, y: f64| DVec2::new(x, y);
+        let outer = [at(0.0, 0.0), at(20.0, 0.0), at(20.0, 20.0), at(0.0, 20.0)];
+        let yard = vec![at(5.0, 5.0), at(5.0, 15.0), at(15.0, 15.0), at(15.0, 5.0)];
+        let house = Footprint::parts(&outer, &[yard]).remove(0);
+        for shape in SHAPES {
+            let measures = check(&built(&house, shape).1).expect("closed");
+            assert!((measures.roof_m2 - 300.0).abs() < 0.01 && (measures.volume_m3 - 2100.0).abs() < 0.1);
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(400))]
+
+        #[test]
+        fn whatever_the_ring_what_is_built_on_it_is_closed_and_roofs_its_area(
+            points in proptest::collection::vec((0.0..40.0f64, 0.0..40.0f64), 3..12),
+            offset in (0.0..9000.0f64, 0.0..9000.0f64),
+            shape in 0usize..4,
+        ) {
+            let ring: Vec<DVec2> = points.into_iter().map(|at| DVec2::from(at) + DVec2::from(offset)).collect();
+            for footprint in Footprint::parts(&ring, &[]) {
+                let (roof, mesh) = built(&footprint, SHAPES[shape]);
+                let measures = check(&mesh);
+                prop_assert!(measures.is_ok(), "{:?} over {:?}: {:?}", roof.shape, footprint, measures);
+                let roofed = measures.expect("checked").roof_m2;
+                let off = (roofed - footprint.area_m2()).abs();
+                prop_assert!(off < 0.05 + 1e-3 * footprint.area_m2(), "{roofed} over {}", footprint.area_m2());
+            }
+        }
+
+        #[test]
+        fn regular_and_stretched_plans_have_sound_hipped_roofs(
+            count in 3u32..20, stretch in 0.3..1.0f64, turn in 0.0..6.3f64, radius in 2.0..30.0f64,
+        ) {
+            let vertex = |index: u32| {
+                let angle = f64::from(index) * std::f64::consts::TAU / f64::from(count);
+                let at = DVec2::new(libm::cos(angle), libm::sin(angle) * stretch) * radius;
+                DVec2::new(libm::cos(turn), libm::sin(turn)).rotate(at)
+            };
+            let ring: Vec<DVec2> = (0..count).map(vertex).collect();
+            let footprint = Footprint::parts(&ring, &[]).remove(0);
+            let (roof, mesh) = built(&footprint, words::Roof::Hipped);
+            prop_assert_eq!(roof.shape, words::Roof::Hipped);
+            prop_assert!(check(&mesh).is_ok(), "{:?}", check(&mesh));
+        }
+    }
+}

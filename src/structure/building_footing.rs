@@ -1,0 +1,49 @@
+//! Footings: what a building's walls lack down to the ground where that is displayed lower than it is.
+//!
+//! A building's own walls end a little below the lowest ground under it. Far away the ground is displayed more coarsely,
+//! and may lie lower still; there its walls go on down to it, so that no building floats at any level of detail.
+
+use glam::DVec2;
+
+use crate::draw::color::Srgba;
+use crate::geom::polygon;
+use crate::geom::rect::Rect;
+use crate::structure::faces::Faces;
+use crate::terrain::facets::Facets;
+use crate::terrain::underfoot::runs;
+
+/// The foot of a building's walls.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Footing {
+    /// The outer ring counter-clockwise and the courtyards clockwise, world X and Y.
+    pub rings: Vec<Vec<DVec2>>,
+    /// World Z at which the building's own walls end.
+    pub foot_z: f32,
+    /// The walls' colour.
+    pub color: Srgba,
+}
+
+impl Footing {
+    /// Adds walls from where the building's own end down to the lowest displayed ground along them to `faces`; nothing
+    /// where the ground is nowhere lower.
+    pub fn build(&self, ground: &dyn Facets, faces: &mut Faces) {
+        // One look at all triangles near it settles it for nearly every building.
+        let around = Rect::around(self.rings.iter().flatten().copied());
+        let mut lowest = f32::INFINITY;
+        ground.visit_facets(&around, &mut |facet| {
+            lowest = facet.iter().map(|corner| corner.z).fold(lowest, f32::min);
+        });
+        if lowest >= self.foot_z {
+            return;
+        }
+        for ring in &self.rings {
+            let lowest = polygon::edges(ring)
+                .flat_map(|(from, to)| runs(ground, from, to))
+                .flat_map(|run| run.stations().iter().map(|station| station.z).reduce(f64::min))
+                .fold(f64::INFINITY, f64::min) as f32;
+            if lowest < self.foot_z {
+                faces.walls(ring, (lowest, self.foot_z), self.color);
+            }
+        }
+    }
+}

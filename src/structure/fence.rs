@@ -1,0 +1,122 @@
+//! Fences: posts that stand on the displayed ground and rails that follow it from post to post.
+
+use glam::{DVec2, Vec3};
+
+use crate::draw::color::Srgba;
+use crate::structure::faces::Faces;
+use crate::structure::fence_band::{Band, Corner, Section};
+use crate::structure::fence_track::Track;
+use crate::structure::power_beam::square;
+use crate::terrain::underfoot::Underfoot;
+
+const WOOD: Srgba = Srgba::opaque(150, 124, 92);
+const RAIL: Srgba = Srgba::opaque(176, 150, 114);
+
+/// Rails from the ground up as shares of the fence's height: where each begins and ends.
+const RAILS: [(f64, f64); 2] = [(0.36, 0.48), (0.76, 0.88)];
+/// A rail's thickness as a share of the post's.
+const RAIL_THICKNESS: f64 = 0.45;
+
+/// Where something stands, and which way the line runs there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stand {
+    /// World X and Y, metres.
+    pub at: DVec2,
+    /// A unit vector along the line.
+    pub along: DVec2,
+}
+
+/// Posts of one size.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Posts {
+    /// Where they stand.
+    pub stands: Vec<Stand>,
+    /// From side to side, metres.
+    pub width_m: f64,
+    /// Above the ground, metres.
+    pub height_m: f64,
+}
+
+impl Posts {
+    /// Adds the posts that have ground under them to `faces`.
+    pub fn build(&self, under: Underfoot<'_>, faces: &mut Faces) {
+        // Dug in, so that no side ends above the ground on a slope.
+        let dug_m = self.width_m.max(0.2 * self.height_m);
+        let half = (self.width_m / 2.0) as f32;
+        for stand in &self.stands {
+            let Some(z) = under.z(stand.at) else { continue };
+            let at = |up_m: f64| stand.at.extend(z + up_m).as_vec3();
+            let along = Vec3::new(stand.along.x as f32, stand.along.y as f32, 0.0);
+            square(faces, (at(-dug_m), at(self.height_m)), (half, half), along, WOOD);
+        }
+    }
+}
+
+/// The rails of a fence along `points` whose posts are `post_m` wide.
+pub fn rails(points: &[DVec2], post_m: f64, height_m: f64) -> [Band; 2] {
+    RAILS.map(|(low, high)| {
+        let (low, high) = (low * height_m, high * height_m);
+        let corner = |share: f64, up_m: f64| Corner { share, up_m };
+        Band {
+            track: Track::new(points, post_m * RAIL_THICKNESS / 2.0),
+            section: Section {
+                feet: (-1.0, 1.0),
+                corners: vec![corner(0.0, low), corner(0.0, high), corner(1.0, high), corner(1.0, low)],
+                colors: vec![RAIL; 4],
+            },
+            ruffle: None,
+        }
+    })
+}
+
+/// Where posts stand along a line of distinct points: at every vertex and, evenly in between, no more than `spacing_m`
+/// apart. Each stands along the bisector of the line at it.
+pub fn stands(points: &[DVec2], spacing_m: f64) -> Vec<Stand> {
+    let mut stands = Vec::new();
+    let direction = |from: DVec2, to: DVec2| (to - from).normalize_or(DVec2::X);
+    let round = points.len() > 3 && points.first() == points.last();
+    for (index, pair) in points.windows(2).enumerate() {
+        let along = direction(pair[0], pair[1]);
+        let before = match index {
+            0 if round => direction(points[points.len() - 2], points[0]),
+            0 => along,
+            _ => direction(points[index - 1], pair[0]),
+        };
+        stands.push(Stand { at: pair[0], along: (before + along).normalize_or(along) });
+        let count = spans(pair[0].distance(pair[1]), spacing_m);
+        let between = (1..count).map(|step| pair[0].lerp(pair[1], f64::from(step) / f64::from(count)));
+        stands.extend(between.map(|at| Stand { at, along }));
+    }
+    if let ([.., before, last], false) = (points, round) {
+        stands.push(Stand { at: *last, along: direction(*before, *last) });
+    }
+    stands
+}
+
+/// How many spans of up to `spacing_m` a length takes; at least one.
+pub fn spans(length_m: f64, spacing_m: f64) -> u32 {
+    // A hair's breadth over a whole number is rounding, not a span.
+    (length_m / spacing_m - 1e-9).ceil().clamp(1.0, f64::from(u32::MAX)) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn posts_stand_at_vertices_and_no_further_apart_than_they_may() {
+        let points = [DVec2::ZERO, DVec2::X * 10.0, DVec2::new(10.0, 7.0)];
+        let stands = stands(&points, 3.0);
+        assert_eq!(stands.len(), 4 + 3 + 1);
+        assert!(points.iter().all(|&point| stands.iter().any(|stand| stand.at == point)));
+        assert!(stands.windows(2).all(|pair| pair[0].at.distance(pair[1].at) <= 3.0 + 1e-9));
+        let corner = stands.iter().find(|stand| stand.at == points[1]).expect("a post at the corner");
+        assert!((corner.along - DVec2::ONE.normalize()).length() < 1e-12);
+    }
+
+    #[test]
+    fn a_fence_that_runs_round_has_one_post_where_it_begins() {
+        let ring = [DVec2::ZERO, DVec2::X * 4.0, DVec2::splat(4.0), DVec2::Y * 4.0, DVec2::ZERO];
+        assert_eq!(stands(&ring, 2.0).len(), 8);
+    }
+}

@@ -1,0 +1,264 @@
+//! A cross-section carried along a track over the displayed ground: walls, hedges, banks of earth, rails.
+//!
+//! Both feet of the section are laid on the displayed triangles and cut at their edges; wherever either foot is cut, the
+//! band has a row, and what lies between the feet takes its height from them:
+//!
+//! ```text
+//!        ┌──────┐  up                    row     row  row       row
+//!        │      │                      ───┼───────┼────┼─────────┼── left foot
+//!   ─────┴──────┴───── ground          ───┼───────┼────┼─────────┼── right foot
+//!      right   left foot
+//! ```
+//!
+//! So the feet lie on the displayed ground exactly, for any camera and level of detail: nothing sinks, nothing floats.
+
+use glam::{DVec2, DVec3, Vec3};
+
+use crate::draw::color::Srgba;
+use crate::structure::faces::Faces;
+use crate::structure::fence_track::{Ends, Joint, Stretch, Track};
+use crate::terrain::facets::Facets;
+use crate::terrain::underfoot::{self, Run};
+
+/// A corner of a cross-section.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corner {
+    /// Where between the feet: 0 at the right one, 1 at the left one; beyond them for what overhangs.
+    pub share: f64,
+    /// Metres above the ground there.
+    pub up_m: f64,
+}
+
+/// A cross-section, seen along the track.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Section {
+    /// The right foot and the left foot across the track: −1 is its right side, 1 its left side.
+    pub feet: (f64, f64),
+    /// From the right up and over to the left: convex.
+    pub corners: Vec<Corner>,
+    /// The colour of each side, from the first corner to the second, and so on; where there is one for each corner, the
+    /// last side closes the section.
+    pub colors: Vec<Srgba>,
+}
+
+/// How a band's surface departs from its section.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ruffle {
+    /// By what share its corners above the ground wander, in 0..=1: 0 for masonry, more for leaves.
+    pub share: f64,
+    /// By how many steps of 255 its colour varies.
+    pub shade: f32,
+    /// Metres between rows that are added for it, above 0.
+    pub every_m: f64,
+}
+
+/// A cross-section carried along a track.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Band {
+    /// The way it takes.
+    pub track: Track,
+    /// What it looks like across.
+    pub section: Section,
+    /// How its surface departs from that; `None` for an even one.
+    pub ruffle: Option<Ruffle>,
+}
+
+/// Both feet at one place along the track, world space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// The right foot.
+    pub right: DVec3,
+    /// The left foot.
+    pub left: DVec3,
+}
+
+/// Rows along a stretch of ground without gaps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rows {
+    /// At least two.
+    pub rows: Vec<Row>,
+    /// Whether they run round.
+    pub ends: Ends,
+}
+
+impl Band {
+    /// The feet of the band on a ground, in stretches where there are gaps in it.
+    pub fn rows(&self, ground: &dyn Facets) -> Vec<Rows> {
+        self.track.stretches.iter().flat_map(|stretch| self.rows_along(stretch, ground)).collect()
+    }
+
+    /// Adds the band, set on a ground, to `faces`.
+    pub fn build(&self, ground: &dyn Facets, faces: &mut Faces) {
+        for rows in self.rows(ground) {
+            let rings: Vec<Vec<Vec3>> = rows.rows.iter().map(|row| self.ring(row)).collect();
+            for (pair, feet) in rings.windows(2).zip(&rows.rows) {
+                self.sides(&pair[0], &pair[1], feet.right.truncate(), faces);
+            }
+            if let (Ends::Two, [first, .., last]) = (rows.ends, &rings[..]) {
+                let color = self.section.colors[0];
+                faces.polygon(first, color);
+                faces.polygon(&last.iter().rev().copied().collect::<Vec<_>>(), color);
+            }
+        }
+    }
+
+    fn rows_along(&self, stretch: &Stretch, ground: &dyn Facets) -> Vec<Rows> {
+        let mut found: Vec<Rows> = Vec::new();
+        // Whether the rows found last reach the joint from which the next segment goes on.
+        let mut goes_on = false;
+        for pair in stretch.joints.windows(2) {
+            let feet = [self.section.feet.0, self.section.feet.1].map(|share| Foot::new(pair, share, ground));
+            let segments = self.segments(&feet);
+            let begins = segments.first().is_some_and(|segment| segment.begins);
+            for (index, segment) in segments.into_iter().enumerate() {
+                match found.last_mut() {
+                    Some(rows) if index == 0 && goes_on && begins => {
+                        rows.rows.extend(segment.rows.into_iter().skip(1));
+                    }
+                    _ => found.push(Rows { rows: segment.rows, ends: Ends::Two }),
+                }
+                goes_on = segment.ends;
+            }
+            if !feet.iter().all(|foot| foot.reaches_end()) {
+                goes_on = false;
+            }
+        }
+        if let ([rows], Ends::None) = (&mut found[..], stretch.ends)
+            && goes_on
+        {
+            rows.ends = Ends::None;
+        }
+        found
+    }
+
+    /// The rows of one segment of the track, wherever there is ground under both feet.
+    fn segments(&self, [right, left]: &[Foot; 2]) -> Vec<Segment> {
+        let mut found = Vec::new();
+        for right_run in &right.runs {
+            for left_run in &left.runs {
+                let low = right_run.span().0.max(left_run.span().0);
+                let high = right_run.span().1.min(left_run.span().1);
+                if high - low <= SAME_PART {
+                    continue;
+                }
+                let parts = self.parts([right_run, left_run], (low, high), right.from.distance(right.to));
+                let row = |&part: &f64| Row {
+                    right: right.from.lerp(right.to, part).extend(right_run.z_at(part)),
+                    left: left.from.lerp(left.to, part).extend(left_run.z_at(part)),
+                };
+                let rows = parts.iter().map(row).collect();
+                found.push(Segment { rows, begins: low <= SAME_PART, ends: high >= 1.0 - SAME_PART });
+            }
+        }
+        found
+    }
+
+    /// Where along a segment rows stand: where either foot is cut, and where the ruffle asks for more.
+    fn parts(&self, runs: [&Run; 2], (low, high): (f64, f64), length_m: f64) -> Vec<f64> {
+        let inside = |part: &f64| *part > low + SAME_PART && *part < high - SAME_PART;
+        let cuts = runs.into_iter().flat_map(Run::stations).map(|station| station.part);
+        let mut parts: Vec<f64> = cuts.filter(inside).collect();
+        if let Some(ruffle) = &self.ruffle {
+            let steps = (length_m / ruffle.every_m).min(MOST_STEPS) as u32;
+            parts.extend((1..steps).map(|step| f64::from(step) / f64::from(steps)).filter(inside));
+        }
+        parts.extend([low, high]);
+        parts.sort_by(f64::total_cmp);
+        parts.dedup_by(|next, before| *next - *before <= SAME_PART);
+        parts
+    }
+
+    /// The section's corners at a row.
+    fn ring(&self, row: &Row) -> Vec<Vec3> {
+        let corner = |(index, corner): (usize, &Corner)| {
+            let (mut share, mut up_m) = (corner.share, corner.up_m);
+            if let Some(ruffle) = self.ruffle.filter(|_| corner.up_m > 0.0) {
+                let [aside, above] = [0, 1].map(|salt| noise(row.right.truncate(), index as u64 * 2 + salt));
+                share += (share - 0.5) * ruffle.share * aside;
+                up_m *= 1.0 + ruffle.share * above;
+            }
+            (row.right.lerp(row.left, share) + DVec3::Z * up_m).as_vec3()
+        };
+        self.section.corners.iter().enumerate().map(corner).collect()
+    }
+
+    /// The faces between two rows.
+    fn sides(&self, near: &[Vec3], far: &[Vec3], at: DVec2, faces: &mut Faces) {
+        for (side, &color) in self.section.colors.iter().enumerate() {
+            let next = (side + 1) % near.len();
+            let color = match &self.ruffle {
+                Some(ruffle) => shaded(color, noise(at, 1000 + side as u64) as f32 * ruffle.shade),
+                None => color,
+            };
+            faces.polygon(&[near[side], far[side], far[next], near[next]], color);
+        }
+    }
+}
+
+/// Parts of a segment nearer to each other than this are one.
+const SAME_PART: f64 = 1e-7;
+
+/// The most rows that a ruffle adds to a segment.
+const MOST_STEPS: f64 = 10_000.0;
+
+/// One foot's line along a segment of the track.
+struct Foot {
+    from: DVec2,
+    to: DVec2,
+    runs: Vec<Run>,
+}
+
+impl Foot {
+    fn new(pair: &[Joint], share: f64, ground: &dyn Facets) -> Self {
+        let (from, to) = (pair[0].across(share), pair[1].across(share));
+        Self { from, to, runs: underfoot::runs(ground, from, to) }
+    }
+
+    fn reaches_end(&self) -> bool {
+        self.runs.last().is_some_and(|run| run.span().1 >= 1.0 - SAME_PART)
+    }
+}
+
+/// Rows along a part of one segment.
+struct Segment {
+    rows: Vec<Row>,
+    /// Whether it begins where the segment does.
+    begins: bool,
+    /// Whether it ends where the segment does.
+    ends: bool,
+}
+
+/// A fixed number in −1..=1 for each place (to the centimetre) and salt (a 64-bit integer hash, Steele et al. 2014).
+pub fn noise(at: DVec2, salt: u64) -> f64 {
+    let place = (at * 100.0).round();
+    let mut hash = (place.x as i64 as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+        ^ (place.y as i64 as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f)
+        ^ salt.wrapping_mul(0x1656_67b1_9e37_79f9);
+    hash = (hash ^ hash >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    hash = (hash ^ hash >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((hash ^ hash >> 31) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+}
+
+/// A colour, lighter or darker by some steps of 255.
+pub fn shaded(color: Srgba, by: f32) -> Srgba {
+    let [red, green, blue, alpha] = color.0;
+    let channel = |value: u8| (f32::from(value) + by).clamp(0.0, 255.0) as u8;
+    Srgba([channel(red), channel(green), channel(blue), alpha])
+}
+
+/// The largest vertical distance in metres between the feet of `band` and the ground, at every row and half-way to the
+/// next: 0 but for rounding, whatever the ground. Infinite where there is no ground under a foot.
+pub fn check_feet(band: &Band, ground: &dyn Facets) -> f64 {
+    let off = |at: DVec3| match ground.displayed_z(at.truncate()) {
+        Some(z) => (z - at.z).abs(),
+        None => f64::INFINITY,
+    };
+    let mut most: f64 = 0.0;
+    for rows in band.rows(ground) {
+        for pair in rows.rows.windows(2) {
+            let middles = [pair[0].right.midpoint(pair[1].right), pair[0].left.midpoint(pair[1].left)];
+            most = middles.into_iter().map(off).fold(most, f64::max);
+        }
+    }
+    most
+}
