@@ -21,8 +21,9 @@ use glam::DVec2;
 
 use crate::geom::polyline::Polyline;
 use crate::geom::region::Region;
+use crate::ribbon::joint::Bend;
 use crate::ribbon::plan::PlanMesh;
-use crate::ribbon::stroke::{Continuations, StrokeOptions, mitred};
+use crate::ribbon::stroke::{Continuations, StrokeOptions};
 
 /// Vertices nearer to each other than this are one, in metres: files that mean one point write the same numbers, up to
 /// the rounding of a change of system.
@@ -103,7 +104,8 @@ impl Network {
 fn goes_on(streets: &[Street<'_>], [a, b]: [Arm; 2]) -> bool {
     let (one, other) = (&streets[a.street], &streets[b.street]);
     let at = one.line.points()[a.vertex];
-    one.options == other.options && mitred([a.next, at, b.next], &one.options).is_some()
+    let bend = Bend { points: [a.next, at, b.next], half_m: one.options.width_m / 2.0 };
+    one.options == other.options && bend.mitred(one.options.mitre_limit).is_some()
 }
 
 /// The junction of several arms.

@@ -5,6 +5,7 @@
 
 pub mod area;
 pub mod drape;
+mod joint;
 pub mod junction;
 pub mod partition;
 pub mod plan;

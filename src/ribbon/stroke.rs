@@ -1,28 +1,34 @@
 //! A centreline and a width to a ribbon in plan.
 //!
-//! Each segment becomes a quad; where two segments meet, both quads end on the mitre — the line that halves the
-//! angle between them — so they share an edge. Where the mitre would reach further than its limit, or past a
-//! short segment's other end, both end square and the gap on the outer side is filled with a bevel triangle:
-//!
-//! ```text
-//!   mitre:   ────────╲           bevel:  ────────┬╲
-//!            ──────╲  ╲                  ────────┘ ╲
-//!                   ╲  ╲                      ╲    ╲
-//! ```
-//!
-//! U runs from the left edge (0) to the right edge (1), V along the centreline in texture lengths.
+//! Each segment becomes a quad between the edges that [`crate::ribbon::joint`] finds at its ends; fans fill the outer
+//! sides of bends that are not mitred. U runs from the left edge (0) to the right edge (1), V along the centreline in
+//! texture lengths, so that a texture's lines keep their share of the width and its dashes their length.
 
 use glam::{DVec2, Vec2};
 
+use crate::description::words::Join;
 use crate::geom::polyline::Polyline;
 use crate::mesh::sink::{MeshSink, VertexId};
+use crate::ribbon::joint::{Bend, Fan, Joint};
 use crate::ribbon::plan::PlanVertex;
+
+/// How much wider a taper may grow from one cross-section to the next. A texture is straight on each of a quad's two
+/// triangles, so across a quad of unequal ends its lines have a kink, of this part of their way from the middle.
+const TAPER_STEP: f64 = 1.1;
+
+/// The most cross-sections in one taper: a ribbon that grows twentyfold from vertex to vertex has kinks anyway.
+const MOST_STEPS: f64 = 32.0;
+
+/// Triangles smaller than this have no direction worth a texture, in square metres.
+const NOTHING_M2: f64 = 1e-9;
 
 /// How a ribbon is stroked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrokeOptions {
     /// Width in metres, above 0. Default 6.
     pub width_m: f64,
+    /// How segments meet. Default: mitred.
+    pub join: Join,
     /// How long a mitre may be, in half widths, at least 1. Default 2: turns of up to 120 degrees keep their
     /// mitre; sharper ones would grow spikes.
     pub mitre_limit: f64,
@@ -32,7 +38,7 @@ pub struct StrokeOptions {
 
 impl Default for StrokeOptions {
     fn default() -> Self {
-        Self { width_m: 6.0, mitre_limit: 2.0, texture_length_m: 12.0 }
+        Self { width_m: 6.0, join: Join::Mitre, mitre_limit: 2.0, texture_length_m: 12.0 }
     }
 }
 
@@ -46,135 +52,219 @@ pub struct Continuations {
     pub after: Option<DVec2>,
 }
 
-/// Writes the ribbon along `line` to `sink`, triangles counter-clockwise.
+/// How wide a ribbon is along its line, in metres; every width above 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Widths<'a> {
+    /// As wide everywhere.
+    Constant(f64),
+    /// A width at each of the line's vertices; it grows or shrinks evenly between them.
+    PerVertex(&'a [f64]),
+}
+
+impl Widths<'_> {
+    /// The width at the line's vertex `index`.
+    ///
+    /// # Panics
+    /// Where there is no width for that vertex.
+    pub fn at(&self, index: usize) -> f64 {
+        match self {
+            Self::Constant(width_m) => *width_m,
+            Self::PerVertex(widths_m) => widths_m[index],
+        }
+    }
+}
+
+/// Where the texture stands along a line, so that it can go on from one ribbon to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stations {
+    /// The station of the line's first vertex in metres.
+    pub first_m: f64,
+    /// Metres of station for each metre along the line: 1, or −1 where the texture runs against it.
+    pub per_m: f64,
+}
+
+impl Default for Stations {
+    /// From 0 along the line.
+    fn default() -> Self {
+        Self { first_m: 0.0, per_m: 1.0 }
+    }
+}
+
+/// A ribbon's way: what its options do not say.
+#[derive(Clone, Copy, Debug)]
+pub struct Course<'a> {
+    /// The centreline.
+    pub line: &'a Polyline,
+    /// How wide it is; instead of the options' width.
+    pub widths: Widths<'a>,
+    /// What goes on at its ends.
+    pub beyond: Continuations,
+    /// Where its texture stands.
+    pub stations: Stations,
+}
+
+/// Writes the ribbon of one width along `line` to `sink`, triangles counter-clockwise.
 ///
-/// Where a bevelled turn's inner sides overlap, both quads are there; [`crate::ribbon::partition`] takes them apart.
+/// Where a sharp turn's inner sides overlap, both quads are there; [`crate::ribbon::partition`] takes them apart.
 pub fn stroke(
     line: &Polyline,
     beyond: Continuations,
     options: &StrokeOptions,
     sink: &mut impl MeshSink<PlanVertex>,
 ) {
-    let points = line.points();
-    let last = points.len() - 1;
-    let mut start = match shared_end(beyond.before, points[0], Some(points[1]), options) {
-        Some(to_left) => edge_along(line, 0, to_left, options, sink),
-        None => end_edge(line, 0, 0, options, sink),
-    };
-    for segment in 0..last {
-        let end = if segment + 1 == last {
-            Joint::Shared(match shared_end(Some(points[last - 1]), points[last], beyond.after, options) {
-                Some(to_left) => edge_along(line, last, to_left, options, sink),
-                None => end_edge(line, last, segment, options, sink),
-            })
+    let widths = Widths::Constant(options.width_m);
+    stroke_course(&Course { line, widths, beyond, stations: Stations::default() }, options, sink);
+}
+
+/// Writes the ribbon along `course` to `sink`, as [`stroke`] does, with a width of its own at every vertex.
+///
+/// # Panics
+/// Where there are fewer widths than vertices.
+pub fn stroke_course(course: &Course<'_>, options: &StrokeOptions, sink: &mut impl MeshSink<PlanVertex>) {
+    let last = course.line.points().len() - 1;
+    let mut start = course.end(0, options, sink);
+    for index in 1..=last {
+        let (closing, opening) = if index == last {
+            let end = course.end(last, options, sink);
+            (end, end)
         } else {
-            joint(line, segment + 1, options, sink)
+            course.bend(index, options, sink)
         };
-        let (closing, opening) = match end {
-            Joint::Shared(edge) => (edge, edge),
-            Joint::Split { before, after } => (before, after),
-        };
-        sink.triangle([start.left, start.right, closing.right]);
-        sink.triangle([start.left, closing.right, closing.left]);
+        course.segment(index - 1, [start, closing], sink);
         start = opening;
     }
 }
 
-/// The two ends of a line across the ribbon.
+/// An edge across the ribbon, written: its left and its right end.
 #[derive(Clone, Copy)]
 struct Edge {
-    left: VertexId,
-    right: VertexId,
+    corners: [PlanVertex; 2],
+    ids: [VertexId; 2],
 }
 
-/// What two segments end on.
-enum Joint {
-    Shared(Edge),
-    Split { before: Edge, after: Edge },
-}
-
-/// The edge square to segment `segment` at vertex `index`.
-fn end_edge(
-    line: &Polyline,
-    index: usize,
-    segment: usize,
-    options: &StrokeOptions,
-    sink: &mut impl MeshSink<PlanVertex>,
-) -> Edge {
-    edge_along(line, index, direction(line, segment).perp() * (options.width_m / 2.0), options, sink)
-}
-
-fn edge_along(
-    line: &Polyline,
-    index: usize,
-    to_left: DVec2,
-    options: &StrokeOptions,
-    sink: &mut impl MeshSink<PlanVertex>,
-) -> Edge {
-    let (at, v) = (line.points()[index], along(line, index, options));
-    Edge {
-        left: sink.vertex(PlanVertex { at: at + to_left, uv: Vec2::new(0.0, v) }),
-        right: sink.vertex(PlanVertex { at: at - to_left, uv: Vec2::new(1.0, v) }),
+impl Edge {
+    fn write(corners: [PlanVertex; 2], sink: &mut impl MeshSink<PlanVertex>) -> Self {
+        Self { corners, ids: corners.map(|corner| sink.vertex(corner)) }
     }
 }
 
-fn joint(
-    line: &Polyline,
-    index: usize,
-    options: &StrokeOptions,
-    sink: &mut impl MeshSink<PlanVertex>,
-) -> Joint {
-    let points = line.points();
-    let (before, after) = (direction(line, index - 1), direction(line, index));
-    if let Some(to_left) = mitred([points[index - 1], points[index], points[index + 1]], options) {
-        return Joint::Shared(edge_along(line, index, to_left, options, sink));
+impl Course<'_> {
+    /// The edge at the line's first or last vertex: shared with what goes on there, else square.
+    fn end(&self, index: usize, options: &StrokeOptions, sink: &mut impl MeshSink<PlanVertex>) -> Edge {
+        let points = self.line.points();
+        let half_m = self.widths.at(index) / 2.0;
+        let around = if index == 0 {
+            self.beyond.before.map(|before| [before, points[0], points[1]])
+        } else {
+            self.beyond.after.map(|after| [points[index - 1], points[index], after])
+        };
+        let shared = around.and_then(|points| Bend { points, half_m }.mitred(options.mitre_limit));
+        let segment = index.saturating_sub(1);
+        let square = (points[segment + 1] - points[segment]).normalize_or_zero().perp() * half_m;
+        let to_left = shared.unwrap_or(square);
+        self.edge(index, [to_left, -to_left], options, sink)
     }
-    let closing = end_edge(line, index, index - 1, options, sink);
-    let opening = end_edge(line, index, index, options, sink);
-    let center = PlanVertex { at: line.points()[index], uv: Vec2::new(0.5, along(line, index, options)) };
-    let center = sink.vertex(center);
-    if before.perp_dot(after) > 0.0 {
-        sink.triangle([center, closing.right, opening.right]);
-    } else {
-        sink.triangle([center, opening.left, closing.left]);
+
+    /// What the segments before and after a vertex end on; the fan between them is written too.
+    fn bend(
+        &self,
+        index: usize,
+        options: &StrokeOptions,
+        sink: &mut impl MeshSink<PlanVertex>,
+    ) -> (Edge, Edge) {
+        let points = self.line.points();
+        let around = [points[index - 1], points[index], points[index + 1]];
+        let bend = Bend { points: around, half_m: self.widths.at(index) / 2.0 };
+        match bend.joint(options.join, options.mitre_limit) {
+            Joint::Shared(to_left) => {
+                let edge = self.edge(index, [to_left, -to_left], options, sink);
+                (edge, edge)
+            }
+            Joint::Split { closing, opening, fan } => {
+                self.write_fan(index, &fan, options, sink);
+                let [closing, opening] = [closing, opening].map(|ways| self.edge(index, ways, options, sink));
+                (closing, opening)
+            }
+        }
     }
-    Joint::Split { before: closing, after: opening }
+
+    fn edge(
+        &self,
+        index: usize,
+        ways: [DVec2; 2],
+        options: &StrokeOptions,
+        sink: &mut impl MeshSink<PlanVertex>,
+    ) -> Edge {
+        let (at, v) = (self.line.points()[index], self.v(index, options));
+        let corner = |side: usize| PlanVertex { at: at + ways[side], uv: Vec2::new(side as f32, v) };
+        Edge::write([corner(0), corner(1)], sink)
+    }
+
+    fn v(&self, index: usize, options: &StrokeOptions) -> f32 {
+        let station_m = self.stations.first_m + self.stations.per_m * self.line.stations()[index];
+        (station_m / options.texture_length_m) as f32
+    }
+
+    fn write_fan(
+        &self,
+        index: usize,
+        fan: &Fan,
+        options: &StrokeOptions,
+        sink: &mut impl MeshSink<PlanVertex>,
+    ) {
+        let (at, v) = (self.line.points()[index], self.v(index, options));
+        let mut corner = |way: DVec2, u: f32| {
+            let corner = PlanVertex { at: at + way, uv: Vec2::new(u, v) };
+            (sink.vertex(corner), corner)
+        };
+        let center = corner(fan.center, fan.center_u());
+        let rim: Vec<_> = fan.rim.iter().map(|&way| corner(way, fan.rim_u())).collect();
+        for pair in rim.windows(2) {
+            write_triangle([center, pair[0], pair[1]], sink);
+        }
+    }
+
+    /// Writes the quad of a segment, in as many pieces as its taper needs.
+    fn segment(&self, segment: usize, [from, to]: [Edge; 2], sink: &mut impl MeshSink<PlanVertex>) {
+        let steps = taper_steps(self.widths.at(segment), self.widths.at(segment + 1));
+        let mut start = from;
+        for step in 1..=steps {
+            let end = if step == steps {
+                to
+            } else {
+                Edge::write(between([from.corners, to.corners], f64::from(step) / f64::from(steps)), sink)
+            };
+            write_quad([start, end], sink);
+            start = end;
+        }
+    }
 }
 
-/// The vector to the left end of the mitre, in half widths; `None` where the line turns back on itself.
-fn mitre(before: DVec2, after: DVec2) -> Option<DVec2> {
-    let sum = before.perp() + after.perp();
-    let square = sum.length_squared();
-    (square > 1e-12).then(|| sum * (2.0 / square))
+fn taper_steps(from_m: f64, to_m: f64) -> u32 {
+    let ratio = from_m.max(to_m) / from_m.min(to_m);
+    (libm::log(ratio) / libm::log(TAPER_STEP)).ceil().clamp(1.0, MOST_STEPS) as u32
 }
 
-/// The edge at `at` that a ribbon shares with the one that goes on there, as the way from the line to its left side.
-fn shared_end(
-    before: Option<DVec2>,
-    at: DVec2,
-    after: Option<DVec2>,
-    options: &StrokeOptions,
-) -> Option<DVec2> {
-    mitred([before?, at, after?], options)
+fn between([from, to]: [[PlanVertex; 2]; 2], part: f64) -> [PlanVertex; 2] {
+    let corner = |side: usize| PlanVertex {
+        at: from[side].at.lerp(to[side].at, part),
+        uv: from[side].uv.lerp(to[side].uv, part as f32),
+    };
+    [corner(0), corner(1)]
 }
 
-/// The way from the middle one of three vertices to the left side of a mitred ribbon; `None` where the mitre would be
-/// longer than it may be, or its inner corner would reach beyond the middle of either segment, where the next one's may.
-pub(in crate::ribbon) fn mitred([before, at, after]: [DVec2; 3], options: &StrokeOptions) -> Option<DVec2> {
-    let half = options.width_m / 2.0;
-    let mitre = mitre((at - before).normalize_or_zero(), (after - at).normalize_or_zero())?;
-    let reach = (mitre.length_squared() - 1.0).max(0.0).sqrt() * half;
-    let shortest = at.distance(before).min(at.distance(after));
-    let fits = mitre.length() <= options.mitre_limit && 2.0 * reach <= shortest;
-    fits.then(|| mitre * half)
+fn write_quad([from, to]: [Edge; 2], sink: &mut impl MeshSink<PlanVertex>) {
+    let corner = |edge: &Edge, side: usize| (edge.ids[side], edge.corners[side]);
+    let (start_left, end_right) = (corner(&from, 0), corner(&to, 1));
+    write_triangle([start_left, corner(&from, 1), end_right], sink);
+    write_triangle([start_left, end_right, corner(&to, 0)], sink);
 }
 
-fn direction(line: &Polyline, segment: usize) -> DVec2 {
-    (line.points()[segment + 1] - line.points()[segment]).normalize_or_zero()
-}
-
-fn along(line: &Polyline, index: usize, options: &StrokeOptions) -> f32 {
-    (line.stations()[index] / options.texture_length_m) as f32
+fn write_triangle(corners: [(VertexId, PlanVertex); 3], sink: &mut impl MeshSink<PlanVertex>) {
+    let [a, b, c] = corners.map(|(_, corner)| corner.at);
+    if (b - a).perp_dot(c - a) > 2.0 * NOTHING_M2 {
+        sink.triangle(corners.map(|(id, _)| id));
+    }
 }
 
 #[cfg(test)]
@@ -228,5 +318,64 @@ mod tests {
         let mesh = stroked(&[(0.0, 0.0), (100.0, 0.0)], &options);
         let uvs: Vec<_> = mesh.vertices.iter().map(|vertex| (vertex.at.y > 0.0, vertex.uv)).collect();
         assert!(uvs.contains(&(true, Vec2::new(0.0, 0.0))) && uvs.contains(&(false, Vec2::new(1.0, 4.0))));
+    }
+    /// Length times width, and what the joints of 90 and 30 degrees add: an outer side less an inner one.
+    fn expected_m2(length_m: f64, half_m: f64, join: Join) -> f64 {
+        let turns = [std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_6];
+        let outer = |turn: f64| match join {
+            Join::Mitre => libm::tan(turn / 2.0),
+            Join::Bevel => libm::sin(turn) / 2.0,
+            Join::Round => turn / 2.0,
+        };
+        let joints = turns.map(|turn| outer(turn) - libm::tan(turn / 2.0));
+        2.0 * half_m * length_m + half_m * half_m * joints.iter().sum::<f64>()
+    }
+
+    #[test]
+    fn joints_are_as_large_as_they_are_by_trigonometry_however_they_are_turned() {
+        let points = [(0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (50.0, 100.0 + 50.0 * 3f64.sqrt())];
+        for quarter in 0..4 {
+            for (join, slack) in [(Join::Mitre, 1e-9), (Join::Bevel, 1e-9), (Join::Round, 0.02)] {
+                let options = StrokeOptions { width_m: 12.0, join, ..StrokeOptions::default() };
+                let mesh = stroked(&turned(&points, quarter), &options);
+                let expected = expected_m2(300.0, 6.0, join);
+                let share = (mesh.area_m2() - expected).abs() / (6.0 * 6.0);
+                assert!(share < slack, "{join:?}: {} where {expected} was expected", mesh.area_m2());
+                assert!(
+                    mesh.corners().all(|[a, b, c]| (b.at - a.at).perp_dot(c.at - a.at) > 0.0),
+                    "{join:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_taper_is_a_trapezium_with_its_edges_straight() {
+        let line = Polyline::new([DVec2::ZERO, DVec2::X * 100.0], 0.0).expect("a line");
+        let course = Course {
+            line: &line,
+            widths: Widths::PerVertex(&[4.0, 12.0]),
+            beyond: Continuations::default(),
+            stations: Stations::default(),
+        };
+        let mut mesh = PlanMesh::default();
+        stroke_course(&course, &StrokeOptions::default(), &mut mesh);
+        assert!((mesh.area_m2() - 800.0).abs() < 1e-9, "{}", mesh.area_m2());
+        for vertex in &mesh.vertices {
+            assert!((vertex.at.y.abs() - (2.0 + 0.04 * vertex.at.x)).abs() < 1e-9, "{vertex:?}");
+            assert_eq!(vertex.at.y > 0.0, vertex.uv.x == 0.0);
+        }
+    }
+
+    #[test]
+    fn a_texture_goes_on_where_its_stations_say() {
+        let line = Polyline::new([DVec2::ZERO, DVec2::X * 24.0], 0.0).expect("a line");
+        let stations = Stations { first_m: 36.0, per_m: -1.0 };
+        let course =
+            Course { line: &line, widths: Widths::Constant(6.0), beyond: Continuations::default(), stations };
+        let mut mesh = PlanMesh::default();
+        stroke_course(&course, &StrokeOptions::default(), &mut mesh);
+        let v = |x: f64| mesh.vertices.iter().find(|vertex| vertex.at.x == x).map(|vertex| vertex.uv.y);
+        assert_eq!((v(0.0), v(24.0)), (Some(3.0), Some(1.0)));
     }
 }
