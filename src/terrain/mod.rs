@@ -2,8 +2,10 @@
 //! service.
 
 pub mod brush;
+pub mod channel;
 pub mod earthwork;
 pub mod facets;
+pub mod fall;
 pub mod hillshade;
 pub mod lattice;
 pub mod light;
