@@ -186,9 +186,10 @@ pub struct Area {
     pub cover: Option<Spanned<Choice<Cover>>>,
     /// `color`: multiplied with the texture; its alpha lets the ground through. Default: the cover's own.
     pub color: Option<Spanned<Color>>,
-    /// `border`: the line along its outline, `"none"`, `"solid"` or `"dashed"`. Default: the cover's own.
+    /// `border`: the line along its outline, `"none"`, `"solid"` or `"dashed"`. Default: `"solid"` where it is
+    /// restricted, else `"none"`.
     pub border: Option<Spanned<Border>>,
-    /// `border_width`: of that line, in (0, 1000]. Default 4.
+    /// `border_width`: of that line, in (0, 1000]; hatching grows with it. Default 4.
     pub border_width: Option<Spanned<f64>>,
 }
 

@@ -41,6 +41,27 @@ pub fn overlap_m2<'a>(plans: impl IntoIterator<Item = &'a PlanMesh> + Clone) -> 
     overlap
 }
 
+/// What of `plan` lies on `ground`, whose own triangles do not overlap; its texture is kept.
+pub fn within(plan: &PlanMesh, ground: &PlanMesh) -> PlanMesh {
+    let mut covered = Covered::new([plan, ground]);
+    ground.corners().for_each(|triangle| covered.add(triangle.map(|corner| corner.at)));
+    let mut inside = PlanMesh::default();
+    let (mut piece, mut scratch) = (Vec::new(), Vec::new());
+    for triangle in plan.corners() {
+        let (corners, texture) = (triangle.map(|corner| corner.at), TextureMap::of(triangle));
+        for under in covered.near(&corners) {
+            piece.clear();
+            piece.extend(corners);
+            polygon::clip_convex(&mut piece, &mut scratch, &covered.triangles[under]);
+            for corners in fan(&piece) {
+                let ids = corners.map(|at| inside.vertex(PlanVertex { at, uv: texture.at(at) }));
+                inside.triangle(ids);
+            }
+        }
+    }
+    inside
+}
+
 /// The triangles laid so far.
 struct Covered {
     triangles: Vec<[DVec2; 3]>,
@@ -147,7 +168,7 @@ fn shared_m2(polygon: &[DVec2], window: &[DVec2; 3]) -> f64 {
 
 /// A convex polygon in triangles; those without an area, which cutting at a corner leaves, are left out.
 fn fan(piece: &[DVec2]) -> impl Iterator<Item = [DVec2; 3]> + '_ {
-    let pairs = piece[1..].windows(2).map(|pair| [piece[0], pair[0], pair[1]]);
+    let pairs = piece.get(1..).unwrap_or_default().windows(2).map(|pair| [piece[0], pair[0], pair[1]]);
     pairs.filter(|corners| polygon::doubled_area(corners) > 2.0 * SLIVER_M2)
 }
 

@@ -4,6 +4,7 @@
 //! it (`water`, `roads`), models (`models`), labels and cameras (`views`); the passes gather what they make in
 //! `collected`. `picture` turns a scene and a camera into a draw list.
 
+pub mod areas;
 pub mod assets;
 pub mod attributes;
 pub mod build;

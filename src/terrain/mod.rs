@@ -11,4 +11,5 @@ pub mod lattice;
 pub mod light;
 pub mod profile;
 pub mod query;
+pub mod shore;
 pub mod sight;

@@ -1,8 +1,10 @@
 //! Procedural textures for what lies on the ground; the same pixels on every machine.
 
+pub mod cover;
 mod road;
 mod water;
 
+use crate::description::words::Cover;
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 
@@ -23,14 +25,30 @@ pub enum Surface {
     TrackJunction,
     /// Running water: light in the stream, dark along the banks.
     River,
+    /// Where running waters meet: the stream without its sides.
+    Confluence,
+    /// The banks on either side of running water.
+    Bank,
     /// Still water.
     Lake,
+    /// What covers an area.
+    Cover(Cover),
+    /// The line along an area's outline: white, to be tinted.
+    Border,
 }
 
 impl Surface {
-    /// Whether it joins roads rather than being one.
+    /// Whether it joins roads or rivers rather than being one.
     pub fn is_junction(self) -> bool {
-        matches!(self, Self::AsphaltJunction | Self::GravelJunction | Self::TrackJunction)
+        matches!(
+            self,
+            Self::AsphaltJunction | Self::GravelJunction | Self::TrackJunction | Self::Confluence
+        )
+    }
+
+    /// Whether the ground shows through it.
+    pub fn lets_through(self) -> bool {
+        matches!(self, Self::Cover(_) | Self::Border | Self::Bank)
     }
 }
 
@@ -49,6 +67,10 @@ pub fn texture(surface: Surface) -> Pixels {
             Surface::GravelJunction => shade(road::GRAVEL, (grain - 0.5) * 34.0),
             Surface::TrackJunction => shade(road::WORN, (grain - 0.5) * 30.0),
             Surface::River => water::river(u, grain),
+            Surface::Confluence => water::stream(grain),
+            Surface::Bank => water::bank(u, grain),
+            Surface::Cover(cover) => cover::texel(cover, u, v, grain),
+            Surface::Border => Srgba::WHITE,
             Surface::Lake => shade([74, 124, 158], (grain - 0.5) * 5.0),
         }
     })
