@@ -154,7 +154,8 @@ pub struct River {
     pub mouth_width: Option<Spanned<Quantity>>,
     /// `widths`, only with `points` and instead of `width`: the water's width at each point, in (0, 10 000].
     pub widths: Option<Spanned<Vec<f64>>>,
-    /// `bank`: width of the bank on either side, in [0, 1000]. Default: a sixth of the water's width.
+    /// `bank`: width of the bank on either side, in [0, 1000]: a strip beside the water, and the way over which the ground
+    /// comes back to its own height beyond the bed. Default 0.
     pub bank: Option<Spanned<Quantity>>,
     /// `water`: `"falls"`, its level never rises downstream and the ground is cut to it, or `"drape"`, it lies on the
     /// ground as it is. Default `"falls"`.

@@ -63,9 +63,11 @@ fn translucent(color: [u8; 3], by: f32, alpha: f32) -> Srgba {
 /// Closed crowns, lit from the north-west, with dark gaps between.
 fn forest(u: f32, v: f32, grain: f32) -> Srgba {
     match crown(u, v, 9, (0.46, 0.62), 11) {
-        Some(crown) => {
-            translucent([88, 128, 74], crown.light * 26.0 + crown.own * 18.0 - 9.0 + (grain - 0.5) * 8.0, 0.82)
-        }
+        Some(crown) => translucent(
+            [88, 128, 74],
+            crown.light * 26.0 + crown.own * 18.0 - 9.0 + (grain - 0.5) * 8.0,
+            0.82,
+        ),
         None => translucent([54, 88, 54], (grain - 0.5) * 8.0, 0.82),
     }
 }
@@ -144,8 +146,8 @@ struct Lots {
     seed: u32,
 }
 
-const TOWN: Lots = Lots { count: 6, street: 3, ground: [226, 206, 186], roof: [188, 122, 96], seed: 83 };
-const WORKS: Lots = Lots { count: 4, street: 2, ground: [214, 206, 214], roof: [150, 142, 160], seed: 89 };
+const TOWN: Lots = Lots { count: 6, street: 3, ground: [226, 206, 186], roof: [198, 142, 118], seed: 83 };
+const WORKS: Lots = Lots { count: 4, street: 2, ground: [214, 206, 214], roof: [168, 160, 176], seed: 89 };
 
 /// Roofs on lots, with streets between blocks.
 fn houses(u: f32, v: f32, grain: f32, lots: &Lots) -> Srgba {
@@ -155,7 +157,7 @@ fn houses(u: f32, v: f32, grain: f32, lots: &Lots) -> Srgba {
     let (east, south) = (x.fract(), y.fract());
     let is_street = (column % lots.street == 0 && east < 0.14) || (row % lots.street == 0 && south < 0.14);
     if is_street {
-        return translucent([244, 236, 222], (grain - 0.5) * 6.0, 0.72);
+        return translucent([238, 226, 210], (grain - 0.5) * 6.0, 0.68);
     }
     let half = [0.17 + 0.12 * own(1), 0.15 + 0.1 * own(2)];
     let away = [(east - 0.58).abs() - half[0], (south - 0.58).abs() - half[1]];
@@ -243,9 +245,8 @@ mod tests {
 
     #[test]
     fn no_seam_shows_where_a_texture_repeats() {
-        let differs = |a: Srgba, b: Srgba| -> f64 {
-            a.0.iter().zip(b.0).map(|(&a, b)| f64::from(a.abs_diff(b))).sum()
-        };
+        let differs =
+            |a: Srgba, b: Srgba| -> f64 { a.0.iter().zip(b.0).map(|(&a, b)| f64::from(a.abs_diff(b))).sum() };
         for cover in covers() {
             let pixels = texture(Surface::Cover(cover));
             let (width, height) = (pixels.width(), pixels.height());

@@ -40,10 +40,7 @@ pub enum Surface {
 impl Surface {
     /// Whether it joins roads or rivers rather than being one.
     pub fn is_junction(self) -> bool {
-        matches!(
-            self,
-            Self::AsphaltJunction | Self::GravelJunction | Self::TrackJunction | Self::Confluence
-        )
+        matches!(self, Self::AsphaltJunction | Self::GravelJunction | Self::TrackJunction | Self::Confluence)
     }
 
     /// Whether the ground shows through it.

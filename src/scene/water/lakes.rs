@@ -153,8 +153,7 @@ impl Shore {
     fn of(lattice: &Lattice, shape: &Polygon) -> Self {
         let step = lattice.cell().min_element() / 2.0;
         let extent = lattice.extent();
-        let edges =
-            polygon::edges(&shape.exterior).filter_map(|(from, to)| extent.clip_line(from, to));
+        let edges = polygon::edges(&shape.exterior).filter_map(|(from, to)| extent.clip_line(from, to));
         let samples = edges.flat_map(|(from, to)| {
             let length_m = from.distance(to);
             let count = (length_m / step).ceil().clamp(1.0, 1e6) as u32;

@@ -21,9 +21,6 @@ use crate::terrain::lattice::Lattice;
 /// How far from the ground a centreline may run whose water still reaches it, in metres.
 const REACH_M: f64 = 1000.0;
 
-/// A bank's width, where none is stated, as a part of the water's.
-const BANK: f64 = 1.0 / 6.0;
-
 /// A river, downstream.
 pub struct Stream {
     /// The centreline in world coordinates.
@@ -69,9 +66,11 @@ pub fn collect(
     let mut widths_m: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
     for river in &document.rivers {
         let lines = sources.lines(&river.source)?;
-        let inline = river.widths.as_ref().and_then(|widths| lines.first().map(|line| (widths, line.shape.clone())));
+        let inline =
+            river.widths.as_ref().and_then(|widths| lines.first().map(|line| (widths, line.shape.clone())));
         let given = river.name.as_deref();
-        for (attributes, line) in near::lines(lines, (&extent, REACH_M), (FeatureKind::River, given), collected)
+        for (attributes, line) in
+            near::lines(lines, (&extent, REACH_M), (FeatureKind::River, given), collected)
         {
             if let Some((widths, points)) = &inline {
                 widths_m.insert(drawn.len(), kept(&line, points, widths.get_ref()));
@@ -121,8 +120,7 @@ fn stream(
         let part = |station: &f64| station / line.length();
         line.stations().iter().map(|station| width_m + (mouth_m - width_m) * part(station)).collect()
     });
-    let mean_m = widths_m.iter().sum::<f64>() / widths_m.len() as f64;
-    let bank_m = attributes.number_or(("[[river]] bank", river.bank.as_ref()), mean_m * BANK, defaulted);
+    let bank_m = attributes.number_or(("[[river]] bank", river.bank.as_ref()), 0.0, defaulted);
     let water = river.water.as_ref().map_or_else(Water::default, |water| *water.get_ref());
     Stream { line, widths_m, bank_m, water, feature, name }
 }

@@ -78,8 +78,7 @@ fn tell(streams: &[&Stream], cuts: &Cuts, collected: &mut Collected) {
     for (stream, cut) in streams.iter().zip(&cuts.cuts) {
         collected.report.add(TABLE, row(stream, cut));
     }
-    let deepest =
-        streams.iter().zip(&cuts.cuts).max_by(|(_, a), (_, b)| a.deepest_m.total_cmp(&b.deepest_m));
+    let deepest = streams.iter().zip(&cuts.cuts).max_by(|(_, a), (_, b)| a.deepest_m.total_cmp(&b.deepest_m));
     let Some((stream, cut)) = deepest.filter(|(_, cut)| cut.deepest_m > 0.0) else { return };
     let sum = |of: fn(&Cut) -> f64| cuts.cuts.iter().map(of).sum::<f64>();
     let place = if stream.name.is_empty() { String::new() } else { format!(", in '{}'", stream.name) };
@@ -99,7 +98,8 @@ fn tell(streams: &[&Stream], cuts: &Cuts, collected: &mut Collected) {
 }
 
 fn row(stream: &Stream, cut: &Cut) -> Vec<Cell> {
-    let level = |of: fn((f64, f64)) -> f64| cut.levels_m.map_or(Cell::Empty, |levels| Cell::Number(of(levels)));
+    let level =
+        |of: fn((f64, f64)) -> f64| cut.levels_m.map_or(Cell::Empty, |levels| Cell::Number(of(levels)));
     vec![
         Cell::Text(stream.name.clone()),
         Cell::Number(stream.line.length()),
@@ -119,12 +119,14 @@ fn ribbons(streams: &[Stream], extent: &Rect, collected: &mut Collected) {
     let mut order: Vec<usize> = (0..streams.len()).collect();
     order.sort_by(|&a, &b| streams[b].widest_m().total_cmp(&streams[a].widest_m()));
     for index in order {
-        let (stream, beyond) = (&streams[index], ends_of_one_width(&streams[index], network.continuations[index]));
+        let (stream, beyond) =
+            (&streams[index], ends_of_one_width(&streams[index], network.continuations[index]));
         let mut water = Clipped { plan: PlanMesh::default(), extent };
         along(&stream.line, &stream.widths_m, beyond, &stream.options(), &mut water);
         collected.lay(water.plan, Surface::River, stream.feature);
         if stream.bank_m > 0.0 {
-            let widths_m: Vec<f64> = stream.widths_m.iter().map(|width| width + 2.0 * stream.bank_m).collect();
+            let widths_m: Vec<f64> =
+                stream.widths_m.iter().map(|width| width + 2.0 * stream.bank_m).collect();
             let mut banks = Clipped { plan: PlanMesh::default(), extent };
             along(&stream.line, &widths_m, beyond, &stream.options(), &mut banks);
             collected.lay(banks.plan, Surface::Bank, stream.feature);

@@ -11,7 +11,7 @@ pub(super) struct Bed {
     posts: Vec<u32>,
     /// Metres.
     pub heights_m: Vec<f64>,
-    /// Whether a post keeps its height: a lake lies on it.
+    /// Whether a post keeps its height: a lake lies on it, or backs up to it.
     pub fixed: Vec<bool>,
     /// The channel that a post counts for.
     owners: Vec<u32>,
@@ -77,13 +77,11 @@ impl Bed {
     pub fn dig(&self, lattice: &mut Lattice, cuts: &mut [Cut]) {
         let columns = lattice.columns() as usize;
         let cell_m2 = lattice.cell().x * lattice.cell().y;
-        for (place, &index) in self.posts.iter().enumerate().filter(|&(place, _)| !self.fixed[place]) {
-            let post = Post {
-                column: (index as usize % columns) as u32,
-                row: (index as usize / columns) as u32,
-            };
+        for (place, &index) in self.posts.iter().enumerate() {
+            let post =
+                Post { column: (index as usize % columns) as u32, row: (index as usize / columns) as u32 };
             let (before, after) = (lattice.height(post), self.heights_m[place] as f32);
-            if before.is_nan() {
+            if before.is_nan() || lattice.is_pinned(post) {
                 continue;
             }
             lattice.pin(post, after);

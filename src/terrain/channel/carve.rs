@@ -9,6 +9,9 @@
 //! then looked at again. A stretch that has been mended often lies in a loop of lines that chase each other down, such as
 //! both sides of a meander's neck that is narrower than a cell; there the posts ahead are lowered to the lowest behind.
 //! Those heights are all there already, and there are finitely many of them: so it ends.
+//!
+//! Posts under a lake are not lowered. Where one of them lies ahead of lower ground, the posts behind are raised to the
+//! lake, and are from then on part of it: its backwater.
 
 use crate::terrain::channel::bed::Bed;
 use crate::terrain::channel::course::{Course, Station};
@@ -98,12 +101,17 @@ struct Stretch {
     shares: [f64; 3],
 }
 
+impl Stretch {
+    /// The posts that it moves away from.
+    fn behind(&self) -> impl Iterator<Item = usize> + use<> {
+        self.places.into_iter().zip(self.shares).filter(|(_, share)| *share < 0.0).map(|(place, _)| place)
+    }
+}
+
 /// Lowers the bed's posts until no piece rises, and returns how many rise all the same because a lake holds their posts.
 pub(super) fn carve(bed: &mut Bed, pieces: &[Piece]) -> usize {
-    let stretch = |piece: &Piece| Stretch {
-        places: piece.posts.map(|post| bed.place(post)),
-        shares: piece.shares,
-    };
+    let stretch =
+        |piece: &Piece| Stretch { places: piece.posts.map(|post| bed.place(post)), shares: piece.shares };
     let stretches: Vec<Stretch> = pieces.iter().map(stretch).collect();
     let touching = Touching::of(&stretches, bed.heights_m.len());
     let mut waiting = vec![true; stretches.len()];
@@ -115,13 +123,14 @@ pub(super) fn carve(bed: &mut Bed, pieces: &[Piece]) -> usize {
             if !std::mem::take(&mut waiting[index]) {
                 continue;
             }
-            let lowered = mend(bed, &stretches[index], mends[index]);
-            if lowered != [None; 3] {
-                is_calm = false;
-                mends[index] = mends[index].saturating_add(1);
+            let moved = mend(bed, &stretches[index], mends[index]);
+            if moved.is_empty() {
+                continue;
             }
-            for &other in lowered.iter().flatten().flat_map(|&place| touching.stretches(place)) {
-                waiting[other as usize] = other as usize != index;
+            is_calm = false;
+            mends[index] = mends[index].saturating_add(1);
+            for &other in moved.iter().flat_map(|&place| touching.stretches(place)) {
+                waiting[other as usize] = true;
             }
         }
     }
@@ -132,31 +141,50 @@ fn rise_m(bed: &Bed, stretch: &Stretch) -> f64 {
     stretch.places.iter().zip(stretch.shares).map(|(&place, share)| share * bed.heights_m[place]).sum()
 }
 
-/// Lowers the posts ahead in a stretch that rises, and returns those it has lowered.
-fn mend(bed: &mut Bed, stretch: &Stretch, mends: u8) -> [Option<usize>; 3] {
-    let mut lowered = [None; 3];
+/// Lowers the posts ahead in a stretch that rises, raises those behind to a lake ahead, and returns those it has moved.
+fn mend(bed: &mut Bed, stretch: &Stretch, mends: u8) -> Vec<usize> {
     let excess_m = rise_m(bed, stretch);
     if excess_m <= ROUNDING_M {
-        return lowered;
+        return Vec::new();
     }
-    let posts = || stretch.places.into_iter().zip(stretch.shares);
-    let behind = posts().filter(|(_, share)| *share < 0.0).map(|(place, _)| bed.heights_m[place]);
-    let lowest_behind_m = behind.fold(f64::INFINITY, f64::min);
+    let mut moved = lower_ahead(bed, stretch, (excess_m, mends));
+    if rise_m(bed, stretch) > ROUNDING_M {
+        moved.extend(raise_behind(bed, stretch));
+    }
+    moved
+}
+
+fn lower_ahead(bed: &mut Bed, stretch: &Stretch, (excess_m, mends): (f64, u8)) -> Vec<usize> {
+    let lowest_behind_m = stretch.behind().map(|place| bed.heights_m[place]).fold(f64::INFINITY, f64::min);
+    let posts = stretch.places.into_iter().zip(stretch.shares);
     let mut ahead: Vec<(usize, f64)> =
-        posts().filter(|&(place, share)| share > 0.0 && !bed.fixed[place]).collect();
+        posts.filter(|&(place, share)| share > 0.0 && !bed.fixed[place]).collect();
     ahead.sort_by(|a, b| bed.heights_m[b.0].total_cmp(&bed.heights_m[a.0]));
     let to_m = if mends < GENTLE_MENDS {
         gentle_m(bed, &ahead, excess_m + SPARE_M).max(lowest_behind_m)
     } else {
         lowest_behind_m
     };
-    for (slot, (place, _)) in lowered.iter_mut().zip(ahead) {
-        if bed.heights_m[place] > to_m {
-            bed.heights_m[place] = to_m;
-            *slot = Some(place);
-        }
-    }
+    let lowered: Vec<usize> =
+        ahead.into_iter().map(|(place, _)| place).filter(|&place| bed.heights_m[place] > to_m).collect();
+    lowered.iter().for_each(|&place| bed.heights_m[place] = to_m);
     lowered
+}
+
+/// Raises the posts behind a stretch to the lake that lies ahead, where one does, and makes them part of it.
+fn raise_behind(bed: &mut Bed, stretch: &Stretch) -> Vec<usize> {
+    let fixed_ahead = stretch
+        .places
+        .into_iter()
+        .zip(stretch.shares)
+        .filter(|&(place, share)| share > 0.0 && bed.fixed[place]);
+    let lake_m = fixed_ahead.map(|(place, _)| bed.heights_m[place]).fold(f64::NEG_INFINITY, f64::max);
+    let lower = |&place: &usize| !bed.fixed[place] && bed.heights_m[place] < lake_m;
+    let raised: Vec<usize> = stretch.behind().filter(lower).collect();
+    for &place in &raised {
+        (bed.heights_m[place], bed.fixed[place]) = (lake_m, true);
+    }
+    raised
 }
 
 /// The height to which those of the posts `ahead`, the highest first, that lie above it are to be lowered, so that the

@@ -90,11 +90,7 @@ impl Nodes {
 }
 
 /// Visits every course, and again those that share a node which `visit` has changed, until nothing changes.
-fn relax(
-    courses: &mut [Course],
-    nodes: &mut Nodes,
-    visit: fn(&mut Course, &mut Nodes, usize) -> Vec<usize>,
-) {
+fn relax(courses: &mut [Course], nodes: &mut Nodes, visit: fn(&mut Course, &mut Nodes, usize) -> Vec<usize>) {
     let mut waiting: BTreeSet<usize> = (0..courses.len()).collect();
     while let Some(index) = waiting.pop_first() {
         for node in visit(&mut courses[index], nodes, index) {

@@ -61,7 +61,9 @@ pub struct Cuts {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ChannelError {
     /// Beds of hundreds of millions of posts.
-    #[error("the beds of these rivers would cover more than {MOST_VISITS} posts, each counted once a cell along the river")]
+    #[error(
+        "the beds of these rivers would cover more than {MOST_VISITS} posts, each counted once a cell along the river"
+    )]
     TooWide,
 }
 
