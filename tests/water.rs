@@ -103,7 +103,7 @@ proptest! {
 }
 
 #[test]
-fn ground_that_falls_already_is_left_alone_by_a_brook() {
+fn a_brook_on_ground_that_falls_already_takes_no_more_than_the_fall_across_it() {
     let heights = (0..SIDE * SIDE).map(|index| 500.0 - (index % SIDE) as f32).collect();
     let mut lattice = Lattice::new(DVec2::ZERO, DVec2::splat(CELL_M), SIDE, heights).expect("sound");
     let before = lattice.heights().to_vec();
@@ -111,8 +111,10 @@ fn ground_that_falls_already_is_left_alone_by_a_brook() {
     let network = [(line.expect("a line"), 1.0)];
     let channels = channels(&lattice, &network);
     let cuts = channel::cut(&mut lattice, &channels).expect("narrow enough");
-    assert_eq!(cuts.cuts[0].deepest_m, 0.0);
-    assert_eq!(lattice.heights(), before);
+    // It is a metre wide, and the ground falls by a tenth.
+    assert!(cuts.cuts[0].deepest_m < 0.06, "{:?}", cuts.cuts[0]);
+    let moved = lattice.heights().iter().zip(&before).filter(|(after, before)| after != before).count();
+    assert!(moved < 12, "posts stand 10 m apart, and few beside the water: {moved}");
 }
 
 #[test]
@@ -170,9 +172,9 @@ fn numbers(scene: &Scene, table: &str, column: &str) -> Vec<f64> {
 fn a_lake_is_level_for_every_camera() {
     let scene = gallery("lake.toml");
     let kind = |feature: sandtable::draw::list::FeatureId| scene.features[feature.0 as usize - 2].kind;
-    for step in 0..200u16 {
+    for step in 0..60u16 {
         let turn = f32::from(step) * 2.399;
-        let away = 600.0 + 37.0 * f32::from(step);
+        let away = 600.0 + 120.0 * f32::from(step);
         let target = Vec3::new(4060.0, 6200.0, 470.0);
         let eye = target + Vec3::new(libm::cosf(turn), libm::sinf(turn), 0.4) * away;
         let Ok(camera) = Camera::new(eye, target, 0.7, (480, 270), (0.5, 60_000.0)) else { continue };

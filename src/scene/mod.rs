@@ -1,7 +1,7 @@
 //! From the scene file to what a renderer draws.
 //!
 //! `build` turns a document and its assets into a [`kind::Scene`], one pass a file: the ground (`ground`), what lies on
-//! it (`water`, `roads`), models (`models`), labels and cameras (`views`); the passes gather what they make in
+//! it (`areas`, `water`, `roads`), models (`models`), labels and cameras (`views`); the passes gather what they make in
 //! `collected`. `picture` turns a scene and a camera into a draw list.
 
 pub mod areas;

@@ -112,7 +112,8 @@ impl Works<'_> {
             let rise_m = wanted_m.clamp(to_level_m.min(0.0), to_level_m.max(0.0));
             if rise_m != 0.0 && !before.is_nan() && !self.lattice.is_pinned(post) {
                 self.count(rise_m);
-                self.lattice.pin(post, (f64::from(before) + rise_m) as f32);
+                // Not pinned: what is pinned is water, and rivers leave it alone.
+                self.lattice.heights_mut(post, column)[0] = (f64::from(before) + rise_m) as f32;
             }
         }
     }

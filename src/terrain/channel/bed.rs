@@ -95,21 +95,28 @@ impl Bed {
     }
 }
 
+/// So many wishes may wait before all but the nearest are dropped: on wide rivers every post is wished for once a cell
+/// along the water. They take 100 MB.
+const MOST_WAITING: usize = 4_000_000;
+
 /// What channels would have of the posts under their water and banks: for each post the wish of the nearest channel.
 fn wishes(lattice: &Lattice, courses: &[Course]) -> Result<Vec<Wish>, ChannelError> {
-    let (mut wishes, mut visits) = (Vec::new(), 0);
-    for (course, channel) in courses.iter().zip(0..) {
-        for pair in course.stations.windows(2) {
-            let Some(around) = Around::of(lattice, course, [pair[0], pair[1]]) else { continue };
-            visits += around.posts();
-            if visits > MOST_VISITS {
-                return Err(ChannelError::TooWide);
-            }
-            around.wish(lattice, channel, &mut wishes);
-        }
-        // Keeps the list short on wide rivers, where every post is wished for once a cell along the water.
-        if wishes.len() > 4_000_000 {
+    let stretches = || {
+        let of_course = |(course, channel): (_, u32)| {
+            let pairs = Course::pairs(course);
+            pairs.filter_map(move |ends| Some((Around::of(lattice, course, ends)?, channel)))
+        };
+        courses.iter().zip(0..).flat_map(of_course)
+    };
+    if stretches().map(|(around, _)| around.posts()).fold(0, usize::saturating_add) > MOST_VISITS {
+        return Err(ChannelError::TooWide);
+    }
+    let (mut wishes, mut kept) = (Vec::new(), 0);
+    for (around, channel) in stretches() {
+        around.wish(lattice, channel, &mut wishes);
+        if wishes.len() > MOST_WAITING.max(2 * kept) {
             keep_nearest(&mut wishes);
+            kept = wishes.len();
         }
     }
     keep_nearest(&mut wishes);

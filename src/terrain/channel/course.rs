@@ -58,6 +58,11 @@ impl Station {
 }
 
 impl Course {
+    /// Every two stations in a row.
+    pub fn pairs(&self) -> impl Iterator<Item = [Station; 2]> + '_ {
+        self.stations.windows(2).map(|pair| [pair[0], pair[1]])
+    }
+
     /// The stations of a channel, levels not yet found.
     pub fn of(lattice: &Lattice, channel: &Channel) -> Self {
         let points = channel.line.points();

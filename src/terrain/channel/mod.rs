@@ -69,7 +69,7 @@ pub enum ChannelError {
 
 /// The most posts that beds may cover, counted once for each triangle that a centreline crosses beside them: some
 /// seconds' work.
-pub const MOST_VISITS: usize = 300_000_000;
+pub const MOST_VISITS: usize = 200_000_000;
 
 /// Cuts the ground so that it never rises along any of `channels`.
 ///
@@ -87,15 +87,20 @@ pub fn cut(lattice: &mut Lattice, channels: &[Channel]) -> Result<Cuts, ChannelE
 }
 
 /// The most by which the ground rises along `line`, world coordinates downstream, above where it was lower before; 0
-/// where it never rises. What this room promises of every channel, on the finest triangles.
+/// where it never rises. What this room promises of every channel, on the finest triangles; where a line leaves the ground
+/// and comes back it begins anew.
 pub fn check_rise(lattice: &Lattice, line: &Polyline) -> f64 {
     let map: Vec<_> = line.points().iter().map(|&at| at + lattice.origin()).collect();
     let stations = crate::terrain::profile::profile(lattice, &map);
-    let heights = stations.iter().filter_map(|station| station.ground.height_m());
-    let (mut lowest, mut rise) = (f64::INFINITY, 0.0);
-    for height_m in heights {
-        lowest = height_m.min(lowest);
-        rise = (height_m - lowest).max(rise);
+    let (mut lowest_m, mut rise_m) = (f64::INFINITY, 0.0);
+    for station in stations {
+        match station.ground.height_m() {
+            Some(height_m) => {
+                lowest_m = height_m.min(lowest_m);
+                rise_m = (height_m - lowest_m).max(rise_m);
+            }
+            None => lowest_m = f64::INFINITY,
+        }
     }
-    rise
+    rise_m
 }
