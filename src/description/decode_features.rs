@@ -95,8 +95,12 @@ pub(super) fn river(reader: &mut Reader<'_, '_>) -> Option<River> {
     let name = plain_text(reader, "name");
     let source = source(reader, 2);
     let width = quantity(reader, "width", WIDTH);
+    let mouth = reader.has("mouth_width");
     let mouth_width = quantity(reader, "mouth_width", WIDTH);
     let widths = widths(reader, source.as_ref());
+    if let (Some(mouth), Some(_)) = (mouth, &widths) {
+        reader.error(mouth, "the `widths` say how wide the mouth is", "keep `mouth_width` or `widths`");
+    }
     let bank = quantity(reader, "bank", STRIP);
     let water = reader.get("water", |item| item.word());
     Some(River { name, source: source?, width, mouth_width, widths, bank, water })

@@ -159,7 +159,8 @@ pub struct River {
     pub mouth_width: Option<Spanned<Quantity>>,
     /// `widths`, only with `points` and instead of `width`: the water's width at each point, in (0, 10 000].
     pub widths: Option<Spanned<Vec<f64>>>,
-    /// `bank`: width of the bank on either side, in [0, 1000]. Default: a sixth of the water's width.
+    /// `bank`: width of the bank on either side, in [0, 1000]: a strip beside the water, and the way over which the ground
+    /// comes back to its own height beyond the bed. Default 0.
     pub bank: Option<Spanned<Quantity>>,
     /// `water`: `"falls"`, its level never rises downstream and the ground is cut to it, or `"drape"`, it lies on the
     /// ground as it is. Default `"falls"`.
@@ -191,9 +192,10 @@ pub struct Area {
     pub cover: Option<Spanned<Choice<Cover>>>,
     /// `color`: multiplied with the texture; its alpha lets the ground through. Default: the cover's own.
     pub color: Option<Spanned<Color>>,
-    /// `border`: the line along its outline, `"none"`, `"solid"` or `"dashed"`. Default: the cover's own.
+    /// `border`: the line along its outline, `"none"`, `"solid"` or `"dashed"`. Default: `"solid"` where it is
+    /// restricted, else `"none"`.
     pub border: Option<Spanned<Border>>,
-    /// `border_width`: of that line, in (0, 1000]. Default 4.
+    /// `border_width`: of that line, in (0, 1000]; hatching grows with it. Default 4.
     pub border_width: Option<Spanned<f64>>,
 }
 

@@ -41,6 +41,15 @@ impl Polyline {
         self.stations[self.stations.len() - 1]
     }
 
+    /// The line from its end to its start.
+    pub fn reversed(&self) -> Self {
+        let length = self.length();
+        Self {
+            points: self.points.iter().rev().copied().collect(),
+            stations: self.stations.iter().rev().map(|station| length - station).collect(),
+        }
+    }
+
     /// The point at `station`, clamped to the line's ends.
     pub fn at(&self, station: f64) -> DVec2 {
         let after =
@@ -73,6 +82,13 @@ mod tests {
         assert_eq!(line.stations(), [0.0, 3.0, 7.0]);
         assert_eq!(line.at(5.0), DVec2::new(3.0, 2.0));
         assert_eq!(line.at(99.0), DVec2::new(3.0, 4.0));
+    }
+
+    #[test]
+    fn a_reversed_line_measures_from_its_other_end() {
+        let line = Polyline::new([DVec2::ZERO, DVec2::X * 3.0, DVec2::new(3.0, 4.0)], 0.0).expect("a line");
+        assert_eq!(line.reversed().stations(), [0.0, 4.0, 7.0]);
+        assert_eq!(line.reversed().at(5.0), line.at(2.0));
     }
 
     #[test]

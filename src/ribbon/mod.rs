@@ -4,6 +4,7 @@
 //! that every piece lies in the plane of one of them and nothing sinks or floats, whatever the level of detail.
 
 pub mod area;
+pub mod border;
 pub mod chain;
 pub mod crossing;
 pub mod drape;

@@ -1,5 +1,6 @@
 //! What the passes over a document gather: features with their ids, what lies and stands, and what there is to say.
 
+use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
 use crate::ribbon::partition;
 use crate::ribbon::plan::PlanMesh;
@@ -48,7 +49,12 @@ impl Collected {
 
     /// Lays a plan over what was laid before in its class and below.
     pub fn lay(&mut self, plan: PlanMesh, surface: Surface, feature: FeatureId) {
-        self.ribbons.push(Ribbon { plan, surface, layer: layer_of(surface), feature });
+        self.lay_tinted(plan, (surface, Srgba::WHITE), feature);
+    }
+
+    /// Lays a plan as [`Self::lay`] does, its surface's colour and alpha multiplied by a tint.
+    pub fn lay_tinted(&mut self, plan: PlanMesh, (surface, tint): (Surface, Srgba), feature: FeatureId) {
+        self.ribbons.push(Ribbon { plan, surface, tint, layer: layer_of(surface), feature });
     }
 
     /// Takes apart what lies over one another, so that no two ribbons share any ground: what covers what goes by class,
@@ -65,20 +71,23 @@ impl Collected {
     }
 }
 
-/// What covers what, by class: still water over streams, roads over water, better roads over lesser.
+/// What covers what, by class: banks over what covers the ground, still water over streams, roads over water, better
+/// roads over lesser.
 fn layer_of(surface: Surface) -> u8 {
     match surface {
-        Surface::River => 0,
-        Surface::Lake => 1,
+        Surface::Cover(_) | Surface::Border => 0,
+        Surface::Bank => 1,
+        Surface::River | Surface::Confluence => 2,
+        Surface::Lake => 3,
         // Shoulders are laid before tracks and so lie below them.
-        Surface::Shoulder | Surface::Track | Surface::TrackJunction => 2,
-        Surface::Gravel | Surface::GravelJunction => 3,
+        Surface::Shoulder | Surface::Track | Surface::TrackJunction => 4,
+        Surface::Gravel | Surface::GravelJunction => 5,
         Surface::Asphalt
         | Surface::AsphaltSolid
         | Surface::AsphaltEdges
         | Surface::AsphaltPlain
-        | Surface::AsphaltJunction => 4,
-        Surface::Trench => 5,
-        Surface::Boundary => 6,
+        | Surface::AsphaltJunction => 6,
+        Surface::Trench => 7,
+        Surface::Boundary => 8,
     }
 }

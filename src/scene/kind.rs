@@ -6,6 +6,7 @@ use glam::{DVec2, Vec2, Vec3};
 
 use crate::description::document::Furniture;
 use crate::description::words::{Clamp, LabelKind};
+use crate::draw::color::Srgba;
 use crate::draw::ground::GroundMap;
 use crate::draw::lighting::Lighting;
 use crate::draw::list::{DrawMesh, FeatureId};
@@ -40,7 +41,7 @@ pub struct Scene {
     pub map: Arc<GroundMap>,
     /// Light, haze and sky.
     pub lighting: Lighting,
-    /// Lakes, rivers and roads, in drawing order.
+    /// Areas, rivers, lakes and roads, in drawing order.
     pub ribbons: Vec<Ribbon>,
     /// What has a shape of its own: buildings, bridges.
     pub solids: Vec<Solid>,
@@ -172,6 +173,8 @@ pub struct Ribbon {
     pub plan: PlanMesh,
     /// What it is made of.
     pub surface: Surface,
+    /// Multiplied with the surface's own colour and alpha; white changes nothing.
+    pub tint: Srgba,
     /// Where it lies among others: a higher number covers a lower.
     pub layer: u8,
     /// The feature it belongs to.

@@ -3,7 +3,10 @@
 //! `build` turns a document and its assets into a [`kind::Scene`], one pass a file: the ground (`ground`), what lies on
 //! it (`water`, `roads`), what stands on it (`buildings`, `fences`), models (`models`), labels and cameras (`views`); the
 //! passes gather what they make in `collected`. `picture` turns a scene and a camera into a draw list.
+//! it (`areas`, `water`, `roads`), models (`models`), labels and cameras (`views`); the passes gather what they make in
+//! `collected`. `picture` turns a scene and a camera into a draw list.
 
+pub mod areas;
 pub mod assets;
 pub mod attributes;
 pub mod bridges;

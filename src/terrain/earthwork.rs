@@ -39,7 +39,7 @@ pub fn level(lattice: &mut Lattice, rings: &[Vec<DVec2>], level_m: f32) -> Volum
 /// The corners of all cells that the polygon touches, in row order.
 ///
 /// Cost: one step for each row an edge crosses and each cell the polygon touches, whatever the lattice's size.
-fn posts_touched(lattice: &Lattice, rings: &[Vec<DVec2>]) -> Vec<Post> {
+pub(in crate::terrain) fn posts_touched(lattice: &Lattice, rings: &[Vec<DVec2>]) -> Vec<Post> {
     let to_grid = |point: DVec2| point / lattice.cell();
     let edges = || rings.iter().flat_map(|ring| polygon::edges(ring)).map(|(a, b)| (to_grid(a), to_grid(b)));
     let mut touched = Touched::within(lattice, Rect::around(rings.iter().flatten().copied().map(to_grid)));

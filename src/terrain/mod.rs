@@ -3,9 +3,11 @@
 
 pub mod alignment;
 pub mod brush;
+pub mod channel;
 pub mod densify;
 pub mod earthwork;
 pub mod facets;
+pub mod fall;
 pub mod finest;
 pub mod grading;
 pub mod hillshade;
@@ -13,5 +15,6 @@ pub mod lattice;
 pub mod light;
 pub mod profile;
 pub mod query;
+pub mod shore;
 pub mod sight;
 pub mod underfoot;

@@ -1,9 +1,11 @@
 //! Procedural textures for what lies on the ground; the same pixels on every machine.
 
 mod boundary;
+pub mod cover;
 mod road;
 mod water;
 
+use crate::description::words::Cover;
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 use crate::ribbon::texture::road::{Center, Lines};
@@ -33,18 +35,31 @@ pub enum Surface {
     TrackJunction,
     /// Running water: light in the stream, dark along the banks.
     River,
+    /// Where running waters meet: the stream without its sides.
+    Confluence,
+    /// The banks on either side of running water.
+    Bank,
     /// Still water.
     Lake,
     /// The floor of a trench.
     Trench,
     /// The dashes of a boundary.
     Boundary,
+    /// What covers an area.
+    Cover(Cover),
+    /// The line along an area's outline: white, to be tinted.
+    Border,
 }
 
 impl Surface {
-    /// Whether it joins roads rather than being one.
+    /// Whether it joins roads or rivers rather than being one.
     pub fn is_junction(self) -> bool {
-        matches!(self, Self::AsphaltJunction | Self::GravelJunction | Self::TrackJunction)
+        matches!(self, Self::AsphaltJunction | Self::GravelJunction | Self::TrackJunction | Self::Confluence)
+    }
+
+    /// Whether the ground shows through it.
+    pub fn lets_through(self) -> bool {
+        matches!(self, Self::Cover(_) | Self::Border | Self::Bank)
     }
 }
 
@@ -69,6 +84,10 @@ pub fn texture(surface: Surface) -> Pixels {
             Surface::River => water::river(u, grain),
             Surface::Trench => boundary::trench(u, grain),
             Surface::Boundary => boundary::boundary(u, grain),
+            Surface::Confluence => water::stream(grain),
+            Surface::Bank => water::bank(u, grain),
+            Surface::Cover(cover) => cover::texel(cover, u, v, grain),
+            Surface::Border => Srgba::WHITE,
             Surface::Lake => shade([74, 124, 158], (grain - 0.5) * 5.0),
         }
     })

@@ -9,3 +9,18 @@ pub(super) fn river(u: f32, grain: f32) -> Srgba {
     let mix = |bank: f32, stream: f32| bank + (stream - bank) * light;
     shade([mix(38.0, 92.0) as u8, mix(84.0, 150.0) as u8, mix(118.0, 190.0) as u8], (grain - 0.5) * 8.0)
 }
+
+/// The middle of running water.
+pub(super) fn stream(grain: f32) -> Srgba {
+    shade([92, 150, 190], (grain - 0.5) * 8.0)
+}
+
+/// A bank, from its outer edge on either side: damp green that fades into the ground.
+pub(super) fn bank(u: f32, grain: f32) -> Srgba {
+    /// How far from the edge, as a part of banks and water together, the bank is whole: half-way in, where a bank is a
+    /// sixth as wide as its river.
+    const FADE: f32 = 0.06;
+    let alpha = (u.min(1.0 - u) / FADE).min(1.0) * 0.75;
+    let Srgba([red, green, blue, _]) = shade([116, 138, 92], (grain - 0.5) * 24.0);
+    Srgba([red, green, blue, (alpha * 255.0 + 0.5) as u8])
+}

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
+use crate::draw::color::Srgba;
 use crate::draw::list::{DrawList, DrawMesh, Layer, MaterialId};
-use crate::draw::material::{Material, Normals};
+use crate::draw::material::{Alpha, Material, Normals};
 use crate::ribbon::drape::drape;
 use crate::ribbon::texture::{Surface, texture};
 use crate::scene::kind::Scene;
@@ -23,22 +24,25 @@ pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn Facets) {
             mesh
         })
         .collect();
-    let mut materials: BTreeMap<Surface, MaterialId> = BTreeMap::new();
+    let mut materials: BTreeMap<(Surface, [u8; 4]), MaterialId> = BTreeMap::new();
     let mut order: Vec<_> =
         scene.ribbons.iter().zip(meshes).filter(|(_, mesh)| !mesh.triangles.is_empty()).collect();
     order.sort_by_key(|(ribbon, _)| ribbon.layer);
     for (ribbon, mesh) in order {
-        let material =
-            *materials.entry(ribbon.surface).or_insert_with(|| draped_material(list, ribbon.surface));
+        let material = *materials
+            .entry((ribbon.surface, ribbon.tint.0))
+            .or_insert_with(|| draped_material(list, ribbon.surface, ribbon.tint));
         add_mesh(list, mesh, material, Layer::Draped(ribbon.layer), ribbon.feature);
     }
 }
 
-fn draped_material(list: &mut DrawList, surface: Surface) -> MaterialId {
+fn draped_material(list: &mut DrawList, surface: Surface, tint: Srgba) -> MaterialId {
     let texture = list.add_texture(texture(surface));
     list.add_material(Material {
         name: format!("{surface:?}").to_lowercase(),
+        base_color: tint,
         texture: Some(texture),
+        alpha: if surface.lets_through() { Alpha::Blend } else { Alpha::Opaque },
         normals: Normals::Ground,
         ..Material::default()
     })

@@ -1,0 +1,128 @@
+//! Areas: what covers the ground, with the lines along their outlines.
+//!
+//! Areas lie below everything else on the ground, and a later one over an earlier. Textures are laid out in world metres,
+//! aligned with north, so that areas side by side make one pattern.
+
+use glam::DVec2;
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::{Color, Document};
+use crate::description::features::Area;
+use crate::description::words::{Border, Cover};
+use crate::draw::color::Srgba;
+use crate::draw::list::FeatureId;
+use crate::geom::rect::Rect;
+use crate::ribbon::area;
+use crate::ribbon::border::{Dashes, border};
+use crate::ribbon::plan::PlanMesh;
+use crate::ribbon::texture::Surface;
+use crate::ribbon::texture::cover::{border_color, cover_length_m};
+use crate::scene::collected::Collected;
+use crate::scene::kind::FeatureKind;
+use crate::scene::near::Clipped;
+use crate::scene::sources::{Sourced, Sources};
+use crate::vector::feature::Polygon;
+
+/// A border's width where none is stated, in metres.
+const BORDER_WIDTH_M: f64 = 4.0;
+
+/// Adds the document's areas to `collected`. Those off the ground and those without an area are left out, and those for
+/// which an expression gives no cover; notes say how many.
+///
+/// # Errors
+/// A source cannot be had.
+pub fn lay(
+    document: &Document,
+    sources: &Sources<'_>,
+    extent: &Rect,
+    collected: &mut Collected,
+) -> Result<(), Diagnostic> {
+    for table in &document.areas {
+        let (mut bare, mut off) = (0, 0);
+        for Sourced { attributes, shape } in sources.polygons(&table.source)? {
+            let Some(cover) = attributes.word(table.cover.as_ref()) else {
+                bare += 1;
+                continue;
+            };
+            let Some(patch) = Patch::of(table, cover, &shape, extent) else {
+                off += 1;
+                continue;
+            };
+            let feature = collected.add(FeatureKind::Area, attributes.name(table.name.as_deref()));
+            patch.lay(feature, collected);
+        }
+        note(table, "off the elevation model or without an area", off, collected);
+        note(table, "their properties name no cover", bare, collected);
+    }
+    Ok(())
+}
+
+fn note(table: &Area, why: &str, count: usize, collected: &mut Collected) {
+    if count > 0 {
+        let what = table.name.as_ref().map(|name| format!(" of '{name}'")).unwrap_or_default();
+        let noun = FeatureKind::Area.noun(count);
+        collected.notes.push(format!("{count} {noun}{what} left out: {why}"));
+    }
+}
+
+/// One area, ready to be laid.
+struct Patch {
+    fill: PlanMesh,
+    line: PlanMesh,
+    cover: Cover,
+    tint: Srgba,
+}
+
+impl Patch {
+    /// `None` where nothing of it lies on the ground.
+    fn of(table: &Area, cover: Cover, shape: &Polygon, extent: &Rect) -> Option<Self> {
+        if !Rect::around(shape.exterior.iter().copied()).meets(extent) {
+            return None;
+        }
+        let width_m = table.border_width.as_ref().map_or(BORDER_WIDTH_M, |width| *width.get_ref());
+        let mut fill = Clipped { plan: PlanMesh::default(), extent };
+        area::fill(&shape.exterior, &shape.holes, texture_m(cover, width_m), &mut fill);
+        let dashes = match border_of(table, cover) {
+            Border::None => None,
+            Border::Solid => Some(Dashes::Unbroken),
+            Border::Dashed => Some(Dashes::Dashed),
+        };
+        let rings: Vec<&[DVec2]> =
+            std::iter::once(&shape.exterior).chain(&shape.holes).map(Vec::as_slice).collect();
+        let line = dashes.map(|dashes| border(&rings, &fill.plan, width_m, dashes)).unwrap_or_default();
+        let tint = table.color.as_ref().map_or(Srgba::WHITE, |color| srgba(*color.get_ref()));
+        (!fill.plan.triangles.is_empty()).then_some(Self { fill: fill.plan, line, cover, tint })
+    }
+
+    /// Lays the area, and its border over it.
+    fn lay(self, feature: FeatureId, collected: &mut Collected) {
+        collected.lay_tinted(self.fill, (Surface::Cover(self.cover), self.tint), feature);
+        if !self.line.triangles.is_empty() {
+            let color = multiplied(border_color(self.cover), self.tint);
+            collected.lay_tinted(self.line, (Surface::Border, color), feature);
+        }
+    }
+}
+
+/// Metres in one repeat of a cover's texture; hatching is as wide as the border wants it.
+fn texture_m(cover: Cover, border_width_m: f64) -> f64 {
+    match cover {
+        Cover::Restricted => cover_length_m(cover) * border_width_m / BORDER_WIDTH_M,
+        _ => cover_length_m(cover),
+    }
+}
+
+/// The stated border, or the cover's own.
+fn border_of(table: &Area, cover: Cover) -> Border {
+    let own = if cover == Cover::Restricted { Border::Solid } else { Border::None };
+    table.border.as_ref().map_or(own, |border| *border.get_ref())
+}
+
+fn srgba(color: Color) -> Srgba {
+    Srgba(color.0)
+}
+
+fn multiplied(color: Srgba, tint: Srgba) -> Srgba {
+    let product = |(a, b): (u8, u8)| ((u16::from(a) * u16::from(b) + 127) / 255) as u8;
+    Srgba(std::array::from_fn(|channel| product((color.0[channel], tint.0[channel]))))
+}

@@ -1,0 +1,217 @@
+//! Lakes: level water, the ground under it levelled and the shore blended.
+
+use glam::DVec2;
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::Document;
+use crate::description::features::Lake;
+use crate::description::words::{LevelRule, Word};
+use crate::draw::list::FeatureId;
+use crate::geom::polygon;
+use crate::geom::rect::Rect;
+use crate::ribbon::area;
+use crate::ribbon::plan::PlanMesh;
+use crate::ribbon::texture::Surface;
+use crate::scene::attributes::Attributes;
+use crate::scene::collected::Collected;
+use crate::scene::kind::FeatureKind;
+use crate::scene::near::Clipped;
+use crate::scene::report::{Cell, Column};
+use crate::scene::sources::{Sourced, Sources};
+use crate::terrain::lattice::Lattice;
+use crate::terrain::query::{Interpolation, ground_height};
+use crate::terrain::shore;
+use crate::vector::feature::Polygon;
+
+/// Metres in one repeat of the water's texture: fine enough not to be seen as a pattern.
+const LAKE_TEXTURE_M: f64 = 400.0;
+
+/// What the report says of each lake.
+const TABLE: (&str, &[Column]) = (
+    "lakes",
+    &[
+        Column { name: "name", unit: "" },
+        Column { name: "level", unit: "m" },
+        Column { name: "rule", unit: "" },
+        Column { name: "lowest shore", unit: "m" },
+        Column { name: "highest shore", unit: "m" },
+        Column { name: "area", unit: "m2" },
+        Column { name: "cut", unit: "m3" },
+        Column { name: "fill", unit: "m3" },
+    ],
+);
+
+/// Adds the document's lakes to `collected` and levels the ground under them. Lakes off the ground and those
+/// without an area are left out, with a note.
+///
+/// # Errors
+/// A source cannot be had, or a level cannot be found.
+pub fn lay(
+    document: &Document,
+    sources: &Sources<'_>,
+    lattice: &mut Lattice,
+    collected: &mut Collected,
+) -> Result<(), Diagnostic> {
+    for lake in &document.lakes {
+        for Sourced { attributes, shape } in sources.polygons(&lake.source)? {
+            let name = attributes.name(lake.name.as_deref());
+            let bounds = Rect::around(shape.exterior.iter().copied());
+            let extent = lattice.extent();
+            if !bounds.meets(&extent) {
+                collected.notes.push(format!("{} lies off the elevation model", called(&name)));
+                continue;
+            }
+            let mut plan = Clipped { plan: PlanMesh::default(), extent: &extent };
+            area::fill(&shape.exterior, &shape.holes, LAKE_TEXTURE_M, &mut plan);
+            if plan.plan.triangles.is_empty() {
+                collected.notes.push(format!("lake '{name}' left out: its shore encloses no area"));
+                continue;
+            }
+            let shore = Shore::of(lattice, &shape);
+            let level = level_of(document, lake, (&attributes, &shore), collected)?;
+            let feature = flood(lattice, (name, &shape, &shore), level, collected);
+            collected.lay(plan.plan, Surface::Lake, feature);
+        }
+    }
+    Ok(())
+}
+
+/// A lake's level with the rule it was found by.
+struct Level {
+    level_m: f64,
+    rule: &'static str,
+}
+
+/// Levels the ground under a lake, tells of it and returns the feature it is.
+fn flood(
+    lattice: &mut Lattice,
+    (name, shape, shore): (String, &Polygon, &Shore),
+    level: Level,
+    collected: &mut Collected,
+) -> FeatureId {
+    let flooded = shore::flood(lattice, &shape.exterior, &shape.holes, level.level_m as f32);
+    let (level_m, volumes) = (level.level_m, flooded.volumes);
+    collected.notes.push(format!(
+        "{} lies level at {level_m:.1} m: {:.0} m³ cut, {:.0} m³ filled",
+        called(&name),
+        volumes.cut_m3,
+        volumes.fill_m3
+    ));
+    if let Some(other_m) = flooded.other_level_m {
+        collected.notes.push(format!(
+            "{} shares cells with a lake at {other_m:.1} m, and the level of the later one holds there",
+            called(&name)
+        ));
+    }
+    let number = |value: Option<f64>| value.map_or(Cell::Empty, Cell::Number);
+    collected.report.add(
+        TABLE,
+        vec![
+            Cell::Text(name.clone()),
+            Cell::Number(level_m),
+            Cell::Text(level.rule.into()),
+            number(shore.lowest_m()),
+            number(shore.highest_m()),
+            Cell::Number(area_m2(shape)),
+            Cell::Number(volumes.cut_m3),
+            Cell::Number(volumes.fill_m3),
+        ],
+    );
+    collected.add(FeatureKind::Lake, name)
+}
+
+/// The stated level, or that of the rule.
+fn level_of(
+    document: &Document,
+    lake: &Lake,
+    (attributes, shore): (&Attributes, &Shore),
+    collected: &mut Collected,
+) -> Result<Level, Diagnostic> {
+    if let Some(level_m) = attributes.number(lake.level.as_ref()) {
+        return Ok(Level { level_m, rule: "given" });
+    }
+    let rule = lake.level_rule.as_ref().map_or_else(LevelRule::default, |rule| *rule.get_ref());
+    if lake.level.is_some() {
+        let default = "the lowest height along the shore".to_owned();
+        *collected.defaulted.entry(("[[lake]] level", default)).or_default() += 1;
+    }
+    let name = LevelRule::ALL.iter().find(|(_, word)| *word == rule).map_or("", |(name, _)| *name);
+    shore.level_m(rule).map(|level_m| Level { level_m, rule: name }).ok_or_else(|| {
+        let message = "no ground lies along this lake's shore to take its level from";
+        document.error_at(lake.source.span(), message).with_help("state it: level = <metres>")
+    })
+}
+
+/// The ground along a lake's outer shore.
+struct Shore {
+    /// Heights in metres, rising, each with the metres of shore that it stands for.
+    heights: Vec<(f64, f64)>,
+}
+
+impl Shore {
+    /// The ground along the part of the shore that lies on the model, at every vertex and twice a cell.
+    fn of(lattice: &Lattice, shape: &Polygon) -> Self {
+        let step = lattice.cell().min_element() / 2.0;
+        let extent = lattice.extent();
+        let edges = polygon::edges(&shape.exterior).filter_map(|(from, to)| extent.clip_line(from, to));
+        let samples = edges.flat_map(|(from, to)| {
+            let length_m = from.distance(to);
+            let count = (length_m / step).ceil().clamp(1.0, 1e6) as u32;
+            (0..count).map(move |index| {
+                (from.lerp(to, f64::from(index) / f64::from(count)), length_m / f64::from(count))
+            })
+        });
+        let height = |(at, stands_for_m): (DVec2, f64)| {
+            let answer = ground_height(lattice, Interpolation::Bilinear, at + lattice.origin());
+            answer.height_m().map(|height_m| (height_m, stands_for_m))
+        };
+        let mut heights: Vec<(f64, f64)> = samples.filter_map(height).collect();
+        heights.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Self { heights }
+    }
+
+    /// `None` where no ground lies along the shore; so for all.
+    fn lowest_m(&self) -> Option<f64> {
+        self.heights.first().map(|first| first.0)
+    }
+
+    fn highest_m(&self) -> Option<f64> {
+        self.heights.last().map(|last| last.0)
+    }
+
+    /// The height with as much shore below as above.
+    fn median_m(&self) -> Option<f64> {
+        let half: f64 = self.heights.iter().map(|height| height.1).sum::<f64>() / 2.0;
+        let mut passed = 0.0;
+        let middle = self.heights.iter().find(|height| {
+            passed += height.1;
+            passed >= half
+        });
+        middle.or(self.heights.last()).map(|height| height.0)
+    }
+
+    fn mean_m(&self) -> Option<f64> {
+        let (sum, length) =
+            self.heights.iter().fold((0.0, 0.0), |(sum, length), at| (sum + at.0 * at.1, length + at.1));
+        if length > 0.0 { Some(sum / length) } else { self.lowest_m() }
+    }
+
+    fn level_m(&self, rule: LevelRule) -> Option<f64> {
+        match rule {
+            LevelRule::Lowest => self.lowest_m(),
+            LevelRule::Median => self.median_m(),
+            LevelRule::Mean => self.mean_m(),
+        }
+    }
+}
+
+/// The water's area in square metres, islands taken out, on the model or off.
+fn area_m2(shape: &Polygon) -> f64 {
+    let area = |ring: &[DVec2]| polygon::doubled_area(ring).abs() / 2.0;
+    area(&shape.exterior) - shape.holes.iter().map(|hole| area(hole)).sum::<f64>()
+}
+
+/// A lake in a note; many have no name.
+fn called(name: &str) -> String {
+    if name.is_empty() { "a lake without a name".into() } else { format!("lake '{name}'") }
+}

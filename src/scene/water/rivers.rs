@@ -1,0 +1,204 @@
+//! Rivers: the ground cut to falling water, and the ribbons of water and banks on it.
+//!
+//! ```text
+//!   ┄┄┄┄┄┄┄┄┄┄┄┄┄┄┄┄┄  bank: a wider ribbon below, of which the water leaves a strip on either side
+//!   ─────────────╲ ╲
+//!        water    ◯ ╲   confluence: a disc as wide as the widest river there, so that ends leave no gap
+//!   ─────────────╱ ╲ ╲
+//! ```
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::Document;
+use crate::description::words::Water;
+use crate::geom::polyline::Polyline;
+use crate::geom::rect::Rect;
+use crate::mesh::sink::MeshSink;
+use crate::ribbon::junction::{self, Street};
+use crate::ribbon::plan::{PlanMesh, PlanVertex};
+use crate::ribbon::stroke::{Continuations, Course, Stations, StrokeOptions, Widths, stroke_course};
+use crate::ribbon::texture::Surface;
+use crate::scene::collected::Collected;
+use crate::scene::near::Clipped;
+use crate::scene::report::{Cell, Column};
+use crate::scene::sources::Sources;
+use crate::scene::water::network::{self, Stream};
+use crate::terrain::channel::{self, Channel, Cut, Cuts};
+use crate::terrain::lattice::Lattice;
+
+/// What the report says of each river.
+const TABLE: (&str, &[Column]) = (
+    "rivers",
+    &[
+        Column { name: "name", unit: "" },
+        Column { name: "length", unit: "m" },
+        Column { name: "from", unit: "m" },
+        Column { name: "to", unit: "m" },
+        Column { name: "deepest cut", unit: "m" },
+        Column { name: "cut", unit: "m3" },
+        Column { name: "fill", unit: "m3" },
+    ],
+);
+
+/// The corners of a confluence's disc: with 8 its rim is nowhere further than a thirteenth of its radius from the circle,
+/// which is less than the ribbon's darker sides, and thousands of confluences cost little.
+const DISC_CORNERS: u32 = 8;
+
+/// Adds the document's rivers and cuts the ground to those that fall.
+///
+/// # Errors
+/// A source cannot be had, or the beds would cover too much ground.
+pub fn lay(
+    document: &Document,
+    sources: &Sources<'_>,
+    lattice: &mut Lattice,
+    collected: &mut Collected,
+) -> Result<(), Diagnostic> {
+    let streams = network::collect(document, sources, lattice, collected)?;
+    let falling: Vec<&Stream> = streams.iter().filter(|stream| stream.water == Water::Falls).collect();
+    let cuts = channel::cut(lattice, &falling.iter().map(|stream| channel_of(stream)).collect::<Vec<_>>());
+    let cuts = cuts.map_err(|error| {
+        let place = document.rivers.first().map_or(0..0, |river| river.source.span());
+        let help = "make them narrower, or say `water = \"drape\"`";
+        document.error_at(place, error.to_string()).with_help(help)
+    })?;
+    tell(&falling, &cuts, collected);
+    ribbons(&streams, &lattice.extent(), collected);
+    Ok(())
+}
+
+fn channel_of(stream: &Stream) -> Channel {
+    Channel { line: stream.line.clone(), widths_m: stream.widths_m.clone(), bank_m: stream.bank_m }
+}
+
+/// Tells what cutting came to: a row a river, and a note on them all.
+fn tell(streams: &[&Stream], cuts: &Cuts, collected: &mut Collected) {
+    for (stream, cut) in streams.iter().zip(&cuts.cuts) {
+        collected.report.add(TABLE, row(stream, cut));
+    }
+    let deepest = streams.iter().zip(&cuts.cuts).max_by(|(_, a), (_, b)| a.deepest_m.total_cmp(&b.deepest_m));
+    let Some((stream, cut)) = deepest.filter(|(_, cut)| cut.deepest_m > 0.0) else { return };
+    let sum = |of: fn(&Cut) -> f64| cuts.cuts.iter().map(of).sum::<f64>();
+    let place = if stream.name.is_empty() { String::new() } else { format!(", in '{}'", stream.name) };
+    collected.notes.push(format!(
+        "the beds of {} rivers: {:.0} m³ cut, {:.0} m³ filled, {:.1} m deep at most{place}",
+        streams.len(),
+        sum(|cut| cut.volumes.cut_m3),
+        sum(|cut| cut.volumes.fill_m3),
+        cut.deepest_m
+    ));
+    if cuts.rising > 0 {
+        collected.notes.push(format!(
+            "water rises over {} triangles, where a river would have to flow to a lake above it",
+            cuts.rising
+        ));
+    }
+}
+
+fn row(stream: &Stream, cut: &Cut) -> Vec<Cell> {
+    let level =
+        |of: fn((f64, f64)) -> f64| cut.levels_m.map_or(Cell::Empty, |levels| Cell::Number(of(levels)));
+    vec![
+        Cell::Text(stream.name.clone()),
+        Cell::Number(stream.line.length()),
+        level(|levels| levels.0),
+        level(|levels| levels.1),
+        Cell::Number(cut.deepest_m),
+        Cell::Number(cut.volumes.cut_m3),
+        Cell::Number(cut.volumes.fill_m3),
+    ]
+}
+
+/// Lays water, banks and confluences; narrower water over wider, so that a mouth shows in the river that it flows into.
+fn ribbons(streams: &[Stream], extent: &Rect, collected: &mut Collected) {
+    let streets: Vec<Street<'_>> = streams.iter().map(Stream::street).collect();
+    let network = junction::connect(&streets);
+    let mut order: Vec<usize> = (0..streams.len()).collect();
+    order.sort_by(|&a, &b| streams[b].widest_m().total_cmp(&streams[a].widest_m()));
+    for index in order {
+        let (stream, beyond) =
+            (&streams[index], ends_of_one_width(&streams[index], network.continuations[index]));
+        let mut water = Clipped { plan: PlanMesh::default(), extent };
+        along(&stream.line, &stream.widths_m, beyond, &stream.options(), &mut water);
+        collected.lay(water.plan, Surface::River, stream.feature);
+        if stream.bank_m > 0.0 {
+            let widths_m: Vec<f64> =
+                stream.widths_m.iter().map(|width| width + 2.0 * stream.bank_m).collect();
+            let mut banks = Clipped { plan: PlanMesh::default(), extent };
+            along(&stream.line, &widths_m, beyond, &stream.options(), &mut banks);
+            collected.lay(banks.plan, Surface::Bank, stream.feature);
+        }
+    }
+    confluences(streams, &network.continuations, extent, collected);
+}
+
+/// What goes on at a river's ends: nothing where it tapers, since the other end would be of another width.
+fn ends_of_one_width(stream: &Stream, beyond: Continuations) -> Continuations {
+    let is_even = stream.widths_m.iter().all(|width| *width == stream.widths_m[0]);
+    if is_even { beyond } else { Continuations::default() }
+}
+
+fn along(
+    line: &Polyline,
+    widths_m: &[f64],
+    beyond: Continuations,
+    options: &StrokeOptions,
+    sink: &mut impl MeshSink<PlanVertex>,
+) {
+    let widths = Widths::PerVertex(widths_m);
+    stroke_course(&Course { line, widths, beyond, stations: Stations::default() }, options, sink);
+}
+
+/// Lays a disc where a river ends on another's vertex and neither simply goes on in the other.
+fn confluences(
+    streams: &[Stream],
+    continuations: &[Continuations],
+    extent: &Rect,
+    collected: &mut Collected,
+) {
+    let mut ends: BTreeMap<(i64, i64), bool> = BTreeMap::new();
+    for (stream, beyond) in streams.iter().zip(continuations) {
+        let (points, beyond) = (stream.line.points(), ends_of_one_width(stream, *beyond));
+        for (at, beyond) in [(points[0], beyond.before), (points[points.len() - 1], beyond.after)] {
+            *ends.entry(place(at)).or_default() |= beyond.is_none();
+        }
+    }
+    let mut widest: BTreeMap<(i64, i64), Vec<(f64, usize, DVec2)>> = BTreeMap::new();
+    for (index, stream) in streams.iter().enumerate() {
+        for (&at, &width_m) in stream.line.points().iter().zip(&stream.widths_m) {
+            if ends.get(&place(at)).is_some_and(|is_open| *is_open) {
+                widest.entry(place(at)).or_default().push((width_m, index, at));
+            }
+        }
+    }
+    for meeting in widest.into_values().filter(|meeting| meeting.len() > 1) {
+        let widest = meeting.iter().max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+        if let Some(&(width_m, index, at)) = widest {
+            let mut plan = Clipped { plan: PlanMesh::default(), extent };
+            disc(at, width_m / 2.0, &mut plan);
+            collected.lay(plan.plan, Surface::Confluence, streams[index].feature);
+        }
+    }
+}
+
+/// A vertex's place in centimetres, as lines share it.
+fn place(at: DVec2) -> (i64, i64) {
+    let place = (at * 100.0).round();
+    (place.x as i64, place.y as i64)
+}
+
+fn disc(center: DVec2, radius_m: f64, sink: &mut impl MeshSink<PlanVertex>) {
+    let corner = |index: u32| {
+        let angle = f64::from(index) * std::f64::consts::TAU / f64::from(DISC_CORNERS);
+        let at = center + DVec2::new(libm::cos(angle), libm::sin(angle)) * radius_m;
+        PlanVertex { at, uv: (at / (4.0 * radius_m)).as_vec2() }
+    };
+    let middle = sink.vertex(PlanVertex { at: center, uv: (center / (4.0 * radius_m)).as_vec2() });
+    let rim: Vec<_> = (0..DISC_CORNERS).map(|index| sink.vertex(corner(index))).collect();
+    for (index, &from) in rim.iter().enumerate() {
+        sink.triangle([middle, from, rim[(index + 1) % rim.len()]]);
+    }
+}

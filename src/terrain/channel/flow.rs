@@ -1,0 +1,132 @@
+//! Which way water flows along each line of a network.
+//!
+//! A line flows from its higher end to its lower. But ends of a level stretch differ by the error of the elevation model
+//! alone, and then the line would flow against its neighbours; so lines that share vertices are heard together: where
+//! most of their fall agrees with the way they were drawn, or runs against it, all of them follow, but for those that
+//! fall the other way by more than such an error. Files of rivers are drawn downstream as a rule, so most networks agree.
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+
+use crate::geom::polyline::Polyline;
+use crate::terrain::lattice::Lattice;
+use crate::terrain::query::{Interpolation, ground_height};
+
+/// How far two heights of one elevation model may be off one another, in metres: the relative error that SRTM's
+/// makers promise (Farr et al. 2007). A line that falls by less tells nothing against its neighbours.
+const RELATIVE_ERROR_M: f64 = 10.0;
+
+/// The share of a network's fall that must agree for all its lines to follow: more than half of it then says the same
+/// with three quarters on one side.
+const AGREEMENT: f64 = 0.5;
+
+/// Vertices nearer to each other than this are one, in metres.
+const SAME_M: f64 = 0.01;
+
+/// Which way water flows along a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flow {
+    /// From its first vertex to its last.
+    AsDrawn,
+    /// From its last to its first.
+    Against,
+}
+
+/// A vertex's place in centimetres: lines that mean one point write the same numbers, up to the rounding of a change of
+/// system.
+pub(super) fn node(at: DVec2) -> (i64, i64) {
+    let place = (at / SAME_M).round();
+    (place.x as i64, place.y as i64)
+}
+
+/// The way water flows along each of `lines`, in world coordinates; as drawn where the ground does not say.
+pub fn directions(lattice: &Lattice, lines: &[&Polyline]) -> Vec<Flow> {
+    let drops: Vec<f64> = lines.iter().map(|line| drop_m(lattice, line)).collect();
+    let networks = networks(lines);
+    let mut votes: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
+    for (&network, &drop) in networks.iter().zip(&drops) {
+        let (net, gross) = votes.entry(network).or_default();
+        *net += drop;
+        *gross += drop.abs();
+    }
+    let direction = |(network, &drop): (&usize, &f64)| {
+        let (net, gross) = votes[network];
+        let agrees = net.abs() >= AGREEMENT * gross;
+        let decisive = if agrees && drop.abs() < RELATIVE_ERROR_M { net } else { drop };
+        if decisive < 0.0 { Flow::Against } else { Flow::AsDrawn }
+    };
+    networks.iter().zip(&drops).map(direction).collect()
+}
+
+/// How far the ground falls from the line's first vertex with ground to its last; 0 where it has none.
+fn drop_m(lattice: &Lattice, line: &Polyline) -> f64 {
+    let height =
+        |&at: &DVec2| ground_height(lattice, Interpolation::Planar, at + lattice.origin()).height_m();
+    let first = line.points().iter().find_map(height);
+    let last = line.points().iter().rev().find_map(height);
+    first.zip(last).map_or(0.0, |(first, last)| first - last)
+}
+
+/// A number for each line, the same for lines that hang together by shared vertices.
+fn networks(lines: &[&Polyline]) -> Vec<usize> {
+    let mut parents: Vec<usize> = (0..lines.len()).collect();
+    let mut first_at: BTreeMap<(i64, i64), usize> = BTreeMap::new();
+    for (index, line) in lines.iter().enumerate() {
+        for &at in line.points() {
+            let other = *first_at.entry(node(at)).or_insert(index);
+            let (a, b) = (root(&mut parents, index), root(&mut parents, other));
+            parents[a.max(b)] = a.min(b);
+        }
+    }
+    (0..lines.len()).map(|index| root(&mut parents, index)).collect()
+}
+
+/// The line that stands for all that hang together with this one; the way to it is halved for the next that asks.
+fn root(parents: &mut [usize], mut index: usize) -> usize {
+    while parents[index] != index {
+        parents[index] = parents[parents[index]];
+        index = parents[index];
+    }
+    index
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ground that falls a tenth eastward, but for a level stretch with a bump from 400 m on.
+    fn ground() -> Lattice {
+        let height = |index: u32| {
+            let x = f64::from(index % 81) * 10.0;
+            if x < 400.0 { 100.0 - x / 10.0 } else { 60.0 + if x > 700.0 { 0.4 } else { 0.0 } }
+        };
+        let heights = (0..81 * 11).map(|index| height(index) as f32).collect();
+        Lattice::new(DVec2::new(3e5, 4e6), DVec2::splat(10.0), 81, heights).expect("sound")
+    }
+
+    fn line(xs: &[f64]) -> Polyline {
+        Polyline::new(xs.iter().map(|&x| DVec2::new(x, 45.0)), 0.0).expect("a line")
+    }
+
+    #[test]
+    fn a_lone_line_flows_to_its_lower_end() {
+        let (down, up) = (line(&[0.0, 300.0]), line(&[300.0, 0.0]));
+        assert_eq!(directions(&ground(), &[&down]), [Flow::AsDrawn]);
+        assert_eq!(directions(&ground(), &[&up]), [Flow::Against]);
+    }
+
+    #[test]
+    fn a_level_stretch_follows_the_lines_it_hangs_together_with() {
+        let (above, level) = (line(&[0.0, 450.0]), line(&[450.0, 780.0]));
+        assert_eq!(directions(&ground(), &[&level]), [Flow::Against], "alone it flows as its bump has it");
+        assert_eq!(directions(&ground(), &[&above, &level]), [Flow::AsDrawn; 2]);
+        let (above, level) = (line(&[450.0, 0.0]), line(&[780.0, 450.0]));
+        assert_eq!(directions(&ground(), &[&level, &above]), [Flow::Against; 2]);
+    }
+
+    #[test]
+    fn off_the_model_a_line_flows_as_drawn() {
+        assert_eq!(directions(&ground(), &[&line(&[-900.0, -500.0])]), [Flow::AsDrawn]);
+    }
+}

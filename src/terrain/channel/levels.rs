@@ -1,0 +1,174 @@
+//! The water's level at every station of a network: it never rises downstream, and no bank drowns.
+//!
+//! Each course is fitted by itself ([`crate::terrain::fall`]) and lowered to its banks. Then courses hear of each other at
+//! the vertices they share: none may be higher there than what flows in, nor lower than a lake that its water has yet to
+//! reach. Levels only fall, and only to levels that are there, so the hearing ends.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::terrain::channel::course::{Course, Station};
+use crate::terrain::channel::flow::node;
+use crate::terrain::channel::{Channel, Cut};
+use crate::terrain::fall::{Weighted, falling};
+
+/// The least that a station weighs in metres: two on one spot still count.
+const LEAST_WEIGHT_M: f64 = 1e-3;
+
+/// A vertex that several courses share.
+struct Node {
+    /// The courses that have it.
+    courses: BTreeSet<usize>,
+    /// The lowest level that water has when it comes here.
+    cap_m: f64,
+    /// The highest lake that water from here comes to.
+    floor_m: f64,
+}
+
+/// Shared vertices, and for each course which of its stations are such.
+struct Nodes {
+    nodes: Vec<Node>,
+    of_courses: Vec<Vec<(usize, usize)>>,
+}
+
+/// Finds the level at every station that has ground.
+pub(super) fn settle(courses: &mut [Course], channels: &[Channel]) {
+    courses.iter_mut().for_each(fit);
+    let mut nodes = Nodes::shared(courses, channels);
+    relax(courses, &mut nodes, lower);
+    relax(courses, &mut nodes, raise_floor);
+    for (index, course) in courses.iter_mut().enumerate() {
+        keep_above_lakes(course, &nodes, index);
+    }
+}
+
+/// The levels of a course by itself.
+fn fit(course: &mut Course) {
+    let grounded: Vec<usize> =
+        (0..course.stations.len()).filter(|&at| !course.stations[at].raw_m.is_nan()).collect();
+    let station_m = |at: usize| course.stations[grounded[at]].station_m;
+    let last = grounded.len().saturating_sub(1);
+    let weighted: Vec<Weighted> = (0..grounded.len())
+        .map(|at| {
+            let reach_m = station_m((at + 1).min(last)) - station_m(at.saturating_sub(1));
+            let weight = (reach_m / 2.0).max(LEAST_WEIGHT_M);
+            Weighted { level_m: course.stations[grounded[at]].raw_m, weight }
+        })
+        .collect();
+    let mut lowest_m = f64::INFINITY;
+    for (&at, fitted_m) in grounded.iter().zip(falling(&weighted)) {
+        let station = &mut course.stations[at];
+        lowest_m = lowest_m.min(fitted_m).min(station.bank_m);
+        station.level_m = lowest_m;
+    }
+}
+
+impl Nodes {
+    fn shared(courses: &[Course], channels: &[Channel]) -> Self {
+        let mut at: BTreeMap<(i64, i64), BTreeSet<usize>> = BTreeMap::new();
+        for (index, channel) in channels.iter().enumerate() {
+            for &point in channel.line.points() {
+                at.entry(node(point)).or_default().insert(index);
+            }
+        }
+        at.retain(|_, courses| courses.len() > 1);
+        let places: BTreeMap<(i64, i64), usize> = at.keys().copied().zip(0..).collect();
+        let nodes = at.into_values().map(|courses| Node {
+            courses,
+            cap_m: f64::INFINITY,
+            floor_m: f64::NEG_INFINITY,
+        });
+        let stations_of = |(course, channel): (&Course, &Channel)| {
+            let points = channel.line.points();
+            let node_of = |station: &Station| {
+                station.vertex.and_then(|vertex| places.get(&node(points[vertex])).copied())
+            };
+            let stations = course.stations.iter().enumerate();
+            stations.filter_map(|(at, station)| node_of(station).map(|node| (at, node))).collect()
+        };
+        Self { nodes: nodes.collect(), of_courses: courses.iter().zip(channels).map(stations_of).collect() }
+    }
+}
+
+/// Visits every course, and again those that share a node which `visit` has changed, until nothing changes.
+fn relax(courses: &mut [Course], nodes: &mut Nodes, visit: fn(&mut Course, &mut Nodes, usize) -> Vec<usize>) {
+    let mut waiting: BTreeSet<usize> = (0..courses.len()).collect();
+    while let Some(index) = waiting.pop_first() {
+        for node in visit(&mut courses[index], nodes, index) {
+            waiting.extend(nodes.nodes[node].courses.iter().filter(|&&other| other != index));
+        }
+    }
+}
+
+/// Lowers a course to what flows in at its nodes, and returns the nodes that it reaches lower than all before.
+fn lower(course: &mut Course, nodes: &mut Nodes, index: usize) -> Vec<usize> {
+    let (mut lowered, mut lowest_m) = (Vec::new(), f64::INFINITY);
+    let mut own = nodes.of_courses[index].iter().peekable();
+    for (at, station) in course.stations.iter_mut().enumerate() {
+        let node = own.next_if(|(own, _)| *own == at).map(|&(_, node)| node);
+        if let Some(node) = node {
+            lowest_m = lowest_m.min(nodes.nodes[node].cap_m);
+        }
+        if !station.level_m.is_nan() {
+            lowest_m = lowest_m.min(station.level_m);
+            station.level_m = lowest_m;
+        }
+        if let Some(node) = node.filter(|&node| lowest_m < nodes.nodes[node].cap_m) {
+            nodes.nodes[node].cap_m = lowest_m;
+            lowered.push(node);
+        }
+    }
+    lowered
+}
+
+/// Tells the nodes from which water of this course comes to a lake, and returns those that knew of none so high.
+fn raise_floor(course: &mut Course, nodes: &mut Nodes, index: usize) -> Vec<usize> {
+    let mut raised = Vec::new();
+    let stations_and_nodes = floors(course, nodes, index);
+    for (at, floor_m) in stations_and_nodes {
+        // What ends here does not speak for the water that goes on from here.
+        let goes_on = at.0 + 1 < course.stations.len();
+        if goes_on && floor_m > nodes.nodes[at.1].floor_m {
+            nodes.nodes[at.1].floor_m = floor_m;
+            raised.push(at.1);
+        }
+    }
+    raised
+}
+
+/// The highest lake downstream of each of a course's nodes, with the node's station.
+fn floors(course: &Course, nodes: &Nodes, index: usize) -> Vec<((usize, usize), f64)> {
+    let (mut found, mut highest_m) = (Vec::new(), f64::NEG_INFINITY);
+    let mut own = nodes.of_courses[index].iter().rev().peekable();
+    for (at, station) in course.stations.iter().enumerate().rev() {
+        highest_m = highest_m.max(station.lake_m.unwrap_or(f64::NEG_INFINITY));
+        if let Some(&place) = own.next_if(|(own, _)| *own == at) {
+            highest_m = highest_m.max(nodes.nodes[place.1].floor_m);
+            found.push((place, highest_m));
+        }
+    }
+    found
+}
+
+/// Raises the levels of a course to the highest lake that its water has yet to reach.
+fn keep_above_lakes(course: &mut Course, nodes: &Nodes, index: usize) {
+    let mut floor_m = f64::NEG_INFINITY;
+    let mut own = nodes.of_courses[index].iter().rev().peekable();
+    for (at, station) in course.stations.iter_mut().enumerate().rev() {
+        if let Some(&(_, node)) = own.next_if(|(own, _)| *own == at) {
+            floor_m = floor_m.max(nodes.nodes[node].floor_m);
+        }
+        floor_m = floor_m.max(station.lake_m.unwrap_or(f64::NEG_INFINITY));
+        // NaN stays: there is no ground to raise.
+        if station.level_m < floor_m {
+            station.level_m = floor_m;
+        }
+    }
+}
+
+/// The levels at a course's ends, nothing cut yet.
+pub(super) fn ends(course: &Course) -> Cut {
+    let mut levels = course.stations.iter().map(|station| station.level_m).filter(|level| !level.is_nan());
+    let first = levels.next();
+    let last = levels.next_back().or(first);
+    Cut { levels_m: first.zip(last), ..Cut::default() }
+}
