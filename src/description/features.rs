@@ -241,7 +241,8 @@ pub struct Fence {
 pub struct ModelPlacement {
     /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
-    /// `file`, needed: the model file.
+    /// `file`, needed: the model file, or the bare name of a built-in model: `"conifer"`, `"broadleaf"`, `"shrub"` or
+    /// `"rock"`.
     pub file: Spanned<String>,
     /// `at`, or `instances`: where its origin stands.
     pub at: Option<Spanned<[f64; 2]>>,
@@ -249,7 +250,7 @@ pub struct ModelPlacement {
     pub crs: Option<Spanned<String>>,
     /// `[model.instances]`: one at each point of a source; expressions see the point's properties.
     pub instances: Option<Source>,
-    /// `variants`, only with `instances`: other model files, by the value of `variant`; up to 256.
+    /// `variants`, only with `instances`: other models, named as in `file`, by the value of `variant`; up to 256.
     pub variants: Option<Spanned<BTreeMap<String, String>>>,
     /// `variant`, only with `variants`: which of them stands at a point; `file` where it is none.
     pub variant: Option<Spanned<Expression>>,
@@ -281,8 +282,7 @@ pub struct Scatter {
     pub name: Option<String>,
     /// `points`, `file`, `layer`, `where` and `crs`: the areas.
     pub source: Source,
-    /// `of`, needed: model files or built-in ones, `"conifer"`, `"broadleaf"`, `"shrub"` or `"rock"`; one or up to 256,
-    /// equally often.
+    /// `of`, needed: models, named as in `file` of `[[model]]`; one or up to 256, equally often.
     pub of: Option<Spanned<Vec<String>>>,
     /// `density`: how many to the hectare, in (0, 10⁵]. Default 100.
     pub density: Option<Spanned<Quantity>>,

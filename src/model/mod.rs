@@ -9,6 +9,7 @@
 //! What a model names — buffers, textures, material libraries — comes through [`kind::Companions`]. A file
 //! that cannot be trusted is an error; a picture that cannot be had is a note on a model without it.
 
+pub mod built_in;
 pub mod error;
 pub mod gltf;
 pub mod kind;

@@ -4,3 +4,4 @@
 //! meets the ground it stands on.
 
 pub mod faces;
+pub mod plinth;

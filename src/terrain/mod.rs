@@ -4,9 +4,11 @@
 pub mod brush;
 pub mod earthwork;
 pub mod facets;
+pub mod finest;
 pub mod hillshade;
 pub mod lattice;
 pub mod light;
+pub mod pad;
 pub mod profile;
 pub mod query;
 pub mod sight;
