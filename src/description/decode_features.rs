@@ -170,7 +170,11 @@ pub(super) fn model(reader: &mut Reader<'_, '_>) -> Option<ModelPlacement> {
             reader.error(span, message, "use `[model.instances]`, or remove it");
         }
         ([Some(span), None], _) => {
-            reader.error(span, "nothing says which of the `variants` stands where", "add `variant = \"property\"`");
+            reader.error(
+                span,
+                "nothing says which of the `variants` stands where",
+                "add `variant = \"property\"`",
+            );
         }
         ([None, Some(span)], _) => {
             let help = "add `variants = { value = \"file\", ... }`";

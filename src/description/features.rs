@@ -258,7 +258,8 @@ pub struct ModelPlacement {
     pub heading: Option<Spanned<Quantity>>,
     /// `scale`: metres per unit of the model file, in (0, 10⁶]. Default 1.
     pub scale: Option<Spanned<Quantity>>,
-    /// `clamp`: `"ground"`, its lowest point on the ground; `"relative"`, `height` above the ground;
+    /// `clamp`: `"ground"`, its lowest point on the ground, or the origin of a built-in model; `"relative"`, `height` above
+    /// the ground;
     /// `"absolute"`, at elevation `height`. Default `"ground"`.
     pub clamp: Option<Spanned<Clamp>>,
     /// `height`, in [−10⁷, 10⁷]: needed for `"relative"` and `"absolute"`, refused for `"ground"`.

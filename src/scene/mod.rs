@@ -1,8 +1,8 @@
 //! From the scene file to what a renderer draws.
 //!
 //! `build` turns a document and its assets into a [`kind::Scene`], one pass a file: the ground (`ground`), what lies on
-//! it (`water`, `roads`), models (`models`), labels and cameras (`views`); the passes gather what they make in
-//! `collected`. `picture` turns a scene and a camera into a draw list.
+//! it (`water`, `roads`), models (`models`, `scatter`; `footprint` and `stand` say how they meet the ground), labels and
+//! cameras (`views`); the passes gather what they make in `collected`. `picture` turns a scene and a camera into a draw list.
 
 pub mod assets;
 pub mod attributes;

@@ -71,14 +71,11 @@ impl Grounds<'_> {
 /// How a model with this footprint stands on the ground; `None` where there is none.
 pub fn stand(placement: &Placement, footprint: &Footprint, grounds: &Grounds<'_>) -> Option<Stand> {
     let at = placement.at.as_dvec2();
-    let whole = if placement.needs_footprint() {
-        grounds.under(&outline(placement, footprint), at)
-    } else {
-        None
-    };
-    let lean = whole.as_ref().map_or(DVec2::ZERO, |under| {
-        leaning(under.gradient(), f64::from(placement.standing.tilt_rad))
-    });
+    let whole =
+        if placement.needs_footprint() { grounds.under(&outline(placement, footprint), at) } else { None };
+    let lean = whole
+        .as_ref()
+        .map_or(DVec2::ZERO, |under| leaning(under.gradient(), f64::from(placement.standing.tilt_rad)));
     let anchor_z = match (placement.standing.anchor, &whole) {
         (Anchor::Lowest, Some(under)) => under.lowest(lean),
         (Anchor::Highest, Some(under)) => under.highest(lean),
@@ -87,7 +84,11 @@ pub fn stand(placement: &Placement, footprint: &Footprint, grounds: &Grounds<'_>
     };
     let exaggeration = f64::from(grounds.finest.exaggeration);
     let tilt_rad = libm::atan(lean.length());
-    Some(Stand { world_from_model: pose(placement, footprint, (anchor_z, lean), exaggeration), anchor_z, tilt_rad })
+    Some(Stand {
+        world_from_model: pose(placement, footprint, (anchor_z, lean), exaggeration),
+        anchor_z,
+        tilt_rad,
+    })
 }
 
 impl Stand {
@@ -98,7 +99,12 @@ impl Stand {
 
     /// The block between the model and the ground, in world space; `None` where it has none or lies in the ground all
     /// over.
-    pub fn plinth(&self, placement: &Placement, footprint: &Footprint, grounds: &Grounds<'_>) -> Option<DrawMesh> {
+    pub fn plinth(
+        &self,
+        placement: &Placement,
+        footprint: &Footprint,
+        grounds: &Grounds<'_>,
+    ) -> Option<DrawMesh> {
         let foot_z = self.plinth_foot_z(placement, footprint, grounds)? - PLINTH_DEPTH_M;
         Some(plinth::block(&self.base(&footprint.grown(PLINTH_REACH)), foot_z as f32))
     }
@@ -191,7 +197,8 @@ mod tests {
     use crate::terrain::lattice::Lattice;
     use glam::DVec2;
 
-    const FOOTPRINT: Footprint = Footprint { min: Vec3::new(-6.0, -4.0, -1.5), max: Vec3::new(6.0, 4.0, -1.5) };
+    const FOOTPRINT: Footprint =
+        Footprint { min: Vec3::new(-6.0, -4.0, -1.5), max: Vec3::new(6.0, 4.0, -1.5) };
     const AT: Vec2 = Vec2::new(100.0, 90.0);
 
     fn placement(heading_deg: f32, standing: Standing) -> Placement {
@@ -235,9 +242,9 @@ mod tests {
     /// The gaps under the corners on a plane.
     fn gaps(rise: DVec2, placement: &Placement) -> [f64; 4] {
         let stand = stand_on(&ground(|at| 300.0 + at.dot(rise)), placement);
-        stand.base(&FOOTPRINT).map(|corner| {
-            f64::from(corner.z) - (300.0 + corner.truncate().as_dvec2().dot(rise))
-        })
+        stand
+            .base(&FOOTPRINT)
+            .map(|corner| f64::from(corner.z) - (300.0 + corner.truncate().as_dvec2().dot(rise)))
     }
 
     #[test]
@@ -267,7 +274,10 @@ mod tests {
             assert!((stand.tilt_rad - 0.1).abs() < 1e-6);
             let up = stand.world_from_model.transform_vector3(Vec3::Z).normalize();
             assert!((libm::acosf(up.z) - 0.1).abs() < 1e-3);
-            assert!(up.truncate().as_dvec2().dot(rise) < 0.0, "it leans downhill, as the ground's normal does");
+            assert!(
+                up.truncate().as_dvec2().dot(rise) < 0.0,
+                "it leans downhill, as the ground's normal does"
+            );
         }
     }
 
@@ -275,7 +285,8 @@ mod tests {
     fn sinking_lowers_it_and_a_plinth_closes_the_gap_below() {
         let rise = DVec2::new(0.5, 0.0);
         let sunk = Standing { sink_m: 0.75, ..Standing::default() };
-        let (plain, low) = (gaps(rise, &placement(0.0, Standing::default())), gaps(rise, &placement(0.0, sunk)));
+        let (plain, low) =
+            (gaps(rise, &placement(0.0, Standing::default())), gaps(rise, &placement(0.0, sunk)));
         assert!(plain.iter().zip(low).all(|(plain, low)| (plain - low - 0.75).abs() < 1e-3));
         let lattice = ground(|at| 300.0 + at.dot(rise));
         let finest = Finest { lattice: &lattice, exaggeration: 1.0 };
@@ -311,7 +322,8 @@ mod tests {
         let finest = Finest { lattice: &lattice, exaggeration: 3.0 };
         for anchor in [Anchor::Origin, Anchor::Mean] {
             let placed = placement(0.0, Standing { anchor, ..Standing::default() });
-            let found = stand(&placed, &FOOTPRINT, &Grounds { displayed: &Nothing, finest }).expect("there is ground");
+            let found = stand(&placed, &FOOTPRINT, &Grounds { displayed: &Nothing, finest })
+                .expect("there is ground");
             assert!((found.anchor_z - 300.0).abs() < 1e-2, "{anchor:?}: {}", found.anchor_z);
         }
     }

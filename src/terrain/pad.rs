@@ -121,7 +121,8 @@ mod tests {
     }
 
     fn outline(turn: f64) -> Vec<DVec2> {
-        let turned = DMat2::from_cols_array(&[libm::cos(turn), libm::sin(turn), -libm::sin(turn), libm::cos(turn)]);
+        let turned =
+            DMat2::from_cols_array(&[libm::cos(turn), libm::sin(turn), -libm::sin(turn), libm::cos(turn)]);
         let corners = [(-6.0, -4.0), (6.0, -4.0), (6.0, 4.0), (-6.0, 4.0)];
         corners.map(|(x, y)| DVec2::splat(50.0) + turned * DVec2::new(x, y)).to_vec()
     }

@@ -8,8 +8,8 @@ use crate::model::built_in::blob::{Ball, between, waves};
 use crate::model::built_in::trunk;
 
 /// Leaves in the light, and those in the shade of others.
-const LIGHT: Srgba = Srgba::opaque(144, 158, 84);
-const SHADE: Srgba = Srgba::opaque(62, 86, 50);
+const LIGHT: Srgba = Srgba::opaque(154, 168, 90);
+const SHADE: Srgba = Srgba::opaque(72, 96, 56);
 
 /// A lump of the crown: its middle and half its size, in metres.
 struct Lump {

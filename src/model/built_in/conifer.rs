@@ -32,8 +32,8 @@ const SKIRTS: [Skirt; 5] = [
 ];
 
 /// The tips of boughs in the light, the gaps between them, the middle of the tree, and its underside.
-const BOUGH: Srgba = Srgba::opaque(98, 130, 76);
-const GAP: Srgba = Srgba::opaque(52, 84, 54);
+const BOUGH: Srgba = Srgba::opaque(106, 138, 82);
+const GAP: Srgba = Srgba::opaque(58, 90, 58);
 const CORE: Srgba = Srgba::opaque(70, 104, 62);
 const UNDER: Srgba = Srgba::opaque(34, 54, 38);
 

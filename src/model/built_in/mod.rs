@@ -79,7 +79,8 @@ mod tests {
             for ids in &mesh.triangles {
                 let corners = ids.map(|id| &mesh.vertices[id.index()]);
                 let [a, b, c] = corners.map(|corner| Vec3::from(corner.position));
-                let face = (b - a).cross(c - a).try_normalize().unwrap_or_else(|| panic!("{name}: {a} {b} {c}"));
+                let face =
+                    (b - a).cross(c - a).try_normalize().unwrap_or_else(|| panic!("{name}: {a} {b} {c}"));
                 for corner in corners {
                     let normal = Vec3::from(corner.normal);
                     assert!((normal.length() - 1.0).abs() < 1e-4, "{name}: {normal}");

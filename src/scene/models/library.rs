@@ -8,18 +8,19 @@ use std::ops::Range;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
+use crate::description::words::Clamp;
 use crate::model::kind::Model;
 use crate::model::{built_in, read};
 use crate::scene::assets::Assets;
 use crate::scene::collected::Collected;
 use crate::scene::footprint::Footprint;
 
-/// Whose origin stands at the ground by design.
+/// Where a model comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Origin {
-    /// A model file: nothing is known.
+enum Maker {
+    /// A file.
     File,
-    /// A built-in model: its origin is at the ground, and what is below belongs in it.
+    /// The program.
     BuiltIn,
 }
 
@@ -28,7 +29,7 @@ pub struct Library<'a> {
     document: &'a Document,
     assets: &'a Assets,
     models: Vec<Model>,
-    about: Vec<(Footprint, Origin)>,
+    about: Vec<(Footprint, Maker)>,
     known: BTreeMap<String, usize>,
 }
 
@@ -51,12 +52,12 @@ impl<'a> Library<'a> {
         if let Some(&model) = self.known.get(name) {
             return Ok(model);
         }
-        let (model, origin) = match built_in::by_name(name) {
-            Some(model) => (model, Origin::BuiltIn),
-            None => (self.load(name, span)?, Origin::File),
+        let (model, maker) = match built_in::by_name(name) {
+            Some(model) => (model, Maker::BuiltIn),
+            None => (self.load(name, span)?, Maker::File),
         };
         collected.notes.extend(model.notes.iter().map(|note| format!("{name}: {note}")));
-        self.about.push((Footprint::of(&model), origin));
+        self.about.push((Footprint::of(&model), maker));
         self.models.push(model);
         self.known.insert(name.to_owned(), self.models.len() - 1);
         Ok(self.models.len() - 1)
@@ -80,9 +81,13 @@ impl<'a> Library<'a> {
         &self.about[model].0
     }
 
-    /// Whether a model's origin is at the ground by design.
-    pub fn origin(&self, model: usize) -> Origin {
-        self.about[model].1
+    /// How a model's height is found where `stated` is asked for. A built-in model on the ground stands there by its
+    /// origin, since what it has below that is its root.
+    pub fn clamp(&self, model: usize, stated: Clamp) -> Clamp {
+        match (stated, self.about[model].1) {
+            (Clamp::Ground, Maker::BuiltIn) => Clamp::Relative,
+            _ => stated,
+        }
     }
 
     /// How far a model reaches from its origin in plan, in its own units.

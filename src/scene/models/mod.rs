@@ -71,7 +71,13 @@ pub fn place(
             places.on_ground(lattice, at, world)?;
             let model = library.get(table.file.get_ref(), table.file.span(), collected)?;
             let name = table.name.clone().unwrap_or_else(|| table.file.get_ref().clone());
-            placements.push(placed(table, model, (&Attributes::default(), world), name, collected));
+            placements.push(placed(
+                table,
+                (&library, model),
+                (&Attributes::default(), world),
+                name,
+                collected,
+            ));
         } else if let Some(source) = &table.instances {
             let points = sources.points(source)?;
             within(document, source, placements.len() + points.len())?;
@@ -84,7 +90,7 @@ pub fn place(
                 }
                 let model = choice.of(&attributes);
                 let name = attributes.name(table.name.as_deref());
-                placements.push(placed(table, model, (&attributes, shape), name, collected));
+                placements.push(placed(table, (&library, model), (&attributes, shape), name, collected));
             }
             unknown = choice.unknown;
         }
@@ -112,7 +118,7 @@ pub fn within(document: &Document, source: &Source, count: usize) -> Result<(), 
 
 fn placed(
     table: &ModelPlacement,
-    model: usize,
+    (library, model): (&Library<'_>, usize),
     (attributes, at): (&Attributes, DVec2),
     name: String,
     collected: &mut Collected,
@@ -128,7 +134,7 @@ fn placed(
     Placement {
         model,
         at: at.as_vec2(),
-        clamp: table.clamp.as_ref().map(Spanned::get_ref).copied().unwrap_or_default(),
+        clamp: library.clamp(model, table.clamp.as_ref().map(Spanned::get_ref).copied().unwrap_or_default()),
         height_m,
         heading_rad: heading_deg.to_radians(),
         scale,

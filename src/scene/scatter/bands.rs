@@ -40,7 +40,8 @@ impl Bands {
         let mut rows: Vec<Vec<(DVec2, DVec2)>> = vec![Vec::new(); count];
         let mut pieces = 0;
         for (from, to) in rings.flat_map(polygon::edges) {
-            let (low, high) = (square(from.y.min(to.y)).max(first_row), square(from.y.max(to.y)).min(last_row));
+            let (low, high) =
+                (square(from.y.min(to.y)).max(first_row), square(from.y.max(to.y)).min(last_row));
             pieces += usize::try_from(high - low + 1).unwrap_or(0);
             if pieces > most {
                 return None;

@@ -10,7 +10,8 @@ pub struct Chance(u64);
 impl Chance {
     /// The stream of a square under a seed.
     pub fn of(seed: u64, (column, row): (i64, i64)) -> Self {
-        let start = mixed(seed ^ mixed(column as u64)).wrapping_add((row as u64).wrapping_mul(0xd6e8_feb8_6659_fd93));
+        let start =
+            mixed(seed ^ mixed(column as u64)).wrapping_add((row as u64).wrapping_mul(0xd6e8_feb8_6659_fd93));
         Self(mixed(start))
     }
 

@@ -24,7 +24,7 @@ use crate::geom::rect::Rect;
 use crate::scene::attributes::Attributes;
 use crate::scene::collected::Collected;
 use crate::scene::kind::{FeatureKind, Placement, Standing};
-use crate::scene::models::library::{Library, Origin};
+use crate::scene::models::library::Library;
 use crate::scene::models::within;
 use crate::scene::place::Places;
 use crate::scene::report::{Cell, Column};
@@ -178,7 +178,9 @@ fn bands(
     bands.ok_or_else(|| {
         let place = table.density.as_ref().map_or(table.source.span(), Spanned::span);
         let message = format!("so dense a pattern has more than {MAX_SQUARES} places in these areas");
-        document.error_at(place, message).with_help("`density` is how many stand on a hectare, 100 m by 100 m")
+        document
+            .error_at(place, message)
+            .with_help("`density` is how many stand on a hectare, 100 m by 100 m")
     })
 }
 
@@ -244,11 +246,7 @@ impl Ground<'_> {
         let rise = (gradient.0.length() as f32) * self.places.exaggeration;
         let standing =
             Standing { sink_m: rise * self.library.footprint(model).radius() * scale, ..Standing::default() };
-        // A built-in model's origin is at the ground, and its roots in it.
-        let clamp = match self.library.origin(model) {
-            Origin::BuiltIn => Clamp::Relative,
-            Origin::File => Clamp::Ground,
-        };
+        let clamp = self.library.clamp(model, Clamp::Ground);
         let at = (place.at - self.lattice.origin()).as_vec2();
         Placement { model, at, clamp, height_m: 0.0, heading_rad, scale, standing, feature: self.feature }
     }
@@ -288,7 +286,8 @@ fn taken_by(placements: &[Placement], library: &Library<'_>, collected: &Collect
 fn tell(table: &Scatter, (count, areas, counts): (usize, usize, Counts), collected: &mut Collected) {
     let name = table.name.clone().unwrap_or_default();
     let models = if count == 1 { "1 model stands".into() } else { format!("{count} models stand") };
-    let called = if name.is_empty() { "a scatter without a name".into() } else { format!("scatter '{name}'") };
+    let called =
+        if name.is_empty() { "a scatter without a name".into() } else { format!("scatter '{name}'") };
     let areas_s = if areas == 1 { "1 area".into() } else { format!("{areas} areas") };
     collected.notes.push(format!("{called}: {models} in {areas_s}"));
     collected.report.add(
