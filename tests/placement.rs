@@ -62,7 +62,7 @@ fn houses(lines: &str) -> Scene {
         let (x, y) = (300 + index % 4 * 420, 350 + index / 4 * 520);
         format!(
             "[[model]]\nname = \"{index}\"\nfile = \"house.obj\"\nat = [{x}, {y}]\nheading = {}\n{lines}\n",
-            index * 37
+            index * 29
         )
     };
     scene(&(0..12).map(table).collect::<String>()).expect("sound")

@@ -127,7 +127,7 @@ fn nothing_stands_in_a_clearing() {
 
 #[test]
 fn slope_and_elevation_limits_hold_and_what_they_cost_is_told() {
-    let scene = scene(&table(ALL, "slope = [10, 30]\nelevation = [120, 200]")).expect("sound");
+    let scene = scene(&table(ALL, "slope = [10, 25]\nelevation = [120, 200]")).expect("sound");
     let lattice = &scene.terrain.lattice;
     assert!(scene.placements.len() > 1000);
     for placement in &scene.placements {
@@ -135,7 +135,7 @@ fn slope_and_elevation_limits_hold_and_what_they_cost_is_told() {
         let height = ground_height(lattice, Interpolation::Planar, map).height_m().expect("ground");
         let slope = ground_gradient(lattice, Patch::Planar, map).expect("ground").slope_deg();
         assert!((119.99..=200.01).contains(&height), "{height}");
-        assert!((9.9..=30.1).contains(&slope), "{slope}");
+        assert!((9.9..=25.1).contains(&slope), "{slope}");
     }
     let row = &scene.report.table("scattered").expect("told").rows[0];
     assert_eq!(row[1], Cell::Count(scene.placements.len()));
