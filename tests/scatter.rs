@@ -98,7 +98,7 @@ fn the_same_tree_stands_where_it_stood_on_another_cut_of_the_ground() {
 
 #[test]
 fn density_and_spacing_are_as_asked() {
-    for (density, spacing) in [(100.0, 5.0), (40.0, 10.0), (200.0, 0.0)] {
+    for (density, spacing) in [(100.0, 5.0), (25.0, 10.0), (200.0, 0.0)] {
         let text = table(ALL, &format!("density = {density}\nspacing = {spacing}"));
         let found = places(&scene(&text).expect("sound"));
         let expected = density * 100.0;
@@ -110,6 +110,13 @@ fn density_and_spacing_are_as_asked() {
             near.for_each(|other| assert!(tree.distance(*other) >= spacing - 1e-3));
         }
     }
+}
+
+#[test]
+fn spacing_that_leaves_no_room_for_the_density_is_told() {
+    let scene = scene(&table(ALL, "density = 40\nspacing = 10")).expect("sound");
+    assert!((2850..3150).contains(&scene.placements.len()), "{}", scene.placements.len());
+    assert!(scene.notes.iter().any(|note| note.contains("`spacing` leaves no room")), "{:?}", scene.notes);
 }
 
 #[test]

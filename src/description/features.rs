@@ -287,7 +287,8 @@ pub struct Scatter {
     pub of: Option<Spanned<Vec<String>>>,
     /// `density`: how many to the hectare, in (0, 10⁵]. Default 100.
     pub density: Option<Spanned<Quantity>>,
-    /// `spacing`: how near to each other they may stand, in [0, 10 000]. Default: half of what the density leaves.
+    /// `spacing`: how near to each other they may stand, in [0, 10 000]; where it leaves no room for the density, fewer stand.
+    /// Default: half the side of the square that each has to itself.
     pub spacing: Option<Spanned<Quantity>>,
     /// `scale`: metres per unit of the model, from and to, each in (0, 10⁶]. Default `[0.8, 1.2]`.
     pub scale: Option<Spanned<[f64; 2]>>,

@@ -88,6 +88,9 @@ pub fn strew(
         let (mut stood, mut counts, mut areas) = (Vec::new(), Counts::default(), 0);
         for Sourced { attributes, shape } in sources.polygons(&table.source)? {
             let pattern = pattern(table, &attributes, species.seed, collected);
+            if pattern.is_crowded() {
+                counts.crowded += 1;
+            }
             let bands = bands(document, table, (&shape, &pattern), (lattice, &mut squares))?;
             for rows in bands.rows().collect::<Vec<_>>().chunks(ROWS_AT_ONCE) {
                 let done: Vec<_> = rows.par_iter().map(|&row| ground.row(&bands, &pattern, row)).collect();
@@ -129,9 +132,10 @@ impl Species {
     }
 }
 
-/// How many places of a pattern nothing stands at, by why.
+/// How many places of a pattern nothing stands at, by why, and in how many areas the spacing takes from the density.
 #[derive(Clone, Copy, Debug, Default)]
 struct Counts {
+    crowded: usize,
     slope: usize,
     elevation: usize,
     taken: usize,
@@ -140,6 +144,7 @@ struct Counts {
 
 impl Counts {
     fn add(&mut self, other: Self) {
+        self.crowded += other.crowded;
         self.slope += other.slope;
         self.elevation += other.elevation;
         self.taken += other.taken;
@@ -290,6 +295,10 @@ fn tell(table: &Scatter, (count, areas, counts): (usize, usize, Counts), collect
         if name.is_empty() { "a scatter without a name".into() } else { format!("scatter '{name}'") };
     let areas_s = if areas == 1 { "1 area".into() } else { format!("{areas} areas") };
     collected.notes.push(format!("{called}: {models} in {areas_s}"));
+    if counts.crowded > 0 {
+        let message = "fewer than `density` says, since `spacing` leaves no room for more";
+        collected.notes.push(format!("{called}: {message}"));
+    }
     collected.report.add(
         SCATTERED,
         vec![

@@ -28,6 +28,7 @@ pub struct Pattern {
     spacing_m: f64,
     side_m: f64,
     density: f64,
+    is_crowded: bool,
 }
 
 /// A place where something may stand.
@@ -46,15 +47,20 @@ impl Pattern {
     /// for.
     pub fn new(seed: u64, density: f64, spacing_m: f64) -> Self {
         let disc = PI * spacing_m * spacing_m;
-        let density = density.min(MOST / disc);
+        let (asked, density) = (density, density.min(MOST / disc));
         // For spacings that take hardly anything the logarithm is its argument.
         let candidates = if disc * density < 1e-9 { density } else { -libm::log1p(-disc * density) / disc };
-        Self { seed, spacing_m, side_m: 1.0 / candidates.sqrt(), density }
+        Self { seed, spacing_m, side_m: 1.0 / candidates.sqrt(), density, is_crowded: density < asked }
     }
 
     /// How many places there are to the square metre.
     pub fn density(&self) -> f64 {
         self.density
+    }
+
+    /// Whether the spacing leaves no room for the density asked for.
+    pub fn is_crowded(&self) -> bool {
+        self.is_crowded
     }
 
     /// The side of a square in metres; never less than the spacing.
@@ -127,7 +133,7 @@ mod tests {
     #[test]
     fn spacing_that_leaves_no_room_takes_from_the_density() {
         let pattern = Pattern::new(0, 0.01, 20.0);
-        assert!((pattern.density() - 0.95 / (PI * 400.0)).abs() < 1e-12);
+        assert!((pattern.density() - 0.95 / (PI * 400.0)).abs() < 1e-12 && pattern.is_crowded());
     }
 
     #[test]
