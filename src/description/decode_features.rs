@@ -158,6 +158,7 @@ pub(super) fn model(reader: &mut Reader<'_, '_>) -> Option<ModelPlacement> {
     let at = reader.get("at", |item| item.point());
     let crs = any_crs(reader, "crs");
     let instances = reader.table("instances", |reader| source(reader, 1)).flatten();
+    let is_many = given[1].is_some();
     match given {
         [Some(_), Some(instances)] => {
             reader.error(instances, "[[model]] has both `at` and `instances`", "keep one of them");
@@ -168,8 +169,27 @@ pub(super) fn model(reader: &mut Reader<'_, '_>) -> Option<ModelPlacement> {
         }
         _ => {}
     }
+    let by_point = [reader.has("variants"), reader.has("variant")];
     let variants = reader.get("variants", |item| item.files_by_word());
     let variant = expression(reader, "variant");
+    match (by_point, is_many) {
+        ([Some(span), _] | [None, Some(span)], false) => {
+            let message = "this chooses among models for many points, but the model stands at one place";
+            reader.error(span, message, "use `[model.instances]`, or remove it");
+        }
+        ([Some(span), None], _) => {
+            reader.error(
+                span,
+                "nothing says which of the `variants` stands where",
+                "add `variant = \"property\"`",
+            );
+        }
+        ([None, Some(span)], _) => {
+            let help = "add `variants = { value = \"file\", ... }`";
+            reader.error(span, "there are no `variants` to choose from", help);
+        }
+        _ => {}
+    }
     let heading = quantity(reader, "heading", DIRECTION);
     let scale = quantity(reader, "scale", SCALE);
     let clamp = reader.get("clamp", |item| item.word());
@@ -184,6 +204,13 @@ pub(super) fn model(reader: &mut Reader<'_, '_>) -> Option<ModelPlacement> {
             reader.error(clamp.span(), "this needs a `height`", "add `height = ...` in metres");
         }
         _ => {}
+    }
+    let on_ground = ["anchor", "tilt", "sink"].map(|key| reader.has(key));
+    if clamp.as_ref().is_some_and(|clamp| *clamp.get_ref() == Clamp::Absolute) {
+        for span in on_ground.into_iter().flatten() {
+            let message = "this says nothing for a model at a stated elevation";
+            reader.error(span, message, "remove it, or take another `clamp`");
+        }
     }
     let anchor = reader.get("anchor", |item| item.word());
     let tilt = number(reader, "tilt", SLOPE);

@@ -253,7 +253,8 @@ pub struct Fence {
 pub struct ModelPlacement {
     /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
-    /// `file`, needed: the model file.
+    /// `file`, needed: the model file, or the bare name of a built-in model: `"conifer"`, `"broadleaf"`, `"shrub"` or
+    /// `"rock"`.
     pub file: Spanned<String>,
     /// `at`, or `instances`: where its origin stands.
     pub at: Option<Spanned<[f64; 2]>>,
@@ -261,7 +262,7 @@ pub struct ModelPlacement {
     pub crs: Option<Spanned<String>>,
     /// `[model.instances]`: one at each point of a source; expressions see the point's properties.
     pub instances: Option<Source>,
-    /// `variants`, only with `instances`: other model files, by the value of `variant`; up to 256.
+    /// `variants`, only with `instances`: other models, named as in `file`, by the value of `variant`; up to 256.
     pub variants: Option<Spanned<BTreeMap<String, String>>>,
     /// `variant`, only with `variants`: which of them stands at a point; `file` where it is none.
     pub variant: Option<Spanned<Expression>>,
@@ -269,7 +270,8 @@ pub struct ModelPlacement {
     pub heading: Option<Spanned<Quantity>>,
     /// `scale`: metres per unit of the model file, in (0, 10⁶]. Default 1.
     pub scale: Option<Spanned<Quantity>>,
-    /// `clamp`: `"ground"`, its lowest point on the ground; `"relative"`, `height` above the ground;
+    /// `clamp`: `"ground"`, its lowest point on the ground, or the origin of a built-in model; `"relative"`, `height` above
+    /// the ground;
     /// `"absolute"`, at elevation `height`. Default `"ground"`.
     pub clamp: Option<Spanned<Clamp>>,
     /// `height`, in [−10⁷, 10⁷]: needed for `"relative"` and `"absolute"`, refused for `"ground"`.
@@ -293,12 +295,12 @@ pub struct Scatter {
     pub name: Option<String>,
     /// `points`, `file`, `layer`, `where` and `crs`: the areas.
     pub source: Source,
-    /// `of`, needed: model files or built-in ones, `"conifer"`, `"broadleaf"`, `"shrub"` or `"rock"`; one or up to 256,
-    /// equally often.
+    /// `of`, needed: models, named as in `file` of `[[model]]`; one or up to 256, equally often.
     pub of: Option<Spanned<Vec<String>>>,
     /// `density`: how many to the hectare, in (0, 10⁵]. Default 100.
     pub density: Option<Spanned<Quantity>>,
-    /// `spacing`: how near to each other they may stand, in [0, 10 000]. Default: half of what the density leaves.
+    /// `spacing`: how near to each other they may stand, in [0, 10 000]; where it leaves no room for the density, fewer stand.
+    /// Default: half the side of the square that each has to itself.
     pub spacing: Option<Spanned<Quantity>>,
     /// `scale`: metres per unit of the model, from and to, each in (0, 10⁶]. Default `[0.8, 1.2]`.
     pub scale: Option<Spanned<[f64; 2]>>,

@@ -6,9 +6,11 @@
 //!                 └─ gltf ─────┘
 //! ```
 //!
-//! What a model names — buffers, textures, material libraries — comes through [`kind::Companions`]. A file
-//! that cannot be trusted is an error; a picture that cannot be had is a note on a model without it.
+//! Trees, a shrub and a rock are [`built_in`]. What a model file names — buffers, textures, material libraries — comes
+//! through [`kind::Companions`]. A file that cannot be trusted is an error; a picture that cannot be had is a note on a
+//! model without it.
 
+pub mod built_in;
 pub mod error;
 pub mod gltf;
 pub mod kind;

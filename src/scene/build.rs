@@ -58,7 +58,8 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     collected.take_apart();
 
     step("loading models");
-    let (models, placements) = models::place(document, &places, assets, &lattice, &mut collected)?;
+    let (models, placements) =
+        models::place(document, (&places, &sources, assets), &mut lattice, &mut collected)?;
 
     let defaulted: Vec<String> = attributes::notes(&collected.defaulted).collect();
     collected.notes.extend(defaulted);

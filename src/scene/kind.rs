@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec2, Vec2, Vec3};
 
 use crate::description::document::Furniture;
-use crate::description::words::{Clamp, LabelKind};
+use crate::description::words::{Anchor, Clamp, Footing, LabelKind};
 use crate::draw::color::Srgba;
 use crate::draw::ground::GroundMap;
 use crate::draw::lighting::Lighting;
@@ -121,7 +121,7 @@ pub enum FeatureKind {
     Fence,
     /// A model.
     Model,
-    /// A model strewn with others over an area.
+    /// Models strewn over areas: one feature a table, however many stand there.
     Scattered,
 }
 
@@ -152,7 +152,7 @@ impl FeatureKind {
             Self::Building => ("building", "buildings"),
             Self::Fence => ("line", "lines"),
             Self::Model => ("model", "models"),
-            Self::Scattered => ("scattered model", "scattered models"),
+            Self::Scattered => ("scatter of models", "scatters of models"),
         };
         if count == 1 { one } else { several }
     }
@@ -222,8 +222,30 @@ pub struct Placement {
     pub heading_rad: f32,
     /// Metres per unit of the model.
     pub scale: f32,
+    /// How it meets the ground.
+    pub standing: Stance,
     /// The feature it is.
     pub feature: FeatureId,
+}
+
+/// How a model meets the ground it stands on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stance {
+    /// Which ground under it counts.
+    pub anchor: Anchor,
+    /// How far it may lean with the ground, in radians.
+    pub tilt_rad: f32,
+    /// How deep it stands in the ground, in metres.
+    pub sink_m: f32,
+    /// What fills the gap.
+    pub footing: Footing,
+}
+
+impl Placement {
+    /// Whether its place depends on all of the ground under its footprint and not only on that under its origin.
+    pub fn needs_footprint(&self) -> bool {
+        self.standing.anchor != Anchor::Origin || self.standing.tilt_rad > 0.0
+    }
 }
 
 /// A name on the picture.

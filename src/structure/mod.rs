@@ -17,6 +17,7 @@ pub mod fence_track;
 pub mod hedge;
 pub mod obstacle;
 pub mod pier;
+pub mod plinth;
 pub mod power;
 pub mod power_beam;
 pub mod roof;

@@ -13,6 +13,7 @@ pub mod grading;
 pub mod hillshade;
 pub mod lattice;
 pub mod light;
+pub mod pad;
 pub mod profile;
 pub mod query;
 pub mod shore;

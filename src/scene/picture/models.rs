@@ -2,55 +2,51 @@
 
 use std::collections::BTreeMap;
 
-use glam::{Mat4, Quat, Vec3};
-
-use crate::description::words::Clamp;
 use crate::draw::list::{DrawItem, DrawList, Layer, MaterialId, MeshId};
 use crate::draw::material::{Material, TextureId};
 use crate::model::kind::Model;
-use crate::scene::kind::{Placement, Scene};
+use crate::scene::footprint::Footprint;
+use crate::scene::kind::Scene;
+use crate::scene::picture::add_mesh;
+use crate::scene::stand::{Grounds, stand};
 use crate::terrain::facets::Facets;
-use crate::terrain::query::{Interpolation, ground_height};
+use crate::terrain::finest::Finest;
 
 /// A model's meshes and materials in a draw list.
 struct Listed {
     parts: Vec<(MeshId, u32, MaterialId)>,
-    lowest_z: f32,
+    footprint: Footprint,
 }
 
-/// Adds every placement that has ground under it.
+/// Adds every placement that has ground under it, and the plinths.
 pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn Facets) {
+    let finest = Finest { lattice: &scene.terrain.lattice, exaggeration: scene.terrain.exaggeration };
+    let grounds = Grounds { displayed, finest };
     let mut listed: BTreeMap<usize, Listed> = BTreeMap::new();
+    let mut concrete = None;
     for placement in &scene.placements {
-        let Some(ground_z) = foot_z(scene, placement, displayed) else {
-            continue;
-        };
         let model =
             listed.entry(placement.model).or_insert_with(|| list_model(list, &scene.models[placement.model]));
-        let world_from_mesh =
-            transform(placement, model.lowest_z, ground_z as f32, scene.terrain.exaggeration);
+        let Some(stand) = stand(placement, &model.footprint, &grounds) else {
+            continue;
+        };
         for &(mesh, count, material) in &model.parts {
             list.items.push(DrawItem {
                 mesh,
                 triangles: 0..count,
                 material,
-                world_from_mesh,
+                world_from_mesh: stand.world_from_model,
                 layer: Layer::Solid,
                 feature: placement.feature,
             });
         }
+        if let Some(block) = stand.plinth(placement, &model.footprint, &grounds) {
+            let material = *concrete.get_or_insert_with(|| {
+                list.add_material(Material { name: "concrete".into(), ..Material::default() })
+            });
+            add_mesh(list, block, material, Layer::Solid, placement.feature);
+        }
     }
-}
-
-/// World Z of the ground under a model: as displayed, or as it is where the ground there is out of view, since
-/// the model's upper parts may be in view all the same. `None` over no data.
-fn foot_z(scene: &Scene, placement: &Placement, displayed: &dyn Facets) -> Option<f64> {
-    let lattice = &scene.terrain.lattice;
-    let at = placement.at.as_dvec2();
-    displayed.displayed_z(at).or_else(|| {
-        let height_m = ground_height(lattice, Interpolation::Planar, at + lattice.origin()).height_m()?;
-        Some(height_m * f64::from(scene.terrain.exaggeration))
-    })
 }
 
 fn list_model(list: &mut DrawList, model: &Model) -> Listed {
@@ -69,48 +65,5 @@ fn list_model(list: &mut DrawList, model: &Model) -> Listed {
             (list.add_mesh(part.mesh.clone()), count, MaterialId(part.material.0 + first_material))
         })
         .collect();
-    Listed { parts, lowest_z: model.bounds().map_or(0.0, |(min, _)| min.z) }
-}
-
-/// Where a model stands, given its lowest Z and the drawn ground at its origin.
-///
-/// Its front, −Y, is turned to the heading.
-fn transform(placement: &Placement, lowest_z: f32, ground_z: f32, exaggeration: f32) -> Mat4 {
-    let z = match placement.clamp {
-        Clamp::Ground => ground_z - lowest_z * placement.scale,
-        Clamp::Relative => ground_z + placement.height_m,
-        Clamp::Absolute => placement.height_m * exaggeration,
-    };
-    let turn = std::f32::consts::PI - placement.heading_rad;
-    let half = turn * 0.5;
-    let rotation = Quat::from_xyzw(0.0, 0.0, libm::sinf(half), libm::cosf(half));
-    Mat4::from_scale_rotation_translation(Vec3::splat(placement.scale), rotation, placement.at.extend(z))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::draw::list::FeatureId;
-    use glam::Vec2;
-
-    #[test]
-    fn a_model_s_front_turns_to_its_heading_and_its_foot_stands_on_the_ground() {
-        for (heading, front) in [(0.0, Vec2::Y), (90.0, Vec2::X), (180.0, Vec2::NEG_Y), (270.0, Vec2::NEG_X)]
-        {
-            let placement = Placement {
-                model: 0,
-                at: Vec2::new(100.0, 200.0),
-                clamp: Clamp::Ground,
-                height_m: 0.0,
-                heading_rad: f32::to_radians(heading),
-                scale: 2.0,
-                feature: FeatureId(2),
-            };
-            let world_from_mesh = transform(&placement, -1.5, 40.0, 1.0);
-            let foot = world_from_mesh.transform_point3(Vec3::new(0.0, 0.0, -1.5));
-            assert!((foot - Vec3::new(100.0, 200.0, 40.0)).length() < 1e-4);
-            let seen = world_from_mesh.transform_vector3(Vec3::NEG_Y).truncate();
-            assert!((seen - front * 2.0).length() < 1e-5, "heading {heading}: {seen}");
-        }
-    }
+    Listed { parts, footprint: Footprint::of(model) }
 }

@@ -1,0 +1,101 @@
+//! Pads: the ground levelled under the models that ask for it, and the bounds on what footprints may cost.
+
+use std::collections::BTreeMap;
+
+use toml::Spanned;
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::Document;
+use crate::description::features::ModelPlacement;
+use crate::description::words::{Clamp, Footing};
+use crate::geom::polygon;
+use crate::scene::footprint::Footprint;
+use crate::scene::kind::{Placement, Stance};
+use crate::scene::models::Group;
+use crate::scene::models::library::Library;
+use crate::scene::place::Places;
+use crate::scene::stand::{Grounds, outline, stand};
+use crate::terrain::earthwork::Volumes;
+use crate::terrain::finest::Finest;
+use crate::terrain::lattice::{HIGHEST_M, Lattice};
+use crate::terrain::pad::{self, Batters};
+
+/// How far a pad reaches out beyond the footprint, as a part of the longer side: room to walk round.
+const PAD_REACH: f32 = 0.1;
+/// The most pads of a scene; each may move the earth of some ten thousand posts.
+const MAX_PADS: usize = 10_000;
+/// The most cells that all footprints together may cover, where they are looked at: some seconds of work for a scene
+/// whose models are a thousand times too large, which is a wrong unit.
+const MAX_CELLS: u64 = 10_000_000;
+
+/// Levels the ground under every model with a pad, and returns the earth moved by the placement's place among all.
+///
+/// A pad lies at the height of its model's anchor; a model at a stated elevation has it at its own foot.
+///
+/// # Errors
+/// More pads or larger footprints than there can be.
+pub fn lay(
+    document: &Document,
+    groups: &[Group<'_>],
+    placements: &[Placement],
+    (library, places): (&Library<'_>, &Places<'_>),
+    lattice: &mut Lattice,
+) -> Result<BTreeMap<usize, Volumes>, Diagnostic> {
+    let (mut volumes, mut cells) = (BTreeMap::new(), 0);
+    for group in groups {
+        for index in group.placements.clone() {
+            let placement = &placements[index];
+            let footprint = library.footprint(placement.model);
+            if !placement.needs_footprint() && placement.standing.footing == Footing::None {
+                continue;
+            }
+            let reach = polygon::bounds(&outline(placement, &footprint.grown(PAD_REACH)));
+            cells += Finest { lattice, exaggeration: places.exaggeration }.cell_count(&reach);
+            if cells > MAX_CELLS {
+                return Err(too_large(document, group.table));
+            }
+            if placement.standing.footing == Footing::Pad {
+                if volumes.len() == MAX_PADS {
+                    return Err(too_many(document, group.table));
+                }
+                if let Some(moved) = level(placement, footprint, places.exaggeration, lattice) {
+                    volumes.insert(index, moved);
+                }
+            }
+        }
+    }
+    Ok(volumes)
+}
+
+fn level(
+    placement: &Placement,
+    footprint: &Footprint,
+    exaggeration: f32,
+    lattice: &mut Lattice,
+) -> Option<Volumes> {
+    let upright = Placement { standing: Stance { tilt_rad: 0.0, ..placement.standing }, ..*placement };
+    let finest = Finest { lattice, exaggeration };
+    let found = stand(&upright, footprint, &Grounds { displayed: &finest, finest })?;
+    let level_z = match placement.clamp {
+        Clamp::Absolute => f64::from(found.base(footprint)[0].z),
+        Clamp::Ground | Clamp::Relative => found.anchor_z,
+    };
+    let highest = f64::from(HIGHEST_M);
+    let level_m = (level_z / f64::from(exaggeration)).clamp(-highest, highest);
+    let ring = outline(placement, &footprint.grown(PAD_REACH));
+    Some(pad::pad(lattice, &ring, level_m, Batters::default()))
+}
+
+fn too_many(document: &Document, table: &ModelPlacement) -> Diagnostic {
+    let place = table.footing.as_ref().map_or(table.file.span(), Spanned::span);
+    let message = format!("more than {MAX_PADS} models have the ground levelled for them");
+    document.error_at(place, message).with_help("use footing = \"plinth\", which moves no earth")
+}
+
+fn too_large(document: &Document, table: &ModelPlacement) -> Diagnostic {
+    let place = table.scale.as_ref().map_or(table.file.span(), Spanned::span);
+    let message = format!("up to this model, the footprints cover more than {MAX_CELLS} cells of ground");
+    document
+        .error_at(place, message)
+        .with_help("check `scale`, the metres per unit of the model file: 0.001 for one in millimetres")
+}

@@ -1,0 +1,103 @@
+//! The models that a document names, each had once: files, and those that are built in.
+//!
+//! One rule for `file`, `variants` and `of`: a text that is the bare name of a built-in model is that model; any other is
+//! the path of a file. A file that has such a name is reached by `./`.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::Document;
+use crate::description::words::Clamp;
+use crate::model::kind::Model;
+use crate::model::{built_in, read};
+use crate::scene::assets::Assets;
+use crate::scene::collected::Collected;
+use crate::scene::footprint::Footprint;
+
+/// Where a model comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Maker {
+    /// A file.
+    File,
+    /// The program.
+    BuiltIn,
+}
+
+/// Models by the names that the document has for them.
+pub struct Library<'a> {
+    document: &'a Document,
+    assets: &'a Assets,
+    models: Vec<Model>,
+    about: Vec<(Footprint, Maker)>,
+    known: BTreeMap<String, usize>,
+}
+
+impl<'a> Library<'a> {
+    /// An empty library that reads through `assets`.
+    pub fn new(document: &'a Document, assets: &'a Assets) -> Self {
+        Self { document, assets, models: Vec::new(), about: Vec::new(), known: BTreeMap::new() }
+    }
+
+    /// The place of the model called `name`, which is read if it is not there yet; what it did not get is noted.
+    ///
+    /// # Errors
+    /// The file cannot be had or read; said at `span`.
+    pub fn get(
+        &mut self,
+        name: &str,
+        span: Range<usize>,
+        collected: &mut Collected,
+    ) -> Result<usize, Diagnostic> {
+        if let Some(&model) = self.known.get(name) {
+            return Ok(model);
+        }
+        let (model, maker) = match built_in::by_name(name) {
+            Some(model) => (model, Maker::BuiltIn),
+            None => (self.load(name, span)?, Maker::File),
+        };
+        collected.notes.extend(model.notes.iter().map(|note| format!("{name}: {note}")));
+        self.about.push((Footprint::of(&model), maker));
+        self.models.push(model);
+        self.known.insert(name.to_owned(), self.models.len() - 1);
+        Ok(self.models.len() - 1)
+    }
+
+    fn load(&self, name: &str, span: Range<usize>) -> Result<Model, Diagnostic> {
+        let wrong = |reason: String| {
+            let error = self.document.error_at(span.clone(), reason);
+            if name.contains(['.', '/', '\\']) {
+                return error;
+            }
+            error.with_help(format!("the built-in models are {}", built_in::NAMES.join(", ")))
+        };
+        let bytes = self.assets.read(name).map_err(|error| wrong(error.to_string()))?;
+        let companions = self.assets.beside(name).map_err(|error| wrong(error.to_string()))?;
+        read::read(name, &bytes, &companions).map_err(|error| wrong(error.to_string()))
+    }
+
+    /// Where a model touches the ground.
+    pub fn footprint(&self, model: usize) -> &Footprint {
+        &self.about[model].0
+    }
+
+    /// How a model's height is found where `stated` is asked for. A built-in model on the ground stands there by its
+    /// origin, since what it has below that is its root.
+    pub fn clamp(&self, model: usize, stated: Clamp) -> Clamp {
+        match (stated, self.about[model].1) {
+            (Clamp::Ground, Maker::BuiltIn) => Clamp::Relative,
+            _ => stated,
+        }
+    }
+
+    /// How far a model reaches from its origin in plan, in its own units.
+    pub fn reach(&self, model: usize) -> f32 {
+        let bounds = self.models[model].bounds();
+        bounds.map_or(0.0, |(min, max)| min.abs().max(max.abs()).truncate().max_element())
+    }
+
+    /// All models, in the order of their places.
+    pub fn into_models(self) -> Vec<Model> {
+        self.models
+    }
+}

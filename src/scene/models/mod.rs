@@ -1,0 +1,196 @@
+//! Models: every file read once, every placement checked against the ground.
+//!
+//! ```text
+//!  [[model]] at / instances ─► placements ─► footings: pads level the ground ─► told: gaps, volumes
+//!  [[scatter]] ───────────────────────────────────────────────────────────────► placements by the thousand
+//! ```
+//!
+//! A placement names a model, a place in plan and how it meets the ground; how high it stands is worked out when it is
+//! drawn ([`crate::scene::stand`]).
+
+pub mod footings;
+pub mod library;
+pub mod told;
+
+use std::ops::Range;
+
+use glam::DVec2;
+use toml::Spanned;
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::Document;
+use crate::description::expression::Quantity;
+use crate::description::features::{ModelPlacement, Scalar, Source};
+use crate::model::kind::Model;
+use crate::scene::assets::Assets;
+use crate::scene::attributes::Attributes;
+use crate::scene::collected::Collected;
+use crate::scene::kind::{FeatureKind, Placement, Stance};
+use crate::scene::models::library::Library;
+use crate::scene::place::Places;
+use crate::scene::scatter;
+use crate::scene::sources::{Sourced, Sources};
+use crate::terrain::facets::Facets;
+use crate::terrain::finest::Finest;
+use crate::terrain::lattice::Lattice;
+
+/// The most models that stand in a scene, however they came there: some fifty megabytes of placements, and more than
+/// a picture has room to show.
+pub const MAX_MODELS: usize = 1_000_000;
+
+/// What one `[[model]]` came to.
+pub struct Group<'a> {
+    /// The table.
+    pub table: &'a ModelPlacement,
+    /// Its placements among all.
+    pub placements: Range<usize>,
+    /// Points that lie off the ground.
+    pub off: usize,
+    /// Points that name none of the variants.
+    pub unknown: usize,
+}
+
+/// Reads the document's models, places and strews them, and levels the pads that they ask for.
+///
+/// # Errors
+/// A file or a source cannot be had or read, a model stands off the ground, or there are more than can be placed.
+pub fn place(
+    document: &Document,
+    (places, sources, assets): (&Places<'_>, &Sources<'_>, &Assets),
+    lattice: &mut Lattice,
+    collected: &mut Collected,
+) -> Result<(Vec<Model>, Vec<Placement>), Diagnostic> {
+    let mut library = Library::new(document, assets);
+    let mut placements = Vec::new();
+    let mut groups = Vec::new();
+    for table in &document.models {
+        let first = placements.len();
+        let (mut off, mut unknown) = (0, 0);
+        if let Some(at) = &table.at {
+            let world = places.point(at, table.crs.as_ref())?;
+            places.on_ground(lattice, at, world)?;
+            let model = library.get(table.file.get_ref(), table.file.span(), collected)?;
+            let name = table.name.clone().unwrap_or_else(|| table.file.get_ref().clone());
+            placements.push(placed(
+                table,
+                (&library, model),
+                (&Attributes::default(), world),
+                name,
+                collected,
+            ));
+        } else if let Some(source) = &table.instances {
+            let points = sources.points(source)?;
+            within(document, source, placements.len() + points.len())?;
+            let mut choice = Choice::new(table, &mut library, collected)?;
+            for Sourced { attributes, shape } in points {
+                let ground = Finest { lattice, exaggeration: places.exaggeration };
+                if ground.displayed_z(shape).is_none() {
+                    off += 1;
+                    continue;
+                }
+                let model = choice.of(&attributes);
+                let name = attributes.name(table.name.as_deref());
+                placements.push(placed(table, (&library, model), (&attributes, shape), name, collected));
+            }
+            unknown = choice.unknown;
+        }
+        groups.push(Group { table, placements: first..placements.len(), off, unknown });
+    }
+    let volumes = footings::lay(document, &groups, &placements, (&library, places), lattice)?;
+    told::tell(&groups, &placements, (&library, &volumes, places), lattice, collected);
+    scatter::strew(document, (places, sources), lattice, (&mut library, &mut placements), collected)?;
+    Ok((library.into_models(), placements))
+}
+
+/// Refuses more models than [`MAX_MODELS`].
+///
+/// # Errors
+/// There are more, said at the place of `source`.
+pub fn within(document: &Document, source: &Source, count: usize) -> Result<(), Diagnostic> {
+    if count <= MAX_MODELS {
+        return Ok(());
+    }
+    let message = format!("with these, more than {MAX_MODELS} models stand in the scene");
+    Err(document
+        .error_at(source.span(), message)
+        .with_help("take fewer points or a lower density, or choose among them with `where`"))
+}
+
+fn placed(
+    table: &ModelPlacement,
+    (library, model): (&Library<'_>, usize),
+    (attributes, at): (&Attributes, DVec2),
+    name: String,
+    collected: &mut Collected,
+) -> Placement {
+    let mut number = |key: &'static str, stated: &Option<Spanned<Quantity>>, default: f64| {
+        attributes.number_or((key, stated.as_ref()), default, &mut collected.defaulted) as f32
+    };
+    let (height_m, heading_deg, scale) = (
+        number("[[model]] height", &table.height, 0.0),
+        number("[[model]] heading", &table.heading, 0.0),
+        number("[[model]] scale", &table.scale, 1.0),
+    );
+    Placement {
+        model,
+        at: at.as_vec2(),
+        clamp: library.clamp(model, table.clamp.as_ref().map(Spanned::get_ref).copied().unwrap_or_default()),
+        height_m,
+        heading_rad: heading_deg.to_radians(),
+        scale,
+        standing: standing(table),
+        feature: collected.add(FeatureKind::Model, name),
+    }
+}
+
+fn standing(table: &ModelPlacement) -> Stance {
+    let number = |stated: &Option<Spanned<f64>>| stated.as_ref().map_or(0.0, |value| *value.get_ref()) as f32;
+    Stance {
+        anchor: table.anchor.as_ref().map(Spanned::get_ref).copied().unwrap_or_default(),
+        tilt_rad: number(&table.tilt).to_radians(),
+        sink_m: number(&table.sink),
+        footing: table.footing.as_ref().map(Spanned::get_ref).copied().unwrap_or_default(),
+    }
+}
+
+/// Which model stands at which of a table's points.
+struct Choice<'a> {
+    table: &'a ModelPlacement,
+    file: usize,
+    variants: Vec<(&'a str, usize)>,
+    unknown: usize,
+}
+
+impl<'a> Choice<'a> {
+    fn new(
+        table: &'a ModelPlacement,
+        library: &mut Library<'_>,
+        collected: &mut Collected,
+    ) -> Result<Self, Diagnostic> {
+        let file = library.get(table.file.get_ref(), table.file.span(), collected)?;
+        let mut variants = Vec::new();
+        if let Some(given) = &table.variants {
+            for (value, name) in given.get_ref() {
+                variants.push((value.as_str(), library.get(name, given.span(), collected)?));
+            }
+        }
+        Ok(Self { table, file, variants, unknown: 0 })
+    }
+
+    fn of(&mut self, attributes: &Attributes) -> usize {
+        let Some(variant) = &self.table.variant else { return self.file };
+        let value = variant.get_ref().value(&|name| attributes.get(name)).map(|value| match value {
+            Scalar::Text(text) => text,
+            Scalar::Number(number) => number.to_string(),
+            Scalar::Bool(value) => value.to_string(),
+        });
+        let found = self.variants.iter().find(|(variant, _)| value.as_deref() == Some(*variant));
+        found.map_or_else(
+            || {
+                self.unknown += 1;
+                self.file
+            },
+            |&(_, model)| model,
+        )
+    }
+}

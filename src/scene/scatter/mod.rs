@@ -1,0 +1,314 @@
+//! Models strewn over areas: woods, scrub, boulders.
+//!
+//! A [`pattern`] covers the whole map; of its places those stand that lie in the area ([`bands`]), on ground of the slope
+//! and elevation asked for, and on nobody else's ([`taken`]). Every step asks about one place only, so a tree stands or
+//! does not whatever happens elsewhere, and rows of squares are done side by side.
+
+pub mod bands;
+pub mod chance;
+pub mod pattern;
+pub mod taken;
+
+use std::f64::consts::TAU;
+
+use glam::{DVec2, Vec3};
+use rayon::prelude::*;
+use toml::Spanned;
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::Document;
+use crate::description::features::Scatter;
+use crate::description::words::Clamp;
+use crate::draw::list::FeatureId;
+use crate::geom::rect::Rect;
+use crate::scene::attributes::Attributes;
+use crate::scene::collected::Collected;
+use crate::scene::kind::{FeatureKind, Placement, Stance};
+use crate::scene::models::library::Library;
+use crate::scene::models::within;
+use crate::scene::place::Places;
+use crate::scene::report::{Cell, Column};
+use crate::scene::scatter::bands::Bands;
+use crate::scene::scatter::chance::{Chance, seed_of};
+use crate::scene::scatter::pattern::{Candidate, Pattern};
+use crate::scene::scatter::taken::Taken;
+use crate::scene::sources::{Sourced, Sources};
+use crate::scene::stand::outline;
+use crate::terrain::lattice::Lattice;
+use crate::terrain::query::gradient::{Gradient, Patch, ground_gradient};
+use crate::terrain::query::{Interpolation, ground_height};
+use crate::vector::feature::Polygon;
+
+/// How many to the hectare where nothing is stated: a grown wood.
+const DENSITY_PER_HA: f64 = 100.0;
+/// The spacing where none is stated, in parts of the side of the square that each has to itself: a wood, not an orchard.
+const SPACING_PART: f64 = 0.5;
+/// How far a model keeps from what is taken, in parts of its reach: boughs may hang over a road, trunks not stand on it.
+const CLEAR_PART: f64 = 0.5;
+/// The most squares of a scene's patterns that are looked at, and pieces of edges kept for one area: a second's work for
+/// what holds no more than a million models.
+const MAX_SQUARES: usize = 1 << 25;
+/// Rows of squares done side by side before the models are counted.
+const ROWS_AT_ONCE: usize = 256;
+
+/// One row for each `[[scatter]]`.
+const SCATTERED: (&str, &[Column]) = (
+    "scattered",
+    &[
+        Column { name: "name", unit: "" },
+        Column { name: "models", unit: "" },
+        Column { name: "areas", unit: "" },
+        Column { name: "by slope", unit: "" },
+        Column { name: "by elevation", unit: "" },
+        Column { name: "by roads, water and buildings", unit: "" },
+        Column { name: "off the ground", unit: "" },
+    ],
+);
+
+/// Strews the document's scattered models among the other placements.
+///
+/// # Errors
+/// A source or a model file cannot be had, or there are more models or areas than can be placed.
+pub fn strew(
+    document: &Document,
+    (places, sources): (&Places<'_>, &Sources<'_>),
+    lattice: &Lattice,
+    (library, placements): (&mut Library<'_>, &mut Vec<Placement>),
+    collected: &mut Collected,
+) -> Result<(), Diagnostic> {
+    if document.scatters.is_empty() {
+        return Ok(());
+    }
+    let taken = taken_by(placements, library, collected);
+    let mut squares = 0;
+    for table in &document.scatters {
+        let species = Species::of(table, library, collected)?;
+        let feature = collected.add(FeatureKind::Scattered, table.name.clone().unwrap_or_default());
+        let ground = Ground { table, places, lattice, taken: &taken, library, species: &species, feature };
+        let (mut stood, mut counts, mut areas) = (Vec::new(), Counts::default(), 0);
+        for Sourced { attributes, shape } in sources.polygons(&table.source)? {
+            let pattern = pattern(table, &attributes, species.seed, collected);
+            if pattern.is_crowded() {
+                counts.crowded += 1;
+            }
+            let bands = bands(document, table, (&shape, &pattern), (lattice, &mut squares))?;
+            for rows in bands.rows().collect::<Vec<_>>().chunks(ROWS_AT_ONCE) {
+                let done: Vec<_> = rows.par_iter().map(|&row| ground.row(&bands, &pattern, row)).collect();
+                for (standing, missing) in done {
+                    stood.extend(standing);
+                    counts.add(missing);
+                }
+                within(document, &table.source, placements.len() + stood.len())?;
+            }
+            areas += 1;
+        }
+        // Where areas overlap, they have found the same places.
+        stood.sort_by(|a, b| a.at.y.total_cmp(&b.at.y).then(a.at.x.total_cmp(&b.at.x)));
+        stood.dedup_by(|a, b| a.at == b.at);
+        tell(table, (stood.len(), areas, counts), collected);
+        placements.append(&mut stood);
+    }
+    Ok(())
+}
+
+/// What a table strews.
+struct Species {
+    models: Vec<usize>,
+    seed: u64,
+}
+
+impl Species {
+    fn of(table: &Scatter, library: &mut Library<'_>, collected: &mut Collected) -> Result<Self, Diagnostic> {
+        let mut models = Vec::new();
+        let names = table.of.as_ref();
+        for name in names.into_iter().flat_map(Spanned::get_ref) {
+            let span = names.map_or(0..0, Spanned::span);
+            models.push(library.get(name, span, collected)?);
+        }
+        // Tables of other species strew otherwise, so that two do not stand in each other.
+        let texts = names.into_iter().flat_map(Spanned::get_ref).map(String::as_str);
+        let seed = seed_of(table.seed.as_ref().map_or(0, |seed| *seed.get_ref()), texts);
+        Ok(Self { models, seed })
+    }
+}
+
+/// How many places of a pattern nothing stands at, by why, and in how many areas the spacing takes from the density.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts {
+    crowded: usize,
+    slope: usize,
+    elevation: usize,
+    taken: usize,
+    off: usize,
+}
+
+impl Counts {
+    fn add(&mut self, other: Self) {
+        self.crowded += other.crowded;
+        self.slope += other.slope;
+        self.elevation += other.elevation;
+        self.taken += other.taken;
+        self.off += other.off;
+    }
+}
+
+/// The pattern of one area.
+fn pattern(table: &Scatter, attributes: &Attributes, seed: u64, collected: &mut Collected) -> Pattern {
+    let stated = ("[[scatter]] density", table.density.as_ref());
+    let density = attributes.number_or(stated, DENSITY_PER_HA, &mut collected.defaulted) / 1e4;
+    let spacing_m = attributes.number(table.spacing.as_ref());
+    Pattern::new(seed, density, spacing_m.unwrap_or(SPACING_PART / density.sqrt()))
+}
+
+/// An area in bands, its squares counted.
+fn bands(
+    document: &Document,
+    table: &Scatter,
+    (area, pattern): (&Polygon, &Pattern),
+    (lattice, squares): (&Lattice, &mut usize),
+) -> Result<Bands, Diagnostic> {
+    let to_map = |ring: &Vec<DVec2>| ring.iter().map(|at| at + lattice.origin()).collect::<Vec<_>>();
+    let rings: Vec<Vec<DVec2>> = std::iter::once(&area.exterior).chain(&area.holes).map(to_map).collect();
+    let extent = lattice.extent();
+    let extent = Rect { min: extent.min + lattice.origin(), max: extent.max + lattice.origin() };
+    let bands = Bands::new(rings.iter().map(Vec::as_slice), pattern.side_m(), &extent, MAX_SQUARES);
+    let bands = bands.filter(|bands| {
+        let wide = bands.rows().map(|row| {
+            let columns = bands.columns(row);
+            usize::try_from(columns.end() - columns.start() + 1).unwrap_or(0)
+        });
+        *squares += wide.sum::<usize>();
+        *squares <= MAX_SQUARES
+    });
+    bands.ok_or_else(|| {
+        let place = table.density.as_ref().map_or(table.source.span(), Spanned::span);
+        let message = format!("so dense a pattern has more than {MAX_SQUARES} places in these areas");
+        document
+            .error_at(place, message)
+            .with_help("`density` is how many stand on a hectare, 100 m by 100 m")
+    })
+}
+
+/// What decides at a place.
+struct Ground<'a> {
+    table: &'a Scatter,
+    places: &'a Places<'a>,
+    lattice: &'a Lattice,
+    taken: &'a Taken,
+    library: &'a Library<'a>,
+    species: &'a Species,
+    feature: FeatureId,
+}
+
+impl Ground<'_> {
+    /// What stands in a row of squares, and how much does not.
+    fn row(&self, bands: &Bands, pattern: &Pattern, row: i64) -> (Vec<Placement>, Counts) {
+        let (mut standing, mut counts) = (Vec::new(), Counts::default());
+        for column in bands.columns(row) {
+            for place in pattern.places((column, row)).filter(|place| bands.contains(row, place.at)) {
+                standing.extend(self.stand(&place, &mut counts));
+            }
+        }
+        (standing, counts)
+    }
+
+    /// What stands at a place, or why nothing does.
+    fn stand(&self, place: &Candidate, counts: &mut Counts) -> Option<Placement> {
+        let Some((height_m, gradient)) = self.ground_at(place.at) else {
+            counts.off += 1;
+            return None;
+        };
+        if outside(self.table.elevation.as_ref(), height_m) {
+            counts.elevation += 1;
+            return None;
+        }
+        if outside(self.table.slope.as_ref(), gradient.slope_deg()) {
+            counts.slope += 1;
+            return None;
+        }
+        let placement = self.placement(place, gradient);
+        let clear_m = f64::from(self.library.reach(placement.model) * placement.scale) * CLEAR_PART;
+        if !self.taken.is_free(place.at - self.lattice.origin(), clear_m) {
+            counts.taken += 1;
+            return None;
+        }
+        Some(placement)
+    }
+
+    fn ground_at(&self, at: DVec2) -> Option<(f64, Gradient)> {
+        let height_m = ground_height(self.lattice, Interpolation::Planar, at).height_m()?;
+        Some((height_m, ground_gradient(self.lattice, Patch::Planar, at).ok()?))
+    }
+
+    /// A model at a place, its looks drawn from the place's fate. It stands as deep in a slope as its foot is wide, so
+    /// that its downhill side does not float.
+    fn placement(&self, place: &Candidate, gradient: Gradient) -> Placement {
+        let mut chance = Chance::from_number(place.fate);
+        let model = self.species.models[chance.below(self.species.models.len())];
+        let [from, to] = self.table.scale.as_ref().map_or([0.8, 1.2], |scale| *scale.get_ref());
+        let scale = (from + (to - from) * chance.part()) as f32;
+        let heading_rad = (chance.part() * TAU) as f32;
+        let rise = (gradient.0.length() as f32) * self.places.exaggeration;
+        let standing =
+            Stance { sink_m: rise * self.library.footprint(model).radius() * scale, ..Stance::default() };
+        let clamp = self.library.clamp(model, Clamp::Ground);
+        let at = (place.at - self.lattice.origin()).as_vec2();
+        Placement { model, at, clamp, height_m: 0.0, heading_rad, scale, standing, feature: self.feature }
+    }
+}
+
+fn outside(range: Option<&Spanned<[f64; 2]>>, value: f64) -> bool {
+    range.is_some_and(|range| !(range.get_ref()[0]..=range.get_ref()[1]).contains(&value))
+}
+
+/// The ground that roads, water and buildings take, and what stands on it already.
+fn taken_by(placements: &[Placement], library: &Library<'_>, collected: &Collected) -> Taken {
+    let mut taken = Taken::default();
+    let kind = |feature: FeatureId| {
+        let index = (feature.0 as usize).checked_sub(FeatureId::GROUND.0 as usize + 1);
+        index.and_then(|index| collected.features.get(index)).map(|feature| feature.kind)
+    };
+    for ribbon in &collected.ribbons {
+        if !matches!(kind(ribbon.feature), Some(FeatureKind::Area | FeatureKind::Fence)) {
+            ribbon.plan.corners().for_each(|triangle| taken.add(triangle.map(|corner| corner.at)));
+        }
+    }
+    for solid in &collected.solids {
+        if matches!(kind(solid.feature), Some(FeatureKind::Building | FeatureKind::Bridge)) {
+            let at = |id: &crate::mesh::sink::VertexId| {
+                Vec3::from(solid.mesh.vertices[id.index()].position).truncate().as_dvec2()
+            };
+            // Of a closed solid, what looks up covers all of its plan.
+            solid.mesh.triangles.iter().for_each(|ids| taken.add([at(&ids[0]), at(&ids[1]), at(&ids[2])]));
+        }
+    }
+    for placement in placements {
+        taken.add_convex(&outline(placement, library.footprint(placement.model)));
+    }
+    taken
+}
+
+fn tell(table: &Scatter, (count, areas, counts): (usize, usize, Counts), collected: &mut Collected) {
+    let name = table.name.clone().unwrap_or_default();
+    let models = if count == 1 { "1 model stands".into() } else { format!("{count} models stand") };
+    let called =
+        if name.is_empty() { "a scatter without a name".into() } else { format!("scatter '{name}'") };
+    let areas_s = if areas == 1 { "1 area".into() } else { format!("{areas} areas") };
+    collected.notes.push(format!("{called}: {models} in {areas_s}"));
+    if counts.crowded > 0 {
+        let message = "fewer than `density` says, since `spacing` leaves no room for more";
+        collected.notes.push(format!("{called}: {message}"));
+    }
+    collected.report.add(
+        SCATTERED,
+        vec![
+            Cell::Text(name),
+            Cell::Count(count),
+            Cell::Count(areas),
+            Cell::Count(counts.slope),
+            Cell::Count(counts.elevation),
+            Cell::Count(counts.taken),
+            Cell::Count(counts.off),
+        ],
+    );
+}

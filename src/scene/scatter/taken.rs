@@ -1,0 +1,112 @@
+//! Ground that is taken: roads, water, buildings and what stands already, as triangles in plan.
+//!
+//! Triangles of a metre and of a lake's length lie in one scene. Each is kept in squares about its own size, a grid for
+//! each power of two, so that it lies in few of them and a place looks at few triangles, however they are mixed.
+
+use std::collections::{BTreeSet, HashMap};
+
+use glam::DVec2;
+
+use crate::geom::polygon;
+use crate::geom::rect::Rect;
+
+/// A grid's squares have sides of two to this power, in metres.
+type Power = i32;
+
+/// Finds out whether a place is free.
+#[derive(Default)]
+pub struct Taken {
+    triangles: Vec<[DVec2; 3]>,
+    powers: BTreeSet<Power>,
+    squares: HashMap<(Power, i64, i64), Vec<u32>>,
+}
+
+impl Taken {
+    /// Takes a triangle's ground; one without area, or running clockwise, takes none.
+    pub fn add(&mut self, triangle: [DVec2; 3]) {
+        let [a, b, c] = triangle;
+        // A coordinate that is not a number makes no area either.
+        if !((b - a).perp_dot(c - a) > 0.0) {
+            return;
+        }
+        let bounds = polygon::bounds(&triangle);
+        let power = power_of(bounds.size().max_element());
+        let index = self.triangles.len() as u32;
+        self.triangles.push(triangle);
+        self.powers.insert(power);
+        for (x, y) in squares(&bounds, power) {
+            self.squares.entry((power, x, y)).or_default().push(index);
+        }
+    }
+
+    /// Takes a convex counter-clockwise polygon's ground.
+    pub fn add_convex(&mut self, polygon: &[DVec2]) {
+        for pair in polygon.get(1..).unwrap_or_default().windows(2) {
+            self.add([polygon[0], pair[0], pair[1]]);
+        }
+    }
+
+    /// Whether nothing is taken within `clear_m` of a place.
+    pub fn is_free(&self, at: DVec2, clear_m: f64) -> bool {
+        let reach = Rect { min: at, max: at }.grown(clear_m);
+        self.powers.iter().all(|&power| {
+            squares(&reach, power)
+                .filter_map(|(x, y)| self.squares.get(&(power, x, y)))
+                .flatten()
+                .all(|&index| !is_near(&self.triangles[index as usize], at, clear_m))
+        })
+    }
+}
+
+/// The least power of two that is at least `size`.
+fn power_of(size: f64) -> Power {
+    let mut power = 0;
+    while power < 40 && libm::ldexp(1.0, power) < size {
+        power += 1;
+    }
+    power
+}
+
+/// The squares of a grid that a rectangle meets.
+fn squares(rect: &Rect, power: Power) -> impl Iterator<Item = (i64, i64)> + use<> {
+    let side = libm::ldexp(1.0, power);
+    let (low, high) = ((rect.min / side).floor(), (rect.max / side).floor());
+    (low.y as i64..=high.y as i64).flat_map(move |y| (low.x as i64..=high.x as i64).map(move |x| (x, y)))
+}
+
+/// Whether a place lies in a counter-clockwise triangle or no farther from it than `clear_m`.
+fn is_near(triangle: &[DVec2; 3], at: DVec2, clear_m: f64) -> bool {
+    let is_inside = polygon::edges(triangle).all(|(from, to)| (to - from).perp_dot(at - from) >= 0.0);
+    is_inside
+        || polygon::edges(triangle).any(|(from, to)| {
+            let way = to - from;
+            let part = ((at - from).dot(way) / way.length_squared()).clamp(0.0, 1.0);
+            at.distance_squared(from + way * part) < clear_m * clear_m
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn great_and_small_triangles_take_their_ground_and_a_margin() {
+        let mut taken = Taken::default();
+        taken.add([DVec2::ZERO, DVec2::new(9000.0, 0.0), DVec2::new(0.0, 9000.0)]);
+        taken.add_convex(&[(-30.0, 5.0), (-20.0, 5.0), (-20.0, 9.0), (-30.0, 9.0)].map(DVec2::from));
+        assert!(!taken.is_free(DVec2::new(4000.0, 4000.0), 0.0));
+        assert!(taken.is_free(DVec2::new(4600.0, 4600.0), 100.0));
+        assert!(!taken.is_free(DVec2::new(4600.0, 4600.0), 150.0));
+        assert!(!taken.is_free(DVec2::new(-25.0, 7.0), 0.0));
+        assert!(taken.is_free(DVec2::new(-25.0, 12.0), 2.9) && !taken.is_free(DVec2::new(-25.0, 12.0), 3.1));
+    }
+
+    #[test]
+    fn what_has_no_area_takes_nothing() {
+        let mut taken = Taken::default();
+        taken.add([DVec2::ZERO, DVec2::X, DVec2::X * 2.0]);
+        taken.add([DVec2::NAN, DVec2::X, DVec2::Y]);
+        taken.add([DVec2::ZERO, DVec2::Y, DVec2::X]);
+        assert!(taken.is_free(DVec2::splat(0.1), 5.0));
+    }
+}
