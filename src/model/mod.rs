@@ -9,13 +9,20 @@
 //! What a model names — buffers, textures, material libraries — comes through [`kind::Companions`]. A file
 //! that cannot be trusted is an error; a picture that cannot be had is a note on a model without it.
 
+pub mod detail;
 pub mod error;
 pub mod gltf;
+pub mod impostor;
+mod impostor_raster;
 pub mod kind;
+mod nearest;
 mod normals;
 pub mod obj;
 mod part;
+mod quadric;
 pub mod read;
+pub mod simplify;
+mod soup;
 mod texture;
 pub mod three_ds;
 mod triangulate;

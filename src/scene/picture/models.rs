@@ -1,45 +1,27 @@
 //! Models, each set where it stands.
 
-use std::collections::BTreeMap;
-
 use glam::{Mat4, Quat, Vec3};
+use rayon::prelude::*;
 
 use crate::description::words::Clamp;
-use crate::draw::list::{DrawItem, DrawList, Layer, MaterialId, MeshId};
-use crate::draw::material::{Material, TextureId};
-use crate::model::kind::Model;
+use crate::draw::list::DrawList;
 use crate::scene::kind::{Placement, Scene};
+use crate::scene::picture::detail::{self, Standing, Viewer};
 use crate::terrain::facets::Facets;
 use crate::terrain::query::{Interpolation, ground_height};
 
-/// A model's meshes and materials in a draw list.
-struct Listed {
-    parts: Vec<(MeshId, u32, MaterialId)>,
-    lowest_z: f32,
-}
-
-/// Adds every placement that has ground under it.
-pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn Facets) {
-    let mut listed: BTreeMap<usize, Listed> = BTreeMap::new();
-    for placement in &scene.placements {
-        let Some(ground_z) = foot_z(scene, placement, displayed) else {
-            continue;
-        };
-        let model =
-            listed.entry(placement.model).or_insert_with(|| list_model(list, &scene.models[placement.model]));
-        let world_from_mesh =
-            transform(placement, model.lowest_z, ground_z as f32, scene.terrain.exaggeration);
-        for &(mesh, count, material) in &model.parts {
-            list.items.push(DrawItem {
-                mesh,
-                triangles: 0..count,
-                material,
-                world_from_mesh,
-                layer: Layer::Solid,
-                feature: placement.feature,
-            });
-        }
-    }
+/// Adds every placement that has ground under it and may be seen.
+pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn Facets, viewer: Viewer<'_>) {
+    let lowest_z: Vec<f32> =
+        scene.models.iter().map(|model| model.bounds().map_or(0.0, |(min, _)| min.z)).collect();
+    let stand = |placement: &Placement| {
+        let ground_z = foot_z(scene, placement, displayed)? as f32;
+        let exaggeration = scene.terrain.exaggeration;
+        let world_from_model = transform(placement, lowest_z[placement.model], ground_z, exaggeration);
+        Some(Standing { model: placement.model, world_from_model, feature: placement.feature })
+    };
+    let standing: Vec<Standing> = scene.placements.par_iter().filter_map(stand).collect();
+    detail::add(list, scene, &standing, viewer);
 }
 
 /// World Z of the ground under a model: as displayed, or as it is where the ground there is out of view, since
@@ -51,25 +33,6 @@ fn foot_z(scene: &Scene, placement: &Placement, displayed: &dyn Facets) -> Optio
         let height_m = ground_height(lattice, Interpolation::Planar, at + lattice.origin()).height_m()?;
         Some(height_m * f64::from(scene.terrain.exaggeration))
     })
-}
-
-fn list_model(list: &mut DrawList, model: &Model) -> Listed {
-    let first_texture = list.textures.len() as u32;
-    list.textures.extend(model.textures.iter().cloned());
-    let first_material = list.materials.len() as u32;
-    list.materials.extend(model.materials.iter().map(|material| Material {
-        texture: material.texture.map(|TextureId(id)| TextureId(id + first_texture)),
-        ..material.clone()
-    }));
-    let parts = model
-        .parts
-        .iter()
-        .map(|part| {
-            let count = part.mesh.triangles.len() as u32;
-            (list.add_mesh(part.mesh.clone()), count, MaterialId(part.material.0 + first_material))
-        })
-        .collect();
-    Listed { parts, lowest_z: model.bounds().map_or(0.0, |(min, _)| min.z) }
 }
 
 /// Where a model stands, given its lowest Z and the drawn ground at its origin.
