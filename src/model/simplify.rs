@@ -3,15 +3,15 @@
 //! # How
 //! ```text
 //!     p ── q          Every step moves a point p into a neighbour q (a half-edge collapse): the triangles
-//!    ╱ ╲  ╱           between them go, the others around p now reach q. No vertex is ever made up, so normals,
-//!   ·────·            texture coordinates and colours stay those of the file.
+//!    ╱ ╲  ╱           between them go, the others around p now reach q. No place is ever made up, and normals,
+//!   ·────·            texture coordinates and colours are those of the file.
 //! ```
-//! What a step costs is the mean squared distance of q from all the planes that p and q stand for (`quadric`), and
+//! What a step costs is the sum of squared distances of q from all the planes that p and q stand for (`quadric`), and
 //! what it changes of the looks there (`nearest::difference`). Borders and seams have planes of their own, upright
-//! on the surface, that keep their line. A step is refused where a triangle would turn over, where the surface would
-//! close on itself (the link condition: Dey and others, "Topology preserving edge contraction", 1999), and where a
-//! vertex at p has no counterpart at q in the same part: a corner where three materials meet stays, a point on
-//! a seam moves along it only, with both sides.
+//! on the surface, that keep their line. A vertex at p becomes the one at q that it shares a vanishing triangle with;
+//! one that has no such counterpart, such as that of the third face at a box's corner, moves to q with the looks it
+//! has. A step is refused where a triangle would turn over, and where the surface would close on itself (the link
+//! condition: Dey and others, "Topology preserving edge contraction", 1999).
 //!
 //! The error of a level is measured, not summed up: the greatest distance of a point of the file from the simpler
 //! surface near the point it went into.
@@ -24,8 +24,9 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
+use crate::draw::list::DrawVertex;
 use crate::model::kind::{Model, Part};
 use crate::model::nearest::{blend, difference, nearest_shares};
 use crate::model::quadric::Quadric;
@@ -44,13 +45,13 @@ const SHARES: [f64; 3] = [0.5, 0.25, 0.0625];
 /// memory.
 const WORTH_KEEPING: f64 = 0.75;
 
-/// Simplification ends where a step would be off by this part of the model's radius: a form so coarse could only
-/// stand in for a model that is a few pixels tall, and an impostor does that better.
-const LARGEST_STEP: f64 = 0.05;
+/// Simplification ends where a step would cost as much as being off by this part of the model's radius: a form so coarse
+/// could only stand in for a model that is a few pixels tall, and an impostor does that better.
+const LARGEST_STEP: f64 = 0.1;
 
-/// The weight of the upright planes that hold borders and seams, against an area as long and wide as the edge.
-const BORDER_WEIGHT: f64 = 10.0;
-const SEAM_WEIGHT: f64 = 1.0;
+/// A level has at least this part of the model's area. Twigs and lattices, which vanish piece by piece and not by
+/// getting coarser, would look thinner and thinner; their far form is the impostor, which keeps what they cover.
+const LEAST_AREA: f64 = 0.85;
 
 /// The cosine of the most that a triangle may turn in one step: 75°.
 const LEAST_TURN_COS: f64 = 0.25;
@@ -85,14 +86,19 @@ pub fn levels(model: &Model) -> Vec<Level> {
     }
     let mut simplifier = Simplifier::new(model);
     let mut levels: Vec<Level> = Vec::new();
-    let mut before = count;
+    let (mut before, least_area) = (count, simplifier.soup.area() * LEAST_AREA);
     for share in SHARES {
-        let is_done = simplifier.simplify_to((count as f64 * share) as usize);
+        let done = simplifier.simplify_to((count as f64 * share) as usize);
+        if simplifier.soup.area() < least_area {
+            break;
+        }
         if simplifier.soup.left as f64 <= before as f64 * WORTH_KEEPING {
             before = simplifier.soup.left;
-            levels.push(Level { parts: simplifier.soup.parts(model), error: simplifier.error() as f32 });
+            let finer = levels.last().map_or(0.0, |level| level.error);
+            let error = finer.max(simplifier.error() as f32);
+            levels.push(Level { parts: simplifier.soup.parts(model), error });
         }
-        if is_done == Done::NothingLeft {
+        if done == Done::NothingLeft {
             break;
         }
     }
@@ -121,7 +127,7 @@ struct Candidate {
 struct Step {
     cost: f64,
     looks: f64,
-    wedges: Vec<(WedgeId, WedgeId)>,
+    wedges: Vec<(WedgeId, DrawVertex)>,
 }
 
 struct Simplifier {
@@ -163,7 +169,7 @@ impl Simplifier {
 
     fn shape_cost(&self, from: PointId, to: PointId) -> f64 {
         let both = self.quadrics[from.0 as usize].plus(&self.quadrics[to.0 as usize]);
-        both.squared_distance(self.soup.at(to))
+        both.squared_distances(self.soup.at(to))
     }
 
     fn simplify_to(&mut self, triangles: usize) -> Done {
@@ -190,30 +196,38 @@ impl Simplifier {
         }
         let (going, staying): (Vec<u32>, Vec<u32>) =
             ring.iter().partition(|&&triangle| self.soup.corners(triangle).contains(&to));
-        let wedges = self.counterparts(&going, from, to)?;
         let closes = || !self.keeps_links(&going, from, to);
         if going.is_empty() || staying.iter().any(|&triangle| self.turns_over(triangle, from, to)) || closes()
         {
             return None;
         }
-        let looks = self.looks_after(&staying, from, &wedges)?;
+        let wedges = self.counterparts(&going, &staying, from, to);
+        let looks = self.looks_after(&staying, from, &wedges);
         Some(Step { cost: self.shape_cost(from, to) + looks * looks, looks, wedges })
     }
 
-    /// Which wedge at `to` each wedge at `from` becomes, by the triangles between them; `None` where they disagree.
-    fn counterparts(&self, going: &[u32], from: PointId, to: PointId) -> Option<Vec<(WedgeId, WedgeId)>> {
-        let mut pairs: Vec<(WedgeId, WedgeId)> = Vec::with_capacity(2);
-        for &triangle in going {
+    /// What each wedge at `from` looks like at `to`.
+    fn counterparts(
+        &self,
+        going: &[u32],
+        staying: &[u32],
+        from: PointId,
+        to: PointId,
+    ) -> Vec<(WedgeId, DrawVertex)> {
+        let at = |triangle: u32, point: PointId| {
             let wedges = self.soup.triangles[triangle as usize];
-            let at = |point: PointId| wedges.into_iter().find(|&id| self.soup.wedge(id).point == point);
-            let (source, target) = (at(from)?, at(to)?);
-            match pairs.iter().find(|(known, _)| *known == source) {
-                Some(&(_, known)) if known != target => return None,
-                Some(_) => {}
-                None => pairs.push((source, target)),
+            wedges.into_iter().find(|&id| self.soup.wedge(id).point == point)
+        };
+        let position = self.soup.at(to).as_vec3().to_array();
+        let mut pairs: Vec<(WedgeId, DrawVertex)> = Vec::with_capacity(4);
+        for &triangle in going.iter().chain(staying) {
+            let Some(source) = at(triangle, from) else { continue };
+            if pairs.iter().all(|(known, _)| *known != source) {
+                let target = at(triangle, to).unwrap_or(source);
+                pairs.push((source, DrawVertex { position, ..self.soup.wedge(target).vertex }));
             }
         }
-        Some(pairs)
+        pairs
     }
 
     /// Whether the points next to both ends are just the third corners of the triangles that go.
@@ -239,32 +253,37 @@ impl Simplifier {
         before != DVec3::ZERO && before.dot(after) <= LEAST_TURN_COS * lengths
     }
 
-    /// How much the looks at `from` change, in the model's units; `None` where a triangle that stays has a wedge
-    /// without a counterpart.
-    fn looks_after(&self, staying: &[u32], from: PointId, pairs: &[(WedgeId, WedgeId)]) -> Option<f64> {
+    /// How much the looks at `from` change, in the model's units.
+    fn looks_after(&self, staying: &[u32], from: PointId, pairs: &[(WedgeId, DrawVertex)]) -> f64 {
         let place = self.soup.at(from);
         let mut least: Vec<Option<(f64, f64)>> = vec![None; pairs.len()];
         for &triangle in staying {
-            let mut wedges = self.soup.triangles[triangle as usize];
-            let corner = wedges.iter().position(|&id| self.soup.wedge(id).point == from)?;
-            let pair = pairs.iter().position(|&(source, _)| source == wedges[corner])?;
-            let (source, target) = pairs[pair];
-            wedges[corner] = target;
-            let wedges = wedges.map(|id| self.soup.wedge(id));
-            let points = wedges.map(|wedge| self.soup.at(wedge.point));
+            let wedges = self.soup.triangles[triangle as usize];
+            let moved = |id: WedgeId| pairs.iter().position(|&(source, _)| source == id);
+            let Some(pair) = wedges.into_iter().find_map(moved) else { continue };
+            let corners = wedges.map(|id| moved(id).map_or(self.soup.wedge(id).vertex, |pair| pairs[pair].1));
+            let points = corners.map(|corner| Vec3::from(corner.position).as_dvec3());
             let shares = nearest_shares(place, points);
             let distance = blend(points, shares).distance_squared(place);
             if least[pair].is_none_or(|(known, _)| distance < known) {
-                let reach = place.distance(self.soup.at(self.soup.wedge(target).point));
-                let corners = wedges.map(|wedge| &wedge.vertex);
-                let off = difference(&self.soup.wedge(source).vertex, corners, shares, reach);
-                least[pair] = Some((distance, off));
+                let (source, target) = &pairs[pair];
+                let reach = place.distance(Vec3::from(target.position).as_dvec3());
+                let wanted = &self.soup.wedge(*source).vertex;
+                least[pair] = Some((distance, difference(wanted, corners.each_ref(), shares, reach)));
             }
         }
-        Some(least.into_iter().flatten().map(|(_, off)| off).fold(0.0, f64::max))
+        least.into_iter().flatten().map(|(_, off)| off).fold(0.0, f64::max)
     }
 
     fn apply(&mut self, from: PointId, to: PointId, step: &Step) {
+        let targets: Vec<(WedgeId, WedgeId)> = step
+            .wedges
+            .iter()
+            .map(|(source, vertex)| {
+                let part = self.soup.wedge(*source).part;
+                (*source, self.soup.wedge_like(vertex, to, part))
+            })
+            .collect();
         let ring = std::mem::take(&mut self.soup.around[from.0 as usize]);
         let mut touched = vec![to];
         for &triangle in &ring {
@@ -275,7 +294,7 @@ impl Simplifier {
                 self.soup.left -= 1;
                 touched.extend(corners.into_iter().filter(|&point| point != from && point != to));
             } else {
-                for (source, target) in &step.wedges {
+                for (source, target) in &targets {
                     *wedges = wedges.map(|id| if id == *source { *target } else { id });
                 }
             }
@@ -344,9 +363,10 @@ struct Edge {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum EdgeKind {
+    /// Two triangles meet in the same two wedges.
     Smooth,
+    /// Something ends here: the surface, a material, a texture, a smooth patch.
     Seam,
-    Border,
 }
 
 /// Every edge once, in a fixed order.
@@ -364,8 +384,7 @@ fn edges(soup: &Soup) -> Vec<Edge> {
     uses.sort_unstable();
     let kind = |uses: &[([PointId; 2], [WedgeId; 2], u32)]| match uses {
         [one, other] if one.1 == other.1 => EdgeKind::Smooth,
-        [_, _] => EdgeKind::Seam,
-        _ => EdgeKind::Border,
+        _ => EdgeKind::Seam,
     };
     uses.chunk_by(|one, other| one.0 == other.0)
         .map(|uses| Edge { a: uses[0].0[0], b: uses[0].0[1], kind: kind(uses), triangle: uses[0].2 })
@@ -381,20 +400,14 @@ fn quadrics(soup: &Soup, edges: &[Edge]) -> Vec<Quadric> {
     let face_normal = |triangle: u32| normal(soup.corners(triangle).map(|point| soup.at(point)));
     for triangle in 0..soup.triangles.len() as u32 {
         let corners = soup.corners(triangle);
-        let doubled = face_normal(triangle);
-        let Some(unit) = doubled.try_normalize() else { continue };
-        let plane = Quadric::plane(unit, soup.at(corners[0]), doubled.length() * 0.5);
+        let Some(unit) = face_normal(triangle).try_normalize() else { continue };
+        let plane = Quadric::plane(unit, soup.at(corners[0]));
         corners.iter().for_each(|&point| add(point, &plane));
     }
-    for edge in edges {
-        let weight = match edge.kind {
-            EdgeKind::Smooth => continue,
-            EdgeKind::Seam => SEAM_WEIGHT,
-            EdgeKind::Border => BORDER_WEIGHT,
-        };
+    for edge in edges.iter().filter(|edge| edge.kind == EdgeKind::Seam) {
         let along = soup.at(edge.b) - soup.at(edge.a);
         let Some(upright) = along.cross(face_normal(edge.triangle)).try_normalize() else { continue };
-        let plane = Quadric::plane(upright, soup.at(edge.a), along.length_squared() * weight);
+        let plane = Quadric::plane(upright, soup.at(edge.a));
         add(edge.a, &plane);
         add(edge.b, &plane);
     }
@@ -403,12 +416,12 @@ fn quadrics(soup: &Soup, edges: &[Edge]) -> Vec<Quadric> {
 
 #[cfg(test)]
 mod tests {
-    use glam::{Quat, Vec2, Vec3};
+    use glam::{Quat, Vec2};
 
     use super::*;
     use crate::draw::color::Srgba;
-    use crate::draw::list::{DrawMesh, DrawVertex, MaterialId};
-    use crate::draw::material::Material;
+    use crate::draw::list::{DrawMesh, MaterialId};
+    use crate::draw::material::{Material, TextureId};
     use crate::mesh::sink::{MeshSink, VertexId};
 
     /// A grid of `side` × `side` cells on the unit square, bent by `height` and turned by `turn`.
@@ -435,7 +448,8 @@ mod tests {
             }
         }
         let part = Part { name: "sheet".into(), mesh, material: MaterialId(0) };
-        Model { parts: vec![part], materials: vec![Material::default()], ..Model::default() }
+        let material = Material { texture: Some(TextureId(0)), ..Material::default() };
+        Model { parts: vec![part], materials: vec![material], ..Model::default() }
     }
 
     fn turns() -> impl Iterator<Item = Quat> {
@@ -524,7 +538,7 @@ mod tests {
             material: MaterialId(material),
         };
         model.parts = vec![part(left, 0), part(right, 1)];
-        model.materials.push(Material::default());
+        model.materials.push(model.materials[0].clone());
         for level in levels(&model) {
             assert_eq!(level.parts.len(), 2);
             let border = |part: &Part| {

@@ -51,9 +51,12 @@ impl Soup {
     pub(super) fn of(model: &Model) -> Self {
         let mut soup = Self::default();
         let mut known: HashMap<[u32; 3], PointId> = HashMap::new();
-        for (part, Part { mesh, .. }) in (0..).zip(&model.parts) {
+        for (part, Part { mesh, material, .. }) in (0..).zip(&model.parts) {
             let first = soup.wedges.len() as u32;
-            for &vertex in &mesh.vertices {
+            let has_texture = model.materials[material.0 as usize].texture.is_some();
+            for &stored in &mesh.vertices {
+                // Where there is no texture, its coordinates must not keep anything from moving.
+                let vertex = DrawVertex { uv: if has_texture { stored.uv } else { [0.0; 2] }, ..stored };
                 // −0 and 0 are one place.
                 let place = Vec3::from(vertex.position) + Vec3::ZERO;
                 let next = PointId(soup.points.len() as u32);
@@ -88,6 +91,33 @@ impl Soup {
     /// The wedge with this id.
     pub(super) fn wedge(&self, id: WedgeId) -> &Wedge {
         &self.wedges[id.0 as usize]
+    }
+
+    /// The wedge of `part` at `point` that looks like `vertex`; a new one where there is none.
+    pub(super) fn wedge_like(&mut self, vertex: &DrawVertex, point: PointId, part: u32) -> WedgeId {
+        let around = self.triangles_at(point).iter().flat_map(|&triangle| self.triangles[triangle as usize]);
+        let is_alike = |id: &WedgeId| {
+            let wedge = self.wedge(*id);
+            (wedge.point, wedge.part, wedge.vertex) == (point, part, *vertex)
+        };
+        let known = around.into_iter().find(is_alike);
+        known.unwrap_or_else(|| {
+            self.wedges.push(Wedge { point, part, vertex: *vertex });
+            WedgeId(self.wedges.len() as u32 - 1)
+        })
+    }
+
+    /// The area of all triangles left.
+    pub(super) fn area(&self) -> f64 {
+        let left = (0..self.triangles.len() as u32).filter(|&triangle| {
+            let [first, second, _] = self.triangles[triangle as usize];
+            first != second
+        });
+        let doubled = left.map(|triangle| {
+            let [a, b, c] = self.corners(triangle).map(|point| self.at(point));
+            (b - a).cross(c - a).length()
+        });
+        doubled.sum::<f64>() * 0.5
     }
 
     /// Where a point lies.

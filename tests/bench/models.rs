@@ -8,6 +8,7 @@
 #[allow(dead_code, reason = "each benchmark uses its own part")]
 mod rounds;
 #[path = "demo/steps.rs"]
+#[allow(dead_code, reason = "each benchmark uses its own part")]
 mod steps;
 #[path = "../common/mod.rs"]
 mod tests_common;
