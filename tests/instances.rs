@@ -40,7 +40,7 @@ fn runs_cover_all_items_and_are_few() {
     for run in &runs {
         assert!(list.items[run.clone()].iter().all(|item| item.is_like(&list.items[run.start])));
     }
-    assert!(runs.len() < 200 && list.items.len() > 2000, "{} runs of {} items", runs.len(), list.items.len());
+    assert!(runs.len() < 200 && list.items.len() > 1500, "{} runs of {} items", runs.len(), list.items.len());
     list.check().expect("sound");
 }
 

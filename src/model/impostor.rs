@@ -134,12 +134,10 @@ impl Impostor {
             mesh.triangle([a, c, d]);
         }
         let cutoff = covering_cutoff(&shots);
-        let side = (TILE * TILES) as usize;
         let texture = Pixels::from_fn(TILE * TILES, TILE * TILES, |x, y| {
             let shot = &shots[(y / TILE * TILES + x / TILE) as usize];
             shot.pixels[(y % TILE * TILE + x % TILE) as usize]
         });
-        debug_assert_eq!(texture.data().len(), side * side);
         let material = Material {
             name: "impostor".into(),
             alpha: Alpha::Mask(cutoff),
@@ -154,6 +152,9 @@ fn shoot(source: &Source<'_>, view: View) -> Option<Shot> {
     let axes = view.axes();
     let raster = Raster::of(source, &axes)?;
     let normals = Normals::fitted(&raster);
+    // The mean of normals is shorter than they are, and sunlight on them that much weaker than on one normal. Renderers
+    // make it long again; half of what that adds is taken back here, as about half of all light is the sun's.
+    let color = Srgba::from_linear(Vec3::splat((1.0 + normals.mean_length(&raster)) * 0.5));
     let corner = |across: f32, down: f32| {
         let at = raster.low + (raster.high - raster.low) * Vec2::new(across, 1.0 - down);
         let [left, top] =
@@ -164,7 +165,7 @@ fn shoot(source: &Source<'_>, view: View) -> Option<Shot> {
                 .to_array(),
             normal: normals.at(Vec2::new(across, down), axes.towards_eye).to_array(),
             uv: uv.to_array(),
-            color: Srgba::WHITE,
+            color,
         }
     };
     let corners = [corner(0.0, 1.0), corner(1.0, 1.0), corner(1.0, 0.0), corner(0.0, 0.0)];
@@ -245,6 +246,15 @@ impl Normals {
                 .as_vec3()
         };
         Self { mean: row(0), across: row(1), down: row(2) }
+    }
+
+    /// How long the fitted normals are where the raster sees anything; 1 where it sees nothing.
+    fn mean_length(&self, raster: &Raster) -> f32 {
+        let lengths =
+            raster.normals().map(|(at, _)| (self.mean + self.across * at.x + self.down * at.y).length());
+        let (sum, count) =
+            lengths.fold((0.0, 0.0), |(sum, count), length| (sum + f64::from(length), count + 1.0));
+        if count > 0.0 { ((sum / count) as f32).min(1.0) } else { 1.0 }
     }
 
     /// The normal at a place of the quad, of unit length at most; `fallback` where nothing is left of it.

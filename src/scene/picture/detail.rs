@@ -34,7 +34,7 @@ pub(super) enum Viewer<'a> {
 
 /// A model set in its place.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Standing {
+pub(super) struct Placed {
     /// Which of the scene's models.
     pub model: usize,
     /// Its place: a rotation, a uniform scale and a translation.
@@ -51,15 +51,15 @@ struct Ball {
 }
 
 /// Adds all that stands where `viewer` may see it.
-pub(super) fn add(list: &mut DrawList, scene: &Scene, standing: &[Standing], viewer: Viewer<'_>) {
+pub(super) fn add(list: &mut DrawList, scene: &Scene, placed: &[Placed], viewer: Viewer<'_>) {
     let balls: Vec<Ball> = scene.models.iter().map(Ball::around).collect();
     let groups = match viewer {
-        Viewer::Anyone => grouped(standing.iter().map(|stand| (stand, Form::Full))),
+        Viewer::Anyone => grouped(placed.iter().map(|stand| (stand, Form::Full))),
         Viewer::Camera(camera) => {
             let frustum = Frustum::of(camera);
-            let in_view: Vec<&Standing> = standing
+            let in_view: Vec<&Placed> = placed
                 .par_iter()
-                .filter(|stand| balls[stand.model].placed(stand).is_in(&frustum))
+                .filter(|stand| balls[stand.model].in_world(stand).is_in(&frustum))
                 .collect();
             let forms = forms(scene, camera, &balls, &in_view);
             grouped(in_view.into_iter().zip(forms))
@@ -83,9 +83,9 @@ pub(super) fn add(list: &mut DrawList, scene: &Scene, standing: &[Standing], vie
     }
 }
 
-type Groups<'a> = BTreeMap<(usize, Form), Vec<&'a Standing>>;
+type Groups<'a> = BTreeMap<(usize, Form), Vec<&'a Placed>>;
 
-fn grouped<'a>(stands: impl Iterator<Item = (&'a Standing, Form)>) -> Groups<'a> {
+fn grouped<'a>(stands: impl Iterator<Item = (&'a Placed, Form)>) -> Groups<'a> {
     let mut groups = Groups::new();
     for (stand, form) in stands {
         groups.entry((stand.model, form)).or_default().push(stand);
@@ -94,14 +94,14 @@ fn grouped<'a>(stands: impl Iterator<Item = (&'a Standing, Form)>) -> Groups<'a>
 }
 
 /// The form in which each is drawn.
-fn forms(scene: &Scene, camera: &Camera, balls: &[Ball], in_view: &[&Standing]) -> Vec<Form> {
+fn forms(scene: &Scene, camera: &Camera, balls: &[Ball], in_view: &[&Placed]) -> Vec<Form> {
     let triangles: Vec<usize> = scene.models.iter().map(Model::triangle_count).collect();
     let total = in_view.iter().fold(0usize, |sum, stand| sum.saturating_add(triangles[stand.model]));
     if total <= FULL_TRIANGLES {
         return vec![Form::Full; in_view.len()];
     }
     prepare(scene, in_view);
-    let form = |stand: &&Standing| {
+    let form = |stand: &&Placed| {
         let detail = scene.details[stand.model].get()?;
         Some(detail.form(&balls[stand.model].seen(stand, camera)))
     };
@@ -112,7 +112,7 @@ fn forms(scene: &Scene, camera: &Camera, balls: &[Ball], in_view: &[&Standing]) 
 ///
 /// They are made before they are put in place, not in it: making them shares work out among threads, and a thread that
 /// helps another picture meanwhile must not come to wait for itself.
-fn prepare(scene: &Scene, in_view: &[&Standing]) {
+fn prepare(scene: &Scene, in_view: &[&Placed]) {
     let mut wanted: Vec<usize> = in_view.iter().map(|stand| stand.model).collect();
     wanted.sort_unstable();
     wanted.dedup();
@@ -131,7 +131,7 @@ impl Ball {
     }
 
     /// The ball in world space.
-    fn placed(&self, stand: &Standing) -> Self {
+    fn in_world(&self, stand: &Placed) -> Self {
         let scale = stand.world_from_model.x_axis.truncate().length();
         Self { center: stand.world_from_model.transform_point3(self.center), radius: self.radius * scale }
     }
@@ -141,15 +141,15 @@ impl Ball {
     }
 
     /// How the model in this ball of its own space is seen.
-    fn seen(&self, stand: &Standing, camera: &Camera) -> Seen {
-        let placed = self.placed(stand);
-        let scale = if self.radius > 0.0 { placed.radius / self.radius } else { 1.0 };
-        let offset = camera.eye() - placed.center;
-        let near = (-offset.dot(camera.forward()) - placed.radius).max(camera.planes().0);
+    fn seen(&self, stand: &Placed, camera: &Camera) -> Seen {
+        let world = self.in_world(stand);
+        let scale = if self.radius > 0.0 { world.radius / self.radius } else { 1.0 };
+        let offset = camera.eye() - world.center;
+        let near = (-offset.dot(camera.forward()) - world.radius).max(camera.planes().0);
         let px_per_unit = camera.pixels_per_metre(near) * scale;
         let along = |axis: glam::Vec4| axis.truncate().dot(offset);
-        let world = &stand.world_from_model;
-        let towards_eye = Vec3::new(along(world.x_axis), along(world.y_axis), along(world.z_axis));
+        let axes = &stand.world_from_model;
+        let towards_eye = Vec3::new(along(axes.x_axis), along(axes.y_axis), along(axes.z_axis));
         Seen { px_per_unit, across_px: 2.0 * self.radius * px_per_unit, towards_eye }
     }
 }
@@ -163,7 +163,7 @@ struct Listed<'a> {
 }
 
 impl Listed<'_> {
-    fn add_parts(&mut self, (index, model): (usize, &Model), parts: &[Part], stands: &[&Standing]) {
+    fn add_parts(&mut self, (index, model): (usize, &Model), parts: &[Part], stands: &[&Placed]) {
         let list = &mut *self.list;
         let MaterialId(first) = *self.models.entry(index).or_insert_with(|| list_materials(list, model));
         for part in parts {
@@ -177,7 +177,7 @@ impl Listed<'_> {
         &mut self,
         (index, impostor): (usize, &Impostor),
         triangles: std::ops::Range<u32>,
-        stands: &[&Standing],
+        stands: &[&Placed],
     ) {
         let list = &mut *self.list;
         let (mesh, material) = *self.impostors.entry(index).or_insert_with(|| {
@@ -193,7 +193,7 @@ impl Listed<'_> {
         mesh: MeshId,
         triangles: std::ops::Range<u32>,
         material: MaterialId,
-        stands: &[&Standing],
+        stands: &[&Placed],
     ) {
         self.list.items.extend(stands.iter().map(|stand| DrawItem {
             mesh,

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::description::words::Clamp;
 use crate::draw::list::DrawList;
 use crate::scene::kind::{Placement, Scene};
-use crate::scene::picture::detail::{self, Standing, Viewer};
+use crate::scene::picture::detail::{self, Placed, Viewer};
 use crate::terrain::facets::Facets;
 use crate::terrain::query::{Interpolation, ground_height};
 
@@ -14,14 +14,14 @@ use crate::terrain::query::{Interpolation, ground_height};
 pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn Facets, viewer: Viewer<'_>) {
     let lowest_z: Vec<f32> =
         scene.models.iter().map(|model| model.bounds().map_or(0.0, |(min, _)| min.z)).collect();
-    let stand = |placement: &Placement| {
+    let place = |placement: &Placement| {
         let ground_z = foot_z(scene, placement, displayed)? as f32;
         let exaggeration = scene.terrain.exaggeration;
         let world_from_model = transform(placement, lowest_z[placement.model], ground_z, exaggeration);
-        Some(Standing { model: placement.model, world_from_model, feature: placement.feature })
+        Some(Placed { model: placement.model, world_from_model, feature: placement.feature })
     };
-    let standing: Vec<Standing> = scene.placements.par_iter().filter_map(stand).collect();
-    detail::add(list, scene, &standing, viewer);
+    let placed: Vec<Placed> = scene.placements.par_iter().filter_map(place).collect();
+    detail::add(list, scene, &placed, viewer);
 }
 
 /// World Z of the ground under a model: as displayed, or as it is where the ground there is out of view, since
