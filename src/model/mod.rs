@@ -11,13 +11,20 @@
 //! model without it.
 
 pub mod built_in;
+pub mod detail;
 pub mod error;
 pub mod gltf;
+pub mod impostor;
+mod impostor_raster;
 pub mod kind;
+mod nearest;
 mod normals;
 pub mod obj;
 mod part;
+mod quadric;
 pub mod read;
+pub mod simplify;
+mod soup;
 mod texture;
 pub mod three_ds;
 mod triangulate;

@@ -19,6 +19,8 @@ const MAX_PIXELS: u64 = 64 << 20;
 pub(super) struct Textures<'a> {
     companions: &'a dyn Companions,
     by_name: BTreeMap<String, Option<TextureId>>,
+    /// Textures made of two: the colours of the one, the holes of the other.
+    masked: BTreeMap<(Option<TextureId>, TextureId), Option<TextureId>>,
     pixels: Vec<Pixels>,
     used: u64,
     notes: Vec<String>,
@@ -27,7 +29,14 @@ pub(super) struct Textures<'a> {
 impl<'a> Textures<'a> {
     /// No textures yet.
     pub(super) fn new(companions: &'a dyn Companions) -> Self {
-        Self { companions, by_name: BTreeMap::new(), pixels: Vec::new(), used: 0, notes: Vec::new() }
+        Self {
+            companions,
+            by_name: BTreeMap::new(),
+            masked: BTreeMap::new(),
+            pixels: Vec::new(),
+            used: 0,
+            notes: Vec::new(),
+        }
     }
 
     /// The texture in the file that the model calls `name`; `None`, with a note, where it cannot be had.
@@ -58,6 +67,45 @@ impl<'a> Textures<'a> {
         }
     }
 
+    /// The texture with the colours of `color`, white where there is none, and the opacity of `mask`: its alpha where it
+    /// has any, else its brightness. One picture that is named for both and has no alpha stays as it is, since
+    /// exporters name it so to say that alpha would count. `color`, with a note, where that would be too many pixels.
+    pub(super) fn masked(&mut self, color: Option<TextureId>, mask: TextureId) -> Option<TextureId> {
+        if color == Some(mask) {
+            return color;
+        }
+        if let Some(&known) = self.masked.get(&(color, mask)) {
+            return known;
+        }
+        let made = self.with_opacity(color, mask);
+        self.masked.insert((color, mask), made);
+        made
+    }
+
+    fn with_opacity(&mut self, color: Option<TextureId>, mask: TextureId) -> Option<TextureId> {
+        let by_alpha = self.is_cut_out(mask);
+        let mask = self.pixels.get(mask.0 as usize)?;
+        let painted = color.and_then(|id| self.pixels.get(id.0 as usize));
+        let size = painted.unwrap_or(mask);
+        let (width, height) = (size.width(), size.height());
+        let count = u64::from(width) * u64::from(height);
+        if count > MAX_PIXELS - self.used {
+            self.notes
+                .push(format!("an opacity map of {width} × {height} pixels is one too many and not drawn"));
+            return color;
+        }
+        let joined = Pixels::from_fn(width, height, |x, y| {
+            let Srgba([red, green, blue, _]) = painted.map_or(Srgba::WHITE, |painted| painted.at(x, y));
+            let place =
+                |at: u32, side: u32, there: u32| (u64::from(at) * u64::from(there) / u64::from(side)) as u32;
+            let seen = mask.at(place(x, width, mask.width()), place(y, height, mask.height()));
+            Srgba([red, green, blue, if by_alpha { seen.0[3] } else { brightness(seen) }])
+        });
+        self.used += count;
+        self.pixels.push(joined);
+        Some(TextureId(self.pixels.len() as u32 - 1))
+    }
+
     /// Notes that the texture `name` cannot be had; `None`.
     pub(super) fn miss(&mut self, name: &str, reason: &str) -> Option<TextureId> {
         self.notes.push(format!("texture '{name}' cannot be used: {reason}"));
@@ -75,6 +123,12 @@ impl<'a> Textures<'a> {
     pub(super) fn finish(self) -> (Vec<Pixels>, Vec<String>) {
         (self.pixels, self.notes)
     }
+}
+
+/// Rec. 601 luma in eighths.
+fn brightness(pixel: Srgba) -> u8 {
+    let [red, green, blue, _] = pixel.0.map(u16::from);
+    ((red * 2 + green * 5 + blue) / 8) as u8
 }
 
 /// The companion called `name`, also tried without its folders and in the letter cases that files take when
@@ -166,6 +220,26 @@ mod tests {
         assert!(
             notes[0].contains("'broken.png' cannot be used") && notes[1].contains("'absent.png' is missing")
         );
+    }
+
+    #[test]
+    fn an_opacity_map_cuts_holes_by_its_brightness_or_its_alpha() {
+        let folder = Folder("", Vec::new());
+        let mut textures = Textures::new(&folder);
+        let grey = |level: u8| Srgba::opaque(level, level, level);
+        let halves = Pixels::from_fn(2, 1, |x, _| grey(if x == 0 { 0 } else { 255 }));
+        let clear = Pixels::from_fn(1, 1, |_, _| Srgba([255, 255, 255, 77]));
+        textures.pixels = vec![Pixels::filled(4, 2, Srgba::opaque(10, 200, 30)), halves, clear];
+        let [leaf, halves, clear] = [0, 1, 2].map(TextureId);
+        let cut = textures.masked(Some(leaf), halves).expect("made");
+        assert_eq!(textures.masked(Some(leaf), halves), Some(cut), "made once");
+        assert_eq!(textures.masked(Some(leaf), leaf), Some(leaf));
+        let (by_alpha, alone) = (textures.masked(Some(leaf), clear), textures.masked(None, halves));
+        let (pixels, _) = textures.finish();
+        let at = |id: TextureId, x: u32| pixels[id.0 as usize].at(x, 0).0;
+        assert_eq!([at(cut, 1), at(cut, 2)], [[10, 200, 30, 0], [10, 200, 30, 255]]);
+        assert_eq!(by_alpha.map(|id| at(id, 0)), Some([10, 200, 30, 77]));
+        assert_eq!(alone.map(|id| [at(id, 0), at(id, 1)]), Some([[255, 255, 255, 0], [255; 4]]));
     }
 
     #[test]

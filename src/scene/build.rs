@@ -1,6 +1,6 @@
 //! From a document and its assets to a scene, pass by pass.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
@@ -95,6 +95,7 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
         ribbons: collected.ribbons,
         solids: collected.solids,
         uprights: collected.uprights,
+        details: models.iter().map(|_| OnceLock::new()).collect(),
         models,
         placements,
         labels,

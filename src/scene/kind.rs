@@ -1,6 +1,6 @@
 //! A scene, loaded and checked: everything that does not depend on a camera.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, Vec2, Vec3};
 
@@ -12,6 +12,7 @@ use crate::draw::lighting::Lighting;
 use crate::draw::list::{DrawMesh, FeatureId};
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
+use crate::model::detail::Detail;
 use crate::model::kind::Model;
 use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::Surface;
@@ -49,6 +50,8 @@ pub struct Scene {
     pub uprights: Vec<Standing>,
     /// Model files, each loaded once.
     pub models: Vec<Model>,
+    /// Simpler forms of each model, made when a picture first needs them.
+    pub details: Vec<OnceLock<Detail>>,
     /// What stands on the ground.
     pub placements: Vec<Placement>,
     /// Names and heights.

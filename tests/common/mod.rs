@@ -5,6 +5,7 @@
 
 pub mod adapters;
 pub mod data;
+pub mod forest;
 pub mod places;
 pub mod scratch;
 pub mod shapefile;

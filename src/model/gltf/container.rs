@@ -120,8 +120,16 @@ fn check_version(version: &str) -> Result<(), ModelError> {
     Err(ModelError::gltf("asset.version", format!("'{version}' is stated; export it as glTF 2.0")))
 }
 
+/// The extensions that a document uses and could do without, and that are not read.
+pub(super) fn unread_extensions(root: &Root) -> impl Iterator<Item = &String> {
+    root.extensions_used.iter().filter(lacks)
+}
+
+fn lacks(name: &&String) -> bool {
+    !READ.contains(&name.as_str()) && !name.starts_with(REFINES)
+}
+
 fn check_extensions(root: &Root) -> Result<(), ModelError> {
-    let lacks = |name: &&String| !READ.contains(&name.as_str()) && !name.starts_with(REFINES);
     match root.extensions_required.iter().find(lacks) {
         Some(name) => Err(ModelError::gltf(
             "extensionsRequired",

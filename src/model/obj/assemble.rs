@@ -123,10 +123,12 @@ fn materials(
 }
 
 fn translate(stated: &Stated, textures: &mut Textures<'_>) -> Material {
-    let texture = stated.map.as_ref().and_then(|file| textures.by_name(file));
+    let [painted, mask] =
+        [&stated.map, &stated.opacity_map].map(|file| file.as_ref().and_then(|file| textures.by_name(file)));
+    let texture = mask.map_or(painted, |mask| textures.masked(painted, mask));
     // Exporters write black under a texture, which would blacken it.
     let black = stated.diffuse.iter().all(|&channel| channel <= 0.0);
-    let diffuse = if texture.is_some() && black { [1.0; 3] } else { stated.diffuse };
+    let diffuse = if painted.is_some() && black { [1.0; 3] } else { stated.diffuse };
     let mut base_color = color_of(diffuse);
     base_color.0[3] = (stated.opacity * 255.0 + 0.5) as u8;
     let alpha = match texture {

@@ -1,4 +1,4 @@
-//! Material libraries: what is read is the name, the diffuse colour, the opacity and the diffuse map.
+//! Material libraries: what is read is the name, the diffuse colour, the opacity and the maps of both.
 
 use super::plain::number;
 use super::text::logical_lines;
@@ -13,8 +13,8 @@ pub(super) struct Stated {
     pub opacity: f32,
     /// The diffuse map's file, options taken off.
     pub map: Option<String>,
-    /// Whether the diffuse map is the opacity map too.
-    pub cut_out: bool,
+    /// The opacity map's file, options taken off; often the diffuse map's.
+    pub opacity_map: Option<String>,
 }
 
 /// The materials of a library, in order. Statements that are not understood are passed over.
@@ -30,7 +30,7 @@ pub(super) fn parse(text: &str) -> Vec<Stated> {
                 diffuse: [0.8; 3],
                 opacity: 1.0,
                 map: None,
-                cut_out: false,
+                opacity_map: None,
             });
         } else if let Some(material) = materials.last_mut() {
             state(material, keyword, rest);
@@ -46,7 +46,7 @@ fn state(material: &mut Stated, keyword: &str, rest: &str) {
         "d" => material.opacity = first().unwrap_or(1.0).clamp(0.0, 1.0),
         "Tr" => material.opacity = 1.0 - first().unwrap_or(0.0).clamp(0.0, 1.0),
         "map_Kd" => material.map = Some(without_options(rest)).filter(|file| !file.is_empty()),
-        "map_d" => material.cut_out = true,
+        "map_d" => material.opacity_map = Some(without_options(rest)).filter(|file| !file.is_empty()),
         _ => {}
     }
 }

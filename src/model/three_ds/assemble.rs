@@ -19,7 +19,7 @@ use crate::model::texture::Textures;
 
 use super::File;
 use super::keyframer::world_from_nodes;
-use super::material::Described;
+use super::material::{Described, Map};
 use super::mesh::TriObject;
 
 /// How texture coordinates of a material are changed before use.
@@ -27,14 +27,25 @@ use super::mesh::TriObject;
 struct UvChange {
     scale: Vec2,
     offset: Vec2,
+    /// Cosine and sine of the picture's turn about the middle of the square of coordinates.
+    turn: Vec2,
 }
 
 impl UvChange {
-    const NONE: Self = Self { scale: Vec2::ONE, offset: Vec2::ZERO };
+    const NONE: Self = Self { scale: Vec2::ONE, offset: Vec2::ZERO, turn: Vec2::X };
+
+    fn of(map: &Map) -> Self {
+        let (sin, cos) = libm::sincosf(map.turn_rad);
+        Self { scale: map.scale, offset: map.offset, turn: Vec2::new(cos, sin) }
+    }
 
     /// From V upward to V downward.
     fn apply(self, uv: Vec2) -> Vec2 {
         let uv = uv * self.scale + self.offset;
+        let from_middle = uv - 0.5;
+        // Where the picture turns one way, places on it are found by turning the other.
+        let turned = || Vec2::new(self.turn.x, -self.turn.y).rotate(from_middle) + 0.5;
+        let uv = if self.turn == Vec2::X { uv } else { turned() };
         Vec2::new(uv.x, 1.0 - uv.y)
     }
 }
@@ -52,7 +63,7 @@ pub(super) fn assemble(file: File, companions: &dyn Companions) -> Result<Model,
     let mut model = Model { census: census(&file), ..Model::default() };
     let mut palette = Palette::default();
     for (index, described) in file.materials.iter().enumerate() {
-        let (material, change) = translate(described, &mut textures, &mut model.notes);
+        let (material, change) = translate(described, &mut textures);
         model.materials.push(material);
         palette.changes.push(change);
         palette.by_name.entry(&described.name).or_insert(index);
@@ -81,17 +92,12 @@ fn census(file: &File) -> Census {
     }
 }
 
-fn translate(
-    described: &Described,
-    textures: &mut Textures<'_>,
-    notes: &mut Vec<String>,
-) -> (Material, UvChange) {
-    if described.opacity_map {
-        notes.push(format!("material '{}' has an opacity map, which is not drawn", described.name));
-    }
-    let texture = described.map.as_ref().and_then(|map| textures.by_name(&map.file));
+fn translate(described: &Described, textures: &mut Textures<'_>) -> (Material, UvChange) {
+    let [painted, mask] = [&described.map, &described.opacity_map]
+        .map(|map| map.as_ref().and_then(|map| textures.by_name(&map.file)));
     // 3D Studio paints the map over the diffuse colour.
-    let mut base_color = if texture.is_some() { Srgba::WHITE } else { described.diffuse };
+    let mut base_color = if painted.is_some() { Srgba::WHITE } else { described.diffuse };
+    let texture = mask.map_or(painted, |mask| textures.masked(painted, mask));
     base_color.0[3] = 255 - (described.transparency * 255.0 + 0.5) as u8;
     let alpha = match texture {
         _ if base_color.0[3] < 255 => Alpha::Blend,
@@ -106,10 +112,8 @@ fn translate(
         two_sided: described.two_sided,
         ..Material::default()
     };
-    let change = described
-        .map
-        .as_ref()
-        .map_or(UvChange::NONE, |map| UvChange { scale: map.scale, offset: map.offset });
+    let laid = described.map.as_ref().or(described.opacity_map.as_ref());
+    let change = laid.map_or(UvChange::NONE, UvChange::of);
     (material, change)
 }
 
@@ -223,4 +227,28 @@ fn default_material(model: &mut Model) -> MaterialId {
         model.materials.len() - 1
     });
     MaterialId(index as u32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_map_turned_by_a_right_angle_shows_its_lower_left_corner_at_the_lower_right() {
+        let map = Map {
+            file: String::new(),
+            scale: Vec2::ONE,
+            offset: Vec2::ZERO,
+            turn_rad: std::f32::consts::FRAC_PI_2,
+        };
+        let lower_left = UvChange::NONE.apply(Vec2::ZERO);
+        assert!(UvChange::of(&map).apply(Vec2::X).abs_diff_eq(lower_left, 1e-6));
+    }
+
+    #[test]
+    fn an_unturned_map_keeps_every_bit_of_common_coordinates() {
+        for uv in [Vec2::ZERO, Vec2::new(0.25, 0.75), Vec2::ONE] {
+            assert_eq!(UvChange::NONE.apply(uv), Vec2::new(uv.x, 1.0 - uv.y));
+        }
+    }
 }

@@ -16,16 +16,18 @@ pub(super) struct Described {
     pub transparency: f32,
     pub two_sided: bool,
     pub map: Option<Map>,
-    /// Whether there is an opacity map, which is not drawn.
-    pub opacity_map: bool,
+    /// A picture that is dark where the surface has holes.
+    pub opacity_map: Option<Map>,
 }
 
-/// The diffuse map.
+/// A picture laid over a surface.
 #[derive(Clone, Debug)]
 pub(super) struct Map {
     pub file: String,
     pub scale: Vec2,
     pub offset: Vec2,
+    /// How far the picture is turned about the middle of the square of coordinates, counter-clockwise.
+    pub turn_rad: f32,
 }
 
 /// The material in a material chunk.
@@ -44,7 +46,7 @@ pub(super) fn parse(chunk: &Chunk<'_>) -> Result<Described, ModelError> {
         transparency: 0.0,
         two_sided: false,
         map: None,
-        opacity_map: false,
+        opacity_map: None,
     };
     for part in chunk.children() {
         let part = part?;
@@ -54,7 +56,7 @@ pub(super) fn parse(chunk: &Chunk<'_>) -> Result<Described, ModelError> {
             TRANSPARENCY => material.transparency = percentage(&part)?.unwrap_or(0.0),
             TWO_SIDED => material.two_sided = true,
             TEXTURE_MAP => material.map = map(&part)?,
-            OPACITY_MAP => material.opacity_map = true,
+            OPACITY_MAP => material.opacity_map = map(&part)?,
             _ => {}
         }
     }
@@ -101,7 +103,8 @@ fn map(chunk: &Chunk<'_>) -> Result<Option<Map>, ModelError> {
     const U_SCALE: u16 = 0xA356;
     const U_OFFSET: u16 = 0xA358;
     const V_OFFSET: u16 = 0xA35A;
-    let mut map = Map { file: String::new(), scale: Vec2::ONE, offset: Vec2::ZERO };
+    const TURN_DEG: u16 = 0xA35C;
+    let mut map = Map { file: String::new(), scale: Vec2::ONE, offset: Vec2::ZERO, turn_rad: 0.0 };
     let number = |mut cursor: Cursor<'_>, target: &mut f32| -> Result<(), ModelError> {
         let value = cursor.f32()?;
         if value.is_finite() {
@@ -117,8 +120,53 @@ fn map(chunk: &Chunk<'_>) -> Result<Option<Map>, ModelError> {
             V_SCALE => number(part.read(), &mut map.scale.y)?,
             U_OFFSET => number(part.read(), &mut map.offset.x)?,
             V_OFFSET => number(part.read(), &mut map.offset.y)?,
+            TURN_DEG => {
+                number(part.read(), &mut map.turn_rad)?;
+                map.turn_rad = map.turn_rad.to_radians();
+            }
             _ => {}
         }
     }
     Ok((!map.file.trim().is_empty()).then_some(map))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chunk(id: u16, body: &[u8]) -> Vec<u8> {
+        [&id.to_le_bytes()[..], &(body.len() as u32 + 6).to_le_bytes(), body].concat()
+    }
+
+    #[test]
+    fn a_material_has_its_colour_transparency_sides_and_maps() {
+        let map = |file: &str, more: Vec<u8>| [chunk(0xA300, format!("{file}\0").as_bytes()), more].concat();
+        let number = |id: u16, value: f32| chunk(id, &value.to_le_bytes());
+        let turned = [number(0xA354, 2.0), number(0xA358, 0.25), number(0xA35C, 90.0)].concat();
+        let body = [
+            chunk(0xA000, b"leaf\0"),
+            chunk(0xA010, &chunk(0x0011, &[1, 2, 3])),
+            chunk(0xA020, &chunk(0x0011, &[10, 20, 30])),
+            chunk(0xA030, &chunk(0x0011, &[4, 5, 6])),
+            chunk(0xA050, &chunk(0x0030, &[25, 0])),
+            chunk(0xA081, &[]),
+            chunk(0xA200, &map("LEAF.TGA", turned)),
+            chunk(0xA210, &map("LEAF_O.TGA", Vec::new())),
+        ]
+        .concat();
+        let bytes = chunk(0xAFFF, &body);
+        let leaf = parse(&Chunk::first(&bytes).expect("a chunk")).expect("sound");
+        assert_eq!(
+            (leaf.name.as_str(), leaf.diffuse, leaf.transparency),
+            ("leaf", Srgba::opaque(10, 20, 30), 0.25)
+        );
+        assert!(leaf.two_sided);
+        let map = leaf.map.expect("a map");
+        assert_eq!(
+            (map.file.as_str(), map.scale, map.offset),
+            ("LEAF.TGA", Vec2::new(1.0, 2.0), Vec2::new(0.25, 0.0))
+        );
+        assert_eq!(map.turn_rad, std::f32::consts::FRAC_PI_2);
+        assert_eq!(leaf.opacity_map.map(|map| map.file).as_deref(), Some("LEAF_O.TGA"));
+    }
 }

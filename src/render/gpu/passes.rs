@@ -8,6 +8,7 @@ use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::pipelines::{Pass, Pipelines};
 use crate::render::gpu::plan::{Plan, Step};
 use crate::render::gpu::readback::Targets;
+use crate::render::gpu::uniforms::Instance;
 use crate::render::gpu::upload::Resources;
 
 /// Everything that recording reads.
@@ -80,7 +81,7 @@ impl Recording<'_> {
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, which: Pass, steps: &[Step]) {
         let mut bound = None;
         for step in steps {
-            let item = &self.list.items[step.item];
+            let item = &self.list.items[step.items.start];
             let (Some(pipeline), Some(mesh)) =
                 (self.pipelines.get(which, step), &self.resources.meshes[item.mesh.0 as usize])
             else {
@@ -88,14 +89,22 @@ impl Recording<'_> {
             };
             let texture = self.resources.texture_of(&self.list.materials[item.material.0 as usize]);
             pass.set_pipeline(pipeline);
-            pass.set_bind_group(1, &self.resources.items, &[step.item as u32 * self.resources.item_stride]);
+            pass.set_bind_group(
+                1,
+                &self.resources.surfaces,
+                &[item.material.0 * self.resources.surface_stride],
+            );
             pass.set_bind_group(2, texture, &[]);
             if bound != Some(item.mesh) {
                 pass.set_vertex_buffer(0, mesh.vertices.slice(..));
                 pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
                 bound = Some(item.mesh);
             }
-            pass.draw_indexed(item.triangles.start * 3..item.triangles.end * 3, 0, 0..1);
+            // Bound at the first instance and counted from zero: OpenGL ES knows no other way.
+            let first = (step.items.start * size_of::<Instance>()) as u64;
+            pass.set_vertex_buffer(1, self.resources.instances.slice(first..));
+            let count = step.items.len() as u32;
+            pass.draw_indexed(item.triangles.start * 3..item.triangles.end * 3, 0, 0..count);
         }
     }
 }

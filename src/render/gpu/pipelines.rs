@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::draw::list::DrawVertex;
 use crate::render::gpu::adapter::{Api, Gpu};
 use crate::render::gpu::plan::{Plan, Rule, Step, Way};
-use crate::render::gpu::uniforms::{Frame, ItemConstants};
+use crate::render::gpu::uniforms::{Frame, Instance, SurfaceConstants};
 
 /// What colours are drawn to and read back as.
 pub(in crate::render::gpu) const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -29,8 +29,8 @@ pub(in crate::render::gpu) const SHADER: &str =
 pub(in crate::render::gpu) struct Layouts {
     /// Group 0: constants, ground posts, ramp.
     pub frame: wgpu::BindGroupLayout,
-    /// Group 1: an item's constants, at a dynamic offset.
-    pub item: wgpu::BindGroupLayout,
+    /// Group 1: a material's constants, at a dynamic offset.
+    pub surface: wgpu::BindGroupLayout,
     /// Group 2: the base colour texture and its sampler.
     pub texture: wgpu::BindGroupLayout,
 }
@@ -87,7 +87,7 @@ impl Layouts {
                 (fragment, texture(wgpu::TextureSampleType::Uint)),
                 (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
             ]),
-            item: group(&[(both, uniform(size_of::<ItemConstants>(), true))]),
+            surface: group(&[(both, uniform(size_of::<SurfaceConstants>(), true))]),
             texture: group(&[
                 (fragment, texture(wgpu::TextureSampleType::Float { filterable: true })),
                 (fragment, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
@@ -105,7 +105,7 @@ impl Pipelines {
         });
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
-            bind_group_layouts: &[Some(&layouts.frame), Some(&layouts.item), Some(&layouts.texture)],
+            bind_group_layouts: &[Some(&layouts.frame), Some(&layouts.surface), Some(&layouts.texture)],
             immediate_size: 0,
         });
         let sky_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -152,16 +152,29 @@ fn pipeline(
             module: shader,
             entry_point: Some("vertex"),
             compilation_options: options(&vertex_constants),
-            buffers: &[Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<DrawVertex>() as u64,
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &wgpu::vertex_attr_array![
-                    0 => Float32x3,
-                    1 => Float32x3,
-                    2 => Float32x2,
-                    3 => Unorm8x4,
-                ],
-            })],
+            buffers: &[
+                Some(wgpu::VertexBufferLayout {
+                    array_stride: size_of::<DrawVertex>() as u64,
+                    step_mode: wgpu::VertexStepMode::Vertex,
+                    attributes: &wgpu::vertex_attr_array![
+                        0 => Float32x3,
+                        1 => Float32x3,
+                        2 => Float32x2,
+                        3 => Unorm8x4,
+                    ],
+                }),
+                Some(wgpu::VertexBufferLayout {
+                    array_stride: size_of::<Instance>() as u64,
+                    step_mode: wgpu::VertexStepMode::Instance,
+                    attributes: &wgpu::vertex_attr_array![
+                        4 => Float32x4,
+                        5 => Float32x4,
+                        6 => Float32x4,
+                        7 => Float32x4,
+                        8 => Uint32,
+                    ],
+                }),
+            ],
         },
         primitive: wgpu::PrimitiveState {
             cull_mode: (!way.two_sided).then_some(wgpu::Face::Back),
@@ -289,6 +302,6 @@ mod tests {
             }
         };
         assert_eq!(size_of_struct("Frame"), size_of::<Frame>());
-        assert_eq!(size_of_struct("Item"), size_of::<ItemConstants>());
+        assert_eq!(size_of_struct("Surface"), size_of::<SurfaceConstants>());
     }
 }

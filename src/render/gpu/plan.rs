@@ -33,10 +33,10 @@ pub(in crate::render::gpu) enum Rule {
 }
 
 /// One draw call.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::render::gpu) struct Step {
-    /// Index into the draw list's items.
-    pub item: usize,
+    /// Indices into the draw list's items: part of a run, so that they differ in place and feature only.
+    pub items: Range<usize>,
     /// What it needs of a pipeline.
     pub way: Way,
 }
@@ -66,40 +66,47 @@ impl Plan {
     pub fn of(list: &DrawList, camera: &Camera) -> Self {
         let mut plan = Self::default();
         let mut blended = Vec::new();
-        for (index, item) in list.items.iter().enumerate().filter(|(_, item)| !item.triangles.is_empty()) {
+        for run in list.runs().filter(|run| !list.items[run.start].triangles.is_empty()) {
+            let item = &list.items[run.start];
             let material = &list.materials[item.material.0 as usize];
             let masked = matches!(material.alpha, Alpha::Mask(_));
             let way = |rule| Way { rule, two_sided: material.two_sided, masked };
-            let step = |rule| Step { item: index, way: way(rule) };
             let is_blend = material.alpha == Alpha::Blend;
             match (item.layer, is_blend) {
                 (Layer::Draped(_), _) => {
-                    let depth = step(Rule::DrapeDepth);
-                    plan.features.extend([step(Rule::Drape), depth]);
-                    match is_blend {
-                        true => plan.color.push(step(Rule::DrapeBlend)),
-                        false => plan.color.extend([step(Rule::Drape), depth]),
+                    for index in run {
+                        let step = |rule| Step { items: index..index + 1, way: way(rule) };
+                        plan.features.extend([step(Rule::Drape), step(Rule::DrapeDepth)]);
+                        match is_blend {
+                            true => plan.color.push(step(Rule::DrapeBlend)),
+                            false => plan.color.extend([step(Rule::Drape), step(Rule::DrapeDepth)]),
+                        }
                     }
                 }
                 (_, false) => {
-                    plan.color.push(step(Rule::Solid));
-                    plan.features.push(step(Rule::Solid));
+                    let step = Step { items: run, way: way(Rule::Solid) };
+                    plan.color.push(step.clone());
+                    plan.features.push(step);
                 }
                 (_, true) => {
-                    blended.push((depth_of(list, item, camera), step(Rule::Blend)));
-                    plan.features.push(step(Rule::Solid));
+                    let middle = middle_of(list, item);
+                    blended.extend(run.clone().map(|index| {
+                        let step = Step { items: index..index + 1, way: way(Rule::Blend) };
+                        (depth_of(middle, &list.items[index], camera), step)
+                    }));
+                    plan.features.push(Step { items: run, way: way(Rule::Solid) });
                 }
             }
         }
         // Stable, so that equally far items keep the list's order.
         blended.sort_by(|a, b| b.0.total_cmp(&a.0));
-        plan.color.extend(blended.into_iter().map(|(_, step)| step));
+        plan.color.extend(blended.into_iter().map(|(_, step): (f32, Step)| step));
         plan
     }
 }
 
-/// Metres along the viewing direction to the middle of what `item` draws.
-fn depth_of(list: &DrawList, item: &DrawItem, camera: &Camera) -> f32 {
+/// The middle of what `item` draws, in its mesh's space.
+fn middle_of(list: &DrawList, item: &DrawItem) -> Vec3 {
     let mesh = &list.meshes[item.mesh.0 as usize];
     let Range { start, end } = item.triangles;
     let corners = mesh.triangles[start as usize..end as usize].iter().flatten();
@@ -107,8 +114,12 @@ fn depth_of(list: &DrawList, item: &DrawItem, camera: &Camera) -> f32 {
         let at = Vec3::from_array(mesh.vertices[id.index()].position);
         (min.min(at), max.max(at))
     });
-    let middle = item.world_from_mesh.transform_point3((min + max) * 0.5);
-    (middle - camera.eye()).dot(camera.forward())
+    (min + max) * 0.5
+}
+
+/// Metres along the viewing direction to `middle` of the mesh of `item`.
+fn depth_of(middle: Vec3, item: &DrawItem, camera: &Camera) -> f32 {
+    (item.world_from_mesh.transform_point3(middle) - camera.eye()).dot(camera.forward())
 }
 
 #[cfg(test)]
@@ -140,7 +151,7 @@ mod tests {
 
     fn color_order(list: &DrawList) -> Vec<(usize, Rule)> {
         let camera = Camera::new(Vec3::ZERO, Vec3::Y, 1.0, (8, 8), (1.0, 100.0)).expect("sound");
-        Plan::of(list, &camera).color.iter().map(|step| (step.item, step.way.rule)).collect()
+        Plan::of(list, &camera).color.iter().map(|step| (step.items.start, step.way.rule)).collect()
     }
 
     #[test]
@@ -167,6 +178,18 @@ mod tests {
         ]);
         let expected = [(0, Rule::Solid), (1, Rule::DrapeBlend), (2, Rule::Drape), (2, Rule::DrapeDepth)];
         assert_eq!(color_order(&list), expected);
+    }
+
+    #[test]
+    fn what_is_alike_is_drawn_at_once_unless_it_is_blended() {
+        let mut list = list(&[(Layer::Solid, Alpha::Opaque, 5.0), (Layer::Solid, Alpha::Blend, 5.0)]);
+        let [solid, glass] = [list.items[0].clone(), list.items[1].clone()];
+        list.items = vec![solid.clone(), solid.clone(), solid, glass.clone(), glass];
+        let camera = Camera::new(Vec3::ZERO, Vec3::Y, 1.0, (8, 8), (1.0, 100.0)).expect("sound");
+        let plan = Plan::of(&list, &camera);
+        let ranges = |steps: &[Step]| steps.iter().map(|step| step.items.clone()).collect::<Vec<_>>();
+        assert_eq!(ranges(&plan.color), [0..3, 3..4, 4..5]);
+        assert_eq!(ranges(&plan.features), [0..3, 3..5]);
     }
 
     #[test]

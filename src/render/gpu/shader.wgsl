@@ -1,4 +1,4 @@
-// Draws one item of a draw list, by the formulas of src/draw/lighting.rs and src/draw/ground.rs.
+// Draws the items of a draw list that are alike, by the formulas of src/draw/lighting.rs and src/draw/ground.rs.
 //
 // Two families of entry points share everything but their outputs: `color` writes the lit surface,
 // `feature` writes the feature's number and the depth in metres. Depth is reversed: with the clip planes
@@ -24,10 +24,9 @@ struct Frame {
     ground_levels: array<vec4u, 24>, // columns, rows, first column in `ground_coarse` (level 0: in `ground_posts`)
 }
 
-struct Item {
-    world_from_mesh: mat4x4f,
+struct Surface {
     base_color: vec4f, // linear rgb, straight alpha
-    flags: vec4u,      // bits of the constants below, feature
+    flags: vec4u,      // x: bits of the constants below
     cutoff: vec4f,     // x: alpha below it is a hole, for the colour where MASK is set, for the feature too where BLEND is
 }
 
@@ -48,7 +47,7 @@ const MASK_LEVEL_BIAS = -1.0;
 @group(0) @binding(2) var ground_coarse: texture_2d<u32>;
 // One texel a stop of the ramp: linear rgb, height.
 @group(0) @binding(3) var ramp_stops: texture_2d<f32>;
-@group(1) @binding(0) var<uniform> item: Item;
+@group(1) @binding(0) var<uniform> material: Surface;
 // Colours multiplied by alpha where the item is not opaque, so that unseen colours count for nothing.
 @group(2) @binding(0) var base_texture: texture_2d<f32>;
 @group(2) @binding(1) var base_sampler: sampler;
@@ -66,12 +65,22 @@ struct Corner {
     @location(3) color: vec4f,
 }
 
+// What each item has of its own.
+struct Instance {
+    @location(4) x_axis: vec4f,
+    @location(5) y_axis: vec4f,
+    @location(6) z_axis: vec4f,
+    @location(7) origin: vec4f,
+    @location(8) feature: u32,
+}
+
 struct Varying {
     @invariant @builtin(position) clip: vec4f,
     @location(0) world: vec3f,
     @location(1) normal: vec3f,
     @location(2) uv: vec2f,
     @location(3) color: vec4f,
+    @location(4) @interpolate(flat) feature: u32,
 }
 
 fn linear_from_srgb(value: vec3f) -> vec3f {
@@ -81,8 +90,9 @@ fn linear_from_srgb(value: vec3f) -> vec3f {
 }
 
 @vertex
-fn vertex(corner: Corner) -> Varying {
-    let world = (item.world_from_mesh * vec4f(corner.position, 1.0)).xyz;
+fn vertex(corner: Corner, instance: Instance) -> Varying {
+    let world_from_mesh = mat4x4f(instance.x_axis, instance.y_axis, instance.z_axis, instance.origin);
+    let world = (world_from_mesh * vec4f(corner.position, 1.0)).xyz;
     // Relative to the eye first: far from the origin a product of matrices would lose the low digits.
     let offset = world - frame.eye.xyz;
     let depth = dot(offset, frame.forward.xyz);
@@ -94,9 +104,10 @@ fn vertex(corner: Corner) -> Varying {
         depth,
     );
     out.world = world;
-    out.normal = (item.world_from_mesh * vec4f(corner.normal, 0.0)).xyz;
+    out.normal = (world_from_mesh * vec4f(corner.normal, 0.0)).xyz;
     out.uv = corner.uv;
     out.color = vec4f(linear_from_srgb(corner.color.rgb), corner.color.a);
+    out.feature = instance.feature;
     return out;
 }
 
@@ -233,7 +244,7 @@ fn vertex_normal(in: Varying, front: bool) -> vec3f {
 }
 
 fn is_opaque() -> bool {
-    return (item.flags.x & (MASK | BLEND)) == 0u;
+    return (material.flags.x & (MASK | BLEND)) == 0u;
 }
 
 fn surface(in: Varying) -> vec4f {
@@ -241,11 +252,11 @@ fn surface(in: Varying) -> vec4f {
     if !is_opaque() {
         texel = vec4f(texel.rgb / max(texel.a, 1e-4), texel.a);
     }
-    return item.base_color * in.color * texel;
+    return material.base_color * in.color * texel;
 }
 
 fn shade(in: Varying, front: bool) -> vec4f {
-    let flags = item.flags.x;
+    let flags = material.flags.x;
     var color = surface(in);
     var normal = vertex_normal(in, front);
     var visibility = vec2f(1.0);
@@ -277,7 +288,7 @@ fn reversed_depth(in: Varying) -> f32 {
 fn shade_or_discard(in: Varying, front: bool) -> vec4f {
     let shaded = shade(in, front);
     let alpha = surface(in).a;
-    if (item.flags.x & MASK) != 0u && alpha < item.cutoff.x {
+    if (material.flags.x & MASK) != 0u && alpha < material.cutoff.x {
         discard;
     }
     return shaded;
@@ -296,7 +307,7 @@ struct ColorAndSamples {
 fn is_solid_at(in: Varying, offset: vec2f) -> bool {
     let uv = in.uv + dpdx(in.uv) * offset.x + dpdy(in.uv) * offset.y;
     let texel = textureSampleBias(base_texture, base_sampler, uv, MASK_LEVEL_BIAS);
-    return item.base_color.a * in.color.a * texel.a >= item.cutoff.x;
+    return material.base_color.a * in.color.a * texel.a >= material.cutoff.x;
 }
 
 // A masked item with its alpha tested at each of the four standard sample places, for smooth borders.
@@ -334,8 +345,8 @@ struct FeatureAndDepth {
 fn feature(in: Varying) -> FeatureAndDepth {
     let depth = reversed_depth(in);
     let alpha = surface(in).a;
-    if !is_opaque() && alpha < item.cutoff.x {
+    if !is_opaque() && alpha < material.cutoff.x {
         discard;
     }
-    return FeatureAndDepth(vec2u(item.flags.y, bitcast<u32>(1.0 / in.clip.w)), depth);
+    return FeatureAndDepth(vec2u(in.feature, bitcast<u32>(1.0 / in.clip.w)), depth);
 }

@@ -43,14 +43,21 @@ pub(in crate::render::gpu) struct Frame {
     ground_levels: [[u32; 4]; MOST_LEVELS],
 }
 
-/// What is the same for one item: `Item` in the shader.
+/// What is the same for all items of one material: `Surface` in the shader.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub(in crate::render::gpu) struct ItemConstants {
-    world_from_mesh: [[f32; 4]; 4],
+pub(in crate::render::gpu) struct SurfaceConstants {
     base_color: [f32; 4],
     flags: [u32; 4],
     cutoff: [f32; 4],
+}
+
+/// What each item has of its own: `Instance` in the shader.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(in crate::render::gpu) struct Instance {
+    world_from_mesh: [[f32; 4]; 4],
+    feature: u32,
 }
 
 fn with(vector: Vec3, w: f32) -> [f32; 4] {
@@ -99,9 +106,16 @@ impl Frame {
     }
 }
 
-impl ItemConstants {
-    /// The constants of `item`, drawn with `material`.
-    pub fn of(item: &DrawItem, material: &Material) -> Self {
+impl Instance {
+    /// The place and feature of `item`.
+    pub fn of(item: &DrawItem) -> Self {
+        Self { world_from_mesh: item.world_from_mesh.to_cols_array_2d(), feature: item.feature.0 }
+    }
+}
+
+impl SurfaceConstants {
+    /// The constants of `material`.
+    pub fn of(material: &Material) -> Self {
         let mut flags = 0;
         if material.normals == Normals::Ground {
             flags |= FROM_GROUND_NORMAL;
@@ -121,9 +135,8 @@ impl ItemConstants {
             }
         };
         Self {
-            world_from_mesh: item.world_from_mesh.to_cols_array_2d(),
             base_color: with(material.base_color.linear(), material.base_color.alpha()),
-            flags: [flags, item.feature.0, 0, 0],
+            flags: [flags, 0, 0, 0],
             cutoff: [cutoff, 0.0, 0.0, 0.0],
         }
     }

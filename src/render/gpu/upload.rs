@@ -1,6 +1,6 @@
 //! A draw list as buffers and textures on the device. Only what items use goes up.
 
-use bytemuck::{bytes_of, cast_slice};
+use bytemuck::{Zeroable, bytes_of, cast_slice};
 use rayon::prelude::*;
 use wgpu::util::align_to;
 
@@ -14,7 +14,7 @@ use crate::render::gpu::error::GpuError;
 use crate::render::gpu::ground::GroundTextures;
 use crate::render::gpu::mips::{levels, premultiplied};
 use crate::render::gpu::pipelines::Layouts;
-use crate::render::gpu::uniforms::{Frame, ItemConstants, RAMP_COLUMNS};
+use crate::render::gpu::uniforms::{Frame, Instance, RAMP_COLUMNS, SurfaceConstants};
 use crate::view::camera::Camera;
 
 /// A mesh on the device.
@@ -31,10 +31,12 @@ pub(in crate::render::gpu) struct Resources {
     pub meshes: Vec<Option<MeshBuffers>>,
     /// Camera, light and ground.
     pub frame: wgpu::BindGroup,
-    /// The constants of all items, to be bound at an item's offset.
-    pub items: wgpu::BindGroup,
-    /// Bytes from one item's constants to the next.
-    pub item_stride: u32,
+    /// Place and feature of every item.
+    pub instances: wgpu::Buffer,
+    /// The constants of all materials, to be bound at a material's offset.
+    pub surfaces: wgpu::BindGroup,
+    /// Bytes from one material's constants to the next.
+    pub surface_stride: u32,
     textures: Vec<TextureForms>,
     white: wgpu::BindGroup,
 }
@@ -59,7 +61,7 @@ impl Resources {
             mesh_used[item.mesh.0 as usize] = true;
         }
         let meshes = list.meshes.iter().zip(mesh_used).enumerate();
-        let (items, item_stride) = items(gpu, layouts, list)?;
+        let (surfaces, surface_stride) = surfaces(gpu, layouts, list)?;
         let sampler = sampler(gpu);
         let white = [Pixels::filled(1, 1, Srgba::WHITE)];
         Ok(Self {
@@ -67,8 +69,9 @@ impl Resources {
                 .map(|(index, (mesh, used))| used.then(|| upload_mesh(gpu, index, mesh)).transpose())
                 .collect::<Result<_, _>>()?,
             frame: frame(gpu, layouts, list, camera)?,
-            items,
-            item_stride,
+            instances: instances(gpu, list)?,
+            surfaces,
+            surface_stride,
             textures: textures(gpu, layouts, &sampler, list),
             white: bind_texture(gpu, layouts, &sampler, &white),
         })
@@ -111,21 +114,30 @@ fn buffer(
     Ok(buffer)
 }
 
-fn items(gpu: &Gpu, layouts: &Layouts, list: &DrawList) -> Result<(wgpu::BindGroup, u32), GpuError> {
-    let size = size_of::<ItemConstants>();
-    let stride = align_to(size as u32, gpu.limits.min_uniform_buffer_offset_alignment);
+fn instances(gpu: &Gpu, list: &DrawList) -> Result<wgpu::Buffer, GpuError> {
     let what = || format!("the placement of {} items", list.items.len());
-    let total = gpu.fitting(what, list.items.len().max(1) as u64 * u64::from(stride))?;
+    gpu.fitting(what, (list.items.len() * size_of::<Instance>()) as u64)?;
+    let mut instances: Vec<Instance> = list.items.par_iter().map(Instance::of).collect();
+    if instances.is_empty() {
+        instances.push(Instance::zeroed());
+    }
+    buffer(gpu, what, wgpu::BufferUsages::VERTEX, cast_slice(&instances))
+}
+
+fn surfaces(gpu: &Gpu, layouts: &Layouts, list: &DrawList) -> Result<(wgpu::BindGroup, u32), GpuError> {
+    let size = size_of::<SurfaceConstants>();
+    let stride = align_to(size as u32, gpu.limits.min_uniform_buffer_offset_alignment);
+    let what = || format!("{} materials", list.materials.len());
+    let total = gpu.fitting(what, list.materials.len().max(1) as u64 * u64::from(stride))?;
     let mut bytes = vec![0; total as usize];
-    for (slot, item) in bytes.chunks_exact_mut(stride as usize).zip(&list.items) {
-        let constants = ItemConstants::of(item, &list.materials[item.material.0 as usize]);
-        slot[..size].copy_from_slice(bytes_of(&constants));
+    for (slot, material) in bytes.chunks_exact_mut(stride as usize).zip(&list.materials) {
+        slot[..size].copy_from_slice(bytes_of(&SurfaceConstants::of(material)));
     }
     let buffer = buffer(gpu, what, wgpu::BufferUsages::UNIFORM, &bytes)?;
     let window = wgpu::BufferBinding { buffer: &buffer, offset: 0, size: wgpu::BufferSize::new(size as u64) };
     let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
-        layout: &layouts.item,
+        layout: &layouts.surface,
         entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::Buffer(window) }],
     });
     Ok((group, stride))

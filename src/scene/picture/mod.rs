@@ -1,5 +1,6 @@
 //! A scene and a camera to a draw list: refine, emit, drape, set solids and models.
 
+mod detail;
 mod drapes;
 mod ground;
 mod models;
@@ -17,6 +18,7 @@ use crate::roam::culling::patches_in_view;
 use crate::roam::displayed::DisplayedTerrain;
 use crate::roam::refine::rebuild::rebuild;
 use crate::scene::kind::{Scene, Terrain, View};
+use crate::scene::picture::detail::Viewer;
 use crate::view::camera::{Camera, CameraError};
 use crate::view::frustum::Frustum;
 
@@ -45,15 +47,24 @@ pub fn camera(scene: &Scene, view: &View, size: (u32, u32)) -> Result<Camera, Ca
 pub fn shoot(scene: &Scene, camera: &Camera, step: &dyn Fn(&'static str)) -> Shot {
     step("refining terrain");
     let displayed = Arc::new(display(&scene.terrain, camera));
-    let (list, ground_triangles) = draw_list(scene, &displayed, step);
+    let (list, ground_triangles) = listed(scene, &displayed, Viewer::Camera(camera), step);
     Shot { list, displayed, ground_triangles }
 }
 
-/// What is to be drawn of a scene whose terrain is shown as `displayed`, and how many triangles of it are ground. `step`
-/// is called with what is done next.
+/// What is to be drawn of a scene whose terrain is shown as `displayed`, and how many triangles of it are ground: all
+/// models wherever they stand, as their files have them. `step` is called with what is done next.
 pub fn draw_list(
     scene: &Scene,
     displayed: &DisplayedTerrain,
+    step: &dyn Fn(&'static str),
+) -> (DrawList, usize) {
+    listed(scene, displayed, Viewer::Anyone, step)
+}
+
+fn listed(
+    scene: &Scene,
+    displayed: &DisplayedTerrain,
+    viewer: Viewer<'_>,
     step: &dyn Fn(&'static str),
 ) -> (DrawList, usize) {
     let mut list =
@@ -66,7 +77,7 @@ pub fn draw_list(
     ground::add_plinth(&mut list, walls);
     solids::add(&mut list, scene);
     uprights::add(&mut list, scene, displayed);
-    models::add(&mut list, scene, displayed);
+    models::add(&mut list, scene, displayed, viewer);
     (list, ground_triangles)
 }
 

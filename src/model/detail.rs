@@ -1,0 +1,96 @@
+//! Which form of a model to draw, by how large it is seen.
+//!
+//! ```text
+//! seen as            form
+//! ≤ 32 px across     impostor: a picture on a quad
+//! larger             the coarsest level whose error is seen as at most half a pixel
+//! large              the model itself
+//! ```
+
+use glam::Vec3;
+
+use crate::model::impostor::{Impostor, View};
+use crate::model::kind::Model;
+use crate::model::simplify::{Level, levels};
+
+/// How far a level's surface may be off on the picture, in pixels.
+const TOLERANCE_PX: f32 = 0.5;
+
+/// The largest a model may be seen as an impostor, in pixels. Where one gives way to the other the eye is near enough
+/// for views 17° apart to differ by five pixels at the model's rim; twice as large they would jump.
+const IMPOSTOR_PX: f32 = 32.0;
+
+/// An impostor is made of a level whose error is at most this part of the model's size: a quarter of its pixels.
+const IMPOSTOR_SHARE: f32 = 1.0 / 256.0;
+
+/// The simpler forms of a model.
+#[derive(Clone, Debug)]
+pub struct Detail {
+    /// Simpler meshes, finest first.
+    pub levels: Vec<Level>,
+    /// Pictures from all sides, where they pay.
+    pub impostor: Option<Impostor>,
+}
+
+/// How a placed model is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// Pixels across a unit of the model at the model's nearest point.
+    pub px_per_unit: f32,
+    /// Pixels across the ball around the model.
+    pub across_px: f32,
+    /// Where the eye is seen from the model's middle, in the model's space; any length but 0.
+    pub towards_eye: Vec3,
+}
+
+/// One form of a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Form {
+    /// The model itself.
+    Full,
+    /// One of [`Detail::levels`].
+    Level(u8),
+    /// A view of [`Detail::impostor`].
+    Impostor(View),
+}
+
+impl Detail {
+    /// The simpler forms of `model`. Takes some microseconds a triangle; the same model gives the same forms.
+    pub fn of(model: &Model) -> Self {
+        let levels = levels(model);
+        let size = model.bounds().map_or(0.0, |(min, max)| (max - min).length());
+        let simple = levels.iter().rfind(|level| level.error <= size * IMPOSTOR_SHARE);
+        let parts = simple.map_or(&model.parts, |level| &level.parts);
+        Self { impostor: Impostor::of(model, parts), levels }
+    }
+
+    /// The simplest form that looks right.
+    pub fn form(&self, seen: &Seen) -> Form {
+        if self.impostor.is_some() && seen.across_px <= IMPOSTOR_PX {
+            return Form::Impostor(View::nearest(seen.towards_eye));
+        }
+        let fits = |level: &Level| level.error * seen.px_per_unit <= TOLERANCE_PX;
+        self.levels.iter().rposition(fits).map_or(Form::Full, |level| Form::Level(level as u8))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn detail() -> Detail {
+        let level = |error| Level { parts: Vec::new(), error };
+        Detail { levels: vec![level(0.01), level(0.1)], impostor: None }
+    }
+
+    fn seen(px_per_unit: f32) -> Seen {
+        Seen { px_per_unit, across_px: px_per_unit * 10.0, towards_eye: Vec3::X }
+    }
+
+    #[test]
+    fn the_coarsest_level_within_half_a_pixel_is_taken() {
+        assert_eq!(detail().form(&seen(100.0)), Form::Full);
+        assert_eq!(detail().form(&seen(40.0)), Form::Level(0));
+        assert_eq!(detail().form(&seen(4.0)), Form::Level(1));
+    }
+}

@@ -1,0 +1,218 @@
+//! Many models: what is out of view is left out, what is small is drawn in a simpler form, and what is alike comes
+//! in runs.
+//!
+//! A picture whose models come to no more than [`FULL_TRIANGLES`] shows all of them as their files have them: there is
+//! nothing to gain. Past that, each is drawn in the form that [`Detail::form`] chooses for the size at which it is seen.
+//! Items are listed model by model, form by form and part by part, so that they make the runs of
+//! [`DrawList::runs`].
+
+use std::collections::BTreeMap;
+
+use glam::{Mat4, Vec3};
+use rayon::prelude::*;
+
+use crate::draw::list::{DrawItem, DrawList, FeatureId, Layer, MaterialId, MeshId};
+use crate::draw::material::{Material, TextureId};
+use crate::model::detail::{Detail, Form, Seen};
+use crate::model::impostor::Impostor;
+use crate::model::kind::{Model, Part};
+use crate::scene::kind::Scene;
+use crate::view::camera::Camera;
+use crate::view::frustum::Frustum;
+
+/// The triangles of models up to which a picture shows every one of them in full: as many as a landscape's ground has.
+const FULL_TRIANGLES: usize = 250_000;
+
+/// For whom models are drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Viewer<'a> {
+    /// For whoever looks at them later: all models, in full.
+    Anyone,
+    /// For one picture.
+    Camera(&'a Camera),
+}
+
+/// A model set in its place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placed {
+    /// Which of the scene's models.
+    pub model: usize,
+    /// Its place: a rotation, a uniform scale and a translation.
+    pub world_from_model: Mat4,
+    /// The feature it is.
+    pub feature: FeatureId,
+}
+
+/// The ball around a model, in its own space.
+#[derive(Clone, Copy, Debug, Default)]
+struct Ball {
+    center: Vec3,
+    radius: f32,
+}
+
+/// Adds all that stands where `viewer` may see it.
+pub(super) fn add(list: &mut DrawList, scene: &Scene, placed: &[Placed], viewer: Viewer<'_>) {
+    let balls: Vec<Ball> = scene.models.iter().map(Ball::around).collect();
+    let groups = match viewer {
+        Viewer::Anyone => grouped(placed.iter().map(|stand| (stand, Form::Full))),
+        Viewer::Camera(camera) => {
+            let frustum = Frustum::of(camera);
+            let in_view: Vec<&Placed> = placed
+                .par_iter()
+                .filter(|stand| balls[stand.model].in_world(stand).is_in(&frustum))
+                .collect();
+            let forms = forms(scene, camera, &balls, &in_view);
+            grouped(in_view.into_iter().zip(forms))
+        }
+    };
+    let mut listed = Listed { list, models: BTreeMap::new(), impostors: BTreeMap::new() };
+    for (&(model, form), stands) in &groups {
+        let details = || scene.details[model].get();
+        let source = &scene.models[model];
+        match form {
+            Form::Full => listed.add_parts((model, source), &source.parts, stands),
+            Form::Level(level) => {
+                let parts = details().and_then(|detail| Some(&detail.levels.get(usize::from(level))?.parts));
+                listed.add_parts((model, source), parts.unwrap_or(&source.parts), stands);
+            }
+            Form::Impostor(view) => match details().and_then(|detail| detail.impostor.as_ref()) {
+                Some(impostor) => listed.add_views((model, impostor), view.triangles(), stands),
+                None => listed.add_parts((model, source), &source.parts, stands),
+            },
+        }
+    }
+}
+
+type Groups<'a> = BTreeMap<(usize, Form), Vec<&'a Placed>>;
+
+fn grouped<'a>(stands: impl Iterator<Item = (&'a Placed, Form)>) -> Groups<'a> {
+    let mut groups = Groups::new();
+    for (stand, form) in stands {
+        groups.entry((stand.model, form)).or_default().push(stand);
+    }
+    groups
+}
+
+/// The form in which each is drawn.
+fn forms(scene: &Scene, camera: &Camera, balls: &[Ball], in_view: &[&Placed]) -> Vec<Form> {
+    let triangles: Vec<usize> = scene.models.iter().map(Model::triangle_count).collect();
+    let total = in_view.iter().fold(0usize, |sum, stand| sum.saturating_add(triangles[stand.model]));
+    if total <= FULL_TRIANGLES {
+        return vec![Form::Full; in_view.len()];
+    }
+    prepare(scene, in_view);
+    let form = |stand: &&Placed| {
+        let detail = scene.details[stand.model].get()?;
+        Some(detail.form(&balls[stand.model].seen(stand, camera)))
+    };
+    in_view.par_iter().map(|stand| form(stand).unwrap_or(Form::Full)).collect()
+}
+
+/// Makes the simpler forms of the models in view, where they are not yet made.
+///
+/// They are made before they are put in place, not in it: making them shares work out among threads, and a thread that
+/// helps another picture meanwhile must not come to wait for itself.
+fn prepare(scene: &Scene, in_view: &[&Placed]) {
+    let mut wanted: Vec<usize> = in_view.iter().map(|stand| stand.model).collect();
+    wanted.sort_unstable();
+    wanted.dedup();
+    wanted.par_iter().filter(|&&model| scene.details[model].get().is_none()).for_each(|&model| {
+        // Another picture may have been faster; it made the same.
+        let _ = scene.details[model].set(Detail::of(&scene.models[model]));
+    });
+}
+
+impl Ball {
+    fn around(model: &Model) -> Self {
+        model.bounds().map_or_else(Self::default, |(min, max)| Self {
+            center: (min + max) * 0.5,
+            radius: (max - min).length() * 0.5,
+        })
+    }
+
+    /// The ball in world space.
+    fn in_world(&self, stand: &Placed) -> Self {
+        let scale = stand.world_from_model.x_axis.truncate().length();
+        Self { center: stand.world_from_model.transform_point3(self.center), radius: self.radius * scale }
+    }
+
+    fn is_in(&self, frustum: &Frustum) -> bool {
+        frustum.may_see(self.center - self.radius, self.center + self.radius)
+    }
+
+    /// How the model in this ball of its own space is seen.
+    fn seen(&self, stand: &Placed, camera: &Camera) -> Seen {
+        let world = self.in_world(stand);
+        let scale = if self.radius > 0.0 { world.radius / self.radius } else { 1.0 };
+        let offset = camera.eye() - world.center;
+        let near = (-offset.dot(camera.forward()) - world.radius).max(camera.planes().0);
+        let px_per_unit = camera.pixels_per_metre(near) * scale;
+        let along = |axis: glam::Vec4| axis.truncate().dot(offset);
+        let axes = &stand.world_from_model;
+        let towards_eye = Vec3::new(along(axes.x_axis), along(axes.y_axis), along(axes.z_axis));
+        Seen { px_per_unit, across_px: 2.0 * self.radius * px_per_unit, towards_eye }
+    }
+}
+
+/// A draw list with what has been listed of each model.
+struct Listed<'a> {
+    list: &'a mut DrawList,
+    /// The first material of each model.
+    models: BTreeMap<usize, MaterialId>,
+    impostors: BTreeMap<usize, (MeshId, MaterialId)>,
+}
+
+impl Listed<'_> {
+    fn add_parts(&mut self, (index, model): (usize, &Model), parts: &[Part], stands: &[&Placed]) {
+        let list = &mut *self.list;
+        let MaterialId(first) = *self.models.entry(index).or_insert_with(|| list_materials(list, model));
+        for part in parts {
+            let triangles = 0..part.mesh.triangles.len() as u32;
+            let mesh = self.list.add_mesh(part.mesh.clone());
+            self.add_items(mesh, triangles, MaterialId(part.material.0 + first), stands);
+        }
+    }
+
+    fn add_views(
+        &mut self,
+        (index, impostor): (usize, &Impostor),
+        triangles: std::ops::Range<u32>,
+        stands: &[&Placed],
+    ) {
+        let list = &mut *self.list;
+        let (mesh, material) = *self.impostors.entry(index).or_insert_with(|| {
+            let texture = Some(list.add_texture(impostor.texture.clone()));
+            let material = list.add_material(Material { texture, ..impostor.material.clone() });
+            (list.add_mesh(impostor.mesh.clone()), material)
+        });
+        self.add_items(mesh, triangles, material, stands);
+    }
+
+    fn add_items(
+        &mut self,
+        mesh: MeshId,
+        triangles: std::ops::Range<u32>,
+        material: MaterialId,
+        stands: &[&Placed],
+    ) {
+        self.list.items.extend(stands.iter().map(|stand| DrawItem {
+            mesh,
+            triangles: triangles.clone(),
+            material,
+            world_from_mesh: stand.world_from_model,
+            layer: Layer::Solid,
+            feature: stand.feature,
+        }));
+    }
+}
+
+fn list_materials(list: &mut DrawList, model: &Model) -> MaterialId {
+    let first_texture = list.textures.len() as u32;
+    list.textures.extend(model.textures.iter().cloned());
+    let first = MaterialId(list.materials.len() as u32);
+    list.materials.extend(model.materials.iter().map(|material| Material {
+        texture: material.texture.map(|TextureId(id)| TextureId(id + first_texture)),
+        ..material.clone()
+    }));
+    first
+}

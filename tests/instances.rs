@@ -1,0 +1,86 @@
+//! Many models in one picture: what is left out, what is drawn at once, and that nobody can tell.
+
+mod common;
+
+use common::adapters::gpus;
+use common::forest::{forest, overlook, seen_from};
+use glam::Vec3;
+use sandtable::draw::list::DrawList;
+use sandtable::render::cpu::{Options, Samples, render};
+use sandtable::render::gpu::render_on;
+use sandtable::render::picture::Picture;
+use sandtable::scene::picture::{display, draw_list, shoot};
+
+#[test]
+fn leaving_out_what_is_beside_the_picture_changes_no_pixel() {
+    let scene = forest(300, &["firtree.obj", "tent.glb"]);
+    let eye = Vec3::new(900.0, 700.0, 360.0);
+    for (turn, towards) in [Vec3::X, Vec3::Y, Vec3::NEG_X, Vec3::NEG_Y].into_iter().enumerate() {
+        let camera = seen_from(&scene, eye, eye + towards * 100.0 - Vec3::Z * 15.0, (320, 200));
+        let seen = shoot(&scene, &camera, &|_| ()).list;
+        let (all, _) = draw_list(&scene, &display(&scene.terrain, &camera), &|_| ());
+        assert!(
+            seen.items.len() * 2 < all.items.len(),
+            "{turn}: {} of {}",
+            seen.items.len(),
+            all.items.len()
+        );
+        let [seen, all] = [seen, all].map(|list| render(&list, &camera, &Options::default()).expect("sound"));
+        assert!(seen.pixels == all.pixels && seen.features == all.features, "{turn}");
+    }
+}
+
+#[test]
+fn runs_cover_all_items_and_are_few() {
+    let scene = forest(3000, &["firtree.obj", "tent.glb"]);
+    let list = shoot(&scene, &overlook(&scene, (640, 360)), &|_| ()).list;
+    let runs: Vec<_> = list.runs().collect();
+    assert_eq!(runs.iter().map(ExactSizeIterator::len).sum::<usize>(), list.items.len());
+    assert!(runs.windows(2).all(|pair| pair[0].end == pair[1].start));
+    for run in &runs {
+        assert!(list.items[run.clone()].iter().all(|item| item.is_like(&list.items[run.start])));
+    }
+    assert!(runs.len() < 200 && list.items.len() > 1500, "{} runs of {} items", runs.len(), list.items.len());
+    list.check().expect("sound");
+}
+
+#[test]
+fn a_forest_is_the_same_bytes_for_one_thread_and_for_two() {
+    let picture = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be had");
+        pool.install(|| {
+            let scene = forest(3000, &["firtree.obj", "farmhouse.obj"]);
+            let camera = overlook(&scene, (480, 270));
+            render(&shoot(&scene, &camera, &|_| ()).list, &camera, &Options::default()).expect("sound")
+        })
+    };
+    let [one, two] = [picture(1), picture(2)];
+    assert!(one.pixels == two.pixels && one.features == two.features && one.depth_m == two.depth_m);
+}
+
+#[test]
+fn a_forest_is_nearly_the_same_picture_on_both_renderers() {
+    let scene = forest(3000, &["firtree.obj", "tent.glb"]);
+    let camera = overlook(&scene, (640, 360));
+    let list: DrawList = shoot(&scene, &camera, &|_| ()).list;
+    let options = Options { samples: Samples::Four, ..Options::default() };
+    let cpu = render(&list, &camera, &options).expect("sound");
+    for gpu in gpus() {
+        let picture = render_on(gpu, &list, &camera).unwrap_or_else(|error| panic!("{error}"));
+        let count = cpu.pixels.data().len() as f64;
+        let mean = mean_difference(&cpu, &picture);
+        let others =
+            cpu.features.iter().zip(&picture.features).filter(|(a, b)| a != b).count() as f64 / count;
+        println!("{}: {mean:.3} steps, {others:.4} other features", gpu.name());
+        assert!(mean < 1.5, "{mean} steps on {}", gpu.name());
+        // The CPU tells features at its first sample, the GPU at a pixel's centre; outlines of trees are many.
+        assert!(others < 0.15, "{others} on {}", gpu.name());
+    }
+}
+
+fn mean_difference(one: &Picture, other: &Picture) -> f64 {
+    let pixels = one.pixels.data().iter().zip(other.pixels.data());
+    let steps = pixels
+        .map(|(a, b)| (0..3).map(|channel| u64::from(a.0[channel].abs_diff(b.0[channel]))).sum::<u64>());
+    steps.sum::<u64>() as f64 / one.pixels.data().len() as f64 / 3.0
+}
