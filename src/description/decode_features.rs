@@ -8,8 +8,8 @@ use crate::description::expression::{Choice, Expression, Quantity};
 use crate::description::features::{
     Area, Bridge, Building, Fence, Lake, ModelPlacement, River, Road, Scatter, Source,
 };
-use crate::description::item::Selection;
 use crate::description::reader::Reader;
+use crate::description::selection::Selection;
 use crate::description::words::{Clamp, Profile, Word};
 
 /// Widths of roads and rivers in metres.

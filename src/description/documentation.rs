@@ -98,10 +98,10 @@ impl Documentation {
         let Some((key, rest)) = comment.strip_prefix('`').and_then(|rest| rest.split_once('`')) else {
             return;
         };
-        let rest = rest.trim_start_matches([':', '.', ',', ' ']);
-        if rest.starts_with('`') {
+        if rest.starts_with(", `") || rest.starts_with(" and `") {
             return;
         }
+        let rest = rest.trim_start_matches([':', '.', ',', ' ']);
         let key = key.trim_matches(['[', ']']).trim_end_matches(".NAME");
         let key = key.rsplit('.').next().unwrap_or(key);
         self.said.entry((table.to_owned(), key.to_owned())).or_insert_with(|| sentence(rest));
@@ -150,6 +150,7 @@ mod tests {
         let all = Documentation::read();
         let width = all.of("road", "width").expect("documented");
         assert!(width.starts_with("Of the carriageway") && width.ends_with("Default 6."), "{width}");
+        assert!(all.of("road", "surface").expect("words").ends_with("Default `\"asphalt\"`."));
         assert!(all.of("road", "points").expect("shared").starts_with("Inline coordinates"));
         assert!(all.of("style", "contours").expect("a table").starts_with("Contour lines"));
         assert!(all.of("terrain", "dem").expect("needed").starts_with("Needed: the elevation file"));

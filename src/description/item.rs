@@ -10,7 +10,6 @@ use crate::description::bounds::{Bounds, ELEVATION, Short};
 use crate::description::diagnostic::Report;
 use crate::description::document::{Color, RampChoice};
 use crate::description::expression::{Choice, Expression, ExpressionError, Quantity};
-use crate::description::features::{Match, Scalar};
 use crate::description::include::joined;
 use crate::description::sketch::Shape;
 use crate::description::suggest::{quoted, remedy};
@@ -24,7 +23,7 @@ const MAX_POINTS: usize = 100_000;
 /// The longest text, in characters.
 pub(super) const MAX_TEXT: usize = 4096;
 /// The most stops of a ramp, values of a filter's list, and files of a mosaic.
-const MAX_LIST: usize = 256;
+pub(super) const MAX_LIST: usize = 256;
 
 /// A value, the key it was given for, and where to say what is wrong with it.
 pub(super) struct Item<'a, 'i> {
@@ -33,14 +32,6 @@ pub(super) struct Item<'a, 'i> {
     pub value: &'a Spanned<DeValue<'i>>,
     /// Where to write down what is asked for, in place of reading it.
     pub asked: Option<&'a mut Option<Shape>>,
-}
-
-/// Which features of a file are meant.
-pub(super) enum Selection {
-    /// Those with these values.
-    Matching(BTreeMap<String, Match>),
-    /// Those for which this holds.
-    Holding(Expression),
 }
 
 /// `name`, which is relative to `folder`, as seen from the scene file.
@@ -78,7 +69,7 @@ fn words<W: Word>() -> Vec<&'static str> {
 
 impl<'i> Item<'_, 'i> {
     /// Writes down what is asked for; whether that is all that is wanted.
-    fn sketched(&mut self, shape: impl FnOnce() -> Shape) -> bool {
+    pub(super) fn sketched(&mut self, shape: impl FnOnce() -> Shape) -> bool {
         match &mut self.asked {
             Some(asked) => {
                 **asked = Some(shape());
@@ -88,16 +79,16 @@ impl<'i> Item<'_, 'i> {
         }
     }
 
-    fn wrong(&mut self, message: impl Into<String>, help: impl Into<String>) {
+    pub(super) fn wrong(&mut self, message: impl Into<String>, help: impl Into<String>) {
         self.report.error(self.value.span(), message, Some(help.into()));
     }
 
-    fn wrong_kind(&mut self, wanted: &str, help: impl Into<String>) {
+    pub(super) fn wrong_kind(&mut self, wanted: &str, help: impl Into<String>) {
         let found = kind_of(self.value.get_ref());
         self.wrong(format!("`{}` must be {wanted}, but this is {found}", self.key), help);
     }
 
-    fn element<'b>(&'b mut self, value: &'b Spanned<DeValue<'i>>) -> Item<'b, 'i> {
+    pub(super) fn element<'b>(&'b mut self, value: &'b Spanned<DeValue<'i>>) -> Item<'b, 'i> {
         Item { report: self.report, key: self.key, value, asked: None }
     }
 
@@ -516,65 +507,6 @@ impl<'i> Item<'_, 'i> {
             }
             _ => {
                 self.wrong("a stop is a height and a colour", help);
-                None
-            }
-        }
-    }
-
-    /// A filter: properties and the values they may have, or an expression.
-    pub fn filter(mut self) -> Option<Selection> {
-        if self.sketched(|| Shape::Filter(MAX_LIST)) {
-            return None;
-        }
-        let help = "write { property = value } or \"property = 'value' and ...\"";
-        let table = match self.value.get_ref() {
-            DeValue::Table(table) => table,
-            DeValue::String(_) => return self.expression().map(Selection::Holding),
-            _ => {
-                self.wrong_kind("a table or an expression", help);
-                return None;
-            }
-        };
-        if table.is_empty() {
-            self.wrong(format!("`{}` names no property", self.key), help);
-            return None;
-        }
-        let matches: Vec<_> = table
-            .iter()
-            .map(|(property, wanted)| {
-                let item = Item { report: self.report, key: property.get_ref(), value: wanted, asked: None };
-                Some((property.get_ref().to_string(), item.wanted()?))
-            })
-            .collect();
-        matches.into_iter().collect::<Option<_>>().map(Selection::Matching)
-    }
-
-    fn wanted(mut self) -> Option<Match> {
-        match self.value.get_ref() {
-            DeValue::Array(list) if (1..=MAX_LIST).contains(&list.len()) => {
-                let values: Vec<_> = list.iter().map(|value| self.element(value).scalar()).collect();
-                values.into_iter().collect::<Option<_>>().map(Match::AnyOf)
-            }
-            DeValue::Array(list) => {
-                let message = format!("`{}` lists {} values", quoted(self.key), list.len());
-                self.wrong(message, format!("list from 1 to {MAX_LIST}"));
-                None
-            }
-            _ => self.scalar().map(Match::Is),
-        }
-    }
-
-    fn scalar(mut self) -> Option<Scalar> {
-        match self.value.get_ref() {
-            DeValue::Boolean(value) => Some(Scalar::Bool(*value)),
-            DeValue::String(text) => Some(Scalar::Text(text.to_string())),
-            DeValue::Integer(_) | DeValue::Float(_) => {
-                self.number(Bounds::Within(f64::MIN, f64::MAX)).map(Scalar::Number)
-            }
-            _ => {
-                let message =
-                    format!("`{}` cannot equal {}", quoted(self.key), kind_of(self.value.get_ref()));
-                self.wrong(message, "write text, a number, true or false, or a list of those");
                 None
             }
         }

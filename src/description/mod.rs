@@ -14,6 +14,7 @@ mod item;
 pub mod parse;
 mod reader;
 pub mod schema;
+mod selection;
 mod sketch;
 mod snippet;
 pub mod source_text;

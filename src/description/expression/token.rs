@@ -116,7 +116,7 @@ fn quotation(text: &str, at: &mut usize, quote: char) -> Result<Token, Expressio
 fn number(text: &str, at: &mut usize) -> Result<Token, ExpressionError> {
     let start = *at;
     taken(text, at, |letter| letter.is_ascii_digit() || letter == '.');
-    let rest = text[*at..].as_bytes();
+    let rest = &text.as_bytes()[*at..];
     let sign = usize::from(matches!(rest.get(1), Some(b'+' | b'-')));
     if matches!(rest.first(), Some(b'e' | b'E')) && rest.get(1 + sign).is_some_and(u8::is_ascii_digit) {
         *at += 1 + sign;

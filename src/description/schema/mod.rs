@@ -1,7 +1,7 @@
 //! A JSON Schema of the scene file, for editors that complete and check while one writes.
 //!
-//! Derived from the decoder itself ([`crate::description::sketch`]) and from the tables' documentation
-//! ([`crate::description::documentation`]), so that it cannot say anything else than they. It is of draft 2020-12 (Wright
+//! Derived from the decoder itself (`sketch`) and from the tables' documentation
+//! (`documentation`), so that it cannot say anything else than they. It is of draft 2020-12 (Wright
 //! et al. 2022) and uses only what the common TOML editors know. What it cannot tell is what one key means for another,
 //! or whether an expression can be read: `sandtable check` does.
 
