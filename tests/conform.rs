@@ -32,9 +32,13 @@ fn made_up(height: impl Fn(f64, f64) -> f64, text: &str) -> Result<Scene, String
     let scratch = Scratch::new();
     let at = |index: u32| (f64::from(index % 81) * 10.0, f64::from(60 - index / 81) * 10.0);
     let heights: Vec<String> = (0..81 * 61).map(at).map(|(x, y)| format!("{:.4}", height(x, y))).collect();
-    let grid = "ncols 81\nnrows 61\nxllcorner -5\nyllcorner -5\ncellsize 10\n".to_owned() + &heights.join(" ");
+    let grid =
+        "ncols 81\nnrows 61\nxllcorner -5\nyllcorner -5\ncellsize 10\n".to_owned() + &heights.join(" ");
     std::fs::write(scratch.at("ground.asc"), grid).expect("a file");
-    scene(&scratch.at("scene.toml"), &format!("[terrain]\ndem = \"ground.asc\"\ncrs = \"EPSG:32616\"\n{text}"))
+    scene(
+        &scratch.at("scene.toml"),
+        &format!("[terrain]\ndem = \"ground.asc\"\ncrs = \"EPSG:32616\"\n{text}"),
+    )
 }
 
 fn hills(x: f64, y: f64) -> f64 {
@@ -61,7 +65,9 @@ fn ground(scene: &Scene, at: DVec2) -> f64 {
 
 fn steepest(profile: &RoadProfile) -> f64 {
     let pairs = profile.stations_m.windows(2).zip(profile.design_m.windows(2));
-    let grades = pairs.filter(|(at, _)| at[1] - at[0] > 1e-3).map(|(at, level)| (level[1] - level[0]).abs() / (at[1] - at[0]));
+    let grades = pairs
+        .filter(|(at, _)| at[1] - at[0] > 1e-3)
+        .map(|(at, level)| (level[1] - level[0]).abs() / (at[1] - at[0]));
     grades.fold(0.0, f64::max)
 }
 
@@ -74,7 +80,9 @@ fn the_ground_takes_the_road_s_level_and_its_profile_tells_it() {
     assert!(steepest(profile) <= 0.06 + 1e-6, "{}", steepest(profile));
     let moved: f64 = ["cut", "fill"].iter().map(|column| number(table(&scene), 0, column)).sum();
     assert!(moved > 10_000.0, "{moved} m³");
-    for (station, (before, design)) in profile.stations_m.iter().zip(profile.ground_m.iter().zip(&profile.design_m)) {
+    for (station, (before, design)) in
+        profile.stations_m.iter().zip(profile.ground_m.iter().zip(&profile.design_m))
+    {
         let x = 30.0 + station;
         assert!((before - hills(x, 300.0)).abs() < 1.0, "the ground as it was at {x}");
         for y in [296.5, 300.0, 303.5] {
@@ -98,8 +106,12 @@ fn far_from_the_road_the_ground_answers_as_before() {
 
 #[test]
 fn roads_that_meet_agree_on_their_level_whether_or_not_they_share_a_vertex() {
-    let road = |points: &str| format!("[[road]]\nprofile = \"conform\"\nmax_grade = 5\nwidth = 7\npoints = {points}\n");
-    let text = road("[[40, 200], [400, 240], [760, 200]]") + &road("[[400, 240], [420, 560]]") + &road("[[600, 40], [620, 560]]");
+    let road = |points: &str| {
+        format!("[[road]]\nprofile = \"conform\"\nmax_grade = 5\nwidth = 7\npoints = {points}\n")
+    };
+    let text = road("[[40, 200], [400, 240], [760, 200]]")
+        + &road("[[400, 240], [420, 560]]")
+        + &road("[[600, 40], [620, 560]]");
     let scene = made_up(hills, &text).expect("sound");
     let level = |road: usize, station: f64| {
         let profile = &scene.profiles[road];
@@ -111,7 +123,10 @@ fn roads_that_meet_agree_on_their_level_whether_or_not_they_share_a_vertex() {
     // They cross at y = 240 − 40 (x − 400) / 360 and x = 600 + 20 (y − 40) / 520.
     let y = (240.0 - 40.0 * (600.0 - 400.0 - 800.0 / 520.0) / 360.0) / (1.0 + 40.0 * 20.0 / (360.0 * 520.0));
     let crossing = DVec2::new(600.0 + 20.0 * (y - 40.0) / 520.0, y);
-    let along = [(0, first + crossing.distance(DVec2::new(400.0, 240.0))), (2, crossing.distance(DVec2::new(600.0, 40.0)))];
+    let along = [
+        (0, first + crossing.distance(DVec2::new(400.0, 240.0))),
+        (2, crossing.distance(DVec2::new(600.0, 40.0))),
+    ];
     let levels = along.map(|(road, station)| level(road, station));
     assert!((levels[0] - levels[1]).abs() < 1e-6, "{levels:?}");
 }
@@ -135,7 +150,11 @@ fn a_ravine_is_bridged_and_a_ridge_tunnelled_by_rule() {
     assert_eq!(order, expected);
     assert!(ground(&scene, DVec2::new(320.0, 300.0)) < 61.0, "the ravine stays");
     assert!(ground(&scene, DVec2::new(600.0, 300.0)) > 159.0, "the ridge stays");
-    assert!(scene.notes.iter().any(|note| note.contains("on bridges 1 times and in tunnels 1 times")), "{:?}", scene.notes);
+    assert!(
+        scene.notes.iter().any(|note| note.contains("on bridges 1 times and in tunnels 1 times")),
+        "{:?}",
+        scene.notes
+    );
 }
 
 #[test]

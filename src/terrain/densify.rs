@@ -152,7 +152,10 @@ mod tests {
         coarse.pin(Post { column: 4, row: 4 }, f32::NAN);
         let dense = densified(&coarse, 1).expect("sound");
         assert_eq!(dense.pinned().iter().filter(|pinned| **pinned).count(), 9 + 1);
-        assert!(dense.height(Post { column: 7, row: 7 }).is_nan() && !dense.height(Post { column: 6, row: 7 }).is_nan());
+        assert!(
+            dense.height(Post { column: 7, row: 7 }).is_nan()
+                && !dense.height(Post { column: 6, row: 7 }).is_nan()
+        );
     }
 
     #[test]

@@ -77,7 +77,8 @@ pub fn conform(
     let curve_m = CURVE_M.max(CURVE_CELLS * lattice.cell().max_element());
     let design = design(&survey.network, &survey.courses, &survey.pins, curve_m);
     let routes: Vec<Route> = survey.routes(&design).into_iter().map(Route::with_ends).collect();
-    let works = Earthworks { roads, rules: &rules, portals: portals(roads, &routes, &meetings), meetings: &meetings };
+    let works =
+        Earthworks { roads, rules: &rules, portals: portals(roads, &routes, &meetings), meetings: &meetings };
     let volumes = works.build(lattice, &routes, collected);
     for (route, volumes) in routes.iter().zip(&volumes) {
         tell(&roads[route.road], route, volumes, collected);
@@ -153,7 +154,8 @@ fn portals(roads: &[Centreline], routes: &[Route], meetings: &Meetings) -> BTree
     for route in routes {
         let (all, stops) = (route.stretches(), &meetings.stops[route.road]);
         let ends = [(&all[0], stops[0]), (&all[all.len() - 1], stops[stops.len() - 1])];
-        nodes.extend(ends.iter().filter(|(end, _)| end.carried == Carried::Tunnel).map(|(_, stop)| stop.node));
+        nodes
+            .extend(ends.iter().filter(|(end, _)| end.carried == Carried::Tunnel).map(|(_, stop)| stop.node));
     }
     nodes
 }
@@ -164,17 +166,23 @@ fn make_denser(lattice: &mut Lattice, strips: &[Strip], collected: &mut Collecte
     let narrowest_m = widths.fold(f64::INFINITY, f64::min);
     let wanted = densify::doublings_for(lattice, narrowest_m / POSTS_ACROSS);
     let times = densify::affordable(lattice, wanted);
-    if times > 0 && let Ok(dense) = densify::densified(lattice, times) {
+    if times > 0
+        && let Ok(dense) = densify::densified(lattice, times)
+    {
         *lattice = dense;
     }
     let spacing_m = lattice.cell().max_element();
     let mut note = match times {
         0 => String::new(),
-        _ => format!("posts every {spacing_m:.3} m were put in for conforming roads; the ground stays as it was"),
+        _ => format!(
+            "posts every {spacing_m:.3} m were put in for conforming roads; the ground stays as it was"
+        ),
     };
     if spacing_m > narrowest_m {
         let reason = "; a model of a smaller area could have more posts";
-        let wide = format!("a conforming road of {narrowest_m} m lies on posts {spacing_m:.3} m apart and is graded wider");
+        let wide = format!(
+            "a conforming road of {narrowest_m} m lies on posts {spacing_m:.3} m apart and is graded wider"
+        );
         note = if note.is_empty() { wide + reason } else { format!("{note}; {wide}{reason}") };
     }
     if !note.is_empty() {
@@ -186,17 +194,19 @@ fn make_denser(lattice: &mut Lattice, strips: &[Strip], collected: &mut Collecte
 fn tell(road: &Centreline, route: &Route, volumes: &Volumes, collected: &mut Collected) {
     let name = collected.name(road.feature).to_owned();
     let all = route.stretches();
-    let carried_at = |station: f64| all.iter().find(|at| station < at.to_m).unwrap_or(&all[all.len() - 1]).carried;
+    let carried_at =
+        |station: f64| all.iter().find(|at| station < at.to_m).unwrap_or(&all[all.len() - 1]).carried;
     let carried: Vec<Carried> = route.stations_m.iter().map(|&station| carried_at(station)).collect();
     let rises: Vec<f64> = (0..carried.len())
         .filter(|&index| carried[index] == Carried::Ground)
         .map(|index| route.design_m[index] - route.ground_m[index])
         .collect();
-    let steepest = route.stations_m.windows(2).zip(route.design_m.windows(2)).fold(0.0, |most: f64, (at, level)| {
-        let run = at[1] - at[0];
-        // A thinner step has rounding for a grade.
-        if run > 1e-3 { most.max((level[1] - level[0]).abs() / run) } else { most }
-    });
+    let steepest =
+        route.stations_m.windows(2).zip(route.design_m.windows(2)).fold(0.0, |most: f64, (at, level)| {
+            let run = at[1] - at[0];
+            // A thinner step has rounding for a grade.
+            if run > 1e-3 { most.max((level[1] - level[0]).abs() / run) } else { most }
+        });
     let count = |kind| all.iter().filter(|stretch| stretch.carried == kind).count();
     let highest = |sign: f64| rises.iter().fold(0.0, |most: f64, rise| most.max(rise * sign));
     let row = vec![
@@ -240,7 +250,8 @@ fn total(
         }
     }
     for (table, (count, Volumes { cut_m3, fill_m3 }, [bridges, tunnels])) in tables {
-        let of = document.roads[table].name.as_deref().map(|name| format!(" of '{name}'")).unwrap_or_default();
+        let of =
+            document.roads[table].name.as_deref().map(|name| format!(" of '{name}'")).unwrap_or_default();
         let roads = if count == 1 { "1 road".to_owned() } else { format!("{count} roads") };
         let mut note = format!("the ground follows {roads}{of}: {cut_m3:.0} m³ cut, {fill_m3:.0} m³ filled");
         if bridges + tunnels > 0 {

@@ -119,8 +119,12 @@ mod tests {
         for quarter in 0..4 {
             let turned = |(x, y): (f64, f64)| (0..quarter).fold((x, y), |(x, y), _| (-y, x));
             let ends = |index: u32| 10.0 * f64::from(index);
-            let east = |index| road(&[(-5.0, ends(index)), (200.0, ends(index) + 3.0)].map(turned), Carried::Ground, 0);
-            let north = |index| road(&[(ends(index), -5.0), (ends(index) + 2.0, 200.0)].map(turned), Carried::Ground, 0);
+            let east = |index| {
+                road(&[(-5.0, ends(index)), (200.0, ends(index) + 3.0)].map(turned), Carried::Ground, 0)
+            };
+            let north = |index| {
+                road(&[(ends(index), -5.0), (ends(index) + 2.0, 200.0)].map(turned), Carried::Ground, 0)
+            };
             let roads: Vec<Centreline> = (0..15).map(east).chain((0..15).map(north)).collect();
             let found = crossings(&roads, |_| true).expect("not too tangled");
             assert_eq!(found.len(), 15 * 15);

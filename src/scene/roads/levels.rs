@@ -89,7 +89,8 @@ fn relax(nodes: &mut [f64], struts: &[Strut]) {
         neighbours[one].push((other, 1.0 / strut.length_m));
         neighbours[other].push((one, 1.0 / strut.length_m));
     }
-    let open: Vec<usize> = (0..nodes.len()).filter(|&node| nodes[node].is_nan() && !neighbours[node].is_empty()).collect();
+    let open: Vec<usize> =
+        (0..nodes.len()).filter(|&node| nodes[node].is_nan() && !neighbours[node].is_empty()).collect();
     if open.is_empty() {
         return;
     }
@@ -97,11 +98,14 @@ fn relax(nodes: &mut [f64], struts: &[Strut]) {
         let mut moved_m: f64 = 0.0;
         for &node in &open {
             let reached = neighbours[node].iter().filter(|(other, _)| !nodes[*other].is_nan());
-            let sum = |(level, weight): (f64, f64), (other, pull): &(usize, f64)| (level + nodes[*other] * pull, weight + pull);
+            let sum = |(level, weight): (f64, f64), (other, pull): &(usize, f64)| {
+                (level + nodes[*other] * pull, weight + pull)
+            };
             let (level, weight) = reached.fold((0.0, 0.0), sum);
             if weight > 0.0 {
                 let before = std::mem::replace(&mut nodes[node], level / weight);
-                moved_m = moved_m.max(if before.is_nan() { f64::INFINITY } else { (nodes[node] - before).abs() });
+                moved_m =
+                    moved_m.max(if before.is_nan() { f64::INFINITY } else { (nodes[node] - before).abs() });
             }
         }
         if moved_m < SETTLED_M {
@@ -123,7 +127,8 @@ mod tests {
             let x = f64::from(index % 21) * 10.0;
             (if x > 40.0 && x < 160.0 { -30.0 } else { x / 10.0 }) as f32
         };
-        Lattice::new(DVec2::new(5e5, 4e6), DVec2::splat(10.0), 21, (0..21 * 11).map(height).collect()).expect("sound")
+        Lattice::new(DVec2::new(5e5, 4e6), DVec2::splat(10.0), 21, (0..21 * 11).map(height).collect())
+            .expect("sound")
     }
 
     #[test]

@@ -37,7 +37,8 @@ impl RoadProfile {
                 Carried::Tunnel => "tunnel",
             };
             let design_m = self.design_m[index];
-            writeln!(text, "{station_m:.3},{ground},{design_m:.3},{carried}").expect("text takes all that is written");
+            writeln!(text, "{station_m:.3},{ground},{design_m:.3},{carried}")
+                .expect("text takes all that is written");
         }
         text
     }
@@ -57,7 +58,8 @@ mod tests {
             design_m: vec![101.25, 102.0],
             carried: vec![Carried::Ground, Carried::Bridge],
         };
-        let table = "station_m,ground_m,design_m,carried\n0.000,101.250,101.250,ground\n12.500,,102.000,bridge\n";
+        let table =
+            "station_m,ground_m,design_m,carried\n0.000,101.250,101.250,ground\n12.500,,102.000,bridge\n";
         assert_eq!(profile.csv(), table);
     }
 }

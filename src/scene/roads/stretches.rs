@@ -93,11 +93,10 @@ mod tests {
                 spans: vec![Span { kind: SpanKind::Bridge, from_m: 20.5, to_m: 80.0 }],
             };
             let parts = cut(&whole, &route);
-            assert_eq!(parts.iter().map(|part| (part.carried, part.level)).collect::<Vec<_>>(), [
-                (Carried::Ground, 0),
-                (Carried::Bridge, 1),
-                (Carried::Ground, 0)
-            ]);
+            assert_eq!(
+                parts.iter().map(|part| (part.carried, part.level)).collect::<Vec<_>>(),
+                [(Carried::Ground, 0), (Carried::Bridge, 1), (Carried::Ground, 0)]
+            );
             for pair in parts.windows(2) {
                 let (end, start) = (pair[0].line.points().last(), pair[1].line.points().first());
                 assert_eq!(end, start);

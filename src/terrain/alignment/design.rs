@@ -94,7 +94,8 @@ fn straighten(stations: &[f64], targets: &[f64], levels: &mut [f64]) {
 fn find(network: &Network, chain: &Chain, courses: &[Course], levels: &Levels, found: &mut [Vec<Span>]) {
     for links in chain.links.split(|link| courses[link.section].stated.is_some()) {
         let part = Chain { links: links.to_vec() };
-        let needs: Levels = part.links.iter().map(|link| needs(&courses[link.section], &levels[link.section])).collect();
+        let needs: Levels =
+            part.links.iter().map(|link| needs(&courses[link.section], &levels[link.section])).collect();
         // The part's own sections in the order of its links.
         let own = |index: usize| Link { section: index, ..part.links[index] };
         let local = Chain { links: (0..part.links.len()).map(own).collect() };
@@ -207,7 +208,9 @@ mod tests {
         let design = design(&network, &courses, &[80.0, 80.0], 50.0);
         assert_eq!(design.spans[0].len(), 1);
         assert_eq!(design.spans[0][0].kind, SpanKind::Tunnel);
-        for ((&station, &level), ground) in network.sections[0].stations_m.iter().zip(&design.levels_m[0]).zip(ridge) {
+        for ((&station, &level), ground) in
+            network.sections[0].stations_m.iter().zip(&design.levels_m[0]).zip(ridge)
+        {
             let span = design.spans[0][0];
             let inside = (span.from_m..=span.to_m).contains(&station);
             assert!(inside || ground - level <= 12.0 + 1e-9, "cut {} at {station}", ground - level);

@@ -39,7 +39,8 @@ impl<'a> Profile<'a> {
     fn area_to(&self, station: f64) -> f64 {
         let after = self.stations_m.partition_point(|&at| at < station).clamp(1, self.stations_m.len() - 1);
         let (from, to) = (self.stations_m[after - 1], self.stations_m[after]);
-        let (low, high) = (self.levels_m[after - 1] - self.levels_m[0], self.levels_m[after] - self.levels_m[0]);
+        let (low, high) =
+            (self.levels_m[after - 1] - self.levels_m[0], self.levels_m[after] - self.levels_m[0]);
         let along = station - from;
         let part = if to > from { along / (to - from) } else { 0.0 };
         self.areas[after - 1] + along * (low + (high - low) * part / 2.0)

@@ -30,7 +30,12 @@ pub fn below(network: &Network, levels: &Levels) -> Levels {
     }
     spread(network, &mut nodes);
     let ends = |section: &Section| section.ends.map(|node| nodes[node.index()]);
-    network.sections.iter().zip(levels).map(|(section, levels)| sweep(section, levels, ends(section))).collect()
+    network
+        .sections
+        .iter()
+        .zip(levels)
+        .map(|(section, levels)| sweep(section, levels, ends(section)))
+        .collect()
 }
 
 /// The lowest profile that nowhere lies below `levels` and keeps the grade; minus infinity where none of the levels

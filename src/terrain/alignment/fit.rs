@@ -66,7 +66,8 @@ mod tests {
         let (network, levels) = road(&levels, 10.0, 0.05);
         let fitted = nearest(&network, &levels);
         assert_eq!(network.check(&fitted, 1e-9), Ok(()));
-        let rises: Vec<f64> = fitted[0].iter().zip(&levels[0]).map(|(design, ground)| design - ground).collect();
+        let rises: Vec<f64> =
+            fitted[0].iter().zip(&levels[0]).map(|(design, ground)| design - ground).collect();
         let highest = rises.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let deepest = rises.iter().copied().fold(f64::INFINITY, f64::min);
         assert!((highest - 4.75).abs() < 1e-9 && (deepest + 4.75).abs() < 1e-9, "{highest}, {deepest}");

@@ -42,7 +42,9 @@ impl Legs {
     /// The leg itself and its neighbours in the strip.
     pub fn near(&self, id: LegId) -> impl Iterator<Item = LegId> + '_ {
         let (strip, _) = self.place(id);
-        let is_same = move |&id: &LegId| self.all.get((id.0 as usize).wrapping_sub(1)).is_some_and(|at| at.0 as usize == strip);
+        let is_same = move |&id: &LegId| {
+            self.all.get((id.0 as usize).wrapping_sub(1)).is_some_and(|at| at.0 as usize == strip)
+        };
         [id, LegId(id.0 - 1), LegId(id.0 + 1)].into_iter().filter(is_same)
     }
 }
@@ -125,18 +127,15 @@ fn posts_near(lattice: &Lattice, [from, to]: [DVec2; 2], reach: f64) -> impl Ite
     let (cell, origin) = (lattice.cell(), lattice.extent().min);
     let columns = move |row: u32| {
         let y = origin.y + f64::from(row) * cell.y;
-        let band = Rect {
-            min: DVec2::new(f64::NEG_INFINITY, y - reach),
-            max: DVec2::new(f64::INFINITY, y + reach),
-        };
+        let band =
+            Rect { min: DVec2::new(f64::NEG_INFINITY, y - reach), max: DVec2::new(f64::INFINITY, y + reach) };
         let (first, last) = band.clip_line(from, to)?;
         let (low, high) = (first.x.min(last.x) - reach, first.x.max(last.x) + reach);
         Some(((low - origin.x) / cell.x, (high - origin.x) / cell.x))
     };
     let count = lattice.columns();
-    rows.filter_map(move |row| columns(row).map(|columns| (row, columns))).flat_map(move |(row, (low, high))| {
-        between(low, high, count).map(move |column| Post { column, row })
-    })
+    rows.filter_map(move |row| columns(row).map(|columns| (row, columns)))
+        .flat_map(move |(row, (low, high))| between(low, high, count).map(move |column| Post { column, row }))
 }
 
 /// The whole numbers from `low` to `high` that are below `count`.

@@ -110,11 +110,15 @@ mod tests {
         for quarter in 0..4 {
             let points = turned(&[(-100.0, 3.0), (100.0, 3.0)], quarter);
             let mut flat = lattice(1.0, |_| 100.0);
-            let [fill] = grade(&mut flat, &[strip(&points, [105.0; 2], FLAT)])[..] else { unreachable!("one strip") };
+            let [fill] = grade(&mut flat, &[strip(&points, [105.0; 2], FLAT)])[..] else {
+                unreachable!("one strip")
+            };
             assert!((fill.fill_m3 / solid(1.5) - 1.0).abs() < 0.03, "{fill:?}, not {}", solid(1.5));
             assert_eq!(fill.cut_m3, 0.0);
             let mut flat = lattice(1.0, |_| 100.0);
-            let [cut] = grade(&mut flat, &[strip(&points, [95.0; 2], FLAT)])[..] else { unreachable!("one strip") };
+            let [cut] = grade(&mut flat, &[strip(&points, [95.0; 2], FLAT)])[..] else {
+                unreachable!("one strip")
+            };
             assert!((cut.cut_m3 / solid(1.0) - 1.0).abs() < 0.03, "{cut:?}, not {}", solid(1.0));
         }
     }
@@ -235,7 +239,8 @@ mod tests {
         let stations_m: Vec<f64> = stations.iter().map(|at| at.station_m).collect();
         let ground_m = stations.iter().map(|at| at.ground.height_m().expect("ground")).collect();
         let ends = [NodeId(0), NodeId(1)];
-        let network = Network { nodes: 2, sections: vec![Section { ends, stations_m: stations_m.clone(), max_grade }] };
+        let network =
+            Network { nodes: 2, sections: vec![Section { ends, stations_m: stations_m.clone(), max_grade }] };
         let limits = Limits { max_fill_m: f64::INFINITY, max_cut_m: f64::INFINITY };
         let design = design(&network, &[Course { ground_m, stated: None, limits }], &[f64::NAN; 2], 50.0);
         let flat = strip(points, [0.0; 2], FLAT);

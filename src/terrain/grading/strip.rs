@@ -117,7 +117,7 @@ impl Strip {
         let half = points[leg].distance(points[leg + 1]) / 2.0;
         let reach = self.section.half_width_m + self.section.shoulder_m;
         let ease = (EASE * reach * lean.abs()).min(half);
-        if distance >= ease {
+        if distance >= ease || ease <= 0.0 {
             return 0.0;
         }
         let border = (lean * aside).clamp(-ease / 2.0, ease / 2.0);
@@ -133,11 +133,7 @@ impl Strip {
         let way = |leg: usize| (points[leg + 1] - points[leg]).normalize_or_zero();
         let (own, between) = (way(leg), way(vertex - 1).perp() + way(vertex).perp());
         let (along, left) = (own.dot(between), own.perp_dot(between));
-        if left > 1e-9 {
-            (along / left).clamp(-STEEPEST_LEAN, STEEPEST_LEAN)
-        } else {
-            0.0
-        }
+        if left > 1e-9 { (along / left).clamp(-STEEPEST_LEAN, STEEPEST_LEAN) } else { 0.0 }
     }
 
     /// The road's level on the centreline.
@@ -202,7 +198,9 @@ pub(in crate::terrain::grading) mod tests {
             let turned = |at: DVec2| (0..quarter).fold(at, |at, _| at.perp());
             let points = [DVec2::ZERO, DVec2::new(60.0, 0.0), DVec2::new(100.0, 30.0)].map(turned);
             let strip = strip(&points, [0.0, 11.0], FLAT);
-            let between = ((points[1] - points[0]).normalize().perp() + (points[2] - points[1]).normalize().perp()).normalize();
+            let between = ((points[1] - points[0]).normalize().perp()
+                + (points[2] - points[1]).normalize().perp())
+            .normalize();
             for aside in [-6.0, -2.0, 3.0, 6.0] {
                 let at = points[1] + between * aside;
                 let levels = [0, 1].map(|leg| strip.level(strip.beside(leg, at).station_m));
