@@ -51,7 +51,7 @@ fn spaced(lattice: &Lattice, times: u32) -> f64 {
 }
 
 fn is_affordable(lattice: &Lattice, times: u32) -> bool {
-    let side = |posts: u32| (u64::from(posts) - 1 << times) + 1;
+    let side = |posts: u32| ((u64::from(posts) - 1) << times) + 1;
     let (columns, rows) = (side(lattice.columns()), side(lattice.rows()));
     times == 0 || (columns.max(rows) <= MOST_IN_A_ROW && columns * rows <= MOST_POSTS)
 }
@@ -61,7 +61,7 @@ fn is_affordable(lattice: &Lattice, times: u32) -> bool {
 /// # Errors
 /// As [`Lattice::new`]; none for a whole lattice, which has been through it.
 pub fn densified(lattice: &Lattice, times: u32) -> Result<Lattice, LatticeError> {
-    let side = |posts: u32| (posts - 1 << times) + 1;
+    let side = |posts: u32| ((posts - 1) << times) + 1;
     let (columns, rows) = (side(lattice.columns()), side(lattice.rows()));
     let posts = || (0..rows).flat_map(move |row| (0..columns).map(move |column| Post { column, row }));
     let heights = posts().map(|post| height(lattice, post, times)).collect();

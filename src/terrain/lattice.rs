@@ -289,16 +289,26 @@ impl Lattice {
     /// (Horn 1981, as `gdaldem` and most hillshades use); missing neighbours take the post's own height.
     /// Zero where the post has no data.
     ///
-    /// Where posts were put in between those measured, and nothing was built, the neighbours are as far away as measured
-    /// ones are: nearer ones lie on the planes between, and would show the planes and not the land.
+    /// Where posts were put in between those measured, the neighbours of a post that nothing was built on are as far away
+    /// as measured ones are: nearer ones lie on the planes between, and would show the planes and not the land. What was
+    /// built there does not count: the land is taken to go on as on the other side.
     pub fn slopes(&self, post: Post) -> Vec2 {
         let own = self.height(post);
         if own.is_nan() {
             return Vec2::ZERO;
         }
-        let step = if self.lies_as_measured(post) { 1 << self.doublings } else { 1 };
+        let is_land = self.doublings > 0 && !self.is_pinned(post);
+        let step = if is_land { 1 << self.doublings } else { 1 };
         let at = |east: i64, north: i64| -> f32 {
-            let height = self.height(self.beside(post, east * step, north * step));
+            let (there, opposite) = (
+                self.beside(post, east * step, north * step),
+                self.beside(post, -east * step, -north * step),
+            );
+            let height = match (is_land && self.is_pinned(there), self.is_pinned(opposite)) {
+                (false, _) => self.height(there),
+                (true, false) => 2.0 * own - self.height(opposite),
+                (true, true) => own,
+            };
             if height.is_nan() { own } else { height }
         };
         let east = (at(1, 1) + 2.0 * at(1, 0) + at(1, -1)) - (at(-1, 1) + 2.0 * at(-1, 0) + at(-1, -1));
@@ -316,16 +326,6 @@ impl Lattice {
         let column = (i64::from(post.column) + east).clamp(0, i64::from(self.columns) - 1);
         let row = (i64::from(post.row) + north).clamp(0, i64::from(self.rows) - 1);
         Post { column: column as u32, row: row as u32 }
-    }
-
-    /// Whether posts were put in about a post and neither it nor its neighbours, near and measured, were built on.
-    fn lies_as_measured(&self, post: Post) -> bool {
-        let around = |step: i64| {
-            [(0, 0), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)]
-                .into_iter()
-                .all(|(east, north)| !self.is_pinned(self.beside(post, east * step, north * step)))
-        };
-        self.doublings > 0 && around(1) && around(1 << self.doublings)
     }
 
     /// All posts, row by row from the south-west.

@@ -1,5 +1,5 @@
-//! The ground: one lattice of heights, the earthworks and brushes that change it, the light that reaches it, and the height query
-//! service.
+//! The ground: one lattice of heights, the roads aligned to it, the earthworks and brushes that change it, the light that
+//! reaches it, and the height query service.
 
 pub mod alignment;
 pub mod brush;

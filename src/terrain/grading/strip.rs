@@ -117,7 +117,7 @@ impl Strip {
         let half = points[leg].distance(points[leg + 1]) / 2.0;
         let reach = self.section.half_width_m + self.section.shoulder_m;
         let ease = (EASE * reach * lean.abs()).min(half);
-        if distance >= ease {
+        if distance >= ease || ease <= 0.0 {
             return 0.0;
         }
         let border = (lean * aside).clamp(-ease / 2.0, ease / 2.0);
