@@ -59,14 +59,26 @@ fn asphalt_that_ends_on_gravel_is_joined_to_it_in_asphalt() {
 
 #[test]
 fn the_ground_below_an_overpass_runs_through_and_a_bridge_is_not_laid() {
-    let scene = laid(
-        "[[road]]\nwidth = 10\npoints = [[100, 500], [500, 500], [900, 500]]\n\
-         [[road]]\nwidth = 6\npoints = [[500, 100], [500, 450]]\n\
-         [[road]]\nwidth = 6\nbridge = 'true'\npoints = [[500, 450], [500, 500], [500, 550]]\n\
-         [[road]]\nwidth = 6\npoints = [[500, 550], [500, 900]]\n",
-    );
+    let line = |bridge: &str, points: &str| {
+        format!(
+            "{{\"type\":\"Feature\",\"properties\":{{\"bridge\":\"{bridge}\"}},\
+             \"geometry\":{{\"type\":\"LineString\",\"coordinates\":[{points}]}}}}"
+        )
+    };
+    let lines = [
+        line("no", "[100, 500], [500, 500], [900, 500]"),
+        line("no", "[500, 100], [500, 450]"),
+        line("yes", "[500, 450], [500, 500], [500, 550]"),
+        line("no", "[500, 550], [500, 900]"),
+    ];
+    let folder = Scratch::new();
+    let text = format!("{{\"type\":\"FeatureCollection\",\"features\":[{}]}}", lines.join(","));
+    folder.write("roads.geojson", text);
+    let ground = "crs = 'EPSG:32616'\n[[road]]\nfile = 'roads.geojson'\ncrs = 'EPSG:32616'\nwidth = 8\n";
+    let scene = scene(&folder, ground);
+    check_laid(&scene);
     assert_area(&scene, &[Surface::AsphaltJunction], 0.0);
-    assert_area(&scene, &[Surface::Asphalt], 8000.0 + 2.0 * 350.0 * 6.0);
+    assert_area(&scene, &[Surface::Asphalt], (800.0 + 2.0 * 350.0) * 8.0);
 }
 
 #[test]
