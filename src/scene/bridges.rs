@@ -43,7 +43,7 @@ const LONGEST_UNDERPASS_M: f64 = 60.0;
 const LEAST_COVER_M: f64 = 3.0;
 
 /// How far up a portal's wall the hill has to rise behind it.
-const BURIED: f64 = 0.6;
+const BURIED: f64 = 0.4;
 
 /// How high the soffit is over the ground where an abutment ends, in metres: high enough to see through below.
 const ABUTMENT_M: f64 = 1.5;

@@ -187,8 +187,8 @@ fn sections(
             // Smooth at both ends.
             let part = (1.0 - from_end / fade_m).clamp(0.0, 1.0);
             let share = part * part * (3.0 - 2.0 * part);
-            for side in 0..2 {
-                section.edges_m[side] += tilt[side] * share;
+            for (edge_m, tilt_m) in section.edges_m.iter_mut().zip(tilt) {
+                *edge_m += tilt_m * share;
             }
         }
     }

@@ -94,7 +94,7 @@ impl Portal {
         let foot = self.foot(ground, back);
         let mut faces = Faces::default();
         self.front(foot, &mut faces);
-        self.roof(foot, back, &mut faces);
+        self.roof(foot, back, ground, &mut faces);
         for side in [-1.0, 1.0] {
             self.wing(side, ground, &mut faces);
         }
@@ -179,20 +179,21 @@ impl Portal {
     }
 
     /// What keeps the hill off the wall's back: its roof and sides, as far as they may show.
-    fn roof(&self, foot: f64, back: f64, faces: &mut Faces) {
+    fn roof(&self, foot: f64, back: f64, ground: &GroundHeight<'_>, faces: &mut Faces) {
         let (wall, top) = (self.halves_m().1, self.height_m());
-        let behind = 0.8 * magnified(self.width_m);
-        let levels = [foot, top];
-        // The front is drawn already; behind it, sides and roof reach as far as the wall's back or the hill.
-        let ring = [(-wall, 0.0), (-wall, -back.max(behind)), (wall, -back.max(behind)), (wall, 0.0)];
+        let back = back.max(0.8 * magnified(self.width_m));
+        // On a gentle slope the roof comes down to the ground behind, as a bank does that was heaped over it.
+        let corners = [-wall, wall].map(|right| self.at + self.outward.perp() * right - self.outward * back);
+        let risen_m = lowest(ground, corners).map_or(0.0, |height| height - self.level_m);
+        let end = (risen_m * f64::from(self.exaggeration)).clamp(0.0, top);
+        let ring = [(-wall, 0.0, top), (-wall, -back, end), (wall, -back, end), (wall, 0.0, top)];
         for pair in ring.windows(2) {
-            let [(x0, y0), (x1, y1)] = [pair[0], pair[1]];
-            let corners =
-                [(x1, y1, levels[0]), (x0, y0, levels[0]), (x0, y0, levels[1]), (x1, y1, levels[1])];
+            let [(x0, y0, z0), (x1, y1, z1)] = [pair[0], pair[1]];
+            let corners = [(x1, y1, foot), (x0, y0, foot), (x0, y0, z0), (x1, y1, z1)];
             faces.polygon(&corners.map(|(x, y, z)| self.drawn(x, y, z)), STONE);
         }
         let lid = [ring[0], ring[3], ring[2], ring[1]];
-        faces.polygon(&lid.map(|(x, y)| self.drawn(x, y, top)), ROOF);
+        faces.polygon(&lid.map(|(x, y, z)| self.drawn(x, y, z)), ROOF);
     }
 
     /// The wall that holds the slope beside the road, on the left (−1) or right (1) seen from outside: from the portal

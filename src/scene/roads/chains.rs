@@ -124,8 +124,8 @@ impl Meetings {
         let mut ends: BTreeMap<(bool, Place), Vec<(usize, usize)>> = BTreeMap::new();
         let mut inside = BTreeSet::new();
         for (index, span) in spans.iter().enumerate() {
-            for end in 0..2 {
-                ends.entry((kind(span), places[index][end])).or_default().push((index, end));
+            for (end, &at) in places[index].iter().enumerate() {
+                ends.entry((kind(span), at)).or_default().push((index, end));
             }
             let points = span.line.points();
             inside.extend(points[1..points.len() - 1].iter().map(|&at| (kind(span), place(at))));
@@ -181,5 +181,65 @@ impl Meetings {
             (false, true) => End::Onward(at),
             (false, false) => End::Loose,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::polyline::Polyline;
+    use crate::ribbon::stroke::StrokeOptions;
+    use crate::ribbon::texture::Surface;
+    use crate::scene::roads::spans::By;
+
+    fn span(carried: Carried, points: &[(f64, f64)]) -> Span {
+        Span {
+            line: Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line"),
+            carried,
+            road: None,
+            levels_m: None,
+            beyond: [None; 2],
+            options: StrokeOptions::default(),
+            surface: Surface::Asphalt,
+            level: 1,
+            pier_spacing_m: None,
+            name: String::new(),
+            by: By::Tag,
+            place: 0..0,
+        }
+    }
+
+    #[test]
+    fn pieces_of_a_bridge_are_one_chain_whichever_way_they_run() {
+        let pieces = [
+            span(Carried::Bridge, &[(20.0, 0.0), (10.0, 0.0)]),
+            span(Carried::Bridge, &[(0.0, 0.0), (10.0, 0.0)]),
+            span(Carried::Bridge, &[(20.0, 0.0), (50.0, 0.0)]),
+        ];
+        let chains = join(&pieces, &[]);
+        assert_eq!(chains.len(), 1);
+        assert_eq!((chains[0].length_m, chains[0].ends), (50.0, [End::Loose; 2]));
+        for (index, piece) in pieces.iter().enumerate() {
+            let link = chains[0].links.iter().find(|link| link.span == index).expect("a link");
+            for end in 0..2 {
+                assert_eq!(chains[0].at(&pieces, link.reach_m[end]), piece.end(end));
+            }
+        }
+    }
+
+    #[test]
+    fn three_that_meet_are_three_chains_that_go_on_and_a_tunnel_ends_a_bridge() {
+        let pieces = [
+            span(Carried::Bridge, &[(0.0, 0.0), (10.0, 0.0)]),
+            span(Carried::Bridge, &[(10.0, 0.0), (20.0, 5.0)]),
+            span(Carried::Bridge, &[(10.0, 0.0), (20.0, -5.0)]),
+            span(Carried::Tunnel, &[(0.0, 0.0), (-30.0, 0.0)]),
+        ];
+        let chains = join(&pieces, &[]);
+        assert_eq!(chains.len(), 4);
+        let meeting = End::Onward(place(DVec2::new(10.0, 0.0)));
+        assert_eq!(chains[0].ends, [End::Ground, meeting]);
+        assert_eq!(chains[1].ends, [meeting, End::Loose]);
+        assert_eq!(chains[3].ends, [End::Ground, End::Loose]);
     }
 }
