@@ -26,7 +26,7 @@ use crate::structure::fence::{Posts, rails, spans, stands};
 use crate::structure::hedge::hedge;
 use crate::structure::obstacle::{self, Obstacles};
 use crate::structure::power::{PowerLine, clear};
-use crate::structure::trench::parapets;
+use crate::structure::trench::{bare_m, parapets};
 use crate::structure::upright::Upright;
 use crate::structure::wall::wall;
 use crate::terrain::brush::Trench;
@@ -260,7 +260,7 @@ pub fn set(lines: &[Line], ground: Finest<'_>, collected: &mut Collected) {
                     collected.lay(plan, Surface::Boundary, line.feature);
                 }
                 FenceKind::Trench => {
-                    let plan = ribbon(points, line.width_m, Surface::Trench, &extent);
+                    let plan = ribbon(points, bare_m(line.width_m), Surface::Trench, &extent);
                     collected.lay(plan, Surface::Trench, line.feature);
                 }
                 _ => {}

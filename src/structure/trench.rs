@@ -17,6 +17,11 @@ const PARAPET_HEIGHT: f64 = 0.35;
 /// How far its surface wanders, and its colour in steps of 255.
 const RUFFLE: (f64, f32) = (0.12, 8.0);
 
+/// From the outer foot of one parapet to that of the other, metres: all the ground that is bare earth.
+pub fn bare_m(width_m: f64) -> f64 {
+    width_m * (1.0 + 2.0 * PARAPET_WIDTH)
+}
+
 /// The parapets on either side of a trench of `width_m` along `points`, dug `depth_m` deep; their surface
 /// wanders every `every_m`.
 pub fn parapets(points: &[DVec2], (width_m, depth_m): (f64, f64), every_m: f64) -> [Band; 2] {
