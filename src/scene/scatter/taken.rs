@@ -13,6 +13,12 @@ use crate::geom::rect::Rect;
 /// A grid's squares have sides of two to this power, in metres.
 type Power = i32;
 
+/// The power of the widest grid; a triangle that is wider still lies in several of its squares.
+const HIGHEST: Power = 40;
+/// Ground lies no farther from the origin than this, in metres, and what lies beyond takes none: some twenty squares of
+/// the widest grid.
+const FARTHEST_M: f64 = 1e13;
+
 /// Finds out whether a place is free.
 #[derive(Default)]
 pub struct Taken {
@@ -25,8 +31,8 @@ impl Taken {
     /// Takes a triangle's ground; one without area, or running clockwise, takes none.
     pub fn add(&mut self, triangle: [DVec2; 3]) {
         let [a, b, c] = triangle;
-        // A coordinate that is not a number makes no area either.
-        if !((b - a).perp_dot(c - a) > 0.0) {
+        let has_area = (b - a).perp_dot(c - a) > 0.0;
+        if !has_area {
             return;
         }
         let bounds = polygon::bounds(&triangle);
@@ -61,7 +67,7 @@ impl Taken {
 /// The least power of two that is at least `size`.
 fn power_of(size: f64) -> Power {
     let mut power = 0;
-    while power < 40 && libm::ldexp(1.0, power) < size {
+    while power < HIGHEST && libm::ldexp(1.0, power) < size {
         power += 1;
     }
     power
@@ -70,7 +76,9 @@ fn power_of(size: f64) -> Power {
 /// The squares of a grid that a rectangle meets.
 fn squares(rect: &Rect, power: Power) -> impl Iterator<Item = (i64, i64)> + use<> {
     let side = libm::ldexp(1.0, power);
-    let (low, high) = ((rect.min / side).floor(), (rect.max / side).floor());
+    let reach = DVec2::splat(FARTHEST_M);
+    let square = |at: DVec2| (at.clamp(-reach, reach) / side).floor();
+    let (low, high) = (square(rect.min), square(rect.max));
     (low.y as i64..=high.y as i64).flat_map(move |y| (low.x as i64..=high.x as i64).map(move |x| (x, y)))
 }
 
