@@ -118,7 +118,7 @@ impl Impostor {
     /// The impostor of `model`, made of `parts`: its own or those of a simpler form.
     ///
     /// `None` where a picture would not do or not pay: few triangles, blended materials, nothing to see, or
-    /// triangles that lie over each other more than [`crate::model::impostor_raster::MOST_LAYERS`] deep.
+    /// triangles that lie hundreds deep over each other.
     pub fn of(model: &Model, parts: &[Part]) -> Option<Self> {
         let is_blended = |part: &Part| model.materials[part.material.0 as usize].alpha == Alpha::Blend;
         if model.triangle_count() < FEWEST_TRIANGLES || model.parts.iter().any(is_blended) {

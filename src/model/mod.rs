@@ -6,6 +6,9 @@
 //!                 └─ gltf ─────┘
 //! ```
 //!
+//! How a model is drawn where it is small is its own matter too: `detail` chooses between the model, its coarser levels
+//! (`simplify`, by collapsing edges of a `soup` of all parts) and pictures of it (`impostor`).
+//!
 //! Trees, a shrub and a rock are [`built_in`]. What a model file names — buffers, textures, material libraries — comes
 //! through [`kind::Companions`]. A file that cannot be trusted is an error; a picture that cannot be had is a note on a
 //! model without it.

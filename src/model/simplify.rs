@@ -300,6 +300,8 @@ impl Simplifier {
             }
         }
         self.soup.around[to.0 as usize].extend(ring);
+        // The hub of a fan keeps what is gone: looking it through at every step would take the square of its width.
+        touched.retain(|&point| self.soup.triangles_at(point).len() <= 2 * WIDEST_RING);
         touched.iter().for_each(|&point| self.soup.tidy(point));
         self.quadrics[to.0 as usize] = self.quadrics[to.0 as usize].plus(&self.quadrics[from.0 as usize]);
         self.into[from.0 as usize] = to;
@@ -313,27 +315,40 @@ impl Simplifier {
     /// How far the surface is off the model's by now, in the model's units.
     fn error(&mut self) -> f64 {
         let mut farthest = self.looks;
-        for index in 0..self.into.len() {
-            let mut target = self.into[index];
-            while self.into[target.0 as usize] != target {
-                target = self.into[target.0 as usize];
-            }
-            self.into[index] = target;
-            farthest = farthest.max(self.distance(PointId(index as u32), target));
+        for point in (0..self.into.len() as u32).map(PointId) {
+            let target = self.target(point);
+            farthest = farthest.max(self.distance(point, target));
         }
         farthest
+    }
+
+    /// The point that still stands where `point` went. All on the way there are told, so that the next way is short.
+    fn target(&mut self, point: PointId) -> PointId {
+        let mut target = point;
+        while self.into[target.0 as usize] != target {
+            target = self.into[target.0 as usize];
+        }
+        let mut next = point;
+        while next != target {
+            next = std::mem::replace(&mut self.into[next.0 as usize], target);
+        }
+        target
     }
 
     /// How far a point lies from the surface near the point it went into: from the triangles there on to nearer ones
     /// for as long as there are any.
     fn distance(&self, point: PointId, target: PointId) -> f64 {
+        if point == target {
+            return 0.0;
+        }
         let place = self.soup.at(point);
         let distance = |triangle: u32| {
             let corners = self.soup.corners(triangle).map(|corner| self.soup.at(corner));
             blend(corners, nearest_shares(place, corners)).distance(place)
         };
         let nearest_around = |points: &[PointId]| {
-            let around = points.iter().flat_map(|&corner| self.soup.triangles_at(corner));
+            let rings = points.iter().map(|&corner| self.soup.triangles_at(corner));
+            let around = rings.filter(|ring| ring.len() <= 2 * WIDEST_RING).flatten();
             around.map(|&triangle| (distance(triangle), triangle)).min_by(|a, b| a.0.total_cmp(&b.0))
         };
         let Some((mut best, mut triangle)) = nearest_around(&[target]) else {

@@ -130,7 +130,7 @@ impl Soup {
         self.triangles[triangle as usize].map(|id| self.wedge(id).point)
     }
 
-    /// The triangles left around a point, each once.
+    /// The triangles left around a point, each once; around the hub of a wide fan also some that are gone.
     pub(super) fn triangles_at(&self, point: PointId) -> &[u32] {
         &self.around[point.0 as usize]
     }
