@@ -40,8 +40,9 @@ pub(super) struct Piece {
     pub shares: [f64; 3],
     /// The channel it is of.
     pub channel: u32,
-    /// The water's level at its end.
-    pub level_m: f64,
+    /// The water's level at its end, where that lies above the ground: in a pit that is to be filled, or before a lake.
+    /// Minus infinity elsewhere.
+    pub filled_m: f64,
 }
 
 /// All stretches of `courses` over ground, those of the course with the highest source first, each downstream.
@@ -62,7 +63,6 @@ pub(super) fn pieces(lattice: &Lattice, courses: &[Course]) -> Vec<Piece> {
 impl Piece {
     /// The stretch between two stations in a row; `None` where it has no ground or no length.
     fn between(lattice: &Lattice, channel: u32, [from, to]: [&Station; 2]) -> Option<Self> {
-        let level_m = Some(to.level_m).filter(|level| !level.is_nan())?;
         let middle = (from.grid + to.grid) * 0.5;
         let last = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
         if !(middle.cmpge(DVec2::ZERO).all() && middle.cmple(last).all()) {
@@ -80,7 +80,8 @@ impl Piece {
         let posts = used.map(|corner| corners[corner]);
         let grounded = posts.iter().all(|&post| !lattice.heights()[post].is_nan());
         let moves = shares.iter().any(|share: &f64| share.abs() > LEAST_SHARE);
-        (grounded && moves).then(|| Self { posts: posts.map(|post| post as u32), shares, channel, level_m })
+        let filled_m = if to.level_m > to.raw_m { to.level_m } else { f64::NEG_INFINITY };
+        (grounded && moves).then(|| Self { posts: posts.map(|post| post as u32), shares, channel, filled_m })
     }
 }
 
