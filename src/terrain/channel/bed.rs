@@ -150,7 +150,7 @@ impl Around {
         let last = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
         let low = (ends[0].grid.min(ends[1].grid) - reach).ceil().max(DVec2::ZERO);
         let high = (ends[0].grid.max(ends[1].grid) + reach).floor().min(last);
-        low.cmple(high).all().then(|| Self {
+        low.cmple(high).all().then_some(Self {
             ends,
             bed_m,
             bank_m: course.bank_m,

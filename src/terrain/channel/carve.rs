@@ -85,9 +85,12 @@ impl Piece {
     }
 }
 
+/// What each of a triangle's corners weighs at a place in the cell.
+type Weigh = fn(DVec2) -> [f64; 3];
+
 /// The corners of the triangle of a cell that holds `part`, and what each weighs at a place in its plane. Corners are
 /// counted south-west, south-east, north-west, north-east.
-fn triangle(diagonal: Diagonal, part: DVec2) -> ([usize; 3], fn(DVec2) -> [f64; 3]) {
+fn triangle(diagonal: Diagonal, part: DVec2) -> ([usize; 3], Weigh) {
     match diagonal {
         Diagonal::Rising if part.x >= part.y => ([0, 1, 3], |at| [1.0 - at.x, at.x - at.y, at.y]),
         Diagonal::Rising => ([0, 2, 3], |at| [1.0 - at.y, at.y - at.x, at.x]),
