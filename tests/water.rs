@@ -208,7 +208,7 @@ fn ramp(text: &str) -> Result<Scene, String> {
     let folder = Scratch::new();
     let heights: Vec<String> = (0..31 * 31).map(|index| (100 + index % 31).to_string()).collect();
     let grid = "ncols 31\nnrows 31\nxllcorner -5\nyllcorner -5\ncellsize 10\n";
-    folder.write("ramp.asc", &format!("{grid}{}", heights.join(" ")));
+    folder.write("ramp.asc", format!("{grid}{}", heights.join(" ")));
     let text = format!("[terrain]\ndem = \"ramp.asc\"\ncrs = \"EPSG:32633\"\n{text}");
     let path = folder.write("scene.toml", &text);
     let document = parse_bytes("scene.toml", text.as_bytes()).map_err(|error| error.to_string())?;
