@@ -24,7 +24,7 @@ fn scene(text: &str) -> Scene {
         |index: i32| 100.0 + 8.0 * libm::sin(f64::from(index % 31) * 0.4) + f64::from(index / 31) * 0.7;
     let heights: Vec<String> = (0..31 * 31).map(|index| format!("{:.2}", height(index))).collect();
     let grid = "ncols 31\nnrows 31\nxllcorner -5\nyllcorner -5\ncellsize 10\n";
-    folder.write("hills.asc", &format!("{grid}{}", heights.join(" ")));
+    folder.write("hills.asc", format!("{grid}{}", heights.join(" ")));
     let square = |low: i32, class: &str| {
         let high = low + 50;
         format!(
@@ -33,7 +33,7 @@ fn scene(text: &str) -> Scene {
         )
     };
     let features = [square(20, "forest"), square(100, "meadow"), square(180, "nothing known")].join(",");
-    folder.write("uses.geojson", &format!("{{\"type\":\"FeatureCollection\",\"features\":[{features}]}}"));
+    folder.write("uses.geojson", format!("{{\"type\":\"FeatureCollection\",\"features\":[{features}]}}"));
     let text = format!("[terrain]\ndem = \"hills.asc\"\ncrs = \"EPSG:32633\"\n{text}");
     let path = folder.write("scene.toml", &text);
     let document = parse_bytes("scene.toml", text.as_bytes()).expect("a scene file");

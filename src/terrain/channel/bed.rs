@@ -28,8 +28,8 @@ struct Wish {
 }
 
 impl Bed {
-    /// The posts under the water set to its level and banks blended, and no post that a centreline's triangles touch
-    /// lower than the water.
+    /// The posts under the water set to its level and banks blended. Where the water stands above the ground, in a pit or
+    /// before a lake, no post of the triangles that its centreline crosses stays below it.
     pub fn shaped(lattice: &Lattice, courses: &[Course], pieces: &[Piece]) -> Result<Self, ChannelError> {
         let wishes = wishes(lattice, courses)?;
         let touched = pieces.iter().flat_map(|piece| piece.posts.map(|post| (post, piece)));
@@ -47,8 +47,8 @@ impl Bed {
         let mut levels_m = vec![f64::INFINITY; bed.posts.len()];
         for (post, piece) in touched {
             let place = bed.place(post);
-            if piece.level_m < levels_m[place] {
-                (levels_m[place], bed.owners[place]) = (piece.level_m, piece.channel);
+            if piece.filled_m < levels_m[place] {
+                (levels_m[place], bed.owners[place]) = (piece.filled_m, piece.channel);
             }
         }
         for (place, &level_m) in levels_m.iter().enumerate() {
@@ -150,7 +150,7 @@ impl Around {
         let last = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
         let low = (ends[0].grid.min(ends[1].grid) - reach).ceil().max(DVec2::ZERO);
         let high = (ends[0].grid.max(ends[1].grid) + reach).floor().min(last);
-        low.cmple(high).all().then(|| Self {
+        low.cmple(high).all().then_some(Self {
             ends,
             bed_m,
             bank_m: course.bank_m,

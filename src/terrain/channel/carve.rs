@@ -40,8 +40,9 @@ pub(super) struct Piece {
     pub shares: [f64; 3],
     /// The channel it is of.
     pub channel: u32,
-    /// The water's level at its end.
-    pub level_m: f64,
+    /// The water's level at its end, where that lies above the ground: in a pit that is to be filled, or before a lake.
+    /// Minus infinity elsewhere.
+    pub filled_m: f64,
 }
 
 /// All stretches of `courses` over ground, those of the course with the highest source first, each downstream.
@@ -62,7 +63,6 @@ pub(super) fn pieces(lattice: &Lattice, courses: &[Course]) -> Vec<Piece> {
 impl Piece {
     /// The stretch between two stations in a row; `None` where it has no ground or no length.
     fn between(lattice: &Lattice, channel: u32, [from, to]: [&Station; 2]) -> Option<Self> {
-        let level_m = Some(to.level_m).filter(|level| !level.is_nan())?;
         let middle = (from.grid + to.grid) * 0.5;
         let last = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
         if !(middle.cmpge(DVec2::ZERO).all() && middle.cmple(last).all()) {
@@ -80,13 +80,17 @@ impl Piece {
         let posts = used.map(|corner| corners[corner]);
         let grounded = posts.iter().all(|&post| !lattice.heights()[post].is_nan());
         let moves = shares.iter().any(|share: &f64| share.abs() > LEAST_SHARE);
-        (grounded && moves).then(|| Self { posts: posts.map(|post| post as u32), shares, channel, level_m })
+        let filled_m = if to.level_m > to.raw_m { to.level_m } else { f64::NEG_INFINITY };
+        (grounded && moves).then(|| Self { posts: posts.map(|post| post as u32), shares, channel, filled_m })
     }
 }
 
+/// What each of a triangle's corners weighs at a place in the cell.
+type Weigh = fn(DVec2) -> [f64; 3];
+
 /// The corners of the triangle of a cell that holds `part`, and what each weighs at a place in its plane. Corners are
 /// counted south-west, south-east, north-west, north-east.
-fn triangle(diagonal: Diagonal, part: DVec2) -> ([usize; 3], fn(DVec2) -> [f64; 3]) {
+fn triangle(diagonal: Diagonal, part: DVec2) -> ([usize; 3], Weigh) {
     match diagonal {
         Diagonal::Rising if part.x >= part.y => ([0, 1, 3], |at| [1.0 - at.x, at.x - at.y, at.y]),
         Diagonal::Rising => ([0, 2, 3], |at| [1.0 - at.y, at.y - at.x, at.x]),
