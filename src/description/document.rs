@@ -78,7 +78,7 @@ pub struct Document {
     pub bridges: Vec<Bridge>,
     /// `[[river]]`: in drawing order.
     pub rivers: Vec<River>,
-    /// `[[lake]]`.
+    /// `[[lake]]`: still water, level and cut out of the ground or filled up to it.
     pub lakes: Vec<Lake>,
     /// `[[area]]`: what covers the ground, in drawing order.
     pub areas: Vec<Area>,
