@@ -27,7 +27,7 @@ fn scene(folder: &Scratch, features: &str) -> Scene {
         [row.as_str(); 21].join("\n")
     );
     folder.write("ground.asc", &grid);
-    let path = folder.write("scene.toml", &format!("[terrain]\ndem = \"ground.asc\"\n{features}"));
+    let path = folder.write("scene.toml", format!("[terrain]\ndem = \"ground.asc\"\n{features}"));
     built(&path, &[])
 }
 
