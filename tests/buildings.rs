@@ -55,7 +55,7 @@ fn every_building_of_the_hamlet_is_closed_and_roofs_what_it_stands_on() {
     assert!(measured.len() >= 12);
     let inn = scene.features.iter().position(|feature| feature.name == "inn").expect("there") as u32;
     let (_, measures) = measured.iter().find(|(id, _)| id.0 == inn + 2).expect("raised");
-    assert!((measures.roof_m2 - 220.0).abs() < 1.0, "{measures:?}");
+    assert!((measures.roof_m2 - 220.0).abs() < 2.0, "{measures:?}");
 }
 
 #[test]

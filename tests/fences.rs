@@ -113,7 +113,8 @@ fn posts_and_obstacles_stand_on_the_displayed_ground_and_reach_into_it() {
             };
             let mesh = standing.upright.mesh(under(scene, &displayed));
             let near = |position: &[f32; 3]| {
-                (DVec2::new(f64::from(position[0]), f64::from(position[1])) - first.at).length() < height_m
+                (DVec2::new(f64::from(position[0]), f64::from(position[1])) - first.at).length()
+                    < 1.2 * height_m
             };
             let zs =
                 mesh.vertices.iter().map(|vertex| vertex.position).filter(near).map(|at| f64::from(at[2]));
