@@ -77,7 +77,7 @@ pub fn conform(
     let design = design(&survey.network, &survey.courses, &survey.pins, curve_m);
     let routes: Vec<Route> = survey.routes(&design).into_iter().map(Route::with_ends).collect();
     let works =
-        Earthworks { roads, rules: &rules, portals: portals(roads, &routes, &meetings), meetings: &meetings };
+        Earthworks { roads, rules: &rules, walls: walls(roads, &routes, &meetings), meetings: &meetings };
     let volumes = works.build(lattice, &routes, collected);
     for (route, volumes) in routes.iter().zip(&volumes) {
         tell(&roads[route.road], route, volumes, collected);
@@ -91,8 +91,8 @@ pub fn conform(
 struct Earthworks<'a> {
     roads: &'a [Centreline],
     rules: &'a [Option<Rules>],
-    /// The nodes where tunnels begin.
-    portals: BTreeSet<NodeId>,
+    /// The nodes where bridges and tunnels begin.
+    walls: BTreeSet<NodeId>,
     meetings: &'a Meetings,
 }
 
@@ -134,19 +134,19 @@ impl Earthworks<'_> {
     /// What stands at an end of a stretch: by the stretch beyond, or by what meets the road at its own end.
     fn end(&self, route: &Route, beyond: Option<&Stretch>, stop: usize) -> End {
         let stops = &self.meetings.stops[route.road];
-        let is_portal = match beyond {
-            Some(stretch) => stretch.carried == Carried::Tunnel,
-            None => self.portals.contains(&stops[stop.min(stops.len() - 1)].node),
+        let is_wall = match beyond {
+            Some(stretch) => stretch.carried != Carried::Ground,
+            None => self.walls.contains(&stops[stop.min(stops.len() - 1)].node),
         };
-        if is_portal { End::Portal } else { End::Open }
+        if is_wall { End::Wall } else { End::Open }
     }
 }
 
-/// The nodes where a tunnel of one road ends that may go on as another on the ground.
-fn portals(roads: &[Centreline], routes: &[Route], meetings: &Meetings) -> BTreeSet<NodeId> {
+/// The nodes where a bridge or a tunnel of one road ends that may go on as another on the ground.
+fn walls(roads: &[Centreline], routes: &[Route], meetings: &Meetings) -> BTreeSet<NodeId> {
     let mut nodes = BTreeSet::new();
     for (road, stops) in roads.iter().zip(&meetings.stops) {
-        if road.carried == Carried::Tunnel {
+        if road.carried != Carried::Ground {
             nodes.extend([stops[0].node, stops[stops.len() - 1].node]);
         }
     }
@@ -154,7 +154,7 @@ fn portals(roads: &[Centreline], routes: &[Route], meetings: &Meetings) -> BTree
         let (all, stops) = (route.stretches(), &meetings.stops[route.road]);
         let ends = [(&all[0], stops[0]), (&all[all.len() - 1], stops[stops.len() - 1])];
         nodes
-            .extend(ends.iter().filter(|(end, _)| end.carried == Carried::Tunnel).map(|(_, stop)| stop.node));
+            .extend(ends.iter().filter(|(end, _)| end.carried != Carried::Ground).map(|(_, stop)| stop.node));
     }
     nodes
 }

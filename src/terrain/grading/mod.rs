@@ -159,7 +159,7 @@ mod tests {
         let mut open = hill();
         grade(&mut open, &[strip(&points, [110.0; 2], FLAT)]);
         let mut portal = hill();
-        grade(&mut portal, &[Strip { ends: [End::Open, End::Portal], ..strip(&points, [110.0; 2], FLAT) }]);
+        grade(&mut portal, &[Strip { ends: [End::Open, End::Wall], ..strip(&points, [110.0; 2], FLAT) }]);
         let behind = points[1] + way * 6.0;
         assert!(planar(&open, behind) < 120.0);
         assert_eq!(planar(&portal, behind), 130.0);

@@ -43,10 +43,11 @@ pub struct Section {
 /// What stands where a strip ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// Nothing, more road or an abutment: batters go round it.
+    /// Nothing, or more road: batters go round it.
     Open,
-    /// A portal: the ground beyond is the hill over a tunnel.
-    Portal,
+    /// A wall: an abutment, that an embankment would else run past into the valley, or the portal in the hill over a
+    /// tunnel.
+    Wall,
 }
 
 /// A stretch of road on the ground.
@@ -159,10 +160,10 @@ impl Strip {
         (edge - steps(fill_slope), edge + steps(cut_slope))
     }
 
-    /// Whether a place lies behind a portal, in the hill.
-    pub fn is_behind_portal(&self, leg: usize, beside: &Beside) -> bool {
+    /// Whether a place lies behind a wall, where no batter goes.
+    pub fn is_behind_wall(&self, leg: usize, beside: &Beside) -> bool {
         let end = if leg == 0 && beside.station_m <= 0.0 { self.ends[0] } else { self.ends[1] };
-        beside.beyond_m > 0.0 && end == End::Portal
+        beside.beyond_m > 0.0 && end == End::Wall
     }
 }
 
