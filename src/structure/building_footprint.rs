@@ -2,7 +2,7 @@
 //!
 //! Files hold rings that run either way, repeat vertices, cross themselves and touch their own holes. What an odd number
 //! of rings run around is kept (the rule by which such a polygon is painted), as polygons that cross nothing; vertices
-//! that say nothing are dropped. What encloses less than [`LEAST_M2`] is no building.
+//! that say nothing are dropped. What encloses less than a quarter of a square metre is no building.
 
 use glam::DVec2;
 
