@@ -22,6 +22,10 @@ use crate::geom::polyline::Polyline;
 /// its two ends never pass each other.
 const LONGEST_INNER: f64 = 0.45;
 
+/// How far apart sections put in stand at least, in widths: nearer ones would be one where coordinates are rounded to
+/// f32, a hundred kilometres from the origin, and the solid between them would have no sides.
+const LEAST_APART: f64 = 0.02;
+
 /// The most sections that are put in between the vertices of one centreline: enough for one every metre of a long
 /// bridge, and a bound for lines that go on and on.
 const MOST_BREAKS: usize = 4096;
@@ -69,14 +73,14 @@ impl Course<'_> {
             let along = (next - at).normalize_or_zero();
             let reach = |index: usize| {
                 asides[index].iter().map(|aside| aside.dot(along).abs()).fold(0.0, f64::max)
-                    + self.width_m * 1e-3
+                    + self.width_m * LEAST_APART
             };
             let (from_m, to_m) = (stations[index] + reach(index), end_m - reach(index + 1));
             let square = along.perp() * (self.width_m / 2.0);
             let first = breaks.partition_point(|&station| station <= from_m);
             let mut last_m = from_m;
             for &station in breaks[first..].iter().take_while(|&&station| station < to_m) {
-                if station - last_m > self.width_m * 1e-3 {
+                if station - last_m > self.width_m * LEAST_APART {
                     let at = at + along * (station - stations[index]);
                     sections.push(section(station, at, [square, -square], level_m));
                     last_m = station;
