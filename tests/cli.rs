@@ -26,6 +26,8 @@ mod new;
 mod pictures;
 #[path = "cli/profile.rs"]
 mod profile;
+#[path = "cli/report.rs"]
+mod report;
 #[path = "cli/schema.rs"]
 mod schema;
 #[path = "cli/serve.rs"]

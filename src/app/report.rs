@@ -9,6 +9,7 @@ use crate::app::arguments::Access;
 use crate::app::failure::Failure;
 use crate::app::progress::Steps;
 use crate::app::{files, load, output};
+use crate::scene::kind::Scene;
 use crate::scene::report::{Cell, Column, Report, Table};
 
 /// How many rows of a table are printed; a file or JSON holds all.
@@ -23,7 +24,8 @@ pub struct ReportOptions {
     /// Print one JSON object with every row
     #[arg(long)]
     pub json: bool,
-    /// Write every table as a CSV file into this folder, which must be there
+    /// Write every table, and the profile of every road that the ground follows, as CSV files into this folder, which
+    /// must be there
     #[arg(long, value_name = "FOLDER", conflicts_with = "json")]
     pub csv: Option<PathBuf>,
     /// Which folders may be read.
@@ -44,7 +46,8 @@ pub fn run(options: &ReportOptions) -> Result<(), Failure> {
         return output::print(&format!("{:#}\n", as_json(report, &scene.notes)));
     }
     if let Some(folder) = &options.csv {
-        let written = write_tables(report, folder, &scene.files)?;
+        let mut written = write_tables(report, folder, &scene.files)?;
+        written.extend(write_profiles(&scene, folder)?);
         return output::print(&output::text_of(&written));
     }
     let mut lines = vec![format!("{}", options.scene.display())];
@@ -94,6 +97,28 @@ fn write_tables(report: &Report, folder: &Path, inputs: &[PathBuf]) -> Result<Ve
             let path = folder.join(format!("{}.csv", table.name.replace(' ', "_")));
             files::check_no_input(&path, inputs)?;
             files::write_whole(&path, as_csv(table).as_bytes())?;
+            Ok(path.display().to_string())
+        })
+        .collect()
+}
+
+/// Writes a file a profile, `profile_NUMBER_NAME.csv` with the road's number among the scene's features; returns their
+/// places.
+fn write_profiles(scene: &Scene, folder: &Path) -> Result<Vec<String>, Failure> {
+    let plain = |name: &str| -> String {
+        name.chars().take(40).map(|at| if at.is_alphanumeric() { at } else { '_' }).collect()
+    };
+    scene
+        .profiles
+        .iter()
+        .map(|profile| {
+            let name = match plain(&profile.name).as_str() {
+                "" => format!("profile_{}.csv", profile.feature.0),
+                name => format!("profile_{}_{name}.csv", profile.feature.0),
+            };
+            let path = folder.join(name);
+            files::check_no_input(&path, &scene.files)?;
+            files::write_whole(&path, profile.csv().as_bytes())?;
             Ok(path.display().to_string())
         })
         .collect()
