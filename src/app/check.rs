@@ -50,9 +50,15 @@ pub fn contents(scene: &Scene) -> Vec<String> {
         format!("  features  {}", parts.join(", ")),
         format!("  cameras   {}", cameras.join(", ")),
     ];
-    lines.extend(scene.notes.iter().map(|note| format!("  note      {note}")));
+    lines.extend(scene.notes.iter().take(MOST_NOTES).map(|note| format!("  note      {note}")));
+    if let Some(more) = scene.notes.len().checked_sub(MOST_NOTES).filter(|&more| more > 0) {
+        lines.push(format!("  note      … and {more} more; `sandtable report` prints all"));
+    }
     lines
 }
+
+/// As many as fit on a screen beside the rest.
+const MOST_NOTES: usize = 20;
 
 fn count_of((kind, count): (FeatureKind, usize)) -> String {
     format!("{count} {}", kind.noun(count))

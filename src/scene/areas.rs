@@ -5,6 +5,7 @@
 
 use glam::DVec2;
 
+use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::{Color, Document};
 use crate::description::features::Area;
@@ -22,9 +23,6 @@ use crate::scene::kind::FeatureKind;
 use crate::scene::near::Clipped;
 use crate::scene::sources::{Sourced, Sources};
 use crate::vector::feature::Polygon;
-
-/// A border's width where none is stated, in metres.
-const BORDER_WIDTH_M: f64 = 4.0;
 
 /// Adds the document's areas to `collected`. Those off the ground and those without an area are left out, and those for
 /// which an expression gives no cover; notes say how many.
@@ -79,7 +77,7 @@ impl Patch {
         if !Rect::around(shape.exterior.iter().copied()).meets(extent) {
             return None;
         }
-        let width_m = table.border_width.as_ref().map_or(BORDER_WIDTH_M, |width| *width.get_ref());
+        let width_m = table.border_width.as_ref().map_or(defaults::BORDER_WIDTH_M, |width| *width.get_ref());
         let mut fill = Clipped { plan: PlanMesh::default(), extent };
         area::fill(&shape.exterior, &shape.holes, texture_m(cover, width_m), &mut fill);
         let dashes = match border_of(table, cover) {
@@ -107,7 +105,7 @@ impl Patch {
 /// Metres in one repeat of a cover's texture; hatching is as wide as the border wants it.
 fn texture_m(cover: Cover, border_width_m: f64) -> f64 {
     match cover {
-        Cover::Restricted => cover_length_m(cover) * border_width_m / BORDER_WIDTH_M,
+        Cover::Restricted => cover_length_m(cover) * border_width_m / defaults::BORDER_WIDTH_M,
         _ => cover_length_m(cover),
     }
 }

@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::roam::culling::PatchHeights;
@@ -125,7 +126,11 @@ fn places<'a>(
 }
 
 fn exaggeration(document: &Document) -> f32 {
-    document.terrain.vertical_exaggeration.as_ref().map_or(1.0, |value| *value.get_ref()) as f32
+    document
+        .terrain
+        .vertical_exaggeration
+        .as_ref()
+        .map_or(defaults::VERTICAL_EXAGGERATION, |value| *value.get_ref()) as f32
 }
 
 fn terrain(document: &Document, lattice: Lattice) -> Result<Terrain, Diagnostic> {
@@ -140,6 +145,10 @@ fn terrain(document: &Document, lattice: Lattice) -> Result<Terrain, Diagnostic>
         lattice: Arc::new(lattice),
         layout,
         exaggeration,
-        tolerance_px: document.terrain.tolerance_px.as_ref().map_or(1.0, |value| *value.get_ref()) as f32,
+        tolerance_px: document
+            .terrain
+            .tolerance_px
+            .as_ref()
+            .map_or(defaults::TOLERANCE_PX, |value| *value.get_ref()) as f32,
     })
 }

@@ -9,6 +9,7 @@
 use glam::DVec2;
 use toml::Spanned;
 
+use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::{Color, Document};
 use crate::description::expression::as_number;
@@ -34,10 +35,6 @@ use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::query::pieces::Region;
 use crate::terrain::query::zone::zone;
 
-/// The height of a building that nothing is known of, metres.
-const HEIGHT_M: f64 = 6.0;
-/// A storey, metres.
-const STOREY_M: f64 = 3.0;
 /// The tallest that a property may say, metres; as `height` in a scene file.
 const TALLEST_M: f64 = 1000.0;
 /// Rise over run of a roof of 30 degrees.
@@ -275,14 +272,14 @@ fn heights(
     collected: &mut Collected,
     tally: &mut Tally,
 ) -> (f64, f64) {
-    let storeys = |names: &[&str]| property(attributes, names, (0.0, TALLEST_M / STOREY_M));
+    let storeys = |names: &[&str]| property(attributes, names, (0.0, TALLEST_M / defaults::LEVEL_HEIGHT_M));
     let known = property(attributes, &["height"], (0.0, TALLEST_M))
-        .or_else(|| storeys(&["building:levels", "levels"]).map(|levels| levels * STOREY_M))
-        .unwrap_or(HEIGHT_M);
+        .or_else(|| storeys(&["building:levels", "levels"]).map(|levels| levels * defaults::LEVEL_HEIGHT_M))
+        .unwrap_or(defaults::BUILDING_HEIGHT_M);
     let stated = ("[[building]] height", building.height.as_ref());
     let height_m = attributes.number_or(stated, known, &mut collected.defaulted);
     let low_m = property(attributes, &["min_height"], (0.0, TALLEST_M))
-        .or_else(|| storeys(&["building:min_level"]).map(|levels| levels * STOREY_M))
+        .or_else(|| storeys(&["building:min_level"]).map(|levels| levels * defaults::LEVEL_HEIGHT_M))
         .unwrap_or(0.0);
     if low_m >= height_m {
         tally.raised_whole += 1;

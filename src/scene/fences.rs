@@ -5,6 +5,7 @@
 
 use glam::DVec2;
 
+use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::expression::as_number;
@@ -156,7 +157,7 @@ fn line_of(
         height_m: size("[[fence]] height", fence.height.as_ref(), tagged.unwrap_or(sizes.height_m)),
         width_m: size("[[fence]] width", fence.width.as_ref(), sizes.width_m),
         spacing_m: size("[[fence]] spacing", fence.spacing.as_ref(), sizes.spacing_m),
-        sag: fence.sag.as_ref().map_or(0.03, |sag| *sag.get_ref()),
+        sag: fence.sag.as_ref().map_or(defaults::SAG, |sag| *sag.get_ref()),
         feature,
     }
 }

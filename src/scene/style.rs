@@ -5,6 +5,7 @@ use std::f32::consts::FRAC_PI_2;
 use glam::Vec3;
 use toml::Spanned;
 
+use crate::description::defaults;
 use crate::description::document::{Color, ContourTable, Document, RampChoice};
 use crate::description::words;
 use crate::draw::color::Srgba;
@@ -79,7 +80,7 @@ fn stretched(stops: &[(f32, [u8; 3])], lattice: &Lattice) -> Ramp {
 pub fn contours(document: &Document) -> Option<Contours> {
     document.style.contours.as_ref().map(|ContourTable { interval, major_every, color }| Contours {
         interval_m: *interval.get_ref() as f32,
-        major_every: major_every.as_ref().map_or(5, |every| *every.get_ref()),
+        major_every: major_every.as_ref().map_or(defaults::CONTOUR_MAJOR_EVERY, |every| *every.get_ref()),
         color: color.as_ref().map_or(Srgba([112, 74, 40, 150]), |color| Srgba(color.get_ref().0)),
         width_px: 1.0,
     })
@@ -92,7 +93,10 @@ pub fn lighting(document: &Document, extent_m: f32) -> Lighting {
         (stated.as_ref().map_or(default, |value| *value.get_ref()) as f32).to_radians()
     };
     let light = &document.style.light;
-    let (azimuth, altitude) = (angle(&light.azimuth, 315.0), angle(&light.altitude, 45.0));
+    let (azimuth, altitude) = (
+        angle(&light.azimuth, defaults::LIGHT_AZIMUTH_DEG),
+        angle(&light.altitude, defaults::LIGHT_ALTITUDE_DEG),
+    );
     let level = libm::sinf(FRAC_PI_2 - altitude);
     let to_sun = Vec3::new(libm::sinf(azimuth) * level, libm::cosf(azimuth) * level, libm::sinf(altitude));
     let distance_m = match document.style.haze.as_ref().map(Spanned::get_ref) {

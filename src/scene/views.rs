@@ -3,6 +3,7 @@
 use glam::Vec3;
 use toml::Spanned;
 
+use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::{CameraTable, Document};
 use crate::scene::kind::{Label, Terrain, View};
@@ -18,7 +19,7 @@ pub fn labels(document: &Document, places: &Places<'_>, terrain: &Terrain) -> Re
         let world = places.point(&table.at, table.crs.as_ref())?;
         let ground = places.on_ground(&terrain.lattice, &table.at, world)?;
         let elevation = whole_metres(ground.z / terrain.exaggeration);
-        let above = table.height.as_ref().map_or(0.0, |height| *height.get_ref()) as f32;
+        let above = table.height.as_ref().map_or(defaults::LABEL_HEIGHT_M, |height| *height.get_ref()) as f32;
         Ok(Label {
             text: table.text.get_ref().replace("{height}", &elevation),
             ground,
@@ -58,7 +59,7 @@ fn camera(table: &CameraTable, places: &Places<'_>, terrain: &Terrain) -> Result
             let ground = places.on_ground(&terrain.lattice, &table.eye, eye_world).map_err(|error| {
                 error.with_help("give the camera an eye_elevation where its eye is not above the model")
             })?;
-            ground + Vec3::Z * metres(&table.eye_height, 2.0)
+            ground + Vec3::Z * metres(&table.eye_height, defaults::EYE_HEIGHT_M)
         }
     };
     let target_world = places.point(&table.look_at, table.crs.as_ref())?;
@@ -73,7 +74,7 @@ fn camera(table: &CameraTable, places: &Places<'_>, terrain: &Terrain) -> Result
         name: table.name.get_ref().clone(),
         eye,
         target,
-        fov_y_rad: metres(&table.field_of_view, 40.0).to_radians(),
+        fov_y_rad: metres(&table.field_of_view, defaults::FIELD_OF_VIEW_DEG).to_radians(),
     })
 }
 

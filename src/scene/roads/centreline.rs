@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::{Road, Scalar};
@@ -124,8 +125,13 @@ fn centreline(
 ) -> Centreline {
     let defaulted = &mut collected.defaulted;
     let surface = surface(road, &attributes);
-    let width_m = attributes.number_or(("[[road]] width", road.width.as_ref()), 6.0, defaulted);
-    let shoulder_m = attributes.number_or(("[[road]] shoulder", road.shoulder.as_ref()), 0.0, defaulted);
+    let width_m =
+        attributes.number_or(("[[road]] width", road.width.as_ref()), defaults::ROAD_WIDTH_M, defaulted);
+    let shoulder_m = attributes.number_or(
+        ("[[road]] shoulder", road.shoulder.as_ref()),
+        defaults::ROAD_SHOULDER_M,
+        defaulted,
+    );
     let standard = StrokeOptions::default();
     let options = StrokeOptions {
         width_m,

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
+use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::words;
@@ -19,9 +20,6 @@ use crate::scene::near;
 use crate::scene::roads::centreline::{self, Carried, Centreline};
 use crate::scene::roads::network::rank_of;
 use crate::scene::sources::Sources;
-
-/// The width between the parapets of a bridge that belongs to no road, in metres.
-const BRIDGE_WIDTH_M: f64 = 8.0;
 
 /// How far from the ground a bridge may run that still reaches it, in metres.
 const REACH_M: f64 = 1000.0;
@@ -159,7 +157,7 @@ fn of_tables(
             let Some((line, _)) = within(&line, None, extent) else { continue };
             let surface = surface(attributes.word(bridge.surface.as_ref()).unwrap_or_default());
             let stated = ("[[bridge]] width", bridge.width.as_ref());
-            let width_m = attributes.number_or(stated, BRIDGE_WIDTH_M, &mut collected.defaulted);
+            let width_m = attributes.number_or(stated, defaults::BRIDGE_WIDTH_M, &mut collected.defaulted);
             let options = StrokeOptions {
                 width_m,
                 texture_length_m: texture_length_m(surface, width_m),

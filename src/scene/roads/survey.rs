@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use toml::Spanned;
 
+use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::Road;
@@ -43,17 +44,20 @@ impl Rules {
         let stated = ("[[road]] max_grade", table.max_grade.as_ref());
         let value = |key: &Option<Spanned<f64>>| key.as_ref().map(|value| *value.get_ref());
         Some(Self {
-            max_grade: road.attributes.number_or(stated, 8.0, defaulted) / 100.0,
+            max_grade: road.attributes.number_or(stated, defaults::MAX_GRADE_PERCENT, defaulted) / 100.0,
             limits: Limits {
                 max_fill_m: value(&table.max_fill).unwrap_or(f64::INFINITY),
                 max_cut_m: value(&table.max_cut).unwrap_or(f64::INFINITY),
             },
             section: strip::Section {
                 half_width_m: road.options.width_m / 2.0,
-                shoulder_m: road.attributes.number(table.shoulder.as_ref()).unwrap_or(0.0),
-                crown: value(&table.crown).unwrap_or(0.0) / 100.0,
-                fill_slope: value(&table.fill_slope).unwrap_or(1.5),
-                cut_slope: value(&table.cut_slope).unwrap_or(1.0),
+                shoulder_m: road
+                    .attributes
+                    .number(table.shoulder.as_ref())
+                    .unwrap_or(defaults::ROAD_SHOULDER_M),
+                crown: value(&table.crown).unwrap_or(defaults::CROWN_PERCENT) / 100.0,
+                fill_slope: value(&table.fill_slope).unwrap_or(defaults::FILL_SLOPE),
+                cut_slope: value(&table.cut_slope).unwrap_or(defaults::CUT_SLOPE),
             },
         })
     }

@@ -15,6 +15,7 @@ use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 use toml::Spanned;
 
+use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::Scatter;
@@ -39,8 +40,6 @@ use crate::terrain::query::gradient::{Gradient, Patch, ground_gradient};
 use crate::terrain::query::{Interpolation, ground_height};
 use crate::vector::feature::Polygon;
 
-/// How many to the hectare where nothing is stated: a grown wood.
-const DENSITY_PER_HA: f64 = 100.0;
 /// The spacing where none is stated, in parts of the side of the square that each has to itself: a wood, not an orchard.
 const SPACING_PART: f64 = 0.5;
 /// How far a model keeps from what is taken, in parts of its reach: boughs may hang over a road, trunks not stand on it.
@@ -127,7 +126,7 @@ impl Species {
         }
         // Tables of other species strew otherwise, so that two do not stand in each other.
         let texts = names.into_iter().flat_map(Spanned::get_ref).map(String::as_str);
-        let seed = seed_of(table.seed.as_ref().map_or(0, |seed| *seed.get_ref()), texts);
+        let seed = seed_of(table.seed.as_ref().map_or(defaults::SEED, |seed| *seed.get_ref()), texts);
         Ok(Self { models, seed })
     }
 }
@@ -155,7 +154,7 @@ impl Counts {
 /// The pattern of one area.
 fn pattern(table: &Scatter, attributes: &Attributes, seed: u64, collected: &mut Collected) -> Pattern {
     let stated = ("[[scatter]] density", table.density.as_ref());
-    let density = attributes.number_or(stated, DENSITY_PER_HA, &mut collected.defaulted) / 1e4;
+    let density = attributes.number_or(stated, defaults::DENSITY_PER_HA, &mut collected.defaulted) / 1e4;
     let spacing_m = attributes.number(table.spacing.as_ref());
     Pattern::new(seed, density, spacing_m.unwrap_or(SPACING_PART / density.sqrt()))
 }
@@ -245,7 +244,7 @@ impl Ground<'_> {
     fn placement(&self, place: &Candidate, gradient: Gradient) -> Placement {
         let mut chance = Chance::from_number(place.fate);
         let model = self.species.models[chance.below(self.species.models.len())];
-        let [from, to] = self.table.scale.as_ref().map_or([0.8, 1.2], |scale| *scale.get_ref());
+        let [from, to] = self.table.scale.as_ref().map_or(defaults::SCATTER_SCALE, |scale| *scale.get_ref());
         let scale = (from + (to - from) * chance.part()) as f32;
         let heading_rad = (chance.part() * TAU) as f32;
         let rise = (gradient.0.length() as f32) * self.places.exaggeration;
