@@ -14,6 +14,8 @@ mod places;
 mod swellendam;
 #[path = "real_data/vectors.rs"]
 mod vectors;
+#[path = "real_data/whole.rs"]
+mod whole;
 
 use std::path::{Path, PathBuf};
 
