@@ -18,7 +18,7 @@ fn folder(test: &str, (columns, rows): (u32, u32)) -> PathBuf {
     let heights: Vec<String> = (0..columns * rows).map(|index| format!("{:.3}", height(index))).collect();
     let grid = format!("ncols {columns}\nnrows {rows}\nxllcorner 0\nyllcorner 0\ncellsize 10\n");
     fs::write(folder.join("hill.asc"), grid + &heights.join(" ")).expect("a file");
-    let triangle = "v 0 0 0\nv 4 0 0\nv 0 0 300\nf 1 2 3\n";
+    let triangle = "v 0 0 0\nv 4 0 0\nv 0 300 0\nf 1 2 3\n";
     fs::write(folder.join("mast.obj"), triangle).expect("a file");
     folder
 }
