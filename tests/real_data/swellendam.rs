@@ -13,8 +13,9 @@ use crate::{clearance_of_draped, picture, scene};
 
 const FOLDER: &str = "scenes/swellendam_za";
 
-/// The scene, without its lakes where `lakes` is empty. `DEM` is replaced by where the model is.
+/// The scene, without its lakes where `lakes` is empty; its rivers then leave the ground as it is.
 fn text(dem: &str, lakes: &str) -> String {
+    let water = if lakes.is_empty() { "drape" } else { "falls" };
     format!(
         r#"
 title = "Swellendam"
@@ -28,6 +29,7 @@ vertical_exaggeration = 1.5
 [[river]]
 file = "../layers/rivers.geojson"
 width = 60
+water = "{water}"
 
 [[road]]
 file = "../layers/roads.geojson"
