@@ -32,9 +32,11 @@
 //! 12 bytes a pixel and 48 a triangle in it; for each thread 0.3 MiB, and up to 2 MiB more under
 //! transparent surfaces; a third of each texture and of the ground map for their smaller levels.
 
+mod alpha;
 mod band;
 mod blend;
 mod clip;
+mod cutout;
 mod geometry;
 mod ground_shade;
 mod hit;

@@ -4,9 +4,9 @@ use glam::Vec3;
 
 use crate::draw::color::Srgba;
 use crate::draw::lighting::Lighting;
-use crate::draw::list::FeatureId;
+use crate::draw::list::{FeatureId, Layer};
 use crate::render::cpu::blend::Blend;
-use crate::render::cpu::geometry::{FaceId, Geometry, Pass, Piece};
+use crate::render::cpu::geometry::{Face, FaceId, Geometry, Pass, Piece};
 use crate::render::cpu::pattern::{Mask, Pattern};
 use crate::render::cpu::raster::Window;
 use crate::render::cpu::screen::Screen;
@@ -67,8 +67,22 @@ pub fn draw_tile<const N: usize>(
     visibility.clear(window, frame.screen.far);
     blend.clear(window);
     let here = || pieces.iter().filter(|piece| !piece.window.and(window).is_empty());
+    let mut cutouts = Vec::new();
     for piece in here() {
-        draw_piece(frame, pattern, piece, visibility);
+        let face = frame.geometry.face(piece.face);
+        match piece.pass {
+            Pass::Opaque if face.is_draped() => visibility.draw_draped(piece, face, pattern),
+            Pass::Opaque => visibility.draw_nearer(piece, face, pattern),
+            Pass::Mask if frame.shader.item(face).layer == Layer::Solid => cutouts.push((piece, face)),
+            Pass::Mask => draw_masked(frame, pattern, (piece, face), visibility),
+            Pass::Blend => {}
+        }
+    }
+    // The nearest first, after all that has no holes: what is hidden then costs a comparison of depths and no reading
+    // of masks. The picture does not depend on it.
+    cutouts.sort_by(|(_, a), (_, b)| b.range[1].total_cmp(&a.range[1]));
+    for cutout in cutouts {
+        draw_masked(frame, pattern, cutout, visibility);
     }
     for piece in here().filter(|piece| piece.pass == Pass::Blend) {
         blend.draw(piece, (frame.geometry, frame.shader), visibility, pattern);
@@ -79,21 +93,14 @@ pub fn draw_tile<const N: usize>(
         .collect()
 }
 
-fn draw_piece<const N: usize>(
+fn draw_masked<const N: usize>(
     frame: &Frame,
     pattern: &Pattern<N>,
-    piece: &Piece,
+    (piece, face): (&Piece, &Face),
     visibility: &mut Visibility<N>,
 ) {
-    let face = frame.geometry.face(piece.face);
-    match piece.pass {
-        Pass::Opaque if frame.shader.is_draped(face) => visibility.draw_draped(piece, face, pattern),
-        Pass::Opaque => visibility.draw_nearer(piece, face, pattern),
-        Pass::Mask => {
-            visibility.draw_masked(piece, face, pattern, |at| frame.shader.is_hole(face, at));
-        }
-        Pass::Blend => {}
-    }
+    let cutout = frame.shader.cutout(face);
+    visibility.draw_masked(piece, face, pattern, |at, samples| cutout.solid(at, samples, pattern));
 }
 
 /// One pixel: each face it sees shaded once, averaged over the samples.

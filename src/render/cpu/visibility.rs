@@ -80,28 +80,40 @@ impl<const N: usize> Visibility<N> {
         });
     }
 
-    /// Draws a piece with holes: where `is_hole` says so at a sample's position, nothing changes.
+    /// Draws a piece with holes. Of the samples of a pixel, at `(x, y)`, that it would be seen at, `solid` tells those
+    /// at which it has none; nothing changes at the others.
+    ///
+    /// Solids may come in any order: of two at the same depth the first of the list is kept.
     pub fn draw_masked(
         &mut self,
         piece: &Piece,
         face: &Face,
         pattern: &Pattern<N>,
-        is_hole: impl Fn([f32; 2]) -> bool,
+        solid: impl Fn((u32, u32), Mask) -> Mask,
     ) {
         let slope = SampleDepths::of(face, pattern);
         cover(&piece.corners, pattern, piece.window.and(self.window), |x, y, mask| {
             let index = self.index(x, y);
             let new = slope.at(face, x, y);
-            for (sample, new) in new.into_iter().enumerate() {
-                let there = self.depths[index][sample];
-                // A reach of exactly 1 means a solid, which has to be strictly nearer.
-                let in_front = if face.reach > 1.0 { new * face.reach >= there } else { new > there };
-                let offset = pattern.offset(sample);
-                let at = [x as f32 + 0.5 + offset[0], y as f32 + 0.5 + offset[1]];
-                if mask & (1 << sample) != 0 && in_front && !is_hole(at) {
-                    self.faces[index][sample] = piece.face;
-                    self.depths[index][sample] = new.max(there);
-                }
+            let (faces, depths) = (&mut self.faces[index], &mut self.depths[index]);
+            let mut in_front = 0;
+            for sample in 0..N {
+                let there = depths[sample];
+                let seen = if face.is_draped() {
+                    new[sample] * face.reach >= there
+                } else {
+                    new[sample] > there || (new[sample] == there && piece.face.0 < faces[sample].0)
+                };
+                in_front |= Mask::from(seen) << sample;
+            }
+            let seen = mask & in_front;
+            if seen == 0 {
+                return;
+            }
+            let seen = solid((x, y), seen);
+            for sample in (0..N).filter(|sample| seen & (1 << sample) != 0) {
+                faces[sample] = piece.face;
+                depths[sample] = new[sample].max(depths[sample]);
             }
         });
     }
