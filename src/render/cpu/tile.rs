@@ -66,25 +66,18 @@ pub fn draw_tile<const N: usize>(
     let Scratch { visibility, blend } = scratch;
     visibility.clear(window, frame.screen.far);
     blend.clear(window);
-    let here = || pieces.iter().filter(|piece| !piece.window.and(window).is_empty());
-    let mut cutouts = Vec::new();
-    for piece in here() {
+    let here: Vec<&Piece> = pieces.iter().filter(|piece| !piece.window.and(window).is_empty()).collect();
+    let mut solids = Vec::new();
+    for &piece in here.iter().filter(|piece| piece.pass != Pass::Blend) {
         let face = frame.geometry.face(piece.face);
-        match piece.pass {
-            Pass::Opaque if face.is_draped() => visibility.draw_draped(piece, face, pattern),
-            Pass::Opaque => visibility.draw_nearer(piece, face, pattern),
-            Pass::Mask if frame.shader.item(face).layer == Layer::Solid => cutouts.push((piece, face)),
-            Pass::Mask => draw_masked(frame, pattern, (piece, face), visibility),
-            Pass::Blend => {}
+        if frame.shader.item(face).layer == Layer::Solid {
+            solids.push((piece, face));
+        } else {
+            draw_piece(frame, pattern, (piece, face), visibility);
         }
     }
-    // The nearest first, after all that has no holes: what is hidden then costs a comparison of depths and no reading
-    // of masks. The picture does not depend on it.
-    cutouts.sort_by(|(_, a), (_, b)| b.range[1].total_cmp(&a.range[1]));
-    for cutout in cutouts {
-        draw_masked(frame, pattern, cutout, visibility);
-    }
-    for piece in here().filter(|piece| piece.pass == Pass::Blend) {
+    draw_solids(frame, pattern, solids, visibility);
+    for piece in here.into_iter().filter(|piece| piece.pass == Pass::Blend) {
         blend.draw(piece, (frame.geometry, frame.shader), visibility, pattern);
     }
     let rows = window.from[1]..window.to[1];
@@ -93,14 +86,37 @@ pub fn draw_tile<const N: usize>(
         .collect()
 }
 
-fn draw_masked<const N: usize>(
+/// Solids, the nearest first: of those behind, what is hidden as a whole is passed over, and of the rest masks need
+/// be read only where nothing is in front. The picture does not depend on their order.
+fn draw_solids<const N: usize>(
+    frame: &Frame,
+    pattern: &Pattern<N>,
+    mut solids: Vec<(&Piece, &Face)>,
+    visibility: &mut Visibility<N>,
+) {
+    solids.sort_by(|(_, a), (_, b)| b.range[1].total_cmp(&a.range[1]));
+    for (piece, face) in solids {
+        if visibility.may_show(piece, face) {
+            draw_piece(frame, pattern, (piece, face), visibility);
+        }
+    }
+}
+
+fn draw_piece<const N: usize>(
     frame: &Frame,
     pattern: &Pattern<N>,
     (piece, face): (&Piece, &Face),
     visibility: &mut Visibility<N>,
 ) {
-    let cutout = frame.shader.cutout(face);
-    visibility.draw_masked(piece, face, pattern, |at, samples| cutout.solid(at, samples, pattern));
+    match piece.pass {
+        Pass::Opaque if face.is_draped() => visibility.draw_draped(piece, face, pattern),
+        Pass::Opaque => visibility.draw_nearer(piece, face, pattern),
+        Pass::Mask => {
+            let cutout = frame.shader.cutout(face);
+            visibility.draw_masked(piece, face, pattern, |at, samples| cutout.solid(at, samples, pattern));
+        }
+        Pass::Blend => {}
+    }
 }
 
 /// One pixel: each face it sees shaded once, averaged over the samples.
