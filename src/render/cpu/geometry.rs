@@ -49,6 +49,11 @@ pub struct Face {
 }
 
 impl Face {
+    /// Whether it lies in the ground's plane, and not before it by a shape of its own.
+    pub fn is_draped(&self) -> bool {
+        self.reach > 1.0
+    }
+
     /// The inverse depth at a pixel position, kept to what the face's corners span.
     pub fn inverse_depth(&self, at: [f32; 2]) -> f32 {
         (self.planes.inverse_depth.at(at) as f32).max(self.range[0]).min(self.range[1])

@@ -38,7 +38,7 @@ impl<'a> Ground<'a> {
     /// The ground beneath a hit, over the pixel's footprint.
     pub fn at(&self, hit: &Hit, most_taps: u32) -> GroundPoint {
         let [right, down] = [hit.right.truncate(), hit.down.truncate()];
-        let footprint = Footprint::new(right, down, self.posts_per_metre, most_taps, 0.0);
+        let footprint = Footprint::new(right, down, self.posts_per_metre, most_taps);
         let level = footprint.level.min(self.smaller.len() as f32);
         let (lower, part) = (level as usize, level - (level as usize) as f32);
         let share = 1.0 / footprint.taps as f32;

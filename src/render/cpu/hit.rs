@@ -68,6 +68,11 @@ impl Shares {
         a + (b - a) * self.at.x + (c - a) * self.at.y
     }
 
+    /// What the corners' numbers blend to.
+    pub fn blend_number(&self, [a, b, c]: [f32; 3]) -> f32 {
+        a + (b - a) * self.at.x + (c - a) * self.at.y
+    }
+
     /// Texture coordinates, and their change over one pixel to the right and one down.
     pub fn blend_uv(&self, [a, b, c]: [[f32; 2]; 3]) -> [Vec2; 3] {
         let a = Vec2::from(a);

@@ -4,22 +4,24 @@
 //! # How
 //! ```text
 //! DrawList ──geometry──▶ faces, pieces ──band──▶ tiles of 64×64 ──visibility──▶ which face each sample sees
-//!            plane, clip, raster::snapped                         raster, pattern     │
+//!            plane, clip, raster::snapped              raster, pattern, occlusion     │
 //!                                                                 blend ◀─────────────┤
 //!                        Picture ◀──band── pixels ◀──tile::resolve── shade ◀──────────┘
-//!                                                                    hit, ground_shade, texture
+//!                                                  cutout, alpha     hit, ground_shade, texture
 //! ```
 //! Coverage is integer arithmetic on snapped corners; depth and attributes come from the exact planes of the
 //! unsnapped triangles in f64, so that a road cut from the ground's triangles has the ground's very depth.
 //! Shading runs once per pixel and face (as multisampling does), at the middle of the samples the face
-//! holds. Tiles are drawn in parallel on the current `rayon` pool; none depends on another, and within a
-//! tile faces keep the list's order.
+//! holds. Tiles are drawn in parallel on the current `rayon` pool; none depends on another. Within a
+//! tile ground and drapes keep the list's order; solids are drawn from the nearest on, which the picture does
+//! not show, and what is hidden as a whole is passed over.
 //!
 //! # Surfaces
 //! Ground and solids hide what is behind them; draped faces follow [`crate::draw::list::Layer`], with the
 //! tolerance widened where f32 corners far from the origin round by more than it (see
-//! `geometry::drape_tolerance`). Masked surfaces are tested at each sample. Blended surfaces are sorted per
-//! pixel, up to 32 deep, and laid over each sample in linear light; from alpha ½ on they are what depth and
+//! `geometry::drape_tolerance`). Masked surfaces are tested at each sample that
+//! nothing nearer covers, by one reading of their alpha as a rule. Blended surfaces are sorted per pixel, up to
+//! 32 deep, and laid over each sample in linear light; from alpha ½ on they are what depth and
 //! feature buffers hold, below it what lies behind them.
 //!
 //! # Cost
@@ -27,17 +29,22 @@
 //! (three corners projected and three planes each), and covered samples (one depth test each). Against one
 //! sample a pixel, four take about a quarter more time and eight a third. A landscape of 180,000 triangles,
 //! 1920×1080, eight samples, takes about half a second of processor time, shared evenly by the threads.
+//! A forest of 100,000 trees, most of them pictures on masked quads, takes about three.
 //!
 //! Memory: 12 bytes a pixel for the picture; 150 bytes a visible triangle; for each band of 64 rows at work
 //! 12 bytes a pixel and 48 a triangle in it; for each thread 0.3 MiB, and up to 2 MiB more under
-//! transparent surfaces; a third of each texture and of the ground map for their smaller levels.
+//! transparent surfaces; a third of each texture and of the ground map for their smaller levels, and as
+//! much again of a texture with holes for its alpha by itself.
 
+mod alpha;
 mod band;
 mod blend;
 mod clip;
+mod cutout;
 mod geometry;
 mod ground_shade;
 mod hit;
+mod occlusion;
 mod pattern;
 mod plane;
 mod raster;

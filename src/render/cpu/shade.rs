@@ -3,17 +3,14 @@
 use glam::{Mat3, Vec3};
 use rayon::prelude::*;
 
-use crate::draw::list::{DrawItem, DrawList, DrawVertex, Layer};
+use crate::draw::list::{DrawItem, DrawList, DrawVertex};
 use crate::draw::material::{Albedo, Alpha, Material, Normals};
+use crate::render::cpu::cutout::Cutout;
 use crate::render::cpu::geometry::Face;
 use crate::render::cpu::ground_shade::{Ground, GroundPoint};
 use crate::render::cpu::hit::{Hit, Shares};
 use crate::render::cpu::screen::Screen;
 use crate::render::cpu::texture::{Footprint, Texel, Texture, Weighting};
-
-/// Masks are read this many mip levels finer than colours, since every sample of a pixel reads its own:
-/// with eight samples a pixel each stands for about the square root of an eighth of its side.
-const MASK_LEVEL_BIAS: f32 = -1.5;
 
 /// A draw list with everything that is made once a frame for shading it.
 #[derive(Debug)]
@@ -54,11 +51,6 @@ impl<'a> Shader<'a> {
         &self.list.items[face.item as usize]
     }
 
-    /// Whether a face is drawn over what lies in its plane.
-    pub fn is_draped(&self, face: &Face) -> bool {
-        matches!(self.item(face).layer, Layer::Draped(_))
-    }
-
     /// Whether a face looks the same as any other at its place: coloured and lit by the ground map alone.
     pub fn is_mapped(&self, face: &Face) -> bool {
         let material = self.material(self.item(face));
@@ -89,14 +81,20 @@ impl<'a> Shader<'a> {
         Shaded { color: seen.max(Vec3::ZERO).min(Vec3::ONE), alpha }
     }
 
-    /// Whether a masked face has a hole at pixel position `at`.
-    pub fn is_hole(&self, face: &Face, at: [f32; 2]) -> bool {
+    /// A masked face with its mask; one without a mask has no hole.
+    pub fn cutout<'b>(&'b self, face: &'b Face) -> Cutout<'b> {
         let item = self.item(face);
         let material = self.material(item);
-        let Alpha::Mask(cutoff) = material.alpha else { return false };
-        let (corners, shares) = (self.corners(item, face), Shares::of(face, at));
-        let texel = self.texel(material, &corners, &shares, MASK_LEVEL_BIAS);
-        alpha(material, &corners, &shares, &texel) < cutoff
+        let corners = self.corners(item, face);
+        Cutout {
+            face,
+            cutoff: if let Alpha::Mask(cutoff) = material.alpha { cutoff } else { 0.0 },
+            alphas: corners.map(|corner| material.base_color.alpha() * corner.color.alpha()),
+            texture: material
+                .texture
+                .map(|id| (&self.textures[id.0 as usize], corners.map(|corner| corner.uv))),
+            most_taps: self.most_taps,
+        }
     }
 
     fn material(&self, item: &DrawItem) -> &'a Material {
@@ -115,7 +113,7 @@ impl<'a> Shader<'a> {
 
     /// Base colour × vertex colour × texture, in linear light, and alpha.
     fn surface_color(&self, material: &Material, (corners, shares): Corners) -> (Vec3, f32) {
-        let texel = self.texel(material, &corners, &shares, 0.0);
+        let texel = self.texel(material, &corners, &shares);
         let vertex = shares.blend(corners.map(|corner| corner.color.linear()));
         let alpha = match material.alpha {
             Alpha::Blend => alpha(material, &corners, &shares, &texel),
@@ -124,11 +122,11 @@ impl<'a> Shader<'a> {
         (material.base_color.linear() * vertex * texel.color, alpha)
     }
 
-    fn texel(&self, material: &Material, corners: &[&DrawVertex; 3], shares: &Shares, bias: f32) -> Texel {
+    fn texel(&self, material: &Material, corners: &[&DrawVertex; 3], shares: &Shares) -> Texel {
         let Some(id) = material.texture else { return Texel { color: Vec3::ONE, alpha: 1.0 } };
         let texture = &self.textures[id.0 as usize];
         let [uv, right, down] = shares.blend_uv(corners.map(|corner| corner.uv));
-        let footprint = Footprint::new(right, down, texture.size(), self.most_taps, bias);
+        let footprint = Footprint::new(right, down, texture.size(), self.most_taps);
         let weighting = if material.alpha == Alpha::Opaque { Weighting::Even } else { Weighting::ByAlpha };
         texture.sample(uv, &footprint, weighting)
     }
@@ -136,7 +134,7 @@ impl<'a> Shader<'a> {
 
 /// Base alpha × vertex alpha × texture alpha, 0..=1.
 fn alpha(material: &Material, corners: &[&DrawVertex; 3], shares: &Shares, texel: &Texel) -> f32 {
-    let vertex = shares.blend(corners.map(|corner| Vec3::splat(corner.color.alpha()))).x;
+    let vertex = shares.blend_number(corners.map(|corner| corner.color.alpha()));
     material.base_color.alpha() * vertex * texel.alpha
 }
 

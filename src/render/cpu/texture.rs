@@ -8,6 +8,7 @@ use glam::{Vec2, Vec3};
 
 use crate::draw::color::{Srgba, linear_from_srgb};
 use crate::draw::pixels::Pixels;
+use crate::render::cpu::alpha::{Alpha, neighbours};
 use crate::render::mip_levels::smaller_levels;
 
 /// A texture with its mip levels.
@@ -15,6 +16,7 @@ use crate::render::mip_levels::smaller_levels;
 pub struct Texture<'a> {
     base: &'a Pixels,
     smaller: Vec<Pixels>,
+    alpha: Alpha,
     linear: [f32; 256],
 }
 
@@ -50,11 +52,11 @@ pub struct Footprint {
 impl Footprint {
     /// The footprint of a pixel whose sides span `right` and `down`, measured in cells of `scale` per unit.
     ///
-    /// At most `most_taps` readings are taken; where that is too few, the level rises instead. `bias` is
-    /// added to the level. What is not finite reads the coarsest level once.
-    pub fn new(right: Vec2, down: Vec2, scale: Vec2, most_taps: u32, bias: f32) -> Self {
+    /// At most `most_taps` readings are taken; where that is too few, the level rises instead. What is not finite
+    /// reads the coarsest level once.
+    pub fn new(right: Vec2, down: Vec2, scale: Vec2, most_taps: u32) -> Self {
         let (across, along) = ((right * scale).length_squared(), (down * scale).length_squared());
-        if across.max(along) <= 1.0 && bias <= 0.0 {
+        if across.max(along) <= 1.0 {
             return Self { axis: Vec2::ZERO, taps: 1, level: 0.0 };
         }
         let axis = if across > along { right } else { down };
@@ -63,7 +65,7 @@ impl Footprint {
             return Self { axis: Vec2::ZERO, taps: 1, level: f32::MAX };
         }
         let taps = (longer / shorter.max(1.0)).ceil().clamp(1.0, most_taps.max(1) as f32);
-        let level = libm::log2f((longer / taps).max(1e-6)) + bias;
+        let level = libm::log2f((longer / taps).max(1e-6));
         Self { axis, taps: taps as u32, level: level.max(0.0) }
     }
 
@@ -78,12 +80,18 @@ impl<'a> Texture<'a> {
     /// `base` with all smaller levels; an empty picture reads as opaque white.
     pub fn new(base: &'a Pixels) -> Self {
         let smaller = smaller_levels(base);
-        Self { base, smaller, linear: std::array::from_fn(|channel| linear_from_srgb(channel as u8)) }
+        let alpha = Alpha::of(base, &smaller);
+        Self { base, smaller, alpha, linear: std::array::from_fn(|channel| linear_from_srgb(channel as u8)) }
     }
 
     /// Columns and rows of the first level.
     pub fn size(&self) -> Vec2 {
         Vec2::new(self.base.width() as f32, self.base.height() as f32)
+    }
+
+    /// Its alpha by itself, for masks.
+    pub fn alpha(&self) -> &Alpha {
+        &self.alpha
     }
 
     /// The colour over a footprint around `uv`, trilinear.
@@ -122,17 +130,6 @@ impl<'a> Texture<'a> {
         add(bottom, left, weight * (1.0 - x) * y);
         add(bottom, right, weight * x * y);
     }
-}
-
-/// The two texels around a repeated coordinate and how far it lies towards the second.
-fn neighbours(coordinate: f32, size: u32) -> (usize, usize, f32) {
-    let repeated = coordinate - coordinate.floor();
-    let position = repeated * size as f32 - 0.5;
-    let below = position.floor();
-    // Not finite coordinates become texel 0 here: casts saturate and turn NaN to 0.
-    let first = (below as i64).rem_euclid(i64::from(size)) as usize;
-    let second = if first + 1 == size as usize { 0 } else { first + 1 };
-    (first, second, position - below)
 }
 
 /// A weighted sum of colours.
@@ -214,9 +211,9 @@ mod tests {
 
     #[test]
     fn grazing_footprints_take_several_sharp_readings() {
-        let long = Footprint::new(Vec2::new(8.0, 0.0), Vec2::new(0.0, 1.0), Vec2::ONE, 8, 0.0);
+        let long = Footprint::new(Vec2::new(8.0, 0.0), Vec2::new(0.0, 1.0), Vec2::ONE, 8);
         assert_eq!((long.taps, long.level), (8, 0.0));
-        let round = Footprint::new(Vec2::new(8.0, 0.0), Vec2::new(0.0, 8.0), Vec2::ONE, 8, 0.0);
+        let round = Footprint::new(Vec2::new(8.0, 0.0), Vec2::new(0.0, 8.0), Vec2::ONE, 8);
         assert_eq!((round.taps, round.level), (1, 3.0));
     }
 
@@ -225,7 +222,7 @@ mod tests {
         let (pixels, empty) = (checker(4), Pixels::filled(0, 3, Srgba::WHITE));
         let texture = Texture::new(&pixels);
         for coordinate in [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX] {
-            let footprint = Footprint::new(Vec2::splat(coordinate), Vec2::ONE, texture.size(), 8, 0.0);
+            let footprint = Footprint::new(Vec2::splat(coordinate), Vec2::ONE, texture.size(), 8);
             texture.sample(Vec2::splat(coordinate), &footprint, Weighting::Even);
         }
         let white = Texture::new(&empty).sample(Vec2::ZERO, &sharp(), Weighting::Even);

@@ -4,9 +4,9 @@ use glam::Vec3;
 
 use crate::draw::color::Srgba;
 use crate::draw::lighting::Lighting;
-use crate::draw::list::FeatureId;
+use crate::draw::list::{FeatureId, Layer};
 use crate::render::cpu::blend::Blend;
-use crate::render::cpu::geometry::{FaceId, Geometry, Pass, Piece};
+use crate::render::cpu::geometry::{Face, FaceId, Geometry, Pass, Piece};
 use crate::render::cpu::pattern::{Mask, Pattern};
 use crate::render::cpu::raster::Window;
 use crate::render::cpu::screen::Screen;
@@ -66,11 +66,18 @@ pub fn draw_tile<const N: usize>(
     let Scratch { visibility, blend } = scratch;
     visibility.clear(window, frame.screen.far);
     blend.clear(window);
-    let here = || pieces.iter().filter(|piece| !piece.window.and(window).is_empty());
-    for piece in here() {
-        draw_piece(frame, pattern, piece, visibility);
+    let here: Vec<&Piece> = pieces.iter().filter(|piece| !piece.window.and(window).is_empty()).collect();
+    let mut solids = Vec::new();
+    for &piece in here.iter().filter(|piece| piece.pass != Pass::Blend) {
+        let face = frame.geometry.face(piece.face);
+        if frame.shader.item(face).layer == Layer::Solid {
+            solids.push((piece, face));
+        } else {
+            draw_piece(frame, pattern, (piece, face), visibility);
+        }
     }
-    for piece in here().filter(|piece| piece.pass == Pass::Blend) {
+    draw_solids(frame, pattern, solids, visibility);
+    for piece in here.into_iter().filter(|piece| piece.pass == Pass::Blend) {
         blend.draw(piece, (frame.geometry, frame.shader), visibility, pattern);
     }
     let rows = window.from[1]..window.to[1];
@@ -79,18 +86,34 @@ pub fn draw_tile<const N: usize>(
         .collect()
 }
 
+/// Solids, the nearest first: of those behind, what is hidden as a whole is passed over, and of the rest masks need
+/// be read only where nothing is in front. The picture does not depend on their order.
+fn draw_solids<const N: usize>(
+    frame: &Frame,
+    pattern: &Pattern<N>,
+    mut solids: Vec<(&Piece, &Face)>,
+    visibility: &mut Visibility<N>,
+) {
+    solids.sort_by(|(_, a), (_, b)| b.range[1].total_cmp(&a.range[1]));
+    for (piece, face) in solids {
+        if visibility.may_show(piece, face) {
+            draw_piece(frame, pattern, (piece, face), visibility);
+        }
+    }
+}
+
 fn draw_piece<const N: usize>(
     frame: &Frame,
     pattern: &Pattern<N>,
-    piece: &Piece,
+    (piece, face): (&Piece, &Face),
     visibility: &mut Visibility<N>,
 ) {
-    let face = frame.geometry.face(piece.face);
     match piece.pass {
-        Pass::Opaque if frame.shader.is_draped(face) => visibility.draw_draped(piece, face, pattern),
+        Pass::Opaque if face.is_draped() => visibility.draw_draped(piece, face, pattern),
         Pass::Opaque => visibility.draw_nearer(piece, face, pattern),
         Pass::Mask => {
-            visibility.draw_masked(piece, face, pattern, |at| frame.shader.is_hole(face, at));
+            let cutout = frame.shader.cutout(face);
+            visibility.draw_masked(piece, face, pattern, |at, samples| cutout.solid(at, samples, pattern));
         }
         Pass::Blend => {}
     }

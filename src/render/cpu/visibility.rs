@@ -1,10 +1,12 @@
 //! Which face each sample of a tile sees: the outcome of the opaque and masked surfaces.
 //!
-//! A depth is kept as its inverse, which is linear over the picture; larger is nearer. Pieces must come in
-//! the list's order, layers rising, which makes the rules of [`crate::draw::list::Layer`] local: whatever a
-//! draped face meets is ground or a drape that it lies over.
+//! A depth is kept as its inverse, which is linear over the picture; larger is nearer. Ground and drapes
+//! must come in the list's order, layers rising, which makes the rules of [`crate::draw::list::Layer`] local: whatever
+//! a draped face meets is ground or a drape that it lies over. Solids come last, in any order: the nearest wins, and of
+//! two at the same depth the first of the list.
 
 use crate::render::cpu::geometry::{Face, FaceId, Piece};
+use crate::render::cpu::occlusion::Occlusion;
 use crate::render::cpu::pattern::{Mask, Pattern};
 use crate::render::cpu::raster::{Window, cover};
 
@@ -18,6 +20,7 @@ pub struct Visibility<const N: usize> {
     window: Window,
     faces: Vec<[FaceId; N]>,
     depths: Vec<[f32; N]>,
+    occlusion: Occlusion,
 }
 
 impl<const N: usize> Visibility<N> {
@@ -28,6 +31,7 @@ impl<const N: usize> Visibility<N> {
             window: Window { from: [0; 2], to: [0; 2] },
             faces: vec![[FaceId::NONE; N]; pixels],
             depths: vec![[0.0; N]; pixels],
+            occlusion: Occlusion::new(),
         }
     }
 
@@ -35,6 +39,7 @@ impl<const N: usize> Visibility<N> {
     /// `farthest_m` will not be seen.
     pub fn clear(&mut self, window: Window, farthest_m: f64) {
         self.window = window;
+        self.occlusion.clear();
         self.faces.fill([FaceId::NONE; N]);
         self.depths.fill([(1.0 / farthest_m) as f32; N]);
     }
@@ -53,55 +58,90 @@ impl<const N: usize> Visibility<N> {
         ((y - self.window.from[1]) * TILE + x - self.window.from[0]) as usize
     }
 
-    /// Draws a piece of a solid or of the ground where it is nearer than what is there.
+    /// Whether a solid's piece may be seen in front of what is there; if so, takes note that it is drawn.
+    ///
+    /// To be asked of solids only, after everything else is drawn: it notes nothing else.
+    pub fn may_show(&mut self, piece: &Piece, face: &Face) -> bool {
+        let here = piece.window.and(self.window);
+        let [left, top] = self.window.from;
+        let within = |[x, y]: [u32; 2]| [x - left, y - top];
+        let window = Window { from: within(here.from), to: within(here.to) };
+        if self.occlusion.hides(window, face.range[1], &self.depths) {
+            return false;
+        }
+        self.occlusion.note(window);
+        true
+    }
+
+    /// Draws a piece of a solid or of the ground where it is nearer than what is there. Solids may come in any order:
+    /// of two at the same depth the first of the list is kept.
     pub fn draw_nearer(&mut self, piece: &Piece, face: &Face, pattern: &Pattern<N>) {
-        self.draw(piece, face, pattern, |new, there| new > there);
+        let id = piece.face;
+        self.draw(piece, face, pattern, |new, there, other| new > there || (new == there && id.0 < other.0));
     }
 
     /// Draws a piece of a draped face where it is behind what is there by no more than the face's reach.
     pub fn draw_draped(&mut self, piece: &Piece, face: &Face, pattern: &Pattern<N>) {
-        self.draw(piece, face, pattern, |new, there| new * face.reach >= there);
+        self.draw(piece, face, pattern, |new, there, _| new * face.reach >= there);
     }
 
-    /// Draws a piece where `is_seen` says so of its inverse depth and the one there.
+    /// Draws a piece where `is_seen` says so of its inverse depth, the one there and the face there.
     ///
     /// The nearer of both depths is kept, so that drapes laid over each other do not sink step by step.
-    fn draw(&mut self, piece: &Piece, face: &Face, pattern: &Pattern<N>, is_seen: impl Fn(f32, f32) -> bool) {
+    fn draw(
+        &mut self,
+        piece: &Piece,
+        face: &Face,
+        pattern: &Pattern<N>,
+        is_seen: impl Fn(f32, f32, FaceId) -> bool,
+    ) {
         let slope = SampleDepths::of(face, pattern);
         cover(&piece.corners, pattern, piece.window.and(self.window), |x, y, mask| {
             let index = self.index(x, y);
             let new = slope.at(face, x, y);
             let (faces, depths) = (&mut self.faces[index], &mut self.depths[index]);
             for sample in 0..N {
-                let seen = mask & (1 << sample) != 0 && is_seen(new[sample], depths[sample]);
+                let seen = mask & (1 << sample) != 0 && is_seen(new[sample], depths[sample], faces[sample]);
                 faces[sample] = if seen { piece.face } else { faces[sample] };
                 depths[sample] = if seen { new[sample].max(depths[sample]) } else { depths[sample] };
             }
         });
     }
 
-    /// Draws a piece with holes: where `is_hole` says so at a sample's position, nothing changes.
+    /// Draws a piece with holes. Of the samples of a pixel, at `(x, y)`, that it would be seen at, `solid` tells those
+    /// at which it has none; nothing changes at the others.
+    ///
+    /// Solids may come in any order: of two at the same depth the first of the list is kept.
     pub fn draw_masked(
         &mut self,
         piece: &Piece,
         face: &Face,
         pattern: &Pattern<N>,
-        is_hole: impl Fn([f32; 2]) -> bool,
+        solid: impl Fn((u32, u32), Mask) -> Mask,
     ) {
         let slope = SampleDepths::of(face, pattern);
         cover(&piece.corners, pattern, piece.window.and(self.window), |x, y, mask| {
             let index = self.index(x, y);
             let new = slope.at(face, x, y);
-            for (sample, new) in new.into_iter().enumerate() {
-                let there = self.depths[index][sample];
-                // A reach of exactly 1 means a solid, which has to be strictly nearer.
-                let in_front = if face.reach > 1.0 { new * face.reach >= there } else { new > there };
-                let offset = pattern.offset(sample);
-                let at = [x as f32 + 0.5 + offset[0], y as f32 + 0.5 + offset[1]];
-                if mask & (1 << sample) != 0 && in_front && !is_hole(at) {
-                    self.faces[index][sample] = piece.face;
-                    self.depths[index][sample] = new.max(there);
-                }
+            let (faces, depths) = (&mut self.faces[index], &mut self.depths[index]);
+            let mut in_front = 0;
+            for sample in 0..N {
+                let there = depths[sample];
+                let seen = if face.is_draped() {
+                    new[sample] * face.reach >= there
+                } else {
+                    new[sample] > there || (new[sample] == there && piece.face.0 < faces[sample].0)
+                };
+                in_front |= Mask::from(seen) << sample;
+            }
+            let seen = mask & in_front;
+            if seen == 0 {
+                return;
+            }
+            let seen = solid((x, y), seen);
+            for sample in (0..N).filter(|sample| seen & (1 << sample) != 0) {
+                faces[sample] = piece.face;
+                depths[sample] = new[sample].max(depths[sample]);
             }
         });
     }

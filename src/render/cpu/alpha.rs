@@ -1,0 +1,171 @@
+//! The alpha of a texture by itself, read for masks.
+//!
+//! Whether a sample sees a leaf or a hole is asked far more often than what colour a leaf has: at every sample, and of
+//! every leaf behind another. So alpha has bytes of its own, a quarter of what a texture takes, and a reading is one
+//! bilinear tap of the level whose texels come nearest to a sample's share of the pixel; only where that share is at
+//! least half as long again as wide are there more. Blending two levels, as colours need it, would show nowhere: what
+//! comes of a reading is yes or no, and the samples of a pixel are averaged after it.
+
+use glam::Vec2;
+
+use crate::draw::pixels::Pixels;
+
+/// The alpha of a texture and its mip levels.
+#[derive(Debug)]
+pub struct Alpha {
+    /// The largest first; none where the texture is opaque or empty.
+    levels: Vec<Level>,
+}
+
+/// How a mask is read for the samples of one pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    level: usize,
+    taps: u32,
+    axis: Vec2,
+}
+
+#[derive(Debug)]
+struct Level {
+    size: [u32; 2],
+    alphas: Vec<u8>,
+}
+
+impl Alpha {
+    /// The alpha of `base` and of its `smaller` levels.
+    pub fn of(base: &Pixels, smaller: &[Pixels]) -> Self {
+        let is_opaque = base.data().iter().all(|color| color.0[3] == u8::MAX);
+        let levels = std::iter::once(base).chain(smaller).map(|level| Level {
+            size: [level.width(), level.height()],
+            alphas: level.data().iter().map(|color| color.0[3]).collect(),
+        });
+        Self { levels: if is_opaque { Vec::new() } else { levels.collect() } }
+    }
+
+    /// How to read it for a sample that stands for the parallelogram of the sides `right` and `down`, by at most
+    /// `most_taps` taps. Sides that are not finite read the coarsest level once.
+    pub fn reading(&self, right: Vec2, down: Vec2, most_taps: u32) -> Reading {
+        let scale =
+            self.levels.first().map_or(Vec2::ONE, |level| Vec2::from(level.size.map(|side| side as f32)));
+        let (across, along) = ((right * scale).length_squared(), (down * scale).length_squared());
+        let (longer, shorter) = (across.max(along), across.min(along).max(1.0));
+        let last = self.levels.len().saturating_sub(1);
+        if !(across + along).is_finite() {
+            return Reading { level: last, taps: 1, axis: Vec2::ZERO };
+        }
+        // Whole and a half, squared: below it one tap is the nearest number.
+        let taps = if longer < 2.25 * shorter { 1.0 } else { (longer / shorter).sqrt().round() };
+        let taps = taps.clamp(1.0, most_taps.max(1) as f32);
+        let axis = if across > along { right } else { down };
+        Reading { level: nearest_level(longer / (taps * taps)).min(last), taps: taps as u32, axis }
+    }
+
+    /// The alpha around `uv`, 0..=1; the picture repeats in both directions.
+    pub fn at(&self, uv: Vec2, reading: &Reading) -> f32 {
+        let Some(level) = self.levels.get(reading.level) else { return 1.0 };
+        if reading.taps == 1 {
+            return level.bilinear(uv);
+        }
+        let taps = reading.taps as f32;
+        let offset = |tap: u32| reading.axis * ((tap as f32 + 0.5) / taps - 0.5);
+        (0..reading.taps).map(|tap| level.bilinear(uv + offset(tap))).sum::<f32>() / taps
+    }
+}
+
+/// The mip level whose texels are nearest in size to one of which `squared` is the side's square: half the logarithm,
+/// rounded, read from the number's exponent.
+fn nearest_level(squared: f32) -> usize {
+    let exponent = (squared.max(1.0) * 2.0).to_bits() >> (f32::MANTISSA_DIGITS - 1);
+    (exponent as usize).saturating_sub(f32::MAX_EXP as usize - 1) / 2
+}
+
+impl Level {
+    /// In 0..=1.
+    fn bilinear(&self, uv: Vec2) -> f32 {
+        let [width, height] = self.size;
+        let place = Vec2::new(uv.x * width as f32, uv.y * height as f32) - 0.5;
+        let [x, y] = place.to_array();
+        // Away from the border, where most readings are, nothing has to be repeated.
+        if x >= 0.0 && y >= 0.0 && x < (width - 1) as f32 && y < (height - 1) as f32 {
+            let (left, top) = (x as u32, y as u32);
+            let columns = (left as usize, left as usize + 1, x - left as f32);
+            return self.blend(columns, (top as usize, top as usize + 1, y - top as f32));
+        }
+        self.blend(neighbours(uv.x, width), neighbours(uv.y, height))
+    }
+
+    fn blend(&self, (left, right, x): (usize, usize, f32), (top, bottom, y): (usize, usize, f32)) -> f32 {
+        let at = |row: usize, column: usize| f32::from(self.alphas[row * self.size[0] as usize + column]);
+        let above = at(top, left) + (at(top, right) - at(top, left)) * x;
+        let below = at(bottom, left) + (at(bottom, right) - at(bottom, left)) * x;
+        (above + (below - above) * y) / 255.0
+    }
+}
+
+/// The two texels around a repeated coordinate and how far it lies towards the second. `size` must not be 0.
+///
+/// Rounds by casting, which is much cheaper than `floor` and `rem_euclid`. Casts saturate and turn NaN to 0, so
+/// that coordinates which are not finite give some texel, too.
+pub fn neighbours(coordinate: f32, size: u32) -> (usize, usize, f32) {
+    let part = coordinate - coordinate as i64 as f32;
+    let repeated = if part < 0.0 { part + 1.0 } else { part }.clamp(0.0, 1.0);
+    let position = repeated * size as f32 - 0.5;
+    // It may be half a texel below 0, whence whole texels are counted one higher while they are rounded.
+    let above = (position + 1.0) as u32;
+    let last = size - 1;
+    let (first, second) =
+        if above == 0 { (last, 0) } else { ((above - 1).min(last), if above > last { 0 } else { above }) };
+    (first as usize, second as usize, position - (above as f32 - 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::color::Srgba;
+    use crate::render::mip_levels::smaller_levels;
+
+    /// A square whose left half is a hole.
+    fn half(side: u32) -> Alpha {
+        let alpha = |x: u32| if x < side / 2 { 0 } else { 255 };
+        let pixels = Pixels::from_fn(side, side, |x, _| Srgba([0, 0, 0, alpha(x)]));
+        Alpha::of(&pixels, &smaller_levels(&pixels))
+    }
+
+    #[test]
+    fn the_level_is_the_one_whose_texels_are_nearest_in_size() {
+        for (side, level) in [(0.0, 0), (1.0, 0), (1.4, 0), (1.5, 1), (2.8, 1), (2.9, 2), (64.0, 6)] {
+            assert_eq!(nearest_level(side * side), level, "{side} texels");
+        }
+    }
+
+    #[test]
+    fn only_what_is_half_as_long_again_as_wide_takes_more_taps() {
+        let alpha = half(16);
+        let reading = |across: f32| alpha.reading(Vec2::X * across / 16.0, Vec2::Y * 2.0 / 16.0, 8);
+        assert_eq!([1.5, 2.9, 3.1, 8.0, 99.0].map(|across| reading(across).taps), [1, 1, 2, 4, 8]);
+        assert_eq!(reading(2.0).level, 1);
+        assert_eq!(reading(f32::INFINITY).level, 4);
+    }
+
+    #[test]
+    fn alpha_is_what_the_texels_around_a_place_have_and_repeats() {
+        let alpha = half(8);
+        let sharp = alpha.reading(Vec2::ZERO, Vec2::ZERO, 8);
+        for (u, there) in [(0.25, 0.0), (0.75, 1.0), (0.5, 0.5), (1.0, 0.5), (-0.25, 1.0), (7.25, 0.0)] {
+            assert_eq!(alpha.at(Vec2::new(u, 0.3), &sharp), there, "at {u}");
+        }
+        let long = alpha.reading(Vec2::X, Vec2::ZERO, 8);
+        assert_eq!(alpha.at(Vec2::new(0.1, 0.3), &long), 0.5);
+    }
+
+    #[test]
+    fn opaque_textures_and_hostile_coordinates_give_an_answer() {
+        let opaque = Alpha::of(&Pixels::filled(4, 4, Srgba::WHITE), &[]);
+        assert_eq!(opaque.at(Vec2::ZERO, &opaque.reading(Vec2::X, Vec2::Y, 8)), 1.0);
+        let alpha = half(4);
+        for coordinate in [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX] {
+            let reading = alpha.reading(Vec2::splat(coordinate), Vec2::ONE, 8);
+            alpha.at(Vec2::splat(coordinate), &reading);
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! How near everything in a block of a tile already is: what lies behind it need not be looked at.
+//!
+//! For each block of 8×8 pixels the farthest depth that any of its samples sees is kept (the idea of Greene and others,
+//! "Hierarchical Z-Buffer Visibility", 1993, at a single level). Depths only ever come nearer, so a value found
+//! earlier stays true, if not tight; it is found anew once [`STALE`] more pieces have been drawn into the block, which
+//! costs less than a fifth of what they did.
+
+use crate::render::cpu::raster::Window;
+use crate::render::cpu::visibility::TILE;
+
+/// Pixels along the side of a block.
+const BLOCK: u32 = 8;
+
+/// Blocks along the side of a tile.
+const BLOCKS: usize = (TILE / BLOCK) as usize;
+
+/// Pieces drawn into a block after which its farthest depth is found anew.
+const STALE: u8 = 16;
+
+/// Pieces over more blocks than these are not tested: hardly any of them is hidden as a whole.
+const MOST_BLOCKS: usize = 4;
+
+/// The farthest depths of the blocks of one tile.
+#[derive(Debug)]
+pub struct Occlusion {
+    /// As inverse depths: the least of each block.
+    farthest: [[f32; BLOCKS]; BLOCKS],
+    /// Pieces drawn since, [`STALE`] at most.
+    drawn: [[u8; BLOCKS]; BLOCKS],
+}
+
+impl Occlusion {
+    /// Nothing known of any block.
+    pub fn new() -> Self {
+        Self { farthest: [[0.0; BLOCKS]; BLOCKS], drawn: [[STALE; BLOCKS]; BLOCKS] }
+    }
+
+    /// Forgets what is known.
+    pub fn clear(&mut self) {
+        *self = Self::new();
+    }
+
+    /// Whether all of `window`, in pixels of the tile, is nearer than the inverse depth `nearest`.
+    ///
+    /// `depths` are those of the tile's samples, row by row, [`TILE`] pixels a row.
+    pub fn hides<const N: usize>(&mut self, window: Window, nearest: f32, depths: &[[f32; N]]) -> bool {
+        let [columns, rows] = blocks(window);
+        if columns.len() * rows.len() > MOST_BLOCKS {
+            return false;
+        }
+        rows.into_iter().all(|row| {
+            columns.clone().all(|column| {
+                if self.drawn[row][column] >= STALE {
+                    self.farthest[row][column] = farthest(depths, column, row);
+                    self.drawn[row][column] = 0;
+                }
+                nearest < self.farthest[row][column]
+            })
+        })
+    }
+
+    /// Takes note that something was drawn in `window`, in pixels of the tile.
+    pub fn note(&mut self, window: Window) {
+        let [columns, rows] = blocks(window);
+        for row in rows {
+            for drawn in &mut self.drawn[row][columns.clone()] {
+                *drawn = (*drawn + 1).min(STALE);
+            }
+        }
+    }
+}
+
+/// The columns and rows of blocks that a window touches.
+fn blocks(window: Window) -> [std::ops::Range<usize>; 2] {
+    [0, 1].map(|axis| (window.from[axis] / BLOCK) as usize..window.to[axis].div_ceil(BLOCK) as usize)
+}
+
+/// The least inverse depth of a block.
+fn farthest<const N: usize>(depths: &[[f32; N]], column: usize, row: usize) -> f32 {
+    let (side, block) = (TILE as usize, BLOCK as usize);
+    let lines = depths[row * block * side..][..block * side].chunks_exact(side);
+    let mut least = [f32::MAX; N];
+    for pixel in lines.flat_map(|line| &line[column * block..][..block]) {
+        for (least, &depth) in least.iter_mut().zip(pixel) {
+            *least = if depth < *least { depth } else { *least };
+        }
+    }
+    least.into_iter().fold(f32::MAX, f32::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: Window = Window { from: [0; 2], to: [TILE; 2] };
+
+    fn depths(depth: f32) -> Vec<[f32; 1]> {
+        vec![[depth]; (TILE * TILE) as usize]
+    }
+
+    #[test]
+    fn only_what_lies_behind_every_sample_of_its_blocks_is_hidden() {
+        let mut depths = depths(0.5);
+        depths[(TILE * 3 + 20) as usize] = [0.1];
+        let window = |left: u32, right: u32| Window { from: [left, 2], to: [right, 5] };
+        let mut occlusion = Occlusion::new();
+        assert!(occlusion.hides(window(3, 12), 0.4, &depths));
+        assert!(!occlusion.hides(window(3, 12), 0.5, &depths));
+        assert!(!occlusion.hides(window(3, 20), 0.4, &depths));
+        assert!(occlusion.hides(window(3, 20), 0.05, &depths));
+    }
+
+    #[test]
+    fn what_has_come_nearer_is_found_once_enough_was_drawn() {
+        let mut occlusion = Occlusion::new();
+        let window = Window { from: [0; 2], to: [8; 2] };
+        assert!(!occlusion.hides(window, 0.4, &depths(0.1)));
+        (1..STALE).for_each(|_| occlusion.note(ALL));
+        assert!(!occlusion.hides(window, 0.4, &depths(0.5)));
+        occlusion.note(ALL);
+        assert!(occlusion.hides(window, 0.4, &depths(0.5)));
+    }
+
+    #[test]
+    fn what_spans_many_blocks_is_taken_to_be_seen() {
+        assert!(!Occlusion::new().hides(ALL, 0.1, &depths(0.5)));
+    }
+}
