@@ -171,13 +171,21 @@ fn a_dam_is_cut_through_and_a_ridge_is_left_and_told_of() {
 }
 
 #[test]
-fn one_deep_pit_on_a_bank_does_not_lower_the_river_below_it() {
-    let mut heights = ridge(0.0).heights().to_vec();
-    heights[24 * SIDE as usize + 12] = 120.0;
-    let mut lattice = Lattice::new(DVec2::ZERO, DVec2::splat(CELL_M), SIDE, heights).expect("sound");
-    let cuts = channel::cut(&mut lattice, &across_the_ridge()).expect("narrow enough").cuts;
-    assert!(cuts[0].deepest_m < 1.0, "{:?}", cuts[0]);
-    assert!(cuts[0].volumes.cut_m3 < 1000.0, "{:?}", cuts[0]);
+fn a_pit_beside_a_river_on_a_hillside_does_not_lower_all_below_it() {
+    let height = |index: u32| 200.0 - (index % SIDE) as f32 / 5.0 - 2.0 * (index / SIDE) as f32;
+    let even: Vec<f32> = (0..SIDE * SIDE).map(height).collect();
+    let mut pitted = even.clone();
+    pitted[24 * SIDE as usize + 12] -= 80.0;
+    let [even, pitted] = [even, pitted].map(|heights| {
+        let mut lattice = Lattice::new(DVec2::ZERO, DVec2::splat(CELL_M), SIDE, heights).expect("sound");
+        let cuts = channel::cut(&mut lattice, &across_the_ridge()).expect("narrow enough").cuts;
+        (lattice, cuts[0].climbs.len())
+    });
+    assert!(even.1 == 0 && pitted.1 > 0, "{} {}", even.1, pitted.1);
+    for post in even.0.posts().filter(|post| post.column > 16) {
+        let deeper_m = even.0.height(post) - pitted.0.height(post);
+        assert!(deeper_m.abs() < 0.1, "{post:?} is {deeper_m} m lower for a pit upstream");
+    }
 }
 
 #[test]
@@ -264,6 +272,35 @@ fn the_report_tells_of_every_river_and_lake() {
     let scene = gallery("lake.toml");
     assert_eq!(numbers(&scene, "lakes", "level"), [312.5]);
     assert!(numbers(&scene, "lakes", "area")[0] > 1e5);
+}
+
+#[test]
+fn no_river_of_the_gallery_is_a_canyon() {
+    for name in ["river.toml", "lake.toml", "jacksboro.toml"] {
+        let scene = gallery(name);
+        let deepest = numbers(&scene, "rivers", "deepest cut").into_iter().fold(0.0, f64::max);
+        assert!(deepest < 10.0 + ROUNDING_M, "{name}: {deepest} m");
+    }
+}
+
+#[test]
+fn a_river_over_a_hill_is_told_of_and_a_deeper_cut_lets_it_through() {
+    // The ground rises eastward, and of two ends that lie level with each other neither is the lower.
+    let points = "points = [[60, 150], [250, 160], [60, 170]]\nwidth = 4\n";
+    let scene = ramp(&format!("[[river]]\n{points}")).expect("sound");
+    assert_eq!(numbers(&scene, "rivers", "greatest climb").len(), 1);
+    assert!(numbers(&scene, "rivers", "greatest climb")[0] > 10.0);
+    assert!(scene.notes.iter().any(|note| note.contains("rises downstream at")), "{:?}", scene.notes);
+    let scene = ramp(&format!("[[river]]\n{points}max_cut = 40\n")).expect("sound");
+    assert!(numbers(&scene, "rivers", "deepest cut")[0] > 10.0);
+    assert!(!scene.notes.iter().any(|note| note.contains("rises downstream at")), "{:?}", scene.notes);
+}
+
+#[test]
+fn water_that_follows_the_ground_is_not_cut() {
+    let text = "[[river]]\npoints = [[50, 150], [250, 150]]\nwater = \"drape\"\nmax_cut = 5\n";
+    let refused = ramp(text).err().expect("it is not sensible");
+    assert!(refused.contains("follows the ground"), "{refused}");
 }
 
 /// A scene over ground that rises 1 m a post eastward, from `text` after its `[terrain]`.

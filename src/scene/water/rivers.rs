@@ -110,7 +110,7 @@ fn tell_of_climbs(streams: &[&Stream], cuts: &Cuts, collected: &mut Collected) {
     collected.notes.push(format!(
         "the ground rises downstream at {count} places of {climbing} rivers, by {:.1} m at most ({place}{:.0} m from \
          its source): no cut as deep as `max_cut` lets water fall there, so the ground stays as it is; the lines do not \
-         follow the model's valleys",
+         follow the model's valleys, or its cells are too wide for these",
         climb.rise_m,
         climb.from_m
     ));

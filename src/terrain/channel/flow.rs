@@ -1,10 +1,11 @@
 //! Which way water flows along each line of a network.
 //!
-//! A line flows the way in which the straight line nearest to the ground along it falls: all of it is heard, not its ends
-//! alone, of which one may lie in a pit, on a bridge or where the model has no data. But a level stretch trends by the
-//! error of the elevation model alone, and then the line would flow against its neighbours; so lines that share vertices are heard together: where
-//! most of their fall agrees with the way they were drawn, or runs against it, all of them follow, but for those that
-//! fall the other way by more than such an error. Files of rivers are drawn downstream as a rule, so most networks agree.
+//! A line flows from its higher end to its lower, where the straight line nearest to the ground along it falls the same way.
+//! Where they disagree the ground does not say: one end lies in a pit, on a bridge or in a lake, or the line is drawn over
+//! hills beside its valley. And ends of a level stretch differ by the error of the elevation model alone. So lines that
+//! share vertices are heard together: where most of their fall agrees with the way they were drawn, or runs against it, all
+//! of them follow, but for those that fall the other way by more than such an error. Files of rivers are drawn downstream
+//! as a rule, so most networks agree, and a line that nothing speaks against flows as drawn.
 
 use std::collections::BTreeMap;
 
@@ -63,8 +64,8 @@ pub fn directions(lattice: &Lattice, lines: &[&Polyline]) -> Vec<Flow> {
     networks.iter().zip(&drops).map(direction).collect()
 }
 
-/// How far the straight line nearest to the ground along `line` falls on its way over ground, by least squares; 0 where it
-/// has none.
+/// How far the ground falls along `line`: from its first end over ground to its last, or as the straight line nearest to the
+/// ground does by least squares, whichever is less; 0 where these disagree on the way, or it has no ground.
 fn drop_m(lattice: &Lattice, line: &Polyline) -> f64 {
     let steps = (line.length() / lattice.cell().min_element()).ceil().clamp(1.0, MOST_STEPS);
     let grounded = |step: u32| {
@@ -81,7 +82,12 @@ fn drop_m(lattice: &Lattice, line: &Polyline) -> f64 {
         let off = *at - middle;
         (along, both) = (along + off.x * off.x, both + off.x * off.y);
     }
-    if along > 0.0 { -both / along * (last.x - first.x) } else { 0.0 }
+    let (ends_m, trend_m) = (first.y - last.y, -both / along.max(f64::MIN_POSITIVE) * (last.x - first.x));
+    match (ends_m > 0.0, trend_m > 0.0) {
+        (true, true) => ends_m.min(trend_m),
+        (false, false) => ends_m.max(trend_m),
+        _ => 0.0,
+    }
 }
 
 /// A number for each line, the same for lines that hang together by shared vertices.
@@ -142,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pit_at_its_source_does_not_turn_a_river() {
+    fn a_pit_at_its_source_does_not_turn_a_river_round() {
         let mut heights = ground().heights().to_vec();
         (0..11).for_each(|row| heights[row * 81] = -50.0);
         let ground = Lattice::new(DVec2::new(3e5, 4e6), DVec2::splat(10.0), 81, heights).expect("sound");
