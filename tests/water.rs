@@ -171,20 +171,20 @@ fn a_dam_is_cut_through_and_a_ridge_is_left_and_told_of() {
 }
 
 #[test]
-fn a_pit_beside_a_river_on_a_hillside_does_not_lower_all_below_it() {
+fn a_gully_beside_a_river_on_a_hillside_does_not_lower_all_below_it() {
     let height = |index: u32| 200.0 - (index % SIDE) as f32 / 5.0 - 2.0 * (index / SIDE) as f32;
     let even: Vec<f32> = (0..SIDE * SIDE).map(height).collect();
-    let mut pitted = even.clone();
-    pitted[24 * SIDE as usize + 12] -= 80.0;
-    let [even, pitted] = [even, pitted].map(|heights| {
+    let mut gullied = even.clone();
+    (24..28).for_each(|row| gullied[row * SIDE as usize + 12] -= 80.0);
+    let [even, gullied] = [even, gullied].map(|heights| {
         let mut lattice = Lattice::new(DVec2::ZERO, DVec2::splat(CELL_M), SIDE, heights).expect("sound");
         let cuts = channel::cut(&mut lattice, &across_the_ridge()).expect("narrow enough").cuts;
         (lattice, cuts[0].climbs.len())
     });
-    assert!(even.1 == 0 && pitted.1 > 0, "{} {}", even.1, pitted.1);
+    assert!(even.1 == 0 && gullied.1 > 0, "{} {}", even.1, gullied.1);
     for post in even.0.posts().filter(|post| post.column > 16) {
-        let deeper_m = even.0.height(post) - pitted.0.height(post);
-        assert!(deeper_m.abs() < 0.1, "{post:?} is {deeper_m} m lower for a pit upstream");
+        let deeper_m = even.0.height(post) - gullied.0.height(post);
+        assert!(deeper_m.abs() < 0.1, "{post:?} is {deeper_m} m lower for a gully upstream");
     }
 }
 

@@ -77,7 +77,9 @@ fn fit_reach(course: &mut Course, reach: &[usize], sills: &[Sill]) {
     let last = reach.len() - 1;
     let weighted = |(index, sill): (usize, &Sill)| {
         let stands_for_m = station_m((index + 1).min(last)) - station_m(index.saturating_sub(1));
-        Weighted { level_m: sill.ground_m, weight: (stands_for_m / 2.0).max(LEAST_WEIGHT_M) }
+        // Ground deeper than the level may go would only pull down what lies below it.
+        let level_m = sill.ground_m.max(course.stations[reach[index]].lowest_m);
+        Weighted { level_m, weight: (stands_for_m / 2.0).max(LEAST_WEIGHT_M) }
     };
     let fitted = falling(&sills.iter().enumerate().map(weighted).collect::<Vec<_>>());
     let mut lowest_bank_m = f64::INFINITY;
