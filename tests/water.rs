@@ -56,13 +56,14 @@ fn networks() -> impl Strategy<Value = Vec<(Polyline, f64)>> {
     })
 }
 
+/// The channels of `network`, cut as deep as it takes.
 fn channels(lattice: &Lattice, network: &[(Polyline, f64)]) -> Vec<Channel> {
     let lines: Vec<&Polyline> = network.iter().map(|(line, _)| line).collect();
     let flows = flow::directions(lattice, &lines);
     let channel = |((line, width_m), flow): (&(Polyline, f64), Flow)| {
         let line = if flow == Flow::AsDrawn { line.clone() } else { line.reversed() };
         let widths_m = vec![*width_m; line.points().len()];
-        Channel { line, widths_m, bank_m: width_m / 3.0 }
+        Channel { line, widths_m, bank_m: width_m / 3.0, max_cut_m: f64::INFINITY }
     };
     network.iter().zip(flows).map(channel).collect()
 }
@@ -75,10 +76,31 @@ proptest! {
         let mut lattice = hills(steep);
         let channels = channels(&lattice, &network);
         let cuts = channel::cut(&mut lattice, &channels).expect("narrow enough");
-        prop_assert_eq!(cuts.rising, 0);
+        prop_assert!(cuts.cuts.iter().all(|cut| cut.climbs.is_empty()));
         for channel in &channels {
-            let rise_m = check_rise(&lattice, &channel.line);
+            let rise_m = check_rise(&lattice, &channel.line, &[]);
             prop_assert!(rise_m < ROUNDING_M, "{rise_m}");
+        }
+    }
+
+    #[test]
+    fn nothing_is_cut_deeper_than_allowed_and_ground_rises_only_where_climbs_say_so(
+        network in networks(), steep in 0.0..6.0f64, max_cut_m in 0.5..12.0f64, lake_m in 285.0..315.0f32,
+    ) {
+        let mut lattice = hills(steep);
+        let shore = [(150.0, 160.0), (330.0, 140.0), (350.0, 300.0), (240.0, 260.0), (140.0, 330.0)];
+        shore::flood(&mut lattice, &shore.map(DVec2::from), &[], lake_m);
+        let mut channels = channels(&lattice, &network);
+        channels.iter_mut().for_each(|channel| channel.max_cut_m = max_cut_m);
+        let before = lattice.heights().to_vec();
+        let cuts = channel::cut(&mut lattice, &channels).expect("narrow enough");
+        for (after, before) in lattice.heights().iter().zip(&before) {
+            prop_assert!(f64::from((after - before).abs()) < max_cut_m + ROUNDING_M, "{before} {after}");
+        }
+        for (channel, cut) in channels.iter().zip(&cuts.cuts) {
+            let rise_m = check_rise(&lattice, &channel.line, &cut.climbs);
+            prop_assert!(rise_m < ROUNDING_M, "{rise_m} {:?}", cut.climbs);
+            prop_assert!(cut.climbs.windows(2).all(|pair| pair[0].to_m < pair[1].from_m));
         }
     }
 
@@ -94,9 +116,9 @@ proptest! {
         let channels = channels(&lattice, &network);
         let cuts = channel::cut(&mut lattice, &channels).expect("narrow enough");
         prop_assert!(lake.iter().all(|&post| lattice.height(post) == level_m));
-        prop_assert_eq!(cuts.rising, 0);
+        prop_assert!(cuts.cuts.iter().all(|cut| cut.climbs.is_empty()));
         for channel in &channels {
-            let rise_m = check_rise(&lattice, &channel.line);
+            let rise_m = check_rise(&lattice, &channel.line, &[]);
             prop_assert!(rise_m < ROUNDING_M, "{rise_m}");
         }
     }
@@ -115,6 +137,55 @@ fn a_brook_on_ground_that_falls_already_takes_no_more_than_the_fall_across_it() 
     assert!(cuts.cuts[0].deepest_m < 0.06, "{:?}", cuts.cuts[0]);
     let moved = lattice.heights().iter().zip(&before).filter(|(after, before)| after != before).count();
     assert!(moved < 20, "a strip 3 m wide and 440 m long holds 13 posts 10 m apart, not {moved}");
+}
+
+/// Ground that falls a fiftieth eastward, with a ridge across it from south to north at 250 m.
+fn ridge(height_m: f64) -> Lattice {
+    let height = |index: u32| {
+        let x = f64::from(index % SIDE) * CELL_M;
+        (200.0 - x / 50.0 + height_m * (1.0 - (x - 250.0).abs() / 40.0).max(0.0)) as f32
+    };
+    Lattice::new(DVec2::ZERO, DVec2::splat(CELL_M), SIDE, (0..SIDE * SIDE).map(height).collect())
+        .expect("sound")
+}
+
+fn across_the_ridge() -> [Channel; 1] {
+    let line = Polyline::new([(20.0, 233.0), (450.0, 236.0)].map(DVec2::from), 0.0).expect("a line");
+    [Channel { line, widths_m: vec![6.0; 2], bank_m: 2.0, max_cut_m: 10.0 }]
+}
+
+#[test]
+fn a_dam_is_cut_through_and_a_ridge_is_left_and_told_of() {
+    let mut dam = ridge(6.0);
+    let cuts = channel::cut(&mut dam, &across_the_ridge()).expect("narrow enough").cuts;
+    assert!(cuts[0].climbs.is_empty() && cuts[0].deepest_m > 4.0, "{:?}", cuts[0]);
+    let mut hill = ridge(30.0);
+    let before = hill.heights().to_vec();
+    let cuts = channel::cut(&mut hill, &across_the_ridge()).expect("narrow enough").cuts;
+    assert_eq!(cuts[0].climbs.len(), 1);
+    let climb = cuts[0].climbs[0];
+    assert!((climb.rise_m - 29.2).abs() < 0.5 && climb.from_m > 180.0 && climb.to_m < 235.0, "{climb:?}");
+    let deepest =
+        hill.heights().iter().zip(&before).map(|(after, before)| before - after).fold(0.0, f32::max);
+    assert!(deepest < 0.2, "nothing is dug for a ridge that stays: {deepest} m");
+}
+
+#[test]
+fn a_gully_beside_a_river_on_a_hillside_does_not_lower_all_below_it() {
+    let height = |index: u32| 200.0 - (index % SIDE) as f32 / 5.0 - 2.0 * (index / SIDE) as f32;
+    let even: Vec<f32> = (0..SIDE * SIDE).map(height).collect();
+    let mut gullied = even.clone();
+    (24..28).for_each(|row| gullied[row * SIDE as usize + 12] -= 80.0);
+    let [even, gullied] = [even, gullied].map(|heights| {
+        let mut lattice = Lattice::new(DVec2::ZERO, DVec2::splat(CELL_M), SIDE, heights).expect("sound");
+        let cuts = channel::cut(&mut lattice, &across_the_ridge()).expect("narrow enough").cuts;
+        (lattice, cuts[0].climbs.len())
+    });
+    assert!(even.1 == 0 && gullied.1 > 0, "{} {}", even.1, gullied.1);
+    for post in even.0.posts().filter(|post| post.column > 16) {
+        let deeper_m = even.0.height(post) - gullied.0.height(post);
+        assert!(deeper_m.abs() < 0.1, "{post:?} is {deeper_m} m lower for a gully upstream");
+    }
 }
 
 #[test]
@@ -147,7 +218,7 @@ fn a_bed_of_more_posts_than_there_is_time_for_is_refused() {
         .map(|index| DVec2::new(200.0 + f64::from(index % 2) * 90.0, 230.0 + f64::from(index) * 1e-3));
     let line = Polyline::new(zigzag, 0.0).expect("a line");
     let widths_m = vec![9000.0; line.points().len()];
-    let channel = Channel { line, widths_m, bank_m: 1000.0 };
+    let channel = Channel { line, widths_m, bank_m: 1000.0, max_cut_m: 10.0 };
     let before = lattice.heights().to_vec();
     assert!(channel::cut(&mut lattice, &[channel]).is_err());
     assert_eq!(lattice.heights(), before);
@@ -201,6 +272,35 @@ fn the_report_tells_of_every_river_and_lake() {
     let scene = gallery("lake.toml");
     assert_eq!(numbers(&scene, "lakes", "level"), [312.5]);
     assert!(numbers(&scene, "lakes", "area")[0] > 1e5);
+}
+
+#[test]
+fn no_river_of_the_gallery_is_a_canyon() {
+    for name in ["river.toml", "lake.toml", "jacksboro.toml"] {
+        let scene = gallery(name);
+        let deepest = numbers(&scene, "rivers", "deepest cut").into_iter().fold(0.0, f64::max);
+        assert!(deepest < 10.0 + ROUNDING_M, "{name}: {deepest} m");
+    }
+}
+
+#[test]
+fn a_river_over_a_hill_is_told_of_and_a_deeper_cut_lets_it_through() {
+    // The ground rises eastward, and of two ends that lie level with each other neither is the lower.
+    let points = "points = [[60, 150], [250, 160], [60, 170]]\nwidth = 4\n";
+    let scene = ramp(&format!("[[river]]\n{points}")).expect("sound");
+    assert_eq!(numbers(&scene, "rivers", "greatest climb").len(), 1);
+    assert!(numbers(&scene, "rivers", "greatest climb")[0] > 10.0);
+    assert!(scene.notes.iter().any(|note| note.contains("rises downstream at")), "{:?}", scene.notes);
+    let scene = ramp(&format!("[[river]]\n{points}max_cut = 40\n")).expect("sound");
+    assert!(numbers(&scene, "rivers", "deepest cut")[0] > 10.0);
+    assert!(!scene.notes.iter().any(|note| note.contains("rises downstream at")), "{:?}", scene.notes);
+}
+
+#[test]
+fn water_that_follows_the_ground_is_not_cut() {
+    let text = "[[river]]\npoints = [[50, 150], [250, 150]]\nwater = \"drape\"\nmax_cut = 5\n";
+    let refused = ramp(text).err().expect("it is not sensible");
+    assert!(refused.contains("follows the ground"), "{refused}");
 }
 
 /// A scene over ground that rises 1 m a post eastward, from `text` after its `[terrain]`.
@@ -285,9 +385,9 @@ fn thousands_of_real_streams_fall_all_the_way() {
     let start = std::time::Instant::now();
     let cuts = channel::cut(&mut lattice, &channels).expect("narrow enough");
     println!("{} streams cut in {:.2} s", channels.len(), start.elapsed().as_secs_f64());
-    assert_eq!(cuts.rising, 0);
+    assert!(cuts.cuts.iter().all(|cut| cut.climbs.is_empty()));
     for channel in &channels {
-        let rise_m = check_rise(&lattice, &channel.line);
+        let rise_m = check_rise(&lattice, &channel.line, &[]);
         assert!(rise_m < ROUNDING_M, "{rise_m}");
     }
     let deepest = cuts.cuts.iter().map(|cut| cut.deepest_m).fold(0.0, f64::max);

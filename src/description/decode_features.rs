@@ -10,7 +10,7 @@ use crate::description::features::{
 };
 use crate::description::reader::Reader;
 use crate::description::selection::Selection;
-use crate::description::words::{Clamp, Profile, Word};
+use crate::description::words::{Clamp, Profile, Water, Word};
 
 /// Widths of roads and rivers in metres.
 const WIDTH: Bounds = Bounds::Above(0.0, 10_000.0);
@@ -103,7 +103,14 @@ pub(super) fn river(reader: &mut Reader<'_, '_>) -> Option<River> {
     }
     let bank = quantity(reader, "bank", STRIP);
     let water = reader.get("water", |item| item.word());
-    Some(River { name, source: source?, width, mouth_width, widths, bank, water })
+    let has_cut = reader.has("max_cut");
+    let max_cut = number(reader, "max_cut", DISTANCE);
+    let drapes = water.as_ref().is_some_and(|water| *water.get_ref() == Water::Drape);
+    if let Some(span) = has_cut.filter(|_| drapes) {
+        let message = "this says nothing for water that follows the ground";
+        reader.error(span, message, "take `water = \"drape\"` away, or remove it");
+    }
+    Some(River { name, source: source?, width, mouth_width, widths, bank, water, max_cut })
 }
 
 pub(super) fn lake(reader: &mut Reader<'_, '_>) -> Option<Lake> {

@@ -165,6 +165,10 @@ pub struct River {
     /// `water`: `"falls"`, its level never rises downstream and the ground is cut to it, or `"drape"`, it lies on the
     /// ground as it is. Default `"falls"`.
     pub water: Option<Spanned<Water>>,
+    /// `max_cut`, only where it falls: how deep in metres the ground may be cut, in (0, 10 000]. Where water that falls
+    /// would need more, the line does not follow the model's valley: the ground there stays as it is, and the report tells
+    /// of it. Default 10.
+    pub max_cut: Option<Spanned<f64>>,
 }
 
 /// `[[lake]]`.

@@ -22,6 +22,11 @@ use crate::terrain::lattice::Lattice;
 /// How far from the ground a centreline may run whose water still reaches it, in metres.
 const REACH_M: f64 = 1000.0;
 
+/// How deep a river may be cut where its table does not say, in metres: the relative error that the makers of global
+/// elevation models promise (Farr et al. 2007). Ground that rises by less may be level; ground that rises by more does rise,
+/// and a river that is drawn over it is not where the model has its valley.
+const MAX_CUT_M: f64 = 10.0;
+
 /// A river, downstream.
 pub struct Stream {
     /// The centreline in world coordinates.
@@ -32,6 +37,8 @@ pub struct Stream {
     pub bank_m: f64,
     /// Whether the ground is cut to it.
     pub water: Water,
+    /// How deep the ground may be cut, in metres.
+    pub max_cut_m: f64,
     /// The feature it is.
     pub feature: FeatureId,
     /// Its name; may be empty.
@@ -135,5 +142,6 @@ fn stream(
     });
     let bank_m = attributes.number_or(("[[river]] bank", river.bank.as_ref()), 0.0, defaulted);
     let water = river.water.as_ref().map_or_else(Water::default, |water| *water.get_ref());
-    Stream { line, widths_m, bank_m, water, feature, name }
+    let max_cut_m = river.max_cut.as_ref().map_or(MAX_CUT_M, |depth| *depth.get_ref());
+    Stream { line, widths_m, bank_m, water, max_cut_m, feature, name }
 }

@@ -26,7 +26,7 @@ use crate::scene::near::Clipped;
 use crate::scene::report::{Cell, Column};
 use crate::scene::sources::Sources;
 use crate::scene::water::network::{self, Stream};
-use crate::terrain::channel::{self, Channel, Cut, Cuts};
+use crate::terrain::channel::{self, Channel, Climb, Cut, Cuts};
 use crate::terrain::lattice::Lattice;
 
 /// What the report says of each river.
@@ -40,6 +40,8 @@ const TABLE: (&str, &[Column]) = (
         Column { name: "deepest cut", unit: "m" },
         Column { name: "cut", unit: "m3" },
         Column { name: "fill", unit: "m3" },
+        Column { name: "climbs", unit: "" },
+        Column { name: "greatest climb", unit: "m" },
     ],
 );
 
@@ -66,12 +68,18 @@ pub fn lay(
         document.error_at(place, error.to_string()).with_help(help)
     })?;
     tell(&falling, &cuts, collected);
+    tell_of_climbs(&falling, &cuts, collected);
     ribbons(&streams, &lattice.extent(), collected);
     Ok(())
 }
 
 fn channel_of(stream: &Stream) -> Channel {
-    Channel { line: stream.line.clone(), widths_m: stream.widths_m.clone(), bank_m: stream.bank_m }
+    Channel {
+        line: stream.line.clone(),
+        widths_m: stream.widths_m.clone(),
+        bank_m: stream.bank_m,
+        max_cut_m: stream.max_cut_m,
+    }
 }
 
 /// Tells what cutting came to: a row a river, and a note on them all.
@@ -90,12 +98,27 @@ fn tell(streams: &[&Stream], cuts: &Cuts, collected: &mut Collected) {
         sum(|cut| cut.volumes.fill_m3),
         cut.deepest_m
     ));
-    if cuts.rising > 0 {
-        collected.notes.push(format!(
-            "water rises over {} triangles, where a river would have to flow to a lake above it",
-            cuts.rising
-        ));
-    }
+}
+
+/// Tells where water climbs: a note on them all, with the greatest.
+fn tell_of_climbs(streams: &[&Stream], cuts: &Cuts, collected: &mut Collected) {
+    let climbing = cuts.cuts.iter().filter(|cut| !cut.climbs.is_empty()).count();
+    let count: usize = cuts.cuts.iter().map(|cut| cut.climbs.len()).sum();
+    let all = streams.iter().zip(&cuts.cuts).filter_map(|(stream, cut)| Some((&stream.name, greatest(cut)?)));
+    let Some((name, climb)) = all.max_by(|a, b| a.1.rise_m.total_cmp(&b.1.rise_m)) else { return };
+    let place = if name.is_empty() { String::new() } else { format!("in '{name}', ") };
+    collected.notes.push(format!(
+        "the ground rises downstream at {count} places of {climbing} rivers, by {:.1} m at most ({place}{:.0} m from \
+         its source): no cut as deep as `max_cut` lets water fall there, so the ground stays as it is; the lines do not \
+         follow the model's valleys, or its cells are too wide for these",
+        climb.rise_m,
+        climb.from_m
+    ));
+}
+
+/// The greatest of a channel's climbs.
+fn greatest(cut: &Cut) -> Option<&Climb> {
+    cut.climbs.iter().max_by(|a, b| a.rise_m.total_cmp(&b.rise_m))
 }
 
 fn row(stream: &Stream, cut: &Cut) -> Vec<Cell> {
@@ -109,6 +132,8 @@ fn row(stream: &Stream, cut: &Cut) -> Vec<Cell> {
         Cell::Number(cut.deepest_m),
         Cell::Number(cut.volumes.cut_m3),
         Cell::Number(cut.volumes.fill_m3),
+        Cell::Count(cut.climbs.len()),
+        greatest(cut).map_or(Cell::Empty, |climb| Cell::Number(climb.rise_m)),
     ]
 }
 

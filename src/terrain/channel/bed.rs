@@ -13,6 +13,10 @@ pub(super) struct Bed {
     pub heights_m: Vec<f64>,
     /// Whether a post keeps its height: a lake lies on it, or backs up to it.
     pub fixed: Vec<bool>,
+    /// The lowest that each may become: as deep below its height as the deepest cut of those channels that touch it.
+    pub floors_m: Vec<f64>,
+    /// The highest that each may become before a lake: as far above its height.
+    pub ceilings_m: Vec<f64>,
     /// The channel that a post counts for.
     owners: Vec<u32>,
 }
@@ -41,9 +45,14 @@ impl Bed {
         let mut bed = Self {
             heights_m: posts.iter().map(|&post| f64::from(heights[post as usize])).collect(),
             fixed: posts.iter().map(|&post| lattice.pinned()[post as usize]).collect(),
+            floors_m: Vec::new(),
+            ceilings_m: Vec::new(),
             owners: vec![u32::MAX; posts.len()],
             posts,
         };
+        let touching = touched.clone().map(|(post, piece)| (post, piece.channel));
+        let touching = touching.chain(wishes.iter().map(|wish| (wish.post, wish.channel)));
+        bed.limit(touching.map(|(post, channel)| (post, courses[channel as usize].max_cut_m)));
         let mut levels_m = vec![f64::INFINITY; bed.posts.len()];
         for (post, piece) in touched {
             let place = bed.place(post);
@@ -53,16 +62,35 @@ impl Bed {
         }
         for (place, &level_m) in levels_m.iter().enumerate() {
             if level_m.is_finite() && !bed.fixed[place] {
-                bed.heights_m[place] = bed.heights_m[place].max(level_m);
+                bed.heights_m[place] = bed.heights_m[place].max(level_m.min(bed.ceilings_m[place]));
             }
         }
         for wish in wishes {
             let place = bed.place(wish.post);
             if !bed.fixed[place] {
-                (bed.heights_m[place], bed.owners[place]) = (wish.height_m, wish.channel);
+                let height_m = wish.height_m.max(bed.floors_m[place]).min(bed.ceilings_m[place]);
+                (bed.heights_m[place], bed.owners[place]) = (height_m, wish.channel);
             }
         }
         Ok(bed)
+    }
+
+    /// Sets how far each post may move, from the posts that channels touch and how deep these may cut.
+    fn limit(&mut self, touching: impl Iterator<Item = (u32, f64)>) {
+        let mut limits_m = vec![0.0f64; self.posts.len()];
+        for (post, max_cut_m) in touching {
+            let place = self.place(post);
+            limits_m[place] = limits_m[place].max(max_cut_m);
+        }
+        let both = || self.heights_m.iter().zip(&limits_m);
+        let floors_m = both().map(|(height_m, limit_m)| height_m - limit_m).collect();
+        let ceilings_m = both().map(|(height_m, limit_m)| height_m + limit_m).collect();
+        (self.floors_m, self.ceilings_m) = (floors_m, ceilings_m);
+    }
+
+    /// Whether a post may be lowered.
+    pub fn may_fall(&self, place: usize) -> bool {
+        !self.fixed[place] && self.heights_m[place] > self.floors_m[place]
     }
 
     /// A post's place in this bed.

@@ -12,6 +12,9 @@
 //!
 //! Posts under a lake are not lowered. Where one of them lies ahead of lower ground, the posts behind are raised to the
 //! lake, and are from then on part of it: its backwater.
+//!
+//! No post is moved further than its channels may cut. A stretch that still rises when nothing more may be moved climbs:
+//! it is given up, and all is carved anew without it, so that nothing is dug for its sake.
 
 use crate::terrain::channel::bed::Bed;
 use crate::terrain::channel::course::{Course, Station};
@@ -31,6 +34,9 @@ const LEAST_SHARE: f64 = 1e-5;
 /// How often a stretch is mended as little as needed.
 const GENTLE_MENDS: u8 = 24;
 
+/// How often all is carved anew without what climbs. What rises after the last of them is left, dug for or not.
+const ROUNDS: usize = 6;
+
 /// A stretch of centreline within one triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
@@ -40,6 +46,8 @@ pub(super) struct Piece {
     pub shares: [f64; 3],
     /// The channel it is of.
     pub channel: u32,
+    /// Where along the channel it starts and ends, in metres from the line's start.
+    pub stations_m: [f64; 2],
     /// The water's level at its end, where that lies above the ground: in a pit that is to be filled, or before a lake.
     /// Minus infinity elsewhere.
     pub filled_m: f64,
@@ -54,8 +62,8 @@ pub(super) fn pieces(lattice: &Lattice, courses: &[Course]) -> Vec<Piece> {
     let mut order: Vec<usize> = (0..courses.len()).collect();
     order.sort_by(|&a, &b| source(&courses[b]).total_cmp(&source(&courses[a])));
     let of_course = |index: usize| {
-        let pairs = courses[index].stations.windows(2);
-        pairs.filter_map(move |pair| Piece::between(lattice, index as u32, [&pair[0], &pair[1]]))
+        let pairs = courses[index].pairs();
+        pairs.filter_map(move |[from, to]| Piece::between(lattice, index as u32, [&from, &to]))
     };
     order.into_iter().flat_map(of_course).collect()
 }
@@ -81,7 +89,9 @@ impl Piece {
         let grounded = posts.iter().all(|&post| !lattice.heights()[post].is_nan());
         let moves = shares.iter().any(|share: &f64| share.abs() > LEAST_SHARE);
         let filled_m = if to.level_m > to.raw_m { to.level_m } else { f64::NEG_INFINITY };
-        (grounded && moves).then(|| Self { posts: posts.map(|post| post as u32), shares, channel, filled_m })
+        let stations_m = [from.station_m, to.station_m];
+        let posts = posts.map(|post| post as u32);
+        (grounded && moves).then_some(Self { posts, shares, channel, stations_m, filled_m })
     }
 }
 
@@ -112,13 +122,32 @@ impl Stretch {
     }
 }
 
-/// Lowers the bed's posts until no piece rises, and returns how many rise all the same because a lake holds their posts.
-pub(super) fn carve(bed: &mut Bed, pieces: &[Piece]) -> usize {
+/// Lowers the bed's posts until no piece rises but those that climb: by how much, in metres, with the piece's index.
+pub(super) fn carve(bed: &mut Bed, pieces: &[Piece]) -> Vec<(usize, f64)> {
     let stretch =
         |piece: &Piece| Stretch { places: piece.posts.map(|post| bed.place(post)), shares: piece.shares };
     let stretches: Vec<Stretch> = pieces.iter().map(stretch).collect();
     let touching = Touching::of(&stretches, bed.heights_m.len());
-    let mut waiting = vec![true; stretches.len()];
+    let shaped = (bed.heights_m.clone(), bed.fixed.clone());
+    let mut is_given_up = vec![false; stretches.len()];
+    for round in 0..ROUNDS {
+        relax(bed, &stretches, &touching, &is_given_up);
+        let climbing = |&index: &usize| !is_given_up[index] && rise_m(bed, &stretches[index]) > ROUNDING_M;
+        let climbing: Vec<usize> = (0..stretches.len()).filter(climbing).collect();
+        if climbing.is_empty() || round + 1 == ROUNDS {
+            break;
+        }
+        climbing.into_iter().for_each(|index| is_given_up[index] = true);
+        bed.heights_m.clone_from(&shaped.0);
+        bed.fixed.clone_from(&shaped.1);
+    }
+    let rises = stretches.iter().map(|stretch| rise_m(bed, stretch)).enumerate();
+    rises.filter(|(_, rise_m)| *rise_m > ROUNDING_M).collect()
+}
+
+/// Mends every stretch that is not given up until none can be mended any more.
+fn relax(bed: &mut Bed, stretches: &[Stretch], touching: &Touching, is_given_up: &[bool]) {
+    let mut waiting: Vec<bool> = is_given_up.iter().map(|given_up| !given_up).collect();
     let mut mends = vec![0u8; stretches.len()];
     let mut is_calm = false;
     while !is_calm {
@@ -134,11 +163,10 @@ pub(super) fn carve(bed: &mut Bed, pieces: &[Piece]) -> usize {
             is_calm = false;
             mends[index] = mends[index].saturating_add(1);
             for &other in moved.iter().flat_map(|&place| touching.stretches(place)) {
-                waiting[other as usize] = true;
+                waiting[other as usize] = !is_given_up[other as usize];
             }
         }
     }
-    stretches.iter().filter(|stretch| rise_m(bed, stretch) > ROUNDING_M).count()
 }
 
 fn rise_m(bed: &Bed, stretch: &Stretch) -> f64 {
@@ -162,7 +190,7 @@ fn lower_ahead(bed: &mut Bed, stretch: &Stretch, (excess_m, mends): (f64, u8)) -
     let lowest_behind_m = stretch.behind().map(|place| bed.heights_m[place]).fold(f64::INFINITY, f64::min);
     let posts = stretch.places.into_iter().zip(stretch.shares);
     let mut ahead: Vec<(usize, f64)> =
-        posts.filter(|&(place, share)| share > 0.0 && !bed.fixed[place]).collect();
+        posts.filter(|&(place, share)| share > 0.0 && bed.may_fall(place)).collect();
     ahead.sort_by(|a, b| bed.heights_m[b.0].total_cmp(&bed.heights_m[a.0]));
     let to_m = if mends < GENTLE_MENDS {
         gentle_m(bed, &ahead, excess_m + SPARE_M).max(lowest_behind_m)
@@ -171,7 +199,7 @@ fn lower_ahead(bed: &mut Bed, stretch: &Stretch, (excess_m, mends): (f64, u8)) -
     };
     let lowered: Vec<usize> =
         ahead.into_iter().map(|(place, _)| place).filter(|&place| bed.heights_m[place] > to_m).collect();
-    lowered.iter().for_each(|&place| bed.heights_m[place] = to_m);
+    lowered.iter().for_each(|&place| bed.heights_m[place] = to_m.max(bed.floors_m[place]));
     lowered
 }
 
@@ -183,7 +211,9 @@ fn raise_behind(bed: &mut Bed, stretch: &Stretch) -> Vec<usize> {
         .zip(stretch.shares)
         .filter(|&(place, share)| share > 0.0 && bed.fixed[place]);
     let lake_m = fixed_ahead.map(|(place, _)| bed.heights_m[place]).fold(f64::NEG_INFINITY, f64::max);
-    let lower = |&place: &usize| !bed.fixed[place] && bed.heights_m[place] < lake_m;
+    let lower = |&place: &usize| {
+        !bed.fixed[place] && bed.heights_m[place] < lake_m && lake_m <= bed.ceilings_m[place]
+    };
     let raised: Vec<usize> = stretch.behind().filter(lower).collect();
     for &place in &raised {
         (bed.heights_m[place], bed.fixed[place]) = (lake_m, true);

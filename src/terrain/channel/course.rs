@@ -23,6 +23,8 @@ pub(super) struct Course {
     pub stations: Vec<Station>,
     /// How far beyond the bed the ground is blended.
     pub bank_m: f64,
+    /// How deep the ground may be cut.
+    pub max_cut_m: f64,
 }
 
 /// A place on a centreline.
@@ -44,8 +46,12 @@ pub(super) struct Station {
     pub bank_m: f64,
     /// The level of the lake it lies in.
     pub lake_m: Option<f64>,
-    /// The water's level, once it is found; NaN where there is no ground.
+    /// The reach that it is of, once they are found; `None` where the channel climbs.
+    pub reach: Option<usize>,
+    /// The water's level, once it is found; NaN where there is no ground or the channel climbs.
     pub level_m: f64,
+    /// The lowest that the level may be without a cut too deep here or on the rest of the reach.
+    pub lowest_m: f64,
 }
 
 impl Station {
@@ -58,15 +64,16 @@ impl Station {
 }
 
 impl Course {
-    /// Every two stations in a row.
+    /// Every two stations in a row that are of one reach.
     pub fn pairs(&self) -> impl Iterator<Item = [Station; 2]> + '_ {
-        self.stations.windows(2).map(|pair| [pair[0], pair[1]])
+        let of_one_reach = |pair: &&[Station]| pair[0].reach.is_some() && pair[0].reach == pair[1].reach;
+        self.stations.windows(2).filter(of_one_reach).map(|pair| [pair[0], pair[1]])
     }
 
     /// The stations of a channel, levels not yet found.
     pub fn of(lattice: &Lattice, channel: &Channel) -> Self {
         let points = channel.line.points();
-        let mut course = Self { stations: Vec::new(), bank_m: channel.bank_m };
+        let mut course = Self { stations: Vec::new(), bank_m: channel.bank_m, max_cut_m: channel.max_cut_m };
         for (index, pair) in points.windows(2).enumerate() {
             let across = (pair[1] - pair[0]).normalize_or_zero().perp();
             let (start_m, end_m) = (channel.line.stations()[index], channel.line.stations()[index + 1]);
@@ -124,7 +131,9 @@ impl Place {
             raw_m: lake_m.unwrap_or(raw_m),
             bank_m: left_bank.min(right_bank).max(raw_m),
             lake_m,
+            reach: None,
             level_m: f64::NAN,
+            lowest_m: f64::NEG_INFINITY,
         }
     }
 }

@@ -1,9 +1,11 @@
 //! Which way water flows along each line of a network.
 //!
-//! A line flows from its higher end to its lower. But ends of a level stretch differ by the error of the elevation model
-//! alone, and then the line would flow against its neighbours; so lines that share vertices are heard together: where
-//! most of their fall agrees with the way they were drawn, or runs against it, all of them follow, but for those that
-//! fall the other way by more than such an error. Files of rivers are drawn downstream as a rule, so most networks agree.
+//! A line flows from its higher end to its lower, where the straight line nearest to the ground along it falls the same way.
+//! Where they disagree the ground does not say: one end lies in a pit, on a bridge or in a lake, or the line is drawn over
+//! hills beside its valley. And ends of a level stretch differ by the error of the elevation model alone. So lines that
+//! share vertices are heard together: where most of their fall agrees with the way they were drawn, or runs against it, all
+//! of them follow, but for those that fall the other way by more than such an error. Files of rivers are drawn downstream
+//! as a rule, so most networks agree, and a line that nothing speaks against flows as drawn.
 
 use std::collections::BTreeMap;
 
@@ -20,6 +22,9 @@ const RELATIVE_ERROR_M: f64 = 10.0;
 /// The share of a network's fall that must agree for all its lines to follow: more than half of it then says the same
 /// with three quarters on one side.
 const AGREEMENT: f64 = 0.5;
+
+/// The most steps in which a line is walked to find its fall: a step a cell, and wider on lines that would need more.
+const MOST_STEPS: f64 = 100_000.0;
 
 /// Vertices nearer to each other than this are one, in metres.
 const SAME_M: f64 = 0.01;
@@ -59,13 +64,30 @@ pub fn directions(lattice: &Lattice, lines: &[&Polyline]) -> Vec<Flow> {
     networks.iter().zip(&drops).map(direction).collect()
 }
 
-/// How far the ground falls from the line's first vertex with ground to its last; 0 where it has none.
+/// How far the ground falls along `line`: from its first end over ground to its last, or as the straight line nearest to the
+/// ground does by least squares, whichever is less; 0 where these disagree on the way, or it has no ground.
 fn drop_m(lattice: &Lattice, line: &Polyline) -> f64 {
-    let height =
-        |&at: &DVec2| ground_height(lattice, Interpolation::Planar, at + lattice.origin()).height_m();
-    let first = line.points().iter().find_map(height);
-    let last = line.points().iter().rev().find_map(height);
-    first.zip(last).map_or(0.0, |(first, last)| first - last)
+    let steps = (line.length() / lattice.cell().min_element()).ceil().clamp(1.0, MOST_STEPS);
+    let grounded = |step: u32| {
+        let station_m = line.length() * f64::from(step) / steps;
+        let map = line.at(station_m) + lattice.origin();
+        let height_m = ground_height(lattice, Interpolation::Planar, map).height_m();
+        height_m.map(|height_m| DVec2::new(station_m, height_m))
+    };
+    let ground: Vec<DVec2> = (0..=steps as u32).filter_map(grounded).collect();
+    let [Some(first), Some(last)] = [ground.first(), ground.last()] else { return 0.0 };
+    let middle = ground.iter().sum::<DVec2>() / ground.len() as f64;
+    let (mut along, mut both) = (0.0, 0.0);
+    for at in &ground {
+        let off = *at - middle;
+        (along, both) = (along + off.x * off.x, both + off.x * off.y);
+    }
+    let (ends_m, trend_m) = (first.y - last.y, -both / along.max(f64::MIN_POSITIVE) * (last.x - first.x));
+    match (ends_m > 0.0, trend_m > 0.0) {
+        (true, true) => ends_m.min(trend_m),
+        (false, false) => ends_m.max(trend_m),
+        _ => 0.0,
+    }
 }
 
 /// A number for each line, the same for lines that hang together by shared vertices.
@@ -123,6 +145,14 @@ mod tests {
         assert_eq!(directions(&ground(), &[&above, &level]), [Flow::AsDrawn; 2]);
         let (above, level) = (line(&[450.0, 0.0]), line(&[780.0, 450.0]));
         assert_eq!(directions(&ground(), &[&level, &above]), [Flow::Against; 2]);
+    }
+
+    #[test]
+    fn a_pit_at_its_source_does_not_turn_a_river_round() {
+        let mut heights = ground().heights().to_vec();
+        (0..11).for_each(|row| heights[row * 81] = -50.0);
+        let ground = Lattice::new(DVec2::new(3e5, 4e6), DVec2::splat(10.0), 81, heights).expect("sound");
+        assert_eq!(directions(&ground, &[&line(&[0.0, 400.0])]), [Flow::AsDrawn]);
     }
 
     #[test]

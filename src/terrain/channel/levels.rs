@@ -1,14 +1,20 @@
-//! The water's level at every station of a network: it never rises downstream, and no bank drowns.
+//! The water's level at every station of a network: along each reach it never rises, no bank drowns, and no cut is deeper
+//! than allowed.
 //!
-//! Each course is fitted by itself ([`crate::terrain::fall`]) and lowered to its banks. Then courses hear of each other at
-//! the vertices they share: none may be higher there than what flows in, nor lower than a lake that its water has yet to
-//! reach. Levels only fall, and only to levels that are there, so the hearing ends.
+//! Each reach of a course is fitted by itself ([`crate::terrain::fall`]) and held between two series that never rise
+//! either: the lowest bank so far, and the highest ground yet to come less the deepest cut. Where they cross there is no
+//! water that falls, and that is where reaches end ([`super::reaches`]). So a bank that is a pit lowers the water below it
+//! by the deepest cut at most.
+//!
+//! Then courses hear of each other at the vertices they share: none may be higher there than what flows in, nor lower than
+//! a lake that its water has yet to reach. Levels only fall, and only to levels that are there, so the hearing ends.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::terrain::channel::course::{Course, Station};
 use crate::terrain::channel::flow::node;
-use crate::terrain::channel::{Channel, Cut};
+use crate::terrain::channel::reaches::{Sill, reaches};
+use crate::terrain::channel::{Channel, Climb, Cut};
 use crate::terrain::fall::{Weighted, falling};
 
 /// The least that a station weighs in metres: two on one spot still count.
@@ -41,24 +47,47 @@ pub(super) fn settle(courses: &mut [Course], channels: &[Channel]) {
     }
 }
 
-/// The levels of a course by itself.
+/// The reaches of a course, and the levels of each by itself.
 fn fit(course: &mut Course) {
     let grounded: Vec<usize> =
         (0..course.stations.len()).filter(|&at| !course.stations[at].raw_m.is_nan()).collect();
-    let station_m = |at: usize| course.stations[grounded[at]].station_m;
-    let last = grounded.len().saturating_sub(1);
-    let weighted: Vec<Weighted> = (0..grounded.len())
-        .map(|at| {
-            let reach_m = station_m((at + 1).min(last)) - station_m(at.saturating_sub(1));
-            let weight = (reach_m / 2.0).max(LEAST_WEIGHT_M);
-            Weighted { level_m: course.stations[grounded[at]].raw_m, weight }
-        })
-        .collect();
-    let mut lowest_m = f64::INFINITY;
-    for (&at, fitted_m) in grounded.iter().zip(falling(&weighted)) {
+    let sill = |&at: &usize| Sill {
+        ground_m: course.stations[at].raw_m,
+        bank_m: course.stations[at].bank_m.max(course.stations[at].raw_m),
+    };
+    let sills: Vec<Sill> = grounded.iter().map(sill).collect();
+    let found = reaches(&sills, course.max_cut_m);
+    for (number, &(first, last)) in found.iter().enumerate() {
+        fit_reach(course, &grounded[first..=last], &sills[first..=last]);
+        // Stations without ground are of the reach around them: the ground may begin between two stations.
+        let from = if first == 0 { 0 } else { grounded[first] };
+        let to = if last + 1 == grounded.len() { course.stations.len() - 1 } else { grounded[last] };
+        course.stations[from..=to].iter_mut().for_each(|station| station.reach = Some(number));
+    }
+}
+
+/// The levels of the stations `reach` by themselves: those nearest to the ground that never rise and keep both bounds.
+fn fit_reach(course: &mut Course, reach: &[usize], sills: &[Sill]) {
+    let mut highest_ahead_m = f64::NEG_INFINITY;
+    for (&at, sill) in reach.iter().zip(sills).rev() {
+        highest_ahead_m = highest_ahead_m.max(sill.ground_m);
+        course.stations[at].lowest_m = highest_ahead_m - course.max_cut_m;
+    }
+    let station_m = |index: usize| course.stations[reach[index]].station_m;
+    let last = reach.len() - 1;
+    let weighted = |(index, sill): (usize, &Sill)| {
+        let stands_for_m = station_m((index + 1).min(last)) - station_m(index.saturating_sub(1));
+        // Ground deeper than the level may go would only pull down what lies below it.
+        let level_m = sill.ground_m.max(course.stations[reach[index]].lowest_m);
+        Weighted { level_m, weight: (stands_for_m / 2.0).max(LEAST_WEIGHT_M) }
+    };
+    let fitted = falling(&sills.iter().enumerate().map(weighted).collect::<Vec<_>>());
+    let mut lowest_bank_m = f64::INFINITY;
+    for ((&at, sill), fitted_m) in reach.iter().zip(sills).zip(fitted) {
+        lowest_bank_m = lowest_bank_m.min(sill.bank_m);
         let station = &mut course.stations[at];
-        lowest_m = lowest_m.min(fitted_m).min(station.bank_m);
-        station.level_m = lowest_m;
+        // Rounding aside the bounds leave room; the bank's wins.
+        station.level_m = fitted_m.max(station.lowest_m).min(lowest_bank_m);
     }
 }
 
@@ -99,17 +128,24 @@ fn relax(courses: &mut [Course], nodes: &mut Nodes, visit: fn(&mut Course, &mut 
     }
 }
 
-/// Lowers a course to what flows in at its nodes, and returns the nodes that it reaches lower than all before.
+/// Lowers a course to what flows in at its nodes, as far as it may be cut, and returns the nodes that it reaches lower
+/// than all before.
 fn lower(course: &mut Course, nodes: &mut Nodes, index: usize) -> Vec<usize> {
-    let (mut lowered, mut lowest_m) = (Vec::new(), f64::INFINITY);
+    let (mut lowered, mut lowest_m, mut reach) = (Vec::new(), f64::INFINITY, None);
     let mut own = nodes.of_courses[index].iter().peekable();
     for (at, station) in course.stations.iter_mut().enumerate() {
         let node = own.next_if(|(own, _)| *own == at).map(|&(_, node)| node);
+        if station.reach != reach {
+            (reach, lowest_m) = (station.reach, f64::INFINITY);
+        }
+        if reach.is_none() {
+            continue;
+        }
         if let Some(node) = node {
             lowest_m = lowest_m.min(nodes.nodes[node].cap_m);
         }
         if !station.level_m.is_nan() {
-            lowest_m = lowest_m.min(station.level_m);
+            lowest_m = lowest_m.max(station.lowest_m).min(station.level_m);
             station.level_m = lowest_m;
         }
         if let Some(node) = node.filter(|&node| lowest_m < nodes.nodes[node].cap_m) {
@@ -139,9 +175,17 @@ fn raise_floor(course: &mut Course, nodes: &mut Nodes, index: usize) -> Vec<usiz
 fn floors(course: &Course, nodes: &Nodes, index: usize) -> Vec<((usize, usize), f64)> {
     let (mut found, mut highest_m) = (Vec::new(), f64::NEG_INFINITY);
     let mut own = nodes.of_courses[index].iter().rev().peekable();
+    let mut reach = None;
     for (at, station) in course.stations.iter().enumerate().rev() {
+        let place = own.next_if(|(own, _)| *own == at);
+        if station.reach != reach {
+            (reach, highest_m) = (station.reach, f64::NEG_INFINITY);
+        }
+        if reach.is_none() {
+            continue;
+        }
         highest_m = highest_m.max(station.lake_m.unwrap_or(f64::NEG_INFINITY));
-        if let Some(&place) = own.next_if(|(own, _)| *own == at) {
+        if let Some(&place) = place {
             highest_m = highest_m.max(nodes.nodes[place.1].floor_m);
             found.push((place, highest_m));
         }
@@ -151,10 +195,17 @@ fn floors(course: &Course, nodes: &Nodes, index: usize) -> Vec<((usize, usize), 
 
 /// Raises the levels of a course to the highest lake that its water has yet to reach.
 fn keep_above_lakes(course: &mut Course, nodes: &Nodes, index: usize) {
-    let mut floor_m = f64::NEG_INFINITY;
+    let (mut floor_m, mut reach) = (f64::NEG_INFINITY, None);
     let mut own = nodes.of_courses[index].iter().rev().peekable();
     for (at, station) in course.stations.iter_mut().enumerate().rev() {
-        if let Some(&(_, node)) = own.next_if(|(own, _)| *own == at) {
+        let node = own.next_if(|(own, _)| *own == at);
+        if station.reach != reach {
+            (reach, floor_m) = (station.reach, f64::NEG_INFINITY);
+        }
+        if reach.is_none() {
+            continue;
+        }
+        if let Some(&(_, node)) = node {
             floor_m = floor_m.max(nodes.nodes[node].floor_m);
         }
         floor_m = floor_m.max(station.lake_m.unwrap_or(f64::NEG_INFINITY));
@@ -170,5 +221,21 @@ pub(super) fn ends(course: &Course) -> Cut {
     let mut levels = course.stations.iter().map(|station| station.level_m).filter(|level| !level.is_nan());
     let first = levels.next();
     let last = levels.next_back().or(first);
-    Cut { levels_m: first.zip(last), ..Cut::default() }
+    Cut { levels_m: first.zip(last), climbs: climbs(course), ..Cut::default() }
+}
+
+/// Where a course goes from one reach to the next. The ground there stays as it is.
+fn climbs(course: &Course) -> Vec<Climb> {
+    let grounded: Vec<&Station> = course
+        .stations
+        .iter()
+        .filter(|station| station.reach.is_some() && !station.level_m.is_nan())
+        .collect();
+    let breaks = grounded.windows(2).filter(|pair| pair[0].reach != pair[1].reach);
+    let climb = |pair: &[&Station]| Climb {
+        from_m: pair[0].station_m,
+        to_m: pair[1].station_m,
+        rise_m: pair[1].level_m - pair[0].level_m,
+    };
+    breaks.map(climb).collect()
 }
