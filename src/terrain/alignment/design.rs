@@ -204,7 +204,7 @@ mod tests {
     fn a_ridge_too_high_to_cut_is_tunnelled() {
         let ridge: Vec<f64> = (0..81).map(|index| 160.0 - 2.0 * f64::abs(f64::from(index) - 40.0)).collect();
         let limits = Limits { max_fill_m: f64::INFINITY, max_cut_m: 12.0 };
-        let (network, courses) = road(&[ridge.clone()], 0.05, limits);
+        let (network, courses) = road(std::slice::from_ref(&ridge), 0.05, limits);
         let design = design(&network, &courses, &[80.0, 80.0], 50.0);
         assert_eq!(design.spans[0].len(), 1);
         assert_eq!(design.spans[0][0].kind, SpanKind::Tunnel);
