@@ -2,14 +2,20 @@
 
 use std::collections::BTreeMap;
 
+use glam::Vec3;
+
 use crate::draw::list::DrawMesh;
 
 /// A position, bit by bit.
 type Corner = [u32; 3];
 
+/// Edges nearer than this to each other are one, in metres: what is computed in two ways is rounded to f32 in two ways,
+/// and a face thinner than this has no area that f32 could hold.
+const SAME_M: f32 = 1e-3;
+
 /// Whether every edge of a triangle is run along once in each direction, or as often in one as in the other: then the
-/// meshes are the whole surface of one or several solids. Positions are compared bit by bit, whichever mesh and vertex
-/// they belong to.
+/// meshes are the whole surface of one or several solids. Positions are compared whichever mesh and vertex they belong
+/// to: bit by bit, and where that leaves edges over, to a millimetre.
 ///
 /// # Errors
 /// A sentence that names an edge where the surface is open.
@@ -25,13 +31,28 @@ pub fn closed(meshes: &[&DrawMesh]) -> Result<(), String> {
             }
         }
     }
-    match edges.into_iter().find(|&((from, to), count)| count != 0 && from != to) {
+    let open = edges.into_iter().flat_map(|((from, to), count)| {
+        let [from, to] = [from, to].map(|corner| Vec3::from(corner.map(f32::from_bits)));
+        let edge = if count > 0 { (from, to) } else { (to, from) };
+        std::iter::repeat_n(edge, count.unsigned_abs() as usize)
+    });
+    match unmatched(open) {
         None => Ok(()),
-        Some(((from, to), _)) => {
-            let [from, to] = [from, to].map(|corner| corner.map(f32::from_bits));
-            Err(format!("the surface is open along the edge from {from:?} to {to:?}"))
+        Some((from, to)) => Err(format!("the surface is open along the edge from {from} to {to}")),
+    }
+}
+
+/// The first of some directed edges that has a length and no other runs back along.
+fn unmatched(open: impl Iterator<Item = (Vec3, Vec3)>) -> Option<(Vec3, Vec3)> {
+    let is_same = |a: Vec3, b: Vec3| (a - b).abs().max_element() < SAME_M;
+    let mut left: Vec<(Vec3, Vec3)> = open.filter(|&(from, to)| !is_same(from, to)).collect();
+    while let Some((from, to)) = left.pop() {
+        match left.iter().position(|&(back, forth)| is_same(back, to) && is_same(forth, from)) {
+            Some(other) => drop(left.swap_remove(other)),
+            None => return Some((from, to)),
         }
     }
+    None
 }
 
 #[cfg(test)]
@@ -39,7 +60,7 @@ mod tests {
     use super::*;
     use crate::draw::color::Srgba;
     use crate::structure::faces::Faces;
-    use glam::{DVec2, Vec3};
+    use glam::DVec2;
 
     #[test]
     fn a_box_is_closed_and_one_without_its_lid_is_not() {

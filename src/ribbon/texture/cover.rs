@@ -99,9 +99,9 @@ fn orchard(u: f32, v: f32, grain: f32) -> Srgba {
     let at = [(u * ROWS).fract() - 0.5, (v * ROWS).fract() - 0.5];
     let away = libm::hypotf(at[0], at[1]);
     if away < 0.3 {
-        translucent([92, 136, 84], -(at[0] + at[1]) * 40.0 + (grain - 0.5) * 8.0, 0.8)
+        translucent([80, 124, 80], -(at[0] + at[1]) * 40.0 + (grain - 0.5) * 8.0, 0.8)
     } else {
-        translucent([212, 196, 136], (grain - 0.5) * 10.0, 0.6)
+        translucent([232, 208, 156], (grain - 0.5) * 10.0, 0.6)
     }
 }
 
