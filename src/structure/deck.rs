@@ -17,6 +17,7 @@
 use glam::{DVec2, Vec3};
 
 use crate::geom::polyline::Polyline;
+use crate::structure::bridge::{PARAPET_THICK_M, magnified};
 
 /// How far along a segment the inner corner of a mitre may reach, as a part of it: below a half, so that the corners at
 /// its two ends never pass each other.
@@ -71,9 +72,11 @@ impl Course<'_> {
                 continue;
             };
             let along = (next - at).normalize_or_zero();
+            // Parapets stand beside the carriageway, and on a bend their inner corners reach further along it.
+            let outermost = 1.0 + 2.0 * PARAPET_THICK_M * magnified(self.width_m) / self.width_m;
             let reach = |index: usize| {
-                asides[index].iter().map(|aside| aside.dot(along).abs()).fold(0.0, f64::max)
-                    + self.width_m * LEAST_APART
+                let of_aside = asides[index].iter().map(|aside| aside.dot(along).abs()).fold(0.0, f64::max);
+                of_aside * outermost + self.width_m * LEAST_APART
             };
             let (from_m, to_m) = (stations[index] + reach(index), end_m - reach(index + 1));
             let square = along.perp() * (self.width_m / 2.0);
