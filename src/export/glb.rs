@@ -20,16 +20,11 @@ use crate::draw::color::{Srgba, linear_from_srgb};
 use crate::draw::list::{DrawItem, DrawList, DrawMesh, FeatureId, MaterialId, MeshId};
 use crate::draw::material::{Alpha, Material, TextureId};
 use crate::export::png;
+use crate::mesh::write::count;
+use crate::mesh::write::glb::{ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, FLOAT, GLTF_FROM_WORLD, UNSIGNED_INT};
 
-/// From X east, Y north, Z up to glTF's axes, column by column.
-const GLTF_FROM_WORLD: [f32; 16] = [1., 0., 0., 0., 0., 0., -1., 0., 0., 1., 0., 0., 0., 0., 0., 1.];
-
-/// The specification's numbers for what an accessor holds and what a buffer view is for.
-const FLOAT: u32 = 5126;
+/// The specification's number for an accessor that holds u16.
 const UNSIGNED_SHORT: u32 = 5123;
-const UNSIGNED_INT: u32 = 5125;
-const ARRAY_BUFFER: u32 = 34962;
-const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
 /// Vertex attributes, one buffer view each: name, type, component type, bytes a vertex.
 const ATTRIBUTES: [(&str, &str, u32, usize); 4] = [
@@ -261,14 +256,14 @@ impl File {
         out.write_all(b"glTF")?;
         out.write_all(&2u32.to_le_bytes())?;
         let binary = if length > 0 { 8 + length } else { 0 };
-        out.write_all(&count(12 + 8 + text.len() + binary)?.to_le_bytes())?;
-        out.write_all(&count(text.len())?.to_le_bytes())?;
+        out.write_all(&count(12 + 8 + text.len() + binary, "bytes")?.to_le_bytes())?;
+        out.write_all(&count(text.len(), "bytes")?.to_le_bytes())?;
         out.write_all(b"JSON")?;
         out.write_all(&text)?;
         if length == 0 {
             return Ok(());
         }
-        out.write_all(&count(length)?.to_le_bytes())?;
+        out.write_all(&count(length, "bytes")?.to_le_bytes())?;
         out.write_all(b"BIN\0")?;
         for chunk in chunks {
             out.write_all(chunk)?;
@@ -350,12 +345,4 @@ fn put_color(color: Srgba, bytes: &mut Vec<u8>) {
     for channel in [light(red), light(green), light(blue), u16::from(alpha) * 257] {
         bytes.extend(channel.to_le_bytes());
     }
-}
-
-/// A length as the 32 bits that the format has for it.
-fn count(bytes: usize) -> io::Result<u32> {
-    u32::try_from(bytes).map_err(|_| {
-        let reason = format!("{bytes} bytes are more than glTF can hold; choose a larger error");
-        io::Error::new(io::ErrorKind::InvalidInput, reason)
-    })
 }

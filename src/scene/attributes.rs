@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use toml::Spanned;
 
-use crate::description::expression::{Choice, Expression, Quantity};
+use crate::description::expression::{self, Choice, Expression, Quantity};
 use crate::description::features::Scalar;
 use crate::description::words::Word;
 use crate::vector::feature::Layer;
@@ -68,6 +68,11 @@ impl Attributes {
     /// The word that the scene file states; `None` where it states none, or the properties give none.
     pub fn word<W: Word>(&self, stated: Option<&Spanned<Choice<W>>>) -> Option<W> {
         stated?.get_ref().word(&|name| self.get(name))
+    }
+
+    /// Whether a property is there and does not say no: true, a number other than 0, or such a text.
+    pub fn affirm(&self, property: &str) -> bool {
+        self.get(property).is_some_and(|value| expression::holds(&value))
     }
 
     /// Whether an expression holds for the feature.

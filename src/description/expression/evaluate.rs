@@ -6,7 +6,7 @@
 use std::cmp::Ordering;
 
 use crate::description::expression::syntax::{Binary, Function, Node, arms};
-use crate::description::expression::{Properties, as_number};
+use crate::description::expression::{Properties, as_number, holds};
 use crate::description::features::Scalar;
 
 /// Says of a value whether it can be used.
@@ -25,15 +25,6 @@ pub(super) fn any(_: &Scalar) -> bool {
 /// Only what is a number can be used.
 fn numeric(value: &Scalar) -> bool {
     as_number(value).is_some()
-}
-
-/// Whether a value is true, a number other than 0, or a text that does not say no.
-pub(super) fn holds(value: &Scalar) -> bool {
-    match value {
-        Scalar::Bool(value) => *value,
-        Scalar::Number(number) => *number != 0.0,
-        Scalar::Text(text) => !["", "no", "false", "0"].contains(&text.as_str()),
-    }
 }
 
 impl Evaluation<'_> {

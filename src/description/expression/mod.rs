@@ -147,13 +147,22 @@ impl Expression {
     /// Whether it holds for a feature: its value is true, a number that is not 0, or a text that is neither empty nor
     /// `no`, `false` or `0`.
     pub fn holds(&self, properties: Properties<'_>) -> bool {
-        self.value(properties).is_some_and(|value| evaluate::holds(&value))
+        self.value(properties).is_some_and(|value| holds(&value))
     }
 }
 
 impl fmt::Display for Expression {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.root.fmt(out)
+    }
+}
+
+/// Whether a value is true, a number other than 0, or a text that does not say no.
+pub fn holds(value: &Scalar) -> bool {
+    match value {
+        Scalar::Bool(value) => *value,
+        Scalar::Number(number) => *number != 0.0,
+        Scalar::Text(text) => !["", "no", "false", "0"].contains(&text.as_str()),
     }
 }
 

@@ -14,13 +14,16 @@ use crate::mesh::trimesh::TriMesh;
 use crate::mesh::write::{Remarks, count};
 
 /// From X east, Y north, Z up to glTF's axes, column by column.
-const GLTF_FROM_WORLD: [f32; 16] = [1., 0., 0., 0., 0., 0., -1., 0., 0., 1., 0., 0., 0., 0., 0., 1.];
+pub const GLTF_FROM_WORLD: [f32; 16] = [1., 0., 0., 0., 0., 0., -1., 0., 0., 1., 0., 0., 0., 0., 0., 1.];
 
-/// The specification's numbers for what an accessor holds and what a buffer view is for.
-const FLOAT: u32 = 5126;
-const UNSIGNED_INT: u32 = 5125;
-const ARRAY_BUFFER: u32 = 34962;
-const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+/// The specification's number for an accessor that holds f32.
+pub const FLOAT: u32 = 5126;
+/// For one that holds u32.
+pub const UNSIGNED_INT: u32 = 5125;
+/// For a buffer view of vertices.
+pub const ARRAY_BUFFER: u32 = 34962;
+/// For one of indices.
+pub const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
 /// Writes `mesh`, which has at least one triangle; remarks go to `asset.extras`.
 ///

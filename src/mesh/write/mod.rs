@@ -81,7 +81,10 @@ pub fn write(format: Format, mesh: &TriMesh, remarks: &Remarks, out: &mut impl W
 }
 
 /// A count as the 32 bits that a format has for it.
-fn count(number: usize, what: &str) -> io::Result<u32> {
+///
+/// # Errors
+/// It is more than they hold.
+pub fn count(number: usize, what: &str) -> io::Result<u32> {
     u32::try_from(number).map_err(|_| {
         let reason = format!("{number} {what} are more than this format can hold; choose a larger error");
         io::Error::new(io::ErrorKind::InvalidInput, reason)

@@ -5,7 +5,7 @@ use glam::DVec2;
 use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
-use crate::description::features::{Road, Scalar};
+use crate::description::features::Road;
 use crate::description::words::{self, Markings};
 use crate::draw::list::FeatureId;
 use crate::geom::polyline::{Polyline, kept};
@@ -179,15 +179,9 @@ fn surface(road: &Road, attributes: &Attributes) -> Surface {
 
 /// What carries a road, by the expressions stated for it, else by its properties as OpenStreetMap has them.
 pub(in crate::scene) fn carried(road: &Road, attributes: &Attributes) -> Carried {
-    let tagged = |property: &str| match attributes.get(property) {
-        None => false,
-        Some(Scalar::Bool(value)) => value,
-        Some(Scalar::Number(value)) => value != 0.0,
-        Some(Scalar::Text(text)) => !matches!(text.as_str(), "" | "no" | "false" | "0"),
-    };
     let holds = |stated: &Option<toml::Spanned<_>>, property| match stated {
         Some(expression) => attributes.holds(expression.get_ref()),
-        None => tagged(property),
+        None => attributes.affirm(property),
     };
     match (holds(&road.tunnel, "tunnel"), holds(&road.bridge, "bridge")) {
         (true, _) => Carried::Tunnel,
