@@ -5,14 +5,14 @@
 use glam::Vec2;
 use proptest::collection::vec;
 use proptest::prelude::{ProptestConfig, any, prop_assert_eq, proptest};
-use sandtable::annotate::annotation::{Annotations, Label, LabelKind};
+use sandtable::annotate::annotation::{Annotations, LabelClass, PictureLabel};
 use sandtable::annotate::legend::Legend;
 use sandtable::annotate::north::NorthArrow;
 use sandtable::annotate::paint::annotate;
-use sandtable::annotate::report::{Furniture, Report};
+use sandtable::annotate::report::{AnnotationReport, FurnitureKind};
 use sandtable::annotate::scale_bar::ScaleBar;
 use sandtable::draw::color::Srgba;
-use sandtable::draw::ground::Ramp;
+use sandtable::draw::ground::ColorRamp;
 use sandtable::draw::pixels::Pixels;
 
 /// A landscape of ridges under a sky, with grain: busy enough to test halos on.
@@ -59,13 +59,20 @@ fn grain(width: u32, height: u32) -> Pixels {
     })
 }
 
-fn label(text: &str, kind: LabelKind, x: f32, y: f32, depth_m: f32) -> Label {
-    Label { text: text.to_owned(), anchor_px: Vec2::new(x, y), top_px: None, depth_m, visible: true, kind }
+fn label(text: &str, kind: LabelClass, x: f32, y: f32, depth_m: f32) -> PictureLabel {
+    PictureLabel {
+        text: text.to_owned(),
+        anchor_px: Vec2::new(x, y),
+        top_px: None,
+        depth_m,
+        visible: true,
+        kind,
+    }
 }
 
 /// Labels as a scene of the southern Appalachians would have them, on a sheet of the given size.
-fn labels(width: f32, height: f32) -> Vec<Label> {
-    use LabelKind::{Place, Point, Summit, Water};
+fn labels(width: f32, height: f32) -> Vec<PictureLabel> {
+    use LabelClass::{Place, Point, Summit, Water};
     let all = [
         ("Cross Mountain\n1062 m", Summit, 0.21, 0.26, 14e3),
         ("Frozen Head\n1012 m", Summit, 0.44, 0.27, 15e3),
@@ -102,7 +109,7 @@ fn sheet(width: u32, height: u32) -> Annotations {
         north: Some(NorthArrow { direction: Vec2::new(0.62, -0.50).normalize(), foreshortening: 0.45 }),
         scale_bar: Some(ScaleBar { pixels_per_metre: h * 0.000_043, distance_m: 12_400.0 }),
         legend: Some(Legend {
-            ramp: Ramp::new(stops).expect("rising stops"),
+            ramp: ColorRamp::new(stops).expect("rising stops"),
             low_m: 252.0,
             high_m: 1071.0,
             vertical_exaggeration: 1.5,
@@ -116,8 +123,8 @@ fn sheet(width: u32, height: u32) -> Annotations {
 /// A sheet of everything that goes wrong: crowds, scripts the fonts lack, slanted leaders, odd figures.
 fn trouble(width: u32, height: u32) -> Annotations {
     let (w, h) = (width as f32, height as f32);
-    let kinds = [LabelKind::Summit, LabelKind::Place, LabelKind::Water, LabelKind::Point];
-    let mut labels: Vec<Label> = (0..90u32)
+    let kinds = [LabelClass::Summit, LabelClass::Place, LabelClass::Water, LabelClass::Point];
+    let mut labels: Vec<PictureLabel> = (0..90u32)
         .map(|n| {
             let spread = |salt: u32| {
                 f64::from((n * 7919 + salt).wrapping_mul(2_654_435_761) >> 8) / f64::from(1u32 << 24)
@@ -125,7 +132,7 @@ fn trouble(width: u32, height: u32) -> Annotations {
             let (x, y) = (spread(1) as f32, spread(77) as f32);
             let anchor_px = Vec2::new(x * w, (0.2 + 0.7 * y) * h);
             let lean = (anchor_px.x - 0.5 * w) * 0.06;
-            Label {
+            PictureLabel {
                 text: format!("Hill {n}\n{} m", 300 + n * 7),
                 anchor_px,
                 top_px: (n % 2 == 0).then_some(anchor_px + Vec2::new(lean, -0.06 * h)),
@@ -135,8 +142,8 @@ fn trouble(width: u32, height: u32) -> Annotations {
             }
         })
         .collect();
-    labels.push(label("富士山\n3776 m", LabelKind::Summit, 0.5 * w, 0.3 * h, 1.0));
-    labels.push(label("Эльбрус · Ἐρύμανθος\nהר חרמון", LabelKind::Summit, 0.3 * w, 0.3 * h, 1.0));
+    labels.push(label("富士山\n3776 m", LabelClass::Summit, 0.5 * w, 0.3 * h, 1.0));
+    labels.push(label("Эльбрус · Ἐρύμανθος\nהר חרמון", LabelClass::Summit, 0.3 * w, 0.3 * h, 1.0));
     Annotations {
         labels,
         title: Some("Great Smoky Mountains ".repeat(9)),
@@ -155,7 +162,7 @@ fn trouble(width: u32, height: u32) -> Annotations {
     }
 }
 
-fn annotated(width: u32, height: u32, annotations: &Annotations) -> (Pixels, Report) {
+fn annotated(width: u32, height: u32, annotations: &Annotations) -> (Pixels, AnnotationReport) {
     let mut pixels = grain(width, height);
     let report = annotate(&mut pixels, annotations);
     (pixels, report)
@@ -165,7 +172,7 @@ fn annotated(width: u32, height: u32, annotations: &Annotations) -> (Pixels, Rep
 fn without_annotations_the_picture_is_unchanged() {
     let (pixels, report) = annotated(320, 180, &Annotations::default());
     assert_eq!(pixels, grain(320, 180));
-    assert_eq!(report, Report::default());
+    assert_eq!(report, AnnotationReport::default());
 }
 
 #[test]
@@ -176,7 +183,8 @@ fn the_same_annotations_give_the_same_bytes_and_the_same_report() {
 
 #[test]
 fn hidden_labels_leave_no_pixel() {
-    let hidden = labels(640.0, 360.0).into_iter().map(|label| Label { visible: false, ..label }).collect();
+    let hidden =
+        labels(640.0, 360.0).into_iter().map(|label| PictureLabel { visible: false, ..label }).collect();
     let (pixels, report) = annotated(640, 360, &Annotations { labels: hidden, ..Annotations::default() });
     assert_eq!(pixels, grain(640, 360));
     assert_eq!((report.hidden.len(), report.placed.len()), (14, 0));
@@ -187,8 +195,8 @@ fn hidden_labels_leave_no_pixel() {
 fn labels_left_out_leave_no_pixel_and_do_not_disturb_the_others() {
     let lone = Annotations { labels: labels(640.0, 360.0)[..1].to_vec(), ..Annotations::default() };
     let mut crowd = lone.clone();
-    let twin = Label { depth_m: 1e6, ..crowd.labels[0].clone() };
-    crowd.labels.extend([twin.clone(), Label { anchor_px: Vec2::new(-3.0, 9.0), ..twin }]);
+    let twin = PictureLabel { depth_m: 1e6, ..crowd.labels[0].clone() };
+    crowd.labels.extend([twin.clone(), PictureLabel { anchor_px: Vec2::new(-3.0, 9.0), ..twin }]);
     let (pixels, report) = annotated(640, 360, &crowd);
     assert_eq!(pixels, annotated(640, 360, &lone).0);
     assert_eq!((report.placed.len(), report.crowded_out.len(), report.outside.len()), (1, 1, 1));
@@ -198,27 +206,28 @@ fn labels_left_out_leave_no_pixel_and_do_not_disturb_the_others() {
 fn a_good_sheet_is_drawn_whole() {
     let (pixels, report) = annotated(1920, 1080, &sheet(1920, 1080));
     assert_eq!(report.placed.len(), 14);
-    let whole = Report { placed: vec![], ..report };
-    assert_eq!(whole, Report::default());
+    let whole = AnnotationReport { placed: vec![], ..report };
+    assert_eq!(whole, AnnotationReport::default());
     assert!(pixels.data().iter().all(|color| color.0[3] == 255), "an opaque picture stays opaque");
 }
 
 #[test]
 fn glyphs_that_the_fonts_lack_are_counted_with_their_text() {
-    let fuji = label("富士山\n3776 m", LabelKind::Summit, 300.0, 200.0, 1.0);
+    let fuji = label("富士山\n3776 m", LabelClass::Summit, 300.0, 200.0, 1.0);
     let title = Some("Вид на 富士".to_owned());
     let with = Annotations { labels: vec![fuji.clone()], title, ..Annotations::default() };
     let (_, report) = annotated(640, 360, &with);
     assert_eq!(report.missing_glyph_count(), 5);
     assert_eq!(report.missing_glyphs[1].text, fuji.text);
-    let hidden = Annotations { labels: vec![Label { visible: false, ..fuji }], ..Annotations::default() };
+    let hidden =
+        Annotations { labels: vec![PictureLabel { visible: false, ..fuji }], ..Annotations::default() };
     assert_eq!(annotated(640, 360, &hidden).1.missing_glyph_count(), 0, "what is not drawn lacks nothing");
 }
 
 #[test]
 fn furniture_that_does_not_fit_is_left_out_and_reported() {
     let (_, report) = annotated(300, 200, &sheet(300, 200));
-    assert_eq!(report.left_out, [Furniture::Legend]);
+    assert_eq!(report.left_out, [FurnitureKind::Legend]);
     let (pixels, report) = annotated(40, 30, &sheet(40, 30));
     assert_eq!(report.left_out.len(), 5);
     assert_eq!(pixels, grain(40, 30));
@@ -250,7 +259,7 @@ fn pictures_of_any_size_can_be_annotated() {
 fn thousands_of_labels_are_placed_in_reasonable_time() {
     let crowd = (0..6000u32).map(|n| {
         let (x, y) = ((n * 37 % 960) as f32, (n * 101 % 540) as f32);
-        label(&format!("No. {n}"), LabelKind::Point, x, y, n as f32)
+        label(&format!("No. {n}"), LabelClass::Point, x, y, n as f32)
     });
     let (_, report) = annotated(960, 540, &Annotations { labels: crowd.collect(), ..Annotations::default() });
     assert_eq!(report.placed.len() + report.crowded_out.len() + report.outside.len(), 6000);
@@ -266,13 +275,13 @@ proptest! {
         title in ".{0,60}",
         tops in vec((any::<f32>(), any::<f32>()), 25),
     ) {
-        let labels: Vec<Label> = texts.iter().zip(&tops).map(|((text, x, y, depth_m, visible), top)| Label {
+        let labels: Vec<PictureLabel> = texts.iter().zip(&tops).map(|((text, x, y, depth_m, visible), top)| PictureLabel {
             text: text.clone(),
             anchor_px: Vec2::new(*x, *y),
             top_px: Some(Vec2::new(top.0, top.1)),
             depth_m: *depth_m,
             visible: *visible,
-            kind: [LabelKind::Summit, LabelKind::Place, LabelKind::Water, LabelKind::Point][text.len() % 4],
+            kind: [LabelClass::Summit, LabelClass::Place, LabelClass::Water, LabelClass::Point][text.len() % 4],
         }).collect();
         let all = Annotations { labels, title: Some(title), ..Annotations::default() };
         let (_, report) = annotated(400, 250, &all);

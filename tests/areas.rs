@@ -5,15 +5,15 @@ mod common;
 use glam::DVec2;
 use sandtable::description::parse::parse_bytes;
 use sandtable::description::words::Cover;
-use sandtable::draw::list::Layer;
-use sandtable::draw::material::Alpha;
+use sandtable::draw::list::DepthLayer;
+use sandtable::draw::material::AlphaMode;
 use sandtable::ribbon::partition::overlap_m2;
-use sandtable::ribbon::texture::Surface;
+use sandtable::ribbon::texture::RibbonSurface;
 use sandtable::ribbon::texture::cover::cover_length_m;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::kind::{FeatureKind, Scene};
-use sandtable::scene::picture::{camera, shoot};
+use sandtable::scene::picture::{build_draw_list, camera};
 
 use common::scratch::Scratch;
 
@@ -41,7 +41,7 @@ fn scene(text: &str) -> Scene {
     build(&document, &assets, &|_| ()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn area_m2(scene: &Scene, wanted: Surface) -> f64 {
+fn area_m2(scene: &Scene, wanted: RibbonSurface) -> f64 {
     scene.ribbons.iter().filter(|ribbon| ribbon.surface == wanted).map(|ribbon| ribbon.plan.area_m2()).sum()
 }
 
@@ -52,8 +52,9 @@ const TWO: &str = "[[area]]\ncover = \"forest\"\npoints = [[50, 50], [150, 50], 
 fn the_later_of_two_areas_lies_on_top_and_nothing_lies_over_anything_else() {
     let scene = scene(TWO);
     assert!(overlap_m2(scene.ribbons.iter().map(|ribbon| &ribbon.plan).collect::<Vec<_>>()) < 1e-2);
-    assert!((area_m2(&scene, Surface::Cover(Cover::Forest)) - 7500.0).abs() < 0.1);
-    let (field, line) = (area_m2(&scene, Surface::Cover(Cover::Field)), area_m2(&scene, Surface::Border));
+    assert!((area_m2(&scene, RibbonSurface::Cover(Cover::Forest)) - 7500.0).abs() < 0.1);
+    let (field, line) =
+        (area_m2(&scene, RibbonSurface::Cover(Cover::Field)), area_m2(&scene, RibbonSurface::Border));
     assert!((field + line - 10_000.0).abs() < 0.1 && line > 500.0, "{field} {line}");
 }
 
@@ -61,7 +62,7 @@ fn the_later_of_two_areas_lies_on_top_and_nothing_lies_over_anything_else() {
 fn textures_lie_where_the_world_has_them() {
     let scene = scene(TWO);
     for ribbon in &scene.ribbons {
-        let Surface::Cover(cover) = ribbon.surface else { continue };
+        let RibbonSurface::Cover(cover) = ribbon.surface else { continue };
         for vertex in &ribbon.plan.vertices {
             let expected = (DVec2::new(vertex.at.x, -vertex.at.y) / cover_length_m(cover)).as_vec2();
             assert!((vertex.uv - expected).length() < 1e-4, "{vertex:?}");
@@ -77,18 +78,18 @@ fn water_and_roads_lie_over_areas_and_the_ground_shows_through_them() {
     );
     let scene = scene(&text);
     assert!(overlap_m2(scene.ribbons.iter().map(|ribbon| &ribbon.plan).collect::<Vec<_>>()) < 1e-2);
-    assert!(area_m2(&scene, Surface::Bank) > 500.0);
+    assert!(area_m2(&scene, RibbonSurface::Bank) > 500.0);
     let camera = camera(&scene, &scene.cameras[0], (320, 200)).expect("sound");
-    let list = shoot(&scene, &camera, &|_| {}).list;
+    let list = build_draw_list(&scene, &camera, &|_| {}).list;
     assert_eq!(list.check(), Ok(()));
     let kind = |feature: sandtable::draw::list::FeatureId| scene.features[feature.0 as usize - 2].kind;
-    let draped = list.items.iter().filter(|item| matches!(item.layer, Layer::Draped(_)));
+    let draped = list.items.iter().filter(|item| matches!(item.layer, DepthLayer::Draped(_)));
     let order: Vec<FeatureKind> = draped.clone().map(|item| kind(item.feature)).collect();
     let last_area = order.iter().rposition(|kind| *kind == FeatureKind::Area).expect("areas");
     let first_other = order.iter().position(|kind| *kind != FeatureKind::Area).expect("others");
     assert!(last_area < first_other, "{order:?}");
     for item in draped.filter(|item| kind(item.feature) == FeatureKind::Area) {
-        assert_eq!(list.materials[item.material.0 as usize].alpha, Alpha::Blend);
+        assert_eq!(list.materials[item.material.0 as usize].alpha, AlphaMode::Blend);
     }
 }
 
@@ -97,8 +98,8 @@ fn a_cover_comes_from_a_property_and_what_has_none_is_told() {
     let text =
         "[[area]]\nname = \"uses\"\nfile = \"uses.geojson\"\ncrs = \"EPSG:32633\"\ncover = \"use:class\"\n";
     let scene = scene(text);
-    assert!((area_m2(&scene, Surface::Cover(Cover::Forest)) - 2500.0).abs() < 0.1);
-    assert!((area_m2(&scene, Surface::Cover(Cover::Meadow)) - 2500.0).abs() < 0.1);
+    assert!((area_m2(&scene, RibbonSurface::Cover(Cover::Forest)) - 2500.0).abs() < 0.1);
+    assert!((area_m2(&scene, RibbonSurface::Cover(Cover::Meadow)) - 2500.0).abs() < 0.1);
     assert!(scene.notes.iter().any(|note| note.contains("1 area of 'uses' left out")), "{:?}", scene.notes);
 }
 
@@ -106,9 +107,9 @@ fn a_cover_comes_from_a_property_and_what_has_none_is_told() {
 fn a_restricted_area_has_a_border_unless_it_says_otherwise() {
     let ring = "points = [[50, 50], [150, 50], [150, 150], [50, 150]]\n";
     let bordered = scene(&format!("[[area]]\ncover = \"restricted\"\n{ring}"));
-    assert!((area_m2(&bordered, Surface::Border) - (10_000.0 - 92.0 * 92.0)).abs() < 0.1);
+    assert!((area_m2(&bordered, RibbonSurface::Border) - (10_000.0 - 92.0 * 92.0)).abs() < 0.1);
     let bare = scene(&format!("[[area]]\ncover = \"restricted\"\nborder = \"none\"\n{ring}"));
-    assert_eq!(area_m2(&bare, Surface::Border), 0.0);
+    assert_eq!(area_m2(&bare, RibbonSurface::Border), 0.0);
 }
 
 #[test]

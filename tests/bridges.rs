@@ -12,7 +12,7 @@ use sandtable::app::arguments::Access;
 use sandtable::app::load;
 use sandtable::draw::list::{DrawMesh, FeatureId};
 use sandtable::scene::kind::{FeatureKind, Scene};
-use sandtable::scene::report::{Cell, Table};
+use sandtable::scene::report::{ReportCell, ReportTable};
 use sandtable::structure::deck_check::closed;
 use sandtable::terrain::query::{Interpolation, Surface};
 
@@ -24,13 +24,13 @@ fn crossing() -> Scene {
     scene(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/bridge.toml"), Vec::new())
 }
 
-fn table(scene: &Scene) -> &Table {
+fn table(scene: &Scene) -> &ReportTable {
     scene.report.table("bridges and tunnels").expect("there are some")
 }
 
-fn number(cell: &Cell) -> f64 {
+fn number(cell: &ReportCell) -> f64 {
     match cell {
-        Cell::Number(number) => *number,
+        ReportCell::Number(number) => *number,
         other => panic!("{other:?} is no measure"),
     }
 }
@@ -74,12 +74,16 @@ fn a_valley_crossing_has_two_bridges_and_a_tunnel_with_two_portals() {
         .iter()
         .filter(|solid| scene.features[solid.feature.0 as usize - 2].kind == FeatureKind::Tunnel);
     assert_eq!(portals.count(), 2);
-    let viaduct = table(&scene).rows.iter().find(|row| row[0] == Cell::Text("Cove Creek viaduct".into()));
+    let viaduct =
+        table(&scene).rows.iter().find(|row| row[0] == ReportCell::Text("Cove Creek viaduct".into()));
     let viaduct = viaduct.expect("it is told of");
-    assert_eq!((&viaduct[1], &viaduct[2]), (&Cell::Text("bridge".into()), &Cell::Text("tag".into())));
+    assert_eq!(
+        (&viaduct[1], &viaduct[2]),
+        (&ReportCell::Text("bridge".into()), &ReportCell::Text("tag".into()))
+    );
     assert!(number(&viaduct[4]) > 60.0 && number(&viaduct[5]) < 0.01, "{viaduct:?}");
     assert!(number(&viaduct[9]) > 50.0, "the creek and the track are far below: {viaduct:?}");
-    assert!(matches!(viaduct[7], Cell::Count(5..20)), "{viaduct:?}");
+    assert!(matches!(viaduct[7], ReportCell::Count(5..20)), "{viaduct:?}");
 }
 
 #[test]
@@ -127,7 +131,7 @@ fn holds(scene: &Scene) {
     }
     let rows = &table(scene).rows;
     let of_kind = |kind: &str| {
-        let kind = Cell::Text(kind.into());
+        let kind = ReportCell::Text(kind.into());
         rows.iter().filter(move |row| row[1] == kind)
     };
     for row in of_kind("bridge") {
@@ -136,7 +140,7 @@ fn holds(scene: &Scene) {
     for kind in ["bridge", "tunnel", "underpass"] {
         let portals: usize = of_kind(kind)
             .map(|row| match row[8] {
-                Cell::Count(count) => count,
+                ReportCell::Count(count) => count,
                 _ => 0,
             })
             .sum();

@@ -12,13 +12,13 @@ use sandtable::app::load;
 use sandtable::draw::list::{DrawMesh, FeatureId};
 use sandtable::scene::kind::{FeatureKind, Scene};
 use sandtable::scene::picture::display;
-use sandtable::scene::report::Cell;
+use sandtable::scene::report::ReportCell;
 use sandtable::structure::building::{self, Measures};
-use sandtable::structure::upright::Upright;
-use sandtable::terrain::facets::Facets;
-use sandtable::terrain::finest::Finest;
+use sandtable::structure::upright::DrapedSolid;
+use sandtable::terrain::facets::TriangleSurface;
+use sandtable::terrain::finest::FullResolution;
 use sandtable::terrain::query::{Interpolation, ground_height};
-use sandtable::terrain::underfoot::{Underfoot, runs};
+use sandtable::terrain::underfoot::{SupportSurface, runs};
 use sandtable::view::camera::Camera;
 
 use common::data::data;
@@ -91,7 +91,12 @@ fn a_pad_is_level_under_the_whole_footprint_and_its_earth_is_told() {
         "[[building]]\nname = \"hall\"\npoints = [[200, 500], [230, 500], [230, 520], [200, 520]]\nbase = \"pad\"\n",
     );
     let table = scene.report.table("building pads").expect("told");
-    let [Cell::Text(name), Cell::Number(level), Cell::Number(cut), Cell::Number(fill)] = &table.rows[0][..]
+    let [
+        ReportCell::Text(name),
+        ReportCell::Number(level),
+        ReportCell::Number(cut),
+        ReportCell::Number(fill),
+    ] = &table.rows[0][..]
     else {
         panic!("{table:?}");
     };
@@ -139,10 +144,10 @@ proptest! {
         let camera = Camera::new(Vec3::new(eye.0, eye.1, eye.2), Vec3::new(210.0, 550.0, 50.0), 0.8, (800, 600), (0.5, 9000.0));
         prop_assume!(camera.is_ok());
         let displayed = display(&scene.terrain, &camera.expect("checked"));
-        let ground = Finest { lattice: &scene.terrain.lattice, exaggeration: scene.terrain.exaggeration };
+        let ground = FullResolution { lattice: &scene.terrain.lattice, exaggeration: scene.terrain.exaggeration };
         for standing in &scene.uprights {
-            let Upright::Footing(footing) = &standing.upright else { continue };
-            let mesh = standing.upright.mesh(Underfoot { displayed: &displayed, ground });
+            let DrapedSolid::Footing(footing) = &standing.upright else { continue };
+            let mesh = standing.upright.mesh(SupportSurface { displayed: &displayed, ground });
             let foot = mesh.vertices.iter().map(|vertex| vertex.position[2]).fold(footing.foot_z, f32::min);
             let lowest = lowest_along(&footing.rings[0], &displayed);
             prop_assert!(f64::from(foot) <= lowest + 1e-3, "foot at {foot}, ground at {lowest}");
@@ -150,7 +155,7 @@ proptest! {
     }
 }
 
-fn lowest_along(ring: &[DVec2], ground: &dyn Facets) -> f64 {
+fn lowest_along(ring: &[DVec2], ground: &dyn TriangleSurface) -> f64 {
     let edges = ring.iter().zip(ring.iter().cycle().skip(1));
     let stations = edges.flat_map(|(from, to)| runs(ground, *from, *to));
     stations.flat_map(|run| run.stations().to_vec()).map(|station| station.z).fold(f64::INFINITY, f64::min)

@@ -18,11 +18,11 @@ use sandtable::roam::criterion::screen::ScreenError;
 use sandtable::roam::culling::{PatchHeights, patches_in_view};
 use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::ground::Ground;
-use sandtable::roam::layout::Layout;
+use sandtable::roam::ground::PatchedGround;
+use sandtable::roam::layout::PatchLayout;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::terrain::earthwork;
-use sandtable::terrain::facets::Facets;
+use sandtable::terrain::facets::TriangleSurface;
 use sandtable::terrain::lattice::Lattice;
 use sandtable::terrain::query::service::HeightService;
 use sandtable::terrain::query::{Answer, Interpolation, Surface};
@@ -36,21 +36,22 @@ const CELL_M: f64 = 30.0;
 /// What refinement needs of one lattice.
 struct World {
     lattice: Arc<Lattice>,
-    layout: Layout,
+    layout: PatchLayout,
     errors: ErrorMap,
     heights: PatchHeights,
 }
 
 impl World {
     fn new(lattice: Lattice) -> Self {
-        let layout = Layout::new(lattice.columns(), lattice.rows(), 32).expect("sound");
+        let layout = PatchLayout::new(lattice.columns(), lattice.rows(), 32).expect("sound");
         let errors = ErrorMap::exact(&lattice, &layout);
-        let heights = PatchHeights::new(Ground { lattice: &lattice, layout: &layout, exaggeration: 1.5 });
+        let heights =
+            PatchHeights::new(PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.5 });
         Self { lattice: Arc::new(lattice), layout, errors, heights }
     }
 
-    fn ground(&self) -> Ground<'_> {
-        Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.5 }
+    fn ground(&self) -> PatchedGround<'_> {
+        PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.5 }
     }
 
     fn seen_by(&self, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
@@ -205,7 +206,7 @@ fn displayed_heights_are_those_of_the_drawn_triangles_and_ground_heights_never_c
     for tolerance_px in [0.5, 4.0, 60.0] {
         let camera = camera((1800.0, -2500.0, 1800.0), (1800.0, 1300.0)).expect("sound");
         let terrain = Arc::new(world.seen_by(&camera, tolerance_px));
-        let showing = service.displaying(Arc::clone(&terrain) as Arc<dyn Facets>, 1.5);
+        let showing = service.displaying(Arc::clone(&terrain) as Arc<dyn TriangleSurface>, 1.5);
         assert_eq!(ask(&showing, Surface::Ground), ground, "ground heights do not depend on what is drawn");
         for (&at, answer) in at.iter().zip(ask(&showing, Surface::Displayed)) {
             let drawn = terrain.displayed_z(at - world.lattice.origin()).map(|z| z / 1.5);

@@ -10,8 +10,8 @@ use sandtable::description::parse::parse_bytes;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::kind::Scene;
-use sandtable::scene::report::{Cell, Table};
-use sandtable::scene::roads::centreline::Carried;
+use sandtable::scene::report::{ReportCell, ReportTable};
+use sandtable::scene::roads::centreline::Support;
 use sandtable::scene::roads::profiles::RoadProfile;
 use sandtable::terrain::query::{Interpolation, ground_height};
 
@@ -45,15 +45,15 @@ fn hills(x: f64, y: f64) -> f64 {
     120.0 + 14.0 * libm::sin(x / 60.0) * libm::cos(y / 80.0) + 3.0 * libm::sin(x / 17.0 + y / 23.0)
 }
 
-fn table(scene: &Scene) -> &Table {
+fn table(scene: &Scene) -> &ReportTable {
     scene.report.table("conformed roads").expect("roads conform")
 }
 
-fn number(table: &Table, row: usize, column: &str) -> f64 {
+fn number(table: &ReportTable, row: usize, column: &str) -> f64 {
     let place = table.columns.iter().position(|held| held.name == column).expect("a column");
     match &table.rows[row][place] {
-        Cell::Number(value) => *value,
-        Cell::Count(count) => *count as f64,
+        ReportCell::Number(value) => *value,
+        ReportCell::Count(count) => *count as f64,
         other => panic!("{column} is {other:?}"),
     }
 }
@@ -143,10 +143,10 @@ fn a_ravine_is_bridged_and_a_ridge_tunnelled_by_rule() {
     let report = table(&scene);
     assert_eq!((number(report, 0, "bridges"), number(report, 0, "tunnels")), (1.0, 1.0));
     assert!(number(report, 0, "highest fill") <= 8.0 && number(report, 0, "deepest cut") <= 10.0);
-    let carried: Vec<Carried> = scene.profiles[0].carried.clone();
+    let carried: Vec<Support> = scene.profiles[0].carried.clone();
     let mut order = carried.clone();
     order.dedup();
-    let expected = [Carried::Ground, Carried::Bridge, Carried::Ground, Carried::Tunnel, Carried::Ground];
+    let expected = [Support::Ground, Support::Bridge, Support::Ground, Support::Tunnel, Support::Ground];
     assert_eq!(order, expected);
     assert!(ground(&scene, DVec2::new(320.0, 300.0)) < 61.0, "the ravine stays");
     assert!(ground(&scene, DVec2::new(600.0, 300.0)) > 159.0, "the ridge stays");

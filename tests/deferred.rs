@@ -6,13 +6,13 @@ use sandtable::dem::raster::{Raster, Samples};
 use sandtable::roam::bintree::Triangle;
 use sandtable::roam::block::{BlockSource, PatchBlock, WholeGround};
 use sandtable::roam::criterion::spheres::Spheres;
-use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, Measure, Radius};
+use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::Ground;
-use sandtable::roam::layout::Layout;
+use sandtable::roam::ground::PatchedGround;
+use sandtable::roam::layout::PatchLayout;
 use sandtable::roam::paging::ground::{PagedGround, PagingOptions, exact_spheres};
-use sandtable::roam::refine::changes::Changes;
+use sandtable::roam::refine::changes::RefinementChanges;
 use sandtable::roam::refine::deferred::Deferred;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::roam::spheres::SphereMap;
@@ -35,13 +35,13 @@ fn hills(columns: u32, rows: u32, holes: &[usize]) -> Lattice {
     Lattice::new(DVec2::ZERO, DVec2::new(10.0, 8.0), columns, heights).expect("sound")
 }
 
-fn spheres(ground: Ground<'_>, reach: f32) -> SphereMap {
+fn spheres(ground: PatchedGround<'_>, reach: f32) -> SphereMap {
     let errors = ErrorMap::exact(ground.lattice, ground.layout);
     SphereMap::nested(ground, errors.values().iter().map(|error| error * reach).collect())
 }
 
 /// The triangles of the listed patches as sorted vertex triples: by the bits of a rebuild.
-fn rebuilt(ground: Ground<'_>, map: &SphereMap, eye: Vec3, patches: &[Vertex]) -> Vec<[Vertex; 3]> {
+fn rebuilt(ground: PatchedGround<'_>, map: &SphereMap, eye: Vec3, patches: &[Vertex]) -> Vec<[Vertex; 3]> {
     let active = rebuild(ground.layout, &Spheres::new(ground, map, eye), patches.iter().copied());
     let mut found = Vec::new();
     let mut stack: Vec<Triangle> =
@@ -88,8 +88,8 @@ proptest! {
         path in proptest::collection::vec((0f32..1100.0, 0f32..900.0, 0f32..300.0, 1usize..30, any::<u64>()), 2..6),
     ) {
         let lattice = hills(columns, rows, &holes);
-        let layout = Layout::new(columns, rows, 16).expect("sound");
-        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let layout = PatchLayout::new(columns, rows, 16).expect("sound");
+        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
         let map = spheres(ground, reach);
         let mut walk = Deferred::new(WholeGround { ground, spheres: &map }, 8.0).expect("small patches");
         let all: Vec<Vertex> = layout.patches().collect();
@@ -138,9 +138,9 @@ proptest! {
         stride in 0f32..40.0,
     ) {
         let lattices = edited(columns, rows, &edits);
-        let layout = Layout::new(columns, rows, 16).expect("sound");
-        let grounds: Vec<Ground<'_>> =
-            lattices.iter().map(|lattice| Ground { lattice, layout: &layout, exaggeration: 1.5 }).collect();
+        let layout = PatchLayout::new(columns, rows, 16).expect("sound");
+        let grounds: Vec<PatchedGround<'_>> =
+            lattices.iter().map(|lattice| PatchedGround { lattice, layout: &layout, exaggeration: 1.5 }).collect();
         let maps: Vec<SphereMap> = grounds.iter().map(|&ground| spheres(ground, reach)).collect();
         let all: Vec<Vertex> = layout.patches().collect();
         let mut walk = Deferred::new(WholeGround { ground: grounds[0], spheres: &maps[0] }, 8.0).expect("small");
@@ -165,7 +165,7 @@ fn a_crater_in_view_is_walked_round_as_if_it_had_always_been_there() {
     let options = DynamicOptions {
         patch: 16,
         exaggeration: 1.5,
-        measure: Measure::Midpoint,
+        measure: ErrorMeasure::Midpoint,
         radius: Radius::Plain,
         reach: 40.0,
     };
@@ -195,8 +195,8 @@ fn terrain_that_is_read_as_it_is_walked_shows_what_it_would_from_memory() {
     let raster = raster_of(&lattice);
     let options = PagingOptions { patch: 16, capacity: 4, exaggeration: 1.0 };
     let paged = PagedGround::open(raster, exact_spheres(25.0), &options).expect("sound");
-    let layout = Layout::new(150, 110, 16).expect("sound");
-    let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+    let layout = PatchLayout::new(150, 110, 16).expect("sound");
+    let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
     let map = exact_spheres(25.0)(ground);
     let all: Vec<Vertex> = layout.patches().collect();
     let mut from_file = Deferred::new(paged, 8.0).expect("small patches");
@@ -241,8 +241,8 @@ fn raster_of(lattice: &Lattice) -> Raster {
 #[test]
 fn an_eye_that_leaps_to_nowhere_and_back_sees_what_is_there() {
     let lattice = hills(90, 90, &[]);
-    let layout = Layout::new(90, 90, 16).expect("sound");
-    let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+    let layout = PatchLayout::new(90, 90, 16).expect("sound");
+    let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
     let map = spheres(ground, 20.0);
     let all: Vec<Vertex> = layout.patches().collect();
     let mut walk = Deferred::new(WholeGround { ground, spheres: &map }, 8.0).expect("small patches");
@@ -259,22 +259,22 @@ fn an_eye_that_leaps_to_nowhere_and_back_sees_what_is_there() {
 #[test]
 fn an_eye_at_rest_changes_nothing_and_looks_at_nothing() {
     let lattice = hills(80, 80, &[]);
-    let layout = Layout::new(80, 80, 16).expect("sound");
-    let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+    let layout = PatchLayout::new(80, 80, 16).expect("sound");
+    let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
     let map = spheres(ground, 30.0);
     let mut walk = Deferred::new(WholeGround { ground, spheres: &map }, 8.0).expect("small patches");
     let all: Vec<Vertex> = layout.patches().collect();
     let eye = Vec3::new(300.0, 300.0, 50.0);
     assert!(walk.update(eye, &all).expect("in memory").splits > 100);
-    assert_eq!(walk.update(eye, &all).expect("in memory"), &Changes::default());
+    assert_eq!(walk.update(eye, &all).expect("in memory"), &RefinementChanges::default());
     assert_eq!(walk.examined(), 0);
 }
 
 #[test]
 fn patches_out_of_view_can_be_forgotten_and_come_back_the_same() {
     let lattice = hills(120, 120, &[]);
-    let layout = Layout::new(120, 120, 16).expect("sound");
-    let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+    let layout = PatchLayout::new(120, 120, 16).expect("sound");
+    let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
     let map = spheres(ground, 60.0);
     let mut walk = Deferred::new(WholeGround { ground, spheres: &map }, 8.0).expect("small patches");
     let all: Vec<Vertex> = layout.patches().collect();
@@ -291,8 +291,8 @@ fn patches_out_of_view_can_be_forgotten_and_come_back_the_same() {
 #[test]
 fn patches_with_more_vertices_than_a_u16_counts_are_refused() {
     let lattice = hills(300, 300, &[]);
-    let layout = Layout::new(300, 300, 256).expect("sound");
-    let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+    let layout = PatchLayout::new(300, 300, 256).expect("sound");
+    let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
     let map = SphereMap::nested(ground, vec![0.0; layout.vertex_count()]);
     assert!(Deferred::new(WholeGround { ground, spheres: &map }, 8.0).is_none());
 }

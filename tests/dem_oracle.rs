@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use glam::DVec2;
 use sandtable::dem::fault::DemError;
 use sandtable::dem::raster::Raster;
-use sandtable::dem::read::{Hints, read};
+use sandtable::dem::read::{DemHints, read};
 use sandtable::dem::rgb_png::HeightEncoding;
 use sandtable::dem::sample::{Sampled, bilinear, nearest};
 use sandtable::dem::stats;
@@ -41,7 +41,7 @@ fn data() -> Option<PathBuf> {
 fn open(path: &Path) -> Result<Raster, DemError> {
     let bytes = fs::read(path).expect("a file of the test data");
     let companions = |name: &str| fs::read(name).ok();
-    let hints = Hints { png_height_scale: Some(1.0), companions: &companions, ..Hints::default() };
+    let hints = DemHints { png_height_scale: Some(1.0), companions: &companions, ..DemHints::default() };
     read(&path.to_string_lossy(), &bytes, &hints)
 }
 
@@ -366,7 +366,7 @@ fn map_tiles_of_heights_are_the_model_that_they_were_made_of() {
         ("terrarium.png", HeightEncoding::Terrarium, 1.0 / 256.0),
     ] {
         let bytes = fs::read(folder.join("dem_formats").join(file)).expect("a file of the test data");
-        let hints = |height_encoding| Hints { height_encoding, cell: Some(30.0), ..Hints::default() };
+        let hints = |height_encoding| DemHints { height_encoding, cell: Some(30.0), ..DemHints::default() };
         let tile = read(file, &bytes, &hints(Some(encoding))).expect("a tile");
         assert_eq!((tile.width, tile.height), (wanted.width, wanted.height), "{file}");
         for (ours, wanted) in tile.samples.iter().zip(wanted.samples.iter()) {
@@ -378,7 +378,7 @@ fn map_tiles_of_heights_are_the_model_that_they_were_made_of() {
         assert!(refused.contains("terrain-rgb") && refused.contains("terrarium"), "{refused}");
     }
     let fuji = fs::read(folder.join("dem/fuji_terrain_rgb.png")).expect("a file of the test data");
-    let hints = Hints { height_encoding: Some(HeightEncoding::TerrainRgb), ..Hints::default() };
+    let hints = DemHints { height_encoding: Some(HeightEncoding::TerrainRgb), ..DemHints::default() };
     let summit = stats::of(&read("fuji.png", &fuji, &hints).expect("a tile")).max;
     assert!((3700.0..3800.0).contains(&summit), "Fuji is {summit} m high");
 }
@@ -401,7 +401,7 @@ fn mutants_of_real_files_are_errors_or_rasters() {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         ((state >> 33) as usize) % below
     };
-    let hints = Hints { png_height_scale: Some(1.0), ..Hints::default() };
+    let hints = DemHints { png_height_scale: Some(1.0), ..DemHints::default() };
     for name in [
         "i16_tiled_deflate_p2.tif",
         "cog_f32_overviews.tif",

@@ -8,13 +8,13 @@ use common::forest::{forest, overlook, seen_from};
 use glam::Vec3;
 use sandtable::draw::list::DrawList;
 use sandtable::mesh::sink::VertexId;
-use sandtable::model::kind::{Companions, Model, Part};
+use sandtable::model::kind::{Companions, Model, ModelPart};
 use sandtable::model::read::read;
 use sandtable::model::simplify::levels;
 use sandtable::render::cpu::{Options, render};
 use sandtable::render::picture::Picture;
 use sandtable::scene::kind::Scene;
-use sandtable::scene::picture::{display, draw_list, shoot};
+use sandtable::scene::picture::{build_draw_list, display, draw_list};
 use sandtable::view::camera::Camera;
 
 struct Assets;
@@ -32,7 +32,7 @@ fn asset(name: &str) -> Model {
 
 /// The picture as seen, and the one in which every model is drawn in full.
 fn pictures(scene: &Scene, camera: &Camera) -> ([DrawList; 2], [Picture; 2]) {
-    let seen = shoot(scene, camera, &|_| ()).list;
+    let seen = build_draw_list(scene, camera, &|_| ()).list;
     let (full, _) = draw_list(scene, &display(&scene.terrain, camera), &|_| ());
     let drawn = |list: &DrawList| render(list, camera, &Options::default()).expect("sound");
     let pictures = [drawn(&seen), drawn(&full)];
@@ -87,7 +87,7 @@ fn models_near_the_eye_are_drawn_in_full_and_far_ones_as_pictures() {
     let full = asset("firtree.obj").triangle_count();
     let eye = Vec3::new(1280.0, 1280.0, 345.0);
     let camera = seen_from(&scene, eye, eye + Vec3::new(0.0, 100.0, -12.0), (960, 540));
-    let list = shoot(&scene, &camera, &|_| ()).list;
+    let list = build_draw_list(&scene, &camera, &|_| ()).list;
     let mut nearest = f32::INFINITY;
     let mut farthest_full = 0f32;
     for item in list.items.iter().filter(|item| item.feature.0 > 1) {
@@ -111,12 +111,12 @@ fn a_scene_of_few_models_is_drawn_in_full() {
     assert!(pictures[0].pixels == pictures[1].pixels && pictures[0].features == pictures[1].features);
 }
 
-fn vertices(parts: &[Part]) -> impl Iterator<Item = Vec3> + '_ {
+fn vertices(parts: &[ModelPart]) -> impl Iterator<Item = Vec3> + '_ {
     parts.iter().flat_map(|part| part.mesh.vertices.iter().map(|vertex| Vec3::from(vertex.position)))
 }
 
-fn area(parts: &[Part]) -> f32 {
-    let at = |part: &Part, id: VertexId| Vec3::from(part.mesh.vertices[id.index()].position);
+fn area(parts: &[ModelPart]) -> f32 {
+    let at = |part: &ModelPart, id: VertexId| Vec3::from(part.mesh.vertices[id.index()].position);
     let corners =
         parts.iter().flat_map(|part| part.mesh.triangles.iter().map(|ids| ids.map(|id| at(part, id))));
     corners.map(|[a, b, c]| (b - a).cross(c - a).length() * 0.5).sum()
@@ -141,8 +141,9 @@ fn levels_of_every_model_stay_within_its_bounds_and_keep_its_area() {
 
 #[test]
 fn the_same_model_gives_the_same_levels() {
-    let triangles =
-        || -> Vec<Vec<Part>> { levels(&asset("bridge.glb")).into_iter().map(|level| level.parts).collect() };
+    let triangles = || -> Vec<Vec<ModelPart>> {
+        levels(&asset("bridge.glb")).into_iter().map(|level| level.parts).collect()
+    };
     let [one, other] = [triangles(), triangles()];
     assert_eq!(one.len(), other.len());
     for (one, other) in one.iter().flatten().zip(other.iter().flatten()) {

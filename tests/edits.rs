@@ -6,9 +6,9 @@ use glam::{DVec2, DVec3, Vec3};
 use proptest::prelude::*;
 use sandtable::roam::active::ActiveSet;
 use sandtable::roam::criterion::spheres::Spheres;
-use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, Edit, Measure, Radius, mend_active};
+use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, Edit, ErrorMeasure, Radius, mend_active};
 use sandtable::roam::refine::rebuild::rebuild;
-use sandtable::terrain::brush::{Changes, Crater, Embankment, PostRect, Trench, TyreTrack, set_heights};
+use sandtable::terrain::brush::{BrushChanges, Crater, Embankment, PostRect, Trench, TyreTrack, set_heights};
 use sandtable::terrain::lattice::{Lattice, Post};
 
 const CELL_M: f64 = 10.0;
@@ -39,7 +39,7 @@ enum Brush {
 }
 
 impl Brush {
-    fn apply(&self, lattice: &mut Lattice) -> Changes {
+    fn apply(&self, lattice: &mut Lattice) -> BrushChanges {
         let far = lattice.extent().max;
         let place = |&(x, y): &(f64, f64)| DVec2::new(x, y) * far;
         let line = |line: &[(f64, f64)]| line.iter().map(place).collect::<Vec<DVec2>>();
@@ -134,7 +134,7 @@ proptest! {
         (seed, holes) in (0u64..500, any::<bool>()),
         patch in prop_oneof![Just(8u32), Just(16), Just(64)],
         exaggeration in prop_oneof![Just(1f32), Just(1.7)],
-        measure in prop_oneof![Just(Measure::Midpoint), Just(Measure::Exact)],
+        measure in prop_oneof![Just(ErrorMeasure::Midpoint), Just(ErrorMeasure::Exact)],
         radius in prop_oneof![
             Just(Radius::Plain), Just(Radius::Constrained((1, 1))), Just(Radius::Constrained((2, 1))), Just(Radius::Bounding)
         ],
@@ -165,7 +165,7 @@ fn who_holds_an_epoch_keeps_it_and_otherwise_nothing_is_copied() {
     let options = DynamicOptions {
         patch: 16,
         exaggeration: 1.0,
-        measure: Measure::Midpoint,
+        measure: ErrorMeasure::Midpoint,
         radius: Radius::Plain,
         reach: 10.0,
     };
@@ -187,7 +187,7 @@ fn a_brush_beside_the_terrain_begins_no_epoch() {
     let options = DynamicOptions {
         patch: 16,
         exaggeration: 1.0,
-        measure: Measure::Exact,
+        measure: ErrorMeasure::Exact,
         radius: Radius::Bounding,
         reach: 10.0,
     };

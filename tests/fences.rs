@@ -14,15 +14,15 @@ use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::scene::kind::Scene;
 use sandtable::scene::picture::display;
 use sandtable::structure::fence::{rails, stands};
-use sandtable::structure::fence_band::{Band, check_feet};
+use sandtable::structure::fence_band::{FenceBand, check_feet};
 use sandtable::structure::hedge::hedge;
 use sandtable::structure::power::check_wires;
 use sandtable::structure::trench::parapets;
-use sandtable::structure::upright::Upright;
+use sandtable::structure::upright::DrapedSolid;
 use sandtable::structure::wall::wall;
-use sandtable::terrain::facets::Facets;
-use sandtable::terrain::finest::Finest;
-use sandtable::terrain::underfoot::Underfoot;
+use sandtable::terrain::facets::TriangleSurface;
+use sandtable::terrain::finest::FullResolution;
+use sandtable::terrain::underfoot::SupportSurface;
 use sandtable::view::camera::Camera;
 
 use common::scratch::Scratch;
@@ -46,9 +46,9 @@ fn seen(scene: &Scene, eye: (f32, f32, f32), target: (f32, f32)) -> Option<Displ
     Some(display(&scene.terrain, &camera))
 }
 
-fn under<'a>(scene: &'a Scene, displayed: &'a dyn Facets) -> Underfoot<'a> {
-    let ground = Finest { lattice: &scene.terrain.lattice, exaggeration: scene.terrain.exaggeration };
-    Underfoot { displayed, ground }
+fn under<'a>(scene: &'a Scene, displayed: &'a dyn TriangleSurface) -> SupportSurface<'a> {
+    let ground = FullResolution { lattice: &scene.terrain.lattice, exaggeration: scene.terrain.exaggeration };
+    SupportSurface { displayed, ground }
 }
 
 proptest! {
@@ -67,7 +67,7 @@ proptest! {
         prop_assume!(displayed.is_some());
         let displayed = displayed.expect("checked");
         let points: Vec<DVec2> = points.into_iter().map(DVec2::from).collect();
-        let bands: Vec<Band> = [wall(&points, (width_m, 3.0), 4.0), hedge(&points, (width_m, 3.0), 3.0)]
+        let bands: Vec<FenceBand> = [wall(&points, (width_m, 3.0), 4.0), hedge(&points, (width_m, 3.0), 3.0)]
             .into_iter()
             .chain(rails(&points, width_m, 2.0))
             .chain(parapets(&points, (width_m, 2.0), 5.0))
@@ -90,8 +90,8 @@ proptest! {
         let displayed = displayed.expect("checked");
         for standing in &scene.uprights {
             match &standing.upright {
-                Upright::Band(band) => prop_assert!(check_feet(band, &displayed) < 2e-3),
-                Upright::PowerLine(line) => {
+                DrapedSolid::Band(band) => prop_assert!(check_feet(band, &displayed) < 2e-3),
+                DrapedSolid::PowerLine(line) => {
                     let lacks = check_wires(line, under(scene, &displayed));
                     prop_assert!(lacks < 1e-6, "{lacks} m too near the ground");
                 }
@@ -107,8 +107,8 @@ fn posts_and_obstacles_stand_on_the_displayed_ground_and_reach_into_it() {
         let displayed = seen(scene, (150.0, 150.0, 300.0), (262.0, 455.0)).expect("sound");
         for standing in &scene.uprights {
             let (first, height_m) = match &standing.upright {
-                Upright::Posts(posts) => (posts.stands[0], posts.height_m),
-                Upright::Obstacles(belt) => (belt.stands[0].0, belt.height_m),
+                DrapedSolid::Posts(posts) => (posts.stands[0], posts.height_m),
+                DrapedSolid::Obstacles(belt) => (belt.stands[0].0, belt.height_m),
                 _ => continue,
             };
             let mesh = standing.upright.mesh(under(scene, &displayed));
@@ -138,7 +138,7 @@ fn a_wall_holds_what_its_length_width_and_height_make() {
             (0..quarter).fold(DVec2::new(x, y), |at, _| at.perp()) + DVec2::new(262.0, 455.0)
         };
         let points = [turn(-30.0, 0.0), turn(0.0, 0.0), turn(0.0, 25.0)];
-        let mesh = Upright::Band(wall(&points, (2.0, 3.0), 50.0)).mesh(under(scene, &displayed));
+        let mesh = DrapedSolid::Band(wall(&points, (2.0, 3.0), 50.0)).mesh(under(scene, &displayed));
         let at = |position: [f32; 3]| Vec3::from(position).as_dvec3() - DVec2::new(262.0, 455.0).extend(0.0);
         // Between ground and top every upright prism is as high as the wall: the sides and the top tell its volume.
         let top: f64 = mesh
@@ -187,7 +187,7 @@ fn a_trench_is_dug_where_the_cells_are_fine_enough_and_tells_its_volume() {
     assert!(coarse.report.table("trenches").is_none());
     let fine = built(&format!("[[fence]]\n{line}width = 40\n")).expect("sound");
     let table = fine.report.table("trenches").expect("told");
-    let sandtable::scene::report::Cell::Number(cut) = table.rows[0][2] else { panic!("{table:?}") };
+    let sandtable::scene::report::ReportCell::Number(cut) = table.rows[0][2] else { panic!("{table:?}") };
     // Depth times the mean of top and bottom width times length, and rounded ends.
     assert!((3.0 * 31.0 * 121.0..3.0 * 31.0 * 175.0).contains(&cut), "{cut}");
 }

@@ -12,18 +12,18 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use sandtable::app::arguments::{Access, Backend, Size};
+use sandtable::app::arguments::{Access, Backend, PictureSize};
 use sandtable::app::load;
 use sandtable::app::picture::{Finished, picture_of};
-use sandtable::draw::list::{DrawItem, Layer};
+use sandtable::draw::list::{DepthLayer, DrawItem};
 use sandtable::mesh::check;
 use sandtable::mesh::trimesh::TriMesh;
 use sandtable::ribbon::drape::check_clearance;
 use sandtable::scene::kind::{Scene, View};
-use sandtable::scene::picture::Shot;
+use sandtable::scene::picture::ViewDraw;
 
 /// Small enough to be quick and to be kept, large enough for annotations.
-const SIZE: Size = Size { width: 480, height: 270 };
+const SIZE: PictureSize = PictureSize { width: 480, height: 270 };
 
 /// All golden pictures together stay below this.
 const MOST_BYTES: u64 = 4_000_000;
@@ -123,8 +123,8 @@ fn every_view_s_draw_list_is_sound() {
     }
 }
 
-fn draped(shot: &Shot) -> impl Iterator<Item = &DrawItem> {
-    shot.list.items.iter().filter(|item| matches!(item.layer, Layer::Draped(_)))
+fn draped(shot: &ViewDraw) -> impl Iterator<Item = &DrawItem> {
+    shot.list.items.iter().filter(|item| matches!(item.layer, DepthLayer::Draped(_)))
 }
 
 /// What rounding corners to f32 may come to: twice the step between numbers at the far end of the ground, which

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
-use sandtable::dem::gridding::frame::Frame;
-use sandtable::dem::gridding::{Beyond, GridError, Gridded, Method, grid};
-use sandtable::dem::points::{Hints, PointCloud, PointsError, read};
+use sandtable::dem::gridding::frame::CellGrid;
+use sandtable::dem::gridding::{Beyond, GridError, Gridded, GriddingMethod, grid};
+use sandtable::dem::points::{PointCloud, PointHints, PointsError, read};
 use sandtable::geom::rect::Rect;
 use spade::{DelaunayTriangulation, FloatTriangulation, HasPosition, Point2, Triangulation};
 
@@ -18,12 +18,12 @@ mod skip;
 
 use crate::common_data::data;
 
-const ALL: [Method; 5] = [
-    Method::Tin,
-    Method::Natural,
-    Method::InverseDistance { k: 7, power: 2.0 },
-    Method::Quadrant { power: 1.0 },
-    Method::Nearest,
+const ALL: [GriddingMethod; 5] = [
+    GriddingMethod::Tin,
+    GriddingMethod::Natural,
+    GriddingMethod::InverseDistance { k: 7, power: 2.0 },
+    GriddingMethod::Quadrant { power: 1.0 },
+    GriddingMethod::Nearest,
 ];
 
 fn cloud(points: Vec<DVec3>) -> PointCloud {
@@ -46,20 +46,20 @@ fn hilly(at: DVec2) -> f64 {
     40.0 * (at.x * 0.11).sin() + 25.0 * (at.y * 0.07).cos() + at.x * 0.3
 }
 
-fn square(side: f64, cell: f64) -> Frame {
-    Frame::around(Rect { min: DVec2::ZERO, max: DVec2::splat(side) }, cell).expect("a lattice")
+fn square(side: f64, cell: f64) -> CellGrid {
+    CellGrid::around(Rect { min: DVec2::ZERO, max: DVec2::splat(side) }, cell).expect("a lattice")
 }
 
 fn heights(gridded: &Gridded) -> Vec<f64> {
     gridded.raster.samples.iter().collect()
 }
 
-fn made(cloud: &PointCloud, frame: &Frame, method: Method) -> Vec<f64> {
+fn made(cloud: &PointCloud, frame: &CellGrid, method: GriddingMethod) -> Vec<f64> {
     heights(&grid(cloud, frame, method, Beyond::NoData).expect("a grid"))
 }
 
 /// The centres of a frame's cells, in the order of a raster.
-fn centres(frame: &Frame) -> Vec<DVec2> {
+fn centres(frame: &CellGrid) -> Vec<DVec2> {
     (0..frame.height())
         .flat_map(|row| (0..frame.width()).map(move |column| (column, row)))
         .map(|(column, row)| frame.center(column, row))
@@ -87,8 +87,10 @@ fn triangles_and_natural_neighbours_agree_with_spade() {
     let frame = square(100.0, 0.7);
     let web = web(&points);
     let (linear, natural) = (web.barycentric(), web.natural_neighbor());
-    let (ours_linear, ours_natural) =
-        (made(&cloud(points.clone()), &frame, Method::Tin), made(&cloud(points), &frame, Method::Natural));
+    let (ours_linear, ours_natural) = (
+        made(&cloud(points.clone()), &frame, GriddingMethod::Tin),
+        made(&cloud(points), &frame, GriddingMethod::Natural),
+    );
     let mut compared = 0;
     for ((at, ours), ours_natural) in centres(&frame).iter().zip(ours_linear).zip(ours_natural) {
         let at = Point2::new(at.x, at.y);
@@ -116,7 +118,7 @@ fn inverse_distance_is_that_of_a_full_search_bit_for_bit() {
     );
     let frame = square(50.0, 0.5);
     for (k, power) in [(1, 2.0), (5, 1.0), (12, 2.0), (40, 3.5), (5000, 2.0)] {
-        let ours = made(&cloud(points.clone()), &frame, Method::InverseDistance { k, power });
+        let ours = made(&cloud(points.clone()), &frame, GriddingMethod::InverseDistance { k, power });
         let mut sorted = points.clone();
         sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
         for (at, ours) in centres(&frame).into_iter().zip(ours).filter(|(_, ours)| !ours.is_nan()).step_by(37)
@@ -164,10 +166,10 @@ fn quadrants_take_one_point_from_each_side() {
     ];
     let points = points.map(|(x, y, z)| DVec3::new(x, y, z)).to_vec();
     let frame =
-        Frame::within(Rect { min: DVec2::splat(-0.5), max: DVec2::splat(0.5) }, 1.0).expect("one cell");
-    let quadrants = made(&cloud(points.clone()), &frame, Method::Quadrant { power: 1.0 });
+        CellGrid::within(Rect { min: DVec2::splat(-0.5), max: DVec2::splat(0.5) }, 1.0).expect("one cell");
+    let quadrants = made(&cloud(points.clone()), &frame, GriddingMethod::Quadrant { power: 1.0 });
     assert!((quadrants[0] - 5.0).abs() < 1e-12, "{quadrants:?}");
-    let nearest = made(&cloud(points), &frame, Method::InverseDistance { k: 4, power: 1.0 });
+    let nearest = made(&cloud(points), &frame, GriddingMethod::InverseDistance { k: 4, power: 1.0 });
     assert!((nearest[0] - 5.0).abs() < 1e-12, "{nearest:?}");
 }
 
@@ -177,13 +179,14 @@ fn breaklines_hold_where_points_alone_would_cut_the_corner() {
     let valley = [(-5.0, 0.0), (5.0, 0.0), (-5.0, 10.0), (5.0, 10.0), (-0.5, 5.0), (0.5, 5.0)];
     let mut cloud = cloud(valley.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec());
     let frame =
-        Frame::within(Rect { min: DVec2::new(-0.1, 0.9), max: DVec2::new(0.1, 9.1) }, 0.2).expect("cells");
-    let low = made(&cloud, &frame, Method::Tin);
+        CellGrid::within(Rect { min: DVec2::new(-0.1, 0.9), max: DVec2::new(0.1, 9.1) }, 0.2).expect("cells");
+    let low = made(&cloud, &frame, GriddingMethod::Tin);
     assert!(low.iter().all(|&height| height == 0.0), "{low:?}");
     cloud.breaklines = vec![vec![DVec3::new(0.0, 0.0, 10.0), DVec3::new(0.0, 10.0, 10.0)]];
     for method in ALL {
         let ridge = made(&cloud, &frame, method);
-        let sound = |height: &f64| (height - 10.0).abs() < if method == Method::Tin { 1e-12 } else { 2.0 };
+        let sound =
+            |height: &f64| (height - 10.0).abs() < if method == GriddingMethod::Tin { 1e-12 } else { 2.0 };
         assert!(ridge.iter().all(sound), "{method:?}: {ridge:?}");
     }
 }
@@ -197,8 +200,8 @@ fn breaklines_that_cross_meet_at_the_mean_and_are_told() {
     };
     cloud.breaklines = vec![line((1.0, 5.0), (9.0, 5.0), 4.0), line((5.0, 1.0), (5.0, 9.0), 8.0)];
     let frame =
-        Frame::within(Rect { min: DVec2::splat(4.5), max: DVec2::splat(5.5) }, 1.0).expect("one cell");
-    let gridded = grid(&cloud, &frame, Method::Tin, Beyond::NoData).expect("a grid");
+        CellGrid::within(Rect { min: DVec2::splat(4.5), max: DVec2::splat(5.5) }, 1.0).expect("one cell");
+    let gridded = grid(&cloud, &frame, GriddingMethod::Tin, Beyond::NoData).expect("a grid");
     assert_eq!(heights(&gridded), [6.0]);
     assert_eq!((gridded.report.crossings.count, gridded.report.crossings.largest_gap), (1, 4.0));
     assert_eq!((gridded.report.points, gridded.report.breaklines), (4, 2));
@@ -236,7 +239,7 @@ fn a_regular_grid_comes_back_where_its_posts_are() {
         (0..40u32).flat_map(|y| (0..30u32).map(move |x| DVec2::new(f64::from(x) * 0.1, f64::from(y) * 0.1)));
     let points: Vec<DVec3> = posts.map(|at| at.extend(hilly(at * 20.0))).collect();
     let extent = Rect { min: DVec2::splat(-0.05), max: DVec2::new(2.95, 3.95) };
-    let frame = Frame::within(extent, 0.1).expect("a lattice");
+    let frame = CellGrid::within(extent, 0.1).expect("a lattice");
     for method in ALL {
         let gridded = grid(&cloud(points.clone()), &frame, method, Beyond::Nearest).expect("a grid");
         for (row, heights) in heights(&gridded).chunks(30).rev().enumerate() {
@@ -276,8 +279,8 @@ fn points_on_a_line_are_refused_or_taken_by_the_nearest() {
         let refused = grid(&cloud(points.clone()), &frame, method, Beyond::NoData);
         assert!(matches!(refused, Err(GridError::Collinear { sites: 9 })), "{method:?}");
     }
-    assert!(grid(&cloud(points), &frame, Method::Nearest, Beyond::Nearest).is_ok());
-    let wrong = Method::InverseDistance { k: 3, power: f64::NAN };
+    assert!(grid(&cloud(points), &frame, GriddingMethod::Nearest, Beyond::Nearest).is_ok());
+    let wrong = GriddingMethod::InverseDistance { k: 3, power: f64::NAN };
     assert!(matches!(
         grid(&cloud(Vec::new()), &frame, wrong, Beyond::NoData),
         Err(GridError::Parameter { .. })
@@ -295,8 +298,8 @@ proptest! {
         let mut points = random(count, 60.0, seed, plane);
         points.iter_mut().for_each(|point| *point += DVec3::new(far, far, 0.0));
         let extent = Rect { min: DVec2::splat(far), max: DVec2::splat(far + 60.0) };
-        let frame = Frame::within(extent, 1.5).expect("a lattice");
-        for method in [Method::Tin, Method::Natural] {
+        let frame = CellGrid::within(extent, 1.5).expect("a lattice");
+        for method in [GriddingMethod::Tin, GriddingMethod::Natural] {
             for (at, height) in centres(&frame).into_iter().zip(made(&cloud(points.clone()), &frame, method)) {
                 prop_assert!(height.is_nan() || (height - plane(at - far)).abs() < 1e-6, "{:?} at {}: {}", method, at, height);
             }
@@ -338,17 +341,17 @@ fn surveys_are_read_as_laspy_reads_them() {
         let path = folder.join(name);
         let (oracle, samples) = oracle(&path);
         let classes: Vec<u8> = (0..=255).collect();
-        let all = read(&bytes(&path), &Hints { crs: None, classes: &classes })
+        let all = read(&bytes(&path), &PointHints { crs: None, classes: &classes })
             .unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!(all.points.len() as u64, oracle["points"].as_u64().expect("a count"), "{name}");
         for (index, place, _) in &samples {
             let found = all.points[*index];
             assert!((found - *place).abs().max_element() < 1e-6, "{name} {index}: {found} for {place}");
         }
-        let ground = read(&bytes(&path), &Hints::default()).expect("ground");
+        let ground = read(&bytes(&path), &PointHints::default()).expect("ground");
         assert_eq!(ground.points.len() as u64, oracle["classes"]["2"].as_u64().expect("a count"), "{name}");
         assert!(ground.notes.iter().any(|note| note.contains("of class 2")), "{:?}", ground.notes);
-        let refused = read(&bytes(&path), &Hints { crs: None, classes: &[77] });
+        let refused = read(&bytes(&path), &PointHints { crs: None, classes: &[77] });
         assert!(refused.is_err_and(|error| error.to_string().contains("of class 1")), "{name}");
     }
 }
@@ -356,14 +359,14 @@ fn surveys_are_read_as_laspy_reads_them() {
 #[test]
 fn a_packed_survey_is_its_plain_twin() {
     let Some(folder) = data("pointcloud") else { return };
-    let points = |name: &str| read(&bytes(&folder.join(name)), &Hints::default()).expect("read").points;
+    let points = |name: &str| read(&bytes(&folder.join(name)), &PointHints::default()).expect("read").points;
     assert_eq!(points("simple.las"), points("simple.laz"));
 }
 
 #[test]
 fn heights_of_a_survey_in_feet_are_taken_in_feet() {
     let Some(path) = data("pointcloud/autzen_trim.laz") else { return };
-    let cloud = read(&bytes(&path), &Hints::default()).expect("read");
+    let cloud = read(&bytes(&path), &PointHints::default()).expect("read");
     let crs = cloud.crs.expect("it states a system");
     assert!(!crs.is_geographic() && (crs.metres_per_unit() - 0.3048).abs() < 1e-5, "{}", crs.name());
     assert!((cloud.metres_per_z - 0.3048).abs() < 1e-5, "{}", cloud.metres_per_z);
@@ -372,9 +375,9 @@ fn heights_of_a_survey_in_feet_are_taken_in_feet() {
 #[test]
 fn text_of_a_grid_gives_the_grid_back() {
     let Some(path) = data("dem/3dem_data.xyz") else { return };
-    let cloud = read(&bytes(&path), &Hints::default()).expect("read");
+    let cloud = read(&bytes(&path), &PointHints::default()).expect("read");
     let frame =
-        Frame::within(Rect::around(cloud.points.iter().map(|point| point.truncate())).grown(30.0), 60.0)
+        CellGrid::within(Rect::around(cloud.points.iter().map(|point| point.truncate())).grown(30.0), 60.0)
             .expect("cells");
     for method in ALL {
         let heights = made(&cloud, &frame, method);
@@ -415,7 +418,7 @@ fn packed(format: u8, count: u32) -> Vec<u8> {
 fn chunks_and_layers_of_all_packings_are_unpacked() {
     for format in [0, 1, 3, 6, 7] {
         let count = 120_000;
-        let cloud = read(&packed(format, count), &Hints::default())
+        let cloud = read(&packed(format, count), &PointHints::default())
             .unwrap_or_else(|error| panic!("{format}: {error}"));
         assert_eq!(cloud.points.len(), 40_000, "format {format}");
         for (index, point) in cloud.points.iter().enumerate().step_by(777) {
@@ -433,7 +436,7 @@ fn a_forged_length_of_a_layer_is_refused_before_it_is_allocated() {
     // The offset of the table, the first point, how many points, then the layers' lengths.
     let lengths = points_at + 8 + 30 + 4;
     bytes[lengths..lengths + 4].fill(0xff);
-    let refused = read(&bytes, &Hints::default());
+    let refused = read(&bytes, &PointHints::default());
     assert!(
         matches!(&refused, Err(PointsError::Broken { reason, .. }) if reason.contains("layers")),
         "{refused:?}"
@@ -447,7 +450,7 @@ fn hostile() -> Vec<PathBuf> {
 #[test]
 fn hostile_files_are_read_or_refused_with_a_reason() {
     for path in hostile() {
-        match read(&bytes(&path), &Hints::default()) {
+        match read(&bytes(&path), &PointHints::default()) {
             Ok(cloud) => assert!(!cloud.points.is_empty(), "{}", path.display()),
             Err(error) => assert!(error.to_string().len() > 20, "{}: {error}", path.display()),
         }
@@ -460,7 +463,7 @@ fn forged_and_cut_files_end_in_an_error_or_in_points() {
     for name in ["simple.las", "simple.laz"] {
         let sound = bytes(&folder.join(name));
         for cut in (0..sound.len()).step_by(sound.len() / 60) {
-            let error = read(&sound[..cut], &Hints::default()).expect_err("cut");
+            let error = read(&sound[..cut], &PointHints::default()).expect_err("cut");
             assert!(!error.to_string().is_empty());
         }
         // Bytes of the header, of LASzip's record, of points and of the table of chunks, made large and made zero.
@@ -469,7 +472,7 @@ fn forged_and_cut_files_end_in_an_error_or_in_points() {
             for value in [0, 0xff] {
                 let mut forged = sound.clone();
                 forged[at] = value;
-                let _ = read(&forged, &Hints::default());
+                let _ = read(&forged, &PointHints::default());
             }
         }
     }
@@ -488,7 +491,7 @@ fn forged_counts_are_refused_before_anything_is_allocated() {
     let mut outside = sound.clone();
     outside[points_at..points_at + 8].copy_from_slice(&i64::MAX.to_le_bytes());
     for (what, forged) in [("chunks", chunks), ("points", count), ("a table outside", outside)] {
-        let refused = read(&forged, &Hints::default());
+        let refused = read(&forged, &PointHints::default());
         assert!(matches!(refused, Err(PointsError::Broken { .. })), "{what}: {refused:?}");
     }
 }

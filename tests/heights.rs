@@ -13,18 +13,18 @@ use sandtable::mesh::trimesh::TriMesh;
 use sandtable::roam::criterion::screen::ScreenError;
 use sandtable::roam::culling::{PatchHeights, patches_in_view};
 use sandtable::roam::displayed::DisplayedTerrain;
-use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, Measure, Radius};
+use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
 use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::ground::Ground;
-use sandtable::roam::layout::Layout;
+use sandtable::roam::ground::PatchedGround;
+use sandtable::roam::layout::PatchLayout;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::terrain::brush::Crater;
-use sandtable::terrain::facets::{Facets, facet_contains, plane_z};
+use sandtable::terrain::facets::{TriangleSurface, facet_contains, plane_z};
 use sandtable::terrain::lattice::{Lattice, Post};
 use sandtable::terrain::query::batch::bilinear_ground;
-use sandtable::terrain::query::service::{Epoch, HeightService};
+use sandtable::terrain::query::service::{HeightService, Snapshot};
 use sandtable::terrain::query::source::{raster_height, source_heights};
-use sandtable::terrain::query::tiles::Tiles;
+use sandtable::terrain::query::tiles::HeightTiles;
 use sandtable::terrain::query::{Answer, Interpolation, Status, Surface, ground_height};
 use sandtable::view::camera::Camera;
 use sandtable::view::frustum::Frustum;
@@ -128,7 +128,7 @@ proptest! {
     ) {
         let lattice = Arc::new(rough(origin.into(), cell.into(), size, seed, holes));
         let at = positions(&lattice, 3000, seed ^ 77);
-        let epoch = service_on(&lattice).now();
+        let epoch = service_on(&lattice).snapshot();
         for interpolation in ALL {
             for surface in [Surface::Ground, Surface::Source, Surface::Scene, Surface::Displayed] {
                 let single: Vec<_> =
@@ -139,7 +139,7 @@ proptest! {
         let single: Vec<_> =
             at.iter().map(|&at| bits(ground_height(&lattice, Interpolation::Bilinear, at))).collect();
         let (mut heights, mut statuses) = (vec![0.0; at.len()], vec![Status::Ok; at.len()]);
-        let tiles = Tiles::new(&lattice);
+        let tiles = HeightTiles::new(&lattice);
         bilinear_ground(&lattice, Some(&tiles), &at, (&mut heights, &mut statuses));
         let tiled: Vec<_> =
             heights.iter().zip(&statuses).map(|(&height, &status)| bits(status.with_height(height))).collect();
@@ -191,7 +191,7 @@ proptest! {
 
 /// A batch asked in both forms, which must agree.
 fn together(
-    epoch: &Epoch,
+    epoch: &Snapshot,
     surface: Surface,
     interpolation: Interpolation,
     at: &[DVec2],
@@ -211,7 +211,7 @@ fn together(
 fn a_large_batch_that_makes_tiles_on_its_way_answers_as_before() {
     let lattice = Arc::new(rough(DVec2::ZERO, DVec2::ONE, (1030, 1025), 5, 500));
     let at = positions(&lattice, 2_200_000, 9);
-    let epoch = service_on(&lattice).now();
+    let epoch = service_on(&lattice).snapshot();
     let first = together(&epoch, Surface::Ground, Interpolation::Bilinear, &at);
     let again = together(&epoch, Surface::Ground, Interpolation::Bilinear, &at);
     assert!(first == again, "with tiles and without");
@@ -227,7 +227,7 @@ fn readers_see_whole_epochs_while_the_ground_is_edited() {
     let options = DynamicOptions {
         patch: 32,
         exaggeration: 1.0,
-        measure: Measure::Midpoint,
+        measure: ErrorMeasure::Midpoint,
         radius: Radius::Plain,
         reach: 100.0,
     };
@@ -241,7 +241,7 @@ fn readers_see_whole_epochs_while_the_ground_is_edited() {
         let read = || {
             let (service, mut seen) = (service.clone(), Vec::new());
             while !is_over.load(Ordering::Relaxed) {
-                let epoch = service.now();
+                let epoch = service.snapshot();
                 let (mut heights, mut statuses) = (vec![0.0; at.len()], vec![Status::Ok; at.len()]);
                 epoch.heights_apart(
                     Surface::Ground,
@@ -281,7 +281,7 @@ fn readers_see_whole_epochs_while_the_ground_is_edited() {
 /// A small world that can be seen at any level of detail.
 struct World {
     lattice: Arc<Lattice>,
-    layout: Layout,
+    layout: PatchLayout,
     errors: ErrorMap,
     heights: PatchHeights,
     service: HeightService,
@@ -303,20 +303,24 @@ impl World {
         let heights = (0..columns * rows).map(height).collect();
         let lattice = Lattice::new(DVec2::new(5e5, 4e6), DVec2::splat(30.0), columns, heights);
         let lattice = Arc::new(lattice.expect("sound"));
-        let layout = Layout::new(columns, rows, 16).expect("sound");
+        let layout = PatchLayout::new(columns, rows, 16).expect("sound");
         let errors = ErrorMap::exact(&lattice, &layout);
-        let heights =
-            PatchHeights::new(Ground { lattice: &lattice, layout: &layout, exaggeration: EXAGGERATION });
+        let heights = PatchHeights::new(PatchedGround {
+            lattice: &lattice,
+            layout: &layout,
+            exaggeration: EXAGGERATION,
+        });
         let service = service_on(&lattice);
         let at = positions(&lattice, 160, 3);
-        let epoch = service.now();
+        let epoch = service.snapshot();
         let ground = together(&epoch, Surface::Ground, Interpolation::Planar, &at);
         let source = together(&epoch, Surface::Source, Interpolation::Bilinear, &at);
         Self { lattice, layout, errors, heights, service, at, ground, source }
     }
 
     fn seen_by(&self, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
-        let ground = Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: EXAGGERATION };
+        let ground =
+            PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: EXAGGERATION };
         let patches = patches_in_view(ground, &self.heights, &Frustum::of(camera));
         let criterion = ScreenError::new(ground, &self.errors, &self.heights, camera, tolerance_px);
         let active = rebuild(&self.layout, &criterion, patches.iter().copied());
@@ -338,8 +342,8 @@ proptest! {
         let camera = Camera::new(Vec3::from(eye), target, 0.8, (800, 600), (0.5, 20_000.0)).ok();
         prop_assume!(camera.is_some());
         let terrain = Arc::new(WORLD.seen_by(&camera.expect("checked"), tolerance_px));
-        let showing = WORLD.service.displaying(Arc::clone(&terrain) as Arc<dyn Facets>, f64::from(EXAGGERATION));
-        let epoch = showing.now();
+        let showing = WORLD.service.displaying(Arc::clone(&terrain) as Arc<dyn TriangleSurface>, f64::from(EXAGGERATION));
+        let epoch = showing.snapshot();
         prop_assert!(together(&epoch, Surface::Ground, Interpolation::Planar, &WORLD.at) == WORLD.ground);
         prop_assert!(together(&epoch, Surface::Source, Interpolation::Bilinear, &WORLD.at) == WORLD.source);
         let mut drawn = TriMesh::default();

@@ -6,10 +6,10 @@ use common::adapters::gpus;
 use common::forest::{forest, overlook, seen_from};
 use glam::Vec3;
 use sandtable::draw::list::DrawList;
-use sandtable::render::cpu::{Options, Samples, render};
+use sandtable::render::cpu::{Options, SampleCount, render};
 use sandtable::render::gpu::render_on;
 use sandtable::render::picture::Picture;
-use sandtable::scene::picture::{display, draw_list, shoot};
+use sandtable::scene::picture::{build_draw_list, display, draw_list};
 
 #[test]
 fn leaving_out_what_is_beside_the_picture_changes_no_pixel() {
@@ -17,7 +17,7 @@ fn leaving_out_what_is_beside_the_picture_changes_no_pixel() {
     let eye = Vec3::new(900.0, 700.0, 360.0);
     for (turn, towards) in [Vec3::X, Vec3::Y, Vec3::NEG_X, Vec3::NEG_Y].into_iter().enumerate() {
         let camera = seen_from(&scene, eye, eye + towards * 100.0 - Vec3::Z * 15.0, (320, 200));
-        let seen = shoot(&scene, &camera, &|_| ()).list;
+        let seen = build_draw_list(&scene, &camera, &|_| ()).list;
         let (all, _) = draw_list(&scene, &display(&scene.terrain, &camera), &|_| ());
         assert!(
             seen.items.len() * 2 < all.items.len(),
@@ -33,7 +33,7 @@ fn leaving_out_what_is_beside_the_picture_changes_no_pixel() {
 #[test]
 fn runs_cover_all_items_and_are_few() {
     let scene = forest(3000, &["firtree.obj", "tent.glb"]);
-    let list = shoot(&scene, &overlook(&scene, (640, 360)), &|_| ()).list;
+    let list = build_draw_list(&scene, &overlook(&scene, (640, 360)), &|_| ()).list;
     let runs: Vec<_> = list.runs().collect();
     assert_eq!(runs.iter().map(ExactSizeIterator::len).sum::<usize>(), list.items.len());
     assert!(runs.windows(2).all(|pair| pair[0].end == pair[1].start));
@@ -51,7 +51,8 @@ fn a_forest_is_the_same_bytes_for_one_thread_and_for_two() {
         pool.install(|| {
             let scene = forest(3000, &["firtree.obj", "farmhouse.obj"]);
             let camera = overlook(&scene, (480, 270));
-            render(&shoot(&scene, &camera, &|_| ()).list, &camera, &Options::default()).expect("sound")
+            render(&build_draw_list(&scene, &camera, &|_| ()).list, &camera, &Options::default())
+                .expect("sound")
         })
     };
     let [one, two] = [picture(1), picture(2)];
@@ -62,8 +63,8 @@ fn a_forest_is_the_same_bytes_for_one_thread_and_for_two() {
 fn a_forest_is_nearly_the_same_picture_on_both_renderers() {
     let scene = forest(3000, &["firtree.obj", "tent.glb"]);
     let camera = overlook(&scene, (640, 360));
-    let list: DrawList = shoot(&scene, &camera, &|_| ()).list;
-    let options = Options { samples: Samples::Four, ..Options::default() };
+    let list: DrawList = build_draw_list(&scene, &camera, &|_| ()).list;
+    let options = Options { samples: SampleCount::Four, ..Options::default() };
     let cpu = render(&list, &camera, &options).expect("sound");
     for gpu in gpus() {
         let picture = render_on(gpu, &list, &camera).unwrap_or_else(|error| panic!("{error}"));

@@ -14,7 +14,7 @@ use std::fs;
 use glam::{DAffine2, DVec2};
 use sandtable::dem::mosaic::mosaic;
 use sandtable::dem::raster::{Raster, Samples};
-use sandtable::dem::read::{Hints, read};
+use sandtable::dem::read::{DemHints, read};
 use sandtable::dem::voids;
 use sandtable::description::parse::parse_bytes;
 use sandtable::scene::assets::Assets;
@@ -24,7 +24,7 @@ use sandtable::scene::build::build;
 fn monaco() -> Option<Raster> {
     let path = common_data::data("scenes/monaco/N43E007.hgt.zip")?;
     let bytes = fs::read(path).expect("readable");
-    Some(read("N43E007.hgt.zip", &bytes, &Hints::default()).expect("a tile"))
+    Some(read("N43E007.hgt.zip", &bytes, &DemHints::default()).expect("a tile"))
 }
 
 /// The part of `whole` from (column, row) on.
@@ -96,7 +96,7 @@ fn a_missing_quarter_is_a_gap() {
 fn tiles_of_two_resolutions_are_refused() {
     let Some(whole) = monaco() else { return };
     let bytes = vec![0; 3601 * 3601 * 2];
-    let fine = read("N43E008.hgt", &bytes, &Hints::default()).expect("a tile");
+    let fine = read("N43E008.hgt", &bytes, &DemHints::default()).expect("a tile");
     let names = ["N43E007.hgt".to_owned(), "N43E008.hgt".to_owned()];
     let refused = mosaic(vec![whole, fine]).expect_err("refused").named(&names);
     assert!(refused.contains("N43E007.hgt and N43E008.hgt") && refused.contains("cells"), "{refused}");
@@ -140,7 +140,7 @@ fn scene(scratch: &scratch::Scratch, terrain: &str) -> Result<(Vec<String>, f64,
     let document = parse_bytes("a.toml", terrain.as_bytes()).map_err(|error| error.to_string())?;
     let assets = Assets::new(&path, &[]).map_err(|error| error.to_string())?;
     let scene = build(&document, &assets, &|_| ()).map_err(|error| error.to_string())?;
-    let now = scene.heights.now();
+    let now = scene.heights.snapshot();
     let source = now.source();
     Ok((scene.notes.clone(), source.at(source.width - 2, 1), source.vertical_datum.clone()))
 }

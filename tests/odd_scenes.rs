@@ -8,7 +8,7 @@ use sandtable::description::parse::parse_bytes;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::kind::Scene;
-use sandtable::scene::picture::{camera, shoot};
+use sandtable::scene::picture::{build_draw_list, camera};
 
 /// A folder of its own for one test, with `hill.asc` in it: `columns` × `rows` posts 10 m apart from (5, 5).
 fn folder(test: &str, (columns, rows): (u32, u32)) -> PathBuf {
@@ -60,7 +60,7 @@ fn a_model_whose_foot_is_out_of_view_is_drawn_all_the_same() {
         look_at_height = 310\nfield_of_view = 12\n";
     let scene = scene("mast", (200, 200), text).expect("sound");
     let camera = camera(&scene, &scene.cameras[0], (640, 360)).expect("sound");
-    let shot = shoot(&scene, &camera, &|_| ());
+    let shot = build_draw_list(&scene, &camera, &|_| ());
     assert_eq!(shot.ground_triangles, 0, "no ground is in view");
     let feature = sandtable::draw::list::FeatureId(2);
     let mast = shot.list.items.iter().find(|item| item.feature == feature).expect("the mast is drawn");

@@ -21,15 +21,15 @@ use sandtable::roam::bintree::Triangle;
 use sandtable::roam::culling::PatchHeights;
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::Ground;
-use sandtable::roam::layout::Layout;
+use sandtable::roam::ground::PatchedGround;
+use sandtable::roam::layout::PatchLayout;
 use sandtable::terrain::lattice::Lattice;
 use sandtable::view::camera::Camera;
 
 /// A ground with what refinement needs of it, posts 10 m apart.
 struct World {
     lattice: Lattice,
-    layout: Layout,
+    layout: PatchLayout,
     errors: ErrorMap,
     heights: PatchHeights,
 }
@@ -40,9 +40,10 @@ impl World {
         let heights = (0..columns * rows).map(|at| height((at % columns) as f32, (at / columns) as f32));
         let lattice =
             Lattice::new(DVec2::ZERO, DVec2::splat(10.0), columns, heights.collect()).expect("sound");
-        let layout = Layout::new(columns, rows, patch).expect("sound");
+        let layout = PatchLayout::new(columns, rows, patch).expect("sound");
         let errors = ErrorMap::exact(&lattice, &layout);
-        let heights = PatchHeights::new(Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 });
+        let heights =
+            PatchHeights::new(PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 });
         Self { lattice, layout, errors, heights }
     }
 
@@ -53,8 +54,8 @@ impl World {
         })
     }
 
-    fn ground(&self) -> Ground<'_> {
-        Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
+    fn ground(&self) -> PatchedGround<'_> {
+        PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
     }
 
     fn height(&self, vertex: Vertex) -> f32 {

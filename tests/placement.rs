@@ -9,9 +9,9 @@ use sandtable::draw::list::{DrawItem, FeatureId};
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::kind::{Scene, View};
-use sandtable::scene::picture::{Shot, camera, shoot};
-use sandtable::scene::report::Cell;
-use sandtable::terrain::facets::Facets;
+use sandtable::scene::picture::{ViewDraw, build_draw_list, camera};
+use sandtable::scene::report::ReportCell;
+use sandtable::terrain::facets::TriangleSurface;
 use sandtable::terrain::query::{Interpolation, ground_height};
 
 /// A house of 30 × 20 m and 12 m high, its foot at z = −2, as an OBJ file (Y up, front towards +Z).
@@ -69,7 +69,7 @@ fn houses(lines: &str) -> Scene {
 }
 
 /// What a camera somewhere sees at a tolerance, for a few of both.
-fn shots(mut scene: Scene, mut check: impl FnMut(&Scene, &Shot)) {
+fn shots(mut scene: Scene, mut check: impl FnMut(&Scene, &ViewDraw)) {
     for (index, tolerance_px) in [0.5, 2.0, 8.0, 40.0, 200.0].into_iter().enumerate() {
         scene.terrain.tolerance_px = tolerance_px;
         let turn = index as f32 * 1.3;
@@ -77,12 +77,12 @@ fn shots(mut scene: Scene, mut check: impl FnMut(&Scene, &Shot)) {
         let target = Vec3::new(1000.0, 1000.0, 450.0);
         let view = View { name: String::new(), eye, target, fov_y_rad: 0.8 };
         let camera = camera(&scene, &view, (640, 360)).expect("sound");
-        check(&scene, &shoot(&scene, &camera, &|_| ()));
+        check(&scene, &build_draw_list(&scene, &camera, &|_| ()));
     }
 }
 
 /// The drawn gaps under 7 × 7 places of a house's foot, where the ground is displayed.
-fn gaps(item: &DrawItem, shot: &Shot) -> Vec<f64> {
+fn gaps(item: &DrawItem, shot: &ViewDraw) -> Vec<f64> {
     let part = |index: i32| index as f32 / 3.0;
     let places = (-3..=3).flat_map(|x| (-3..=3).map(move |y| Vec2::new(part(x), part(y)) * HALF * 0.9999));
     places
@@ -92,7 +92,7 @@ fn gaps(item: &DrawItem, shot: &Shot) -> Vec<f64> {
 }
 
 /// The items of the features from 2 on that a scene's houses are.
-fn items(shot: &Shot) -> impl Iterator<Item = &DrawItem> {
+fn items(shot: &ViewDraw) -> impl Iterator<Item = &DrawItem> {
     let mut seen = Vec::new();
     let items = shot.list.items.iter().filter(|item| item.feature > FeatureId::GROUND);
     items.filter(move |item| {
@@ -179,9 +179,9 @@ fn a_plinth_reaches_from_the_house_into_the_ground() {
     assert!(count > 30, "{count} plinths were looked at");
 }
 
-fn number(cell: &Cell) -> f64 {
+fn number(cell: &ReportCell) -> f64 {
     match cell {
-        Cell::Number(number) => *number,
+        ReportCell::Number(number) => *number,
         other => panic!("{other:?} is no number"),
     }
 }
@@ -245,7 +245,7 @@ fn instances_stand_at_their_points_as_their_properties_say() {
     assert!(notes.contains("12 models of 'row' left out: off the elevation model"), "{notes}");
     assert!(notes.contains("16 models of 'row' name none of its variants; 'shrub' was taken"), "{notes}");
     let row = &scene.report.table("instances").expect("told").rows[0];
-    assert_eq!(row[1..4], [Cell::Count(48), Cell::Count(12), Cell::Count(16)]);
+    assert_eq!(row[1..4], [ReportCell::Count(48), ReportCell::Count(12), ReportCell::Count(16)]);
 }
 
 #[test]

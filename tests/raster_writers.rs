@@ -6,8 +6,8 @@ use std::process::Command;
 use glam::{DAffine2, DMat2, DVec2};
 use proptest::prelude::*;
 use sandtable::dem::raster::{Raster, Samples};
-use sandtable::dem::read::{Hints, read};
-use sandtable::dem::write::{Format, WriteError, Written, write};
+use sandtable::dem::read::{DemHints, read};
+use sandtable::dem::write::{DemFormat, WriteError, WrittenDem, write};
 use sandtable::geom::crs::Crs;
 
 #[allow(dead_code, reason = "each test uses its own part")]
@@ -44,13 +44,13 @@ fn raster(width: u32, samples: Samples, crs: Option<&str>) -> Raster {
     }
 }
 
-fn back(name: &str, written: &Written, hints: Hints) -> Raster {
+fn back(name: &str, written: &WrittenDem, hints: DemHints) -> Raster {
     let stem = name.split('.').next().unwrap_or_default();
     let beside = |asked: &str| {
         let is = |extension: &str| asked == format!("{stem}.{extension}");
         written.companions.iter().find(|file| is(file.extension)).map(|file| file.bytes.clone())
     };
-    let hints = Hints { companions: &beside, ..hints };
+    let hints = DemHints { companions: &beside, ..hints };
     read(name, &written.bytes, &hints).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
@@ -101,16 +101,16 @@ proptest! {
         let width = [1, 2, 3, 4][columns as usize - 1];
         for samples in [Samples::F32(narrow), Samples::F64(wide)] {
             let one = raster(width, samples, Some("EPSG:32612"));
-            let written = write(&one, Format::GeoTiff, "a").expect("every raster can be");
-            assert_same(&back("a.tif", &written, Hints::default()), &one);
+            let written = write(&one, DemFormat::GeoTiff, "a").expect("every raster can be");
+            assert_same(&back("a.tif", &written, DemHints::default()), &one);
         }
     }
 
     #[test]
     fn a_text_grid_gives_32_bit_heights_back_to_the_last_bit(values in f32s()) {
         let one = raster(4, Samples::F32(values), Some("EPSG:4326"));
-        match write(&one, Format::Ascii, "a") {
-            Ok(written) => assert_same(&back("a.asc", &written, Hints::default()), &one),
+        match write(&one, DemFormat::Ascii, "a") {
+            Ok(written) => assert_same(&back("a.asc", &written, DemHints::default()), &one),
             Err(error) => assert!(matches!(error, WriteError::HoleTaken { .. }), "{error}"),
         }
     }
@@ -118,8 +118,8 @@ proptest! {
     #[test]
     fn a_terrain_gives_32_bit_heights_back_to_the_last_bit(values in f32s()) {
         let one = raster(3, Samples::F32(values), Some("EPSG:32612"));
-        match write(&one, Format::Bt, "a") {
-            Ok(written) => assert_same(&back("a.bt", &written, Hints::default()), &one),
+        match write(&one, DemFormat::Bt, "a") {
+            Ok(written) => assert_same(&back("a.bt", &written, DemHints::default()), &one),
             Err(error) => {
                 assert!(matches!(error, WriteError::HoleTaken { value: -32768.0, .. }), "{error}");
             }
@@ -131,13 +131,13 @@ proptest! {
         let mut values = values;
         values[5] = f32::NAN;
         let one = raster(4, Samples::F32(values), Some("EPSG:32612"));
-        let written = write(&one, Format::Png, "a").expect("some heights");
+        let written = write(&one, DemFormat::Png, "a").expect("some heights");
         let words: Vec<&str> = written.notes[0].split(' ').collect();
         let number = |at: usize| words[at].parse::<f64>().expect("a number");
-        let hints = Hints {
+        let hints = DemHints {
             png_height_scale: Some(number(4)),
             png_height_offset: Some(number(6)),
-            ..Hints::default()
+            ..DemHints::default()
         };
         let again = back("a.png", &written, hints);
         assert_eq!(again.crs, one.crs);
@@ -173,8 +173,8 @@ fn systems_with_and_without_a_code_come_back_as_they_were() {
         "+proj=longlat +ellps=intl +towgs84=-87,-98,-121",
     ] {
         let one = raster(2, Samples::F32(vec![1.0, 2.0, 3.0, 4.0]), Some(crs));
-        let written = write(&one, Format::GeoTiff, "a").expect("every raster can be");
-        assert_same(&back("a.tif", &written, Hints::default()), &one);
+        let written = write(&one, DemFormat::GeoTiff, "a").expect("every raster can be");
+        assert_same(&back("a.tif", &written, DemHints::default()), &one);
     }
 }
 
@@ -189,7 +189,8 @@ fn feet_the_vertical_datum_and_a_turned_place_come_back() {
     };
     for datum in ["NAVD88", "EPSG:9999", "the harbour's gauge"] {
         one.vertical_datum = Some(datum.into());
-        let again = back("a.tif", &write(&one, Format::GeoTiff, "a").expect("it can be"), Hints::default());
+        let again =
+            back("a.tif", &write(&one, DemFormat::GeoTiff, "a").expect("it can be"), DemHints::default());
         assert_same(&again, &one);
         assert_eq!((again.metres_per_z, again.vertical_datum.as_deref()), (0.3048, Some(datum)));
     }
@@ -203,27 +204,27 @@ fn a_tile_is_written_under_its_own_name_alone() {
         matrix2: DMat2::from_diagonal(DVec2::new(cell, -cell)),
         translation: DVec2::new(7.0 - cell / 2.0, 44.0 + cell / 2.0),
     };
-    let written = write(&one, Format::Hgt, "n43e007").expect("a tile");
-    assert_same(&back("N43E007.hgt", &written, Hints::default()), &one);
-    let refused = write(&one, Format::Hgt, "N44E007").expect_err("another tile");
+    let written = write(&one, DemFormat::Hgt, "n43e007").expect("a tile");
+    assert_same(&back("N43E007.hgt", &written, DemHints::default()), &one);
+    let refused = write(&one, DemFormat::Hgt, "N44E007").expect_err("another tile");
     assert_eq!(refused, WriteError::Name { wanted: "N43E007".into() });
     one.map_from_grid.translation.x += 0.3;
-    assert!(matches!(write(&one, Format::Hgt, "N43E007"), Err(WriteError::Shape { .. })));
+    assert!(matches!(write(&one, DemFormat::Hgt, "N43E007"), Err(WriteError::Shape { .. })));
 }
 
 #[test]
 fn what_a_format_cannot_hold_is_refused_with_what_can() {
     let mut one = raster(2, Samples::F32(vec![-32768.0, 2.0, 3.0, 4.0]), Some("EPSG:32612"));
-    assert!(matches!(write(&one, Format::Bt, "a"), Err(WriteError::HoleTaken { .. })));
+    assert!(matches!(write(&one, DemFormat::Bt, "a"), Err(WriteError::HoleTaken { .. })));
     one.map_from_grid.matrix2.y_axis.y = 5.0;
-    for format in [Format::Ascii, Format::Bt, Format::Hgt] {
+    for format in [DemFormat::Ascii, DemFormat::Bt, DemFormat::Hgt] {
         let refused = write(&one, format, "a").expect_err("south up").to_string();
         assert!(refused.contains("GeoTIFF"), "{refused}");
     }
     one.georeferenced = false;
-    assert!(matches!(write(&one, Format::Ascii, "a"), Err(WriteError::NoPlace { .. })));
+    assert!(matches!(write(&one, DemFormat::Ascii, "a"), Err(WriteError::NoPlace { .. })));
     one.samples = Samples::F32(vec![f32::NAN; 4]);
-    assert_eq!(write(&one, Format::Png, "a"), Err(WriteError::Empty));
+    assert_eq!(write(&one, DemFormat::Png, "a"), Err(WriteError::Empty));
 }
 
 /// What `gdalinfo -json -stats` says of a file.
@@ -242,7 +243,7 @@ fn gdal_is_there() -> bool {
     is_there
 }
 
-fn put(scratch: &Scratch, name: &str, written: &Written) -> PathBuf {
+fn put(scratch: &Scratch, name: &str, written: &WrittenDem) -> PathBuf {
     for companion in &written.companions {
         let stem = name.split('.').next().unwrap_or_default();
         scratch.write(&format!("{stem}.{}", companion.extension), &companion.bytes);
@@ -270,7 +271,9 @@ fn gdal_reads_what_is_written_as_we_do() {
         ),
     ] {
         let one = hills(crs);
-        for (name, format) in [("a.tif", Format::GeoTiff), ("a.asc", Format::Ascii), ("a.bt", Format::Bt)] {
+        for (name, format) in
+            [("a.tif", DemFormat::GeoTiff), ("a.asc", DemFormat::Ascii), ("a.bt", DemFormat::Bt)]
+        {
             let file = put(&scratch, name, &write(&one, format, "a").expect("it can be"));
             let said = gdalinfo(&file);
             assert_eq!(said["size"], serde_json::json!([300, 270]), "{name}");
@@ -284,7 +287,7 @@ fn gdal_reads_what_is_written_as_we_do() {
             assert!((number("STATISTICS_MINIMUM") - stats.min).abs() < 1e-3, "{name}");
             let valid = 100.0 * stats.valid as f64 / one.samples.len() as f64;
             assert!((number("STATISTICS_VALID_PERCENT") - valid).abs() < 0.1, "{name}");
-            if format != Format::Bt {
+            if format != DemFormat::Bt {
                 // GDAL takes a terrain's extents for outer edges, VTP for nodes.
                 for (at, wanted) in one.geotransform().iter().enumerate() {
                     assert!(
@@ -307,7 +310,7 @@ fn whatever_way_gdal_stores_a_raster_it_reads_the_same() {
     let plain = put(
         &scratch,
         "plain.tif",
-        &write(&hills("EPSG:32612"), Format::GeoTiff, "plain").expect("it can be"),
+        &write(&hills("EPSG:32612"), DemFormat::GeoTiff, "plain").expect("it can be"),
     );
     let wanted = open(&plain);
     let mut count = 0;
@@ -356,7 +359,7 @@ fn every_type_of_number_reads_the_same() {
     let scratch = Scratch::new();
     let whole =
         raster(70, Samples::F32((0..70 * 50).map(|i| (i % 120) as f32).collect()), Some("EPSG:32612"));
-    let plain = put(&scratch, "plain.tif", &write(&whole, Format::GeoTiff, "plain").expect("it can be"));
+    let plain = put(&scratch, "plain.tif", &write(&whole, DemFormat::GeoTiff, "plain").expect("it can be"));
     let mut count = 0;
     for number in
         ["Byte", "Int8", "UInt16", "Int16", "UInt32", "Int32", "UInt64", "Int64", "Float32", "Float64"]
@@ -384,7 +387,7 @@ fn every_type_of_number_reads_the_same() {
 fn open(path: &Path) -> Raster {
     let bytes = std::fs::read(path).expect("it was written");
     let beside = |name: &str| std::fs::read(path.with_file_name(name)).ok();
-    let hints = Hints { companions: &beside, ..Hints::default() };
+    let hints = DemHints { companions: &beside, ..DemHints::default() };
     read(&path.file_name().expect("named").to_string_lossy(), &bytes, &hints)
         .unwrap_or_else(|error| panic!("{error}"))
 }
@@ -416,7 +419,7 @@ fn a_mask_beside_a_file_hides_as_one_within_does() {
     let plain = put(
         &scratch,
         "plain.tif",
-        &write(&hills("EPSG:32612"), Format::GeoTiff, "plain").expect("it can be"),
+        &write(&hills("EPSG:32612"), DemFormat::GeoTiff, "plain").expect("it can be"),
     );
     let wanted = open(&plain);
     for (name, inside) in [("inside.tif", "YES"), ("beside.tif", "NO")] {

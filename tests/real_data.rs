@@ -23,13 +23,13 @@ use glam::DVec2;
 use sandtable::annotate::paint::annotate;
 use sandtable::app::labels::annotations;
 use sandtable::description::parse::parse_bytes;
-use sandtable::draw::list::{FeatureId, Layer};
+use sandtable::draw::list::{DepthLayer, FeatureId};
 use sandtable::render::cpu;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::kind::{FeatureKind, Scene};
-use sandtable::scene::picture::{Shot, camera, shoot};
-use sandtable::terrain::facets::Facets;
+use sandtable::scene::picture::{ViewDraw, build_draw_list, camera};
+use sandtable::terrain::facets::TriangleSurface;
 
 use common::scratch::Scratch;
 
@@ -44,7 +44,7 @@ fn scene(folder: &Scratch, text: &str, allowed: &[PathBuf]) -> Result<Scene, Str
 
 /// What one picture came of.
 struct Pictured {
-    shot: Shot,
+    shot: ViewDraw,
     /// How many pixels show each kind of feature.
     pixels: Vec<(FeatureKind, usize)>,
     /// How many pixels show ground.
@@ -55,7 +55,7 @@ struct Pictured {
 fn picture(scene: &Scene, view: &str, name: &str, size: (u32, u32)) -> Pictured {
     let view = scene.view(Some(view)).expect("a camera of the scene");
     let camera = camera(scene, view, size).expect("a sound camera");
-    let shot = shoot(scene, &camera, &|_| ());
+    let shot = build_draw_list(scene, &camera, &|_| ());
     shot.list.check().expect("a sound draw list");
     let mut picture = cpu::render(&shot.list, &camera, &cpu::Options::default()).expect("a sound draw list");
     let showing =
@@ -79,9 +79,9 @@ fn picture(scene: &Scene, view: &str, name: &str, size: (u32, u32)) -> Pictured 
 /// # Panics
 /// Where a corner is off by more than the rounding of its coordinates: they are 32-bit floats, up to 4 mm off
 /// where the model reaches past 65 km, and on steep ground X and Y that are off mean height that is off.
-fn clearance_of_draped(shot: &Shot) -> (f64, usize) {
+fn clearance_of_draped(shot: &ViewDraw) -> (f64, usize) {
     let ground = &*shot.displayed;
-    let draped = shot.list.items.iter().filter(|item| matches!(item.layer, Layer::Draped(_)));
+    let draped = shot.list.items.iter().filter(|item| matches!(item.layer, DepthLayer::Draped(_)));
     let corners = draped.flat_map(|item| &shot.list.meshes[item.mesh.0 as usize].vertices);
     let (mut worst, mut count) = (0.0, 0);
     for corner in corners {

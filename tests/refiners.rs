@@ -16,8 +16,8 @@ use sandtable::roam::criterion::spheres::Spheres;
 use sandtable::roam::emit::bintree;
 use sandtable::roam::emit::world::drawn_posts;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::layout::Layout;
-use sandtable::roam::refine::changes::Changes;
+use sandtable::roam::layout::PatchLayout;
+use sandtable::roam::refine::changes::RefinementChanges;
 use sandtable::roam::refine::coherent::{Coherent, Hidden};
 use sandtable::roam::refine::queues::{Goal, MOST_LEAVES, Queues};
 use sandtable::roam::refine::rebuild::rebuild;
@@ -26,9 +26,9 @@ use terrain::{MONOTONE, Terrain, flights, terrains};
 const CRITERIA: usize = 8;
 
 /// What an update must report of the step from one mesh to the next.
-fn changes_between(terrain: &Terrain, before: &ActiveSet, after: &ActiveSet) -> Changes {
+fn changes_between(terrain: &Terrain, before: &ActiveSet, after: &ActiveSet) -> RefinementChanges {
     let layout = &terrain.layout;
-    let mut changes = Changes::default();
+    let mut changes = RefinementChanges::default();
     for vertex in terrain.vertices().filter(|&vertex| before.is_active(vertex) != after.is_active(vertex)) {
         if after.is_active(vertex) {
             changes.splits += 1;
@@ -43,15 +43,15 @@ fn changes_between(terrain: &Terrain, before: &ActiveSet, after: &ActiveSet) -> 
 }
 
 /// Whether a report tells of a step and, at most, of changes that were taken back on the way.
-fn covers(told: &Changes, step: &Changes) -> bool {
-    let net = |changes: &Changes| changes.splits as i64 - changes.merges as i64;
+fn covers(told: &RefinementChanges, step: &RefinementChanges) -> bool {
+    let net = |changes: &RefinementChanges| changes.splits as i64 - changes.merges as i64;
     net(told) == net(step)
         && told.splits >= step.splits
         && step.dirty.iter().all(|patch| told.dirty.contains(patch))
 }
 
 /// The patches whose square holds the vertex.
-fn patches_at(layout: &Layout, vertex: Vertex) -> impl Iterator<Item = usize> {
+fn patches_at(layout: &PatchLayout, vertex: Vertex) -> impl Iterator<Item = usize> {
     let side = layout.patch();
     let holds = move |corner: &Vertex| {
         (corner.x..=corner.x + side).contains(&vertex.x) && (corner.y..=corner.y + side).contains(&vertex.y)
@@ -105,7 +105,7 @@ proptest! {
             prop_assert_eq!(refiner.active(), &anew, "{} in frame {}", name, frame);
             prop_assert_eq!(refiner.check(), Ok(()));
             prop_assert_eq!(changes, changes_between(&terrain, &before, &anew));
-            prop_assert_eq!(refiner.update(&criterion, &patches), Changes::default(), "at rest");
+            prop_assert_eq!(refiner.update(&criterion, &patches), RefinementChanges::default(), "at rest");
         }
     }
 
@@ -189,7 +189,7 @@ proptest! {
             let wanted = terrain::Any(Box::new(Showing(&criterion, &showing)));
             let all = rebuild(&terrain.layout, &wanted, patches.clone());
             prop_assert_eq!(refiner.active(), &all);
-            prop_assert_eq!(refiner.update(&criterion, &patches), Changes::default(), "at rest");
+            prop_assert_eq!(refiner.update(&criterion, &patches), RefinementChanges::default(), "at rest");
         }
     }
 

@@ -14,7 +14,7 @@ use sandtable::draw::color::Srgba;
 use sandtable::draw::list::{DrawList, DrawMesh, FeatureId};
 use sandtable::draw::pixels::Pixels;
 use sandtable::mesh::sink::MeshSink;
-use sandtable::render::cpu::{Options, Samples, render};
+use sandtable::render::cpu::{Options, SampleCount, render};
 use sandtable::render::picture::Picture;
 use sandtable::view::camera::Camera;
 
@@ -114,7 +114,7 @@ fn every_number_of_samples_sees_the_same_things() {
     let list = landscape::landscape(60);
     let camera = looking(Vec3::new(300.0, -9_400.0, 700.0), Vec3::new(0.0, -3_000.0, 0.0), (330, 190));
     let eight = shot(&list, &camera);
-    for samples in [Samples::One, Samples::Four] {
+    for samples in [SampleCount::One, SampleCount::Four] {
         let options = Options { samples, ..Options::default() };
         let other = render(&list, &camera, &options).expect("a sound list");
         let differing = eight.features.iter().zip(&other.features).filter(|(a, b)| a != b).count();
@@ -134,7 +134,7 @@ fn the_landscape_for_the_eye() {
         ("above.png", Vec3::new(0.0, -4_000.0, 6_000.0), Vec3::new(0.0, -3_900.0, 0.0), (1920, 1080)),
     ] {
         let camera = looking(eye, target, size);
-        for samples in [Samples::One, Samples::Four, Samples::Eight] {
+        for samples in [SampleCount::One, SampleCount::Four, SampleCount::Eight] {
             let options = Options { samples, ..Options::default() };
             let start = std::time::Instant::now();
             let picture = render(&list, &camera, &options).expect("a sound list");

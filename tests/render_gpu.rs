@@ -12,7 +12,7 @@ use common::synthetic::{
 };
 use glam::{Vec2, Vec3};
 use sandtable::draw::color::Srgba;
-use sandtable::draw::list::{DrawList, FeatureId, Layer};
+use sandtable::draw::list::{DepthLayer, DrawList, FeatureId};
 use sandtable::draw::pixels::Pixels;
 use sandtable::render::gpu::adapter::Gpu;
 use sandtable::render::gpu::error::GpuError;
@@ -254,7 +254,7 @@ fn an_empty_list_is_sky_and_solids_need_no_ground_map() {
         let picture = drawn(gpu, &DrawList::default(), &camera);
         assert!(picture.features.iter().all(|&feature| feature == FeatureId::NONE));
         let mut list = scene();
-        list.items.retain(|item| item.layer == Layer::Solid);
+        list.items.retain(|item| item.layer == DepthLayer::Solid);
         list.ground = None;
         let picture = drawn(gpu, &list, &camera);
         assert!(picture.features.contains(&HOUSE));
@@ -273,7 +273,7 @@ fn what_does_not_fit_is_refused_in_a_sentence() {
         }
         let mut unsound = list.clone();
         unsound.items.reverse();
-        assert!(unsound.items[0].layer > Layer::Ground);
+        assert!(unsound.items[0].layer > DepthLayer::Ground);
         let error = render_on(gpu, &unsound, &camera(32, 32)).expect_err("layers fall");
         assert!(matches!(error, GpuError::List(_)), "{error}");
         let mut groundless = list.clone();

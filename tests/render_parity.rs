@@ -11,7 +11,7 @@ use common::adapters::gpus;
 use common::synthetic::{camera, scene, scene_with_contours};
 use glam::Vec3;
 use sandtable::draw::list::DrawList;
-use sandtable::render::cpu::{Options, Samples, render};
+use sandtable::render::cpu::{Options, SampleCount, render};
 use sandtable::render::gpu::render_on;
 use sandtable::render::picture::Picture;
 use sandtable::view::camera::Camera;
@@ -65,7 +65,7 @@ fn compare(list: &DrawList, camera: &Camera, what: &str) {
         let options = Options { samples, ..Options::default() };
         render(list, camera, &options).unwrap_or_else(|error| panic!("{error}"))
     };
-    let (one, four) = (on_cpu(Samples::One), on_cpu(Samples::Four));
+    let (one, four) = (on_cpu(SampleCount::One), on_cpu(SampleCount::Four));
     for gpu in gpus() {
         let picture = render_on(gpu, list, camera).unwrap_or_else(|error| panic!("{error}"));
         let found = Difference::of(&one, &four, &picture);

@@ -12,7 +12,7 @@ mod scenes;
 use sandtable::description::parse::parse_bytes;
 use sandtable::ribbon::partition::overlap_m2;
 use sandtable::ribbon::plan::PlanMesh;
-use sandtable::ribbon::texture::Surface;
+use sandtable::ribbon::texture::RibbonSurface;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::kind::Scene;
@@ -38,7 +38,7 @@ fn built(path: &std::path::Path, allowed: &[std::path::PathBuf]) -> Scene {
     build(&document, &assets, &|_| ()).unwrap_or_else(|diagnostic| panic!("{diagnostic}"))
 }
 
-fn area_m2(scene: &Scene, surfaces: &[Surface]) -> f64 {
+fn area_m2(scene: &Scene, surfaces: &[RibbonSurface]) -> f64 {
     let ribbons = scene.ribbons.iter().filter(|ribbon| surfaces.contains(&ribbon.surface));
     ribbons.map(|ribbon| ribbon.plan.area_m2()).sum()
 }

@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::extract::{Extract, extract};
-use sandtable::roam::layout::Layout;
+use sandtable::roam::layout::PatchLayout;
 use sandtable::terrain::lattice::Lattice;
 
 const SIZE: usize = 257;
@@ -29,7 +29,7 @@ fn sorted(triangles: impl Iterator<Item = Corners>) -> Vec<Corners> {
 fn ours(heights: &[f32], tolerance_m: f32) -> Vec<Corners> {
     let lattice =
         Lattice::new(DVec2::ZERO, DVec2::splat(10.0), SIZE as u32, heights.to_vec()).expect("sound ground");
-    let layout = Layout::new(SIZE as u32, SIZE as u32, SIZE as u32 - 1).expect("one patch");
+    let layout = PatchLayout::new(SIZE as u32, SIZE as u32, SIZE as u32 - 1).expect("one patch");
     let mut mesh = Extract::default();
     extract(&layout, &ErrorMap::midpoint(&lattice, &layout), tolerance_m, &mut mesh);
     let place = |corner: u32| {

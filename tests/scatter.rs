@@ -11,8 +11,8 @@ use sandtable::geom::polygon;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::kind::Scene;
-use sandtable::scene::report::Cell;
-use sandtable::terrain::query::gradient::{Patch, ground_gradient};
+use sandtable::scene::report::ReportCell;
+use sandtable::terrain::query::gradient::{GradientSurface, ground_gradient};
 use sandtable::terrain::query::{Interpolation, ground_height};
 
 /// 101 × 101 posts 10 m apart; the south-west post stands at `corner`. A valley along x = 500.
@@ -140,14 +140,14 @@ fn slope_and_elevation_limits_hold_and_what_they_cost_is_told() {
     for placement in &scene.placements {
         let map = placement.at.as_dvec2() + lattice.origin();
         let height = ground_height(lattice, Interpolation::Planar, map).height_m().expect("ground");
-        let slope = ground_gradient(lattice, Patch::Planar, map).expect("ground").slope_deg();
+        let slope = ground_gradient(lattice, GradientSurface::Planar, map).expect("ground").slope_deg();
         assert!((119.99..=200.01).contains(&height), "{height}");
         assert!((9.9..=25.1).contains(&slope), "{slope}");
     }
     let row = &scene.report.table("scattered").expect("told").rows[0];
-    assert_eq!(row[1], Cell::Count(scene.placements.len()));
-    assert!(matches!(row[3], Cell::Count(steep) if steep > 1000));
-    assert!(matches!(row[4], Cell::Count(low) if low > 1000), "{row:?}");
+    assert_eq!(row[1], ReportCell::Count(scene.placements.len()));
+    assert!(matches!(row[3], ReportCell::Count(steep) if steep > 1000));
+    assert!(matches!(row[4], ReportCell::Count(low) if low > 1000), "{row:?}");
     assert!(scene.notes.iter().any(|note| note.contains("models stand in 1 area")), "{:?}", scene.notes);
 }
 

@@ -8,10 +8,10 @@ mod schema;
 use proptest::prelude::{ProptestConfig, any};
 use sandtable::description::diagnostic::Diagnostics;
 use sandtable::description::document::{Color, Document, RampChoice};
-use sandtable::description::expression::{Choice, Quantity};
+use sandtable::description::expression::{ComputedWord, Quantity};
 use sandtable::description::features::{Match, Scalar};
 use sandtable::description::parse::{MAX_BYTES, parse, parse_bytes};
-use sandtable::description::words::{Clamp, LabelKind, Ramp, Surface};
+use sandtable::description::words::{Clamp, LabelKind, RampName, RoadSurface};
 
 /// Every key that there is.
 const COMPLETE: &str = r##"title = "Tal 山谷"
@@ -263,7 +263,7 @@ fn features_are_read_with_their_sources() {
     assert_eq!(first.source.span(), points.span());
     assert_eq!(
         first.surface.as_ref().map(|surface| surface.get_ref().clone()),
-        Some(Choice::Fixed(Surface::Gravel))
+        Some(ComputedWord::Fixed(RoadSurface::Gravel))
     );
     assert_eq!(second.source.file.as_ref().map(|file| file.get_ref().as_str()), Some("roads.geojson"));
     let filter = second.source.filter.as_ref().expect("a filter").get_ref();
@@ -297,7 +297,7 @@ fn a_ramp_may_be_a_word_and_tables_may_be_inline() {
     let text =
         format!("{LEAST}[style]\nramp = \"desert\"\ncontours = {{ interval = 5 }}\nlight.azimuth = 3\n");
     let style = read(&text).unwrap_or_else(|errors| panic!("{errors}")).style;
-    assert_eq!(style.ramp.map(|ramp| ramp.into_inner()), Some(RampChoice::Named(Ramp::Desert)));
+    assert_eq!(style.ramp.map(|ramp| ramp.into_inner()), Some(RampChoice::Named(RampName::Desert)));
     assert!(style.contours.is_some() && style.light.azimuth.is_some());
 }
 

@@ -8,13 +8,13 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use sandtable::terrain::lattice::{Lattice, Post};
-use sandtable::terrain::profile::{Summary, profile};
+use sandtable::terrain::profile::{ProfileSummary, profile};
 use sandtable::terrain::sight::Curvature;
 use sandtable::terrain::sight::crossings::crossings;
 use sandtable::terrain::sight::ground::SightGround;
-use sandtable::terrain::sight::line::{End, Sight, line_of_sight};
-use sandtable::terrain::sight::pyramid::PostRect;
-use sandtable::terrain::sight::ray::{Hit, Ray};
+use sandtable::terrain::sight::line::{Sight, SightEnd, line_of_sight};
+use sandtable::terrain::sight::pyramid::PyramidRect;
+use sandtable::terrain::sight::ray::{Ray, RayHit};
 use sandtable::terrain::sight::rise::{Raised, required_rise};
 
 /// Knuth's linear congruence (MMIX), from 0 up to 1.
@@ -83,7 +83,7 @@ fn place(lattice: &Lattice, random: &mut Random) -> DVec2 {
 }
 
 /// Two ends; some along an edge, some along a diagonal, some very near to each other.
-fn ends(lattice: &Lattice, random: &mut Random) -> (End, End) {
+fn ends(lattice: &Lattice, random: &mut Random) -> (SightEnd, SightEnd) {
     let from = place(lattice, random);
     let other = place(lattice, random);
     let last = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
@@ -97,7 +97,7 @@ fn ends(lattice: &Lattice, random: &mut Random) -> (End, End) {
     };
     let mut end = |grid: DVec2| {
         let above_m = [0.0, 1.8, 30.0, 400.0][random.below(4) as usize] * random.part();
-        End { at: lattice.origin() + grid * lattice.cell(), above_m }
+        SightEnd { at: lattice.origin() + grid * lattice.cell(), above_m }
     };
     (end(from), end(to))
 }
@@ -196,9 +196,9 @@ fn after_an_edit_lines_are_those_of_the_new_ground_and_the_old_ground_keeps_its_
     for row in 20..40 {
         edited.pin(Post { column: 33, row }, 50.0);
     }
-    let rect = PostRect { first: Post { column: 33, row: 20 }, last: Post { column: 33, row: 39 } };
+    let rect = PyramidRect { first: Post { column: 33, row: 20 }, last: Post { column: 33, row: 39 } };
     let after = before.edited(Arc::new(edited.clone()), rect);
-    let end = |column: f64| End { at: ORIGIN + DVec2::new(column, 30.0) * CELL, above_m: 2.0 };
+    let end = |column: f64| SightEnd { at: ORIGIN + DVec2::new(column, 30.0) * CELL, above_m: 2.0 };
     assert_eq!(before.line_of_sight(end(3.0), end(60.5), Curvature::FLAT), Sight::Clear);
     let blocked = line_of_sight(&edited, end(3.0), end(60.5), Curvature::FLAT);
     assert!(matches!(blocked, Sight::Blocked(_)));
@@ -273,7 +273,7 @@ fn a_ray_meets_the_triangle_that_trying_every_one_finds() {
             let found = ground.pick(ray, farthest_m);
             let expected = brute_force(lattice, ray, farthest_m);
             match (found, expected) {
-                (Some(Hit { distance_m, at, normal }), Some((distance, expected_normal))) => {
+                (Some(RayHit { distance_m, at, normal }), Some((distance, expected_normal))) => {
                     let far = 1e-6 * distance.max(1.0);
                     assert!((distance_m - distance).abs() < far, "{name}: {ray:?} {distance_m} {distance}");
                     let along = ray.origin + ray.direction.normalize() * distance_m;
@@ -380,7 +380,7 @@ fn over_a_cone_a_target_must_rise_to_the_tangent() {
         (100.0 - at.distance(apex)).max(0.0) as f32
     });
     let ground = SightGround::new(Arc::new(cone));
-    let end = |x: f64| End { at: ORIGIN + DVec2::new(x, 800.0), above_m: 0.0 };
+    let end = |x: f64| SightEnd { at: ORIGIN + DVec2::new(x, 800.0), above_m: 0.0 };
     let (observer, target) = (end(140.0), end(1140.0));
     // The line from the ground, 500 m before the apex, over it, 500 m on: twice as high.
     let rise = ground.required_rise(observer, target, Curvature::FLAT, Raised::Target);
@@ -395,7 +395,7 @@ fn over_the_sea_the_rise_is_that_of_the_horizon() {
     let sea = lattice(1025, 9, |_| 0.0);
     let ground = SightGround::new(Arc::new(sea));
     let curvature = Curvature { radius_m: 6_371_000.0, refraction: 0.0 };
-    let end = |x: f64, above_m: f64| End { at: ORIGIN + DVec2::new(x, 50.0), above_m };
+    let end = |x: f64, above_m: f64| SightEnd { at: ORIGIN + DVec2::new(x, 50.0), above_m };
     // √(2Rh) = 5048 m to the horizon of an eye at 2 m; what stands 4000 m beyond shows above 4000²/2R = 1.256 m.
     let horizon_m = (2.0 * curvature.radius_m * 2.0f64).sqrt();
     let target = end(horizon_m + 4000.0, 0.0);
@@ -445,7 +445,7 @@ fn a_profile_over_a_sinusoid_has_its_length_its_ascent_and_its_extremes() {
         (50.0 * (std::f64::consts::TAU * f64::from(column) * CELL.x / 640.0).sin()) as f32
     });
     let line = [ORIGIN + DVec2::new(0.0, 20.0), ORIGIN + DVec2::new(6400.0, 20.0)];
-    let summary = Summary::of(&profile(&wave, &line));
+    let summary = ProfileSummary::of(&profile(&wave, &line));
     assert!(
         (summary.ascent_m - 1000.0).abs() < 1e-3 && (summary.descent_m - 1000.0).abs() < 1e-3,
         "{summary:?}"

@@ -10,12 +10,12 @@ use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::errors::midpoint::midpoint_error_at;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::Ground;
-use sandtable::roam::layout::Layout;
+use sandtable::roam::ground::PatchedGround;
+use sandtable::roam::layout::PatchLayout;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::roam::roughness::Roughness;
 use sandtable::roam::spheres::{SphereMap, reach};
-use sandtable::terrain::facets::Facets;
+use sandtable::terrain::facets::TriangleSurface;
 use sandtable::terrain::lattice::Lattice;
 use sandtable::view::camera::Camera;
 
@@ -40,7 +40,7 @@ fn terrain(columns: u32, rows: u32, seed: u64, hole_every: u64) -> Lattice {
 }
 
 /// All three kinds of spheres.
-fn kinds(ground: Ground<'_>, reach: f32) -> [SphereMap; 3] {
+fn kinds(ground: PatchedGround<'_>, reach: f32) -> [SphereMap; 3] {
     let midpoint = ErrorMap::midpoint(ground.lattice, ground.layout);
     let exact = ErrorMap::exact(ground.lattice, ground.layout);
     [
@@ -51,7 +51,7 @@ fn kinds(ground: Ground<'_>, reach: f32) -> [SphereMap; 3] {
 }
 
 /// The midpoint error of every vertex alone.
-fn midpoint_errors(lattice: &Lattice, layout: &Layout) -> Vec<f32> {
+fn midpoint_errors(lattice: &Lattice, layout: &PatchLayout) -> Vec<f32> {
     let columns = layout.columns();
     let vertices = (0..layout.vertex_count())
         .map(|index| Vertex::new((index % columns) as i32, (index / columns) as i32));
@@ -59,7 +59,7 @@ fn midpoint_errors(lattice: &Lattice, layout: &Layout) -> Vec<f32> {
 }
 
 /// Radii nested one vertex at a time, the slow and obvious way.
-fn nested_plainly(ground: Ground<'_>, own: &[f32]) -> Vec<f32> {
+fn nested_plainly(ground: PatchedGround<'_>, own: &[f32]) -> Vec<f32> {
     let layout = ground.layout;
     let mut radii = own.to_vec();
     let mut vertices: Vec<Vertex> = (0..layout.vertex_count())
@@ -91,8 +91,8 @@ proptest! {
         eye in (-500f32..3000.0, -500f32..2500.0, 300f32..2500.0), reach in 0.5f32..300.0,
     ) {
         let lattice = terrain(columns, rows, seed, hole_every);
-        let layout = Layout::new(columns, rows, 16).expect("sound");
-        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: EXAGGERATION };
+        let layout = PatchLayout::new(columns, rows, 16).expect("sound");
+        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: EXAGGERATION };
         let eye = Vec3::from(eye);
         for map in kinds(ground, reach) {
             prop_assert_eq!(map.check(ground), Ok(()));
@@ -118,8 +118,8 @@ proptest! {
         (columns, rows) in (2u32..90, 2u32..90), seed in 0u64..1000, threads in 1usize..4,
     ) {
         let lattice = terrain(columns, rows, seed, 30);
-        let layout = Layout::new(columns, rows, 32).expect("sound");
-        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: EXAGGERATION };
+        let layout = PatchLayout::new(columns, rows, 32).expect("sound");
+        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: EXAGGERATION };
         let own: Vec<f32> = midpoint_errors(&lattice, &layout).into_iter().map(|error| error * 7.0).collect();
         let expected = nested_plainly(ground, &own);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be had");
@@ -130,8 +130,8 @@ proptest! {
     #[test]
     fn errors_of_a_vertex_alone_or_raised_give_the_same_plain_spheres(seed in 0u64..1000) {
         let lattice = terrain(65, 65, seed, 0);
-        let layout = Layout::new(65, 65, 64).expect("sound");
-        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: EXAGGERATION };
+        let layout = PatchLayout::new(65, 65, 64).expect("sound");
+        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: EXAGGERATION };
         let own = midpoint_errors(&lattice, &layout);
         let raised = SphereMap::plain(ground, &ErrorMap::raised(own.clone(), &layout), 20.0);
         let alone = own.into_iter().map(|error| (20.0 * f64::from(error) * f64::from(EXAGGERATION)) as f32);
@@ -151,9 +151,9 @@ proptest! {
         target in (0f32..2880.0, 0f32..2400.0),
         tolerance_px in 0.5f32..30.0,
     ) {
-        static WORLD: std::sync::LazyLock<(Arc<Lattice>, Layout, ErrorMap)> = std::sync::LazyLock::new(|| {
+        static WORLD: std::sync::LazyLock<(Arc<Lattice>, PatchLayout, ErrorMap)> = std::sync::LazyLock::new(|| {
             let lattice = terrain(SIDE, SIDE, 5, 0);
-            let layout = Layout::new(SIDE, SIDE, 32).expect("sound");
+            let layout = PatchLayout::new(SIDE, SIDE, 32).expect("sound");
             let errors = ErrorMap::exact(&lattice, &layout);
             (Arc::new(lattice), layout, errors)
         });
@@ -162,7 +162,7 @@ proptest! {
         let camera = Camera::new(Vec3::from(eye), target, 0.8, (800, 600), (0.5, 20_000.0));
         prop_assume!(camera.is_ok());
         let camera = camera.expect("checked");
-        let ground = Ground { lattice, layout, exaggeration: EXAGGERATION };
+        let ground = PatchedGround { lattice, layout, exaggeration: EXAGGERATION };
         let map = SphereMap::bounding(ground, errors, reach(&camera, tolerance_px));
         let active = rebuild(layout, &Spheres::new(ground, &map, camera.eye()), layout.patches());
         let shown = DisplayedTerrain::new(Arc::clone(lattice), active, EXAGGERATION, layout.patches().collect());
@@ -184,16 +184,16 @@ proptest! {
 #[test]
 fn level_ground_never_shows_and_a_hole_always_does() {
     let mut heights = vec![7.0; 17 * 17];
-    let layout = Layout::new(17, 17, 16).expect("sound");
+    let layout = PatchLayout::new(17, 17, 16).expect("sound");
     let make = |heights: &[f32]| Lattice::new(DVec2::ZERO, DVec2::ONE, 17, heights.to_vec()).expect("sound");
     let level = make(&heights);
-    let ground = Ground { lattice: &level, layout: &layout, exaggeration: 1.0 };
+    let ground = PatchedGround { lattice: &level, layout: &layout, exaggeration: 1.0 };
     for map in kinds(ground, 50.0) {
         assert!(map.values().iter().all(|&radius| radius == 0.0));
     }
     heights[8 * 17 + 8] = f32::NAN;
     let holed = make(&heights);
-    let ground = Ground { lattice: &holed, layout: &layout, exaggeration: 1.0 };
+    let ground = PatchedGround { lattice: &holed, layout: &layout, exaggeration: 1.0 };
     for map in kinds(ground, 0.0) {
         assert_eq!(map.at(&layout, Vertex::new(8, 8)), f32::INFINITY);
         assert_eq!(map.check(ground), Ok(()));
@@ -203,9 +203,9 @@ fn level_ground_never_shows_and_a_hole_always_does() {
 #[test]
 fn a_map_in_which_a_child_reaches_out_of_its_parent_is_found_out() {
     let lattice = terrain(17, 17, 1, 0);
-    let layout = Layout::new(17, 17, 16).expect("sound");
-    let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
-    let steep = Ground { exaggeration: 3.0, ..ground };
+    let layout = PatchLayout::new(17, 17, 16).expect("sound");
+    let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+    let steep = PatchedGround { exaggeration: 3.0, ..ground };
     let [map, ..] = kinds(ground, 5.0);
     assert!(map.check(steep).is_err_and(|why| why.contains("its child")));
 }

@@ -6,8 +6,8 @@ use std::path::Path;
 use glam::DVec2;
 use sandtable::geom::crs::Crs;
 use sandtable::vector::error::VectorError;
-use sandtable::vector::feature::{Geometry, Layer};
-use sandtable::vector::read::{Hints, read};
+use sandtable::vector::feature::{Geometry, VectorLayer};
+use sandtable::vector::read::{VectorHints, read};
 use serde_json::Value;
 
 #[allow(dead_code, reason = "each test uses its own part")]
@@ -19,19 +19,19 @@ mod skip;
 use crate::common_data::{data, files_below};
 
 /// A file's layer, with what lies beside the file, in the system `stated` or what it says.
-fn read_layer(path: &Path, layer: Option<&str>, stated: Option<&Crs>) -> Result<Layer, VectorError> {
+fn read_layer(path: &Path, layer: Option<&str>, stated: Option<&Crs>) -> Result<VectorLayer, VectorError> {
     let bytes = std::fs::read(path).expect("the file is there");
     let companions = |name: &str| std::fs::read(name).ok();
-    let hints = Hints { crs: stated, layer, companions: &companions };
+    let hints = VectorHints { crs: stated, layer, companions: &companions };
     read(&path.to_string_lossy(), &bytes, &hints)
 }
 
-fn layer(path: &Path) -> Layer {
+fn layer(path: &Path) -> VectorLayer {
     read_layer(path, None, None).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
 /// Vertices as GDAL counts them: a ring's first vertex twice.
-fn stored_vertices(layer: &Layer) -> usize {
+fn stored_vertices(layer: &VectorLayer) -> usize {
     let closing = |geometry: &Geometry| match geometry {
         Geometry::Polygons(polygons) => polygons.iter().map(|polygon| 1 + polygon.holes.len()).sum(),
         Geometry::Points(_) | Geometry::Lines(_) => 0,
@@ -59,7 +59,7 @@ fn layer_name(expected: &Value) -> Option<&str> {
 
 /// How many features of each of GDAL's types there are; a shape of one part counts as single where the oracle has
 /// singles, since files say nothing of it that is kept.
-fn types(layer: &Layer, expected: &Value) -> BTreeMap<String, u64> {
+fn types(layer: &VectorLayer, expected: &Value) -> BTreeMap<String, u64> {
     let mut types = BTreeMap::new();
     for feature in &layer.features {
         let (kind, parts) = match &feature.geometry {
@@ -162,7 +162,7 @@ fn assert_same_system(found: &Crs, wanted: &str, expected: &Value, title: &str) 
     assert!(back.distance(middle) < 200.0, "{title}: {} is not {}", found.name(), wanted.name());
 }
 
-fn bounds(layer: &Layer) -> [f64; 4] {
+fn bounds(layer: &VectorLayer) -> [f64; 4] {
     let mut bounds = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
     for vertex in layer.features.iter().flat_map(|feature| feature.geometry.vertices()) {
         bounds = [
@@ -186,7 +186,7 @@ fn odd_geojson_is_read_or_refused_but_never_a_panic() {
     for entry in std::fs::read_dir(&folder).expect("readable").flatten() {
         let bytes = std::fs::read(entry.path()).expect("readable");
         for cut in 0..bytes.len() {
-            let _ = read("a.geojson", &bytes[..cut], &Hints::default());
+            let _ = read("a.geojson", &bytes[..cut], &VectorHints::default());
         }
     }
 }
@@ -266,7 +266,7 @@ fn read_all(path: &Path, bytes: &[u8]) -> Result<(), VectorError> {
     let companions = |name: &str| std::fs::read(name).ok();
     let local = Crs::local();
     let read = |layer| {
-        let hints = Hints { crs: Some(&local), layer, companions: &companions };
+        let hints = VectorHints { crs: Some(&local), layer, companions: &companions };
         read(&path.to_string_lossy(), bytes, &hints).map(drop)
     };
     match read(None) {

@@ -4,13 +4,13 @@ use std::fs;
 
 use glam::DVec2;
 use proptest::prelude::*;
-use sandtable::dem::read::{self, Hints};
+use sandtable::dem::read::{self, DemHints};
 use sandtable::terrain::lattice::{Lattice, Post};
 use sandtable::terrain::query::Answer;
 use sandtable::terrain::sight::Curvature;
-use sandtable::terrain::sight::line::{End, Sight, line_of_sight};
+use sandtable::terrain::sight::line::{Sight, SightEnd, line_of_sight};
 use sandtable::terrain::sight::viewshed::{
-    Sector, Seen, Viewshed, ViewshedOptions, viewshed, viewshed_by_lines,
+    PostVisibility, Sector, Viewshed, ViewshedOptions, viewshed, viewshed_by_lines,
 };
 
 use crate::common::data::data;
@@ -59,7 +59,7 @@ fn ground(kind: u32, (columns, rows): (u32, u32), cell: DVec2, holes: f64, seed:
 /// All options but where the observer stands.
 fn options(at: DVec2) -> ViewshedOptions {
     ViewshedOptions {
-        observer: End { at, above_m: 2.0 },
+        observer: SightEnd { at, above_m: 2.0 },
         target_above_m: 0.0,
         range_m: f64::INFINITY,
         sector: Sector::ALL,
@@ -68,7 +68,7 @@ fn options(at: DVec2) -> ViewshedOptions {
 }
 
 /// Where the viewshed and the lines differ.
-fn differences(lattice: &Lattice, options: &ViewshedOptions) -> Vec<(Post, Seen, Seen)> {
+fn differences(lattice: &Lattice, options: &ViewshedOptions) -> Vec<(Post, PostVisibility, PostVisibility)> {
     let (swept, lines) = (viewshed(lattice, options), viewshed_by_lines(lattice, options));
     let (swept, lines) = match (swept, lines) {
         (Ok(swept), Ok(lines)) => (swept, lines),
@@ -115,7 +115,7 @@ proptest! {
             _ => DVec2::new(grid.x.round(), grid.y),
         };
         let options = ViewshedOptions {
-            observer: End { at: ORIGIN + grid * cell, above_m: above },
+            observer: SightEnd { at: ORIGIN + grid * cell, above_m: above },
             target_above_m: target,
             range_m: range,
             sector,
@@ -131,16 +131,16 @@ fn on_posts_with_whole_coordinates_a_line_of_sight_says_the_same_to_the_last_bit
     let lattice = ground(1, (61, 47), DVec2::new(10.0, 30.0), 0.01, 5);
     for (column, row, above_m) in [(30.0, 20.0, 2.0), (0.0, 46.0, 0.0), (12.5, 7.25, 10.0)] {
         let options = ViewshedOptions {
-            observer: End { at: ORIGIN + DVec2::new(column, row) * lattice.cell(), above_m },
+            observer: SightEnd { at: ORIGIN + DVec2::new(column, row) * lattice.cell(), above_m },
             ..options(ORIGIN)
         };
         let swept = viewshed(&lattice, &options).expect("there is ground");
         for (post, &seen) in lattice.posts().zip(&swept.posts) {
-            let target = End { at: lattice.map_position(post), above_m: 0.0 };
+            let target = SightEnd { at: lattice.map_position(post), above_m: 0.0 };
             let line = match line_of_sight(&lattice, options.observer, target, options.curvature) {
-                Sight::Clear => Seen::Visible,
-                Sight::Blocked(_) => Seen::Hidden,
-                Sight::NoGround(_) => Seen::NoData,
+                Sight::Clear => PostVisibility::Visible,
+                Sight::Blocked(_) => PostVisibility::Hidden,
+                Sight::NoGround(_) => PostVisibility::NoData,
             };
             assert_eq!(seen, line, "{post:?} from {column}, {row}");
         }
@@ -149,7 +149,7 @@ fn on_posts_with_whole_coordinates_a_line_of_sight_says_the_same_to_the_last_bit
 
 /// A corner of real ground, `size` posts wide at most.
 fn real(name: &str, bytes: &[u8], first: Post, size: u32) -> Lattice {
-    let raster = read::read(name, bytes, &Hints::default()).expect("sound");
+    let raster = read::read(name, bytes, &DemHints::default()).expect("sound");
     let whole = Lattice::from_raster(&raster).expect("sound");
     let (columns, rows) = (size.min(whole.columns() - first.column), size.min(whole.rows() - first.row));
     let posts = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
@@ -164,7 +164,7 @@ fn holds_on(name: &str, lattice: &Lattice) {
         let grid = DVec2::new(seeded.part(), seeded.part()) * last;
         let grid = if turn % 2 == 0 { grid.round() } else { grid };
         let options = ViewshedOptions {
-            observer: End {
+            observer: SightEnd {
                 at: lattice.origin() + grid * lattice.cell(),
                 above_m: [0.0, 2.0, 50.0][seeded.below(3) as usize],
             },
@@ -202,8 +202,12 @@ fn what_lies_beyond_the_range_or_out_of_the_sector_is_told_from_what_is_hidden()
     };
     let swept = viewshed(&lattice, &options).expect("there is ground");
     let at = |column: u32, row: u32| swept.posts[lattice.index(Post { column, row })];
-    assert_eq!([at(10, 15), at(15, 10), at(13, 14)], [Seen::Visible; 3], "the borders belong to it");
-    assert_eq!([at(10, 16), at(9, 12), at(10, 5), at(14, 14)], [Seen::Beyond; 4]);
+    assert_eq!(
+        [at(10, 15), at(15, 10), at(13, 14)],
+        [PostVisibility::Visible; 3],
+        "the borders belong to it"
+    );
+    assert_eq!([at(10, 16), at(9, 12), at(10, 5), at(14, 14)], [PostVisibility::Beyond; 4]);
     let counts = swept.counts();
     assert_eq!((counts.visible, counts.visible + counts.beyond), (26, 441));
 }

@@ -8,13 +8,13 @@ use sandtable::app::arguments::Access;
 use sandtable::app::load;
 use sandtable::dem::read as dem;
 use sandtable::description::parse::parse_bytes;
-use sandtable::draw::list::Layer;
+use sandtable::draw::list::DepthLayer;
 use sandtable::geom::polyline::Polyline;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::kind::{FeatureKind, Scene};
-use sandtable::scene::picture::{camera, shoot};
-use sandtable::scene::report::Cell;
+use sandtable::scene::picture::{build_draw_list, camera};
+use sandtable::scene::report::ReportCell;
 use sandtable::terrain::channel::flow::{self, Flow};
 use sandtable::terrain::channel::{self, Channel, check_rise};
 use sandtable::terrain::lattice::{Lattice, Post};
@@ -232,8 +232,8 @@ fn gallery(name: &str) -> Scene {
 fn numbers(scene: &Scene, table: &str, column: &str) -> Vec<f64> {
     let table = scene.report.table(table).expect("told of");
     let at = table.columns.iter().position(|named| named.name == column).expect("a column");
-    let number = |row: &Vec<Cell>| match row[at] {
-        Cell::Number(number) => number,
+    let number = |row: &Vec<ReportCell>| match row[at] {
+        ReportCell::Number(number) => number,
         _ => f64::NAN,
     };
     table.rows.iter().map(number).collect()
@@ -249,11 +249,10 @@ fn a_lake_is_level_for_every_camera() {
         let target = Vec3::new(4060.0, 6200.0, 470.0);
         let eye = target + Vec3::new(libm::cosf(turn), libm::sinf(turn), 0.4) * away;
         let Ok(camera) = Camera::new(eye, target, 0.7, (480, 270), (0.5, 60_000.0)) else { continue };
-        let shot = shoot(&scene, &camera, &|_| {});
-        let lakes =
-            shot.list.items.iter().filter(|item| {
-                matches!(item.layer, Layer::Draped(_)) && kind(item.feature) == FeatureKind::Lake
-            });
+        let shot = build_draw_list(&scene, &camera, &|_| {});
+        let lakes = shot.list.items.iter().filter(|item| {
+            matches!(item.layer, DepthLayer::Draped(_)) && kind(item.feature) == FeatureKind::Lake
+        });
         let heights: Vec<f32> = lakes
             .flat_map(|item| &shot.list.meshes[item.mesh.0 as usize].vertices)
             .map(|vertex| vertex.position[2])
@@ -365,12 +364,12 @@ fn thousands_of_real_streams_fall_all_the_way() {
     let Some(folder) = data("scenes/wake_nc_us") else { return };
     let read = |name: &str| std::fs::read(folder.join(name)).expect("readable");
     let companions = |_: &str| None;
-    let hints = dem::Hints { companions: &companions, ..dem::Hints::default() };
+    let hints = dem::DemHints { companions: &companions, ..dem::DemHints::default() };
     let raster = dem::read("elev_ned_30m.tif", &read("elev_ned_30m.tif"), &hints).expect("sound");
     let mut lattice = Lattice::from_raster(&raster).expect("sound");
     let crs = raster.crs.expect("stated");
     let bytes = read("derived/streams_west.fgb");
-    let layer = vector::read("streams_west.fgb", &bytes, &vector::Hints::default()).expect("sound");
+    let layer = vector::read("streams_west.fgb", &bytes, &vector::VectorHints::default()).expect("sound");
     let lines = layer.features.iter().flat_map(|feature| match &feature.geometry {
         Geometry::Lines(lines) => lines.clone(),
         _ => Vec::new(),
@@ -398,5 +397,5 @@ fn thousands_of_real_streams_fall_all_the_way() {
 fn a_view_of_wide_water_is_drawn() {
     let scene = gallery("lake.toml");
     let camera = camera(&scene, &scene.cameras[0], (480, 270)).expect("sound");
-    assert!(shoot(&scene, &camera, &|_| {}).list.check().is_ok());
+    assert!(build_draw_list(&scene, &camera, &|_| {}).list.check().is_ok());
 }

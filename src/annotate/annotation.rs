@@ -13,7 +13,7 @@ use crate::annotate::scale_bar::ScaleBar;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Annotations {
     /// Names and heights, in any order.
-    pub labels: Vec<Label>,
+    pub labels: Vec<PictureLabel>,
     /// The title, upper left.
     pub title: Option<String>,
     /// A second line under the title.
@@ -30,7 +30,7 @@ pub struct Annotations {
 
 /// A name at a place on the picture.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Label {
+pub struct PictureLabel {
     /// What it says: a name, and smaller on further lines what is to be known about it.
     pub text: String,
     /// The place on the ground: pixels from the picture's upper left corner, Y down.
@@ -43,12 +43,12 @@ pub struct Label {
     /// Whether the place is seen, not hidden behind terrain.
     pub visible: bool,
     /// What is named.
-    pub kind: LabelKind,
+    pub kind: LabelClass,
 }
 
 /// What a label names, by falling importance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum LabelKind {
+pub enum LabelClass {
     /// A summit: a triangle, name and height.
     Summit,
     /// A settlement, building or other place: a dot and a name.

@@ -7,7 +7,7 @@
 
 use tiny_skia::{ColorU8, FillRule, Paint, PixmapMut, PremultipliedColorU8, Transform};
 
-use crate::annotate::drawing::{Drawing, Mark};
+use crate::annotate::drawing::{Drawing, PaintedPath};
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 
@@ -58,7 +58,7 @@ impl<'a> Canvas<'a> {
     }
 }
 
-fn fill(map: &mut PixmapMut<'_>, mark: &Mark) {
+fn fill(map: &mut PixmapMut<'_>, mark: &PaintedPath) {
     let [red, green, blue, alpha] = mark.color.0;
     let mut paint = Paint::default();
     paint.set_color_rgba8(red, green, blue, alpha);

@@ -18,9 +18,9 @@ use crate::annotate::canvas::Canvas;
 use crate::annotate::drawing::Drawing;
 use crate::annotate::nice::{number, short_number, ticks};
 use crate::annotate::paragraph::fitted;
-use crate::annotate::pixel_box::{PixelBox, Segment};
+use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 use crate::annotate::sheet::{INK, PAPER, SOFT_INK, Sheet};
-use crate::annotate::text::{CAP_HEIGHT, Face, Line, Typesetter, halos, write};
+use crate::annotate::text::{CAP_HEIGHT, TextLine, TextStyle, Typesetter, halos, write};
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 
@@ -55,7 +55,7 @@ pub struct Surroundings {
 
 /// Between metres and pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct ChartFrame {
     /// Where things are plotted.
     pub plot: PixelBox,
     /// Metres along the line at the plot's right edge; 0 at its left.
@@ -64,7 +64,7 @@ pub struct Frame {
     heights_m: (f64, f64),
 }
 
-impl Frame {
+impl ChartFrame {
     /// Where something `along_m` along the line and `height_m` high is.
     pub fn at(&self, along_m: f64, height_m: f64) -> Vec2 {
         let size = self.plot.size();
@@ -88,7 +88,7 @@ pub struct Chart {
     /// Type.
     pub setter: Typesetter,
     /// Where things are.
-    pub frame: Frame,
+    pub frame: ChartFrame,
     /// What lies under what is plotted.
     pub below: Drawing,
     /// What is plotted.
@@ -104,7 +104,7 @@ pub fn begin(size: (u32, u32), around: &Surroundings, length_m: f64, (low_m, hig
     let length_m = if length_m.is_finite() && length_m > 0.0 { length_m } else { 1.0 };
     let heights_m = range((low_m, high_m), length_m);
     let plot = plot_box(&sheet, around, heights_m, &mut setter);
-    let frame = Frame { plot, length_m, heights_m };
+    let frame = ChartFrame { plot, length_m, heights_m };
     let mut below = Drawing::default();
     below.rect(sheet.bounds(), PAPER);
     below.rect(plot, SKY);
@@ -126,8 +126,8 @@ fn range((low_m, high_m): (f64, f64), length_m: f64) -> (f64, f64) {
     (low_m - ROOM.0 * relief_m, high_m + ROOM.1 * relief_m)
 }
 
-fn figures(sheet: &Sheet) -> Face {
-    Face::upright(sheet.type_px(15.0), Face::REGULAR)
+fn figures(sheet: &Sheet) -> TextStyle {
+    TextStyle::upright(sheet.type_px(15.0), TextStyle::REGULAR)
 }
 
 fn height_ticks(sheet: &Sheet, heights_m: (f64, f64), height_px: f32) -> (Vec<f64>, usize) {
@@ -163,7 +163,7 @@ impl Chart {
     fn titles(&mut self, around: &Surroundings) {
         let (sheet, plot) = (self.sheet, self.frame.plot);
         let margin = sheet.whole_px(30.0);
-        let title = Face::upright(sheet.type_px(26.0), Face::MEDIUM);
+        let title = TextStyle::upright(sheet.type_px(26.0), TextStyle::MEDIUM);
         let stretched = format!("heights ×{}", short_number(self.frame.exaggeration(), 1));
         let note = self.setter.line(&stretched, figures(&sheet));
         let baseline = margin + title.size_px * CAP_HEIGHT;
@@ -172,7 +172,7 @@ impl Chart {
             write(&mut self.below, &[(&line, Vec2::new(margin, baseline))], INK);
         }
         if !around.subtitle.is_empty() {
-            let face = Face::upright(sheet.type_px(17.0), Face::REGULAR);
+            let face = TextStyle::upright(sheet.type_px(17.0), TextStyle::REGULAR);
             let at = Vec2::new(margin, baseline + (face.size_px * 1.6).round());
             if let Some(line) = fitted(&mut self.setter, &around.subtitle, face, room) {
                 write(&mut self.below, &[(&line, at)], SOFT_INK);
@@ -233,28 +233,28 @@ impl Chart {
     fn rule(&mut self, from: Vec2, to: Vec2) {
         // A line one pixel wide is crisp where its middle is a pixel's.
         let half = Vec2::splat(0.5);
-        self.below.line(Segment { from: from + half, to: to + half }, self.sheet.hairline(), GRID);
+        self.below.line(PixelSegment { from: from + half, to: to + half }, self.sheet.hairline(), GRID);
     }
 
     /// Writes text beside a point, above it or below, moved aside where it would leave the plot.
-    pub fn label(&mut self, text: &str, at: Vec2, side: Side, color: Srgba) {
-        let face = Face::upright(self.sheet.type_px(15.0), Face::MEDIUM);
+    pub fn label(&mut self, text: &str, at: Vec2, side: LabelSide, color: Srgba) {
+        let face = TextStyle::upright(self.sheet.type_px(15.0), TextStyle::MEDIUM);
         let line = self.setter.line(text, face);
         let away = self.sheet.px(11.0);
         let plot = self.frame.plot.grown(-self.sheet.px(6.0));
         let most = (plot.max.x - line.advance).max(plot.min.x);
         let x = (at.x - line.advance * 0.5).clamp(plot.min.x, most);
         let y = match side {
-            Side::Above => at.y - away,
-            Side::WellAbove => at.y - away - face.size_px * 2.4,
-            Side::Below => at.y + away + face.size_px * CAP_HEIGHT,
+            LabelSide::Above => at.y - away,
+            LabelSide::WellAbove => at.y - away - face.size_px * 2.4,
+            LabelSide::Below => at.y + away + face.size_px * CAP_HEIGHT,
         };
         let least = plot.min.y + face.size_px * CAP_HEIGHT;
         let at = Vec2::new(x, y.clamp(least, plot.max.y.max(least))).round();
         self.write_haloed(&line, at, color);
     }
 
-    fn write_haloed(&mut self, line: &Line, at: Vec2, color: Srgba) {
+    fn write_haloed(&mut self, line: &TextLine, at: Vec2, color: Srgba) {
         let reach = self.sheet.px(3.0);
         halos(&mut self.plotted, &[(line, at)], reach);
         write(&mut self.plotted, &[(line, at)], color);
@@ -264,7 +264,7 @@ impl Chart {
     pub fn tick_below(&mut self, along_m: f64) {
         let at = Vec2::new(self.frame.at(along_m, 0.0).x.round(), self.frame.plot.max.y);
         let down = Vec2::new(0.0, self.sheet.px(7.0));
-        self.plotted.line(Segment { from: at - down, to: at + down }, self.sheet.px(1.5).max(1.0), INK);
+        self.plotted.line(PixelSegment { from: at - down, to: at + down }, self.sheet.px(1.5).max(1.0), INK);
     }
 
     /// A dot in a ring of paper.
@@ -288,7 +288,7 @@ impl Chart {
 
 /// Where a label stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum LabelSide {
     /// Above its point.
     Above,
     /// Above what may stand above its point.
@@ -300,13 +300,13 @@ pub enum Side {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::annotate::chart_ground::{Ground, Point};
+    use crate::annotate::chart_ground::{ChartGround, ChartPoint};
     use crate::annotate::chart_profile::{ProfileChart, paint};
 
     fn chart(heights: &[f64]) -> ProfileChart {
-        let point = |(index, &height): (usize, &f64)| Point {
+        let point = |(index, &height): (usize, &f64)| ChartPoint {
             along_m: index as f64 * 100.0,
-            ground: if height.is_nan() { Ground::NoData } else { Ground::Height(height) },
+            ground: if height.is_nan() { ChartGround::NoData } else { ChartGround::Height(height) },
         };
         let around = Surroundings { title: "Profile".into(), ..Surroundings::default() };
         ProfileChart { around, points: heights.iter().enumerate().map(point).collect(), bends_m: vec![] }

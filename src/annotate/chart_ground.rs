@@ -4,9 +4,9 @@ use glam::Vec2;
 
 use crate::annotate::chart::Chart;
 use crate::annotate::drawing::{polygon, polyline};
-use crate::annotate::pixel_box::{PixelBox, Segment};
+use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 use crate::annotate::sheet::SOFT_INK;
-use crate::annotate::text::{Face, write};
+use crate::annotate::text::{TextStyle, write};
 use crate::draw::color::Srgba;
 
 /// The ground's line.
@@ -22,16 +22,16 @@ const POINTS_A_PIXEL: f32 = 4.0;
 
 /// The ground at a place along a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct ChartPoint {
     /// Metres along the line.
     pub along_m: f64,
     /// What is there.
-    pub ground: Ground,
+    pub ground: ChartGround,
 }
 
 /// What is known of the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ground {
+pub enum ChartGround {
     /// Its height in metres.
     Height(f64),
     /// The model has no data there.
@@ -40,7 +40,7 @@ pub enum Ground {
     Outside,
 }
 
-impl Ground {
+impl ChartGround {
     /// The height, where there is one.
     pub fn height_m(self) -> Option<f64> {
         match self {
@@ -51,7 +51,7 @@ impl Ground {
 }
 
 /// The lowest and highest height of `points`; (0, 1) where there is none.
-pub fn height_range(points: &[Point]) -> (f64, f64) {
+pub fn height_range(points: &[ChartPoint]) -> (f64, f64) {
     let heights = points.iter().filter_map(|point| point.ground.height_m());
     let empty = (f64::INFINITY, f64::NEG_INFINITY);
     let (low, high) = heights.fold(empty, |(low, high), height| (low.min(height), high.max(height)));
@@ -59,7 +59,7 @@ pub fn height_range(points: &[Point]) -> (f64, f64) {
 }
 
 /// Fills the ground between two places along the line with `fill`.
-pub fn fill(chart: &mut Chart, points: &[Point], fill: Srgba) {
+pub fn fill(chart: &mut Chart, points: &[ChartPoint], fill: Srgba) {
     let floor = chart.frame.plot.max.y;
     for run in runs(points) {
         let line = thinned(chart, &run);
@@ -74,7 +74,7 @@ pub fn fill(chart: &mut Chart, points: &[Point], fill: Srgba) {
 }
 
 /// Draws the ground's line.
-pub fn rim(chart: &mut Chart, points: &[Point]) {
+pub fn rim(chart: &mut Chart, points: &[ChartPoint]) {
     for run in runs(points) {
         let line = thinned(chart, &run);
         if let Some(path) = polyline(&line) {
@@ -84,11 +84,11 @@ pub fn rim(chart: &mut Chart, points: &[Point]) {
 }
 
 /// The points with heights, cut where there are none between.
-fn runs(points: &[Point]) -> Vec<Vec<(f64, f64)>> {
+fn runs(points: &[ChartPoint]) -> Vec<Vec<(f64, f64)>> {
     let mut runs = vec![Vec::new()];
     for point in points {
         match point.ground {
-            Ground::Height(height_m) => {
+            ChartGround::Height(height_m) => {
                 if let Some(run) = runs.last_mut() {
                     run.push((point.along_m, height_m));
                 }
@@ -119,7 +119,7 @@ fn thinned(chart: &Chart, run: &[(f64, f64)]) -> Vec<Vec2> {
 }
 
 /// Hatches what of the line has no ground, and says why where there is room.
-pub fn hatch_gaps(chart: &mut Chart, points: &[Point]) {
+pub fn hatch_gaps(chart: &mut Chart, points: &[ChartPoint]) {
     for (from_m, to_m, why) in gaps(points) {
         let plot = chart.frame.plot;
         let (left, right) = (chart.frame.at(from_m, 0.0).x, chart.frame.at(to_m, 0.0).x);
@@ -131,13 +131,13 @@ pub fn hatch_gaps(chart: &mut Chart, points: &[Point]) {
 }
 
 /// Stretches without ground: from and to in metres, and what their places say.
-fn gaps(points: &[Point]) -> Vec<(f64, f64, &'static str)> {
+fn gaps(points: &[ChartPoint]) -> Vec<(f64, f64, &'static str)> {
     let mut gaps: Vec<(f64, f64, &'static str)> = Vec::new();
     for pair in points.windows(2) {
         let [from, to] = [pair[0], pair[1]];
         let why = match (from.ground, to.ground) {
-            (Ground::Height(_), Ground::Height(_)) => continue,
-            (Ground::Outside, _) | (_, Ground::Outside) => "outside the model",
+            (ChartGround::Height(_), ChartGround::Height(_)) => continue,
+            (ChartGround::Outside, _) | (_, ChartGround::Outside) => "outside the model",
             _ => "no data",
         };
         match gaps.last_mut().filter(|gap| gap.1 == from.along_m && gap.2 == why) {
@@ -157,13 +157,13 @@ fn hatch(chart: &mut Chart, area: PixelBox) {
     while sum < area.max.x + area.max.y {
         let low = Vec2::new((sum - area.max.y).max(area.min.x), (sum - area.min.x).min(area.max.y));
         let high = Vec2::new((sum - area.min.y).min(area.max.x), (sum - area.max.x).max(area.min.y));
-        chart.plotted.line(Segment { from: low, to: high }, chart.sheet.hairline(), HATCH);
+        chart.plotted.line(PixelSegment { from: low, to: high }, chart.sheet.hairline(), HATCH);
         sum += step;
     }
 }
 
 fn name(chart: &mut Chart, area: PixelBox, why: &str) {
-    let face = Face::upright(chart.sheet.type_px(14.0), Face::REGULAR);
+    let face = TextStyle::upright(chart.sheet.type_px(14.0), TextStyle::REGULAR);
     let line = chart.setter.line(why, face);
     let padding = chart.sheet.px(6.0);
     if line.advance + padding * 4.0 > area.size().x {

@@ -1,7 +1,7 @@
 //! The chart of a profile: the ground along a line, its lowest and highest place marked.
 
-use crate::annotate::chart::{self, Side, Surroundings};
-use crate::annotate::chart_ground::{Point, fill, hatch_gaps, height_range, rim};
+use crate::annotate::chart::{self, LabelSide, Surroundings};
+use crate::annotate::chart_ground::{ChartPoint, fill, hatch_gaps, height_range, rim};
 use crate::annotate::nice::number;
 use crate::annotate::sheet::INK;
 use crate::draw::color::Srgba;
@@ -16,7 +16,7 @@ pub struct ProfileChart {
     /// What stands around the plot.
     pub around: Surroundings,
     /// The ground, in order along the line.
-    pub points: Vec<Point>,
+    pub points: Vec<ChartPoint>,
     /// Where the line has vertices between its ends, metres along it.
     pub bends_m: Vec<f64>,
 }
@@ -36,7 +36,7 @@ pub fn paint(size: (u32, u32), profile: &ProfileChart) -> Pixels {
     // The first of several as low or as high.
     let lowest = heights().reduce(|best, next| if next.1 < best.1 { next } else { best });
     let highest = heights().reduce(|best, next| if next.1 > best.1 { next } else { best });
-    for (place, side) in [(lowest, Side::Below), (highest, Side::Above)] {
+    for (place, side) in [(lowest, LabelSide::Below), (highest, LabelSide::Above)] {
         let Some((along_m, height_m)) = place else { continue };
         let at = chart.frame.at(along_m, height_m);
         chart.dot(at, INK);

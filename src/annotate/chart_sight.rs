@@ -3,9 +3,9 @@
 
 use glam::Vec2;
 
-use crate::annotate::chart::{self, Chart, Side, Surroundings};
-use crate::annotate::chart_ground::{Ground, Point, fill, hatch_gaps, height_range, rim};
-use crate::annotate::pixel_box::Segment;
+use crate::annotate::chart::{self, Chart, LabelSide, Surroundings};
+use crate::annotate::chart_ground::{ChartGround, ChartPoint, fill, hatch_gaps, height_range, rim};
+use crate::annotate::pixel_box::PixelSegment;
 use crate::annotate::sheet::{INK, WATER_INK};
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
@@ -30,7 +30,7 @@ pub struct SightChart {
     /// What stands around the plot.
     pub around: Surroundings,
     /// The ground, in order from the observer.
-    pub points: Vec<Point>,
+    pub points: Vec<ChartPoint>,
     /// What of it the observer sees: from and to, metres.
     pub seen_m: Vec<(f64, f64)>,
     /// The observer's eye, metres.
@@ -62,7 +62,7 @@ pub fn paint(size: (u32, u32), sight: &SightChart) -> Pixels {
 }
 
 /// The ground between two places, cut exactly there.
-fn between(points: &[Point], from_m: f64, to_m: f64) -> Vec<Point> {
+fn between(points: &[ChartPoint], from_m: f64, to_m: f64) -> Vec<ChartPoint> {
     let mut part = Vec::new();
     for pair in points.windows(2) {
         let [a, b] = [pair[0], pair[1]];
@@ -72,7 +72,7 @@ fn between(points: &[Point], from_m: f64, to_m: f64) -> Vec<Point> {
         let (Some(low), Some(high)) = (a.ground.height_m(), b.ground.height_m()) else { continue };
         let at = |along_m: f64| {
             let share = (along_m - a.along_m) / (b.along_m - a.along_m);
-            Point { along_m, ground: Ground::Height(low + (high - low) * share) }
+            ChartPoint { along_m, ground: ChartGround::Height(low + (high - low) * share) }
         };
         part.push(at(a.along_m.max(from_m)));
         part.push(at(b.along_m.min(to_m)));
@@ -90,25 +90,25 @@ fn line(chart: &mut Chart, sight: &SightChart, length_m: f64) {
     });
     match &blocked {
         Some((on_line, top, said)) => {
-            chart.plotted.line(Segment { from: eye, to: *on_line }, width, LINE);
+            chart.plotted.line(PixelSegment { from: eye, to: *on_line }, width, LINE);
             dashed(chart, *on_line, target, width);
             chart.dot(*top, BLOCK);
             // Near an end its label would stand over the end's.
             let near = chart.frame.plot.size().x * CROWDED;
             let is_crowded = top.x - eye.x < near || target.x - top.x < near;
-            let side = if is_crowded { Side::WellAbove } else { Side::Above };
+            let side = if is_crowded { LabelSide::WellAbove } else { LabelSide::Above };
             chart.label(said, *top, side, BLOCK);
         }
-        None => chart.plotted.line(Segment { from: eye, to: target }, width, LINE),
+        None => chart.plotted.line(PixelSegment { from: eye, to: target }, width, LINE),
     }
     for (along_m, at, said) in [(0.0, eye, &sight.observer), (length_m, target, &sight.target)] {
         let ground = sight.points.iter().find(|point| point.along_m == along_m);
         if let Some(height_m) = ground.and_then(|point| point.ground.height_m()) {
             let foot = chart.frame.at(along_m, height_m);
-            chart.plotted.line(Segment { from: foot, to: at }, width, INK);
+            chart.plotted.line(PixelSegment { from: foot, to: at }, width, INK);
         }
         chart.dot(at, LINE);
-        chart.label(said, at, Side::Above, LINE);
+        chart.label(said, at, LabelSide::Above, LINE);
     }
 }
 
@@ -120,7 +120,7 @@ fn dashed(chart: &mut Chart, from: Vec2, to: Vec2, width: f32) {
     let mut at = gap;
     while at < length {
         let end = (at + dash).min(length);
-        chart.plotted.line(Segment { from: from + along * at, to: from + along * end }, width, BLOCK);
+        chart.plotted.line(PixelSegment { from: from + along * at, to: from + along * end }, width, BLOCK);
         at += dash + gap;
     }
 }

@@ -4,9 +4,9 @@ use glam::Vec2;
 
 use crate::annotate::drawing::Drawing;
 use crate::annotate::paragraph::{fitted, written_lines};
-use crate::annotate::report::Report;
+use crate::annotate::report::AnnotationReport;
 use crate::annotate::sheet::{INK, Sheet};
-use crate::annotate::text::{Face, Typesetter, halos, write};
+use crate::annotate::text::{TextStyle, Typesetter, halos, write};
 
 /// A credit cut shorter than this, in ems, names nobody and is left out.
 const SHORTEST_EM: f32 = 10.0;
@@ -18,10 +18,10 @@ pub fn compose(
     most_px: f32,
     sheet: &Sheet,
     setter: &mut Typesetter,
-    report: &mut Report,
+    report: &mut AnnotationReport,
 ) -> Option<Drawing> {
     let text = written_lines(credit, usize::MAX).0.join(" · ");
-    let face = Face::upright(sheet.type_px(13.0), Face::MEDIUM);
+    let face = TextStyle::upright(sheet.type_px(13.0), TextStyle::MEDIUM);
     let line = fitted(setter, &text, face, most_px)
         .filter(|line| !line.shortened || line.advance >= face.size_px * SHORTEST_EM)?;
     let mut drawing = Drawing::default();
@@ -38,8 +38,8 @@ pub fn compose(
 mod tests {
     use super::*;
 
-    fn line(credit: &str, most_px: f32) -> (Option<Drawing>, Report) {
-        let mut report = Report::default();
+    fn line(credit: &str, most_px: f32) -> (Option<Drawing>, AnnotationReport) {
+        let mut report = AnnotationReport::default();
         let sheet = Sheet::new(1920, 1080);
         (compose(credit, most_px, &sheet, &mut Typesetter::new(), &mut report), report)
     }

@@ -6,7 +6,7 @@
 use glam::Vec2;
 use tiny_skia::{LineCap, LineJoin, Path, PathBuilder, Rect, Stroke, Transform};
 
-use crate::annotate::pixel_box::{PixelBox, Segment};
+use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 use crate::annotate::sheet::{FRAME, HALO, PANEL};
 use crate::draw::color::Srgba;
 
@@ -16,7 +16,7 @@ const STROKE_PRECISION: f32 = 4.0;
 
 /// A filled path.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mark {
+pub struct PaintedPath {
     /// The outline in pixels, filled by the non-zero rule.
     pub path: Path,
     /// The colour, with straight alpha.
@@ -26,12 +26,12 @@ pub struct Mark {
 /// Marks in the order in which they are painted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drawing {
-    marks: Vec<Mark>,
+    marks: Vec<PaintedPath>,
 }
 
 impl Drawing {
     /// The marks, first painted first.
-    pub fn marks(&self) -> &[Mark] {
+    pub fn marks(&self) -> &[PaintedPath] {
         &self.marks
     }
 
@@ -42,7 +42,7 @@ impl Drawing {
 
     /// Fills `path`.
     pub fn fill(&mut self, path: Path, color: Srgba) {
-        self.marks.push(Mark { path, color });
+        self.marks.push(PaintedPath { path, color });
     }
 
     /// Draws along `path`, `width` pixels wide, with round joins and ends.
@@ -55,7 +55,7 @@ impl Drawing {
     }
 
     /// Draws a line with round ends.
-    pub fn line(&mut self, line: Segment, width: f32, color: Srgba) {
+    pub fn line(&mut self, line: PixelSegment, width: f32, color: Srgba) {
         if let Some(path) = polyline(&[line.from, line.to]) {
             self.stroke(&path, width, color);
         }
@@ -80,7 +80,7 @@ impl Drawing {
         ];
         let mut path = PathBuilder::new();
         sides.iter().filter_map(|side| rect_of(*side)).for_each(|side| path.push_rect(side));
-        self.marks.extend(path.finish().map(|path| Mark { path, color }));
+        self.marks.extend(path.finish().map(|path| PaintedPath { path, color }));
     }
 
     /// Draws a panel: a light ground with a hairline around it.
@@ -92,7 +92,7 @@ impl Drawing {
     /// Fills a disc.
     pub fn disc(&mut self, center: Vec2, radius: f32, color: Srgba) {
         let path = PathBuilder::from_circle(center.x, center.y, radius).filter(|_| radius > 0.0);
-        self.marks.extend(path.map(|path| Mark { path, color }));
+        self.marks.extend(path.map(|path| PaintedPath { path, color }));
     }
 
     /// Fills `path` on a halo reaching `reach` pixels around it.
@@ -109,7 +109,8 @@ impl Drawing {
     /// The drawing moved by `by`.
     pub fn moved(&self, by: Vec2) -> Self {
         let shift = Transform::from_translate(by.x, by.y);
-        let moved = |mark: &Mark| Some(Mark { path: mark.path.clone().transform(shift)?, ..*mark });
+        let moved =
+            |mark: &PaintedPath| Some(PaintedPath { path: mark.path.clone().transform(shift)?, ..*mark });
         Self { marks: self.marks.iter().filter_map(moved).collect() }
     }
 }
@@ -152,7 +153,7 @@ mod tests {
     #[test]
     fn bounds_hold_strokes_with_their_width() {
         let mut drawing = Drawing::default();
-        drawing.line(Segment { from: Vec2::new(10.0, 10.0), to: Vec2::new(10.0, 20.0) }, 4.0, FRAME);
+        drawing.line(PixelSegment { from: Vec2::new(10.0, 10.0), to: Vec2::new(10.0, 20.0) }, 4.0, FRAME);
         let bounds = drawing.bounds();
         assert!((bounds.min - Vec2::splat(8.0)).length() < 0.1, "{bounds:?}");
         assert!((bounds.max - Vec2::new(12.0, 22.0)).length() < 0.1, "{bounds:?}");
@@ -170,7 +171,7 @@ mod tests {
     fn what_is_not_finite_or_has_no_extent_draws_nothing() {
         let mut drawing = Drawing::default();
         drawing.rect(PixelBox::EMPTY, FRAME);
-        drawing.line(Segment { from: Vec2::splat(f32::NAN), to: Vec2::ONE }, 1.0, FRAME);
+        drawing.line(PixelSegment { from: Vec2::splat(f32::NAN), to: Vec2::ONE }, 1.0, FRAME);
         drawing.disc(Vec2::ZERO, 0.0, FRAME);
         assert!(drawing.marks().is_empty());
     }

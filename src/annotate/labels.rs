@@ -2,15 +2,15 @@
 
 use glam::Vec2;
 
-use crate::annotate::annotation::{Label, LabelKind};
+use crate::annotate::annotation::{LabelClass, PictureLabel};
 use crate::annotate::drawing::{Drawing, polygon};
 use crate::annotate::paragraph::{Paragraph, fitted, written_lines};
-use crate::annotate::pixel_box::{PixelBox, Segment};
-use crate::annotate::place::{Candidate, Field, Request, check, place};
-use crate::annotate::positions::{Alignment, Position, Preference, Stance, positions, spot};
-use crate::annotate::report::Report;
+use crate::annotate::pixel_box::{PixelBox, PixelSegment};
+use crate::annotate::place::{LabelCandidate, LabelField, Request, check, place};
+use crate::annotate::positions::{Alignment, LabelMetrics, LabelPosition, Preference, positions, spot};
+use crate::annotate::report::AnnotationReport;
 use crate::annotate::sheet::{HALO, INK, PAPER, SOFT_INK, Sheet, WATER_INK};
-use crate::annotate::text::{Face, Line, Typesetter, halos, write};
+use crate::annotate::text::{TextLine, TextStyle, Typesetter, halos, write};
 use crate::draw::color::Srgba;
 
 /// More labels than this are not even tried: no picture holds as many, and trying takes time by the square.
@@ -28,14 +28,14 @@ const WATER_SLANT: f32 = 0.21;
 
 /// Draws the labels that are visible and find room beside `furniture`; says in `report` what became of each.
 pub fn draw_labels(
-    labels: &[Label],
+    labels: &[PictureLabel],
     furniture: &[PixelBox],
     sheet: &Sheet,
     setter: &mut Typesetter,
-    report: &mut Report,
+    report: &mut AnnotationReport,
 ) -> Drawing {
     let mut fates = vec![Fate::CrowdedOut; labels.len()];
-    let mut prepared: Vec<Prepared<'_>> = Vec::new();
+    let mut prepared: Vec<PreparedLabel<'_>> = Vec::new();
     for (number, label) in by_importance(labels) {
         if !sheet.bounds().contains(label.anchor_px) {
             fates[number] = Fate::Outside;
@@ -70,7 +70,7 @@ enum Fate {
     Empty,
 }
 
-fn tell(labels: &[Label], fates: &[Fate], report: &mut Report) {
+fn tell(labels: &[PictureLabel], fates: &[Fate], report: &mut AnnotationReport) {
     for (label, fate) in labels.iter().zip(fates) {
         let text = label.text.clone();
         match *fate {
@@ -87,9 +87,9 @@ fn tell(labels: &[Label], fates: &[Fate], report: &mut Report) {
 }
 
 /// The field of labels: inside the margin's half, off the furniture.
-fn field(furniture: &[PixelBox], sheet: &Sheet) -> Field {
+fn field(furniture: &[PixelBox], sheet: &Sheet) -> LabelField {
     let air = sheet.px(6.0);
-    Field {
+    LabelField {
         bounds: sheet.bounds().grown(-(sheet.margin() * 0.4).round()),
         taken: furniture.iter().map(|taken| taken.grown(air)).collect(),
         leader_room: sheet.px(5.0),
@@ -97,19 +97,19 @@ fn field(furniture: &[PixelBox], sheet: &Sheet) -> Field {
 }
 
 /// A label with its text set, ready to be placed.
-struct Prepared<'a> {
+struct PreparedLabel<'a> {
     number: usize,
-    label: &'a Label,
-    look: Look,
+    label: &'a PictureLabel,
+    look: LabelStyle,
     block: Paragraph,
     /// The stance's boxes of the text, one for each alignment.
     texts: [PixelBox; 3],
-    positions: Vec<Position>,
+    positions: Vec<LabelPosition>,
     request: Request,
 }
 
 /// Kind first, then the nearer, then by text; the input's order decides between equals.
-fn by_importance(labels: &[Label]) -> Vec<(usize, &Label)> {
+fn by_importance(labels: &[PictureLabel]) -> Vec<(usize, &PictureLabel)> {
     let mut order: Vec<_> = labels.iter().enumerate().collect();
     order.sort_by(|(_, a), (_, b)| {
         a.kind.cmp(&b.kind).then(a.depth_m.total_cmp(&b.depth_m)).then_with(|| a.text.cmp(&b.text))
@@ -123,11 +123,11 @@ fn by_importance(labels: &[Label]) -> Vec<(usize, &Label)> {
 /// Its fate, where nothing would show: it is empty, or the picture is too narrow for a few letters.
 fn prepare<'a>(
     number: usize,
-    label: &'a Label,
+    label: &'a PictureLabel,
     sheet: &Sheet,
     setter: &mut Typesetter,
-) -> Result<Prepared<'a>, Fate> {
-    let look = Look::of(label.kind, sheet);
+) -> Result<PreparedLabel<'a>, Fate> {
+    let look = LabelStyle::of(label.kind, sheet);
     let block = set_lines(&label.text, &look, sheet, setter);
     if block.lines.is_empty() {
         return Err(if block.shortened { Fate::CrowdedOut } else { Fate::Empty });
@@ -143,16 +143,16 @@ fn prepare<'a>(
     let positions = positions(&stance);
     let candidates = positions.iter().map(|position| position.candidate).collect();
     let request = Request { candidates, spot: Some(spot(&stance)) };
-    Ok(Prepared { number, label, look, block, texts, positions, request })
+    Ok(PreparedLabel { number, label, look, block, texts, positions, request })
 }
 
-fn stance(label: &Label, texts: [PixelBox; 3], look: &Look, sheet: &Sheet) -> Stance {
+fn stance(label: &PictureLabel, texts: [PixelBox; 3], look: &LabelStyle, sheet: &Sheet) -> LabelMetrics {
     let longest = sheet.size.y * LONGEST_LEADER_SHARE;
     let preference = match label.kind {
-        LabelKind::Water => Preference::OnPlace,
+        LabelClass::Water => Preference::OnPlace,
         _ => Preference::Above,
     };
-    Stance {
+    LabelMetrics {
         anchor: pixel_center(label.anchor_px),
         reach: reach(label, look.leader, longest),
         texts,
@@ -169,7 +169,7 @@ fn pixel_center(point: Vec2) -> Vec2 {
 }
 
 /// From the anchor to the wished end of the leader: as given, but upward and of a sensible length.
-fn reach(label: &Label, usual: f32, longest: f32) -> Vec2 {
+fn reach(label: &PictureLabel, usual: f32, longest: f32) -> Vec2 {
     let wished = label.top_px.map(|top| top - label.anchor_px).filter(|reach| reach.is_finite());
     match wished {
         // Leaning more than 45° it would no longer be read as a line upward.
@@ -178,20 +178,20 @@ fn reach(label: &Label, usual: f32, longest: f32) -> Vec2 {
     }
 }
 
-fn set_lines(text: &str, look: &Look, sheet: &Sheet, setter: &mut Typesetter) -> Paragraph {
+fn set_lines(text: &str, look: &LabelStyle, sheet: &Sheet, setter: &mut Typesetter) -> Paragraph {
     let (written, dropped) = written_lines(text, MOST_LINES);
     let widest = sheet.size.x * WIDEST_SHARE;
     let faces = std::iter::once(look.name).chain(std::iter::repeat(look.note));
-    let set = |(text, face): (&String, Face)| fitted(setter, text, face, widest);
-    let lines: Vec<Line> = written.iter().zip(faces).filter_map(set).collect();
+    let set = |(text, face): (&String, TextStyle)| fitted(setter, text, face, widest);
+    let lines: Vec<TextLine> = written.iter().zip(faces).filter_map(set).collect();
     let shortened = dropped || lines.len() < written.len() || lines.iter().any(|line| line.shortened);
     Paragraph { lines, shortened }
 }
 
 /// Where the lines' baselines start: the first at y = 0, all aligned to x = 0.
-fn baselines(lines: &[Line], alignment: Alignment) -> Vec<(&Line, Vec2)> {
+fn baselines(lines: &[TextLine], alignment: Alignment) -> Vec<(&TextLine, Vec2)> {
     let mut y = 0.0;
-    let place = |(number, line): (usize, &'_ Line)| {
+    let place = |(number, line): (usize, &'_ TextLine)| {
         if number > 0 {
             y += (line.face.size_px * LEADING).round();
         }
@@ -206,7 +206,7 @@ fn baselines(lines: &[Line], alignment: Alignment) -> Vec<(&Line, Vec2)> {
     lines.iter().zip(starts).collect()
 }
 
-fn block_box(lines: &[Line], alignment: Alignment, halo: f32) -> PixelBox {
+fn block_box(lines: &[TextLine], alignment: Alignment, halo: f32) -> PixelBox {
     baselines(lines, alignment)
         .into_iter()
         .map(|(line, at)| line.ink(halo).moved(at))
@@ -215,7 +215,7 @@ fn block_box(lines: &[Line], alignment: Alignment, halo: f32) -> PixelBox {
 
 /// Writes the lines around the origin, moved by `by`: all halos first, for the name's must not eat into the
 /// height below it.
-fn draw_lines(label: &Prepared<'_>, alignment: Alignment, by: Vec2, drawing: &mut Drawing) {
+fn draw_lines(label: &PreparedLabel<'_>, alignment: Alignment, by: Vec2, drawing: &mut Drawing) {
     let mut lines = baselines(&label.block.lines, alignment);
     lines.iter_mut().for_each(|(_, at)| *at += by);
     halos(drawing, &lines, label.look.halo);
@@ -225,10 +225,10 @@ fn draw_lines(label: &Prepared<'_>, alignment: Alignment, by: Vec2, drawing: &mu
 }
 
 /// Symbols and leaders first, all texts over them.
-fn draw_chosen(prepared: &[Prepared<'_>], choices: &[Option<usize>], sheet: &Sheet) -> Drawing {
+fn draw_chosen(prepared: &[PreparedLabel<'_>], choices: &[Option<usize>], sheet: &Sheet) -> Drawing {
     let (mut drawing, mut texts) = (Drawing::default(), Drawing::default());
     for (label, choice) in prepared.iter().zip(choices) {
-        let Some(Position { candidate, alignment }) = choice.map(|which| label.positions[which]) else {
+        let Some(LabelPosition { candidate, alignment }) = choice.map(|which| label.positions[which]) else {
             continue;
         };
         draw_leader(&candidate, &label.look, sheet, &mut drawing);
@@ -242,7 +242,7 @@ fn draw_chosen(prepared: &[Prepared<'_>], choices: &[Option<usize>], sheet: &She
     drawing
 }
 
-fn draw_leader(candidate: &Candidate, look: &Look, sheet: &Sheet, drawing: &mut Drawing) {
+fn draw_leader(candidate: &LabelCandidate, look: &LabelStyle, sheet: &Sheet, drawing: &mut Drawing) {
     let Some(line) = candidate.leader else { return };
     let width = sheet.px(1.2).max(0.9);
     let crisp = crisp(line);
@@ -251,17 +251,17 @@ fn draw_leader(candidate: &Candidate, look: &Look, sheet: &Sheet, drawing: &mut 
 }
 
 /// A line that is all but upright, made upright.
-fn crisp(line: Segment) -> Segment {
+fn crisp(line: PixelSegment) -> PixelSegment {
     if (line.to.x - line.from.x).abs() > 0.6 {
         return line;
     }
-    Segment { from: line.from, to: Vec2::new(line.from.x, line.to.y) }
+    PixelSegment { from: line.from, to: Vec2::new(line.from.x, line.to.y) }
 }
 
 /// How a kind of label looks.
-struct Look {
-    name: Face,
-    note: Face,
+struct LabelStyle {
+    name: TextStyle,
+    note: TextStyle,
     ink: Srgba,
     note_ink: Srgba,
     halo: f32,
@@ -271,22 +271,27 @@ struct Look {
     leader: f32,
 }
 
-impl Look {
-    fn of(kind: LabelKind, sheet: &Sheet) -> Self {
-        let (slant, tracking) = if kind == LabelKind::Water { (WATER_SLANT, 0.06) } else { (0.0, 0.0) };
+impl LabelStyle {
+    fn of(kind: LabelClass, sheet: &Sheet) -> Self {
+        let (slant, tracking) = if kind == LabelClass::Water { (WATER_SLANT, 0.06) } else { (0.0, 0.0) };
         let (name, weight, symbol, leader) = match kind {
-            LabelKind::Summit => (20.0, Face::BOLD, 6.0, 44.0),
-            LabelKind::Place => (19.0, Face::BOLD, 4.5, 34.0),
-            LabelKind::Water => (19.0, Face::MEDIUM, 3.0, 34.0),
-            LabelKind::Point => (16.5, Face::MEDIUM, 3.2, 26.0),
+            LabelClass::Summit => (20.0, TextStyle::BOLD, 6.0, 44.0),
+            LabelClass::Place => (19.0, TextStyle::BOLD, 4.5, 34.0),
+            LabelClass::Water => (19.0, TextStyle::MEDIUM, 3.0, 34.0),
+            LabelClass::Point => (16.5, TextStyle::MEDIUM, 3.2, 26.0),
         };
         let (ink, note_ink) = match kind {
-            LabelKind::Water => (WATER_INK, WATER_INK),
+            LabelClass::Water => (WATER_INK, WATER_INK),
             _ => (INK, SOFT_INK),
         };
         Self {
-            name: Face { size_px: sheet.type_px(name), slant, weight, tracking },
-            note: Face { size_px: sheet.type_px(name * 0.8), slant, weight: Face::MEDIUM, tracking },
+            name: TextStyle { size_px: sheet.type_px(name), slant, weight, tracking },
+            note: TextStyle {
+                size_px: sheet.type_px(name * 0.8),
+                slant,
+                weight: TextStyle::MEDIUM,
+                tracking,
+            },
             ink,
             note_ink,
             halo: sheet.px(2.2).max(1.5),
@@ -295,22 +300,22 @@ impl Look {
         }
     }
 
-    fn draw_symbol(&self, label: &Label, sheet: &Sheet, drawing: &mut Drawing) {
+    fn draw_symbol(&self, label: &PictureLabel, sheet: &Sheet, drawing: &mut Drawing) {
         let (at, size, reach) = (pixel_center(label.anchor_px), self.symbol, self.halo * 0.8);
         match label.kind {
-            LabelKind::Summit => {
+            LabelClass::Summit => {
                 let corners = [(0.0, -1.0), (0.95, 0.72), (-0.95, 0.72)];
                 let triangle = corners.map(|(x, y)| at + Vec2::new(x, y) * size);
                 if let Some(path) = polygon(&triangle) {
                     drawing.haloed(path, self.ink, reach);
                 }
             }
-            LabelKind::Place => {
+            LabelClass::Place => {
                 drawing.disc(at, size + reach, HALO);
                 drawing.disc(at, size, self.ink);
                 drawing.disc(at, size - sheet.px(1.6).max(1.0), PAPER);
             }
-            LabelKind::Water | LabelKind::Point => {
+            LabelClass::Water | LabelClass::Point => {
                 drawing.disc(at, size + reach, HALO);
                 drawing.disc(at, size, self.ink);
             }
@@ -324,14 +329,21 @@ mod tests {
 
     const SHEET: Sheet = Sheet { size: Vec2::new(1920.0, 1080.0), scale: 1.0 };
 
-    fn label(text: &str, x: f32, y: f32) -> Label {
+    fn label(text: &str, x: f32, y: f32) -> PictureLabel {
         let anchor_px = Vec2::new(x, y);
         let text = text.to_owned();
-        Label { text, anchor_px, top_px: None, depth_m: 1000.0, visible: true, kind: LabelKind::Place }
+        PictureLabel {
+            text,
+            anchor_px,
+            top_px: None,
+            depth_m: 1000.0,
+            visible: true,
+            kind: LabelClass::Place,
+        }
     }
 
-    fn draw(labels: &[Label]) -> (Drawing, Report) {
-        let mut report = Report::default();
+    fn draw(labels: &[PictureLabel]) -> (Drawing, AnnotationReport) {
+        let mut report = AnnotationReport::default();
         let drawing = draw_labels(labels, &[], &SHEET, &mut Typesetter::new(), &mut report);
         (drawing, report)
     }
@@ -341,7 +353,7 @@ mod tests {
         let labels = [
             label("seen", 400.0, 500.0),
             label("the same spot", 400.0, 500.0),
-            Label { visible: false, ..label("behind the ridge", 800.0, 500.0) },
+            PictureLabel { visible: false, ..label("behind the ridge", 800.0, 500.0) },
             label("off the sheet", -10.0, 500.0),
             label("nowhere", f32::NAN, 500.0),
             label(" \n ", 900.0, 500.0),
@@ -356,9 +368,10 @@ mod tests {
 
     #[test]
     fn summits_go_before_places_and_the_near_before_the_far() {
-        let far = Label { depth_m: 9000.0, ..label("far", 400.0, 500.0) };
-        let near = Label { depth_m: 900.0, ..label("near", 402.0, 500.0) };
-        let summit = Label { kind: LabelKind::Summit, depth_m: 99e3, ..label("summit", 404.0, 500.0) };
+        let far = PictureLabel { depth_m: 9000.0, ..label("far", 400.0, 500.0) };
+        let near = PictureLabel { depth_m: 900.0, ..label("near", 402.0, 500.0) };
+        let summit =
+            PictureLabel { kind: LabelClass::Summit, depth_m: 99e3, ..label("summit", 404.0, 500.0) };
         assert_eq!(draw(&[far.clone(), near.clone()]).1.placed, ["near"]);
         assert_eq!(draw(&[far, near, summit]).1.placed, ["summit"]);
     }
@@ -375,10 +388,10 @@ mod tests {
     #[test]
     fn a_leader_goes_up_whatever_the_top_says() {
         for top in [Vec2::new(400.0, 900.0), Vec2::new(900.0, 499.0), Vec2::NAN, Vec2::new(400.0, 500.0)] {
-            let odd = Label { top_px: Some(top), ..label("odd", 400.0, 500.0) };
+            let odd = PictureLabel { top_px: Some(top), ..label("odd", 400.0, 500.0) };
             assert_eq!(reach(&odd, 40.0, 250.0), Vec2::new(0.0, -40.0), "{top}");
         }
-        let long = Label { top_px: Some(Vec2::new(400.0, -9000.0)), ..label("long", 400.0, 500.0) };
+        let long = PictureLabel { top_px: Some(Vec2::new(400.0, -9000.0)), ..label("long", 400.0, 500.0) };
         assert!((reach(&long, 40.0, 250.0) - Vec2::new(0.0, -250.0)).length() < 0.01);
     }
 

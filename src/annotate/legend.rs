@@ -6,11 +6,11 @@ use crate::annotate::drawing::Drawing;
 use crate::annotate::nice::{number, short_number, ticks};
 use crate::annotate::paragraph::{fitted, written_lines};
 use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::report::Report;
+use crate::annotate::report::AnnotationReport;
 use crate::annotate::sheet::{FRAME, INK, SOFT_INK, Sheet};
-use crate::annotate::text::{CAP_HEIGHT, Face, Line, Typesetter, write};
+use crate::annotate::text::{CAP_HEIGHT, TextLine, TextStyle, Typesetter, write};
 use crate::draw::color::Srgba;
-use crate::draw::ground::Ramp;
+use crate::draw::ground::ColorRamp;
 
 /// Height of the ramp in design pixels.
 const RAMP_HEIGHT: f32 = 190.0;
@@ -23,7 +23,7 @@ const WIDEST_NOTE_EM: f32 = 16.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Legend {
     /// Colour by height.
-    pub ramp: Ramp,
+    pub ramp: ColorRamp,
     /// Lowest height shown, in metres.
     pub low_m: f32,
     /// Highest height shown, in metres; above `low_m`.
@@ -42,13 +42,13 @@ pub fn compose(
     legend: &Legend,
     sheet: &Sheet,
     setter: &mut Typesetter,
-    report: &mut Report,
+    report: &mut AnnotationReport,
 ) -> Option<Drawing> {
     if !(legend.low_m < legend.high_m && (legend.high_m - legend.low_m).is_finite()) {
         return None;
     }
-    let face = Face::upright(sheet.type_px(15.0), Face::REGULAR);
-    let head = setter.line("Elevation (m)", Face::upright(sheet.type_px(16.0), Face::MEDIUM));
+    let face = TextStyle::upright(sheet.type_px(15.0), TextStyle::REGULAR);
+    let head = setter.line("Elevation (m)", TextStyle::upright(sheet.type_px(16.0), TextStyle::MEDIUM));
     let height = sheet.px(RAMP_HEIGHT).min(sheet.size.y * RAMP_SHARE).round().max(8.0);
     let marks = marks(legend, height, face, setter);
     let notes = notes(legend, face, sheet, setter, report);
@@ -58,10 +58,10 @@ pub fn compose(
 /// A round height: where on the ramp, from 0 at its foot to 1 at its top, and its figure.
 struct HeightMark {
     share: f32,
-    figure: Line,
+    figure: TextLine,
 }
 
-fn marks(legend: &Legend, ramp_px: f32, face: Face, setter: &mut Typesetter) -> Vec<HeightMark> {
+fn marks(legend: &Legend, ramp_px: f32, face: TextStyle, setter: &mut Typesetter) -> Vec<HeightMark> {
     let most = ((ramp_px / (face.size_px * 1.9)) as usize + 1).clamp(2, 7);
     let (low, high) = (f64::from(legend.low_m), f64::from(legend.high_m));
     let (heights, decimals) = ticks(low, high, most);
@@ -74,12 +74,12 @@ fn marks(legend: &Legend, ramp_px: f32, face: Face, setter: &mut Typesetter) -> 
 
 fn notes(
     legend: &Legend,
-    face: Face,
+    face: TextStyle,
     sheet: &Sheet,
     setter: &mut Typesetter,
-    report: &mut Report,
-) -> Vec<Line> {
-    let face = Face { size_px: sheet.type_px(14.0), ..face };
+    report: &mut AnnotationReport,
+) -> Vec<TextLine> {
+    let face = TextStyle { size_px: sheet.type_px(14.0), ..face };
     let mut texts = Vec::new();
     if let Some(interval) = legend.contour_interval.filter(|interval| interval.is_finite() && *interval > 0.0)
     {
@@ -103,9 +103,9 @@ fn notes(
 fn lay_out(
     legend: &Legend,
     height: f32,
-    head: &Line,
+    head: &TextLine,
     marks: &[HeightMark],
-    notes: &[Line],
+    notes: &[TextLine],
     sheet: &Sheet,
 ) -> Drawing {
     let padding = sheet.padding();
@@ -172,7 +172,7 @@ mod tests {
     fn legend() -> Legend {
         let stops = vec![(300.0, Srgba::opaque(80, 130, 80)), (1100.0, Srgba::opaque(240, 235, 220))];
         Legend {
-            ramp: Ramp::new(stops).expect("rising"),
+            ramp: ColorRamp::new(stops).expect("rising"),
             low_m: 321.0,
             high_m: 1062.0,
             vertical_exaggeration: 1.5,
@@ -182,12 +182,12 @@ mod tests {
     }
 
     fn draw(legend: &Legend) -> Option<Drawing> {
-        compose(legend, &Sheet::new(1920, 1080), &mut Typesetter::new(), &mut Report::default())
+        compose(legend, &Sheet::new(1920, 1080), &mut Typesetter::new(), &mut AnnotationReport::default())
     }
 
     #[test]
     fn marks_stand_at_their_heights_share_of_the_ramp() {
-        let face = Face::upright(15.0, 0.0);
+        let face = TextStyle::upright(15.0, 0.0);
         for mark in marks(&legend(), 190.0, face, &mut Typesetter::new()) {
             assert!((0.0..=1.0).contains(&mark.share));
         }
@@ -216,8 +216,9 @@ mod tests {
         let plain =
             Legend { vertical_exaggeration: 1.0, contour_interval: None, vertical_datum: None, ..legend() };
         let notes = |legend: &Legend| {
-            let (mut setter, mut report) = (Typesetter::new(), Report::default());
-            notes(legend, Face::upright(15.0, 0.0), &Sheet::new(1920, 1080), &mut setter, &mut report).len()
+            let (mut setter, mut report) = (Typesetter::new(), AnnotationReport::default());
+            notes(legend, TextStyle::upright(15.0, 0.0), &Sheet::new(1920, 1080), &mut setter, &mut report)
+                .len()
         };
         assert_eq!((notes(&plain), notes(&legend())), (0, 3));
     }

@@ -20,10 +20,10 @@ use crate::annotate::legend::{self, Legend};
 use crate::annotate::north::{self, NorthArrow};
 use crate::annotate::paragraph::fitted;
 use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::report::Report;
+use crate::annotate::report::AnnotationReport;
 use crate::annotate::scale_bar;
 use crate::annotate::sheet::{FRAME, HALO, INK, PAPER, SOFT_INK, Sheet};
-use crate::annotate::text::{CAP_HEIGHT, Face, Line, Typesetter, write};
+use crate::annotate::text::{CAP_HEIGHT, TextLine, TextStyle, Typesetter, write};
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 
@@ -120,10 +120,10 @@ fn head_px(sheet: &Sheet) -> f32 {
 }
 
 /// The sheet with the map on it; and what could not be written as it was given.
-pub fn compose(map: &Pixels, furniture: &MapFurniture) -> (Pixels, Report) {
+pub fn compose(map: &Pixels, furniture: &MapFurniture) -> (Pixels, AnnotationReport) {
     let (width, height) = sheet_size((map.width(), map.height()));
     let sheet = Sheet::new(map.width(), map.height());
-    let (mut setter, mut report) = (Typesetter::new(), Report::default());
+    let (mut setter, mut report) = (Typesetter::new(), AnnotationReport::default());
     let margin = sheet.margin().round();
     let corner = Vec2::new(margin, (margin * 1.5 + head_px(&sheet)).round());
     let frame = PixelBox::at(corner, Vec2::new(map.width() as f32, map.height() as f32));
@@ -157,12 +157,17 @@ fn head(
     furniture: &MapFurniture,
     (left, room): (f32, f32),
     sheet: &Sheet,
-    (setter, report): (&mut Typesetter, &mut Report),
+    (setter, report): (&mut Typesetter, &mut AnnotationReport),
 ) {
     let mut baseline = sheet.margin();
     let lines = [
-        (&furniture.title, Face::upright(sheet.type_px(HEAD[0]), Face::MEDIUM), INK, LEADING[0]),
-        (&furniture.subtitle, Face::upright(sheet.type_px(HEAD[1]), Face::REGULAR), SOFT_INK, LEADING[1]),
+        (&furniture.title, TextStyle::upright(sheet.type_px(HEAD[0]), TextStyle::MEDIUM), INK, LEADING[0]),
+        (
+            &furniture.subtitle,
+            TextStyle::upright(sheet.type_px(HEAD[1]), TextStyle::REGULAR),
+            SOFT_INK,
+            LEADING[1],
+        ),
     ];
     for (text, face, color, lead) in lines {
         baseline = (baseline + face.size_px * lead).round();
@@ -179,7 +184,7 @@ fn beside(
     furniture: &MapFurniture,
     column: PixelBox,
     sheet: &Sheet,
-    (setter, report): (&mut Typesetter, &mut Report),
+    (setter, report): (&mut Typesetter, &mut AnnotationReport),
 ) {
     let gap = sheet.px(22.0);
     let arrow = NorthArrow { direction: Vec2::new(0.0, -1.0), foreshortening: 1.0 };
@@ -204,9 +209,9 @@ fn key(
     entries: &[(Srgba, String)],
     room: f32,
     sheet: &Sheet,
-    (setter, report): (&mut Typesetter, &mut Report),
+    (setter, report): (&mut Typesetter, &mut AnnotationReport),
 ) -> Drawing {
-    let face = Face::upright(sheet.type_px(16.0), Face::REGULAR);
+    let face = TextStyle::upright(sheet.type_px(16.0), TextStyle::REGULAR);
     let (swatch, lead) = (Vec2::new(sheet.whole_px(30.0), sheet.whole_px(20.0)), sheet.whole_px(32.0));
     let mut drawing = Drawing::default();
     let text_left = swatch.x + sheet.whole_px(12.0);
@@ -215,7 +220,7 @@ fn key(
         let area = PixelBox::at(Vec2::new(0.0, top), swatch);
         drawing.rect(area, *color);
         drawing.frame(area, sheet.hairline().round().max(1.0), FRAME);
-        let line: Option<Line> = fitted(setter, text, face, room - text_left);
+        let line: Option<TextLine> = fitted(setter, text, face, room - text_left);
         if let Some(line) = line {
             report.set(text, line.missing, line.shortened);
             let baseline = (top + (swatch.y + face.size_px * CAP_HEIGHT) * 0.5).round();
@@ -236,7 +241,7 @@ fn key(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::ground::Ramp;
+    use crate::draw::ground::ColorRamp;
 
     fn furniture() -> MapFurniture {
         MapFurniture {
@@ -244,7 +249,7 @@ mod tests {
             subtitle: "from 2 m above the ground".into(),
             key: vec![(SIGNAL, "In sight".into()), (INK, "Hidden".into())],
             heights: Legend {
-                ramp: Ramp::new(vec![(0.0, INK), (100.0, PAPER)]).expect("rising"),
+                ramp: ColorRamp::new(vec![(0.0, INK), (100.0, PAPER)]).expect("rising"),
                 low_m: 0.0,
                 high_m: 100.0,
                 vertical_exaggeration: 1.0,
@@ -263,7 +268,7 @@ mod tests {
             let (sheet, report) = compose(&map, &furniture());
             let kept = sheet.data().iter().filter(|&&color| color == green).count();
             assert_eq!(kept, (size.0 * size.1) as usize, "{size:?}");
-            assert_eq!(report, Report::default());
+            assert_eq!(report, AnnotationReport::default());
         }
     }
 

@@ -9,7 +9,7 @@ use tiny_skia::{Path, PathBuilder, Rect};
 
 use crate::annotate::drawing::{Drawing, polygon, polyline};
 use crate::annotate::sheet::{FRAME, HALO, INK, PANEL, PAPER, Sheet};
-use crate::annotate::text::{CAP_HEIGHT, Face, Typesetter, halos, write};
+use crate::annotate::text::{CAP_HEIGHT, TextStyle, Typesetter, halos, write};
 use crate::view::camera::Camera;
 
 /// Flatter than this the needle could not be read; views nearer the horizon are drawn with this tilt.
@@ -44,7 +44,7 @@ impl NorthArrow {
 
 /// The arrow around the origin; `None` where its direction is no direction.
 pub fn compose(arrow: &NorthArrow, sheet: &Sheet, setter: &mut Typesetter) -> Option<Drawing> {
-    let plane = Plane::new(arrow, sheet.px(RADIUS))?;
+    let plane = ArrowPlane::new(arrow, sheet.px(RADIUS))?;
     let mut drawing = Drawing::default();
     drawing.fill(plane.ring(1.0)?, PANEL);
     drawing.stroke(&plane.ring(1.0)?, sheet.hairline(), FRAME);
@@ -64,12 +64,12 @@ pub fn reach(sheet: &Sheet) -> f32 {
 }
 
 /// The ground around the arrow's middle: north along Y, east along X, the ring at distance 1.
-struct Plane {
+struct ArrowPlane {
     north: Vec2,
     radius: Vec2,
 }
 
-impl Plane {
+impl ArrowPlane {
     fn new(arrow: &NorthArrow, radius: f32) -> Option<Self> {
         let tilt = if arrow.foreshortening.is_finite() { arrow.foreshortening.clamp(0.0, 1.0) } else { 1.0 };
         let direction = arrow.direction.try_normalize()?;
@@ -90,7 +90,7 @@ impl Plane {
 }
 
 /// A slender needle, dark to the right of north and light to its left, notched at its foot.
-fn draw_needle(plane: &Plane, sheet: &Sheet, drawing: &mut Drawing) -> Option<()> {
+fn draw_needle(plane: &ArrowPlane, sheet: &Sheet, drawing: &mut Drawing) -> Option<()> {
     let [tip, foot] = [Vec2::new(0.0, 0.98), Vec2::new(0.0, -0.52)].map(|point| plane.on_picture(point));
     let [right, left] = [0.25, -0.25].map(|x| plane.on_picture(Vec2::new(x, -0.7)));
     let whole = polygon(&[tip, right, foot, left])?;
@@ -102,8 +102,8 @@ fn draw_needle(plane: &Plane, sheet: &Sheet, drawing: &mut Drawing) -> Option<()
 }
 
 /// The letter stands beyond the tip on the ring's outward normal, so that it clears the ring however flat.
-fn draw_letter(plane: &Plane, sheet: &Sheet, setter: &mut Typesetter, drawing: &mut Drawing) {
-    let letter = setter.line("N", Face::upright(letter_px(sheet), Face::BOLD));
+fn draw_letter(plane: &ArrowPlane, sheet: &Sheet, setter: &mut Typesetter, drawing: &mut Drawing) {
+    let letter = setter.line("N", TextStyle::upright(letter_px(sheet), TextStyle::BOLD));
     let half = Vec2::new(letter.advance, letter.face.size_px * CAP_HEIGHT) * 0.5;
     let tip = plane.on_picture(Vec2::Y);
     let outward = (tip / (plane.radius * plane.radius)).normalize_or(Vec2::NEG_Y);
@@ -129,9 +129,9 @@ mod tests {
 
     use super::*;
 
-    fn plane(x: f32, y: f32, foreshortening: f32) -> Plane {
+    fn plane(x: f32, y: f32, foreshortening: f32) -> ArrowPlane {
         let arrow = NorthArrow { direction: Vec2::new(x, y), foreshortening };
-        Plane::new(&arrow, 10.0).expect("a direction")
+        ArrowPlane::new(&arrow, 10.0).expect("a direction")
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::annotate::canvas::Canvas;
 use crate::annotate::drawing::Drawing;
 use crate::annotate::labels::draw_labels;
 use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::report::{Furniture, Report};
+use crate::annotate::report::{AnnotationReport, FurnitureKind};
 use crate::annotate::sheet::Sheet;
 use crate::annotate::text::Typesetter;
 use crate::annotate::{credit, legend, north, scale_bar, title};
@@ -20,10 +20,10 @@ const LARGEST_SHARE: Vec2 = Vec2::new(0.63, 0.52);
 ///
 /// Nothing drawn overlaps anything else drawn, or leaves the picture. The same picture and annotations give
 /// the same bytes on every machine. Without annotations the picture is unchanged.
-pub fn annotate(pixels: &mut Pixels, annotations: &Annotations) -> Report {
+pub fn annotate(pixels: &mut Pixels, annotations: &Annotations) -> AnnotationReport {
     let sheet = Sheet::new(pixels.width(), pixels.height());
     let mut setter = Typesetter::new();
-    let mut report = Report::default();
+    let mut report = AnnotationReport::default();
     let furniture = furnish(annotations, &sheet, &mut setter, &mut report);
     let boxes: Vec<PixelBox> = furniture.iter().map(Drawing::bounds).collect();
     let labels = draw_labels(&annotations.labels, &boxes, &sheet, &mut setter, &mut report);
@@ -38,22 +38,22 @@ fn furnish(
     annotations: &Annotations,
     sheet: &Sheet,
     setter: &mut Typesetter,
-    report: &mut Report,
+    report: &mut AnnotationReport,
 ) -> Vec<Drawing> {
-    let mut corners = Corners { sheet, laid: Vec::new() };
+    let mut corners = CornerStacks { sheet, laid: Vec::new() };
     lay_title(annotations, &mut corners, setter, report);
     if let Some(bar) = &annotations.scale_bar {
         let drawing = scale_bar::compose(bar, sheet, setter);
-        corners.lay(Furniture::ScaleBar, drawing, Corner::LowerLeft, report);
+        corners.lay(FurnitureKind::ScaleBar, drawing, PictureCorner::LowerLeft, report);
     }
     if let Some(arrow) = &annotations.north {
         let drawing = north::compose(arrow, sheet, setter);
-        corners.lay(Furniture::NorthArrow, drawing, Corner::UpperRight, report);
+        corners.lay(FurnitureKind::NorthArrow, drawing, PictureCorner::UpperRight, report);
     }
     if let Some(legend) = &annotations.legend {
-        let mut told = Report::default();
+        let mut told = AnnotationReport::default();
         let drawing = legend::compose(legend, sheet, setter, &mut told);
-        if corners.lay(Furniture::Legend, drawing, Corner::LowerRight, report) {
+        if corners.lay(FurnitureKind::Legend, drawing, PictureCorner::LowerRight, report) {
             report.take_texts(told);
         }
     }
@@ -65,36 +65,41 @@ fn furnish(
 
 fn lay_title(
     annotations: &Annotations,
-    corners: &mut Corners<'_>,
+    corners: &mut CornerStacks<'_>,
     setter: &mut Typesetter,
-    report: &mut Report,
+    report: &mut AnnotationReport,
 ) {
     let (title, subtitle) = (annotations.title.as_deref(), annotations.subtitle.as_deref());
     if title.is_none() && subtitle.is_none() {
         return;
     }
-    let mut told = Report::default();
+    let mut told = AnnotationReport::default();
     let drawing = title::compose(title, subtitle, corners.sheet, setter, &mut told);
-    if corners.lay(Furniture::Title, drawing, Corner::UpperLeft, report) {
+    if corners.lay(FurnitureKind::Title, drawing, PictureCorner::UpperLeft, report) {
         report.take_texts(told);
     }
 }
 
 /// The credit stands in the lower margin's line between scale bar and legend, flush right.
-fn lay_credit(text: &str, corners: &mut Corners<'_>, setter: &mut Typesetter, report: &mut Report) {
+fn lay_credit(
+    text: &str,
+    corners: &mut CornerStacks<'_>,
+    setter: &mut Typesetter,
+    report: &mut AnnotationReport,
+) {
     let sheet = corners.sheet;
     let (inner, room) = (sheet.inner(), corners.free_below());
-    let mut told = Report::default();
+    let mut told = AnnotationReport::default();
     let drawing = credit::compose(text, room.size().x, sheet, setter, &mut told).map(|line| {
         let bounds = line.bounds();
         line.moved((Vec2::new(room.max.x, inner.max.y) - bounds.max).round())
     });
-    if corners.keep(Furniture::Credit, drawing, report) {
+    if corners.keep(FurnitureKind::Credit, drawing, report) {
         report.take_texts(told);
     }
 }
 
-enum Corner {
+enum PictureCorner {
     UpperLeft,
     UpperRight,
     LowerLeft,
@@ -102,32 +107,36 @@ enum Corner {
 }
 
 /// The furniture laid so far.
-struct Corners<'a> {
+struct CornerStacks<'a> {
     sheet: &'a Sheet,
     laid: Vec<Drawing>,
 }
 
-impl Corners<'_> {
+impl CornerStacks<'_> {
     /// Moves `drawing` into its corner and keeps it where it fits; returns whether it does.
     fn lay(
         &mut self,
-        piece: Furniture,
+        piece: FurnitureKind,
         drawing: Option<Drawing>,
-        corner: Corner,
-        report: &mut Report,
+        corner: PictureCorner,
+        report: &mut AnnotationReport,
     ) -> bool {
         let inner = self.sheet.inner();
         let moved = drawing.map(|drawing| {
             let bounds = match piece {
                 // The arrow's middle stays where it is however the needle turns.
-                Furniture::NorthArrow => PixelBox::around(Vec2::ZERO, Vec2::splat(north::reach(self.sheet))),
+                FurnitureKind::NorthArrow => {
+                    PixelBox::around(Vec2::ZERO, Vec2::splat(north::reach(self.sheet)))
+                }
                 _ => drawing.bounds(),
             };
             let by = match corner {
-                Corner::UpperLeft => inner.min - bounds.min,
-                Corner::LowerRight => inner.max - bounds.max,
-                Corner::UpperRight => Vec2::new(inner.max.x - bounds.max.x, inner.min.y - bounds.min.y),
-                Corner::LowerLeft => Vec2::new(inner.min.x - bounds.min.x, inner.max.y - bounds.max.y),
+                PictureCorner::UpperLeft => inner.min - bounds.min,
+                PictureCorner::LowerRight => inner.max - bounds.max,
+                PictureCorner::UpperRight => {
+                    Vec2::new(inner.max.x - bounds.max.x, inner.min.y - bounds.min.y)
+                }
+                PictureCorner::LowerLeft => Vec2::new(inner.min.x - bounds.min.x, inner.max.y - bounds.max.y),
             };
             drawing.moved(by.round())
         });
@@ -135,11 +144,16 @@ impl Corners<'_> {
     }
 
     /// Keeps `drawing` where it is, if it fits there; returns whether it does, and reports where it does not.
-    fn keep(&mut self, piece: Furniture, drawing: Option<Drawing>, report: &mut Report) -> bool {
+    fn keep(
+        &mut self,
+        piece: FurnitureKind,
+        drawing: Option<Drawing>,
+        report: &mut AnnotationReport,
+    ) -> bool {
         let fits = |drawing: &Drawing| {
             let bounds = drawing.bounds();
             let small =
-                piece == Furniture::Credit || bounds.size().cmple(self.sheet.size * LARGEST_SHARE).all();
+                piece == FurnitureKind::Credit || bounds.size().cmple(self.sheet.size * LARGEST_SHARE).all();
             let room = bounds.grown(self.sheet.px(6.0));
             small
                 && self.sheet.bounds().holds(&bounds)

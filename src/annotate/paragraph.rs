@@ -1,12 +1,12 @@
 //! Text made to fit: lines cleaned of what cannot be printed, cut with an ellipsis, broken between words.
 
-use crate::annotate::text::{Face, Line, Typesetter};
+use crate::annotate::text::{TextLine, TextStyle, Typesetter};
 
 /// Lines of a text, none wider than asked for.
 #[derive(Clone, Debug)]
 pub struct Paragraph {
     /// The lines, first on top.
-    pub lines: Vec<Line>,
+    pub lines: Vec<TextLine>,
     /// Whether some of the text was cut off.
     pub shortened: bool,
 }
@@ -42,7 +42,7 @@ fn one_spaced(text: &str) -> String {
 /// `text` as one line no wider than `most_px`, ending in an ellipsis where it had to be cut.
 ///
 /// `None` where not even a few letters before the ellipsis fit.
-pub fn fitted(setter: &mut Typesetter, text: &str, face: Face, most_px: f32) -> Option<Line> {
+pub fn fitted(setter: &mut Typesetter, text: &str, face: TextStyle, most_px: f32) -> Option<TextLine> {
     let whole = setter.line(text, face);
     if whole.advance <= most_px && !whole.shortened {
         return Some(whole);
@@ -51,7 +51,7 @@ pub fn fitted(setter: &mut Typesetter, text: &str, face: Face, most_px: f32) -> 
     let mut cut = |keep: usize| {
         let kept = text[..ends.get(keep).copied().unwrap_or(text.len())].trim_end();
         let line = setter.line(&format!("{kept}…"), face);
-        (line.advance <= most_px).then_some(Line { shortened: true, ..line })
+        (line.advance <= most_px).then_some(TextLine { shortened: true, ..line })
     };
     /// Fewer letters than this before an ellipsis tell nothing.
     const FEWEST: usize = 4;
@@ -71,7 +71,13 @@ pub fn fitted(setter: &mut Typesetter, text: &str, face: Face, most_px: f32) -> 
 /// `text` broken between words into at most `most_lines` lines of at most `most_px`.
 ///
 /// The author's own line ends are kept; what does not fit is cut with an ellipsis. Empty where nothing fits.
-pub fn broken(setter: &mut Typesetter, text: &str, face: Face, most_px: f32, most_lines: usize) -> Paragraph {
+pub fn broken(
+    setter: &mut Typesetter,
+    text: &str,
+    face: TextStyle,
+    most_px: f32,
+    most_lines: usize,
+) -> Paragraph {
     let (written, mut shortened) = written_lines(text, most_lines);
     let mut lines = Vec::new();
     for paragraph in &written {
@@ -92,7 +98,7 @@ pub fn broken(setter: &mut Typesetter, text: &str, face: Face, most_px: f32, mos
 }
 
 /// The most whole words from the start of `text` that fit; the first word alone where it does not.
-fn head_that_fits<'t>(setter: &mut Typesetter, text: &'t str, face: Face, most_px: f32) -> &'t str {
+fn head_that_fits<'t>(setter: &mut Typesetter, text: &'t str, face: TextStyle, most_px: f32) -> &'t str {
     let gaps = text.match_indices(' ').map(|(at, _)| at).chain([text.len()]).take(100);
     let mut head = text.split(' ').next().unwrap_or(text);
     for end in gaps {
@@ -108,7 +114,7 @@ fn head_that_fits<'t>(setter: &mut Typesetter, text: &'t str, face: Face, most_p
 mod tests {
     use super::*;
 
-    const FACE: Face = Face { size_px: 20.0, slant: 0.0, weight: 0.0, tracking: 0.0 };
+    const FACE: TextStyle = TextStyle { size_px: 20.0, slant: 0.0, weight: 0.0, tracking: 0.0 };
 
     #[test]
     fn written_lines_are_clean_and_never_empty() {

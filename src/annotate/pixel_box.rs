@@ -15,7 +15,7 @@ pub struct PixelBox {
 
 /// A straight line between two points of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Segment {
+pub struct PixelSegment {
     /// One end.
     pub from: Vec2,
     /// The other end.
@@ -78,7 +78,7 @@ impl PixelBox {
 
     /// Whether a point of `segment` lies inside or on an edge (Liang and Barsky 1984: the segment is cut
     /// by one pair of edges after the other).
-    pub fn meets(&self, segment: &Segment) -> bool {
+    pub fn meets(&self, segment: &PixelSegment) -> bool {
         let way = segment.to - segment.from;
         let (mut enter, mut leave) = (0.0f32, 1.0f32);
         for axis in 0..2 {
@@ -98,7 +98,7 @@ impl PixelBox {
     }
 }
 
-impl Segment {
+impl PixelSegment {
     /// Whether the two cross or touch; parallel segments never do.
     pub fn crosses(&self, other: &Self) -> bool {
         let side = |line: &Self, point: Vec2| (line.to - line.from).perp_dot(point - line.from);
@@ -124,24 +124,24 @@ mod tests {
 
     #[test]
     fn a_segment_through_a_corner_region_but_past_the_box_does_not_meet_it() {
-        let past = Segment { from: Vec2::new(-6.0, 5.0), to: Vec2::new(5.0, -8.0) };
+        let past = PixelSegment { from: Vec2::new(-6.0, 5.0), to: Vec2::new(5.0, -8.0) };
         assert!(!unit().meets(&past));
     }
 
     #[test]
     fn segments_meet_a_box_they_start_in_cross_or_touch() {
         let (inside, far) = (Vec2::splat(5.0), Vec2::new(50.0, 7.0));
-        assert!(unit().meets(&Segment { from: inside, to: far }));
-        assert!(unit().meets(&Segment { from: Vec2::new(-5.0, 5.0), to: far }));
-        assert!(unit().meets(&Segment { from: Vec2::new(3.0, -4.0), to: Vec2::new(3.0, 0.0) }));
-        assert!(!unit().meets(&Segment { from: Vec2::new(3.0, -4.0), to: Vec2::new(3.0, -0.1) }));
+        assert!(unit().meets(&PixelSegment { from: inside, to: far }));
+        assert!(unit().meets(&PixelSegment { from: Vec2::new(-5.0, 5.0), to: far }));
+        assert!(unit().meets(&PixelSegment { from: Vec2::new(3.0, -4.0), to: Vec2::new(3.0, 0.0) }));
+        assert!(!unit().meets(&PixelSegment { from: Vec2::new(3.0, -4.0), to: Vec2::new(3.0, -0.1) }));
     }
 
     #[test]
     fn crossing_segments_cross_and_parallel_ones_do_not() {
-        let rising = Segment { from: Vec2::ZERO, to: Vec2::splat(10.0) };
-        let falling = Segment { from: Vec2::new(0.0, 10.0), to: Vec2::new(10.0, 0.0) };
-        let beside = Segment { from: Vec2::new(1.0, 0.0), to: Vec2::new(11.0, 10.0) };
+        let rising = PixelSegment { from: Vec2::ZERO, to: Vec2::splat(10.0) };
+        let falling = PixelSegment { from: Vec2::new(0.0, 10.0), to: Vec2::new(10.0, 0.0) };
+        let beside = PixelSegment { from: Vec2::new(1.0, 0.0), to: Vec2::new(11.0, 10.0) };
         assert!(rising.crosses(&falling));
         assert!(!rising.crosses(&beside));
     }

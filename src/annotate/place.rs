@@ -8,31 +8,31 @@
 //! One look ahead is taken: a candidate that would cover the spot another label is about to stand on is
 //! taken only where no candidate avoids it.
 
-use crate::annotate::pixel_box::{PixelBox, Segment};
+use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 
 /// One way to draw a label.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Candidate {
+pub struct LabelCandidate {
     /// Around the text.
     pub text: PixelBox,
     /// Around the symbol at the place; `None` where it is drawn without.
     pub symbol: Option<PixelBox>,
     /// The leader line from the symbol to the text; `None` where it is drawn without.
-    pub leader: Option<Segment>,
+    pub leader: Option<PixelSegment>,
 }
 
 /// A label to be placed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Request {
     /// Ways to draw it, the best first.
-    pub candidates: Vec<Candidate>,
+    pub candidates: Vec<LabelCandidate>,
     /// What others had better keep clear of even before this one is placed.
     pub spot: Option<PixelBox>,
 }
 
 /// The picture to place labels on.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Field {
+pub struct LabelField {
     /// Everything placed stays inside.
     pub bounds: PixelBox,
     /// Nothing placed overlaps these.
@@ -59,11 +59,11 @@ pub enum PlacementFault {
 }
 
 /// For every request the number of the candidate chosen, or `None` where none is free.
-pub fn place(requests: &[Request], field: &Field) -> Vec<Option<usize>> {
-    let mut placed: Vec<Candidate> = Vec::new();
+pub fn place(requests: &[Request], field: &LabelField) -> Vec<Option<usize>> {
+    let mut placed: Vec<LabelCandidate> = Vec::new();
     let mut choices = Vec::with_capacity(requests.len());
     for (number, request) in requests.iter().enumerate() {
-        let is_free = |candidate: &Candidate| {
+        let is_free = |candidate: &LabelCandidate| {
             field.admits(candidate) && !placed.iter().any(|other| field.conflict(candidate, other))
         };
         let free: Vec<usize> =
@@ -81,8 +81,12 @@ pub fn place(requests: &[Request], field: &Field) -> Vec<Option<usize>> {
 ///
 /// # Errors
 /// The first [`PlacementFault`] found.
-pub fn check(requests: &[Request], choices: &[Option<usize>], field: &Field) -> Result<(), PlacementFault> {
-    let mut placed: Vec<(usize, Candidate)> = Vec::new();
+pub fn check(
+    requests: &[Request],
+    choices: &[Option<usize>],
+    field: &LabelField,
+) -> Result<(), PlacementFault> {
+    let mut placed: Vec<(usize, LabelCandidate)> = Vec::new();
     if requests.len() != choices.len() {
         return Err(PlacementFault::NoSuchCandidate(requests.len().min(choices.len())));
     }
@@ -103,12 +107,12 @@ pub fn check(requests: &[Request], choices: &[Option<usize>], field: &Field) -> 
     Ok(())
 }
 
-impl Field {
-    fn admits(&self, candidate: &Candidate) -> bool {
+impl LabelField {
+    fn admits(&self, candidate: &LabelCandidate) -> bool {
         self.keeps_inside(candidate) && !self.taken.iter().any(|taken| self.touches(candidate, taken))
     }
 
-    fn keeps_inside(&self, candidate: &Candidate) -> bool {
+    fn keeps_inside(&self, candidate: &LabelCandidate) -> bool {
         self.bounds.holds(&candidate.text)
             && candidate.symbol.is_none_or(|symbol| self.bounds.holds(&symbol))
             && candidate
@@ -117,14 +121,14 @@ impl Field {
     }
 
     /// Whether any part of `candidate` touches `area`.
-    fn touches(&self, candidate: &Candidate, area: &PixelBox) -> bool {
+    fn touches(&self, candidate: &LabelCandidate, area: &PixelBox) -> bool {
         candidate.text.overlaps(area)
             || candidate.symbol.is_some_and(|symbol| symbol.overlaps(area))
             || candidate.leader.is_some_and(|leader| area.grown(self.leader_room).meets(&leader))
     }
 
     /// Whether two labels drawn so would touch.
-    fn conflict(&self, one: &Candidate, other: &Candidate) -> bool {
+    fn conflict(&self, one: &LabelCandidate, other: &LabelCandidate) -> bool {
         self.touches(one, &other.text)
             || other.symbol.is_some_and(|symbol| self.touches(one, &symbol))
             || other.leader.is_some_and(|leader| {
@@ -136,7 +140,7 @@ impl Field {
     }
 }
 
-fn covers_a_spot(candidate: &Candidate, coming: &[Request]) -> bool {
+fn covers_a_spot(candidate: &LabelCandidate, coming: &[Request]) -> bool {
     coming.iter().filter_map(|request| request.spot).any(|spot| candidate.text.overlaps(&spot))
 }
 
@@ -148,17 +152,17 @@ mod tests {
 
     use super::*;
 
-    fn field() -> Field {
+    fn field() -> LabelField {
         let bounds = PixelBox::at(Vec2::ZERO, Vec2::new(200.0, 100.0));
-        Field { bounds, taken: vec![PixelBox::at(Vec2::ZERO, Vec2::new(60.0, 30.0))], leader_room: 2.0 }
+        LabelField { bounds, taken: vec![PixelBox::at(Vec2::ZERO, Vec2::new(60.0, 30.0))], leader_room: 2.0 }
     }
 
-    fn text(x: f32, y: f32) -> Candidate {
+    fn text(x: f32, y: f32) -> LabelCandidate {
         let text = PixelBox::at(Vec2::new(x, y), Vec2::new(40.0, 10.0));
-        Candidate { text, symbol: None, leader: None }
+        LabelCandidate { text, symbol: None, leader: None }
     }
 
-    fn request(candidates: &[Candidate]) -> Request {
+    fn request(candidates: &[LabelCandidate]) -> Request {
         Request { candidates: candidates.to_vec(), spot: None }
     }
 
@@ -191,8 +195,8 @@ mod tests {
     #[test]
     fn a_leader_does_not_pass_under_a_placed_text() {
         let below = Vec2::new(120.0, 90.0);
-        let leader = Segment { from: below, to: Vec2::new(120.0, 41.0) };
-        let crossing = Candidate { leader: Some(leader), ..text(100.0, 30.0) };
+        let leader = PixelSegment { from: below, to: Vec2::new(120.0, 41.0) };
+        let crossing = LabelCandidate { leader: Some(leader), ..text(100.0, 30.0) };
         let requests = [request(&[text(100.0, 60.0)]), request(&[crossing])];
         assert_eq!(place(&requests, &field()), [Some(0), None]);
     }
@@ -220,12 +224,12 @@ mod tests {
         assert_eq!(place(&[request(&[text(f32::NAN, 50.0)])], &field()), [None]);
     }
 
-    fn any_candidate() -> impl Strategy<Value = Candidate> {
+    fn any_candidate() -> impl Strategy<Value = LabelCandidate> {
         let numbers = (-20.0..210.0f32, -20.0..110.0f32, 1.0..60.0f32, 1.0..20.0f32, 0..4u8);
         numbers.prop_map(|(x, y, width, height, parts)| {
             let anchor = Vec2::new(x + width * 0.5, y + height + 30.0);
-            let leader = Segment { from: anchor, to: anchor - Vec2::new(3.0, 28.0) };
-            Candidate {
+            let leader = PixelSegment { from: anchor, to: anchor - Vec2::new(3.0, 28.0) };
+            LabelCandidate {
                 text: PixelBox::at(Vec2::new(x, y), Vec2::new(width, height)),
                 symbol: (parts & 1 > 0).then(|| PixelBox::around(anchor, Vec2::splat(3.0))),
                 leader: (parts & 2 > 0).then_some(leader),

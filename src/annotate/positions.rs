@@ -14,12 +14,12 @@
 
 use glam::Vec2;
 
-use crate::annotate::pixel_box::{PixelBox, Segment};
-use crate::annotate::place::Candidate;
+use crate::annotate::pixel_box::{PixelBox, PixelSegment};
+use crate::annotate::place::LabelCandidate;
 
 /// What the candidates of one label are made from; all lengths in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stance {
+pub struct LabelMetrics {
     /// The place.
     pub anchor: Vec2,
     /// From the place to the wished end of its leader line; upward.
@@ -39,9 +39,9 @@ pub struct Stance {
 
 /// One way to draw a label, and how its lines are set then.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Position {
+pub struct LabelPosition {
     /// Where everything is.
-    pub candidate: Candidate,
+    pub candidate: LabelCandidate,
     /// How the lines of the text stand under each other.
     pub alignment: Alignment,
 }
@@ -73,7 +73,7 @@ const MEETINGS: [(f32, Alignment); 3] =
     [(0.5, Alignment::Center), (0.14, Alignment::Left), (0.86, Alignment::Right)];
 
 /// All positions, the best first.
-pub fn positions(stance: &Stance) -> Vec<Position> {
+pub fn positions(stance: &LabelMetrics) -> Vec<LabelPosition> {
     let on_place = (stance.preference == Preference::OnPlace).then(|| centred_on_place(stance));
     let above = LENGTHS
         .iter()
@@ -84,17 +84,17 @@ pub fn positions(stance: &Stance) -> Vec<Position> {
 }
 
 /// The symbol's box at the place.
-pub fn spot(stance: &Stance) -> PixelBox {
+pub fn spot(stance: &LabelMetrics) -> PixelBox {
     PixelBox::around(stance.anchor, stance.symbol)
 }
 
-fn centred_on_place(stance: &Stance) -> Position {
+fn centred_on_place(stance: &LabelMetrics) -> LabelPosition {
     let alignment = Alignment::Center;
     let text = moved_center(stance.texts[alignment as usize], stance.anchor);
-    Position { candidate: Candidate { text, symbol: None, leader: None }, alignment }
+    LabelPosition { candidate: LabelCandidate { text, symbol: None, leader: None }, alignment }
 }
 
-fn above(stance: &Stance, reach: Vec2, (meeting, alignment): (f32, Alignment)) -> Position {
+fn above(stance: &LabelMetrics, reach: Vec2, (meeting, alignment): (f32, Alignment)) -> LabelPosition {
     let area = stance.texts[alignment as usize];
     let end = stance.anchor + reach;
     let foot = Vec2::new(area.min.x + area.size().x * meeting, area.max.y + stance.gap);
@@ -102,11 +102,11 @@ fn above(stance: &Stance, reach: Vec2, (meeting, alignment): (f32, Alignment)) -
     let from = stance.anchor + reach.normalize_or_zero() * stance.symbol.y;
     // The text is moved by whole pixels, the line ends where the text then is.
     let to = Vec2::new(end.x, text.max.y + stance.gap);
-    let leader = Some(Segment { from, to });
-    Position { candidate: Candidate { text, symbol: Some(spot(stance)), leader }, alignment }
+    let leader = Some(PixelSegment { from, to });
+    LabelPosition { candidate: LabelCandidate { text, symbol: Some(spot(stance)), leader }, alignment }
 }
 
-fn beside(stance: &Stance, (side, alignment): (f32, Alignment)) -> Position {
+fn beside(stance: &LabelMetrics, (side, alignment): (f32, Alignment)) -> LabelPosition {
     let area = stance.texts[alignment as usize];
     let away = stance.symbol.x + stance.gap + area.size().x * 0.5;
     let mut text = moved_center(area, stance.anchor + Vec2::new(side * away, 0.0));
@@ -114,7 +114,7 @@ fn beside(stance: &Stance, (side, alignment): (f32, Alignment)) -> Position {
     if text.overlaps(&spot(stance)) {
         text = text.moved(Vec2::new(side, 0.0));
     }
-    Position { candidate: Candidate { text, symbol: Some(spot(stance)), leader: None }, alignment }
+    LabelPosition { candidate: LabelCandidate { text, symbol: Some(spot(stance)), leader: None }, alignment }
 }
 
 /// `area` moved by whole pixels so that its middle comes to `center`.
@@ -126,9 +126,9 @@ fn moved_center(area: PixelBox, center: Vec2) -> PixelBox {
 mod tests {
     use super::*;
 
-    fn stance() -> Stance {
+    fn stance() -> LabelMetrics {
         let text = PixelBox { min: Vec2::new(-1.5, -20.0), max: Vec2::new(80.5, 12.0) };
-        Stance {
+        LabelMetrics {
             anchor: Vec2::new(400.3, 300.7),
             reach: Vec2::new(4.0, -50.0),
             texts: [text.moved(Vec2::new(3.0, 0.0)), text, text.moved(Vec2::new(-3.0, 0.0))],
@@ -139,7 +139,7 @@ mod tests {
         }
     }
 
-    fn candidates(stance: &Stance) -> Vec<Candidate> {
+    fn candidates(stance: &LabelMetrics) -> Vec<LabelCandidate> {
         positions(stance).into_iter().map(|position| position.candidate).collect()
     }
 
@@ -192,7 +192,7 @@ mod tests {
 
     #[test]
     fn a_water_name_stands_on_the_water_first() {
-        let first = candidates(&Stance { preference: Preference::OnPlace, ..stance() })[0];
+        let first = candidates(&LabelMetrics { preference: Preference::OnPlace, ..stance() })[0];
         assert!((first.text.center() - stance().anchor).abs().max_element() <= 0.5);
         assert_eq!((first.symbol, first.leader), (None, None));
     }

@@ -2,7 +2,7 @@
 
 /// A piece of furniture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Furniture {
+pub enum FurnitureKind {
     /// Title and subtitle.
     Title,
     /// The north arrow.
@@ -17,7 +17,7 @@ pub enum Furniture {
 
 /// What was drawn, and what was not and why. Texts are as given, in the order of the annotations.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Report {
+pub struct AnnotationReport {
     /// Labels drawn.
     pub placed: Vec<String>,
     /// Labels not drawn because terrain or something on it stands before their place.
@@ -31,7 +31,7 @@ pub struct Report {
     /// Texts drawn with an ellipsis because they were too long.
     pub shortened: Vec<String>,
     /// Furniture asked for and not drawn: too large for the picture, or its figures make no sense.
-    pub left_out: Vec<Furniture>,
+    pub left_out: Vec<FurnitureKind>,
     /// Texts drawn with boxes in place of characters that the embedded fonts lack.
     pub missing_glyphs: Vec<MissingGlyphs>,
 }
@@ -45,7 +45,7 @@ pub struct MissingGlyphs {
     pub count: usize,
 }
 
-impl Report {
+impl AnnotationReport {
     /// How many boxes were drawn in place of characters, in all texts.
     pub fn missing_glyph_count(&self) -> usize {
         self.missing_glyphs.iter().map(|missing| missing.count).sum()

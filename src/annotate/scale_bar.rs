@@ -15,7 +15,7 @@ use crate::annotate::drawing::Drawing;
 use crate::annotate::nice::{Nice, distance, number};
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::sheet::{INK, PAPER, SOFT_INK, Sheet};
-use crate::annotate::text::{CAP_HEIGHT, DESCENT, Face, Line, Typesetter, write};
+use crate::annotate::text::{CAP_HEIGHT, DESCENT, TextLine, TextStyle, Typesetter, write};
 use crate::view::camera::Camera;
 
 /// Longest bar, in design pixels. Round lengths are at most 2.5 times apart, so bars are at least 104.
@@ -41,7 +41,7 @@ impl ScaleBar {
 
 /// A bar of round length.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measure {
+pub struct RoundBar {
     /// The length it stands for.
     pub length: Nice,
     /// How long it is drawn, in whole pixels.
@@ -50,19 +50,19 @@ pub struct Measure {
 
 /// The longest round bar of at most `longest_px`; `None` where the scale is not a positive number or the
 /// bar would stand for less than a millimetre or more than a hundred thousand kilometres.
-pub fn measure(bar: &ScaleBar, longest_px: f32) -> Option<Measure> {
+pub fn measure(bar: &ScaleBar, longest_px: f32) -> Option<RoundBar> {
     let scale = f64::from(bar.pixels_per_metre);
     let sound = scale > 0.0 && bar.distance_m.is_finite() && bar.distance_m > 0.0;
     let length = Nice::at_most(f64::from(longest_px) / scale).filter(|_| sound)?;
     let sensible = (1e-3..=1e8).contains(&length.value());
     let length_px = libm::round(length.value() * scale) as f32;
-    (sensible && length_px > 0.0).then_some(Measure { length, length_px })
+    (sensible && length_px > 0.0).then_some(RoundBar { length, length_px })
 }
 
 /// The scale bar on its panel with the upper left corner at the origin; `None` where [`measure`] has none.
 pub fn compose(bar: &ScaleBar, sheet: &Sheet, setter: &mut Typesetter) -> Option<Drawing> {
     let measure = measure(bar, sheet.px(LONGEST))?;
-    let note = Face::upright(sheet.type_px(14.0), Face::REGULAR);
+    let note = TextStyle::upright(sheet.type_px(14.0), TextStyle::REGULAR);
     let where_true = setter.line(&format!("at {} from the eye", distance(f64::from(bar.distance_m))), note);
     Some(labelled(&measure, Some(&where_true), sheet, setter))
 }
@@ -79,18 +79,18 @@ pub fn compose_on_map(
     Some(labelled(&measure, None, sheet, setter))
 }
 
-fn labelled(measure: &Measure, note: Option<&Line>, sheet: &Sheet, setter: &mut Typesetter) -> Drawing {
-    let face = Face::upright(sheet.type_px(16.0), Face::REGULAR);
+fn labelled(measure: &RoundBar, note: Option<&TextLine>, sheet: &Sheet, setter: &mut Typesetter) -> Drawing {
+    let face = TextStyle::upright(sheet.type_px(16.0), TextStyle::REGULAR);
     let figures = figures(&measure.length).map(|text| setter.line(&text, face));
     let unit = setter.line(&format!(" {}", unit(&measure.length).0), face);
     lay_out(measure, &figures, &unit, note, sheet)
 }
 
 fn lay_out(
-    measure: &Measure,
-    figures: &[Line; 3],
-    unit: &Line,
-    note: Option<&Line>,
+    measure: &RoundBar,
+    figures: &[TextLine; 3],
+    unit: &TextLine,
+    note: Option<&TextLine>,
     sheet: &Sheet,
 ) -> Drawing {
     let padding = sheet.padding();
@@ -112,8 +112,8 @@ fn lay_out(
         sheet.hairline(),
     );
     draw_bar(&mut drawing, bar, sheet);
-    let middle = |part: f32, line: &Line| bar.min.x + bar.size().x * part - line.advance * 0.5;
-    let at: Vec<(&Line, Vec2)> = [0.0, 0.5, 1.0]
+    let middle = |part: f32, line: &TextLine| bar.min.x + bar.size().x * part - line.advance * 0.5;
+    let at: Vec<(&TextLine, Vec2)> = [0.0, 0.5, 1.0]
         .iter()
         .zip(figures)
         .map(|(&part, line)| (line, Vec2::new(middle(part, line).round(), baseline)))

@@ -39,7 +39,7 @@ const FALLBACK_FACE: &str = "sandtable signs";
 
 /// Size and posture of type.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Face {
+pub struct TextStyle {
     /// Height of the em in pixels.
     pub size_px: f32,
     /// How far the tops lean to the right: tangent of the angle. 0 is upright.
@@ -50,7 +50,7 @@ pub struct Face {
     pub tracking: f32,
 }
 
-impl Face {
+impl TextStyle {
     /// Strength of running text on a panel: a regular face.
     pub const REGULAR: f32 = 0.03;
     /// Strength of titles, and of text on the picture itself, where halos eat at the letters' edges.
@@ -81,7 +81,7 @@ impl Face {
 
 /// A line of text, set.
 #[derive(Clone, Debug)]
-pub struct Line {
+pub struct TextLine {
     /// Outline of all letters, baseline from the origin to the right; `None` where nothing shows.
     pub outline: Option<Path>,
     /// How far the line reaches along the baseline, in pixels.
@@ -91,7 +91,7 @@ pub struct Line {
     /// Whether the end was cut off.
     pub shortened: bool,
     /// The type it is set in.
-    pub face: Face,
+    pub face: TextStyle,
 }
 
 /// Sets text in the embedded fonts; holds their tables and scratch space between lines.
@@ -119,7 +119,7 @@ impl Typesetter {
 
     /// `text` as one line. Line ends and other control characters in it become spaces; beyond 300
     /// characters it is cut.
-    pub fn line(&mut self, text: &str, face: Face) -> Line {
+    pub fn line(&mut self, text: &str, face: TextStyle) -> TextLine {
         let shortened = text.chars().nth(MOST_CHARACTERS).is_some();
         let text: String =
             text.chars().take(MOST_CHARACTERS).map(|c| if c.is_control() { ' ' } else { c }).collect();
@@ -134,10 +134,10 @@ impl Typesetter {
                 }
             }
         }
-        Line { outline: ink.path.finish(), advance, missing, shortened, face }
+        TextLine { outline: ink.path.finish(), advance, missing, shortened, face }
     }
 
-    fn shape(&mut self, text: &str, face: Face) -> Layout<()> {
+    fn shape(&mut self, text: &str, face: TextStyle) -> Layout<()> {
         let families = [FontFamilyName::named(FACE), FontFamilyName::named(FALLBACK_FACE)];
         let mut builder = self.layouts.ranged_builder(&mut self.fonts, text, 1.0, false);
         builder.push_default(StyleProperty::FontFamily(FontFamily::from(&families[..])));
@@ -149,7 +149,7 @@ impl Typesetter {
     }
 }
 
-impl Line {
+impl TextLine {
     /// The smallest box around the letters with a halo of `halo` pixels, baseline from the origin;
     /// [`PixelBox::EMPTY`] where nothing shows.
     pub fn ink(&self, halo: f32) -> PixelBox {
@@ -159,7 +159,7 @@ impl Line {
 }
 
 /// Writes lines of text, each from the start of its baseline.
-pub fn write(drawing: &mut Drawing, lines: &[(&Line, Vec2)], color: Srgba) {
+pub fn write(drawing: &mut Drawing, lines: &[(&TextLine, Vec2)], color: Srgba) {
     for (path, stroke) in lines.iter().filter_map(|(line, at)| placed(line, *at)) {
         if stroke > 0.0 {
             drawing.stroke(&path, stroke, color);
@@ -170,7 +170,7 @@ pub fn write(drawing: &mut Drawing, lines: &[(&Line, Vec2)], color: Srgba) {
 
 /// Draws one halo, reaching `reach` pixels around the letters, under all of `lines`: drawn before any is
 /// written, it covers no neighbour's letters, and where lines are close it stays one even tone.
-pub fn halos(drawing: &mut Drawing, lines: &[(&Line, Vec2)], reach: f32) {
+pub fn halos(drawing: &mut Drawing, lines: &[(&TextLine, Vec2)], reach: f32) {
     let mut all = PathBuilder::new();
     for (path, _) in lines.iter().filter_map(|(line, at)| placed(line, *at)) {
         all.push_path(&path);
@@ -180,7 +180,7 @@ pub fn halos(drawing: &mut Drawing, lines: &[(&Line, Vec2)], reach: f32) {
     }
 }
 
-fn placed(line: &Line, at: Vec2) -> Option<(Path, f32)> {
+fn placed(line: &TextLine, at: Vec2) -> Option<(Path, f32)> {
     let path = line.outline.clone()?.transform(tiny_skia::Transform::from_translate(at.x, at.y))?;
     Some((path, line.face.stroke_px()))
 }
@@ -251,8 +251,8 @@ impl OutlinePen for Outliner {
 mod tests {
     use super::*;
 
-    fn set(text: &str) -> Line {
-        Typesetter::new().line(text, Face::upright(20.0, Face::REGULAR))
+    fn set(text: &str) -> TextLine {
+        Typesetter::new().line(text, TextStyle::upright(20.0, TextStyle::REGULAR))
     }
 
     #[test]
@@ -299,7 +299,7 @@ mod tests {
 
     #[test]
     fn slanted_type_leans_right() {
-        let face = Face { slant: 0.2, ..Face::upright(20.0, 0.0) };
+        let face = TextStyle { slant: 0.2, ..TextStyle::upright(20.0, 0.0) };
         let lean = box_of(&Typesetter::new().line("I", face).outline.expect("a letter"));
         let upright = box_of(&set("I").outline.expect("a letter"));
         assert!((lean.max.x - upright.max.x - 0.2 * 20.0 * CAP_HEIGHT).abs() < 0.01);

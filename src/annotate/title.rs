@@ -5,9 +5,9 @@ use glam::Vec2;
 use crate::annotate::drawing::Drawing;
 use crate::annotate::paragraph::{Paragraph, broken};
 use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::report::Report;
+use crate::annotate::report::AnnotationReport;
 use crate::annotate::sheet::{INK, SOFT_INK, Sheet};
-use crate::annotate::text::{CAP_HEIGHT, Face, Line, Typesetter, write};
+use crate::annotate::text::{CAP_HEIGHT, TextLine, TextStyle, Typesetter, write};
 
 /// The block is no wider than this share of the picture: the rest is left to the view and the north arrow.
 const WIDEST_SHARE: f32 = 0.62;
@@ -25,12 +25,15 @@ pub fn compose(
     subtitle: Option<&str>,
     sheet: &Sheet,
     setter: &mut Typesetter,
-    report: &mut Report,
+    report: &mut AnnotationReport,
 ) -> Option<Drawing> {
     let widest = sheet.size.x * WIDEST_SHARE - sheet.padding() * 2.0;
     let texts = [title, subtitle].map(Option::unwrap_or_default);
     let size = title_px(texts[0], widest, sheet, setter);
-    let faces = [Face::upright(size, Face::MEDIUM), Face::upright(sheet.type_px(18.0), Face::REGULAR)];
+    let faces = [
+        TextStyle::upright(size, TextStyle::MEDIUM),
+        TextStyle::upright(sheet.type_px(18.0), TextStyle::REGULAR),
+    ];
     for (title_lines, subtitle_lines) in MOST_LINES {
         let title = broken(setter, texts[0], faces[0], widest, title_lines);
         // A subtitle without a title may use the title's room.
@@ -51,13 +54,13 @@ fn title_px(title: &str, widest: f32, sheet: &Sheet, setter: &mut Typesetter) ->
     /// Smaller than this, in design pixels, it would no longer look like a title.
     const SMALLEST: f32 = 25.0;
     let usual = sheet.type_px(30.0);
-    let advance = setter.line(title, Face::upright(usual, Face::MEDIUM)).advance;
+    let advance = setter.line(title, TextStyle::upright(usual, TextStyle::MEDIUM)).advance;
     let fitting = (usual * widest / advance.max(1.0)).min(usual) * 0.99;
     if fitting >= sheet.type_px(SMALLEST) { fitting } else { usual }
 }
 
 fn lay_out(title: &Paragraph, subtitle: &Paragraph, sheet: &Sheet) -> Option<Drawing> {
-    let all: Vec<&Line> = title.lines.iter().chain(&subtitle.lines).collect();
+    let all: Vec<&TextLine> = title.lines.iter().chain(&subtitle.lines).collect();
     let (first, last) = (all.first()?, all.last()?);
     let padding = sheet.padding();
     let mut baseline = padding + (first.face.size_px * CAP_HEIGHT).round();
@@ -68,7 +71,7 @@ fn lay_out(title: &Paragraph, subtitle: &Paragraph, sheet: &Sheet) -> Option<Dra
         baseline += (pair[1].face.size_px * leading).round();
         baselines.push(baseline);
     }
-    let placed: Vec<(&Line, Vec2)> =
+    let placed: Vec<(&TextLine, Vec2)> =
         all.iter().zip(&baselines).map(|(line, y)| (*line, Vec2::new(padding, *y))).collect();
     let width = title.width().max(subtitle.width());
     // Panels end a padding below the baseline, not below the descenders: the eye reads the baseline as edge.
@@ -86,8 +89,8 @@ fn lay_out(title: &Paragraph, subtitle: &Paragraph, sheet: &Sheet) -> Option<Dra
 mod tests {
     use super::*;
 
-    fn block(title: Option<&str>, subtitle: Option<&str>) -> (Option<Drawing>, Report) {
-        let mut report = Report::default();
+    fn block(title: Option<&str>, subtitle: Option<&str>) -> (Option<Drawing>, AnnotationReport) {
+        let mut report = AnnotationReport::default();
         let sheet = Sheet::new(1920, 1080);
         let drawing = compose(title, subtitle, &sheet, &mut Typesetter::new(), &mut report);
         (drawing, report)
@@ -115,7 +118,7 @@ mod tests {
 
     #[test]
     fn on_a_small_picture_the_subtitle_gives_way_and_the_report_says_so() {
-        let (sheet, mut report) = (Sheet::new(480, 270), Report::default());
+        let (sheet, mut report) = (Sheet::new(480, 270), AnnotationReport::default());
         let (title, subtitle) = ("Cross Mountain and the Coal Creek Valley", "Anderson County ".repeat(9));
         let mut setter = Typesetter::new();
         let drawing = compose(Some(title), Some(&subtitle), &sheet, &mut setter, &mut report);

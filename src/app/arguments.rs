@@ -10,14 +10,14 @@ use crate::app::export::ExportOptions;
 use crate::app::grid::GridOptions;
 use crate::app::height::HeightOptions;
 use crate::app::lod::choice::Wanted;
-use crate::app::lod::method::{Emit, Refine, Rule};
-use crate::app::lod::way::Way;
+use crate::app::lod::method::{CriterionKind, Emit, Refine};
+use crate::app::lod::way::FlightPath;
 use crate::app::los::LosOptions;
 use crate::app::new::NewOptions;
 use crate::app::profile::ProfileOptions;
 use crate::app::report::ReportOptions;
 use crate::app::serve::ServeOptions;
-use crate::app::viewshed::ViewshedOptions;
+use crate::app::viewshed::ViewshedArguments;
 use crate::dem::raw::RawLayout;
 use crate::dem::rgb_png::HeightEncoding;
 use crate::terrain::query::Interpolation;
@@ -62,7 +62,7 @@ pub enum Command {
     /// Whether one point can be seen from another, and what stands between
     Los(LosOptions),
     /// What can be seen from a point, as a map or a raster
-    Viewshed(ViewshedOptions),
+    Viewshed(ViewshedArguments),
     /// Answer questions about heights over HTTP
     Serve(ServeOptions),
     /// What building a scene found out about single features: earth moved, gaps left, levels taken
@@ -103,7 +103,7 @@ pub struct RenderOptions {
     pub output: Option<PathBuf>,
     /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "1920x1080")]
-    pub size: Size,
+    pub size: PictureSize,
     /// Which of the scene's cameras to look through [default: its first]
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
@@ -219,7 +219,7 @@ pub struct LodOptions {
     pub emit: Option<Emit>,
     /// Only methods with this criterion of when an error shows
     #[arg(long, value_enum)]
-    pub criterion: Option<Rule>,
+    pub criterion: Option<CriterionKind>,
     /// Only methods that refine this way
     #[arg(long, value_enum)]
     pub refine: Option<Refine>,
@@ -231,7 +231,7 @@ pub struct LodOptions {
     pub budget: Option<u32>,
     /// Which way to fly: circle, line (from the south-west to the north-east), or a file of stations
     #[arg(long, value_name = "circle|line|FILE", default_value = "circle")]
-    pub flight: Way,
+    pub flight: FlightPath,
     /// How many frames the flight has
     #[arg(long, value_name = "N", default_value_t = 240, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     pub frames: u32,
@@ -322,14 +322,14 @@ impl From<InterpolationChoice> for Interpolation {
 
 /// A picture's size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Size {
+pub struct PictureSize {
     /// Pixels across, 16 to 16384.
     pub width: u32,
     /// Pixels down, 16 to 16384.
     pub height: u32,
 }
 
-impl FromStr for Size {
+impl FromStr for PictureSize {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -365,9 +365,9 @@ mod tests {
 
     #[test]
     fn sizes_are_two_numbers_within_range() {
-        assert_eq!("640x480".parse(), Ok(Size { width: 640, height: 480 }));
+        assert_eq!("640x480".parse(), Ok(PictureSize { width: 640, height: 480 }));
         for wrong in ["640", "640x", "0x0", "99999x10", "-4x20", "axb"] {
-            assert!(wrong.parse::<Size>().is_err(), "{wrong}");
+            assert!(wrong.parse::<PictureSize>().is_err(), "{wrong}");
         }
     }
 }

@@ -1,8 +1,8 @@
 //! `sandtable check`: load and validate, draw nothing.
 
 use crate::app::arguments::CheckOptions;
-use crate::app::failure::Failure;
-use crate::app::progress::Steps;
+use crate::app::failure::CliError;
+use crate::app::progress::StepTimer;
 use crate::app::{load, output};
 use crate::scene::kind::{FeatureKind, Scene};
 use crate::scene::views::whole_metres;
@@ -11,15 +11,15 @@ use crate::scene::views::whole_metres;
 ///
 /// # Errors
 /// Whatever is wrong with the scene.
-pub fn run(options: &CheckOptions) -> Result<(), Failure> {
-    let steps = Steps::default();
+pub fn run(options: &CheckOptions) -> Result<(), CliError> {
+    let steps = StepTimer::default();
     let scene = load::scene(&options.scene, &options.access, &|step| steps.begin(step))?;
     steps.begin("checking invariants");
     let terrain = &scene.terrain;
     terrain
         .errors
         .check(&terrain.layout)
-        .map_err(|flaw| Failure::input(format!("internal check: {flaw}")))?;
+        .map_err(|flaw| CliError::input(format!("internal check: {flaw}")))?;
     steps.finish();
     let mut lines = vec![format!("{} is sound", options.scene.display())];
     lines.extend(contents(&scene));

@@ -9,14 +9,14 @@ use clap::Args;
 
 use crate::app::arguments::StatedHeights;
 use crate::app::dem::{self, StatedPlace};
-use crate::app::failure::Failure;
-use crate::app::progress::Steps;
+use crate::app::failure::CliError;
+use crate::app::progress::StepTimer;
 use crate::app::{output, rasters};
 use crate::dem::raster::Raster;
 use crate::dem::voids;
 use crate::dem::warp::WarpError;
-use crate::dem::warp_to::{self, Method, Warped};
-use crate::dem::write::{Format, Written};
+use crate::dem::warp_to::{self, Resampling, Warped};
+use crate::dem::write::{DemFormat, WrittenDem};
 use crate::geom::crs::Crs;
 
 /// A cell of more degrees than this was meant in metres.
@@ -62,12 +62,12 @@ fn above_zero(text: &str) -> Result<f64, String> {
 ///
 /// # Errors
 /// The file cannot be had, read or brought to the system; the output cannot be written or cannot hold it.
-pub fn run(options: &ConvertOptions) -> Result<(), Failure> {
+pub fn run(options: &ConvertOptions) -> Result<(), CliError> {
     let (inputs, out) = places(options)?;
     let format = rasters::format_of(out, inputs)?;
     let input = inputs[0].as_path();
     let target = parsed("--crs", options.crs.as_deref())?;
-    let steps = Steps::default();
+    let steps = StepTimer::default();
     steps.begin("reading");
     let (source, notes) = load(inputs, options)?;
     steps.begin("resampling");
@@ -81,25 +81,25 @@ pub fn run(options: &ConvertOptions) -> Result<(), Failure> {
     output::print(&output::text_of(&lines))
 }
 
-fn about(file: &Path, reason: &str) -> Failure {
-    Failure::input(format!("{}: {reason}", file.display()))
+fn about(file: &Path, reason: &str) -> CliError {
+    CliError::input(format!("{}: {reason}", file.display()))
 }
 
 /// What is read, and what is written.
-fn places(options: &ConvertOptions) -> Result<(&[PathBuf], &Path), Failure> {
+fn places(options: &ConvertOptions) -> Result<(&[PathBuf], &Path), CliError> {
     match options.files.split_last() {
         Some((out, inputs @ [_, ..])) => Ok((inputs, out)),
-        _ => Err(Failure::Usage("name an elevation file and the file to write".into())),
+        _ => Err(CliError::Usage("name an elevation file and the file to write".into())),
     }
 }
 
-fn parsed(option: &str, text: Option<&str>) -> Result<Option<Crs>, Failure> {
+fn parsed(option: &str, text: Option<&str>) -> Result<Option<Crs>, CliError> {
     let crs = text.map(Crs::parse).transpose();
-    crs.map_err(|error| Failure::Usage(format!("{option}: {error}")))
+    crs.map_err(|error| CliError::Usage(format!("{option}: {error}")))
 }
 
 /// The raster, and what was done to make it one without voids.
-fn load(inputs: &[PathBuf], options: &ConvertOptions) -> Result<(Raster, Vec<String>), Failure> {
+fn load(inputs: &[PathBuf], options: &ConvertOptions) -> Result<(Raster, Vec<String>), CliError> {
     let crs = parsed("--source-crs", options.source_crs.as_deref())?;
     let place = StatedPlace { cell: options.cell, crs };
     let mut notes = Vec::new();
@@ -123,9 +123,9 @@ fn brought(
     source: &Raster,
     target: Option<&Crs>,
     cell: Option<f64>,
-) -> Result<Warped, Failure> {
+) -> Result<Warped, CliError> {
     if target.is_none() && cell.is_none() {
-        return Ok(Warped { raster: source.clone(), method: Method::Kept });
+        return Ok(Warped { raster: source.clone(), method: Resampling::Kept });
     }
     if let (Some(target), None, true) = (target, &source.crs, source.georeferenced) {
         let reason = format!(
@@ -178,17 +178,17 @@ fn shift(source: &Raster, raster: &Raster) -> Result<Option<String>, String> {
 
 fn summary(
     out: &Path,
-    format: Format,
+    format: DemFormat,
     raster: &Raster,
-    (method, shift): (Method, Option<String>),
-    written: &Written,
+    (method, shift): (Resampling, Option<String>),
+    written: &WrittenDem,
 ) -> Vec<String> {
     let cell = raster.spacing();
     let valid = raster.samples.iter().filter(|value| !value.is_nan()).count();
     let how = match method {
-        Method::Kept => "no, the samples are the file's",
-        Method::Bilinear => "bilinear, between the four samples around each cell's centre",
-        Method::Average => "average of the samples in each cell",
+        Resampling::Kept => "no, the samples are the file's",
+        Resampling::Bilinear => "bilinear, between the four samples around each cell's centre",
+        Resampling::Average => "average of the samples in each cell",
     };
     let mut lines = vec![
         format!("{}", out.display()),

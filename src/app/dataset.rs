@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::app::arguments::{Access, StatedHeights};
 use crate::app::dem::read_raster;
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 use crate::app::{ground, load};
 use crate::dem::raster::Raster;
 use crate::geom::crs::{Crs, CrsError};
@@ -22,10 +22,10 @@ use crate::terrain::query::{Answer, Interpolation, Surface};
 /// An elevation file, or a scene.
 pub struct Dataset {
     name: String,
-    kind: Kind,
+    kind: DatasetKind,
 }
 
-enum Kind {
+enum DatasetKind {
     /// The ground is made when it is first asked for: an elevation file in degrees must be warped for it.
     File {
         raster: Arc<Raster>,
@@ -40,30 +40,30 @@ impl Dataset {
     ///
     /// # Errors
     /// It cannot be had or read; the message names it.
-    pub fn open(path: &Path, heights: StatedHeights, access: &Access) -> Result<Self, Failure> {
+    pub fn open(path: &Path, heights: StatedHeights, access: &Access) -> Result<Self, CliError> {
         let name = path.display().to_string();
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(OsStr::new("toml"))) {
             let scene = load::scene(path, access, &|_| ())?;
-            return Ok(Self { name, kind: Kind::Scene(scene.heights) });
+            return Ok(Self { name, kind: DatasetKind::Scene(scene.heights) });
         }
         let raster = Arc::new(read_raster(path, heights)?);
         let crs = raster.crs.clone().unwrap_or_else(Crs::local);
-        Ok(Self { name, kind: Kind::File { raster, crs, ground: OnceLock::new() } })
+        Ok(Self { name, kind: DatasetKind::File { raster, crs, ground: OnceLock::new() } })
     }
 
     /// The system that positions are given in where nobody says another: the file's or the scene's.
     pub fn crs(&self) -> Crs {
         match &self.kind {
-            Kind::File { crs, .. } => crs.clone(),
-            Kind::Scene(service) => service.now().crs().clone(),
+            DatasetKind::File { crs, .. } => crs.clone(),
+            DatasetKind::Scene(service) => service.snapshot().crs().clone(),
         }
     }
 
     /// What is asked where nobody says: of a file, what it holds; of a scene, its ground.
     pub fn usual_surface(&self) -> Surface {
         match &self.kind {
-            Kind::File { .. } => Surface::Source,
-            Kind::Scene(_) => Surface::Ground,
+            DatasetKind::File { .. } => Surface::Source,
+            DatasetKind::Scene(_) => Surface::Ground,
         }
     }
 
@@ -71,13 +71,13 @@ impl Dataset {
     ///
     /// # Errors
     /// The elevation file has no place in metres; the message names it.
-    pub fn service(&self) -> Result<&HeightService, Failure> {
+    pub fn service(&self) -> Result<&HeightService, CliError> {
         match &self.kind {
-            Kind::Scene(service) => Ok(service),
-            Kind::File { raster, ground, .. } => ground
+            DatasetKind::Scene(service) => Ok(service),
+            DatasetKind::File { raster, ground, .. } => ground
                 .get_or_init(|| ground::service(raster))
                 .as_ref()
-                .map_err(|reason| Failure::input(format!("{}: {reason}", self.name))),
+                .map_err(|reason| CliError::input(format!("{}: {reason}", self.name))),
         }
     }
 
@@ -99,7 +99,7 @@ impl Dataset {
         from: &Crs,
         at: &[DVec2],
         out: &mut [Answer],
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CliError> {
         assert_eq!(at.len(), out.len(), "one answer per position");
         if surface == Surface::Source {
             let source = self.source();
@@ -108,7 +108,7 @@ impl Dataset {
             source_heights(&source, from, interpolation, at, out);
             return Ok(());
         }
-        let epoch = self.service()?.now();
+        let epoch = self.service()?.snapshot();
         if from == epoch.crs() {
             epoch.heights(surface, interpolation, at, out);
             return Ok(());
@@ -121,9 +121,9 @@ impl Dataset {
     }
 
     /// Whether anything can be brought from one system to the other at all: what cannot is not merely outside.
-    fn check_way(&self, from: &Crs, to: &Crs) -> Result<(), Failure> {
+    fn check_way(&self, from: &Crs, to: &Crs) -> Result<(), CliError> {
         match from.transform(to, DVec2::ZERO) {
-            Err(error @ CrsError::Datum { .. }) => Err(Failure::input(format!("{}: {error}", self.name))),
+            Err(error @ CrsError::Datum { .. }) => Err(CliError::input(format!("{}: {error}", self.name))),
             _ => Ok(()),
         }
     }
@@ -131,8 +131,8 @@ impl Dataset {
     /// The raster as read.
     pub fn source(&self) -> Arc<Raster> {
         match &self.kind {
-            Kind::File { raster, .. } => Arc::clone(raster),
-            Kind::Scene(service) => Arc::clone(service.now().source()),
+            DatasetKind::File { raster, .. } => Arc::clone(raster),
+            DatasetKind::Scene(service) => Arc::clone(service.snapshot().source()),
         }
     }
 }

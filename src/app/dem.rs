@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use crate::app::arguments::{DemInfoOptions, StatedHeights};
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 use crate::app::{files, output};
 use crate::dem::mosaic::{self, Mosaic, MosaicError};
 use crate::dem::raster::Raster;
-use crate::dem::read::{self, Hints};
+use crate::dem::read::{self, DemHints};
 use crate::dem::stats::{self, Stats};
 use crate::dem::voids;
 use crate::geom::crs::Crs;
@@ -31,7 +31,7 @@ pub struct StatedPlace {
 ///
 /// # Errors
 /// It cannot be had or read, or the files in the folder are not tiles of one raster; the message names it.
-pub fn read_raster(path: &Path, heights: StatedHeights) -> Result<Raster, Failure> {
+pub fn read_raster(path: &Path, heights: StatedHeights) -> Result<Raster, CliError> {
     read_raster_placed(path, heights, &StatedPlace::default())
 }
 
@@ -43,21 +43,21 @@ pub fn read_raster_placed(
     path: &Path,
     heights: StatedHeights,
     place: &StatedPlace,
-) -> Result<Raster, Failure> {
+) -> Result<Raster, CliError> {
     if !path.is_dir() {
         return read_file(path, heights, place);
     }
     let mosaic = read_folder(path, heights, place)?;
     if mosaic.differing > 0 {
-        output::complain(&format!("warning: {}: {}", path.display(), mosaic.note()));
+        output::warn(&format!("warning: {}: {}", path.display(), mosaic.note()));
     }
     Ok(mosaic.raster)
 }
 
-fn read_file(path: &Path, heights: StatedHeights, place: &StatedPlace) -> Result<Raster, Failure> {
+fn read_file(path: &Path, heights: StatedHeights, place: &StatedPlace) -> Result<Raster, CliError> {
     let bytes = files::read(path)?;
     let beside = files::beside(path);
-    let hints = Hints {
+    let hints = DemHints {
         png_height_scale: heights.height_scale,
         png_height_offset: heights.height_offset,
         height_encoding: heights.height_encoding,
@@ -65,22 +65,22 @@ fn read_file(path: &Path, heights: StatedHeights, place: &StatedPlace) -> Result
         cell: place.cell,
         crs: place.crs.clone(),
         companions: &beside,
-        ..Hints::default()
+        ..DemHints::default()
     };
     read::read(&name_of(path), &bytes, &hints)
-        .map_err(|error| Failure::input(format!("{}: {}", path.display(), error.fault)))
+        .map_err(|error| CliError::input(format!("{}: {}", path.display(), error.fault)))
 }
 
-fn read_folder(folder: &Path, heights: StatedHeights, place: &StatedPlace) -> Result<Mosaic, Failure> {
-    let wrong = |reason: String| Failure::input(format!("{}: {reason}", folder.display()));
+fn read_folder(folder: &Path, heights: StatedHeights, place: &StatedPlace) -> Result<Mosaic, CliError> {
+    let wrong = |reason: String| CliError::input(format!("{}: {reason}", folder.display()));
     let mut paths = files::in_folder(folder)?;
     paths.retain(|path| read::is_tile_name(&name_of(path)));
     if paths.is_empty() {
         return Err(wrong("there is no elevation file in this folder".into()));
     }
     read_tiles(&paths, heights, place).map_err(|failure| match failure {
-        Tiles::Failure(failure) => failure,
-        Tiles::Mosaic(reason) => wrong(reason),
+        TileError::Failure(failure) => failure,
+        TileError::Mosaic(reason) => wrong(reason),
     })
 }
 
@@ -92,27 +92,27 @@ pub fn read_mosaic(
     paths: &[PathBuf],
     heights: StatedHeights,
     place: &StatedPlace,
-) -> Result<Mosaic, Failure> {
+) -> Result<Mosaic, CliError> {
     read_tiles(paths, heights, place).map_err(|failure| match failure {
-        Tiles::Failure(failure) => failure,
-        Tiles::Mosaic(reason) => Failure::input(reason),
+        TileError::Failure(failure) => failure,
+        TileError::Mosaic(reason) => CliError::input(reason),
     })
 }
 
 /// Why tiles are not joined.
-enum Tiles {
+enum TileError {
     /// A file cannot be had or read.
-    Failure(Failure),
+    Failure(CliError),
     /// They are not tiles of one raster.
     Mosaic(String),
 }
 
-fn read_tiles(paths: &[PathBuf], heights: StatedHeights, place: &StatedPlace) -> Result<Mosaic, Tiles> {
+fn read_tiles(paths: &[PathBuf], heights: StatedHeights, place: &StatedPlace) -> Result<Mosaic, TileError> {
     let names: Vec<String> = paths.iter().map(|path| name_of(path).into_owned()).collect();
-    let wrong = |error: MosaicError| Tiles::Mosaic(error.named(&names));
+    let wrong = |error: MosaicError| TileError::Mosaic(error.named(&names));
     let mut tiles = Vec::new();
     for path in paths {
-        tiles.push(read_file(path, heights, place).map_err(Tiles::Failure)?);
+        tiles.push(read_file(path, heights, place).map_err(TileError::Failure)?);
         mosaic::check_total(&tiles).map_err(wrong)?;
     }
     mosaic::mosaic(tiles).map_err(wrong)
@@ -126,7 +126,7 @@ fn name_of(path: &Path) -> Cow<'_, str> {
 ///
 /// # Errors
 /// The file cannot be had or read.
-pub fn info(options: &DemInfoOptions) -> Result<(), Failure> {
+pub fn info(options: &DemInfoOptions) -> Result<(), CliError> {
     let (path, place) = (&options.info.file, StatedPlace::default());
     let about = if path.is_dir() {
         let mosaic = read_folder(path, options.heights, &place)?;

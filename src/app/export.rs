@@ -6,15 +6,15 @@ use std::sync::Arc;
 use clap::Args;
 
 use crate::app::arguments::{Access, metres_from_zero};
-use crate::app::failure::Failure;
-use crate::app::progress::Steps;
+use crate::app::failure::CliError;
+use crate::app::progress::StepTimer;
 use crate::app::{files, load, output};
 use crate::draw::list::{DrawList, FeatureId};
 use crate::export::{glb, obj, prepare};
 use crate::roam::criterion::flat::Flat;
 use crate::roam::displayed::DisplayedTerrain;
 use crate::roam::refine::rebuild::rebuild;
-use crate::scene::kind::{Feature, Scene, Terrain};
+use crate::scene::kind::{Scene, SceneFeature, Terrain};
 use crate::scene::picture;
 
 /// `export`.
@@ -39,7 +39,7 @@ pub struct ExportOptions {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
+enum ExportFormat {
     Glb,
     Obj,
 }
@@ -48,14 +48,14 @@ enum Format {
 ///
 /// # Errors
 /// Whatever is wrong with the scene; the file's name is that of no format, or it cannot be written.
-pub fn run(options: &ExportOptions) -> Result<(), Failure> {
+pub fn run(options: &ExportOptions) -> Result<(), CliError> {
     let format = format_of(&options.output)?;
     files::check_file_place(
         &options.output,
         &options.scene,
         "this is the scene file itself; name another with -o",
     )?;
-    let steps = Steps::default();
+    let steps = StepTimer::default();
     let step = |step| steps.begin(step);
     let scene = load::unstretched(&options.scene, &options.access, &step)?;
     files::check_no_input(&options.output, &scene.files)?;
@@ -79,11 +79,11 @@ pub fn run(options: &ExportOptions) -> Result<(), Failure> {
     output::print(&output::text_of(&lines))
 }
 
-fn format_of(path: &Path) -> Result<Format, Failure> {
+fn format_of(path: &Path) -> Result<ExportFormat, CliError> {
     match path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase().as_str() {
-        "glb" => Ok(Format::Glb),
-        "obj" => Ok(Format::Obj),
-        _ => Err(Failure::Usage(format!(
+        "glb" => Ok(ExportFormat::Glb),
+        "obj" => Ok(ExportFormat::Obj),
+        _ => Err(CliError::Usage(format!(
             "{}: scenes are exported as .glb or .obj; name a file that ends so",
             path.display()
         ))),
@@ -101,15 +101,15 @@ fn display(terrain: &Terrain, max_error_m: f32) -> DisplayedTerrain {
 /// Writes all files, what others need first; returns their places, the asked one first.
 fn write(
     path: &Path,
-    format: Format,
+    format: ExportFormat,
     (list, scene): (&DrawList, &Scene),
     remarks: &[String],
-) -> Result<Vec<PathBuf>, Failure> {
+) -> Result<Vec<PathBuf>, CliError> {
     let name = |feature| name_of(&scene.features, feature);
     let mut written = vec![path.to_owned()];
     match format {
-        Format::Glb => files::write_whole_with(path, |out| glb::write(list, &name, remarks, out))?,
-        Format::Obj => {
+        ExportFormat::Glb => files::write_whole_with(path, |out| glb::write(list, &name, remarks, out))?,
+        ExportFormat::Obj => {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             for (name, bytes) in obj::companions(list, &stem) {
                 let place = path.with_file_name(name);
@@ -123,13 +123,13 @@ fn write(
     Ok(written)
 }
 
-fn name_of(features: &[Feature], FeatureId(id): FeatureId) -> String {
+fn name_of(features: &[SceneFeature], FeatureId(id): FeatureId) -> String {
     if FeatureId(id) == FeatureId::GROUND {
         return "ground".into();
     }
     let first = FeatureId::GROUND.0 + 1;
     let feature = id.checked_sub(first).and_then(|index| features.get(index as usize));
-    feature.map_or_else(String::new, |Feature { kind, name }| match name.as_str() {
+    feature.map_or_else(String::new, |SceneFeature { kind, name }| match name.as_str() {
         "" => kind.noun(1).to_owned(),
         name => format!("{} {name}", kind.noun(1)),
     })

@@ -7,14 +7,14 @@ use crate::app::output;
 
 /// Why a command stopped.
 #[derive(Debug)]
-pub enum Failure {
+pub enum CliError {
     /// The input is wrong, or cannot be had: exit code 1.
     Input(String),
     /// The command was used wrongly: exit code 2.
     Usage(String),
 }
 
-impl Failure {
+impl CliError {
     /// Wrong input; `reason` is shown to the user as it is.
     pub fn input(reason: impl Display) -> Self {
         Self::Input(reason.to_string())
@@ -24,7 +24,7 @@ impl Failure {
     pub fn report(&self) {
         let (Self::Input(reason) | Self::Usage(reason)) = self;
         let head = if reason.contains(": error: ") { "" } else { "error: " };
-        output::complain(&format!("{head}{reason}"));
+        output::warn(&format!("{head}{reason}"));
     }
 
     /// The program's exit code.

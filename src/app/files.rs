@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 
 /// No input file may be larger: more than any elevation tile in use, less than this machine's memory.
 const MAX_BYTES: u64 = 4 << 30;
@@ -13,8 +13,8 @@ const MAX_BYTES: u64 = 4 << 30;
 ///
 /// # Errors
 /// It cannot be read, is no regular file, or is too large; the message names it.
-pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
-    let wrong = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
+pub fn read(path: &Path) -> Result<Vec<u8>, CliError> {
+    let wrong = |reason: String| CliError::input(format!("{}: {reason}", path.display()));
     let metadata = fs::metadata(path).map_err(|error| wrong(describe(&error)))?;
     if !metadata.is_file() {
         return Err(wrong("this is not a file".into()));
@@ -29,18 +29,18 @@ pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
 ///
 /// # Errors
 /// As for [`read`]; or it is not UTF-8.
-pub fn read_text(path: &Path) -> Result<String, Failure> {
+pub fn read_text(path: &Path) -> Result<String, CliError> {
     let bytes = if path == Path::new("-") {
         let mut bytes = Vec::new();
         let result = io::stdin().lock().take(MAX_BYTES).read_to_end(&mut bytes);
-        result.map_err(|error| Failure::input(format!("standard input: {error}")))?;
+        result.map_err(|error| CliError::input(format!("standard input: {error}")))?;
         bytes
     } else {
         read(path)?
     };
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        Failure::input(format!("{}: byte {at} is not UTF-8 text", text_name(path)))
+        CliError::input(format!("{}: byte {at} is not UTF-8 text", text_name(path)))
     })
 }
 
@@ -53,8 +53,8 @@ pub fn text_name(path: &Path) -> String {
 ///
 /// # Errors
 /// It cannot be read; the message names it.
-pub fn in_folder(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let wrong = |error: io::Error| Failure::input(format!("{}: {}", folder.display(), describe(&error)));
+pub fn in_folder(folder: &Path) -> Result<Vec<PathBuf>, CliError> {
+    let wrong = |error: io::Error| CliError::input(format!("{}: {}", folder.display(), describe(&error)));
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).map_err(wrong)? {
         let path = entry.map_err(wrong)?.path();
@@ -80,7 +80,7 @@ pub fn beside(path: &Path) -> impl Fn(&str) -> Option<Vec<u8>> + '_ {
 /// # Errors
 /// The folder is not there, `path` is a folder or a device, it is the scene file itself, or its name is that of
 /// another format.
-pub fn check_place(path: &Path, scene: &Path) -> Result<(), Failure> {
+pub fn check_place(path: &Path, scene: &Path) -> Result<(), CliError> {
     check_picture_place(path, scene, "this is the scene file itself; name another with -o")
 }
 
@@ -88,11 +88,11 @@ pub fn check_place(path: &Path, scene: &Path) -> Result<(), Failure> {
 ///
 /// # Errors
 /// As for [`check_file_place`]; or its name is that of another format than PNG.
-pub fn check_picture_place(path: &Path, input: &Path, is_input: &str) -> Result<(), Failure> {
+pub fn check_picture_place(path: &Path, input: &Path, is_input: &str) -> Result<(), CliError> {
     check_file_place(path, input, is_input)?;
     if !is_png_name(path) {
         let reason = "pictures are written as PNG; name one that ends in .png";
-        return Err(Failure::input(format!("{}: {reason}", path.display())));
+        return Err(CliError::input(format!("{}: {reason}", path.display())));
     }
     Ok(())
 }
@@ -101,8 +101,8 @@ pub fn check_picture_place(path: &Path, input: &Path, is_input: &str) -> Result<
 ///
 /// # Errors
 /// The folder is not there, `path` is a folder or a device, or it is `input`; then with the reason `is_input`.
-pub fn check_file_place(path: &Path, input: &Path, is_input: &str) -> Result<(), Failure> {
-    let wrong = |reason: &str| Err(Failure::input(format!("{}: {reason}", path.display())));
+pub fn check_file_place(path: &Path, input: &Path, is_input: &str) -> Result<(), CliError> {
+    let wrong = |reason: &str| Err(CliError::input(format!("{}: {reason}", path.display())));
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {
         return wrong("there is no such folder to write to");
@@ -120,11 +120,11 @@ pub fn check_file_place(path: &Path, input: &Path, is_input: &str) -> Result<(),
 ///
 /// # Errors
 /// It is one of `inputs`, whose links are followed.
-pub fn check_no_input(path: &Path, inputs: &[PathBuf]) -> Result<(), Failure> {
+pub fn check_no_input(path: &Path, inputs: &[PathBuf]) -> Result<(), CliError> {
     match path.canonicalize() {
         Ok(there) if inputs.contains(&there) => {
             let reason = "the scene is made of this file; name another with -o";
-            Err(Failure::input(format!("{}: {reason}", path.display())))
+            Err(CliError::input(format!("{}: {reason}", path.display())))
         }
         _ => Ok(()),
     }
@@ -139,7 +139,7 @@ fn is_png_name(path: &Path) -> bool {
 ///
 /// # Errors
 /// It cannot be written; nothing is left behind.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
     write_whole_with(path, |out| out.write_all(bytes))
 }
 
@@ -150,8 +150,8 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 pub fn write_whole_with(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<fs::File>) -> io::Result<()>,
-) -> Result<(), Failure> {
-    let wrong = |error: io::Error| Failure::input(format!("{}: {}", path.display(), describe(&error)));
+) -> Result<(), CliError> {
+    let wrong = |error: io::Error| CliError::input(format!("{}: {}", path.display(), describe(&error)));
     let name = path.file_name().ok_or_else(|| wrong(io::Error::from(io::ErrorKind::InvalidFilename)))?;
     let mut partial = name.to_owned();
     partial.push(format!(".{}.part", std::process::id()));

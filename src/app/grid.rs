@@ -6,16 +6,16 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 use glam::{DVec2, DVec3};
 
-use crate::app::failure::Failure;
-use crate::app::progress::Steps;
+use crate::app::failure::CliError;
+use crate::app::progress::StepTimer;
 use crate::app::{files, output, rasters};
-use crate::dem::gridding::frame::Frame;
-use crate::dem::gridding::{self, Beyond, Gridded, Method};
+use crate::dem::gridding::frame::CellGrid;
+use crate::dem::gridding::{self, Beyond, Gridded, GriddingMethod};
 use crate::dem::points::{self, PointCloud};
-use crate::dem::write::Written;
+use crate::dem::write::WrittenDem;
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
-use crate::vector::feature::{Feature, Geometry, Layer};
+use crate::vector::feature::{Feature, Geometry, VectorLayer};
 use crate::vector::read as vector;
 
 /// `dem grid`.
@@ -42,7 +42,7 @@ pub struct GridOptions {
     pub crs: Option<String>,
     /// What to cover [default: the points, out to multiples of the cell]
     #[arg(long, value_name = "W,S,E,N", allow_hyphen_values = true)]
-    pub extent: Option<Extent>,
+    pub extent: Option<GridExtent>,
     /// What cells outside the convex hull of the points hold
     #[arg(long, value_enum, default_value_t)]
     pub beyond_hull: BeyondChoice,
@@ -106,9 +106,9 @@ pub enum BeyondChoice {
 
 /// West, south, east and north.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extent(Rect);
+pub struct GridExtent(Rect);
 
-impl FromStr for Extent {
+impl FromStr for GridExtent {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -129,19 +129,20 @@ impl FromStr for Extent {
 ///
 /// # Errors
 /// A file cannot be had or read, the points make no grid, or it cannot be written.
-pub fn run(options: &GridOptions) -> Result<(), Failure> {
-    let (out, inputs) = options.files.split_last().ok_or_else(|| Failure::input("name points and a grid"))?;
+pub fn run(options: &GridOptions) -> Result<(), CliError> {
+    let (out, inputs) =
+        options.files.split_last().ok_or_else(|| CliError::input("name points and a grid"))?;
     let method = method(options)?;
     let read: Vec<PathBuf> = inputs.iter().chain(&options.breaklines).cloned().collect();
     let format = rasters::format_of(out, &read)?;
-    let steps = Steps::default();
+    let steps = StepTimer::default();
     steps.begin("reading points");
     let cloud = read_all(inputs, options)?;
     steps.begin("making the grid");
     let extent = cloud.points.iter().chain(cloud.breaklines.iter().flatten()).map(|point| point.truncate());
     let frame = match options.extent {
-        Some(Extent(extent)) => Frame::within(extent, options.cell),
-        None => Frame::around(Rect::around(extent), options.cell),
+        Some(GridExtent(extent)) => CellGrid::within(extent, options.cell),
+        None => CellGrid::around(Rect::around(extent), options.cell),
     };
     let beyond = match options.beyond_hull {
         BeyondChoice::Nodata => Beyond::NoData,
@@ -150,17 +151,17 @@ pub fn run(options: &GridOptions) -> Result<(), Failure> {
     let gridded = frame
         .map_err(gridding::GridError::from)
         .and_then(|frame| gridding::grid(&cloud, &frame, method, beyond))
-        .map_err(|error| Failure::input(format!("{}: {error}", inputs[0].display())))?;
+        .map_err(|error| CliError::input(format!("{}: {error}", inputs[0].display())))?;
     steps.begin("writing");
     let written = rasters::write(&gridded.raster, format, out, &read)?;
     steps.finish();
     output::print(&summary(&cloud, &gridded, options.method, (out, &written)))
 }
 
-fn method(options: &GridOptions) -> Result<Method, Failure> {
+fn method(options: &GridOptions) -> Result<GriddingMethod, CliError> {
     let wrong = |what: &str, goes_with: &str| {
         let name = options.method.name();
-        Err(Failure::input(format!("--{what} goes with --method {goes_with}, not with {name}")))
+        Err(CliError::input(format!("--{what} goes with --method {goes_with}, not with {name}")))
     };
     let power = |default: f64| options.power.unwrap_or(default);
     match options.method {
@@ -171,18 +172,20 @@ fn method(options: &GridOptions) -> Result<Method, Failure> {
         MethodChoice::Tin | MethodChoice::Natural | MethodChoice::Nearest => {}
     }
     Ok(match options.method {
-        MethodChoice::Tin => Method::Tin,
-        MethodChoice::Natural => Method::Natural,
-        MethodChoice::Idw => Method::InverseDistance { k: options.k.unwrap_or(12), power: power(2.0) },
-        MethodChoice::Quadrant => Method::Quadrant { power: power(1.0) },
-        MethodChoice::Nearest => Method::Nearest,
+        MethodChoice::Tin => GriddingMethod::Tin,
+        MethodChoice::Natural => GriddingMethod::Natural,
+        MethodChoice::Idw => {
+            GriddingMethod::InverseDistance { k: options.k.unwrap_or(12), power: power(2.0) }
+        }
+        MethodChoice::Quadrant => GriddingMethod::Quadrant { power: power(1.0) },
+        MethodChoice::Nearest => GriddingMethod::Nearest,
     })
 }
 
 /// All points and breaklines, in the system of the first file.
-fn read_all(inputs: &[PathBuf], options: &GridOptions) -> Result<PointCloud, Failure> {
+fn read_all(inputs: &[PathBuf], options: &GridOptions) -> Result<PointCloud, CliError> {
     let stated = match &options.crs {
-        Some(text) => Some(Crs::parse(text).map_err(|error| Failure::input(format!("--crs: {error}")))?),
+        Some(text) => Some(Crs::parse(text).map_err(|error| CliError::input(format!("--crs: {error}")))?),
         None => None,
     };
     let mut all: Option<PointCloud> = None;
@@ -190,54 +193,55 @@ fn read_all(inputs: &[PathBuf], options: &GridOptions) -> Result<PointCloud, Fai
         let cloud = read_points(path, stated.as_ref(), &options.class)?;
         all = Some(match all {
             Some(all) => joined(all, cloud)
-                .map_err(|reason| Failure::input(format!("{}: {reason}", path.display())))?,
+                .map_err(|reason| CliError::input(format!("{}: {reason}", path.display())))?,
             None => cloud,
         });
     }
-    let mut all = all.ok_or_else(|| Failure::input("name points and a grid"))?;
+    let mut all = all.ok_or_else(|| CliError::input("name points and a grid"))?;
     for path in &options.breaklines {
         let lines = read_breaklines(path, stated.as_ref())?;
-        all = joined(all, lines).map_err(|reason| Failure::input(format!("{}: {reason}", path.display())))?;
+        all =
+            joined(all, lines).map_err(|reason| CliError::input(format!("{}: {reason}", path.display())))?;
     }
     Ok(all)
 }
 
-fn read_points(path: &Path, crs: Option<&Crs>, classes: &[u8]) -> Result<PointCloud, Failure> {
+fn read_points(path: &Path, crs: Option<&Crs>, classes: &[u8]) -> Result<PointCloud, CliError> {
     let bytes = files::read(path)?;
     let name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
     if points::recognises(&name, &bytes) {
-        let wrong = |error| Failure::input(format!("{}: {error}", path.display()));
-        return points::read(&bytes, &points::Hints { crs, classes }).map_err(wrong);
+        let wrong = |error| CliError::input(format!("{}: {error}", path.display()));
+        return points::read(&bytes, &points::PointHints { crs, classes }).map_err(wrong);
     }
     let layer = read_layer(path, &name, &bytes, crs)?;
     let points: Vec<DVec3> =
         layer.features.iter().flat_map(|feature| vertices(feature).collect::<Vec<_>>()).collect();
     if points.is_empty() {
         let reason = "no point in it has an elevation; points with a z are needed";
-        return Err(Failure::input(format!("{}: {reason}", path.display())));
+        return Err(CliError::input(format!("{}: {reason}", path.display())));
     }
     Ok(of_layer(layer, points, Vec::new()))
 }
 
-fn read_breaklines(path: &Path, crs: Option<&Crs>) -> Result<PointCloud, Failure> {
+fn read_breaklines(path: &Path, crs: Option<&Crs>) -> Result<PointCloud, CliError> {
     let bytes = files::read(path)?;
     let name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
     let layer = read_layer(path, &name, &bytes, crs)?;
     let lines: Vec<Vec<DVec3>> = layer.features.iter().flat_map(breaklines).collect();
     if lines.is_empty() {
         let reason = "no line in it has an elevation at every vertex; breaklines with a z are needed";
-        return Err(Failure::input(format!("{}: {reason}", path.display())));
+        return Err(CliError::input(format!("{}: {reason}", path.display())));
     }
     Ok(of_layer(layer, Vec::new(), lines))
 }
 
-fn read_layer(path: &Path, name: &str, bytes: &[u8], crs: Option<&Crs>) -> Result<Layer, Failure> {
+fn read_layer(path: &Path, name: &str, bytes: &[u8], crs: Option<&Crs>) -> Result<VectorLayer, CliError> {
     let beside = files::beside(path);
-    let hints = vector::Hints { crs, companions: &beside, ..vector::Hints::default() };
-    vector::read(name, bytes, &hints).map_err(|error| Failure::input(format!("{}: {error}", path.display())))
+    let hints = vector::VectorHints { crs, companions: &beside, ..vector::VectorHints::default() };
+    vector::read(name, bytes, &hints).map_err(|error| CliError::input(format!("{}: {error}", path.display())))
 }
 
-fn of_layer(layer: Layer, points: Vec<DVec3>, breaklines: Vec<Vec<DVec3>>) -> PointCloud {
+fn of_layer(layer: VectorLayer, points: Vec<DVec3>, breaklines: Vec<Vec<DVec3>>) -> PointCloud {
     PointCloud {
         points,
         breaklines,
@@ -306,7 +310,7 @@ fn summary(
     cloud: &PointCloud,
     gridded: &Gridded,
     method: MethodChoice,
-    (out, written): (&Path, &Written),
+    (out, written): (&Path, &WrittenDem),
 ) -> String {
     let (report, raster) = (&gridded.report, &gridded.raster);
     let crs = raster.crs.as_ref().map_or("not stated", Crs::name);
@@ -342,9 +346,9 @@ mod tests {
     #[test]
     fn extents_are_west_south_east_north() {
         let rect = Rect { min: DVec2::new(-1.5, 2.0), max: DVec2::new(3.0, 1e3) };
-        assert_eq!("-1.5, 2,3,1e3".parse(), Ok(Extent(rect)));
+        assert_eq!("-1.5, 2,3,1e3".parse(), Ok(GridExtent(rect)));
         for wrong in ["1,2,3", "3,2,1,4", "1,2,3,north", "0,0,inf,1", "0,nan,1,1", ""] {
-            assert!(wrong.parse::<Extent>().is_err(), "{wrong}");
+            assert!(wrong.parse::<GridExtent>().is_err(), "{wrong}");
         }
     }
 }

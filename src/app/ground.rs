@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::app::arguments::StatedHeights;
 use crate::app::dem::read_raster;
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 use crate::dem::raster::Raster;
 use crate::dem::warp::{self, WarpError};
 use crate::geom::crs::Crs;
@@ -16,9 +16,9 @@ use crate::terrain::query::service::HeightService;
 ///
 /// # Errors
 /// The file cannot be had or read, or has no place in metres; the message names it.
-pub fn metric_lattice(path: &Path, heights: StatedHeights) -> Result<Lattice, Failure> {
+pub fn metric_lattice(path: &Path, heights: StatedHeights) -> Result<Lattice, CliError> {
     let raster = read_raster(path, heights)?;
-    let wrong = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
+    let wrong = |reason: String| CliError::input(format!("{}: {reason}", path.display()));
     let metric = warp::to_metric(&raster, None).map_err(|error| wrong(explain(&error)))?;
     Lattice::from_raster(&metric).map_err(|error| wrong(error.to_string()))
 }

@@ -10,9 +10,9 @@ use serde_json::json;
 
 use crate::app::arguments::{Access, InterpolationChoice, StatedHeights};
 use crate::app::dataset::Dataset;
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 use crate::app::places::stated_crs;
-use crate::app::points::{Point, parse_points};
+use crate::app::points::{WrittenPoint, parse_points};
 use crate::app::{files, output};
 use crate::terrain::query::{Answer, Surface};
 
@@ -27,7 +27,7 @@ pub struct HeightOptions {
     pub file: PathBuf,
     /// A point; may be given several times
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, required_unless_present = "points")]
-    pub at: Vec<Position>,
+    pub at: Vec<WrittenPosition>,
     /// A CSV file of x,y, with or without a header; - reads standard input
     #[arg(long, value_name = "CSV", conflicts_with = "at")]
     pub points: Option<PathBuf>,
@@ -75,12 +75,12 @@ impl From<SurfaceChoice> for Surface {
 
 /// A position of the command line and how it was written.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Position {
+pub struct WrittenPosition {
     at: DVec2,
     written: [String; 2],
 }
 
-impl FromStr for Position {
+impl FromStr for WrittenPosition {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -97,13 +97,13 @@ impl FromStr for Position {
 ///
 /// # Errors
 /// The file, the scene or the points cannot be had or read, or the points cannot be brought to its coordinate system.
-pub fn run(options: &HeightOptions) -> Result<(), Failure> {
+pub fn run(options: &HeightOptions) -> Result<(), CliError> {
     let stated = stated_crs(options.crs.as_deref())?;
     let dataset = Dataset::open(&options.file, options.heights, &options.access)?;
     let text = options.points.as_deref().map(files::read_text).transpose()?;
     let points = match (&options.points, &text) {
         (Some(path), Some(text)) => parse_points(&files::text_name(path), text)?,
-        _ => options.at.iter().map(Position::point).collect(),
+        _ => options.at.iter().map(WrittenPosition::point).collect(),
     };
     let at: Vec<DVec2> = points.iter().map(|point| point.at).collect();
     let surface = options.surface.map_or(dataset.usual_surface(), Surface::from);
@@ -111,13 +111,13 @@ pub fn run(options: &HeightOptions) -> Result<(), Failure> {
     let mut answers = vec![Answer::Outside; points.len()];
     dataset.heights(surface, options.interpolation.into(), &crs, &at, &mut answers)?;
     let mut out = BufWriter::new(io::stdout().lock());
-    output::forgive_leaving(match options.json {
+    output::ignore_broken_pipe(match options.json {
         true => write_json(&mut out, &points, &answers),
         false => write_csv(&mut out, &points, &answers),
     })
 }
 
-fn write_csv(out: &mut impl Write, points: &[Point<'_>], answers: &[Answer]) -> io::Result<()> {
+fn write_csv(out: &mut impl Write, points: &[WrittenPoint<'_>], answers: &[Answer]) -> io::Result<()> {
     writeln!(out, "x,y,height,status")?;
     for (point, answer) in points.iter().zip(answers) {
         let [x, y] = point.written;
@@ -130,7 +130,7 @@ fn write_csv(out: &mut impl Write, points: &[Point<'_>], answers: &[Answer]) -> 
 }
 
 /// One object a line; a height that there is not is null.
-fn write_json(out: &mut impl Write, points: &[Point<'_>], answers: &[Answer]) -> io::Result<()> {
+fn write_json(out: &mut impl Write, points: &[WrittenPoint<'_>], answers: &[Answer]) -> io::Result<()> {
     write!(out, "[")?;
     for (index, (point, answer)) in points.iter().zip(answers).enumerate() {
         let object = json!({
@@ -142,9 +142,9 @@ fn write_json(out: &mut impl Write, points: &[Point<'_>], answers: &[Answer]) ->
     out.flush()
 }
 
-impl Position {
-    fn point(&self) -> Point<'_> {
+impl WrittenPosition {
+    fn point(&self) -> WrittenPoint<'_> {
         let [x, y] = &self.written;
-        Point { at: self.at, written: [x, y] }
+        WrittenPoint { at: self.at, written: [x, y] }
     }
 }

@@ -2,13 +2,13 @@
 
 use glam::Vec2;
 
-use crate::annotate::annotation::{Annotations, Label, LabelKind};
+use crate::annotate::annotation::{Annotations, LabelClass, PictureLabel};
 use crate::annotate::legend::Legend;
 use crate::annotate::north::NorthArrow;
 use crate::annotate::scale_bar::ScaleBar;
 use crate::description::words;
 use crate::render::picture::Picture;
-use crate::scene::kind::{Label as SceneLabel, Scene};
+use crate::scene::kind::{Scene, SceneLabel};
 use crate::view::camera::Camera;
 
 /// Everything to be written on the picture.
@@ -25,10 +25,10 @@ pub fn annotations(scene: &Scene, camera: &Camera, picture: &Picture) -> Annotat
     }
 }
 
-fn place(label: &SceneLabel, camera: &Camera, picture: &Picture) -> Option<Label> {
+fn place(label: &SceneLabel, camera: &Camera, picture: &Picture) -> Option<PictureLabel> {
     let ground = camera.project(label.ground)?;
     let top = camera.project(label.anchor)?;
-    Some(Label {
+    Some(PictureLabel {
         text: label.text.clone(),
         anchor_px: ground.pixel,
         top_px: (label.anchor != label.ground).then_some(top.pixel),
@@ -36,10 +36,10 @@ fn place(label: &SceneLabel, camera: &Camera, picture: &Picture) -> Option<Label
         visible: is_visible(picture, ground.pixel, ground.depth_m)
             || is_visible(picture, top.pixel, top.depth_m),
         kind: match label.kind {
-            words::LabelKind::Summit => LabelKind::Summit,
-            words::LabelKind::Place => LabelKind::Place,
-            words::LabelKind::Water => LabelKind::Water,
-            words::LabelKind::Point => LabelKind::Point,
+            words::LabelKind::Summit => LabelClass::Summit,
+            words::LabelKind::Place => LabelClass::Place,
+            words::LabelKind::Water => LabelClass::Water,
+            words::LabelKind::Point => LabelClass::Point,
         },
     })
 }
@@ -77,7 +77,7 @@ fn legend(scene: &Scene) -> Legend {
         contour_interval: scene.map.contours.map(|contours| contours.interval_m),
         vertical_datum: scene
             .heights
-            .now()
+            .snapshot()
             .source()
             .vertical_datum
             .as_ref()

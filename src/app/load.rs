@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::app::arguments::Access;
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 use crate::app::files;
 use crate::description::document::Document;
 use crate::description::parse::parse_bytes_including;
@@ -15,27 +15,27 @@ use crate::scene::kind::Scene;
 ///
 /// # Errors
 /// Everything wrong with the scene file, or the first thing wrong with what it names.
-pub fn scene(path: &Path, access: &Access, step: &dyn Fn(&'static str)) -> Result<Scene, Failure> {
+pub fn scene(path: &Path, access: &Access, step: &dyn Fn(&'static str)) -> Result<Scene, CliError> {
     step("reading the scene file");
     let (document, assets) = document(path, access)?;
-    build(&document, &assets, step).map_err(Failure::input)
+    build(&document, &assets, step).map_err(CliError::input)
 }
 
 /// As [`scene`], with heights true to scale whatever exaggeration the scene file asks for.
 ///
 /// # Errors
 /// As for [`scene`].
-pub fn unstretched(path: &Path, access: &Access, step: &dyn Fn(&'static str)) -> Result<Scene, Failure> {
+pub fn unstretched(path: &Path, access: &Access, step: &dyn Fn(&'static str)) -> Result<Scene, CliError> {
     step("reading the scene file");
     let (mut document, assets) = document(path, access)?;
     document.terrain.vertical_exaggeration = None;
-    build(&document, &assets, step).map_err(Failure::input)
+    build(&document, &assets, step).map_err(CliError::input)
 }
 
-fn document(path: &Path, access: &Access) -> Result<(Document, Assets), Failure> {
+fn document(path: &Path, access: &Access) -> Result<(Document, Assets), CliError> {
     let bytes = files::read(path)?;
-    let assets = Assets::new(path, &access.allow).map_err(Failure::input)?;
+    let assets = Assets::new(path, &access.allow).map_err(CliError::input)?;
     let load = |name: &str| assets.read(name).map_err(|error| error.to_string());
-    let document = parse_bytes_including(&path.to_string_lossy(), &bytes, &load).map_err(Failure::input)?;
+    let document = parse_bytes_including(&path.to_string_lossy(), &bytes, &load).map_err(CliError::input)?;
     Ok((document, assets))
 }

@@ -9,10 +9,10 @@ use serde_json::{Value, json};
 use crate::annotate::chart::Surroundings;
 use crate::annotate::chart_sight::{SightChart, paint};
 use crate::annotate::nice;
-use crate::app::arguments::{Access, Size, StatedHeights};
+use crate::app::arguments::{Access, PictureSize, StatedHeights};
 use crate::app::dataset::Dataset;
-use crate::app::failure::Failure;
-use crate::app::places::{Stand, check_picture_place, on_ground, spoken, stated_crs};
+use crate::app::failure::CliError;
+use crate::app::places::{Observer, check_picture_place, on_ground, spoken, stated_crs};
 use crate::app::profile::{file_title, points};
 use crate::app::{files, output, picture};
 use crate::geom::crs::Crs;
@@ -20,7 +20,7 @@ use crate::terrain::lattice::Lattice;
 use crate::terrain::profile::profile;
 use crate::terrain::query::{Answer, Interpolation, ground_height};
 use crate::terrain::sight::Curvature;
-use crate::terrain::sight::line::{Blocker, End, Sight, line_of_sight};
+use crate::terrain::sight::line::{Blocker, Sight, SightEnd, line_of_sight};
 use crate::terrain::sight::outlook::seen_along;
 use crate::terrain::sight::rise::{Raised, Rise, required_rise};
 
@@ -35,10 +35,10 @@ pub struct LosOptions {
     pub file: PathBuf,
     /// Where the observer stands, and metres above the ground there
     #[arg(long, value_name = "X,Y[,H]", allow_hyphen_values = true)]
-    pub from: Stand,
+    pub from: Observer,
     /// Where the target stands, and metres above the ground there
     #[arg(long, value_name = "X,Y[,H]", allow_hyphen_values = true)]
-    pub to: Stand,
+    pub to: Observer,
     /// Metres of the observer's eye above the ground, where --from gives none
     #[arg(long, value_name = "METRES", default_value = "2", allow_negative_numbers = true, value_parser = metres)]
     pub observer_height: f64,
@@ -59,7 +59,7 @@ pub struct LosOptions {
     pub output: Option<PathBuf>,
     /// Size of the chart in pixels
     #[arg(long, value_name = "WxH", default_value = "1600x800")]
-    pub size: Size,
+    pub size: PictureSize,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -80,14 +80,14 @@ fn metres(text: &str) -> Result<f64, String> {
 ///
 /// # Errors
 /// The file cannot be had or read, has no place in metres, or an end has no ground under it.
-pub fn run(options: &LosOptions) -> Result<(), Failure> {
+pub fn run(options: &LosOptions) -> Result<(), CliError> {
     if let Some(path) = &options.output {
         check_picture_place(path, &options.file)?;
     }
     let dataset = Dataset::open(&options.file, options.heights, &options.access)?;
     let crs = stated_crs(options.crs.as_deref())?.unwrap_or_else(|| dataset.crs());
-    let epoch = dataset.service()?.now();
-    let look = Look::new(options, &crs, (epoch.crs(), epoch.lattice()))?;
+    let epoch = dataset.service()?.snapshot();
+    let look = SightOutcome::new(options, &crs, (epoch.crs(), epoch.lattice()))?;
     if let Some(path) = &options.output {
         let datum = epoch.source().vertical_datum.as_deref();
         let pixels =
@@ -102,10 +102,10 @@ pub fn run(options: &LosOptions) -> Result<(), Failure> {
 }
 
 /// What was asked and what came of it.
-struct Look<'a> {
+struct SightOutcome<'a> {
     crs: &'a Crs,
     ground: &'a Crs,
-    ends: [End; 2],
+    ends: [SightEnd; 2],
     /// The ground under both ends, metres.
     feet_m: [f64; 2],
     curvature: Curvature,
@@ -115,19 +115,19 @@ struct Look<'a> {
     both_rise: Option<Rise>,
 }
 
-impl<'a> Look<'a> {
+impl<'a> SightOutcome<'a> {
     fn new(
         options: &LosOptions,
         crs: &'a Crs,
         (ground, lattice): (&'a Crs, &Lattice),
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, CliError> {
         let asked =
             [("--from", options.from, options.observer_height), ("--to", options.to, options.target_height)];
-        let mut ends = [End { at: DVec2::ZERO, above_m: 0.0 }; 2];
+        let mut ends = [SightEnd { at: DVec2::ZERO, above_m: 0.0 }; 2];
         let mut feet_m = [0.0; 2];
         for (index, (name, stand, usual_m)) in asked.into_iter().enumerate() {
             let at = on_ground(name, crs, ground, stand.at)?;
-            ends[index] = End { at, above_m: stand.above_m.unwrap_or(usual_m) };
+            ends[index] = SightEnd { at, above_m: stand.above_m.unwrap_or(usual_m) };
             feet_m[index] = match ground_height(lattice, Interpolation::Planar, at) {
                 Answer::Height(height_m) => height_m,
                 missing => return Err(no_ground(name, stand.at, missing)),
@@ -165,16 +165,16 @@ impl<'a> Look<'a> {
         self.ends[0].at.distance(self.ends[1].at)
     }
 
-    fn asked(&self, at: DVec2) -> Result<DVec2, Failure> {
+    fn asked(&self, at: DVec2) -> Result<DVec2, CliError> {
         on_ground("the place at", self.ground, self.crs, at)
     }
 
-    fn place(&self, place: &Blocker) -> Result<Value, Failure> {
+    fn place(&self, place: &Blocker) -> Result<Value, CliError> {
         let at = self.asked(place.at)?;
         Ok(json!({"x": at.x, "y": at.y, "distance_m": place.distance_m, "height_m": place.height_m}))
     }
 
-    fn end(&self, index: usize) -> Result<Value, Failure> {
+    fn end(&self, index: usize) -> Result<Value, CliError> {
         let at = self.asked(self.ends[index].at)?;
         let above_m = self.ends[index].above_m;
         let height_m = self.feet_m[index] + above_m;
@@ -183,7 +183,7 @@ impl<'a> Look<'a> {
         )
     }
 
-    fn describe(&self) -> Result<Value, Failure> {
+    fn describe(&self) -> Result<Value, CliError> {
         let place = |rise: Option<Rise>| rise.map(|rise| self.place(&rise.grazing)).transpose();
         let rise_m = |rise: Option<Rise>| rise.map(|rise| rise.rise_m);
         let is_flat = self.curvature == Curvature::FLAT;
@@ -204,7 +204,7 @@ impl<'a> Look<'a> {
         }))
     }
 
-    fn tell(&self) -> Result<String, Failure> {
+    fn tell(&self) -> Result<String, CliError> {
         let spoken_at = |at: DVec2| self.asked(at).map(|at| spoken(self.crs, at));
         let mut lines = Vec::new();
         match &self.blocker {
@@ -298,10 +298,10 @@ impl<'a> Look<'a> {
     }
 }
 
-fn no_ground(name: &str, at: DVec2, missing: Answer) -> Failure {
+fn no_ground(name: &str, at: DVec2, missing: Answer) -> CliError {
     let why = match missing {
         Answer::NoData => "the elevation model has no data there",
         _ => "this lies outside the elevation model",
     };
-    Failure::input(format!("{name} {},{}: {why}", at.x, at.y))
+    CliError::input(format!("{name} {},{}: {why}", at.x, at.y))
 }

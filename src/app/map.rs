@@ -9,12 +9,12 @@ use rayon::prelude::*;
 use crate::annotate::legend::Legend;
 use crate::annotate::map::{MapFurniture, Outlook, compose, draw_outlook, sheet_size};
 use crate::draw::color::Srgba;
-use crate::draw::ground::Ramp;
+use crate::draw::ground::ColorRamp;
 use crate::draw::pixels::Pixels;
 use crate::scene::style;
 use crate::terrain::hillshade::{HillshadeOptions, NO_DATA, hillshade};
 use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::sight::viewshed::{Seen, Viewshed, ViewshedOptions};
+use crate::terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedOptions};
 
 /// The map fits into so many pixels: with its furniture a sheet no wider than a screen of 1920.
 const LARGEST_PX: DVec2 = DVec2::new(1560.0, 1560.0);
@@ -36,7 +36,7 @@ const FADED_SHARE: f32 = 0.62;
 const EMPTY: Srgba = Srgba::opaque(0xe6, 0xe4, 0xde);
 
 /// What the sheet says of itself.
-pub struct Words {
+pub struct SheetText {
     /// The title.
     pub title: String,
     /// The line below it.
@@ -50,11 +50,11 @@ pub fn viewshed_map(
     lattice: &Lattice,
     viewshed: &Viewshed,
     options: &ViewshedOptions,
-    words: Words,
+    words: SheetText,
 ) -> Pixels {
     let ramp = style::atlas(lattice);
     let colors = colors(lattice, viewshed, &ramp);
-    let frame = Frame::fitted(lattice);
+    let frame = MapFrame::fitted(lattice);
     let mut map = frame.resampled(&colors);
     let outlook = outlook(lattice, options, &frame);
     draw_outlook(&mut map, &outlook, sheet_size((frame.width, frame.height)));
@@ -80,32 +80,32 @@ pub fn viewshed_map(
 fn key(viewshed: &Viewshed, tint: Vec3) -> Vec<(Srgba, String)> {
     let counts = viewshed.counts();
     let entries = [
-        (Seen::Visible, counts.visible, "In sight"),
-        (Seen::Hidden, counts.hidden, "Hidden"),
-        (Seen::Beyond, counts.beyond, "Not looked at"),
-        (Seen::NoData, counts.no_data, "No data"),
+        (PostVisibility::Visible, counts.visible, "In sight"),
+        (PostVisibility::Hidden, counts.hidden, "Hidden"),
+        (PostVisibility::Beyond, counts.beyond, "Not looked at"),
+        (PostVisibility::NoData, counts.no_data, "No data"),
     ];
     let entries = entries.into_iter().filter(|&(_, count, _)| count > 0);
     entries.map(|(seen, _, text)| (Srgba::from_linear(shown(seen, tint)), text.to_owned())).collect()
 }
 
 /// A tint as ground that is seen or not shows it.
-fn shown(seen: Seen, tint: Vec3) -> Vec3 {
+fn shown(seen: PostVisibility, tint: Vec3) -> Vec3 {
     match seen {
-        Seen::Visible => tint,
-        Seen::Hidden => (tint * 0.55).lerp(DUSK.linear(), DUSK_SHARE),
-        Seen::Beyond => tint.lerp(FADED.linear(), FADED_SHARE),
-        Seen::NoData => EMPTY.linear(),
+        PostVisibility::Visible => tint,
+        PostVisibility::Hidden => (tint * 0.55).lerp(DUSK.linear(), DUSK_SHARE),
+        PostVisibility::Beyond => tint.lerp(FADED.linear(), FADED_SHARE),
+        PostVisibility::NoData => EMPTY.linear(),
     }
 }
 
 /// The colour of every post in linear light.
-fn colors(lattice: &Lattice, viewshed: &Viewshed, ramp: &Ramp) -> Vec<Vec3> {
+fn colors(lattice: &Lattice, viewshed: &Viewshed, ramp: &ColorRamp) -> Vec<Vec3> {
     const STEPS: usize = 512;
     let table = ramp.table(STEPS);
     let (low, high) = ramp.range();
     let greys = hillshade(lattice, &HillshadeOptions { exaggeration: RELIEF, ..HillshadeOptions::default() });
-    let color = |((&height, &grey), &seen): ((&f32, &u8), &Seen)| {
+    let color = |((&height, &grey), &seen): ((&f32, &u8), &PostVisibility)| {
         if height.is_nan() || grey == NO_DATA {
             return EMPTY.linear();
         }
@@ -117,7 +117,7 @@ fn colors(lattice: &Lattice, viewshed: &Viewshed, ramp: &Ramp) -> Vec<Vec3> {
 }
 
 /// The map's pixels over the lattice: north up, square, half a cell beyond the outer posts.
-struct Frame {
+struct MapFrame {
     width: u32,
     height: u32,
     pixels_per_m: f64,
@@ -127,7 +127,7 @@ struct Frame {
     rows: u32,
 }
 
-impl Frame {
+impl MapFrame {
     fn fitted(lattice: &Lattice) -> Self {
         let (columns, rows) = (lattice.columns(), lattice.rows());
         let extent_m = DVec2::new(f64::from(columns), f64::from(rows)) * lattice.cell();
@@ -185,7 +185,7 @@ impl Frame {
     }
 }
 
-fn outlook(lattice: &Lattice, options: &ViewshedOptions, frame: &Frame) -> Outlook {
+fn outlook(lattice: &Lattice, options: &ViewshedOptions, frame: &MapFrame) -> Outlook {
     let grid = lattice.grid_at(options.observer.at - lattice.map_position(Post { column: 0, row: 0 }));
     let sector = options.sector;
     Outlook {

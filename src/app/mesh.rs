@@ -11,18 +11,18 @@ use glam::DVec2;
 
 use crate::app::arguments::MeshOptions;
 use crate::app::dem::{StatedPlace, read_raster_placed};
-use crate::app::failure::Failure;
-use crate::app::progress::Steps;
+use crate::app::failure::CliError;
+use crate::app::progress::StepTimer;
 use crate::app::{files, output};
 use crate::dem::raster::Raster;
 use crate::dem::warp::{self, WarpError};
 use crate::geom::crs::Crs;
 use crate::mesh::trimesh::TriMesh;
-use crate::mesh::write::{self, Format, Remarks};
+use crate::mesh::write::{self, MeshFormat, Remarks};
 use crate::roam::bound::{self, Deviation};
 use crate::roam::closure::least_closure;
 use crate::roam::displayed::DisplayedTerrain;
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 use crate::terrain::lattice::Lattice;
 
 /// The largest patch there is: the larger, the fewer triangles flat ground needs.
@@ -39,14 +39,14 @@ const KEEP_EVERYTHING: f64 = -1.0;
 /// # Errors
 /// The elevation file cannot be had, read or brought to metres; the mesh cannot be written; its name is that of no
 /// format.
-pub fn run(options: &MeshOptions) -> Result<(), Failure> {
+pub fn run(options: &MeshOptions) -> Result<(), CliError> {
     let format = format_of(&options.output)?;
     files::check_file_place(
         &options.output,
         &options.file,
         "this is the elevation file itself; name another with -o",
     )?;
-    let steps = Steps::default();
+    let steps = StepTimer::default();
     steps.begin("reading");
     let ground = load(options)?;
     steps.begin("building the mesh");
@@ -56,44 +56,44 @@ pub fn run(options: &MeshOptions) -> Result<(), Failure> {
     files::write_whole_with(&options.output, |out| write::write(format, &built.mesh, &remarks, out))?;
     steps.finish();
     for note in &ground.notes {
-        output::complain(&format!("note: {note}"));
+        output::warn(&format!("note: {note}"));
     }
     output::print(&output::text_of(&summary(options, &ground, &built)))
 }
 
-fn about(file: &Path, reason: &str) -> Failure {
-    Failure::input(format!("{}: {reason}", file.display()))
+fn about(file: &Path, reason: &str) -> CliError {
+    CliError::input(format!("{}: {reason}", file.display()))
 }
 
-fn format_of(path: &Path) -> Result<Format, Failure> {
+fn format_of(path: &Path) -> Result<MeshFormat, CliError> {
     let extension = path.extension().unwrap_or_default().to_string_lossy();
-    Format::of_extension(&extension).ok_or_else(|| {
+    MeshFormat::of_extension(&extension).ok_or_else(|| {
         let place = path.display();
-        Failure::Usage(format!(
+        CliError::Usage(format!(
             "{place}: meshes are written as .obj, .ply, .stl or .glb; name a file that ends so"
         ))
     })
 }
 
 /// What the mesh is made of.
-struct Ground {
+struct MeshGround {
     lattice: Arc<Lattice>,
     crs: Crs,
     /// What was done to the elevation file, for the user to know.
     notes: Vec<String>,
 }
 
-fn load(options: &MeshOptions) -> Result<Ground, Failure> {
+fn load(options: &MeshOptions) -> Result<MeshGround, CliError> {
     let wrong = |reason: String| about(&options.file, &reason);
     let stated = options.crs.as_deref().map(Crs::parse).transpose();
-    let stated = stated.map_err(|error| Failure::Usage(format!("--crs: {error}")))?;
+    let stated = stated.map_err(|error| CliError::Usage(format!("--crs: {error}")))?;
     let place = StatedPlace { cell: options.cell, crs: stated };
     let raster = read_raster_placed(&options.file, options.heights, &place)?;
     let metric = warp::to_metric(&raster, None).map_err(|error| wrong(remedy(&error)))?;
     let lattice = Lattice::from_raster(&metric).map_err(|error| wrong(error.to_string()))?;
     let notes =
         brought(&raster, &metric).into_iter().map(|note| format!("{}: {note}", options.file.display()));
-    Ok(Ground {
+    Ok(MeshGround {
         lattice: Arc::new(lattice),
         crs: metric.crs.clone().unwrap_or_else(Crs::local),
         notes: notes.collect(),
@@ -133,13 +133,13 @@ fn brought(raster: &Raster, metric: &Raster) -> Option<String> {
 }
 
 /// A mesh and how far it is off.
-struct Built {
+struct BuiltMesh {
     mesh: TriMesh,
     deviation: Deviation,
 }
 
 /// The least mesh that keeps `max_error_m` at every post.
-fn build(lattice: &Arc<Lattice>, max_error_m: f64) -> Result<Built, String> {
+fn build(lattice: &Arc<Lattice>, max_error_m: f64) -> Result<BuiltMesh, String> {
     let layout = layout_over(lattice).ok_or_else(|| {
         let (columns, rows) = (lattice.columns(), lattice.rows());
         format!("{columns} x {rows} posts are more than one mesh can be made of; cut it into parts")
@@ -154,7 +154,7 @@ fn build(lattice: &Arc<Lattice>, max_error_m: f64) -> Result<Built, String> {
         DisplayedTerrain::new(Arc::clone(lattice), active, 1.0, layout.patches().collect()).emit(&mut mesh);
         let deviation = bound::measure(lattice, &mesh).map_err(|error| error.to_string())?;
         let kept = deviation.max_m <= max_error_m;
-        built = Some(Built { mesh, deviation });
+        built = Some(BuiltMesh { mesh, deviation });
         if kept {
             break;
         }
@@ -167,17 +167,17 @@ fn build(lattice: &Arc<Lattice>, max_error_m: f64) -> Result<Built, String> {
 }
 
 /// One patch over everything, or as few as there can be.
-fn layout_over(lattice: &Lattice) -> Option<Layout> {
+fn layout_over(lattice: &Lattice) -> Option<PatchLayout> {
     let (columns, rows) = (lattice.columns(), lattice.rows());
     let whole = (columns.max(rows) - 1).next_power_of_two().clamp(2, LARGEST_PATCH);
     // A long and narrow terrain would have most of the vertices of its patches beyond its border.
     let narrow = 2 * (columns.min(rows) - 1).next_power_of_two().max(2);
     let largest = whole.min(narrow).ilog2();
-    (1..=largest).rev().find_map(|log| Layout::new(columns, rows, 1 << log))
+    (1..=largest).rev().find_map(|log| PatchLayout::new(columns, rows, 1 << log))
 }
 
 /// Where the mesh stands and what it promises.
-fn remarks(options: &MeshOptions, ground: &Ground, built: &Built) -> Remarks {
+fn remarks(options: &MeshOptions, ground: &MeshGround, built: &BuiltMesh) -> Remarks {
     let origin = ground.lattice.origin();
     let (name, crs) = (file_name(&options.file), ground.crs.name());
     let lines = [
@@ -205,7 +205,7 @@ fn told(max_m: f64) -> f64 {
     (max_m * 1e4).ceil() / 1e4
 }
 
-fn summary(options: &MeshOptions, ground: &Ground, built: &Built) -> Vec<String> {
+fn summary(options: &MeshOptions, ground: &MeshGround, built: &BuiltMesh) -> Vec<String> {
     let Deviation { max_m, mean_m, rms_m, worst, measured, left_out } = built.deviation;
     let origin = ground.lattice.origin();
     let place = worst.map_or_else(String::new, |post| {

@@ -38,7 +38,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use crate::app::arguments::{Arguments, Command, DemCommand, ModelCommand};
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 
 /// Runs the program: parses the arguments, runs the command, reports what went wrong.
 ///
@@ -53,7 +53,7 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<(), Failure> {
+fn run(arguments: &Arguments) -> Result<(), CliError> {
     match &arguments.command {
         Command::Render(options) => render::run(options),
         Command::Check(options) => check::run(options),

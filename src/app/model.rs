@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::json;
 
 use crate::app::arguments::InfoOptions;
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 use crate::app::{files, output};
 use crate::model::error::ModelError;
 use crate::model::kind::Model;
@@ -16,15 +16,15 @@ use crate::scene::assets::Assets;
 ///
 /// # Errors
 /// The file cannot be had or read.
-pub fn info(options: &InfoOptions) -> Result<(), Failure> {
+pub fn info(options: &InfoOptions) -> Result<(), CliError> {
     let path: &Path = &options.file;
-    let wrong = |error: String| Failure::input(format!("{}: {error}", path.display()));
+    let wrong = |error: String| CliError::input(format!("{}: {error}", path.display()));
     let bytes = files::read(path)?;
     let name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
     let assets = Assets::new(path, &[]).map_err(|error| wrong(error.to_string()))?;
     let companions = assets.beside(&name).map_err(|error| wrong(error.to_string()))?;
     let model = read::read(&path.to_string_lossy(), &bytes, &companions).map_err(|error| match error {
-        ModelError::Empty { .. } | ModelError::Unknown { .. } => Failure::input(error),
+        ModelError::Empty { .. } | ModelError::Unknown { .. } => CliError::input(error),
         _ => wrong(error.to_string()),
     })?;
     let text = if options.json { format!("{}\n", describe(&model)) } else { table(path, &model) };

@@ -5,25 +5,25 @@
 
 use std::io::{self, Write};
 
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 
 /// Prints `text` and flushes it.
 ///
 /// # Errors
 /// Standard output cannot be written, for another reason than that nobody reads it any more.
-pub fn print(text: &str) -> Result<(), Failure> {
+pub fn print(text: &str) -> Result<(), CliError> {
     let mut out = io::stdout().lock();
-    forgive_leaving(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+    ignore_broken_pipe(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
 
 /// Takes a reader that has gone away for success.
 ///
 /// # Errors
 /// Everything else that went wrong while writing.
-pub fn forgive_leaving(written: io::Result<()>) -> Result<(), Failure> {
+pub fn ignore_broken_pipe(written: io::Result<()>) -> Result<(), CliError> {
     match written {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure::input(format!("standard output: {error}")))
+            Err(CliError::input(format!("standard output: {error}")))
         }
         _ => Ok(()),
     }
@@ -35,6 +35,6 @@ pub fn text_of(lines: &[String]) -> String {
 }
 
 /// Prints a line on standard error, where it can be written.
-pub fn complain(line: &str) {
+pub fn warn(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
 }

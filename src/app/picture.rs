@@ -6,16 +6,16 @@
 use image::ImageEncoder;
 
 use crate::annotate::paint::annotate;
-use crate::annotate::report::Report;
-use crate::app::arguments::{Backend, Size};
-use crate::app::failure::Failure;
+use crate::annotate::report::AnnotationReport;
+use crate::app::arguments::{Backend, PictureSize};
+use crate::app::failure::CliError;
 use crate::app::labels;
 use crate::draw::list::DrawList;
 use crate::draw::pixels::Pixels;
 use crate::render::picture::Picture;
 use crate::render::{cpu, gpu};
 use crate::scene::kind::{Scene, View};
-use crate::scene::picture::{Shot, camera, shoot};
+use crate::scene::picture::{ViewDraw, build_draw_list, camera};
 use crate::view::camera::Camera;
 
 /// An annotated picture with what it was made from.
@@ -23,9 +23,9 @@ pub struct Finished {
     /// The picture, opaque.
     pub pixels: Pixels,
     /// What was drawn.
-    pub shot: Shot,
+    pub shot: ViewDraw,
     /// What became of the labels.
-    pub report: Report,
+    pub report: AnnotationReport,
 }
 
 /// The annotated picture of `size` that `view` has of `scene`, drawn on the current `rayon` pool. `step` is
@@ -36,12 +36,12 @@ pub struct Finished {
 pub fn picture_of(
     scene: &Scene,
     view: &View,
-    size: Size,
+    size: PictureSize,
     backend: Backend,
     step: &dyn Fn(&'static str),
-) -> Result<Finished, Failure> {
-    let camera = camera(scene, view, (size.width, size.height)).map_err(Failure::input)?;
-    let shot = shoot(scene, &camera, step);
+) -> Result<Finished, CliError> {
+    let camera = camera(scene, view, (size.width, size.height)).map_err(CliError::input)?;
+    let shot = build_draw_list(scene, &camera, step);
     step("drawing");
     let mut picture = draw(&shot.list, &camera, backend)?;
     step("annotating");
@@ -50,10 +50,10 @@ pub fn picture_of(
     Ok(Finished { pixels: picture.pixels, shot, report })
 }
 
-fn draw(list: &DrawList, camera: &Camera, backend: Backend) -> Result<Picture, Failure> {
+fn draw(list: &DrawList, camera: &Camera, backend: Backend) -> Result<Picture, CliError> {
     match backend {
-        Backend::Cpu => cpu::render(list, camera, &cpu::Options::default()).map_err(Failure::input),
-        Backend::Gpu => gpu::render(list, camera).map_err(Failure::input),
+        Backend::Cpu => cpu::render(list, camera, &cpu::Options::default()).map_err(CliError::input),
+        Backend::Gpu => gpu::render(list, camera).map_err(CliError::input),
     }
 }
 
@@ -61,11 +61,11 @@ fn draw(list: &DrawList, camera: &Camera, backend: Backend) -> Result<Picture, F
 ///
 /// # Errors
 /// The picture is empty.
-pub fn png(pixels: &Pixels) -> Result<Vec<u8>, Failure> {
+pub fn png(pixels: &Pixels) -> Result<Vec<u8>, CliError> {
     let rgb: Vec<u8> = pixels.data().iter().flat_map(|color| [color.0[0], color.0[1], color.0[2]]).collect();
     let mut png = Vec::new();
     image::codecs::png::PngEncoder::new(&mut png)
         .write_image(&rgb, pixels.width(), pixels.height(), image::ExtendedColorType::Rgb8)
-        .map_err(Failure::input)?;
+        .map_err(CliError::input)?;
     Ok(png)
 }

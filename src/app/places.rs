@@ -6,26 +6,26 @@ use std::str::FromStr;
 use glam::DVec2;
 
 use crate::app::dataset::Dataset;
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 use crate::app::files;
 use crate::app::points::parse_points;
 use crate::geom::crs::Crs;
-use crate::vector::read::{self, Hints};
+use crate::vector::read::{self, VectorHints};
 
 /// One or more `X,Y` with spaces between them, as written on the command line; all finite.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Positions(pub Vec<DVec2>);
+pub struct PositionList(pub Vec<DVec2>);
 
 /// `X,Y` or `X,Y,H`: a position and metres above the ground there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stand {
+pub struct Observer {
     /// The position.
     pub at: DVec2,
     /// Metres above the ground, where they are given.
     pub above_m: Option<f64>,
 }
 
-impl FromStr for Positions {
+impl FromStr for PositionList {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -41,7 +41,7 @@ impl FromStr for Positions {
     }
 }
 
-impl FromStr for Stand {
+impl FromStr for Observer {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -62,7 +62,7 @@ fn numbers(text: &str) -> Option<Vec<f64>> {
 
 /// A line and the system of its coordinates.
 #[derive(Clone, Debug)]
-pub struct Way {
+pub struct InputLine {
     /// Its vertices, at least two.
     pub vertices: Vec<DVec2>,
     /// What they are coordinates of.
@@ -73,16 +73,16 @@ pub struct Way {
 ///
 /// # Errors
 /// There is no such system.
-pub fn stated_crs(text: Option<&str>) -> Result<Option<Crs>, Failure> {
-    text.map(Crs::parse).transpose().map_err(|error| Failure::Usage(format!("--crs: {error}")))
+pub fn stated_crs(text: Option<&str>) -> Result<Option<Crs>, CliError> {
+    text.map(Crs::parse).transpose().map_err(|error| CliError::Usage(format!("--crs: {error}")))
 }
 
 /// A position in the ground's system.
 ///
 /// # Errors
 /// It cannot be expressed there; `name` is what the user calls it.
-pub fn on_ground(name: &str, from: &Crs, ground: &Crs, at: DVec2) -> Result<DVec2, Failure> {
-    from.transform(ground, at).map_err(|error| Failure::input(format!("{name} {},{}: {error}", at.x, at.y)))
+pub fn on_ground(name: &str, from: &Crs, ground: &Crs, at: DVec2) -> Result<DVec2, CliError> {
+    from.transform(ground, at).map_err(|error| CliError::input(format!("{name} {},{}: {error}", at.x, at.y)))
 }
 
 /// The line in the file at `path` (`-` for standard input): the vertices of a CSV text in their order, or the first line
@@ -91,7 +91,7 @@ pub fn on_ground(name: &str, from: &Crs, ground: &Crs, at: DVec2) -> Result<DVec
 ///
 /// # Errors
 /// The file cannot be had or read, or holds no line.
-pub fn read_way(path: &Path, stated: Option<Crs>, dataset: &Dataset) -> Result<Way, Failure> {
+pub fn read_way(path: &Path, stated: Option<Crs>, dataset: &Dataset) -> Result<InputLine, CliError> {
     let is_csv = path.extension().is_none_or(|extension| {
         ["csv", "txt", "xy", "xyz"].iter().any(|known| extension.eq_ignore_ascii_case(known))
     });
@@ -104,21 +104,21 @@ pub fn read_way(path: &Path, stated: Option<Crs>, dataset: &Dataset) -> Result<W
     if vertices.len() < 2 {
         let found = vertices.len();
         let name = files::text_name(path);
-        return Err(Failure::input(format!("{name}: a line needs at least two positions, found {found}")));
+        return Err(CliError::input(format!("{name}: a line needs at least two positions, found {found}")));
     }
-    Ok(Way { vertices, crs: stated.unwrap_or_else(|| dataset.crs()) })
+    Ok(InputLine { vertices, crs: stated.unwrap_or_else(|| dataset.crs()) })
 }
 
-fn vector_way(path: &Path, stated: Option<Crs>) -> Result<Way, Failure> {
-    let wrong = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
+fn vector_way(path: &Path, stated: Option<Crs>) -> Result<InputLine, CliError> {
+    let wrong = |reason: String| CliError::input(format!("{}: {reason}", path.display()));
     let bytes = files::read(path)?;
     let beside = files::beside(path);
     let name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
-    let hints = Hints { crs: stated.as_ref(), layer: None, companions: &beside };
+    let hints = VectorHints { crs: stated.as_ref(), layer: None, companions: &beside };
     let layer = read::read(&name, &bytes, &hints).map_err(|error| wrong(error.to_string()))?;
     let line = layer.features.iter().find_map(|feature| feature.lines().first().cloned());
     match line {
-        Some(vertices) => Ok(Way { vertices, crs: layer.crs }),
+        Some(vertices) => Ok(InputLine { vertices, crs: layer.crs }),
         None => Err(wrong("it holds no line; a profile follows the first line of a vector file".into())),
     }
 }
@@ -133,7 +133,7 @@ pub fn spoken(crs: &Crs, at: DVec2) -> String {
 ///
 /// # Errors
 /// The folder is not there, `path` is no file or `input` itself, or its name is that of another format than PNG.
-pub fn check_picture_place(path: &Path, input: &Path) -> Result<(), Failure> {
+pub fn check_picture_place(path: &Path, input: &Path) -> Result<(), CliError> {
     files::check_picture_place(path, input, "this is the input itself; name another with -o")
 }
 
@@ -143,13 +143,13 @@ mod tests {
 
     #[test]
     fn positions_are_two_finite_numbers_and_stands_may_have_a_height() {
-        assert_eq!("1.5,-2e3".parse(), Ok(Positions(vec![DVec2::new(1.5, -2e3)])));
+        assert_eq!("1.5,-2e3".parse(), Ok(PositionList(vec![DVec2::new(1.5, -2e3)])));
         let two = vec![DVec2::new(-84.1, 36.2), DVec2::new(-84.0, 36.0)];
-        assert_eq!("-84.1,36.2 -84,36".parse(), Ok(Positions(two)));
-        assert_eq!("1,2,30".parse(), Ok(Stand { at: DVec2::new(1.0, 2.0), above_m: Some(30.0) }));
-        assert_eq!("1,2".parse(), Ok(Stand { at: DVec2::new(1.0, 2.0), above_m: None }));
+        assert_eq!("-84.1,36.2 -84,36".parse(), Ok(PositionList(two)));
+        assert_eq!("1,2,30".parse(), Ok(Observer { at: DVec2::new(1.0, 2.0), above_m: Some(30.0) }));
+        assert_eq!("1,2".parse(), Ok(Observer { at: DVec2::new(1.0, 2.0), above_m: None }));
         for wrong in ["", "1", "1,2,3,4", "a,b", "NaN,1", "1,inf", "1;2"] {
-            assert!(wrong.parse::<Positions>().is_err() && wrong.parse::<Stand>().is_err(), "{wrong}");
+            assert!(wrong.parse::<PositionList>().is_err() && wrong.parse::<Observer>().is_err(), "{wrong}");
         }
     }
 }

@@ -2,11 +2,11 @@
 
 use glam::DVec2;
 
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 
 /// A point and how it was written.
 #[derive(Debug, PartialEq)]
-pub struct Point<'a> {
+pub struct WrittenPoint<'a> {
     /// Where it is; finite.
     pub at: DVec2,
     /// Its x and y as they stand in the text.
@@ -17,7 +17,7 @@ pub struct Point<'a> {
 ///
 /// # Errors
 /// A line is no point, or the header names no such columns; the message names `name` and the line.
-pub fn parse_points<'a>(name: &str, text: &'a str) -> Result<Vec<Point<'a>>, Failure> {
+pub fn parse_points<'a>(name: &str, text: &'a str) -> Result<Vec<WrittenPoint<'a>>, CliError> {
     let mut lines = text
         .trim_start_matches('\u{feff}')
         .lines()
@@ -29,7 +29,7 @@ pub fn parse_points<'a>(name: &str, text: &'a str) -> Result<Vec<Point<'a>>, Fai
             lines.next();
             columns(line).ok_or_else(|| {
                 let place = index + 1;
-                Failure::input(format!(
+                CliError::input(format!(
                     "{name}:{place}: the header '{line}' must name columns x and y, or lon and lat"
                 ))
             })?
@@ -40,17 +40,17 @@ pub fn parse_points<'a>(name: &str, text: &'a str) -> Result<Vec<Point<'a>>, Fai
         .map(|(index, line)| {
             parse_point(line, columns).ok_or_else(|| {
                 let place = index + 1;
-                Failure::input(format!("{name}:{place}: found '{line}', each line must hold numbers x,y"))
+                CliError::input(format!("{name}:{place}: found '{line}', each line must hold numbers x,y"))
             })
         })
         .collect()
 }
 
-fn parse_point(line: &str, columns: [usize; 2]) -> Option<Point<'_>> {
+fn parse_point(line: &str, columns: [usize; 2]) -> Option<WrittenPoint<'_>> {
     let fields: Vec<&str> = fields(line).collect();
     let written = [*fields.get(columns[0])?, *fields.get(columns[1])?];
     let at = DVec2::new(written[0].parse().ok()?, written[1].parse().ok()?);
-    at.is_finite().then_some(Point { at, written })
+    at.is_finite().then_some(WrittenPoint { at, written })
 }
 
 /// Whether a first line holds names; one with a number in it is a point, or meant to be one.
@@ -92,7 +92,7 @@ mod tests {
 
     #[test]
     fn a_line_that_is_no_point_is_named() {
-        let Err(Failure::Input(reason)) = parse_points("p.csv", "x,y\n1,2\n3,north\n") else {
+        let Err(CliError::Input(reason)) = parse_points("p.csv", "x,y\n1,2\n3,north\n") else {
             panic!("accepted");
         };
         assert!(reason.contains("p.csv:3:") && reason.contains("3,north"), "{reason}");
@@ -106,7 +106,9 @@ mod tests {
             [DVec2::new(1.5, 2.0), DVec2::new(-3.0, 4e3)]
         );
         for (text, place) in [("x,y\n1,2\n3,north\n", 3), ("1,2\n3\n", 2), ("a,b\n1,2\n", 1)] {
-            let Err(Failure::Input(reason)) = parse_points("p.csv", text) else { panic!("accepted: {text}") };
+            let Err(CliError::Input(reason)) = parse_points("p.csv", text) else {
+                panic!("accepted: {text}")
+            };
             assert!(reason.contains(&format!("p.csv:{place}:")), "{reason}");
         }
     }

@@ -11,16 +11,18 @@ use glam::DVec2;
 use serde_json::{Value, json};
 
 use crate::annotate::chart::Surroundings;
-use crate::annotate::chart_ground::{Ground, Point};
+use crate::annotate::chart_ground::{ChartGround, ChartPoint};
 use crate::annotate::chart_profile::{ProfileChart, paint};
 use crate::annotate::nice;
-use crate::app::arguments::{Access, InterpolationChoice, Size, StatedHeights};
+use crate::app::arguments::{Access, InterpolationChoice, PictureSize, StatedHeights};
 use crate::app::dataset::Dataset;
-use crate::app::failure::Failure;
-use crate::app::places::{Positions, Way, check_picture_place, on_ground, read_way, spoken, stated_crs};
+use crate::app::failure::CliError;
+use crate::app::places::{
+    InputLine, PositionList, check_picture_place, on_ground, read_way, spoken, stated_crs,
+};
 use crate::app::{files, output, picture};
 use crate::geom::crs::Crs;
-use crate::terrain::profile::{Extreme, Sampling, Station, Summary, sampled_profile};
+use crate::terrain::profile::{Extreme, ProfileStation, ProfileSummary, Sampling, sampled_profile};
 use crate::terrain::query::Answer;
 
 /// More steps than this are no profile that anybody reads, and would fill the memory.
@@ -37,10 +39,10 @@ pub struct ProfileOptions {
     pub file: PathBuf,
     /// The line: --line X,Y X,Y and so on; in quotes where one begins with a minus sign
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, required_unless_present = "points")]
-    pub line: Vec<Positions>,
+    pub line: Vec<PositionList>,
     /// The line's other vertices
     #[arg(value_name = "X,Y", requires = "line", hide = true)]
-    pub rest: Vec<Positions>,
+    pub rest: Vec<PositionList>,
     /// A file with the line: x,y a line of CSV, or the first line of a vector file; - reads CSV from standard input
     #[arg(long, value_name = "FILE", conflicts_with = "line")]
     pub points: Option<PathBuf>,
@@ -58,7 +60,7 @@ pub struct ProfileOptions {
     pub output: Option<PathBuf>,
     /// Size of the chart in pixels
     #[arg(long, value_name = "WxH", default_value = "1600x800")]
-    pub size: Size,
+    pub size: PictureSize,
     /// Print one JSON object instead of a table
     #[arg(long)]
     pub json: bool,
@@ -74,13 +76,13 @@ pub struct ProfileOptions {
 ///
 /// # Errors
 /// The file cannot be had or read, has no place in metres, or the line cannot be brought there.
-pub fn run(options: &ProfileOptions) -> Result<(), Failure> {
+pub fn run(options: &ProfileOptions) -> Result<(), CliError> {
     if let Some(path) = &options.output {
         check_picture_place(path, &options.file)?;
     }
     let dataset = Dataset::open(&options.file, options.heights, &options.access)?;
     let way = way(options, &dataset)?;
-    let epoch = dataset.service()?.now();
+    let epoch = dataset.service()?.snapshot();
     let line = way
         .vertices
         .iter()
@@ -88,8 +90,8 @@ pub fn run(options: &ProfileOptions) -> Result<(), Failure> {
         .collect::<Result<Vec<_>, _>>()?;
     let sampling = Sampling { interpolation: options.interpolation.into(), step_m: step_m(options, &line)? };
     let stations = sampled_profile(epoch.lattice(), &line, sampling);
-    let summary = Summary::of(&stations);
-    let asked = Asked { crs: &way.crs, ground: epoch.crs() };
+    let summary = ProfileSummary::of(&stations);
+    let asked = ProfileQuery { crs: &way.crs, ground: epoch.crs() };
     if let Some(path) = &options.output {
         let datum = epoch.source().vertical_datum.as_deref();
         let chart = chart(options, &way, &line, datum, (&stations, &summary));
@@ -100,10 +102,10 @@ pub fn run(options: &ProfileOptions) -> Result<(), Failure> {
         return output::print(&format!("{}\n", describe(&asked, &stations, &summary)?));
     }
     let rows = asked.positions(&stations)?;
-    output::forgive_leaving(write_csv(&stations, &rows))
+    output::ignore_broken_pipe(write_csv(&stations, &rows))
 }
 
-fn way(options: &ProfileOptions, dataset: &Dataset) -> Result<Way, Failure> {
+fn way(options: &ProfileOptions, dataset: &Dataset) -> Result<InputLine, CliError> {
     let stated = stated_crs(options.crs.as_deref())?;
     if let Some(path) = &options.points {
         return read_way(path, stated, dataset);
@@ -111,20 +113,20 @@ fn way(options: &ProfileOptions, dataset: &Dataset) -> Result<Way, Failure> {
     let vertices: Vec<DVec2> =
         options.line.iter().chain(&options.rest).flat_map(|given| given.0.clone()).collect();
     if vertices.len() < 2 {
-        return Err(Failure::Usage("--line needs at least two positions: --line X,Y X,Y".into()));
+        return Err(CliError::Usage("--line needs at least two positions: --line X,Y X,Y".into()));
     }
-    Ok(Way { vertices, crs: stated.unwrap_or_else(|| dataset.crs()) })
+    Ok(InputLine { vertices, crs: stated.unwrap_or_else(|| dataset.crs()) })
 }
 
-fn step_m(options: &ProfileOptions, line: &[DVec2]) -> Result<Option<f64>, Failure> {
+fn step_m(options: &ProfileOptions, line: &[DVec2]) -> Result<Option<f64>, CliError> {
     let Some(step_m) = options.step else { return Ok(None) };
     let length_m: f64 = line.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
     if !(step_m > 0.0 && step_m.is_finite()) {
-        return Err(Failure::Usage(format!("--step {step_m}: give metres above 0")));
+        return Err(CliError::Usage(format!("--step {step_m}: give metres above 0")));
     }
     if length_m / step_m > MOST_STEPS {
         let most = MOST_STEPS;
-        return Err(Failure::Usage(format!(
+        return Err(CliError::Usage(format!(
             "--step {step_m}: the line is {length_m:.0} m long, and no more than {most} steps are made; take longer ones"
         )));
     }
@@ -132,22 +134,22 @@ fn step_m(options: &ProfileOptions, line: &[DVec2]) -> Result<Option<f64>, Failu
 }
 
 /// The system that was asked in, and the ground's.
-struct Asked<'a> {
+struct ProfileQuery<'a> {
     crs: &'a Crs,
     ground: &'a Crs,
 }
 
-impl Asked<'_> {
-    fn position(&self, at: DVec2) -> Result<DVec2, Failure> {
+impl ProfileQuery<'_> {
+    fn position(&self, at: DVec2) -> Result<DVec2, CliError> {
         on_ground("the station at", self.ground, self.crs, at)
     }
 
-    fn positions(&self, stations: &[Station]) -> Result<Vec<DVec2>, Failure> {
+    fn positions(&self, stations: &[ProfileStation]) -> Result<Vec<DVec2>, CliError> {
         stations.iter().map(|station| self.position(station.at)).collect()
     }
 }
 
-fn write_csv(stations: &[Station], positions: &[DVec2]) -> io::Result<()> {
+fn write_csv(stations: &[ProfileStation], positions: &[DVec2]) -> io::Result<()> {
     let mut out = BufWriter::new(io::stdout().lock());
     writeln!(out, "station,x,y,height,status")?;
     for (station, at) in stations.iter().zip(positions) {
@@ -157,7 +159,11 @@ fn write_csv(stations: &[Station], positions: &[DVec2]) -> io::Result<()> {
     out.flush()
 }
 
-fn describe(asked: &Asked<'_>, stations: &[Station], summary: &Summary) -> Result<Value, Failure> {
+fn describe(
+    asked: &ProfileQuery<'_>,
+    stations: &[ProfileStation],
+    summary: &ProfileSummary,
+) -> Result<Value, CliError> {
     let extreme = |place: Option<Extreme>| match place {
         Some(place) => {
             let at = asked.position(place.at)?;
@@ -190,13 +196,13 @@ fn describe(asked: &Asked<'_>, stations: &[Station], summary: &Summary) -> Resul
 }
 
 /// Stations as a chart's points.
-pub fn points(stations: &[Station], height_m: impl Fn(f64, f64) -> f64) -> Vec<Point> {
-    let point = |station: &Station| Point {
+pub fn points(stations: &[ProfileStation], height_m: impl Fn(f64, f64) -> f64) -> Vec<ChartPoint> {
+    let point = |station: &ProfileStation| ChartPoint {
         along_m: station.station_m,
         ground: match station.ground {
-            Answer::Height(height) => Ground::Height(height_m(station.station_m, height)),
-            Answer::NoData => Ground::NoData,
-            Answer::Outside => Ground::Outside,
+            Answer::Height(height) => ChartGround::Height(height_m(station.station_m, height)),
+            Answer::NoData => ChartGround::NoData,
+            Answer::Outside => ChartGround::Outside,
         },
     };
     stations.iter().map(point).collect()
@@ -210,10 +216,10 @@ pub fn file_title(what: &str, file: &std::path::Path) -> String {
 
 fn chart(
     options: &ProfileOptions,
-    way: &Way,
+    way: &InputLine,
     line: &[DVec2],
     datum: Option<&str>,
-    (stations, summary): (&[Station], &Summary),
+    (stations, summary): (&[ProfileStation], &ProfileSummary),
 ) -> ProfileChart {
     let [first, last] = [way.vertices.first(), way.vertices.last()].map(|at| at.copied().unwrap_or_default());
     let climbs = format!(

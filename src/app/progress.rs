@@ -7,12 +7,12 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// Times the steps of a command and shows the one at hand.
-pub struct Steps {
+pub struct StepTimer {
     bar: ProgressBar,
     times: Mutex<Vec<(&'static str, Instant)>>,
 }
 
-impl Default for Steps {
+impl Default for StepTimer {
     fn default() -> Self {
         let bar = ProgressBar::new_spinner();
         bar.enable_steady_tick(Duration::from_millis(100));
@@ -24,7 +24,7 @@ impl Default for Steps {
     }
 }
 
-impl Steps {
+impl StepTimer {
     /// Says what is done next.
     pub fn begin(&self, step: &'static str) {
         self.bar.set_message(step);
@@ -40,7 +40,7 @@ impl Steps {
     }
 }
 
-impl Drop for Steps {
+impl Drop for StepTimer {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use crate::app::arguments::RenderOptions;
 use crate::app::check::contents;
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 use crate::app::picture::{Finished, picture_of, png};
-use crate::app::progress::Steps;
+use crate::app::progress::StepTimer;
 use crate::app::{files, load, output};
 use crate::description::suggest::{nearest, quoted};
 use crate::scene::kind::{Scene, View};
@@ -15,12 +15,12 @@ use crate::scene::kind::{Scene, View};
 ///
 /// # Errors
 /// Whatever is wrong with the scene; no adapter for `--backend gpu`; the picture cannot be written.
-pub fn run(options: &RenderOptions) -> Result<(), Failure> {
+pub fn run(options: &RenderOptions) -> Result<(), CliError> {
     let threads = options.threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Failure::input)?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(CliError::input)?;
     let place = options.output.clone().unwrap_or_else(|| default_output(&options.scene));
     files::check_place(&place, &options.scene)?;
-    let steps = Steps::default();
+    let steps = StepTimer::default();
     let done = pool.scope(|_| render(options, &place, &steps))?;
     let times = steps.finish();
     let mut lines = vec![format!("{}", place.display())];
@@ -30,22 +30,19 @@ pub fn run(options: &RenderOptions) -> Result<(), Failure> {
     lines.push(format!("  time      {}", times.join(", ")));
     output::print(&output::text_of(&lines))?;
     for missing in &done.finished.report.missing_glyphs {
-        output::complain(&format!(
-            "warning: the font lacks {} characters of '{}'",
-            missing.count, missing.text
-        ));
+        output::warn(&format!("warning: the font lacks {} characters of '{}'", missing.count, missing.text));
     }
     Ok(())
 }
 
 /// A rendered scene, written.
-struct Done {
+struct RenderOutcome {
     scene: Scene,
     view: String,
     finished: Finished,
 }
 
-fn render(options: &RenderOptions, place: &Path, steps: &Steps) -> Result<Done, Failure> {
+fn render(options: &RenderOptions, place: &Path, steps: &StepTimer) -> Result<RenderOutcome, CliError> {
     let step = |step| steps.begin(step);
     let scene = load::scene(&options.scene, &options.access, &step)?;
     let view = find_view(&scene, options.camera.as_deref())?.clone();
@@ -53,17 +50,17 @@ fn render(options: &RenderOptions, place: &Path, steps: &Steps) -> Result<Done, 
     let finished = picture_of(&scene, &view, options.size, options.backend, &step)?;
     step("writing the picture");
     files::write_whole(place, &png(&finished.pixels)?)?;
-    Ok(Done { scene, view: view.name, finished })
+    Ok(RenderOutcome { scene, view: view.name, finished })
 }
 
-fn find_view<'a>(scene: &'a Scene, name: Option<&str>) -> Result<&'a View, Failure> {
+fn find_view<'a>(scene: &'a Scene, name: Option<&str>) -> Result<&'a View, CliError> {
     scene.view(name).ok_or_else(|| {
         let names: Vec<&str> = scene.cameras.iter().map(|view| view.name.as_str()).collect();
         let wanted = name.unwrap_or_default();
         let meant = nearest(wanted, names.iter().copied());
         let meant = meant.map(|name| format!("; did you mean '{name}'?")).unwrap_or_default();
         let (wanted, names) = (quoted(wanted), names.join(", "));
-        Failure::Usage(format!("the scene has no camera '{wanted}'; it has {names}{meant}"))
+        CliError::Usage(format!("the scene has no camera '{wanted}'; it has {names}{meant}"))
     })
 }
 
@@ -73,7 +70,7 @@ fn default_output(scene: &Path) -> PathBuf {
 }
 
 /// What the picture shows, and which labels it does not, in lines.
-fn picture(done: &Done) -> Vec<String> {
+fn picture(done: &RenderOutcome) -> Vec<String> {
     let report = &done.finished.report;
     let (all, ground) = (done.finished.shot.list.triangle_count(), done.finished.shot.ground_triangles);
     let mut lines = vec![format!("  camera    {}: {all} triangles, {ground} of them ground", done.view)];

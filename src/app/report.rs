@@ -6,11 +6,11 @@ use clap::Args;
 use serde_json::{Map, Value, json};
 
 use crate::app::arguments::Access;
-use crate::app::failure::Failure;
-use crate::app::progress::Steps;
+use crate::app::failure::CliError;
+use crate::app::progress::StepTimer;
 use crate::app::{files, load, output};
 use crate::scene::kind::Scene;
-use crate::scene::report::{Cell, Column, Report, Table};
+use crate::scene::report::{ReportCell, ReportColumn, ReportTable, SceneReport};
 
 /// How many rows of a table are printed; a file or JSON holds all.
 const SHOWN: usize = 20;
@@ -37,8 +37,8 @@ pub struct ReportOptions {
 ///
 /// # Errors
 /// Whatever is wrong with the scene; a file cannot be written.
-pub fn run(options: &ReportOptions) -> Result<(), Failure> {
-    let steps = Steps::default();
+pub fn run(options: &ReportOptions) -> Result<(), CliError> {
+    let steps = StepTimer::default();
     let scene = load::unstretched(&options.scene, &options.access, &|step| steps.begin(step))?;
     steps.finish();
     let report = &scene.report;
@@ -59,14 +59,14 @@ pub fn run(options: &ReportOptions) -> Result<(), Failure> {
     output::print(&output::text_of(&lines))
 }
 
-fn as_json(report: &Report, notes: &[String]) -> Value {
+fn as_json(report: &SceneReport, notes: &[String]) -> Value {
     let tables: Map<String, Value> =
         report.tables.iter().map(|table| (table.name.replace(' ', "_"), rows_as_json(table))).collect();
     json!({"tables": tables, "notes": notes})
 }
 
-fn rows_as_json(table: &Table) -> Value {
-    let row = |row: &Vec<Cell>| -> Value {
+fn rows_as_json(table: &ReportTable) -> Value {
+    let row = |row: &Vec<ReportCell>| -> Value {
         let cells = table.columns.iter().zip(row).map(|(column, cell)| (key(column), value(cell)));
         Value::Object(cells.collect())
     };
@@ -74,22 +74,22 @@ fn rows_as_json(table: &Table) -> Value {
 }
 
 /// A column's name with its unit, as a word.
-fn key(column: &Column) -> String {
+fn key(column: &ReportColumn) -> String {
     let unit = if column.unit.is_empty() { String::new() } else { format!("_{}", column.unit) };
     format!("{}{unit}", column.name.replace(' ', "_")).replace('%', "percent")
 }
 
-fn value(cell: &Cell) -> Value {
+fn value(cell: &ReportCell) -> Value {
     match cell {
-        Cell::Text(text) => json!(text),
-        Cell::Number(number) => json!(number),
-        Cell::Count(count) => json!(count),
-        Cell::Empty => Value::Null,
+        ReportCell::Text(text) => json!(text),
+        ReportCell::Number(number) => json!(number),
+        ReportCell::Count(count) => json!(count),
+        ReportCell::Empty => Value::Null,
     }
 }
 
 /// Writes a file a table, `NAME.csv` with underscores for spaces; returns their places.
-fn write_tables(report: &Report, folder: &Path, inputs: &[PathBuf]) -> Result<Vec<String>, Failure> {
+fn write_tables(report: &SceneReport, folder: &Path, inputs: &[PathBuf]) -> Result<Vec<String>, CliError> {
     report
         .tables
         .iter()
@@ -104,7 +104,7 @@ fn write_tables(report: &Report, folder: &Path, inputs: &[PathBuf]) -> Result<Ve
 
 /// Writes a file a profile, `profile_NUMBER_NAME.csv` with the road's number among the scene's features; returns their
 /// places.
-fn write_profiles(scene: &Scene, folder: &Path) -> Result<Vec<String>, Failure> {
+fn write_profiles(scene: &Scene, folder: &Path) -> Result<Vec<String>, CliError> {
     let plain = |name: &str| -> String {
         name.chars().take(40).map(|at| if at.is_alphanumeric() { at } else { '_' }).collect()
     };
@@ -125,31 +125,31 @@ fn write_profiles(scene: &Scene, folder: &Path) -> Result<Vec<String>, Failure> 
 }
 
 /// RFC 4180 with a header.
-fn as_csv(table: &Table) -> String {
+fn as_csv(table: &ReportTable) -> String {
     let header = table.columns.iter().map(key).collect::<Vec<_>>().join(",");
     let rows = table.rows.iter().map(|row| row.iter().map(csv_cell).collect::<Vec<_>>().join(","));
     std::iter::once(header).chain(rows).map(|line| line + "\r\n").collect()
 }
 
-fn csv_cell(cell: &Cell) -> String {
+fn csv_cell(cell: &ReportCell) -> String {
     match cell {
-        Cell::Text(text) if text.contains([',', '"', '\n', '\r']) => {
+        ReportCell::Text(text) if text.contains([',', '"', '\n', '\r']) => {
             format!("\"{}\"", text.replace('"', "\"\""))
         }
-        Cell::Text(text) => text.clone(),
-        Cell::Number(number) => number.to_string(),
-        Cell::Count(count) => count.to_string(),
-        Cell::Empty => String::new(),
+        ReportCell::Text(text) => text.clone(),
+        ReportCell::Number(number) => number.to_string(),
+        ReportCell::Count(count) => count.to_string(),
+        ReportCell::Empty => String::new(),
     }
 }
 
 /// A table with its columns aligned, names to the left and numbers to the right.
-fn printed(table: &Table) -> Vec<String> {
+fn printed(table: &ReportTable) -> Vec<String> {
     let header: Vec<String> = table
         .columns
         .iter()
         .map(
-            |Column { name, unit }| {
+            |ReportColumn { name, unit }| {
                 if unit.is_empty() { (*name).to_owned() } else { format!("{name} [{unit}]") }
             },
         )
@@ -161,7 +161,7 @@ fn printed(table: &Table) -> Vec<String> {
         cells.chain([header[column].chars().count()]).max().unwrap_or(0)
     };
     let widths: Vec<usize> = (0..header.len()).map(width).collect();
-    let is_text = |column: usize| table.rows.iter().any(|row| matches!(row[column], Cell::Text(_)));
+    let is_text = |column: usize| table.rows.iter().any(|row| matches!(row[column], ReportCell::Text(_)));
     let aligned = |cells: &[String]| -> String {
         let cells = cells.iter().enumerate().map(|(column, cell)| match is_text(column) {
             true => format!("  {cell:<width$}", width = widths[column]),
@@ -177,13 +177,15 @@ fn printed(table: &Table) -> Vec<String> {
     lines
 }
 
-fn shown(cell: &Cell) -> String {
+fn shown(cell: &ReportCell) -> String {
     match cell {
-        Cell::Text(text) => text.chars().take(40).map(|at| if at.is_control() { ' ' } else { at }).collect(),
-        Cell::Number(number) if number.abs() >= 1000.0 => format!("{number:.0}"),
-        Cell::Number(number) => format!("{number:.2}"),
-        Cell::Count(count) => count.to_string(),
-        Cell::Empty => "-".into(),
+        ReportCell::Text(text) => {
+            text.chars().take(40).map(|at| if at.is_control() { ' ' } else { at }).collect()
+        }
+        ReportCell::Number(number) if number.abs() >= 1000.0 => format!("{number:.0}"),
+        ReportCell::Number(number) => format!("{number:.2}"),
+        ReportCell::Count(count) => count.to_string(),
+        ReportCell::Empty => "-".into(),
     }
 }
 
@@ -191,13 +193,15 @@ fn shown(cell: &Cell) -> String {
 mod tests {
     use super::*;
 
-    const COLUMNS: &[Column] = &[Column { name: "name", unit: "" }, Column { name: "cut", unit: "m3" }];
+    const COLUMNS: &[ReportColumn] =
+        &[ReportColumn { name: "name", unit: "" }, ReportColumn { name: "cut", unit: "m3" }];
 
-    fn report(rows: usize) -> Report {
-        let mut report = Report::default();
+    fn report(rows: usize) -> SceneReport {
+        let mut report = SceneReport::default();
         for row in 0..rows {
-            let name = Cell::Text(if row == 0 { "the \"long\", winding one".into() } else { String::new() });
-            report.add(("conformed roads", COLUMNS), vec![name, Cell::Number(row as f64 * 1234.5)]);
+            let name =
+                ReportCell::Text(if row == 0 { "the \"long\", winding one".into() } else { String::new() });
+            report.add(("conformed roads", COLUMNS), vec![name, ReportCell::Number(row as f64 * 1234.5)]);
         }
         report
     }

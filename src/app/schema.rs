@@ -1,6 +1,6 @@
 //! `sandtable schema`: the JSON Schema of scene files, for editors.
 
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 use crate::app::output;
 use crate::description::schema::schema;
 
@@ -8,7 +8,7 @@ use crate::description::schema::schema;
 ///
 /// # Errors
 /// Standard output cannot be written.
-pub fn run() -> Result<(), Failure> {
-    let text = serde_json::to_string_pretty(&schema()).map_err(Failure::input)?;
+pub fn run() -> Result<(), CliError> {
+    let text = serde_json::to_string_pretty(&schema()).map_err(CliError::input)?;
     output::print(&format!("{text}\n"))
 }

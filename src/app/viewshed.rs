@@ -9,20 +9,20 @@ use glam::{DAffine2, DMat2, DVec2};
 
 use crate::app::arguments::{Access, StatedHeights};
 use crate::app::dataset::Dataset;
-use crate::app::failure::Failure;
-use crate::app::map::{Words, viewshed_map};
+use crate::app::failure::CliError;
+use crate::app::map::{SheetText, viewshed_map};
 use crate::app::picture::png;
-use crate::app::progress::Steps;
+use crate::app::progress::StepTimer;
 use crate::app::{files, output, rasters};
 use crate::dem::raster::{Raster, Samples};
-use crate::dem::write::Format;
+use crate::dem::write::DemFormat;
 use crate::geom::crs::Crs;
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::query::Answer;
 use crate::terrain::sight::Curvature;
-use crate::terrain::sight::line::End;
+use crate::terrain::sight::line::SightEnd;
 use crate::terrain::sight::viewshed::ViewshedOptions as Question;
-use crate::terrain::sight::viewshed::{Counts, Sector, Seen, Viewshed, viewshed};
+use crate::terrain::sight::viewshed::{PostVisibility, Sector, Viewshed, ViewshedCounts, viewshed};
 
 /// `viewshed`.
 #[derive(Debug, Args)]
@@ -30,7 +30,7 @@ use crate::terrain::sight::viewshed::{Counts, Sector, Seen, Viewshed, viewshed};
     after_help = "A raster holds 1 where a target can be seen, 0 where it is hidden, and 255, its no-data value, beyond the \
                   range, out of the sector and where there is no elevation."
 )]
-pub struct ViewshedOptions {
+pub struct ViewshedArguments {
     /// The elevation file or scene
     pub file: PathBuf,
     /// Where the observer stands, in the file's or scene's coordinates
@@ -103,21 +103,21 @@ fn below_one(text: &str) -> Result<f64, String> {
 
 /// What the answer is written as.
 #[derive(Clone, Copy)]
-enum Form {
+enum ViewshedFormat {
     Map,
-    Raster(Format),
+    Raster(DemFormat),
 }
 
 /// Looks, writes the map or the raster, and prints how much can be seen.
 ///
 /// # Errors
 /// The file or the position cannot be had, or the answer not be written.
-pub fn run(options: &ViewshedOptions) -> Result<(), Failure> {
+pub fn run(options: &ViewshedArguments) -> Result<(), CliError> {
     let form = options.output.as_deref().map(|path| form_of(path, &options.file)).transpose()?;
-    let steps = Steps::default();
+    let steps = StepTimer::default();
     steps.begin("reading the ground");
     let dataset = Dataset::open(&options.file, options.heights, &options.access)?;
-    let epoch = dataset.service()?.now();
+    let epoch = dataset.service()?.snapshot();
     let lattice = epoch.lattice();
     let question = question(options, &dataset, epoch.crs())?;
     steps.begin("looking around");
@@ -127,7 +127,7 @@ pub fn run(options: &ViewshedOptions) -> Result<(), Failure> {
         write(
             form,
             path,
-            &Shown {
+            &ViewshedOutput {
                 options,
                 lattice,
                 crs: epoch.crs(),
@@ -138,35 +138,35 @@ pub fn run(options: &ViewshedOptions) -> Result<(), Failure> {
         )?;
     }
     steps.finish();
-    let summary = Summary::new(lattice, &seen);
+    let summary = ViewshedSummary::new(lattice, &seen);
     let text = if options.json { summary.json(options, &question) } else { summary.text(options) };
     output::print(&text)
 }
 
-fn form_of(path: &Path, input: &Path) -> Result<Form, Failure> {
+fn form_of(path: &Path, input: &Path) -> Result<ViewshedFormat, CliError> {
     let is_map = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
     if is_map {
         files::check_file_place(path, input, "this is the elevation file itself; name another with -o")?;
-        return Ok(Form::Map);
+        return Ok(ViewshedFormat::Map);
     }
-    rasters::format_of(path, &[input.to_owned()]).map(Form::Raster)
+    rasters::format_of(path, &[input.to_owned()]).map(ViewshedFormat::Raster)
 }
 
-fn question(options: &ViewshedOptions, dataset: &Dataset, ground: &Crs) -> Result<Question, Failure> {
+fn question(options: &ViewshedArguments, dataset: &Dataset, ground: &Crs) -> Result<Question, CliError> {
     let from = match &options.crs {
-        Some(text) => Crs::parse(text).map_err(|error| Failure::Usage(format!("--crs {text}: {error}")))?,
+        Some(text) => Crs::parse(text).map_err(|error| CliError::Usage(format!("--crs {text}: {error}")))?,
         None => dataset.crs(),
     };
     let Pair(x, y) = options.at;
     let at = from
         .transform(ground, DVec2::new(x, y))
-        .map_err(|error| Failure::input(format!("--at {x},{y}: {error}")))?;
+        .map_err(|error| CliError::input(format!("--at {x},{y}: {error}")))?;
     let curvature = match options.flat {
         true => Curvature::FLAT,
         false => Curvature { refraction: options.refraction, ..Curvature::default() },
     };
     Ok(Question {
-        observer: End { at, above_m: options.observer_height },
+        observer: SightEnd { at, above_m: options.observer_height },
         target_above_m: options.target_height,
         range_m: options.range.unwrap_or(f64::INFINITY),
         sector: options.sector.map_or(Sector::ALL, |Pair(from, to)| Sector::between(from, to)),
@@ -174,18 +174,18 @@ fn question(options: &ViewshedOptions, dataset: &Dataset, ground: &Crs) -> Resul
     })
 }
 
-fn no_ground(options: &ViewshedOptions, answer: Answer) -> Failure {
+fn no_ground(options: &ViewshedArguments, answer: Answer) -> CliError {
     let Pair(x, y) = options.at;
     let why = match answer {
         Answer::NoData => "there is no elevation at the observer",
         _ => "the observer stands outside the elevation model",
     };
-    Failure::input(format!("{}: --at {x},{y}: {why}; name a place on the ground", options.file.display()))
+    CliError::input(format!("{}: --at {x},{y}: {why}; name a place on the ground", options.file.display()))
 }
 
 /// What is written.
-struct Shown<'a> {
-    options: &'a ViewshedOptions,
+struct ViewshedOutput<'a> {
+    options: &'a ViewshedArguments,
     lattice: &'a Lattice,
     crs: &'a Crs,
     question: &'a Question,
@@ -193,23 +193,23 @@ struct Shown<'a> {
     datum: Option<String>,
 }
 
-fn write(form: Form, path: &Path, shown: &Shown<'_>) -> Result<(), Failure> {
+fn write(form: ViewshedFormat, path: &Path, shown: &ViewshedOutput<'_>) -> Result<(), CliError> {
     match form {
-        Form::Raster(format) => {
+        ViewshedFormat::Raster(format) => {
             let raster = raster(shown.lattice, shown.seen, shown.crs);
             rasters::write(&raster, format, path, std::slice::from_ref(&shown.options.file)).map(|_| ())
         }
-        Form::Map => {
+        ViewshedFormat::Map => {
             let map = viewshed_map(shown.lattice, shown.seen, shown.question, words(shown));
             files::write_whole(path, &png(&map)?)
         }
     }
 }
 
-fn words(shown: &Shown<'_>) -> Words {
+fn words(shown: &ViewshedOutput<'_>) -> SheetText {
     let options = shown.options;
     let name = options.file.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let share = Summary::new(shown.lattice, shown.seen).share();
+    let share = ViewshedSummary::new(shown.lattice, shown.seen).share();
     let mut subtitle = format!("Eye {} m above ground", options.observer_height);
     if options.target_height > 0.0 {
         let _ = write!(subtitle, ", target {} m", options.target_height);
@@ -222,7 +222,7 @@ fn words(shown: &Shown<'_>) -> Words {
     }
     let _ = write!(subtitle, "; {:.1} % in sight", share * 100.0);
     subtitle.push_str(if options.flat { "; flat Earth" } else { "; curvature and refraction applied" });
-    Words { title: format!("Viewshed · {name}"), subtitle, vertical_datum: shown.datum.clone() }
+    SheetText { title: format!("Viewshed · {name}"), subtitle, vertical_datum: shown.datum.clone() }
 }
 
 /// The value of what was not looked at, or has no data.
@@ -230,10 +230,10 @@ const NO_ANSWER: f64 = 255.0;
 
 /// The answer as a raster: 1 in sight, 0 hidden, no data elsewhere.
 fn raster(lattice: &Lattice, seen: &Viewshed, crs: &Crs) -> Raster {
-    let value = |seen: &Seen| match seen {
-        Seen::Visible => 1.0,
-        Seen::Hidden => 0.0,
-        Seen::Beyond | Seen::NoData => f32::NAN,
+    let value = |seen: &PostVisibility| match seen {
+        PostVisibility::Visible => 1.0,
+        PostVisibility::Hidden => 0.0,
+        PostVisibility::Beyond | PostVisibility::NoData => f32::NAN,
     };
     let rows = seen.posts.chunks_exact(seen.columns as usize).rev();
     let cell = lattice.cell();
@@ -257,12 +257,12 @@ fn raster(lattice: &Lattice, seen: &Viewshed, crs: &Crs) -> Raster {
 }
 
 /// How much can be seen.
-struct Summary {
-    counts: Counts,
+struct ViewshedSummary {
+    counts: ViewshedCounts,
     cell_m2: f64,
 }
 
-impl Summary {
+impl ViewshedSummary {
     fn new(lattice: &Lattice, seen: &Viewshed) -> Self {
         Self { counts: seen.counts(), cell_m2: lattice.cell().element_product() }
     }
@@ -277,8 +277,8 @@ impl Summary {
         self.counts.visible as f64 * self.cell_m2
     }
 
-    fn json(&self, options: &ViewshedOptions, question: &Question) -> String {
-        let Counts { visible, hidden, no_data, beyond } = self.counts;
+    fn json(&self, options: &ViewshedArguments, question: &Question) -> String {
+        let ViewshedCounts { visible, hidden, no_data, beyond } = self.counts;
         let range = options.range;
         let object = serde_json::json!({
             "observer": { "x": question.observer.at.x, "y": question.observer.at.y, "above_m": options.observer_height },
@@ -294,8 +294,8 @@ impl Summary {
         format!("{object:#}\n")
     }
 
-    fn text(&self, options: &ViewshedOptions) -> String {
-        let Counts { visible, hidden, no_data, beyond } = self.counts;
+    fn text(&self, options: &ViewshedArguments) -> String {
+        let ViewshedCounts { visible, hidden, no_data, beyond } = self.counts;
         let mut lines = Vec::new();
         lines.extend(options.output.as_ref().map(|path| path.display().to_string()));
         lines.push(format!(

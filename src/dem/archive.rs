@@ -5,7 +5,7 @@ use std::io::Read;
 
 use flate2::read::{DeflateDecoder, MultiGzDecoder};
 
-use crate::dem::fault::{Fault, bytes_at};
+use crate::dem::fault::{DemErrorKind, bytes_at};
 
 /// The most bytes that are unpacked: a file of the largest raster.
 const MOST_BYTES: u64 = 1 << 30;
@@ -24,17 +24,17 @@ pub(crate) fn is_zip(bytes: &[u8]) -> bool {
 }
 
 /// The content of a gzip file.
-pub(crate) fn gunzip(bytes: &[u8]) -> Result<Vec<u8>, Fault> {
+pub(crate) fn gunzip(bytes: &[u8]) -> Result<Vec<u8>, DemErrorKind> {
     inflate(MultiGzDecoder::new(bytes), bytes.len(), "gzip file")
 }
 
-fn inflate(decoder: impl Read, packed: usize, format: &'static str) -> Result<Vec<u8>, Fault> {
+fn inflate(decoder: impl Read, packed: usize, format: &'static str) -> Result<Vec<u8>, DemErrorKind> {
     let limit = MOST_BYTES.min((packed as u64).saturating_mul(DEFLATE_EXPANSION) + 1);
     let mut unpacked = Vec::new();
     let read = decoder.take(limit + 1).read_to_end(&mut unpacked);
-    read.map_err(|error| Fault::broken(format, error.to_string()))?;
+    read.map_err(|error| DemErrorKind::broken(format, error.to_string()))?;
     if unpacked.len() as u64 > limit {
-        return Err(Fault::broken(format, format!("it unpacks to more than {limit} bytes")));
+        return Err(DemErrorKind::broken(format, format!("it unpacks to more than {limit} bytes")));
     }
     Ok(unpacked)
 }
@@ -46,14 +46,14 @@ fn inflate(decoder: impl Read, packed: usize, format: &'static str) -> Result<Ve
 pub(crate) fn unzip_first(
     bytes: &[u8],
     wanted: impl Fn(&str) -> bool,
-) -> Result<Option<(String, Vec<u8>)>, Fault> {
+) -> Result<Option<(String, Vec<u8>)>, DemErrorKind> {
     const FORMAT: &str = "zip archive";
-    let cut = || Fault::broken(FORMAT, "it ends before its directory does");
+    let cut = || DemErrorKind::broken(FORMAT, "it ends before its directory does");
     let end = find_end(bytes).ok_or_else(cut)?;
     let members = u16::from_le_bytes(bytes_at(bytes, end + 10).ok_or_else(cut)?);
     let mut at = u32::from_le_bytes(bytes_at(bytes, end + 16).ok_or_else(cut)?) as usize;
     for _ in 0..members {
-        let member = Member::at(bytes, at).ok_or_else(cut)?;
+        let member = ZipMember::at(bytes, at).ok_or_else(cut)?;
         at = member.next;
         if wanted(&member.name) {
             let data = member.data(bytes).ok_or_else(cut)?;
@@ -61,7 +61,7 @@ pub(crate) fn unzip_first(
                 0 => data.to_vec(),
                 8 => inflate(DeflateDecoder::new(data), data.len(), FORMAT)?,
                 other => {
-                    return Err(Fault::Unsupported {
+                    return Err(DemErrorKind::Unsupported {
                         format: FORMAT,
                         what: format!("compression method {other}"),
                         remedy: "unpack it first",
@@ -75,7 +75,7 @@ pub(crate) fn unzip_first(
 }
 
 /// One entry of the central directory.
-struct Member {
+struct ZipMember {
     name: String,
     method: u16,
     packed: usize,
@@ -83,7 +83,7 @@ struct Member {
     next: usize,
 }
 
-impl Member {
+impl ZipMember {
     fn at(bytes: &[u8], at: usize) -> Option<Self> {
         let short = |offset: usize| bytes_at(bytes, at.checked_add(offset)?).map(u16::from_le_bytes);
         let long = |offset: usize| bytes_at(bytes, at.checked_add(offset)?).map(u32::from_le_bytes);

@@ -6,9 +6,9 @@
 
 use glam::DVec2;
 
-use crate::dem::fault::{Fault, check_size};
+use crate::dem::fault::{DemErrorKind, check_size};
 use crate::dem::raster::{Raster, Samples, north_up};
-use crate::dem::read::Source;
+use crate::dem::read::DemFile;
 
 const FORMAT: &str = "ESRI ASCII grid";
 
@@ -37,10 +37,10 @@ pub(crate) fn recognises(bytes: &[u8]) -> bool {
 }
 
 /// Reads a grid; its coordinate system comes from a `.prj` companion.
-pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
+pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
     let bytes = source.bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(source.bytes);
-    let mut words = Words::new(bytes);
-    let header = Header::read(&mut words)?;
+    let mut words = TextWords::new(bytes);
+    let header = AsciiHeader::read(&mut words)?;
     let (width, height) = (header.size("ncols")?, header.size("nrows")?);
     // Every sample needs a digit, and all but the last a blank.
     let room = words.rest().len();
@@ -48,7 +48,8 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     let cell = header.cell()?;
     let corner = header.south_west(cell)?;
     let nodata = header.get("nodata_value");
-    let Found { values, replaced, whole } = samples(&mut words, count, nodata.unwrap_or(DEFAULT_NODATA))?;
+    let AsciiSamples { values, replaced, whole } =
+        samples(&mut words, count, nodata.unwrap_or(DEFAULT_NODATA))?;
     Ok(Raster {
         driver: "AAIGrid",
         data_type: if whole { "Int32" } else { "Float32" },
@@ -65,7 +66,7 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
 }
 
 /// The samples as the text holds them.
-struct Found {
+struct AsciiSamples {
     values: Vec<f32>,
     /// Whether any of them was no data.
     replaced: bool,
@@ -73,19 +74,22 @@ struct Found {
     whole: bool,
 }
 
-fn samples(words: &mut Words, count: usize, nodata: f64) -> Result<Found, Fault> {
+fn samples(words: &mut TextWords, count: usize, nodata: f64) -> Result<AsciiSamples, DemErrorKind> {
     let mut values = Vec::with_capacity(count);
     let (mut replaced, mut whole) = (false, true);
     for word in words {
         if values.len() == count {
-            return Err(Fault::broken(
+            return Err(DemErrorKind::broken(
                 FORMAT,
                 format!("more than the {count} values that ncols and nrows promise"),
             ));
         }
         let value = number(word).ok_or_else(|| {
             let word = String::from_utf8_lossy(&word[..word.len().min(20)]).into_owned();
-            Fault::broken(FORMAT, format!("value {} of {count} is '{word}', not a number", values.len() + 1))
+            DemErrorKind::broken(
+                FORMAT,
+                format!("value {} of {count} is '{word}', not a number", values.len() + 1),
+            )
         })?;
         let hole = value == nodata || !value.is_finite();
         replaced |= hole;
@@ -93,16 +97,19 @@ fn samples(words: &mut Words, count: usize, nodata: f64) -> Result<Found, Fault>
         values.push(if hole { f32::NAN } else { value as f32 });
     }
     if values.len() < count {
-        return Err(Fault::broken(FORMAT, format!("it ends after {} of {count} values", values.len())));
+        return Err(DemErrorKind::broken(
+            FORMAT,
+            format!("it ends after {} of {count} values", values.len()),
+        ));
     }
-    Ok(Found { values, replaced, whole })
+    Ok(AsciiSamples { values, replaced, whole })
 }
 
 /// The `key value` pairs.
-struct Header(Vec<(&'static str, f64)>);
+struct AsciiHeader(Vec<(&'static str, f64)>);
 
-impl Header {
-    fn read(words: &mut Words) -> Result<Self, Fault> {
+impl AsciiHeader {
+    fn read(words: &mut TextWords) -> Result<Self, DemErrorKind> {
         let mut pairs: Vec<(&'static str, f64)> = Vec::new();
         loop {
             let before = words.at;
@@ -115,9 +122,9 @@ impl Header {
             let value = words
                 .next()
                 .and_then(number)
-                .ok_or_else(|| Fault::broken(FORMAT, format!("{key} is not followed by a number")))?;
+                .ok_or_else(|| DemErrorKind::broken(FORMAT, format!("{key} is not followed by a number")))?;
             if pairs.iter().any(|(known, _)| *known == key) {
-                return Err(Fault::broken(FORMAT, format!("{key} is stated twice")));
+                return Err(DemErrorKind::broken(FORMAT, format!("{key} is stated twice")));
             }
             pairs.push((key, value));
         }
@@ -128,49 +135,54 @@ impl Header {
         self.0.iter().find(|(known, _)| *known == key).map(|(_, value)| *value)
     }
 
-    fn size(&self, key: &str) -> Result<u64, Fault> {
+    fn size(&self, key: &str) -> Result<u64, DemErrorKind> {
         match self.get(key) {
             Some(value) if value >= 1.0 && value.fract() == 0.0 && value <= u64::MAX as f64 => {
                 Ok(value as u64)
             }
             Some(value) => {
-                Err(Fault::broken(FORMAT, format!("{key} is {value}, not a whole number above 0")))
+                Err(DemErrorKind::broken(FORMAT, format!("{key} is {value}, not a whole number above 0")))
             }
-            None => Err(Fault::broken(FORMAT, format!("{key} is missing"))),
+            None => Err(DemErrorKind::broken(FORMAT, format!("{key} is missing"))),
         }
     }
 
-    fn cell(&self) -> Result<DVec2, Fault> {
+    fn cell(&self) -> Result<DVec2, DemErrorKind> {
         let square = self.get("cellsize");
         let cell = match (self.get("dx").or(square), self.get("dy").or(square)) {
             (Some(x), Some(y)) => DVec2::new(x, y),
-            _ => return Err(Fault::broken(FORMAT, "neither cellsize nor dx and dy are stated")),
+            _ => return Err(DemErrorKind::broken(FORMAT, "neither cellsize nor dx and dy are stated")),
         };
         if cell.is_finite() && cell.min_element() > 0.0 {
             return Ok(cell);
         }
-        Err(Fault::broken(FORMAT, format!("the cells are {} by {}, not of a positive size", cell.x, cell.y)))
+        Err(DemErrorKind::broken(
+            FORMAT,
+            format!("the cells are {} by {}, not of a positive size", cell.x, cell.y),
+        ))
     }
 
     /// The outer south-west corner.
-    fn south_west(&self, cell: DVec2) -> Result<DVec2, Fault> {
+    fn south_west(&self, cell: DVec2) -> Result<DVec2, DemErrorKind> {
         let edge = |corner: &str, center: &str, cell: f64| match (self.get(corner), self.get(center)) {
             (Some(at), _) => Ok(at),
             (None, Some(at)) => Ok(at - cell * 0.5),
-            (None, None) => Err(Fault::broken(FORMAT, format!("neither {corner} nor {center} is stated"))),
+            (None, None) => {
+                Err(DemErrorKind::broken(FORMAT, format!("neither {corner} nor {center} is stated")))
+            }
         };
         let at = DVec2::new(edge("xllcorner", "xllcenter", cell.x)?, edge("yllcorner", "yllcenter", cell.y)?);
-        if at.is_finite() { Ok(at) } else { Err(Fault::broken(FORMAT, "its corner is not finite")) }
+        if at.is_finite() { Ok(at) } else { Err(DemErrorKind::broken(FORMAT, "its corner is not finite")) }
     }
 }
 
 /// The words of a text, as bytes.
-pub(crate) struct Words<'a> {
+pub(crate) struct TextWords<'a> {
     bytes: &'a [u8],
     at: usize,
 }
 
-impl<'a> Words<'a> {
+impl<'a> TextWords<'a> {
     /// The words of `bytes`, which blanks, line ends and NULs stand between.
     pub fn new(bytes: &'a [u8]) -> Self {
         Self { bytes, at: 0 }
@@ -182,7 +194,7 @@ impl<'a> Words<'a> {
     }
 }
 
-impl<'a> Iterator for Words<'a> {
+impl<'a> Iterator for TextWords<'a> {
     type Item = &'a [u8];
 
     fn next(&mut self) -> Option<&'a [u8]> {
@@ -213,10 +225,10 @@ pub(crate) fn number(word: &[u8]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{Hints, read};
+    use crate::dem::read::{DemHints, read};
 
     fn grid(text: &str) -> Result<Raster, String> {
-        read("a.asc", text.as_bytes(), &Hints::default()).map_err(|error| error.to_string())
+        read("a.asc", text.as_bytes(), &DemHints::default()).map_err(|error| error.to_string())
     }
 
     #[test]

@@ -21,9 +21,9 @@
 
 use glam::DVec2;
 
-use crate::dem::fault::{Fault, bytes_at, check_size};
+use crate::dem::fault::{DemErrorKind, bytes_at, check_size};
 use crate::dem::raster::{Raster, Samples, north_up};
-use crate::dem::read::Source;
+use crate::dem::read::DemFile;
 use crate::geom::crs::Crs;
 
 const FORMAT: &str = "BT terrain";
@@ -39,8 +39,8 @@ pub(crate) fn recognises(bytes: &[u8]) -> bool {
 }
 
 /// Reads a terrain; its coordinate system comes from a `.prj` companion where the header says so.
-pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
-    let header = Header::read(source.bytes)?;
+pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
+    let header = BtHeader::read(source.bytes)?;
     let data = &source.bytes[HEADER..];
     let size = (u64::from(header.columns), u64::from(header.rows));
     check_size(size, header.value.bytes() as u64, (data.len(), 1))?;
@@ -49,7 +49,7 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     let (min, max) = (header.min * metres_per_unit, header.max * metres_per_unit);
     let cell = (max - min) / nodes;
     if !(cell.is_finite() && cell.min_element() > 0.0) {
-        return Err(Fault::Georeference {
+        return Err(DemErrorKind::Georeference {
             reason: format!("its extents are {} to {}", header.min, header.max),
             remedy: "write it again with extents that grow to the north-east",
         });
@@ -71,13 +71,13 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
 
 /// The kinds of value.
 #[derive(Clone, Copy)]
-enum Kind {
+enum BtKind {
     I16,
     I32,
     F32,
 }
 
-impl Kind {
+impl BtKind {
     fn name(self) -> &'static str {
         match self {
             Self::I16 => "Int16",
@@ -91,10 +91,10 @@ impl Kind {
     }
 }
 
-struct Header {
+struct BtHeader {
     columns: u32,
     rows: u32,
-    value: Kind,
+    value: BtKind,
     unit: i16,
     zone: i16,
     datum: i16,
@@ -104,15 +104,18 @@ struct Header {
     metres_per_z: f64,
 }
 
-impl Header {
-    fn read(bytes: &[u8]) -> Result<Self, Fault> {
+impl BtHeader {
+    fn read(bytes: &[u8]) -> Result<Self, DemErrorKind> {
         if bytes.len() < HEADER {
-            return Err(Fault::broken(FORMAT, format!("{} bytes are less than its header", bytes.len())));
+            return Err(DemErrorKind::broken(
+                FORMAT,
+                format!("{} bytes are less than its header", bytes.len()),
+            ));
         }
         let version = match &bytes[7..10] {
             [b'1', b'.', digit @ b'0'..=b'3'] => digit - b'0',
             other => {
-                return Err(Fault::Unsupported {
+                return Err(DemErrorKind::Unsupported {
                     format: FORMAT,
                     what: format!("version '{}'", String::from_utf8_lossy(other)),
                     remedy: "save it as version 1.3",
@@ -122,7 +125,9 @@ impl Header {
         let fields = Fields(bytes);
         let nodes = |at: usize, what: &str| match fields.long(at) {
             count if count >= 2 => Ok(count as u32),
-            count => Err(Fault::broken(FORMAT, format!("it has {count} {what}; at least 2 make a terrain"))),
+            count => {
+                Err(DemErrorKind::broken(FORMAT, format!("it has {count} {what}; at least 2 make a terrain")))
+            }
         };
         let mut header = if version == 0 { Self::oldest(&fields)? } else { Self::later(&fields, version)? };
         header.columns = nodes(10, "columns")?;
@@ -130,7 +135,7 @@ impl Header {
         Ok(header)
     }
 
-    fn oldest(fields: &Fields) -> Result<Self, Fault> {
+    fn oldest(fields: &Fields) -> Result<Self, DemErrorKind> {
         let edge = |at: usize| f64::from(fields.float(at));
         let is_utm = fields.short(22) == 1;
         Ok(Self {
@@ -147,7 +152,7 @@ impl Header {
         })
     }
 
-    fn later(fields: &Fields, version: u8) -> Result<Self, Fault> {
+    fn later(fields: &Fields, version: u8) -> Result<Self, DemErrorKind> {
         let scale = if version >= 3 { f64::from(fields.float(62)) } else { 1.0 };
         Ok(Self {
             columns: 0,
@@ -165,11 +170,11 @@ impl Header {
 
     fn samples(&self, data: &[u8]) -> Samples {
         match self.value {
-            Kind::I16 => {
+            BtKind::I16 => {
                 Samples::F32(self.turned(data, |b: [u8; 2]| f32::from(i16::from_le_bytes(b)), f32::NAN))
             }
-            Kind::F32 => Samples::F32(self.turned(data, f32::from_le_bytes, f32::NAN)),
-            Kind::I32 => Samples::F64(self.turned(data, |b| f64::from(i32::from_le_bytes(b)), f64::NAN)),
+            BtKind::F32 => Samples::F32(self.turned(data, f32::from_le_bytes, f32::NAN)),
+            BtKind::I32 => Samples::F64(self.turned(data, |b| f64::from(i32::from_le_bytes(b)), f64::NAN)),
         }
     }
 
@@ -192,26 +197,26 @@ impl Header {
     }
 }
 
-fn kind(bytes: i32, float: bool) -> Result<Kind, Fault> {
+fn kind(bytes: i32, float: bool) -> Result<BtKind, DemErrorKind> {
     match (bytes, float) {
-        (2, false) => Ok(Kind::I16),
-        (4, false) => Ok(Kind::I32),
-        (4, true) => Ok(Kind::F32),
+        (2, false) => Ok(BtKind::I16),
+        (4, false) => Ok(BtKind::I32),
+        (4, true) => Ok(BtKind::F32),
         _ => {
             let sort = if float { "floating-point" } else { "integer" };
-            Err(Fault::broken(FORMAT, format!("{sort} values of {bytes} bytes do not exist")))
+            Err(DemErrorKind::broken(FORMAT, format!("{sort} values of {bytes} bytes do not exist")))
         }
     }
 }
 
 /// 0 means metres, as files before 1.3 left it. The two feet are kept in f32 and named again in full.
-fn vertical_unit(scale: f64) -> Result<f64, Fault> {
+fn vertical_unit(scale: f64) -> Result<f64, DemErrorKind> {
     const US_FOOT: f64 = 1200.0 / 3937.0;
     if scale == 0.0 || scale == 1.0 {
         return Ok(1.0);
     }
     if !(scale.is_finite() && scale > 0.0) {
-        return Err(Fault::broken(FORMAT, format!("its vertical unit is {scale} m")));
+        return Err(DemErrorKind::broken(FORMAT, format!("its vertical unit is {scale} m")));
     }
     let named = [US_FOOT, 0.3048].into_iter().find(|foot| f64::from(*foot as f32) == scale);
     Ok(named.unwrap_or(scale))
@@ -219,7 +224,7 @@ fn vertical_unit(scale: f64) -> Result<f64, Fault> {
 
 /// The coordinate system, and the factor that its extents still need: 1, or the length of a foot where a
 /// local grid in feet is brought to metres.
-fn system(source: &Source, header: &Header) -> Result<(Option<Crs>, f64), Fault> {
+fn system(source: &DemFile, header: &BtHeader) -> Result<(Option<Crs>, f64), DemErrorKind> {
     if let Some(crs) = source.hints.crs.clone() {
         return Ok((Some(crs), 1.0));
     }
@@ -232,32 +237,34 @@ fn system(source: &Source, header: &Header) -> Result<(Option<Crs>, f64), Fault>
         0 | 1 => 1.0,
         2 => 0.3048,
         3 => 1200.0 / 3937.0,
-        other => return Err(Fault::broken(FORMAT, format!("its horizontal unit is {other}; 0 to 3 exist"))),
+        other => {
+            return Err(DemErrorKind::broken(FORMAT, format!("its horizontal unit is {other}; 0 to 3 exist")));
+        }
     };
     let code = match (header.zone, header.unit) {
         (0, 0) => geographic_code(header.datum)?,
         (0, _) => return Ok((None, unit)),
         (zone, _) => utm_code(zone, geographic_code(header.datum)?)?,
     };
-    Ok((Some(Crs::from_epsg_in(code, unit).map_err(Fault::Crs)?), 1.0))
+    Ok((Some(Crs::from_epsg_in(code, unit).map_err(DemErrorKind::Crs)?), 1.0))
 }
 
 /// The geographic system of a datum: EPSG's number less 2000, one of the old USGS numbers, or WGS 84 where it
 /// is unknown (negative), as GDAL takes it.
-fn geographic_code(datum: i16) -> Result<u32, Fault> {
+fn geographic_code(datum: i16) -> Result<u32, DemErrorKind> {
     match datum {
         ..=-1 | 23 => Ok(4326),
         7 => Ok(4267),
         8 => Ok(4269),
         6001..=6999 => Ok(datum as u32 - 2000),
-        _ => Err(Fault::Georeference {
+        _ => Err(DemErrorKind::Georeference {
             reason: format!("datum number {datum} is not known"),
             remedy: "put a .prj file beside it and save it as version 1.3, or state crs under [terrain]",
         }),
     }
 }
 
-fn utm_code(zone: i16, base: u32) -> Result<u32, Fault> {
+fn utm_code(zone: i16, base: u32) -> Result<u32, DemErrorKind> {
     let number = u32::from(zone.unsigned_abs());
     let code = match (base, zone > 0) {
         (4326, true) => 32600 + number,
@@ -270,7 +277,7 @@ fn utm_code(zone: i16, base: u32) -> Result<u32, Fault> {
     if (1..=60).contains(&number) && code > 0 {
         return Ok(code);
     }
-    Err(Fault::Georeference {
+    Err(DemErrorKind::Georeference {
         reason: format!("UTM zone {zone} on datum EPSG:{base} is not known"),
         remedy: "state crs under [terrain]",
     })
@@ -304,7 +311,7 @@ impl Fields<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{Hints, read};
+    use crate::dem::read::{DemHints, read};
 
     fn terrain(version: &[u8; 10], values: &[i16]) -> Vec<u8> {
         let mut bytes = vec![0u8; HEADER];
@@ -324,8 +331,8 @@ mod tests {
 
     #[test]
     fn columns_from_the_south_west_become_rows_from_the_north_west() {
-        let raster =
-            read("a.bt", &terrain(b"binterr1.2", &[1, 2, 3, 4, -32768, 6]), &Hints::default()).expect("fine");
+        let raster = read("a.bt", &terrain(b"binterr1.2", &[1, 2, 3, 4, -32768, 6]), &DemHints::default())
+            .expect("fine");
         assert_eq!(
             [raster.at(0, 0), raster.at(1, 0), raster.at(0, 2), raster.at(1, 2)],
             [3.0, 6.0, 1.0, 4.0]
@@ -343,7 +350,7 @@ mod tests {
             bytes[at..at + 4].copy_from_slice(&extent.to_le_bytes());
         }
         bytes[42..46].copy_from_slice(&0i32.to_le_bytes());
-        let raster = read("a.bt", &bytes, &Hints::default()).expect("fine");
+        let raster = read("a.bt", &bytes, &DemHints::default()).expect("fine");
         assert_eq!(raster.geotransform(), [95.0, 10.0, 0.0, 225.0, 0.0, -10.0]);
         assert_eq!(raster.samples, Samples::F32(vec![3.0, 6.0, 2.0, 5.0, 1.0, 4.0]));
     }
@@ -354,7 +361,7 @@ mod tests {
         bytes[22..24].copy_from_slice(&2i16.to_le_bytes());
         bytes[24..26].copy_from_slice(&0i16.to_le_bytes());
         bytes[62..66].copy_from_slice(&0.3048f32.to_le_bytes());
-        let raster = read("a.bt", &bytes, &Hints::default()).expect("fine");
+        let raster = read("a.bt", &bytes, &DemHints::default()).expect("fine");
         assert_eq!(raster.metres_per_z, 0.3048);
         assert!((raster.spacing().x - 3.048).abs() < 1e-12);
         assert!(raster.crs.is_none());
@@ -364,8 +371,8 @@ mod tests {
     fn a_terrain_cut_short_is_refused() {
         let whole = terrain(b"binterr1.3", &[1, 2, 3, 4, 5, 6]);
         for end in 0..whole.len() {
-            assert!(read("a.bt", &whole[..end], &Hints::default()).is_err(), "{end}");
+            assert!(read("a.bt", &whole[..end], &DemHints::default()).is_err(), "{end}");
         }
-        assert!(read("a.bt", &terrain(b"binterr1.7", &[]), &Hints::default()).is_err());
+        assert!(read("a.bt", &terrain(b"binterr1.7", &[]), &DemHints::default()).is_err());
     }
 }

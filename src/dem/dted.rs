@@ -15,9 +15,9 @@
 
 use glam::DVec2;
 
-use crate::dem::fault::{Fault, MOST_SAMPLES, check_size_within};
+use crate::dem::fault::{DemErrorKind, MOST_SAMPLES, check_size_within};
 use crate::dem::raster::{Raster, Samples, north_up};
-use crate::dem::read::Source;
+use crate::dem::read::DemFile;
 use crate::geom::crs::Crs;
 
 const FORMAT: &str = "DTED";
@@ -52,12 +52,12 @@ fn label_at(bytes: &[u8]) -> Option<usize> {
 }
 
 /// Reads a cell.
-pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
+pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
     let labels = source.bytes.get(label_at(source.bytes).unwrap_or(0)..).unwrap_or_default();
     let data = labels
         .get(LABELS.iter().sum()..)
-        .ok_or_else(|| Fault::broken(FORMAT, "it ends before its first column"))?;
-    let header = Header::read(labels)?;
+        .ok_or_else(|| DemErrorKind::broken(FORMAT, "it ends before its first column"))?;
+    let header = DtedHeader::read(labels)?;
     let identification = &labels[LABELS[0]..];
     let samples = columns(data, &header)?;
     let cell = header.cell_deg;
@@ -83,7 +83,7 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
 }
 
 /// The heights by rows from the north.
-fn columns(data: &[u8], header: &Header) -> Result<Samples, Fault> {
+fn columns(data: &[u8], header: &DtedHeader) -> Result<Samples, DemErrorKind> {
     let (columns, rows) = (header.columns as usize, header.rows as usize);
     let record = AROUND + 2 * rows;
     let records = data.len() / record;
@@ -92,7 +92,7 @@ fn columns(data: &[u8], header: &Header) -> Result<Samples, Fault> {
     check_size_within(MOST_SAMPLES, size, 0, (data.len(), 1))?;
     if records == 0 || records > columns || !data.len().is_multiple_of(record) && records < columns {
         let reason = format!("{} bytes are not those of up to {columns} columns of {record}", data.len());
-        return Err(Fault::broken(FORMAT, reason));
+        return Err(DemErrorKind::broken(FORMAT, reason));
     }
     let mut values = vec![f32::NAN; columns * rows];
     let counted = counts_are_columns(data, record, records, columns);
@@ -100,7 +100,7 @@ fn columns(data: &[u8], header: &Header) -> Result<Samples, Fault> {
         if record[0] != SENTINEL {
             let reason =
                 format!("column {} starts with {:#04x}, not with {SENTINEL:#04x}", index + 1, record[0]);
-            return Err(Fault::broken(FORMAT, reason));
+            return Err(DemErrorKind::broken(FORMAT, reason));
         }
         let column = if counted { longitude_count(record) } else { index };
         for (up, pair) in record[8..8 + 2 * rows].chunks_exact(2).enumerate() {
@@ -134,19 +134,19 @@ fn height(pair: [u8; 2]) -> f32 {
     }
 }
 
-struct Header {
+struct DtedHeader {
     south_west: DVec2,
     cell_deg: DVec2,
     columns: u32,
     rows: u32,
 }
 
-impl Header {
-    fn read(label: &[u8]) -> Result<Self, Fault> {
-        let whole = |at: usize, what: &str| -> Result<u32, Fault> {
+impl DtedHeader {
+    fn read(label: &[u8]) -> Result<Self, DemErrorKind> {
+        let whole = |at: usize, what: &str| -> Result<u32, DemErrorKind> {
             let digits = text(label, at, 4);
             digits.trim().parse().map_err(|_| {
-                Fault::broken(
+                DemErrorKind::broken(
                     FORMAT,
                     format!("{what} at byte {at} of its header is '{digits}', not a number"),
                 )
@@ -155,13 +155,13 @@ impl Header {
         let columns = whole(47, "the number of columns")?;
         let rows = whole(51, "the number of rows")?;
         if columns == 0 || rows == 0 {
-            return Err(Fault::broken(FORMAT, format!("it has {columns} columns and {rows} rows")));
+            return Err(DemErrorKind::broken(FORMAT, format!("it has {columns} columns and {rows} rows")));
         }
         // Tenths of seconds.
         let step = |at: usize, what: &str| Ok(f64::from(whole(at, what)?) / 36_000.0);
         let cell_deg = DVec2::new(step(20, "the longitude interval")?, step(24, "the latitude interval")?);
         if cell_deg.min_element() <= 0.0 {
-            return Err(Fault::Georeference {
+            return Err(DemErrorKind::Georeference {
                 reason: "its header states no interval between heights".into(),
                 remedy: "fetch the cell again",
             });
@@ -172,9 +172,9 @@ impl Header {
 }
 
 /// `DDDMMSSH`, the hemisphere one of `letters`, in degrees.
-fn angle(label: &[u8], at: usize, letters: &[u8; 2], most: f64) -> Result<f64, Fault> {
+fn angle(label: &[u8], at: usize, letters: &[u8; 2], most: f64) -> Result<f64, DemErrorKind> {
     let field = text(label, at, 8);
-    let wrong = || Fault::Georeference {
+    let wrong = || DemErrorKind::Georeference {
         reason: format!("its origin at byte {at} is '{field}', not as 0800000W"),
         remedy: "fetch the cell again",
     };
@@ -191,9 +191,9 @@ fn angle(label: &[u8], at: usize, letters: &[u8; 2], most: f64) -> Result<f64, F
     if degrees <= most { Ok(signed) } else { Err(wrong()) }
 }
 
-fn system(name: &str) -> Result<Crs, Fault> {
+fn system(name: &str) -> Result<Crs, DemErrorKind> {
     match name {
-        "WGS72" => Crs::from_epsg(4322).map_err(Fault::Crs),
+        "WGS72" => Crs::from_epsg(4322).map_err(DemErrorKind::Crs),
         // The standard knows but the two; what is left blank is WGS 84, as GDAL takes it.
         _ => Ok(Crs::wgs84()),
     }
@@ -218,7 +218,7 @@ fn text(bytes: &[u8], at: usize, length: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{Hints, read};
+    use crate::dem::read::{DemHints, read};
 
     /// A cell of two columns and three rows at 7° W, 43° N, ten minutes apart.
     fn cell(records: &[(u16, [i32; 3])]) -> Vec<u8> {
@@ -240,7 +240,7 @@ mod tests {
     }
 
     fn raster(bytes: &[u8]) -> Result<Raster, String> {
-        read("n43.dt0", bytes, &Hints::default()).map_err(|error| error.to_string())
+        read("n43.dt0", bytes, &DemHints::default()).map_err(|error| error.to_string())
     }
 
     #[test]

@@ -7,11 +7,11 @@
 
 use glam::DVec2;
 
-use crate::dem::fault::Fault;
-use crate::dem::georef::{self, Place};
-use crate::dem::plain::{ByteOrder, Layout, Number};
+use crate::dem::fault::DemErrorKind;
+use crate::dem::georef::{self, RasterPlace};
+use crate::dem::plain::{ByteOrder, Number, SampleLayout};
 use crate::dem::raster::{Raster, north_up};
-use crate::dem::read::Source;
+use crate::dem::read::DemFile;
 
 const FORMAT: &str = "ESRI binary grid";
 
@@ -23,13 +23,13 @@ const MOST_LINES: usize = 1000;
 
 /// Whether `header` is the text of such a header: it states rows and columns.
 pub(crate) fn is_header(header: &[u8]) -> bool {
-    let header = Header::new(header);
+    let header = EhdrHeader::new(header);
     header.get("nrows").is_some() && header.get("ncols").is_some()
 }
 
 /// Reads the first band as `header`, the file beside it, says.
-pub(crate) fn read(source: &Source, header: &[u8]) -> Result<Raster, Fault> {
-    let header = Header::new(header);
+pub(crate) fn read(source: &DemFile, header: &[u8]) -> Result<Raster, DemErrorKind> {
+    let header = EhdrHeader::new(header);
     let number = header.number_kind(&source.extension())?;
     let nodata = header.nodata()?;
     let layout = header.layout(number)?;
@@ -54,9 +54,9 @@ pub(crate) fn read(source: &Source, header: &[u8]) -> Result<Raster, Fault> {
 }
 
 /// The pairs of the header, keys in lower case.
-struct Header(Vec<(String, String)>);
+struct EhdrHeader(Vec<(String, String)>);
 
-impl Header {
+impl EhdrHeader {
     fn new(bytes: &[u8]) -> Self {
         let text = String::from_utf8_lossy(bytes);
         let pair = |line: &str| {
@@ -70,25 +70,26 @@ impl Header {
         self.0.iter().find(|(known, _)| known == key).map(|(_, value)| value.as_str())
     }
 
-    fn float(&self, key: &str) -> Result<Option<f64>, Fault> {
+    fn float(&self, key: &str) -> Result<Option<f64>, DemErrorKind> {
         let Some(text) = self.get(key) else { return Ok(None) };
         match text.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(Some(value)),
-            _ => Err(Fault::broken(FORMAT, format!("{key} in its header is '{text}', not a number"))),
+            _ => Err(DemErrorKind::broken(FORMAT, format!("{key} in its header is '{text}', not a number"))),
         }
     }
 
-    fn whole(&self, key: &str) -> Result<Option<u64>, Fault> {
+    fn whole(&self, key: &str) -> Result<Option<u64>, DemErrorKind> {
         let Some(text) = self.get(key) else { return Ok(None) };
-        let wrong = || Fault::broken(FORMAT, format!("{key} in its header is '{text}', not a whole number"));
+        let wrong =
+            || DemErrorKind::broken(FORMAT, format!("{key} in its header is '{text}', not a whole number"));
         text.parse().map(Some).map_err(|_| wrong())
     }
 
-    fn nodata(&self) -> Result<Option<f64>, Fault> {
+    fn nodata(&self) -> Result<Option<f64>, DemErrorKind> {
         Ok(self.float("nodata")?.or(self.float("nodata_value")?))
     }
 
-    fn number_kind(&self, extension: &str) -> Result<Number, Fault> {
+    fn number_kind(&self, extension: &str) -> Result<Number, DemErrorKind> {
         let is_flt = extension == "flt";
         let bits = self.whole("nbits")?.unwrap_or(if is_flt { 32 } else { 8 });
         let kind = self.get("pixeltype").map(str::to_ascii_uppercase);
@@ -108,7 +109,7 @@ impl Header {
             ('U', 32) => Ok(Number::U32),
             ('F', 32) => Ok(Number::F32),
             ('F', 64) => Ok(Number::F64),
-            (_, bits) => Err(Fault::Unsupported {
+            (_, bits) => Err(DemErrorKind::Unsupported {
                 format: FORMAT,
                 what: format!("{bits}-bit samples of type {}", kind.as_deref().unwrap_or("UNSIGNEDINT")),
                 remedy: "convert it, for example with: gdal_translate FILE out.tif",
@@ -123,9 +124,9 @@ impl Header {
         }
     }
 
-    fn layout(&self, number: Number) -> Result<Layout, Fault> {
+    fn layout(&self, number: Number) -> Result<SampleLayout, DemErrorKind> {
         let size = |key: &'static str| {
-            let missing = || Fault::broken(FORMAT, format!("its header does not state {key}"));
+            let missing = || DemErrorKind::broken(FORMAT, format!("its header does not state {key}"));
             self.whole(key)?.ok_or_else(missing)
         };
         let (width, height) = (size("ncols")?, size("nrows")?);
@@ -142,28 +143,28 @@ impl Header {
             "BSQ" => (number.bytes(), total.unwrap_or(row)),
             other => {
                 let reason = format!("LAYOUT in its header is '{other}'; BIL, BIP and BSQ exist");
-                return Err(Fault::broken(FORMAT, reason));
+                return Err(DemErrorKind::broken(FORMAT, reason));
             }
         };
         let start = self.whole("skipbytes")?.unwrap_or(0);
-        Ok(Layout { width, height, number, order: self.order(), start, sample_step, row_step })
+        Ok(SampleLayout { width, height, number, order: self.order(), start, sample_step, row_step })
     }
 
     /// The place by the centre of the first sample, or by the south-west corner or sample; `None` where neither
     /// is stated.
-    fn place(&self, height: u32) -> Result<Option<Place>, Fault> {
+    fn place(&self, height: u32) -> Result<Option<RasterPlace>, DemErrorKind> {
         let square = self.float("cellsize")?;
         let cell = DVec2::new(
             self.float("xdim")?.or(square).unwrap_or(1.0),
             self.float("ydim")?.or(square).unwrap_or(1.0),
         );
         if cell.min_element() <= 0.0 {
-            return Err(Fault::Georeference {
+            return Err(DemErrorKind::Georeference {
                 reason: format!("its cells are {} by {}", cell.x, cell.y),
                 remedy: "correct XDIM and YDIM, or cellsize, in its .hdr",
             });
         }
-        let both = |x: &str, y: &str| -> Result<Option<DVec2>, Fault> {
+        let both = |x: &str, y: &str| -> Result<Option<DVec2>, DemErrorKind> {
             Ok(self.float(x)?.zip(self.float(y)?).map(DVec2::from))
         };
         let reach = DVec2::new(0.0, f64::from(height) * cell.y);
@@ -176,19 +177,19 @@ impl Header {
         } else {
             return Ok(None);
         };
-        Ok(Some(Place { map_from_grid: north_up(corner, cell), stated: true }))
+        Ok(Some(RasterPlace { map_from_grid: north_up(corner, cell), stated: true }))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{Hints, read};
+    use crate::dem::read::{DemHints, read};
 
     fn grid(name: &str, header: &str, bytes: &[u8]) -> Result<Raster, String> {
         let header = header.to_owned();
         let beside = move |name: &str| name.ends_with(".hdr").then(|| header.clone().into_bytes());
-        let hints = Hints { companions: &beside, ..Hints::default() };
+        let hints = DemHints { companions: &beside, ..DemHints::default() };
         read(name, bytes, &hints).map_err(|error| error.to_string())
     }
 
@@ -235,7 +236,7 @@ mod tests {
         assert!(refused("NROWS 2\nNCOLS 2\nSKIPBYTES 5\n").contains("beyond"));
         assert!(refused("NROWS 2\nNCOLS 2\nULXMAP 1\nULYMAP 1\nXDIM 0\n").contains("XDIM"));
         assert!(
-            read("a.bil", &[0; 8], &Hints::default()).expect_err("no header").to_string().contains(".hdr")
+            read("a.bil", &[0; 8], &DemHints::default()).expect_err("no header").to_string().contains(".hdr")
         );
     }
 }

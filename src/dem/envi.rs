@@ -6,11 +6,11 @@
 
 use glam::DVec2;
 
-use crate::dem::fault::Fault;
-use crate::dem::georef::{self, Place};
-use crate::dem::plain::{ByteOrder, Layout, Number};
+use crate::dem::fault::DemErrorKind;
+use crate::dem::georef::{self, RasterPlace};
+use crate::dem::plain::{ByteOrder, Number, SampleLayout};
 use crate::dem::raster::{Raster, north_up};
-use crate::dem::read::Source;
+use crate::dem::read::DemFile;
 use crate::geom::crs::Crs;
 
 const FORMAT: &str = "ENVI raster";
@@ -21,8 +21,8 @@ pub(crate) fn is_header(header: &[u8]) -> bool {
 }
 
 /// Reads the first band as `header`, the file beside it, says.
-pub(crate) fn read(source: &Source, header: &[u8]) -> Result<Raster, Fault> {
-    let header = Header::new(&String::from_utf8_lossy(header));
+pub(crate) fn read(source: &DemFile, header: &[u8]) -> Result<Raster, DemErrorKind> {
+    let header = EnviHeader::new(&String::from_utf8_lossy(header));
     let number = header.number_kind()?;
     let nodata = header.float("data ignore value")?;
     let (width, height, samples) = header.layout(number)?.read(FORMAT, source.bytes, nodata)?;
@@ -35,7 +35,7 @@ pub(crate) fn read(source: &Source, header: &[u8]) -> Result<Raster, Fault> {
     };
     let crs = match (&source.hints.crs, header.get("coordinate system string")) {
         (Some(crs), _) => Some(crs.clone()),
-        (None, Some(text)) => Some(Crs::parse(text).map_err(Fault::Crs)?),
+        (None, Some(text)) => Some(Crs::parse(text).map_err(DemErrorKind::Crs)?),
         (None, None) => system(&map)?.map_or_else(|| source.crs_beside(), |crs| Ok(Some(crs)))?,
     };
     Ok(Raster {
@@ -54,9 +54,9 @@ pub(crate) fn read(source: &Source, header: &[u8]) -> Result<Raster, Fault> {
 }
 
 /// The pairs of the header, keys in lower case, values without their braces.
-struct Header(Vec<(String, String)>);
+struct EnviHeader(Vec<(String, String)>);
 
-impl Header {
+impl EnviHeader {
     fn new(text: &str) -> Self {
         let mut pairs: Vec<(String, String)> = Vec::new();
         let mut open = false;
@@ -89,20 +89,20 @@ impl Header {
         self.get(key).map(|text| text.split(',').map(str::trim).collect()).unwrap_or_default()
     }
 
-    fn whole(&self, key: &str) -> Result<Option<u64>, Fault> {
+    fn whole(&self, key: &str) -> Result<Option<u64>, DemErrorKind> {
         let Some(text) = self.get(key) else { return Ok(None) };
         text.parse().map(Some).map_err(|_| not_a_number(key, text))
     }
 
-    fn float(&self, key: &str) -> Result<Option<f64>, Fault> {
+    fn float(&self, key: &str) -> Result<Option<f64>, DemErrorKind> {
         self.get(key).map(|text| number(key, text)).transpose()
     }
 
-    fn first_of(&self, key: &str) -> Result<Option<f64>, Fault> {
+    fn first_of(&self, key: &str) -> Result<Option<f64>, DemErrorKind> {
         self.list(key).first().map(|text| number(key, text)).transpose()
     }
 
-    fn number_kind(&self) -> Result<Number, Fault> {
+    fn number_kind(&self) -> Result<Number, DemErrorKind> {
         match self.whole("data type")? {
             Some(1) => Ok(Number::U8),
             Some(2) => Ok(Number::I16),
@@ -111,18 +111,18 @@ impl Header {
             Some(5) => Ok(Number::F64),
             Some(12) => Ok(Number::U16),
             Some(13) => Ok(Number::U32),
-            Some(other) => Err(Fault::Unsupported {
+            Some(other) => Err(DemErrorKind::Unsupported {
                 format: FORMAT,
                 what: format!("data type {other} (complex or 64-bit whole numbers)"),
                 remedy: "convert it, for example with: gdal_translate -ot Float64 FILE out.tif",
             }),
-            None => Err(Fault::broken(FORMAT, "its header does not state the data type")),
+            None => Err(DemErrorKind::broken(FORMAT, "its header does not state the data type")),
         }
     }
 
-    fn layout(&self, number: Number) -> Result<Layout, Fault> {
+    fn layout(&self, number: Number) -> Result<SampleLayout, DemErrorKind> {
         let size = |key: &'static str| {
-            let missing = || Fault::broken(FORMAT, format!("its header does not state {key}"));
+            let missing = || DemErrorKind::broken(FORMAT, format!("its header does not state {key}"));
             self.whole(key)?.ok_or_else(missing)
         };
         let (width, height) = (size("samples")?, size("lines")?);
@@ -130,38 +130,43 @@ impl Header {
         let order = match self.whole("byte order")?.unwrap_or(0) {
             0 => ByteOrder::Little,
             1 => ByteOrder::Big,
-            other => return Err(Fault::broken(FORMAT, format!("byte order is {other}; 0 and 1 exist"))),
+            other => {
+                return Err(DemErrorKind::broken(FORMAT, format!("byte order is {other}; 0 and 1 exist")));
+            }
         };
         let start = self.whole("header offset")?.unwrap_or(0);
-        let dense = Layout::dense((width, height), number, order, start);
+        let dense = SampleLayout::dense((width, height), number, order, start);
         match self.get("interleave").unwrap_or("bsq").to_ascii_lowercase().as_str() {
             "bsq" => Ok(dense),
-            "bil" => Ok(Layout { row_step: dense.row_step.saturating_mul(bands), ..dense }),
-            "bip" => Ok(Layout {
+            "bil" => Ok(SampleLayout { row_step: dense.row_step.saturating_mul(bands), ..dense }),
+            "bip" => Ok(SampleLayout {
                 sample_step: dense.sample_step.saturating_mul(bands),
                 row_step: dense.row_step.saturating_mul(bands),
                 ..dense
             }),
-            other => Err(Fault::broken(FORMAT, format!("interleave is '{other}'; bsq, bil and bip exist"))),
+            other => {
+                Err(DemErrorKind::broken(FORMAT, format!("interleave is '{other}'; bsq, bil and bip exist")))
+            }
         }
     }
 }
 
-fn number(key: &str, text: &str) -> Result<f64, Fault> {
+fn number(key: &str, text: &str) -> Result<f64, DemErrorKind> {
     match text.parse::<f64>() {
         Ok(value) => Ok(value),
         Err(_) => Err(not_a_number(key, text)),
     }
 }
 
-fn not_a_number(key: &str, text: &str) -> Fault {
+fn not_a_number(key: &str, text: &str) -> DemErrorKind {
     let shown: String = text.chars().take(20).collect();
-    Fault::broken(FORMAT, format!("{key} in its header is '{shown}', not a number"))
+    DemErrorKind::broken(FORMAT, format!("{key} in its header is '{shown}', not a number"))
 }
 
 /// The place that the parts of `map info` state.
-fn place(map: &[&str]) -> Result<Place, Fault> {
-    let wrong = |reason: String| Fault::Georeference { reason, remedy: "correct map info in its .hdr" };
+fn place(map: &[&str]) -> Result<RasterPlace, DemErrorKind> {
+    let wrong =
+        |reason: String| DemErrorKind::Georeference { reason, remedy: "correct map info in its .hdr" };
     let part = |index: usize| {
         let text = map.get(index).copied().unwrap_or_default();
         let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
@@ -169,7 +174,7 @@ fn place(map: &[&str]) -> Result<Place, Fault> {
     };
     let turned = map.iter().find_map(|part| part.strip_prefix("rotation="));
     if let Some(angle) = turned.filter(|angle| angle.trim().parse::<f64>().ok() != Some(0.0)) {
-        return Err(Fault::Georeference {
+        return Err(DemErrorKind::Georeference {
             reason: format!("it is turned by {angle} degrees"),
             remedy: "straighten it first, for example with: gdalwarp FILE out.tif",
         });
@@ -180,11 +185,11 @@ fn place(map: &[&str]) -> Result<Place, Fault> {
         return Err(wrong(format!("its cells are {} by {}", cell.x, cell.y)));
     }
     let corner = at + DVec2::new(-first.x, first.y) * cell;
-    Ok(Place { map_from_grid: north_up(corner, cell), stated: true })
+    Ok(RasterPlace { map_from_grid: north_up(corner, cell), stated: true })
 }
 
 /// The system that `map info` names: UTM or geographic on WGS 84, what most are written in.
-fn system(map: &[&str]) -> Result<Option<Crs>, Fault> {
+fn system(map: &[&str]) -> Result<Option<Crs>, DemErrorKind> {
     let is = |index: usize, name: &str| map.get(index).is_some_and(|part| part.eq_ignore_ascii_case(name));
     if is(0, "Geographic Lat/Lon") && is(7, "WGS-84") {
         return Ok(Some(Crs::wgs84()));
@@ -193,7 +198,7 @@ fn system(map: &[&str]) -> Result<Option<Crs>, Fault> {
     match zone {
         Some(zone) if is(0, "UTM") && is(9, "WGS-84") => {
             let base = if is(8, "South") { 32700 } else { 32600 };
-            Crs::from_epsg(base + zone).map(Some).map_err(Fault::Crs)
+            Crs::from_epsg(base + zone).map(Some).map_err(DemErrorKind::Crs)
         }
         _ => Ok(None),
     }
@@ -202,12 +207,12 @@ fn system(map: &[&str]) -> Result<Option<Crs>, Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{Hints, read};
+    use crate::dem::read::{DemHints, read};
 
     fn raster(header: &str, bytes: &[u8]) -> Result<Raster, String> {
         let header = format!("ENVI\n{header}");
         let beside = move |name: &str| (name == "a.hdr").then(|| header.clone().into_bytes());
-        let hints = Hints { companions: &beside, ..Hints::default() };
+        let hints = DemHints { companions: &beside, ..DemHints::default() };
         read("a.img", bytes, &hints).map_err(|error| error.to_string())
     }
 

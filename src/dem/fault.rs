@@ -19,12 +19,12 @@ pub struct DemError {
     /// The file, as the caller named it.
     pub name: String,
     /// What was wrong.
-    pub fault: Fault,
+    pub fault: DemErrorKind,
 }
 
 /// What was wrong with an elevation file.
 #[derive(Debug, thiserror::Error)]
-pub enum Fault {
+pub enum DemErrorKind {
     /// Neither the content nor the extension is that of a format that is read.
     #[error(
         "{found}; elevation is read from GeoTIFF (.tif), ESRI ASCII grid (.asc), ESRI binary grid (.bil, .flt with .hdr), ENVI (.hdr), SRTM (.hgt, .hgt.zip), DTED (.dt0 to .dt2), USGS (.dem), VTP terrain (.bt, .bt.gz), Terragen (.ter), Surfer (.grd), text grids (.xyz), PNG (.png) and RAW with a stated size; convert it, for example with: gdal_translate FILE out.tif"
@@ -105,7 +105,7 @@ pub enum Fault {
     },
 }
 
-impl Fault {
+impl DemErrorKind {
     /// A [`Fault::Broken`].
     pub(crate) fn broken(format: &'static str, reason: impl Into<String>) -> Self {
         Self::Broken { format, reason: reason.into() }
@@ -123,7 +123,7 @@ pub(crate) fn check_size(
     size: (u64, u64),
     bytes_per_sample: u64,
     held: (usize, u64),
-) -> Result<usize, Fault> {
+) -> Result<usize, DemErrorKind> {
     check_size_within(MOST_SAMPLES, size, bytes_per_sample, held)
 }
 
@@ -136,8 +136,8 @@ pub(crate) fn check_size_within(
     (width, height): (u64, u64),
     bytes_per_sample: u64,
     (file_bytes, expansion): (usize, u64),
-) -> Result<usize, Fault> {
-    let refused = |reason: String| Fault::TooLarge { width, height, reason };
+) -> Result<usize, DemErrorKind> {
+    let refused = |reason: String| DemErrorKind::TooLarge { width, height, reason };
     let samples = width.checked_mul(height).filter(|&samples| samples <= most).ok_or_else(|| {
         refused(format!(
             "are more than the {most} that are taken; cut or coarsen the file, for example with: gdal_translate -outsize 25% 25%"

@@ -1,6 +1,6 @@
 //! What GDAL adds to a TIFF beyond the standard: the XML of its metadata tag, and units by name.
 
-use crate::dem::fault::Fault;
+use crate::dem::fault::DemErrorKind;
 
 /// Length of the US survey foot in metres.
 pub(crate) const US_FOOT: f64 = 1200.0 / 3937.0;
@@ -20,7 +20,7 @@ pub(crate) struct BandMetadata {
 ///
 /// The text is a flat list of `<Item name="…" sample="0" role="scale">…</Item>`; anything else in it is passed
 /// over.
-pub(crate) fn first_band(xml: &str) -> Result<BandMetadata, Fault> {
+pub(crate) fn first_band(xml: &str) -> Result<BandMetadata, DemErrorKind> {
     let mut band = BandMetadata { scale: 1.0, offset: 0.0, metres_per_z: None };
     for piece in xml.split("<Item").skip(1) {
         let Some((head, rest)) = piece.split_once('>') else { continue };
@@ -43,15 +43,15 @@ fn attribute<'a>(head: &'a str, name: &str) -> Option<&'a str> {
     rest.split('"').next()
 }
 
-fn number(what: &str, text: &str) -> Result<f64, Fault> {
+fn number(what: &str, text: &str) -> Result<f64, DemErrorKind> {
     let value = text.parse().ok().filter(|value: &f64| value.is_finite());
     value.ok_or_else(|| {
-        Fault::broken("GeoTIFF", format!("the {what} of its values is '{text}', not a number"))
+        DemErrorKind::broken("GeoTIFF", format!("the {what} of its values is '{text}', not a number"))
     })
 }
 
 /// Metres in a vertical unit by its name.
-fn unit(text: &str) -> Result<f64, Fault> {
+fn unit(text: &str) -> Result<f64, DemErrorKind> {
     match text.to_ascii_lowercase().as_str() {
         "" | "m" | "metre" | "meter" | "metres" | "meters" => Ok(1.0),
         "ft" | "foot" | "feet" | "international foot" | "international feet" => Ok(0.3048),
@@ -59,7 +59,7 @@ fn unit(text: &str) -> Result<f64, Fault> {
         "cm" | "centimetre" | "centimeter" | "centimetres" | "centimeters" => Ok(0.01),
         "dm" | "decimetre" | "decimeter" | "decimetres" | "decimeters" => Ok(0.1),
         "km" | "kilometre" | "kilometer" => Ok(1000.0),
-        other => Err(Fault::Unsupported {
+        other => Err(DemErrorKind::Unsupported {
             format: "GeoTIFF",
             what: format!("the vertical unit '{other}'"),
             remedy: "convert it to metres first, for example with gdal_calc.py",

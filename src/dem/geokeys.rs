@@ -1,10 +1,10 @@
 //! GeoTIFF keys (OGC 19-008r4): the coordinate system, the vertical unit, and what a sample's position means.
 
-use crate::dem::fault::Fault;
+use crate::dem::fault::DemErrorKind;
 use crate::dem::gdal_metadata::US_FOOT;
 use crate::dem::vertical;
 use crate::geom::crs::Crs;
-use crate::geom::projection::{Datum, Definition, Ellipsoid, Method};
+use crate::geom::projection::{Datum, Definition, Ellipsoid, MapProjection};
 
 /// "The parameters are in other keys", in place of a code.
 const USER_DEFINED: u16 = 32767;
@@ -81,7 +81,7 @@ impl GeoKeys {
     }
 
     /// Metres in the unit of the elevations; `None` where not stated.
-    pub fn metres_per_z(&self) -> Result<Option<f64>, Fault> {
+    pub fn metres_per_z(&self) -> Result<Option<f64>, DemErrorKind> {
         match (self.code(VERTICAL_UNITS), self.code(VERTICAL_TYPE)) {
             (Some(unit), _) if unit != USER_DEFINED && unit != 0 => length(unit).map(Some),
             // NAVD88 in US survey feet and in feet.
@@ -101,7 +101,7 @@ impl GeoKeys {
     }
 
     /// The coordinate system; `None` where the keys state none.
-    pub fn crs(&self) -> Result<Option<Crs>, Fault> {
+    pub fn crs(&self) -> Result<Option<Crs>, DemErrorKind> {
         let projected = self.code(PROJECTED_TYPE).is_some() || self.code(TRANSFORMATION).is_some();
         match self.code(MODEL_TYPE) {
             Some(1) => self.projected().map(Some),
@@ -121,27 +121,27 @@ impl GeoKeys {
         Crs::parse(self.text(CITATION).filter(|words| words.starts_with("+proj="))?).ok()
     }
 
-    fn geographic(&self) -> Result<Crs, Fault> {
+    fn geographic(&self) -> Result<Crs, DemErrorKind> {
         self.check_degrees()?;
         match self.code(GEOGRAPHIC_TYPE) {
             Some(code) if code != USER_DEFINED && code != 0 => {
-                Crs::from_epsg(code.into()).map_err(Fault::Crs)
+                Crs::from_epsg(code.into()).map_err(DemErrorKind::Crs)
             }
             _ => match self.cited() {
                 Some(crs) => Ok(crs),
-                None => Crs::from_definition(&self.base()).map_err(Fault::Crs),
+                None => Crs::from_definition(&self.base()).map_err(DemErrorKind::Crs),
             },
         }
     }
 
-    fn projected(&self) -> Result<Crs, Fault> {
+    fn projected(&self) -> Result<Crs, DemErrorKind> {
         let unit = self.linear_unit()?;
         if let Some(code) = self.code(PROJECTED_TYPE).filter(|&code| code != USER_DEFINED && code != 0) {
             let found = match unit {
                 Some(metres) => Crs::from_epsg_in(code.into(), metres),
                 None => Crs::from_epsg(code.into()),
             };
-            return found.map_err(Fault::Crs);
+            return found.map_err(DemErrorKind::Crs);
         }
         if let Some(crs) = self.cited() {
             return Ok(crs);
@@ -151,14 +151,14 @@ impl GeoKeys {
             Some(code @ (16001..=16060 | 16101..=16160)) => self.utm(code, unit.unwrap_or(1.0)),
             _ => self.by_parameters(unit.unwrap_or(1.0))?,
         };
-        Crs::from_definition(&definition).map_err(Fault::Crs)
+        Crs::from_definition(&definition).map_err(DemErrorKind::Crs)
     }
 
     /// EPSG's conversions 16001 to 16060 are the UTM zones north, 16101 to 16160 those south.
     fn utm(&self, code: u16, metres_per_unit: f64) -> Definition {
         let south = code > 16100;
         Definition {
-            method: Method::TransverseMercator,
+            method: MapProjection::TransverseMercator,
             longitude_deg: f64::from(code % 100) * 6.0 - 183.0,
             scale: 0.9996,
             false_easting_m: 5e5,
@@ -168,21 +168,21 @@ impl GeoKeys {
         }
     }
 
-    fn by_parameters(&self, metres_per_unit: f64) -> Result<Definition, Fault> {
+    fn by_parameters(&self, metres_per_unit: f64) -> Result<Definition, DemErrorKind> {
         let method = match self.code(TRANSFORMATION) {
-            Some(1) => Method::TransverseMercator,
-            Some(7) => Method::Mercator,
-            Some(8) => Method::LambertConic2,
-            Some(9) => Method::LambertConic1,
-            Some(10) => Method::LambertAzimuthal,
-            Some(11) => Method::Albers,
-            Some(15) => Method::PolarStereographic,
+            Some(1) => MapProjection::TransverseMercator,
+            Some(7) => MapProjection::Mercator,
+            Some(8) => MapProjection::LambertConic2,
+            Some(9) => MapProjection::LambertConic1,
+            Some(10) => MapProjection::LambertAzimuthal,
+            Some(11) => MapProjection::Albers,
+            Some(15) => MapProjection::PolarStereographic,
             Some(other) => return Err(unusable(&format!("coordinate transformation {other} is not read"))),
             None => return Err(unusable("it is user-defined without a coordinate transformation")),
         };
         let at = |keys: &[u16]| keys.iter().find_map(|&key| self.number(key));
         let latitude = at(&LATITUDES);
-        let pole = method == Method::PolarStereographic;
+        let pole = method == MapProjection::PolarStereographic;
         Ok(Definition {
             method,
             latitude_deg: latitude.unwrap_or(0.0),
@@ -222,7 +222,7 @@ impl GeoKeys {
         }
     }
 
-    fn check_degrees(&self) -> Result<(), Fault> {
+    fn check_degrees(&self) -> Result<(), DemErrorKind> {
         match self.code(ANGULAR_UNITS) {
             None | Some(0 | 9102) => Ok(()),
             Some(USER_DEFINED)
@@ -236,7 +236,7 @@ impl GeoKeys {
         }
     }
 
-    fn linear_unit(&self) -> Result<Option<f64>, Fault> {
+    fn linear_unit(&self) -> Result<Option<f64>, DemErrorKind> {
         match self.code(LINEAR_UNITS) {
             None | Some(0) => Ok(None),
             Some(USER_DEFINED) => Ok(self.number(LINEAR_UNIT_SIZE)),
@@ -258,7 +258,7 @@ impl GeoKeys {
 }
 
 /// Metres in EPSG's unit of length.
-fn length(code: u16) -> Result<f64, Fault> {
+fn length(code: u16) -> Result<f64, DemErrorKind> {
     match code {
         9001 => Ok(1.0),
         9002 => Ok(0.3048),
@@ -268,8 +268,11 @@ fn length(code: u16) -> Result<f64, Fault> {
     }
 }
 
-fn unusable(reason: &str) -> Fault {
-    Fault::Georeference { reason: reason.into(), remedy: "state the right system as crs under [terrain]" }
+fn unusable(reason: &str) -> DemErrorKind {
+    DemErrorKind::Georeference {
+        reason: reason.into(),
+        remedy: "state the right system as crs under [terrain]",
+    }
 }
 
 #[cfg(test)]

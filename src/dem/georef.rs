@@ -2,9 +2,9 @@
 
 use glam::{DAffine2, DMat2, DVec2};
 
-use crate::dem::fault::Fault;
+use crate::dem::fault::DemErrorKind;
 use crate::dem::raster::north_up;
-use crate::dem::read::Source;
+use crate::dem::read::DemFile;
 
 /// How far, in samples, a tie point may lie from the map that is fitted through all of them.
 const TIE_TOLERANCE: f64 = 1e-3;
@@ -14,7 +14,7 @@ const WARP_FIRST: &str = "rectify it first, for example with: gdalwarp FILE out.
 
 /// A raster's place, and whether anybody stated it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct RasterPlace {
     /// Grid position to map coordinates.
     pub map_from_grid: DAffine2,
     /// Whether the file, a companion or the caller stated it.
@@ -39,7 +39,7 @@ impl PlaceTags {
     ///
     /// As in GDAL a scale's sign is not looked at: rows run south. Tie points without a scale give the affine
     /// map through all of them.
-    pub fn place(&self) -> Result<Option<DAffine2>, Fault> {
+    pub fn place(&self) -> Result<Option<DAffine2>, DemErrorKind> {
         let found = if let (&[x, y, ..], true) = (&self.scale[..], self.ties.len() >= 6) {
             let cell = DVec2::new(x, y.abs());
             let tie = Tie::from(&self.ties[..6]);
@@ -58,23 +58,27 @@ impl PlaceTags {
 
 /// The place of a file that does not hold one: by a world file with one of `extensions`, or by the hinted
 /// cell, or else with samples 1 apart and nothing stated.
-pub(crate) fn beside(source: &Source, height: u32, extensions: &[&str]) -> Result<Place, Fault> {
+pub(crate) fn beside(
+    source: &DemFile,
+    height: u32,
+    extensions: &[&str],
+) -> Result<RasterPlace, DemErrorKind> {
     if let Some(text) = extensions.iter().find_map(|extension| source.companion(extension)) {
-        return Ok(Place { map_from_grid: world_file(&String::from_utf8_lossy(&text))?, stated: true });
+        return Ok(RasterPlace { map_from_grid: world_file(&String::from_utf8_lossy(&text))?, stated: true });
     }
     let cell = source.cell()?;
     let size = DVec2::splat(cell.unwrap_or(1.0));
     let corner = DVec2::new(-0.5, f64::from(height) - 0.5) * size;
-    Ok(Place { map_from_grid: north_up(corner, size), stated: cell.is_some() })
+    Ok(RasterPlace { map_from_grid: north_up(corner, size), stated: cell.is_some() })
 }
 
 /// The six numbers of a world file: x per column, y per column, x per row, y per row, and the centre of the
 /// first sample.
-fn world_file(text: &str) -> Result<DAffine2, Fault> {
+fn world_file(text: &str) -> Result<DAffine2, DemErrorKind> {
     let numbers: Vec<f64> =
         text.split_ascii_whitespace().map_while(|word| word.replace(',', ".").parse().ok()).collect();
     let [a, d, b, e, c, f] = numbers[..] else {
-        return Err(Fault::Georeference {
+        return Err(DemErrorKind::Georeference {
             reason: format!("the world file beside it holds {} numbers, not six", numbers.len()),
             remedy: "write it again, or remove it",
         });
@@ -89,12 +93,12 @@ fn affine([x, x_column, x_row, y, y_column, y_row]: [f64; 6]) -> DAffine2 {
 }
 
 /// The transform, if it is finite and can be inverted.
-fn checked(map_from_grid: DAffine2) -> Result<DAffine2, Fault> {
+fn checked(map_from_grid: DAffine2) -> Result<DAffine2, DemErrorKind> {
     let determinant = map_from_grid.matrix2.determinant();
     if map_from_grid.is_finite() && determinant.is_normal() && map_from_grid.matrix2.inverse().is_finite() {
         return Ok(map_from_grid);
     }
-    Err(Fault::Georeference {
+    Err(DemErrorKind::Georeference {
         reason: "its cells have no area or its corner is not finite".into(),
         remedy: "write the georeference again, for example with: gdal_edit.py -a_ullr",
     })
@@ -115,7 +119,7 @@ impl From<&[f64]> for Tie {
 }
 
 /// The affine map through all ties by least squares, refused where it does not meet them.
-fn fit(ties: &[Tie]) -> Result<DAffine2, Fault> {
+fn fit(ties: &[Tie]) -> Result<DAffine2, DemErrorKind> {
     let count = ties.len() as f64;
     let mean = |of: fn(&Tie) -> DVec2| ties.iter().map(of).sum::<DVec2>() / count;
     let (grid_mean, map_mean) = (mean(|tie| tie.grid), mean(|tie| tie.map));
@@ -132,7 +136,7 @@ fn fit(ties: &[Tie]) -> Result<DAffine2, Fault> {
     if worst <= TIE_TOLERANCE {
         return Ok(fitted);
     }
-    Err(Fault::Georeference {
+    Err(DemErrorKind::Georeference {
         reason: format!("no straight map goes through its {} control points", ties.len()),
         remedy: WARP_FIRST,
     })

@@ -10,14 +10,14 @@ use std::io::{Cursor, Read, Seek};
 use tiff::decoder::{Decoder, Limits, ifd};
 use tiff::tags::Tag;
 
-use crate::dem::fault::{Fault, MOST_SAMPLES};
+use crate::dem::fault::{DemErrorKind, MOST_SAMPLES};
 use crate::dem::gdal_metadata;
 use crate::dem::geokeys::GeoKeys;
-use crate::dem::georef::{self, Place, PlaceTags};
+use crate::dem::georef::{self, PlaceTags, RasterPlace};
 use crate::dem::raster::{Raster, Samples};
-use crate::dem::read::Source;
+use crate::dem::read::DemFile;
 use crate::dem::tiff_blocks;
-use crate::dem::tiff_mask::{self, Found};
+use crate::dem::tiff_mask::{self, MaskLocation};
 use crate::dem::tiff_neutral::neutralised;
 use crate::dem::tiff_storage::{Storage, fault};
 
@@ -38,16 +38,16 @@ pub(crate) fn recognises(bytes: &[u8]) -> bool {
 }
 
 /// Reads the first band of the first image.
-pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
+pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
     let bytes = neutralised(source.bytes);
     let limits = limits(bytes.len(), LARGEST_BLOCK);
     let mut decoder = Decoder::new(Cursor::new(&bytes[..])).map_err(fault)?.with_limits(limits.clone());
     let storage = Storage::of(&mut decoder, bytes.len(), MOST_SAMPLES)?;
-    let Described { bare, scale, offset } = describe(&mut decoder, &storage, source)?;
+    let GeoTiffHeader { bare, scale, offset } = describe(&mut decoder, &storage, source)?;
     let mut samples = tiff_blocks::decode(&bytes, &storage, bare.nodata, &limits)?;
     let size = (storage.width, storage.height);
     let found = tiff_mask::apply(&mut decoder, size, bytes.len(), &mut samples)?;
-    if let (Found::Nothing, Some(mask)) = (found, mask_beside(source)) {
+    if let (MaskLocation::Nothing, Some(mask)) = (found, mask_beside(source)) {
         let limits = |mask_bytes| self::limits(mask_bytes, LARGEST_BLOCK);
         tiff_mask::apply_beside(&mask, limits, size, &mut samples)?;
     }
@@ -55,7 +55,7 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
 }
 
 /// The bytes of the mask that GDAL keeps in a file of its own.
-pub(crate) fn mask_beside(source: &Source) -> Option<Vec<u8>> {
+pub(crate) fn mask_beside(source: &DemFile) -> Option<Vec<u8>> {
     (source.hints.companions)(&format!("{}.msk", source.name))
 }
 
@@ -69,7 +69,7 @@ pub(crate) fn limits(file_bytes: usize, largest_block: usize) -> Limits {
 }
 
 /// What a file says of itself.
-pub(crate) struct Described {
+pub(crate) struct GeoTiffHeader {
     /// The raster without its samples.
     pub bare: Raster,
     /// What a stored value is multiplied by.
@@ -82,9 +82,9 @@ pub(crate) struct Described {
 pub(crate) fn describe<R: Read + Seek>(
     decoder: &mut Decoder<R>,
     storage: &Storage,
-    source: &Source,
-) -> Result<Described, Fault> {
-    let tags = Tags::read(decoder);
+    source: &DemFile,
+) -> Result<GeoTiffHeader, DemErrorKind> {
+    let tags = GeoTags::read(decoder);
     let place = tags.place(source, storage.height)?;
     let crs = match &source.hints.crs {
         Some(crs) => Some(crs.clone()),
@@ -105,18 +105,18 @@ pub(crate) fn describe<R: Read + Seek>(
         nodata: tags.nodata,
         vertical_datum: tags.keys.vertical_datum(),
     };
-    Ok(Described { bare, scale: band.scale, offset: band.offset })
+    Ok(GeoTiffHeader { bare, scale: band.scale, offset: band.offset })
 }
 
 /// The tags beyond the picture; a tag of the wrong type counts as absent, as GDAL has it.
-struct Tags {
+struct GeoTags {
     place: PlaceTags,
     keys: GeoKeys,
     nodata: Option<f64>,
     metadata: String,
 }
 
-impl Tags {
+impl GeoTags {
     fn read<R: Read + Seek>(decoder: &mut Decoder<R>) -> Self {
         let numbers = |decoder: &mut Decoder<R>, tag: Tag| decoder.get_tag_f64_vec(tag).unwrap_or_default();
         let directory = decoder.get_tag_u16_vec(Tag::GeoKeyDirectoryTag).unwrap_or_default();
@@ -136,9 +136,9 @@ impl Tags {
         }
     }
 
-    fn place(&self, source: &Source, height: u32) -> Result<Place, Fault> {
+    fn place(&self, source: &DemFile, height: u32) -> Result<RasterPlace, DemErrorKind> {
         match self.place.place()? {
-            Some(map_from_grid) => Ok(Place { map_from_grid, stated: true }),
+            Some(map_from_grid) => Ok(RasterPlace { map_from_grid, stated: true }),
             None => georef::beside(source, height, &["tfw", "tifw", "wld"]),
         }
     }
@@ -162,7 +162,7 @@ fn text<R: Read + Seek>(decoder: &mut Decoder<R>, tag: Tag) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{Hints, read};
+    use crate::dem::read::{DemHints, read};
     use tiff::encoder::{TiffEncoder, colortype};
 
     fn file(values: &[f32], nodata: &str) -> Vec<u8> {
@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn a_small_file_comes_back_with_its_place_and_holes() {
-        let raster = read("a.tif", &file(&[1.0, -9999.0, 3.0, f32::INFINITY], "-9999"), &Hints::default())
+        let raster = read("a.tif", &file(&[1.0, -9999.0, 3.0, f32::INFINITY], "-9999"), &DemHints::default())
             .expect("fine");
         assert_eq!((raster.width, raster.height, raster.nodata), (2, 2, Some(-9999.0)));
         assert!(raster.at(1, 0).is_nan() && raster.at(1, 1).is_nan() && raster.at(0, 1) == 3.0);
@@ -195,9 +195,9 @@ mod tests {
     fn a_file_cut_anywhere_is_an_error_and_never_a_panic() {
         let whole = file(&[1.0, 2.0, 3.0, 4.0], "nan");
         for end in 0..whole.len() {
-            let _ = read("a.tif", &whole[..end], &Hints::default());
+            let _ = read("a.tif", &whole[..end], &DemHints::default());
         }
-        assert!(read("a.tif", &whole[..whole.len() / 2], &Hints::default()).is_err());
+        assert!(read("a.tif", &whole[..whole.len() / 2], &DemHints::default()).is_err());
     }
 
     #[test]
@@ -207,7 +207,7 @@ mod tests {
             for value in [0, 1, 0x7f, 0x80, 0xff] {
                 let mut broken = whole.clone();
                 broken[at] = value;
-                let _ = read("a.tif", &broken, &Hints::default());
+                let _ = read("a.tif", &broken, &DemHints::default());
             }
         }
     }

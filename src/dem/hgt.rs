@@ -6,9 +6,9 @@
 
 use glam::DVec2;
 
-use crate::dem::fault::{Fault, MOST_SAMPLES};
+use crate::dem::fault::{DemErrorKind, MOST_SAMPLES};
 use crate::dem::raster::{Raster, Samples, north_up};
-use crate::dem::read::Source;
+use crate::dem::read::DemFile;
 use crate::geom::crs::Crs;
 
 const FORMAT: &str = "SRTM tile";
@@ -20,8 +20,8 @@ pub(crate) const VOID: i16 = -32768;
 pub(crate) const SIZES: [(u32, u32); 4] = [(1201, 1201), (3601, 3601), (1801, 3601), (7201, 7201)];
 
 /// Reads a tile.
-pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
-    let corner = corner(source.stem()).ok_or_else(|| Fault::Georeference {
+pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
+    let corner = corner(source.stem()).ok_or_else(|| DemErrorKind::Georeference {
         reason: format!(
             "a tile's name states its corner, as N43E007.hgt does, and '{}' does not",
             source.stem()
@@ -33,7 +33,7 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
         u64::from(width) * u64::from(height) == samples && source.bytes.len().is_multiple_of(2)
     });
     let (width, height) = size.filter(|_| samples <= MOST_SAMPLES).ok_or_else(|| {
-        Fault::broken(
+        DemErrorKind::broken(
             FORMAT,
             format!("{} bytes are not those of 1201 or 3601 samples squared", source.bytes.len()),
         )
@@ -83,7 +83,7 @@ fn corner(stem: &str) -> Option<DVec2> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{Hints, read};
+    use crate::dem::read::{DemHints, read};
 
     #[test]
     fn the_name_is_the_corner() {
@@ -99,11 +99,11 @@ mod tests {
         let mut bytes = vec![0u8; 1201 * 1201 * 2];
         bytes[..2].copy_from_slice(&[0x80, 0]);
         bytes[2..4].copy_from_slice(&[1, 2]);
-        let raster = read("N43E007.hgt", &bytes, &Hints::default()).expect("a tile");
+        let raster = read("N43E007.hgt", &bytes, &DemHints::default()).expect("a tile");
         assert!(raster.at(0, 0).is_nan());
         assert_eq!(raster.at(1, 0), 258.0);
         let first = raster.map_from_grid.transform_point2(DVec2::splat(0.5));
         assert!(first.distance(DVec2::new(7.0, 44.0)) < 1e-12, "{first}");
-        assert!(read("N43E007.hgt", &bytes[..9000], &Hints::default()).is_err());
+        assert!(read("N43E007.hgt", &bytes[..9000], &DemHints::default()).is_err());
     }
 }

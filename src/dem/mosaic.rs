@@ -174,7 +174,7 @@ pub fn mosaic(tiles: Vec<Raster>) -> Result<Mosaic, MosaicError> {
     let corners = tiles.iter().zip(&turns).enumerate();
     let corners: Vec<I64Vec2> =
         corners.map(|(index, (tile, turn))| corner(first, tile, *turn, index)).collect::<Result<_, _>>()?;
-    let frame = Frame::around(&tiles, &corners)?;
+    let frame = MosaicFrame::around(&tiles, &corners)?;
     Ok(if tiles.iter().any(|tile| matches!(tile.samples, Samples::F64(_))) {
         join(&tiles, &corners, frame, f64::NAN, |value| value, Samples::F64)
     } else {
@@ -261,13 +261,13 @@ fn corner(first: &Raster, tile: &Raster, turn: f64, other: usize) -> Result<I64V
 
 /// The rectangle around all tiles, in the first tile's grid.
 #[derive(Clone, Copy)]
-struct Frame {
+struct MosaicFrame {
     min: I64Vec2,
     width: usize,
     height: usize,
 }
 
-impl Frame {
+impl MosaicFrame {
     fn around(tiles: &[Raster], corners: &[I64Vec2]) -> Result<Self, MosaicError> {
         let ends = tiles.iter().zip(corners).map(|(tile, corner)| *corner + size(tile));
         let min = corners.iter().copied().fold(I64Vec2::MAX, I64Vec2::min);
@@ -289,7 +289,7 @@ fn size(tile: &Raster) -> I64Vec2 {
 fn join<T: Copy + Into<f64>>(
     tiles: &[Raster],
     corners: &[I64Vec2],
-    frame: Frame,
+    frame: MosaicFrame,
     hole: T,
     narrow: impl Fn(f64) -> T,
     wrap: impl Fn(Vec<T>) -> Samples,

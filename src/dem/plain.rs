@@ -5,7 +5,7 @@
 //!         └ sample_step                      └ row_step
 //! ```
 
-use crate::dem::fault::{Fault, bytes_at, check_size};
+use crate::dem::fault::{DemErrorKind, bytes_at, check_size};
 use crate::dem::raster::Samples;
 
 /// The kinds of number that samples are.
@@ -58,7 +58,7 @@ pub(crate) enum ByteOrder {
 
 /// Where the samples of one band stand in a file.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Layout {
+pub(crate) struct SampleLayout {
     /// Samples per row.
     pub width: u64,
     /// Rows.
@@ -75,7 +75,7 @@ pub(crate) struct Layout {
     pub row_step: u64,
 }
 
-impl Layout {
+impl SampleLayout {
     /// One band without gaps, from the byte `start` on.
     pub fn dense((width, height): (u64, u64), number: Number, order: ByteOrder, start: u64) -> Self {
         let sample_step = number.bytes();
@@ -91,7 +91,7 @@ impl Layout {
         format: &'static str,
         bytes: &[u8],
         nodata: Option<f64>,
-    ) -> Result<(u32, u32, Samples), Fault> {
+    ) -> Result<(u32, u32, Samples), DemErrorKind> {
         self.check(format, bytes.len())?;
         let nodata = match (nodata, self.number) {
             (Some(value), Number::F32) => f64::from(value as f32),
@@ -112,7 +112,7 @@ impl Layout {
     }
 
     /// Rows may not overlap, so that no more samples are allocated than the file holds.
-    fn check(&self, format: &'static str, file_bytes: usize) -> Result<(), Fault> {
+    fn check(&self, format: &'static str, file_bytes: usize) -> Result<(), DemErrorKind> {
         check_size((self.width, self.height), self.number.bytes(), (file_bytes, 1))?;
         let of_row = |samples: u64| samples.checked_mul(self.sample_step)?.checked_add(self.number.bytes());
         let row = of_row(self.width - 1);
@@ -124,7 +124,7 @@ impl Layout {
                 "rows of {} samples do not fit the {} bytes that the header gives each",
                 self.width, self.row_step
             );
-            return Err(Fault::broken(format, reason));
+            return Err(DemErrorKind::broken(format, reason));
         }
         match end {
             Some(end) if end <= file_bytes as u64 => Ok(()),
@@ -133,7 +133,7 @@ impl Layout {
                     "{} x {} samples from byte {} on reach beyond its {file_bytes} bytes",
                     self.width, self.height, self.start
                 );
-                Err(Fault::broken(format, reason))
+                Err(DemErrorKind::broken(format, reason))
             }
         }
     }
@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn samples_are_read_across_gaps_in_either_byte_order() {
         let bytes = [9, 0, 1, 0xee, 0x80, 0, 0xee, 0xee, 0, 2, 0xee, 0, 3];
-        let layout = Layout {
+        let layout = SampleLayout {
             width: 2,
             height: 2,
             number: Number::I16,
@@ -191,21 +191,21 @@ mod tests {
     #[test]
     fn no_data_of_32_bit_floats_is_met_in_32_bits() {
         let bytes: Vec<u8> = [-3.4e38f32, 0.1, f32::INFINITY].iter().flat_map(|v| v.to_le_bytes()).collect();
-        let layout = Layout::dense((3, 1), Number::F32, ByteOrder::Little, 0);
+        let layout = SampleLayout::dense((3, 1), Number::F32, ByteOrder::Little, 0);
         let (.., samples) = layout.read("test", &bytes, Some(-3.4e38)).expect("it fits");
         assert!(samples.get(0).is_nan() && samples.get(1) == f64::from(0.1f32) && samples.get(2).is_nan());
     }
 
     #[test]
     fn rows_that_overlap_or_overflow_are_refused() {
-        let dense = Layout::dense((4, 4), Number::U8, ByteOrder::Little, 0);
+        let dense = SampleLayout::dense((4, 4), Number::U8, ByteOrder::Little, 0);
         assert!(dense.read("test", &[0; 16], None).is_ok());
         for wrong in [
-            Layout { row_step: 3, ..dense },
-            Layout { sample_step: 0, ..dense },
-            Layout { start: u64::MAX, ..dense },
-            Layout { row_step: u64::MAX, ..dense },
-            Layout { sample_step: u64::MAX, row_step: u64::MAX, ..dense },
+            SampleLayout { row_step: 3, ..dense },
+            SampleLayout { sample_step: 0, ..dense },
+            SampleLayout { start: u64::MAX, ..dense },
+            SampleLayout { row_step: u64::MAX, ..dense },
+            SampleLayout { sample_step: u64::MAX, row_step: u64::MAX, ..dense },
         ] {
             assert!(wrong.read("test", &[0; 16], None).is_err(), "{wrong:?}");
         }

@@ -7,10 +7,10 @@ use std::io::Cursor;
 
 use image::{DynamicImage, ImageDecoder, Limits};
 
-use crate::dem::fault::{Fault, bytes_at, check_size};
+use crate::dem::fault::{DemErrorKind, bytes_at, check_size};
 use crate::dem::georef;
 use crate::dem::raster::{Raster, Samples};
-use crate::dem::read::Source;
+use crate::dem::read::DemFile;
 use crate::dem::rgb_png::HeightEncoding;
 
 const FORMAT: &str = "PNG";
@@ -24,8 +24,8 @@ pub(crate) fn recognises(bytes: &[u8]) -> bool {
 }
 
 /// Reads a picture, its place from a world file or the hinted cell.
-pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
-    let header = Header::read(source.bytes)?;
+pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
+    let header = PngHeader::read(source.bytes)?;
     let count = check_size(
         (u64::from(header.width), u64::from(header.height)),
         u64::from(header.bits / 8).max(1),
@@ -33,9 +33,9 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     )?;
     let samples = match (header.is_coloured, source.hints.height_encoding) {
         (true, Some(encoding)) => Samples::F64(decode_colours(source.bytes, count, encoding)?),
-        (true, None) => return Err(Fault::NoHeightEncoding),
+        (true, None) => return Err(DemErrorKind::NoHeightEncoding),
         (false, Some(encoding)) => {
-            return Err(Fault::Unsupported {
+            return Err(DemErrorKind::Unsupported {
                 format: FORMAT,
                 what: format!("grey values, where {encoding} is stated"),
                 remedy: "state height_scale (--height-scale) instead of the encoding",
@@ -63,11 +63,11 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
 }
 
 /// Metres per grey value, and the height of value 0.
-fn heights(source: &Source) -> Result<(f64, f64), Fault> {
-    Ok((source.height_scale()?.ok_or(Fault::NoHeightScale)?, source.height_offset()?))
+fn heights(source: &DemFile) -> Result<(f64, f64), DemErrorKind> {
+    Ok((source.height_scale()?.ok_or(DemErrorKind::NoHeightScale)?, source.height_offset()?))
 }
 
-struct Header {
+struct PngHeader {
     width: u32,
     height: u32,
     bits: u8,
@@ -75,13 +75,13 @@ struct Header {
     transparent: Option<f64>,
 }
 
-impl Header {
-    fn read(bytes: &[u8]) -> Result<Self, Fault> {
-        let cut = || Fault::broken(FORMAT, "it ends inside its header");
+impl PngHeader {
+    fn read(bytes: &[u8]) -> Result<Self, DemErrorKind> {
+        let cut = || DemErrorKind::broken(FORMAT, "it ends inside its header");
         let long = |at: usize| bytes_at(bytes, at).map(u32::from_be_bytes).ok_or_else(cut);
         let [bits, colour] = bytes_at(bytes, 24).ok_or_else(cut)?;
         if bytes.get(12..16) != Some(b"IHDR") {
-            return Err(Fault::broken(FORMAT, "its first chunk is not IHDR"));
+            return Err(DemErrorKind::broken(FORMAT, "its first chunk is not IHDR"));
         }
         let what = match (colour, bits) {
             (0 | 4, 8 | 16) | (2 | 6, 8) => None,
@@ -90,14 +90,14 @@ impl Header {
             (0, 1 | 2 | 4) => Some(format!("{bits} bits per grey value")),
             (2 | 6, 16) => Some("colours of 16 bits".into()),
             _ => {
-                return Err(Fault::broken(
+                return Err(DemErrorKind::broken(
                     FORMAT,
                     format!("colour type {colour} with {bits} bits does not exist"),
                 ));
             }
         };
         if let Some(what) = what {
-            return Err(Fault::Unsupported {
+            return Err(DemErrorKind::Unsupported {
                 format: FORMAT,
                 what,
                 remedy: "give the elevation as 16-bit grey, or as a GeoTIFF",
@@ -124,8 +124,8 @@ fn transparent(bytes: &[u8]) -> Option<f64> {
 }
 
 /// The pixels, with no more memory than so many need.
-fn pixels(bytes: &[u8], count: usize) -> Result<DynamicImage, Fault> {
-    let broken = |error: image::ImageError| Fault::broken(FORMAT, error.to_string());
+fn pixels(bytes: &[u8], count: usize) -> Result<DynamicImage, DemErrorKind> {
+    let broken = |error: image::ImageError| DemErrorKind::broken(FORMAT, error.to_string());
     let mut decoder = image::codecs::png::PngDecoder::new(Cursor::new(bytes)).map_err(broken)?;
     let mut limits = Limits::default();
     // Four bytes a sample with alpha, and as much again for rows and the inflater.
@@ -134,7 +134,7 @@ fn pixels(bytes: &[u8], count: usize) -> Result<DynamicImage, Fault> {
     DynamicImage::from_decoder(decoder).map_err(broken)
 }
 
-fn decode_colours(bytes: &[u8], count: usize, encoding: HeightEncoding) -> Result<Vec<f64>, Fault> {
+fn decode_colours(bytes: &[u8], count: usize, encoding: HeightEncoding) -> Result<Vec<f64>, DemErrorKind> {
     let values: Vec<f64> = match pixels(bytes, count)? {
         DynamicImage::ImageRgb8(picture) => picture.pixels().map(|pixel| encoding.metres(pixel.0)).collect(),
         DynamicImage::ImageRgba8(picture) => {
@@ -145,16 +145,22 @@ fn decode_colours(bytes: &[u8], count: usize, encoding: HeightEncoding) -> Resul
             picture.pixels().map(|pixel| metres(pixel.0)).collect()
         }
         other => {
-            return Err(Fault::broken(FORMAT, format!("it decodes to {:?}, not to colours", other.color())));
+            return Err(DemErrorKind::broken(
+                FORMAT,
+                format!("it decodes to {:?}, not to colours", other.color()),
+            ));
         }
     };
     if values.len() != count {
-        return Err(Fault::broken(FORMAT, format!("it decodes to {} of {count} values", values.len())));
+        return Err(DemErrorKind::broken(
+            FORMAT,
+            format!("it decodes to {} of {count} values", values.len()),
+        ));
     }
     Ok(values)
 }
 
-fn decode(bytes: &[u8], count: usize) -> Result<Vec<f32>, Fault> {
+fn decode(bytes: &[u8], count: usize) -> Result<Vec<f32>, DemErrorKind> {
     let values: Vec<f32> = match pixels(bytes, count)? {
         DynamicImage::ImageLuma8(grey) => grey.as_raw().iter().map(|&v| f32::from(v)).collect(),
         DynamicImage::ImageLuma16(grey) => grey.as_raw().iter().map(|&v| f32::from(v)).collect(),
@@ -165,18 +171,24 @@ fn decode(bytes: &[u8], count: usize) -> Result<Vec<f32>, Fault> {
             both.pixels().map(|p| if p[1] == 0 { f32::NAN } else { f32::from(p[0]) }).collect()
         }
         other => {
-            return Err(Fault::broken(FORMAT, format!("it decodes to {:?}, not to grey", other.color())));
+            return Err(DemErrorKind::broken(
+                FORMAT,
+                format!("it decodes to {:?}, not to grey", other.color()),
+            ));
         }
     };
     if values.len() != count {
-        return Err(Fault::broken(FORMAT, format!("it decodes to {} of {count} values", values.len())));
+        return Err(DemErrorKind::broken(
+            FORMAT,
+            format!("it decodes to {} of {count} values", values.len()),
+        ));
     }
     Ok(values)
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::dem::read::{Hints, read};
+    use crate::dem::read::{DemHints, read};
     use crate::dem::rgb_png::HeightEncoding;
     use image::ImageEncoder;
 
@@ -191,11 +203,11 @@ mod tests {
 
     #[test]
     fn grey_becomes_metres_by_the_stated_scale() {
-        let hints = Hints {
+        let hints = DemHints {
             png_height_scale: Some(0.5),
             png_height_offset: Some(-100.0),
             cell: Some(30.0),
-            ..Hints::default()
+            ..DemHints::default()
         };
         let raster = read("a.png", &picture(&[0, 65535]), &hints).expect("a picture");
         assert_eq!([raster.at(0, 0), raster.at(1, 0)], [-100.0, 32667.5]);
@@ -206,7 +218,7 @@ mod tests {
 
     #[test]
     fn a_picture_without_a_scale_is_refused_with_the_keys_that_give_it() {
-        let error = read("a.png", &picture(&[1, 2]), &Hints::default()).expect_err("refused").to_string();
+        let error = read("a.png", &picture(&[1, 2]), &DemHints::default()).expect_err("refused").to_string();
         assert!(error.contains("height_scale") && error.contains("--height-scale"), "{error}");
     }
 
@@ -216,7 +228,7 @@ mod tests {
         image::codecs::png::PngEncoder::new(&mut bytes)
             .write_image(&[1, 134, 170, 255, 1, 134, 170, 0], 2, 1, image::ExtendedColorType::Rgba8)
             .expect("memory");
-        let hints = |height_encoding| Hints { height_encoding, cell: Some(1.0), ..Hints::default() };
+        let hints = |height_encoding| DemHints { height_encoding, cell: Some(1.0), ..DemHints::default() };
         let tile = read("a.png", &bytes, &hints(Some(HeightEncoding::TerrainRgb))).expect("a tile");
         assert_eq!((tile.at(0, 0), tile.data_type), (1.0, "Byte"));
         assert!(tile.at(1, 0).is_nan());
@@ -229,7 +241,7 @@ mod tests {
     #[test]
     fn a_picture_cut_anywhere_is_an_error() {
         let whole = picture(&[1, 2, 3, 4]);
-        let hints = Hints { png_height_scale: Some(1.0), ..Hints::default() };
+        let hints = DemHints { png_height_scale: Some(1.0), ..DemHints::default() };
         for end in 0..whole.len() - 12 {
             assert!(read("a.png", &whole[..end], &hints).is_err(), "{end}");
         }

@@ -5,11 +5,11 @@
 
 use std::str::FromStr;
 
-use crate::dem::fault::Fault;
+use crate::dem::fault::DemErrorKind;
 use crate::dem::georef;
-use crate::dem::plain::{ByteOrder, Layout, Number};
+use crate::dem::plain::{ByteOrder, Number, SampleLayout};
 use crate::dem::raster::Raster;
-use crate::dem::read::Source;
+use crate::dem::read::DemFile;
 
 const FORMAT: &str = "RAW file";
 
@@ -73,11 +73,11 @@ fn kind_of(text: &str) -> Option<(Number, ByteOrder)> {
 
 /// Reads the file as the caller says it is laid out. Heights are the samples, or what a stated scale and offset make
 /// of them.
-pub(crate) fn read(source: &Source, raw: &RawLayout) -> Result<Raster, Fault> {
+pub(crate) fn read(source: &DemFile, raw: &RawLayout) -> Result<Raster, DemErrorKind> {
     let scale = source.height_scale()?.unwrap_or(1.0);
     let offset = source.height_offset()?;
     let size = (u64::from(raw.width), u64::from(raw.height));
-    let layout = Layout::dense(size, raw.number, raw.order, raw.skip);
+    let layout = SampleLayout::dense(size, raw.number, raw.order, raw.skip);
     let (width, height, samples) = layout.read(FORMAT, source.bytes, raw.nodata)?;
     let place = georef::beside(source, height, &["rww", "wld"])?;
     Ok(Raster {
@@ -98,7 +98,7 @@ pub(crate) fn read(source: &Source, raw: &RawLayout) -> Result<Raster, Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{Hints, read};
+    use crate::dem::read::{DemHints, read};
 
     #[test]
     fn the_statement_is_a_size_a_type_and_what_is_needed_besides() {
@@ -124,12 +124,12 @@ mod tests {
 
     #[test]
     fn samples_become_metres_by_a_stated_scale() {
-        let hints = Hints {
+        let hints = DemHints {
             raw: "2x1:u16le:skip=1".parse().ok(),
             png_height_scale: Some(0.5),
             png_height_offset: Some(-10.0),
             cell: Some(30.0),
-            ..Hints::default()
+            ..DemHints::default()
         };
         let raster = read("a.r16", &[9, 2, 0, 0, 1], &hints).expect("as stated");
         assert_eq!([raster.at(0, 0), raster.at(1, 0)], [-9.0, 118.0]);

@@ -1,7 +1,7 @@
 //! Bytes to a raster: the format is told by content, then by extension.
 
 use crate::dem::archive;
-use crate::dem::fault::{DemError, Fault};
+use crate::dem::fault::{DemError, DemErrorKind};
 use crate::dem::raster::Raster;
 use crate::dem::raw::{self, RawLayout};
 use crate::dem::rgb_png::HeightEncoding;
@@ -10,7 +10,7 @@ use crate::geom::crs::Crs;
 
 /// What the caller knows of a file beyond its bytes.
 #[derive(Clone)]
-pub struct Hints<'a> {
+pub struct DemHints<'a> {
     /// Metres per grey value of a PNG, which is refused without it, or per value of a RAW file. Default 1 there; other
     /// formats do not look at it.
     pub png_height_scale: Option<f64>,
@@ -32,7 +32,7 @@ pub struct Hints<'a> {
     pub companions: &'a dyn Fn(&str) -> Option<Vec<u8>>,
 }
 
-impl Default for Hints<'_> {
+impl Default for DemHints<'_> {
     fn default() -> Self {
         Self {
             png_height_scale: None,
@@ -61,16 +61,16 @@ pub fn is_tile_name(name: &str) -> bool {
 }
 
 /// A file while it is read: its name, bytes and hints.
-pub(crate) struct Source<'a> {
+pub(crate) struct DemFile<'a> {
     /// The name as given, for the extension and the companions.
     pub name: &'a str,
     /// The content.
     pub bytes: &'a [u8],
     /// What the caller knows.
-    pub hints: &'a Hints<'a>,
+    pub hints: &'a DemHints<'a>,
 }
 
-impl Source<'_> {
+impl DemFile<'_> {
     /// The extension in lower case, without the dot; empty where there is none.
     pub fn extension(&self) -> String {
         split_extension(self.name).1.to_ascii_lowercase()
@@ -90,12 +90,12 @@ impl Source<'_> {
     }
 
     /// The coordinate system of the hints, or of a `.prj` companion; `None` where there is neither.
-    pub fn crs_beside(&self) -> Result<Option<Crs>, Fault> {
+    pub fn crs_beside(&self) -> Result<Option<Crs>, DemErrorKind> {
         if let Some(crs) = &self.hints.crs {
             return Ok(Some(crs.clone()));
         }
         let Some(bytes) = self.companion("prj") else { return Ok(None) };
-        Crs::parse(&String::from_utf8_lossy(&bytes)).map(Some).map_err(Fault::Crs)
+        Crs::parse(&String::from_utf8_lossy(&bytes)).map(Some).map_err(DemErrorKind::Crs)
     }
 
     /// The content of the `.hdr` beside the file: `a.hdr` for `a.bil`, or `a.img.hdr` for `a.img`.
@@ -104,9 +104,9 @@ impl Source<'_> {
     }
 
     /// The hinted metres per value, checked.
-    pub fn height_scale(&self) -> Result<Option<f64>, Fault> {
+    pub fn height_scale(&self) -> Result<Option<f64>, DemErrorKind> {
         match self.hints.png_height_scale {
-            Some(scale) if !(scale.is_finite() && scale != 0.0) => Err(Fault::Hint {
+            Some(scale) if !(scale.is_finite() && scale != 0.0) => Err(DemErrorKind::Hint {
                 what: "height_scale",
                 value: scale,
                 wanted: "a finite number other than 0",
@@ -116,18 +116,20 @@ impl Source<'_> {
     }
 
     /// The hinted height of value 0, checked; 0 where there is none.
-    pub fn height_offset(&self) -> Result<f64, Fault> {
+    pub fn height_offset(&self) -> Result<f64, DemErrorKind> {
         match self.hints.png_height_offset.unwrap_or(0.0) {
             offset if offset.is_finite() => Ok(offset),
-            offset => Err(Fault::Hint { what: "height_offset", value: offset, wanted: "a finite number" }),
+            offset => {
+                Err(DemErrorKind::Hint { what: "height_offset", value: offset, wanted: "a finite number" })
+            }
         }
     }
 
     /// The hinted distance between samples, checked.
-    pub fn cell(&self) -> Result<Option<f64>, Fault> {
+    pub fn cell(&self) -> Result<Option<f64>, DemErrorKind> {
         match self.hints.cell {
             Some(cell) if !(cell.is_finite() && cell > 0.0) => {
-                Err(Fault::Hint { what: "cell", value: cell, wanted: "a positive number of metres" })
+                Err(DemErrorKind::Hint { what: "cell", value: cell, wanted: "a positive number of metres" })
             }
             cell => Ok(cell),
         }
@@ -140,16 +142,16 @@ impl Source<'_> {
 ///
 /// # Errors
 /// [`DemError`] with the name and what was wrong; an unknown format lists what can be read.
-pub fn read(name: &str, bytes: &[u8], hints: &Hints) -> Result<Raster, DemError> {
-    let mut raster =
-        read_source(&Source { name, bytes, hints }).map_err(|fault| DemError { name: name.into(), fault })?;
+pub fn read(name: &str, bytes: &[u8], hints: &DemHints) -> Result<Raster, DemError> {
+    let mut raster = read_source(&DemFile { name, bytes, hints })
+        .map_err(|fault| DemError { name: name.into(), fault })?;
     if hints.vertical_datum.is_some() {
         raster.vertical_datum.clone_from(&hints.vertical_datum);
     }
     Ok(raster)
 }
 
-fn read_source(source: &Source) -> Result<Raster, Fault> {
+fn read_source(source: &DemFile) -> Result<Raster, DemErrorKind> {
     let bytes = source.bytes;
     if archive::is_gzip(bytes) {
         return read_gzip(source);
@@ -158,7 +160,7 @@ fn read_source(source: &Source) -> Result<Raster, Fault> {
         return read_zip(source);
     }
     if source.extension() == "hdr" {
-        return Err(Fault::UnknownFormat {
+        return Err(DemErrorKind::UnknownFormat {
             found: "it is the header of a file beside it: name that one".into(),
         });
     }
@@ -175,7 +177,7 @@ fn read_source(source: &Source) -> Result<Raster, Fault> {
 type Recognises = fn(&[u8]) -> bool;
 
 /// Reads content of a format.
-type Reads = fn(&Source) -> Result<Raster, Fault>;
+type Reads = fn(&DemFile) -> Result<Raster, DemErrorKind>;
 
 /// The formats whose content says what they are.
 const FORMATS: [(Recognises, Reads); 8] = [
@@ -190,7 +192,7 @@ const FORMATS: [(Recognises, Reads); 8] = [
 ];
 
 /// Reads content that does not say what it is: by the header beside it, or else by its extension.
-fn read_by_name(source: &Source) -> Result<Raster, Fault> {
+fn read_by_name(source: &DemFile) -> Result<Raster, DemErrorKind> {
     let extension = source.extension();
     // Not for files that have a meaning without one: an .hgt beside a stray .hdr is still a tile.
     let header = if extension == "hgt" { None } else { source.header() };
@@ -201,44 +203,46 @@ fn read_by_name(source: &Source) -> Result<Raster, Fault> {
     }
     match extension.as_str() {
         "hgt" => hgt::read(source),
-        "tif" | "tiff" => Err(Fault::broken("GeoTIFF", "it does not start as a TIFF file does")),
-        "asc" => Err(Fault::broken("ESRI ASCII grid", "it does not start with ncols")),
-        "bt" => Err(Fault::broken("BT terrain", "it does not start with 'binterr1.' and a digit")),
-        "png" => Err(Fault::broken("PNG", "it does not start as a PNG file does")),
-        "ter" => Err(Fault::broken("Terragen terrain", "it does not start with TERRAGENTERRAIN")),
-        "dt0" | "dt1" | "dt2" => Err(Fault::broken("DTED", "it does not start with UHL1")),
-        "raw" | "r16" if header.is_none() => Err(Fault::NoRawLayout),
+        "tif" | "tiff" => Err(DemErrorKind::broken("GeoTIFF", "it does not start as a TIFF file does")),
+        "asc" => Err(DemErrorKind::broken("ESRI ASCII grid", "it does not start with ncols")),
+        "bt" => Err(DemErrorKind::broken("BT terrain", "it does not start with 'binterr1.' and a digit")),
+        "png" => Err(DemErrorKind::broken("PNG", "it does not start as a PNG file does")),
+        "ter" => Err(DemErrorKind::broken("Terragen terrain", "it does not start with TERRAGENTERRAIN")),
+        "dt0" | "dt1" | "dt2" => Err(DemErrorKind::broken("DTED", "it does not start with UHL1")),
+        "raw" | "r16" if header.is_none() => Err(DemErrorKind::NoRawLayout),
         text if xyz::EXTENSIONS.contains(&text) => xyz::read(source),
-        grid if ehdr::EXTENSIONS.contains(&grid) => Err(Fault::NoHeader { format: "ESRI binary grid" }),
-        extension => Err(Fault::UnknownFormat { found: describe(source.bytes, extension) }),
+        grid if ehdr::EXTENSIONS.contains(&grid) => {
+            Err(DemErrorKind::NoHeader { format: "ESRI binary grid" })
+        }
+        extension => Err(DemErrorKind::UnknownFormat { found: describe(source.bytes, extension) }),
     }
 }
 
-fn read_gzip(source: &Source) -> Result<Raster, Fault> {
+fn read_gzip(source: &DemFile) -> Result<Raster, DemErrorKind> {
     let (base, extension) = split_extension(source.name);
     let inner = if extension.eq_ignore_ascii_case("btz") { format!("{base}.bt") } else { base.to_owned() };
     let content = archive::gunzip(source.bytes)?;
     if archive::is_gzip(&content) || archive::is_zip(&content) {
-        return Err(Fault::UnknownFormat { found: "it is packed twice".into() });
+        return Err(DemErrorKind::UnknownFormat { found: "it is packed twice".into() });
     }
-    read_source(&Source { name: &inner, bytes: &content, hints: source.hints })
+    read_source(&DemFile { name: &inner, bytes: &content, hints: source.hints })
 }
 
 /// Reads the first elevation file in an archive, with its companions there.
-fn read_zip(source: &Source) -> Result<Raster, Fault> {
+fn read_zip(source: &DemFile) -> Result<Raster, DemErrorKind> {
     let Some((name, content)) = archive::unzip_first(source.bytes, is_tile_name)? else {
-        return Err(Fault::UnknownFormat {
+        return Err(DemErrorKind::UnknownFormat {
             found: "it is a zip archive without an .hgt tile or another elevation file in it".into(),
         });
     };
     if archive::is_gzip(&content) || archive::is_zip(&content) {
-        return Err(Fault::UnknownFormat { found: "it is packed twice".into() });
+        return Err(DemErrorKind::UnknownFormat { found: "it is packed twice".into() });
     }
     let beside = |wanted: &str| {
         archive::unzip_first(source.bytes, |name| name == wanted).ok().flatten().map(|(_, content)| content)
     };
-    let hints = Hints { companions: &beside, ..source.hints.clone() };
-    read_source(&Source { name: &name, bytes: &content, hints: &hints })
+    let hints = DemHints { companions: &beside, ..source.hints.clone() };
+    read_source(&DemFile { name: &name, bytes: &content, hints: &hints })
 }
 
 /// What an unknown file seems to be.
@@ -274,8 +278,9 @@ mod tests {
 
     #[test]
     fn an_unknown_file_is_refused_with_what_it_is_and_what_is_read() {
-        let said =
-            |name: &str, bytes: &[u8]| read(name, bytes, &Hints::default()).expect_err("refused").to_string();
+        let said = |name: &str, bytes: &[u8]| {
+            read(name, bytes, &DemHints::default()).expect_err("refused").to_string()
+        };
         assert!(said("a/b.las", b"LASF").contains("dem grid"));
         for wanted in ["x.adf", ".adf is not read", "GeoTIFF", ".asc", ".png", ".bt", ".hgt", ".dem", ".bil"]
         {
@@ -305,19 +310,23 @@ mod tests {
     fn the_elevation_file_in_an_archive_is_read_with_its_companions() {
         let grid = b"ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n5\n";
         let archive = zip(&[("readme.txt", b"1 2 3"), ("d/a.asc", grid), ("d/a.prj", b"EPSG:32612")]);
-        let raster = read("a.zip", &archive, &Hints::default()).expect("a grid in it");
+        let raster = read("a.zip", &archive, &DemHints::default()).expect("a grid in it");
         assert_eq!(raster.crs.and_then(|crs| crs.epsg()), Some(32612));
         let nested = zip(&[("a.hgt.zip", &archive)]);
-        assert!(read("b.zip", &nested, &Hints::default()).expect_err("nested").to_string().contains("twice"));
+        assert!(
+            read("b.zip", &nested, &DemHints::default()).expect_err("nested").to_string().contains("twice")
+        );
         let without = zip(&[("readme.txt", b"1 2 3")]);
-        assert!(read("c.zip", &without, &Hints::default()).expect_err("none").to_string().contains(".hgt"));
+        assert!(
+            read("c.zip", &without, &DemHints::default()).expect_err("none").to_string().contains(".hgt")
+        );
     }
 
     #[test]
     fn companions_are_asked_for_by_the_name_with_another_extension() {
         let grid = b"ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n5\n";
         let beside = |name: &str| (name == "dir.d/a.prj").then(|| b"EPSG:32612".to_vec());
-        let hints = Hints { companions: &beside, ..Hints::default() };
+        let hints = DemHints { companions: &beside, ..DemHints::default() };
         let raster = read("dir.d/a.asc", grid, &hints).expect("a small grid");
         assert_eq!(raster.crs.and_then(|crs| crs.epsg()), Some(32612));
         assert!(read("b.asc", grid, &hints).expect("a small grid").crs.is_none());

@@ -12,12 +12,12 @@ pub struct Recent<K, V> {
     bound: usize,
     held: usize,
     clock: u64,
-    values: BTreeMap<K, Kept<V>>,
+    values: BTreeMap<K, CacheEntry<V>>,
     by_use: BTreeMap<u64, K>,
 }
 
 #[derive(Clone, Debug)]
-struct Kept<V> {
+struct CacheEntry<V> {
     value: V,
     weight: usize,
     used: u64,
@@ -70,7 +70,7 @@ impl<K: Ord + Copy, V> Recent<K, V> {
         self.clock += 1;
         self.held += weight;
         self.by_use.insert(self.clock, key);
-        self.values.insert(key, Kept { value, weight, used: self.clock });
+        self.values.insert(key, CacheEntry { value, weight, used: self.clock });
         gone
     }
 

@@ -15,10 +15,10 @@
 
 use glam::DVec2;
 
-use crate::dem::ascii::{Words, number};
-use crate::dem::fault::{Fault, bytes_at, check_size};
+use crate::dem::ascii::{TextWords, number};
+use crate::dem::fault::{DemErrorKind, bytes_at, check_size};
 use crate::dem::raster::{Raster, Samples, north_up};
-use crate::dem::read::Source;
+use crate::dem::read::DemFile;
 
 const FORMAT: &str = "Surfer grid";
 
@@ -34,7 +34,7 @@ pub(crate) fn recognises(bytes: &[u8]) -> bool {
 }
 
 /// Reads a grid.
-pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
+pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
     let grid = match &source.bytes[..4] {
         b"DSAA" => text(source.bytes)?,
         b"DSBB" => version_6(source.bytes)?,
@@ -42,7 +42,7 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
     };
     let Grid { driver, data_type, columns, rows, first, cell, samples, blank } = grid;
     if !(first.is_finite() && cell.is_finite() && cell.min_element() > 0.0) {
-        return Err(Fault::Georeference {
+        return Err(DemErrorKind::Georeference {
             reason: format!("its nodes start at {first} and are {} by {} apart", cell.x, cell.y),
             remedy: "save the grid again",
         });
@@ -93,11 +93,11 @@ fn between(low: f64, high: f64, nodes: u64) -> f64 {
     (high - low) / (nodes.saturating_sub(1)) as f64
 }
 
-fn text(bytes: &[u8]) -> Result<Grid, Fault> {
-    let mut words = Words::new(&bytes[4..]);
+fn text(bytes: &[u8]) -> Result<Grid, DemErrorKind> {
+    let mut words = TextWords::new(&bytes[4..]);
     let mut head = |what: &str| {
         let word = words.next().and_then(number);
-        word.ok_or_else(|| Fault::broken(FORMAT, format!("{what} is missing or no number")))
+        word.ok_or_else(|| DemErrorKind::broken(FORMAT, format!("{what} is missing or no number")))
     };
     let (columns, rows) = (head("the number of columns")?, head("the number of rows")?);
     let [x0, x1, y0, y1] = [head("x from")?, head("x to")?, head("y from")?, head("y to")?];
@@ -110,12 +110,15 @@ fn text(bytes: &[u8]) -> Result<Grid, Fault> {
     let mut values = Vec::with_capacity(count);
     for word in words.by_ref().take(count) {
         let value = number(word).ok_or_else(|| {
-            Fault::broken(FORMAT, format!("height {} of {count} is not a number", values.len() + 1))
+            DemErrorKind::broken(FORMAT, format!("height {} of {count} is not a number", values.len() + 1))
         })?;
         values.push(if value >= BLANK || !value.is_finite() { f32::NAN } else { value as f32 });
     }
     if values.len() < count {
-        return Err(Fault::broken(FORMAT, format!("it ends after {} of {count} heights", values.len())));
+        return Err(DemErrorKind::broken(
+            FORMAT,
+            format!("it ends after {} of {count} heights", values.len()),
+        ));
     }
     let (columns, rows) = (size.0 as usize, size.1 as usize);
     Ok(Grid {
@@ -130,9 +133,9 @@ fn text(bytes: &[u8]) -> Result<Grid, Fault> {
     })
 }
 
-fn version_6(bytes: &[u8]) -> Result<Grid, Fault> {
+fn version_6(bytes: &[u8]) -> Result<Grid, DemErrorKind> {
     const HEADER: usize = 56;
-    let cut = || Fault::broken(FORMAT, "it ends inside its header");
+    let cut = || DemErrorKind::broken(FORMAT, "it ends inside its header");
     let data = bytes.get(HEADER..).ok_or_else(cut)?;
     let count =
         |at: usize| bytes_at(bytes, at).map_or(0, |raw| u64::try_from(i16::from_le_bytes(raw)).unwrap_or(0));
@@ -161,8 +164,8 @@ struct Section7 {
     blank: f64,
 }
 
-fn version_7(bytes: &[u8]) -> Result<Grid, Fault> {
-    let cut = || Fault::broken(FORMAT, "it ends before its heights");
+fn version_7(bytes: &[u8]) -> Result<Grid, DemErrorKind> {
+    let cut = || DemErrorKind::broken(FORMAT, "it ends before its heights");
     let mut at = 0usize;
     let mut grid = None;
     loop {
@@ -181,13 +184,13 @@ fn version_7(bytes: &[u8]) -> Result<Grid, Fault> {
     }
 }
 
-fn section_7(bytes: &[u8], at: usize) -> Result<Section7, Fault> {
-    let cut = || Fault::broken(FORMAT, "it ends inside its GRID section");
+fn section_7(bytes: &[u8], at: usize) -> Result<Section7, DemErrorKind> {
+    let cut = || DemErrorKind::broken(FORMAT, "it ends inside its GRID section");
     let count = |offset: usize| bytes_at(bytes, at + offset).map(i32::from_le_bytes).ok_or_else(cut);
     let double = |index: usize| bytes_at(bytes, at + 8 + 8 * index).map(f64::from_le_bytes).ok_or_else(cut);
     let whole = |value: i32| u64::try_from(value).unwrap_or(0);
     if double(6)? != 0.0 {
-        return Err(Fault::Unsupported {
+        return Err(DemErrorKind::Unsupported {
             format: FORMAT,
             what: format!("a rotation of {} degrees", double(6)?),
             remedy: "save the grid without rotation",
@@ -201,7 +204,7 @@ fn section_7(bytes: &[u8], at: usize) -> Result<Section7, Fault> {
     })
 }
 
-fn heights_7(grid: &Section7, data: &[u8]) -> Result<Grid, Fault> {
+fn heights_7(grid: &Section7, data: &[u8]) -> Result<Grid, DemErrorKind> {
     check_size(grid.size, 8, (data.len(), 1))?;
     let (columns, rows) = (grid.size.0 as usize, grid.size.1 as usize);
     let height = |index: usize| {
@@ -222,7 +225,7 @@ fn heights_7(grid: &Section7, data: &[u8]) -> Result<Grid, Fault> {
 
 #[cfg(test)]
 mod tests {
-    use crate::dem::read::{Hints, read};
+    use crate::dem::read::{DemHints, read};
 
     fn binary_6(heights: &[f32]) -> Vec<u8> {
         let mut bytes = b"DSBB\x02\0\x03\0".to_vec();
@@ -252,7 +255,7 @@ mod tests {
             binary_7(&[1.0, 2.0, 3.0, 1.70141e38, 5.0, 6.0]),
         ];
         for bytes in grids {
-            let raster = read("a.grd", &bytes, &Hints::default()).expect("a grid");
+            let raster = read("a.grd", &bytes, &DemHints::default()).expect("a grid");
             assert_eq!([raster.at(0, 0), raster.at(1, 0), raster.at(0, 2)], [5.0, 6.0, 1.0]);
             assert!(raster.at(1, 1).is_nan());
             assert_eq!(raster.geotransform(), [95.0, 10.0, 0.0, 225.0, 0.0, -10.0], "{}", raster.driver);
@@ -264,20 +267,20 @@ mod tests {
         let numbers = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
         for whole in [binary_6(&numbers.map(|value| value as f32)), binary_7(&numbers)] {
             for end in 4..whole.len() {
-                assert!(read("a.grd", &whole[..end], &Hints::default()).is_err(), "{end}");
+                assert!(read("a.grd", &whole[..end], &DemHints::default()).is_err(), "{end}");
             }
             for at in 0..whole.len() {
                 for value in [0, 0x7f, 0x80, 0xff] {
                     let mut broken = whole.clone();
                     broken[at] = value;
-                    if let Ok(raster) = read("a.grd", &broken, &Hints::default()) {
+                    if let Ok(raster) = read("a.grd", &broken, &DemHints::default()) {
                         assert_eq!(raster.samples.len(), raster.width as usize * raster.height as usize);
                     }
                 }
             }
         }
         for text in ["DSAA", "DSAA 9 9 0 1 0 1 0 1 5", "DSAA 1 1 0 x", "DSAA 2 2 0 1 0 1 0 1 1 2 3 x"] {
-            assert!(read("a.grd", text.as_bytes(), &Hints::default()).is_err(), "{text}");
+            assert!(read("a.grd", text.as_bytes(), &DemHints::default()).is_err(), "{text}");
         }
     }
 }

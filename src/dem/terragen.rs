@@ -12,10 +12,10 @@
 
 use glam::{DAffine2, DMat2, DVec2};
 
-use crate::dem::fault::{Fault, bytes_at};
-use crate::dem::plain::{ByteOrder, Layout, Number};
+use crate::dem::fault::{DemErrorKind, bytes_at};
+use crate::dem::plain::{ByteOrder, Number, SampleLayout};
 use crate::dem::raster::{Raster, Samples};
-use crate::dem::read::Source;
+use crate::dem::read::DemFile;
 
 const FORMAT: &str = "Terragen terrain";
 
@@ -30,12 +30,12 @@ pub(crate) fn recognises(bytes: &[u8]) -> bool {
 }
 
 /// Reads a terrain.
-pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
+pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
     let bytes = source.bytes;
     let Chunks { columns, rows, scale, heights_at } = Chunks::read(bytes)?;
     let short = |at: usize| bytes_at(bytes, at).map(i16::from_le_bytes).unwrap_or_default();
     let (height_scale, base) = (f64::from(short(heights_at)), f64::from(short(heights_at + 2)));
-    let layout = Layout::dense((columns, rows), Number::I16, ByteOrder::Little, heights_at as u64 + 4);
+    let layout = SampleLayout::dense((columns, rows), Number::I16, ByteOrder::Little, heights_at as u64 + 4);
     let (width, height, samples) = layout.read(FORMAT, bytes, None)?;
     Ok(Raster {
         driver: "Terragen",
@@ -69,8 +69,8 @@ struct Chunks {
 
 impl Chunks {
     /// Walks the chunks up to the heights, which come last.
-    fn read(bytes: &[u8]) -> Result<Self, Fault> {
-        let cut = || Fault::broken(FORMAT, "it ends before its heights");
+    fn read(bytes: &[u8]) -> Result<Self, DemErrorKind> {
+        let cut = || DemErrorKind::broken(FORMAT, "it ends before its heights");
         let (mut side, mut columns, mut rows) = (None, None, None);
         let mut scale = glam::DVec3::splat(DEFAULT_SCALE);
         let mut at = START.len();
@@ -90,23 +90,23 @@ impl Chunks {
                     at = inside + 12;
                 }
                 b"ALTW" => {
-                    let missing = || Fault::broken(FORMAT, "it does not say how many heights it has");
+                    let missing = || DemErrorKind::broken(FORMAT, "it does not say how many heights it has");
                     let (columns, rows) = (columns.or(side), rows.or(side));
                     let (columns, rows) = columns.zip(rows).ok_or_else(missing)?;
                     return Ok(Self { columns, rows, scale, heights_at: inside });
                 }
-                b"EOF " => return Err(Fault::broken(FORMAT, "it has no heights")),
+                b"EOF " => return Err(DemErrorKind::broken(FORMAT, "it has no heights")),
                 other => {
                     let name = String::from_utf8_lossy(other).into_owned();
                     let reason = format!("the chunk '{name}' at byte {} is not known", inside - 4);
-                    return Err(Fault::broken(FORMAT, reason));
+                    return Err(DemErrorKind::broken(FORMAT, reason));
                 }
             }
         }
     }
 }
 
-fn scale_at(bytes: &[u8], at: usize) -> Result<glam::DVec3, Fault> {
+fn scale_at(bytes: &[u8], at: usize) -> Result<glam::DVec3, DemErrorKind> {
     let part = |index: usize| {
         bytes_at(bytes, at + 4 * index).map_or(f64::NAN, |raw| f64::from(f32::from_le_bytes(raw)))
     };
@@ -114,13 +114,13 @@ fn scale_at(bytes: &[u8], at: usize) -> Result<glam::DVec3, Fault> {
     if scale.is_finite() && scale.min_element() > 0.0 {
         return Ok(scale);
     }
-    Err(Fault::broken(FORMAT, format!("its scale is {scale}, not of positive metres")))
+    Err(DemErrorKind::broken(FORMAT, format!("its scale is {scale}, not of positive metres")))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{Hints, read};
+    use crate::dem::read::{DemHints, read};
 
     fn terrain(heights: &[i16]) -> Vec<u8> {
         let mut bytes = START.to_vec();
@@ -143,7 +143,7 @@ mod tests {
 
     #[test]
     fn heights_are_scaled_and_the_last_row_comes_first() {
-        let raster = read("a.ter", &terrain(&[8, -8, 3, 4, 5, 6]), &Hints::default()).expect("a terrain");
+        let raster = read("a.ter", &terrain(&[8, -8, 3, 4, 5, 6]), &DemHints::default()).expect("a terrain");
         assert_eq!((raster.width, raster.height), (2, 3));
         assert_eq!([raster.at(0, 2), raster.at(1, 2), raster.at(0, 0)], [14.0, 6.0, 12.5]);
         assert_eq!(raster.geotransform(), [0.0, 20.0, 0.0, 0.0, 0.0, 30.0]);
@@ -153,13 +153,13 @@ mod tests {
     fn a_terrain_cut_or_changed_anywhere_is_an_error_or_a_raster() {
         let whole = terrain(&[1, 2, 3, 4, 5, 6]);
         for end in 0..whole.len() - 4 {
-            assert!(read("a.ter", &whole[..end], &Hints::default()).is_err(), "{end}");
+            assert!(read("a.ter", &whole[..end], &DemHints::default()).is_err(), "{end}");
         }
         for at in 0..whole.len() {
             for value in [0, 0x7f, 0x80, 0xff] {
                 let mut broken = whole.clone();
                 broken[at] = value;
-                if let Ok(raster) = read("a.ter", &broken, &Hints::default()) {
+                if let Ok(raster) = read("a.ter", &broken, &DemHints::default()) {
                     assert_eq!(raster.samples.len(), raster.width as usize * raster.height as usize);
                 }
             }

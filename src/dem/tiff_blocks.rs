@@ -20,10 +20,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 
-use crate::dem::fault::Fault;
+use crate::dem::fault::DemErrorKind;
 use crate::dem::raster::Samples;
 use crate::dem::tiff_rows::Elevation;
-use crate::dem::tiff_storage::{Block, FORMAT, Storage, fault};
+use crate::dem::tiff_storage::{FORMAT, Storage, TiffBlock, fault};
 use crate::dem::tiff_unpack::Unpacker;
 
 /// Tasks for each thread: several, since blocks over flat ground are done sooner; few, since each may have to read
@@ -36,7 +36,7 @@ pub(crate) fn decode(
     storage: &Storage,
     nodata: Option<f64>,
     limits: &Limits,
-) -> Result<Samples, Fault> {
+) -> Result<Samples, DemErrorKind> {
     storage.check_samples()?;
     let image = Image { bytes, storage, nodata, limits };
     if storage.is_wide() {
@@ -55,7 +55,7 @@ struct Image<'a> {
 }
 
 impl Image<'_> {
-    fn elevations<E: Elevation>(&self) -> Result<Vec<E>, Fault> {
+    fn elevations<E: Elevation>(&self) -> Result<Vec<E>, DemErrorKind> {
         let (width, height) = (self.storage.width as usize, self.storage.height as usize);
         // Zeros come from the system as they are needed, in the task that overwrites them.
         let mut values = vec![E::default(); width * height];
@@ -64,7 +64,7 @@ impl Image<'_> {
         let per_task = down.div_ceil(tasks as u32).max(1);
         let rows_per_task = per_task as usize * self.storage.block_size.1 as usize;
         let first_failed = AtomicUsize::new(usize::MAX);
-        let outcomes: Vec<Result<(), Fault>> = values
+        let outcomes: Vec<Result<(), DemErrorKind>> = values
             .par_chunks_mut(width * rows_per_task)
             .enumerate()
             .map(|(task, rows)| {
@@ -79,11 +79,11 @@ impl Image<'_> {
                 outcome
             })
             .collect();
-        outcomes.into_iter().collect::<Result<(), Fault>>().map(|()| values)
+        outcomes.into_iter().collect::<Result<(), DemErrorKind>>().map(|()| values)
     }
 
     /// Fills the rows of the raster that rows `down` of blocks hold.
-    fn fill<E: Elevation>(&self, down: Range<u32>, rows: &mut [E]) -> Result<(), Fault> {
+    fn fill<E: Elevation>(&self, down: Range<u32>, rows: &mut [E]) -> Result<(), DemErrorKind> {
         let width = self.storage.width as usize;
         let (across, _) = self.storage.blocks_across_and_down();
         let first_row = down.start as usize * self.storage.block_size.1 as usize;
@@ -93,11 +93,11 @@ impl Image<'_> {
             let out = &mut rows[start..];
             match &mut reader {
                 _ if !self.storage.is_written(block.index) => blank(self.nodata, block, out, width),
-                Reader::Straight(unpacker) => {
+                BlockReader::Straight(unpacker) => {
                     let range = unpacker.range(block, self.bytes.len())?;
                     unpacker.fill(&self.bytes[range], block, out, width)?;
                 }
-                Reader::Decoder(decoder) => {
+                BlockReader::Decoder(decoder) => {
                     decoded(decoder, self.storage, self.nodata, block, out, width)?;
                 }
             }
@@ -105,17 +105,17 @@ impl Image<'_> {
         Ok(())
     }
 
-    fn reader(&self) -> Result<Reader<'_>, Fault> {
+    fn reader(&self) -> Result<BlockReader<'_>, DemErrorKind> {
         if let Some(unpacker) = Unpacker::of(self.storage, self.nodata) {
-            return Ok(Reader::Straight(Box::new(unpacker)));
+            return Ok(BlockReader::Straight(Box::new(unpacker)));
         }
         let decoder = Decoder::new(Cursor::new(self.bytes)).map_err(fault)?;
-        Ok(Reader::Decoder(Box::new(decoder.with_limits(self.limits.clone()))))
+        Ok(BlockReader::Decoder(Box::new(decoder.with_limits(self.limits.clone()))))
     }
 }
 
 /// What turns blocks into elevations.
-enum Reader<'a> {
+enum BlockReader<'a> {
     Straight(Box<Unpacker<'a>>),
     Decoder(Box<Decoder<Cursor<&'a [u8]>>>),
 }
@@ -125,10 +125,10 @@ pub(crate) fn block<R: Read + Seek>(
     decoder: &mut Decoder<R>,
     storage: &Storage,
     nodata: Option<f64>,
-    block: Block,
+    block: TiffBlock,
     file_bytes: usize,
-) -> Result<Samples, Fault> {
-    let mut file = File { decoder, storage, nodata, file_bytes };
+) -> Result<Samples, DemErrorKind> {
+    let mut file = BlockFile { decoder, storage, nodata, file_bytes };
     if storage.is_wide() {
         file.elevations(block).map(Samples::F64)
     } else {
@@ -137,15 +137,15 @@ pub(crate) fn block<R: Read + Seek>(
 }
 
 /// An image that is not in memory.
-struct File<'a, R: Read + Seek> {
+struct BlockFile<'a, R: Read + Seek> {
     decoder: &'a mut Decoder<R>,
     storage: &'a Storage,
     nodata: Option<f64>,
     file_bytes: usize,
 }
 
-impl<R: Read + Seek> File<'_, R> {
-    fn elevations<E: Elevation>(&mut self, block: Block) -> Result<Vec<E>, Fault> {
+impl<R: Read + Seek> BlockFile<'_, R> {
+    fn elevations<E: Elevation>(&mut self, block: TiffBlock) -> Result<Vec<E>, DemErrorKind> {
         let width = block.width as usize;
         let mut values = vec![E::default(); width * block.height as usize];
         if !self.storage.is_written(block.index) {
@@ -159,20 +159,20 @@ impl<R: Read + Seek> File<'_, R> {
         Ok(values)
     }
 
-    fn bytes(&mut self, range: Range<usize>) -> Result<Vec<u8>, Fault> {
+    fn bytes(&mut self, range: Range<usize>) -> Result<Vec<u8>, DemErrorKind> {
         let file = self.decoder.inner();
         let mut bytes = Vec::new();
         let read = file
             .seek(SeekFrom::Start(range.start as u64))
             .and_then(|_| file.take(range.len() as u64).read_to_end(&mut bytes));
-        read.map_err(|error| Fault::broken(FORMAT, error.to_string()))?;
+        read.map_err(|error| DemErrorKind::broken(FORMAT, error.to_string()))?;
         Ok(bytes)
     }
 }
 
 /// What stands where nothing was written: no data where the file knows such a value, else the 0 that is there
 /// already, as GDAL has it.
-fn blank<E: Elevation>(nodata: Option<f64>, block: Block, out: &mut [E], stride: usize) {
+fn blank<E: Elevation>(nodata: Option<f64>, block: TiffBlock, out: &mut [E], stride: usize) {
     if nodata.is_some() {
         for row in out.chunks_mut(stride).take(block.height as usize) {
             row[..block.width as usize].fill(E::NONE);
@@ -185,14 +185,14 @@ fn decoded<R: Read + Seek, E: Elevation>(
     decoder: &mut Decoder<R>,
     storage: &Storage,
     nodata: Option<f64>,
-    block: Block,
+    block: TiffBlock,
     out: &mut [E],
     stride: usize,
-) -> Result<(), Fault> {
+) -> Result<(), DemErrorKind> {
     let hole = storage.comparable(nodata);
     let elevation =
         move |value: f64| if value == hole || !value.is_finite() { E::NONE } else { E::of(value) };
-    let mut place = Place { bands: storage.bands_per_block.into(), block, out, stride };
+    let mut place = BlockTarget { bands: storage.bands_per_block.into(), block, out, stride };
     let placed = match &decoder.read_chunk(block.index).map_err(fault)? {
         DecodingResult::U8(v) => place.copy(v, |x| elevation(x.into())),
         DecodingResult::I8(v) => place.copy(v, |x| elevation(x.into())),
@@ -206,18 +206,19 @@ fn decoded<R: Read + Seek, E: Elevation>(
         DecodingResult::F32(v) => place.copy(v, |x| elevation(x.into())),
         DecodingResult::F64(v) => place.copy(v, elevation),
     };
-    placed.ok_or_else(|| Fault::broken(FORMAT, format!("block {} does not fit its image", block.index)))
+    placed
+        .ok_or_else(|| DemErrorKind::broken(FORMAT, format!("block {} does not fit its image", block.index)))
 }
 
 /// Where a block's elevations go, and how many bands it holds.
-struct Place<'a, E> {
+struct BlockTarget<'a, E> {
     bands: usize,
-    block: Block,
+    block: TiffBlock,
     out: &'a mut [E],
     stride: usize,
 }
 
-impl<E> Place<'_, E> {
+impl<E> BlockTarget<'_, E> {
     /// Copies the first band of a block; `None` where the two do not fit.
     fn copy<S: Copy>(&mut self, samples: &[S], to: impl Fn(S) -> E) -> Option<()> {
         let (bands, width) = (self.bands, self.block.width as usize);

@@ -6,10 +6,10 @@ use std::io::{Cursor, Read, Seek};
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 
-use crate::dem::fault::{Fault, MOST_SAMPLES};
+use crate::dem::fault::{DemErrorKind, MOST_SAMPLES};
 use crate::dem::raster::Samples;
 use crate::dem::tiff_neutral::neutralised;
-use crate::dem::tiff_storage::{Block, FORMAT, Storage, fault};
+use crate::dem::tiff_storage::{FORMAT, Storage, TiffBlock, fault};
 
 /// Images after this many are not looked at.
 pub(crate) const MOST_IMAGES: usize = 64;
@@ -19,7 +19,7 @@ pub(crate) const IS_MASK: u32 = 4;
 
 /// Whether there is a mask, within or beside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Found {
+pub(crate) enum MaskLocation {
     /// There is one, and it was applied.
     Mask,
     /// There is none.
@@ -32,14 +32,14 @@ pub(crate) fn apply_beside(
     limits: impl Fn(usize) -> Limits,
     size: (u32, u32),
     samples: &mut Samples,
-) -> Result<(), Fault> {
+) -> Result<(), DemErrorKind> {
     let bytes = neutralised(mask);
     let mut decoder = Decoder::new(Cursor::new(&bytes[..])).map_err(fault)?.with_limits(limits(bytes.len()));
     let found = decoder.dimensions().map_err(fault)?;
     if found != size {
         let reason =
             format!("the mask beside it has {} x {} samples, not {} x {}", found.0, found.1, size.0, size.1);
-        return Err(Fault::broken(FORMAT, reason));
+        return Err(DemErrorKind::broken(FORMAT, reason));
     }
     hide(&mut decoder, bytes.len(), samples)
 }
@@ -50,25 +50,25 @@ pub(crate) fn apply<R: Read + Seek>(
     size: (u32, u32),
     file_bytes: usize,
     samples: &mut Samples,
-) -> Result<Found, Fault> {
+) -> Result<MaskLocation, DemErrorKind> {
     for _ in 0..MOST_IMAGES {
         // A broken overview or page is no reason to refuse the image before it.
         if !decoder.more_images() || decoder.next_image().is_err() {
-            return Ok(Found::Nothing);
+            return Ok(MaskLocation::Nothing);
         }
         let kind = decoder.find_tag_unsigned::<u32>(Tag::NewSubfileType).ok().flatten().unwrap_or(0);
         if kind & IS_MASK != 0 && decoder.dimensions().is_ok_and(|found| found == size) {
-            return hide(decoder, file_bytes, samples).map(|()| Found::Mask);
+            return hide(decoder, file_bytes, samples).map(|()| MaskLocation::Mask);
         }
     }
-    Ok(Found::Nothing)
+    Ok(MaskLocation::Nothing)
 }
 
 fn hide<R: Read + Seek>(
     decoder: &mut Decoder<R>,
     file_bytes: usize,
     samples: &mut Samples,
-) -> Result<(), Fault> {
+) -> Result<(), DemErrorKind> {
     let storage = Storage::of(decoder, file_bytes, MOST_SAMPLES)?;
     check(&storage)?;
     for at in storage.blocks() {
@@ -81,10 +81,10 @@ fn hide<R: Read + Seek>(
 }
 
 /// Whether a mask is stored in a way that is read.
-pub(crate) fn check(storage: &Storage) -> Result<(), Fault> {
+pub(crate) fn check(storage: &Storage) -> Result<(), DemErrorKind> {
     match storage.bits {
         1 | 8 => Ok(()),
-        bits => Err(Fault::broken(FORMAT, format!("its mask has {bits} bits"))),
+        bits => Err(DemErrorKind::broken(FORMAT, format!("its mask has {bits} bits"))),
     }
 }
 
@@ -99,12 +99,12 @@ pub(crate) struct MaskBlock {
 pub(crate) fn block<R: Read + Seek>(
     decoder: &mut Decoder<R>,
     storage: &Storage,
-    Block { index, width, height, .. }: Block,
-) -> Result<MaskBlock, Fault> {
+    TiffBlock { index, width, height, .. }: TiffBlock,
+) -> Result<MaskBlock, DemErrorKind> {
     // What was never written hides what lies under it.
     let bytes = match storage.is_written(index).then(|| decoder.read_chunk(index)) {
         Some(Ok(DecodingResult::U8(bytes))) => bytes,
-        Some(Ok(_)) => return Err(Fault::broken(FORMAT, "its mask does not hold bytes")),
+        Some(Ok(_)) => return Err(DemErrorKind::broken(FORMAT, "its mask does not hold bytes")),
         Some(Err(error)) => return Err(fault(error)),
         None => Vec::new(),
     };

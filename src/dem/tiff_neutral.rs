@@ -43,9 +43,9 @@ impl Bytes for &[u8] {
 }
 
 /// A file that is not in memory, with its length.
-struct File<'a, R>(&'a mut R, usize);
+struct TiffInput<'a, R>(&'a mut R, usize);
 
-impl<R: Read + Seek> Bytes for File<'_, R> {
+impl<R: Read + Seek> Bytes for TiffInput<'_, R> {
     fn length(&self) -> usize {
         self.1
     }
@@ -59,15 +59,15 @@ impl<R: Read + Seek> Bytes for File<'_, R> {
 
 /// Where the photometric tags of a file of `length` bytes are to be rewritten, and to what.
 pub(crate) fn rewritten<R: Read + Seek>(file: &mut R, length: usize) -> Vec<(usize, [u8; 2])> {
-    let mut bytes = File(file, length);
-    let layout = Layout::of(&mut bytes);
+    let mut bytes = TiffInput(file, length);
+    let layout = TiffLayout::of(&mut bytes);
     layout.map(|layout| layout.photometric_tags(&mut bytes)).unwrap_or_default()
 }
 
 /// The file with the photometric tag of every image rewritten.
 pub(crate) fn neutralised(bytes: &[u8]) -> Cow<'_, [u8]> {
     let mut whole = bytes;
-    let layout = Layout::of(&mut whole);
+    let layout = TiffLayout::of(&mut whole);
     let places = layout.map(|layout| layout.photometric_tags(&mut whole)).unwrap_or_default();
     if places.is_empty() {
         return Cow::Borrowed(bytes);
@@ -81,12 +81,12 @@ pub(crate) fn neutralised(bytes: &[u8]) -> Cow<'_, [u8]> {
 
 /// Byte order and field widths.
 #[derive(Clone, Copy)]
-struct Layout {
+struct TiffLayout {
     little: bool,
     big_tiff: bool,
 }
 
-impl Layout {
+impl TiffLayout {
     fn of(bytes: &mut impl Bytes) -> Option<Self> {
         match &bytes.at::<4>(0)? {
             b"II*\0" => Some(Self { little: true, big_tiff: false }),

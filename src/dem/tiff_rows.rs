@@ -16,28 +16,28 @@
 
 use tiff::tags::ByteOrder;
 
-use crate::dem::tiff_storage::{Kind, Predictor, Storage};
+use crate::dem::tiff_storage::{Predictor, SampleKind, Storage};
 
 /// How rows of an image become elevations, where it is stored in one of the common ways.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Rows {
+pub(crate) struct RowDecoder {
     bits: u16,
-    kind: Kind,
+    kind: SampleKind,
     predictor: Predictor,
     order: ByteOrder,
     bands: usize,
     hole: f64,
 }
 
-impl Rows {
+impl RowDecoder {
     /// Of an image whose no-data value is `nodata`; `None` where its samples or its predictor are uncommon.
     pub fn of(storage: &Storage, nodata: Option<f64>) -> Option<Self> {
         let Storage { bits, kind, predictor, order, bands_per_block, .. } = *storage;
         let common = match (kind, predictor) {
-            (Kind::Other, _) | (_, Predictor::Other) => false,
-            (Kind::Float, _) => matches!(bits, 32 | 64),
+            (SampleKind::Other, _) | (_, Predictor::Other) => false,
+            (SampleKind::Float, _) => matches!(bits, 32 | 64),
             (_, Predictor::FloatBytes) => false,
-            (Kind::Unsigned | Kind::Signed, _) => matches!(bits, 8 | 16 | 32 | 64),
+            (SampleKind::Unsigned | SampleKind::Signed, _) => matches!(bits, 8 | 16 | 32 | 64),
         };
         let rows = Self {
             bits,
@@ -60,12 +60,12 @@ pub(crate) trait Elevation: Copy + Default + Send + Sync {
     fn of(value: f64) -> Self;
 
     /// The elevations of a row's first samples, as many as `out` holds. `row` holds whole rows of a block.
-    fn fill(rows: &Rows, row: &[u8], words: &mut Words, out: &mut [Self]);
+    fn fill(rows: &RowDecoder, row: &[u8], words: &mut RowWords, out: &mut [Self]);
 }
 
 /// Room for the words of one row.
 #[derive(Debug, Default)]
-pub(crate) struct Words {
+pub(crate) struct RowWords {
     of_8: Vec<u8>,
     of_16: Vec<u16>,
     of_32: Vec<u32>,
@@ -79,16 +79,16 @@ impl Elevation for f32 {
         value as Self
     }
 
-    fn fill(rows: &Rows, row: &[u8], words: &mut Words, out: &mut [Self]) {
+    fn fill(rows: &RowDecoder, row: &[u8], words: &mut RowWords, out: &mut [Self]) {
         // What is kept in 32 bits holds no more: the value to compare with is exact, or equals none.
         let hole = if f64::from(rows.hole as Self) == rows.hole { rows.hole as Self } else { Self::NAN };
         let known = |value: Self| if value == hole || !value.is_finite() { Self::NAN } else { value };
         match (rows.bits, rows.kind) {
-            (8, Kind::Signed) => {
+            (8, SampleKind::Signed) => {
                 convert(words_of(rows, row, &mut words.of_8), out, |w| known((w as i8).into()))
             }
             (8, _) => convert(words_of(rows, row, &mut words.of_8), out, |w| known(w.into())),
-            (16, Kind::Signed) => {
+            (16, SampleKind::Signed) => {
                 convert(words_of(rows, row, &mut words.of_16), out, |w| known((w as i16).into()))
             }
             (16, _) => convert(words_of(rows, row, &mut words.of_16), out, |w| known(w.into())),
@@ -104,18 +104,20 @@ impl Elevation for f64 {
         value
     }
 
-    fn fill(rows: &Rows, row: &[u8], words: &mut Words, out: &mut [Self]) {
+    fn fill(rows: &RowDecoder, row: &[u8], words: &mut RowWords, out: &mut [Self]) {
         let hole = rows.hole;
         let known = |value: Self| if value == hole || !value.is_finite() { Self::NAN } else { value };
         match (rows.bits, rows.kind) {
-            (32, Kind::Signed) => {
+            (32, SampleKind::Signed) => {
                 convert(words_of(rows, row, &mut words.of_32), out, |w| known((w as i32).into()))
             }
             (32, _) => convert(words_of(rows, row, &mut words.of_32), out, |w| known(w.into())),
-            (_, Kind::Signed) => {
+            (_, SampleKind::Signed) => {
                 convert(words_of(rows, row, &mut words.of_64), out, |w| known(w as i64 as Self))
             }
-            (_, Kind::Unsigned) => convert(words_of(rows, row, &mut words.of_64), out, |w| known(w as Self)),
+            (_, SampleKind::Unsigned) => {
+                convert(words_of(rows, row, &mut words.of_64), out, |w| known(w as Self))
+            }
             _ => convert(words_of(rows, row, &mut words.of_64), out, |w| known(Self::from_bits(w))),
         }
     }
@@ -128,7 +130,7 @@ fn convert<W: Copy, E>(words: &[W], out: &mut [E], elevation: impl Fn(W) -> E) {
 }
 
 /// The bits of a sample as one number.
-trait Word: Copy + Default {
+trait SampleWord: Copy + Default {
     fn of(bytes: &[u8], order: ByteOrder) -> Self;
     fn plus(self, other: Self) -> Self;
     /// Undoes the floating-point predictor: the first of every `bands` samples of a row of them.
@@ -137,7 +139,7 @@ trait Word: Copy + Default {
 
 macro_rules! words {
     ($($word:ty: $bytes:literal),*) => {$(
-        impl Word for $word {
+        impl SampleWord for $word {
             fn of(bytes: &[u8], order: ByteOrder) -> Self {
                 let bytes = bytes.try_into().unwrap_or_default();
                 match order {
@@ -190,7 +192,7 @@ fn sum(plane: &[u8], bands: usize) -> u8 {
 }
 
 /// The first band's words of a row.
-fn words_of<'a, W: Word>(rows: &Rows, row: &[u8], words: &'a mut Vec<W>) -> &'a [W] {
+fn words_of<'a, W: SampleWord>(rows: &RowDecoder, row: &[u8], words: &'a mut Vec<W>) -> &'a [W] {
     let bytes = size_of::<W>();
     words.resize(row.len() / (bytes * rows.bands), W::default());
     let of = |sample: &[u8]| W::of(&sample[..bytes], rows.order);
@@ -218,19 +220,19 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn rows(bits: u16, kind: Kind, predictor: Predictor, order: ByteOrder, bands: usize) -> Rows {
-        Rows { bits, kind, predictor, order, bands, hole: f64::NAN }
+    fn rows(bits: u16, kind: SampleKind, predictor: Predictor, order: ByteOrder, bands: usize) -> RowDecoder {
+        RowDecoder { bits, kind, predictor, order, bands, hole: f64::NAN }
     }
 
     #[test]
     fn differences_are_summed_band_by_band_in_either_byte_order() {
         let mut out = [0f32; 3];
-        let rows_of = |order| rows(16, Kind::Signed, Predictor::Differences, order, 2);
+        let rows_of = |order| rows(16, SampleKind::Signed, Predictor::Differences, order, 2);
         let little = [5u8, 0, 9, 9, 0xff, 0xff, 9, 9, 0xfb, 0xff, 9, 9];
-        f32::fill(&rows_of(ByteOrder::LittleEndian), &little, &mut Words::default(), &mut out);
+        f32::fill(&rows_of(ByteOrder::LittleEndian), &little, &mut RowWords::default(), &mut out);
         assert_eq!(out, [5.0, 4.0, -1.0]);
         let big: Vec<u8> = little.chunks_exact(2).flat_map(|pair| [pair[1], pair[0]]).collect();
-        f32::fill(&rows_of(ByteOrder::BigEndian), &big, &mut Words::default(), &mut out);
+        f32::fill(&rows_of(ByteOrder::BigEndian), &big, &mut RowWords::default(), &mut out);
         assert_eq!(out, [5.0, 4.0, -1.0]);
     }
 
@@ -238,11 +240,11 @@ mod tests {
     fn the_value_for_no_data_and_what_is_not_finite_become_nan() {
         let row = [7f32, -9999.0, f32::INFINITY, 8.0].map(f32::to_le_bytes).concat();
         let mut out = [0f32; 4];
-        let plain = rows(32, Kind::Float, Predictor::Plain, ByteOrder::LittleEndian, 1);
-        f32::fill(&Rows { hole: -9999.0, ..plain }, &row, &mut Words::default(), &mut out);
+        let plain = rows(32, SampleKind::Float, Predictor::Plain, ByteOrder::LittleEndian, 1);
+        f32::fill(&RowDecoder { hole: -9999.0, ..plain }, &row, &mut RowWords::default(), &mut out);
         assert!(out[0] == 7.0 && out[1].is_nan() && out[2].is_nan() && out[3] == 8.0);
         // 0.1 is no float: no sample of 32 bits equals it.
-        f32::fill(&Rows { hole: 0.1, ..plain }, &row, &mut Words::default(), &mut out);
+        f32::fill(&RowDecoder { hole: 0.1, ..plain }, &row, &mut RowWords::default(), &mut out);
         assert_eq!(out[1], -9999.0);
     }
 

@@ -16,7 +16,7 @@ use tiff::TiffError;
 use tiff::decoder::{ChunkType, Decoder};
 use tiff::tags::{ByteOrder, Tag};
 
-use crate::dem::fault::{Fault, check_size, check_size_within};
+use crate::dem::fault::{DemErrorKind, check_size, check_size_within};
 
 pub(crate) const FORMAT: &str = "GeoTIFF";
 
@@ -30,7 +30,7 @@ pub(crate) struct Storage {
     /// Bits of one sample.
     pub bits: u16,
     /// What the bits of a sample mean.
-    pub kind: Kind,
+    pub kind: SampleKind,
     /// How blocks are packed.
     pub packing: Packing,
     /// What was done to rows before they were packed.
@@ -51,7 +51,7 @@ pub(crate) struct Storage {
 
 /// What the bits of a sample mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum SampleKind {
     /// An integer from 0 on.
     Unsigned,
     /// An integer in two's complement.
@@ -90,7 +90,7 @@ pub(crate) enum Predictor {
 
 /// A block and the part of it that lies within the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Block {
+pub(crate) struct TiffBlock {
     /// Its number among the first band's.
     pub index: u32,
     /// The image's column that it starts at.
@@ -105,18 +105,22 @@ pub(crate) struct Block {
 
 impl Storage {
     /// Reads and checks the tags of the decoder's current image, of at most `most` samples.
-    pub fn of<R: Read + Seek>(decoder: &mut Decoder<R>, file_bytes: usize, most: u64) -> Result<Self, Fault> {
+    pub fn of<R: Read + Seek>(
+        decoder: &mut Decoder<R>,
+        file_bytes: usize,
+        most: u64,
+    ) -> Result<Self, DemErrorKind> {
         let (width, height) = decoder.dimensions().map_err(fault)?;
         let mut shorts = |tag: Tag, default: u16| {
             let found = decoder.find_tag_unsigned_vec::<u16>(tag).map_err(fault)?;
-            Ok::<_, Fault>(found.filter(|values| !values.is_empty()).unwrap_or_else(|| vec![default]))
+            Ok::<_, DemErrorKind>(found.filter(|values| !values.is_empty()).unwrap_or_else(|| vec![default]))
         };
         let compression = shorts(Tag::Compression, 1)?[0];
         let expansion = expansion(compression)?;
         let depths = shorts(Tag::BitsPerSample, 1)?;
         let bands = shorts(Tag::SamplesPerPixel, 1)?[0];
         if bands == 0 {
-            return Err(Fault::broken(FORMAT, "it has no band"));
+            return Err(DemErrorKind::broken(FORMAT, "it has no band"));
         }
         let planar = shorts(Tag::PlanarConfiguration, 1)?[0] == 2;
         let formats = shorts(Tag::SampleFormat, 1)?;
@@ -134,7 +138,7 @@ impl Storage {
             width,
             height,
             bits: depths[0],
-            kind: if alike(&depths) && alike(&formats) { kind(formats[0]) } else { Kind::Other },
+            kind: if alike(&depths) && alike(&formats) { kind(formats[0]) } else { SampleKind::Other },
             packing: packing(compression),
             predictor,
             order: decoder.byte_order(),
@@ -151,7 +155,7 @@ impl Storage {
         Ok(storage)
     }
 
-    fn check(&self, (file, expansion): (usize, u64), most: u64) -> Result<(), Fault> {
+    fn check(&self, (file, expansion): (usize, u64), most: u64) -> Result<(), DemErrorKind> {
         // Blocks that were never written take no bytes: such a file may claim more than it holds.
         let sparse = self.block_bytes.contains(&0);
         let held = (file, if sparse { expansion.max(2) } else { expansion });
@@ -178,41 +182,41 @@ impl Storage {
     /// The type of a sample, as GDAL names it.
     pub fn data_type(&self) -> &'static str {
         match (self.kind, self.bits) {
-            (Kind::Float, ..=32) => "Float32",
-            (Kind::Float, _) => "Float64",
-            (Kind::Signed, ..=8) => "Int8",
-            (Kind::Signed, ..=16) => "Int16",
-            (Kind::Signed, ..=32) => "Int32",
-            (Kind::Signed, _) => "Int64",
+            (SampleKind::Float, ..=32) => "Float32",
+            (SampleKind::Float, _) => "Float64",
+            (SampleKind::Signed, ..=8) => "Int8",
+            (SampleKind::Signed, ..=16) => "Int16",
+            (SampleKind::Signed, ..=32) => "Int32",
+            (SampleKind::Signed, _) => "Int64",
             // What is neither is refused before anybody asks.
-            (Kind::Unsigned | Kind::Other, ..=8) => "Byte",
-            (Kind::Unsigned | Kind::Other, ..=16) => "UInt16",
-            (Kind::Unsigned | Kind::Other, ..=32) => "UInt32",
-            (Kind::Unsigned | Kind::Other, _) => "UInt64",
+            (SampleKind::Unsigned | SampleKind::Other, ..=8) => "Byte",
+            (SampleKind::Unsigned | SampleKind::Other, ..=16) => "UInt16",
+            (SampleKind::Unsigned | SampleKind::Other, ..=32) => "UInt32",
+            (SampleKind::Unsigned | SampleKind::Other, _) => "UInt64",
         }
     }
 
     /// Whether samples need 64 bits to stay exact.
     pub fn is_wide(&self) -> bool {
-        self.bits == 64 || (self.bits == 32 && self.kind != Kind::Float)
+        self.bits == 64 || (self.bits == 32 && self.kind != SampleKind::Float)
     }
 
     /// A no-data value as a sample can equal it; NaN, which nothing equals, where there is none.
     pub fn comparable(&self, nodata: Option<f64>) -> f64 {
         match nodata {
-            Some(value) if self.kind == Kind::Float && self.bits <= 32 => f64::from(value as f32),
+            Some(value) if self.kind == SampleKind::Float && self.bits <= 32 => f64::from(value as f32),
             Some(value) => value,
             None => f64::NAN,
         }
     }
 
     /// Whether samples of this kind are read.
-    pub fn check_samples(&self) -> Result<(), Fault> {
-        let is_float = self.kind == Kind::Float;
+    pub fn check_samples(&self) -> Result<(), DemErrorKind> {
+        let is_float = self.kind == SampleKind::Float;
         if [8, 16, 32, 64].contains(&self.bits) && !(is_float && self.bits == 8) {
             return Ok(());
         }
-        Err(Fault::Unsupported {
+        Err(DemErrorKind::Unsupported {
             format: FORMAT,
             what: format!("{}-bit {}", self.bits, if is_float { "floats" } else { "samples" }),
             remedy: "convert it, for example with: gdal_translate -ot Float32 FILE out.tif",
@@ -225,10 +229,10 @@ impl Storage {
     }
 
     /// The block at a column and a row of blocks.
-    pub fn block(&self, across: u32, down: u32) -> Block {
+    pub fn block(&self, across: u32, down: u32) -> TiffBlock {
         let (width, height) = self.block_size;
         let (column, row) = (across * width, down * height);
-        Block {
+        TiffBlock {
             index: (u64::from(down) * u64::from(self.width.div_ceil(width)) + u64::from(across)) as u32,
             column,
             row,
@@ -238,7 +242,7 @@ impl Storage {
     }
 
     /// All blocks of the first band, in the order of their numbers.
-    pub fn blocks(&self) -> impl Iterator<Item = Block> + '_ {
+    pub fn blocks(&self) -> impl Iterator<Item = TiffBlock> + '_ {
         let (across, down) = self.blocks_across_and_down();
         (0..down).flat_map(move |y| (0..across).map(move |x| self.block(x, y)))
     }
@@ -258,12 +262,12 @@ fn alike(values: &[u16]) -> bool {
     values.iter().all(|value| *value == values[0])
 }
 
-fn kind(format: u16) -> Kind {
+fn kind(format: u16) -> SampleKind {
     match format {
-        1 => Kind::Unsigned,
-        2 => Kind::Signed,
-        3 => Kind::Float,
-        _ => Kind::Other,
+        1 => SampleKind::Unsigned,
+        2 => SampleKind::Signed,
+        3 => SampleKind::Float,
+        _ => SampleKind::Other,
     }
 }
 
@@ -286,7 +290,7 @@ fn predictor(code: u16) -> Predictor {
 }
 
 /// How many bytes one packed byte can become, by compression scheme.
-fn expansion(compression: u16) -> Result<u64, Fault> {
+fn expansion(compression: u16) -> Result<u64, DemErrorKind> {
     let what = match compression {
         1 => return Ok(1),
         // A code of 12 bits stands for up to 4 KiB.
@@ -304,7 +308,7 @@ fn expansion(compression: u16) -> Result<u64, Fault> {
         50002 | 52546 => "JPEG XL compression".into(),
         other => format!("compression scheme {other}"),
     };
-    Err(Fault::Unsupported {
+    Err(DemErrorKind::Unsupported {
         format: FORMAT,
         what,
         remedy: "convert it, for example with: gdal_translate -co COMPRESS=DEFLATE FILE out.tif",
@@ -312,16 +316,16 @@ fn expansion(compression: u16) -> Result<u64, Fault> {
 }
 
 /// The decoder's error in our words.
-pub(crate) fn fault(error: TiffError) -> Fault {
+pub(crate) fn fault(error: TiffError) -> DemErrorKind {
     match error {
-        TiffError::UnsupportedError(what) => Fault::Unsupported {
+        TiffError::UnsupportedError(what) => DemErrorKind::Unsupported {
             format: FORMAT,
             what: what.to_string(),
             remedy: "convert it, for example with: gdal_translate -co COMPRESS=DEFLATE FILE out.tif",
         },
         TiffError::LimitsExceeded => {
-            Fault::broken(FORMAT, "a tag or a block claims more than the file holds")
+            DemErrorKind::broken(FORMAT, "a tag or a block claims more than the file holds")
         }
-        other => Fault::broken(FORMAT, other.to_string()),
+        other => DemErrorKind::broken(FORMAT, other.to_string()),
     }
 }

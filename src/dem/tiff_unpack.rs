@@ -6,10 +6,10 @@
 
 use flate2::{Decompress, FlushDecompress, Status};
 
-use crate::dem::fault::Fault;
+use crate::dem::fault::DemErrorKind;
 use crate::dem::tiff_lzw;
-use crate::dem::tiff_rows::{Elevation, Rows, Words};
-use crate::dem::tiff_storage::{Block, FORMAT, Packing, Storage};
+use crate::dem::tiff_rows::{Elevation, RowDecoder, RowWords};
+use crate::dem::tiff_storage::{FORMAT, Packing, Storage, TiffBlock};
 
 /// Packed bytes beyond twice what a block unpacks to are not looked at; no packing needs more.
 const MOST_GROWTH: usize = 2;
@@ -20,29 +20,29 @@ const SLACK: usize = 1 << 10;
 /// What unpacks blocks, with the room that it needs for one.
 pub(crate) struct Unpacker<'a> {
     storage: &'a Storage,
-    rows: Rows,
+    rows: RowDecoder,
     inflater: Decompress,
     unpacked: Vec<u8>,
-    words: Words,
+    words: RowWords,
 }
 
 impl<'a> Unpacker<'a> {
     /// For an image whose no-data value is `nodata`; `None` where it is stored in another way.
     pub fn of(storage: &'a Storage, nodata: Option<f64>) -> Option<Self> {
-        let rows = Rows::of(storage, nodata).filter(|_| storage.packing != Packing::Other)?;
+        let rows = RowDecoder::of(storage, nodata).filter(|_| storage.packing != Packing::Other)?;
         Some(Self {
             storage,
             rows,
             inflater: Decompress::new(true),
             unpacked: Vec::new(),
-            words: Words::default(),
+            words: RowWords::default(),
         })
     }
 
     /// Where the packed bytes of a block lie in a file of `file_bytes` bytes; empty beyond its end.
-    pub fn range(&self, block: Block, file_bytes: usize) -> Result<std::ops::Range<usize>, Fault> {
+    pub fn range(&self, block: TiffBlock, file_bytes: usize) -> Result<std::ops::Range<usize>, DemErrorKind> {
         let (start, bytes) = self.storage.place(block.index).ok_or_else(|| {
-            Fault::broken(FORMAT, format!("its tables do not say where block {} lies", block.index))
+            DemErrorKind::broken(FORMAT, format!("its tables do not say where block {} lies", block.index))
         })?;
         let most = self.bytes_within(block).saturating_mul(MOST_GROWTH).saturating_add(SLACK);
         let start = usize::try_from(start).unwrap_or(usize::MAX).min(file_bytes);
@@ -60,10 +60,10 @@ impl<'a> Unpacker<'a> {
     pub fn fill<E: Elevation>(
         &mut self,
         packed: &[u8],
-        block: Block,
+        block: TiffBlock,
         out: &mut [E],
         stride: usize,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), DemErrorKind> {
         let needed = self.bytes_within(block);
         let rows = match self.storage.packing {
             Packing::Plain => packed.get(..needed).ok_or_else(|| short(block, packed.len(), needed))?,
@@ -86,21 +86,27 @@ impl<'a> Unpacker<'a> {
     }
 
     /// The bytes of those rows of a block that lie in the image.
-    fn bytes_within(&self, block: Block) -> usize {
+    fn bytes_within(&self, block: TiffBlock) -> usize {
         self.storage.row_bytes() * block.height as usize
     }
 }
 
 /// Fills `out` with the first bytes of a stream; what follows them is not looked at.
-fn inflate(inflater: &mut Decompress, packed: &[u8], block: Block, out: &mut [u8]) -> Result<(), Fault> {
+fn inflate(
+    inflater: &mut Decompress,
+    packed: &[u8],
+    block: TiffBlock,
+    out: &mut [u8],
+) -> Result<(), DemErrorKind> {
     inflater.reset(true);
     let (mut read, mut written) = (0, 0);
     while written < out.len() {
         let before = (inflater.total_in(), inflater.total_out());
-        let status =
-            inflater.decompress(&packed[read..], &mut out[written..], FlushDecompress::Finish).map_err(
-                |error| Fault::broken(FORMAT, format!("block {} does not inflate: {error}", block.index)),
-            )?;
+        let status = inflater
+            .decompress(&packed[read..], &mut out[written..], FlushDecompress::Finish)
+            .map_err(|error| {
+                DemErrorKind::broken(FORMAT, format!("block {} does not inflate: {error}", block.index))
+            })?;
         read += (inflater.total_in() - before.0) as usize;
         written += (inflater.total_out() - before.1) as usize;
         let stuck = (inflater.total_in(), inflater.total_out()) == before;
@@ -111,9 +117,9 @@ fn inflate(inflater: &mut Decompress, packed: &[u8], block: Block, out: &mut [u8
     Ok(())
 }
 
-fn unpack_lzw(packed: &[u8], block: Block, out: &mut [u8]) -> Result<(), Fault> {
+fn unpack_lzw(packed: &[u8], block: TiffBlock, out: &mut [u8]) -> Result<(), DemErrorKind> {
     if tiff_lzw::is_ancient(packed) {
-        return Err(Fault::Unsupported {
+        return Err(DemErrorKind::Unsupported {
             format: FORMAT,
             what: "LZW in the order of bits of before 1991".into(),
             remedy: "convert it, for example with: gdal_translate -co COMPRESS=DEFLATE FILE out.tif",
@@ -125,7 +131,7 @@ fn unpack_lzw(packed: &[u8], block: Block, out: &mut [u8]) -> Result<(), Fault> 
     }
 }
 
-fn short(block: Block, found: usize, wanted: usize) -> Fault {
+fn short(block: TiffBlock, found: usize, wanted: usize) -> DemErrorKind {
     let index = block.index;
-    Fault::broken(FORMAT, format!("block {index} holds {found} of the {wanted} bytes of its rows"))
+    DemErrorKind::broken(FORMAT, format!("block {index} holds {found} of the {wanted} bytes of its rows"))
 }

@@ -20,16 +20,16 @@ use glam::{DAffine2, DVec2};
 use tiff::decoder::Decoder;
 use tiff::tags::Tag;
 
-use crate::dem::fault::{DemError, Fault};
-use crate::dem::geotiff::{self, Described};
+use crate::dem::fault::{DemError, DemErrorKind};
+use crate::dem::geotiff::{self, GeoTiffHeader};
 use crate::dem::raster::{Raster, scaled};
-use crate::dem::read::{Hints, Source};
+use crate::dem::read::{DemFile, DemHints};
 use crate::dem::recent::Recent;
 use crate::dem::tiff_blocks;
 use crate::dem::tiff_file::TiffFile;
 use crate::dem::tiff_mask::{self, IS_MASK, MOST_IMAGES};
-use crate::dem::tiff_storage::{Block, FORMAT, Storage, fault};
-use crate::dem::windows::{Window, Windows};
+use crate::dem::tiff_storage::{FORMAT, Storage, TiffBlock, fault};
+use crate::dem::windows::{RasterWindow, Windows};
 
 /// The most samples of an image that is read in windows: 262,144 a side. Nothing is allocated for them; it keeps the
 /// numbers of 16 × 16 tiles within 32 bits.
@@ -61,11 +61,11 @@ pub struct Overview {
 pub struct GeoTiffWindows<R: Read + Seek> {
     name: String,
     file: TiffFile<R>,
-    described: Described,
+    described: GeoTiffHeader,
     overviews: Vec<Overview>,
     masks: Vec<Overview>,
-    heights: Plane<R>,
-    mask: Option<Plane<R>>,
+    heights: TiffImage<R>,
+    mask: Option<TiffImage<R>>,
     blocks: Recent<u32, Arc<[f32]>>,
     cache_bytes: usize,
 }
@@ -77,25 +77,25 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
     /// # Errors
     /// What the whole reader refuses is refused alike, except images that are merely too large for the memory; so
     /// are files whose single blocks are.
-    pub fn open(name: &str, file: R, hints: &Hints, cache_bytes: usize) -> Result<Self, DemError> {
+    pub fn open(name: &str, file: R, hints: &DemHints, cache_bytes: usize) -> Result<Self, DemError> {
         Self::open_first(name, file, hints, cache_bytes)
             .map_err(|fault| DemError { name: name.to_owned(), fault })
     }
 
-    fn open_first(name: &str, file: R, hints: &Hints, cache_bytes: usize) -> Result<Self, Fault> {
-        let unread = |error: std::io::Error| Fault::broken(FORMAT, error.to_string());
+    fn open_first(name: &str, file: R, hints: &DemHints, cache_bytes: usize) -> Result<Self, DemErrorKind> {
+        let unread = |error: std::io::Error| DemErrorKind::broken(FORMAT, error.to_string());
         let file = TiffFile::new(file).map_err(unread)?;
         let mut start = Vec::new();
         file.clone().take(4).read_to_end(&mut start).map_err(unread)?;
         if !geotiff::recognises(&start) {
-            return Err(Fault::broken(FORMAT, "it does not start as a TIFF file does"));
+            return Err(DemErrorKind::broken(FORMAT, "it does not start as a TIFF file does"));
         }
-        let mut heights = Plane::open(&file, 0)?;
+        let mut heights = TiffImage::open(&file, 0)?;
         heights.storage.check_samples()?;
-        let source = Source { name, bytes: &[], hints };
+        let source = DemFile { name, bytes: &[], hints };
         let described = geotiff::describe(&mut heights.decoder, &heights.storage, &source)?;
         if geotiff::mask_beside(&source).is_some() {
-            return Err(Fault::Unsupported {
+            return Err(DemErrorKind::Unsupported {
                 format: FORMAT,
                 what: "a mask in a file beside it (.msk), and is to be read in parts".into(),
                 remedy: "take the mask into it: gdal_translate --config GDAL_TIFF_INTERNAL_MASK YES FILE out.tif",
@@ -108,14 +108,14 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
     fn assemble(
         name: &str,
         file: TiffFile<R>,
-        described: Described,
+        described: GeoTiffHeader,
         (overviews, masks): (Vec<Overview>, Vec<Overview>),
-        heights: Plane<R>,
+        heights: TiffImage<R>,
         cache_bytes: usize,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, DemErrorKind> {
         let size = (described.bare.width, described.bare.height);
         let mask = masks.iter().find(|mask| (mask.width, mask.height) == size);
-        let mask = mask.map(|mask| Plane::open(&file, mask.image)).transpose()?;
+        let mask = mask.map(|mask| TiffImage::open(&file, mask.image)).transpose()?;
         if let Some(mask) = &mask {
             tiff_mask::check(&mask.storage)?;
         }
@@ -137,8 +137,8 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
         self.open_overview(overview).map_err(|fault| DemError { name: self.name.clone(), fault })
     }
 
-    fn open_overview(&self, overview: &Overview) -> Result<Self, Fault> {
-        let heights = Plane::open(&self.file, overview.image)?;
+    fn open_overview(&self, overview: &Overview) -> Result<Self, DemErrorKind> {
+        let heights = TiffImage::open(&self.file, overview.image)?;
         heights.storage.check_samples()?;
         let bare = &self.described.bare;
         let times = DVec2::new(
@@ -151,7 +151,7 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
             map_from_grid: bare.map_from_grid * DAffine2::from_scale(times),
             ..bare.clone()
         };
-        let described = Described { bare, ..self.described };
+        let described = GeoTiffHeader { bare, ..self.described };
         let images = (Vec::new(), self.masks.clone());
         Self::assemble(&self.name, self.file.clone(), described, images, heights, self.cache_bytes)
     }
@@ -162,19 +162,19 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
     }
 
     /// The heights of a block, in metres.
-    fn block(&mut self, at: Block) -> Result<Arc<[f32]>, Fault> {
-        let Block { index, column, row, width, height } = at;
+    fn block(&mut self, at: TiffBlock) -> Result<Arc<[f32]>, DemErrorKind> {
+        let TiffBlock { index, column, row, width, height } = at;
         if let Some(block) = self.blocks.get(index) {
             return Ok(Arc::clone(block));
         }
         self.blocks.make_room(width as usize * height as usize * 4);
-        let Plane { decoder, storage } = &mut self.heights;
-        let Described { bare, scale, offset } = &self.described;
+        let TiffImage { decoder, storage } = &mut self.heights;
+        let GeoTiffHeader { bare, scale, offset } = &self.described;
         let stored = tiff_blocks::block(decoder, storage, bare.nodata, at, self.file.length())?;
         let metres = |stored: f64| scaled(scaled(stored, *scale, *offset), bare.metres_per_z, 0.0) as f32;
         let mut heights: Vec<f32> = stored.iter().map(metres).collect();
         if let Some(mask) = &mut self.mask {
-            mask.hide(Window { column, row, width, height }, &mut heights)?;
+            mask.hide(RasterWindow { column, row, width, height }, &mut heights)?;
         }
         let block: Arc<[f32]> = heights.into();
         self.blocks.put(index, Arc::clone(&block), block.len() * 4);
@@ -187,13 +187,13 @@ impl<R: Read + Seek> Windows for GeoTiffWindows<R> {
         &self.described.bare
     }
 
-    fn read(&mut self, window: Window, out: &mut Vec<f32>) -> Result<(), Fault> {
+    fn read(&mut self, window: RasterWindow, out: &mut Vec<f32>) -> Result<(), DemErrorKind> {
         window.assert_within(self.size());
         out.clear();
         out.resize(window.samples(), f32::NAN);
         for at in self.heights.blocks_meeting(window) {
             let block = self.block(at)?;
-            let stored = Window { column: at.column, row: at.row, width: at.width, height: at.height };
+            let stored = RasterWindow { column: at.column, row: at.row, width: at.width, height: at.height };
             for (from, to) in overlap(stored, window) {
                 out[to].copy_from_slice(&block[from]);
             }
@@ -204,13 +204,13 @@ impl<R: Read + Seek> Windows for GeoTiffWindows<R> {
 
 /// The index ranges, in two windows' samples, of the rows they share.
 fn overlap(
-    from: Window,
-    to: Window,
+    from: RasterWindow,
+    to: RasterWindow,
 ) -> impl Iterator<Item = (std::ops::Range<usize>, std::ops::Range<usize>)> {
     let first = from.column.max(to.column);
     let last = (from.column + from.width).min(to.column + to.width).max(first);
     let rows = from.row.max(to.row)..(from.row + from.height).min(to.row + to.height);
-    let range = move |of: Window, row: u32| {
+    let range = move |of: RasterWindow, row: u32| {
         let start = (row - of.row) as usize * of.width as usize + (first - of.column) as usize;
         start..start + (last - first) as usize
     };
@@ -218,13 +218,13 @@ fn overlap(
 }
 
 /// One image of the file.
-struct Plane<R: Read + Seek> {
+struct TiffImage<R: Read + Seek> {
     decoder: Decoder<BufReader<TiffFile<R>>>,
     storage: Storage,
 }
 
-impl<R: Read + Seek> Plane<R> {
-    fn open(file: &TiffFile<R>, image: usize) -> Result<Self, Fault> {
+impl<R: Read + Seek> TiffImage<R> {
+    fn open(file: &TiffFile<R>, image: usize) -> Result<Self, DemErrorKind> {
         let mut decoder = decoder(file)?;
         for _ in 0..image {
             decoder.next_image().map_err(fault)?;
@@ -234,7 +234,7 @@ impl<R: Read + Seek> Plane<R> {
         let (across, down) = (across.clamp(1, storage.width), down.clamp(1, storage.height));
         let samples = u64::from(across) * u64::from(down);
         if samples > MOST_BLOCK_SAMPLES || storage.decoded_bytes(samples) > LARGEST_BLOCK as u64 {
-            return Err(Fault::Unsupported {
+            return Err(DemErrorKind::Unsupported {
                 format: FORMAT,
                 what: format!("blocks of {across} x {down} samples"),
                 remedy: "rewrite it in tiles, for example with: gdal_translate -co TILED=YES FILE out.tif",
@@ -242,13 +242,13 @@ impl<R: Read + Seek> Plane<R> {
         }
         let blocks = u64::from(storage.width.div_ceil(across)) * u64::from(storage.height.div_ceil(down));
         if blocks > u64::from(u32::MAX) {
-            return Err(Fault::broken(FORMAT, format!("it claims {blocks} blocks")));
+            return Err(DemErrorKind::broken(FORMAT, format!("it claims {blocks} blocks")));
         }
         Ok(Self { decoder, storage })
     }
 
     /// The blocks that a window meets.
-    fn blocks_meeting(&self, window: Window) -> Vec<Block> {
+    fn blocks_meeting(&self, window: RasterWindow) -> Vec<TiffBlock> {
         let (width, height) = self.storage.block_size;
         let span = |first: u32, count: u32, block: u32| first / block..(first + count).div_ceil(block);
         let columns = span(window.column, window.width, width);
@@ -258,7 +258,7 @@ impl<R: Read + Seek> Plane<R> {
     }
 
     /// Makes NaN of the heights of `window` that this mask hides.
-    fn hide(&mut self, window: Window, heights: &mut [f32]) -> Result<(), Fault> {
+    fn hide(&mut self, window: RasterWindow, heights: &mut [f32]) -> Result<(), DemErrorKind> {
         for at in self.blocks_meeting(window) {
             let block = tiff_mask::block(&mut self.decoder, &self.storage, at)?;
             for (x, y) in block.hidden() {
@@ -276,7 +276,7 @@ impl<R: Read + Seek> Plane<R> {
     }
 }
 
-fn decoder<R: Read + Seek>(file: &TiffFile<R>) -> Result<Decoder<BufReader<TiffFile<R>>>, Fault> {
+fn decoder<R: Read + Seek>(file: &TiffFile<R>) -> Result<Decoder<BufReader<TiffFile<R>>>, DemErrorKind> {
     let limits = geotiff::limits(file.length(), LARGEST_BLOCK);
     Ok(Decoder::new(BufReader::new(file.clone())).map_err(fault)?.with_limits(limits))
 }

@@ -14,9 +14,9 @@
 
 use glam::DVec2;
 
-use crate::dem::fault::{Fault, check_size};
+use crate::dem::fault::{DemErrorKind, check_size};
 use crate::dem::raster::{Raster, Samples, north_up};
-use crate::dem::read::Source;
+use crate::dem::read::DemFile;
 use crate::geom::crs::Crs;
 
 const FORMAT: &str = "USGS elevation model";
@@ -40,9 +40,9 @@ pub(crate) fn recognises(bytes: &[u8]) -> bool {
 }
 
 /// Reads a model.
-pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
-    let text = Text(source.bytes);
-    let header = Header::read(&text)?;
+pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
+    let text = FixedText(source.bytes);
+    let header = UsgsHeader::read(&text)?;
     let samples = profiles(&text, &header)?;
     let crs = match &source.hints.crs {
         Some(crs) => Some(crs.clone()),
@@ -65,18 +65,18 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
 }
 
 /// The heights by rows from the north.
-fn profiles(text: &Text, header: &Header) -> Result<Samples, Fault> {
+fn profiles(text: &FixedText, header: &UsgsHeader) -> Result<Samples, DemErrorKind> {
     let (columns, rows) = (header.columns as usize, header.rows as usize);
     let mut values = vec![f32::NAN; columns * rows];
     let south = header.first.y - header.cell.y * f64::from(header.rows - 1);
     let mut at = header.profiles_at;
     for column in 0..columns {
-        let cut = || Fault::broken(FORMAT, format!("it ends in profile {} of {columns}", column + 1));
+        let cut = || DemErrorKind::broken(FORMAT, format!("it ends in profile {} of {columns}", column + 1));
         let mut whole = || text.whole(&mut at).ok_or_else(cut);
         let (_row, _column, points, of) = (whole()?, whole()?, whole()?, whole()?);
         if of != 1 {
             let reason = format!("profile {} is {of} wide; such models are not in use", column + 1);
-            return Err(Fault::broken(FORMAT, reason));
+            return Err(DemErrorKind::broken(FORMAT, reason));
         }
         let mut real = || text.real(&mut at, 24).ok_or_else(cut);
         let (_x, y, base, _low, _high) = (real()?, real()?, real()?, real()?, real()?);
@@ -97,7 +97,7 @@ fn profiles(text: &Text, header: &Header) -> Result<Samples, Fault> {
     Ok(Samples::F32(values))
 }
 
-struct Header {
+struct UsgsHeader {
     columns: u32,
     rows: u32,
     /// The north-west height's position, in degrees or ground units.
@@ -114,11 +114,12 @@ struct Header {
     profiles_at: usize,
 }
 
-impl Header {
-    fn read(text: &Text) -> Result<Self, Fault> {
+impl UsgsHeader {
+    fn read(text: &FixedText) -> Result<Self, DemErrorKind> {
         let whole = |at: usize| text.whole(&mut { at }).unwrap_or(0);
         let real = |at: usize, width: usize, what: &str| {
-            let wrong = || Fault::broken(FORMAT, format!("{what} at byte {at} of record A is no number"));
+            let wrong =
+                || DemErrorKind::broken(FORMAT, format!("{what} at byte {at} of record A is no number"));
             text.real(&mut { at }, width).ok_or_else(wrong)
         };
         let profiles_at = text.profiles_at()?;
@@ -128,9 +129,9 @@ impl Header {
         let resolution = real(840, 12, "the z resolution")?;
         if !(cell.min_element() > 0.0 && resolution > 0.0) {
             let reason = format!("its resolution is {} by {} by {resolution}", cell.x, cell.y);
-            return Err(Fault::broken(FORMAT, reason));
+            return Err(DemErrorKind::broken(FORMAT, reason));
         }
-        let corner = |index: usize| -> Result<DVec2, Fault> {
+        let corner = |index: usize| -> Result<DVec2, DemErrorKind> {
             let at = 546 + 48 * index;
             Ok(DVec2::new(real(at, 24, "a corner")?, real(at + 24, 24, "a corner")?))
         };
@@ -144,7 +145,7 @@ impl Header {
         let degrees = if in_map_units { 1.0 } else { 1.0 / 3600.0 };
         let first = first * degrees;
         if !first.is_finite() {
-            return Err(Fault::broken(FORMAT, "its corners are not finite"));
+            return Err(DemErrorKind::broken(FORMAT, "its corners are not finite"));
         }
         Ok(Self {
             columns: size.0 as u32,
@@ -166,7 +167,7 @@ impl Header {
         self.in_feet || self.resolution < 1.0
     }
 
-    fn system(&self) -> Result<Option<Crs>, Fault> {
+    fn system(&self) -> Result<Option<Crs>, DemErrorKind> {
         let (system, zone, unit) = self.system;
         let number = zone.unsigned_abs() as u32;
         let metres = if unit == 1 { 1200.0 / 3937.0 } else { 1.0 };
@@ -186,8 +187,8 @@ impl Header {
             _ => 0,
         };
         match (system, code) {
-            (0, code) => Crs::from_epsg(code).map(Some).map_err(Fault::Crs),
-            (_, 0) => Err(Fault::Georeference {
+            (0, code) => Crs::from_epsg(code).map(Some).map_err(DemErrorKind::Crs),
+            (_, 0) => Err(DemErrorKind::Georeference {
                 reason: match system {
                     2 => format!("it is in state plane zone {zone}"),
                     _ => format!(
@@ -197,7 +198,7 @@ impl Header {
                 },
                 remedy: "state crs under [terrain]",
             }),
-            (_, code) => Crs::from_epsg_in(code, metres).map(Some).map_err(Fault::Crs),
+            (_, code) => Crs::from_epsg_in(code, metres).map(Some).map_err(DemErrorKind::Crs),
         }
     }
 }
@@ -228,9 +229,9 @@ fn vertical_datum(code: Option<i64>) -> Option<String> {
 }
 
 /// Text of fixed widths.
-struct Text<'a>(&'a [u8]);
+struct FixedText<'a>(&'a [u8]);
 
-impl Text<'_> {
+impl FixedText<'_> {
     /// The next whole number from `at` on, of up to six characters, and `at` behind it.
     fn whole(&self, at: &mut usize) -> Option<i64> {
         let rest = self.0.get(*at..)?;
@@ -257,7 +258,7 @@ impl Text<'_> {
     }
 
     /// Where the first profile starts: the first place known that says row 1, column 1.
-    fn profiles_at(&self) -> Result<usize, Fault> {
+    fn profiles_at(&self) -> Result<usize, DemErrorKind> {
         let pair = |mut at: usize| (self.whole(&mut at), self.whole(&mut at), at);
         if let (Some(1), Some(1), ..RECORD) = pair(864) {
             return Ok(864);
@@ -268,7 +269,7 @@ impl Text<'_> {
             return Ok(if ends(1) && ends(2) { RECORD + 1 } else { RECORD });
         }
         let found = [893, 918].into_iter().find(|&at| matches!(pair(at), (Some(1), Some(1), _)));
-        found.ok_or_else(|| Fault::broken(FORMAT, "no profile says that it is row 1, column 1"))
+        found.ok_or_else(|| DemErrorKind::broken(FORMAT, "no profile says that it is row 1, column 1"))
     }
 
     /// The x that the first profile states.
@@ -283,7 +284,7 @@ impl Text<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{Hints, read};
+    use crate::dem::read::{DemHints, read};
 
     /// Two profiles of three and two heights, 30 m apart, in UTM zone 10; the second starts a row further north.
     fn model(unit: u32, datums: &str) -> Vec<u8> {
@@ -309,7 +310,7 @@ mod tests {
     }
 
     fn raster(bytes: &[u8]) -> Result<Raster, String> {
-        read("a.dem", bytes, &Hints::default()).map_err(|error| error.to_string())
+        read("a.dem", bytes, &DemHints::default()).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -335,7 +336,7 @@ mod tests {
 
     #[test]
     fn numbers_may_touch_and_are_six_wide() {
-        let text = Text(b"-32767-32767123456  -12");
+        let text = FixedText(b"-32767-32767123456  -12");
         let mut at = 0;
         let numbers: Vec<_> = std::iter::from_fn(|| text.whole(&mut at)).collect();
         assert_eq!(numbers, [-32767, -32767, 123_456, -12]);

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::dem::raster::{Raster, Samples, north_up};
 use crate::dem::valid::{outline, valid_grid};
-use crate::dem::warp_frame::{Frame, Way};
+use crate::dem::warp_frame::{CrsTransform, WarpGrid};
 use crate::geom::crs::{Crs, CrsError};
 use crate::geom::rect::Rect;
 
@@ -124,8 +124,8 @@ pub fn to_metric(raster: &Raster, target: Option<&Crs>) -> Result<Raster, WarpEr
     let mut metric = if own == system.as_ref() && is_axis_aligned(raster) {
         turned_north_up(raster)
     } else {
-        let way = Way::new(raster, own, system.as_ref());
-        let frame = Frame::around(raster, &way, None)?;
+        let way = CrsTransform::new(raster, own, system.as_ref());
+        let frame = WarpGrid::around(raster, &way, None)?;
         frame.bilinear(raster, &way)
     };
     metric.samples = metric.samples.scaled(raster.metres_per_z, 0.0);

@@ -28,7 +28,7 @@ const POSITIONS_AT_ONCE: usize = 1 << 19;
 const SLIVER: f64 = 1e-6;
 
 /// The way between a raster's system and another; the identity where there is none or they are the same.
-pub(crate) struct Way<'a> {
+pub(crate) struct CrsTransform<'a> {
     from: Option<&'a Crs>,
     to: Option<&'a Crs>,
     /// The longitudes that come out count on from these: those of the raster's centre in either system.
@@ -36,7 +36,7 @@ pub(crate) struct Way<'a> {
     to_center: Option<f64>,
 }
 
-impl<'a> Way<'a> {
+impl<'a> CrsTransform<'a> {
     /// From the raster's system `from` to `to`.
     pub fn new(raster: &Raster, from: Option<&'a Crs>, to: Option<&'a Crs>) -> Self {
         let is_in_degrees = |crs: &&Crs| crs.is_geographic();
@@ -71,7 +71,7 @@ fn counted_on(at: DVec2, center: Option<f64>) -> DVec2 {
 }
 
 /// The lattice of the output: north up, square cells.
-pub(crate) struct Frame {
+pub(crate) struct WarpGrid {
     /// Outer north-west corner.
     corner: DVec2,
     /// Side of a cell in the units of the output's system.
@@ -79,10 +79,10 @@ pub(crate) struct Frame {
     size: UVec2,
 }
 
-impl Frame {
+impl WarpGrid {
     /// Around the valid samples, on multiples of the cell; where none is given, of the size of the source's cells at
     /// the centre.
-    pub fn around(raster: &Raster, way: &Way, cell: Option<f64>) -> Result<Self, WarpError> {
+    pub fn around(raster: &Raster, way: &CrsTransform, cell: Option<f64>) -> Result<Self, WarpError> {
         let valid = valid_grid(raster).ok_or(WarpError::Empty)?;
         check_poles(raster, way)?;
         let at = |grid: DVec2| way.forward(raster.map_from_grid.transform_point2(grid));
@@ -99,11 +99,17 @@ impl Frame {
     pub fn over(raster: &Raster, cell: f64) -> Result<Self, WarpError> {
         let Rect { min, max } = raster.extent();
         let size = ((max - min) / cell - SLIVER).ceil().max(DVec2::ONE);
-        let way = Way { from: None, to: raster.crs.as_ref(), from_center: None, to_center: None };
+        let way = CrsTransform { from: None, to: raster.crs.as_ref(), from_center: None, to_center: None };
         Self::checked(DVec2::new(min.x, max.y), cell, size, MOST_SAMPLES, &way)
     }
 
-    fn checked(corner: DVec2, cell: f64, size: DVec2, most: u64, way: &Way) -> Result<Self, WarpError> {
+    fn checked(
+        corner: DVec2,
+        cell: f64,
+        size: DVec2,
+        most: u64,
+        way: &CrsTransform,
+    ) -> Result<Self, WarpError> {
         let [width, height] = [size.x as u64, size.y as u64];
         let limit = MOST_SAMPLES.min(most);
         if !cell.is_normal() || width == 0 || height == 0 || width.saturating_mul(height) > limit {
@@ -119,7 +125,7 @@ impl Frame {
     }
 
     /// The source's values at the centres of the cells.
-    pub fn bilinear(&self, raster: &Raster, way: &Way) -> Raster {
+    pub fn bilinear(&self, raster: &Raster, way: &CrsTransform) -> Raster {
         let samples = match &raster.samples {
             Samples::F32(_) => Samples::F32(self.filled(raster, way, |value| value as f32)),
             Samples::F64(_) => Samples::F64(self.filled(raster, way, |value| value)),
@@ -127,7 +133,12 @@ impl Frame {
         self.with(samples, raster, way)
     }
 
-    fn filled<T: Send>(&self, raster: &Raster, way: &Way, narrow: impl Fn(f64) -> T + Sync) -> Vec<T> {
+    fn filled<T: Send>(
+        &self,
+        raster: &Raster,
+        way: &CrsTransform,
+        narrow: impl Fn(f64) -> T + Sync,
+    ) -> Vec<T> {
         let width = self.size.x as usize;
         let rows = (0..self.size.y).into_par_iter().map(|row| {
             let y = self.corner.y - (f64::from(row) + 0.5) * self.cell;
@@ -145,7 +156,7 @@ impl Frame {
     }
 
     /// The means of the source's samples in each cell.
-    pub fn average(&self, raster: &Raster, way: &Way) -> Raster {
+    pub fn average(&self, raster: &Raster, way: &CrsTransform) -> Raster {
         let cells = self.size.x as usize * self.size.y as usize;
         let (mut sums, mut counts) = (vec![0f64; cells], vec![0u32; cells]);
         let width = raster.width as usize;
@@ -174,7 +185,7 @@ impl Frame {
     }
 
     /// Where the centres of a row of the source lie in this lattice, in cells from its corner.
-    fn cells_of_row(&self, raster: &Raster, way: &Way, row: u32) -> Vec<DVec2> {
+    fn cells_of_row(&self, raster: &Raster, way: &CrsTransform, row: u32) -> Vec<DVec2> {
         let mut positions = vec![DVec2::NAN; raster.width as usize];
         warp_line::fill(&mut positions, &|column| {
             let center = DVec2::new(column as f64 + 0.5, f64::from(row) + 0.5);
@@ -190,7 +201,7 @@ impl Frame {
         is_within.then(|| at.y as usize * self.size.x as usize + at.x as usize)
     }
 
-    fn with(&self, samples: Samples, raster: &Raster, way: &Way) -> Raster {
+    fn with(&self, samples: Samples, raster: &Raster, way: &CrsTransform) -> Raster {
         Raster {
             driver: raster.driver,
             data_type: raster.data_type,
@@ -208,7 +219,7 @@ impl Frame {
 }
 
 /// A raster over a pole has no border in degrees.
-fn check_poles(raster: &Raster, way: &Way) -> Result<(), WarpError> {
+fn check_poles(raster: &Raster, way: &CrsTransform) -> Result<(), WarpError> {
     let (Some(from), Some(to)) = (way.from, way.to) else { return Ok(()) };
     if from.is_geographic() || !to.is_geographic() {
         return Ok(());

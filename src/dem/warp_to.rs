@@ -10,7 +10,7 @@ use glam::DVec2;
 
 use crate::dem::raster::Raster;
 use crate::dem::warp::{WarpError, check_source, is_axis_aligned, turned_north_up};
-use crate::dem::warp_frame::{Frame, Way, cell_sizes};
+use crate::dem::warp_frame::{CrsTransform, WarpGrid, cell_sizes};
 use crate::geom::crs::Crs;
 
 /// From this many times the source's cells on, cells hold the average: a bilinear value at their centre would leave
@@ -19,7 +19,7 @@ const COARSER: f64 = 2.0;
 
 /// How samples were made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub enum Resampling {
     /// They are the source's, perhaps in another order.
     Kept,
     /// Between the four samples of the source around each cell's centre.
@@ -34,7 +34,7 @@ pub struct Warped {
     /// The raster; its heights are in the source's vertical unit.
     pub raster: Raster,
     /// How its samples were made.
-    pub method: Method,
+    pub method: Resampling,
 }
 
 /// `raster` in `target`, or in its own system, with square cells of `cell` units of that system, or of the size of its
@@ -59,21 +59,22 @@ pub fn to_system(raster: &Raster, target: Option<&Crs>, cell: Option<f64>) -> Re
     let spacing = source.spacing();
     let Some(cell) = cell.filter(|&cell| !stays || DVec2::splat(cell) != spacing) else {
         if stays {
-            return Ok(Warped { raster: source, method: Method::Kept });
+            return Ok(Warped { raster: source, method: Resampling::Kept });
         }
-        let way = Way::new(&source, own, system);
-        let frame = Frame::around(&source, &way, None)?;
-        return Ok(Warped { raster: frame.bilinear(&source, &way), method: Method::Bilinear });
+        let way = CrsTransform::new(&source, own, system);
+        let frame = WarpGrid::around(&source, &way, None)?;
+        return Ok(Warped { raster: frame.bilinear(&source, &way), method: Resampling::Bilinear });
     };
-    let way = Way::new(&source, own, if stays { own } else { system });
-    let frame = if stays { Frame::over(&source, cell)? } else { Frame::around(&source, &way, Some(cell))? };
+    let way = CrsTransform::new(&source, own, if stays { own } else { system });
+    let frame =
+        if stays { WarpGrid::over(&source, cell)? } else { WarpGrid::around(&source, &way, Some(cell))? };
     let center = source.grid_from_map(source.center());
     let at = |grid: DVec2| way.forward(source.map_from_grid.transform_point2(grid));
     let (_, longest) = cell_sizes(center, &at)?;
     if frame.cell() >= COARSER * longest {
-        return Ok(Warped { raster: frame.average(&source, &way), method: Method::Average });
+        return Ok(Warped { raster: frame.average(&source, &way), method: Resampling::Average });
     }
-    Ok(Warped { raster: frame.bilinear(&source, &way), method: Method::Bilinear })
+    Ok(Warped { raster: frame.bilinear(&source, &way), method: Resampling::Bilinear })
 }
 
 #[cfg(test)]
@@ -91,7 +92,7 @@ mod tests {
         let values = vec![1.0, 3.0, 10.0, 20.0, 5.0, 7.0, f32::NAN, 30.0, 2.0, 2.0, f32::NAN, f32::NAN];
         let raster = Raster { crs: utm(32612), ..small(4, 3, values) };
         let Warped { raster: coarse, method } = to_system(&raster, None, Some(20.0)).expect("in metres");
-        assert_eq!((coarse.width, coarse.height, method), (2, 2, Method::Average));
+        assert_eq!((coarse.width, coarse.height, method), (2, 2, Resampling::Average));
         assert_eq!([coarse.at(0, 0), coarse.at(1, 0), coarse.at(0, 1)], [4.0, 20.0, 2.0]);
         assert!(coarse.at(1, 1).is_nan());
         assert_eq!(coarse.geotransform(), [1000.0, 20.0, 0.0, 2030.0, 0.0, -20.0]);
@@ -101,7 +102,7 @@ mod tests {
     fn finer_cells_lie_between_the_samples() {
         let raster = Raster { crs: utm(32612), ..small(2, 2, vec![0.0, 10.0, 20.0, 30.0]) };
         let Warped { raster: fine, method } = to_system(&raster, None, Some(5.0)).expect("in metres");
-        assert_eq!((fine.width, fine.height, method), (4, 4, Method::Bilinear));
+        assert_eq!((fine.width, fine.height, method), (4, 4, Resampling::Bilinear));
         assert_eq!([fine.at(0, 0), fine.at(1, 1), fine.at(2, 2)], [0.0, 7.5, 22.5]);
     }
 
@@ -110,7 +111,7 @@ mod tests {
         let raster = Raster { crs: utm(32612), ..small(2, 2, vec![0.0, 10.0, 20.0, f32::NAN]) };
         for cell in [None, Some(10.0)] {
             let warped = to_system(&raster, utm(32612).as_ref(), cell).expect("in metres");
-            assert_eq!(warped.method, Method::Kept);
+            assert_eq!(warped.method, Resampling::Kept);
             assert_eq!(warped.raster.geotransform(), raster.geotransform());
             assert_eq!(warped.raster.at(1, 0), 10.0);
         }

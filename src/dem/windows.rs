@@ -3,12 +3,12 @@
 //! What is larger than the memory is asked for piece by piece. A raster in memory answers the same questions, so
 //! whatever works on windows can be tested against one that works on the whole.
 
-use crate::dem::fault::Fault;
+use crate::dem::fault::DemErrorKind;
 use crate::dem::raster::{Raster, scaled};
 
 /// A rectangle of a raster's samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Window {
+pub struct RasterWindow {
     /// Its first column, counted from the raster's first.
     pub column: u32,
     /// Its first row, counted from the raster's first: in a raster with north up, its northernmost.
@@ -19,7 +19,7 @@ pub struct Window {
     pub height: u32,
 }
 
-impl Window {
+impl RasterWindow {
     /// How many samples it has.
     pub fn samples(&self) -> usize {
         self.width as usize * self.height as usize
@@ -50,7 +50,7 @@ pub trait Windows {
     ///
     /// # Panics
     /// Where the window reaches beyond the raster.
-    fn read(&mut self, window: Window, out: &mut Vec<f32>) -> Result<(), Fault>;
+    fn read(&mut self, window: RasterWindow, out: &mut Vec<f32>) -> Result<(), DemErrorKind>;
 
     /// Samples per row, and rows.
     fn size(&self) -> (u32, u32) {
@@ -64,7 +64,7 @@ impl Windows for Raster {
         self
     }
 
-    fn read(&mut self, window: Window, out: &mut Vec<f32>) -> Result<(), Fault> {
+    fn read(&mut self, window: RasterWindow, out: &mut Vec<f32>) -> Result<(), DemErrorKind> {
         window.assert_within(self.size());
         out.clear();
         for row in window.row..window.row + window.height {
@@ -85,14 +85,14 @@ mod tests {
         let mut raster = small(3, 3, (0..9u8).map(f32::from).collect());
         raster.metres_per_z = 0.5;
         let mut out = vec![7.0; 5];
-        raster.read(Window { column: 1, row: 1, width: 2, height: 2 }, &mut out).expect("inside");
+        raster.read(RasterWindow { column: 1, row: 1, width: 2, height: 2 }, &mut out).expect("inside");
         assert_eq!(out, [2.0, 2.5, 3.5, 4.0]);
     }
 
     #[test]
     #[should_panic(expected = "reaches beyond")]
     fn a_window_beyond_the_raster_is_our_own_mistake() {
-        let window = Window { column: 2, row: 0, width: 2, height: 1 };
+        let window = RasterWindow { column: 2, row: 0, width: 2, height: 1 };
         let _ = small(3, 3, vec![0.0; 9]).read(window, &mut Vec::new());
     }
 }

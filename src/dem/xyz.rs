@@ -10,9 +10,9 @@
 use glam::DVec2;
 
 use crate::dem::ascii::number;
-use crate::dem::fault::{Fault, MOST_SAMPLES};
+use crate::dem::fault::{DemErrorKind, MOST_SAMPLES};
 use crate::dem::raster::{Raster, Samples, north_up};
-use crate::dem::read::Source;
+use crate::dem::read::DemFile;
 
 const FORMAT: &str = "XYZ grid";
 
@@ -33,13 +33,14 @@ const MOST_STEPS: usize = 1 << 16;
 const SCATTERED: &str = "make a grid of them with: sandtable dem grid POINTS OUT.tif --cell METRES";
 
 /// Reads a grid; its coordinate system comes from a `.prj` companion.
-pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
-    let text = std::str::from_utf8(source.bytes)
-        .map_err(|error| Fault::broken(FORMAT, format!("byte {} is not UTF-8 text", error.valid_up_to())))?;
-    let text = Lines::new(text);
-    let survey = Survey::of(&text)?;
+pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
+    let text = std::str::from_utf8(source.bytes).map_err(|error| {
+        DemErrorKind::broken(FORMAT, format!("byte {} is not UTF-8 text", error.valid_up_to()))
+    })?;
+    let text = XyzLines::new(text);
+    let survey = XyzSurvey::of(&text)?;
     let lattice = survey.lattice()?;
-    let Placed { values, whole, low, high } = place(&text, &lattice)?;
+    let XyzGrid { values, whole, low, high } = place(&text, &lattice)?;
     let corner = DVec2::new(lattice.min.x, lattice.max.y) + DVec2::new(-0.5, 0.5) * lattice.cell;
     Ok(Raster {
         driver: "XYZ",
@@ -62,7 +63,7 @@ pub(crate) fn read(source: &Source) -> Result<Raster, Fault> {
 }
 
 /// A text of points.
-struct Lines<'a> {
+struct XyzLines<'a> {
     text: &'a str,
     /// Lines before the first point.
     skip: usize,
@@ -70,7 +71,7 @@ struct Lines<'a> {
     columns: [usize; 3],
 }
 
-impl<'a> Lines<'a> {
+impl<'a> XyzLines<'a> {
     fn new(text: &'a str) -> Self {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let (mut skip, mut columns) = (0, [0, 1, 2]);
@@ -92,12 +93,12 @@ impl<'a> Lines<'a> {
     }
 
     /// The points with the number of their line, from 1.
-    fn points(&self) -> impl Iterator<Item = Result<(DVec2, f64), Fault>> {
+    fn points(&self) -> impl Iterator<Item = Result<(DVec2, f64), DemErrorKind>> {
         let lines = self.text.lines().enumerate().skip(self.skip).filter(|(_, line)| is_content(line));
         lines.map(|(index, line)| {
             let wrong = || {
                 let shown: String = line.chars().take(40).collect();
-                Fault::broken(FORMAT, format!("line {} is '{shown}', not x, y and z", index + 1))
+                DemErrorKind::broken(FORMAT, format!("line {} is '{shown}', not x, y and z", index + 1))
             };
             let [x, y, z] =
                 self.columns.map(|column| words(line).nth(column).and_then(|word| number(word.as_bytes())));
@@ -129,15 +130,15 @@ fn words(line: &str) -> impl Iterator<Item = &str> {
 }
 
 /// What the first reading tells.
-struct Survey {
+struct XyzSurvey {
     points: u64,
     min: DVec2,
     max: DVec2,
     step: DVec2,
 }
 
-impl Survey {
-    fn of(text: &Lines) -> Result<Self, Fault> {
+impl XyzSurvey {
+    fn of(text: &XyzLines) -> Result<Self, DemErrorKind> {
         let (mut points, mut min, mut max) = (0u64, DVec2::INFINITY, DVec2::NEG_INFINITY);
         let mut before: Option<DVec2> = None;
         let mut steps: [Vec<f64>; 2] = [Vec::new(), Vec::new()];
@@ -157,9 +158,9 @@ impl Survey {
         Ok(Self { points, min, max, step: DVec2::new(x, y) })
     }
 
-    fn lattice(&self) -> Result<Lattice, Fault> {
+    fn lattice(&self) -> Result<XyzLattice, DemErrorKind> {
         if self.points == 0 {
-            return Err(Fault::broken(FORMAT, "it holds no point"));
+            return Err(DemErrorKind::broken(FORMAT, "it holds no point"));
         }
         if self.step.min_element() == 0.0 {
             return Err(scattered("all of its points stand in one line".into()));
@@ -174,7 +175,7 @@ impl Survey {
             return Err(scattered(reason));
         }
         let cell = (self.max - self.min) / sides;
-        Ok(Lattice { columns, rows, min: self.min, max: self.max, cell })
+        Ok(XyzLattice { columns, rows, min: self.min, max: self.max, cell })
     }
 }
 
@@ -185,11 +186,11 @@ fn small_step(mut steps: Vec<f64>) -> f64 {
     steps.get(steps.len() / 10).copied().unwrap_or(0.0)
 }
 
-fn scattered(found: String) -> Fault {
-    Fault::Georeference { reason: format!("its points are no grid: {found}"), remedy: SCATTERED }
+fn scattered(found: String) -> DemErrorKind {
+    DemErrorKind::Georeference { reason: format!("its points are no grid: {found}"), remedy: SCATTERED }
 }
 
-struct Lattice {
+struct XyzLattice {
     columns: u64,
     rows: u64,
     min: DVec2,
@@ -198,16 +199,16 @@ struct Lattice {
 }
 
 /// What the second reading gives.
-struct Placed {
+struct XyzGrid {
     values: Vec<f32>,
     whole: bool,
     low: f64,
     high: f64,
 }
 
-fn place(text: &Lines, lattice: &Lattice) -> Result<Placed, Fault> {
+fn place(text: &XyzLines, lattice: &XyzLattice) -> Result<XyzGrid, DemErrorKind> {
     let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
-    let mut placed = Placed {
+    let mut placed = XyzGrid {
         values: vec![f32::NAN; columns * rows],
         whole: true,
         low: f64::INFINITY,
@@ -237,10 +238,10 @@ fn place(text: &Lines, lattice: &Lattice) -> Result<Placed, Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{Hints, read};
+    use crate::dem::read::{DemHints, read};
 
     fn grid(text: &str) -> Result<Raster, String> {
-        read("a.xyz", text.as_bytes(), &Hints::default()).map_err(|error| error.to_string())
+        read("a.xyz", text.as_bytes(), &DemHints::default()).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -292,6 +293,6 @@ mod tests {
         assert!(grid("0 0 1\n5 0\n").expect_err("short").contains("line 2 is '5 0'"));
         assert!(grid("0 0 1\n5 0 deep\n").expect_err("a word").contains("line 2"));
         assert!(grid("# nothing\n").expect_err("empty").contains("no point"));
-        assert!(read("a.xyz", &[0xff, 0xfe], &Hints::default()).is_err());
+        assert!(read("a.xyz", &[0xff, 0xfe], &DemHints::default()).is_err());
     }
 }

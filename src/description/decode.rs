@@ -8,9 +8,9 @@ use toml::Spanned;
 use crate::description::bounds::{Bounds, ELEVATION};
 use crate::description::decode_features as features;
 use crate::description::document::{
-    CameraTable, ContourTable, Document, Furniture, Label, Light, Style, Terrain,
+    CameraTable, ContourTable, Document, FurnitureTable, LabelTable, LightTable, StyleTable, TerrainTable,
 };
-use crate::description::reader::Reader;
+use crate::description::reader::TableReader;
 use crate::description::source_text::SourceText;
 use crate::description::styles::Styles;
 use crate::geom::crs::Crs;
@@ -19,7 +19,7 @@ use crate::geom::crs::Crs;
 pub(super) const DIRECTION: Bounds = Bounds::Within(-360.0, 360.0);
 
 /// The whole file.
-pub(super) fn document(reader: &mut Reader<'_, '_>, source: Arc<SourceText>) -> Option<Document> {
+pub(super) fn document(reader: &mut TableReader<'_, '_>, source: Arc<SourceText>) -> Option<Document> {
     // Gathered before anything is read.
     let _ = reader.get("include", |item| item.one_or_more_texts());
     let title = plain_text(reader, "title");
@@ -66,7 +66,7 @@ pub(super) fn document(reader: &mut Reader<'_, '_>, source: Arc<SourceText>) -> 
     })
 }
 
-fn terrain(reader: &mut Reader<'_, '_>) -> Option<Terrain> {
+fn terrain(reader: &mut TableReader<'_, '_>) -> Option<TerrainTable> {
     let dem = reader.require("dem", |item| item.files(&[]));
     let crs = any_crs(reader, "crs");
     let height_scale = number(reader, "height_scale", Bounds::Above(0.0, 1e6));
@@ -78,7 +78,7 @@ fn terrain(reader: &mut Reader<'_, '_>) -> Option<Terrain> {
     let cell = number(reader, "cell", Bounds::Above(0.0, 1e6));
     let vertical_exaggeration = number(reader, "vertical_exaggeration", Bounds::Above(0.0, 1000.0));
     let tolerance_px = number(reader, "tolerance_px", Bounds::Above(0.0, 1000.0));
-    Some(Terrain {
+    Some(TerrainTable {
         dem: dem?,
         crs,
         height_scale,
@@ -93,8 +93,8 @@ fn terrain(reader: &mut Reader<'_, '_>) -> Option<Terrain> {
     })
 }
 
-fn style(reader: &mut Reader<'_, '_>) -> Style {
-    Style {
+fn style(reader: &mut TableReader<'_, '_>) -> StyleTable {
+    StyleTable {
         ramp: reader.get("ramp", |item| item.ramp()),
         contours: reader.table("contours", contours).flatten(),
         light: reader.table("light", light).unwrap_or_default(),
@@ -102,30 +102,30 @@ fn style(reader: &mut Reader<'_, '_>) -> Style {
     }
 }
 
-fn contours(reader: &mut Reader<'_, '_>) -> Option<ContourTable> {
+fn contours(reader: &mut TableReader<'_, '_>) -> Option<ContourTable> {
     let interval = reader.require("interval", |item| item.number(Bounds::Within(0.01, 100_000.0)));
     let major_every = reader.get("major_every", |item| item.whole(1..=1000));
     let color = reader.get("color", |item| item.color());
     Some(ContourTable { interval: interval?, major_every, color })
 }
 
-fn light(reader: &mut Reader<'_, '_>) -> Light {
-    Light {
+fn light(reader: &mut TableReader<'_, '_>) -> LightTable {
+    LightTable {
         azimuth: number(reader, "azimuth", DIRECTION),
         altitude: number(reader, "altitude", Bounds::Above(0.0, 90.0)),
     }
 }
 
-fn label(reader: &mut Reader<'_, '_>) -> Option<Label> {
+fn label(reader: &mut TableReader<'_, '_>) -> Option<LabelTable> {
     let text = reader.require("text", |item| item.filled_text());
     let at = reader.require("at", |item| item.point());
     let crs = any_crs(reader, "crs");
     let height = number(reader, "height", Bounds::Within(0.0, 1e7));
     let kind = reader.get("kind", |item| item.word());
-    Some(Label { text: text?, at: at?, crs, height, kind })
+    Some(LabelTable { text: text?, at: at?, crs, height, kind })
 }
 
-fn camera(reader: &mut Reader<'_, '_>) -> Option<CameraTable> {
+fn camera(reader: &mut TableReader<'_, '_>) -> Option<CameraTable> {
     let name = reader.require("name", |item| item.filled_text());
     let eye = reader.require("eye", |item| item.point());
     let eye_height = number(reader, "eye_height", Bounds::Within(0.0, 1e7));
@@ -142,11 +142,11 @@ fn camera(reader: &mut Reader<'_, '_>) -> Option<CameraTable> {
     Some(CameraTable { name, eye, eye_height, eye_elevation, look_at, look_at_height, crs, field_of_view })
 }
 
-fn furniture(reader: &mut Reader<'_, '_>) -> Furniture {
-    let shown = |reader: &mut Reader<'_, '_>, key| {
+fn furniture(reader: &mut TableReader<'_, '_>) -> FurnitureTable {
+    let shown = |reader: &mut TableReader<'_, '_>, key| {
         reader.get(key, |item| item.switch()).is_none_or(Spanned::into_inner)
     };
-    Furniture {
+    FurnitureTable {
         title: shown(reader, "title"),
         north_arrow: shown(reader, "north_arrow"),
         scale_bar: shown(reader, "scale_bar"),
@@ -154,7 +154,7 @@ fn furniture(reader: &mut Reader<'_, '_>) -> Furniture {
     }
 }
 
-fn distinct_names(reader: &mut Reader<'_, '_>, source: &SourceText, cameras: &[CameraTable]) {
+fn distinct_names(reader: &mut TableReader<'_, '_>, source: &SourceText, cameras: &[CameraTable]) {
     let mut seen = BTreeMap::new();
     for camera in cameras {
         let name = camera.name.get_ref();
@@ -172,15 +172,19 @@ fn distinct_names(reader: &mut Reader<'_, '_>, source: &SourceText, cameras: &[C
     }
 }
 
-pub(super) fn plain_text(reader: &mut Reader<'_, '_>, key: &'static str) -> Option<String> {
+pub(super) fn plain_text(reader: &mut TableReader<'_, '_>, key: &'static str) -> Option<String> {
     reader.get(key, |item| item.text()).map(Spanned::into_inner)
 }
 
-pub(super) fn number(reader: &mut Reader<'_, '_>, key: &'static str, bounds: Bounds) -> Option<Spanned<f64>> {
+pub(super) fn number(
+    reader: &mut TableReader<'_, '_>,
+    key: &'static str,
+    bounds: Bounds,
+) -> Option<Spanned<f64>> {
     reader.get(key, |item| item.number(bounds))
 }
 
-pub(super) fn any_crs(reader: &mut Reader<'_, '_>, key: &'static str) -> Option<Spanned<String>> {
+pub(super) fn any_crs(reader: &mut TableReader<'_, '_>, key: &'static str) -> Option<Spanned<String>> {
     reader.get(key, |item| item.crs(|_| Ok(())))
 }
 

@@ -4,13 +4,14 @@ use toml::Spanned;
 
 use crate::description::bounds::{Bounds, ELEVATION};
 use crate::description::decode::{DIRECTION, any_crs, number, plain_text};
-use crate::description::expression::{Choice, Expression, Quantity};
+use crate::description::expression::{ComputedWord, Expression, Quantity};
 use crate::description::features::{
-    Area, Bridge, Building, Fence, Lake, ModelPlacement, River, Road, Scatter, Source,
+    AreaTable, BridgeTable, BuildingTable, FeatureSource, FenceTable, LakeTable, ModelPlacement, RiverTable,
+    RoadTable, ScatterTable,
 };
-use crate::description::reader::Reader;
+use crate::description::reader::TableReader;
 use crate::description::selection::Selection;
-use crate::description::words::{Clamp, Profile, Water, Word};
+use crate::description::words::{Clamp, ProfileMode, Water, Word};
 
 /// Widths of roads and rivers in metres.
 const WIDTH: Bounds = Bounds::Above(0.0, 10_000.0);
@@ -30,7 +31,7 @@ const SCALE: Bounds = Bounds::Above(0.0, 1e6);
 /// What may be scattered without a file.
 const BUILT_IN: [&str; 4] = ["conifer", "broadleaf", "shrub", "rock"];
 
-pub(super) fn road(reader: &mut Reader<'_, '_>) -> Option<Road> {
+pub(super) fn road(reader: &mut TableReader<'_, '_>) -> Option<RoadTable> {
     let name = plain_text(reader, "name");
     let source = source(reader, 2);
     let width = quantity(reader, "width", WIDTH);
@@ -49,7 +50,7 @@ pub(super) fn road(reader: &mut Reader<'_, '_>) -> Option<Road> {
     let cut_slope = number(reader, "cut_slope", BATTER);
     let max_fill = number(reader, "max_fill", DISTANCE);
     let max_cut = number(reader, "max_cut", DISTANCE);
-    if profile.as_ref().map_or(Profile::Drape, |profile| *profile.get_ref()) == Profile::Drape {
+    if profile.as_ref().map_or(ProfileMode::Drape, |profile| *profile.get_ref()) == ProfileMode::Drape {
         for span in earthworks.into_iter().flatten() {
             let message = "this says nothing for a road that follows the ground";
             reader.error(span, message, "add `profile = \"conform\"`, or remove it");
@@ -58,7 +59,7 @@ pub(super) fn road(reader: &mut Reader<'_, '_>) -> Option<Road> {
     let bridge = expression(reader, "bridge");
     let tunnel = expression(reader, "tunnel");
     let level = quantity(reader, "level", Bounds::Within(-20.0, 20.0));
-    Some(Road {
+    Some(RoadTable {
         name,
         source: source?,
         width,
@@ -81,17 +82,17 @@ pub(super) fn road(reader: &mut Reader<'_, '_>) -> Option<Road> {
     })
 }
 
-pub(super) fn bridge(reader: &mut Reader<'_, '_>) -> Option<Bridge> {
+pub(super) fn bridge(reader: &mut TableReader<'_, '_>) -> Option<BridgeTable> {
     let name = plain_text(reader, "name");
     let source = source(reader, 2);
     let width = quantity(reader, "width", WIDTH);
     let surface = choice(reader, "surface");
     let deck = quantity(reader, "deck", ELEVATION);
     let pier_spacing = number(reader, "pier_spacing", Bounds::Within(1.0, 10_000.0));
-    Some(Bridge { name, source: source?, width, surface, deck, pier_spacing })
+    Some(BridgeTable { name, source: source?, width, surface, deck, pier_spacing })
 }
 
-pub(super) fn river(reader: &mut Reader<'_, '_>) -> Option<River> {
+pub(super) fn river(reader: &mut TableReader<'_, '_>) -> Option<RiverTable> {
     let name = plain_text(reader, "name");
     let source = source(reader, 2);
     let width = quantity(reader, "width", WIDTH);
@@ -110,10 +111,10 @@ pub(super) fn river(reader: &mut Reader<'_, '_>) -> Option<River> {
         let message = "this says nothing for water that follows the ground";
         reader.error(span, message, "take `water = \"drape\"` away, or remove it");
     }
-    Some(River { name, source: source?, width, mouth_width, widths, bank, water, max_cut })
+    Some(RiverTable { name, source: source?, width, mouth_width, widths, bank, water, max_cut })
 }
 
-pub(super) fn lake(reader: &mut Reader<'_, '_>) -> Option<Lake> {
+pub(super) fn lake(reader: &mut TableReader<'_, '_>) -> Option<LakeTable> {
     let name = plain_text(reader, "name");
     let source = source(reader, 3);
     let level = quantity(reader, "level", ELEVATION);
@@ -122,20 +123,20 @@ pub(super) fn lake(reader: &mut Reader<'_, '_>) -> Option<Lake> {
     if let (Some(_), Some(rule)) = (&level, rule) {
         reader.error(rule, "the level is stated already", "keep `level` or `level_rule`");
     }
-    Some(Lake { name, source: source?, level, level_rule })
+    Some(LakeTable { name, source: source?, level, level_rule })
 }
 
-pub(super) fn area(reader: &mut Reader<'_, '_>) -> Option<Area> {
+pub(super) fn area(reader: &mut TableReader<'_, '_>) -> Option<AreaTable> {
     let name = plain_text(reader, "name");
     let source = source(reader, 3);
     let cover = reader.require("cover", |item| item.choice());
     let color = reader.get("color", |item| item.color());
     let border = reader.get("border", |item| item.word());
     let border_width = number(reader, "border_width", SIZE);
-    Some(Area { name, source: source?, cover: Some(cover?), color, border, border_width })
+    Some(AreaTable { name, source: source?, cover: Some(cover?), color, border, border_width })
 }
 
-pub(super) fn building(reader: &mut Reader<'_, '_>) -> Option<Building> {
+pub(super) fn building(reader: &mut TableReader<'_, '_>) -> Option<BuildingTable> {
     let name = plain_text(reader, "name");
     let source = source(reader, 3);
     let height = quantity(reader, "height", SIZE);
@@ -144,10 +145,10 @@ pub(super) fn building(reader: &mut Reader<'_, '_>) -> Option<Building> {
     let roof_height = quantity(reader, "roof_height", STRIP);
     let wall_color = reader.get("wall_color", |item| item.color());
     let roof_color = reader.get("roof_color", |item| item.color());
-    Some(Building { name, source: source?, height, base, roof, roof_height, wall_color, roof_color })
+    Some(BuildingTable { name, source: source?, height, base, roof, roof_height, wall_color, roof_color })
 }
 
-pub(super) fn fence(reader: &mut Reader<'_, '_>) -> Option<Fence> {
+pub(super) fn fence(reader: &mut TableReader<'_, '_>) -> Option<FenceTable> {
     let name = plain_text(reader, "name");
     let source = source(reader, 2);
     let kind = choice(reader, "kind");
@@ -155,10 +156,10 @@ pub(super) fn fence(reader: &mut Reader<'_, '_>) -> Option<Fence> {
     let width = quantity(reader, "width", SIZE);
     let spacing = quantity(reader, "spacing", Bounds::Within(0.1, 10_000.0));
     let sag = number(reader, "sag", Bounds::Within(0.0, 0.2));
-    Some(Fence { name, source: source?, kind, height, width, spacing, sag })
+    Some(FenceTable { name, source: source?, kind, height, width, spacing, sag })
 }
 
-pub(super) fn model(reader: &mut Reader<'_, '_>) -> Option<ModelPlacement> {
+pub(super) fn model(reader: &mut TableReader<'_, '_>) -> Option<ModelPlacement> {
     let name = plain_text(reader, "name");
     let file = reader.require("file", |item| item.file());
     let given = [reader.has("at"), reader.has("instances")];
@@ -245,7 +246,7 @@ pub(super) fn model(reader: &mut Reader<'_, '_>) -> Option<ModelPlacement> {
     })
 }
 
-pub(super) fn scatter(reader: &mut Reader<'_, '_>) -> Option<Scatter> {
+pub(super) fn scatter(reader: &mut TableReader<'_, '_>) -> Option<ScatterTable> {
     let name = plain_text(reader, "name");
     let source = source(reader, 3);
     let of = reader.require("of", |item| item.files(&BUILT_IN));
@@ -255,11 +256,21 @@ pub(super) fn scatter(reader: &mut Reader<'_, '_>) -> Option<Scatter> {
     let slope = reader.get("slope", |item| item.range(SLOPE));
     let elevation = reader.get("elevation", |item| item.range(ELEVATION));
     let seed = reader.get("seed", |item| item.whole(0..=u32::MAX));
-    Some(Scatter { name, source: source?, of: Some(of?), density, spacing, scale, slope, elevation, seed })
+    Some(ScatterTable {
+        name,
+        source: source?,
+        of: Some(of?),
+        density,
+        spacing,
+        scale,
+        slope,
+        elevation,
+        seed,
+    })
 }
 
 /// The key `widths`: one for each inline point, instead of `width`.
-fn widths(reader: &mut Reader<'_, '_>, source: Option<&Source>) -> Option<Spanned<Vec<f64>>> {
+fn widths(reader: &mut TableReader<'_, '_>, source: Option<&FeatureSource>) -> Option<Spanned<Vec<f64>>> {
     let width = reader.has("width");
     let widths = reader.get("widths", |item| item.numbers(WIDTH))?;
     let points = source?.points.as_ref().map_or(0, |points| points.get_ref().len());
@@ -272,21 +283,25 @@ fn widths(reader: &mut Reader<'_, '_>, source: Option<&Source>) -> Option<Spanne
     Some(widths)
 }
 
-fn quantity(reader: &mut Reader<'_, '_>, key: &'static str, bounds: Bounds) -> Option<Spanned<Quantity>> {
+fn quantity(
+    reader: &mut TableReader<'_, '_>,
+    key: &'static str,
+    bounds: Bounds,
+) -> Option<Spanned<Quantity>> {
     reader.get(key, |item| item.quantity(bounds))
 }
 
-fn choice<W: Word>(reader: &mut Reader<'_, '_>, key: &'static str) -> Option<Spanned<Choice<W>>> {
+fn choice<W: Word>(reader: &mut TableReader<'_, '_>, key: &'static str) -> Option<Spanned<ComputedWord<W>>> {
     reader.get(key, |item| item.choice())
 }
 
-fn expression(reader: &mut Reader<'_, '_>, key: &'static str) -> Option<Spanned<Expression>> {
+fn expression(reader: &mut TableReader<'_, '_>, key: &'static str) -> Option<Spanned<Expression>> {
     reader.get(key, |mut item| item.expression())
 }
 
 /// The five keys that say where a feature's coordinates come from: `points` or `file`, not both; a layer and a
 /// filter only for a file.
-fn source(reader: &mut Reader<'_, '_>, least_points: usize) -> Option<Source> {
+fn source(reader: &mut TableReader<'_, '_>, least_points: usize) -> Option<FeatureSource> {
     let given = [reader.has("points"), reader.has("file")];
     let choosing = [
         (reader.has("layer"), "`layer` names a layer of a file, but the points are given here"),
@@ -322,5 +337,5 @@ fn source(reader: &mut Reader<'_, '_>, least_points: usize) -> Option<Source> {
         Some((span, Selection::Holding(condition))) => (None, Some(Spanned::new(span, condition))),
         None => (None, None),
     };
-    Some(Source { points, file, layer, filter, condition, crs })
+    Some(FeatureSource { points, file, layer, filter, condition, crs })
 }

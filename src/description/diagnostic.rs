@@ -157,13 +157,13 @@ impl std::error::Error for Diagnostics {}
 
 /// Collects what is wrong while reading goes on.
 #[derive(Debug)]
-pub(super) struct Report {
+pub(super) struct DiagnosticSink {
     source: Arc<SourceText>,
     list: Vec<Diagnostic>,
     omitted: usize,
 }
 
-impl Report {
+impl DiagnosticSink {
     /// Nothing wrong yet.
     pub fn new(source: Arc<SourceText>) -> Self {
         Self { source, list: Vec::new(), omitted: 0 }
@@ -227,7 +227,7 @@ mod tests {
 
     #[test]
     fn errors_beyond_the_limit_are_counted() {
-        let mut report = Report::new(SourceText::new("a", "x"));
+        let mut report = DiagnosticSink::new(SourceText::new("a", "x"));
         for number in 0..MAX_ERRORS + 3 {
             report.error(0..1, format!("m{number}"), None);
         }

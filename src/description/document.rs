@@ -48,10 +48,11 @@ use toml::Spanned;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::features::{
-    Area, Bridge, Building, Fence, Lake, ModelPlacement, River, Road, Scatter,
+    AreaTable, BridgeTable, BuildingTable, FenceTable, LakeTable, ModelPlacement, RiverTable, RoadTable,
+    ScatterTable,
 };
 use crate::description::source_text::SourceText;
-use crate::description::words::{HeightEncoding, LabelKind, Ramp};
+use crate::description::words::{HeightEncodingWord, LabelKind, RampName};
 
 /// A whole scene file.
 #[derive(Clone, Debug)]
@@ -69,34 +70,34 @@ pub struct Document {
     /// otherwise. Default: the scene's.
     pub points_crs: Option<Spanned<String>>,
     /// `[terrain]`, needed: the ground.
-    pub terrain: Terrain,
+    pub terrain: TerrainTable,
     /// `[style]`: how the ground looks.
-    pub style: Style,
+    pub style: StyleTable,
     /// `[[road]]`: in drawing order; at most 10 000, as of every repeated table.
-    pub roads: Vec<Road>,
+    pub roads: Vec<RoadTable>,
     /// `[[bridge]]`: bridges that belong to no road of the scene.
-    pub bridges: Vec<Bridge>,
+    pub bridges: Vec<BridgeTable>,
     /// `[[river]]`: in drawing order.
-    pub rivers: Vec<River>,
+    pub rivers: Vec<RiverTable>,
     /// `[[lake]]`: still water, level and cut out of the ground or filled up to it.
-    pub lakes: Vec<Lake>,
+    pub lakes: Vec<LakeTable>,
     /// `[[area]]`: what covers the ground, in drawing order.
-    pub areas: Vec<Area>,
+    pub areas: Vec<AreaTable>,
     /// `[[building]]`: footprints raised to a height.
-    pub buildings: Vec<Building>,
+    pub buildings: Vec<BuildingTable>,
     /// `[[fence]]`: what stands or runs along a line.
-    pub fences: Vec<Fence>,
+    pub fences: Vec<FenceTable>,
     /// `[[model]]`: what stands on the ground.
     pub models: Vec<ModelPlacement>,
     /// `[[scatter]]`: models strewn over areas.
-    pub scatters: Vec<Scatter>,
+    pub scatters: Vec<ScatterTable>,
     /// `[[label]]`: names and heights on the picture.
-    pub labels: Vec<Label>,
+    pub labels: Vec<LabelTable>,
     /// `[[camera]]`: views; the first is the default. Without any, one is made that sees the
     /// whole ground in pictures of 4:3 and wider.
     pub cameras: Vec<CameraTable>,
     /// `[furniture]`: title, north arrow, scale bar and legend.
-    pub furniture: Furniture,
+    pub furniture: FurnitureTable,
 }
 
 impl Document {
@@ -113,7 +114,7 @@ impl Document {
 
 /// `[terrain]`: the elevation model.
 #[derive(Clone, Debug)]
-pub struct Terrain {
+pub struct TerrainTable {
     /// `dem`, needed: the elevation file, or a list of up to 256 that are tiles of one raster; the first tile with a
     /// value wins.
     pub dem: Spanned<Vec<String>>,
@@ -125,7 +126,7 @@ pub struct Terrain {
     /// `height_offset`: height in metres of sample value 0 of a grey PNG or RAW, in [−10⁷, 10⁷]. Default 0.
     pub height_offset: Option<Spanned<f64>>,
     /// `height_encoding`: what the colours of a PNG mean, `"terrain-rgb"` or `"terrarium"`; needed for colour PNG.
-    pub height_encoding: Option<Spanned<HeightEncoding>>,
+    pub height_encoding: Option<Spanned<HeightEncodingWord>>,
     /// `raw`: that the file is RAW and how it is laid out, such as `"1201x1201:i16be"`.
     pub raw: Option<Spanned<String>>,
     /// `vertical_datum`: what heights are counted from, such as `"NAVD88"`; printed, never computed with. Default:
@@ -144,14 +145,14 @@ pub struct Terrain {
 
 /// `[style]`: how the ground looks.
 #[derive(Clone, Debug, Default)]
-pub struct Style {
+pub struct StyleTable {
     /// `ramp`: `"atlas"`, `"desert"`, `"grey"`, or from 2 to 256 stops `[[height, "#rrggbb"], ...]`. Default
     /// `"atlas"`.
     pub ramp: Option<Spanned<RampChoice>>,
     /// `[style.contours]`: contour lines. Default: none.
     pub contours: Option<ContourTable>,
     /// `[style.light]`: where the light comes from.
-    pub light: Light,
+    pub light: LightTable,
     /// `haze`: distance in metres at which 63 % of what is seen is haze, in [0, 10⁹]; 0 for clear air.
     /// Default: eight times the longest side of the terrain, its drawn height included.
     pub haze: Option<Spanned<f64>>,
@@ -161,7 +162,7 @@ pub struct Style {
 #[derive(Clone, Debug, PartialEq)]
 pub enum RampChoice {
     /// A built-in ramp, stretched from the lowest to the highest ground.
-    Named(Ramp),
+    Named(RampName),
     /// At least two heights in metres, growing, and their colours.
     Stops(Vec<(f64, Color)>),
 }
@@ -203,7 +204,7 @@ pub struct ContourTable {
 
 /// `[style.light]`.
 #[derive(Clone, Debug, Default)]
-pub struct Light {
+pub struct LightTable {
     /// `azimuth`: where the sun stands, in [−360, 360]. Default 315 (north-west).
     pub azimuth: Option<Spanned<f64>>,
     /// `altitude`: how high it stands above the horizon, in (0, 90]. Default 45.
@@ -212,7 +213,7 @@ pub struct Light {
 
 /// `[[label]]`.
 #[derive(Clone, Debug)]
-pub struct Label {
+pub struct LabelTable {
     /// `text`, needed: what it says; `{height}` becomes the ground's elevation in whole metres.
     pub text: Spanned<String>,
     /// `at`, needed: the place it names.
@@ -248,7 +249,7 @@ pub struct CameraTable {
 
 /// `[furniture]`: what frames the picture; `true` or `false`, all shown unless turned off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Furniture {
+pub struct FurnitureTable {
     /// `title`: title and subtitle.
     pub title: bool,
     /// `north_arrow`: the north arrow.
@@ -259,7 +260,7 @@ pub struct Furniture {
     pub legend: bool,
 }
 
-impl Default for Furniture {
+impl Default for FurnitureTable {
     fn default() -> Self {
         Self { title: true, north_arrow: true, scale_bar: true, legend: true }
     }

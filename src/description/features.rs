@@ -13,16 +13,16 @@ use std::ops::Range;
 use toml::Spanned;
 
 use crate::description::document::Color;
-use crate::description::expression::{Choice, Expression, Quantity};
+use crate::description::expression::{ComputedWord, Expression, Quantity};
 use crate::description::words::{
-    Anchor, BaseRule, Border, Clamp, Cover, FenceKind, Footing, Join, LevelRule, Markings, Profile, Roof,
-    Surface, Water,
+    Anchor, BaseRule, Border, Clamp, Cover, FenceKind, Footing, Join, LevelRule, Markings, ProfileMode,
+    RoadSurface, RoofShape, Water,
 };
 
 /// Where a feature's coordinates come from: inline `points`, or `file` with an optional filter; exactly one
 /// of the two. These keys stand in the feature's own table.
 #[derive(Clone, Debug, Default)]
-pub struct Source {
+pub struct FeatureSource {
     /// `points`: inline coordinates, at least two for a line and three for a lake, at most 100 000, each in
     /// ±10⁹. A lake's last point may repeat its first.
     pub points: Option<Spanned<Vec<[f64; 2]>>>,
@@ -40,7 +40,7 @@ pub struct Source {
     pub crs: Option<Spanned<String>>,
 }
 
-impl Source {
+impl FeatureSource {
     /// The place of the coordinates or of the file's name, for messages.
     pub fn span(&self) -> Range<usize> {
         let points = self.points.as_ref().map(Spanned::span);
@@ -80,29 +80,29 @@ pub enum Scalar {
 
 /// `[[road]]`.
 #[derive(Clone, Debug, Default)]
-pub struct Road {
+pub struct RoadTable {
     /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
     /// `points`, `file`, `layer`, `where` and `crs`: the centreline.
-    pub source: Source,
+    pub source: FeatureSource,
     /// `width`: of the carriageway, in (0, 10 000]. Default 6.
     pub width: Option<Spanned<Quantity>>,
     /// `widths`, only with `points` and instead of `width`: the carriageway's width at each point, in (0, 10 000].
     pub widths: Option<Spanned<Vec<f64>>>,
     /// `surface`: `"asphalt"`, `"gravel"` or `"track"`. Default `"asphalt"`.
-    pub surface: Option<Spanned<Choice<Surface>>>,
+    pub surface: Option<Spanned<ComputedWord<RoadSurface>>>,
     /// `shoulder`: width of the unpaved strip on either side, in [0, 1000]. Default 0.
     pub shoulder: Option<Spanned<Quantity>>,
     /// `markings`: the lines on asphalt, `"dashed"` (edge lines and a dashed centre line), `"solid"` (a solid centre
     /// line), `"edges"` or `"none"`. Default `"dashed"`.
-    pub markings: Option<Spanned<Choice<Markings>>>,
+    pub markings: Option<Spanned<ComputedWord<Markings>>>,
     /// `join`: how segments meet, `"mitre"`, `"bevel"` or `"round"`. Default `"mitre"`.
     pub join: Option<Spanned<Join>>,
     /// `mitre_limit`: how long a mitre may be in half widths before it is cut off, in [1, 10]. Default 2.
     pub mitre_limit: Option<Spanned<f64>>,
     /// `profile`: `"drape"`, the road follows the ground, or `"conform"`, the ground follows the road. Default
     /// `"drape"`.
-    pub profile: Option<Spanned<Profile>>,
+    pub profile: Option<Spanned<ProfileMode>>,
     /// `max_grade`, only where it conforms: the steepest rise along it in percent, in (0, 100]. Default 8.
     pub max_grade: Option<Spanned<Quantity>>,
     /// `crown`, only where it conforms: the fall across from the centreline to either side in percent, in [0, 20].
@@ -130,15 +130,15 @@ pub struct Road {
 
 /// `[[bridge]]`: a bridge along a line.
 #[derive(Clone, Debug, Default)]
-pub struct Bridge {
+pub struct BridgeTable {
     /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
     /// `points`, `file`, `layer`, `where` and `crs`: the centreline, from abutment to abutment.
-    pub source: Source,
+    pub source: FeatureSource,
     /// `width`: between the parapets, in (0, 10 000]. Default 8.
     pub width: Option<Spanned<Quantity>>,
     /// `surface`: of the deck. Default `"asphalt"`.
-    pub surface: Option<Spanned<Choice<Surface>>>,
+    pub surface: Option<Spanned<ComputedWord<RoadSurface>>>,
     /// `deck`: the deck's elevation, in [−10⁷, 10⁷]. Default: straight from the ground at one end to that at the other.
     pub deck: Option<Spanned<Quantity>>,
     /// `pier_spacing`: the widest span between piers, in [1, 10 000]. Default 25.
@@ -147,11 +147,11 @@ pub struct Bridge {
 
 /// `[[river]]`.
 #[derive(Clone, Debug, Default)]
-pub struct River {
+pub struct RiverTable {
     /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
     /// `points`, `file`, `layer`, `where` and `crs`: the centreline.
-    pub source: Source,
+    pub source: FeatureSource,
     /// `width`: of the water, in (0, 10 000]. Default 8.
     pub width: Option<Spanned<Quantity>>,
     /// `mouth_width`: of the water at its lower end, in (0, 10 000]; between the ends the width grows evenly. Default:
@@ -173,11 +173,11 @@ pub struct River {
 
 /// `[[lake]]`.
 #[derive(Clone, Debug, Default)]
-pub struct Lake {
+pub struct LakeTable {
     /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
     /// `points`, `file`, `where` and `crs`: the shore.
-    pub source: Source,
+    pub source: FeatureSource,
     /// `level`: the water's elevation, in [−10⁷, 10⁷]. Default: by `level_rule`.
     pub level: Option<Spanned<Quantity>>,
     /// `level_rule`, instead of `level`: the level is the `"lowest"`, the `"median"` or the `"mean"` height of the
@@ -187,13 +187,13 @@ pub struct Lake {
 
 /// `[[area]]`: what covers the ground.
 #[derive(Clone, Debug, Default)]
-pub struct Area {
+pub struct AreaTable {
     /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
     /// `points`, `file`, `layer`, `where` and `crs`: the outline.
-    pub source: Source,
+    pub source: FeatureSource,
     /// `cover`, needed: what it is covered with, such as `"forest"`; see [`Cover`].
-    pub cover: Option<Spanned<Choice<Cover>>>,
+    pub cover: Option<Spanned<ComputedWord<Cover>>>,
     /// `color`: multiplied with the texture; its alpha lets the ground through. Default: the cover's own.
     pub color: Option<Spanned<Color>>,
     /// `border`: the line along its outline, `"none"`, `"solid"` or `"dashed"`. Default: `"solid"` where it is
@@ -205,11 +205,11 @@ pub struct Area {
 
 /// `[[building]]`: footprints raised to a height.
 #[derive(Clone, Debug, Default)]
-pub struct Building {
+pub struct BuildingTable {
     /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
     /// `points`, `file`, `layer`, `where` and `crs`: the footprints.
-    pub source: Source,
+    pub source: FeatureSource,
     /// `height`: from its base to the ridge, in (0, 1000]. Default: the property `height`, else three metres for each
     /// of `building:levels` or `levels`, else 6.
     pub height: Option<Spanned<Quantity>>,
@@ -217,7 +217,7 @@ pub struct Building {
     /// is levelled to its mean. Default `"lowest"`.
     pub base: Option<Spanned<BaseRule>>,
     /// `roof`: `"flat"`, `"gabled"`, `"hipped"` or `"pyramidal"`. Default: the property `roof:shape`, else `"flat"`.
-    pub roof: Option<Spanned<Choice<Roof>>>,
+    pub roof: Option<Spanned<ComputedWord<RoofShape>>>,
     /// `roof_height`: how much of the height is roof, in [0, 1000]. Default: the property `roof:height`, else by a pitch
     /// of 30 degrees.
     pub roof_height: Option<Spanned<Quantity>>,
@@ -229,14 +229,14 @@ pub struct Building {
 
 /// `[[fence]]`: what stands or runs along a line.
 #[derive(Clone, Debug, Default)]
-pub struct Fence {
+pub struct FenceTable {
     /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
     /// `points`, `file`, `layer`, `where` and `crs`: the line.
-    pub source: Source,
+    pub source: FeatureSource,
     /// `kind`: `"fence"`, `"wall"`, `"hedge"`, `"power-line"`, `"trench"`, `"obstacles"` or `"boundary"`. Default:
     /// by the properties `barrier`, `power` and `boundary` as OpenStreetMap has them, else `"fence"`.
-    pub kind: Option<Spanned<Choice<FenceKind>>>,
+    pub kind: Option<Spanned<ComputedWord<FenceKind>>>,
     /// `height`: above the ground, or a trench's depth, in (0, 1000]. Default: the property `height`, else 1.2 for a
     /// fence, 2 for a wall, 1.8 for a hedge, 30 for a power line, 1.5 for a trench, 1.2 for obstacles.
     pub height: Option<Spanned<Quantity>>,
@@ -265,7 +265,7 @@ pub struct ModelPlacement {
     /// `crs`, only with `at`: the coordinate system of `at`. Default: the scene's `points_crs`.
     pub crs: Option<Spanned<String>>,
     /// `[model.instances]`: one at each point of a source; expressions see the point's properties.
-    pub instances: Option<Source>,
+    pub instances: Option<FeatureSource>,
     /// `variants`, only with `instances`: other models, named as in `file`, by the value of `variant`; up to 256.
     pub variants: Option<Spanned<BTreeMap<String, String>>>,
     /// `variant`, only with `variants`: which of them stands at a point; `file` where it is none.
@@ -294,11 +294,11 @@ pub struct ModelPlacement {
 
 /// `[[scatter]]`: models strewn over areas.
 #[derive(Clone, Debug, Default)]
-pub struct Scatter {
+pub struct ScatterTable {
     /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
     /// `points`, `file`, `layer`, `where` and `crs`: the areas.
-    pub source: Source,
+    pub source: FeatureSource,
     /// `of`, needed: models, named as in `file` of `[[model]]`; one or up to 256, equally often.
     pub of: Option<Spanned<Vec<String>>>,
     /// `density`: how many to the hectare, in (0, 10⁵]. Default 100.

@@ -37,7 +37,7 @@ pub type Load<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, String>;
 pub(super) type Refused = (Range<usize>, String, String);
 
 /// Texts that belong together.
-pub(super) struct Gathered {
+pub(super) struct IncludedTexts {
     /// All texts, that of the scene file first.
     pub source: SourceText,
     /// What could not be included.
@@ -47,9 +47,12 @@ pub(super) struct Gathered {
 }
 
 /// The file `name` with `text`, and all that it includes.
-pub(super) fn gather(name: &str, text: &str, load: Load<'_>, max_bytes: usize) -> Gathered {
-    let gathered =
-        Gathered { source: SourceText::alone(name, text), refused: Vec::new(), includes: vec![Vec::new()] };
+pub(super) fn gather(name: &str, text: &str, load: Load<'_>, max_bytes: usize) -> IncludedTexts {
+    let gathered = IncludedTexts {
+        source: SourceText::alone(name, text),
+        refused: Vec::new(),
+        includes: vec![Vec::new()],
+    };
     let shown_folder = name.rfind('/').map_or("", |slash| &name[..=slash]).to_owned();
     let mut gathering =
         Gathering { gathered, load, max_bytes, shown_folder, paths: Vec::new(), seen: BTreeSet::new() };
@@ -58,7 +61,7 @@ pub(super) fn gather(name: &str, text: &str, load: Load<'_>, max_bytes: usize) -
 }
 
 struct Gathering<'a> {
-    gathered: Gathered,
+    gathered: IncludedTexts,
     load: Load<'a>,
     max_bytes: usize,
     /// The scene file's folder as messages show it.
@@ -179,36 +182,36 @@ fn merged_from<'i>(file: usize, tables: &mut [Option<DeTable<'i>>], includes: &[
     for &included in &includes[file] {
         let mut table = merged_from(included, tables, includes);
         table.remove("include");
-        lay_over(&mut before, table, Lists::Appended);
+        lay_over(&mut before, table, ListMerge::Appended);
     }
-    lay_over(&mut before, tables[file].take().unwrap_or_default(), Lists::Appended);
+    lay_over(&mut before, tables[file].take().unwrap_or_default(), ListMerge::Appended);
     before
 }
 
 /// What becomes of a list that both sides have.
 #[derive(Clone, Copy)]
-enum Lists {
+enum ListMerge {
     /// The upper one's entries come after the lower one's: repeated tables, which stand only at the top.
     Appended,
     /// The upper one is taken.
     Replaced,
 }
 
-fn lay_over<'i>(lower: &mut DeTable<'i>, upper: DeTable<'i>, lists: Lists) {
+fn lay_over<'i>(lower: &mut DeTable<'i>, upper: DeTable<'i>, lists: ListMerge) {
     for (key, value) in upper {
         let Some((lower_key, mut there)) = lower.remove_entry(key.get_ref().as_ref()) else {
             lower.insert(key, value);
             continue;
         };
         match (there.get_mut(), value.get_ref(), lists) {
-            (DeValue::Array(there), DeValue::Array(_), Lists::Appended) => {
+            (DeValue::Array(there), DeValue::Array(_), ListMerge::Appended) => {
                 if let DeValue::Array(more) = value.into_inner() {
                     *there = std::mem::replace(there, DeArray::new()).into_iter().chain(more).collect();
                 }
             }
             (DeValue::Table(there), DeValue::Table(_), _) => {
                 if let DeValue::Table(more) = value.into_inner() {
-                    lay_over(there, more, Lists::Replaced);
+                    lay_over(there, more, ListMerge::Replaced);
                 }
             }
             _ => there = value,

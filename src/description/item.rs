@@ -7,13 +7,13 @@ use toml::Spanned;
 use toml::de::{DeArray, DeValue};
 
 use crate::description::bounds::{Bounds, ELEVATION, Short};
-use crate::description::diagnostic::Report;
+use crate::description::diagnostic::DiagnosticSink;
 use crate::description::document::{Color, RampChoice};
-use crate::description::expression::{Choice, Expression, ExpressionError, Quantity};
+use crate::description::expression::{ComputedWord, Expression, ExpressionError, Quantity};
 use crate::description::include::joined;
-use crate::description::sketch::Shape;
+use crate::description::sketch::KeyShape;
 use crate::description::suggest::{quoted, remedy};
-use crate::description::words::{Ramp, Word};
+use crate::description::words::{RampName, Word};
 use crate::geom::crs::Crs;
 
 /// The largest coordinate, in any unit: beyond it centimetres are lost to rounding.
@@ -26,12 +26,12 @@ pub(super) const MAX_TEXT: usize = 4096;
 pub(super) const MAX_LIST: usize = 256;
 
 /// A value, the key it was given for, and where to say what is wrong with it.
-pub(super) struct Item<'a, 'i> {
-    pub report: &'a mut Report,
+pub(super) struct KeyValue<'a, 'i> {
+    pub report: &'a mut DiagnosticSink,
     pub key: &'a str,
     pub value: &'a Spanned<DeValue<'i>>,
     /// Where to write down what is asked for, in place of reading it.
-    pub asked: Option<&'a mut Option<Shape>>,
+    pub asked: Option<&'a mut Option<KeyShape>>,
 }
 
 /// `name`, which is relative to `folder`, as seen from the scene file.
@@ -67,9 +67,9 @@ fn words<W: Word>() -> Vec<&'static str> {
     W::ALL.iter().map(|(word, _)| *word).collect()
 }
 
-impl<'i> Item<'_, 'i> {
+impl<'i> KeyValue<'_, 'i> {
     /// Writes down what is asked for; whether that is all that is wanted.
-    pub(super) fn sketched(&mut self, shape: impl FnOnce() -> Shape) -> bool {
+    pub(super) fn sketched(&mut self, shape: impl FnOnce() -> KeyShape) -> bool {
         match &mut self.asked {
             Some(asked) => {
                 **asked = Some(shape());
@@ -88,13 +88,13 @@ impl<'i> Item<'_, 'i> {
         self.wrong(format!("`{}` must be {wanted}, but this is {found}", self.key), help);
     }
 
-    pub(super) fn element<'b>(&'b mut self, value: &'b Spanned<DeValue<'i>>) -> Item<'b, 'i> {
-        Item { report: self.report, key: self.key, value, asked: None }
+    pub(super) fn element<'b>(&'b mut self, value: &'b Spanned<DeValue<'i>>) -> KeyValue<'b, 'i> {
+        KeyValue { report: self.report, key: self.key, value, asked: None }
     }
 
     /// A finite number within `bounds`.
     pub fn number(mut self, bounds: Bounds) -> Option<f64> {
-        if self.sketched(|| Shape::Number(bounds)) {
+        if self.sketched(|| KeyShape::Number(bounds)) {
             return None;
         }
         match as_number(self.value.get_ref()) {
@@ -113,7 +113,7 @@ impl<'i> Item<'_, 'i> {
 
     /// A whole number within `bounds`.
     pub fn whole(mut self, bounds: RangeInclusive<u32>) -> Option<u32> {
-        if self.sketched(|| Shape::Whole(bounds.clone())) {
+        if self.sketched(|| KeyShape::Whole(bounds.clone())) {
             return None;
         }
         let wanted = format!("from {} to {}", bounds.start(), bounds.end());
@@ -148,7 +148,7 @@ impl<'i> Item<'_, 'i> {
 
     /// A number within `bounds`, or an expression that gives one.
     pub fn quantity(mut self, bounds: Bounds) -> Option<Quantity> {
-        if self.sketched(|| Shape::Quantity(bounds)) {
+        if self.sketched(|| KeyShape::Quantity(bounds)) {
             return None;
         }
         match self.value.get_ref() {
@@ -160,23 +160,23 @@ impl<'i> Item<'_, 'i> {
     }
 
     /// One of `W`'s words, or an expression that gives one.
-    pub fn choice<W: Word>(mut self) -> Option<Choice<W>> {
-        if self.sketched(|| Shape::Choice(words::<W>())) {
+    pub fn choice<W: Word>(mut self) -> Option<ComputedWord<W>> {
+        if self.sketched(|| KeyShape::Choice(words::<W>())) {
             return None;
         }
         match self.value.get_ref() {
             DeValue::String(text)
                 if W::ALL.iter().all(|(word, _)| word != text) && Expression::computes(text) =>
             {
-                self.expression_among(&words::<W>()).map(Choice::of_features)
+                self.expression_among(&words::<W>()).map(ComputedWord::of_features)
             }
-            _ => self.word().map(Choice::Fixed),
+            _ => self.word().map(ComputedWord::Fixed),
         }
     }
 
     /// An expression over a feature's properties.
     pub fn expression(&mut self) -> Option<Expression> {
-        if self.sketched(|| Shape::Expression) {
+        if self.sketched(|| KeyShape::Expression) {
             return None;
         }
         self.expression_among(&[])
@@ -234,7 +234,7 @@ impl<'i> Item<'_, 'i> {
 
     /// Two numbers within `bounds`, the second not less than the first.
     pub fn range(mut self, bounds: Bounds) -> Option<[f64; 2]> {
-        if self.sketched(|| Shape::Range(bounds)) {
+        if self.sketched(|| KeyShape::Range(bounds)) {
             return None;
         }
         let help = "write [from, to]";
@@ -259,7 +259,7 @@ impl<'i> Item<'_, 'i> {
 
     /// As many numbers as points may be, each within `bounds`.
     pub fn numbers(mut self, bounds: Bounds) -> Option<Vec<f64>> {
-        if self.sketched(|| Shape::Numbers(bounds, MAX_POINTS)) {
+        if self.sketched(|| KeyShape::Numbers(bounds, MAX_POINTS)) {
             return None;
         }
         match self.value.get_ref() {
@@ -276,7 +276,7 @@ impl<'i> Item<'_, 'i> {
 
     /// A table of texts.
     fn texts(mut self) -> Option<BTreeMap<String, String>> {
-        if self.sketched(|| Shape::Texts(MAX_LIST)) {
+        if self.sketched(|| KeyShape::Texts(MAX_LIST)) {
             return None;
         }
         match self.value.get_ref() {
@@ -284,7 +284,8 @@ impl<'i> Item<'_, 'i> {
                 let texts: Vec<_> = table
                     .iter()
                     .map(|(key, text)| {
-                        let item = Item { report: self.report, key: key.get_ref(), value: text, asked: None };
+                        let item =
+                            KeyValue { report: self.report, key: key.get_ref(), value: text, asked: None };
                         Some((key.get_ref().to_string(), item.filled_text()?))
                     })
                     .collect();
@@ -302,7 +303,7 @@ impl<'i> Item<'_, 'i> {
 
     /// True or false.
     pub fn switch(mut self) -> Option<bool> {
-        if self.sketched(|| Shape::Switch) {
+        if self.sketched(|| KeyShape::Switch) {
             return None;
         }
         match self.value.get_ref() {
@@ -316,7 +317,7 @@ impl<'i> Item<'_, 'i> {
 
     /// Text of bounded length; may be empty.
     pub fn text(mut self) -> Option<String> {
-        if self.sketched(|| Shape::Text) {
+        if self.sketched(|| KeyShape::Text) {
             return None;
         }
         match self.value.get_ref() {
@@ -334,7 +335,7 @@ impl<'i> Item<'_, 'i> {
 
     /// Text with something in it.
     pub fn filled_text(mut self) -> Option<String> {
-        if self.sketched(|| Shape::FilledText) {
+        if self.sketched(|| KeyShape::FilledText) {
             return None;
         }
         let text = self.element(self.value).text()?;
@@ -347,7 +348,7 @@ impl<'i> Item<'_, 'i> {
 
     /// Text with something in it, or a list of such texts.
     pub fn one_or_more_texts(mut self) -> Option<Vec<String>> {
-        if self.sketched(|| Shape::OneOrMoreTexts(MAX_LIST)) {
+        if self.sketched(|| KeyShape::OneOrMoreTexts(MAX_LIST)) {
             return None;
         }
         match self.value.get_ref() {
@@ -366,7 +367,7 @@ impl<'i> Item<'_, 'i> {
 
     /// Text that names a coordinate reference system; `check` may refuse what it names.
     pub fn crs(mut self, check: impl FnOnce(&Crs) -> Result<(), String>) -> Option<String> {
-        if self.sketched(|| Shape::FilledText) {
+        if self.sketched(|| KeyShape::FilledText) {
             return None;
         }
         let text = self.element(self.value).filled_text()?;
@@ -386,7 +387,7 @@ impl<'i> Item<'_, 'i> {
 
     /// One of `W`'s words.
     pub fn word<W: Word>(mut self) -> Option<W> {
-        if self.sketched(|| Shape::Word(words::<W>())) {
+        if self.sketched(|| KeyShape::Word(words::<W>())) {
             return None;
         }
         let words = words::<W>();
@@ -404,7 +405,7 @@ impl<'i> Item<'_, 'i> {
 
     /// `#rgb`, `#rrggbb` or `#rrggbbaa`.
     pub fn color(mut self) -> Option<Color> {
-        if self.sketched(|| Shape::Color) {
+        if self.sketched(|| KeyShape::Color) {
             return None;
         }
         let help = "write \"#rgb\", \"#rrggbb\" or \"#rrggbbaa\" in hexadecimal digits";
@@ -421,7 +422,7 @@ impl<'i> Item<'_, 'i> {
 
     /// A coordinate pair.
     pub fn point(mut self) -> Option<[f64; 2]> {
-        if self.sketched(|| Shape::Point) {
+        if self.sketched(|| KeyShape::Point) {
             return None;
         }
         let help =
@@ -448,7 +449,7 @@ impl<'i> Item<'_, 'i> {
     /// At least `least` coordinate pairs; a closing point that repeats the first one is not counted where
     /// `least` asks for a ring of three.
     pub fn points(mut self, least: usize) -> Option<Vec<[f64; 2]>> {
-        if self.sketched(|| Shape::Points(least, MAX_POINTS)) {
+        if self.sketched(|| KeyShape::Points(least, MAX_POINTS)) {
             return None;
         }
         let help = format!("write at least {least} points as [[x1, y1], [x2, y2], ...]");
@@ -474,7 +475,7 @@ impl<'i> Item<'_, 'i> {
 
     /// A ramp's name, or its stops from low to high.
     pub fn ramp(mut self) -> Option<RampChoice> {
-        if self.sketched(|| Shape::Ramp(words::<Ramp>(), MAX_LIST)) {
+        if self.sketched(|| KeyShape::Ramp(words::<RampName>(), MAX_LIST)) {
             return None;
         }
         match self.value.get_ref() {

@@ -7,10 +7,10 @@ use toml::Spanned;
 use toml::de::DeTable;
 
 use crate::description::decode::document;
-use crate::description::diagnostic::{Diagnostic, Diagnostics, Report};
+use crate::description::diagnostic::{Diagnostic, DiagnosticSink, Diagnostics};
 use crate::description::document::Document;
 use crate::description::include::{Load, gather, merged, moved};
-use crate::description::reader::Reader;
+use crate::description::reader::TableReader;
 use crate::description::source_text::SourceText;
 use crate::description::suggest::quoted;
 
@@ -37,7 +37,7 @@ pub fn parse_including(file_name: &str, text: &str, load: Load<'_>) -> Result<Do
     }
     let gathered = gather(file_name, text, load, MAX_BYTES);
     let source = Arc::new(gathered.source);
-    let mut report = Report::new(Arc::clone(&source));
+    let mut report = DiagnosticSink::new(Arc::clone(&source));
     for (span, message, help) in gathered.refused {
         report.error(span, message, Some(help));
     }
@@ -45,7 +45,7 @@ pub fn parse_including(file_name: &str, text: &str, load: Load<'_>) -> Result<Do
     let table = tables.into_iter().collect::<Option<Vec<_>>>();
     let table = table.map(|tables| merged(tables, &gathered.includes));
     let decode =
-        |table| Reader::read_root(&mut report, table, |reader| document(reader, Arc::clone(&source)));
+        |table| TableReader::read_root(&mut report, table, |reader| document(reader, Arc::clone(&source)));
     let parsed = table.and_then(decode);
     match (report.into_diagnostics(), parsed) {
         (None, Some(document)) => Ok(document),
@@ -92,7 +92,7 @@ const MAX_BYTES_RECOVERED: usize = 256 << 10;
 
 /// The text that starts at the first byte given as a table, where nothing is wrong with it but a key given twice. Reports one syntax error for
 /// each line, since what follows an error is often caused by it.
-fn toml_table<'i>((start, text): (usize, &'i str), report: &mut Report) -> Option<DeTable<'i>> {
+fn toml_table<'i>((start, text): (usize, &'i str), report: &mut DiagnosticSink) -> Option<DeTable<'i>> {
     let (table, mut errors) = if text.len() <= MAX_BYTES_RECOVERED {
         DeTable::parse_recoverable(text)
     } else {

@@ -9,9 +9,9 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::description::diagnostic::Report;
-use crate::description::item::{Item, kind_of};
-use crate::description::sketch::{Key, Needed, Part, Sketch};
+use crate::description::diagnostic::DiagnosticSink;
+use crate::description::item::{KeyValue, kind_of};
+use crate::description::sketch::{KeyPart, KeyProbe, Needed, SchemaProbe};
 use crate::description::source_text::SourceText;
 use crate::description::suggest::{listed, nearest, quoted};
 
@@ -21,15 +21,15 @@ const MAX_TABLES: usize = 10_000;
 const TOP_KEYS: [&str; 5] = ["include", "title", "subtitle", "crs", "points_crs"];
 
 /// One table while it is read.
-pub(super) struct Reader<'r, 'i> {
-    report: &'r mut Report,
+pub(super) struct TableReader<'r, 'i> {
+    report: &'r mut DiagnosticSink,
     table: DeTable<'i>,
     path: Path,
     span: Range<usize>,
     known: Vec<&'static str>,
     missing: Vec<&'static str>,
     /// What was asked for, where nothing is read.
-    sketch: Option<Sketch>,
+    sketch: Option<SchemaProbe>,
 }
 
 /// What a table is called.
@@ -55,54 +55,58 @@ impl Path {
     }
 }
 
-impl<'r, 'i> Reader<'r, 'i> {
+impl<'r, 'i> TableReader<'r, 'i> {
     /// Reads the whole file's table with `decode`.
     pub fn read_root<T>(
-        report: &'r mut Report,
+        report: &'r mut DiagnosticSink,
         table: DeTable<'i>,
-        decode: impl FnOnce(&mut Reader<'_, 'i>) -> T,
+        decode: impl FnOnce(&mut TableReader<'_, 'i>) -> T,
     ) -> T {
-        Reader::read(report, table, Path::default(), 0..0, decode)
+        TableReader::read(report, table, Path::default(), 0..0, decode)
     }
 
     fn read<T>(
-        report: &'r mut Report,
+        report: &'r mut DiagnosticSink,
         table: DeTable<'i>,
         path: Path,
         span: Range<usize>,
-        decode: impl FnOnce(&mut Reader<'_, 'i>) -> T,
+        decode: impl FnOnce(&mut TableReader<'_, 'i>) -> T,
     ) -> T {
         let (known, missing) = (Vec::new(), Vec::new());
-        let mut reader = Reader { report, table, path, span, known, missing, sketch: None };
+        let mut reader = TableReader { report, table, path, span, known, missing, sketch: None };
         let value = decode(&mut reader);
         reader.finish();
         value
     }
 
     /// What `decode` asks of the whole file's table. It is given nothing, and what it says is not listened to.
-    pub fn sketch_root<T>(decode: impl FnOnce(&mut Reader<'_, 'i>) -> T) -> Sketch {
-        let mut report = Report::new(SourceText::new("", ""));
-        Reader::sketch(&mut report, Path::default(), decode)
+    pub fn sketch_root<T>(decode: impl FnOnce(&mut TableReader<'_, 'i>) -> T) -> SchemaProbe {
+        let mut report = DiagnosticSink::new(SourceText::new("", ""));
+        TableReader::sketch(&mut report, Path::default(), decode)
     }
 
-    fn sketch<T>(report: &mut Report, path: Path, decode: impl FnOnce(&mut Reader<'_, 'i>) -> T) -> Sketch {
-        let mut reader = Reader {
+    fn sketch<T>(
+        report: &mut DiagnosticSink,
+        path: Path,
+        decode: impl FnOnce(&mut TableReader<'_, 'i>) -> T,
+    ) -> SchemaProbe {
+        let mut reader = TableReader {
             report,
             table: DeTable::new(),
             path,
             span: 0..0,
             known: Vec::new(),
             missing: Vec::new(),
-            sketch: Some(Sketch::default()),
+            sketch: Some(SchemaProbe::default()),
         };
         decode(&mut reader);
         reader.sketch.unwrap_or_default()
     }
 
     /// Writes down a key.
-    fn note(&mut self, name: &'static str, needed: Needed, part: Part) {
+    fn note(&mut self, name: &'static str, needed: Needed, part: KeyPart) {
         if let Some(sketch) = &mut self.sketch {
-            sketch.keys.push(Key { name, needed, part });
+            sketch.keys.push(KeyProbe { name, needed, part });
         }
     }
 
@@ -110,13 +114,13 @@ impl<'r, 'i> Reader<'r, 'i> {
     fn note_value<T>(
         &mut self,
         (key, needed): (&'static str, Needed),
-        decode: impl FnOnce(Item<'_, 'i>) -> Option<T>,
+        decode: impl FnOnce(KeyValue<'_, 'i>) -> Option<T>,
     ) {
         let nothing = Spanned::new(0..0, DeValue::Boolean(false));
         let mut shape = None;
-        decode(Item { report: self.report, key, value: &nothing, asked: Some(&mut shape) });
+        decode(KeyValue { report: self.report, key, value: &nothing, asked: Some(&mut shape) });
         let shape = shape.expect("every way to read a value begins by writing down what it asks for");
-        self.note(key, needed, Part::Value(shape));
+        self.note(key, needed, KeyPart::Value(shape));
     }
 
     /// The table's header or, for an inline table, all of it.
@@ -152,7 +156,7 @@ impl<'r, 'i> Reader<'r, 'i> {
     pub fn get<T>(
         &mut self,
         key: &'static str,
-        decode: impl FnOnce(Item<'_, 'i>) -> Option<T>,
+        decode: impl FnOnce(KeyValue<'_, 'i>) -> Option<T>,
     ) -> Option<Spanned<T>> {
         if self.sketch.is_some() {
             self.note_value((key, Needed::No), decode);
@@ -166,7 +170,7 @@ impl<'r, 'i> Reader<'r, 'i> {
     pub fn require<T>(
         &mut self,
         key: &'static str,
-        decode: impl FnOnce(Item<'_, 'i>) -> Option<T>,
+        decode: impl FnOnce(KeyValue<'_, 'i>) -> Option<T>,
     ) -> Option<Spanned<T>> {
         if self.sketch.is_some() {
             self.note_value((key, Needed::Yes), decode);
@@ -183,7 +187,7 @@ impl<'r, 'i> Reader<'r, 'i> {
     pub fn table<T>(
         &mut self,
         key: &'static str,
-        decode: impl FnOnce(&mut Reader<'_, 'i>) -> T,
+        decode: impl FnOnce(&mut TableReader<'_, 'i>) -> T,
     ) -> Option<T> {
         self.one_table((key, Needed::No), decode)
     }
@@ -192,7 +196,7 @@ impl<'r, 'i> Reader<'r, 'i> {
     pub fn require_table<T>(
         &mut self,
         key: &'static str,
-        decode: impl FnOnce(&mut Reader<'_, 'i>) -> T,
+        decode: impl FnOnce(&mut TableReader<'_, 'i>) -> T,
     ) -> Option<T> {
         if !self.table.contains_key(key) {
             self.missing.push(key);
@@ -203,12 +207,12 @@ impl<'r, 'i> Reader<'r, 'i> {
     fn one_table<T>(
         &mut self,
         (key, needed): (&'static str, Needed),
-        decode: impl FnOnce(&mut Reader<'_, 'i>) -> T,
+        decode: impl FnOnce(&mut TableReader<'_, 'i>) -> T,
     ) -> Option<T> {
         let path = self.path.inside(key, false);
         if self.sketch.is_some() {
-            let sketch = Reader::sketch(self.report, path, decode);
-            self.note(key, needed, Part::Table(sketch));
+            let sketch = TableReader::sketch(self.report, path, decode);
+            self.note(key, needed, KeyPart::Table(sketch));
             return None;
         }
         let (_, value) = self.take(key)?;
@@ -218,7 +222,7 @@ impl<'r, 'i> Reader<'r, 'i> {
     /// The tables of `key`, each under a name of the user's, with the place of their names; those that are none are left
     /// out.
     pub fn named_tables(&mut self, key: &'static str) -> Vec<(Spanned<String>, DeTable<'i>)> {
-        self.note(key, Needed::No, Part::Named);
+        self.note(key, Needed::No, KeyPart::Named);
         let path = self.path.inside(key, false);
         let Some((_, value)) = self.take(key) else { return Vec::new() };
         let wrong = format!("`{key}` must hold tables");
@@ -254,12 +258,12 @@ impl<'r, 'i> Reader<'r, 'i> {
     pub fn tables<T>(
         &mut self,
         key: &'static str,
-        decode: impl Fn(&mut Reader<'_, 'i>) -> Option<T>,
+        decode: impl Fn(&mut TableReader<'_, 'i>) -> Option<T>,
     ) -> Vec<T> {
         let path = self.path.inside(key, true);
         if self.sketch.is_some() {
-            let sketch = Reader::sketch(self.report, path, &decode);
-            self.note(key, Needed::No, Part::Tables(sketch));
+            let sketch = TableReader::sketch(self.report, path, &decode);
+            self.note(key, Needed::No, KeyPart::Tables(sketch));
             return Vec::new();
         }
         let Some((name, value)) = self.take(key) else { return Vec::new() };
@@ -299,9 +303,9 @@ impl<'r, 'i> Reader<'r, 'i> {
         &mut self,
         key: &str,
         value: &Spanned<DeValue<'i>>,
-        decode: impl FnOnce(Item<'_, 'i>) -> Option<T>,
+        decode: impl FnOnce(KeyValue<'_, 'i>) -> Option<T>,
     ) -> Option<Spanned<T>> {
-        decode(Item { report: self.report, key, value, asked: None })
+        decode(KeyValue { report: self.report, key, value, asked: None })
             .map(|decoded| Spanned::new(value.span(), decoded))
     }
 
@@ -309,11 +313,11 @@ impl<'r, 'i> Reader<'r, 'i> {
         &mut self,
         value: Spanned<DeValue<'i>>,
         path: Path,
-        decode: impl FnOnce(&mut Reader<'_, 'i>) -> T,
+        decode: impl FnOnce(&mut TableReader<'_, 'i>) -> T,
     ) -> Option<T> {
         let span = value.span();
         match value.into_inner() {
-            DeValue::Table(table) => Some(Reader::read(self.report, table, path, span, decode)),
+            DeValue::Table(table) => Some(TableReader::read(self.report, table, path, span, decode)),
             other => {
                 let message = format!("`{}` must be a table, but this is {}", path.dotted, kind_of(&other));
                 self.error(span, message, format!("start it with {}", path.title()));

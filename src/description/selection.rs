@@ -7,8 +7,8 @@ use toml::de::DeValue;
 use crate::description::bounds::Bounds;
 use crate::description::expression::Expression;
 use crate::description::features::{Match, Scalar};
-use crate::description::item::{Item, MAX_LIST, kind_of};
-use crate::description::sketch::Shape;
+use crate::description::item::{KeyValue, MAX_LIST, kind_of};
+use crate::description::sketch::KeyShape;
 use crate::description::suggest::quoted;
 
 /// Which features of a file are meant.
@@ -19,10 +19,10 @@ pub(super) enum Selection {
     Holding(Expression),
 }
 
-impl Item<'_, '_> {
+impl KeyValue<'_, '_> {
     /// A filter: properties and the values they may have, or an expression.
     pub fn filter(mut self) -> Option<Selection> {
-        if self.sketched(|| Shape::Filter(MAX_LIST)) {
+        if self.sketched(|| KeyShape::Filter(MAX_LIST)) {
             return None;
         }
         let help = "write { property = value } or \"property = 'value' and ...\"";
@@ -41,7 +41,8 @@ impl Item<'_, '_> {
         let matches: Vec<_> = table
             .iter()
             .map(|(property, wanted)| {
-                let item = Item { report: self.report, key: property.get_ref(), value: wanted, asked: None };
+                let item =
+                    KeyValue { report: self.report, key: property.get_ref(), value: wanted, asked: None };
                 Some((property.get_ref().to_string(), item.wanted()?))
             })
             .collect();

@@ -10,16 +10,16 @@ use crate::description::bounds::Bounds;
 
 /// A table's keys, in the order in which they are asked for.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Sketch {
-    pub keys: Vec<Key>,
+pub(super) struct SchemaProbe {
+    pub keys: Vec<KeyProbe>,
 }
 
 /// One key.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Key {
+pub(super) struct KeyProbe {
     pub name: &'static str,
     pub needed: Needed,
-    pub part: Part,
+    pub part: KeyPart,
 }
 
 /// Whether a table can do without a key.
@@ -31,19 +31,19 @@ pub(super) enum Needed {
 
 /// What stands under a key.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Part {
-    Value(Shape),
+pub(super) enum KeyPart {
+    Value(KeyShape),
     /// A table.
-    Table(Sketch),
+    Table(SchemaProbe),
     /// Any number of tables.
-    Tables(Sketch),
+    Tables(SchemaProbe),
     /// A table for each name that the user chooses.
     Named,
 }
 
 /// What a value must be.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Shape {
+pub(super) enum KeyShape {
     Number(Bounds),
     Whole(RangeInclusive<u32>),
     /// A number or an expression.

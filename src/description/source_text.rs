@@ -16,13 +16,13 @@ use std::sync::Arc;
 #[derive(Debug, PartialEq, Eq)]
 pub struct SourceText {
     /// In the order of their texts; never empty, the first starts at 0.
-    files: Vec<File>,
+    files: Vec<SourceFile>,
     text: String,
 }
 
 /// One of the files.
 #[derive(Debug, PartialEq, Eq)]
-struct File {
+struct SourceFile {
     name: String,
     /// Its folder as seen from the first file's, empty or with a `/` at its end.
     folder: String,
@@ -46,7 +46,7 @@ impl SourceText {
 
     /// As [`Self::new`], for other files to be laid behind it.
     pub(super) fn alone(name: impl Into<String>, text: impl Into<String>) -> Self {
-        let file = File { name: name.into(), folder: String::new(), start: 0 };
+        let file = SourceFile { name: name.into(), folder: String::new(), start: 0 };
         Self { files: vec![file], text: text.into() }
     }
 
@@ -55,7 +55,7 @@ impl SourceText {
     pub(super) fn append(&mut self, name: String, folder: String, text: &str) -> usize {
         self.text.push('\n');
         let start = self.text.len();
-        self.files.push(File { name, folder, start });
+        self.files.push(SourceFile { name, folder, start });
         self.text.push_str(text);
         start
     }
@@ -112,7 +112,7 @@ impl SourceText {
         start..start + line.len()
     }
 
-    fn file_at(&self, offset: usize) -> &File {
+    fn file_at(&self, offset: usize) -> &SourceFile {
         let after = self.files.partition_point(|file| file.start <= offset);
         &self.files[after.saturating_sub(1)]
     }

@@ -22,7 +22,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::DeTable;
 
-use crate::description::reader::Reader;
+use crate::description::reader::TableReader;
 use crate::description::suggest::{quoted, remedy};
 
 /// How many bytes of scene file all styles together may stand for, each counted as often as it is used: without a
@@ -42,21 +42,21 @@ const RIVALS: [(&str, &[&str]); 8] = [
 ];
 
 /// A style's keys and how many bytes of scene file they take.
-struct Style<'i> {
+struct NamedStyle<'i> {
     keys: DeTable<'i>,
     bytes: usize,
 }
 
 /// All styles of a scene, by name.
 pub(super) struct Styles<'i> {
-    styles: BTreeMap<String, Style<'i>>,
+    styles: BTreeMap<String, NamedStyle<'i>>,
     /// How many bytes may still be used.
     left: Cell<usize>,
 }
 
 impl<'i> Styles<'i> {
     /// Those that the scene file holds.
-    pub fn read_all(reader: &mut Reader<'_, 'i>) -> Self {
+    pub fn read_all(reader: &mut TableReader<'_, 'i>) -> Self {
         let mut styles = BTreeMap::new();
         for (name, keys) in reader.named_tables("styles") {
             if let Some((key, _)) = keys.get_key_value("style") {
@@ -65,7 +65,7 @@ impl<'i> Styles<'i> {
                 continue;
             }
             let bytes = keys.values().map(|value| value.span().len()).sum();
-            styles.insert(name.into_inner(), Style { keys, bytes });
+            styles.insert(name.into_inner(), NamedStyle { keys, bytes });
         }
         Self { styles, left: Cell::new(MAX_BYTES) }
     }
@@ -73,9 +73,9 @@ impl<'i> Styles<'i> {
     /// All tables `[[key]]`, each with the keys of the style that it names.
     pub fn read<T>(
         &self,
-        reader: &mut Reader<'_, 'i>,
+        reader: &mut TableReader<'_, 'i>,
         key: &'static str,
-        decode: impl Fn(&mut Reader<'_, 'i>) -> Option<T>,
+        decode: impl Fn(&mut TableReader<'_, 'i>) -> Option<T>,
     ) -> Vec<T> {
         reader.tables(key, |reader| {
             if let Some(name) = reader.get("style", |item| item.filled_text()) {
@@ -85,7 +85,7 @@ impl<'i> Styles<'i> {
         })
     }
 
-    fn put_on(&self, reader: &mut Reader<'_, 'i>, name: &Spanned<String>) {
+    fn put_on(&self, reader: &mut TableReader<'_, 'i>, name: &Spanned<String>) {
         let Some(style) = self.styles.get(name.get_ref()) else {
             let (message, help) = self.unknown(name.get_ref());
             return reader.error(name.span(), message, help);
@@ -110,7 +110,7 @@ impl<'i> Styles<'i> {
     }
 }
 
-fn too_much(reader: &mut Reader<'_, '_>, place: Range<usize>) {
+fn too_much(reader: &mut TableReader<'_, '_>, place: Range<usize>) {
     let message = format!("styles stand for more than {MAX_BYTES} bytes in all");
     reader.error(place, message, "put long lists of points in a vector file, and name it once with `file`");
 }

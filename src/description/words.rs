@@ -8,7 +8,7 @@ pub trait Word: Copy + Sized + 'static {
 
 /// What a road is made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Surface {
+pub enum RoadSurface {
     /// `asphalt`: paved.
     #[default]
     Asphalt,
@@ -18,7 +18,7 @@ pub enum Surface {
     Track,
 }
 
-impl Word for Surface {
+impl Word for RoadSurface {
     const ALL: &'static [(&'static str, Self)] =
         &[("asphalt", Self::Asphalt), ("gravel", Self::Gravel), ("track", Self::Track)];
 }
@@ -61,7 +61,7 @@ impl Word for LabelKind {
 
 /// A built-in colour ramp.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Ramp {
+pub enum RampName {
     /// `atlas`: green lowland over yellow and brown to white.
     #[default]
     Atlas,
@@ -71,21 +71,21 @@ pub enum Ramp {
     Grey,
 }
 
-impl Word for Ramp {
+impl Word for RampName {
     const ALL: &'static [(&'static str, Self)] =
         &[("atlas", Self::Atlas), ("desert", Self::Desert), ("grey", Self::Grey)];
 }
 
 /// What the colours of a PNG mean in metres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum HeightEncoding {
+pub enum HeightEncodingWord {
     /// `terrain-rgb`: Mapbox's.
     TerrainRgb,
     /// `terrarium`: Mapzen's.
     Terrarium,
 }
 
-impl Word for HeightEncoding {
+impl Word for HeightEncodingWord {
     const ALL: &'static [(&'static str, Self)] =
         &[("terrain-rgb", Self::TerrainRgb), ("terrarium", Self::Terrarium)];
 }
@@ -128,7 +128,7 @@ impl Word for Markings {
 
 /// Which of road and ground follows the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Profile {
+pub enum ProfileMode {
     /// `drape`: the road follows the ground.
     #[default]
     Drape,
@@ -136,7 +136,7 @@ pub enum Profile {
     Conform,
 }
 
-impl Word for Profile {
+impl Word for ProfileMode {
     const ALL: &'static [(&'static str, Self)] = &[("drape", Self::Drape), ("conform", Self::Conform)];
 }
 
@@ -251,7 +251,7 @@ impl Word for BaseRule {
 
 /// The shape of a roof.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Roof {
+pub enum RoofShape {
     /// `flat`: level.
     #[default]
     Flat,
@@ -263,7 +263,7 @@ pub enum Roof {
     Pyramidal,
 }
 
-impl Word for Roof {
+impl Word for RoofShape {
     const ALL: &'static [(&'static str, Self)] = &[
         ("flat", Self::Flat),
         ("gabled", Self::Gabled),

@@ -21,7 +21,7 @@ pub struct GroundMap {
     /// One entry a post, row by row from the south-west.
     pub posts: Vec<GroundPost>,
     /// Colour by height.
-    pub ramp: Ramp,
+    pub ramp: ColorRamp,
     /// Contour lines; `None` draws none.
     pub contours: Option<Contours>,
 }
@@ -44,11 +44,11 @@ pub struct GroundPost {
 
 /// Colours at rising heights, blended linearly in linear light between them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Ramp {
+pub struct ColorRamp {
     stops: Vec<(f32, Srgba)>,
 }
 
-impl Ramp {
+impl ColorRamp {
     /// A ramp from `stops` of height in metres and colour.
     ///
     /// `None` where there is no stop, or heights do not rise strictly or are not finite.
@@ -201,7 +201,7 @@ mod tests {
             columns: 3,
             rows: 2,
             posts: vec![GroundPost::default(); 6],
-            ramp: Ramp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
+            ramp: ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
             contours: None,
         };
         let fault = |map: GroundMap| map.check().expect_err("unsound");

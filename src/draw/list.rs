@@ -80,7 +80,7 @@ impl MeshSink<DrawVertex> for DrawMesh {
 /// so it is drawn where its depth exceeds what is there by no more than one part in 50,000, over ground and
 /// lower drapes; a solid is drawn where it is nearer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Layer {
+pub enum DepthLayer {
     /// The terrain itself.
     Ground,
     /// Something cut to the ground's triangles; a higher number lies over a lower.
@@ -101,7 +101,7 @@ pub struct DrawItem {
     /// Mesh space to world space: a rotation, a uniform scale and a translation.
     pub world_from_mesh: Mat4,
     /// Who wins in the same plane.
-    pub layer: Layer,
+    pub layer: DepthLayer,
     /// The feature it belongs to.
     pub feature: FeatureId,
 }

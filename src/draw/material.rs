@@ -8,7 +8,7 @@ pub struct TextureId(pub u32);
 
 /// What happens where a material is not opaque.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Alpha {
+pub enum AlphaMode {
     /// Alpha is ignored.
     Opaque,
     /// Alpha below the cut-off is a hole, above it opaque.
@@ -19,7 +19,7 @@ pub enum Alpha {
 
 /// Where the normal that takes the light comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Normals {
+pub enum NormalSource {
     /// From the mesh's vertices.
     Vertex,
     /// From the ground map beneath, so that what is draped is shaded like the ground it lies on.
@@ -45,11 +45,11 @@ pub struct Material {
     /// The base colour texture, repeated in both directions, filtered bilinearly with mip levels.
     pub texture: Option<TextureId>,
     /// What alpha means.
-    pub alpha: Alpha,
+    pub alpha: AlphaMode,
     /// Whether the back of a triangle is drawn too, with its normal turned round.
     pub two_sided: bool,
     /// Where the normal comes from.
-    pub normals: Normals,
+    pub normals: NormalSource,
     /// Where the colour comes from.
     pub albedo: Albedo,
 }
@@ -61,9 +61,9 @@ impl Default for Material {
             name: String::new(),
             base_color: Srgba::WHITE,
             texture: None,
-            alpha: Alpha::Opaque,
+            alpha: AlphaMode::Opaque,
             two_sided: false,
-            normals: Normals::Vertex,
+            normals: NormalSource::Vertex,
             albedo: Albedo::Surface,
         }
     }

@@ -69,7 +69,7 @@ fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::ground::{Contours, GroundPost, Ramp};
+    use crate::draw::ground::{ColorRamp, Contours, GroundPost};
 
     /// Ground that rises eastward, 10 m a post of 20 m, coloured dark below and light above.
     fn map(contours: Option<Contours>) -> GroundMap {
@@ -80,7 +80,7 @@ mod tests {
             columns: 5,
             rows: 3,
             posts: (0..15).map(post).collect(),
-            ramp: Ramp::new(vec![(0.0, Srgba::opaque(0, 0, 0)), (40.0, Srgba::WHITE)]).expect("rising"),
+            ramp: ColorRamp::new(vec![(0.0, Srgba::opaque(0, 0, 0)), (40.0, Srgba::WHITE)]).expect("rising"),
             contours,
         }
     }

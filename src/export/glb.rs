@@ -18,7 +18,7 @@ use serde_json::{Map, Value, json};
 
 use crate::draw::color::{Srgba, linear_from_srgb};
 use crate::draw::list::{DrawItem, DrawList, DrawMesh, FeatureId, MaterialId, MeshId};
-use crate::draw::material::{Alpha, Material, TextureId};
+use crate::draw::material::{AlphaMode, Material, TextureId};
 use crate::export::png;
 use crate::mesh::write::count;
 use crate::mesh::write::glb::{ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, FLOAT, GLTF_FROM_WORLD, UNSIGNED_INT};
@@ -48,7 +48,7 @@ pub fn write(
     remarks: &[String],
     out: &mut impl Write,
 ) -> io::Result<()> {
-    let mut file = File::default();
+    let mut file = GlbFile::default();
     file.nodes.push(json!({"name": "world", "matrix": GLTF_FROM_WORLD}));
     let mut roots = Vec::new();
     for run in list.items.chunk_by(belong_together) {
@@ -81,10 +81,10 @@ fn node(name: &str, mesh: usize, world_from_mesh: Mat4) -> Value {
 }
 
 /// Which triangles of which mesh in which material: what a primitive is made of.
-type Part = (MeshId, (u32, u32), MaterialId);
+type PrimitiveKey = (MeshId, (u32, u32), MaterialId);
 
 #[derive(Default)]
-struct File {
+struct GlbFile {
     nodes: Vec<Value>,
     meshes: Vec<Value>,
     materials: Vec<Value>,
@@ -93,17 +93,17 @@ struct File {
     accessors: Vec<Value>,
     attributes: [Vec<u8>; ATTRIBUTES.len()],
     indices: Vec<u8>,
-    mesh_of: BTreeMap<Vec<Part>, Option<usize>>,
+    mesh_of: BTreeMap<Vec<PrimitiveKey>, Option<usize>>,
     vertices_of: BTreeMap<(MeshId, bool), Map<String, Value>>,
     material_of: BTreeMap<MaterialId, usize>,
     texture_of: BTreeMap<TextureId, Option<usize>>,
 }
 
-impl File {
+impl GlbFile {
     /// The glTF mesh of items that belong together; `None` where none of them has a triangle with an area.
     fn mesh(&mut self, list: &DrawList, items: &[DrawItem]) -> Option<usize> {
         let part = |item: &DrawItem| (item.mesh, (item.triangles.start, item.triangles.end), item.material);
-        let key: Vec<Part> = items.iter().map(part).collect();
+        let key: Vec<PrimitiveKey> = items.iter().map(part).collect();
         if let Some(&known) = self.mesh_of.get(&key) {
             return known;
         }
@@ -200,7 +200,7 @@ impl File {
             return known;
         }
         let [red, green, blue] = material.base_color.linear().to_array();
-        let alpha = if material.alpha == Alpha::Opaque { 1.0 } else { material.base_color.alpha() };
+        let alpha = if material.alpha == AlphaMode::Opaque { 1.0 } else { material.base_color.alpha() };
         let mut surface = json!({
             "baseColorFactor": [red, green, blue, alpha], "metallicFactor": 0.0, "roughnessFactor": 1.0,
         });
@@ -212,12 +212,12 @@ impl File {
             written["name"] = json!(material.name);
         }
         match material.alpha {
-            Alpha::Opaque => {}
-            Alpha::Mask(cutoff) => {
+            AlphaMode::Opaque => {}
+            AlphaMode::Mask(cutoff) => {
                 written["alphaMode"] = json!("MASK");
                 written["alphaCutoff"] = json!(cutoff.max(0.0));
             }
-            Alpha::Blend => written["alphaMode"] = json!("BLEND"),
+            AlphaMode::Blend => written["alphaMode"] = json!("BLEND"),
         }
         if material.two_sided {
             written["doubleSided"] = json!(true);

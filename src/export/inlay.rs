@@ -13,14 +13,14 @@ use crate::draw::list::{DrawMesh, DrawVertex};
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::mesh::sink::{MeshSink, VertexId};
-use crate::terrain::facets::{Facet, facet_contains, plane_z};
+use crate::terrain::facets::{SurfaceTriangle, facet_contains, plane_z};
 
 /// What is left is kept from this area on, in square metres: less is what rounding to f32 makes of nothing.
 const SLIVER_M2: f64 = 1e-4;
 
 /// `ground` without what the triangles of `drapes` cover. Both in world space.
 pub fn inlaid<'a>(ground: &DrawMesh, drapes: impl IntoIterator<Item = &'a DrawMesh>) -> DrawMesh {
-    let facets: Vec<Facet> = facets(ground).collect();
+    let facets: Vec<SurfaceTriangle> = facets(ground).collect();
     let over = assigned(&facets, drapes);
     let pieces: Vec<Option<Vec<Vec<DVec2>>>> = facets
         .par_iter()
@@ -46,13 +46,16 @@ pub fn inlaid<'a>(ground: &DrawMesh, drapes: impl IntoIterator<Item = &'a DrawMe
     left
 }
 
-fn facets(mesh: &DrawMesh) -> impl Iterator<Item = Facet> + '_ {
+fn facets(mesh: &DrawMesh) -> impl Iterator<Item = SurfaceTriangle> + '_ {
     let corner = |id: VertexId| Vec3::from(mesh.vertices[id.index()].position);
     mesh.triangles.iter().map(move |ids| ids.map(corner))
 }
 
 /// For each facet the drapes' triangles in it, in plan.
-fn assigned<'a>(facets: &[Facet], drapes: impl IntoIterator<Item = &'a DrawMesh>) -> Vec<Vec<[DVec2; 3]>> {
+fn assigned<'a>(
+    facets: &[SurfaceTriangle],
+    drapes: impl IntoIterator<Item = &'a DrawMesh>,
+) -> Vec<Vec<[DVec2; 3]>> {
     let squares = Squares::of(facets);
     let mut over = vec![Vec::new(); facets.len()];
     for triangle in drapes.into_iter().flat_map(self::facets) {
@@ -71,8 +74,8 @@ struct Squares {
 }
 
 impl Squares {
-    fn of(facets: &[Facet]) -> Self {
-        let bounds = |facet: &Facet| Rect::around(facet.map(|corner| corner.truncate().as_dvec2()));
+    fn of(facets: &[SurfaceTriangle]) -> Self {
+        let bounds = |facet: &SurfaceTriangle| Rect::around(facet.map(|corner| corner.truncate().as_dvec2()));
         let sum: f64 = facets.iter().map(|facet| bounds(facet).size().max_element()).sum();
         let side = (sum / facets.len().max(1) as f64).max(1e-3);
         let mut members: BTreeMap<(i64, i64), Vec<u32>> = BTreeMap::new();
@@ -88,7 +91,7 @@ impl Squares {
         Self { side, members }
     }
 
-    fn facet_at(&self, facets: &[Facet], at: DVec2) -> Option<usize> {
+    fn facet_at(&self, facets: &[SurfaceTriangle], at: DVec2) -> Option<usize> {
         let square = (at / self.side).floor();
         let members = self.members.get(&(square.y as i64, square.x as i64))?;
         members.iter().map(|&index| index as usize).find(|&index| facet_contains(&facets[index], at))
@@ -96,7 +99,7 @@ impl Squares {
 }
 
 /// What of a facet, in plan, none of the triangles over it covers.
-fn uncovered(facet: &Facet, over: &[[DVec2; 3]]) -> Vec<Vec<DVec2>> {
+fn uncovered(facet: &SurfaceTriangle, over: &[[DVec2; 3]]) -> Vec<Vec<DVec2>> {
     let mut pieces = vec![facet.map(|corner| corner.truncate().as_dvec2()).to_vec()];
     for window in over {
         let reach = polygon::bounds(window);
@@ -120,7 +123,7 @@ fn overlaps(piece: &[DVec2], window: &[DVec2]) -> bool {
     shared.len() > 2 && polygon::doubled_area(&shared) > 2.0 * SLIVER_M2
 }
 
-fn add(left: &mut DrawMesh, piece: &[DVec2], facet: &Facet, like: DrawVertex) {
+fn add(left: &mut DrawMesh, piece: &[DVec2], facet: &SurfaceTriangle, like: DrawVertex) {
     let corners: Vec<Vec3> = piece.iter().map(|&at| at.as_vec2().extend(plane_z(facet, at) as f32)).collect();
     let ids: Vec<VertexId> = corners
         .iter()
@@ -158,7 +161,7 @@ mod tests {
     }
 
     fn plan_area(mesh: &DrawMesh) -> f32 {
-        let area = |[a, b, c]: Facet| (b - a).truncate().perp_dot((c - a).truncate()) / 2.0;
+        let area = |[a, b, c]: SurfaceTriangle| (b - a).truncate().perp_dot((c - a).truncate()) / 2.0;
         facets(mesh).map(area).sum()
     }
 

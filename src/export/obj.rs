@@ -10,7 +10,7 @@ use glam::{Mat3, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::draw::list::{DrawItem, DrawList, FeatureId, MaterialId};
-use crate::draw::material::{Alpha, TextureId};
+use crate::draw::material::{AlphaMode, TextureId};
 use crate::export::png;
 
 /// The files that belong to an OBJ, by name, in the order in which they are to be written.
@@ -50,13 +50,13 @@ fn library(list: &DrawList, stem: &str) -> String {
             continue;
         };
         text += &format!("newmtl {}\nKa 0 0 0\nKd {red} {green} {blue}\nKs 0 0 0\n", material_name(list, id));
-        if material.alpha != Alpha::Opaque {
+        if material.alpha != AlphaMode::Opaque {
             text += &format!("d {}\n", material.base_color.alpha());
         }
         if let Some(texture) = material.texture.filter(|texture| pictures.contains(texture)) {
             let name = texture_name(stem, texture);
             text += &format!("map_Kd {name}\n");
-            if material.alpha != Alpha::Opaque {
+            if material.alpha != AlphaMode::Opaque {
                 text += &format!("map_d {name}\n");
             }
         }
@@ -88,7 +88,7 @@ pub fn write(
         writeln!(out, "# {}", line.replace(char::is_control, "?"))?;
     }
     writeln!(out, "mtllib {}", library_name(stem))?;
-    let mut written = Written::default();
+    let mut written = ObjCounts::default();
     for item in &list.items {
         written.item(list, item, &name(item.feature), out)?;
     }
@@ -97,13 +97,13 @@ pub fn write(
 
 /// How many lines of each kind there are.
 #[derive(Default)]
-struct Written {
+struct ObjCounts {
     vertices: usize,
     textured: usize,
     named: BTreeMap<String, usize>,
 }
 
-impl Written {
+impl ObjCounts {
     fn item(&mut self, list: &DrawList, item: &DrawItem, name: &str, out: &mut impl Write) -> io::Result<()> {
         let mesh = &list.meshes[item.mesh.0 as usize];
         let triangles = &mesh.triangles[item.triangles.start as usize..item.triangles.end as usize];

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 
 use crate::draw::color::Srgba;
 use crate::draw::ground::GroundMap;
-use crate::draw::list::{DrawItem, DrawList, DrawMesh, Layer};
-use crate::draw::material::{Albedo, Alpha, Material, Normals};
+use crate::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh};
+use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use crate::export::bake::{Baked, bake};
 use crate::export::inlay::inlaid;
 
@@ -49,12 +49,12 @@ pub fn prepare(mut list: DrawList) -> DrawList {
 
 /// What lies on the ground and hides it.
 fn draped(list: &DrawList) -> Vec<&DrawMesh> {
-    let hides = |item: &&DrawItem| matches!(item.layer, Layer::Draped(_)) && !is_translucent(list, item);
+    let hides = |item: &&DrawItem| matches!(item.layer, DepthLayer::Draped(_)) && !is_translucent(list, item);
     list.items.iter().filter(hides).map(|item| &list.meshes[item.mesh.0 as usize]).collect()
 }
 
 fn is_translucent(list: &DrawList, item: &DrawItem) -> bool {
-    list.materials[item.material.0 as usize].alpha == Alpha::Blend
+    list.materials[item.material.0 as usize].alpha == AlphaMode::Blend
 }
 
 /// The item's mesh where it needs one of its own; `None` where the list's will do.
@@ -67,19 +67,19 @@ fn own_mesh(
     let mesh = &list.meshes[item.mesh.0 as usize];
     let material = &list.materials[item.material.0 as usize];
     let mut own = match item.layer {
-        Layer::Ground => inlaid(mesh, draped.iter().copied()),
-        Layer::Draped(_) => mesh.clone(),
-        Layer::Solid => return None,
+        DepthLayer::Ground => inlaid(mesh, draped.iter().copied()),
+        DepthLayer::Draped(_) => mesh.clone(),
+        DepthLayer::Solid => return None,
     };
     if let (Albedo::GroundMap, Some(baked)) = (material.albedo, baked) {
         for vertex in &mut own.vertices {
             vertex.uv = baked.uv(Vec3::from(vertex.position).truncate()).to_array();
         }
     }
-    if let (Normals::Ground, Some(map)) = (material.normals, list.ground.as_deref()) {
+    if let (NormalSource::Ground, Some(map)) = (material.normals, list.ground.as_deref()) {
         take_normals(&mut own, map);
     }
-    if matches!(item.layer, Layer::Draped(_)) && is_translucent(list, item) {
+    if matches!(item.layer, DepthLayer::Draped(_)) && is_translucent(list, item) {
         own.vertices.iter_mut().for_each(|vertex| vertex.position[2] += LIFT_M);
     }
     Some(own)
@@ -96,7 +96,7 @@ mod tests {
     use super::*;
     use std::sync::Arc;
 
-    use crate::draw::ground::{GroundPost, Ramp};
+    use crate::draw::ground::{ColorRamp, GroundPost};
     use crate::draw::list::{DrawVertex, FeatureId};
     use crate::mesh::sink::MeshSink;
     use glam::{Mat4, Vec2};
@@ -112,7 +112,7 @@ mod tests {
         mesh
     }
 
-    fn list(alpha: Alpha) -> DrawList {
+    fn list(alpha: AlphaMode) -> DrawList {
         let post = |index: u32| GroundPost {
             height_m: (index % 3) as f32 * 5.0,
             slope_east: 0.5,
@@ -124,16 +124,17 @@ mod tests {
             columns: 3,
             rows: 3,
             posts: (0..9).map(post).collect(),
-            ramp: Ramp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
+            ramp: ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
             contours: None,
         };
         let mut list = DrawList { ground: Some(Arc::new(map)), ..DrawList::default() };
-        let ground = Material { albedo: Albedo::GroundMap, normals: Normals::Ground, ..Material::default() };
-        let road = Material { alpha, normals: Normals::Ground, ..Material::default() };
+        let ground =
+            Material { albedo: Albedo::GroundMap, normals: NormalSource::Ground, ..Material::default() };
+        let road = Material { alpha, normals: NormalSource::Ground, ..Material::default() };
         let materials = [list.add_material(ground), list.add_material(road)];
         for (mesh, material, layer) in [
-            (square(0.0, 20.0), materials[0], Layer::Ground),
-            (square(5.0, 9.0), materials[1], Layer::Draped(3)),
+            (square(0.0, 20.0), materials[0], DepthLayer::Ground),
+            (square(5.0, 9.0), materials[1], DepthLayer::Draped(3)),
         ] {
             let mesh = list.add_mesh(mesh);
             let (world_from_mesh, feature) = (Mat4::IDENTITY, FeatureId::GROUND);
@@ -150,7 +151,7 @@ mod tests {
 
     #[test]
     fn the_ground_ends_where_a_road_lies_and_shows_its_map_and_its_slope() {
-        let ready = prepare(list(Alpha::Opaque));
+        let ready = prepare(list(AlphaMode::Opaque));
         assert!((area(&ready, 0) - 384.0).abs() < 1e-2, "{}", area(&ready, 0));
         assert_eq!(ready.materials[0].albedo, Albedo::Surface);
         assert!(ready.materials[0].texture.is_some() && ready.check().is_ok());
@@ -164,7 +165,7 @@ mod tests {
 
     #[test]
     fn what_lets_the_ground_through_lies_a_little_above_it() {
-        let ready = prepare(list(Alpha::Blend));
+        let ready = prepare(list(AlphaMode::Blend));
         assert!((area(&ready, 0) - 400.0).abs() < 1e-2);
         let road = &ready.meshes[ready.items[1].mesh.0 as usize];
         assert!((road.vertices[0].position[2] - (2.5 + LIFT_M)).abs() < 1e-5);

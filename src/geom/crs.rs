@@ -38,12 +38,12 @@ struct Inner {
     /// The proj string that it was made from; empty where it has no place on Earth.
     text: String,
     proj: proj4rs::Proj,
-    datum: Datum,
+    datum: DatumTie,
 }
 
 /// What is known of the way from a system's datum to WGS 84.
 #[derive(Clone, Debug, PartialEq)]
-enum Datum {
+enum DatumTie {
     /// A shift is stated, or none is needed.
     Tied,
     /// No shift can be had; the words that name the datum.
@@ -180,9 +180,9 @@ impl Crs {
             return Err(refused("its unit or its ellipsoid is not a positive length"));
         }
         let datum = match datum {
-            Datum::Adrift(words) if !is_like_wgs84(proj.ellipse_parameters()) => Datum::Adrift(words),
-            Datum::Adrift(_) => return Self::build(name, epsg, &format!("{text} +towgs84=0,0,0")),
-            Datum::Tied => Datum::Tied,
+            DatumTie::Adrift(words) if !is_like_wgs84(proj.ellipse_parameters()) => DatumTie::Adrift(words),
+            DatumTie::Adrift(_) => return Self::build(name, epsg, &format!("{text} +towgs84=0,0,0")),
+            DatumTie::Tied => DatumTie::Tied,
         };
         Ok(Self { inner: Arc::new(Inner { name, epsg, text: stated, proj, datum }) })
     }
@@ -196,7 +196,7 @@ impl Crs {
     /// transformed to or from it.
     pub fn local() -> Self {
         let proj = Self::utm_at(0.0, 0.0).inner.proj.clone();
-        let datum = Datum::Adrift("no place on Earth".into());
+        let datum = DatumTie::Adrift("no place on Earth".into());
         Self {
             inner: Arc::new(Inner {
                 name: "local metres".into(),
@@ -279,7 +279,7 @@ impl Crs {
     /// ```
     pub fn datum_shift_to(&self, to: &Self) -> Result<DatumShift, CrsError> {
         self.check_datum(to)?;
-        if self == to || (self.inner.datum == to.inner.datum && self.inner.datum != Datum::Tied) {
+        if self == to || (self.inner.datum == to.inner.datum && self.inner.datum != DatumTie::Tied) {
             return Ok(DatumShift::NotNeeded);
         }
         Ok(DatumShift::between(&self.inner.text, &to.inner.text))
@@ -315,8 +315,8 @@ impl Crs {
     fn check_datum(&self, to: &Self) -> Result<(), CrsError> {
         let datum = match (&self.inner.datum, &to.inner.datum) {
             (ours, theirs) if ours == theirs => return Ok(()),
-            (Datum::Adrift(words), _) | (_, Datum::Adrift(words)) => words.clone(),
-            (Datum::Tied, Datum::Tied) => return Ok(()),
+            (DatumTie::Adrift(words), _) | (_, DatumTie::Adrift(words)) => words.clone(),
+            (DatumTie::Tied, DatumTie::Tied) => return Ok(()),
         };
         Err(CrsError::Datum { from: self.name().into(), to: to.name().into(), datum })
     }
@@ -347,34 +347,34 @@ fn parse_epsg(text: &str, rest: &str) -> Result<Crs, CrsError> {
 
 /// The proj string to build from, and what its words say of the datum. A datum that needs grids is replaced
 /// by its ellipsoid, so that the system itself can still be had.
-fn settle_datum(text: &str) -> (String, Datum) {
+fn settle_datum(text: &str) -> (String, DatumTie) {
     let mut words: Vec<&str> = text.split_whitespace().collect();
     let value = |key: &str, words: &[&str]| -> Option<String> {
         words.iter().find_map(|word| word.strip_prefix(key)).map(str::to_owned)
     };
     if let Some(grids) = value("+nadgrids=", &words) {
         if grids == "@null" {
-            return (text.into(), Datum::Tied);
+            return (text.into(), DatumTie::Tied);
         }
         words.retain(|word| !word.starts_with("+nadgrids="));
-        return (words.join(" "), Datum::Adrift(grids));
+        return (words.join(" "), DatumTie::Adrift(grids));
     }
     let datum = value("+datum=", &words);
     if value("+towgs84=", &words).is_some() {
-        return (text.into(), Datum::Tied);
+        return (text.into(), DatumTie::Tied);
     }
     match datum {
         Some(name) if name.eq_ignore_ascii_case("nad27") => {
             words.retain(|word| !word.starts_with("+datum="));
             words.push("+ellps=clrk66");
-            (words.join(" "), Datum::Adrift("NAD27".into()))
+            (words.join(" "), DatumTie::Adrift("NAD27".into()))
         }
-        Some(_) => (text.into(), Datum::Tied),
+        Some(_) => (text.into(), DatumTie::Tied),
         None => {
             let shape =
                 |word: &&&str| ["+ellps=", "+a=", "+b=", "+rf=", "+R="].iter().any(|k| word.starts_with(k));
             let named = words.iter().filter(shape).copied().collect::<Vec<_>>().join(" ");
-            (text.into(), Datum::Adrift(named))
+            (text.into(), DatumTie::Adrift(named))
         }
     }
 }

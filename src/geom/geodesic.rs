@@ -8,13 +8,13 @@ use glam::DVec2;
 
 /// The shortest way from one place to another; degrees of longitude (x) and latitude (y).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Way {
+pub struct Geodesic {
     start: DVec2,
     bearing_deg: f64,
     length_m: f64,
 }
 
-impl Way {
+impl Geodesic {
     /// The way from `start` to `end`. Between antipodes there are several; this is one of them.
     pub fn between(start: DVec2, end: DVec2) -> Self {
         let (from, to) = (Point::new(start.x, start.y), Point::new(end.x, end.y));
@@ -43,16 +43,16 @@ mod tests {
 
     #[test]
     fn a_quarter_of_a_meridian_and_a_degree_of_the_equator_have_their_lengths() {
-        let quarter = Way::between(DVec2::ZERO, DVec2::new(0.0, 90.0)).length_m();
+        let quarter = Geodesic::between(DVec2::ZERO, DVec2::new(0.0, 90.0)).length_m();
         assert!((quarter - 10_001_965.729_3).abs() < 1e-3, "{quarter}");
-        let degree = Way::between(DVec2::ZERO, DVec2::X).length_m();
+        let degree = Geodesic::between(DVec2::ZERO, DVec2::X).length_m();
         assert!((degree - 6_378_137.0 * 1f64.to_radians()).abs() < 1e-6, "{degree}");
     }
 
     #[test]
     fn a_way_ends_where_it_was_meant_to_and_crosses_the_date_line() {
         let (start, end) = (DVec2::new(179.5, -16.0), DVec2::new(-179.5, -17.0));
-        let way = Way::between(start, end);
+        let way = Geodesic::between(start, end);
         assert!((way.at(way.length_m()) - end).length() < 1e-12);
         assert_eq!(way.at(0.0), start);
         let middle = way.at(0.5 * way.length_m());

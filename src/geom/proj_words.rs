@@ -1,12 +1,12 @@
 //! The parameters of a system from the proj string that describes it: the way back from
 //! [`Definition::proj_text`], for those who must say it in another language (GeoTIFF keys, well-known text).
 
-use crate::geom::projection::{Datum, Definition, Ellipsoid, Method};
+use crate::geom::projection::{Datum, Definition, Ellipsoid, MapProjection};
 
 /// The definition that a proj string states, on an `ellipsoid` and a prime meridian that were worked out already;
 /// `None` where its projection, or a word of it, is none that a definition can express.
 pub(crate) fn definition(text: &str, ellipsoid: Ellipsoid, prime_meridian_deg: f64) -> Option<Definition> {
-    let words = Words(text);
+    let words = ProjWords(text);
     let base = Definition {
         prime_meridian_deg,
         ..Definition::geographic(String::new(), Some(ellipsoid), datum(&words))
@@ -29,35 +29,37 @@ pub(crate) fn definition(text: &str, ellipsoid: Ellipsoid, prime_meridian_deg: f
     match words.text("+proj=")? {
         "longlat" | "latlong" | "latlon" | "lonlat" => Some(base),
         "utm" => Some(Definition {
-            method: Method::TransverseMercator,
+            method: MapProjection::TransverseMercator,
             longitude_deg: number("+zone=")? * 6.0 - 183.0,
             scale: 0.9996,
             false_easting_m: 5e5,
             false_northing_m: if text.split_whitespace().any(|word| word == "+south") { 1e7 } else { 0.0 },
             ..base
         }),
-        "tmerc" | "etmerc" => Some(Definition { method: Method::TransverseMercator, ..projected }),
-        "merc" => {
-            Some(Definition { method: Method::Mercator, parallel_1_deg: number("+lat_ts="), ..projected })
-        }
+        "tmerc" | "etmerc" => Some(Definition { method: MapProjection::TransverseMercator, ..projected }),
+        "merc" => Some(Definition {
+            method: MapProjection::Mercator,
+            parallel_1_deg: number("+lat_ts="),
+            ..projected
+        }),
         "lcc" if second.is_none_or(|second| Some(second) == first) && first == Some(latitude_deg) => {
-            Some(Definition { method: Method::LambertConic1, ..projected })
+            Some(Definition { method: MapProjection::LambertConic1, ..projected })
         }
         "lcc" if scale == 1.0 => Some(Definition {
-            method: Method::LambertConic2,
+            method: MapProjection::LambertConic2,
             parallel_1_deg: first,
             parallel_2_deg: second.or(first),
             ..projected
         }),
         "aea" => Some(Definition {
-            method: Method::Albers,
+            method: MapProjection::Albers,
             parallel_1_deg: first,
             parallel_2_deg: second.or(first),
             ..projected
         }),
-        "laea" => Some(Definition { method: Method::LambertAzimuthal, ..projected }),
+        "laea" => Some(Definition { method: MapProjection::LambertAzimuthal, ..projected }),
         "stere" if latitude_deg.abs() == 90.0 => Some(Definition {
-            method: Method::PolarStereographic,
+            method: MapProjection::PolarStereographic,
             parallel_1_deg: number("+lat_ts=").filter(|at| at.abs() < 90.0),
             ..projected
         }),
@@ -66,7 +68,7 @@ pub(crate) fn definition(text: &str, ellipsoid: Ellipsoid, prime_meridian_deg: f
 }
 
 /// By the names that are EPSG's datums, or by a stated shift.
-fn datum(words: &Words) -> Datum {
+fn datum(words: &ProjWords) -> Datum {
     if let Some(shift) = words.text("+towgs84=") {
         return Datum::ToWgs84(shift.split(',').filter_map(|word| word.trim().parse().ok()).collect());
     }
@@ -80,9 +82,9 @@ fn datum(words: &Words) -> Datum {
 }
 
 /// The words of a proj string.
-struct Words<'a>(&'a str);
+struct ProjWords<'a>(&'a str);
 
-impl<'a> Words<'a> {
+impl<'a> ProjWords<'a> {
     fn text(&self, key: &str) -> Option<&'a str> {
         self.0.split_whitespace().find_map(|word| word.strip_prefix(key))
     }

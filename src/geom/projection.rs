@@ -12,7 +12,7 @@ pub struct Definition {
     /// What the file calls it, for messages.
     pub name: String,
     /// How the ellipsoid is brought to the plane.
-    pub method: Method,
+    pub method: MapProjection,
     /// Latitude of the origin; for [`Method::PolarStereographic`] its sign says which pole.
     pub latitude_deg: f64,
     /// Longitude of the origin, from the prime meridian.
@@ -39,7 +39,7 @@ pub struct Definition {
 
 /// A map projection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub enum MapProjection {
     /// None: longitude and latitude in degrees.
     Geographic,
     /// Transverse Mercator.
@@ -83,7 +83,7 @@ impl Definition {
     pub fn geographic(name: String, ellipsoid: Option<Ellipsoid>, datum: Datum) -> Self {
         Self {
             name,
-            method: Method::Geographic,
+            method: MapProjection::Geographic,
             latitude_deg: 0.0,
             longitude_deg: 0.0,
             parallel_1_deg: None,
@@ -103,8 +103,8 @@ impl Definition {
     pub fn epsg_twin(&self) -> Option<u32> {
         let Datum::OfEpsg(base) = self.datum else { return None };
         match self.method {
-            Method::Geographic => Some(base),
-            Method::TransverseMercator if self.metres_per_unit == 1.0 => match base {
+            MapProjection::Geographic => Some(base),
+            MapProjection::TransverseMercator if self.metres_per_unit == 1.0 => match base {
                 4277 => self.is_at([49.0, -2.0, 0.999_601_271_7, 4e5, -1e5]).then_some(27700),
                 _ => self.utm_code(base),
             },
@@ -148,7 +148,7 @@ impl Definition {
         if self.prime_meridian_deg != 0.0 && !matches!(self.datum, Datum::OfEpsg(_)) {
             text += &format!(" +pm={}", finite("prime meridian", self.prime_meridian_deg)?);
         }
-        if self.method != Method::Geographic {
+        if self.method != MapProjection::Geographic {
             text += &format!(" +to_meter={}", finite("unit", self.metres_per_unit)?);
         }
         Ok(text)
@@ -164,22 +164,22 @@ impl Definition {
         };
         let (first, second) = (self.parallel_1_deg, self.parallel_2_deg);
         let head = match self.method {
-            Method::Geographic => return Ok("+proj=longlat".into()),
-            Method::TransverseMercator => format!("+proj=tmerc +lat_0={lat} +k={k}"),
-            Method::Mercator => match first {
+            MapProjection::Geographic => return Ok("+proj=longlat".into()),
+            MapProjection::TransverseMercator => format!("+proj=tmerc +lat_0={lat} +k={k}"),
+            MapProjection::Mercator => match first {
                 Some(_) => format!("+proj=merc +lat_ts={}", parallel(first)?),
                 None => format!("+proj=merc +k={k}"),
             },
-            Method::LambertConic1 => format!("+proj=lcc +lat_1={lat} +lat_0={lat} +k_0={k}"),
-            Method::LambertConic2 => {
+            MapProjection::LambertConic1 => format!("+proj=lcc +lat_1={lat} +lat_0={lat} +k_0={k}"),
+            MapProjection::LambertConic2 => {
                 let (first, second) = (parallel(first)?, parallel(second)?);
                 format!("+proj=lcc +lat_1={first} +lat_2={second} +lat_0={lat} +k_0={k}")
             }
-            Method::Albers => {
+            MapProjection::Albers => {
                 format!("+proj=aea +lat_1={} +lat_2={} +lat_0={lat}", parallel(first)?, parallel(second)?)
             }
-            Method::LambertAzimuthal => format!("+proj=laea +lat_0={lat}"),
-            Method::PolarStereographic => match first {
+            MapProjection::LambertAzimuthal => format!("+proj=laea +lat_0={lat}"),
+            MapProjection::PolarStereographic => match first {
                 Some(true_scale) => {
                     let pole = if true_scale < 0.0 { -90 } else { 90 };
                     format!("+proj=stere +lat_0={pole} +lat_ts={}", parallel(first)?)
@@ -235,7 +235,7 @@ mod tests {
 
     fn utm(base: u32) -> Definition {
         Definition {
-            method: Method::TransverseMercator,
+            method: MapProjection::TransverseMercator,
             longitude_deg: -111.0,
             scale: 0.9996,
             false_easting_m: 5e5,
@@ -255,7 +255,7 @@ mod tests {
     fn a_parameter_that_is_not_a_number_is_named() {
         let broken = Definition { scale: f64::NAN, ..utm(4326) };
         assert_eq!(broken.proj_text(), Err("the scale is NaN".into()));
-        let conic = Definition { method: Method::Albers, ..utm(4326) };
+        let conic = Definition { method: MapProjection::Albers, ..utm(4326) };
         assert_eq!(conic.proj_text(), Err("a standard parallel is missing".into()));
     }
 }

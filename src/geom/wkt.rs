@@ -5,7 +5,7 @@
 //! only the root's `ID["EPSG", n]` is understood.
 
 use crate::geom::crs::epsg_text;
-use crate::geom::projection::{Datum, Definition, Ellipsoid, Method};
+use crate::geom::projection::{Datum, Definition, Ellipsoid, MapProjection};
 
 /// Nesting beyond this is no system's: real text stays below 6.
 const DEEPEST: usize = 16;
@@ -32,7 +32,7 @@ pub fn looks_like_wkt(text: &str) -> bool {
 /// # Errors
 /// A phrase that names what is not understood.
 pub fn read(text: &str) -> Result<Wkt, String> {
-    let mut parser = Parser { rest: text };
+    let mut parser = WktParser { rest: text };
     let root = parser.node(0)?;
     if root.is("COMPD_CS") || root.is("COMPOUNDCRS") {
         let part = root.nodes().find(|node| looks_like_wkt(&format!("{}[", node.keyword)));
@@ -41,7 +41,7 @@ pub fn read(text: &str) -> Result<Wkt, String> {
     horizontal(&root)
 }
 
-fn horizontal(node: &Node) -> Result<Wkt, String> {
+fn horizontal(node: &WktNode) -> Result<Wkt, String> {
     if let Some(code) = node.epsg().filter(|&code| epsg_text(code).is_some()) {
         return Ok(Wkt::Epsg(code));
     }
@@ -52,7 +52,7 @@ fn horizontal(node: &Node) -> Result<Wkt, String> {
     }
 }
 
-fn geographic(node: &Node) -> Result<Definition, String> {
+fn geographic(node: &WktNode) -> Result<Definition, String> {
     let datum_node = node.child("DATUM").ok_or("no DATUM")?;
     let unit = node.child("UNIT").and_then(|unit| unit.number(1)).unwrap_or(1f64.to_radians());
     if (unit - 1f64.to_radians()).abs() > 1e-9 {
@@ -68,9 +68,9 @@ fn geographic(node: &Node) -> Result<Definition, String> {
 }
 
 /// The datum by code, by shift, or by one of the names that leave no doubt.
-fn datum(system: &Node, node: &Node, ellipsoid: Option<Ellipsoid>) -> Datum {
+fn datum(system: &WktNode, node: &WktNode, ellipsoid: Option<Ellipsoid>) -> Datum {
     if let Some(shift) = node.child("TOWGS84") {
-        return Datum::ToWgs84(shift.values.iter().filter_map(Value::number).collect());
+        return Datum::ToWgs84(shift.values.iter().filter_map(WktValue::number).collect());
     }
     if let Some(code) = system.epsg().filter(|&code| epsg_text(code).is_some()) {
         return Datum::OfEpsg(code);
@@ -88,7 +88,7 @@ fn datum(system: &Node, node: &Node, ellipsoid: Option<Ellipsoid>) -> Datum {
     known.filter(|(_, axis)| *axis == major).map_or(Datum::Unstated, |(code, _)| Datum::OfEpsg(code))
 }
 
-fn projected(node: &Node) -> Result<Wkt, String> {
+fn projected(node: &WktNode) -> Result<Wkt, String> {
     let base = geographic(node.child("GEOGCS").ok_or("no GEOGCS in the PROJCS")?)?;
     let projection = node.child("PROJECTION").ok_or("no PROJECTION in the PROJCS")?.name();
     let unit = node.child("UNIT").and_then(|unit| unit.number(1)).ok_or("no UNIT in the PROJCS")?;
@@ -109,7 +109,7 @@ fn projected(node: &Node) -> Result<Wkt, String> {
         metres_per_unit: unit,
         ..base
     };
-    let polar = definition.method == Method::PolarStereographic;
+    let polar = definition.method == MapProjection::PolarStereographic;
     if !polar && node.children("AXIS").any(|axis| axis.points("SOUTH") || axis.points("WEST")) {
         return Err(format!("{projection} with axes to the south or west"));
     }
@@ -120,16 +120,16 @@ fn projected(node: &Node) -> Result<Wkt, String> {
 /// and a conic with one parallel takes it from either parameter.
 fn settle_parallels(mut definition: Definition) -> Definition {
     match definition.method {
-        Method::PolarStereographic
+        MapProjection::PolarStereographic
             if definition.parallel_1_deg.is_none() && definition.latitude_deg.abs() < 90.0 =>
         {
             definition.parallel_1_deg = Some(definition.latitude_deg);
         }
         // One parallel away from the origin is the conic with both parallels there.
-        Method::LambertConic1
+        MapProjection::LambertConic1
             if definition.parallel_1_deg.is_some_and(|at| at != definition.latitude_deg) =>
         {
-            definition.method = Method::LambertConic2;
+            definition.method = MapProjection::LambertConic2;
             definition.parallel_2_deg = definition.parallel_1_deg;
         }
         _ => {}
@@ -137,18 +137,18 @@ fn settle_parallels(mut definition: Definition) -> Definition {
     definition
 }
 
-fn method(name: &str, has_second_parallel: bool) -> Result<Method, String> {
+fn method(name: &str, has_second_parallel: bool) -> Result<MapProjection, String> {
     Ok(match name.to_ascii_lowercase().as_str() {
-        "transverse_mercator" | "gauss_kruger" => Method::TransverseMercator,
-        "mercator" | "mercator_1sp" | "mercator_2sp" => Method::Mercator,
-        "lambert_conformal_conic_1sp" => Method::LambertConic1,
-        "lambert_conformal_conic_2sp" => Method::LambertConic2,
-        "lambert_conformal_conic" if has_second_parallel => Method::LambertConic2,
-        "lambert_conformal_conic" => Method::LambertConic1,
-        "albers_conic_equal_area" | "albers" => Method::Albers,
-        "lambert_azimuthal_equal_area" => Method::LambertAzimuthal,
+        "transverse_mercator" | "gauss_kruger" => MapProjection::TransverseMercator,
+        "mercator" | "mercator_1sp" | "mercator_2sp" => MapProjection::Mercator,
+        "lambert_conformal_conic_1sp" => MapProjection::LambertConic1,
+        "lambert_conformal_conic_2sp" => MapProjection::LambertConic2,
+        "lambert_conformal_conic" if has_second_parallel => MapProjection::LambertConic2,
+        "lambert_conformal_conic" => MapProjection::LambertConic1,
+        "albers_conic_equal_area" | "albers" => MapProjection::Albers,
+        "lambert_azimuthal_equal_area" => MapProjection::LambertAzimuthal,
         "polar_stereographic" | "stereographic_north_pole" | "stereographic_south_pole" => {
-            Method::PolarStereographic
+            MapProjection::PolarStereographic
         }
         _ => return Err(format!("the projection {name} is not one that is read from parameters")),
     })
@@ -156,19 +156,19 @@ fn method(name: &str, has_second_parallel: bool) -> Result<Method, String> {
 
 /// `KEYWORD[value, …]`.
 #[derive(Debug)]
-struct Node {
+struct WktNode {
     keyword: String,
-    values: Vec<Value>,
+    values: Vec<WktValue>,
 }
 
 #[derive(Debug)]
-enum Value {
+enum WktValue {
     Text(String),
     Number(f64),
-    Node(Node),
+    Node(WktNode),
 }
 
-impl Value {
+impl WktValue {
     fn number(&self) -> Option<f64> {
         match self {
             Self::Number(number) => Some(*number),
@@ -177,14 +177,14 @@ impl Value {
     }
 }
 
-impl Node {
+impl WktNode {
     fn is(&self, keyword: &str) -> bool {
         self.keyword.eq_ignore_ascii_case(keyword)
     }
 
     fn nodes(&self) -> impl Iterator<Item = &Self> {
         self.values.iter().filter_map(|value| match value {
-            Value::Node(node) => Some(node),
+            WktValue::Node(node) => Some(node),
             _ => None,
         })
     }
@@ -203,7 +203,7 @@ impl Node {
 
     fn name(&self) -> String {
         match self.values.first() {
-            Some(Value::Text(text)) => text.clone(),
+            Some(WktValue::Text(text)) => text.clone(),
             _ => "unnamed".into(),
         }
     }
@@ -221,8 +221,8 @@ impl Node {
             return None;
         }
         match authority.values.get(1)? {
-            Value::Text(code) => code.trim().parse().ok(),
-            Value::Number(code) if code.fract() == 0.0 && (1.0..1e6).contains(code) => Some(*code as u32),
+            WktValue::Text(code) => code.trim().parse().ok(),
+            WktValue::Number(code) if code.fract() == 0.0 && (1.0..1e6).contains(code) => Some(*code as u32),
             _ => None,
         }
     }
@@ -233,11 +233,11 @@ impl Node {
     }
 }
 
-struct Parser<'a> {
+struct WktParser<'a> {
     rest: &'a str,
 }
 
-impl Parser<'_> {
+impl WktParser<'_> {
     fn skip_blanks(&mut self) {
         self.rest = self.rest.trim_start();
     }
@@ -254,14 +254,14 @@ impl Parser<'_> {
     }
 
     /// A keyword with its values; one without brackets, such as `EAST`, has none.
-    fn node(&mut self, depth: usize) -> Result<Node, String> {
+    fn node(&mut self, depth: usize) -> Result<WktNode, String> {
         if depth > DEEPEST {
             return Err("brackets nested deeper than any system needs".into());
         }
         self.skip_blanks();
         let end = self.rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(self.rest.len());
         let (keyword, rest) = self.rest.split_at(end);
-        let mut node = Node { keyword: keyword.into(), values: Vec::new() };
+        let mut node = WktNode { keyword: keyword.into(), values: Vec::new() };
         if keyword.is_empty() {
             return Err(format!(
                 "a keyword is missing before '{}'",
@@ -284,20 +284,20 @@ impl Parser<'_> {
         Ok(node)
     }
 
-    fn value(&mut self, depth: usize) -> Result<Value, String> {
+    fn value(&mut self, depth: usize) -> Result<WktValue, String> {
         self.skip_blanks();
         if let Some(rest) = self.rest.strip_prefix('"') {
             let (text, rest) = rest.split_once('"').ok_or("a quotation mark is not closed")?;
             self.rest = rest;
-            return Ok(Value::Text(text.into()));
+            return Ok(WktValue::Text(text.into()));
         }
         if self.rest.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) {
             let end = self.rest.find(|c: char| !(c.is_ascii_alphanumeric() || "+-.".contains(c)));
             let (number, rest) = self.rest.split_at(end.unwrap_or(self.rest.len()));
             self.rest = rest;
-            return number.parse().map(Value::Number).map_err(|_| format!("'{number}' is not a number"));
+            return number.parse().map(WktValue::Number).map_err(|_| format!("'{number}' is not a number"));
         }
-        self.node(depth + 1).map(Value::Node)
+        self.node(depth + 1).map(WktValue::Node)
     }
 }
 

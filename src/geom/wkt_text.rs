@@ -2,7 +2,7 @@
 //! and Esri's programs read alike.
 
 use crate::geom::crs::Crs;
-use crate::geom::projection::{Datum, Definition, Ellipsoid, Method};
+use crate::geom::projection::{Datum, Definition, Ellipsoid, MapProjection};
 
 /// The text of a system; `None` where it has no place on Earth, or its projection is none that is put into words.
 ///
@@ -11,7 +11,7 @@ pub fn of(crs: &Crs) -> Option<String> {
     let definition = crs.definition()?;
     let name = quoted(crs.name());
     let authority = crs.epsg().map_or_else(String::new, |code| format!(",AUTHORITY[\"EPSG\",\"{code}\"]"));
-    if definition.method == Method::Geographic {
+    if definition.method == MapProjection::Geographic {
         return Some(format!("{}{authority}]", geographic(&definition, &name)));
     }
     let base = match definition.datum {
@@ -39,7 +39,7 @@ fn geographic(definition: &Definition, name: &str) -> String {
         Datum::ToWgs84(numbers) => ("unknown", None, to_wgs84(numbers)),
         Datum::Unstated => ("unknown", None, String::new()),
     };
-    let code = code.filter(|_| definition.method != Method::Geographic);
+    let code = code.filter(|_| definition.method != MapProjection::Geographic);
     let authority = code.map_or_else(String::new, |code| format!(",AUTHORITY[\"EPSG\",\"{code}\"]"));
     format!(
         "GEOGCS[\"{name}\",DATUM[\"{datum}\",SPHEROID[\"{}\",{major_m},{inverse_flattening}]{shift}],PRIMEM[\"{}\",{}],UNIT[\"degree\",0.0174532925199433]{authority}",
@@ -63,14 +63,14 @@ fn projection(definition: &Definition) -> Option<(&'static str, Parameters)> {
     let (latitude, meridian) = (("latitude_of_origin", latitude_deg), ("central_meridian", longitude_deg));
     let scale = ("scale_factor", scale);
     Some(match definition.method {
-        Method::Geographic => return None,
-        Method::TransverseMercator => ("Transverse_Mercator", vec![latitude, meridian, scale]),
-        Method::Mercator => match parallel_1_deg {
+        MapProjection::Geographic => return None,
+        MapProjection::TransverseMercator => ("Transverse_Mercator", vec![latitude, meridian, scale]),
+        MapProjection::Mercator => match parallel_1_deg {
             Some(parallel) => ("Mercator_2SP", vec![("standard_parallel_1", parallel), meridian]),
             None => ("Mercator_1SP", vec![meridian, scale]),
         },
-        Method::LambertConic1 => ("Lambert_Conformal_Conic_1SP", vec![latitude, meridian, scale]),
-        Method::LambertConic2 => (
+        MapProjection::LambertConic1 => ("Lambert_Conformal_Conic_1SP", vec![latitude, meridian, scale]),
+        MapProjection::LambertConic2 => (
             "Lambert_Conformal_Conic_2SP",
             vec![
                 ("standard_parallel_1", parallel_1_deg?),
@@ -79,7 +79,7 @@ fn projection(definition: &Definition) -> Option<(&'static str, Parameters)> {
                 meridian,
             ],
         ),
-        Method::Albers => (
+        MapProjection::Albers => (
             "Albers_Conic_Equal_Area",
             vec![
                 ("standard_parallel_1", parallel_1_deg?),
@@ -88,12 +88,12 @@ fn projection(definition: &Definition) -> Option<(&'static str, Parameters)> {
                 ("longitude_of_center", longitude_deg),
             ],
         ),
-        Method::LambertAzimuthal => (
+        MapProjection::LambertAzimuthal => (
             "Lambert_Azimuthal_Equal_Area",
             vec![("latitude_of_center", latitude_deg), ("longitude_of_center", longitude_deg)],
         ),
         // OGC's latitude of origin is the parallel of true scale here.
-        Method::PolarStereographic => (
+        MapProjection::PolarStereographic => (
             "Polar_Stereographic",
             vec![("latitude_of_origin", parallel_1_deg.unwrap_or(latitude_deg)), meridian, scale],
         ),

@@ -13,7 +13,7 @@ use crate::mesh::trimesh::TriMesh;
 
 /// What a sound mesh measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Summary {
+pub struct MeshSummary {
     /// Sum of the triangles' areas seen from above, in square metres.
     pub plan_area_m2: f64,
     /// Edges that belong to one triangle only.
@@ -71,19 +71,19 @@ pub enum Flaw {
 ///
 /// # Errors
 /// The first [`Flaw`] found.
-pub fn check(mesh: &TriMesh) -> Result<Summary, Flaw> {
+pub fn check(mesh: &TriMesh) -> Result<MeshSummary, Flaw> {
     check_indices(mesh)?;
     let plan_area_m2 = check_orientation(mesh)?;
     let border = border_edges(mesh)?;
     check_t_junctions(mesh, &border)?;
-    Ok(Summary { plan_area_m2, border_edges: border.len() })
+    Ok(MeshSummary { plan_area_m2, border_edges: border.len() })
 }
 
 /// [`check`], and that the plan area is `expected_m2` within one part in a million.
 ///
 /// # Errors
 /// The first [`Flaw`] found.
-pub fn check_with_area(mesh: &TriMesh, expected_m2: f64) -> Result<Summary, Flaw> {
+pub fn check_with_area(mesh: &TriMesh, expected_m2: f64) -> Result<MeshSummary, Flaw> {
     let summary = check(mesh)?;
     let found_m2 = summary.plan_area_m2;
     if (found_m2 - expected_m2).abs() > expected_m2.abs() * 1e-6 {

@@ -9,9 +9,9 @@
 
 use glam::Vec3;
 
-use crate::model::impostor::{Impostor, View};
+use crate::model::impostor::{Impostor, ImpostorDirection};
 use crate::model::kind::Model;
-use crate::model::simplify::{Level, levels};
+use crate::model::simplify::{DetailLevel, levels};
 
 /// How far a level's surface may be off on the picture, in pixels.
 const TOLERANCE_PX: f32 = 0.5;
@@ -25,16 +25,16 @@ const IMPOSTOR_SHARE: f32 = 1.0 / 256.0;
 
 /// The simpler forms of a model.
 #[derive(Clone, Debug)]
-pub struct Detail {
+pub struct ModelDetail {
     /// Simpler meshes, finest first.
-    pub levels: Vec<Level>,
+    pub levels: Vec<DetailLevel>,
     /// Pictures from all sides, where they pay.
     pub impostor: Option<Impostor>,
 }
 
 /// How a placed model is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
+pub struct ApparentSize {
     /// Pixels across a unit of the model at the model's nearest point.
     pub px_per_unit: f32,
     /// Pixels across the ball around the model.
@@ -45,16 +45,16 @@ pub struct Seen {
 
 /// One form of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Form {
+pub enum DetailForm {
     /// The model itself.
     Full,
     /// One of [`Detail::levels`].
     Level(u8),
     /// A view of [`Detail::impostor`].
-    Impostor(View),
+    Impostor(ImpostorDirection),
 }
 
-impl Detail {
+impl ModelDetail {
     /// The simpler forms of `model`. Takes some microseconds a triangle; the same model gives the same forms.
     pub fn of(model: &Model) -> Self {
         let levels = levels(model);
@@ -65,12 +65,12 @@ impl Detail {
     }
 
     /// The simplest form that looks right.
-    pub fn form(&self, seen: &Seen) -> Form {
+    pub fn form(&self, seen: &ApparentSize) -> DetailForm {
         if self.impostor.is_some() && seen.across_px <= IMPOSTOR_PX {
-            return Form::Impostor(View::nearest(seen.towards_eye));
+            return DetailForm::Impostor(ImpostorDirection::nearest(seen.towards_eye));
         }
-        let fits = |level: &Level| level.error * seen.px_per_unit <= TOLERANCE_PX;
-        self.levels.iter().rposition(fits).map_or(Form::Full, |level| Form::Level(level as u8))
+        let fits = |level: &DetailLevel| level.error * seen.px_per_unit <= TOLERANCE_PX;
+        self.levels.iter().rposition(fits).map_or(DetailForm::Full, |level| DetailForm::Level(level as u8))
     }
 }
 
@@ -78,19 +78,19 @@ impl Detail {
 mod tests {
     use super::*;
 
-    fn detail() -> Detail {
-        let level = |error| Level { parts: Vec::new(), error };
-        Detail { levels: vec![level(0.01), level(0.1)], impostor: None }
+    fn detail() -> ModelDetail {
+        let level = |error| DetailLevel { parts: Vec::new(), error };
+        ModelDetail { levels: vec![level(0.01), level(0.1)], impostor: None }
     }
 
-    fn seen(px_per_unit: f32) -> Seen {
-        Seen { px_per_unit, across_px: px_per_unit * 10.0, towards_eye: Vec3::X }
+    fn seen(px_per_unit: f32) -> ApparentSize {
+        ApparentSize { px_per_unit, across_px: px_per_unit * 10.0, towards_eye: Vec3::X }
     }
 
     #[test]
     fn the_coarsest_level_within_half_a_pixel_is_taken() {
-        assert_eq!(detail().form(&seen(100.0)), Form::Full);
-        assert_eq!(detail().form(&seen(40.0)), Form::Level(0));
-        assert_eq!(detail().form(&seen(4.0)), Form::Level(1));
+        assert_eq!(detail().form(&seen(100.0)), DetailForm::Full);
+        assert_eq!(detail().form(&seen(40.0)), DetailForm::Level(0));
+        assert_eq!(detail().form(&seen(4.0)), DetailForm::Level(1));
     }
 }

@@ -26,11 +26,11 @@ use rayon::prelude::*;
 
 use crate::draw::color::Srgba;
 use crate::draw::list::{DrawMesh, DrawVertex};
-use crate::draw::material::{Alpha, Material};
+use crate::draw::material::{AlphaMode, Material};
 use crate::draw::pixels::Pixels;
 use crate::mesh::sink::MeshSink;
-use crate::model::impostor_raster::{Raster, SAMPLES, Source};
-use crate::model::kind::{Model, Part};
+use crate::model::impostor_raster::{ImpostorRaster, ImpostorSource, SAMPLES};
+use crate::model::kind::{Model, ModelPart};
 
 /// Pixels along the side of a tile: twice what an impostor is drawn with, so that masks stay crisp.
 pub(super) const TILE: u32 = 64;
@@ -58,7 +58,7 @@ const FEWEST_TRIANGLES: usize = 16;
 
 /// One of the views of every impostor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct View(u8);
+pub struct ImpostorDirection(u8);
 
 /// Pictures of a model from all sides.
 #[derive(Clone, Debug)]
@@ -71,7 +71,7 @@ pub struct Impostor {
     pub material: Material,
 }
 
-impl View {
+impl ImpostorDirection {
     /// The view nearest to that of an eye in direction `towards_eye` of the model's space; not zero.
     pub fn nearest(towards_eye: Vec3) -> Self {
         let elevation = libm::atan2f(towards_eye.z, towards_eye.truncate().length()).to_degrees();
@@ -90,26 +90,26 @@ impl View {
         first..first + 2
     }
 
-    fn axes(self) -> Axes {
+    fn axes(self) -> ViewAxes {
         let (ring, step) = (usize::from(self.0) / AROUND, usize::from(self.0) % AROUND);
         let (sin_up, cos_up) = libm::sincosf(RINGS_DEG[ring].to_radians());
         let (sin, cos) = libm::sincosf(step as f32 / AROUND as f32 * std::f32::consts::TAU);
         let towards_eye = Vec3::new(cos_up * cos, cos_up * sin, sin_up);
         let right = Vec3::new(-sin, cos, 0.0);
-        Axes { right, up: towards_eye.cross(right), towards_eye }
+        ViewAxes { right, up: towards_eye.cross(right), towards_eye }
     }
 }
 
 /// The directions of a view in the model's space, of unit length and at right angles.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Axes {
+pub(super) struct ViewAxes {
     pub right: Vec3,
     pub up: Vec3,
     pub towards_eye: Vec3,
 }
 
 /// One view as rasterised.
-struct Shot {
+struct ImpostorView {
     pixels: Vec<Srgba>,
     corners: [DrawVertex; 4],
 }
@@ -119,14 +119,17 @@ impl Impostor {
     ///
     /// `None` where a picture would not do or not pay: few triangles, blended materials, nothing to see, or
     /// triangles that lie hundreds deep over each other.
-    pub fn of(model: &Model, parts: &[Part]) -> Option<Self> {
-        let is_blended = |part: &Part| model.materials[part.material.0 as usize].alpha == Alpha::Blend;
+    pub fn of(model: &Model, parts: &[ModelPart]) -> Option<Self> {
+        let is_blended =
+            |part: &ModelPart| model.materials[part.material.0 as usize].alpha == AlphaMode::Blend;
         if model.triangle_count() < FEWEST_TRIANGLES || model.parts.iter().any(is_blended) {
             return None;
         }
-        let source = Source::new(model, parts)?;
-        let shots: Vec<Shot> =
-            (0..VIEWS as u8).into_par_iter().map(|view| shoot(&source, View(view))).collect::<Option<_>>()?;
+        let source = ImpostorSource::new(model, parts)?;
+        let shots: Vec<ImpostorView> = (0..VIEWS as u8)
+            .into_par_iter()
+            .map(|view| shoot(&source, ImpostorDirection(view)))
+            .collect::<Option<_>>()?;
         let mut mesh = DrawMesh::default();
         for shot in &shots {
             let [a, b, c, d] = shot.corners.map(|corner| mesh.vertex(corner));
@@ -140,7 +143,7 @@ impl Impostor {
         });
         let material = Material {
             name: "impostor".into(),
-            alpha: Alpha::Mask(cutoff),
+            alpha: AlphaMode::Mask(cutoff),
             two_sided: true,
             ..Material::default()
         };
@@ -148,10 +151,10 @@ impl Impostor {
     }
 }
 
-fn shoot(source: &Source<'_>, view: View) -> Option<Shot> {
+fn shoot(source: &ImpostorSource<'_>, view: ImpostorDirection) -> Option<ImpostorView> {
     let axes = view.axes();
-    let raster = Raster::of(source, &axes)?;
-    let normals = Normals::fitted(&raster);
+    let raster = ImpostorRaster::of(source, &axes)?;
+    let normals = QuadNormals::fitted(&raster);
     // The mean of normals is shorter than they are, and sunlight on them that much weaker than on one normal. Renderers
     // make it long again; half of what that adds is taken back here, as about half of all light is the sun's.
     let color = Srgba::from_linear(Vec3::splat((1.0 + normals.mean_length(&raster)) * 0.5));
@@ -169,11 +172,11 @@ fn shoot(source: &Source<'_>, view: View) -> Option<Shot> {
         }
     };
     let corners = [corner(0.0, 1.0), corner(1.0, 1.0), corner(1.0, 0.0), corner(0.0, 0.0)];
-    Some(Shot { pixels: tile(&raster), corners })
+    Some(ImpostorView { pixels: tile(&raster), corners })
 }
 
 /// The raster's samples as a tile with its gutter: colours of what is covered, alpha the share covered.
-fn tile(raster: &Raster) -> Vec<Srgba> {
+fn tile(raster: &ImpostorRaster) -> Vec<Srgba> {
     let mut pixels = vec![Srgba([0; 4]); (TILE * TILE) as usize];
     for row in 0..INNER {
         for column in 0..INNER {
@@ -192,7 +195,7 @@ fn tile(raster: &Raster) -> Vec<Srgba> {
 }
 
 /// The alpha above which, seen from so far that four pixels of a tile are one, as much counts as covered as is.
-fn covering_cutoff(shots: &[Shot]) -> f32 {
+fn covering_cutoff(shots: &[ImpostorView]) -> f32 {
     /// Where thin things cover so little that any cut-off that keeps them would show noise, and where a solid's
     /// border would be eaten away.
     const RANGE: [f32; 2] = [0.15, 0.6];
@@ -215,15 +218,15 @@ fn covering_cutoff(shots: &[Shot]) -> f32 {
 }
 
 /// Normals as an affine function of the place on a quad.
-struct Normals {
+struct QuadNormals {
     mean: Vec3,
     across: Vec3,
     down: Vec3,
 }
 
-impl Normals {
+impl QuadNormals {
     /// The least-squares fit to the raster's normals; their mean where they lie on a line.
-    fn fitted(raster: &Raster) -> Self {
+    fn fitted(raster: &ImpostorRaster) -> Self {
         let (mut moments, mut sums) = ([0.0f64; 6], [DVec3::ZERO; 3]);
         for (place, normal) in raster.normals() {
             let (x, y) = (f64::from(place.x), f64::from(place.y));
@@ -249,7 +252,7 @@ impl Normals {
     }
 
     /// How long the fitted normals are where the raster sees anything; 1 where it sees nothing.
-    fn mean_length(&self, raster: &Raster) -> f32 {
+    fn mean_length(&self, raster: &ImpostorRaster) -> f32 {
         let lengths =
             raster.normals().map(|(at, _)| (self.mean + self.across * at.x + self.down * at.y).length());
         let (sum, count) =
@@ -293,7 +296,7 @@ mod tests {
                 mesh.triangle([id(column, row), id(column + 1, row + 1), id(column + 1, row)]);
             }
         }
-        let part = Part { name: "ball".into(), mesh, material: MaterialId(0) };
+        let part = ModelPart { name: "ball".into(), mesh, material: MaterialId(0) };
         Model { parts: vec![part], materials: vec![Material::default()], ..Model::default() }
     }
 
@@ -306,9 +309,9 @@ mod tests {
     fn every_view_s_quad_stands_across_its_direction_around_the_model() {
         let impostor = impostor();
         assert_eq!(impostor.mesh.triangles.len(), VIEWS * 2);
-        for view in (0..VIEWS as u8).map(View) {
+        for view in (0..VIEWS as u8).map(ImpostorDirection) {
             let towards_eye = view.axes().towards_eye;
-            assert_eq!(View::nearest(towards_eye), view);
+            assert_eq!(ImpostorDirection::nearest(towards_eye), view);
             let range = view.triangles();
             for triangle in &impostor.mesh.triangles[range.start as usize..range.end as usize] {
                 let corners = triangle.map(|id| Vec3::from(impostor.mesh.vertices[id.index()].position));
@@ -329,14 +332,14 @@ mod tests {
         assert!((covered / disc - 1.0).abs() < 0.02, "{covered} of {disc}");
         let [top, foot] = [8, 55].map(|row| impostor.texture.at(TILE / 2, row));
         assert_eq!((top, foot), (Srgba::opaque(255, 0, 0), Srgba::WHITE));
-        assert!(matches!(impostor.material.alpha, Alpha::Mask(cutoff) if (0.3..=0.6).contains(&cutoff)));
+        assert!(matches!(impostor.material.alpha, AlphaMode::Mask(cutoff) if (0.3..=0.6).contains(&cutoff)));
     }
 
     #[test]
     fn normals_at_the_corners_lean_outward_as_those_of_the_ball() {
         let impostor = impostor();
-        for view in (0..VIEWS as u8).map(View) {
-            let Axes { right, up, towards_eye } = view.axes();
+        for view in (0..VIEWS as u8).map(ImpostorDirection) {
+            let ViewAxes { right, up, towards_eye } = view.axes();
             let first = usize::from(view.0) * 4;
             let normals: Vec<Vec3> =
                 impostor.mesh.vertices[first..first + 4].iter().map(|vertex| vertex.normal.into()).collect();
@@ -349,7 +352,7 @@ mod tests {
     #[test]
     fn what_a_picture_would_not_do_for_has_no_impostor() {
         let mut glass = ball();
-        glass.materials[0].alpha = Alpha::Blend;
+        glass.materials[0].alpha = AlphaMode::Blend;
         assert!(Impostor::of(&glass, &glass.parts).is_none());
         assert!(Impostor::of(&Model::default(), &[]).is_none());
     }

@@ -7,10 +7,10 @@ use glam::{Vec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::draw::list::{DrawMesh, DrawVertex};
-use crate::draw::material::{Alpha, Material};
+use crate::draw::material::{AlphaMode, Material};
 use crate::draw::pixels::Pixels;
-use crate::model::impostor::{Axes, INNER};
-use crate::model::kind::{Model, Part};
+use crate::model::impostor::{INNER, ViewAxes};
+use crate::model::kind::{Model, ModelPart};
 
 /// Samples along the side of a pixel.
 pub(super) const SAMPLES: u32 = 3;
@@ -26,8 +26,8 @@ pub(super) const MOST_LAYERS: usize = 256;
 const MOST_TEXTURE_SIDE: u32 = 128;
 
 /// A model made ready for being seen from many sides.
-pub(super) struct Source<'a> {
-    parts: &'a [Part],
+pub(super) struct ImpostorSource<'a> {
+    parts: &'a [ModelPart],
     materials: &'a [Material],
     textures: Vec<Pixels>,
     middle: Vec3,
@@ -44,7 +44,7 @@ pub(super) struct Sample {
 }
 
 /// A model seen along one direction.
-pub(super) struct Raster {
+pub(super) struct ImpostorRaster {
     /// The lower left corner of what is seen, along the axes to the right and up.
     pub low: Vec2,
     /// The upper right corner.
@@ -52,9 +52,9 @@ pub(super) struct Raster {
     samples: Vec<Option<Sample>>,
 }
 
-impl<'a> Source<'a> {
+impl<'a> ImpostorSource<'a> {
     /// The model whose shape is `parts`; `None` where there is nothing to see.
-    pub(super) fn new(model: &'a Model, parts: &'a [Part]) -> Option<Self> {
+    pub(super) fn new(model: &'a Model, parts: &'a [ModelPart]) -> Option<Self> {
         let (min, max) = model.bounds()?;
         parts.iter().any(|part| !part.mesh.triangles.is_empty()).then(|| Self {
             parts,
@@ -65,13 +65,13 @@ impl<'a> Source<'a> {
     }
 
     /// How far along the view its quad stands: through the model's middle.
-    pub(super) fn depth(&self, axes: &Axes) -> f32 {
+    pub(super) fn depth(&self, axes: &ViewAxes) -> f32 {
         self.middle.dot(axes.towards_eye)
     }
 
     fn triangles(&self) -> impl Iterator<Item = (&'a DrawMesh, &'a Material, [&'a DrawVertex; 3])> {
         let materials = self.materials;
-        self.parts.iter().flat_map(move |Part { mesh, material, .. }| {
+        self.parts.iter().flat_map(move |ModelPart { mesh, material, .. }| {
             let material = &materials[material.0 as usize];
             let corners = mesh.triangles.iter().map(|ids| ids.map(|id| &mesh.vertices[id.index()]));
             corners.map(move |corners| (mesh, material, corners))
@@ -79,9 +79,9 @@ impl<'a> Source<'a> {
     }
 }
 
-impl Raster {
+impl ImpostorRaster {
     /// The model seen along `axes`; `None` where its triangles lie more than [`MOST_LAYERS`] deep.
-    pub(super) fn of(source: &Source<'_>, axes: &Axes) -> Option<Self> {
+    pub(super) fn of(source: &ImpostorSource<'_>, axes: &ViewAxes) -> Option<Self> {
         let plan = |vertex: &DrawVertex| {
             let at = Vec3::from(vertex.position);
             Vec2::new(at.dot(axes.right), at.dot(axes.up))
@@ -109,8 +109,8 @@ impl Raster {
 
     fn draw(
         &mut self,
-        source: &Source<'_>,
-        axes: &Axes,
+        source: &ImpostorSource<'_>,
+        axes: &ViewAxes,
         material: &Material,
         corners: [&DrawVertex; 3],
         [a, b, c]: [Vec2; 3],
@@ -170,7 +170,7 @@ fn window(corners: &[Vec2; 3]) -> ([usize; 2], [usize; 2]) {
 
 /// Colour in linear light and unit normal; `None` where the surface has a hole.
 fn looks(
-    source: &Source<'_>,
+    source: &ImpostorSource<'_>,
     material: &Material,
     corners: [&DrawVertex; 3],
     shares: [f32; 3],
@@ -185,7 +185,7 @@ fn looks(
         )
     });
     let texel = texel.unwrap_or(Srgba::WHITE);
-    if let Alpha::Mask(cutoff) = material.alpha {
+    if let AlphaMode::Mask(cutoff) = material.alpha {
         let vertex = mean(&|vertex| Vec3::splat(vertex.color.alpha())).x;
         if material.base_color.alpha() * vertex * texel.alpha() < cutoff {
             return None;

@@ -10,7 +10,7 @@ use crate::draw::pixels::Pixels;
 #[derive(Clone, Debug, Default)]
 pub struct Model {
     /// Meshes with one material each, node transforms applied.
-    pub parts: Vec<Part>,
+    pub parts: Vec<ModelPart>,
     /// Materials, by [`MaterialId`]; textures index `textures`.
     pub materials: Vec<Material>,
     /// Textures, by [`crate::draw::material::TextureId`].
@@ -23,7 +23,7 @@ pub struct Model {
 
 /// Triangles of one material.
 #[derive(Clone, Debug)]
-pub struct Part {
+pub struct ModelPart {
     /// The object's or mesh's name in the file; may be empty.
     pub name: String,
     /// The triangles.

@@ -55,7 +55,7 @@ pub(super) fn corner_normals(
 
 /// A corner of a triangle, with the triangle's angle there.
 #[derive(Clone, Copy)]
-struct Spoke {
+struct CornerAngle {
     triangle: usize,
     corner: usize,
     angle: f32,
@@ -85,9 +85,9 @@ fn shared(
 }
 
 /// The corners around every welded vertex, in the order of the vertices' first use.
-fn fans(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec<Spoke>> {
+fn fans(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec<CornerAngle>> {
     let mut of_position: HashMap<[u32; 3], usize> = HashMap::with_capacity(positions.len());
-    let mut fans: Vec<Vec<Spoke>> = Vec::new();
+    let mut fans: Vec<Vec<CornerAngle>> = Vec::new();
     for (triangle, &ids) in triangles.iter().enumerate() {
         let corners = ids.map(|id| positions[id as usize]);
         for (corner, &at) in corners.iter().enumerate() {
@@ -96,7 +96,7 @@ fn fans(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec<Spoke>> {
                 fans.push(Vec::new());
                 fans.len() - 1
             });
-            fans[fan].push(Spoke { triangle, corner, angle });
+            fans[fan].push(CornerAngle { triangle, corner, angle });
         }
     }
     fans

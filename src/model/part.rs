@@ -11,7 +11,7 @@ use crate::draw::color::Srgba;
 use crate::draw::list::{DrawMesh, DrawVertex, MaterialId};
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::model::error::ModelError;
-use crate::model::kind::Part;
+use crate::model::kind::ModelPart;
 
 /// The most triangles a model may have once all its instances are placed; bounds the memory that a small
 /// file with many instances can ask for to some hundred megabytes. Arbitrary, but above what a scene can use.
@@ -39,7 +39,7 @@ impl Budget {
 
 /// One corner of a triangle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Corner {
+pub(super) struct ModelCorner {
     pub position: Vec3,
     pub normal: Vec3,
     pub uv: Vec2,
@@ -70,7 +70,7 @@ impl PartBuilder {
     }
 
     /// Adds a triangle, counter-clockwise seen from its outside.
-    pub(super) fn triangle(&mut self, material: MaterialId, corners: [Corner; 3]) {
+    pub(super) fn triangle(&mut self, material: MaterialId, corners: [ModelCorner; 3]) {
         let parts = &mut self.parts;
         let index = *self.of_material.entry(material).or_insert_with(|| {
             parts.push(Growing { material, mesh: DrawMesh::default(), known: HashMap::new() });
@@ -82,9 +82,9 @@ impl PartBuilder {
     }
 
     /// The parts that got triangles.
-    pub(super) fn finish(self) -> impl Iterator<Item = Part> {
+    pub(super) fn finish(self) -> impl Iterator<Item = ModelPart> {
         let name = self.name;
-        self.parts.into_iter().map(move |part| Part {
+        self.parts.into_iter().map(move |part| ModelPart {
             name: name.clone(),
             mesh: part.mesh,
             material: part.material,
@@ -93,7 +93,7 @@ impl PartBuilder {
 }
 
 impl Growing {
-    fn vertex(&mut self, corner: Corner) -> VertexId {
+    fn vertex(&mut self, corner: ModelCorner) -> VertexId {
         let vertex = DrawVertex {
             position: corner.position.into(),
             normal: corner.normal.into(),
@@ -110,8 +110,8 @@ impl Growing {
 mod tests {
     use super::*;
 
-    fn corner(x: f32, y: f32) -> Corner {
-        Corner { position: Vec3::new(x, y, 0.0), normal: Vec3::Z, uv: Vec2::ZERO, color: Srgba::WHITE }
+    fn corner(x: f32, y: f32) -> ModelCorner {
+        ModelCorner { position: Vec3::new(x, y, 0.0), normal: Vec3::Z, uv: Vec2::ZERO, color: Srgba::WHITE }
     }
 
     #[test]
@@ -120,7 +120,7 @@ mod tests {
         let corners = [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)];
         builder.triangle(MaterialId(0), [corners[0], corners[1], corners[2]]);
         builder.triangle(MaterialId(0), [corners[0], corners[2], corners[3]]);
-        let parts: Vec<Part> = builder.finish().collect();
+        let parts: Vec<ModelPart> = builder.finish().collect();
         assert_eq!((parts[0].mesh.vertices.len(), parts[0].mesh.triangles.len()), (4, 2));
     }
 

@@ -6,7 +6,7 @@ use crate::model::{gltf, obj, three_ds};
 
 /// The formats that can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
+enum ModelFormat {
     ThreeDs,
     Obj,
     Gltf,
@@ -22,9 +22,9 @@ pub fn read(name: &str, bytes: &[u8], companions: &dyn Companions) -> Result<Mod
         return Err(ModelError::Empty { name: name.into() });
     }
     let mut model = match format_of(name, bytes) {
-        Some(Format::ThreeDs) => three_ds::read(bytes, companions),
-        Some(Format::Obj) => obj::read(bytes, companions),
-        Some(Format::Gltf) => gltf::read(bytes, companions),
+        Some(ModelFormat::ThreeDs) => three_ds::read(bytes, companions),
+        Some(ModelFormat::Obj) => obj::read(bytes, companions),
+        Some(ModelFormat::Gltf) => gltf::read(bytes, companions),
         None => Err(ModelError::Unknown { name: name.into(), start: start_of(bytes) }),
     }?;
     if model.parts.is_empty() {
@@ -47,29 +47,29 @@ fn shorten(notes: &mut Vec<String>) {
     }
 }
 
-fn format_of(name: &str, bytes: &[u8]) -> Option<Format> {
+fn format_of(name: &str, bytes: &[u8]) -> Option<ModelFormat> {
     by_content(bytes).or_else(|| by_extension(name))
 }
 
-fn by_content(bytes: &[u8]) -> Option<Format> {
+fn by_content(bytes: &[u8]) -> Option<ModelFormat> {
     /// The chunk that holds a whole 3DS file, `0x4D4D`, little-endian.
     const MAIN_CHUNK: &[u8] = b"MM";
     if bytes.starts_with(b"glTF") {
-        return Some(Format::Gltf);
+        return Some(ModelFormat::Gltf);
     }
     if bytes.starts_with(MAIN_CHUNK) {
-        return Some(Format::ThreeDs);
+        return Some(ModelFormat::ThreeDs);
     }
     let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-    (text.trim_ascii_start().first() == Some(&b'{')).then_some(Format::Gltf)
+    (text.trim_ascii_start().first() == Some(&b'{')).then_some(ModelFormat::Gltf)
 }
 
-fn by_extension(name: &str) -> Option<Format> {
+fn by_extension(name: &str) -> Option<ModelFormat> {
     let (_, extension) = name.rsplit_once('.')?;
     match extension.to_ascii_lowercase().as_str() {
-        "3ds" => Some(Format::ThreeDs),
-        "obj" => Some(Format::Obj),
-        "gltf" | "glb" => Some(Format::Gltf),
+        "3ds" => Some(ModelFormat::ThreeDs),
+        "obj" => Some(ModelFormat::Obj),
+        "gltf" | "glb" => Some(ModelFormat::Gltf),
         _ => None,
     }
 }
@@ -93,9 +93,9 @@ mod tests {
 
     #[test]
     fn content_counts_for_more_than_the_extension() {
-        assert_eq!(format_of("house.obj", b"MM\x06\0\0\0"), Some(Format::ThreeDs));
-        assert_eq!(format_of("house.3ds", b"\xEF\xBB\xBF \n{}"), Some(Format::Gltf));
-        assert_eq!(format_of("HOUSE.OBJ", b"v 0 0 0"), Some(Format::Obj));
+        assert_eq!(format_of("house.obj", b"MM\x06\0\0\0"), Some(ModelFormat::ThreeDs));
+        assert_eq!(format_of("house.3ds", b"\xEF\xBB\xBF \n{}"), Some(ModelFormat::Gltf));
+        assert_eq!(format_of("HOUSE.OBJ", b"v 0 0 0"), Some(ModelFormat::Obj));
     }
 
     #[test]

@@ -27,10 +27,10 @@ use std::collections::BinaryHeap;
 use glam::{DVec3, Vec3};
 
 use crate::draw::list::DrawVertex;
-use crate::model::kind::{Model, Part};
+use crate::model::kind::{Model, ModelPart};
 use crate::model::nearest::{blend, difference, nearest_shares};
 use crate::model::quadric::Quadric;
-use crate::model::soup::{PointId, Soup, Wedge, WedgeId};
+use crate::model::soup::{PointId, Soup, SoupWedge, WedgeId};
 
 /// Models of fewer triangles have no levels: they cost no more than the items that draw them.
 pub const FEWEST_TRIANGLES: usize = 64;
@@ -61,14 +61,14 @@ const WIDEST_RING: usize = 64;
 
 /// A simpler form of a model.
 #[derive(Clone, Debug)]
-pub struct Level {
+pub struct DetailLevel {
     /// Meshes with one material each, materials as in the model.
-    pub parts: Vec<Part>,
+    pub parts: Vec<ModelPart>,
     /// How far its surface is off the model's, in the model's units.
     pub error: f32,
 }
 
-impl Level {
+impl DetailLevel {
     /// How many triangles it has.
     pub fn triangle_count(&self) -> usize {
         self.parts.iter().map(|part| part.mesh.triangles.len()).sum()
@@ -79,13 +79,13 @@ impl Level {
 ///
 /// None for models of fewer than [`FEWEST_TRIANGLES`] or more than [`MOST_TRIANGLES`], and for those that do not let
 /// themselves be simplified.
-pub fn levels(model: &Model) -> Vec<Level> {
+pub fn levels(model: &Model) -> Vec<DetailLevel> {
     let count = model.triangle_count();
     if !(FEWEST_TRIANGLES..=MOST_TRIANGLES).contains(&count) {
         return Vec::new();
     }
     let mut simplifier = Simplifier::new(model);
-    let mut levels: Vec<Level> = Vec::new();
+    let mut levels: Vec<DetailLevel> = Vec::new();
     let (mut before, least_area) = (count, simplifier.soup.area() * LEAST_AREA);
     for share in SHARES {
         let done = simplifier.simplify_to((count as f64 * share) as usize);
@@ -96,9 +96,9 @@ pub fn levels(model: &Model) -> Vec<Level> {
             before = simplifier.soup.left;
             let finer = levels.last().map_or(0.0, |level| level.error);
             let error = finer.max(simplifier.error() as f32);
-            levels.push(Level { parts: simplifier.soup.parts(model), error });
+            levels.push(DetailLevel { parts: simplifier.soup.parts(model), error });
         }
-        if done == Done::NothingLeft {
+        if done == StopReason::NothingLeft {
             break;
         }
     }
@@ -107,7 +107,7 @@ pub fn levels(model: &Model) -> Vec<Level> {
 
 /// Why simplifying ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Done {
+enum StopReason {
     /// There are no more triangles than wanted.
     Reached,
     /// No step is left that may be done.
@@ -116,7 +116,7 @@ enum Done {
 
 /// A step that may be worth doing; its cost is never above the true one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Candidate {
+struct CollapseCandidate {
     /// The bits of a cost that is not negative, which rise as it does.
     cost: u64,
     from: PointId,
@@ -124,7 +124,7 @@ struct Candidate {
 }
 
 /// A step that can be done.
-struct Step {
+struct CollapseStep {
     cost: f64,
     looks: f64,
     wedges: Vec<(WedgeId, DrawVertex)>,
@@ -135,7 +135,7 @@ struct Simplifier {
     quadrics: Vec<Quadric>,
     /// Where each point went; itself where it still stands.
     into: Vec<PointId>,
-    heap: BinaryHeap<Reverse<Candidate>>,
+    heap: BinaryHeap<Reverse<CollapseCandidate>>,
     /// The greatest change of looks so far, in the model's units.
     looks: f64,
     largest_cost: f64,
@@ -164,7 +164,7 @@ impl Simplifier {
     /// Adds a step with the cost of its shape alone; its looks are counted when its turn comes.
     fn push(&mut self, from: PointId, to: PointId) {
         let cost = self.shape_cost(from, to).to_bits();
-        self.heap.push(Reverse(Candidate { cost, from, to }));
+        self.heap.push(Reverse(CollapseCandidate { cost, from, to }));
     }
 
     fn shape_cost(&self, from: PointId, to: PointId) -> f64 {
@@ -172,24 +172,24 @@ impl Simplifier {
         both.squared_distances(self.soup.at(to))
     }
 
-    fn simplify_to(&mut self, triangles: usize) -> Done {
+    fn simplify_to(&mut self, triangles: usize) -> StopReason {
         while self.soup.left > triangles {
-            let Some(Reverse(candidate)) = self.heap.pop() else { return Done::NothingLeft };
+            let Some(Reverse(candidate)) = self.heap.pop() else { return StopReason::NothingLeft };
             let Some(step) = self.step(candidate.from, candidate.to) else { continue };
             let cost = step.cost.to_bits();
             if cost > candidate.cost {
-                self.heap.push(Reverse(Candidate { cost, ..candidate }));
+                self.heap.push(Reverse(CollapseCandidate { cost, ..candidate }));
             } else if step.cost > self.largest_cost {
-                return Done::NothingLeft;
+                return StopReason::NothingLeft;
             } else {
                 self.apply(candidate.from, candidate.to, &step);
             }
         }
-        Done::Reached
+        StopReason::Reached
     }
 
     /// The step from one point into another; `None` where they are no neighbours or it may not be done.
-    fn step(&self, from: PointId, to: PointId) -> Option<Step> {
+    fn step(&self, from: PointId, to: PointId) -> Option<CollapseStep> {
         let ring = self.soup.triangles_at(from);
         if ring.len() > WIDEST_RING || self.soup.triangles_at(to).len() > WIDEST_RING {
             return None;
@@ -203,7 +203,7 @@ impl Simplifier {
         }
         let wedges = self.counterparts(&going, &staying, from, to);
         let looks = self.looks_after(&staying, from, &wedges);
-        Some(Step { cost: self.shape_cost(from, to) + looks * looks, looks, wedges })
+        Some(CollapseStep { cost: self.shape_cost(from, to) + looks * looks, looks, wedges })
     }
 
     /// What each wedge at `from` looks like at `to`.
@@ -275,7 +275,7 @@ impl Simplifier {
         least.into_iter().flatten().map(|(_, off)| off).fold(0.0, f64::max)
     }
 
-    fn apply(&mut self, from: PointId, to: PointId, step: &Step) {
+    fn apply(&mut self, from: PointId, to: PointId, step: &CollapseStep) {
         let targets: Vec<(WedgeId, WedgeId)> = step
             .wedges
             .iter()
@@ -368,7 +368,7 @@ fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
 }
 
 /// An edge of the surface, `a` below `b`.
-struct Edge {
+struct SurfaceEdge {
     a: PointId,
     b: PointId,
     kind: EdgeKind,
@@ -385,12 +385,12 @@ enum EdgeKind {
 }
 
 /// Every edge once, in a fixed order.
-fn edges(soup: &Soup) -> Vec<Edge> {
+fn edges(soup: &Soup) -> Vec<SurfaceEdge> {
     let mut uses: Vec<([PointId; 2], [WedgeId; 2], u32)> = Vec::with_capacity(soup.triangles.len() * 3);
     for (triangle, &[a, b, c]) in (0..).zip(&soup.triangles) {
         for (from, to) in [(a, b), (b, c), (c, a)] {
-            let Wedge { point: start, .. } = *soup.wedge(from);
-            let Wedge { point: end, .. } = *soup.wedge(to);
+            let SoupWedge { point: start, .. } = *soup.wedge(from);
+            let SoupWedge { point: end, .. } = *soup.wedge(to);
             let (points, wedges) =
                 if start < end { ([start, end], [from, to]) } else { ([end, start], [to, from]) };
             uses.push((points, wedges, triangle));
@@ -402,12 +402,12 @@ fn edges(soup: &Soup) -> Vec<Edge> {
         _ => EdgeKind::Seam,
     };
     uses.chunk_by(|one, other| one.0 == other.0)
-        .map(|uses| Edge { a: uses[0].0[0], b: uses[0].0[1], kind: kind(uses), triangle: uses[0].2 })
+        .map(|uses| SurfaceEdge { a: uses[0].0[0], b: uses[0].0[1], kind: kind(uses), triangle: uses[0].2 })
         .collect()
 }
 
 /// The planes that each point of the model stands for.
-fn quadrics(soup: &Soup, edges: &[Edge]) -> Vec<Quadric> {
+fn quadrics(soup: &Soup, edges: &[SurfaceEdge]) -> Vec<Quadric> {
     let mut quadrics = vec![Quadric::default(); soup.points.len()];
     let mut add = |point: PointId, plane: &Quadric| {
         quadrics[point.0 as usize] = quadrics[point.0 as usize].plus(plane);
@@ -462,7 +462,7 @@ mod tests {
                 mesh.triangle([a, c, d]);
             }
         }
-        let part = Part { name: "sheet".into(), mesh, material: MaterialId(0) };
+        let part = ModelPart { name: "sheet".into(), mesh, material: MaterialId(0) };
         let material = Material { texture: Some(TextureId(0)), ..Material::default() };
         Model { parts: vec![part], materials: vec![material], ..Model::default() }
     }
@@ -473,7 +473,7 @@ mod tests {
             .map(|angle| Quat::from_axis_angle(Vec3::new(1.0, 2.0, 3.0).normalize(), angle))
     }
 
-    fn area(parts: &[Part]) -> f32 {
+    fn area(parts: &[ModelPart]) -> f32 {
         let doubled = parts.iter().flat_map(|part| {
             part.mesh.triangles.iter().map(|corners| {
                 let [a, b, c] = corners.map(|id| Vec3::from(part.mesh.vertices[id.index()].position));
@@ -517,8 +517,8 @@ mod tests {
         }
     }
 
-    fn triangles_of(parts: &[Part]) -> Vec<[DVec3; 3]> {
-        let of_part = |part: &Part| -> Vec<[DVec3; 3]> {
+    fn triangles_of(parts: &[ModelPart]) -> Vec<[DVec3; 3]> {
+        let of_part = |part: &ModelPart| -> Vec<[DVec3; 3]> {
             let at = |id: VertexId| Vec3::from(part.mesh.vertices[id.index()].position).as_dvec3();
             part.mesh.triangles.iter().map(|corners| corners.map(at)).collect()
         };
@@ -547,7 +547,7 @@ mod tests {
         let (left, right): (Vec<_>, Vec<_>) = whole.triangles.iter().partition(|corners| {
             corners.iter().map(|id| whole.vertices[id.index()].uv[0]).sum::<f32>() < 1.5
         });
-        let part = |triangles, material| Part {
+        let part = |triangles, material| ModelPart {
             name: String::new(),
             mesh: DrawMesh { vertices: whole.vertices.clone(), triangles },
             material: MaterialId(material),
@@ -556,7 +556,7 @@ mod tests {
         model.materials.push(model.materials[0].clone());
         for level in levels(&model) {
             assert_eq!(level.parts.len(), 2);
-            let border = |part: &Part| {
+            let border = |part: &ModelPart| {
                 let on_border = part.mesh.vertices.iter().filter(|vertex| (vertex.uv[0] - 0.5).abs() < 1e-6);
                 let mut rows: Vec<u32> = on_border.map(|vertex| vertex.uv[1].to_bits()).collect();
                 rows.sort_unstable();

@@ -16,7 +16,7 @@ use glam::{DVec3, Vec3};
 
 use crate::draw::list::{DrawMesh, DrawVertex};
 use crate::mesh::sink::{MeshSink, VertexId};
-use crate::model::kind::{Model, Part};
+use crate::model::kind::{Model, ModelPart};
 
 /// The index of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -28,7 +28,7 @@ pub(super) struct WedgeId(pub u32);
 
 /// One part's vertex at a point.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Wedge {
+pub(super) struct SoupWedge {
     pub point: PointId,
     pub part: u32,
     pub vertex: DrawVertex,
@@ -38,7 +38,7 @@ pub(super) struct Wedge {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Soup {
     pub points: Vec<DVec3>,
-    pub wedges: Vec<Wedge>,
+    pub wedges: Vec<SoupWedge>,
     pub triangles: Vec<[WedgeId; 3]>,
     /// The triangles left around each point, rising; whoever changes some calls [`Soup::tidy`].
     pub around: Vec<Vec<u32>>,
@@ -51,7 +51,7 @@ impl Soup {
     pub(super) fn of(model: &Model) -> Self {
         let mut soup = Self::default();
         let mut known: HashMap<[u32; 3], PointId> = HashMap::new();
-        for (part, Part { mesh, material, .. }) in (0..).zip(&model.parts) {
+        for (part, ModelPart { mesh, material, .. }) in (0..).zip(&model.parts) {
             let first = soup.wedges.len() as u32;
             let has_texture = model.materials[material.0 as usize].texture.is_some();
             for &stored in &mesh.vertices {
@@ -64,7 +64,7 @@ impl Soup {
                 if point == next {
                     soup.points.push(place.as_dvec3());
                 }
-                soup.wedges.push(Wedge { point, part, vertex });
+                soup.wedges.push(SoupWedge { point, part, vertex });
             }
             let wedges = mesh.triangles.iter().map(|corners| corners.map(|id| WedgeId(id.0 + first)));
             soup.triangles.extend(wedges);
@@ -89,7 +89,7 @@ impl Soup {
     }
 
     /// The wedge with this id.
-    pub(super) fn wedge(&self, id: WedgeId) -> &Wedge {
+    pub(super) fn wedge(&self, id: WedgeId) -> &SoupWedge {
         &self.wedges[id.0 as usize]
     }
 
@@ -102,7 +102,7 @@ impl Soup {
         };
         let known = around.into_iter().find(is_alike);
         known.unwrap_or_else(|| {
-            self.wedges.push(Wedge { point, part, vertex: *vertex });
+            self.wedges.push(SoupWedge { point, part, vertex: *vertex });
             WedgeId(self.wedges.len() as u32 - 1)
         })
     }
@@ -155,7 +155,7 @@ impl Soup {
 
     /// The triangles left as meshes, in the order and with the names and materials of the model's parts; parts of
     /// which nothing is left are left out.
-    pub(super) fn parts(&self, model: &Model) -> Vec<Part> {
+    pub(super) fn parts(&self, model: &Model) -> Vec<ModelPart> {
         let mut meshes: Vec<DrawMesh> = vec![DrawMesh::default(); model.parts.len()];
         let mut ids: Vec<Option<VertexId>> = vec![None; self.wedges.len()];
         for corners in self.triangles.iter().filter(|corners| corners[0] != corners[1]) {
@@ -167,6 +167,8 @@ impl Soup {
             mesh.triangle(corners);
         }
         let parts = model.parts.iter().zip(meshes).filter(|(_, mesh)| !mesh.triangles.is_empty());
-        parts.map(|(part, mesh)| Part { name: part.name.clone(), mesh, material: part.material }).collect()
+        parts
+            .map(|(part, mesh)| ModelPart { name: part.name.clone(), mesh, material: part.material })
+            .collect()
     }
 }

@@ -17,7 +17,7 @@ const KERNEL: [(usize, f32); 3] = [(0, 0.25), (1, 0.5), (2, 0.25)];
 
 /// Columns and rows of posts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::render) struct Size {
+pub(in crate::render) struct PostCount {
     /// Posts per row.
     pub columns: u32,
     /// Rows of posts.
@@ -26,14 +26,14 @@ pub(in crate::render) struct Size {
 
 /// Posts at twice the distance of the level before.
 #[derive(Debug)]
-pub(in crate::render) struct Level {
+pub(in crate::render) struct GroundLevel {
     /// How many.
-    pub size: Size,
+    pub size: PostCount,
     /// The posts, row by row from the south-west.
     pub posts: Vec<GroundPost>,
 }
 
-impl Size {
+impl PostCount {
     /// The posts of `map` itself.
     pub fn of(map: &GroundMap) -> Self {
         Self { columns: map.columns, rows: map.rows }
@@ -49,8 +49,8 @@ impl Size {
 /// Every smaller level of `map`, which has passed its check, the largest first, down to two posts a side.
 ///
 /// Each is made when the one before is handed out, and no earlier one is kept.
-pub(in crate::render) fn smaller_levels(map: &GroundMap) -> impl Iterator<Item = Level> {
-    let first = halved(Size::of(map), &map.posts);
+pub(in crate::render) fn smaller_levels(map: &GroundMap) -> impl Iterator<Item = GroundLevel> {
+    let first = halved(PostCount::of(map), &map.posts);
     successors(first, |level| halved(level.size, &level.posts))
 }
 
@@ -63,7 +63,7 @@ pub(in crate::render) fn add(sum: &mut GroundPost, post: &GroundPost, weight: f3
     sum.sky_visibility += post.sky_visibility * weight;
 }
 
-fn halved(from: Size, posts: &[GroundPost]) -> Option<Level> {
+fn halved(from: PostCount, posts: &[GroundPost]) -> Option<GroundLevel> {
     let size = from.halved()?;
     let [columns, rows, stride] = [from.columns, from.rows, size.columns].map(|count| count as usize);
     // Past the border, the border's posts stand in.
@@ -82,14 +82,14 @@ fn halved(from: Size, posts: &[GroundPost]) -> Option<Level> {
     };
     let count = stride * size.rows as usize;
     let posts = (0..count).into_par_iter().with_min_len(1024).map(post).collect();
-    Some(Level { size, posts })
+    Some(GroundLevel { size, posts })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn posts(size: Size, height: impl Fn(u32, u32) -> f32) -> Vec<GroundPost> {
+    fn posts(size: PostCount, height: impl Fn(u32, u32) -> f32) -> Vec<GroundPost> {
         let post = |index: u32| GroundPost {
             height_m: height(index % size.columns, index / size.columns),
             ..GroundPost::default()
@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn levels_shrink_to_two_posts_a_side() {
         let sizes = |columns, rows| -> Vec<_> {
-            let all = successors(Some(Size { columns, rows }), |size| size.halved());
+            let all = successors(Some(PostCount { columns, rows }), |size| size.halved());
             all.map(|size| (size.columns, size.rows)).collect()
         };
         assert_eq!(sizes(9, 4), [(9, 4), (5, 3), (3, 2), (2, 2)]);
@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn a_plane_stays_a_plane_away_from_the_border() {
         let height = |column: u32, row: u32| column as f32 * 3.0 - row as f32;
-        let from = Size { columns: 33, rows: 17 };
+        let from = PostCount { columns: 33, rows: 17 };
         let level = halved(from, &posts(from, height)).expect("more than two posts a side");
         let plane = posts(level.size, |column, row| height(2 * column, 2 * row));
         for (index, (post, plane)) in (0..).zip(level.posts.iter().zip(&plane)) {

@@ -12,7 +12,7 @@ use crate::geom::convex;
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::geom::rect_tree::RectTree;
-use crate::ribbon::junction::Node;
+use crate::ribbon::junction::JunctionNode;
 use crate::ribbon::plan::PlanMesh;
 
 /// Ground smaller than this is rounding, in square metres: a sliver of 10 m by 0.1 mm.
@@ -24,7 +24,7 @@ const MOST: usize = 64;
 
 /// Ground that two ribbons share.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Crossing {
+pub struct RibbonOverlap {
     /// Convex, counter-clockwise.
     pub outline: Vec<DVec2>,
     /// Which two, the lesser number first.
@@ -33,11 +33,14 @@ pub struct Crossing {
 
 /// What the `ribbons` share that are of one class, outside `nodes`: in the order of the ribbons. Crossings may overlap one
 /// another.
-pub fn crossings<C: PartialEq + Sync>(ribbons: &[(PlanMesh, C)], nodes: &[Node]) -> Vec<Crossing> {
-    let pieces: Vec<Piece> = ribbons.par_iter().enumerate().flat_map_iter(pieces_of).collect();
+pub fn crossings<C: PartialEq + Sync>(
+    ribbons: &[(PlanMesh, C)],
+    nodes: &[JunctionNode],
+) -> Vec<RibbonOverlap> {
+    let pieces: Vec<ConvexPiece> = ribbons.par_iter().enumerate().flat_map_iter(pieces_of).collect();
     let rects: Vec<Rect> = pieces.iter().map(|piece| polygon::bounds(&piece.outline)).collect();
     let (tree, joined) = (RectTree::new(&rects), Joined::new(nodes));
-    let shared = |one: &Piece| {
+    let shared = |one: &ConvexPiece| {
         let mut found = Vec::new();
         tree.visit(&polygon::bounds(&one.outline), &mut |other| {
             let other = &pieces[other];
@@ -57,28 +60,28 @@ pub fn crossings<C: PartialEq + Sync>(ribbons: &[(PlanMesh, C)], nodes: &[Node])
 }
 
 /// A convex piece of a ribbon.
-struct Piece {
+struct ConvexPiece {
     outline: Vec<DVec2>,
     ribbon: usize,
 }
 
-fn pieces_of<C>((ribbon, (plan, _)): (usize, &(PlanMesh, C))) -> impl Iterator<Item = Piece> + use<C> {
-    plan.convex_parts().into_iter().map(move |outline| Piece { outline, ribbon })
+fn pieces_of<C>((ribbon, (plan, _)): (usize, &(PlanMesh, C))) -> impl Iterator<Item = ConvexPiece> + use<C> {
+    plan.convex_parts().into_iter().map(move |outline| ConvexPiece { outline, ribbon })
 }
 
-fn crossing([one, other]: [&Piece; 2]) -> Option<Crossing> {
+fn crossing([one, other]: [&ConvexPiece; 2]) -> Option<RibbonOverlap> {
     let outline = convex::shared(&one.outline, &other.outline, SLIVER_M2)?;
-    Some(Crossing { outline, ribbons: [one.ribbon, other.ribbon] })
+    Some(RibbonOverlap { outline, ribbons: [one.ribbon, other.ribbon] })
 }
 
 /// The junctions there are.
 struct Joined<'a> {
-    nodes: &'a [Node],
+    nodes: &'a [JunctionNode],
     tree: RectTree,
 }
 
 impl<'a> Joined<'a> {
-    fn new(nodes: &'a [Node]) -> Self {
+    fn new(nodes: &'a [JunctionNode]) -> Self {
         let rects: Vec<Rect> = nodes.iter().map(|node| polygon::bounds(&node.outline)).collect();
         Self { nodes, tree: RectTree::new(&rects) }
     }
@@ -121,7 +124,7 @@ mod tests {
             assert!(found.iter().all(|crossing| crossing.ribbons == [0, 1]));
             assert!(crossings(&[(along.clone(), 0), (across.clone(), 1)], &[]).is_empty(), "not alike");
             let square = [(-9.0, -9.0), (9.0, -9.0), (9.0, 9.0), (-9.0, 9.0)].map(DVec2::from).to_vec();
-            let node = Node { outline: square, street: 0, rank: 0 };
+            let node = JunctionNode { outline: square, street: 0, rank: 0 };
             assert!(crossings(&[(along, 0), (across, 0)], &[node]).is_empty(), "joined already");
         }
     }

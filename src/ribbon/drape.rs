@@ -15,14 +15,14 @@ use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::ribbon::plan::{PlanMesh, TextureMap};
-use crate::terrain::facets::{Facet, Facets, plane_z};
+use crate::terrain::facets::{SurfaceTriangle, TriangleSurface, plane_z};
 
 /// Pieces smaller than this are rounding left over where edges coincide.
 const SLIVER_M2: f64 = 1e-7;
 
 /// Writes `plan` cut to the displayed triangles of `ground` to `sink`; what lies off the displayed ground is
 /// left out.
-pub fn drape(plan: &PlanMesh, ground: &dyn Facets, sink: &mut impl MeshSink<DrawVertex>) {
+pub fn drape(plan: &PlanMesh, ground: &dyn TriangleSurface, sink: &mut impl MeshSink<DrawVertex>) {
     let (mut piece, mut scratch) = (Vec::new(), Vec::new());
     for corners in plan.corners() {
         let texture = TextureMap::of(corners);
@@ -36,7 +36,12 @@ pub fn drape(plan: &PlanMesh, ground: &dyn Facets, sink: &mut impl MeshSink<Draw
     }
 }
 
-fn write_piece(piece: &[DVec2], facet: &Facet, texture: &TextureMap, sink: &mut impl MeshSink<DrawVertex>) {
+fn write_piece(
+    piece: &[DVec2],
+    facet: &SurfaceTriangle,
+    texture: &TextureMap,
+    sink: &mut impl MeshSink<DrawVertex>,
+) {
     if piece.len() < 3 || polygon::doubled_area(piece) < 2.0 * SLIVER_M2 {
         return;
     }
@@ -57,7 +62,7 @@ fn write_piece(piece: &[DVec2], facet: &Facet, texture: &TextureMap, sink: &mut 
 /// The largest vertical distance in metres between a draped mesh and the displayed ground, at the middle of
 /// every triangle and at every corner above displayed ground: the invariant this room exists for. Infinite
 /// where the middle of a triangle lies off the ground.
-pub fn check_clearance(draped: &DrawMesh, ground: &dyn Facets) -> f64 {
+pub fn check_clearance(draped: &DrawMesh, ground: &dyn TriangleSurface) -> f64 {
     let clearance = |at: Vec3| {
         let displayed = ground.displayed_z(at.truncate().as_dvec2());
         displayed.map(|z| (f64::from(at.z) - z).abs())

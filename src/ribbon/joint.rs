@@ -22,7 +22,7 @@ const ARC_STEP_RAD: f64 = std::f64::consts::PI / 12.0;
 
 /// A vertex of a centreline with its neighbours and the ribbon about it.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::ribbon) struct Bend {
+pub(in crate::ribbon) struct RibbonBend {
     /// The vertex before, the vertex, and the one after; no two in a row at one place.
     pub points: [DVec2; 3],
     /// Half of the ribbon's width at the vertex in metres.
@@ -31,7 +31,7 @@ pub(in crate::ribbon) struct Bend {
 
 /// What two segments end on, as ways from the vertex between them.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::ribbon) enum Joint {
+pub(in crate::ribbon) enum RibbonJoint {
     /// One edge, whose left end lies there and whose right end opposite.
     Shared(DVec2),
     /// An edge each, and a fan between.
@@ -41,33 +41,33 @@ pub(in crate::ribbon) enum Joint {
         /// Of the edge after.
         opening: [DVec2; 2],
         /// What fills the outer side between the two.
-        fan: Fan,
+        fan: JointFan,
     },
 }
 
 /// Triangles from one corner to a rim, as ways from the vertex.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::ribbon) struct Fan {
+pub(in crate::ribbon) struct JointFan {
     /// The inner corner of the bend, or its vertex.
     pub center: DVec2,
     /// The outer side, counter-clockwise.
     pub rim: Vec<DVec2>,
-    outer: Side,
+    outer: RibbonSide,
 }
 
 /// A side of a ribbon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Side {
+enum RibbonSide {
     Left,
     Right,
 }
 
-impl Fan {
+impl JointFan {
     /// How far across the ribbon its rim lies: 0 at the left edge, 1 at the right.
     pub fn rim_u(&self) -> f32 {
         match self.outer {
-            Side::Left => 0.0,
-            Side::Right => 1.0,
+            RibbonSide::Left => 0.0,
+            RibbonSide::Right => 1.0,
         }
     }
 
@@ -77,7 +77,7 @@ impl Fan {
     }
 }
 
-impl Bend {
+impl RibbonBend {
     /// The mitre's left end, as a way from the vertex; `None` where it would be longer than `limit` half widths, or its
     /// inner corner would reach past the middle of either segment, where the next joint's may.
     pub fn mitred(&self, limit: f64) -> Option<DVec2> {
@@ -85,27 +85,28 @@ impl Bend {
     }
 
     /// What the segments end on.
-    pub fn joint(&self, join: Join, limit: f64) -> Joint {
+    pub fn joint(&self, join: Join, limit: f64) -> RibbonJoint {
         let mitred = if join == Join::Mitre { self.mitred(limit) } else { None };
         if let Some(to_left) = mitred.or_else(|| self.straight()) {
-            return Joint::Shared(to_left);
+            return RibbonJoint::Shared(to_left);
         }
         let [before, after] = self.directions().map(|along| along.perp() * self.half_m);
-        let (outer, sign) = if self.turn_rad() >= 0.0 { (Side::Right, -1.0) } else { (Side::Left, 1.0) };
+        let (outer, sign) =
+            if self.turn_rad() >= 0.0 { (RibbonSide::Right, -1.0) } else { (RibbonSide::Left, 1.0) };
         let inner = self.shared().map(|to_left| to_left * -sign);
         let edge = |to_left: DVec2| match (outer, inner) {
-            (Side::Right, Some(inner)) => [inner, -to_left],
-            (Side::Left, Some(inner)) => [to_left, inner],
+            (RibbonSide::Right, Some(inner)) => [inner, -to_left],
+            (RibbonSide::Left, Some(inner)) => [to_left, inner],
             (_, None) => [to_left, -to_left],
         };
         let mut rim = vec![before * sign];
         rim.extend(self.corners(join, limit).into_iter().map(|corner| corner * sign));
         rim.push(after * sign);
-        if outer == Side::Left {
+        if outer == RibbonSide::Left {
             rim.reverse();
         }
-        let fan = Fan { center: inner.unwrap_or_default(), rim, outer };
-        Joint::Split { closing: edge(before), opening: edge(after), fan }
+        let fan = JointFan { center: inner.unwrap_or_default(), rim, outer };
+        RibbonJoint::Split { closing: edge(before), opening: edge(after), fan }
     }
 
     /// The shared edge's left end, whatever its length, where the inner corner fits.

@@ -22,7 +22,7 @@ use rayon::prelude::*;
 
 use crate::geom::convex;
 use crate::geom::polyline::Polyline;
-use crate::ribbon::joint::Bend;
+use crate::ribbon::joint::RibbonBend;
 use crate::ribbon::stroke::{Continuations, StrokeOptions, Widths};
 
 /// Vertices nearer to each other than this are one, in metres: files that mean one point write the same numbers, up to
@@ -46,7 +46,7 @@ pub struct Street<'a> {
     /// How it is stroked.
     pub options: StrokeOptions,
     /// What carries it.
-    pub bed: Bed,
+    pub bed: StreetSupport,
     /// What passes over what.
     pub level: i32,
     /// How good its pavement is: where it meets lesser ones it goes through.
@@ -56,13 +56,20 @@ pub struct Street<'a> {
 impl<'a> Street<'a> {
     /// One of a width that does not change, on the ground, like every other.
     pub fn new(line: &'a Polyline, options: StrokeOptions) -> Self {
-        Self { line, widths: Widths::Constant(options.width_m), options, bed: Bed::Ground, level: 0, rank: 0 }
+        Self {
+            line,
+            widths: Widths::Constant(options.width_m),
+            options,
+            bed: StreetSupport::Ground,
+            level: 0,
+            rank: 0,
+        }
     }
 }
 
 /// What carries a street.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bed {
+pub enum StreetSupport {
     /// The ground.
     Ground,
     /// Something that leaves it: a bridge, a tunnel. Junctions do not reach onto it.
@@ -71,27 +78,27 @@ pub enum Bed {
 
 /// Streets with what they meet.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Network {
+pub struct StreetNetwork {
     /// For each street, what goes on at its ends.
     pub continuations: Vec<Continuations>,
     /// The pairs of ends that go on in one another.
-    pub links: Vec<[End; 2]>,
+    pub links: Vec<[StreetEnd; 2]>,
     /// Where streets do not simply go on.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<JunctionNode>,
 }
 
 /// An end of a street.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct End {
+pub struct StreetEnd {
     /// Which street.
     pub street: usize,
     /// Whether it is its first vertex or its last.
-    pub which: Which,
+    pub which: LineEnd,
 }
 
 /// One of a line's two ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Which {
+pub enum LineEnd {
     /// The first vertex.
     First,
     /// The last.
@@ -100,7 +107,7 @@ pub enum Which {
 
 /// A junction at a vertex that streets share.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Node {
+pub struct JunctionNode {
     /// Convex, counter-clockwise.
     pub outline: Vec<DVec2>,
     /// The widest of its streets on the ground.
@@ -120,12 +127,12 @@ struct Arm {
 }
 
 /// Finds which streets go on in one another, and the nodes of those that do not.
-pub fn connect(streets: &[Street<'_>]) -> Network {
+pub fn connect(streets: &[Street<'_>]) -> StreetNetwork {
     let streets = Streets(streets);
     let mut arms: Vec<((i64, i64), Arm)> =
         (0..streets.0.len()).flat_map(|street| streets.arms(street)).collect();
     arms.par_sort_unstable_by_key(|&(place, arm)| (place, arm.street, arm.vertex, arm.next));
-    let mut network = Network {
+    let mut network = StreetNetwork {
         continuations: vec![Continuations::default(); streets.0.len()],
         links: Vec::new(),
         nodes: Vec::new(),
@@ -147,7 +154,7 @@ fn is_bend(arms: &[Arm]) -> bool {
     arms.iter().all(|arm| arm.street == arms[0].street && arm.vertex == arms[0].vertex)
 }
 
-impl Network {
+impl StreetNetwork {
     /// Joins the arms that meet at one place.
     fn join(&mut self, streets: Streets<'_>, arms: &[Arm]) {
         let best = streets.best(arms);
@@ -177,15 +184,15 @@ impl Network {
             let ends = &mut self.continuations[arm.street];
             let beyond = Some(streets.0[other.street].line.points()[other.next]);
             match arm.end().which {
-                Which::First => ends.before = beyond,
-                Which::Last => ends.after = beyond,
+                LineEnd::First => ends.before = beyond,
+                LineEnd::Last => ends.after = beyond,
             }
         }
         self.links.push([a.end(), b.end()]);
     }
 
     fn add_node(&mut self, streets: Streets<'_>, arms: &[Arm], rank: u8) {
-        let on_ground = arms.iter().filter(|arm| streets.0[arm.street].bed == Bed::Ground);
+        let on_ground = arms.iter().filter(|arm| streets.0[arm.street].bed == StreetSupport::Ground);
         let widest = on_ground.max_by(|a, b| {
             let by_width = streets.half_m(a).total_cmp(&streets.half_m(b));
             by_width.then(b.street.cmp(&a.street))
@@ -193,16 +200,16 @@ impl Network {
         let Some(widest) = widest else { return };
         let outline = streets.hull(arms);
         if !outline.is_empty() {
-            self.nodes.push(Node { outline, street: widest.street, rank });
+            self.nodes.push(JunctionNode { outline, street: widest.street, rank });
         }
     }
 }
 
 impl Arm {
     /// The end it leaves; only for arms that do not pass.
-    fn end(&self) -> End {
-        let which = if self.vertex == 0 { Which::First } else { Which::Last };
-        End { street: self.street, which }
+    fn end(&self) -> StreetEnd {
+        let which = if self.vertex == 0 { LineEnd::First } else { LineEnd::Last };
+        StreetEnd { street: self.street, which }
     }
 }
 
@@ -241,7 +248,8 @@ impl Streets<'_> {
                 passing.iter().copied().filter(same).chain(ends.extract_if(.., |arm| same(arm))).collect()
             })
             .collect();
-        let carrying = |group: &&mut Vec<Arm>| group.iter().any(|arm| self.0[arm.street].bed == Bed::Ground);
+        let carrying =
+            |group: &&mut Vec<Arm>| group.iter().any(|arm| self.0[arm.street].bed == StreetSupport::Ground);
         match groups.iter_mut().find(carrying) {
             Some(group) => group.append(&mut ends),
             None => groups.push(ends),
@@ -275,7 +283,7 @@ impl Streets<'_> {
         self.is_end(&a)
             && self.is_end(&b)
             && (half_m - self.half_m(&b)).abs() < SAME_WIDTH_M
-            && Bend { points, half_m }.mitred(limit).is_some()
+            && RibbonBend { points, half_m }.mitred(limit).is_some()
     }
 
     /// The junction of several arms.
@@ -283,19 +291,19 @@ impl Streets<'_> {
         let points = |arm: &Arm| self.0[arm.street].line.points();
         let at = points(&arms[0])[arms[0].vertex];
         let way = |arm: &Arm| points(arm)[arm.next] - at;
-        let mut around: Vec<Spoke> = arms
+        let mut around: Vec<HullArm> = arms
             .iter()
-            .map(|arm| Spoke {
+            .map(|arm| HullArm {
                 along: way(arm).normalize_or_zero(),
                 half_m: self.half_m(arm),
                 longest_m: match self.0[arm.street].bed {
                     // An arm shorter than the junction is the junction's whole.
-                    Bed::Ground => way(arm).length(),
-                    Bed::Structure => 0.0,
+                    StreetSupport::Ground => way(arm).length(),
+                    StreetSupport::Structure => 0.0,
                 },
             })
             .collect();
-        let turn = |spoke: &Spoke| libm::atan2(spoke.along.y, spoke.along.x);
+        let turn = |spoke: &HullArm| libm::atan2(spoke.along.y, spoke.along.x);
         around.sort_by(|a, b| turn(a).total_cmp(&turn(b)));
         let widest = around.iter().map(|spoke| spoke.half_m).fold(0.0, f64::max);
         let mut corners = Vec::with_capacity(2 * around.len());
@@ -312,13 +320,13 @@ impl Streets<'_> {
 }
 
 /// An arm as the hull sees it.
-struct Spoke {
+struct HullArm {
     along: DVec2,
     half_m: f64,
     longest_m: f64,
 }
 
-impl Spoke {
+impl HullArm {
     /// How far along it its kerb meets that of a neighbour; 0 where they part. Kerbs of unequal arms that are nearly
     /// one line meet far away, where neither is any more: no further than the wider one's half.
     fn kerbs_meet(&self, other: &Self) -> f64 {
@@ -346,11 +354,11 @@ mod tests {
         Street::new(line, StrokeOptions { width_m, ..StrokeOptions::default() })
     }
 
-    fn network(lines: &[Polyline], widths: &[f64]) -> Network {
+    fn network(lines: &[Polyline], widths: &[f64]) -> StreetNetwork {
         connect(&lines.iter().zip(widths).map(|(line, &width_m)| street(line, width_m)).collect::<Vec<_>>())
     }
 
-    fn area(node: &Node) -> f64 {
+    fn area(node: &JunctionNode) -> f64 {
         polygon::doubled_area(&node.outline) / 2.0
     }
 
@@ -364,7 +372,7 @@ mod tests {
             Continuations { before: None, after: Some(DVec2::new(100.0, 20.0)) }
         );
         assert_eq!(joined.continuations[1].after, Some(DVec2::ZERO));
-        assert_eq!(joined.links, [[0, 1].map(|street| End { street, which: Which::Last })]);
+        assert_eq!(joined.links, [[0, 1].map(|street| StreetEnd { street, which: LineEnd::Last })]);
         let mut area = 0.0;
         for (line, beyond) in lines.iter().zip(&joined.continuations) {
             let mut plan = PlanMesh::default();
@@ -443,7 +451,7 @@ mod tests {
             line(&[(40.0, -60.0), (40.0, 5.0), (40.0, 60.0)]),
         ];
         let mut streets: Vec<Street<'_>> = lines.iter().map(|line| street(line, 6.0)).collect();
-        streets[1] = Street { bed: Bed::Structure, level: 1, ..streets[1] };
+        streets[1] = Street { bed: StreetSupport::Structure, level: 1, ..streets[1] };
         let joined = connect(&streets);
         assert_eq!(joined.continuations[0].after, Some(DVec2::new(40.0, 5.0)));
         assert_eq!(joined.continuations[1].before, Some(DVec2::X * -50.0));
@@ -458,7 +466,7 @@ mod tests {
             line(&[(0.0, 0.0), (80.0, 0.0)]),
         ];
         let mut streets: Vec<Street<'_>> = lines.iter().map(|line| street(line, 6.0)).collect();
-        streets[2] = Street { bed: Bed::Structure, level: 1, ..streets[2] };
+        streets[2] = Street { bed: StreetSupport::Structure, level: 1, ..streets[2] };
         let joined = connect(&streets);
         assert_eq!(joined.nodes.len(), 1);
         let farthest = polygon::bounds(&joined.nodes[0].outline).max.x;

@@ -22,7 +22,7 @@ use crate::geom::rect::Rect;
 use crate::mesh::sink::MeshSink;
 use crate::ribbon::drape::{check_clearance, drape};
 use crate::ribbon::plan::{PlanMesh, PlanVertex, TextureMap};
-use crate::terrain::facets::Facets;
+use crate::terrain::facets::TriangleSurface;
 
 /// Parts smaller than this are rounding, in square metres.
 const SLIVER_M2: f64 = 1e-7;
@@ -70,12 +70,12 @@ impl Borders {
 /// What lies on the ground, by patch.
 #[derive(Clone, Debug)]
 pub struct Drapes {
-    patches: Vec<Patch>,
+    patches: Vec<PatchDrape>,
 }
 
 /// What lies in one patch.
 #[derive(Clone, Debug, Default)]
-struct Patch {
+struct PatchDrape {
     /// The parts of ribbons, by their places among the plans given.
     parts: Vec<(usize, PlanMesh)>,
     /// Each part cut to the ground as it was displayed when the patch was last cut.
@@ -86,7 +86,7 @@ impl Drapes {
     /// Divides `plans` along the borders; nothing is cut to the ground yet. Patches are numbered row by row from the
     /// south-west.
     pub fn new<'a>(borders: &Borders, plans: impl IntoIterator<Item = &'a PlanMesh>) -> Self {
-        let mut patches = vec![Patch::default(); borders.patch_count()];
+        let mut patches = vec![PatchDrape::default(); borders.patch_count()];
         for (ribbon, plan) in plans.into_iter().enumerate() {
             divide((ribbon, plan), borders, &mut patches);
         }
@@ -98,7 +98,7 @@ impl Drapes {
     ///
     /// # Panics
     /// Where a number is not that of a patch.
-    pub fn recut(&mut self, patches: &[usize], ground: &dyn Facets) {
+    pub fn recut(&mut self, patches: &[usize], ground: &dyn TriangleSurface) {
         let cut: Vec<Vec<DrawMesh>> = patches
             .par_iter()
             .map(|&patch| {
@@ -120,7 +120,7 @@ impl Drapes {
     /// # Panics
     /// Where the number is not that of a patch.
     pub fn in_patch(&self, patch: usize) -> impl Iterator<Item = (usize, &DrawMesh)> {
-        let Patch { parts, cut } = &self.patches[patch];
+        let PatchDrape { parts, cut } = &self.patches[patch];
         parts.iter().zip(cut).map(|(&(ribbon, _), mesh)| (ribbon, mesh))
     }
 
@@ -131,13 +131,13 @@ impl Drapes {
 
     /// The largest clearance in metres between what was cut and what is displayed now: 0 but for rounding where every
     /// patch that changed was cut again. See [`check_clearance`].
-    pub fn check(&self, ground: &dyn Facets) -> f64 {
+    pub fn check(&self, ground: &dyn TriangleSurface) -> f64 {
         let cut: Vec<&DrawMesh> = self.patches.iter().flat_map(|patch| &patch.cut).collect();
         cut.par_iter().map(|mesh| check_clearance(mesh, ground)).reduce(|| 0.0, f64::max)
     }
 }
 
-impl Patch {
+impl PatchDrape {
     /// The part that a ribbon has here; ribbons are handed in one after the other.
     fn part(&mut self, ribbon: usize) -> &mut PlanMesh {
         if self.parts.last().is_none_or(|(last, _)| *last != ribbon) {
@@ -148,7 +148,7 @@ impl Patch {
 }
 
 /// Adds each triangle of a plan to the parts it has in the patches it meets.
-fn divide((ribbon, plan): (usize, &PlanMesh), borders: &Borders, patches: &mut [Patch]) {
+fn divide((ribbon, plan): (usize, &PlanMesh), borders: &Borders, patches: &mut [PatchDrape]) {
     let (mut piece, mut scratch) = (Vec::new(), Vec::new());
     for corners in plan.corners() {
         let texture = TextureMap::of(corners);

@@ -9,7 +9,7 @@ use glam::{DVec2, Vec2};
 use crate::description::words::Join;
 use crate::geom::polyline::Polyline;
 use crate::mesh::sink::{MeshSink, VertexId};
-use crate::ribbon::joint::{Bend, Fan, Joint};
+use crate::ribbon::joint::{JointFan, RibbonBend, RibbonJoint};
 use crate::ribbon::plan::PlanVertex;
 
 /// How much wider a taper may grow from one cross-section to the next. A texture is straight on each of a quad's two
@@ -92,7 +92,7 @@ impl Default for Stations {
 
 /// A ribbon's way: what its options do not say.
 #[derive(Clone, Copy, Debug)]
-pub struct Course<'a> {
+pub struct StrokePath<'a> {
     /// The centreline.
     pub line: &'a Polyline,
     /// How wide it is; instead of the options' width.
@@ -113,14 +113,14 @@ pub fn stroke(
     sink: &mut impl MeshSink<PlanVertex>,
 ) {
     let widths = Widths::Constant(options.width_m);
-    stroke_course(&Course { line, widths, beyond, stations: Stations::default() }, options, sink);
+    stroke_course(&StrokePath { line, widths, beyond, stations: Stations::default() }, options, sink);
 }
 
 /// Writes the ribbon along `course` to `sink`, as [`stroke`] does, with a width of its own at every vertex.
 ///
 /// # Panics
 /// Where there are fewer widths than vertices.
-pub fn stroke_course(course: &Course<'_>, options: &StrokeOptions, sink: &mut impl MeshSink<PlanVertex>) {
+pub fn stroke_course(course: &StrokePath<'_>, options: &StrokeOptions, sink: &mut impl MeshSink<PlanVertex>) {
     let last = course.line.points().len() - 1;
     let mut start = course.end(0, options, sink);
     for index in 1..=last {
@@ -137,20 +137,20 @@ pub fn stroke_course(course: &Course<'_>, options: &StrokeOptions, sink: &mut im
 
 /// An edge across the ribbon, written: its left and its right end.
 #[derive(Clone, Copy)]
-struct Edge {
+struct RibbonEdge {
     corners: [PlanVertex; 2],
     ids: [VertexId; 2],
 }
 
-impl Edge {
+impl RibbonEdge {
     fn write(corners: [PlanVertex; 2], sink: &mut impl MeshSink<PlanVertex>) -> Self {
         Self { corners, ids: corners.map(|corner| sink.vertex(corner)) }
     }
 }
 
-impl Course<'_> {
+impl StrokePath<'_> {
     /// The edge at the line's first or last vertex: shared with what goes on there, else square.
-    fn end(&self, index: usize, options: &StrokeOptions, sink: &mut impl MeshSink<PlanVertex>) -> Edge {
+    fn end(&self, index: usize, options: &StrokeOptions, sink: &mut impl MeshSink<PlanVertex>) -> RibbonEdge {
         let points = self.line.points();
         let half_m = self.widths.at(index) / 2.0;
         let around = if index == 0 {
@@ -158,7 +158,7 @@ impl Course<'_> {
         } else {
             self.beyond.after.map(|after| [points[index - 1], points[index], after])
         };
-        let shared = around.and_then(|points| Bend { points, half_m }.mitred(options.mitre_limit));
+        let shared = around.and_then(|points| RibbonBend { points, half_m }.mitred(options.mitre_limit));
         let segment = index.saturating_sub(1);
         let square = (points[segment + 1] - points[segment]).normalize_or_zero().perp() * half_m;
         let to_left = shared.unwrap_or(square);
@@ -171,16 +171,16 @@ impl Course<'_> {
         index: usize,
         options: &StrokeOptions,
         sink: &mut impl MeshSink<PlanVertex>,
-    ) -> (Edge, Edge) {
+    ) -> (RibbonEdge, RibbonEdge) {
         let points = self.line.points();
         let around = [points[index - 1], points[index], points[index + 1]];
-        let bend = Bend { points: around, half_m: self.widths.at(index) / 2.0 };
+        let bend = RibbonBend { points: around, half_m: self.widths.at(index) / 2.0 };
         match bend.joint(options.join, options.mitre_limit) {
-            Joint::Shared(to_left) => {
+            RibbonJoint::Shared(to_left) => {
                 let edge = self.edge(index, [to_left, -to_left], options, sink);
                 (edge, edge)
             }
-            Joint::Split { closing, opening, fan } => {
+            RibbonJoint::Split { closing, opening, fan } => {
                 self.write_fan(index, &fan, options, sink);
                 let [closing, opening] = [closing, opening].map(|ways| self.edge(index, ways, options, sink));
                 (closing, opening)
@@ -194,10 +194,10 @@ impl Course<'_> {
         ways: [DVec2; 2],
         options: &StrokeOptions,
         sink: &mut impl MeshSink<PlanVertex>,
-    ) -> Edge {
+    ) -> RibbonEdge {
         let (at, v) = (self.line.points()[index], self.v(index, options));
         let corner = |side: usize| PlanVertex { at: at + ways[side], uv: Vec2::new(side as f32, v) };
-        Edge::write([corner(0), corner(1)], sink)
+        RibbonEdge::write([corner(0), corner(1)], sink)
     }
 
     fn v(&self, index: usize, options: &StrokeOptions) -> f32 {
@@ -208,7 +208,7 @@ impl Course<'_> {
     fn write_fan(
         &self,
         index: usize,
-        fan: &Fan,
+        fan: &JointFan,
         options: &StrokeOptions,
         sink: &mut impl MeshSink<PlanVertex>,
     ) {
@@ -225,14 +225,17 @@ impl Course<'_> {
     }
 
     /// Writes the quad of a segment, in as many pieces as its taper needs.
-    fn segment(&self, segment: usize, [from, to]: [Edge; 2], sink: &mut impl MeshSink<PlanVertex>) {
+    fn segment(&self, segment: usize, [from, to]: [RibbonEdge; 2], sink: &mut impl MeshSink<PlanVertex>) {
         let steps = taper_steps(self.widths.at(segment), self.widths.at(segment + 1));
         let mut start = from;
         for step in 1..=steps {
             let end = if step == steps {
                 to
             } else {
-                Edge::write(between([from.corners, to.corners], f64::from(step) / f64::from(steps)), sink)
+                RibbonEdge::write(
+                    between([from.corners, to.corners], f64::from(step) / f64::from(steps)),
+                    sink,
+                )
             };
             write_quad([start, end], sink);
             start = end;
@@ -253,8 +256,8 @@ fn between([from, to]: [[PlanVertex; 2]; 2], part: f64) -> [PlanVertex; 2] {
     [corner(0), corner(1)]
 }
 
-fn write_quad([from, to]: [Edge; 2], sink: &mut impl MeshSink<PlanVertex>) {
-    let corner = |edge: &Edge, side: usize| (edge.ids[side], edge.corners[side]);
+fn write_quad([from, to]: [RibbonEdge; 2], sink: &mut impl MeshSink<PlanVertex>) {
+    let corner = |edge: &RibbonEdge, side: usize| (edge.ids[side], edge.corners[side]);
     let (start_left, end_right) = (corner(&from, 0), corner(&to, 1));
     write_triangle([start_left, corner(&from, 1), end_right], sink);
     write_triangle([start_left, end_right, corner(&to, 0)], sink);
@@ -352,7 +355,7 @@ mod tests {
     #[test]
     fn a_taper_is_a_trapezium_with_its_edges_straight() {
         let line = Polyline::new([DVec2::ZERO, DVec2::X * 100.0], 0.0).expect("a line");
-        let course = Course {
+        let course = StrokePath {
             line: &line,
             widths: Widths::PerVertex(&[4.0, 12.0]),
             beyond: Continuations::default(),
@@ -371,8 +374,12 @@ mod tests {
     fn a_texture_goes_on_where_its_stations_say() {
         let line = Polyline::new([DVec2::ZERO, DVec2::X * 24.0], 0.0).expect("a line");
         let stations = Stations { first_m: 36.0, per_m: -1.0 };
-        let course =
-            Course { line: &line, widths: Widths::Constant(6.0), beyond: Continuations::default(), stations };
+        let course = StrokePath {
+            line: &line,
+            widths: Widths::Constant(6.0),
+            beyond: Continuations::default(),
+            stations,
+        };
         let mut mesh = PlanMesh::default();
         stroke_course(&course, &StrokeOptions::default(), &mut mesh);
         let v = |x: f64| mesh.vertices.iter().find(|vertex| vertex.at.x == x).map(|vertex| vertex.uv.y);

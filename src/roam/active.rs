@@ -1,25 +1,25 @@
 //! The state of a mesh: one bit per vertex.
 
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 
 /// Which vertices are active. Patch corners always are.
 ///
 /// Every operation keeps the bits closed under parents, so that whatever is emitted from them is conforming.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ActiveSet {
-    layout: Layout,
+    layout: PatchLayout,
     bits: Vec<u64>,
 }
 
 impl ActiveSet {
     /// No vertex but the patch corners.
-    pub fn new(layout: Layout) -> Self {
+    pub fn new(layout: PatchLayout) -> Self {
         Self { layout, bits: vec![0; layout.vertex_count().div_ceil(64)] }
     }
 
     /// The layout whose vertices it holds.
-    pub fn layout(&self) -> &Layout {
+    pub fn layout(&self) -> &PatchLayout {
         &self.layout
     }
 
@@ -135,7 +135,7 @@ mod tests {
         fn any_activations_leave_parents_active(
             vertices in proptest::collection::vec((0..65i32, 0..49i32), 0..40),
         ) {
-            let mut active = ActiveSet::new(Layout::new(60, 40, 16).expect("sound"));
+            let mut active = ActiveSet::new(PatchLayout::new(60, 40, 16).expect("sound"));
             for (x, y) in vertices {
                 active.activate(Vertex::new(x, y));
                 prop_assert!(!active.layout().contains(Vertex::new(x, y)) || active.is_active(Vertex::new(x, y)));
@@ -148,7 +148,7 @@ mod tests {
             vertices in proptest::collection::vec((0..65i32, 0..49i32), 0..40),
             x in 0..65i32, y in 0..49i32,
         ) {
-            let mut before = ActiveSet::new(Layout::new(60, 40, 16).expect("sound"));
+            let mut before = ActiveSet::new(PatchLayout::new(60, 40, 16).expect("sound"));
             for (x, y) in vertices {
                 before.activate(Vertex::new(x, y));
             }
@@ -173,7 +173,7 @@ mod tests {
             vertices in proptest::collection::vec((0..65i32, 0..49i32), 0..40),
             gone in proptest::collection::vec((-2..67i32, -2..51i32), 0..10),
         ) {
-            let mut active = ActiveSet::new(Layout::new(60, 40, 16).expect("sound"));
+            let mut active = ActiveSet::new(PatchLayout::new(60, 40, 16).expect("sound"));
             vertices.iter().for_each(|&(x, y)| active.activate(Vertex::new(x, y)));
             for (x, y) in gone {
                 active.deactivate(Vertex::new(x, y));

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
-use crate::roam::layout::Layout;
+use crate::roam::ground::PatchedGround;
+use crate::roam::layout::PatchLayout;
 use crate::roam::spheres::SphereMap;
 
 /// The vertices of one patch, (patch + 1)² of them, row by row from the south-west; those on a border are the same
@@ -45,7 +45,7 @@ pub struct RootSphere {
 /// Where patches come from: the memory, or a file larger than it.
 pub trait BlockSource {
     /// The patches.
-    fn layout(&self) -> &Layout;
+    fn layout(&self) -> &PatchLayout;
 
     /// The sphere in the middle of the patch with south-west corner `corner`, known without reading the patch.
     fn root(&self, corner: Vertex) -> RootSphere;
@@ -61,13 +61,13 @@ pub trait BlockSource {
 #[derive(Clone, Copy, Debug)]
 pub struct WholeGround<'a> {
     /// The heights.
-    pub ground: Ground<'a>,
+    pub ground: PatchedGround<'a>,
     /// The spheres of its vertices.
     pub spheres: &'a SphereMap,
 }
 
 impl BlockSource for WholeGround<'_> {
-    fn layout(&self) -> &Layout {
+    fn layout(&self) -> &PatchLayout {
         self.ground.layout
     }
 
@@ -85,7 +85,7 @@ impl BlockSource for WholeGround<'_> {
 
 impl PatchBlock {
     /// The patch with south-west corner `corner` of a ground in memory.
-    pub fn cut(ground: Ground<'_>, spheres: &SphereMap, corner: Vertex) -> Self {
+    pub fn cut(ground: PatchedGround<'_>, spheres: &SphereMap, corner: Vertex) -> Self {
         let side = ground.layout.patch() + 1;
         let plan = [
             (0..side).map(|x| ground.plan(corner.moved(x, 0)).x).collect(),
@@ -103,7 +103,7 @@ impl PatchBlock {
     }
 
     /// Appends the vertices from `first` to the end of the row in its patch.
-    fn append_row(&mut self, ground: Ground<'_>, spheres: &SphereMap, first: Vertex) {
+    fn append_row(&mut self, ground: PatchedGround<'_>, spheres: &SphereMap, first: Vertex) {
         let side = ground.layout.patch() as usize + 1;
         let start = ground.layout.index(first);
         self.radii.extend_from_slice(&spheres.values()[start..start + side]);

@@ -14,9 +14,9 @@ use crate::roam::active::ActiveSet;
 use crate::roam::bintree::Triangle;
 use crate::roam::errors::exact::{triangle_error, triangles_split_at};
 use crate::roam::errors::scan::PostTriangle;
-use crate::roam::errors::survey::Survey;
+use crate::roam::errors::survey::TileSurvey;
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 use crate::terrain::lattice::Lattice;
 
 /// The fewest active vertices that leave no triangle off by more than `tolerance_m` at any post it covers, no
@@ -24,12 +24,12 @@ use crate::terrain::lattice::Lattice;
 ///
 /// The tolerance is in metres without exaggeration; distances are measured within one part in a million of the
 /// relief under a triangle. Negative and NaN tolerances keep everything.
-pub fn least_closure(lattice: &Lattice, layout: &Layout, tolerance_m: f32) -> ActiveSet {
+pub fn least_closure(lattice: &Lattice, layout: &PatchLayout, tolerance_m: f32) -> ActiveSet {
     let mut growth = Growth {
         lattice,
         layout,
         tolerance_m: if tolerance_m.is_nan() { -1.0 } else { tolerance_m },
-        survey: Survey::of(lattice),
+        survey: TileSurvey::of(lattice),
         active: ActiveSet::new(*layout),
         waiting: layout.patches().flat_map(|corner| Triangle::roots(corner, layout.patch())).collect(),
     };
@@ -44,8 +44,8 @@ pub fn least_closure(lattice: &Lattice, layout: &Layout, tolerance_m: f32) -> Ac
 /// Whether a triangle is off by more than `tolerance_m` at any post it covers; `survey` is the lattice's.
 fn is_off(
     lattice: &Lattice,
-    layout: &Layout,
-    survey: &Survey,
+    layout: &PatchLayout,
+    survey: &TileSurvey,
     triangle: &Triangle,
     tolerance_m: f32,
 ) -> bool {
@@ -61,9 +61,9 @@ fn is_off(
 
 struct Growth<'a> {
     lattice: &'a Lattice,
-    layout: &'a Layout,
+    layout: &'a PatchLayout,
     tolerance_m: f32,
-    survey: Survey,
+    survey: TileSurvey,
     active: ActiveSet,
     /// Triangles of the mesh that have not been looked at.
     waiting: Vec<Triangle>,
@@ -115,7 +115,7 @@ mod tests {
     }
 
     /// The mesh that errors raised to their children give.
-    fn saturated(map: &ErrorMap, layout: &Layout, tolerance_m: f32) -> ActiveSet {
+    fn saturated(map: &ErrorMap, layout: &PatchLayout, tolerance_m: f32) -> ActiveSet {
         let mut active = ActiveSet::new(*layout);
         for (index, _) in map.values().iter().enumerate().filter(|&(_, &error)| error > tolerance_m) {
             let vertex = Vertex::new((index % layout.columns()) as i32, (index / layout.columns()) as i32);
@@ -127,7 +127,7 @@ mod tests {
     }
 
     /// The same by whole re-scans until nothing changes, in the opposite order.
-    fn plain_closure(lattice: &Lattice, layout: &Layout, tolerance_m: f32) -> ActiveSet {
+    fn plain_closure(lattice: &Lattice, layout: &PatchLayout, tolerance_m: f32) -> ActiveSet {
         let mut active = ActiveSet::new(*layout);
         loop {
             let before = active.count();
@@ -161,7 +161,7 @@ mod tests {
             columns in 5..70u32, rows in 5..70u32, seed in 0..1000u32, holes in 0..3u32, tolerance in 0.5..30f32,
         ) {
             let lattice = rough(columns, rows, seed, holes);
-            let layout = Layout::new(columns, rows, 16).expect("sound");
+            let layout = PatchLayout::new(columns, rows, 16).expect("sound");
             let least = least_closure(&lattice, &layout, tolerance);
             prop_assert_eq!(least.check(), Ok(()));
             for triangle in leaves(&least).iter().filter(|triangle| !triangle.is_finest()) {
@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn flat_ground_is_two_triangles_a_patch_and_no_tolerance_keeps_every_rough_post() {
-        let layout = Layout::new(33, 33, 32).expect("sound");
+        let layout = PatchLayout::new(33, 33, 32).expect("sound");
         let flat = Lattice::new(DVec2::ZERO, DVec2::ONE, 33, vec![812.3; 33 * 33]).expect("sound");
         assert_eq!(least_closure(&flat, &layout, 0.0).count(), 0);
         let every = least_closure(&rough(33, 33, 5, 0), &layout, -1.0);
@@ -189,7 +189,7 @@ mod tests {
     fn pinned_posts_are_kept_exact() {
         let mut lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 33, vec![1.0; 33 * 33]).expect("sound");
         lattice.pin(crate::terrain::lattice::Post { column: 11, row: 7 }, 1.5);
-        let least = least_closure(&lattice, &Layout::new(33, 33, 32).expect("sound"), 5.0);
+        let least = least_closure(&lattice, &PatchLayout::new(33, 33, 32).expect("sound"), 5.0);
         assert!(least.is_active(Vertex::new(11, 7)));
     }
 }

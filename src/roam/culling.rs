@@ -11,10 +11,10 @@
 use glam::Vec3;
 
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
+use crate::roam::ground::PatchedGround;
 use crate::view::camera::Camera;
 use crate::view::frustum::Frustum;
-use crate::view::wedge::Wedge;
+use crate::view::wedge::GroundWedge;
 
 /// What patches are culled against.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,7 +22,7 @@ pub enum Culling {
     /// Nothing: every patch with data is listed.
     Nothing,
     /// The ground-plane wedge of 000: left, right and far, blind to heights.
-    Wedge(Wedge),
+    Wedge(GroundWedge),
     /// All five planes, against boxes with height.
     Frustum(Frustum),
 }
@@ -30,7 +30,7 @@ pub enum Culling {
 impl Culling {
     /// The wedge of a camera.
     pub fn wedge(camera: &Camera) -> Self {
-        Self::Wedge(Wedge::of(camera))
+        Self::Wedge(GroundWedge::of(camera))
     }
 
     /// The frustum of a camera.
@@ -41,7 +41,7 @@ impl Culling {
     fn all(&self) -> u8 {
         match self {
             Self::Nothing => 0,
-            Self::Wedge(_) => Wedge::ALL,
+            Self::Wedge(_) => GroundWedge::ALL,
             Self::Frustum(_) => Frustum::ALL,
         }
     }
@@ -59,12 +59,12 @@ impl Culling {
 /// The lowest and highest drawn Z of each patch and of squares of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PatchHeights {
-    levels: Vec<Level>,
+    levels: Vec<RangeLevel>,
 }
 
 /// The ranges of all squares of one size, row by row from the south-west.
 #[derive(Clone, Debug, PartialEq)]
-struct Level {
+struct RangeLevel {
     columns: usize,
     ranges: Vec<(f32, f32)>,
 }
@@ -74,18 +74,18 @@ pub(in crate::roam) const NO_DATA: (f32, f32) = (f32::INFINITY, f32::NEG_INFINIT
 
 impl PatchHeights {
     /// The ranges of the drawn ground; patches without data get an empty range.
-    pub fn new(ground: Ground<'_>) -> Self {
+    pub fn new(ground: PatchedGround<'_>) -> Self {
         let (columns, _) = ground.layout.patch_grid();
         let ranges = ground.layout.patches().map(|corner| range(ground, corner)).collect();
-        let mut levels = vec![Level { columns, ranges }];
-        while let Some(coarser) = levels.last().and_then(Level::halved) {
+        let mut levels = vec![RangeLevel { columns, ranges }];
+        while let Some(coarser) = levels.last().and_then(RangeLevel::halved) {
             levels.push(coarser);
         }
         Self { levels }
     }
 
     /// Measures the patch with south-west corner `corner` again, after an edit.
-    pub fn renew(&mut self, ground: Ground<'_>, corner: Vertex) {
+    pub fn renew(&mut self, ground: PatchedGround<'_>, corner: Vertex) {
         let patch = ground.layout.patch();
         self.put((corner.x / patch) as usize, (corner.y / patch) as usize, range(ground, corner));
     }
@@ -116,7 +116,7 @@ impl PatchHeights {
     }
 
     /// The box of the patch with south-west corner `corner`, in world space; `None` without data.
-    pub fn bounds(&self, ground: Ground<'_>, corner: Vertex) -> Option<(Vec3, Vec3)> {
+    pub fn bounds(&self, ground: PatchedGround<'_>, corner: Vertex) -> Option<(Vec3, Vec3)> {
         let (low, high) = self.range(ground.layout.patch_index(corner));
         let far = corner.moved(ground.layout.patch(), ground.layout.patch());
         (low <= high).then(|| (ground.plan(corner).extend(low), ground.plan(far).extend(high)))
@@ -124,7 +124,7 @@ impl PatchHeights {
 
     /// The box of the two triangles that `vertex` splits, as high and as low as the patches they lie in; `None`
     /// without data.
-    pub fn diamond(&self, ground: Ground<'_>, vertex: Vertex) -> Option<(Vec3, Vec3)> {
+    pub fn diamond(&self, ground: PatchedGround<'_>, vertex: Vertex) -> Option<(Vec3, Vec3)> {
         let (min, max) = ground.diamond(vertex);
         let patch = ground.layout.patch();
         let before = |at: i32| (at - 1).max(0) / patch;
@@ -137,7 +137,7 @@ impl PatchHeights {
     }
 }
 
-impl Level {
+impl RangeLevel {
     fn rows(&self) -> usize {
         self.ranges.len() / self.columns
     }
@@ -164,7 +164,7 @@ pub(in crate::roam) fn joined(a: (f32, f32), b: (f32, f32)) -> (f32, f32) {
     (a.0.min(b.0), a.1.max(b.1))
 }
 
-fn range(ground: Ground<'_>, corner: Vertex) -> (f32, f32) {
+fn range(ground: PatchedGround<'_>, corner: Vertex) -> (f32, f32) {
     let (lattice, layout) = (ground.lattice, ground.layout);
     let (first, last) = (layout.post(corner), layout.post(corner.moved(layout.patch(), layout.patch())));
     (first.row..=last.row)
@@ -196,23 +196,23 @@ pub(in crate::roam) fn drawn_range(heights: &[f32], exaggeration: f32) -> (f32, 
 }
 
 /// The south-west corners of the patches that hold data and may be seen, row by row.
-pub fn patches_in_view(ground: Ground<'_>, heights: &PatchHeights, frustum: &Frustum) -> Vec<Vertex> {
+pub fn patches_in_view(ground: PatchedGround<'_>, heights: &PatchHeights, frustum: &Frustum) -> Vec<Vertex> {
     let mut found = Vec::new();
     cull(ground, heights, &Culling::Frustum(*frustum), &mut found);
     found
 }
 
 /// Fills `found` with the south-west corners of the patches that hold data and are not culled, row by row.
-pub fn cull(ground: Ground<'_>, heights: &PatchHeights, culling: &Culling, found: &mut Vec<Vertex>) {
+pub fn cull(ground: PatchedGround<'_>, heights: &PatchHeights, culling: &Culling, found: &mut Vec<Vertex>) {
     gather(ground, heights, culling, found);
     found.sort_unstable_by_key(|corner| (corner.y, corner.x));
 }
 
 /// As [`cull`], in the order in which the squares are visited: row by row within every square.
-fn gather(ground: Ground<'_>, heights: &PatchHeights, culling: &Culling, found: &mut Vec<Vertex>) {
+fn gather(ground: PatchedGround<'_>, heights: &PatchHeights, culling: &Culling, found: &mut Vec<Vertex>) {
     found.clear();
     let top = heights.levels.len() - 1;
-    visit(ground, heights, culling, Square { level: top, x: 0, y: 0 }, culling.all(), found);
+    visit(ground, heights, culling, PatchSquare { level: top, x: 0, y: 0 }, culling.all(), found);
 }
 
 /// The patches in view, culled again only when the view is another.
@@ -225,7 +225,12 @@ pub struct InView {
 impl InView {
     /// The south-west corners of the patches that hold data and are not culled, by squares: neighbours in the list
     /// are neighbours on the ground.
-    pub fn update(&mut self, ground: Ground<'_>, heights: &PatchHeights, culling: Culling) -> &[Vertex] {
+    pub fn update(
+        &mut self,
+        ground: PatchedGround<'_>,
+        heights: &PatchHeights,
+        culling: Culling,
+    ) -> &[Vertex] {
         if self.culling != Some(culling) {
             gather(ground, heights, &culling, &mut self.patches);
             self.culling = Some(culling);
@@ -241,17 +246,17 @@ impl InView {
 
 /// A square of 2^level patches a side.
 #[derive(Clone, Copy)]
-struct Square {
+struct PatchSquare {
     level: usize,
     x: usize,
     y: usize,
 }
 
 fn visit(
-    ground: Ground<'_>,
+    ground: PatchedGround<'_>,
     heights: &PatchHeights,
     culling: &Culling,
-    square: Square,
+    square: PatchSquare,
     among: u8,
     found: &mut Vec<Vertex>,
 ) {
@@ -275,7 +280,7 @@ fn visit(
         return;
     }
     for (x, y) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-        let quarter = Square { level: square.level - 1, x: 2 * square.x + x, y: 2 * square.y + y };
+        let quarter = PatchSquare { level: square.level - 1, x: 2 * square.x + x, y: 2 * square.y + y };
         visit(ground, heights, culling, quarter, among, found);
     }
 }
@@ -283,12 +288,12 @@ fn visit(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::roam::layout::Layout;
+    use crate::roam::layout::PatchLayout;
     use crate::terrain::lattice::{Lattice, Post};
     use glam::{DVec2, Vec2};
     use proptest::prelude::*;
 
-    fn plain(ground: Ground<'_>, heights: &PatchHeights, frustum: &Frustum) -> Vec<Vertex> {
+    fn plain(ground: PatchedGround<'_>, heights: &PatchHeights, frustum: &Frustum) -> Vec<Vertex> {
         let seen = |&corner: &Vertex| {
             heights.bounds(ground, corner).is_some_and(|(min, max)| frustum.may_see(min, max))
         };
@@ -312,8 +317,8 @@ mod tests {
             far in 20.0..600.0f32,
         ) {
             let lattice = hilly(columns, rows, hole);
-            let layout = Layout::new(columns, rows, 4).expect("sound");
-            let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.5 };
+            let layout = PatchLayout::new(columns, rows, 4).expect("sound");
+            let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.5 };
             let heights = PatchHeights::new(ground);
             let (eye, target) = (Vec3::from(eye), Vec2::from(target).extend(0.0));
             prop_assume!(eye.distance(target) > 1.0);
@@ -324,7 +329,7 @@ mod tests {
             cull(ground, &heights, &Culling::Nothing, &mut all);
             prop_assert_eq!(all.len(), layout.patches().filter(|&at| heights.bounds(ground, at).is_some()).count());
             cull(ground, &heights, &Culling::wedge(&camera), &mut by_wedge);
-            let wedge = Wedge::of(&camera);
+            let wedge = GroundWedge::of(&camera);
             let plain_wedge: Vec<Vertex> = all.into_iter().filter(|&corner| {
                 let far = ground.plan(corner.moved(layout.patch(), layout.patch()));
                 wedge.may_see(ground.plan(corner), far)
@@ -335,11 +340,11 @@ mod tests {
         #[test]
         fn heights_measured_again_equal_those_measured_anew(column in 0u32..40, row in 0u32..50) {
             let mut lattice = hilly(40, 50, 7);
-            let layout = Layout::new(40, 50, 8).expect("sound");
-            let before = Ground { lattice: &lattice.clone(), layout: &layout, exaggeration: 2.0 };
+            let layout = PatchLayout::new(40, 50, 8).expect("sound");
+            let before = PatchedGround { lattice: &lattice.clone(), layout: &layout, exaggeration: 2.0 };
             let mut heights = PatchHeights::new(before);
             lattice.pin(Post { column, row }, 500.0);
-            let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 2.0 };
+            let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 2.0 };
             for corner in layout.patches() {
                 heights.renew(ground, corner);
             }

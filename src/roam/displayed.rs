@@ -9,8 +9,8 @@ use crate::mesh::sink::MeshSink;
 use crate::roam::active::ActiveSet;
 use crate::roam::emit::{bintree, world};
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
-use crate::terrain::facets::{Facet, Facets};
+use crate::roam::ground::PatchedGround;
+use crate::terrain::facets::{SurfaceTriangle, TriangleSurface};
 use crate::terrain::lattice::Lattice;
 
 /// A displayed terrain: the ground and the bits that say how finely it is shown.
@@ -44,8 +44,12 @@ impl DisplayedTerrain {
         bintree::triangles(&self.active, self.patches.iter().copied(), world::placing(self.ground(), sink));
     }
 
-    fn ground(&self) -> Ground<'_> {
-        Ground { lattice: &self.lattice, layout: self.active.layout(), exaggeration: self.exaggeration }
+    fn ground(&self) -> PatchedGround<'_> {
+        PatchedGround {
+            lattice: &self.lattice,
+            layout: self.active.layout(),
+            exaggeration: self.exaggeration,
+        }
     }
 
     fn plan_bounds(&self, corners: [Vertex; 3]) -> Rect {
@@ -65,8 +69,8 @@ impl DisplayedTerrain {
     }
 }
 
-impl Facets for DisplayedTerrain {
-    fn visit_facets(&self, rect: &Rect, visit: &mut dyn FnMut(&Facet)) {
+impl TriangleSurface for DisplayedTerrain {
+    fn visit_facets(&self, rect: &Rect, visit: &mut dyn FnMut(&SurfaceTriangle)) {
         let ground = self.ground();
         for corner in self.patches_meeting(rect) {
             let meets = |corners| self.plan_bounds(corners).meets(rect);
@@ -84,7 +88,7 @@ mod tests {
     use super::*;
     use crate::mesh::check;
     use crate::mesh::trimesh::TriMesh;
-    use crate::roam::layout::Layout;
+    use crate::roam::layout::PatchLayout;
     use glam::DVec2;
     use proptest::prelude::*;
 
@@ -109,7 +113,7 @@ mod tests {
             columns in 2u32..70, rows in 2u32..70,
             vertices in proptest::collection::vec((0..96i32, 0..96i32), 0..60),
         ) {
-            let layout = Layout::new(columns, rows, 16).expect("sound");
+            let layout = PatchLayout::new(columns, rows, 16).expect("sound");
             let mut active = ActiveSet::new(layout);
             vertices.iter().for_each(|&(x, y)| active.activate(Vertex::new(x, y)));
             let lattice = lattice(columns, rows, &[]);
@@ -123,7 +127,7 @@ mod tests {
             vertices in proptest::collection::vec((0..48i32, 0..48i32), 0..30),
             x in 0.0..1.0f64, y in 0.0..1.0f64,
         ) {
-            let layout = Layout::new(41, 37, 16).expect("sound");
+            let layout = PatchLayout::new(41, 37, 16).expect("sound");
             let mut active = ActiveSet::new(layout);
             vertices.iter().for_each(|&(x, y)| active.activate(Vertex::new(x, y)));
             let lattice = lattice(41, 37, &[]);
@@ -140,7 +144,7 @@ mod tests {
 
     #[test]
     fn fully_refined_ground_leaves_out_just_the_triangles_at_a_hole() {
-        let layout = Layout::new(17, 17, 16).expect("sound");
+        let layout = PatchLayout::new(17, 17, 16).expect("sound");
         let lattice = lattice(17, 17, &[8 * 17 + 8]);
         let errors = crate::roam::errors::ErrorMap::exact(&lattice, &layout);
         let criterion = crate::roam::criterion::flat::Flat::new(&layout, &errors, 0.0);

@@ -21,18 +21,18 @@ use crate::roam::edit::{Mended, mend_exact, mend_midpoint, mend_spheres};
 use crate::roam::errors::ErrorMap;
 use crate::roam::errors::exact::own_errors;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
-use crate::roam::layout::Layout;
+use crate::roam::ground::PatchedGround;
+use crate::roam::layout::PatchLayout;
 use crate::roam::levels::VertexRect;
 use crate::roam::roughness::Roughness;
 use crate::roam::spheres::{OwnRadius, SphereMap};
-use crate::terrain::brush::{Change, Changes};
+use crate::terrain::brush::{BrushChanges, Change};
 use crate::terrain::earthwork::Volumes;
 use crate::terrain::lattice::Lattice;
 
 /// What the error of a vertex measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Measure {
+pub enum ErrorMeasure {
     /// The midpoint error of the papers.
     Midpoint,
     /// The exact error: a bound.
@@ -58,7 +58,7 @@ pub struct DynamicOptions {
     /// Vertical exaggeration, above 0.
     pub exaggeration: f32,
     /// The errors.
-    pub measure: Measure,
+    pub measure: ErrorMeasure,
     /// The spheres.
     pub radius: Radius,
     /// Metres of distance per metre of drawn error; see [`OwnRadius`].
@@ -70,7 +70,7 @@ pub struct DynamicOptions {
 pub struct DynamicTerrain {
     options: DynamicOptions,
     lattice: Arc<Lattice>,
-    layout: Layout,
+    layout: PatchLayout,
     errors: ErrorMap,
     /// The exact errors of the vertices alone; empty for midpoint errors, which are measured in passing.
     own: Vec<f32>,
@@ -97,7 +97,7 @@ pub struct Edit {
 }
 
 impl BlockSource for DynamicTerrain {
-    fn layout(&self) -> &Layout {
+    fn layout(&self) -> &PatchLayout {
         &self.layout
     }
 
@@ -113,11 +113,11 @@ impl BlockSource for DynamicTerrain {
 impl DynamicTerrain {
     /// The terrain over `lattice`; `None` where patches cannot be laid over it (see [`Layout::new`]).
     pub fn new(lattice: Lattice, options: DynamicOptions) -> Option<Self> {
-        let layout = Layout::new(lattice.columns(), lattice.rows(), options.patch)?;
-        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: options.exaggeration };
+        let layout = PatchLayout::new(lattice.columns(), lattice.rows(), options.patch)?;
+        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: options.exaggeration };
         let (own, errors) = match options.measure {
-            Measure::Midpoint => (Vec::new(), ErrorMap::midpoint(&lattice, &layout)),
-            Measure::Exact => {
+            ErrorMeasure::Midpoint => (Vec::new(), ErrorMap::midpoint(&lattice, &layout)),
+            ErrorMeasure::Exact => {
                 let own = own_errors(&lattice, &layout);
                 (own.clone(), ErrorMap::raised(own, &layout))
             }
@@ -143,12 +143,16 @@ impl DynamicTerrain {
     }
 
     /// The ground of this epoch.
-    pub fn ground(&self) -> Ground<'_> {
-        Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: self.options.exaggeration }
+    pub fn ground(&self) -> PatchedGround<'_> {
+        PatchedGround {
+            lattice: &self.lattice,
+            layout: &self.layout,
+            exaggeration: self.options.exaggeration,
+        }
     }
 
     /// The patches.
-    pub fn layout(&self) -> &Layout {
+    pub fn layout(&self) -> &PatchLayout {
         &self.layout
     }
 
@@ -174,7 +178,7 @@ impl DynamicTerrain {
 
     /// Lets `brush` change the heights and mends what is computed from them. What it returns must hold everything that
     /// it changed, in the order it was done, and it may not pin posts. `None` where it changed nothing.
-    pub fn edit(&mut self, brush: impl FnOnce(&mut Lattice) -> Changes) -> Option<Edit> {
+    pub fn edit(&mut self, brush: impl FnOnce(&mut Lattice) -> BrushChanges) -> Option<Edit> {
         let changes = brush(Arc::make_mut(&mut self.lattice));
         if changes.pieces.is_empty() {
             return None;
@@ -195,13 +199,13 @@ impl DynamicTerrain {
     fn mend(&mut self, change: &Change, vertices: &mut Vec<Vertex>) {
         let (lattice, layout) = (&*self.lattice, &self.layout);
         let errors = match self.options.measure {
-            Measure::Midpoint => mend_midpoint(&mut self.errors, lattice, layout, change),
-            Measure::Exact => mend_exact(&mut self.own, &mut self.errors, lattice, layout, change),
+            ErrorMeasure::Midpoint => mend_midpoint(&mut self.errors, lattice, layout, change),
+            ErrorMeasure::Exact => mend_exact(&mut self.own, &mut self.errors, lattice, layout, change),
         };
         if let Some(roughness) = &mut self.roughness {
             roughness.renew(lattice, &change.posts);
         }
-        let ground = Ground { lattice, layout, exaggeration: self.options.exaggeration };
+        let ground = PatchedGround { lattice, layout, exaggeration: self.options.exaggeration };
         let own = own_radius(&self.options, &self.errors, self.roughness.as_ref());
         let spheres: Mended = mend_spheres(&mut self.spheres, ground, &own, change, &errors);
         vertices.extend_from_slice(&errors.vertices);
@@ -245,7 +249,7 @@ impl DynamicTerrain {
             if old.0 > range.0 && old.1 < range.1 {
                 self.heights.widen(index, new);
             } else {
-                let ground = Ground { lattice: &self.lattice, layout: &self.layout, exaggeration };
+                let ground = PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration };
                 self.heights.renew(ground, corner);
             }
         }
@@ -277,7 +281,7 @@ impl DynamicTerrain {
 }
 
 /// The patches that share a vertex with the rectangle, which is not empty.
-fn patches_meeting(layout: &Layout, rect: VertexRect) -> impl Iterator<Item = Vertex> + use<> {
+fn patches_meeting(layout: &PatchLayout, rect: VertexRect) -> impl Iterator<Item = Vertex> + use<> {
     let patch = layout.patch();
     let before = |at: i32| (at - 1).max(0) / patch;
     layout.patches_within((before(rect.min.x), before(rect.min.y)), (rect.max.x / patch, rect.max.y / patch))

@@ -12,11 +12,11 @@ use crate::roam::errors::ErrorMap;
 use crate::roam::errors::exact::{own_error, triangles_split_at};
 use crate::roam::errors::midpoint::torn_off;
 use crate::roam::errors::plane::PostPlane;
-use crate::roam::field::Field;
-use crate::roam::graph::{Kind, Vertex};
-use crate::roam::ground::Ground;
-use crate::roam::layout::Layout;
-use crate::roam::levels::{Pass, PassRow, VertexRect, passes};
+use crate::roam::field::HeightField;
+use crate::roam::graph::{Vertex, VertexKind};
+use crate::roam::ground::PatchedGround;
+use crate::roam::layout::PatchLayout;
+use crate::roam::levels::{LevelPass, PassRow, VertexRect, passes};
 use crate::roam::spheres::{OwnRadius, SphereMap};
 use crate::terrain::brush::Change;
 use crate::terrain::lattice::{Lattice, Post};
@@ -47,8 +47,8 @@ impl Mended {
     /// Sweeps the pass: the rows of the vertices of `rect`, of which `renew` adds those that changed.
     fn sweep(
         &mut self,
-        layout: &Layout,
-        pass: Pass,
+        layout: &PatchLayout,
+        pass: LevelPass,
         rect: VertexRect,
         mut renew: impl FnMut(PassRow, &mut Vec<Vertex>),
     ) {
@@ -61,20 +61,22 @@ impl Mended {
     }
 
     /// The rectangle around the parents, in `pass`, of what changed so far; `pass` is the next to be swept.
-    fn above(&self, pass: Pass) -> VertexRect {
+    fn above(&self, pass: LevelPass) -> VertexRect {
         let (done, step) = (self.rects.len(), pass.step);
         match pass.kind {
-            _ if step == 1 && pass.kind != Kind::Center => VertexRect::EMPTY,
-            Kind::Center => self.rect(done - 2).grown(0, step).union(self.rect(done - 1).grown(step, 0)),
+            _ if step == 1 && pass.kind != VertexKind::Center => VertexRect::EMPTY,
+            VertexKind::Center => {
+                self.rect(done - 2).grown(0, step).union(self.rect(done - 1).grown(step, 0))
+            }
             // The centres of half the step are the last pass before the edges of this one.
-            Kind::EastEdge => self.rect(done - 1).grown(step / 2, step / 2),
-            Kind::NorthEdge => self.rect(done - 2).grown(step / 2, step / 2),
+            VertexKind::EastEdge => self.rect(done - 1).grown(step / 2, step / 2),
+            VertexKind::NorthEdge => self.rect(done - 2).grown(step / 2, step / 2),
         }
     }
 
     /// Whether nothing that a pass still to come can read has changed.
-    fn has_ended(&self, pass: Pass) -> bool {
-        pass.kind == Kind::EastEdge && self.rects.last().is_none_or(VertexRect::is_empty)
+    fn has_ended(&self, pass: LevelPass) -> bool {
+        pass.kind == VertexKind::EastEdge && self.rects.last().is_none_or(VertexRect::is_empty)
     }
 }
 
@@ -83,7 +85,7 @@ const LINE: usize = 16;
 
 /// Reads a value of every cache line of a rectangle. Rows of a big terrain lie far apart, and whoever works on them one
 /// after the other waits for each; these reads wait for nothing, so the memory answers them together.
-fn fetch(values: &[f32], layout: &Layout, rect: VertexRect) {
+fn fetch(values: &[f32], layout: &PatchLayout, rect: VertexRect) {
     let inside =
         |low: i32, high: i32, count: usize| (low.max(0) as usize, (high.max(0) as usize).min(count - 1));
     let (west, east) = inside(rect.min.x, rect.max.x, layout.columns());
@@ -95,9 +97,14 @@ fn fetch(values: &[f32], layout: &Layout, rect: VertexRect) {
 }
 
 /// Mends a map of midpoint errors after `change`; `lattice` holds the new heights.
-pub fn mend_midpoint(errors: &mut ErrorMap, lattice: &Lattice, layout: &Layout, change: &Change) -> Mended {
+pub fn mend_midpoint(
+    errors: &mut ErrorMap,
+    lattice: &Lattice,
+    layout: &PatchLayout,
+    change: &Change,
+) -> Mended {
     let changed = VertexRect::of_posts(layout, &change.posts);
-    let field = Field::of(Ground { lattice, layout, exaggeration: 1.0 });
+    let field = HeightField::of(PatchedGround { lattice, layout, exaggeration: 1.0 });
     fetch(errors.values(), layout, changed.grown(1, 1));
     let mut mended = Mended::around(change);
     for pass in passes(layout) {
@@ -106,9 +113,9 @@ pub fn mend_midpoint(errors: &mut ErrorMap, lattice: &Lattice, layout: &Layout, 
             break;
         }
         let measured = match pass.kind {
-            Kind::EastEdge => posts.grown(pass.step, 0),
-            Kind::NorthEdge => posts.grown(0, pass.step),
-            Kind::Center => posts.grown(pass.step, pass.step),
+            VertexKind::EastEdge => posts.grown(pass.step, 0),
+            VertexKind::NorthEdge => posts.grown(0, pass.step),
+            VertexKind::Center => posts.grown(pass.step, pass.step),
         };
         let rect = measured.union(mended.above(pass));
         mended
@@ -120,19 +127,19 @@ pub fn mend_midpoint(errors: &mut ErrorMap, lattice: &Lattice, layout: &Layout, 
 /// Renews a row of midpoint errors; adds the vertices whose error changed to `changed`.
 fn renew_midpoints(
     errors: &mut ErrorMap,
-    layout: &Layout,
-    field: &Field<'_>,
+    layout: &PatchLayout,
+    field: &HeightField<'_>,
     row: PassRow,
     changed: &mut Vec<Vertex>,
 ) {
     let (step, here) = (row.pass.step as usize, field.row(row.y));
-    if row.pass.kind == Kind::EastEdge {
+    if row.pass.kind == VertexKind::EastEdge {
         let own = |x: usize| torn_off(here.height(x - step), here.height(x + step), here.height(x));
         errors.renew_row(layout, row, own, changed);
         return;
     }
     let (south, north) = (field.row(row.y - step), field.row(row.y + step));
-    if row.pass.kind == Kind::NorthEdge {
+    if row.pass.kind == VertexKind::NorthEdge {
         let own = |x: usize| torn_off(south.height(x), north.height(x), here.height(x));
         errors.renew_row(layout, row, own, changed);
     } else {
@@ -157,7 +164,7 @@ pub fn mend_exact(
     own: &mut [f32],
     errors: &mut ErrorMap,
     lattice: &Lattice,
-    layout: &Layout,
+    layout: &PatchLayout,
     change: &Change,
 ) -> Mended {
     assert_eq!(own.len(), layout.vertex_count(), "one own error a vertex");
@@ -190,7 +197,7 @@ const ROUNDING: f64 = 4e-6;
 
 /// Whether it is certain that the error of `vertex` alone, `own` before, is what it was: its triangles' corners stand,
 /// none of the changed posts they cover is pinned, and all were and are clearly less far off than the worst.
-fn stands(lattice: &Lattice, layout: &Layout, vertex: Vertex, own: f32, change: &Change) -> bool {
+fn stands(lattice: &Lattice, layout: &PatchLayout, vertex: Vertex, own: f32, change: &Change) -> bool {
     own.is_finite()
         && triangles_split_at(layout, vertex).into_iter().flatten().all(|triangle| {
             let corners = triangle.corners().map(|corner| layout.post(corner));
@@ -239,7 +246,7 @@ fn covered<'a>(corners: [Post; 3], change: &'a Change) -> impl Iterator<Item = (
 /// what is new.
 pub fn mend_spheres(
     spheres: &mut SphereMap,
-    ground: Ground<'_>,
+    ground: PatchedGround<'_>,
     own: &OwnRadius<'_>,
     change: &Change,
     errors: &Mended,
@@ -247,7 +254,7 @@ pub fn mend_spheres(
     let changed = VertexRect::of_posts(ground.layout, &change.posts);
     let window = change.posts.grown(own.half_window(), ground.lattice);
     let rough = VertexRect::of_posts(ground.layout, &window);
-    let field = Field::of(ground);
+    let field = HeightField::of(ground);
     fetch(spheres.values(), ground.layout, changed.grown(1, 1));
     let last_error = errors.rects.iter().rposition(|rect| !rect.is_empty());
     let mut mended = Mended::around(change);
@@ -258,7 +265,7 @@ pub fn mend_spheres(
         if moved.is_empty() && near.is_empty() && errors_ended && mended.has_ended(pass) {
             break;
         }
-        let has_children = pass.kind != Kind::Center && pass.step > 1;
+        let has_children = pass.kind != VertexKind::Center && pass.step > 1;
         let children = if has_children { moved.grown(half, half) } else { VertexRect::EMPTY };
         let corners = changed.snapped(pass.step).grown(pass.step, pass.step);
         let rect = corners.union(children).union(near).union(errors.rect(index)).union(mended.above(pass));

@@ -4,12 +4,12 @@
 use glam::DVec2;
 
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
+use crate::roam::ground::PatchedGround;
 use crate::terrain::lattice::Post;
 
 /// A ground laid open.
 #[derive(Clone, Copy, Debug)]
-pub struct Field<'a> {
+pub struct HeightField<'a> {
     heights: &'a [f32],
     width: usize,
     last_row: usize,
@@ -28,9 +28,9 @@ pub struct FieldRow<'a> {
     exaggeration: f32,
 }
 
-impl<'a> Field<'a> {
+impl<'a> HeightField<'a> {
     /// The field of `ground`.
-    pub fn of(ground: Ground<'a>) -> Self {
+    pub fn of(ground: PatchedGround<'a>) -> Self {
         let last = ground.layout.post(Vertex::new(i32::MAX, i32::MAX));
         Self {
             heights: ground.lattice.heights(),
@@ -92,7 +92,7 @@ fn place(post: u32, cell: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::roam::layout::Layout;
+    use crate::roam::layout::PatchLayout;
     use crate::terrain::lattice::Lattice;
     use glam::DVec3;
 
@@ -102,9 +102,9 @@ mod tests {
         heights[40] = f32::NAN;
         let first = Post { column: 7, row: 1_000_003 };
         let lattice = Lattice::part((DVec2::ZERO, DVec2::new(0.3, 30.7)), first, 21, heights).expect("sound");
-        let layout = Layout::new(21, 13, 16).expect("sound");
-        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.3 };
-        let field = Field::of(ground);
+        let layout = PatchLayout::new(21, 13, 16).expect("sound");
+        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.3 };
+        let field = HeightField::of(ground);
         for (x, y) in (0..33).flat_map(|x| (0..17).map(move |y| (x, y))) {
             let vertex = Vertex::new(x, y);
             let row = field.row(y as usize);

@@ -26,7 +26,7 @@ pub struct Vertex {
 
 /// What a vertex is the middle of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum VertexKind {
     /// A square of side 2k: its hypotenuse is a diagonal.
     Center,
     /// An edge of length 2k that runs east.
@@ -64,12 +64,12 @@ impl Vertex {
 
     /// What this vertex is the middle of.
     #[inline]
-    pub const fn kind(self) -> Kind {
+    pub const fn kind(self) -> VertexKind {
         let step = self.step();
         match ((self.x & step) != 0, (self.y & step) != 0) {
-            (true, true) => Kind::Center,
-            (true, false) => Kind::EastEdge,
-            _ => Kind::NorthEdge,
+            (true, true) => VertexKind::Center,
+            (true, false) => VertexKind::EastEdge,
+            _ => VertexKind::NorthEdge,
         }
     }
 
@@ -78,10 +78,10 @@ impl Vertex {
     pub const fn hypotenuse(self) -> [Self; 2] {
         let step = self.step();
         match self.kind() {
-            Kind::EastEdge => [self.moved(-step, 0), self.moved(step, 0)],
-            Kind::NorthEdge => [self.moved(0, -step), self.moved(0, step)],
-            Kind::Center if self.diagonal_rises() => [self.moved(-step, -step), self.moved(step, step)],
-            Kind::Center => [self.moved(-step, step), self.moved(step, -step)],
+            VertexKind::EastEdge => [self.moved(-step, 0), self.moved(step, 0)],
+            VertexKind::NorthEdge => [self.moved(0, -step), self.moved(0, step)],
+            VertexKind::Center if self.diagonal_rises() => [self.moved(-step, -step), self.moved(step, step)],
+            VertexKind::Center => [self.moved(-step, step), self.moved(step, -step)],
         }
     }
 
@@ -91,10 +91,10 @@ impl Vertex {
     pub const fn parents(self) -> [Self; 2] {
         let step = self.step();
         match self.kind() {
-            Kind::EastEdge => [self.moved(0, -step), self.moved(0, step)],
-            Kind::NorthEdge => [self.moved(-step, 0), self.moved(step, 0)],
-            Kind::Center if self.diagonal_rises() => [self.moved(-step, step), self.moved(step, -step)],
-            Kind::Center => [self.moved(-step, -step), self.moved(step, step)],
+            VertexKind::EastEdge => [self.moved(0, -step), self.moved(0, step)],
+            VertexKind::NorthEdge => [self.moved(-step, 0), self.moved(step, 0)],
+            VertexKind::Center if self.diagonal_rises() => [self.moved(-step, step), self.moved(step, -step)],
+            VertexKind::Center => [self.moved(-step, -step), self.moved(step, step)],
         }
     }
 
@@ -109,7 +109,7 @@ impl Vertex {
     pub fn children(self) -> impl Iterator<Item = Self> {
         let step = self.step();
         let (reach, offsets) = match self.kind() {
-            Kind::Center => (step, [(-1, 0), (1, 0), (0, -1), (0, 1)]),
+            VertexKind::Center => (step, [(-1, 0), (1, 0), (0, -1), (0, 1)]),
             _ => (step / 2, [(-1, -1), (1, -1), (-1, 1), (1, 1)]),
         };
         let present = if reach > 0 { 4 } else { 0 };
@@ -163,8 +163,8 @@ mod tests {
         for vertex in inner_vertices().filter(|vertex| vertex.step() < 16) {
             for parent in vertex.parents().into_iter().filter(|parent| parent.step() < 32) {
                 match vertex.kind() {
-                    Kind::Center => assert_eq!(parent.step(), vertex.step() * 2),
-                    _ => assert_eq!((parent.step(), parent.kind()), (vertex.step(), Kind::Center)),
+                    VertexKind::Center => assert_eq!(parent.step(), vertex.step() * 2),
+                    _ => assert_eq!((parent.step(), parent.kind()), (vertex.step(), VertexKind::Center)),
                 }
             }
         }

@@ -3,21 +3,21 @@
 use glam::{Vec2, Vec3};
 
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 use crate::terrain::lattice::{Lattice, Post};
 
 /// What refinement reads: heights, the patches over them, and how many times heights are stretched when drawn.
 #[derive(Clone, Copy, Debug)]
-pub struct Ground<'a> {
+pub struct PatchedGround<'a> {
     /// The heights.
     pub lattice: &'a Lattice,
     /// The patches over them.
-    pub layout: &'a Layout,
+    pub layout: &'a PatchLayout,
     /// Vertical exaggeration; 1 draws heights as they are.
     pub exaggeration: f32,
 }
 
-impl Ground<'_> {
+impl PatchedGround<'_> {
     /// World X and Y of a vertex of the layout, metres.
     #[inline]
     pub fn plan(&self, vertex: Vertex) -> Vec2 {

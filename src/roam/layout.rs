@@ -10,7 +10,7 @@ use crate::terrain::lattice::Post;
 
 /// How patches cover a lattice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Layout {
+pub struct PatchLayout {
     patch: i32,
     patches_east: i32,
     patches_north: i32,
@@ -32,7 +32,7 @@ pub const MOST_VERTICES: u64 = 1 << 29;
 /// What is kept of every patch is small, and a million of it is tens of megabytes.
 pub const MOST_PATCHES: u64 = 1 << 20;
 
-impl Layout {
+impl PatchLayout {
     /// Patches of `patch` cells a side, a power of two from 2 to 4096, over a lattice of `columns` × `rows`
     /// posts, at least 2 × 2 and at most 2²⁸ either way, with at most [`MOST_VERTICES`] vertices in all.
     /// `None` otherwise.
@@ -168,18 +168,21 @@ mod tests {
 
     #[test]
     fn patches_cover_the_lattice_and_no_row_more() {
-        let layout = Layout::new(65, 66, 64).expect("sound");
+        let layout = PatchLayout::new(65, 66, 64).expect("sound");
         assert_eq!((layout.columns(), layout.rows(), layout.patch_count()), (65, 129, 2));
         assert_eq!(layout.post(Vertex::new(10, 100)), Post { column: 10, row: 65 });
     }
 
     #[test]
     fn sizes_that_make_no_patches_are_refused() {
-        assert_eq!(Layout::new(65, 65, 48), None);
-        assert_eq!(Layout::new(1, 65, 64), None);
-        assert_eq!(Layout::new(2, 1 << 28, 64), None);
-        assert!(Layout::new(16_384, 16_384, 64).is_some());
-        assert!(Layout::new(65_537, 65_537, 64).is_none() && Layout::paged(65_537, 65_537, 64).is_some());
-        assert_eq!(Layout::paged(65_538, 65_537, 64), None);
+        assert_eq!(PatchLayout::new(65, 65, 48), None);
+        assert_eq!(PatchLayout::new(1, 65, 64), None);
+        assert_eq!(PatchLayout::new(2, 1 << 28, 64), None);
+        assert!(PatchLayout::new(16_384, 16_384, 64).is_some());
+        assert!(
+            PatchLayout::new(65_537, 65_537, 64).is_none()
+                && PatchLayout::paged(65_537, 65_537, 64).is_some()
+        );
+        assert_eq!(PatchLayout::paged(65_538, 65_537, 64), None);
     }
 }

@@ -7,36 +7,42 @@
 
 use rayon::prelude::*;
 
-use crate::roam::graph::{Kind, Vertex};
-use crate::roam::layout::Layout;
+use crate::roam::graph::{Vertex, VertexKind};
+use crate::roam::layout::PatchLayout;
 use crate::terrain::brush::PostRect;
 
 /// All vertices of one kind and one step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Pass {
+pub struct LevelPass {
     /// What they are the middles of.
-    pub kind: Kind,
+    pub kind: VertexKind,
     /// See [`Vertex::step`].
     pub step: i32,
 }
 
 /// The passes of a layout, the finest first, patch corners left out: a vertex comes after all its children.
-pub fn passes(layout: &Layout) -> impl Iterator<Item = Pass> + use<> {
+pub fn passes(layout: &PatchLayout) -> impl Iterator<Item = LevelPass> + use<> {
     let steps = std::iter::successors(Some(1), |step| Some(2 * step));
     let patch = layout.patch();
     steps.take_while(move |&step| step < patch).flat_map(|step| {
-        [Kind::EastEdge, Kind::NorthEdge, Kind::Center].into_iter().map(move |kind| Pass { kind, step })
+        [VertexKind::EastEdge, VertexKind::NorthEdge, VertexKind::Center]
+            .into_iter()
+            .map(move |kind| LevelPass { kind, step })
     })
 }
 
-impl Pass {
+impl LevelPass {
     /// The rows of the pass's vertices inside the rectangle and the layout, from the south.
-    pub fn rows_within(self, layout: &Layout, rect: &VertexRect) -> impl Iterator<Item = PassRow> + use<> {
+    pub fn rows_within(
+        self,
+        layout: &PatchLayout,
+        rect: &VertexRect,
+    ) -> impl Iterator<Item = PassRow> + use<> {
         let (stride, limit) = (2 * self.step, (layout.columns() as i32, layout.rows() as i32));
         let (dx, dy) = match self.kind {
-            Kind::EastEdge => (self.step, 0),
-            Kind::NorthEdge => (0, self.step),
-            Kind::Center => (self.step, self.step),
+            VertexKind::EastEdge => (self.step, 0),
+            VertexKind::NorthEdge => (0, self.step),
+            VertexKind::Center => (self.step, self.step),
         };
         let from = |first: i32, low: i32| first + ((low - first).max(0) + stride - 1) / stride * stride;
         let (x, y) = (from(dx, rect.min.x), from(dy, rect.min.y));
@@ -51,7 +57,7 @@ impl Pass {
     }
 
     /// The pass's vertices inside the rectangle and the layout, row by row.
-    pub fn within(self, layout: &Layout, rect: &VertexRect) -> impl Iterator<Item = Vertex> + use<> {
+    pub fn within(self, layout: &PatchLayout, rect: &VertexRect) -> impl Iterator<Item = Vertex> + use<> {
         let of_row = |row: PassRow| row.columns().map(move |x| Vertex::new(x as i32, row.y as i32));
         self.rows_within(layout, rect).flat_map(of_row)
     }
@@ -65,12 +71,12 @@ impl Pass {
 
     /// Whether its vertices have no children: edge middles of the finest step.
     pub fn is_finest(self) -> bool {
-        self.step == 1 && self.kind != Kind::Center
+        self.step == 1 && self.kind != VertexKind::Center
     }
 
     /// How far its vertices' children lie from them, along both axes or along one of them.
     pub fn child_reach(self) -> usize {
-        (if self.kind == Kind::Center { self.step } else { self.step / 2 }) as usize
+        (if self.kind == VertexKind::Center { self.step } else { self.step / 2 }) as usize
     }
 }
 
@@ -78,7 +84,7 @@ impl Pass {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PassRow {
     /// The pass.
-    pub pass: Pass,
+    pub pass: LevelPass,
     /// The row.
     pub y: usize,
     first: usize,
@@ -86,7 +92,7 @@ pub struct PassRow {
 }
 
 /// A row of values, one a vertex, and the rows in which its vertices' children are.
-pub struct Beside<'a> {
+pub struct ChildRows<'a> {
     /// The row itself.
     pub here: &'a mut [f32],
     /// The row of the children south of it; where there is none, that of those north of it.
@@ -111,7 +117,7 @@ impl PassRow {
 
     /// Its values among those of all vertices of the layout.
     #[inline]
-    pub fn of<'a>(self, values: &'a mut [f32], layout: &Layout) -> Beside<'a> {
+    pub fn of<'a>(self, values: &'a mut [f32], layout: &PatchLayout) -> ChildRows<'a> {
         let columns = layout.columns();
         let [south, north] = self.child_rows(layout.rows());
         let (before, rest) = values.split_at_mut(self.y * columns);
@@ -120,7 +126,7 @@ impl PassRow {
             Some(ahead) => &after[ahead * columns..][..columns],
             None => before.get(y * columns..).and_then(|rest| rest.get(..columns)).unwrap_or(&[]),
         };
-        Beside { south: row(south), north: row(north), here }
+        ChildRows { south: row(south), north: row(north), here }
     }
 }
 
@@ -146,7 +152,7 @@ impl VertexRect {
         Self { min: Vertex::new(i32::MAX, i32::MAX), max: Vertex::new(i32::MIN, i32::MIN) };
 
     /// The vertices that stand for posts of `posts`, those beyond the lattice's border included.
-    pub fn of_posts(layout: &Layout, posts: &PostRect) -> Self {
+    pub fn of_posts(layout: &PatchLayout, posts: &PostRect) -> Self {
         let beyond = |at: u32, last: u32, end: usize| if at >= last { end as i32 - 1 } else { at as i32 };
         let last = layout.post(Vertex::new(i32::MAX, i32::MAX));
         Self {
@@ -207,7 +213,7 @@ impl VertexRect {
 
 /// Which rows a row sweep writes, of those whose number is a multiple of `half`; it reads the others of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rows {
+pub enum SweepRows {
     /// Those at even multiples.
     Even,
     /// Those at odd multiples.
@@ -220,7 +226,7 @@ pub fn for_rows(
     values: &mut [f32],
     columns: usize,
     half: usize,
-    rows: Rows,
+    rows: SweepRows,
     write: impl Fn(usize, &mut [f32], [&[f32]; 2]) + Sync,
 ) {
     let (mut even, mut odd) = (Vec::new(), Vec::new());
@@ -230,8 +236,8 @@ pub fn for_rows(
         odd.extend(high.get_mut(..columns));
     }
     let (written, read, first) = match rows {
-        Rows::Even => (even, odd, 0),
-        Rows::Odd => (odd, even, half),
+        SweepRows::Even => (even, odd, 0),
+        SweepRows::Odd => (odd, even, half),
     };
     let read: Vec<&[f32]> = read.into_iter().map(|row| &*row).collect();
     // Fewer rows than this cost less than handing them to another thread.
@@ -239,8 +245,8 @@ pub fn for_rows(
     written.into_par_iter().with_min_len(least).enumerate().for_each(|(index, row)| {
         // South of an odd row is the read row of its own number, south of an even one that before.
         let (south, north) = match rows {
-            Rows::Even => (index.wrapping_sub(1), index),
-            Rows::Odd => (index, index + 1),
+            SweepRows::Even => (index.wrapping_sub(1), index),
+            SweepRows::Odd => (index, index + 1),
         };
         let at = |index: usize| read.get(index).copied();
         let neighbours = [at(south).or(at(north)), at(north).or(at(south))].map(Option::unwrap_or_default);
@@ -254,14 +260,14 @@ mod tests {
 
     #[test]
     fn the_passes_hold_every_vertex_but_the_corners_once_and_children_first() {
-        let layout = Layout::new(40, 21, 16).expect("sound");
+        let layout = PatchLayout::new(40, 21, 16).expect("sound");
         let all = VertexRect { min: Vertex::new(0, 0), max: Vertex::new(i32::MAX - 1, i32::MAX - 1) };
         let mut seen = vec![false; layout.vertex_count()];
         for pass in passes(&layout) {
             for vertex in pass.within(&layout, &all) {
                 assert_eq!((vertex.kind(), vertex.step()), (pass.kind, pass.step));
                 assert!(!std::mem::replace(&mut seen[layout.index(vertex)], true));
-                if pass.kind == Kind::Center {
+                if pass.kind == VertexKind::Center {
                     let [from, to] = vertex.hypotenuse();
                     let rises = pass.rises(vertex.x as usize, vertex.y as usize);
                     assert_eq!(rises, (to.x > from.x) == (to.y > from.y));
@@ -282,26 +288,26 @@ mod tests {
 
     #[test]
     fn a_row_lies_between_those_of_its_children_and_at_the_border_the_inner_one_stands_twice() {
-        let layout = Layout::new(9, 9, 8).expect("sound");
+        let layout = PatchLayout::new(9, 9, 8).expect("sound");
         let mut values: Vec<f32> = (0..81).map(|at| (at / 9) as f32).collect();
         let all = VertexRect { min: Vertex::new(0, 0), max: Vertex::new(8, 8) };
         let mut rows_of = |kind, step| {
-            let rows = Pass { kind, step }.rows_within(&layout, &all);
+            let rows = LevelPass { kind, step }.rows_within(&layout, &all);
             let of = |row: PassRow| {
                 let beside = row.of(&mut values, &layout);
                 [beside.south[0], beside.here[0], beside.north[8]]
             };
             rows.map(of).collect::<Vec<[f32; 3]>>()
         };
-        assert_eq!(rows_of(Kind::EastEdge, 4), [[2.0, 0.0, 2.0], [6.0, 8.0, 6.0]]);
-        assert_eq!(rows_of(Kind::NorthEdge, 4), [[2.0, 4.0, 6.0]]);
-        assert_eq!(rows_of(Kind::Center, 2), [[0.0, 2.0, 4.0], [4.0, 6.0, 8.0]]);
+        assert_eq!(rows_of(VertexKind::EastEdge, 4), [[2.0, 0.0, 2.0], [6.0, 8.0, 6.0]]);
+        assert_eq!(rows_of(VertexKind::NorthEdge, 4), [[2.0, 4.0, 6.0]]);
+        assert_eq!(rows_of(VertexKind::Center, 2), [[0.0, 2.0, 4.0], [4.0, 6.0, 8.0]]);
         assert_eq!([both_sides(0, 2, 9), both_sides(8, 2, 9), both_sides(4, 2, 9)], [[2, 2], [6, 6], [2, 6]]);
     }
 
     #[test]
     fn a_rectangle_holds_just_the_vertices_inside() {
-        let layout = Layout::new(65, 65, 32).expect("sound");
+        let layout = PatchLayout::new(65, 65, 32).expect("sound");
         let rect = VertexRect { min: Vertex::new(-3, 7), max: Vertex::new(90, 40) };
         let inside: usize = passes(&layout).map(|pass| pass.within(&layout, &rect).count()).sum();
         let corners = 3;

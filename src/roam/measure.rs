@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use crate::roam::errors::plane::PostPlane;
 use crate::roam::errors::rows::{RowSpan, RowSpans};
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 use crate::roam::shown::{LocalTriangle, PatchList};
 use crate::terrain::lattice::{Lattice, Post};
 
@@ -70,7 +70,7 @@ impl HeightDifference {
 }
 
 /// Measures the triangles of `shown`, no patch twice; in parallel over patches, the same for any number of threads.
-pub fn height_difference(lattice: &Lattice, layout: &Layout, shown: &[PatchList]) -> HeightDifference {
+pub fn height_difference(lattice: &Lattice, layout: &PatchLayout, shown: &[PatchList]) -> HeightDifference {
     height_difference_seen(lattice, layout, shown, |_, _| Some(0.0))
 }
 
@@ -78,11 +78,11 @@ pub fn height_difference(lattice: &Lattice, layout: &Layout, shown: &[PatchList]
 /// shown there how many pixels are between the two, and `None` of a post that is not in the picture.
 pub fn height_difference_seen(
     lattice: &Lattice,
-    layout: &Layout,
+    layout: &PatchLayout,
     shown: &[PatchList],
     seen_px: impl Fn(Post, f64) -> Option<f64> + Sync,
 ) -> HeightDifference {
-    let patches: Vec<Measured> =
+    let patches: Vec<PatchMeasure> =
         shown.par_iter().map(|list| Scan::new(lattice, layout, list, &seen_px).measured()).collect();
     let mut border: Vec<OnBorder> = patches.iter().flat_map(|patch| &patch.border).copied().collect();
     // Neighbours agree about a border post but for rounding; the larger counts.
@@ -94,7 +94,7 @@ pub fn height_difference_seen(
 }
 
 /// What was measured of one patch.
-struct Measured {
+struct PatchMeasure {
     inside: HeightDifference,
     border: Vec<OnBorder>,
 }
@@ -111,25 +111,25 @@ struct OnBorder {
 /// One patch being measured.
 struct Scan<'a, S> {
     lattice: &'a Lattice,
-    layout: &'a Layout,
+    layout: &'a PatchLayout,
     list: &'a PatchList,
     seen_px: &'a S,
     first: Post,
     last: Post,
     seen: Vec<bool>,
-    found: Measured,
+    found: PatchMeasure,
 }
 
 impl<'a, S: Fn(Post, f64) -> Option<f64>> Scan<'a, S> {
-    fn new(lattice: &'a Lattice, layout: &'a Layout, list: &'a PatchList, seen_px: &'a S) -> Self {
+    fn new(lattice: &'a Lattice, layout: &'a PatchLayout, list: &'a PatchList, seen_px: &'a S) -> Self {
         let patch = layout.patch();
         let (first, last) = (layout.post(list.corner), layout.post(list.corner.moved(patch, patch)));
         let posts = (last.column - first.column + 1) as usize * (last.row - first.row + 1) as usize;
-        let found = Measured { inside: HeightDifference::default(), border: Vec::new() };
+        let found = PatchMeasure { inside: HeightDifference::default(), border: Vec::new() };
         Self { lattice, layout, list, seen_px, first, last, seen: vec![false; posts], found }
     }
 
-    fn measured(mut self) -> Measured {
+    fn measured(mut self) -> PatchMeasure {
         for triangle in self.list.triangles.iter() {
             self.scan(triangle);
         }
@@ -206,8 +206,8 @@ mod tests {
     use crate::roam::active::ActiveSet;
     use crate::roam::displayed::DisplayedTerrain;
     use crate::roam::graph::Vertex;
-    use crate::roam::ground::Ground;
-    use crate::terrain::facets::Facets;
+    use crate::roam::ground::PatchedGround;
+    use crate::terrain::facets::TriangleSurface;
     use glam::DVec2;
     use proptest::prelude::*;
     use std::sync::Arc;
@@ -239,12 +239,12 @@ mod tests {
             holes in proptest::collection::vec(0usize..2500, 0..3),
             hidden in 0usize..16,
         ) {
-            let layout = Layout::new(columns, rows, 16).expect("sound");
+            let layout = PatchLayout::new(columns, rows, 16).expect("sound");
             let mut active = ActiveSet::new(layout);
             vertices.iter().for_each(|&(x, y)| active.activate(Vertex::new(x, y)));
             prop_assume!(columns * rows > 4);
             let lattice = lattice(columns, rows, &holes);
-            let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+            let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
             let patches: Vec<Vertex> =
                 layout.patches().enumerate().filter(|&(at, _)| at != hidden).map(|(_, corner)| corner).collect();
             let lists: Vec<PatchList> =
@@ -266,10 +266,10 @@ mod tests {
     #[test]
     fn the_finest_triangles_are_the_elevation_model() {
         let lattice = lattice(17, 17, &[]);
-        let layout = Layout::new(17, 17, 16).expect("sound");
+        let layout = PatchLayout::new(17, 17, 16).expect("sound");
         let mut active = ActiveSet::new(layout);
         (0..289).for_each(|at| active.activate(Vertex::new(at % 17, at / 17)));
-        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 3.0 };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 3.0 };
         let list = PatchList::bintree(ground, &active, Vertex::new(0, 0));
         let found = height_difference(&lattice, &layout, &[list]);
         assert_eq!(
@@ -282,8 +282,8 @@ mod tests {
     #[test]
     fn only_posts_of_the_picture_are_measured_and_the_most_pixels_are_kept() {
         let lattice = lattice(17, 17, &[]);
-        let layout = Layout::new(17, 17, 16).expect("sound");
-        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let layout = PatchLayout::new(17, 17, 16).expect("sound");
+        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
         let shown = [PatchList::bintree(ground, &ActiveSet::new(layout), Vertex::new(0, 0))];
         let whole = height_difference(&lattice, &layout, &shown);
         let seen = height_difference_seen(&lattice, &layout, &shown, |post, shown_m| {

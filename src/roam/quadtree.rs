@@ -21,7 +21,7 @@
 
 use std::fmt;
 
-use crate::roam::graph::{Kind, Vertex};
+use crate::roam::graph::{Vertex, VertexKind};
 
 /// The most digits of an address: a patch of 4096 cells has nodes of two cells after 11.
 pub const MOST_DIGITS: u32 = 15;
@@ -36,7 +36,7 @@ pub struct Address(u32);
 
 /// A side of a node, in the order its edge vertices are stored: counter-clockwise from the west.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum NodeSide {
     /// Towards smaller x.
     West,
     /// Towards smaller y.
@@ -48,9 +48,9 @@ pub enum Side {
 }
 
 /// All sides in their order.
-pub const SIDES: [Side; 4] = [Side::West, Side::South, Side::East, Side::North];
+pub const SIDES: [NodeSide; 4] = [NodeSide::West, NodeSide::South, NodeSide::East, NodeSide::North];
 
-impl Side {
+impl NodeSide {
     /// The step towards this side, in x and y.
     pub const fn step(self) -> (i32, i32) {
         match self {
@@ -97,14 +97,14 @@ impl Address {
     /// Digit by digit from the last: a digit on the near half moves to the far half and the count ends; one on
     /// the far half moves to the near half and the carry goes on. One addition does it for all digits, as every
     /// bit of the other axis passes the carry on.
-    pub const fn neighbor(self, side: Side) -> (Self, bool) {
+    pub const fn neighbor(self, side: NodeSide) -> (Self, bool) {
         let top = 1 << (2 * self.level());
         let digits = self.0 ^ top;
         let (axis, forward) = match side {
-            Side::West => (EAST_BITS, false),
-            Side::South => (NORTH_BITS, false),
-            Side::East => (EAST_BITS, true),
-            Side::North => (NORTH_BITS, true),
+            NodeSide::West => (EAST_BITS, false),
+            NodeSide::South => (NORTH_BITS, false),
+            NodeSide::East => (EAST_BITS, true),
+            NodeSide::North => (NORTH_BITS, true),
         };
         let (own, other, one) = (digits & axis, digits & !axis, axis & 3);
         let sum = if forward { (own | !axis).wrapping_add(one) } else { own.wrapping_sub(one) };
@@ -129,7 +129,7 @@ impl fmt::Display for Address {
 
 /// A node: the patch it lies in, counted from the south-west, and its address there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Node {
+pub struct QuadNode {
     /// Patches eastward.
     pub east: i32,
     /// Patches northward.
@@ -138,7 +138,7 @@ pub struct Node {
     pub address: Address,
 }
 
-impl fmt::Display for Node {
+impl fmt::Display for QuadNode {
     /// As `east,north:digits`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{},{}:{}", self.east, self.north, self.address)
@@ -147,21 +147,21 @@ impl fmt::Display for Node {
 
 /// A node's ground: its south-west corner and its side in cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Square {
+pub struct NodeSquare {
     /// The south-west corner.
     pub corner: Vertex,
     /// A power of two, from 2.
     pub side: i32,
 }
 
-impl Square {
+impl NodeSquare {
     /// The vertex in the middle.
     pub const fn center(self) -> Vertex {
         self.corner.moved(self.side / 2, self.side / 2)
     }
 
     /// The vertex in the middle of an edge.
-    pub const fn edge(self, side: Side) -> Vertex {
+    pub const fn edge(self, side: NodeSide) -> Vertex {
         let ((dx, dy), half) = (side.step(), self.side / 2);
         self.center().moved(dx * half, dy * half)
     }
@@ -173,7 +173,7 @@ impl Square {
     }
 }
 
-impl Node {
+impl QuadNode {
     /// The node above; `None` for a root.
     pub fn parent(self) -> Option<Self> {
         Some(Self { address: self.address.parent()?, ..self })
@@ -186,24 +186,24 @@ impl Node {
 
     /// The node of the same level beyond a side, across the patch's border too; its patch may lie outside the
     /// terrain.
-    pub const fn neighbor(self, side: Side) -> Self {
+    pub const fn neighbor(self, side: NodeSide) -> Self {
         let (address, leaves_patch) = self.address.neighbor(side);
         let (dx, dy) = if leaves_patch { side.step() } else { (0, 0) };
         Self { east: self.east + dx, north: self.north + dy, address }
     }
 
     /// The node's ground in patches of `patch` cells a side; `None` where it is finer than two cells.
-    pub fn square(self, patch: i32) -> Option<Square> {
+    pub fn square(self, patch: i32) -> Option<NodeSquare> {
         let side = patch >> self.address.level();
         let (x, y) = self.address.place();
         let corner = Vertex::new(self.east * patch + x * side, self.north * patch + y * side);
-        (side >= 2).then_some(Square { corner, side })
+        (side >= 2).then_some(NodeSquare { corner, side })
     }
 
     /// The node whose centre is `center`, in patches of `patch` cells; `None` for a vertex that is no centre.
     pub fn of_center(center: Vertex, patch: i32) -> Option<Self> {
         let half = center.step();
-        if center.kind() != Kind::Center || half <= 0 || half >= patch {
+        if center.kind() != VertexKind::Center || half <= 0 || half >= patch {
             return None;
         }
         let (east, north) = (center.x.div_euclid(patch), center.y.div_euclid(patch));
@@ -227,7 +227,7 @@ impl Node {
 
     /// The two centres that an edge vertex depends on: those of the nodes beside it, of which one may lie
     /// outside the terrain.
-    pub fn edge_depends_on(self, side: Side, patch: i32) -> Option<[Vertex; 2]> {
+    pub fn edge_depends_on(self, side: NodeSide, patch: i32) -> Option<[Vertex; 2]> {
         Some([self.square(patch)?.center(), self.neighbor(side).square(patch)?.center()])
     }
 }
@@ -239,9 +239,10 @@ mod tests {
     const PATCH: i32 = 16;
 
     /// All nodes of 3 × 3 patches.
-    fn nodes() -> Vec<Node> {
-        let mut found: Vec<Node> =
-            (0..9).map(|patch| Node { east: patch % 3, north: patch / 3, address: Address::ROOT }).collect();
+    fn nodes() -> Vec<QuadNode> {
+        let mut found: Vec<QuadNode> = (0..9)
+            .map(|patch| QuadNode { east: patch % 3, north: patch / 3, address: Address::ROOT })
+            .collect();
         let mut next = 0;
         while let Some(node) = found.get(next).copied() {
             next += 1;
@@ -254,14 +255,14 @@ mod tests {
     }
 
     /// The rule of the paper on strings: the digit is mirrored, with a carry where it lay at that side already.
-    fn neighbor_by_digits(digits: &str, side: Side) -> (String, bool) {
+    fn neighbor_by_digits(digits: &str, side: NodeSide) -> (String, bool) {
         let far = match side {
-            Side::West => "02",
-            Side::South => "01",
-            Side::East => "13",
-            Side::North => "23",
+            NodeSide::West => "02",
+            NodeSide::South => "01",
+            NodeSide::East => "13",
+            NodeSide::North => "23",
         };
-        let flip = if matches!(side, Side::West | Side::East) { 1 } else { 2 };
+        let flip = if matches!(side, NodeSide::West | NodeSide::East) { 1 } else { 2 };
         let mut digits: Vec<u32> = digits.chars().filter_map(|digit| digit.to_digit(4)).collect();
         for digit in digits.iter_mut().rev() {
             let carries = far.contains(char::from_digit(*digit, 4).expect("a digit"));
@@ -300,7 +301,7 @@ mod tests {
                 let (dx, dy) = side.step();
                 let beyond = node.neighbor(side).square(PATCH).expect("the same size");
                 let expected = square.corner.moved(dx * square.side, dy * square.side);
-                assert_eq!(beyond, Square { corner: expected, side: square.side }, "{node} {side:?}");
+                assert_eq!(beyond, NodeSquare { corner: expected, side: square.side }, "{node} {side:?}");
             }
         }
     }
@@ -322,10 +323,10 @@ mod tests {
 
     #[test]
     fn a_corner_neighbor_is_the_neighbor_of_a_neighbor() {
-        let node = |digits| Node { east: 0, north: 0, address: Address::parse(digits).expect("digits") };
-        assert_eq!(node("0").neighbor(Side::North).neighbor(Side::East), node("3"));
-        assert_eq!(node("30").neighbor(Side::South).neighbor(Side::West), node("03"));
-        assert_eq!(node("3").neighbor(Side::North).to_string(), "0,1:1");
+        let node = |digits| QuadNode { east: 0, north: 0, address: Address::parse(digits).expect("digits") };
+        assert_eq!(node("0").neighbor(NodeSide::North).neighbor(NodeSide::East), node("3"));
+        assert_eq!(node("30").neighbor(NodeSide::South).neighbor(NodeSide::West), node("03"));
+        assert_eq!(node("3").neighbor(NodeSide::North).to_string(), "0,1:1");
     }
 
     #[test]
@@ -333,7 +334,7 @@ mod tests {
         let mut owners = vec![0; 49 * 49];
         for node in nodes() {
             let square = node.square(PATCH).expect("two cells at least");
-            assert_eq!(Node::of_center(square.center(), PATCH), Some(node));
+            assert_eq!(QuadNode::of_center(square.center(), PATCH), Some(node));
             for vertex in square.vertices() {
                 owners[(vertex.y * 49 + vertex.x) as usize] += 1;
             }
@@ -343,13 +344,13 @@ mod tests {
             let on_border = vertex.x % 48 == 0 || vertex.y % 48 == 0;
             let expected = match vertex.kind() {
                 _ if (vertex.x | vertex.y) % PATCH == 0 => 0,
-                Kind::Center => 1,
+                VertexKind::Center => 1,
                 _ if on_border => 1,
                 _ => 2,
             };
             assert_eq!(owned, expected, "{vertex:?}");
-            if vertex.kind() != Kind::Center {
-                assert_eq!(Node::of_center(vertex, PATCH), None);
+            if vertex.kind() != VertexKind::Center {
+                assert_eq!(QuadNode::of_center(vertex, PATCH), None);
             }
         }
     }

@@ -6,11 +6,11 @@
 use std::sync::Arc;
 
 use crate::roam::active::ActiveSet;
-use crate::roam::emit::bintree::Block;
+use crate::roam::emit::bintree::VertexBlock;
 use crate::roam::emit::world::drawn_posts;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
-use crate::roam::layout::Layout;
+use crate::roam::ground::PatchedGround;
+use crate::roam::layout::PatchLayout;
 
 /// Why there are indices.
 const SHORT: &str = "patches of at most 128 cells have 16-bit indices";
@@ -41,7 +41,7 @@ impl PatchList {
     /// # Panics
     /// Where patches are larger than 128 cells: their vertices have no 16-bit index.
     pub fn of_vertices(
-        layout: &Layout,
+        layout: &PatchLayout,
         corner: Vertex,
         triangles: impl IntoIterator<Item = [Vertex; 3]>,
     ) -> Self {
@@ -54,8 +54,8 @@ impl PatchList {
     ///
     /// # Panics
     /// Where patches are larger than 128 cells: their vertices have no 16-bit index.
-    pub fn bintree(ground: Ground<'_>, active: &ActiveSet, corner: Vertex) -> Self {
-        let block = Block::of(ground.layout).expect(SHORT);
+    pub fn bintree(ground: PatchedGround<'_>, active: &ActiveSet, corner: Vertex) -> Self {
+        let block = VertexBlock::of(ground.layout).expect(SHORT);
         let is_drawn = |triangle: LocalTriangle| {
             drawn_posts(ground, triangle.map(|index| block.vertex(corner, index))).is_some()
         };
@@ -65,7 +65,7 @@ impl PatchList {
     }
 
     /// The vertex with index `index` in this patch.
-    pub fn vertex(&self, layout: &Layout, index: u16) -> Vertex {
+    pub fn vertex(&self, layout: &PatchLayout, index: u16) -> Vertex {
         let (row, side) = (i32::from(index), layout.patch() + 1);
         self.corner.moved(row % side, row / side)
     }
@@ -80,7 +80,7 @@ impl PatchList {
 ///
 /// # Panics
 /// Where patches are larger than 128 cells.
-pub fn local(layout: &Layout, corner: Vertex, vertex: Vertex) -> u16 {
+pub fn local(layout: &PatchLayout, corner: Vertex, vertex: Vertex) -> u16 {
     let index = (vertex.y - corner.y) * (layout.patch() + 1) + vertex.x - corner.x;
     u16::try_from(index).expect(SHORT)
 }
@@ -89,7 +89,7 @@ pub fn local(layout: &Layout, corner: Vertex, vertex: Vertex) -> u16 {
 mod tests {
     use super::*;
     use crate::roam::displayed::DisplayedTerrain;
-    use crate::terrain::facets::Facets;
+    use crate::terrain::facets::TriangleSurface;
     use crate::terrain::lattice::Lattice;
     use glam::{DVec2, Vec2, Vec3};
     use std::collections::BTreeSet;
@@ -108,12 +108,12 @@ mod tests {
         heights[20 * 45 + 20] = f32::NAN;
         let lattice =
             Arc::new(Lattice::new(DVec2::ZERO, DVec2::splat(4.0), columns, heights).expect("sound"));
-        let layout = Layout::new(columns, rows, 16).expect("sound");
+        let layout = PatchLayout::new(columns, rows, 16).expect("sound");
         let mut active = ActiveSet::new(layout);
         for (x, y) in [(3, 5), (20, 19), (33, 30), (16, 9), (41, 36)] {
             active.activate(Vertex::new(x, y));
         }
-        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
         let mut listed = BTreeSet::new();
         for corner in layout.patches() {
             let list = PatchList::bintree(ground, &active, corner);

@@ -13,11 +13,11 @@ use rayon::prelude::*;
 use crate::roam::errors::ErrorMap;
 use crate::roam::errors::midpoint::midpoint_error_at;
 use crate::roam::errors::scan::larger;
-use crate::roam::field::{Field, FieldRow};
-use crate::roam::graph::{Kind, Vertex};
-use crate::roam::ground::Ground;
-use crate::roam::layout::Layout;
-use crate::roam::levels::{Beside, PassRow, Rows, both_sides, for_rows};
+use crate::roam::field::{FieldRow, HeightField};
+use crate::roam::graph::{Vertex, VertexKind};
+use crate::roam::ground::PatchedGround;
+use crate::roam::layout::PatchLayout;
+use crate::roam::levels::{ChildRows, PassRow, SweepRows, both_sides, for_rows};
 use crate::roam::roughness::Roughness;
 use crate::view::camera::Camera;
 
@@ -80,7 +80,7 @@ pub fn reach(camera: &Camera, tolerance_px: f32) -> f32 {
 impl OwnRadius<'_> {
     /// The own radius of a vertex of the layout, metres; 0 for patch corners, which are always there.
     #[inline]
-    pub fn of(&self, ground: Ground<'_>, vertex: Vertex) -> f32 {
+    pub fn of(&self, ground: PatchedGround<'_>, vertex: Vertex) -> f32 {
         if ground.layout.is_corner(vertex) {
             return 0.0;
         }
@@ -126,7 +126,7 @@ fn scaled(error: f32, radius: impl FnOnce(f64) -> f64) -> f32 {
 }
 
 /// The largest drawn distance from a vertex to the corners of the triangles it splits, metres.
-fn extent(ground: Ground<'_>, vertex: Vertex) -> f64 {
+fn extent(ground: PatchedGround<'_>, vertex: Vertex) -> f64 {
     let center = ground.position(vertex).as_dvec3();
     let parents = vertex.parents().into_iter().filter(|&parent| ground.layout.contains(parent));
     let corners = vertex.hypotenuse().into_iter().chain(parents);
@@ -135,22 +135,22 @@ fn extent(ground: Ground<'_>, vertex: Vertex) -> f64 {
 
 impl SphereMap {
     /// Nested spheres about own radii `reach · δ`: see [`OwnRadius::Plain`].
-    pub fn plain(ground: Ground<'_>, errors: &ErrorMap, reach: f32) -> Self {
+    pub fn plain(ground: PatchedGround<'_>, errors: &ErrorMap, reach: f32) -> Self {
         Self::of(ground, &OwnRadius::Plain { errors, reach })
     }
 
     /// Nested spheres about own radii `k · reach · δ`: see [`OwnRadius::Constrained`].
-    pub fn constrained(ground: Ground<'_>, reach: f32, roughness: &Roughness) -> Self {
+    pub fn constrained(ground: PatchedGround<'_>, reach: f32, roughness: &Roughness) -> Self {
         Self::of(ground, &OwnRadius::Constrained { reach, roughness })
     }
 
     /// Nested spheres that keep a tolerance, from exact errors: see [`OwnRadius::Bounding`].
-    pub fn bounding(ground: Ground<'_>, errors: &ErrorMap, reach: f32) -> Self {
+    pub fn bounding(ground: PatchedGround<'_>, errors: &ErrorMap, reach: f32) -> Self {
         Self::of(ground, &OwnRadius::Bounding { errors, reach })
     }
 
     /// Nested spheres about the given own radii; in parallel, the same for any number of threads.
-    pub fn of(ground: Ground<'_>, own: &OwnRadius<'_>) -> Self {
+    pub fn of(ground: PatchedGround<'_>, own: &OwnRadius<'_>) -> Self {
         let columns = ground.layout.columns();
         let mut radii = vec![0.0; ground.layout.vertex_count()];
         radii.par_chunks_mut(columns).enumerate().for_each(|(y, row)| {
@@ -174,15 +174,15 @@ impl SphereMap {
     ///
     /// # Panics
     /// Where there is not one radius a vertex.
-    pub fn nested(ground: Ground<'_>, own: Vec<f32>) -> Self {
+    pub fn nested(ground: PatchedGround<'_>, own: Vec<f32>) -> Self {
         assert_eq!(own.len(), ground.layout.vertex_count(), "one radius a vertex");
-        let (mut radii, layout, field) = (own, ground.layout, Field::of(ground));
+        let (mut radii, layout, field) = (own, ground.layout, HeightField::of(ground));
         let columns = layout.columns();
         let mut step = 1;
         while step < layout.patch() as usize {
             if step > 1 {
                 let half = step / 2;
-                for_rows(&mut radii, columns, half, Rows::Even, |y, row, beside| {
+                for_rows(&mut radii, columns, half, SweepRows::Even, |y, row, beside| {
                     let nest = Nest::of(&field, y, both_sides(y, half, layout.rows()), beside);
                     let first = if (y / step).is_multiple_of(2) { step } else { 0 };
                     for x in (first..columns).step_by(2 * step) {
@@ -190,7 +190,7 @@ impl SphereMap {
                     }
                 });
             }
-            for_rows(&mut radii, columns, step, Rows::Odd, |y, row, beside| {
+            for_rows(&mut radii, columns, step, SweepRows::Odd, |y, row, beside| {
                 let nest = Nest::of(&field, y, [y - step, y + step], beside);
                 for x in (step..columns).step_by(2 * step) {
                     row[x] = larger(row[x], nest.about_center(step, x, row));
@@ -203,7 +203,7 @@ impl SphereMap {
 
     /// The radius of a vertex's sphere, metres.
     #[inline]
-    pub fn at(&self, layout: &Layout, vertex: Vertex) -> f32 {
+    pub fn at(&self, layout: &PatchLayout, vertex: Vertex) -> f32 {
         self.radii[layout.index(vertex)]
     }
 
@@ -216,7 +216,7 @@ impl SphereMap {
     ///
     /// # Errors
     /// A sentence naming the first pair where it does not.
-    pub fn check(&self, ground: Ground<'_>) -> Result<(), String> {
+    pub fn check(&self, ground: PatchedGround<'_>) -> Result<(), String> {
         let layout = ground.layout;
         for index in 0..layout.vertex_count() {
             let vertex = Vertex::new((index % layout.columns()) as i32, (index / layout.columns()) as i32);
@@ -241,8 +241,8 @@ impl SphereMap {
     /// shall be; adds the vertices whose radius changed to `changed`.
     pub(in crate::roam) fn renew_row(
         &mut self,
-        ground: Ground<'_>,
-        field: &Field<'_>,
+        ground: PatchedGround<'_>,
+        field: &HeightField<'_>,
         row: PassRow,
         own: &OwnRadius<'_>,
         changed: &mut Vec<Vertex>,
@@ -264,13 +264,13 @@ impl SphereMap {
     #[inline]
     fn put_row(
         &mut self,
-        layout: &Layout,
-        field: &Field<'_>,
+        layout: &PatchLayout,
+        field: &HeightField<'_>,
         row: PassRow,
         own: impl Fn(usize) -> f32,
         changed: &mut Vec<Vertex>,
     ) {
-        let Beside { here, south, north } = row.of(&mut self.radii, layout);
+        let ChildRows { here, south, north } = row.of(&mut self.radii, layout);
         let nest = Nest::of(field, row.y, row.child_rows(layout.rows()), [south, north]);
         let mut put = |here: &mut [f32], x: usize, held: f32| {
             let radius = larger(own(x), held);
@@ -281,7 +281,7 @@ impl SphereMap {
         let reach = row.pass.child_reach();
         if row.pass.is_finest() {
             row.columns().for_each(|x| put(here, x, 0.0));
-        } else if row.pass.kind == Kind::Center {
+        } else if row.pass.kind == VertexKind::Center {
             row.columns().for_each(|x| put(here, x, nest.about_center(reach, x, here)));
         } else {
             row.columns().for_each(|x| put(here, x, nest.about_edge(reach, x)));
@@ -297,7 +297,7 @@ struct Nest<'a> {
 }
 
 impl<'a> Nest<'a> {
-    fn of(field: &Field<'a>, y: usize, beside: [usize; 2], radii: [&'a [f32]; 2]) -> Self {
+    fn of(field: &HeightField<'a>, y: usize, beside: [usize; 2], radii: [&'a [f32]; 2]) -> Self {
         Self { here: field.row(y), beside: beside.map(|y| field.row(y)), radii }
     }
 

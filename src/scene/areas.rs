@@ -8,7 +8,7 @@ use glam::DVec2;
 use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::{Color, Document};
-use crate::description::features::Area;
+use crate::description::features::AreaTable;
 use crate::description::words::{Border, Cover};
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
@@ -16,9 +16,9 @@ use crate::geom::rect::Rect;
 use crate::ribbon::area;
 use crate::ribbon::border::{Dashes, border};
 use crate::ribbon::plan::PlanMesh;
-use crate::ribbon::texture::Surface;
+use crate::ribbon::texture::RibbonSurface;
 use crate::ribbon::texture::cover::{border_color, cover_length_m};
-use crate::scene::collected::Collected;
+use crate::scene::collected::SceneBuilder;
 use crate::scene::kind::FeatureKind;
 use crate::scene::near::Clipped;
 use crate::scene::sources::{Sourced, Sources};
@@ -33,7 +33,7 @@ pub fn lay(
     document: &Document,
     sources: &Sources<'_>,
     extent: &Rect,
-    collected: &mut Collected,
+    collected: &mut SceneBuilder,
 ) -> Result<(), Diagnostic> {
     for table in &document.areas {
         let (mut bare, mut off) = (0, 0);
@@ -42,7 +42,7 @@ pub fn lay(
                 bare += 1;
                 continue;
             };
-            let Some(patch) = Patch::of(table, cover, &shape, extent) else {
+            let Some(patch) = AreaPatch::of(table, cover, &shape, extent) else {
                 off += 1;
                 continue;
             };
@@ -55,7 +55,7 @@ pub fn lay(
     Ok(())
 }
 
-fn note(table: &Area, why: &str, count: usize, collected: &mut Collected) {
+fn note(table: &AreaTable, why: &str, count: usize, collected: &mut SceneBuilder) {
     if count > 0 {
         let what = table.name.as_ref().map(|name| format!(" of '{name}'")).unwrap_or_default();
         let noun = FeatureKind::Area.noun(count);
@@ -64,16 +64,16 @@ fn note(table: &Area, why: &str, count: usize, collected: &mut Collected) {
 }
 
 /// One area, ready to be laid.
-struct Patch {
+struct AreaPatch {
     fill: PlanMesh,
     line: PlanMesh,
     cover: Cover,
     tint: Srgba,
 }
 
-impl Patch {
+impl AreaPatch {
     /// `None` where nothing of it lies on the ground.
-    fn of(table: &Area, cover: Cover, shape: &Polygon, extent: &Rect) -> Option<Self> {
+    fn of(table: &AreaTable, cover: Cover, shape: &Polygon, extent: &Rect) -> Option<Self> {
         if !Rect::around(shape.exterior.iter().copied()).meets(extent) {
             return None;
         }
@@ -93,11 +93,11 @@ impl Patch {
     }
 
     /// Lays the area, and its border over it.
-    fn lay(self, feature: FeatureId, collected: &mut Collected) {
-        collected.lay_tinted(self.fill, (Surface::Cover(self.cover), self.tint), feature);
+    fn lay(self, feature: FeatureId, collected: &mut SceneBuilder) {
+        collected.lay_tinted(self.fill, (RibbonSurface::Cover(self.cover), self.tint), feature);
         if !self.line.triangles.is_empty() {
             let color = multiplied(border_color(self.cover), self.tint);
-            collected.lay_tinted(self.line, (Surface::Border, color), feature);
+            collected.lay_tinted(self.line, (RibbonSurface::Border, color), feature);
         }
     }
 }
@@ -111,7 +111,7 @@ fn texture_m(cover: Cover, border_width_m: f64) -> f64 {
 }
 
 /// The stated border, or the cover's own.
-fn border_of(table: &Area, cover: Cover) -> Border {
+fn border_of(table: &AreaTable, cover: Cover) -> Border {
     let own = if cover == Cover::Restricted { Border::Solid } else { Border::None };
     table.border.as_ref().map_or(own, |border| *border.get_ref())
 }

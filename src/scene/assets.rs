@@ -161,10 +161,10 @@ impl Assets {
     ///
     /// # Errors
     /// As [`Self::resolve`].
-    pub fn beside(&self, name: &str) -> Result<Beside<'_>, AssetError> {
+    pub fn beside(&self, name: &str) -> Result<SiblingFiles<'_>, AssetError> {
         let model = self.resolve(name)?;
         let folder = model.parent().unwrap_or(&self.folder).to_path_buf();
-        Ok(Beside { assets: self, folder })
+        Ok(SiblingFiles { assets: self, folder })
     }
 
     fn resolve_from(&self, folder: &Path, name: &str) -> Result<PathBuf, AssetError> {
@@ -211,12 +211,12 @@ impl Assets {
 
 /// The files beside a model: its textures, buffers and material libraries.
 #[derive(Clone, Debug)]
-pub struct Beside<'a> {
+pub struct SiblingFiles<'a> {
     assets: &'a Assets,
     folder: PathBuf,
 }
 
-impl Beside<'_> {
+impl SiblingFiles<'_> {
     /// Where the file that the model calls `name` is.
     ///
     /// Tried in this order: as named; the same in another case, folder by folder, since many models were made
@@ -257,7 +257,7 @@ impl Beside<'_> {
     }
 }
 
-impl Companions for Beside<'_> {
+impl Companions for SiblingFiles<'_> {
     fn load(&self, name: &str) -> Result<Vec<u8>, String> {
         let bytes = self.resolve(name).and_then(|path| self.assets.read_resolved(path));
         bytes.map_err(|error| match std::error::Error::source(&error) {

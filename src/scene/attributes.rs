@@ -5,15 +5,15 @@ use std::sync::Arc;
 
 use toml::Spanned;
 
-use crate::description::expression::{self, Choice, Expression, Quantity};
+use crate::description::expression::{self, ComputedWord, Expression, Quantity};
 use crate::description::features::Scalar;
 use crate::description::words::Word;
-use crate::vector::feature::Layer;
+use crate::vector::feature::VectorLayer;
 
 /// The properties of one feature; none where it stands in the scene file itself.
 #[derive(Clone, Debug, Default)]
 pub struct Attributes {
-    of: Option<(Arc<Layer>, usize)>,
+    of: Option<(Arc<VectorLayer>, usize)>,
 }
 
 /// How often a key's expression gave nothing and its default was taken, by key and default.
@@ -21,7 +21,7 @@ pub type Defaulted = BTreeMap<(&'static str, String), usize>;
 
 impl Attributes {
     /// Those of the feature with this place in the layer.
-    pub fn new(layer: Arc<Layer>, feature: usize) -> Self {
+    pub fn new(layer: Arc<VectorLayer>, feature: usize) -> Self {
         Self { of: Some((layer, feature)) }
     }
 
@@ -66,7 +66,7 @@ impl Attributes {
     }
 
     /// The word that the scene file states; `None` where it states none, or the properties give none.
-    pub fn word<W: Word>(&self, stated: Option<&Spanned<Choice<W>>>) -> Option<W> {
+    pub fn word<W: Word>(&self, stated: Option<&Spanned<ComputedWord<W>>>) -> Option<W> {
         stated?.get_ref().word(&|name| self.get(name))
     }
 

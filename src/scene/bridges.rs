@@ -16,20 +16,20 @@ use std::collections::BTreeSet;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::geom::rect::Rect;
-use crate::ribbon::texture::Surface;
-use crate::scene::collected::Collected;
+use crate::ribbon::texture::RibbonSurface;
+use crate::scene::collected::SceneBuilder;
 use crate::scene::kind::{Coat, FeatureKind, Solid};
-use crate::scene::report::{Cell, Column};
-use crate::scene::roads::centreline::{Carried, Centreline};
-use crate::scene::roads::chains::{self, Chain, End, Link};
-use crate::scene::roads::levels::{self, Run, Site};
-use crate::scene::roads::spans::{self, Place, Span};
+use crate::scene::report::{ReportCell, ReportColumn};
+use crate::scene::roads::centreline::{Centreline, Support};
+use crate::scene::roads::chains::{self, ChainEnd, SpanChain, SpanLink};
+use crate::scene::roads::levels::{self, ChainRun, Site};
+use crate::scene::roads::spans::{self, PointKey, RoadSpan};
 use crate::scene::sources::Sources;
 use crate::structure::bridge::{self, Across, BridgeOptions, magnified};
-use crate::structure::deck::Course;
-use crate::structure::deck_profile::{DeckProfile, Floor};
+use crate::structure::deck::DeckCourse;
+use crate::structure::deck_profile::{ClearancePoint, DeckProfile};
 use crate::structure::tunnel::Portal;
-use crate::terrain::facets::Facet;
+use crate::terrain::facets::SurfaceTriangle;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::deck::Deck;
 
@@ -52,19 +52,19 @@ const ABUTMENT_M: f64 = 1.5;
 const LONGEST_ABUTMENT: f64 = 0.25;
 
 /// What the report says of bridges and tunnels.
-const TABLE: (&str, &[Column]) = (
+const TABLE: (&str, &[ReportColumn]) = (
     "bridges and tunnels",
     &[
-        Column { name: "name", unit: "" },
-        Column { name: "kind", unit: "" },
-        Column { name: "by", unit: "" },
-        Column { name: "length", unit: "m" },
-        Column { name: "greatest height above ground", unit: "m" },
-        Column { name: "greatest depth below ground", unit: "m" },
-        Column { name: "steepest grade", unit: "%" },
-        Column { name: "piers", unit: "" },
-        Column { name: "portals", unit: "" },
-        Column { name: "lowest clearance", unit: "m" },
+        ReportColumn { name: "name", unit: "" },
+        ReportColumn { name: "kind", unit: "" },
+        ReportColumn { name: "by", unit: "" },
+        ReportColumn { name: "length", unit: "m" },
+        ReportColumn { name: "greatest height above ground", unit: "m" },
+        ReportColumn { name: "greatest depth below ground", unit: "m" },
+        ReportColumn { name: "steepest grade", unit: "%" },
+        ReportColumn { name: "piers", unit: "" },
+        ReportColumn { name: "portals", unit: "" },
+        ReportColumn { name: "lowest clearance", unit: "m" },
     ],
 );
 
@@ -78,7 +78,7 @@ pub fn build(
     sources: &Sources<'_>,
     (lattice, exaggeration): (&Lattice, f32),
     roads: &mut [Centreline],
-    collected: &mut Collected,
+    collected: &mut SceneBuilder,
 ) -> Result<(), Diagnostic> {
     let extent = lattice.extent();
     let spans = spans::collect(document, sources, roads, &extent, collected)?;
@@ -90,24 +90,24 @@ pub fn build(
     let site = Site { lattice, water: &water, exaggeration };
     let chains = chains::join(&spans, roads);
     let runs = levels::settle(&spans, &chains, roads, &site);
-    let mouths: BTreeSet<Place> = spans
+    let mouths: BTreeSet<PointKey> = spans
         .iter()
-        .filter(|span| span.carried == Carried::Tunnel)
+        .filter(|span| span.carried == Support::Tunnel)
         .flat_map(|span| [0, 1].map(|end| spans::place(span.end(end))))
         .collect();
-    let mut bridges: Vec<(Built<'_>, &Link, BridgeOptions)> = Vec::new();
+    let mut bridges: Vec<(BuiltChain<'_>, &SpanLink, BridgeOptions)> = Vec::new();
     for (chain, run) in chains.iter().zip(&runs) {
         let Some(run) = run else {
             collected.notes.push(format!("{} left out: no ground lies along it", called(&spans, chain)));
             continue;
         };
-        let built = Built { spans: &spans, chain, run, site: &site, mouths: &mouths };
+        let built = BuiltChain { spans: &spans, chain, run, site: &site, mouths: &mouths };
         match spans[chain.links[0].span].carried {
-            Carried::Bridge => {
+            Support::Bridge => {
                 bridges.extend(built.planned(&extent).map(|(link, options)| (built, link, options)))
             }
-            Carried::Tunnel => built.tunnel(&extent, roads, collected),
-            Carried::Ground => {}
+            Support::Tunnel => built.tunnel(&extent, roads, collected),
+            Support::Ground => {}
         }
     }
     let decks = bridges.iter().flat_map(|(built, link, options)| built.deck(link, options));
@@ -119,9 +119,10 @@ pub fn build(
     Ok(())
 }
 
-fn check_piers(document: &Document, spans: &[Span]) -> Result<(), Diagnostic> {
-    let wanted = |span: &&Span| span.line.length() / span.pier_spacing_m.unwrap_or(levels::PIER_SPACING_M);
-    let bridges = spans.iter().filter(|span| span.carried == Carried::Bridge);
+fn check_piers(document: &Document, spans: &[RoadSpan]) -> Result<(), Diagnostic> {
+    let wanted =
+        |span: &&RoadSpan| span.line.length() / span.pier_spacing_m.unwrap_or(levels::PIER_SPACING_M);
+    let bridges = spans.iter().filter(|span| span.carried == Support::Bridge);
     let count: f64 = bridges.clone().map(|span| wanted(&span)).sum();
     let most = bridges.max_by(|a, b| wanted(a).total_cmp(&wanted(b)));
     match most {
@@ -136,35 +137,37 @@ fn check_piers(document: &Document, spans: &[Span]) -> Result<(), Diagnostic> {
 }
 
 /// Where there is water, at height 0.
-fn water(collected: &Collected) -> Result<Deck, String> {
-    let of_water =
-        collected.ribbons.iter().filter(|ribbon| matches!(ribbon.surface, Surface::River | Surface::Lake));
+fn water(collected: &SceneBuilder) -> Result<Deck, String> {
+    let of_water = collected
+        .ribbons
+        .iter()
+        .filter(|ribbon| matches!(ribbon.surface, RibbonSurface::River | RibbonSurface::Lake));
     let corners = of_water.flat_map(|ribbon| ribbon.plan.corners());
-    let facets: Vec<Facet> =
+    let facets: Vec<SurfaceTriangle> =
         corners.map(|corners| corners.map(|corner| corner.at.as_vec2().extend(0.0))).collect();
     Deck::new(&facets).map_err(|error| format!("water under bridges: {error}"))
 }
 
-fn called(spans: &[Span], chain: &Chain) -> String {
+fn called(spans: &[RoadSpan], chain: &SpanChain) -> String {
     let span = &spans[chain.links[0].span];
-    let kind = if span.carried == Carried::Tunnel { "tunnel" } else { "bridge" };
+    let kind = if span.carried == Support::Tunnel { "tunnel" } else { "bridge" };
     if span.name.is_empty() { format!("a {kind} without a name") } else { format!("{kind} '{}'", span.name) }
 }
 
 /// A chain with all that is known of it.
 #[derive(Clone, Copy)]
-struct Built<'a> {
-    spans: &'a [Span],
-    chain: &'a Chain,
-    run: &'a Run,
+struct BuiltChain<'a> {
+    spans: &'a [RoadSpan],
+    chain: &'a SpanChain,
+    run: &'a ChainRun,
     site: &'a Site<'a>,
     /// Where tunnels end.
-    mouths: &'a BTreeSet<Place>,
+    mouths: &'a BTreeSet<PointKey>,
 }
 
-impl<'a> Built<'a> {
+impl<'a> BuiltChain<'a> {
     /// How the bridges of the chain are to be built, one a span.
-    fn planned(self, extent: &Rect) -> impl Iterator<Item = (&'a Link, BridgeOptions)> {
+    fn planned(self, extent: &Rect) -> impl Iterator<Item = (&'a SpanLink, BridgeOptions)> {
         let widest =
             self.chain.links.iter().map(|link| self.spans[link.span].options.width_m).fold(0.0, f64::max);
         let abutments = [0, 1].map(|end| self.abutment_m(end, widest, extent));
@@ -196,9 +199,9 @@ impl<'a> Built<'a> {
     }
 
     /// The course and the elevations of a bridge.
-    fn course(&self, link: &Link) -> (Course<'a>, DeckProfile) {
+    fn course(&self, link: &SpanLink) -> (DeckCourse<'a>, DeckProfile) {
         let span = &self.spans[link.span];
-        let course = Course {
+        let course = DeckCourse {
             line: &span.line,
             beyond: span.beyond,
             width_m: span.options.width_m,
@@ -207,12 +210,17 @@ impl<'a> Built<'a> {
         (course, self.run.profile.part(link.reach_m[0], link.reach_m[1]))
     }
 
-    fn deck(&self, link: &Link, options: &BridgeOptions) -> Vec<Facet> {
+    fn deck(&self, link: &SpanLink, options: &BridgeOptions) -> Vec<SurfaceTriangle> {
         let (course, profile) = self.course(link);
         bridge::deck(&course, &profile, options, &|at| self.site.ground_m(at))
     }
 
-    fn bridge(&self, (link, options): (&Link, &BridgeOptions), decks: &Deck, collected: &mut Collected) {
+    fn bridge(
+        &self,
+        (link, options): (&SpanLink, &BridgeOptions),
+        decks: &Deck,
+        collected: &mut SceneBuilder,
+    ) {
         let span = &self.spans[link.span];
         let (course, profile) = self.course(link);
         let built = bridge::build(&course, &profile, options, (&|at| self.site.ground_m(at), decks));
@@ -228,7 +236,7 @@ impl<'a> Built<'a> {
         let length_m = self.chain.length_m;
         let at = |from_end: f64| if end == 0 { from_end } else { length_m - from_end };
         let leaves = !extent.grown(-1e-3).contains(self.chain.at(self.spans, at(0.0)));
-        if matches!(self.chain.ends[end], End::Onward(_)) || leaves {
+        if matches!(self.chain.ends[end], ChainEnd::Onward(_)) || leaves {
             return None;
         }
         let by = magnified(width_m);
@@ -272,15 +280,15 @@ impl<'a> Built<'a> {
     }
 
     /// The portals of the chain, or a road on the ground in its place.
-    fn tunnel(&self, extent: &Rect, roads: &mut [Centreline], collected: &mut Collected) {
-        let cover = |floor: &Floor| floor.level_m - self.run.profile.level_m(floor.station_m);
+    fn tunnel(&self, extent: &Rect, roads: &mut [Centreline], collected: &mut SceneBuilder) {
+        let cover = |floor: &ClearancePoint| floor.level_m - self.run.profile.level_m(floor.station_m);
         let cover_m = self.run.ground.iter().map(cover).fold(f64::NEG_INFINITY, f64::max);
         let is_shallow = cover_m < LEAST_COVER_M;
-        let open_ends = !self.chain.ends.iter().any(|end| matches!(end, End::Onward(_)));
+        let open_ends = !self.chain.ends.iter().any(|end| matches!(end, ChainEnd::Onward(_)));
         if is_shallow && open_ends && self.chain.length_m <= LONGEST_UNDERPASS_M {
             for link in &self.chain.links {
                 if let Some(road) = self.spans[link.span].road {
-                    roads[road].carried = Carried::Ground;
+                    roads[road].carried = Support::Ground;
                 }
                 self.tell(link, (None, Some(0)), self.run.profile.steepest(), collected);
             }
@@ -303,13 +311,13 @@ impl<'a> Built<'a> {
     }
 
     /// The portal at an end of a span, where it comes out of a hill there.
-    fn portal(&self, link: &Link, end: usize, extent: &Rect) -> Option<Portal> {
+    fn portal(&self, link: &SpanLink, end: usize, extent: &Rect) -> Option<Portal> {
         let span = &self.spans[link.span];
         let station = link.reach_m[end];
         let corner = if station <= 0.0 { 0 } else { 1 };
         let is_chain_end = station <= 0.0 || station >= self.chain.length_m;
         let at = span.end(end);
-        if !is_chain_end || self.chain.ends[corner] != End::Ground || !extent.grown(-1e-3).contains(at) {
+        if !is_chain_end || self.chain.ends[corner] != ChainEnd::Ground || !extent.grown(-1e-3).contains(at) {
             return None;
         }
         let points = span.line.points();
@@ -327,10 +335,10 @@ impl<'a> Built<'a> {
     /// Adds a span's row to the report; `counts` are its piers and portals.
     fn tell(
         &self,
-        link: &Link,
+        link: &SpanLink,
         counts: (Option<usize>, Option<usize>),
         grade: f64,
-        collected: &mut Collected,
+        collected: &mut SceneBuilder,
     ) {
         let span = &self.spans[link.span];
         let (low, high) = (link.reach_m[0].min(link.reach_m[1]), link.reach_m[0].max(link.reach_m[1]));
@@ -349,23 +357,23 @@ impl<'a> Built<'a> {
                 passage.reach_m.map(|at| self.run.profile.level_m(at) - depth_m - passage.level_m)
             })
             .reduce(f64::min);
-        let count = |count: Option<usize>| count.map_or(Cell::Empty, Cell::Count);
+        let count = |count: Option<usize>| count.map_or(ReportCell::Empty, ReportCell::Count);
         let kind = match (span.carried, counts.1) {
-            (Carried::Tunnel, Some(0)) if -least < LEAST_COVER_M => "underpass",
-            (Carried::Tunnel, _) => "tunnel",
+            (Support::Tunnel, Some(0)) if -least < LEAST_COVER_M => "underpass",
+            (Support::Tunnel, _) => "tunnel",
             _ => "bridge",
         };
         let row = vec![
-            Cell::Text(span.name.clone()),
-            Cell::Text(kind.into()),
-            Cell::Text(span.by.word().into()),
-            Cell::Number(span.line.length()),
-            Cell::Number(most),
-            Cell::Number(-least),
-            Cell::Number(grade * 100.0),
+            ReportCell::Text(span.name.clone()),
+            ReportCell::Text(kind.into()),
+            ReportCell::Text(span.by.word().into()),
+            ReportCell::Number(span.line.length()),
+            ReportCell::Number(most),
+            ReportCell::Number(-least),
+            ReportCell::Number(grade * 100.0),
             count(counts.0),
             count(counts.1),
-            clearance.map_or(Cell::Empty, Cell::Number),
+            clearance.map_or(ReportCell::Empty, ReportCell::Number),
         ];
         collected.report.add(TABLE, row);
     }

@@ -7,25 +7,25 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::roam::culling::PatchHeights;
 use crate::roam::errors::ErrorMap;
-use crate::roam::ground::Ground;
-use crate::roam::layout::{DEFAULT_PATCH, Layout};
+use crate::roam::ground::PatchedGround;
+use crate::roam::layout::{DEFAULT_PATCH, PatchLayout};
 use crate::scene::areas;
 use crate::scene::assets::Assets;
 use crate::scene::attributes;
 use crate::scene::bridges;
 use crate::scene::buildings;
-use crate::scene::collected::Collected;
+use crate::scene::collected::SceneBuilder;
 use crate::scene::fences;
 use crate::scene::ground;
 use crate::scene::kind::{Scene, Terrain};
 use crate::scene::models;
-use crate::scene::place::{Places, parse_crs};
+use crate::scene::place::{WorldFrame, parse_crs};
 use crate::scene::roads::{centreline, conform, network};
 use crate::scene::sources::Sources;
 use crate::scene::style;
 use crate::scene::views;
 use crate::scene::water::{lakes, rivers};
-use crate::terrain::finest::Finest;
+use crate::terrain::finest::FullResolution;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::deck::Deck;
 use crate::terrain::query::service::HeightService;
@@ -42,7 +42,7 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
 
     step("laying features");
     let sources = Sources::new(&places, assets);
-    let mut collected = Collected { notes: loaded.notes, ..Collected::default() };
+    let mut collected = SceneBuilder { notes: loaded.notes, ..SceneBuilder::default() };
     let extent = lattice.extent();
     lakes::lay(document, &sources, &mut lattice, &mut collected)?;
     rivers::lay(document, &sources, &mut lattice, &mut collected)?;
@@ -53,10 +53,10 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     let lines = fences::lay_out(document, &sources, &mut lattice, &mut collected)?;
     bridges::build(document, &sources, (&lattice, places.exaggeration), &mut roads, &mut collected)?;
     network::lay(&roads, &extent, &mut collected);
-    let finest = Finest { lattice: &lattice, exaggeration: places.exaggeration };
+    let finest = FullResolution { lattice: &lattice, exaggeration: places.exaggeration };
     fences::set(&lines, finest, &mut collected);
     buildings::raise(document, &plots, finest, &mut collected);
-    collected.take_apart();
+    collected.resolve_overlaps();
 
     step("loading models");
     let (models, placements) =
@@ -115,8 +115,8 @@ fn places<'a>(
     document: &'a Document,
     crs: &'a crate::geom::crs::Crs,
     lattice: &Lattice,
-) -> Result<Places<'a>, Diagnostic> {
-    Ok(Places {
+) -> Result<WorldFrame<'a>, Diagnostic> {
+    Ok(WorldFrame {
         document,
         crs,
         points_crs: parse_crs(document, document.points_crs.as_ref())?.unwrap_or_else(|| crs.clone()),
@@ -134,14 +134,14 @@ fn exaggeration(document: &Document) -> f32 {
 }
 
 fn terrain(document: &Document, lattice: Lattice) -> Result<Terrain, Diagnostic> {
-    let layout = Layout::new(lattice.columns(), lattice.rows(), DEFAULT_PATCH).ok_or_else(|| {
+    let layout = PatchLayout::new(lattice.columns(), lattice.rows(), DEFAULT_PATCH).ok_or_else(|| {
         let size = format!("{}×{} posts", lattice.columns(), lattice.rows());
         document.error(&document.terrain.dem, format!("an elevation model of {size} is too large"))
     })?;
     let exaggeration = exaggeration(document);
     Ok(Terrain {
         errors: ErrorMap::exact(&lattice, &layout),
-        patch_heights: PatchHeights::new(Ground { lattice: &lattice, layout: &layout, exaggeration }),
+        patch_heights: PatchHeights::new(PatchedGround { lattice: &lattice, layout: &layout, exaggeration }),
         lattice: Arc::new(lattice),
         layout,
         exaggeration,

@@ -13,26 +13,26 @@ use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::{Color, Document};
 use crate::description::expression::as_number;
-use crate::description::features::{Building, Scalar};
-use crate::description::words::{BaseRule, Roof as RoofWord, Word};
+use crate::description::features::{BuildingTable, Scalar};
+use crate::description::words::{BaseRule, RoofShape as RoofWord, Word};
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
 use crate::geom::rect::Rect;
 use crate::scene::attributes::Attributes;
 use crate::scene::building_colors::color_named;
-use crate::scene::collected::Collected;
-use crate::scene::kind::{Coat, FeatureKind, Solid, Standing};
-use crate::scene::report::{Cell, Column};
+use crate::scene::collected::SceneBuilder;
+use crate::scene::kind::{Coat, FeatureKind, FeatureSolid, Solid};
+use crate::scene::report::{ReportCell, ReportColumn};
 use crate::scene::sources::{Sourced, Sources};
-use crate::structure::building::{Levels, Paint, raise as raised};
-use crate::structure::building_footing::Footing;
-use crate::structure::building_footprint::Footprint;
-use crate::structure::roof::{Roof, roof};
-use crate::structure::upright::Upright;
+use crate::structure::building::{BuildingLevels, Paint, raise as raised};
+use crate::structure::building_footing::WallFooting;
+use crate::structure::building_footprint::BuildingFootprint;
+use crate::structure::roof::{UnitRoof, roof};
+use crate::structure::upright::DrapedSolid;
 use crate::terrain::earthwork;
-use crate::terrain::finest::Finest;
+use crate::terrain::finest::FullResolution;
 use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::query::pieces::Region;
+use crate::terrain::query::pieces::GridRegion;
 use crate::terrain::query::zone::zone;
 
 /// The tallest that a property may say, metres; as `height` in a scene file.
@@ -48,14 +48,14 @@ const FOUNDATION_M: f64 = 1.0;
 pub struct Plot {
     table: usize,
     attributes: Attributes,
-    parts: Vec<Footprint>,
+    parts: Vec<BuildingFootprint>,
     pad_m: Option<f64>,
     feature: FeatureId,
 }
 
 /// How often what happened to buildings that a user should know.
 #[derive(Default)]
-struct Tally {
+struct BuildingTally {
     off: usize,
     empty: usize,
     mended: usize,
@@ -64,7 +64,7 @@ struct Tally {
     raised_whole: usize,
 }
 
-impl Tally {
+impl BuildingTally {
     fn tell(&self, notes: &mut Vec<String>) {
         let sentences = [
             (self.off, "left out: not wholly on the elevation model's data"),
@@ -80,13 +80,13 @@ impl Tally {
     }
 }
 
-const PADS: (&str, &[Column]) = (
+const PADS: (&str, &[ReportColumn]) = (
     "building pads",
     &[
-        Column { name: "name", unit: "" },
-        Column { name: "level", unit: "m" },
-        Column { name: "cut", unit: "m3" },
-        Column { name: "fill", unit: "m3" },
+        ReportColumn { name: "name", unit: "" },
+        ReportColumn { name: "level", unit: "m" },
+        ReportColumn { name: "cut", unit: "m3" },
+        ReportColumn { name: "fill", unit: "m3" },
     ],
 );
 
@@ -98,13 +98,13 @@ pub fn lay_out(
     document: &Document,
     sources: &Sources<'_>,
     lattice: &mut Lattice,
-    collected: &mut Collected,
+    collected: &mut SceneBuilder,
 ) -> Result<Vec<Plot>, Diagnostic> {
-    let (mut plots, mut tally) = (Vec::new(), Tally::default());
+    let (mut plots, mut tally) = (Vec::new(), BuildingTally::default());
     for (table, building) in document.buildings.iter().enumerate() {
         let wants_pad = base_rule(building) == BaseRule::Pad;
         for Sourced { attributes, shape } in sources.polygons(&building.source)? {
-            let parts = Footprint::parts(&shape.exterior, &shape.holes);
+            let parts = BuildingFootprint::parts(&shape.exterior, &shape.holes);
             if parts.is_empty() {
                 tally.empty += 1;
                 continue;
@@ -129,10 +129,10 @@ pub fn lay_out(
 /// pad laid before.
 fn pad(
     lattice: &mut Lattice,
-    parts: &[Footprint],
+    parts: &[BuildingFootprint],
     mean_m: f64,
     name: &str,
-    collected: &mut Collected,
+    collected: &mut SceneBuilder,
 ) -> Option<f64> {
     if parts.iter().any(|part| is_taken(lattice, part)) {
         return None;
@@ -143,13 +143,13 @@ fn pad(
         volumes.cut_m3 += moved.cut_m3;
         volumes.fill_m3 += moved.fill_m3;
     }
-    let numbers = [mean_m, volumes.cut_m3, volumes.fill_m3].map(Cell::Number);
-    collected.report.add(PADS, std::iter::once(Cell::Text(name.to_owned())).chain(numbers).collect());
+    let numbers = [mean_m, volumes.cut_m3, volumes.fill_m3].map(ReportCell::Number);
+    collected.report.add(PADS, std::iter::once(ReportCell::Text(name.to_owned())).chain(numbers).collect());
     Some(f64::from(mean_m as f32))
 }
 
 /// Whether any post of the cells round a footprint is shaped for something already.
-fn is_taken(lattice: &Lattice, footprint: &Footprint) -> bool {
+fn is_taken(lattice: &Lattice, footprint: &BuildingFootprint) -> bool {
     let bounds = Rect::around(footprint.exterior().iter().copied());
     let span = |low: f64, high: f64, posts: u32| {
         let post = |at: f64| at.clamp(0.0, f64::from(posts - 1)) as u32;
@@ -172,13 +172,13 @@ struct GroundUnder {
 impl GroundUnder {
     /// Exact: over all of the finest triangles that the footprints meet. `None` where some lies off the model or has no
     /// data.
-    fn parts(lattice: &Lattice, parts: &[Footprint]) -> Option<Self> {
+    fn parts(lattice: &Lattice, parts: &[BuildingFootprint]) -> Option<Self> {
         let mut under = Self { low_m: f64::INFINITY, mean_m: 0.0, high_m: f64::NEG_INFINITY };
         let (mut area_m2, mut sum) = (0.0, 0.0);
         for part in parts {
             let to_map = |ring: &Vec<DVec2>| ring.iter().map(|at| *at + lattice.origin()).collect();
             let rings: Vec<Vec<DVec2>> = part.rings().iter().map(to_map).collect();
-            let found = zone(lattice, &Region::new(lattice, &rings).ok()?);
+            let found = zone(lattice, &GridRegion::new(lattice, &rings).ok()?);
             let heights = found.heights?;
             if found.no_data_m2 + found.outside_m2 > NO_DATA_SHARE * part.area_m2() {
                 return None;
@@ -196,8 +196,8 @@ impl GroundUnder {
 const NO_DATA_SHARE: f64 = 1e-6;
 
 /// Raises the buildings on the ground as it is now.
-pub fn raise(document: &Document, plots: &[Plot], ground: Finest<'_>, collected: &mut Collected) {
-    let mut tally = Tally::default();
+pub fn raise(document: &Document, plots: &[Plot], ground: FullResolution<'_>, collected: &mut SceneBuilder) {
+    let mut tally = BuildingTally::default();
     for plot in plots {
         let building = &document.buildings[plot.table];
         let Some(under) = GroundUnder::parts(ground.lattice, &plot.parts) else {
@@ -220,11 +220,11 @@ pub fn raise(document: &Document, plots: &[Plot], ground: Finest<'_>, collected:
 
 /// Raises the parts of one building, given the world Z of its base and of the foot of its walls.
 fn raise_parts(
-    building: &Building,
+    building: &BuildingTable,
     plot: &Plot,
     (base_z, foot_z): (f64, f64),
-    collected: &mut Collected,
-    tally: &mut Tally,
+    collected: &mut SceneBuilder,
+    tally: &mut BuildingTally,
 ) {
     let (low_m, height_m) = heights(building, &plot.attributes, collected, tally);
     let wanted = wanted_roof(building, &plot.attributes);
@@ -234,9 +234,9 @@ fn raise_parts(
         replaced |= made.shape != wanted;
         let roof_m = roof_height(building, &plot.attributes, &made, height_m - low_m);
         let top_z = base_z + height_m;
-        let mut levels = Levels { foot_z, base_z, eaves_z: top_z - roof_m, top_z };
+        let mut levels = BuildingLevels { foot_z, base_z, eaves_z: top_z - roof_m, top_z };
         if low_m > 0.0 {
-            levels = Levels { foot_z: base_z + low_m, base_z: base_z + low_m, ..levels };
+            levels = BuildingLevels { foot_z: base_z + low_m, base_z: base_z + low_m, ..levels };
         } else if base_z - foot_z <= FOUNDATION_M + 1e-6 {
             // On its lowest ground no foundation shows, and the plaster goes on down.
             levels.base_z = foot_z;
@@ -246,14 +246,16 @@ fn raise_parts(
         collected.solids.push(Solid { mesh, coat: Coat::Painted, feature: plot.feature });
         if low_m == 0.0 {
             let color = if levels.base_z > foot_z { paint.foundation } else { paint.wall };
-            let footing = Footing { rings: part.rings().to_vec(), foot_z: foot_z as f32, color };
-            collected.uprights.push(Standing { upright: Upright::Footing(footing), feature: plot.feature });
+            let footing = WallFooting { rings: part.rings().to_vec(), foot_z: foot_z as f32, color };
+            collected
+                .uprights
+                .push(FeatureSolid { upright: DrapedSolid::Footing(footing), feature: plot.feature });
         }
     }
     tally.roofs_replaced += usize::from(replaced);
 }
 
-fn base_rule(building: &Building) -> BaseRule {
+fn base_rule(building: &BuildingTable) -> BaseRule {
     building.base.as_ref().map(|base| *base.get_ref()).unwrap_or_default()
 }
 
@@ -267,10 +269,10 @@ fn property(attributes: &Attributes, names: &[&str], (low, high): (f64, f64)) ->
 
 /// How high above its base a building begins, 0 for nearly all, and how high it ends, metres.
 fn heights(
-    building: &Building,
+    building: &BuildingTable,
     attributes: &Attributes,
-    collected: &mut Collected,
-    tally: &mut Tally,
+    collected: &mut SceneBuilder,
+    tally: &mut BuildingTally,
 ) -> (f64, f64) {
     let storeys = |names: &[&str]| property(attributes, names, (0.0, TALLEST_M / defaults::LEVEL_HEIGHT_M));
     let known = property(attributes, &["height"], (0.0, TALLEST_M))
@@ -289,7 +291,7 @@ fn heights(
 }
 
 /// The roof stated, else that of OpenStreetMap's property; half-hipped and the like count as what they are nearest to.
-fn wanted_roof(building: &Building, attributes: &Attributes) -> RoofWord {
+fn wanted_roof(building: &BuildingTable, attributes: &Attributes) -> RoofWord {
     let tagged = || match attributes.get("roof:shape") {
         Some(Scalar::Text(text)) => match text.as_str() {
             "half-hipped" | "mansard" | "side_hipped" => Some(RoofWord::Hipped),
@@ -303,7 +305,7 @@ fn wanted_roof(building: &Building, attributes: &Attributes) -> RoofWord {
 }
 
 /// How much of a building's height is roof, metres.
-fn roof_height(building: &Building, attributes: &Attributes, made: &Roof, height_m: f64) -> f64 {
+fn roof_height(building: &BuildingTable, attributes: &Attributes, made: &UnitRoof, height_m: f64) -> f64 {
     if made.run_m <= 0.0 {
         return 0.0;
     }
@@ -316,7 +318,12 @@ fn roof_height(building: &Building, attributes: &Attributes, made: &Roof, height
     }
 }
 
-fn paint(building: &Building, attributes: &Attributes, part: &Footprint, made: &Roof) -> Paint {
+fn paint(
+    building: &BuildingTable,
+    attributes: &Attributes,
+    part: &BuildingFootprint,
+    made: &UnitRoof,
+) -> Paint {
     let by_place = Paint::by_place(part, made);
     let color = |stated: &Option<Spanned<Color>>, names: [&str; 2]| {
         let tagged = || names.iter().find_map(|name| color_named(&attributes.get(name)?));

@@ -9,31 +9,31 @@ use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::expression::as_number;
-use crate::description::features::{Fence, Scalar};
+use crate::description::features::{FenceTable, Scalar};
 use crate::description::words::FenceKind;
 use crate::draw::list::FeatureId;
 use crate::geom::polyline::Polyline;
 use crate::geom::rect::Rect;
 use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::stroke::{Continuations, StrokeOptions, stroke};
-use crate::ribbon::texture::{Surface, texture_length_m};
+use crate::ribbon::texture::{RibbonSurface, texture_length_m};
 use crate::scene::attributes::Attributes;
-use crate::scene::collected::Collected;
-use crate::scene::kind::{FeatureKind, Standing};
+use crate::scene::collected::SceneBuilder;
+use crate::scene::kind::{FeatureKind, FeatureSolid};
 use crate::scene::near::{self, Clipped};
-use crate::scene::report::{Cell, Column};
+use crate::scene::report::{ReportCell, ReportColumn};
 use crate::scene::sources::Sources;
 use crate::structure::fence::{Posts, rails, spans, stands};
 use crate::structure::hedge::hedge;
 use crate::structure::obstacle::{self, Obstacles};
 use crate::structure::power::{PowerLine, clear};
 use crate::structure::trench::{bare_m, parapets};
-use crate::structure::upright::Upright;
+use crate::structure::upright::DrapedSolid;
 use crate::structure::wall::wall;
 use crate::terrain::brush::Trench;
 use crate::terrain::earthwork::Volumes;
-use crate::terrain::facets::Facets;
-use crate::terrain::finest::Finest;
+use crate::terrain::facets::TriangleSurface;
+use crate::terrain::finest::FullResolution;
 use crate::terrain::lattice::Lattice;
 
 /// The most posts, pylons, obstacles, dashes and lengths of hedge in a scene: a few hundred megabytes of triangles.
@@ -46,7 +46,7 @@ const LEAST_CELLS: f64 = 3.0;
 const BOTTOM: f64 = 0.55;
 
 /// A line with what is to stand along it.
-pub struct Line {
+pub struct FenceLine {
     kind: FenceKind,
     /// Its parts on the elevation model, at least two distinct points each.
     parts: Vec<Vec<DVec2>>,
@@ -77,12 +77,12 @@ fn default_sizes(kind: FenceKind) -> Sizes {
     Sizes { height_m, width_m, spacing_m }
 }
 
-const TRENCHES: (&str, &[Column]) = (
+const TRENCHES: (&str, &[ReportColumn]) = (
     "trenches",
     &[
-        Column { name: "name", unit: "" },
-        Column { name: "length", unit: "m" },
-        Column { name: "cut", unit: "m3" },
+        ReportColumn { name: "name", unit: "" },
+        ReportColumn { name: "length", unit: "m" },
+        ReportColumn { name: "cut", unit: "m3" },
     ],
 );
 
@@ -94,8 +94,8 @@ pub fn lay_out(
     document: &Document,
     sources: &Sources<'_>,
     lattice: &mut Lattice,
-    collected: &mut Collected,
-) -> Result<Vec<Line>, Diagnostic> {
+    collected: &mut SceneBuilder,
+) -> Result<Vec<FenceLine>, Diagnostic> {
     let (mut lines, mut pieces, mut undug) = (Vec::new(), 0.0, 0);
     let extent = lattice.extent();
     for fence in &document.fences {
@@ -124,7 +124,7 @@ pub fn lay_out(
     Ok(lines)
 }
 
-fn too_many(document: &Document, fence: &Fence, kind: FenceKind) -> Diagnostic {
+fn too_many(document: &Document, fence: &FenceTable, kind: FenceKind) -> Diagnostic {
     let what = match kind {
         FenceKind::PowerLine => "pylons",
         FenceKind::Obstacles => "obstacles",
@@ -138,12 +138,12 @@ fn too_many(document: &Document, fence: &Fence, kind: FenceKind) -> Diagnostic {
 }
 
 fn line_of(
-    fence: &Fence,
+    fence: &FenceTable,
     attributes: &Attributes,
     (line, extent): (&Polyline, &Rect),
     feature: FeatureId,
-    collected: &mut Collected,
-) -> Line {
+    collected: &mut SceneBuilder,
+) -> FenceLine {
     let kind = attributes.word(fence.kind.as_ref()).unwrap_or_else(|| tagged_kind(fence, attributes));
     let sizes = default_sizes(kind);
     let tagged = attributes.get("height").as_ref().and_then(as_number).filter(|height| *height > 0.0);
@@ -151,7 +151,7 @@ fn line_of(
     let mut size = |key: &'static str, stated: Option<&_>, default: f64| {
         attributes.number_or((key, stated), default, &mut collected.defaulted)
     };
-    Line {
+    FenceLine {
         kind,
         parts: within(line.points(), extent),
         height_m: size("[[fence]] height", fence.height.as_ref(), tagged.unwrap_or(sizes.height_m)),
@@ -163,7 +163,7 @@ fn line_of(
 }
 
 /// What a line is that the scene file says nothing of, by its properties as OpenStreetMap has them.
-fn tagged_kind(fence: &Fence, attributes: &Attributes) -> FenceKind {
+fn tagged_kind(fence: &FenceTable, attributes: &Attributes) -> FenceKind {
     let text = |name: &str| match attributes.get(name) {
         Some(Scalar::Text(text)) => text,
         _ => String::new(),
@@ -195,7 +195,7 @@ fn within(points: &[DVec2], extent: &Rect) -> Vec<Vec<DVec2>> {
     parts
 }
 
-impl Line {
+impl FenceLine {
     fn length_m(&self) -> f64 {
         let pairs = self.parts.iter().flat_map(|part| part.windows(2));
         pairs.map(|pair| pair[0].distance(pair[1])).sum()
@@ -217,7 +217,7 @@ impl Line {
 }
 
 /// Digs a trench; `false` where the ground's cells are too coarse for it. What is shaped for something else stays.
-fn dig(line: &Line, name: &str, lattice: &mut Lattice, collected: &mut Collected) -> bool {
+fn dig(line: &FenceLine, name: &str, lattice: &mut Lattice, collected: &mut SceneBuilder) -> bool {
     if lattice.cell().max_element() * LEAST_CELLS > line.width_m {
         return false;
     }
@@ -243,14 +243,17 @@ fn dig(line: &Line, name: &str, lattice: &mut Lattice, collected: &mut Collected
             }
         }
     }
-    let cells =
-        vec![Cell::Text(name.to_owned()), Cell::Number(line.length_m()), Cell::Number(volumes.cut_m3)];
+    let cells = vec![
+        ReportCell::Text(name.to_owned()),
+        ReportCell::Number(line.length_m()),
+        ReportCell::Number(volumes.cut_m3),
+    ];
     collected.report.add(TRENCHES, cells);
     true
 }
 
 /// Sets the lines on the ground as it is now: boundaries and the floors of trenches as ribbons, the rest upright.
-pub fn set(lines: &[Line], ground: Finest<'_>, collected: &mut Collected) {
+pub fn set(lines: &[FenceLine], ground: FullResolution<'_>, collected: &mut SceneBuilder) {
     let mut added = 0;
     let extent = ground.lattice.extent();
     for line in lines {
@@ -258,17 +261,17 @@ pub fn set(lines: &[Line], ground: Finest<'_>, collected: &mut Collected) {
             match line.kind {
                 FenceKind::Boundary => {
                     let plan = dashes(points, line, &extent);
-                    collected.lay(plan, Surface::Boundary, line.feature);
+                    collected.lay(plan, RibbonSurface::Boundary, line.feature);
                 }
                 FenceKind::Trench => {
-                    let plan = ribbon(points, bare_m(line.width_m), Surface::Trench, &extent);
-                    collected.lay(plan, Surface::Trench, line.feature);
+                    let plan = ribbon(points, bare_m(line.width_m), RibbonSurface::Trench, &extent);
+                    collected.lay(plan, RibbonSurface::Trench, line.feature);
                 }
                 _ => {}
             }
             let uprights = uprights(points, line, &ground, &mut added);
             let feature = line.feature;
-            collected.uprights.extend(uprights.into_iter().map(|upright| Standing { upright, feature }));
+            collected.uprights.extend(uprights.into_iter().map(|upright| FeatureSolid { upright, feature }));
         }
     }
     if added > 0 {
@@ -278,31 +281,36 @@ pub fn set(lines: &[Line], ground: Finest<'_>, collected: &mut Collected) {
 }
 
 /// What stands along one part of a line; `added` counts pylons that nobody asked for.
-fn uprights(points: &[DVec2], line: &Line, ground: &dyn Facets, added: &mut usize) -> Vec<Upright> {
-    let Line { height_m, width_m, spacing_m, sag, .. } = *line;
+fn uprights(
+    points: &[DVec2],
+    line: &FenceLine,
+    ground: &dyn TriangleSurface,
+    added: &mut usize,
+) -> Vec<DrapedSolid> {
+    let FenceLine { height_m, width_m, spacing_m, sag, .. } = *line;
     match line.kind {
         FenceKind::Fence => {
             let posts = Posts { stands: stands(points, spacing_m), width_m, height_m };
             let [low, high] = rails(points, width_m, height_m);
-            vec![Upright::Posts(posts), Upright::Band(low), Upright::Band(high)]
+            vec![DrapedSolid::Posts(posts), DrapedSolid::Band(low), DrapedSolid::Band(high)]
         }
-        FenceKind::Wall => vec![Upright::Band(wall(points, (width_m, height_m), spacing_m))],
-        FenceKind::Hedge => vec![Upright::Band(hedge(points, (width_m, height_m), spacing_m))],
+        FenceKind::Wall => vec![DrapedSolid::Band(wall(points, (width_m, height_m), spacing_m))],
+        FenceKind::Hedge => vec![DrapedSolid::Band(hedge(points, (width_m, height_m), spacing_m))],
         FenceKind::PowerLine => {
             let (pylons, more) = clear(&stands(points, spacing_m), height_m, ground);
             *added += more;
-            vec![Upright::PowerLine(PowerLine { pylons, height_m, width_m, sag })]
+            vec![DrapedSolid::PowerLine(PowerLine { pylons, height_m, width_m, sag })]
         }
-        FenceKind::Trench => parapets(points, (width_m, height_m), spacing_m).map(Upright::Band).to_vec(),
+        FenceKind::Trench => parapets(points, (width_m, height_m), spacing_m).map(DrapedSolid::Band).to_vec(),
         FenceKind::Obstacles => {
             let stands = obstacle::belt(points, width_m, spacing_m);
-            vec![Upright::Obstacles(Obstacles { stands, height_m })]
+            vec![DrapedSolid::Obstacles(Obstacles { stands, height_m })]
         }
         FenceKind::Boundary => Vec::new(),
     }
 }
 
-fn ribbon(points: &[DVec2], width_m: f64, surface: Surface, extent: &Rect) -> PlanMesh {
+fn ribbon(points: &[DVec2], width_m: f64, surface: RibbonSurface, extent: &Rect) -> PlanMesh {
     let mut clipped = Clipped { plan: PlanMesh::default(), extent };
     if let Some(line) = Polyline::new(points.iter().copied(), 0.0) {
         let texture_length_m = texture_length_m(surface, width_m);
@@ -313,7 +321,7 @@ fn ribbon(points: &[DVec2], width_m: f64, surface: Surface, extent: &Rect) -> Pl
 }
 
 /// A boundary's dashes and dots: in each spacing a dash of a half, and a dot as long as the line is wide.
-fn dashes(points: &[DVec2], line: &Line, extent: &Rect) -> PlanMesh {
+fn dashes(points: &[DVec2], line: &FenceLine, extent: &Rect) -> PlanMesh {
     let mut all = PlanMesh::default();
     let Some(whole) = Polyline::new(points.iter().copied(), 0.0) else { return all };
     let count = spans(whole.length(), line.spacing_m);
@@ -324,7 +332,10 @@ fn dashes(points: &[DVec2], line: &Line, extent: &Rect) -> PlanMesh {
         let dash = (start_m, start_m + period_m / 2.0);
         let dot = (start_m + period_m * 0.75 - dot_m / 2.0, start_m + period_m * 0.75 + dot_m / 2.0);
         for (from, to) in [dash, dot] {
-            append(&mut all, ribbon(&between(&whole, from, to), line.width_m, Surface::Boundary, extent));
+            append(
+                &mut all,
+                ribbon(&between(&whole, from, to), line.width_m, RibbonSurface::Boundary, extent),
+            );
         }
     }
     all

@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3, Vec3};
 
 use crate::geom::polygon;
 use crate::model::kind::Model;
-use crate::terrain::facets::{Facet, Facets};
+use crate::terrain::facets::{SurfaceTriangle, TriangleSurface};
 
 /// How much of a model's height counts as its foot.
 const FOOT_PART: f32 = 0.1;
@@ -20,14 +20,14 @@ const LEAST_HALF: f32 = 0.01;
 
 /// The rectangle where a model touches the ground, in the model's own space and units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Footprint {
+pub struct ModelFootprint {
     /// The front left corner as seen from before it, at the model's lowest point.
     pub min: Vec3,
     /// The back right corner, at the same height.
     pub max: Vec3,
 }
 
-impl Footprint {
+impl ModelFootprint {
     /// The footprint of a model; a point at its origin where it has no vertices.
     pub fn of(model: &Model) -> Self {
         let bounds = model.bounds().unwrap_or((Vec3::ZERO, Vec3::ZERO));
@@ -74,7 +74,7 @@ pub struct Under {
 
 impl Under {
     /// The ground of `facets` under `outline`, counter-clockwise, seen from `at`; `None` where there is none.
-    pub fn cut(facets: &dyn Facets, outline: &[DVec2; 4], at: DVec2) -> Option<Self> {
+    pub fn cut(facets: &dyn TriangleSurface, outline: &[DVec2; 4], at: DVec2) -> Option<Self> {
         let local = outline.map(|corner| corner - at);
         let (mut under, mut piece, mut scratch) = (Self::default(), Vec::new(), Vec::new());
         facets.visit_facets(&polygon::bounds(outline), &mut |facet| {
@@ -88,7 +88,7 @@ impl Under {
         (under.area_m2 > 0.0).then_some(under)
     }
 
-    fn add(&mut self, facet: &Facet, at: DVec2, piece: &[DVec2]) {
+    fn add(&mut self, facet: &SurfaceTriangle, at: DVec2, piece: &[DVec2]) {
         let [a, b, c] = facet.map(Vec3::as_dvec3);
         let normal = (b - a).cross(c - a);
         let gradient = -normal.truncate() / normal.z;
@@ -141,8 +141,8 @@ mod tests {
     use crate::draw::color::Srgba;
     use crate::draw::list::{DrawMesh, DrawVertex, MaterialId};
     use crate::mesh::sink::MeshSink;
-    use crate::model::kind::Part;
-    use crate::terrain::finest::Finest;
+    use crate::model::kind::ModelPart;
+    use crate::terrain::finest::FullResolution;
     use crate::terrain::lattice::Lattice;
 
     fn model(points: &[[f32; 3]]) -> Model {
@@ -150,13 +150,16 @@ mod tests {
         for &position in points {
             mesh.vertex(DrawVertex { position, normal: [0.0; 3], uv: [0.0; 2], color: Srgba::WHITE });
         }
-        Model { parts: vec![Part { name: String::new(), mesh, material: MaterialId(0) }], ..Model::default() }
+        Model {
+            parts: vec![ModelPart { name: String::new(), mesh, material: MaterialId(0) }],
+            ..Model::default()
+        }
     }
 
     #[test]
     fn a_tree_stands_on_its_trunk_and_not_on_its_crown() {
         let tree = model(&[[-0.5, -0.4, -1.0], [0.5, 0.4, 0.0], [-4.0, -4.0, 3.0], [4.0, 4.0, 9.0]]);
-        let footprint = Footprint::of(&tree);
+        let footprint = ModelFootprint::of(&tree);
         assert_eq!(footprint.min, Vec3::new(-0.5, -0.4, -1.0));
         assert_eq!(footprint.max, Vec3::new(0.5, 0.4, -1.0));
     }
@@ -164,7 +167,7 @@ mod tests {
     #[test]
     fn a_pole_and_an_empty_model_have_a_footprint() {
         for points in [&[[2.0, 3.0, 0.0], [2.0, 3.0, 9.0]][..], &[]] {
-            let footprint = Footprint::of(&model(points));
+            let footprint = ModelFootprint::of(&model(points));
             assert!(footprint.radius() > 0.01, "{footprint:?}");
         }
     }
@@ -175,7 +178,7 @@ mod tests {
         let at = |index: u32| DVec2::new(f64::from(index % 21), f64::from(index / 21)) * 5.0;
         let heights = (0..441).map(|index| (200.0 + at(index).dot(rise)) as f32).collect();
         let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(5.0), 21, heights).expect("sound");
-        let finest = Finest { lattice: &lattice, exaggeration: 2.0 };
+        let finest = FullResolution { lattice: &lattice, exaggeration: 2.0 };
         for quarter in 0..4 {
             let turn = DVec2::from_angle(0.3 + f64::from(quarter) * std::f64::consts::FRAC_PI_2);
             let at = DVec2::new(48.0, 51.0);

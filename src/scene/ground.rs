@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::dem::mosaic;
 use crate::dem::raster::Raster;
 use crate::dem::raw::RawLayout;
-use crate::dem::read::{self, Hints};
+use crate::dem::read::{self, DemHints};
 use crate::dem::rgb_png::HeightEncoding;
 use crate::dem::voids;
 use crate::dem::warp;
@@ -54,12 +54,12 @@ fn joined(document: &Document, assets: &Assets, notes: &mut Vec<String>) -> Resu
     let wrong = |reason: String| document.error(&terrain.dem, reason);
     let companions = |name: &str| assets.read(name).ok();
     let value = |stated: &Option<toml::Spanned<f64>>| stated.as_ref().map(|value| *value.get_ref());
-    let hints = Hints {
+    let hints = DemHints {
         png_height_scale: value(&terrain.height_scale),
         png_height_offset: value(&terrain.height_offset),
         height_encoding: terrain.height_encoding.as_ref().map(|encoding| match encoding.get_ref() {
-            words::HeightEncoding::TerrainRgb => HeightEncoding::TerrainRgb,
-            words::HeightEncoding::Terrarium => HeightEncoding::Terrarium,
+            words::HeightEncodingWord::TerrainRgb => HeightEncoding::TerrainRgb,
+            words::HeightEncodingWord::Terrarium => HeightEncoding::Terrarium,
         }),
         raw: raw_layout(document)?,
         vertical_datum: terrain.vertical_datum.as_ref().map(|datum| datum.get_ref().clone()),

@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, Vec2, Vec3};
 
-use crate::description::document::Furniture;
+use crate::description::document::FurnitureTable;
 use crate::description::words::{Anchor, Clamp, Footing, LabelKind};
 use crate::draw::color::Srgba;
 use crate::draw::ground::GroundMap;
@@ -12,17 +12,17 @@ use crate::draw::lighting::Lighting;
 use crate::draw::list::{DrawMesh, FeatureId};
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
-use crate::model::detail::Detail;
+use crate::model::detail::ModelDetail;
 use crate::model::kind::Model;
 use crate::ribbon::plan::PlanMesh;
-use crate::ribbon::texture::Surface;
+use crate::ribbon::texture::RibbonSurface;
 use crate::roam::culling::PatchHeights;
 use crate::roam::errors::ErrorMap;
-use crate::roam::ground::Ground;
-use crate::roam::layout::Layout;
-use crate::scene::report::Report;
+use crate::roam::ground::PatchedGround;
+use crate::roam::layout::PatchLayout;
+use crate::scene::report::SceneReport;
 use crate::scene::roads::profiles::RoadProfile;
-use crate::structure::upright::Upright;
+use crate::structure::upright::DrapedSolid;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::service::HeightService;
 
@@ -47,25 +47,25 @@ pub struct Scene {
     /// What has a shape of its own: buildings, bridges.
     pub solids: Vec<Solid>,
     /// What is set on the displayed ground for every picture: walls, fences, lines, footings.
-    pub uprights: Vec<Standing>,
+    pub uprights: Vec<FeatureSolid>,
     /// Model files, each loaded once.
     pub models: Vec<Model>,
     /// Simpler forms of each model, made when a picture first needs them.
-    pub details: Vec<OnceLock<Detail>>,
+    pub details: Vec<OnceLock<ModelDetail>>,
     /// What stands on the ground.
     pub placements: Vec<Placement>,
     /// Names and heights.
-    pub labels: Vec<Label>,
+    pub labels: Vec<SceneLabel>,
     /// Views; at least one.
     pub cameras: Vec<View>,
     /// What frames the picture.
-    pub furniture: Furniture,
+    pub furniture: FurnitureTable,
     /// Every feature, in the order of their ids from 2 up.
-    pub features: Vec<Feature>,
+    pub features: Vec<SceneFeature>,
     /// What was done that a user should know: features off the model, missing textures, earth moved.
     pub notes: Vec<String>,
     /// What was found out about single features.
-    pub report: Report,
+    pub report: SceneReport,
     /// The longitudinal profiles of the roads that the ground follows.
     pub profiles: Vec<RoadProfile>,
     /// The files it was made of, besides the scene file itself.
@@ -77,7 +77,7 @@ pub struct Terrain {
     /// The heights.
     pub lattice: Arc<Lattice>,
     /// The patches over them.
-    pub layout: Layout,
+    pub layout: PatchLayout,
     /// The errors of their vertices.
     pub errors: ErrorMap,
     /// The drawn heights' range per patch.
@@ -90,8 +90,8 @@ pub struct Terrain {
 
 impl Terrain {
     /// What refinement reads.
-    pub fn ground(&self) -> Ground<'_> {
-        Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: self.exaggeration }
+    pub fn ground(&self) -> PatchedGround<'_> {
+        PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: self.exaggeration }
     }
 
     /// The box of the ground in world space, drawn heights.
@@ -163,7 +163,7 @@ impl FeatureKind {
 
 /// One feature of the scene: one road line, one lake polygon, one model.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Feature {
+pub struct SceneFeature {
     /// What it is.
     pub kind: FeatureKind,
     /// Its name; may be empty.
@@ -175,7 +175,7 @@ pub struct Ribbon {
     /// Its triangles in plan.
     pub plan: PlanMesh,
     /// What it is made of.
-    pub surface: Surface,
+    pub surface: RibbonSurface,
     /// Multiplied with the surface's own colour and alpha; white changes nothing.
     pub tint: Srgba,
     /// Where it lies among others: a higher number covers a lower.
@@ -195,9 +195,9 @@ pub struct Solid {
 }
 
 /// Something that stands on the ground as it is displayed.
-pub struct Standing {
+pub struct FeatureSolid {
     /// What it is.
-    pub upright: Upright,
+    pub upright: DrapedSolid,
     /// The feature it belongs to.
     pub feature: FeatureId,
 }
@@ -208,7 +208,7 @@ pub enum Coat {
     /// The colours of their vertices.
     Painted,
     /// A surface's texture, times the colours of their vertices.
-    Surface(Surface),
+    Surface(RibbonSurface),
 }
 
 /// A model in its place.
@@ -226,14 +226,14 @@ pub struct Placement {
     /// Metres per unit of the model.
     pub scale: f32,
     /// How it meets the ground.
-    pub standing: Stance,
+    pub standing: GroundFit,
     /// The feature it is.
     pub feature: FeatureId,
 }
 
 /// How a model meets the ground it stands on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Stance {
+pub struct GroundFit {
     /// Which ground under it counts.
     pub anchor: Anchor,
     /// How far it may lean with the ground, in radians.
@@ -253,7 +253,7 @@ impl Placement {
 
 /// A name on the picture.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Label {
+pub struct SceneLabel {
     /// What it says.
     pub text: String,
     /// The place on the ground, world space, drawn height.

@@ -7,7 +7,7 @@ use crate::geom::rect::Rect;
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::ribbon::plan::{PlanMesh, PlanVertex};
 use crate::scene::attributes::Attributes;
-use crate::scene::collected::Collected;
+use crate::scene::collected::SceneBuilder;
 use crate::scene::kind::FeatureKind;
 use crate::scene::sources::Sourced;
 
@@ -20,7 +20,7 @@ pub fn lines(
     lines: Vec<Sourced<Vec<DVec2>>>,
     (extent, reach_m): (&Rect, f64),
     (kind, given): (FeatureKind, Option<&str>),
-    collected: &mut Collected,
+    collected: &mut SceneBuilder,
 ) -> Vec<(Attributes, Polyline)> {
     let count = lines.len();
     let near: Vec<_> = lines

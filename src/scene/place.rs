@@ -10,7 +10,7 @@ use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Answer, Interpolation, ground_height};
 
 /// Brings a document's points to the world.
-pub struct Places<'a> {
+pub struct WorldFrame<'a> {
     /// The document, for messages.
     pub document: &'a Document,
     /// The scene's system.
@@ -23,7 +23,7 @@ pub struct Places<'a> {
     pub exaggeration: f32,
 }
 
-impl Places<'_> {
+impl WorldFrame<'_> {
     /// The system that a feature's own `crs` key names, or the default for inline points.
     ///
     /// # Errors

@@ -2,25 +2,25 @@
 
 /// All tables, in the order in which the passes began them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Report {
+pub struct SceneReport {
     /// No two of one name.
-    pub tables: Vec<Table>,
+    pub tables: Vec<ReportTable>,
 }
 
 /// One table: a row for each feature that it tells of.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Table {
+pub struct ReportTable {
     /// What its rows are, such as `conformed roads`.
     pub name: &'static str,
     /// What its columns hold.
-    pub columns: &'static [Column],
+    pub columns: &'static [ReportColumn],
     /// A cell for each column.
-    pub rows: Vec<Vec<Cell>>,
+    pub rows: Vec<Vec<ReportCell>>,
 }
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Column {
+pub struct ReportColumn {
     /// What it says, such as `cut`.
     pub name: &'static str,
     /// Its unit, such as `m3`; empty for names and counts.
@@ -29,7 +29,7 @@ pub struct Column {
 
 /// What a row says in a column.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Cell {
+pub enum ReportCell {
     /// A name; may be empty.
     Text(String),
     /// A measure in the column's unit, rounded when it is shown.
@@ -40,21 +40,21 @@ pub enum Cell {
     Empty,
 }
 
-impl Report {
+impl SceneReport {
     /// Adds a row to the table called `name`, which is begun if it is not there yet.
     ///
     /// # Panics
     /// Where the row has not one cell for each column.
-    pub fn add(&mut self, (name, columns): (&'static str, &'static [Column]), row: Vec<Cell>) {
+    pub fn add(&mut self, (name, columns): (&'static str, &'static [ReportColumn]), row: Vec<ReportCell>) {
         assert_eq!(row.len(), columns.len(), "a row of '{name}' has a cell for each column");
         match self.tables.iter_mut().find(|table| table.name == name) {
             Some(table) => table.rows.push(row),
-            None => self.tables.push(Table { name, columns, rows: vec![row] }),
+            None => self.tables.push(ReportTable { name, columns, rows: vec![row] }),
         }
     }
 
     /// The table called `name`.
-    pub fn table(&self, name: &str) -> Option<&Table> {
+    pub fn table(&self, name: &str) -> Option<&ReportTable> {
         self.tables.iter().find(|table| table.name == name)
     }
 }

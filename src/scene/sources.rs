@@ -9,24 +9,24 @@ use toml::Spanned;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::expression::Expression;
-use crate::description::features::{Match, Scalar, Source};
+use crate::description::features::{FeatureSource, Match, Scalar};
 use crate::geom::crs::Crs;
 use crate::scene::assets::Assets;
 use crate::scene::attributes::Attributes;
-use crate::scene::place::{Places, parse_crs};
+use crate::scene::place::{WorldFrame, parse_crs};
 use crate::vector::error::VectorError;
-use crate::vector::feature::{Geometry, Layer, Polygon};
+use crate::vector::feature::{Geometry, Polygon, VectorLayer};
 use crate::vector::filter::{Condition, Filter};
-use crate::vector::read::{self, Hints};
+use crate::vector::read::{self, VectorHints};
 
 /// A file's name, the layer asked for and the system stated for it.
 type LayerKey = (String, Option<String>, Option<String>);
 
 /// Reads vector files, each once.
 pub struct Sources<'a> {
-    places: &'a Places<'a>,
+    places: &'a WorldFrame<'a>,
     assets: &'a Assets,
-    layers: RefCell<BTreeMap<LayerKey, Arc<Layer>>>,
+    layers: RefCell<BTreeMap<LayerKey, Arc<VectorLayer>>>,
 }
 
 /// A shape with what its file says of it.
@@ -39,7 +39,7 @@ pub struct Sourced<T> {
 
 impl<'a> Sources<'a> {
     /// Sources that read through `assets` and place through `places`.
-    pub fn new(places: &'a Places<'a>, assets: &'a Assets) -> Self {
+    pub fn new(places: &'a WorldFrame<'a>, assets: &'a Assets) -> Self {
         Self { places, assets, layers: RefCell::default() }
     }
 
@@ -48,7 +48,7 @@ impl<'a> Sources<'a> {
     /// # Errors
     /// The file cannot be had or read, holds no line that matches, or its coordinates cannot be brought to the
     /// scene's system.
-    pub fn lines(&self, source: &Source) -> Result<Vec<Sourced<Vec<DVec2>>>, Diagnostic> {
+    pub fn lines(&self, source: &FeatureSource) -> Result<Vec<Sourced<Vec<DVec2>>>, Diagnostic> {
         let lines = self.shapes(source, |geometry| match geometry {
             Geometry::Lines(lines) => lines.clone(),
             Geometry::Points(_) | Geometry::Polygons(_) => Vec::new(),
@@ -60,7 +60,7 @@ impl<'a> Sources<'a> {
     ///
     /// # Errors
     /// As for [`Sources::lines`].
-    pub fn polygons(&self, source: &Source) -> Result<Vec<Sourced<Polygon>>, Diagnostic> {
+    pub fn polygons(&self, source: &FeatureSource) -> Result<Vec<Sourced<Polygon>>, Diagnostic> {
         let polygons = self.shapes(source, |geometry| match geometry {
             Geometry::Polygons(polygons) => polygons.clone(),
             Geometry::Lines(lines) => lines.iter().cloned().filter_map(closed).collect(),
@@ -77,7 +77,7 @@ impl<'a> Sources<'a> {
     ///
     /// # Errors
     /// As for [`Sources::lines`].
-    pub fn points(&self, source: &Source) -> Result<Vec<Sourced<DVec2>>, Diagnostic> {
+    pub fn points(&self, source: &FeatureSource) -> Result<Vec<Sourced<DVec2>>, Diagnostic> {
         let points = self.shapes(source, |geometry| match geometry {
             Geometry::Points(points) => points.clone(),
             // Inline points are handed in as a line.
@@ -90,7 +90,7 @@ impl<'a> Sources<'a> {
     /// The shapes that `pick` takes from every feature that matches, unplaced.
     fn shapes<T>(
         &self,
-        source: &Source,
+        source: &FeatureSource,
         pick: impl Fn(&Geometry) -> Vec<T>,
     ) -> Result<(Crs, Vec<Sourced<T>>), Diagnostic> {
         if let Some(points) = &source.points {
@@ -126,10 +126,10 @@ impl<'a> Sources<'a> {
 
     fn nothing_found(
         &self,
-        source: &Source,
+        source: &FeatureSource,
         file: &Spanned<String>,
         filter: &Filter,
-        layer: &Arc<Layer>,
+        layer: &Arc<VectorLayer>,
     ) -> Diagnostic {
         let name = file.get_ref();
         if let Some(condition) = &source.condition
@@ -165,7 +165,7 @@ impl<'a> Sources<'a> {
         file: &Spanned<String>,
         wanted: Option<&Spanned<String>>,
         stated: Option<&Crs>,
-    ) -> Result<Arc<Layer>, Diagnostic> {
+    ) -> Result<Arc<VectorLayer>, Diagnostic> {
         let name = wanted.map(|wanted| wanted.get_ref().as_str());
         let key = (file.get_ref().clone(), name.map(String::from), stated.map(|crs| crs.name().to_owned()));
         if let Some(layer) = self.layers.borrow().get(&key) {
@@ -174,7 +174,7 @@ impl<'a> Sources<'a> {
         let wrong = |reason: String| self.places.document.error(file, reason);
         let bytes = self.assets.read(file.get_ref()).map_err(|error| wrong(error.to_string()))?;
         let companions = |name: &str| self.assets.read(name).ok();
-        let hints = Hints { crs: stated, layer: name, companions: &companions };
+        let hints = VectorHints { crs: stated, layer: name, companions: &companions };
         let layer =
             read::read(file.get_ref(), &bytes, &hints).map_err(|error| self.unread(file, wanted, &error))?;
         let layer = Arc::new(layer);
@@ -206,7 +206,7 @@ impl<'a> Sources<'a> {
     /// Brings every shape to the world.
     fn place_all<T, U>(
         &self,
-        source: &Source,
+        source: &FeatureSource,
         (from, shapes): (Crs, Vec<Sourced<T>>),
         transform: impl Fn(T, &dyn Fn(DVec2) -> Result<DVec2, String>) -> Result<U, String>,
     ) -> Result<Vec<Sourced<U>>, Diagnostic> {
@@ -236,7 +236,7 @@ fn values_of(condition: &Expression) -> Filter {
     Filter { conditions: properties.map(none).collect() }
 }
 
-fn filter_of(source: &Source) -> Filter {
+fn filter_of(source: &FeatureSource) -> Filter {
     let value = |scalar: &Scalar| match scalar {
         Scalar::Bool(value) => serde_json::Value::from(*value),
         Scalar::Number(value) => serde_json::Value::from(*value),

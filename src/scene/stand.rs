@@ -17,11 +17,11 @@ use glam::{DVec2, Mat4, Quat, Vec2, Vec3};
 use crate::description::words::{Anchor, Clamp, Footing};
 use crate::draw::list::DrawMesh;
 use crate::geom::polygon;
-use crate::scene::footprint::{Footprint, Under};
+use crate::scene::footprint::{ModelFootprint, Under};
 use crate::scene::kind::Placement;
 use crate::structure::plinth;
-use crate::terrain::facets::Facets;
-use crate::terrain::finest::Finest;
+use crate::terrain::facets::TriangleSurface;
+use crate::terrain::finest::FullResolution;
 
 /// How far a plinth reaches out beyond the footprint, as a part of the longer side: it shows as a step.
 pub const PLINTH_REACH: f32 = 0.05;
@@ -34,14 +34,14 @@ const WHOLE: f64 = 0.999;
 #[derive(Clone, Copy)]
 pub struct Grounds<'a> {
     /// As it is displayed.
-    pub displayed: &'a dyn Facets,
+    pub displayed: &'a dyn TriangleSurface,
     /// As it is.
-    pub finest: Finest<'a>,
+    pub finest: FullResolution<'a>,
 }
 
 /// A model on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stand {
+pub struct ModelPose {
     /// Model space to world space, drawn heights.
     pub world_from_model: Mat4,
     /// Drawn height of the ground that the anchor names.
@@ -69,7 +69,7 @@ impl Grounds<'_> {
 }
 
 /// How a model with this footprint stands on the ground; `None` where there is none.
-pub fn stand(placement: &Placement, footprint: &Footprint, grounds: &Grounds<'_>) -> Option<Stand> {
+pub fn stand(placement: &Placement, footprint: &ModelFootprint, grounds: &Grounds<'_>) -> Option<ModelPose> {
     let at = placement.at.as_dvec2();
     let whole =
         if placement.needs_footprint() { grounds.under(&outline(placement, footprint), at) } else { None };
@@ -84,16 +84,16 @@ pub fn stand(placement: &Placement, footprint: &Footprint, grounds: &Grounds<'_>
     };
     let exaggeration = f64::from(grounds.finest.exaggeration);
     let tilt_rad = libm::atan(lean.length());
-    Some(Stand {
+    Some(ModelPose {
         world_from_model: pose(placement, footprint, (anchor_z, lean), exaggeration),
         anchor_z,
         tilt_rad,
     })
 }
 
-impl Stand {
+impl ModelPose {
     /// The footprint's corners where they stand, in world space.
-    pub fn base(&self, footprint: &Footprint) -> [Vec3; 4] {
+    pub fn base(&self, footprint: &ModelFootprint) -> [Vec3; 4] {
         footprint.corners().map(|corner| self.world_from_model.transform_point3(corner))
     }
 
@@ -102,7 +102,7 @@ impl Stand {
     pub fn plinth(
         &self,
         placement: &Placement,
-        footprint: &Footprint,
+        footprint: &ModelFootprint,
         grounds: &Grounds<'_>,
     ) -> Option<DrawMesh> {
         let foot_z = self.plinth_foot_z(placement, footprint, grounds)? - PLINTH_DEPTH_M;
@@ -113,7 +113,7 @@ impl Stand {
     pub fn plinth_height_m(
         &self,
         placement: &Placement,
-        footprint: &Footprint,
+        footprint: &ModelFootprint,
         grounds: &Grounds<'_>,
     ) -> Option<f64> {
         let foot_z = self.plinth_foot_z(placement, footprint, grounds)?;
@@ -124,7 +124,7 @@ impl Stand {
     fn plinth_foot_z(
         &self,
         placement: &Placement,
-        footprint: &Footprint,
+        footprint: &ModelFootprint,
         grounds: &Grounds<'_>,
     ) -> Option<f64> {
         if placement.standing.footing != Footing::Plinth {
@@ -142,7 +142,7 @@ fn top_z(base: &[Vec3; 4]) -> f64 {
 }
 
 /// The footprint in plan, in world space, of a model that stands upright.
-pub fn outline(placement: &Placement, footprint: &Footprint) -> [DVec2; 4] {
+pub fn outline(placement: &Placement, footprint: &ModelFootprint) -> [DVec2; 4] {
     let rotation = heading(placement.heading_rad);
     footprint.corners().map(|corner| {
         let local = rotation * (corner * placement.scale);
@@ -159,7 +159,7 @@ fn leaning(gradient: DVec2, tilt_rad: f64) -> DVec2 {
 /// Model space to world space, given the anchor's drawn height and the plane that the model leans with.
 fn pose(
     placement: &Placement,
-    footprint: &Footprint,
+    footprint: &ModelFootprint,
     (anchor_z, lean): (f64, DVec2),
     exaggeration: f64,
 ) -> Mat4 {
@@ -193,15 +193,15 @@ fn tilted(lean: Vec2) -> Quat {
 mod tests {
     use super::*;
     use crate::draw::list::FeatureId;
-    use crate::scene::kind::Stance;
+    use crate::scene::kind::GroundFit;
     use crate::terrain::lattice::Lattice;
     use glam::DVec2;
 
-    const FOOTPRINT: Footprint =
-        Footprint { min: Vec3::new(-6.0, -4.0, -1.5), max: Vec3::new(6.0, 4.0, -1.5) };
+    const FOOTPRINT: ModelFootprint =
+        ModelFootprint { min: Vec3::new(-6.0, -4.0, -1.5), max: Vec3::new(6.0, 4.0, -1.5) };
     const AT: Vec2 = Vec2::new(100.0, 90.0);
 
-    fn placement(heading_deg: f32, standing: Stance) -> Placement {
+    fn placement(heading_deg: f32, standing: GroundFit) -> Placement {
         Placement {
             model: 0,
             at: AT,
@@ -221,8 +221,8 @@ mod tests {
         Lattice::new(DVec2::ZERO, DVec2::splat(5.0), 41, heights).expect("sound")
     }
 
-    fn stand_on(lattice: &Lattice, placement: &Placement) -> Stand {
-        let finest = Finest { lattice, exaggeration: 1.0 };
+    fn stand_on(lattice: &Lattice, placement: &Placement) -> ModelPose {
+        let finest = FullResolution { lattice, exaggeration: 1.0 };
         stand(placement, &FOOTPRINT, &Grounds { displayed: &finest, finest }).expect("on the ground")
     }
 
@@ -231,7 +231,7 @@ mod tests {
         let lattice = ground(|_| 40.0);
         for (heading, front) in [(0.0, Vec2::Y), (90.0, Vec2::X), (180.0, Vec2::NEG_Y), (270.0, Vec2::NEG_X)]
         {
-            let stand = stand_on(&lattice, &placement(heading, Stance::default()));
+            let stand = stand_on(&lattice, &placement(heading, GroundFit::default()));
             let foot = stand.world_from_model.transform_point3(Vec3::new(0.0, 0.0, -1.5));
             assert!((foot - AT.extend(40.0)).length() < 1e-4);
             let seen = stand.world_from_model.transform_vector3(Vec3::NEG_Y).truncate();
@@ -251,7 +251,7 @@ mod tests {
     fn at_the_lowest_no_corner_floats_and_at_the_highest_none_is_buried() {
         for heading in [0.0, 37.0, 127.0, 217.0, 307.0] {
             let rise = DVec2::new(0.2, -0.35);
-            let at = |anchor| gaps(rise, &placement(heading, Stance { anchor, ..Stance::default() }));
+            let at = |anchor| gaps(rise, &placement(heading, GroundFit { anchor, ..GroundFit::default() }));
             let (lowest, highest, mean) = (at(Anchor::Lowest), at(Anchor::Highest), at(Anchor::Mean));
             let most = |gaps: [f64; 4]| gaps.into_iter().fold(f64::NEG_INFINITY, f64::max);
             let least = |gaps: [f64; 4]| gaps.into_iter().fold(f64::INFINITY, f64::min);
@@ -265,11 +265,11 @@ mod tests {
     fn free_to_lean_it_leaves_no_gap_and_held_it_leans_as_far_as_it_may() {
         for heading in [0.0, 90.0, 180.0, 270.0, 33.0] {
             let rise = DVec2::new(-0.3, 0.4);
-            let free = Stance { tilt_rad: 1.5, ..Stance::default() };
+            let free = GroundFit { tilt_rad: 1.5, ..GroundFit::default() };
             for gap in gaps(rise, &placement(heading, free)) {
                 assert!(gap.abs() < 1e-3, "{gap}");
             }
-            let held = placement(heading, Stance { tilt_rad: 0.1, ..Stance::default() });
+            let held = placement(heading, GroundFit { tilt_rad: 0.1, ..GroundFit::default() });
             let stand = stand_on(&ground(|at| 300.0 + at.dot(rise)), &held);
             assert!((stand.tilt_rad - 0.1).abs() < 1e-6);
             let up = stand.world_from_model.transform_vector3(Vec3::Z).normalize();
@@ -284,14 +284,14 @@ mod tests {
     #[test]
     fn sinking_lowers_it_and_a_plinth_closes_the_gap_below() {
         let rise = DVec2::new(0.5, 0.0);
-        let sunk = Stance { sink_m: 0.75, ..Stance::default() };
+        let sunk = GroundFit { sink_m: 0.75, ..GroundFit::default() };
         let (plain, low) =
-            (gaps(rise, &placement(0.0, Stance::default())), gaps(rise, &placement(0.0, sunk)));
+            (gaps(rise, &placement(0.0, GroundFit::default())), gaps(rise, &placement(0.0, sunk)));
         assert!(plain.iter().zip(low).all(|(plain, low)| (plain - low - 0.75).abs() < 1e-3));
         let lattice = ground(|at| 300.0 + at.dot(rise));
-        let finest = Finest { lattice: &lattice, exaggeration: 1.0 };
+        let finest = FullResolution { lattice: &lattice, exaggeration: 1.0 };
         let grounds = Grounds { displayed: &finest, finest };
-        let footing = Stance { footing: Footing::Plinth, anchor: Anchor::Highest, ..Stance::default() };
+        let footing = GroundFit { footing: Footing::Plinth, anchor: Anchor::Highest, ..GroundFit::default() };
         let placed = placement(20.0, footing);
         let stand = stand_on(&lattice, &placed);
         let mesh = stand.plinth(&placed, &FOOTPRINT, &grounds).expect("there is a gap");
@@ -303,25 +303,25 @@ mod tests {
             let is_top = (z - stand.anchor_z).abs() < 1e-3;
             assert!(is_top || above < -0.4, "its foot is in the ground everywhere: {above}");
         }
-        let none = placement(20.0, Stance { anchor: Anchor::Highest, ..Stance::default() });
+        let none = placement(20.0, GroundFit { anchor: Anchor::Highest, ..GroundFit::default() });
         assert!(stand.plinth(&none, &FOOTPRINT, &grounds).is_none());
     }
 
     #[test]
     fn beside_the_displayed_ground_it_stands_on_the_ground_as_it_is() {
         struct Nothing;
-        impl Facets for Nothing {
+        impl TriangleSurface for Nothing {
             fn visit_facets(
                 &self,
                 _: &crate::geom::rect::Rect,
-                _: &mut dyn FnMut(&crate::terrain::facets::Facet),
+                _: &mut dyn FnMut(&crate::terrain::facets::SurfaceTriangle),
             ) {
             }
         }
         let lattice = ground(|at| at.x);
-        let finest = Finest { lattice: &lattice, exaggeration: 3.0 };
+        let finest = FullResolution { lattice: &lattice, exaggeration: 3.0 };
         for anchor in [Anchor::Origin, Anchor::Mean] {
-            let placed = placement(0.0, Stance { anchor, ..Stance::default() });
+            let placed = placement(0.0, GroundFit { anchor, ..GroundFit::default() });
             let found = stand(&placed, &FOOTPRINT, &Grounds { displayed: &Nothing, finest })
                 .expect("there is ground");
             assert!((found.anchor_z - 300.0).abs() < 1e-2, "{anchor:?}: {}", found.anchor_z);

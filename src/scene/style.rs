@@ -9,7 +9,7 @@ use crate::description::defaults;
 use crate::description::document::{Color, ContourTable, Document, RampChoice};
 use crate::description::words;
 use crate::draw::color::Srgba;
-use crate::draw::ground::{Contours, GroundMap, GroundPost, Ramp};
+use crate::draw::ground::{ColorRamp, Contours, GroundMap, GroundPost};
 use crate::draw::lighting::{Haze, Lighting};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::light;
@@ -44,36 +44,36 @@ const GREY: [(f32, [u8; 3]); 2] = [(0.0, [168, 168, 168]), (1.0, [236, 236, 236]
 pub fn ramp(
     document: &Document,
     lattice: &Lattice,
-) -> Result<Ramp, crate::description::diagnostic::Diagnostic> {
+) -> Result<ColorRamp, crate::description::diagnostic::Diagnostic> {
     let named = |name| match name {
-        words::Ramp::Atlas => stretched(&ATLAS, lattice),
-        words::Ramp::Desert => stretched(&DESERT, lattice),
-        words::Ramp::Grey => stretched(&GREY, lattice),
+        words::RampName::Atlas => stretched(&ATLAS, lattice),
+        words::RampName::Desert => stretched(&DESERT, lattice),
+        words::RampName::Grey => stretched(&GREY, lattice),
     };
     let Some(choice) = &document.style.ramp else {
-        return Ok(named(words::Ramp::default()));
+        return Ok(named(words::RampName::default()));
     };
     match choice.get_ref() {
         RampChoice::Named(name) => Ok(named(*name)),
         RampChoice::Stops(stops) => {
             let stops =
                 stops.iter().map(|&(height, Color(channels))| (height as f32, Srgba(channels))).collect();
-            Ramp::new(stops).ok_or_else(|| document.error(choice, "the ramp's heights do not rise"))
+            ColorRamp::new(stops).ok_or_else(|| document.error(choice, "the ramp's heights do not rise"))
         }
     }
 }
 
 /// The ramp of an atlas over the ground's range of heights: what is taken where nobody chooses another.
-pub fn atlas(lattice: &Lattice) -> Ramp {
+pub fn atlas(lattice: &Lattice) -> ColorRamp {
     stretched(&ATLAS, lattice)
 }
 
-fn stretched(stops: &[(f32, [u8; 3])], lattice: &Lattice) -> Ramp {
+fn stretched(stops: &[(f32, [u8; 3])], lattice: &Lattice) -> ColorRamp {
     let (low, high) = lattice.height_range();
     // Level ground far from 0 still needs stops that an f32 can tell apart.
     let span = (high - low).max(1.0).max(low.abs() * 1e-4);
     let stops = stops.iter().map(|&(part, [r, g, b])| (low + span * part, Srgba::opaque(r, g, b))).collect();
-    Ramp::new(stops).expect("the parts rise, and the span is wide enough for an f32 to tell them apart")
+    ColorRamp::new(stops).expect("the parts rise, and the span is wide enough for an f32 to tell them apart")
 }
 
 /// The document's contour lines.
@@ -113,7 +113,7 @@ pub fn ground_map(
     lattice: &Lattice,
     exaggeration: f32,
     to_sun: Vec3,
-    ramp: Ramp,
+    ramp: ColorRamp,
     contours: Option<Contours>,
 ) -> GroundMap {
     let light = light::light(lattice, exaggeration, to_sun);

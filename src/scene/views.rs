@@ -6,21 +6,25 @@ use toml::Spanned;
 use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::{CameraTable, Document};
-use crate::scene::kind::{Label, Terrain, View};
-use crate::scene::place::Places;
+use crate::scene::kind::{SceneLabel, Terrain, View};
+use crate::scene::place::WorldFrame;
 use crate::terrain::query::{Interpolation, ground_height};
 
 /// The document's labels, `{height}` filled in.
 ///
 /// # Errors
 /// A label stands off the ground.
-pub fn labels(document: &Document, places: &Places<'_>, terrain: &Terrain) -> Result<Vec<Label>, Diagnostic> {
-    let label = |table: &crate::description::document::Label| {
+pub fn labels(
+    document: &Document,
+    places: &WorldFrame<'_>,
+    terrain: &Terrain,
+) -> Result<Vec<SceneLabel>, Diagnostic> {
+    let label = |table: &crate::description::document::LabelTable| {
         let world = places.point(&table.at, table.crs.as_ref())?;
         let ground = places.on_ground(&terrain.lattice, &table.at, world)?;
         let elevation = whole_metres(ground.z / terrain.exaggeration);
         let above = table.height.as_ref().map_or(defaults::LABEL_HEIGHT_M, |height| *height.get_ref()) as f32;
-        Ok(Label {
+        Ok(SceneLabel {
             text: table.text.get_ref().replace("{height}", &elevation),
             ground,
             anchor: ground + Vec3::Z * above,
@@ -41,14 +45,18 @@ pub fn whole_metres(height_m: f32) -> String {
 /// # Errors
 /// A camera's eye stands off the ground without an elevation of its own, its target stands off the ground, or
 /// the two are one place.
-pub fn cameras(document: &Document, places: &Places<'_>, terrain: &Terrain) -> Result<Vec<View>, Diagnostic> {
+pub fn cameras(
+    document: &Document,
+    places: &WorldFrame<'_>,
+    terrain: &Terrain,
+) -> Result<Vec<View>, Diagnostic> {
     if document.cameras.is_empty() {
         return Ok(vec![overview(terrain)]);
     }
     document.cameras.iter().map(|table| camera(table, places, terrain)).collect()
 }
 
-fn camera(table: &CameraTable, places: &Places<'_>, terrain: &Terrain) -> Result<View, Diagnostic> {
+fn camera(table: &CameraTable, places: &WorldFrame<'_>, terrain: &Terrain) -> Result<View, Diagnostic> {
     let metres = |stated: &Option<Spanned<f64>>, default: f64| {
         stated.as_ref().map_or(default, |value| *value.get_ref()) as f32
     };

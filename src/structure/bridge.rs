@@ -18,12 +18,12 @@ use glam::{DVec2, Vec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::draw::list::DrawMesh;
-use crate::structure::deck::{Course, Section};
+use crate::structure::deck::{DeckCourse, DeckSection};
 use crate::structure::deck_check;
 use crate::structure::deck_profile::DeckProfile;
 use crate::structure::faces::Faces;
 use crate::structure::pier;
-use crate::terrain::facets::Facet;
+use crate::terrain::facets::SurfaceTriangle;
 use crate::terrain::query::deck::Deck;
 
 /// The elevation of the ground at a world position in metres; `None` where there is none.
@@ -80,13 +80,13 @@ pub struct BridgeOptions {
 
 /// The solids of a bridge, in world space with drawn heights.
 #[derive(Clone, Debug, Default)]
-pub struct Bridge {
+pub struct BridgeSolids {
     /// What traffic runs on, with a road's texture coordinates.
     pub carriageway: DrawMesh,
     /// All the rest.
     pub body: DrawMesh,
     /// The carriageway's triangles, elevations in metres without exaggeration.
-    pub deck: Vec<Facet>,
+    pub deck: Vec<SurfaceTriangle>,
     /// How many piers stand.
     pub piers: usize,
 }
@@ -103,34 +103,34 @@ pub fn magnified(width_m: f64) -> f64 {
 
 /// The carriageway alone of the bridge that [`build`] builds.
 pub fn deck(
-    course: &Course<'_>,
+    course: &DeckCourse<'_>,
     profile: &DeckProfile,
     options: &BridgeOptions,
     ground: &GroundHeight<'_>,
-) -> Vec<Facet> {
+) -> Vec<SurfaceTriangle> {
     lay_carriageway(&sections(course, profile, options, ground), options).deck
 }
 
 /// Builds the bridge along `course` at the elevations of `profile`, whose stations are the course's. Its parapets stop
 /// where one of the other carriageways of `decks` goes on beside it.
 pub fn build(
-    course: &Course<'_>,
+    course: &DeckCourse<'_>,
     profile: &DeckProfile,
     options: &BridgeOptions,
     (ground, decks): (&GroundHeight<'_>, &Deck),
-) -> Bridge {
+) -> BridgeSolids {
     let sections = sections(course, profile, options, ground);
     let mut body = Faces::default();
     let mut bridge = lay_carriageway(&sections, options);
-    draw_out(&sections, &Rings::new(course.width_m, options), decks, &mut body);
+    draw_out(&sections, &SectionRings::new(course.width_m, options), decks, &mut body);
     for (end, length_m) in options.abutments_m.iter().enumerate() {
         let Some(length_m) = *length_m else { continue };
-        let reach = |section: &&Section| {
+        let reach = |section: &&DeckSection| {
             let from_end =
                 if end == 0 { section.station_m } else { course.line.length() - section.station_m };
             from_end <= length_m + 1e-6
         };
-        let under: Vec<Section> = sections.iter().filter(reach).copied().collect();
+        let under: Vec<DeckSection> = sections.iter().filter(reach).copied().collect();
         pier::abutment(&under, (course.width_m, options), ground, WEATHERED, &mut body);
         let last = if end == 0 { sections.first() } else { sections.last() };
         if let Some(section) = last {
@@ -147,7 +147,7 @@ pub fn build(
 }
 
 /// The section that stands nearest to a station; there is one at every pier unless it stands on a mitre.
-fn nearest(sections: &[Section], station_m: f64) -> &Section {
+fn nearest(sections: &[DeckSection], station_m: f64) -> &DeckSection {
     let after =
         sections.partition_point(|section| section.station_m < station_m).clamp(1, sections.len() - 1);
     let (before, after) = (&sections[after - 1], &sections[after]);
@@ -156,11 +156,11 @@ fn nearest(sections: &[Section], station_m: f64) -> &Section {
 
 /// The course's sections, turned at its ends as the ground lies across.
 fn sections(
-    course: &Course<'_>,
+    course: &DeckCourse<'_>,
     profile: &DeckProfile,
     options: &BridgeOptions,
     ground: &GroundHeight<'_>,
-) -> Vec<Section> {
+) -> Vec<DeckSection> {
     let length_m = course.line.length();
     let fade_m = (course.width_m * TILT_WIDTHS).min(length_m / 2.0);
     let abutments = options.abutments_m.map(|length| length.unwrap_or(0.0));
@@ -196,7 +196,7 @@ fn sections(
 }
 
 /// How far the ground lies above either edge of a section, within what a deck takes over.
-fn tilt(section: &Section, width_m: f64, ground: &GroundHeight<'_>) -> [f64; 2] {
+fn tilt(section: &DeckSection, width_m: f64, ground: &GroundHeight<'_>) -> [f64; 2] {
     let most = MOST_TILT * width_m / 2.0;
     [0, 1].map(|side| {
         let above = ground(section.at + section.aside[side]).map(|height| height - section.edges_m[side]);
@@ -212,12 +212,12 @@ pub(in crate::structure) fn quad_corners(quad: [DVec2; 4]) -> [[usize; 3]; 2] {
     if worst(cuts[0]) >= worst(cuts[1]).min(1e-9) { cuts[0] } else { cuts[1] }
 }
 
-fn lay_carriageway(sections: &[Section], options: &BridgeOptions) -> Bridge {
+fn lay_carriageway(sections: &[DeckSection], options: &BridgeOptions) -> BridgeSolids {
     let mut faces = Faces::default();
     let mut deck = Vec::new();
     for pair in sections.windows(2) {
         let [from, to] = [pair[0], pair[1]];
-        let at = |section: Section, side: usize| {
+        let at = |section: DeckSection, side: usize| {
             let v = (section.station_m / options.texture_length_m) as f32;
             let world = section.edges()[side];
             (
@@ -235,17 +235,17 @@ fn lay_carriageway(sections: &[Section], options: &BridgeOptions) -> Bridge {
             deck.push(triangle.map(|index| quad[index].2));
         }
     }
-    Bridge { carriageway: faces.into_mesh(), deck, ..Bridge::default() }
+    BridgeSolids { carriageway: faces.into_mesh(), deck, ..BridgeSolids::default() }
 }
 
 /// The cross-section, as points on a section.
-struct Rings {
+struct SectionRings {
     /// Side, part of the way to the carriageway's edge, metres above it.
     points: [(usize, f64, f64); 12],
     exaggeration: f32,
 }
 
-impl Rings {
+impl SectionRings {
     fn new(width_m: f64, options: &BridgeOptions) -> Self {
         let by = magnified(width_m);
         let (parapet, thick) = (PARAPET_M * by, PARAPET_THICK_M * by);
@@ -268,7 +268,7 @@ impl Rings {
         Self { points, exaggeration: options.exaggeration }
     }
 
-    fn at(&self, section: &Section, decks: &Deck) -> [Vec3; 12] {
+    fn at(&self, section: &DeckSection, decks: &Deck) -> [Vec3; 12] {
         let stands = [0, 1].map(|side| self.stands(section, side, decks));
         self.points.map(|(side, part, above)| {
             let above = if above > 0.0 && !stands[side] { 0.0 } else { above };
@@ -277,7 +277,7 @@ impl Rings {
     }
 
     /// Whether no other carriageway goes on where a parapet would stand.
-    fn stands(&self, section: &Section, side: usize, decks: &Deck) -> bool {
+    fn stands(&self, section: &DeckSection, side: usize, decks: &Deck) -> bool {
         let middle = (1.0 + self.points[0].1) / 2.0;
         let other_m = decks.height_m(section.at + section.aside[side] * middle);
         other_m.is_none_or(|other_m| (other_m - section.edges_m[side]).abs() > SAME_DECK_M)
@@ -292,7 +292,7 @@ pub(in crate::structure) const PARAPET_THICK_M: f64 = 0.4;
 pub(in crate::structure) const GIRDER: f64 = 0.62;
 
 /// Draws the cross-section out along the sections and closes its ends.
-fn draw_out(sections: &[Section], rings: &Rings, decks: &Deck, faces: &mut Faces) {
+fn draw_out(sections: &[DeckSection], rings: &SectionRings, decks: &Deck, faces: &mut Faces) {
     /// The side between points 2 and 3 is the carriageway.
     const CARRIAGEWAY: usize = 2;
     for pair in sections.windows(2) {
@@ -318,7 +318,7 @@ fn rotated(ring: &[Vec3], by: usize) -> Vec<Vec3> {
     ring[by..].iter().chain(&ring[..by]).copied().collect()
 }
 
-impl Bridge {
+impl BridgeSolids {
     /// Whether every triangle of the deck faces up, and the carriageway closes the body: nothing shows from inside.
     ///
     /// # Errors
@@ -338,7 +338,7 @@ impl Bridge {
 mod tests {
     use super::*;
     use crate::geom::polyline::Polyline;
-    use crate::structure::deck_profile::Floor;
+    use crate::structure::deck_profile::ClearancePoint;
     use proptest::prelude::*;
 
     fn options(length_m: f64) -> BridgeOptions {
@@ -352,8 +352,8 @@ mod tests {
         }
     }
 
-    fn course(line: &Polyline) -> Course<'_> {
-        Course { line, beyond: [None; 2], width_m: 8.0, mitre_limit: 2.0 }
+    fn course(line: &Polyline) -> DeckCourse<'_> {
+        DeckCourse { line, beyond: [None; 2], width_m: 8.0, mitre_limit: 2.0 }
     }
 
     fn none() -> Deck {
@@ -435,13 +435,13 @@ mod tests {
                 points.push(at);
             }
             let line = Polyline::new(points, 0.01).expect("a line");
-            let floors: Vec<Floor> = line.stations().iter().zip(&heights)
-                .map(|(&station_m, &level_m)| Floor { station_m, level_m }).collect();
+            let floors: Vec<ClearancePoint> = line.stations().iter().zip(&heights)
+                .map(|(&station_m, &level_m)| ClearancePoint { station_m, level_m }).collect();
             let ends = [floors[0].level_m, floors[floors.len() - 1].level_m];
             let profile = DeckProfile::clearing((line.length(), ends), &floors, &[], 0.1);
             let bridge = build(&course(&line), &profile, &options(line.length()), (&|_| Some(95.0), &none()));
             prop_assert_eq!(bridge.check(), Ok(()));
-            let plan = |facet: &Facet| (facet[1] - facet[0]).truncate().perp_dot((facet[2] - facet[0]).truncate());
+            let plan = |facet: &SurfaceTriangle| (facet[1] - facet[0]).truncate().perp_dot((facet[2] - facet[0]).truncate());
             let area: f32 = bridge.deck.iter().map(plan).sum::<f32>() / 2.0;
             prop_assert!(f64::from(area) < 8.0 * line.length() * 1.3, "{} m²", area);
         }

@@ -16,14 +16,14 @@ use glam::{DVec2, DVec3, Vec3};
 use crate::draw::color::Srgba;
 use crate::draw::list::DrawMesh;
 use crate::geom::polygon;
-use crate::structure::building_footprint::Footprint;
+use crate::structure::building_footprint::BuildingFootprint;
 use crate::structure::faces::Faces;
 use crate::structure::fence_band::{noise, shaded};
-use crate::structure::roof::{Roof, centroid};
+use crate::structure::roof::{UnitRoof, centroid};
 
 /// The heights of a building in world Z.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Levels {
+pub struct BuildingLevels {
     /// Where its walls end below.
     pub foot_z: f64,
     /// Where the plaster begins.
@@ -81,7 +81,7 @@ const FLATS: [Srgba; 5] = [
 impl Paint {
     /// What a building wears that nobody painted: a plaster and a roof chosen by where its middle stands, so that it is
     /// the same in every picture.
-    pub fn by_place(footprint: &Footprint, roof: &Roof) -> Self {
+    pub fn by_place(footprint: &BuildingFootprint, roof: &UnitRoof) -> Self {
         let at = centroid(footprint.exterior()).round();
         let pick = |colors: &[Srgba], salt: u64| {
             let share = (noise(at, salt) + 1.0) / 2.0;
@@ -98,7 +98,12 @@ impl Paint {
 }
 
 /// The building as a closed solid, faces outward.
-pub fn raise(footprint: &Footprint, roof: &Roof, levels: Levels, paint: Paint) -> DrawMesh {
+pub fn raise(
+    footprint: &BuildingFootprint,
+    roof: &UnitRoof,
+    levels: BuildingLevels,
+    paint: Paint,
+) -> DrawMesh {
     let mut faces = Faces::default();
     let rise = levels.top_z - levels.eaves_z;
     let on_roof = |at: &DVec3| DVec3 { z: levels.eaves_z + at.z * rise, ..*at }.as_vec3();
@@ -124,7 +129,7 @@ fn walls(
     faces: &mut Faces,
     [from, to]: [DVec3; 2],
     on_roof: &dyn Fn(&DVec3) -> Vec3,
-    levels: Levels,
+    levels: BuildingLevels,
     paint: Paint,
 ) {
     let at = |plan: DVec3, z: f64| DVec3 { z, ..plan }.as_vec3();
@@ -138,7 +143,7 @@ fn walls(
 }
 
 /// What closes it below, facing down: the footprint with the vertices that the roof's edge added.
-fn floor(faces: &mut Faces, footprint: &Footprint, roof: &Roof, foot_z: f64, paint: Paint) {
+fn floor(faces: &mut Faces, footprint: &BuildingFootprint, roof: &UnitRoof, foot_z: f64, paint: Paint) {
     let down = |[a, b, c]: [DVec2; 3]| [c, b, a].map(|at| at.extend(foot_z).as_vec3());
     let rings: Vec<Vec<DVec2>> =
         roof.edge.iter().map(|ring| ring.iter().map(|at| at.truncate()).collect()).collect();
@@ -202,13 +207,17 @@ mod tests {
     use crate::structure::roof::roof;
     use proptest::prelude::*;
 
-    const SHAPES: [words::Roof; 4] =
-        [words::Roof::Flat, words::Roof::Gabled, words::Roof::Hipped, words::Roof::Pyramidal];
+    const SHAPES: [words::RoofShape; 4] = [
+        words::RoofShape::Flat,
+        words::RoofShape::Gabled,
+        words::RoofShape::Hipped,
+        words::RoofShape::Pyramidal,
+    ];
 
-    fn built(footprint: &Footprint, shape: words::Roof) -> (Roof, DrawMesh) {
+    fn built(footprint: &BuildingFootprint, shape: words::RoofShape) -> (UnitRoof, DrawMesh) {
         let roof = roof(footprint, shape);
         let top_z = if roof.run_m > 0.0 { 9.0 } else { 6.0 };
-        let levels = Levels { foot_z: -1.0, base_z: 0.0, eaves_z: 6.0, top_z };
+        let levels = BuildingLevels { foot_z: -1.0, base_z: 0.0, eaves_z: 6.0, top_z };
         let paint = Paint::by_place(footprint, &roof);
         let mesh = raise(footprint, &roof, levels, paint);
         (roof, mesh)
@@ -220,7 +229,7 @@ mod tests {
             let ring: Vec<DVec2> = [(2.0, 1.0), (14.0, 1.0), (14.0, 9.0), (2.0, 9.0)]
                 .map(|(x, y)| (0..quarter).fold(DVec2::new(x, y), |at, _| at.perp()))
                 .to_vec();
-            let house = Footprint::parts(&ring, &[]).remove(0);
+            let house = BuildingFootprint::parts(&ring, &[]).remove(0);
             // Below the eaves 96 m² × 7 m; roofs over them a half, a half less two sixths of the ends, a third.
             for (shape, above) in SHAPES.into_iter().zip([0.0, 144.0, 112.0, 96.0]) {
                 let (made, mesh) = built(&house, shape);
@@ -237,7 +246,7 @@ mod tests {
         let at = |x: f64, y: f64| DVec2::new(x, y);
         let outer = [at(0.0, 0.0), at(20.0, 0.0), at(20.0, 20.0), at(0.0, 20.0)];
         let yard = vec![at(5.0, 5.0), at(5.0, 15.0), at(15.0, 15.0), at(15.0, 5.0)];
-        let house = Footprint::parts(&outer, &[yard]).remove(0);
+        let house = BuildingFootprint::parts(&outer, &[yard]).remove(0);
         for shape in SHAPES {
             let measures = check(&built(&house, shape).1).expect("closed");
             assert!((measures.roof_m2 - 300.0).abs() < 0.01 && (measures.volume_m3 - 2100.0).abs() < 0.1);
@@ -254,7 +263,7 @@ mod tests {
             shape in 0usize..4,
         ) {
             let ring: Vec<DVec2> = points.into_iter().map(|at| DVec2::from(at) + DVec2::from(offset)).collect();
-            for footprint in Footprint::parts(&ring, &[]) {
+            for footprint in BuildingFootprint::parts(&ring, &[]) {
                 let (roof, mesh) = built(&footprint, SHAPES[shape]);
                 let measures = check(&mesh);
                 prop_assert!(measures.is_ok(), "{:?} over {:?}: {:?}", roof.shape, footprint, measures);
@@ -274,9 +283,9 @@ mod tests {
                 DVec2::new(libm::cos(turn), libm::sin(turn)).rotate(at)
             };
             let ring: Vec<DVec2> = (0..count).map(vertex).collect();
-            let footprint = Footprint::parts(&ring, &[]).remove(0);
-            let (roof, mesh) = built(&footprint, words::Roof::Hipped);
-            prop_assert_eq!(roof.shape, words::Roof::Hipped);
+            let footprint = BuildingFootprint::parts(&ring, &[]).remove(0);
+            let (roof, mesh) = built(&footprint, words::RoofShape::Hipped);
+            prop_assert_eq!(roof.shape, words::RoofShape::Hipped);
             prop_assert!(check(&mesh).is_ok(), "{:?}", check(&mesh));
         }
     }

@@ -9,12 +9,12 @@ use crate::draw::color::Srgba;
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::structure::faces::Faces;
-use crate::terrain::facets::Facets;
+use crate::terrain::facets::TriangleSurface;
 use crate::terrain::underfoot::runs;
 
 /// The foot of a building's walls.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Footing {
+pub struct WallFooting {
     /// The outer ring counter-clockwise and the courtyards clockwise, world X and Y.
     pub rings: Vec<Vec<DVec2>>,
     /// World Z at which the building's own walls end.
@@ -23,10 +23,10 @@ pub struct Footing {
     pub color: Srgba,
 }
 
-impl Footing {
+impl WallFooting {
     /// Adds walls from where the building's own end down to the lowest displayed ground along them to `faces`; nothing
     /// where the ground is nowhere lower.
-    pub fn build(&self, ground: &dyn Facets, faces: &mut Faces) {
+    pub fn build(&self, ground: &dyn TriangleSurface, faces: &mut Faces) {
         // One look at all triangles near it settles it for nearly every building.
         let around = Rect::around(self.rings.iter().flatten().copied());
         let mut lowest = f32::INFINITY;

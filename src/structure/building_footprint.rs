@@ -18,11 +18,11 @@ const LEAST_M2: f64 = 0.25;
 
 /// A part of a building in plan: an outer ring and courtyards that cross neither themselves nor each other.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Footprint {
+pub struct BuildingFootprint {
     rings: Vec<Vec<DVec2>>,
 }
 
-impl Footprint {
+impl BuildingFootprint {
     /// The parts that `exterior` and `holes`, in any state, enclose; none where that is no area. Rings that are not
     /// finite enclose nothing.
     pub fn parts(exterior: &[DVec2], holes: &[Vec<DVec2>]) -> Vec<Self> {
@@ -126,7 +126,7 @@ mod tests {
     fn a_clockwise_ring_with_doubled_and_needless_vertices_is_turned_and_cleaned() {
         let ring =
             at(&[(0.0, 0.0), (0.0, 8.0), (0.0, 8.0), (5.0, 8.0), (10.0, 8.0), (10.0, 0.0), (0.0, 0.0)]);
-        let parts = Footprint::parts(&ring, &[]);
+        let parts = BuildingFootprint::parts(&ring, &[]);
         assert_eq!(parts.len(), 1);
         assert_eq!(parts[0].exterior().len(), 4);
         assert!((parts[0].area_m2() - 80.0).abs() < 1e-6 && parts[0].is_convex());
@@ -135,10 +135,10 @@ mod tests {
     #[test]
     fn a_ring_that_crosses_itself_makes_two_buildings_and_a_courtyard_stays_open() {
         let bow = at(&[(0.0, 0.0), (10.0, 10.0), (10.0, 0.0), (0.0, 10.0)]);
-        assert_eq!(Footprint::parts(&bow, &[]).len(), 2);
+        assert_eq!(BuildingFootprint::parts(&bow, &[]).len(), 2);
         let outer = at(&[(0.0, 0.0), (20.0, 0.0), (20.0, 20.0), (0.0, 20.0)]);
         let yard = at(&[(5.0, 5.0), (15.0, 5.0), (15.0, 15.0), (5.0, 15.0)]);
-        let parts = Footprint::parts(&outer, &[yard]);
+        let parts = BuildingFootprint::parts(&outer, &[yard]);
         assert!(parts[0].has_courtyards() && (parts[0].area_m2() - 300.0).abs() < 1e-6);
         assert!(polygon::doubled_area(&parts[0].rings()[1]) < 0.0);
     }
@@ -152,7 +152,7 @@ mod tests {
             at(&[(0.0, 0.0), (f64::NAN, 0.0), (5.0, 5.0)]),
             Vec::new(),
         ] {
-            assert!(Footprint::parts(&ring, &[]).is_empty(), "{ring:?}");
+            assert!(BuildingFootprint::parts(&ring, &[]).is_empty(), "{ring:?}");
         }
     }
 }

@@ -33,7 +33,7 @@ const MOST_BREAKS: usize = 4096;
 
 /// A line across a deck.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Section {
+pub struct DeckSection {
     /// Where it stands along the centreline, in metres.
     pub station_m: f64,
     /// Its place on the centreline, in the world.
@@ -46,7 +46,7 @@ pub struct Section {
 
 /// What a deck is drawn out along.
 #[derive(Clone, Copy, Debug)]
-pub struct Course<'a> {
+pub struct DeckCourse<'a> {
     /// The centreline in world coordinates.
     pub line: &'a Polyline,
     /// The vertices beyond its first and its last one, of the roads that go on there.
@@ -57,10 +57,10 @@ pub struct Course<'a> {
     pub mitre_limit: f64,
 }
 
-impl Course<'_> {
+impl DeckCourse<'_> {
     /// Sections at every vertex and, where they do not come in the way of a mitre, at the stations `breaks_m`, stations
     /// rising. `level_m` gives the elevation at a station.
-    pub fn sections(&self, breaks_m: &[f64], level_m: &dyn Fn(f64) -> f64) -> Vec<Section> {
+    pub fn sections(&self, breaks_m: &[f64], level_m: &dyn Fn(f64) -> f64) -> Vec<DeckSection> {
         let mut breaks: Vec<f64> = breaks_m.iter().copied().take(MOST_BREAKS).collect();
         breaks.sort_by(f64::total_cmp);
         let (points, stations) = (self.line.points(), self.line.stations());
@@ -126,8 +126,8 @@ impl Course<'_> {
     }
 }
 
-fn section(station_m: f64, at: DVec2, aside: [DVec2; 2], level_m: &dyn Fn(f64) -> f64) -> Section {
-    Section { station_m, at, aside, edges_m: [level_m(station_m); 2] }
+fn section(station_m: f64, at: DVec2, aside: [DVec2; 2], level_m: &dyn Fn(f64) -> f64) -> DeckSection {
+    DeckSection { station_m, at, aside, edges_m: [level_m(station_m); 2] }
 }
 
 /// The way to the left end of the mitre, in half widths; `None` where the line turns back on itself.
@@ -137,7 +137,7 @@ fn mitre(arriving: DVec2, leaving: DVec2) -> Option<DVec2> {
     (square > 1e-12).then(|| sum * (2.0 / square))
 }
 
-impl Section {
+impl DeckSection {
     /// The point at `part` of the way to the left (0) or right (1) edge and `above_m` over that edge, as it is drawn.
     /// A part above 1 lies beyond the carriageway.
     pub fn drawn(&self, side: usize, part: f64, above_m: f64, exaggeration: f32) -> Vec3 {
@@ -164,7 +164,7 @@ mod tests {
     }
 
     /// Twice the signed areas of both triangles of each quad between sections.
-    fn doubled_areas(sections: &[Section]) -> Vec<f64> {
+    fn doubled_areas(sections: &[DeckSection]) -> Vec<f64> {
         let quads = sections.windows(2).flat_map(|pair| {
             let [a, b] = [pair[0], pair[1]].map(|section| section.aside.map(|aside| section.at + aside));
             let quad = [a[0], a[1], b[1], b[0]];
@@ -179,7 +179,7 @@ mod tests {
     fn a_gentle_course_covers_width_times_length_however_it_is_turned() {
         for quarter in 0..4 {
             let line = turned(&[(0.0, 0.0), (80.0, 0.0), (150.0, 30.0), (190.0, 90.0)], quarter);
-            let course = Course { line: &line, beyond: [None; 2], width_m: 8.0, mitre_limit: 2.0 };
+            let course = DeckCourse { line: &line, beyond: [None; 2], width_m: 8.0, mitre_limit: 2.0 };
             let breaks: Vec<f64> = (0..40).map(|index| f64::from(index) * 7.0).collect();
             let sections = course.sections(&breaks, &|_| 0.0);
             assert!(sections.len() > 25);
@@ -192,7 +192,8 @@ mod tests {
     fn an_end_is_mitred_with_what_goes_on_there() {
         let line = turned(&[(0.0, 0.0), (50.0, 0.0)], 0);
         let beyond = [Some(DVec2::new(-30.0, 30.0)), None];
-        let sections = Course { line: &line, beyond, width_m: 6.0, mitre_limit: 2.0 }.sections(&[], &|_| 0.0);
+        let sections =
+            DeckCourse { line: &line, beyond, width_m: 6.0, mitre_limit: 2.0 }.sections(&[], &|_| 0.0);
         let [left, right] = sections[0].aside;
         assert_eq!(left, -right);
         assert!((left.y - 3.0).abs() < 1e-12 && left.x > 1.0 || left.x < -1.0, "{left}");
@@ -214,7 +215,7 @@ mod tests {
                 points.push((at.x, at.y));
             }
             let line = turned(&points, quarter);
-            let course = Course { line: &line, beyond: [None; 2], width_m, mitre_limit: 2.0 };
+            let course = DeckCourse { line: &line, beyond: [None; 2], width_m, mitre_limit: 2.0 };
             let breaks: Vec<f64> = (0..200).map(|index| f64::from(index) * 3.0).collect();
             let sections = course.sections(&breaks, &|_| 0.0);
             for pair in sections.windows(2) {

@@ -7,7 +7,7 @@ use glam::Vec3;
 use crate::draw::list::DrawMesh;
 
 /// A position, bit by bit.
-type Corner = [u32; 3];
+type CornerBits = [u32; 3];
 
 /// Edges nearer than this to each other are one, in metres: what is computed in two ways is rounded to f32 in two ways,
 /// and a face thinner than this has no area that f32 could hold.
@@ -20,7 +20,7 @@ const SAME_M: f32 = 1e-3;
 /// # Errors
 /// A sentence that names an edge where the surface is open.
 pub fn closed(meshes: &[&DrawMesh]) -> Result<(), String> {
-    let mut edges: BTreeMap<(Corner, Corner), i32> = BTreeMap::new();
+    let mut edges: BTreeMap<(CornerBits, CornerBits), i32> = BTreeMap::new();
     for mesh in meshes {
         for triangle in &mesh.triangles {
             // Adding zero makes one number of both zeros.

@@ -32,7 +32,7 @@ const TO_OVER_GROUND: f64 = 0.03;
 
 /// What a deck has to clear at a station.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Floor {
+pub struct ClearancePoint {
     /// Where, in metres along the deck.
     pub station_m: f64,
     /// The elevation it must not lie below, in metres.
@@ -43,12 +43,12 @@ pub struct Floor {
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeckProfile {
     /// Stations rising, at least two.
-    points: Vec<Floor>,
+    points: Vec<ClearancePoint>,
 }
 
 impl DeckProfile {
     /// A profile through stated levels; `None` where there are fewer than two, or stations do not rise.
-    pub fn stated(points: Vec<Floor>) -> Option<Self> {
+    pub fn stated(points: Vec<ClearancePoint>) -> Option<Self> {
         let rises = points.windows(2).all(|pair| pair[0].station_m < pair[1].station_m);
         let finite = points.iter().all(|point| point.station_m.is_finite() && point.level_m.is_finite());
         (points.len() >= 2 && rises && finite).then_some(Self { points })
@@ -57,7 +57,7 @@ impl DeckProfile {
     /// The straight line over `length_m` between the levels of both ends.
     pub fn straight(length_m: f64, ends_m: [f64; 2]) -> Self {
         let [from, to] = ends_m;
-        let end = |station_m, level_m| Floor { station_m, level_m };
+        let end = |station_m, level_m| ClearancePoint { station_m, level_m };
         Self { points: vec![end(0.0, from), end(length_m, to)] }
     }
 
@@ -65,23 +65,23 @@ impl DeckProfile {
     /// the grade `steepest` (rise over run), what passes below.
     pub fn clearing(
         (length_m, ends_m): (f64, [f64; 2]),
-        ground: &[Floor],
-        passages: &[Floor],
+        ground: &[ClearancePoint],
+        passages: &[ClearancePoint],
         steepest: f64,
     ) -> Self {
         let line = Self::straight(length_m, ends_m);
         let from_end = |station: f64| station.min(length_m - station);
         let over_ground = ground.iter().map(|floor| {
             let lift = OVER_GROUND_M.min(TO_OVER_GROUND * from_end(floor.station_m));
-            Floor { level_m: floor.level_m + lift, ..*floor }
+            ClearancePoint { level_m: floor.level_m + lift, ..*floor }
         });
         let over_passages = passages.iter().map(|floor| {
             let climbed = (ends_m[0] + steepest * floor.station_m)
                 .min(ends_m[1] + steepest * (length_m - floor.station_m));
             let wanted = floor.level_m + ROUNDED_OFF_M;
-            Floor { level_m: wanted.min(climbed).max(line.level_m(floor.station_m)), ..*floor }
+            ClearancePoint { level_m: wanted.min(climbed).max(line.level_m(floor.station_m)), ..*floor }
         });
-        let mut points: Vec<Floor> = over_ground.chain(over_passages).collect();
+        let mut points: Vec<ClearancePoint> = over_ground.chain(over_passages).collect();
         points.retain(|point| {
             let inside = point.station_m > 0.0 && point.station_m < length_m;
             inside && point.level_m.is_finite()
@@ -110,8 +110,8 @@ impl DeckProfile {
         let (low, high) = (from_m.min(to_m), from_m.max(to_m).max(from_m.min(to_m) + 1e-6));
         let within = self.stations().filter(|&station| station > low + 1e-6 && station < high - 1e-6);
         let stations: Vec<f64> = std::iter::once(low).chain(within).chain([high]).collect();
-        let point = |&at: &f64| Floor { station_m: (at - from_m).abs(), level_m: self.level_m(at) };
-        let mut points: Vec<Floor> = stations.iter().map(point).collect();
+        let point = |&at: &f64| ClearancePoint { station_m: (at - from_m).abs(), level_m: self.level_m(at) };
+        let mut points: Vec<ClearancePoint> = stations.iter().map(point).collect();
         points.sort_by(|a, b| a.station_m.total_cmp(&b.station_m));
         points.dedup_by(|next, kept| next.station_m <= kept.station_m);
         Self { points }
@@ -123,13 +123,13 @@ impl DeckProfile {
     }
 }
 
-fn grade(from: Floor, to: Floor) -> f64 {
+fn grade(from: ClearancePoint, to: ClearancePoint) -> f64 {
     (to.level_m - from.level_m) / (to.station_m - from.station_m)
 }
 
 /// The upper hull of points sorted by station (Andrew 1979); of points at one station the highest, which comes last.
-fn upper_hull(points: &[Floor]) -> Vec<Floor> {
-    let mut hull: Vec<Floor> = Vec::new();
+fn upper_hull(points: &[ClearancePoint]) -> Vec<ClearancePoint> {
+    let mut hull: Vec<ClearancePoint> = Vec::new();
     for &point in points {
         while let Some(&last) = hull.last() {
             let is_below = match hull.len() {
@@ -147,7 +147,7 @@ fn upper_hull(points: &[Floor]) -> Vec<Floor> {
 }
 
 /// A polyline with its corners rounded by parabolas that touch both sides at equal distances from the corner.
-fn rounded(corners: &[Floor]) -> Vec<Floor> {
+fn rounded(corners: &[ClearancePoint]) -> Vec<ClearancePoint> {
     let length_m = corners[corners.len() - 1].station_m;
     let mut points = vec![corners[0]];
     for around in corners.windows(3) {
@@ -166,7 +166,7 @@ fn rounded(corners: &[Floor]) -> Vec<Floor> {
                 a * (1.0 - along).powi(2) + 2.0 * b * along * (1.0 - along) + c * along.powi(2)
             };
             let station_m = corner.station_m + half * (2.0 * along - 1.0);
-            points.push(Floor { station_m, level_m: curve(from, corner.level_m, to) });
+            points.push(ClearancePoint { station_m, level_m: curve(from, corner.level_m, to) });
         }
     }
     points.push(corners[corners.len() - 1]);
@@ -183,13 +183,13 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn floor((station_m, level_m): (f64, f64)) -> Floor {
-        Floor { station_m, level_m }
+    fn floor((station_m, level_m): (f64, f64)) -> ClearancePoint {
+        ClearancePoint { station_m, level_m }
     }
 
     #[test]
     fn over_a_valley_a_deck_runs_straight() {
-        let ground: Vec<Floor> =
+        let ground: Vec<ClearancePoint> =
             (1..100).map(|at| floor((f64::from(at), 50.0 - f64::from(at.min(100 - at))))).collect();
         let profile = DeckProfile::clearing((100.0, [50.0, 53.0]), &ground, &[], 0.1);
         for station in 0..=100 {
@@ -216,7 +216,7 @@ mod tests {
             ends in (0.0..60.0f64, 0.0..60.0f64),
         ) {
             let length = heights.len() as f64 * 10.0;
-            let ground: Vec<Floor> =
+            let ground: Vec<ClearancePoint> =
                 heights.iter().enumerate().map(|(at, &height)| floor((at as f64 * 10.0 + 5.0, height))).collect();
             let profile = DeckProfile::clearing((length, [ends.0, ends.1]), &ground, &[], 0.1);
             prop_assert!(profile.stations().zip(profile.stations().skip(1)).all(|(a, b)| a < b));

@@ -4,10 +4,10 @@ use glam::{DVec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::structure::faces::Faces;
-use crate::structure::fence_band::{Band, Corner, Section};
+use crate::structure::fence_band::{BandSection, FenceBand, SectionCorner};
 use crate::structure::fence_track::Track;
 use crate::structure::power_beam::square;
-use crate::terrain::underfoot::Underfoot;
+use crate::terrain::underfoot::SupportSurface;
 
 const WOOD: Srgba = Srgba::opaque(150, 124, 92);
 const RAIL: Srgba = Srgba::opaque(176, 150, 114);
@@ -19,7 +19,7 @@ const RAIL_THICKNESS: f64 = 0.45;
 
 /// Where something stands, and which way the line runs there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stand {
+pub struct PostPosition {
     /// World X and Y, metres.
     pub at: DVec2,
     /// A unit vector along the line.
@@ -30,7 +30,7 @@ pub struct Stand {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Posts {
     /// Where they stand.
-    pub stands: Vec<Stand>,
+    pub stands: Vec<PostPosition>,
     /// From side to side, metres.
     pub width_m: f64,
     /// Above the ground, metres.
@@ -39,7 +39,7 @@ pub struct Posts {
 
 impl Posts {
     /// Adds the posts that have ground under them to `faces`.
-    pub fn build(&self, under: Underfoot<'_>, faces: &mut Faces) {
+    pub fn build(&self, under: SupportSurface<'_>, faces: &mut Faces) {
         // Dug in, so that no side ends above the ground on a slope.
         let dug_m = self.width_m.max(0.2 * self.height_m);
         let half = (self.width_m / 2.0) as f32;
@@ -53,13 +53,13 @@ impl Posts {
 }
 
 /// The rails of a fence along `points` whose posts are `post_m` wide.
-pub fn rails(points: &[DVec2], post_m: f64, height_m: f64) -> [Band; 2] {
+pub fn rails(points: &[DVec2], post_m: f64, height_m: f64) -> [FenceBand; 2] {
     RAILS.map(|(low, high)| {
         let (low, high) = (low * height_m, high * height_m);
-        let corner = |share: f64, up_m: f64| Corner { share, up_m };
-        Band {
+        let corner = |share: f64, up_m: f64| SectionCorner { share, up_m };
+        FenceBand {
             track: Track::new(points, post_m * RAIL_THICKNESS / 2.0),
-            section: Section {
+            section: BandSection {
                 feet: (-1.0, 1.0),
                 corners: vec![corner(0.0, low), corner(0.0, high), corner(1.0, high), corner(1.0, low)],
                 colors: vec![RAIL; 4],
@@ -71,7 +71,7 @@ pub fn rails(points: &[DVec2], post_m: f64, height_m: f64) -> [Band; 2] {
 
 /// Where posts stand along a line of distinct points: at every vertex and, evenly in between, no more than `spacing_m`
 /// apart. Each stands along the bisector of the line at it.
-pub fn stands(points: &[DVec2], spacing_m: f64) -> Vec<Stand> {
+pub fn stands(points: &[DVec2], spacing_m: f64) -> Vec<PostPosition> {
     let mut stands = Vec::new();
     let direction = |from: DVec2, to: DVec2| (to - from).normalize_or(DVec2::X);
     let round = points.len() > 3 && points.first() == points.last();
@@ -82,13 +82,13 @@ pub fn stands(points: &[DVec2], spacing_m: f64) -> Vec<Stand> {
             0 => along,
             _ => direction(points[index - 1], pair[0]),
         };
-        stands.push(Stand { at: pair[0], along: (before + along).normalize_or(along) });
+        stands.push(PostPosition { at: pair[0], along: (before + along).normalize_or(along) });
         let count = spans(pair[0].distance(pair[1]), spacing_m);
         let between = (1..count).map(|step| pair[0].lerp(pair[1], f64::from(step) / f64::from(count)));
-        stands.extend(between.map(|at| Stand { at, along }));
+        stands.extend(between.map(|at| PostPosition { at, along }));
     }
     if let ([.., before, last], false) = (points, round) {
-        stands.push(Stand { at: *last, along: direction(*before, *last) });
+        stands.push(PostPosition { at: *last, along: direction(*before, *last) });
     }
     stands
 }

@@ -16,13 +16,13 @@ use glam::{DVec2, DVec3, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::structure::faces::Faces;
-use crate::structure::fence_track::{Ends, Joint, Stretch, Track};
-use crate::terrain::facets::Facets;
-use crate::terrain::underfoot::{self, Run};
+use crate::structure::fence_track::{Ends, Track, TrackJoint, TrackStretch};
+use crate::terrain::facets::TriangleSurface;
+use crate::terrain::underfoot::{self, GroundRun};
 
 /// A corner of a cross-section.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Corner {
+pub struct SectionCorner {
     /// Where between the feet: 0 at the right one, 1 at the left one; beyond them for what overhangs.
     pub share: f64,
     /// Metres above the ground there.
@@ -31,11 +31,11 @@ pub struct Corner {
 
 /// A cross-section, seen along the track.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Section {
+pub struct BandSection {
     /// The right foot and the left foot across the track: −1 is its right side, 1 its left side.
     pub feet: (f64, f64),
     /// From the right up and over to the left: convex.
-    pub corners: Vec<Corner>,
+    pub corners: Vec<SectionCorner>,
     /// The colour of each side, from the first corner to the second, and so on; where there is one for each corner, the
     /// last side closes the section.
     pub colors: Vec<Srgba>,
@@ -54,18 +54,18 @@ pub struct Ruffle {
 
 /// A cross-section carried along a track.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Band {
+pub struct FenceBand {
     /// The way it takes.
     pub track: Track,
     /// What it looks like across.
-    pub section: Section,
+    pub section: BandSection,
     /// How its surface departs from that; `None` for an even one.
     pub ruffle: Option<Ruffle>,
 }
 
 /// Both feet at one place along the track, world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct BandRow {
     /// The right foot.
     pub right: DVec3,
     /// The left foot.
@@ -74,21 +74,21 @@ pub struct Row {
 
 /// Rows along a stretch of ground without gaps.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rows {
+pub struct FenceRows {
     /// At least two.
-    pub rows: Vec<Row>,
+    pub rows: Vec<BandRow>,
     /// Whether they run round.
     pub ends: Ends,
 }
 
-impl Band {
+impl FenceBand {
     /// The feet of the band on a ground, in stretches where there are gaps in it.
-    pub fn rows(&self, ground: &dyn Facets) -> Vec<Rows> {
+    pub fn rows(&self, ground: &dyn TriangleSurface) -> Vec<FenceRows> {
         self.track.stretches.iter().flat_map(|stretch| self.rows_along(stretch, ground)).collect()
     }
 
     /// Adds the band, set on a ground, to `faces`.
-    pub fn build(&self, ground: &dyn Facets, faces: &mut Faces) {
+    pub fn build(&self, ground: &dyn TriangleSurface, faces: &mut Faces) {
         for rows in self.rows(ground) {
             let rings: Vec<Vec<Vec3>> = rows.rows.iter().map(|row| self.ring(row)).collect();
             for (pair, feet) in rings.windows(2).zip(&rows.rows) {
@@ -102,8 +102,8 @@ impl Band {
         }
     }
 
-    fn rows_along(&self, stretch: &Stretch, ground: &dyn Facets) -> Vec<Rows> {
-        let mut found: Vec<Rows> = Vec::new();
+    fn rows_along(&self, stretch: &TrackStretch, ground: &dyn TriangleSurface) -> Vec<FenceRows> {
+        let mut found: Vec<FenceRows> = Vec::new();
         // Whether the rows found last reach the joint from which the next segment goes on.
         let mut goes_on = false;
         for pair in stretch.joints.windows(2) {
@@ -115,7 +115,7 @@ impl Band {
                     Some(rows) if index == 0 && goes_on && begins => {
                         rows.rows.extend(segment.rows.into_iter().skip(1));
                     }
-                    _ => found.push(Rows { rows: segment.rows, ends: Ends::Two }),
+                    _ => found.push(FenceRows { rows: segment.rows, ends: Ends::Two }),
                 }
                 goes_on = segment.ends;
             }
@@ -132,7 +132,7 @@ impl Band {
     }
 
     /// The rows of one segment of the track, wherever there is ground under both feet.
-    fn segments(&self, [right, left]: &[Foot; 2]) -> Vec<Segment> {
+    fn segments(&self, [right, left]: &[Foot; 2]) -> Vec<BandSegment> {
         let mut found = Vec::new();
         for right_run in &right.runs {
             for left_run in &left.runs {
@@ -142,21 +142,21 @@ impl Band {
                     continue;
                 }
                 let parts = self.parts([right_run, left_run], (low, high), right.from.distance(right.to));
-                let row = |&part: &f64| Row {
+                let row = |&part: &f64| BandRow {
                     right: right.from.lerp(right.to, part).extend(right_run.z_at(part)),
                     left: left.from.lerp(left.to, part).extend(left_run.z_at(part)),
                 };
                 let rows = parts.iter().map(row).collect();
-                found.push(Segment { rows, begins: low <= SAME_PART, ends: high >= 1.0 - SAME_PART });
+                found.push(BandSegment { rows, begins: low <= SAME_PART, ends: high >= 1.0 - SAME_PART });
             }
         }
         found
     }
 
     /// Where along a segment rows stand: where either foot is cut, and where the ruffle asks for more.
-    fn parts(&self, runs: [&Run; 2], (low, high): (f64, f64), length_m: f64) -> Vec<f64> {
+    fn parts(&self, runs: [&GroundRun; 2], (low, high): (f64, f64), length_m: f64) -> Vec<f64> {
         let inside = |part: &f64| *part > low + SAME_PART && *part < high - SAME_PART;
-        let cuts = runs.into_iter().flat_map(Run::stations).map(|station| station.part);
+        let cuts = runs.into_iter().flat_map(GroundRun::stations).map(|station| station.part);
         let mut parts: Vec<f64> = cuts.filter(inside).collect();
         if let Some(ruffle) = &self.ruffle {
             let steps = (length_m / ruffle.every_m).min(MOST_STEPS) as u32;
@@ -169,8 +169,8 @@ impl Band {
     }
 
     /// The section's corners at a row.
-    fn ring(&self, row: &Row) -> Vec<Vec3> {
-        let corner = |(index, corner): (usize, &Corner)| {
+    fn ring(&self, row: &BandRow) -> Vec<Vec3> {
+        let corner = |(index, corner): (usize, &SectionCorner)| {
             let (mut share, mut up_m) = (corner.share, corner.up_m);
             if let Some(ruffle) = self.ruffle.filter(|_| corner.up_m > 0.0) {
                 let [aside, above] = [0, 1].map(|salt| noise(row.right.truncate(), index as u64 * 2 + salt));
@@ -205,11 +205,11 @@ const MOST_STEPS: f64 = 10_000.0;
 struct Foot {
     from: DVec2,
     to: DVec2,
-    runs: Vec<Run>,
+    runs: Vec<GroundRun>,
 }
 
 impl Foot {
-    fn new(pair: &[Joint], share: f64, ground: &dyn Facets) -> Self {
+    fn new(pair: &[TrackJoint], share: f64, ground: &dyn TriangleSurface) -> Self {
         let (from, to) = (pair[0].across(share), pair[1].across(share));
         Self { from, to, runs: underfoot::runs(ground, from, to) }
     }
@@ -220,8 +220,8 @@ impl Foot {
 }
 
 /// Rows along a part of one segment.
-struct Segment {
-    rows: Vec<Row>,
+struct BandSegment {
+    rows: Vec<BandRow>,
     /// Whether it begins where the segment does.
     begins: bool,
     /// Whether it ends where the segment does.
@@ -248,7 +248,7 @@ pub fn shaded(color: Srgba, by: f32) -> Srgba {
 
 /// The largest vertical distance in metres between the feet of `band` and the ground, at every row and half-way to the
 /// next: 0 but for rounding, whatever the ground. Infinite where there is no ground under a foot.
-pub fn check_feet(band: &Band, ground: &dyn Facets) -> f64 {
+pub fn check_feet(band: &FenceBand, ground: &dyn TriangleSurface) -> f64 {
     let off = |at: DVec3| match ground.displayed_z(at.truncate()) {
         Some(z) => (z - at.z).abs(),
         None => f64::INFINITY,

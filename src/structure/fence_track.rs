@@ -17,14 +17,14 @@ const MITRE_LIMIT: f64 = 2.0;
 
 /// Where two segments meet, or one ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Joint {
+pub struct TrackJoint {
     /// World X and Y, metres.
     pub at: DVec2,
     /// From there to the track's left side; to its right side it is as far the other way.
     pub to_left: DVec2,
 }
 
-impl Joint {
+impl TrackJoint {
     /// The point across the track: −1 is its right side, 0 its middle, 1 its left side.
     pub fn across(&self, share: f64) -> DVec2 {
         self.at + self.to_left * share
@@ -42,9 +42,9 @@ pub enum Ends {
 
 /// A stretch of track without a break.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stretch {
+pub struct TrackStretch {
     /// At least two.
-    pub joints: Vec<Joint>,
+    pub joints: Vec<TrackJoint>,
     /// Whether it runs round.
     pub ends: Ends,
 }
@@ -53,7 +53,7 @@ pub struct Stretch {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
     /// In the order of the line.
-    pub stretches: Vec<Stretch>,
+    pub stretches: Vec<TrackStretch>,
 }
 
 impl Track {
@@ -68,7 +68,7 @@ impl Track {
         let mut joints = Vec::new();
         for index in 0..points.len() {
             let at = points[index];
-            let end = |to_left: DVec2| Joint { at, to_left };
+            let end = |to_left: DVec2| TrackJoint { at, to_left };
             if index == 0 && last > 0 {
                 joints.push(end(around.unwrap_or_else(|| square(at, points[1]))));
             } else if index == last && last > 0 {
@@ -77,12 +77,12 @@ impl Track {
                 joints.push(end(to_left));
             } else {
                 joints.push(end(square(points[index - 1], at)));
-                stretches.push(Stretch { joints: std::mem::take(&mut joints), ends: Ends::Two });
+                stretches.push(TrackStretch { joints: std::mem::take(&mut joints), ends: Ends::Two });
                 joints.push(end(square(at, points[index + 1])));
             }
         }
         let ends = if around.is_some() && stretches.is_empty() { Ends::None } else { Ends::Two };
-        stretches.extend((joints.len() > 1).then_some(Stretch { joints, ends }));
+        stretches.extend((joints.len() > 1).then_some(TrackStretch { joints, ends }));
         Self { stretches }
     }
 }

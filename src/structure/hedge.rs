@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::draw::color::Srgba;
-use crate::structure::fence_band::{Band, Corner, Ruffle, Section};
+use crate::structure::fence_band::{BandSection, FenceBand, Ruffle, SectionCorner};
 use crate::structure::fence_track::Track;
 
 const LEAVES: Srgba = Srgba::opaque(84, 112, 62);
@@ -15,11 +15,11 @@ const RUFFLE: f64 = 0.16;
 const SHADE: f32 = 14.0;
 
 /// A hedge along `points`; its surface wanders every `every_m`.
-pub fn hedge(points: &[DVec2], (width_m, height_m): (f64, f64), every_m: f64) -> Band {
-    let corner = |share: f64, up: f64| Corner { share, up_m: up * height_m };
-    Band {
+pub fn hedge(points: &[DVec2], (width_m, height_m): (f64, f64), every_m: f64) -> FenceBand {
+    let corner = |share: f64, up: f64| SectionCorner { share, up_m: up * height_m };
+    FenceBand {
         track: Track::new(points, width_m / 2.0),
-        section: Section {
+        section: BandSection {
             feet: (-1.0, 1.0),
             corners: vec![
                 corner(0.0, 0.0),

@@ -11,9 +11,9 @@ use glam::{DVec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::structure::faces::Faces;
-use crate::structure::fence::{Stand, spans};
+use crate::structure::fence::{PostPosition, spans};
 use crate::structure::power_beam::{beam, square};
-use crate::terrain::underfoot::Underfoot;
+use crate::terrain::underfoot::SupportSurface;
 
 const CONCRETE: Srgba = Srgba::opaque(184, 180, 170);
 const STEEL: Srgba = Srgba::opaque(112, 84, 68);
@@ -34,14 +34,14 @@ pub enum Obstacle {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Obstacles {
     /// Where each stands.
-    pub stands: Vec<(Stand, Obstacle)>,
+    pub stands: Vec<(PostPosition, Obstacle)>,
     /// Above the ground, metres.
     pub height_m: f64,
 }
 
 impl Obstacles {
     /// Adds the obstacles that have ground under them to `faces`.
-    pub fn build(&self, under: Underfoot<'_>, faces: &mut Faces) {
+    pub fn build(&self, under: SupportSurface<'_>, faces: &mut Faces) {
         for (stand, obstacle) in &self.stands {
             let Some(z) = under.z(stand.at) else { continue };
             let at = stand.at.extend(z).as_vec3();
@@ -82,7 +82,7 @@ pub fn rows(width_m: f64, spacing_m: f64) -> u32 {
 
 /// Where the obstacles of a belt stand: along every segment of the line in rows across its width, every other row moved
 /// on by half a spacing.
-pub fn belt(points: &[DVec2], width_m: f64, spacing_m: f64) -> Vec<(Stand, Obstacle)> {
+pub fn belt(points: &[DVec2], width_m: f64, spacing_m: f64) -> Vec<(PostPosition, Obstacle)> {
     let rows = rows(width_m, spacing_m);
     let mut stands = Vec::new();
     for pair in points.windows(2) {
@@ -94,7 +94,7 @@ pub fn belt(points: &[DVec2], width_m: f64, spacing_m: f64) -> Vec<(Stand, Obsta
                 if row % 2 == 0 { (0.25, Obstacle::Tooth) } else { (0.75, Obstacle::Hedgehog) };
             stands.extend((0..count).map(|index| {
                 let at = pair[0].lerp(pair[1], (f64::from(index) + shift) / f64::from(count));
-                (Stand { at: at + along.perp() * aside_m, along }, obstacle)
+                (PostPosition { at: at + along.perp() * aside_m, along }, obstacle)
             }));
         }
     }

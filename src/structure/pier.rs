@@ -13,7 +13,7 @@ use glam::{DVec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::structure::bridge::{BridgeOptions, FOUNDED_M, GIRDER, GroundHeight, PARAPET_THICK_M, magnified};
-use crate::structure::deck::Section;
+use crate::structure::deck::DeckSection;
 use crate::structure::faces::Faces;
 
 /// How much a shaft widens downward on each side, metres a metre.
@@ -30,14 +30,14 @@ const SHAFT: f64 = 0.5;
 
 /// Adds a pier under a section; `false` where it would be lower than is worth building, or where there is no ground.
 pub(in crate::structure) fn pier(
-    section: &Section,
+    section: &DeckSection,
     (width_m, options): (f64, &BridgeOptions),
     ground: &GroundHeight<'_>,
     color: Srgba,
     faces: &mut Faces,
 ) -> bool {
     let across = (section.aside[0] - section.aside[1]).normalize_or(DVec2::X);
-    let frame = Frame { at: section.at, across };
+    let frame = PierFrame { at: section.at, across };
     let head = GIRDER * width_m / 2.0;
     let Some(ground_m) = lowest(ground, [0.0, head, -head].map(|aside| frame.at + across * aside)) else {
         return false;
@@ -71,7 +71,7 @@ pub(in crate::structure) fn pier(
 
 /// Adds the abutment under the sections: a block from within the deck to below the ground, whose sides are its wing walls.
 pub(in crate::structure) fn abutment(
-    under: &[Section],
+    under: &[DeckSection],
     (width_m, options): (f64, &BridgeOptions),
     ground: &GroundHeight<'_>,
     color: Srgba,
@@ -107,7 +107,7 @@ pub(in crate::structure) fn abutment(
 
 /// Adds the posts in which both parapets end.
 pub(in crate::structure) fn end_posts(
-    section: &Section,
+    section: &DeckSection,
     (width_m, options): (f64, &BridgeOptions),
     color: Srgba,
     faces: &mut Faces,
@@ -117,7 +117,7 @@ pub(in crate::structure) fn end_posts(
     for side in 0..2 {
         let part = 1.0 + half / (width_m / 2.0);
         let across = section.aside[side].normalize_or(DVec2::X);
-        let frame = Frame { at: section.at + section.aside[side] * part, across };
+        let frame = PierFrame { at: section.at + section.aside[side] * part, across };
         let road = f64::from(section.drawn(side, part, 0.0, options.exaggeration).z);
         let rings =
             [-0.5 * options.depth_m - by, 1.6 * by].map(|above| frame.ring((half, half), road + above));
@@ -126,12 +126,12 @@ pub(in crate::structure) fn end_posts(
 }
 
 /// Where something upright stands, and which way it lies.
-struct Frame {
+struct PierFrame {
     at: DVec2,
     across: DVec2,
 }
 
-impl Frame {
+impl PierFrame {
     /// A chamfered rectangle at height `z`, counter-clockwise from above: half its size across and along.
     fn ring(&self, (across, along): (f64, f64), z: f64) -> [Vec3; 8] {
         let chamfer = 0.3 * across.min(along);

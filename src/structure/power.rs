@@ -13,10 +13,10 @@ use glam::DVec3;
 
 use crate::draw::color::Srgba;
 use crate::structure::faces::Faces;
-use crate::structure::fence::Stand;
+use crate::structure::fence::PostPosition;
 use crate::structure::power_beam::beam;
-use crate::terrain::facets::Facets;
-use crate::terrain::underfoot::{Run, Underfoot, runs};
+use crate::terrain::facets::TriangleSurface;
+use crate::terrain::underfoot::{GroundRun, SupportSurface, runs};
 
 const STEEL: Srgba = Srgba::opaque(138, 144, 150);
 const WOOD: Srgba = Srgba::opaque(122, 98, 74);
@@ -42,7 +42,7 @@ const MOST_SPLITS: u32 = 6;
 #[derive(Clone, Debug, PartialEq)]
 pub struct PowerLine {
     /// The pylons, in the order of the line.
-    pub pylons: Vec<Stand>,
+    pub pylons: Vec<PostPosition>,
     /// From the ground to its top, metres.
     pub height_m: f64,
     /// Between the outermost wires, metres.
@@ -64,7 +64,7 @@ fn fastenings(line: &PowerLine) -> Vec<(f64, f64)> {
 
 impl PowerLine {
     /// Adds the pylons that have ground under them, and the wires between neighbours that have, to `faces`.
-    pub fn build(&self, under: Underfoot<'_>, faces: &mut Faces) {
+    pub fn build(&self, under: SupportSurface<'_>, faces: &mut Faces) {
         let feet: Vec<Option<f64>> = self.pylons.iter().map(|stand| under.z(stand.at)).collect();
         for (stand, foot) in self.pylons.iter().zip(&feet) {
             if let Some(z) = *foot {
@@ -79,8 +79,14 @@ impl PowerLine {
         }
     }
 
-    fn wires(&self, [from, to]: [Stand; 2], [from_z, to_z]: [f64; 2], ground: &[Run], faces: &mut Faces) {
-        let fastened = |stand: &Stand, foot_z: f64, (aside, up): (f64, f64)| {
+    fn wires(
+        &self,
+        [from, to]: [PostPosition; 2],
+        [from_z, to_z]: [f64; 2],
+        ground: &[GroundRun],
+        faces: &mut Faces,
+    ) {
+        let fastened = |stand: &PostPosition, foot_z: f64, (aside, up): (f64, f64)| {
             (stand.at + stand.along.perp() * aside).extend(foot_z + up)
         };
         let half = self.height_m as f32 * WIRE_HALF;
@@ -95,7 +101,7 @@ impl PowerLine {
         }
     }
 
-    fn pylon(&self, stand: &Stand, z: f64, under: Underfoot<'_>, faces: &mut Faces) {
+    fn pylon(&self, stand: &PostPosition, z: f64, under: SupportSurface<'_>, faces: &mut Faces) {
         if self.height_m <= TALLEST_POLE_M {
             self.pole(stand, z, faces);
         } else {
@@ -103,7 +109,7 @@ impl PowerLine {
         }
     }
 
-    fn pole(&self, stand: &Stand, z: f64, faces: &mut Faces) {
+    fn pole(&self, stand: &PostPosition, z: f64, faces: &mut Faces) {
         let height = self.height_m as f32;
         let place = |aside: f64, up: f64| (stand.at + stand.along.perp() * aside).extend(z + up).as_vec3();
         let (foot, top) = (place(0.0, -0.1 * self.height_m), place(0.0, self.height_m));
@@ -114,7 +120,7 @@ impl PowerLine {
     }
 
     /// Four legs, each down to the ground where it stands, braced, and two arms.
-    fn tower(&self, stand: &Stand, z: f64, under: Underfoot<'_>, faces: &mut Faces) {
+    fn tower(&self, stand: &PostPosition, z: f64, under: SupportSurface<'_>, faces: &mut Faces) {
         let height = self.height_m;
         let thick = height as f32 * 0.009;
         let plan = |corner: usize, half: f64| {
@@ -154,7 +160,7 @@ impl PowerLine {
     }
 
     /// An arm to either side: a tie and a strut that meet at its end, and what the wire hangs from.
-    fn arm(&self, stand: &Stand, z: f64, (reach, up): (f64, f64), faces: &mut Faces) {
+    fn arm(&self, stand: &PostPosition, z: f64, (reach, up): (f64, f64), faces: &mut Faces) {
         let thick = self.height_m as f32 * 0.006;
         let place = |aside: f64, up: f64| (stand.at + stand.along.perp() * aside).extend(z + up).as_vec3();
         for side in [-1.0, 1.0] {
@@ -177,7 +183,7 @@ fn hanging((from, to): (DVec3, DVec3), sag_m: f64, part: f64) -> DVec3 {
 
 /// How deep a wire may hang: `wanted_m`, or as deep as it may over the ground beneath the line; 0, straight, where it
 /// may not hang at all.
-fn sag(ends: (DVec3, DVec3), wanted_m: f64, ground: &[Run], clearance_m: f64) -> f64 {
+fn sag(ends: (DVec3, DVec3), wanted_m: f64, ground: &[GroundRun], clearance_m: f64) -> f64 {
     let over = |part: f64, z: f64| {
         let room = hanging(ends, 0.0, part).z - z - clearance_m;
         room / (4.0 * part * (1.0 - part))
@@ -186,7 +192,7 @@ fn sag(ends: (DVec3, DVec3), wanted_m: f64, ground: &[Run], clearance_m: f64) ->
 }
 
 /// Where a span's clearance is looked at: where the ground under it bends, and evenly between, with its height.
-fn looks(ground: &[Run]) -> impl Iterator<Item = (f64, f64)> + '_ {
+fn looks(ground: &[GroundRun]) -> impl Iterator<Item = (f64, f64)> + '_ {
     ground.iter().flat_map(|run| {
         let (first, last) = run.span();
         let bends = run.stations().iter().map(|station| (station.part, station.z));
@@ -198,8 +204,12 @@ fn looks(ground: &[Run]) -> impl Iterator<Item = (f64, f64)> + '_ {
 
 /// Pylons along a line on a ground: `stands`, and one more wherever a straight wire would come too near the ground
 /// between two of them. Returns how many were added.
-pub fn clear(stands: &[Stand], height_m: f64, ground: &dyn Facets) -> (Vec<Stand>, usize) {
-    let mut pylons: Vec<Stand> = stands.first().copied().into_iter().collect();
+pub fn clear(
+    stands: &[PostPosition],
+    height_m: f64,
+    ground: &dyn TriangleSurface,
+) -> (Vec<PostPosition>, usize) {
+    let mut pylons: Vec<PostPosition> = stands.first().copied().into_iter().collect();
     for pair in stands.windows(2) {
         split([pair[0], pair[1]], height_m, ground, MOST_SPLITS, &mut pylons);
     }
@@ -208,11 +218,17 @@ pub fn clear(stands: &[Stand], height_m: f64, ground: &dyn Facets) -> (Vec<Stand
 }
 
 /// Adds the pylons after the first of a span to `pylons`, the last included.
-fn split(span: [Stand; 2], height_m: f64, ground: &dyn Facets, splits: u32, pylons: &mut Vec<Stand>) {
+fn split(
+    span: [PostPosition; 2],
+    height_m: f64,
+    ground: &dyn TriangleSurface,
+    splits: u32,
+    pylons: &mut Vec<PostPosition>,
+) {
     if let Some(part) = worst(span, height_m, ground).filter(|_| splits > 0) {
         let [from, to] = span;
         let at = from.at.lerp(to.at, part);
-        let middle = Stand { at, along: (to.at - from.at).normalize_or(from.along) };
+        let middle = PostPosition { at, along: (to.at - from.at).normalize_or(from.along) };
         split([from, middle], height_m, ground, splits - 1, pylons);
         split([middle, to], height_m, ground, splits - 1, pylons);
     } else {
@@ -222,8 +238,8 @@ fn split(span: [Stand; 2], height_m: f64, ground: &dyn Facets, splits: u32, pylo
 
 /// Where the lowest wire of a span, drawn straight, comes nearest to the ground, if that is too near; never so near to a
 /// pylon that another one would help nobody.
-fn worst([from, to]: [Stand; 2], height_m: f64, ground: &dyn Facets) -> Option<f64> {
-    let foot = |stand: Stand| ground.displayed_z(stand.at);
+fn worst([from, to]: [PostPosition; 2], height_m: f64, ground: &dyn TriangleSurface) -> Option<f64> {
+    let foot = |stand: PostPosition| ground.displayed_z(stand.at);
     let up = DVec3::Z * LOWEST_WIRE.min(0.9) * height_m;
     let ends = (from.at.extend(foot(from)?) + up, to.at.extend(foot(to)?) + up);
     let found = runs(ground, from.at, to.at);
@@ -238,7 +254,7 @@ fn worst([from, to]: [Stand; 2], height_m: f64, ground: &dyn Facets) -> Option<f
 
 /// The largest depth in metres by which a wire of `line` comes nearer to the displayed ground than it may, where it need
 /// not; 0 where all hang as they should. What a straight wire would lack is not counted.
-pub fn check_wires(line: &PowerLine, under: Underfoot<'_>) -> f64 {
+pub fn check_wires(line: &PowerLine, under: SupportSurface<'_>) -> f64 {
     let clearance_m = line.height_m * CLEARANCE;
     let mut most: f64 = 0.0;
     for pair in line.pylons.windows(2) {
@@ -260,7 +276,7 @@ pub fn check_wires(line: &PowerLine, under: Underfoot<'_>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::finest::Finest;
+    use crate::terrain::finest::FullResolution;
     use crate::terrain::lattice::Lattice;
     use glam::DVec2;
 
@@ -271,19 +287,19 @@ mod tests {
             .expect("sound")
     }
 
-    fn stand(x: f64) -> Stand {
-        Stand { at: DVec2::new(x, 50.0), along: DVec2::X }
+    fn stand(x: f64) -> PostPosition {
+        PostPosition { at: DVec2::new(x, 50.0), along: DVec2::X }
     }
 
-    fn line(pylons: Vec<Stand>) -> PowerLine {
+    fn line(pylons: Vec<PostPosition>) -> PowerLine {
         PowerLine { pylons, height_m: 30.0, width_m: 10.0, sag: 0.05 }
     }
 
     #[test]
     fn a_wire_hangs_less_deep_over_a_ridge_and_keeps_its_clearance() {
         let lattice = ridge(10.0);
-        let ground = Finest { lattice: &lattice, exaggeration: 1.0 };
-        let under = Underfoot { displayed: &ground, ground };
+        let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
+        let under = SupportSurface { displayed: &ground, ground };
         let found = runs(&ground, DVec2::new(350.0, 50.0), DVec2::new(650.0, 50.0));
         let ends = (DVec3::new(350.0, 50.0, 20.4), DVec3::new(650.0, 50.0, 20.4));
         let sag_m = sag(ends, 15.0, &found, 6.0);
@@ -294,7 +310,7 @@ mod tests {
     #[test]
     fn a_pylon_more_stands_on_a_ridge_that_no_wire_would_clear() {
         let lattice = ridge(25.0);
-        let ground = Finest { lattice: &lattice, exaggeration: 1.0 };
+        let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
         let (pylons, added) = clear(&[stand(350.0), stand(650.0)], 30.0, &ground);
         assert_eq!(added, 1);
         assert!(pylons[1].at.distance(DVec2::new(500.0, 50.0)) < 1e-3, "{pylons:?}");
@@ -304,11 +320,11 @@ mod tests {
     #[test]
     fn a_pylon_s_feet_reach_the_ground_and_its_top_is_as_high_as_it_is_said_to_be() {
         let lattice = ridge(0.0);
-        let ground = Finest { lattice: &lattice, exaggeration: 1.0 };
+        let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
         for height_m in [12.0, 40.0] {
             let mut faces = Faces::default();
             let line = PowerLine { height_m, ..line(vec![stand(300.0)]) };
-            line.build(Underfoot { displayed: &ground, ground }, &mut faces);
+            line.build(SupportSurface { displayed: &ground, ground }, &mut faces);
             let mesh = faces.into_mesh();
             let heights = mesh.vertices.iter().map(|vertex| f64::from(vertex.position[2]));
             let (low, high) =

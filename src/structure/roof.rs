@@ -16,7 +16,7 @@ use glam::{DVec2, DVec3};
 
 use crate::description::words;
 use crate::geom::polygon;
-use crate::structure::building_footprint::Footprint;
+use crate::structure::building_footprint::BuildingFootprint;
 use crate::structure::roof_hipped::hipped;
 
 /// How much of its best-fitting rectangle a footprint must fill to be roofed like one.
@@ -27,9 +27,9 @@ const MOST_VERTICES: usize = 400;
 
 /// A roof with a rise of one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Roof {
+pub struct UnitRoof {
     /// What it is; not always what was asked for.
-    pub shape: words::Roof,
+    pub shape: words::RoofShape,
     /// The footprint's rings with the rise at each vertex, 0..=1; all 0 but at gables.
     pub edge: Vec<Vec<DVec3>>,
     /// Flat polygons, counter-clockwise seen from above, X, Y and rise.
@@ -41,24 +41,24 @@ pub struct Roof {
 /// The roof of the shape asked for over a footprint, or the nearest that can be made: a gabled one needs nearly a
 /// rectangle, else it is hipped; a hipped one needs a footprint without courtyards, a pyramidal one a middle that sees
 /// every wall; else they are flat.
-pub fn roof(footprint: &Footprint, wanted: words::Roof) -> Roof {
+pub fn roof(footprint: &BuildingFootprint, wanted: words::RoofShape) -> UnitRoof {
     let made = match wanted {
-        words::Roof::Flat => None,
-        words::Roof::Gabled => gabled(footprint).or_else(|| hipped(footprint)),
-        words::Roof::Hipped => hipped(footprint),
-        words::Roof::Pyramidal => pyramidal(footprint),
+        words::RoofShape::Flat => None,
+        words::RoofShape::Gabled => gabled(footprint).or_else(|| hipped(footprint)),
+        words::RoofShape::Hipped => hipped(footprint),
+        words::RoofShape::Pyramidal => pyramidal(footprint),
     };
     made.unwrap_or_else(|| flat(footprint))
 }
 
 /// The footprint's rings at the eaves.
-pub(in crate::structure) fn level_edge(footprint: &Footprint) -> Vec<Vec<DVec3>> {
+pub(in crate::structure) fn level_edge(footprint: &BuildingFootprint) -> Vec<Vec<DVec3>> {
     footprint.rings().iter().map(|ring| ring.iter().map(|at| at.extend(0.0)).collect()).collect()
 }
 
-fn flat(footprint: &Footprint) -> Roof {
+fn flat(footprint: &BuildingFootprint) -> UnitRoof {
     let [outer, courtyards @ ..] = footprint.rings() else {
-        return Roof { shape: words::Roof::Flat, edge: Vec::new(), faces: Vec::new(), run_m: 0.0 };
+        return UnitRoof { shape: words::RoofShape::Flat, edge: Vec::new(), faces: Vec::new(), run_m: 0.0 };
     };
     let level = |points: &[DVec2]| points.iter().map(|at| at.extend(0.0)).collect();
     let faces = if courtyards.is_empty() {
@@ -66,13 +66,13 @@ fn flat(footprint: &Footprint) -> Roof {
     } else {
         polygon::triangulate(outer, courtyards).iter().map(|corners| level(corners)).collect()
     };
-    Roof { shape: words::Roof::Flat, edge: level_edge(footprint), faces, run_m: 0.0 }
+    UnitRoof { shape: words::RoofShape::Flat, edge: level_edge(footprint), faces, run_m: 0.0 }
 }
 
 /// Two planes from the ridge, along the middle of the best-fitting rectangle, down to the eaves.
-fn gabled(footprint: &Footprint) -> Option<Roof> {
+fn gabled(footprint: &BuildingFootprint) -> Option<UnitRoof> {
     let ring = footprint.exterior();
-    let frame = Frame::around(ring).filter(|_| !footprint.has_courtyards())?;
+    let frame = RoofRectangle::around(ring).filter(|_| !footprint.has_courtyards())?;
     if footprint.area_m2() < RECTANGULAR * frame.area_m2() {
         return None;
     }
@@ -88,7 +88,7 @@ fn gabled(footprint: &Footprint) -> Option<Roof> {
     let [first, second] = crossings;
     let side = edge[first..=second].to_vec();
     let other = edge[second..].iter().chain(&edge[..=first]).copied().collect();
-    Some(Roof { shape: words::Roof::Gabled, edge: vec![edge], faces: vec![side, other], run_m })
+    Some(UnitRoof { shape: words::RoofShape::Gabled, edge: vec![edge], faces: vec![side, other], run_m })
 }
 
 /// No vertex of a gabled roof's footprint may lie nearer to the ridge, metres.
@@ -114,7 +114,7 @@ fn crossed(ring: &[DVec2], aside: impl Fn(DVec2) -> f64) -> Option<(Vec<DVec2>, 
 }
 
 /// Planes from every wall up to one point over the middle.
-fn pyramidal(footprint: &Footprint) -> Option<Roof> {
+fn pyramidal(footprint: &BuildingFootprint) -> Option<UnitRoof> {
     let ring = footprint.exterior();
     let middle = centroid(ring);
     let distance =
@@ -125,7 +125,7 @@ fn pyramidal(footprint: &Footprint) -> Option<Roof> {
     }
     let top = middle.extend(1.0);
     let faces = polygon::edges(ring).map(|(from, to)| vec![from.extend(0.0), to.extend(0.0), top]).collect();
-    Some(Roof { shape: words::Roof::Pyramidal, edge: level_edge(footprint), faces, run_m: nearest })
+    Some(UnitRoof { shape: words::RoofShape::Pyramidal, edge: level_edge(footprint), faces, run_m: nearest })
 }
 
 /// How far the middle must lie within every wall's line for one point to roof them all, metres.
@@ -145,7 +145,7 @@ pub fn centroid(ring: &[DVec2]) -> DVec2 {
 
 /// The smallest rectangle around a ring that has a side along one of its edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Frame {
+struct RoofRectangle {
     center: DVec2,
     /// A unit vector along the longer sides.
     along: DVec2,
@@ -153,7 +153,7 @@ struct Frame {
     half: DVec2,
 }
 
-impl Frame {
+impl RoofRectangle {
     fn around(ring: &[DVec2]) -> Option<Self> {
         if ring.len() > MOST_VERTICES {
             return None;
@@ -186,7 +186,7 @@ impl Frame {
 ///
 /// # Errors
 /// A sentence about the first face that does not.
-pub fn check(roof: &Roof) -> Result<f64, String> {
+pub fn check(roof: &UnitRoof) -> Result<f64, String> {
     let mut sum = 0.0;
     for (index, face) in roof.faces.iter().enumerate() {
         let ring: Vec<DVec2> = face.iter().map(|at| at.truncate()).collect();
@@ -203,10 +203,10 @@ pub fn check(roof: &Roof) -> Result<f64, String> {
 mod tests {
     use super::*;
 
-    fn footprint(points: &[(f64, f64)], turn_deg: f64) -> Footprint {
+    fn footprint(points: &[(f64, f64)], turn_deg: f64) -> BuildingFootprint {
         let turn = DVec2::from_angle(turn_deg.to_radians());
         let ring: Vec<DVec2> = points.iter().map(|&(x, y)| turn.rotate(DVec2::new(x, y))).collect();
-        Footprint::parts(&ring, &[]).remove(0)
+        BuildingFootprint::parts(&ring, &[]).remove(0)
     }
 
     const HOUSE: [(f64, f64); 4] = [(0.0, 0.0), (12.0, 0.0), (12.0, 8.0), (0.0, 8.0)];
@@ -215,8 +215,8 @@ mod tests {
     #[test]
     fn a_gabled_roof_has_two_slopes_and_a_ridge_along_the_house() {
         for turn in TURNS {
-            let roof = roof(&footprint(&HOUSE, turn), words::Roof::Gabled);
-            assert_eq!((roof.shape, roof.faces.len()), (words::Roof::Gabled, 2));
+            let roof = roof(&footprint(&HOUSE, turn), words::RoofShape::Gabled);
+            assert_eq!((roof.shape, roof.faces.len()), (words::RoofShape::Gabled, 2));
             assert!((roof.run_m - 4.0).abs() < 1e-6);
             assert!((check(&roof).expect("upward") - 96.0).abs() < 1e-6);
             let gables: Vec<&DVec3> = roof.edge[0].iter().filter(|at| at.z == 1.0).collect();
@@ -229,8 +229,8 @@ mod tests {
     #[test]
     fn a_pyramidal_roof_s_faces_meet_over_the_middle() {
         for turn in TURNS {
-            let roof = roof(&footprint(&HOUSE, turn), words::Roof::Pyramidal);
-            assert_eq!((roof.shape, roof.faces.len()), (words::Roof::Pyramidal, 4));
+            let roof = roof(&footprint(&HOUSE, turn), words::RoofShape::Pyramidal);
+            assert_eq!((roof.shape, roof.faces.len()), (words::RoofShape::Pyramidal, 4));
             assert!((roof.run_m - 4.0).abs() < 1e-6 && (check(&roof).expect("upward") - 96.0).abs() < 1e-6);
         }
     }
@@ -240,8 +240,8 @@ mod tests {
         let bent = [(0.0, 0.0), (20.0, 0.0), (20.0, 6.0), (6.0, 6.0), (6.0, 20.0), (0.0, 20.0)];
         for turn in TURNS {
             let bent = footprint(&bent, turn);
-            assert_ne!(roof(&bent, words::Roof::Gabled).shape, words::Roof::Gabled);
-            let flat = roof(&bent, words::Roof::Flat);
+            assert_ne!(roof(&bent, words::RoofShape::Gabled).shape, words::RoofShape::Gabled);
+            let flat = roof(&bent, words::RoofShape::Flat);
             assert!((check(&flat).expect("upward") - 204.0).abs() < 1e-6);
         }
     }
@@ -259,8 +259,8 @@ mod tests {
             (0.0, 8.0),
         ];
         for turn in TURNS {
-            let roof = roof(&footprint(&bay, turn), words::Roof::Gabled);
-            assert_eq!(roof.shape, words::Roof::Gabled);
+            let roof = roof(&footprint(&bay, turn), words::RoofShape::Gabled);
+            assert_eq!(roof.shape, words::RoofShape::Gabled);
             assert!((check(&roof).expect("upward") - 98.4).abs() < 1e-6);
         }
     }

@@ -19,8 +19,8 @@ use glam::{DVec2, DVec3};
 
 use crate::description::words;
 use crate::geom::polygon;
-use crate::structure::building_footprint::Footprint;
-use crate::structure::roof::{Roof, level_edge};
+use crate::structure::building_footprint::BuildingFootprint;
+use crate::structure::roof::{UnitRoof, level_edge};
 
 /// The most walls under a hipped roof: rounder plans cost the cube of their vertices.
 const MOST_WALLS: usize = 64;
@@ -44,7 +44,7 @@ impl Wall {
 }
 
 /// The hipped roof of a convex footprint without courtyards; `None` for any other.
-pub(in crate::structure) fn hipped(footprint: &Footprint) -> Option<Roof> {
+pub(in crate::structure) fn hipped(footprint: &BuildingFootprint) -> Option<UnitRoof> {
     let ring = footprint.exterior();
     if footprint.has_courtyards() || !footprint.is_convex() || ring.len() > MOST_WALLS {
         return None;
@@ -58,8 +58,12 @@ pub(in crate::structure) fn hipped(footprint: &Footprint) -> Option<Roof> {
     let run_m = corners.iter().map(|corner| corner.z).fold(0.0, f64::max);
     let risen = |&index: &usize| DVec3 { z: corners[index].z / run_m, ..corners[index] };
     let faces = faces.iter().filter(|face| face.len() > 2).map(|face| face.iter().map(risen).collect());
-    let roof =
-        Roof { shape: words::Roof::Hipped, edge: level_edge(footprint), faces: faces.collect(), run_m };
+    let roof = UnitRoof {
+        shape: words::RoofShape::Hipped,
+        edge: level_edge(footprint),
+        faces: faces.collect(),
+        run_m,
+    };
     (run_m > WELD_M).then_some(roof)
 }
 
@@ -104,10 +108,10 @@ mod tests {
     use super::*;
     use crate::structure::roof;
 
-    fn turned(points: &[(f64, f64)], turn_deg: f64) -> Footprint {
+    fn turned(points: &[(f64, f64)], turn_deg: f64) -> BuildingFootprint {
         let turn = DVec2::from_angle(turn_deg.to_radians());
         let ring: Vec<DVec2> = points.iter().map(|&(x, y)| turn.rotate(DVec2::new(x, y))).collect();
-        Footprint::parts(&ring, &[]).remove(0)
+        BuildingFootprint::parts(&ring, &[]).remove(0)
     }
 
     #[test]

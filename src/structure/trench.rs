@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::draw::color::Srgba;
-use crate::structure::fence_band::{Band, Corner, Ruffle, Section};
+use crate::structure::fence_band::{BandSection, FenceBand, Ruffle, SectionCorner};
 use crate::structure::fence_track::Track;
 
 const EARTH: Srgba = Srgba::opaque(150, 122, 88);
@@ -24,19 +24,19 @@ pub fn bare_m(width_m: f64) -> f64 {
 
 /// The parapets on either side of a trench of `width_m` along `points`, dug `depth_m` deep; their surface
 /// wanders every `every_m`.
-pub fn parapets(points: &[DVec2], (width_m, depth_m): (f64, f64), every_m: f64) -> [Band; 2] {
+pub fn parapets(points: &[DVec2], (width_m, depth_m): (f64, f64), every_m: f64) -> [FenceBand; 2] {
     let half_m = width_m * (0.5 + PARAPET_WIDTH);
     let inner = 0.5 / (0.5 + PARAPET_WIDTH);
-    [(-1.0, -inner), (inner, 1.0)].map(|feet| Band {
+    [(-1.0, -inner), (inner, 1.0)].map(|feet| FenceBand {
         track: Track::new(points, half_m),
         section: bank(feet, depth_m * PARAPET_HEIGHT),
         ruffle: Some(Ruffle { share: RUFFLE.0, shade: RUFFLE.1, every_m }),
     })
 }
 
-fn bank(feet: (f64, f64), height_m: f64) -> Section {
-    let corner = |share: f64, up_m: f64| Corner { share, up_m };
-    Section {
+fn bank(feet: (f64, f64), height_m: f64) -> BandSection {
+    let corner = |share: f64, up_m: f64| SectionCorner { share, up_m };
+    BandSection {
         feet,
         corners: vec![corner(0.0, 0.0), corner(0.35, height_m), corner(0.65, height_m), corner(1.0, 0.0)],
         colors: vec![EARTH, CREST, EARTH],

@@ -1,19 +1,19 @@
 //! What stands on the ground and must be set anew wherever the ground is displayed otherwise.
 
 use crate::draw::list::DrawMesh;
-use crate::structure::building_footing::Footing;
+use crate::structure::building_footing::WallFooting;
 use crate::structure::faces::Faces;
 use crate::structure::fence::Posts;
-use crate::structure::fence_band::Band;
+use crate::structure::fence_band::FenceBand;
 use crate::structure::obstacle::Obstacles;
 use crate::structure::power::PowerLine;
-use crate::terrain::underfoot::Underfoot;
+use crate::terrain::underfoot::SupportSurface;
 
 /// Something upright.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Upright {
+pub enum DrapedSolid {
     /// A wall, a hedge, a bank of earth or a rail.
-    Band(Band),
+    Band(FenceBand),
     /// The posts of a fence.
     Posts(Posts),
     /// A belt of obstacles.
@@ -21,12 +21,12 @@ pub enum Upright {
     /// Pylons and wires.
     PowerLine(PowerLine),
     /// What keeps a building from floating.
-    Footing(Footing),
+    Footing(WallFooting),
 }
 
-impl Upright {
+impl DrapedSolid {
     /// Its triangles on the ground in world space; empty where there is none under it.
-    pub fn mesh(&self, under: Underfoot<'_>) -> DrawMesh {
+    pub fn mesh(&self, under: SupportSurface<'_>) -> DrawMesh {
         let mut faces = Faces::default();
         match self {
             Self::Band(band) => band.build(under.displayed, &mut faces),

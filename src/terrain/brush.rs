@@ -102,14 +102,14 @@ impl Change {
 
 /// What a brush did.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Changes {
+pub struct BrushChanges {
     /// The rectangles that changed; those of one brush do not overlap.
     pub pieces: Vec<Change>,
     /// The earth moved.
     pub volumes: Volumes,
 }
 
-impl Changes {
+impl BrushChanges {
     /// These changes, then those.
     pub fn and(mut self, then: Self) -> Self {
         self.pieces.extend(then.pieces);
@@ -122,10 +122,10 @@ impl Changes {
 /// Sets the heights of a rectangle of posts, row by row from the south-west, in metres.
 ///
 /// Posts beyond the lattice are left out, as are values that are missing, not finite or beyond ±[`HIGHEST_M`].
-pub fn set_heights(lattice: &mut Lattice, posts: PostRect, heights: &[f32]) -> Changes {
+pub fn set_heights(lattice: &mut Lattice, posts: PostRect, heights: &[f32]) -> BrushChanges {
     let width = (i64::from(posts.last.column) - i64::from(posts.first.column) + 1).max(0) as usize;
     let inside = PostRect { first: posts.first, last: posts.last }.clipped(lattice);
-    let mut changes = Changes::default();
+    let mut changes = BrushChanges::default();
     if let Some(inside) = inside {
         let new = |post: Post, _: f32| {
             let (row, column) = (post.row - posts.first.row, post.column - posts.first.column);
@@ -169,7 +169,7 @@ impl PostRect {
     }
 }
 
-impl Changes {
+impl BrushChanges {
     /// Gives every post of `posts` that has data its new height, in metres, from its old one.
     fn write(&mut self, lattice: &mut Lattice, posts: PostRect, new: impl Fn(Post, f32) -> f32) {
         let (first, last) = (posts.first, posts.last);
@@ -243,7 +243,7 @@ impl Crater {
     }
 
     /// Changes the lattice.
-    pub fn apply(&self, lattice: &mut Lattice) -> Changes {
+    pub fn apply(&self, lattice: &mut Lattice) -> BrushChanges {
         let bounds = Rect { min: self.center, max: self.center }.grown(2.0 * self.radius_m);
         paint(lattice, bounds, |_| Some(()), |(), at, height| height + self.rise_m(at.distance(self.center)))
     }
@@ -266,8 +266,8 @@ pub struct Trench {
 
 impl Trench {
     /// Changes the lattice.
-    pub fn apply(&self, lattice: &mut Lattice) -> Changes {
-        let sink = |near: Beside| {
+    pub fn apply(&self, lattice: &mut Lattice) -> BrushChanges {
+        let sink = |near: LegOffset| {
             let side = (self.top_m / 2.0 - near.distance()) / ((self.top_m - self.bottom_m) / 2.0);
             self.depth_m * side.clamp(0.0, 1.0)
         };
@@ -296,8 +296,8 @@ pub struct TyreTrack {
 
 impl TyreTrack {
     /// Changes the lattice.
-    pub fn apply(&self, lattice: &mut Lattice) -> Changes {
-        let sink = |near: Beside| {
+    pub fn apply(&self, lattice: &mut Lattice) -> BrushChanges {
+        let sink = |near: LegOffset| {
             let across = 2.0 * (near.aside_m - self.gauge_m / 2.0) / self.rut_m;
             let rest = 1.0 - 2.0 * near.beyond_m / self.rut_m;
             self.depth_m * (1.0 - across * across).max(0.0) * rest.max(0.0)
@@ -326,9 +326,10 @@ pub struct Embankment {
 
 impl Embankment {
     /// Changes the lattice.
-    pub fn apply(&self, lattice: &mut Lattice) -> Changes {
-        let crown = |near: Beside| near.height_m - (near.distance() - self.crown_m / 2.0).max(0.0) / self.run;
-        let outside = |near: &Beside| near.distance() <= self.reach_m;
+    pub fn apply(&self, lattice: &mut Lattice) -> BrushChanges {
+        let crown =
+            |near: LegOffset| near.height_m - (near.distance() - self.crown_m / 2.0).max(0.0) / self.run;
+        let outside = |near: &LegOffset| near.distance() <= self.reach_m;
         along(lattice, &self.line, self.reach_m, |line, at, height| {
             line.iter().map(|leg| leg.beside(at)).filter(outside).map(crown).fold(height, f64::max)
         })
@@ -337,7 +338,7 @@ impl Embankment {
 
 /// A straight piece of a stroke's line.
 #[derive(Clone, Copy, Debug)]
-struct Leg {
+struct StrokeLeg {
     from: DVec3,
     to: DVec3,
     /// Whether the line starts here.
@@ -348,7 +349,7 @@ struct Leg {
 
 /// Where a point lies beside a leg.
 #[derive(Clone, Copy, Debug)]
-struct Beside {
+struct LegOffset {
     /// Metres from the leg's straight line; from its end where that is a bend and the point lies beyond it.
     aside_m: f64,
     /// Metres beyond the whole line's end; 0 elsewhere.
@@ -357,8 +358,8 @@ struct Beside {
     height_m: f64,
 }
 
-impl Leg {
-    fn beside(&self, at: DVec2) -> Beside {
+impl StrokeLeg {
+    fn beside(&self, at: DVec2) -> LegOffset {
         let (way, off) = (self.to.truncate() - self.from.truncate(), at - self.from.truncate());
         let length = way.length();
         let along = if length > 0.0 { off.dot(way) / length } else { 0.0 };
@@ -368,9 +369,9 @@ impl Leg {
         let height_m = self.from.z + (self.to.z - self.from.z) * part;
         let beyond_m = (along - nearest).abs();
         if (along < 0.0 && !self.starts) || (along > length && !self.ends) {
-            return Beside { aside_m: DVec2::new(aside_m, beyond_m).length(), beyond_m: 0.0, height_m };
+            return LegOffset { aside_m: DVec2::new(aside_m, beyond_m).length(), beyond_m: 0.0, height_m };
         }
-        Beside { aside_m, beyond_m, height_m }
+        LegOffset { aside_m, beyond_m, height_m }
     }
 
     fn bounds(&self) -> Rect {
@@ -378,14 +379,14 @@ impl Leg {
     }
 }
 
-impl Beside {
+impl LegOffset {
     fn distance(&self) -> f64 {
         DVec2::new(self.aside_m, self.beyond_m).length()
     }
 }
 
 /// Where a point lies beside the leg nearest to it.
-fn nearest(line: &[Leg], at: DVec2) -> Option<Beside> {
+fn nearest(line: &[StrokeLeg], at: DVec2) -> Option<LegOffset> {
     line.iter().map(|leg| leg.beside(at)).min_by(|a, b| a.distance().total_cmp(&b.distance()))
 }
 
@@ -398,20 +399,20 @@ fn along(
     lattice: &mut Lattice,
     line: &[DVec3],
     reach_m: f64,
-    height: impl Fn(&Vec<Leg>, DVec2, f64) -> f64,
-) -> Changes {
+    height: impl Fn(&Vec<StrokeLeg>, DVec2, f64) -> f64,
+) -> BrushChanges {
     let last = line.len().saturating_sub(2);
-    let leg = |(index, ends): (usize, &[DVec3])| Leg {
+    let leg = |(index, ends): (usize, &[DVec3])| StrokeLeg {
         from: ends[0],
         to: ends[1],
         starts: index == 0,
         ends: index == last,
     };
-    let legs: Vec<Leg> = line.windows(2).enumerate().map(leg).collect();
+    let legs: Vec<StrokeLeg> = line.windows(2).enumerate().map(leg).collect();
     let bounds = Rect::around(line.iter().map(|at| at.truncate())).grown(reach_m);
     let near = |tile: &Rect| {
         let near = legs.iter().filter(|leg| leg.bounds().grown(reach_m).meets(tile)).copied();
-        Some(near.collect::<Vec<Leg>>()).filter(|near| !near.is_empty())
+        Some(near.collect::<Vec<StrokeLeg>>()).filter(|near| !near.is_empty())
     };
     paint(lattice, bounds, near, height)
 }
@@ -422,8 +423,8 @@ fn paint<Near>(
     bounds: Rect,
     near: impl Fn(&Rect) -> Option<Near>,
     height: impl Fn(&Near, DVec2, f64) -> f64,
-) -> Changes {
-    let mut changes = Changes::default();
+) -> BrushChanges {
+    let mut changes = BrushChanges::default();
     let cell = lattice.cell();
     let world = |post: Post| DVec2::new(f64::from(post.column), f64::from(post.row)) * cell;
     for tile in PostRect::within(lattice, &bounds).into_iter().flat_map(PostRect::tiles) {

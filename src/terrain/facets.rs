@@ -5,12 +5,12 @@ use glam::{DVec3, Vec3};
 use crate::geom::rect::Rect;
 
 /// One displayed triangle in world space, counter-clockwise seen from above.
-pub type Facet = [Vec3; 3];
+pub type SurfaceTriangle = [Vec3; 3];
 
 /// A displayed ground surface: triangles that meet edge to edge, one above every covered point.
-pub trait Facets: Send + Sync {
+pub trait TriangleSurface: Send + Sync {
     /// Calls `visit` with every displayed triangle that meets the world rectangle; may add a few that do not.
-    fn visit_facets(&self, rect: &Rect, visit: &mut dyn FnMut(&Facet));
+    fn visit_facets(&self, rect: &Rect, visit: &mut dyn FnMut(&SurfaceTriangle));
 
     /// World Z of the displayed surface at a world position; `None` where nothing is displayed.
     fn displayed_z(&self, at: glam::DVec2) -> Option<f64> {
@@ -25,7 +25,7 @@ pub trait Facets: Send + Sync {
 }
 
 /// Whether the plan position lies in the triangle or on its border.
-pub fn facet_contains(facet: &Facet, at: glam::DVec2) -> bool {
+pub fn facet_contains(facet: &SurfaceTriangle, at: glam::DVec2) -> bool {
     let corners = facet.map(|corner| corner.truncate().as_dvec2());
     (0..3).all(|side| {
         let (from, to) = (corners[side], corners[(side + 1) % 3]);
@@ -34,7 +34,7 @@ pub fn facet_contains(facet: &Facet, at: glam::DVec2) -> bool {
 }
 
 /// World Z of the triangle's plane at a plan position. The triangle must have a plan area.
-pub fn plane_z(facet: &Facet, at: glam::DVec2) -> f64 {
+pub fn plane_z(facet: &SurfaceTriangle, at: glam::DVec2) -> f64 {
     let [a, b, c]: [DVec3; 3] = facet.map(Vec3::as_dvec3);
     let normal = (b - a).cross(c - a);
     a.z - (normal.x * (at.x - a.x) + normal.y * (at.y - a.y)) / normal.z

@@ -15,7 +15,7 @@
 
 /// A level with what it weighs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Weighted {
+pub struct WeightedLevel {
     /// Metres.
     pub level_m: f64,
     /// At least 0; the metres of river that it stands for.
@@ -38,7 +38,7 @@ impl Pool {
 /// The series nearest to `levels`, in downstream order, of those that never rise; one for each.
 ///
 /// Levels must be finite and weights above 0. Costs a step a level.
-pub fn falling(levels: &[Weighted]) -> Vec<f64> {
+pub fn falling(levels: &[WeightedLevel]) -> Vec<f64> {
     let mut pools: Vec<Pool> = Vec::new();
     for level in levels {
         let mut pool = Pool { sum: level.level_m * level.weight, weight: level.weight, count: 1 };
@@ -76,7 +76,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn fitted(levels: &[f64]) -> Vec<f64> {
-        let weighted = |&level_m: &f64| Weighted { level_m, weight: 1.0 };
+        let weighted = |&level_m: &f64| WeightedLevel { level_m, weight: 1.0 };
         falling(&levels.iter().map(weighted).collect::<Vec<_>>())
     }
 
@@ -88,7 +88,8 @@ mod tests {
 
     #[test]
     fn the_longer_stretch_decides() {
-        let levels = [Weighted { level_m: 4.0, weight: 3.0 }, Weighted { level_m: 8.0, weight: 1.0 }];
+        let levels =
+            [WeightedLevel { level_m: 4.0, weight: 3.0 }, WeightedLevel { level_m: 8.0, weight: 1.0 }];
         assert_eq!(falling(&levels), [5.0, 5.0]);
     }
 
@@ -98,8 +99,8 @@ mod tests {
             levels in prop::collection::vec((-50.0..50.0f64, 0.1..9.0f64), 1..60),
             shift in -0.5..0.5f64,
         ) {
-            let weighted: Vec<Weighted> =
-                levels.iter().map(|&(level_m, weight)| Weighted { level_m, weight }).collect();
+            let weighted: Vec<WeightedLevel> =
+                levels.iter().map(|&(level_m, weight)| WeightedLevel { level_m, weight }).collect();
             let fitted = falling(&weighted);
             prop_assert!(fitted.windows(2).all(|pair| pair[1] <= pair[0]));
             let distance = |series: &[f64]| -> f64 {

@@ -6,20 +6,20 @@
 use glam::{DVec2, Vec3};
 
 use crate::geom::rect::Rect;
-use crate::terrain::facets::{Facet, Facets};
+use crate::terrain::facets::{SurfaceTriangle, TriangleSurface};
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::query::{Diagonal, Interpolation, ground_height};
 
 /// All triangles of a lattice, two a cell, those without data left out.
 #[derive(Clone, Copy, Debug)]
-pub struct Finest<'a> {
+pub struct FullResolution<'a> {
     /// The heights.
     pub lattice: &'a Lattice,
     /// How many times heights are stretched.
     pub exaggeration: f32,
 }
 
-impl Finest<'_> {
+impl FullResolution<'_> {
     /// The first and the last cell that a world rectangle meets; `None` where it lies beside the lattice.
     fn cells(&self, rect: &Rect) -> Option<(Post, Post)> {
         if !rect.meets(&self.lattice.extent()) {
@@ -41,7 +41,7 @@ impl Finest<'_> {
     }
 
     /// The two triangles of a cell, counter-clockwise seen from above; Z NaN where there is no data.
-    fn triangles(&self, cell: Post) -> [Facet; 2] {
+    fn triangles(&self, cell: Post) -> [SurfaceTriangle; 2] {
         let corner = |east: u32, north: u32| -> Vec3 {
             let post = Post { column: cell.column + east, row: cell.row + north };
             self.lattice.position(post).extend(self.lattice.height(post) * self.exaggeration)
@@ -54,12 +54,12 @@ impl Finest<'_> {
     }
 }
 
-impl Facets for Finest<'_> {
-    fn visit_facets(&self, rect: &Rect, visit: &mut dyn FnMut(&Facet)) {
+impl TriangleSurface for FullResolution<'_> {
+    fn visit_facets(&self, rect: &Rect, visit: &mut dyn FnMut(&SurfaceTriangle)) {
         let Some((first, last)) = self.cells(rect) else { return };
         for row in first.row..=last.row {
             for column in first.column..=last.column {
-                let whole = |facet: &&Facet| facet.iter().all(|corner| corner.z.is_finite());
+                let whole = |facet: &&SurfaceTriangle| facet.iter().all(|corner| corner.z.is_finite());
                 self.triangles(Post { column, row }).iter().filter(whole).for_each(&mut *visit);
             }
         }
@@ -86,7 +86,7 @@ mod tests {
     #[test]
     fn the_facets_are_the_planar_ground() {
         let lattice = lattice(None);
-        let finest = Finest { lattice: &lattice, exaggeration: 2.0 };
+        let finest = FullResolution { lattice: &lattice, exaggeration: 2.0 };
         for step in 0..500 {
             let at = DVec2::new(f64::from(step * 37 % 799) / 10.0, f64::from(step * 53 % 239) / 10.0);
             let mut found = Vec::new();
@@ -104,7 +104,7 @@ mod tests {
     fn the_facets_cover_the_ground_once_but_for_holes() {
         for (hole, triangles) in [(None, 96), (Some(20), 96 - 8), (Some(0), 94)] {
             let lattice = lattice(hole);
-            let finest = Finest { lattice: &lattice, exaggeration: 1.0 };
+            let finest = FullResolution { lattice: &lattice, exaggeration: 1.0 };
             let mut count = 0;
             finest.visit_facets(&lattice.extent().grown(50.0), &mut |facet| {
                 let plan = facet.map(|corner| corner.truncate().as_dvec2());
@@ -116,6 +116,6 @@ mod tests {
         }
         let lattice = lattice(None);
         let beside = Rect { min: DVec2::splat(-9.0), max: DVec2::splat(-1.0) };
-        assert_eq!(Finest { lattice: &lattice, exaggeration: 1.0 }.cell_count(&beside), 0);
+        assert_eq!(FullResolution { lattice: &lattice, exaggeration: 1.0 }.cell_count(&beside), 0);
     }
 }

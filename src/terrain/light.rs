@@ -12,7 +12,7 @@ use crate::terrain::lattice::{Lattice, Post};
 
 /// Shares of light per post, row by row from the south-west, each 0..=1.
 #[derive(Clone, Debug)]
-pub struct Light {
+pub struct TerrainLight {
     /// Of the sun.
     pub sun: Vec<f32>,
     /// Of the sky.
@@ -24,10 +24,10 @@ pub struct Light {
 const PENUMBRA_CELLS: f32 = 0.35;
 
 /// The light on `lattice`, its heights times `exaggeration`, for a sun in direction `to_sun` (unit vector).
-pub fn light(lattice: &Lattice, exaggeration: f32, to_sun: Vec3) -> Light {
+pub fn light(lattice: &Lattice, exaggeration: f32, to_sun: Vec3) -> TerrainLight {
     let z: Vec<f32> = lattice.heights().iter().map(|height| height * exaggeration).collect();
     let (sun, sky) = rayon::join(|| sun_visibility(lattice, &z, to_sun), || sky_visibility(lattice, &z));
-    Light { sun, sky }
+    TerrainLight { sun, sky }
 }
 
 /// Sweeps the shadow sheet row by row along the sun's main direction.

@@ -13,7 +13,7 @@ use crate::terrain::sight::crossings::crossings;
 
 /// A place along a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Station {
+pub struct ProfileStation {
     /// Metres along the line from its start.
     pub station_m: f64,
     /// Map coordinates.
@@ -42,7 +42,7 @@ impl Default for Sampling {
 /// edge of the finest triangles, in order. Between two stations in a row the planar ground is straight.
 ///
 /// Costs three stations a cell. A vertex that is not finite has no ground, nor has the line to and from it.
-pub fn profile(lattice: &Lattice, line: &[DVec2]) -> Vec<Station> {
+pub fn profile(lattice: &Lattice, line: &[DVec2]) -> Vec<ProfileStation> {
     sampled_profile(lattice, line, Sampling::default())
 }
 
@@ -50,7 +50,7 @@ pub fn profile(lattice: &Lattice, line: &[DVec2]) -> Vec<Station> {
 ///
 /// # Panics
 /// Where the step is not above 0.
-pub fn sampled_profile(lattice: &Lattice, line: &[DVec2], sampling: Sampling) -> Vec<Station> {
+pub fn sampled_profile(lattice: &Lattice, line: &[DVec2], sampling: Sampling) -> Vec<ProfileStation> {
     assert!(sampling.step_m.is_none_or(|step_m| step_m > 0.0), "steps go forward: {sampling:?}");
     let mut profiler = Profiler { lattice, sampling, walked_m: 0.0, stations: Vec::new() };
     for pair in line.windows(2) {
@@ -66,13 +66,13 @@ struct Profiler<'a> {
     lattice: &'a Lattice,
     sampling: Sampling,
     walked_m: f64,
-    stations: Vec<Station>,
+    stations: Vec<ProfileStation>,
 }
 
 impl Profiler<'_> {
     fn vertex(&mut self, at: DVec2) {
         let station_m = self.walked_m;
-        self.stations.push(Station { station_m, at, ground: self.ground(at) });
+        self.stations.push(ProfileStation { station_m, at, ground: self.ground(at) });
     }
 
     fn ground(&self, at: DVec2) -> Answer {
@@ -96,7 +96,7 @@ impl Profiler<'_> {
                 // Rounding may put a crossing with the border beside the model, where the model yet is.
                 _ => self.ground(self.on_model(at)),
             };
-            breaks.push(Station { station_m: start_m + length_m * crossing.part, at, ground });
+            breaks.push(ProfileStation { station_m: start_m + length_m * crossing.part, at, ground });
             ControlFlow::<()>::Continue(())
         });
         self.stations.append(&mut breaks);
@@ -114,7 +114,7 @@ impl Profiler<'_> {
         while count * step_m < end_m {
             let station_m = count * step_m;
             let at = from + (to - from) * ((station_m - self.walked_m) / length_m);
-            self.stations.push(Station { station_m, at, ground: self.ground(at) });
+            self.stations.push(ProfileStation { station_m, at, ground: self.ground(at) });
             count += 1.0;
         }
     }
@@ -139,7 +139,7 @@ pub struct Extreme {
 
 /// What a profile comes to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Summary {
+pub struct ProfileSummary {
     /// The line's length in the plane, metres.
     pub length_m: f64,
     /// How much of it has ground under it, metres in the plane.
@@ -156,9 +156,9 @@ pub struct Summary {
     pub highest: Option<Extreme>,
 }
 
-impl Summary {
+impl ProfileSummary {
     /// Of the stations of a profile, in order.
-    pub fn of(stations: &[Station]) -> Self {
+    pub fn of(stations: &[ProfileStation]) -> Self {
         let mut summary = Self {
             length_m: stations.last().map_or(0.0, |last| last.station_m),
             covered_m: 0.0,
@@ -225,7 +225,7 @@ mod tests {
         assert_eq!(along.first(), Some(&(0.0, Answer::Outside)));
         assert_eq!(along[1..3], [(30.0, Answer::Height(0.0)), (40.0, Answer::Height(0.0))]);
         assert_eq!(along[5..], [(70.0, Answer::Height(0.0)), (100.0, Answer::Outside)]);
-        let summary = Summary::of(&stations);
+        let summary = ProfileSummary::of(&stations);
         assert_eq!((summary.length_m, summary.covered_m), (100.0, 40.0));
         assert_eq!((summary.ascent_m, summary.descent_m), (8.0, 8.0));
     }
@@ -236,7 +236,7 @@ mod tests {
         let holed = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 5, heights).expect("sound");
         let stations = profile(&holed, &[DVec2::new(0.0, 20.0), DVec2::new(40.0, 20.0)]);
         assert_eq!(stations[2].ground, Answer::NoData);
-        assert_eq!(Summary::of(&stations).covered_m, 20.0);
+        assert_eq!(ProfileSummary::of(&stations).covered_m, 20.0);
     }
 
     #[test]

@@ -33,7 +33,7 @@ pub struct Flooded {
 pub fn flood(lattice: &mut Lattice, exterior: &[DVec2], holes: &[Vec<DVec2>], level_m: f32) -> Flooded {
     let rings: Vec<Vec<DVec2>> = std::iter::once(exterior.to_vec()).chain(holes.iter().cloned()).collect();
     let water = posts_touched(lattice, &rings);
-    let mut works = Works { lattice, flooded: Flooded::default(), moves: BTreeMap::new() };
+    let mut works = ShoreWorks { lattice, flooded: Flooded::default(), moves: BTreeMap::new() };
     for &post in &water {
         works.level(post, level_m);
     }
@@ -47,14 +47,14 @@ pub fn flood(lattice: &mut Lattice, exterior: &[DVec2], holes: &[Vec<DVec2>], le
 }
 
 /// Earthworks under way.
-struct Works<'a> {
+struct ShoreWorks<'a> {
     lattice: &'a mut Lattice,
     flooded: Flooded,
     /// By row and column: how far each post of bed and islands was moved; 0 where there was no ground.
     moves: BTreeMap<(u32, u32), f64>,
 }
 
-impl Works<'_> {
+impl ShoreWorks<'_> {
     /// Sets a post under water to the level.
     fn level(&mut self, post: Post, level_m: f32) {
         let before = self.lattice.height(post);

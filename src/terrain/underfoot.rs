@@ -11,8 +11,8 @@
 use glam::DVec2;
 
 use crate::geom::rect::Rect;
-use crate::terrain::facets::{Facet, Facets, plane_z};
-use crate::terrain::finest::Finest;
+use crate::terrain::facets::{SurfaceTriangle, TriangleSurface, plane_z};
+use crate::terrain::finest::FullResolution;
 
 /// What counts as lying in a triangle, in metres beside it: more than rounding, so that no line falls between two
 /// triangles, and less than anybody sees.
@@ -27,7 +27,7 @@ const PIECE_M: f64 = 100.0;
 
 /// A place on a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Station {
+pub struct LineStation {
     /// How far along the line, 0 at its start and 1 at its end.
     pub part: f64,
     /// World Z of the ground there.
@@ -36,13 +36,13 @@ pub struct Station {
 
 /// A stretch of a line with ground under it: stations in rising order, at least two; straight in between.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Run {
-    stations: Vec<Station>,
+pub struct GroundRun {
+    stations: Vec<LineStation>,
 }
 
-impl Run {
+impl GroundRun {
     /// The stations.
-    pub fn stations(&self) -> &[Station] {
+    pub fn stations(&self) -> &[LineStation] {
         &self.stations
     }
 
@@ -64,7 +64,7 @@ impl Run {
 
 /// The line `from`..`to` laid on `ground`, cut at the edges of its triangles; in several runs where the ground has gaps,
 /// in none where there is no ground or the line is a point.
-pub fn runs(ground: &dyn Facets, from: DVec2, to: DVec2) -> Vec<Run> {
+pub fn runs(ground: &dyn TriangleSurface, from: DVec2, to: DVec2) -> Vec<GroundRun> {
     let length = from.distance(to);
     if !(length.is_finite() && length > BESIDE_M) {
         return Vec::new();
@@ -77,7 +77,7 @@ pub fn runs(ground: &dyn Facets, from: DVec2, to: DVec2) -> Vec<Run> {
         ground.visit_facets(&rect, &mut |facet| {
             if let Some((enter, leave)) = parts_over(facet, from, to) {
                 let z = |part: f64| plane_z(facet, from.lerp(to, part));
-                over.push([enter.max(low), leave.min(high)].map(|part| Station { part, z: z(part) }));
+                over.push([enter.max(low), leave.min(high)].map(|part| LineStation { part, z: z(part) }));
             }
         });
     }
@@ -87,22 +87,22 @@ pub fn runs(ground: &dyn Facets, from: DVec2, to: DVec2) -> Vec<Run> {
 }
 
 /// Runs from the stretches over single triangles, in rising order; gaps up to `gap` are rounding.
-fn joined(over: &[[Station; 2]], gap: f64) -> Vec<Run> {
-    let mut found: Vec<Run> = Vec::new();
+fn joined(over: &[[LineStation; 2]], gap: f64) -> Vec<GroundRun> {
+    let mut found: Vec<GroundRun> = Vec::new();
     for &[enter, leave] in over {
         if let Some(run) = found.last_mut().filter(|run| enter.part <= run.span().1 + gap) {
             if leave.part > run.span().1 + gap {
                 run.stations.push(leave);
             }
         } else if leave.part - enter.part > gap {
-            found.push(Run { stations: vec![enter, leave] });
+            found.push(GroundRun { stations: vec![enter, leave] });
         }
     }
     found
 }
 
 /// The parts of a line between which it lies over a triangle (Cyrus and Beck 1978).
-fn parts_over(facet: &Facet, from: DVec2, to: DVec2) -> Option<(f64, f64)> {
+fn parts_over(facet: &SurfaceTriangle, from: DVec2, to: DVec2) -> Option<(f64, f64)> {
     let corners = facet.map(|corner| corner.truncate().as_dvec2());
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
     for side in 0..3 {
@@ -124,14 +124,14 @@ fn parts_over(facet: &Facet, from: DVec2, to: DVec2) -> Option<(f64, f64)> {
 /// The ground that a picture's uprights stand on: as displayed, or as it is where the ground there is out of view, since
 /// what stands on it may be in view all the same.
 #[derive(Clone, Copy)]
-pub struct Underfoot<'a> {
+pub struct SupportSurface<'a> {
     /// The displayed ground.
-    pub displayed: &'a dyn Facets,
+    pub displayed: &'a dyn TriangleSurface,
     /// The ground itself.
-    pub ground: Finest<'a>,
+    pub ground: FullResolution<'a>,
 }
 
-impl Underfoot<'_> {
+impl SupportSurface<'_> {
     /// World Z of the ground at a world position; `None` where there is no data.
     pub fn z(&self, at: DVec2) -> Option<f64> {
         self.displayed.displayed_z(at).or_else(|| self.ground.displayed_z(at))
@@ -159,7 +159,7 @@ mod tests {
             snapped in proptest::bool::ANY,
         ) {
             let lattice = rough(&[]);
-            let ground = Finest { lattice: &lattice, exaggeration: 1.0 };
+            let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
             let onto = |at: (f64, f64)| {
                 let at = DVec2::from(at);
                 if snapped { (at / DVec2::new(10.0, 7.0)).round() * DVec2::new(10.0, 7.0) } else { at }
@@ -186,7 +186,7 @@ mod tests {
     #[test]
     fn a_hole_parts_a_line() {
         let lattice = rough(&[10 * 20 + 10]);
-        let ground = Finest { lattice: &lattice, exaggeration: 1.0 };
+        let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
         let found = runs(&ground, DVec2::new(0.0, 71.0), DVec2::new(190.0, 71.0));
         assert_eq!(found.len(), 2);
         assert!(found[0].span().1 < 0.55 && found[1].span().0 > 0.5);
@@ -195,7 +195,7 @@ mod tests {
     #[test]
     fn a_point_and_what_is_not_finite_have_no_runs() {
         let lattice = rough(&[]);
-        let ground = Finest { lattice: &lattice, exaggeration: 1.0 };
+        let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
         assert!(runs(&ground, DVec2::ONE, DVec2::ONE).is_empty());
         assert!(runs(&ground, DVec2::ONE, DVec2::NAN).is_empty());
     }

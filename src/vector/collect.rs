@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use crate::geom::crs::Crs;
 use crate::vector::error::VectorError;
-use crate::vector::feature::{Feature, Geometry, Layer, Polygon};
+use crate::vector::feature::{Feature, Geometry, Polygon, VectorLayer};
 
 /// A feature's properties, by name.
 pub(crate) type Properties = BTreeMap<String, Value>;
@@ -34,15 +34,15 @@ pub(crate) struct Collector {
 
 /// The shapes of one feature.
 #[derive(Default)]
-pub(crate) struct Parts {
+pub(crate) struct FeatureParts {
     points: Vec<DVec3>,
     lines: Vec<Vec<DVec3>>,
-    polygons: Vec<Rings>,
+    polygons: Vec<PolygonRings>,
     left: Left,
 }
 
 /// A polygon's rings: the outer one, not closed, and the holes.
-struct Rings {
+struct PolygonRings {
     exterior: Vec<DVec3>,
     holes: Vec<Vec<DVec3>>,
 }
@@ -67,7 +67,7 @@ impl Collector {
     ///
     /// # Errors
     /// [`VectorError::NotDegrees`].
-    pub fn add(&mut self, parts: Parts, properties: Properties) -> Result<(), VectorError> {
+    pub fn add(&mut self, parts: FeatureParts, properties: Properties) -> Result<(), VectorError> {
         self.seen += 1;
         let empty = parts.is_empty();
         self.left.add(&parts.left);
@@ -101,14 +101,14 @@ impl Collector {
     }
 
     /// All features that came of it.
-    pub fn finish(self) -> Layer {
+    pub fn finish(self) -> VectorLayer {
         let mut notes = self.left.notes();
         notes.extend(self.notes);
-        Layer { features: self.features, crs: self.crs, notes }
+        VectorLayer { features: self.features, crs: self.crs, notes }
     }
 }
 
-impl Parts {
+impl FeatureParts {
     /// Adds a point.
     pub fn point(&mut self, at: DVec3) {
         self.points.extend(self.left.finite(vec![at]));
@@ -132,7 +132,7 @@ impl Parts {
         self.left.small_rings +=
             usize::from(exterior.is_none()) + holes.iter().filter(|hole| hole.is_none()).count();
         if let Some(exterior) = exterior {
-            self.polygons.push(Rings { exterior, holes: holes.into_iter().flatten().collect() });
+            self.polygons.push(PolygonRings { exterior, holes: holes.into_iter().flatten().collect() });
         }
     }
 
@@ -162,7 +162,7 @@ impl Parts {
                 .iter()
                 .flat_map(|polygon| polygon.exterior.iter().chain(polygon.holes.iter().flatten()));
             let elevations = elevations(vertices);
-            let polygon = |rings: Rings| Polygon {
+            let polygon = |rings: PolygonRings| Polygon {
                 exterior: flat(rings.exterior),
                 holes: rings.holes.into_iter().map(flat).collect(),
             };
@@ -238,7 +238,7 @@ fn check_degrees(geometry: &Geometry, crs: &Crs, feature: usize) -> Result<(), V
 mod tests {
     use super::*;
 
-    fn layer(parts: Parts) -> Layer {
+    fn layer(parts: FeatureParts) -> VectorLayer {
         let mut collector = Collector::new(Crs::wgs84());
         collector.add(parts, Properties::new()).expect("degrees");
         collector.finish()
@@ -248,7 +248,7 @@ mod tests {
     fn elevations_stand_in_the_order_of_the_vertices_and_rings_lose_their_last() {
         let ring =
             |z: f64| [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.0, 0.0)].map(|(x, y)| DVec3::new(x, y, z));
-        let mut parts = Parts::default();
+        let mut parts = FeatureParts::default();
         parts.polygon([ring(1.0).to_vec(), ring(f64::NAN).to_vec(), ring(3.0).to_vec()]);
         let layer = layer(parts);
         let [feature] = &layer.features[..] else { panic!("one feature") };
@@ -261,7 +261,7 @@ mod tests {
 
     #[test]
     fn positions_that_are_not_numbers_are_left_out_and_said() {
-        let mut parts = Parts::default();
+        let mut parts = FeatureParts::default();
         parts.line(vec![DVec3::new(1.0, 2.0, f64::NAN), DVec3::NAN, DVec3::new(f64::INFINITY, 0.0, 0.0)]);
         parts.point(DVec3::new(1.0, 2.0, f64::NAN));
         let layer = layer(parts);

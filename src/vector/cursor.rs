@@ -2,12 +2,12 @@
 
 /// What is still to be read.
 #[derive(Clone, Copy)]
-pub(crate) struct Cursor<'a> {
+pub(crate) struct ByteCursor<'a> {
     bytes: &'a [u8],
     start: usize,
 }
 
-impl<'a> Cursor<'a> {
+impl<'a> ByteCursor<'a> {
     /// All of `bytes`.
     pub fn new(bytes: &'a [u8]) -> Self {
         Self { bytes, start: bytes.len() }

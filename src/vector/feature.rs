@@ -8,7 +8,7 @@ use crate::geom::crs::{Crs, CrsError};
 
 /// All features of one file.
 #[derive(Clone, Debug)]
-pub struct Layer {
+pub struct VectorLayer {
     /// In the file's order.
     pub features: Vec<Feature>,
     /// The system of all coordinates: what the file states, else its format's default.
@@ -49,7 +49,7 @@ pub struct Polygon {
     pub holes: Vec<Vec<DVec2>>,
 }
 
-impl Layer {
+impl VectorLayer {
     /// The same features in the system `to`.
     ///
     /// # Errors
@@ -140,7 +140,7 @@ mod tests {
         let polygon = Polygon { exterior: ring(0.1), holes: vec![ring(0.01)] };
         let geometry = Geometry::Polygons(vec![polygon]);
         let feature = Feature { geometry, elevations: None, properties: BTreeMap::new() };
-        let layer = Layer { features: vec![feature], crs: Crs::wgs84(), notes: Vec::new() };
+        let layer = VectorLayer { features: vec![feature], crs: Crs::wgs84(), notes: Vec::new() };
         let utm = Crs::utm_at(15.0, 48.0);
         let moved = layer.transformed(&utm).expect("in the zone");
         assert_eq!(moved.crs, utm);

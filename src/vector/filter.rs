@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-use crate::vector::feature::{Feature, Layer};
+use crate::vector::feature::{Feature, VectorLayer};
 
 /// What a feature's properties must be; all conditions must hold, and none always do.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,13 +32,13 @@ impl Filter {
     }
 
     /// The layer's features that match, in its order, each with its place in [`Layer::features`].
-    pub fn select<'a>(&'a self, layer: &'a Layer) -> impl Iterator<Item = (usize, &'a Feature)> + 'a {
+    pub fn select<'a>(&'a self, layer: &'a VectorLayer) -> impl Iterator<Item = (usize, &'a Feature)> + 'a {
         layer.features.iter().enumerate().filter(|(_, feature)| self.matches(feature))
     }
 
     /// Why no feature of the layer matches: for each condition that never holds, the values that there are
     /// instead. `None` where some feature matches, or each condition holds somewhere but never all together.
-    pub fn explain_none(&self, layer: &Layer) -> Option<String> {
+    pub fn explain_none(&self, layer: &VectorLayer) -> Option<String> {
         if self.select(layer).next().is_some() {
             return None;
         }
@@ -53,7 +53,7 @@ impl Condition {
         self.any_of.iter().any(|wanted| equal(wanted, value))
     }
 
-    fn explain_none(&self, layer: &Layer) -> Option<String> {
+    fn explain_none(&self, layer: &VectorLayer) -> Option<String> {
         /// As many as fit on a line.
         const SHOWN: usize = 12;
         let property = &self.property;
@@ -90,13 +90,17 @@ mod tests {
     use crate::vector::feature::Geometry;
     use serde_json::json;
 
-    fn layer(properties: &[Value]) -> Layer {
+    fn layer(properties: &[Value]) -> VectorLayer {
         let feature = |properties: &Value| Feature {
             geometry: Geometry::Points(Vec::new()),
             elevations: None,
             properties: properties.as_object().expect("an object").clone().into_iter().collect(),
         };
-        Layer { features: properties.iter().map(feature).collect(), crs: Crs::wgs84(), notes: Vec::new() }
+        VectorLayer {
+            features: properties.iter().map(feature).collect(),
+            crs: Crs::wgs84(),
+            notes: Vec::new(),
+        }
     }
 
     fn filter(conditions: &[(&str, &[Value])]) -> Filter {

@@ -14,10 +14,10 @@ use glam::DVec3;
 use serde_json::{Number, Value};
 
 use crate::geom::crs::Crs;
-use crate::vector::collect::{Collector, Parts, Properties, position};
-use crate::vector::cursor::Cursor;
+use crate::vector::collect::{Collector, FeatureParts, Properties, position};
+use crate::vector::cursor::ByteCursor;
 use crate::vector::error::VectorError;
-use crate::vector::feature::Layer;
+use crate::vector::feature::VectorLayer;
 
 const FORMAT: &str = "FlatGeobuf file";
 const NODE_BYTES: u64 = 40;
@@ -31,12 +31,12 @@ pub(super) fn is_flatgeobuf(bytes: &[u8]) -> bool {
 ///
 /// # Errors
 /// [`VectorError`]: another version, buffers that are broken, shapes with curves, no system where none is `stated`.
-pub(super) fn read(bytes: &[u8], stated: Option<&Crs>) -> Result<Layer, VectorError> {
+pub(super) fn read(bytes: &[u8], stated: Option<&Crs>) -> Result<VectorLayer, VectorError> {
     let broken = |reason: &str| VectorError::broken(FORMAT, "its header", reason);
     if bytes.get(3) != Some(&3) {
         return Err(broken("it is not of version 3"));
     }
-    let mut cursor = Cursor::new(&bytes[bytes.len().min(8)..]);
+    let mut cursor = ByteCursor::new(&bytes[bytes.len().min(8)..]);
     let buffer = sized(&mut cursor).ok_or_else(|| broken("it is longer than the file"))?;
     let header =
         flatgeobuf::size_prefixed_root_as_header(buffer).map_err(|error| broken(&error.to_string()))?;
@@ -57,7 +57,7 @@ pub(super) fn read(bytes: &[u8], stated: Option<&Crs>) -> Result<Layer, VectorEr
         let buffer = sized(&mut cursor).ok_or_else(|| broken(seen, "it reaches past the end of the file"))?;
         let feature = flatgeobuf::size_prefixed_root_as_feature(buffer)
             .map_err(|error| broken(seen, &error.to_string().replace('\n', " ")))?;
-        let mut parts = Parts::default();
+        let mut parts = FeatureParts::default();
         if let Some(geometry) = feature.geometry() {
             shapes.add(&mut parts, &geometry, shapes.of_layer).map_err(|wrong| match wrong {
                 Wrong::Curves(kind) => curves(kind),
@@ -75,7 +75,7 @@ pub(super) fn read(bytes: &[u8], stated: Option<&Crs>) -> Result<Layer, VectorEr
 }
 
 /// The next buffer with its length before it.
-fn sized<'a>(cursor: &mut Cursor<'a>) -> Option<&'a [u8]> {
+fn sized<'a>(cursor: &mut ByteCursor<'a>) -> Option<&'a [u8]> {
     /// What the smallest buffer needs; less makes the verifier stumble.
     const LEAST: u32 = 8;
     let from_here = *cursor;
@@ -142,7 +142,7 @@ struct Shapes {
 impl Shapes {
     fn add(
         &mut self,
-        parts: &mut Parts,
+        parts: &mut FeatureParts,
         geometry: &Geometry<'_>,
         of_parent: GeometryType,
     ) -> Result<(), Wrong> {
@@ -174,7 +174,7 @@ impl Shapes {
 
     fn add_all(
         &mut self,
-        parts: &mut Parts,
+        parts: &mut FeatureParts,
         geometry: &Geometry<'_>,
         kind: GeometryType,
     ) -> Result<(), Wrong> {
@@ -219,7 +219,7 @@ fn properties(header: &Header<'_>, feature: &Feature<'_>) -> Option<Properties> 
     let mut properties = Properties::new();
     let Some(bytes) = feature.properties() else { return Some(properties) };
     let columns = feature.columns().or_else(|| header.columns());
-    let mut cursor = Cursor::new(bytes.bytes());
+    let mut cursor = ByteCursor::new(bytes.bytes());
     while !cursor.rest().is_empty() {
         let index = usize::from(cursor.array().map(u16::from_le_bytes)?);
         let column = columns.filter(|columns| index < columns.len())?.get(index);
@@ -229,7 +229,7 @@ fn properties(header: &Header<'_>, feature: &Feature<'_>) -> Option<Properties> 
     Some(properties)
 }
 
-fn value(cursor: &mut Cursor<'_>, column: &Column<'_>) -> Option<Value> {
+fn value(cursor: &mut ByteCursor<'_>, column: &Column<'_>) -> Option<Value> {
     let number = |number: f64| Number::from_f64(number).map_or(Value::Null, Value::Number);
     Some(match column.type_() {
         ColumnType::Byte => cursor.array().map(i8::from_le_bytes)?.into(),

@@ -21,10 +21,10 @@ use rusqlite::{Connection, ErrorCode, Row};
 use serde_json::{Number, Value};
 
 use crate::geom::crs::Crs;
-use crate::vector::collect::{Collector, Parts, Properties};
-use crate::vector::cursor::Cursor;
+use crate::vector::collect::{Collector, FeatureParts, Properties};
+use crate::vector::cursor::ByteCursor;
 use crate::vector::error::VectorError;
-use crate::vector::feature::Layer;
+use crate::vector::feature::VectorLayer;
 use crate::vector::wkb::{self, WkbError};
 
 const FORMAT: &str = "GeoPackage";
@@ -41,7 +41,7 @@ pub(super) fn is_sqlite(bytes: &[u8]) -> bool {
 }
 
 /// One table or view of features.
-struct Table {
+struct GpkgTable {
     name: String,
     geometry: String,
     system: i64,
@@ -51,7 +51,11 @@ struct Table {
 ///
 /// # Errors
 /// [`VectorError`].
-pub(super) fn read(bytes: &[u8], stated: Option<&Crs>, wanted: Option<&str>) -> Result<Layer, VectorError> {
+pub(super) fn read(
+    bytes: &[u8],
+    stated: Option<&Crs>,
+    wanted: Option<&str>,
+) -> Result<VectorLayer, VectorError> {
     let connection = open(bytes).map_err(|error| refusal("its tables", &error))?;
     let table = choose(tables(&connection)?, wanted)?;
     let crs = match stated {
@@ -114,12 +118,12 @@ fn refusal(place: &str, error: &rusqlite::Error) -> VectorError {
 }
 
 /// Every table and view with shapes, in the order that they were registered.
-fn tables(connection: &Connection) -> Result<Vec<Table>, VectorError> {
+fn tables(connection: &Connection) -> Result<Vec<GpkgTable>, VectorError> {
     let query = "SELECT table_name, column_name, srs_id FROM gpkg_geometry_columns ORDER BY rowid";
     let all = (|| {
         let mut statement = connection.prepare(query)?;
         let table = |row: &Row<'_>| {
-            Ok(Table {
+            Ok(GpkgTable {
                 name: row.get(0)?,
                 geometry: row.get(1)?,
                 system: row.get::<_, Option<i64>>(2)?.unwrap_or(-1),
@@ -137,7 +141,7 @@ fn tables(connection: &Connection) -> Result<Vec<Table>, VectorError> {
     })
 }
 
-fn choose(mut tables: Vec<Table>, wanted: Option<&str>) -> Result<Table, VectorError> {
+fn choose(mut tables: Vec<GpkgTable>, wanted: Option<&str>) -> Result<GpkgTable, VectorError> {
     let at = match wanted {
         Some(wanted) => tables.iter().position(|table| table.name == wanted),
         None => (tables.len() == 1).then_some(0),
@@ -185,7 +189,11 @@ fn system(connection: &Connection, id: i64) -> Result<Crs, VectorError> {
     }
 }
 
-fn features(connection: &Connection, table: &Table, collector: &mut Collector) -> Result<(), VectorError> {
+fn features(
+    connection: &Connection,
+    table: &GpkgTable,
+    collector: &mut Collector,
+) -> Result<(), VectorError> {
     let place = format!("its layer '{}'", table.name.chars().take(60).collect::<String>());
     let refused = |error: rusqlite::Error| refusal(&place, &error);
     let columns = columns(connection, &table.name).map_err(refused)?;
@@ -198,7 +206,7 @@ fn features(connection: &Connection, table: &Table, collector: &mut Collector) -
     let mut statement = connection.prepare(&query).map_err(refused)?;
     let mut rows = statement.query([]).map_err(refused)?;
     while let Some(row) = rows.next().map_err(refused)? {
-        let mut parts = Parts::default();
+        let mut parts = FeatureParts::default();
         if let ValueRef::Blob(blob) = row.get_ref(geometry).map_err(refused)? {
             shape(blob, &mut parts).map_err(|error| not_read(error, &place, collector.seen() + 1))?;
         }
@@ -233,14 +241,14 @@ fn quoted(name: &str) -> String {
 }
 
 /// A column of a layer.
-struct Column {
+struct GpkgColumn {
     name: String,
-    kind: Kind,
+    kind: GpkgColumnKind,
 }
 
 /// What a column's numbers mean.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum GpkgColumnKind {
     /// Declared to hold true and false, which SQLite keeps as 1 and 0.
     Boolean,
     /// Themselves.
@@ -249,18 +257,21 @@ enum Kind {
 
 /// The columns of a table or view. Asked for by a query, since a statement's own names may be no text, which
 /// `rusqlite` takes for a mistake of the program's.
-fn columns(connection: &Connection, table: &str) -> rusqlite::Result<Vec<Column>> {
+fn columns(connection: &Connection, table: &str) -> rusqlite::Result<Vec<GpkgColumn>> {
     let mut statement = connection.prepare("SELECT name, upper(type) FROM pragma_table_info(?1)")?;
     let column = |row: &Row<'_>| {
         let is_boolean = row.get::<_, Option<String>>(1)?.as_deref() == Some("BOOLEAN");
-        Ok(Column { name: row.get(0)?, kind: if is_boolean { Kind::Boolean } else { Kind::Other } })
+        Ok(GpkgColumn {
+            name: row.get(0)?,
+            kind: if is_boolean { GpkgColumnKind::Boolean } else { GpkgColumnKind::Other },
+        })
     };
     statement.query_map([table], column)?.collect()
 }
 
-fn value(value: ValueRef<'_>, kind: Kind) -> Value {
+fn value(value: ValueRef<'_>, kind: GpkgColumnKind) -> Value {
     match value {
-        ValueRef::Integer(number) if kind == Kind::Boolean => Value::Bool(number != 0),
+        ValueRef::Integer(number) if kind == GpkgColumnKind::Boolean => Value::Bool(number != 0),
         ValueRef::Integer(number) => number.into(),
         ValueRef::Real(number) => Number::from_f64(number).map_or(Value::Null, Value::Number),
         ValueRef::Text(text) => String::from_utf8_lossy(text).into(),
@@ -269,8 +280,8 @@ fn value(value: ValueRef<'_>, kind: Kind) -> Value {
 }
 
 /// Adds the shape behind a GeoPackage's header.
-fn shape(blob: &[u8], parts: &mut Parts) -> Result<(), WkbError> {
-    let mut cursor = Cursor::new(blob);
+fn shape(blob: &[u8], parts: &mut FeatureParts) -> Result<(), WkbError> {
+    let mut cursor = ByteCursor::new(blob);
     let header: [u8; 8] =
         cursor.array().filter(|header: &[u8; 8]| header.starts_with(b"GP")).ok_or(WkbError::Broken)?;
     let flags = header[3];

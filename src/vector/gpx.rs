@@ -12,9 +12,9 @@ use glam::DVec3;
 use serde_json::{Number, Value};
 
 use crate::geom::crs::Crs;
-use crate::vector::collect::{Collector, Parts, Properties, position};
+use crate::vector::collect::{Collector, FeatureParts, Properties, position};
 use crate::vector::error::VectorError;
-use crate::vector::feature::Layer;
+use crate::vector::feature::VectorLayer;
 use crate::vector::xml::{self, Element, Xml};
 
 const FORMAT: &str = "GPX file";
@@ -28,14 +28,18 @@ const PROPERTIES: [&str; 7] = ["name", "cmt", "desc", "src", "sym", "type", "num
 ///
 /// # Errors
 /// [`VectorError`]; a point without latitude or longitude is one.
-pub(super) fn read(bytes: &[u8], stated: Option<&Crs>, wanted: Option<&str>) -> Result<Layer, VectorError> {
+pub(super) fn read(
+    bytes: &[u8],
+    stated: Option<&Crs>,
+    wanted: Option<&str>,
+) -> Result<VectorLayer, VectorError> {
     let text = xml::decode(bytes, FORMAT)?;
     if let Some(wanted) = wanted.filter(|wanted| !LAYERS.contains(wanted)) {
         return Err(VectorError::no_such_layer(wanted, &LAYERS));
     }
     let crs = stated.cloned().unwrap_or_else(Crs::wgs84);
     let wanted = wanted.and_then(|wanted| LAYERS.iter().position(|&name| name == wanted));
-    let mut file = File { layers: LAYERS.map(|_| Collector::new(crs.clone())), wanted };
+    let mut file = GpxFile { layers: LAYERS.map(|_| Collector::new(crs.clone())), wanted };
     let mut xml = Xml::new(&text, FORMAT);
     xml.root()?;
     xml.children(|xml, element| file.read(xml, element))?;
@@ -54,18 +58,18 @@ pub(super) fn read(bytes: &[u8], stated: Option<&Crs>, wanted: Option<&str>) -> 
     Ok(layers.into_iter().nth(chosen).expect("chosen among them"))
 }
 
-struct File {
+struct GpxFile {
     layers: [Collector; LAYERS.len()],
     wanted: Option<usize>,
 }
 
 /// A point on the way.
-struct Point {
+struct GpxPoint {
     at: DVec3,
     properties: Properties,
 }
 
-impl File {
+impl GpxFile {
     fn read<'a>(&mut self, xml: &mut Xml<'a>, element: &Element<'a>) -> Result<(), VectorError> {
         match element.name() {
             "wpt" => {
@@ -84,7 +88,7 @@ impl File {
             "rtept" => self.way_point(xml, element, 3, &mut line),
             name => property(xml, name, &mut properties),
         })?;
-        let mut parts = Parts::default();
+        let mut parts = FeatureParts::default();
         if !line.is_empty() {
             parts.line(line);
         }
@@ -92,7 +96,7 @@ impl File {
     }
 
     fn track(&mut self, xml: &mut Xml<'_>) -> Result<(), VectorError> {
-        let (mut properties, mut parts) = (Properties::new(), Parts::default());
+        let (mut properties, mut parts) = (Properties::new(), FeatureParts::default());
         xml.children(|xml, element| match element.name() {
             "trkseg" => {
                 let mut line = Vec::new();
@@ -121,8 +125,8 @@ impl File {
         if self.wanted == Some(points) { self.add_point(points, point) } else { Ok(()) }
     }
 
-    fn add_point(&mut self, layer: usize, point: Point) -> Result<(), VectorError> {
-        let mut parts = Parts::default();
+    fn add_point(&mut self, layer: usize, point: GpxPoint) -> Result<(), VectorError> {
+        let mut parts = FeatureParts::default();
         parts.point(point.at);
         self.layers[layer].add(parts, point.properties)
     }
@@ -133,7 +137,7 @@ impl File {
         xml: &mut Xml<'a>,
         element: &Element<'a>,
         layer: usize,
-    ) -> Result<Point, VectorError> {
+    ) -> Result<GpxPoint, VectorError> {
         let (Some(x), Some(y)) = (element.number("lon"), element.number("lat")) else {
             return Err(xml.broken("a point has no latitude (lat) or longitude (lon) that is a number"));
         };
@@ -155,7 +159,7 @@ impl File {
         if let Some(number) = elevation.and_then(Number::from_f64).filter(|_| keeps) {
             properties.insert("ele".into(), Value::Number(number));
         }
-        Ok(Point { at: position(x, y, elevation), properties })
+        Ok(GpxPoint { at: position(x, y, elevation), properties })
     }
 }
 
@@ -178,7 +182,7 @@ mod tests {
         <trk><name>Way</name><trkseg><trkpt lat="48" lon="15"><ele>1</ele></trkpt><trkpt lat="49" lon="16"/></trkseg>
         <trkseg><trkpt lat="50" lon="15"/><trkpt lat="51" lon="15"/><trkpt lat="52" lon="15"/></trkseg></trk></gpx>"#;
 
-    fn layer(wanted: &str) -> Layer {
+    fn layer(wanted: &str) -> VectorLayer {
         read(TEXT.as_bytes(), None, Some(wanted)).expect(wanted)
     }
 

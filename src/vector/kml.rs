@@ -10,9 +10,9 @@
 use glam::DVec3;
 
 use crate::geom::crs::Crs;
-use crate::vector::collect::{Collector, Parts, Properties, position};
+use crate::vector::collect::{Collector, FeatureParts, Properties, position};
 use crate::vector::error::VectorError;
-use crate::vector::feature::Layer;
+use crate::vector::feature::VectorLayer;
 use crate::vector::xml::{self, Element, Xml};
 
 const FORMAT: &str = "KML file";
@@ -21,10 +21,14 @@ const FORMAT: &str = "KML file";
 ///
 /// # Errors
 /// [`VectorError`]; coordinates that are no numbers are one.
-pub(super) fn read(bytes: &[u8], stated: Option<&Crs>, wanted: Option<&str>) -> Result<Layer, VectorError> {
+pub(super) fn read(
+    bytes: &[u8],
+    stated: Option<&Crs>,
+    wanted: Option<&str>,
+) -> Result<VectorLayer, VectorError> {
     let text = xml::decode(bytes, FORMAT)?;
     let crs = stated.cloned().unwrap_or_else(Crs::wgs84);
-    let mut file = File { wanted, found: false, folders: Vec::new(), collector: Collector::new(crs) };
+    let mut file = KmlFile { wanted, found: false, folders: Vec::new(), collector: Collector::new(crs) };
     let mut xml = Xml::new(&text, FORMAT);
     let root = xml.root()?;
     match root.name() {
@@ -41,7 +45,7 @@ pub(super) fn read(bytes: &[u8], stated: Option<&Crs>, wanted: Option<&str>) -> 
     }
 }
 
-struct File<'w> {
+struct KmlFile<'w> {
     wanted: Option<&'w str>,
     /// Whether a folder has the wanted name.
     found: bool,
@@ -53,18 +57,18 @@ struct File<'w> {
 /// One placemark while it is read.
 #[derive(Default)]
 struct Placemark {
-    parts: Parts,
+    parts: FeatureParts,
     properties: Properties,
 }
 
 /// One shape's vertices as written, by ring or line, and how their altitudes are meant.
 #[derive(Default)]
-struct Shape {
+struct KmlShape {
     mode: Option<String>,
     lists: Vec<Vec<DVec3>>,
 }
 
-impl File<'_> {
+impl KmlFile<'_> {
     /// What lies in the element just opened, a folder or document that has the name `name` until it says its own.
     fn container(&mut self, xml: &mut Xml<'_>, name: &str) -> Result<(), VectorError> {
         let mut name = name.to_owned();
@@ -175,7 +179,7 @@ impl Placemark {
 
     /// The lists of vertices of the shape just opened, their altitudes kept where they are elevations.
     fn read_shape(&mut self, xml: &mut Xml<'_>) -> Result<Vec<Vec<DVec3>>, VectorError> {
-        let mut shape = Shape::default();
+        let mut shape = KmlShape::default();
         let mut track = Vec::new();
         xml.children(|xml, element| shape.read(xml, element, &mut track))?;
         if !track.is_empty() {
@@ -193,7 +197,7 @@ impl Placemark {
     }
 }
 
-impl Shape {
+impl KmlShape {
     fn read<'a>(
         &mut self,
         xml: &mut Xml<'a>,
@@ -275,7 +279,7 @@ mod tests {
     use super::*;
     use glam::DVec2;
 
-    fn placemark(content: &str) -> Layer {
+    fn placemark(content: &str) -> VectorLayer {
         let text = format!("<kml><Document><Placemark>{content}</Placemark></Document></kml>");
         read(text.as_bytes(), None, None).expect("well-formed")
     }

@@ -6,7 +6,7 @@ use std::io::Read;
 
 use flate2::read::{DeflateDecoder, MultiGzDecoder, ZlibDecoder};
 
-use crate::vector::cursor::Cursor;
+use crate::vector::cursor::ByteCursor;
 use crate::vector::error::VectorError;
 
 /// The most bytes that one member is unpacked to. A city's OpenStreetMap as XML is a tenth of it.
@@ -66,10 +66,10 @@ fn unpack(
 /// A zip archive's directory (PKWARE APPNOTE 6.3, sections 4.3.12 and 4.3.16).
 pub(crate) struct Zip<'a> {
     bytes: &'a [u8],
-    members: Vec<Member>,
+    members: Vec<PackedMember>,
 }
 
-struct Member {
+struct PackedMember {
     name: String,
     method: u16,
     packed: usize,
@@ -84,12 +84,12 @@ impl<'a> Zip<'a> {
     pub fn open(bytes: &'a [u8]) -> Result<Self, VectorError> {
         let cut = || VectorError::broken(ZIP, "its directory", "the archive ends before it does");
         let end = find_end(bytes).ok_or_else(cut)?;
-        let mut record = Cursor::new(bytes.get(end + 10..).unwrap_or_default());
+        let mut record = ByteCursor::new(bytes.get(end + 10..).unwrap_or_default());
         let count = record.array().map(u16::from_le_bytes).ok_or_else(cut)?;
         record.take(4).ok_or_else(cut)?;
         let at = record.u32_le().ok_or_else(cut)? as usize;
-        let mut directory = Cursor::new(bytes.get(at..).unwrap_or_default());
-        let members = (0..count.min(MOST_MEMBERS)).map(|_| Member::read(&mut directory));
+        let mut directory = ByteCursor::new(bytes.get(at..).unwrap_or_default());
+        let members = (0..count.min(MOST_MEMBERS)).map(|_| PackedMember::read(&mut directory));
         Ok(Self { bytes, members: members.collect::<Option<_>>().ok_or_else(cut)? })
     }
 
@@ -103,13 +103,13 @@ impl<'a> Zip<'a> {
     /// # Errors
     /// It is broken, unpacks to more than is taken, or is packed in a way that is not read.
     pub fn member(&self, name: &str) -> Result<Option<Vec<u8>>, VectorError> {
-        let is_wanted = |member: &&Member| member.name.eq_ignore_ascii_case(name);
+        let is_wanted = |member: &&PackedMember| member.name.eq_ignore_ascii_case(name);
         self.members.iter().find(is_wanted).map(|member| member.content(self.bytes)).transpose()
     }
 }
 
-impl Member {
-    fn read(directory: &mut Cursor<'_>) -> Option<Self> {
+impl PackedMember {
+    fn read(directory: &mut ByteCursor<'_>) -> Option<Self> {
         let fixed: [u8; 46] = directory.array()?;
         let short = |at: usize| u16::from_le_bytes([fixed[at], fixed[at + 1]]);
         let long = |at: usize| u32::from(short(at)) | u32::from(short(at + 2)) << 16;
@@ -138,7 +138,7 @@ impl Member {
 
     /// The packed bytes, behind the local header.
     fn data<'a>(&self, bytes: &'a [u8]) -> Option<&'a [u8]> {
-        let mut at = Cursor::new(bytes.get(self.local..)?);
+        let mut at = ByteCursor::new(bytes.get(self.local..)?);
         at.take(26)?;
         let name = u16::from_le_bytes(at.array()?);
         let extra = u16::from_le_bytes(at.array()?);

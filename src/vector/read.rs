@@ -16,12 +16,12 @@ use std::borrow::Cow;
 
 use crate::geom::crs::Crs;
 use crate::vector::error::VectorError;
-use crate::vector::feature::Layer;
+use crate::vector::feature::VectorLayer;
 use crate::vector::packed::{self, Zip};
 use crate::vector::{flatgeobuf, geojson, geopackage, gpx, kml, osm, shapefile};
 
 /// What the caller knows of a vector file beyond its bytes.
-pub struct Hints<'a> {
+pub struct VectorHints<'a> {
     /// The coordinate system, in place of what the file says or where it says nothing.
     pub crs: Option<&'a Crs>,
     /// Which layer of a file that may hold several; without it the file must hold one.
@@ -31,7 +31,7 @@ pub struct Hints<'a> {
     pub companions: &'a dyn Fn(&str) -> Option<Vec<u8>>,
 }
 
-impl Default for Hints<'_> {
+impl Default for VectorHints<'_> {
     fn default() -> Self {
         Self { crs: None, layer: None, companions: &|_| None }
     }
@@ -44,7 +44,7 @@ impl Default for Hints<'_> {
 ///
 /// # Errors
 /// [`VectorError`], for a format that is not read with the command that converts it.
-pub fn read(name: &str, bytes: &[u8], hints: &Hints) -> Result<Layer, VectorError> {
+pub fn read(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
     if packed::is_gzip(bytes) {
         let stem = name.strip_suffix(".gz").unwrap_or(name);
         return plain(stem, &packed::gunzip(bytes)?, hints);
@@ -53,13 +53,13 @@ pub fn read(name: &str, bytes: &[u8], hints: &Hints) -> Result<Layer, VectorErro
 }
 
 /// A file that is not packed.
-fn plain(name: &str, bytes: &[u8], hints: &Hints) -> Result<Layer, VectorError> {
+fn plain(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
     let (stated, layer) = (hints.crs, hints.layer);
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     match format(name, bytes, text) {
-        Format::GeoJson => one(name, layer, geojson::read_as(bytes, stated)),
-        Format::GeoJsonSequence => one(name, layer, geojson::sequence::read(bytes, stated)),
-        Format::Shapefile => {
+        VectorFormat::GeoJson => one(name, layer, geojson::read_as(bytes, stated)),
+        VectorFormat::GeoJsonSequence => one(name, layer, geojson::sequence::read(bytes, stated)),
+        VectorFormat::Shapefile => {
             let beside = |extension: &str| beside(name, extension, hints);
             let files = shapefile::Files {
                 shapes: bytes,
@@ -70,19 +70,23 @@ fn plain(name: &str, bytes: &[u8], hints: &Hints) -> Result<Layer, VectorError> 
             };
             one(name, layer, shapefile::read(&files, stated))
         }
-        Format::GeoPackage => geopackage::read(bytes, stated, layer),
-        Format::FlatGeobuf => one(name, layer, flatgeobuf::read(bytes, stated)),
-        Format::Gpx => gpx::read(bytes, stated, layer),
-        Format::Kml => kml::read(bytes, stated, layer),
-        Format::OsmXml => osm::read_xml(bytes, stated, layer),
-        Format::OsmPbf => osm::read_pbf(bytes, stated, layer),
-        Format::Other(format) => Err(VectorError::OtherFormat { format, command: conversion(name) }),
-        Format::Unknown => Err(VectorError::UnknownFormat),
+        VectorFormat::GeoPackage => geopackage::read(bytes, stated, layer),
+        VectorFormat::FlatGeobuf => one(name, layer, flatgeobuf::read(bytes, stated)),
+        VectorFormat::Gpx => gpx::read(bytes, stated, layer),
+        VectorFormat::Kml => kml::read(bytes, stated, layer),
+        VectorFormat::OsmXml => osm::read_xml(bytes, stated, layer),
+        VectorFormat::OsmPbf => osm::read_pbf(bytes, stated, layer),
+        VectorFormat::Other(format) => Err(VectorError::OtherFormat { format, command: conversion(name) }),
+        VectorFormat::Unknown => Err(VectorError::UnknownFormat),
     }
 }
 
 /// A layer of a format that has one to a file, which may be asked for by the file's own name.
-fn one(name: &str, wanted: Option<&str>, layer: Result<Layer, VectorError>) -> Result<Layer, VectorError> {
+fn one(
+    name: &str,
+    wanted: Option<&str>,
+    layer: Result<VectorLayer, VectorError>,
+) -> Result<VectorLayer, VectorError> {
     let own = stem(name);
     match wanted {
         Some(wanted) if wanted != own => Err(VectorError::no_such_layer(wanted, &[own])),
@@ -97,14 +101,14 @@ fn stem(name: &str) -> &str {
 }
 
 /// The file beside `name` with another extension, in small letters or in capitals.
-fn beside(name: &str, extension: &str, hints: &Hints) -> Option<Vec<u8>> {
+fn beside(name: &str, extension: &str, hints: &VectorHints) -> Option<Vec<u8>> {
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let spelt = [extension.to_owned(), extension.to_ascii_uppercase()];
     spelt.iter().find_map(|extension| (hints.companions)(&format!("{stem}.{extension}")))
 }
 
 /// An archive: a KMZ, a zipped shapefile, or one file of another format.
-fn archive(name: &str, bytes: &[u8], hints: &Hints) -> Result<Layer, VectorError> {
+fn archive(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
     const READ: [&str; 6] = [".geojson", ".json", ".gpkg", ".fgb", ".gpx", ".osm"];
     let zip = Zip::open(bytes)?;
     let ending = |extension: &str| {
@@ -121,7 +125,7 @@ fn archive(name: &str, bytes: &[u8], hints: &Hints) -> Result<Layer, VectorError
     let shapes = ending(".shp");
     if let Some(member) = chosen(&shapes, hints.layer)? {
         let companions = |name: &str| zip.member(name).ok().flatten();
-        let hints = Hints { crs: hints.crs, layer: None, companions: &companions };
+        let hints = VectorHints { crs: hints.crs, layer: None, companions: &companions };
         return plain(member, &content(member)?, &hints);
     }
     let others: Vec<&str> = READ.iter().flat_map(|extension| ending(extension)).collect();
@@ -150,7 +154,7 @@ fn chosen<'n>(members: &[&'n str], wanted: Option<&str>) -> Result<Option<&'n st
 
 /// What a file is.
 #[derive(Debug, PartialEq, Eq)]
-enum Format {
+enum VectorFormat {
     GeoJson,
     GeoJsonSequence,
     Shapefile,
@@ -166,33 +170,33 @@ enum Format {
 }
 
 /// What the content tells, and where it does not, the name. `text` is `bytes` without what may precede text.
-fn format(name: &str, bytes: &[u8], text: &[u8]) -> Format {
+fn format(name: &str, bytes: &[u8], text: &[u8]) -> VectorFormat {
     match () {
         () if shapefile::is_shapefile(bytes) => by_extension_of_shapefile(name),
-        () if geopackage::is_sqlite(bytes) => Format::GeoPackage,
-        () if flatgeobuf::is_flatgeobuf(bytes) => Format::FlatGeobuf,
-        () if osm::is_pbf(bytes) => Format::OsmPbf,
-        () if bytes.starts_with(b"PAR1") => Format::Other("GeoParquet"),
+        () if geopackage::is_sqlite(bytes) => VectorFormat::GeoPackage,
+        () if flatgeobuf::is_flatgeobuf(bytes) => VectorFormat::FlatGeobuf,
+        () if osm::is_pbf(bytes) => VectorFormat::OsmPbf,
+        () if bytes.starts_with(b"PAR1") => VectorFormat::Other("GeoParquet"),
         () => xml(bytes).or_else(|| other_by_name(name)).unwrap_or_else(|| match text.first() {
-            Some(&geojson::sequence::RECORD_SEPARATOR) => Format::GeoJsonSequence,
-            Some(b'{') if geojson::sequence::is_lines(text) => Format::GeoJsonSequence,
-            Some(b'{') => Format::GeoJson,
-            _ => Format::Unknown,
+            Some(&geojson::sequence::RECORD_SEPARATOR) => VectorFormat::GeoJsonSequence,
+            Some(b'{') if geojson::sequence::is_lines(text) => VectorFormat::GeoJsonSequence,
+            Some(b'{') => VectorFormat::GeoJson,
+            _ => VectorFormat::Unknown,
         }),
     }
 }
 
 /// A `.shx` file starts as a `.shp` file does.
-fn by_extension_of_shapefile(name: &str) -> Format {
+fn by_extension_of_shapefile(name: &str) -> VectorFormat {
     let is_index = name.len() >= 4 && name.is_char_boundary(name.len() - 4);
     match is_index && name[name.len() - 4..].eq_ignore_ascii_case(".shx") {
-        true => Format::Other("the index of an ESRI shapefile; give the .shp file"),
-        false => Format::Shapefile,
+        true => VectorFormat::Other("the index of an ESRI shapefile; give the .shp file"),
+        false => VectorFormat::Shapefile,
     }
 }
 
 /// The format whose outermost element XML shows in its first kilobytes.
-fn xml(bytes: &[u8]) -> Option<Format> {
+fn xml(bytes: &[u8]) -> Option<VectorFormat> {
     const LOOKED_AT: usize = 4096;
     let head = &bytes[..bytes.len().min(LOOKED_AT)];
     // Every second byte of UTF-16 is text enough to know the element by.
@@ -208,25 +212,25 @@ fn xml(bytes: &[u8]) -> Option<Format> {
     }
     let holds = |tag: &[u8]| text.windows(tag.len()).any(|window| window.eq_ignore_ascii_case(tag));
     Some(match () {
-        () if holds(b"<kml") || holds(b":kml") || holds(b"<Placemark") => Format::Kml,
-        () if holds(b"<gpx") => Format::Gpx,
-        () if holds(b"<osm") => Format::OsmXml,
-        () if holds(b"gml") => Format::Other("GML"),
-        () => Format::Other("XML of no kind that is read"),
+        () if holds(b"<kml") || holds(b":kml") || holds(b"<Placemark") => VectorFormat::Kml,
+        () if holds(b"<gpx") => VectorFormat::Gpx,
+        () if holds(b"<osm") => VectorFormat::OsmXml,
+        () if holds(b"gml") => VectorFormat::Other("GML"),
+        () => VectorFormat::Other("XML of no kind that is read"),
     })
 }
 
 /// The format that the name's extension tells, for content without a signature of its own.
-fn other_by_name(name: &str) -> Option<Format> {
+fn other_by_name(name: &str) -> Option<VectorFormat> {
     let extension = name.rsplit_once('.')?.1.to_ascii_lowercase();
     match extension.as_str() {
-        "csv" | "tsv" | "txt" | "xyz" => Some(Format::Other("a table of text")),
+        "csv" | "tsv" | "txt" | "xyz" => Some(VectorFormat::Other("a table of text")),
         "dbf" | "shx" | "prj" | "cpg" => {
-            Some(Format::Other("a part of an ESRI shapefile; give the .shp file"))
+            Some(VectorFormat::Other("a part of an ESRI shapefile; give the .shp file"))
         }
-        "tab" | "mif" | "mid" => Some(Format::Other("MapInfo")),
-        "dxf" | "dwg" => Some(Format::Other("a CAD drawing")),
-        "geojsonl" | "geojsons" | "geojsonseq" | "ndjson" | "jsonl" => Some(Format::GeoJsonSequence),
+        "tab" | "mif" | "mid" => Some(VectorFormat::Other("MapInfo")),
+        "dxf" | "dwg" => Some(VectorFormat::Other("a CAD drawing")),
+        "geojsonl" | "geojsons" | "geojsonseq" | "ndjson" | "jsonl" => Some(VectorFormat::GeoJsonSequence),
         _ => None,
     }
 }
@@ -246,32 +250,32 @@ mod tests {
     const KML: &[u8] = b"<kml><Placemark><Point><coordinates>1,2</coordinates></Point></Placemark></kml>";
 
     fn refusal(name: &str, bytes: &[u8]) -> String {
-        read(name, bytes, &Hints::default()).expect_err(name).to_string()
+        read(name, bytes, &VectorHints::default()).expect_err(name).to_string()
     }
 
     #[test]
     fn content_decides_before_the_name() {
         let text = [b"\xef\xbb\xbf \n", POINT].concat();
         for name in ["a.geojson", "a.json", "a.xyzzy", "a", "a.shp"] {
-            assert_eq!(read(name, &text, &Hints::default()).expect(name).features.len(), 1);
+            assert_eq!(read(name, &text, &VectorHints::default()).expect(name).features.len(), 1);
         }
         assert!(refusal("a.geojson", b"SQLite format 3\0...").contains("GeoPackage"));
-        assert!(read("a.geojson", KML, &Hints::default()).is_ok());
+        assert!(read("a.geojson", KML, &VectorHints::default()).is_ok());
     }
 
     #[test]
     fn every_format_is_known_by_its_first_bytes() {
         let of = |bytes: &[u8]| format("a", bytes, bytes.trim_ascii_start());
-        assert_eq!(of(b"\x00\x00\x27\x0a\x00"), Format::Shapefile);
-        assert_eq!(of(b"SQLite format 3\0"), Format::GeoPackage);
-        assert_eq!(of(b"fgb\x03fgb\x00"), Format::FlatGeobuf);
-        assert_eq!(of(b"<?xml version=\"1.0\"?>\n<gpx>"), Format::Gpx);
-        assert_eq!(of(b"<k:kml xmlns:k='x'>"), Format::Kml);
-        assert_eq!(of(b"<?xml?>\n<!-- x --><osm version='0.6'>"), Format::OsmXml);
-        assert_eq!(of(b"\0\0\0\x0d\x0a\x09OSMHeader\x18"), Format::OsmPbf);
-        assert_eq!(of(b"\x1e{}\n"), Format::GeoJsonSequence);
-        assert_eq!(of(b"{\"type\":\"Feature\"}\n{\"type\":\"Feature\"}"), Format::GeoJsonSequence);
-        assert_eq!(of(b"{\"type\":\n\"Feature\"}\n"), Format::GeoJson);
+        assert_eq!(of(b"\x00\x00\x27\x0a\x00"), VectorFormat::Shapefile);
+        assert_eq!(of(b"SQLite format 3\0"), VectorFormat::GeoPackage);
+        assert_eq!(of(b"fgb\x03fgb\x00"), VectorFormat::FlatGeobuf);
+        assert_eq!(of(b"<?xml version=\"1.0\"?>\n<gpx>"), VectorFormat::Gpx);
+        assert_eq!(of(b"<k:kml xmlns:k='x'>"), VectorFormat::Kml);
+        assert_eq!(of(b"<?xml?>\n<!-- x --><osm version='0.6'>"), VectorFormat::OsmXml);
+        assert_eq!(of(b"\0\0\0\x0d\x0a\x09OSMHeader\x18"), VectorFormat::OsmPbf);
+        assert_eq!(of(b"\x1e{}\n"), VectorFormat::GeoJsonSequence);
+        assert_eq!(of(b"{\"type\":\"Feature\"}\n{\"type\":\"Feature\"}"), VectorFormat::GeoJsonSequence);
+        assert_eq!(of(b"{\"type\":\n\"Feature\"}\n"), VectorFormat::GeoJson);
     }
 
     #[test]
@@ -294,22 +298,22 @@ mod tests {
     #[test]
     fn what_is_packed_is_unpacked() {
         let kmz = stored(&[("doc.kml", KML), ("files/a.png", b"")]);
-        assert_eq!(read("a.kmz", &kmz, &Hints::default()).expect("a KMZ").features.len(), 1);
+        assert_eq!(read("a.kmz", &kmz, &VectorHints::default()).expect("a KMZ").features.len(), 1);
         let zipped = stored(&[("layers/a.geojson", POINT)]);
-        assert_eq!(read("a.zip", &zipped, &Hints::default()).expect("zipped").features.len(), 1);
+        assert_eq!(read("a.zip", &zipped, &VectorHints::default()).expect("zipped").features.len(), 1);
         assert!(refusal("a.zip", &stored(&[("readme.txt", b"")])).contains("without a .kml"));
         let mut shapes = 9994u32.to_be_bytes().to_vec();
         shapes.resize(100, 0);
         let zipped =
             stored(&[("x/roads.shp", &shapes), ("x/roads.prj", b"EPSG:32616"), ("x/rivers.shp", &shapes)]);
         assert!(refusal("a.zip", &zipped).contains("2 layers; say which with 'layer': roads, rivers"));
-        let hints = Hints { layer: Some("roads"), ..Hints::default() };
+        let hints = VectorHints { layer: Some("roads"), ..VectorHints::default() };
         assert_eq!(read("a.zip", &zipped, &hints).expect("zipped").crs.epsg(), Some(32616));
     }
 
     #[test]
     fn a_single_layer_is_asked_for_by_the_files_name_or_not_at_all() {
-        let of = |layer| read("in/hills.geojson", POINT, &Hints { layer, ..Hints::default() });
+        let of = |layer| read("in/hills.geojson", POINT, &VectorHints { layer, ..VectorHints::default() });
         assert!(of(Some("hills")).is_ok() && of(None).is_ok());
         let error = of(Some("hill")).expect_err("another").to_string();
         assert!(error.contains("did you mean 'hills'?"), "{error}");

@@ -15,7 +15,7 @@ pub(crate) const MOST_STEPS: u64 = 1 << 31;
 
 /// What makes a ring a hole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Rule {
+pub(crate) enum HoleRule {
     /// It runs counter-clockwise inside one that runs clockwise (ESRI shapefiles). Where no ring of a shape runs
     /// clockwise, as [`Rule::Nesting`].
     Direction,
@@ -28,7 +28,7 @@ pub(crate) enum Rule {
 pub(crate) struct Entangled;
 
 /// One ring while it is sorted.
-struct Ring {
+struct SortedRing {
     vertices: Vec<DVec3>,
     flat: Vec<DVec2>,
     bounds: Rect,
@@ -46,15 +46,15 @@ struct Ring {
 /// [`Entangled`] where no steps are left.
 pub(crate) fn polygons(
     rings: Vec<Vec<DVec3>>,
-    rule: Rule,
+    rule: HoleRule,
     steps: &mut u64,
 ) -> Result<Vec<Vec<Vec<DVec3>>>, Entangled> {
     if rings.len() == 1 {
         return Ok(vec![rings]);
     }
-    let mut rings: Vec<Ring> = rings.into_iter().map(Ring::new).collect();
+    let mut rings: Vec<SortedRing> = rings.into_iter().map(SortedRing::new).collect();
     let any_clockwise = rings.iter().any(|ring| ring.doubled_area < 0.0);
-    let by_direction = rule == Rule::Direction && any_clockwise;
+    let by_direction = rule == HoleRule::Direction && any_clockwise;
     let mut by_size: Vec<usize> = (0..rings.len()).collect();
     by_size.sort_by(|&a, &b| rings[b].size().total_cmp(&rings[a].size()).then(a.cmp(&b)));
     for (rank, &index) in by_size.iter().enumerate() {
@@ -75,7 +75,7 @@ pub(crate) fn polygons(
     Ok(grouped(rings))
 }
 
-fn grouped(rings: Vec<Ring>) -> Vec<Vec<Vec<DVec3>>> {
+fn grouped(rings: Vec<SortedRing>) -> Vec<Vec<Vec<DVec3>>> {
     let mut place = vec![0; rings.len()];
     let outer = rings.iter().enumerate().filter(|(_, ring)| !ring.is_hole);
     outer.enumerate().for_each(|(polygon, (index, _))| place[index] = polygon);
@@ -90,7 +90,7 @@ fn grouped(rings: Vec<Ring>) -> Vec<Vec<Vec<DVec3>>> {
     polygons
 }
 
-impl Ring {
+impl SortedRing {
     fn new(vertices: Vec<DVec3>) -> Self {
         let flat: Vec<DVec2> = vertices.iter().map(|vertex| vertex.truncate()).collect();
         // Areas about the first vertex, so that those of small rings far from zero keep their sign.
@@ -130,7 +130,7 @@ mod tests {
             .to_vec()
     }
 
-    fn counts(rings: &[Vec<DVec3>], rule: Rule) -> Vec<usize> {
+    fn counts(rings: &[Vec<DVec3>], rule: HoleRule) -> Vec<usize> {
         let mut steps = MOST_STEPS;
         let polygons = polygons(rings.to_vec(), rule, &mut steps).expect("few rings");
         assert_eq!(polygons.iter().map(Vec::len).sum::<usize>(), rings.len());
@@ -141,31 +141,38 @@ mod tests {
     fn holes_go_to_the_smallest_ring_around_them_and_islands_stand_alone() {
         let rings =
             [square(0.0, 0.0, 1.0), square(0.0, 0.0, 8.0), square(0.0, 0.0, 4.0), square(20.0, 0.0, 2.0)];
-        assert_eq!(counts(&rings, Rule::Nesting), [1, 2, 1]);
+        assert_eq!(counts(&rings, HoleRule::Nesting), [1, 2, 1]);
     }
 
     #[test]
     fn by_direction_a_clockwise_ring_inside_another_is_no_hole() {
         let (big, inside, hole) = (square(0.0, 0.0, -8.0), square(3.0, 3.0, -1.0), square(-3.0, 0.0, 2.0));
-        assert_eq!(counts(&[hole, big, inside.clone()], Rule::Direction), [2, 1]);
+        assert_eq!(counts(&[hole, big, inside.clone()], HoleRule::Direction), [2, 1]);
         let all_turned = [square(0.0, 0.0, 8.0), square(0.0, 0.0, 2.0)];
-        assert_eq!(counts(&all_turned, Rule::Direction), [2], "none runs clockwise: nesting decides");
-        assert_eq!(counts(&[inside, square(0.0, 50.0, 2.0)], Rule::Direction), [1, 1], "a hole in nothing");
+        assert_eq!(counts(&all_turned, HoleRule::Direction), [2], "none runs clockwise: nesting decides");
+        assert_eq!(
+            counts(&[inside, square(0.0, 50.0, 2.0)], HoleRule::Direction),
+            [1, 1],
+            "a hole in nothing"
+        );
     }
 
     #[test]
     fn a_small_ring_far_from_zero_keeps_its_direction() {
         let far = DVec2::new(500_000.0, 6_200_000.0);
         let rings = [square(far.x, far.y, -0.5), square(far.x, far.y, 0.1)];
-        assert_eq!(counts(&rings, Rule::Direction), [2]);
+        assert_eq!(counts(&rings, HoleRule::Direction), [2]);
     }
 
     #[test]
     fn rings_without_end_inside_each_other_stop() {
         let rings: Vec<_> = (1..2000).map(|size| square(0.0, 0.0, f64::from(size))).collect();
         let mut steps = 30_000;
-        assert!(polygons(rings, Rule::Nesting, &mut steps).is_ok(), "each lies in the next: found at once");
+        assert!(
+            polygons(rings, HoleRule::Nesting, &mut steps).is_ok(),
+            "each lies in the next: found at once"
+        );
         let apart: Vec<_> = (1..2000).map(|at| square(f64::from(at * 4), 0.0, 1.0)).collect();
-        assert!(polygons(apart, Rule::Nesting, &mut 30_000).is_err());
+        assert!(polygons(apart, HoleRule::Nesting, &mut 30_000).is_err());
     }
 }

@@ -10,8 +10,8 @@
 
 use glam::DVec3;
 
-use crate::vector::collect::{Parts, position};
-use crate::vector::cursor::Cursor;
+use crate::vector::collect::{FeatureParts, position};
+use crate::vector::cursor::ByteCursor;
 
 /// A multipolygon in a collection is three deep; more than a handful is nobody's data.
 const MOST_DEPTH: usize = 16;
@@ -31,13 +31,13 @@ pub(crate) enum WkbError {
 
 /// The order of bytes and what a position holds.
 #[derive(Clone, Copy)]
-struct Layout {
+struct WkbLayout {
     little_endian: bool,
     has_z: bool,
     has_m: bool,
 }
 
-impl Layout {
+impl WkbLayout {
     fn position_bytes(self) -> usize {
         8 * (2 + usize::from(self.has_z) + usize::from(self.has_m))
     }
@@ -47,11 +47,11 @@ impl Layout {
 ///
 /// # Errors
 /// [`WkbError`].
-pub(crate) fn read(bytes: &[u8], parts: &mut Parts) -> Result<(), WkbError> {
-    shape(&mut Cursor::new(bytes), parts, 0)
+pub(crate) fn read(bytes: &[u8], parts: &mut FeatureParts) -> Result<(), WkbError> {
+    shape(&mut ByteCursor::new(bytes), parts, 0)
 }
 
-fn shape(cursor: &mut Cursor<'_>, parts: &mut Parts, depth: usize) -> Result<(), WkbError> {
+fn shape(cursor: &mut ByteCursor<'_>, parts: &mut FeatureParts, depth: usize) -> Result<(), WkbError> {
     if depth > MOST_DEPTH {
         return Err(WkbError::Broken);
     }
@@ -60,7 +60,7 @@ fn shape(cursor: &mut Cursor<'_>, parts: &mut Parts, depth: usize) -> Result<(),
         Some(1) => true,
         _ => return Err(WkbError::Broken),
     };
-    let mut layout = Layout { little_endian, has_z: false, has_m: false };
+    let mut layout = WkbLayout { little_endian, has_z: false, has_m: false };
     let stated = number(cursor, layout)?;
     if stated & HAS_SRID != 0 {
         number(cursor, layout)?;
@@ -108,24 +108,24 @@ fn shape(cursor: &mut Cursor<'_>, parts: &mut Parts, depth: usize) -> Result<(),
     Ok(())
 }
 
-fn number(cursor: &mut Cursor<'_>, layout: Layout) -> Result<u32, WkbError> {
+fn number(cursor: &mut ByteCursor<'_>, layout: WkbLayout) -> Result<u32, WkbError> {
     let bytes = cursor.array().ok_or(WkbError::Broken)?;
     Ok(if layout.little_endian { u32::from_le_bytes(bytes) } else { u32::from_be_bytes(bytes) })
 }
 
 /// A count of things that take at least `least_bytes` each.
-fn count(cursor: &mut Cursor<'_>, layout: Layout, least_bytes: usize) -> Result<usize, WkbError> {
+fn count(cursor: &mut ByteCursor<'_>, layout: WkbLayout, least_bytes: usize) -> Result<usize, WkbError> {
     let count = number(cursor, layout)? as usize;
     let fits = count.checked_mul(least_bytes).is_some_and(|bytes| bytes <= cursor.rest().len());
     if fits { Ok(count) } else { Err(WkbError::Broken) }
 }
 
-fn counted_positions(cursor: &mut Cursor<'_>, layout: Layout) -> Result<Vec<DVec3>, WkbError> {
+fn counted_positions(cursor: &mut ByteCursor<'_>, layout: WkbLayout) -> Result<Vec<DVec3>, WkbError> {
     let count = count(cursor, layout, layout.position_bytes())?;
     positions(cursor, layout, count)
 }
 
-fn positions(cursor: &mut Cursor<'_>, layout: Layout, count: usize) -> Result<Vec<DVec3>, WkbError> {
+fn positions(cursor: &mut ByteCursor<'_>, layout: WkbLayout, count: usize) -> Result<Vec<DVec3>, WkbError> {
     let size = layout.position_bytes();
     let bytes = cursor.take(count * size).ok_or(WkbError::Broken)?;
     let number = |bytes: [u8; 8]| {
@@ -147,7 +147,7 @@ mod tests {
     use glam::DVec2;
 
     fn features(bytes: &[u8]) -> Result<Vec<Feature>, WkbError> {
-        let mut parts = Parts::default();
+        let mut parts = FeatureParts::default();
         read(bytes, &mut parts)?;
         let mut collector = Collector::new(Crs::local());
         collector.add(parts, Properties::new()).expect("metres");

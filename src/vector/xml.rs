@@ -31,7 +31,7 @@ pub(crate) struct Xml<'a> {
 pub(crate) struct Element<'a>(BytesStart<'a>);
 
 /// What comes next.
-enum Token<'a> {
+enum XmlToken<'a> {
     Open(Element<'a>),
     Text(Cow<'a, str>),
     Close,
@@ -96,10 +96,10 @@ impl<'a> Xml<'a> {
     pub fn root(&mut self) -> Result<Element<'a>, VectorError> {
         loop {
             match self.next()? {
-                Token::Open(element) => return Ok(element),
-                Token::Text(text) if text.trim().is_empty() => {}
-                Token::Text(_) => return Err(self.broken("text stands before the first element")),
-                Token::Close | Token::End => return Err(self.broken("there is no element")),
+                XmlToken::Open(element) => return Ok(element),
+                XmlToken::Text(text) if text.trim().is_empty() => {}
+                XmlToken::Text(_) => return Err(self.broken("text stands before the first element")),
+                XmlToken::Close | XmlToken::End => return Err(self.broken("there is no element")),
             }
         }
     }
@@ -115,10 +115,10 @@ impl<'a> Xml<'a> {
     ) -> Result<(), VectorError> {
         loop {
             match self.next()? {
-                Token::Open(element) => each(self, &element)?,
-                Token::Text(_) => {}
-                Token::Close => return Ok(()),
-                Token::End => return Err(self.broken("the file ends within an element")),
+                XmlToken::Open(element) => each(self, &element)?,
+                XmlToken::Text(_) => {}
+                XmlToken::Close => return Ok(()),
+                XmlToken::End => return Err(self.broken("the file ends within an element")),
             }
         }
     }
@@ -130,7 +130,7 @@ impl<'a> Xml<'a> {
     pub fn skip(&mut self) -> Result<(), VectorError> {
         let outside = self.depth - 1;
         while self.depth > outside {
-            if matches!(self.next()?, Token::End) {
+            if matches!(self.next()?, XmlToken::End) {
                 return Err(self.broken("the file ends within an element"));
             }
         }
@@ -146,9 +146,9 @@ impl<'a> Xml<'a> {
         let mut all = String::new();
         while self.depth > outside {
             match self.next()? {
-                Token::Text(text) => all.push_str(&text),
-                Token::Open(_) | Token::Close => {}
-                Token::End => return Err(self.broken("the file ends within an element")),
+                XmlToken::Text(text) => all.push_str(&text),
+                XmlToken::Open(_) | XmlToken::Close => {}
+                XmlToken::End => return Err(self.broken("the file ends within an element")),
             }
         }
         let trimmed = all.trim();
@@ -162,14 +162,14 @@ impl<'a> Xml<'a> {
     pub fn end(&mut self) -> Result<(), VectorError> {
         loop {
             match self.next()? {
-                Token::End => return Ok(()),
-                Token::Text(text) if text.trim().is_empty() => {}
+                XmlToken::End => return Ok(()),
+                XmlToken::Text(text) if text.trim().is_empty() => {}
                 _ => return Err(self.broken("something follows after the document's end")),
             }
         }
     }
 
-    fn next(&mut self) -> Result<Token<'a>, VectorError> {
+    fn next(&mut self) -> Result<XmlToken<'a>, VectorError> {
         loop {
             let event = self.reader.read_event().map_err(|error| self.broken(error.to_string()))?;
             match event {
@@ -178,20 +178,20 @@ impl<'a> Xml<'a> {
                     if self.depth > MOST_DEPTH {
                         return Err(self.broken(format!("elements lie more than {MOST_DEPTH} deep")));
                     }
-                    return Ok(Token::Open(Element(start)));
+                    return Ok(XmlToken::Open(Element(start)));
                 }
                 Event::End(_) => {
                     self.depth = self.depth.saturating_sub(1);
-                    return Ok(Token::Close);
+                    return Ok(XmlToken::Close);
                 }
-                Event::Text(text) => return Ok(Token::Text(text.xml10_content())),
-                Event::CData(text) => return Ok(Token::Text(text.xml10_content())),
+                Event::Text(text) => return Ok(XmlToken::Text(text.xml10_content())),
+                Event::CData(text) => return Ok(XmlToken::Text(text.xml10_content())),
                 Event::GeneralRef(name) => {
                     let character = name.resolve_char_ref().ok().flatten().map(|c| Cow::Owned(c.to_string()));
                     let name = name.into_inner();
                     let known = character.or_else(|| resolve_predefined_entity(&name).map(Cow::Borrowed));
                     return match known {
-                        Some(text) => Ok(Token::Text(text)),
+                        Some(text) => Ok(XmlToken::Text(text)),
                         None => {
                             let name: String = name.chars().take(40).collect();
                             Err(self.broken(format!("the entity &{name}; is not known")))
@@ -204,7 +204,7 @@ impl<'a> Xml<'a> {
                     ));
                 }
                 Event::DocType(_) | Event::Comment(_) | Event::Decl(_) | Event::PI(_) => {}
-                Event::Eof => return Ok(Token::End),
+                Event::Eof => return Ok(XmlToken::End),
             }
         }
     }

@@ -25,14 +25,14 @@ const AHEAD: f32 = 1000.0;
 
 /// Where the eye is and what it looks at, world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Station {
+pub struct FlightStation {
     /// The eye.
     pub eye: Vec3,
     /// What it looks at; not the eye itself.
     pub target: Vec3,
 }
 
-impl Station {
+impl FlightStation {
     /// The camera of a flight: 60° wide, 1024 × 768 pixels, from `near_m` to `far_m`.
     ///
     /// # Errors
@@ -55,7 +55,7 @@ pub struct Keeping {
 
 /// A circle flown counter-clockwise from its easternmost point, looking ahead and 8° down.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Circle {
+pub struct CircularFlight {
     /// The middle, world X and Y.
     pub center: Vec2,
     /// Its radius in metres, above 0.
@@ -66,14 +66,14 @@ pub struct Circle {
     pub keeping: Keeping,
 }
 
-impl Circle {
+impl CircularFlight {
     /// The first `frames` stations over a ground of world Z `ground`.
-    pub fn stations(&self, frames: usize, ground: &impl Fn(Vec2) -> f32) -> Vec<Station> {
+    pub fn stations(&self, frames: usize, ground: &impl Fn(Vec2) -> f32) -> Vec<FlightStation> {
         (0..frames).map(|frame| self.station(frame as f32 * self.step_m, ground)).collect()
     }
 
     /// The station after `way_m` metres of travel.
-    pub fn station(&self, way_m: f32, ground: &impl Fn(Vec2) -> f32) -> Station {
+    pub fn station(&self, way_m: f32, ground: &impl Fn(Vec2) -> f32) -> FlightStation {
         let place = |way_m: f32| {
             let angle = way_m / self.radius_m;
             self.center + self.radius_m * Vec2::new(libm::cosf(angle), libm::sinf(angle))
@@ -86,7 +86,7 @@ impl Circle {
 
 /// Straight on from one place to another, looking ahead and 8° down.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line {
+pub struct StraightFlight {
     /// Where it starts, world X and Y.
     pub from: Vec2,
     /// Where it ends; not where it starts.
@@ -95,9 +95,9 @@ pub struct Line {
     pub keeping: Keeping,
 }
 
-impl Line {
+impl StraightFlight {
     /// `frames` stations at equal distances, both ends among them, over a ground of world Z `ground`.
-    pub fn stations(&self, frames: usize, ground: &impl Fn(Vec2) -> f32) -> Vec<Station> {
+    pub fn stations(&self, frames: usize, ground: &impl Fn(Vec2) -> f32) -> Vec<FlightStation> {
         let (length, ahead) = (self.from.distance(self.to), (self.to - self.from).normalize_or(Vec2::X));
         let place = |way_m: f32| self.from + ahead * way_m;
         let step_m = length / frames.saturating_sub(1).max(1) as f32;
@@ -112,18 +112,18 @@ fn over(
     ahead: Vec2,
     keeping: Keeping,
     ground: &impl Fn(Vec2) -> f32,
-) -> Station {
+) -> FlightStation {
     let heights = (-SMOOTHED..=SMOOTHED).map(|at| ground(place(way_m + f32::from(at) * keeping.smoothing_m)));
     let mean = heights.sum::<f32>() / f32::from(2 * SMOOTHED + 1);
     let eye = place(way_m).extend(mean + keeping.above_m);
-    Station { eye, target: eye + ahead.extend(-FALL) * AHEAD }
+    FlightStation { eye, target: eye + ahead.extend(-FALL) * AHEAD }
 }
 
 /// `frames` stations at equal distances along the legs between `stations`, both ends among them.
 ///
 /// The eye's distance counts; on a leg where the eye stays in its place, the target's. Where nothing moves, or one
 /// station is given, all frames are the first station; where none is given, there are no frames.
-pub fn along(stations: &[Station], frames: usize) -> Vec<Station> {
+pub fn along(stations: &[FlightStation], frames: usize) -> Vec<FlightStation> {
     let Some(first) = stations.first() else {
         return Vec::new();
     };
@@ -148,13 +148,13 @@ pub fn along(stations: &[Station], frames: usize) -> Vec<Station> {
     (0..frames).map(station).collect()
 }
 
-fn leg_length(from: &Station, to: &Station) -> f64 {
+fn leg_length(from: &FlightStation, to: &FlightStation) -> f64 {
     let eye = from.eye.as_dvec3().distance(to.eye.as_dvec3());
     if eye > 0.0 { eye } else { from.target.as_dvec3().distance(to.target.as_dvec3()) }
 }
 
-fn between(from: &Station, to: &Station, part: f32) -> Station {
-    Station { eye: from.eye.lerp(to.eye, part), target: from.target.lerp(to.target, part) }
+fn between(from: &FlightStation, to: &FlightStation, part: f32) -> FlightStation {
+    FlightStation { eye: from.eye.lerp(to.eye, part), target: from.target.lerp(to.target, part) }
 }
 
 #[cfg(test)]
@@ -165,8 +165,12 @@ mod tests {
 
     #[test]
     fn a_circle_keeps_its_distance_its_pace_and_its_height_over_level_ground() {
-        let circle =
-            Circle { center: Vec2::new(500.0, 400.0), radius_m: 150.0, step_m: 3.0, keeping: KEEPING };
+        let circle = CircularFlight {
+            center: Vec2::new(500.0, 400.0),
+            radius_m: 150.0,
+            step_m: 3.0,
+            keeping: KEEPING,
+        };
         let stations = circle.stations(400, &|_| 70.0);
         assert_eq!(stations[0].eye, Vec3::new(650.0, 400.0, 100.0));
         for pair in stations.windows(2) {
@@ -181,7 +185,7 @@ mod tests {
 
     #[test]
     fn a_line_goes_from_end_to_end_above_the_smoothed_slope() {
-        let line = Line { from: Vec2::ZERO, to: Vec2::new(300.0, 400.0), keeping: KEEPING };
+        let line = StraightFlight { from: Vec2::ZERO, to: Vec2::new(300.0, 400.0), keeping: KEEPING };
         let stations = line.stations(11, &|at| at.x);
         assert_eq!(stations.len(), 11);
         assert!(stations[10].eye.truncate().distance(line.to) < 1e-2);
@@ -190,7 +194,7 @@ mod tests {
 
     #[test]
     fn stations_along_legs_are_equally_far_apart() {
-        let at = |x: f32, y: f32| Station { eye: Vec3::new(x, y, 5.0), target: Vec3::new(x, y, 0.0) };
+        let at = |x: f32, y: f32| FlightStation { eye: Vec3::new(x, y, 5.0), target: Vec3::new(x, y, 0.0) };
         let stations = along(&[at(0.0, 0.0), at(10.0, 0.0), at(10.0, 0.0), at(10.0, 30.0)], 9);
         let eyes: Vec<Vec2> = stations.iter().map(|station| station.eye.truncate()).collect();
         assert_eq!((eyes[0], eyes[2], eyes[8]), (Vec2::ZERO, Vec2::X * 10.0, Vec2::new(10.0, 30.0)));
@@ -199,7 +203,7 @@ mod tests {
 
     #[test]
     fn an_eye_that_stays_turns_by_its_target_and_one_station_is_enough() {
-        let at = |x: f32| Station { eye: Vec3::Z, target: Vec3::new(x, 7.0, 0.0) };
+        let at = |x: f32| FlightStation { eye: Vec3::Z, target: Vec3::new(x, 7.0, 0.0) };
         let turned: Vec<f32> = along(&[at(0.0), at(4.0)], 5).iter().map(|s| s.target.x).collect();
         assert_eq!(turned, [0.0, 1.0, 2.0, 3.0, 4.0]);
         assert_eq!(along(&[at(2.0)], 3), vec![at(2.0); 3]);
@@ -209,7 +213,7 @@ mod tests {
 
     #[test]
     fn the_camera_of_a_flight_is_sixty_degrees_wide() {
-        let station = Station { eye: Vec3::ZERO, target: Vec3::Y };
+        let station = FlightStation { eye: Vec3::ZERO, target: Vec3::Y };
         let camera = station.camera(0.5, 100.0).expect("sound");
         assert!((libm::atanf(camera.tan_half_fov().x).to_degrees() - 30.0).abs() < 1e-3);
         assert!((libm::atanf(camera.tan_half_fov().y).to_degrees() - 23.4).abs() < 0.05);

@@ -29,12 +29,12 @@ const SLACK: f32 = 1e-5;
 /// Lines on the ground plane with normals inward. Where there are no sides, the left line stands for the farthest
 /// behind, and the right one is nowhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wedge {
+pub struct GroundWedge {
     /// As upright planes.
     lines: [(Vec3, f32); 3],
 }
 
-impl Wedge {
+impl GroundWedge {
     /// As many planes as a wedge has lines, as bits for [`Wedge::crossed`].
     pub const ALL: u8 = 0b111;
 
@@ -82,7 +82,7 @@ mod tests {
 
     #[test]
     fn a_level_wedge_culls_beside_behind_and_beyond_whatever_the_height() {
-        let wedge = Wedge::of(&camera(Vec3::Z * 900.0, Vec3::Y));
+        let wedge = GroundWedge::of(&camera(Vec3::Z * 900.0, Vec3::Y));
         let unit_at = |x: f32, y: f32| wedge.may_see(Vec2::new(x, y) - 1.0, Vec2::new(x, y) + 1.0);
         assert!(unit_at(0.0, 50.0) && unit_at(27.0, 50.0));
         assert!(!unit_at(31.0, 50.0) && !unit_at(-31.0, 50.0));
@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn looking_straight_down_leaves_a_strip() {
-        let wedge = Wedge::of(&camera(Vec3::Z * 900.0, -Vec3::Z));
+        let wedge = GroundWedge::of(&camera(Vec3::Z * 900.0, -Vec3::Z));
         let unit_at = |x: f32, y: f32| wedge.may_see(Vec2::new(x, y) - 1.0, Vec2::new(x, y) + 1.0);
         assert!(unit_at(0.0, -300.0) && unit_at(0.0, 300.0) && unit_at(5000.0, 0.0));
         assert!(!unit_at(0.0, -500.0) && !unit_at(0.0, 500.0));
@@ -110,7 +110,7 @@ mod tests {
             let seen = camera.eye() + camera.ray_through(Vec2::new(x, y)) * depth_m;
             let slack = Vec2::splat(2e-3);
             let at = seen.truncate();
-            prop_assert!(Wedge::of(&camera).may_see(at - slack, at + slack), "{seen} of {camera:?}");
+            prop_assert!(GroundWedge::of(&camera).may_see(at - slack, at + slack), "{seen} of {camera:?}");
         }
     }
 }

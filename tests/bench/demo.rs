@@ -11,16 +11,16 @@ mod steps;
 
 use std::path::Path;
 
-use sandtable::app::arguments::{Access, Backend, Size};
+use sandtable::app::arguments::{Access, Backend, PictureSize};
 use sandtable::app::load;
 use sandtable::app::picture::{Finished, picture_of, png};
-use sandtable::draw::list::{DrawItem, FeatureId, Layer};
+use sandtable::draw::list::{DepthLayer, DrawItem, FeatureId};
 use sandtable::scene::kind::{Scene, View};
-use sandtable::scene::picture::Shot;
+use sandtable::scene::picture::ViewDraw;
 
 use crate::steps::{Step, Steps};
 
-const SIZE: Size = Size { width: 1920, height: 1080 };
+const SIZE: PictureSize = PictureSize { width: 1920, height: 1080 };
 
 /// Rounds whose medians are compared; odd, so that a median is a time that was measured.
 const ROUNDS: usize = 7;
@@ -80,13 +80,13 @@ fn print_steps(steps: &[Step]) {
     println!("Memory: {}.", steps::memory_method());
 }
 
-fn print_triangles(shot: &Shot) {
+fn print_triangles(shot: &ViewDraw) {
     let count = |wanted: fn(&DrawItem) -> bool| -> usize {
         shot.list.items.iter().filter(|item| wanted(item)).map(|item| item.triangles.len()).sum()
     };
     let ground = shot.ground_triangles;
-    let draped = count(|item| matches!(item.layer, Layer::Draped(_)));
-    let models = count(|item| item.layer == Layer::Solid && item.feature > FeatureId::GROUND);
+    let draped = count(|item| matches!(item.layer, DepthLayer::Draped(_)));
+    let models = count(|item| item.layer == DepthLayer::Solid && item.feature > FeatureId::GROUND);
     let all = shot.list.triangle_count();
     let rest = all - ground - draped - models;
     println!("\nTriangles: {ground} ground, {draped} draped, {models} models, {rest} others, {all} in all");

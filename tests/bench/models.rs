@@ -18,13 +18,13 @@ use std::path::Path;
 use std::time::Instant;
 
 use sandtable::draw::list::DrawList;
-use sandtable::model::detail::Detail;
+use sandtable::model::detail::ModelDetail;
 use sandtable::model::kind::{Companions, Model};
 use sandtable::model::read::read;
 use sandtable::model::simplify::levels;
 use sandtable::render::cpu::{Options, render};
 use sandtable::scene::kind::Scene;
-use sandtable::scene::picture::{display, draw_list, shoot};
+use sandtable::scene::picture::{build_draw_list, display, draw_list};
 use sandtable::view::camera::Camera;
 
 use crate::steps::{Step, Steps};
@@ -50,8 +50,10 @@ fn print_forest() {
         let scene = forest(count, &["firtree.obj"]);
         let camera = overlook(&scene, (1920, 1080));
         // The first picture makes the simpler forms; what a further one costs is what is told.
-        shoot(&scene, &camera, &|_| ());
-        row(&count.to_string(), &scene, &camera, |scene, camera| shoot(scene, camera, &|_| ()).list);
+        build_draw_list(&scene, &camera, &|_| ());
+        row(&count.to_string(), &scene, &camera, |scene, camera| {
+            build_draw_list(scene, camera, &|_| ()).list
+        });
     }
     let scene = forest(10_000, &["firtree.obj"]);
     let camera = overlook(&scene, (1920, 1080));
@@ -103,7 +105,7 @@ fn print_simplify() {
         let levels = levels(&model);
         let simplified = start.elapsed().as_secs_f64() * 1e3;
         let start = Instant::now();
-        Detail::of(&model);
+        ModelDetail::of(&model);
         let all = start.elapsed().as_secs_f64() * 1e3;
         let each: Vec<String> =
             levels.iter().map(|level| format!("{} ({:.3})", level.triangle_count(), level.error)).collect();

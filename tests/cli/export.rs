@@ -84,7 +84,7 @@ fn ground_and_drapes_cover_every_place_once() {
     let size = (high - low).truncate();
     let area = |name: &dyn Fn(&str) -> bool| -> f32 {
         let parts = model.parts.iter().filter(|part| name(&model.materials[part.material.0 as usize].name));
-        let at = |part: &sandtable::model::kind::Part, index: usize| {
+        let at = |part: &sandtable::model::kind::ModelPart, index: usize| {
             Vec3::from(part.mesh.vertices[index].position).truncate()
         };
         parts

@@ -173,7 +173,7 @@ fn a_scene_is_asked_for_its_ground_and_a_file_for_what_it_holds() {
     let scene = project("scenes/lake.toml");
     let ask = |more: &[&str]| run(&[&["height", scene.as_str(), "--json"], more].concat()).ok();
     let dataset = open(Path::new(&scene));
-    let lattice = dataset.service().expect("a ground").now();
+    let lattice = dataset.service().expect("a ground").snapshot();
     let middle = lattice.lattice().origin() + lattice.lattice().extent().center();
     let at = format!("{},{}", middle.x, middle.y);
     let usual = ask(&["--at", &at]);

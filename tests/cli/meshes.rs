@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::Vec3;
-use sandtable::dem::read::{Hints, read};
+use sandtable::dem::read::{DemHints, read};
 use sandtable::dem::warp::to_metric;
 use sandtable::mesh::check;
 use sandtable::mesh::sink::{MeshSink, VertexId};
@@ -60,7 +60,7 @@ fn told(out: &str, word: &str) -> f64 {
 
 fn lattice_of(path: &Path) -> Lattice {
     let bytes = std::fs::read(path).expect("readable");
-    let raster = read(&path.to_string_lossy(), &bytes, &Hints::default()).expect("an elevation file");
+    let raster = read(&path.to_string_lossy(), &bytes, &DemHints::default()).expect("an elevation file");
     Lattice::from_raster(&to_metric(&raster, None).expect("metric")).expect("ground")
 }
 

@@ -8,7 +8,7 @@ use sandtable::description::parse::parse_bytes;
 use sandtable::description::words::Clamp;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
-use sandtable::scene::kind::{Placement, Scene, Stance};
+use sandtable::scene::kind::{GroundFit, Placement, Scene};
 use sandtable::scene::picture;
 use sandtable::view::camera::Camera;
 
@@ -59,7 +59,7 @@ fn placements(count: usize, models: usize) -> Vec<Placement> {
             let plan =
                 Vec2::new(share(index, 0.754_877_666_246_692_7), share(index, 0.569_840_290_998_053_3));
             Placement {
-                standing: Stance::default(),
+                standing: GroundFit::default(),
                 model: index % models,
                 at: plan * (SIDE_M - 20.0) + 10.0,
                 clamp: Clamp::Ground,

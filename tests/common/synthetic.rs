@@ -14,10 +14,10 @@ use std::sync::Arc;
 
 use glam::{Mat4, Vec2, Vec3};
 use sandtable::draw::color::Srgba;
-use sandtable::draw::ground::{Contours, GroundMap, GroundPost, Ramp};
+use sandtable::draw::ground::{ColorRamp, Contours, GroundMap, GroundPost};
 use sandtable::draw::lighting::{Haze, Lighting};
-use sandtable::draw::list::{DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId, Layer, MaterialId};
-use sandtable::draw::material::{Albedo, Alpha, Material, Normals};
+use sandtable::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId, MaterialId};
+use sandtable::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use sandtable::draw::pixels::Pixels;
 use sandtable::mesh::sink::{MeshSink, VertexId};
 use sandtable::view::camera::Camera;
@@ -80,13 +80,13 @@ pub fn scene() -> DrawList {
         name: name.into(),
         base_color,
         alpha,
-        normals: Normals::Ground,
+        normals: NormalSource::Ground,
         ..Default::default()
     };
-    let bare = Material { albedo: Albedo::GroundMap, ..draped("ground", Srgba::WHITE, Alpha::Opaque) };
-    add(&mut list, ground, bare, Layer::Ground, FeatureId::GROUND);
-    add(&mut list, lake, draped("lake", LAKE_COLOR, Alpha::Blend), Layer::Draped(0), LAKE);
-    add(&mut list, road, draped("road", ROAD_COLOR, Alpha::Opaque), Layer::Draped(1), ROAD);
+    let bare = Material { albedo: Albedo::GroundMap, ..draped("ground", Srgba::WHITE, AlphaMode::Opaque) };
+    add(&mut list, ground, bare, DepthLayer::Ground, FeatureId::GROUND);
+    add(&mut list, lake, draped("lake", LAKE_COLOR, AlphaMode::Blend), DepthLayer::Draped(0), LAKE);
+    add(&mut list, road, draped("road", ROAD_COLOR, AlphaMode::Opaque), DepthLayer::Draped(1), ROAD);
     add_solids(&mut list);
     list.check().expect("a sound list");
     list
@@ -105,26 +105,26 @@ fn add_solids(list: &mut DrawList) {
     let fence = Material {
         base_color: FENCE_COLOR,
         texture: Some(holes),
-        alpha: Alpha::Mask(0.5),
+        alpha: AlphaMode::Mask(0.5),
         two_sided: true,
         ..Default::default()
     };
     let pane =
-        Material { base_color: PANE_COLOR, alpha: Alpha::Blend, two_sided: true, ..Default::default() };
+        Material { base_color: PANE_COLOR, alpha: AlphaMode::Blend, two_sided: true, ..Default::default() };
     let turned = Mat4::from_rotation_z(0.4);
     add_at(list, box_mesh(), house, BOX.0, turned, HOUSE);
     add_at(list, board(), fence, FENCE, Mat4::IDENTITY, MASKED);
     add_at(list, board(), pane, PANE, Mat4::IDENTITY, BLENDED);
 }
 
-fn add(list: &mut DrawList, mesh: DrawMesh, material: Material, layer: Layer, feature: FeatureId) {
+fn add(list: &mut DrawList, mesh: DrawMesh, material: Material, layer: DepthLayer, feature: FeatureId) {
     let triangles = 0..mesh.triangles.len() as u32;
     let (mesh, material) = (list.add_mesh(mesh), list.add_material(material));
     list.items.push(DrawItem { mesh, triangles, material, world_from_mesh: Mat4::IDENTITY, layer, feature });
 }
 
 fn add_at(list: &mut DrawList, mesh: DrawMesh, material: Material, at: Vec2, turn: Mat4, feature: FeatureId) {
-    add(list, mesh, material, Layer::Solid, feature);
+    add(list, mesh, material, DepthLayer::Solid, feature);
     let item = list.items.last_mut().expect("just added");
     item.world_from_mesh = Mat4::from_translation(at.extend(height_at(at) - 5.0)) * turn;
 }
@@ -164,7 +164,7 @@ fn ground_map() -> GroundMap {
         columns: POSTS,
         rows: POSTS,
         posts: (0..POSTS * POSTS).map(post).collect(),
-        ramp: Ramp::new(stops.into()).expect("rising stops"),
+        ramp: ColorRamp::new(stops.into()).expect("rising stops"),
         contours: None,
     }
 }

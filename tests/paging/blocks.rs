@@ -4,17 +4,17 @@ use std::sync::Arc;
 
 use glam::{DAffine2, DMat2, DVec2};
 use proptest::prelude::*;
-use sandtable::dem::fault::Fault;
+use sandtable::dem::fault::DemErrorKind;
 use sandtable::dem::raster::{Raster, Samples};
-use sandtable::dem::windows::{Window, Windows};
+use sandtable::dem::windows::{RasterWindow, Windows};
 use sandtable::geom::crs::Crs;
 use sandtable::roam::bintree::Triangle;
 use sandtable::roam::block::{BlockSource, PatchBlock, WholeGround};
 use sandtable::roam::culling::PatchHeights;
 use sandtable::roam::errors::exact::triangle_error;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::Ground;
-use sandtable::roam::layout::Layout;
+use sandtable::roam::ground::PatchedGround;
+use sandtable::roam::layout::PatchLayout;
 use sandtable::roam::paging::ground::{PagedGround, PagingError, PagingOptions, exact_spheres};
 use sandtable::terrain::lattice::{Lattice, Post};
 
@@ -54,8 +54,8 @@ pub fn in_memory<T>(
     work: impl FnOnce(WholeGround<'_>) -> T,
 ) -> T {
     let lattice = Lattice::from_raster(raster).expect("sound");
-    let layout = Layout::new(lattice.columns(), lattice.rows(), patch).expect("sound");
-    let ground = Ground { lattice: &lattice, layout: &layout, exaggeration };
+    let layout = PatchLayout::new(lattice.columns(), lattice.rows(), patch).expect("sound");
+    let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration };
     let spheres = exact_spheres(reach)(ground);
     work(WholeGround { ground, spheres: &spheres })
 }
@@ -97,8 +97,8 @@ fn rounding_does_not_depend_on_where_a_piece_begins() {
     // first post, planes told from there would round otherwise than planes told from a piece's own first post.
     let (columns, skipped, rows, patch) = (4024, 3968, 33, 32);
     let part_columns = columns - skipped;
-    let whole_layout = Layout::new(columns, rows, patch).expect("sound");
-    let part_layout = Layout::new(part_columns, rows, patch).expect("sound");
+    let whole_layout = PatchLayout::new(columns, rows, patch).expect("sound");
+    let part_layout = PatchLayout::new(part_columns, rows, patch).expect("sound");
     for seed in 0..20 {
         let mut seeded = Seeded(seed);
         let heights: Vec<f32> = (0..columns * rows)
@@ -151,10 +151,10 @@ impl Windows for Failing {
         &self.raster
     }
 
-    fn read(&mut self, window: Window, out: &mut Vec<f32>) -> Result<(), Fault> {
+    fn read(&mut self, window: RasterWindow, out: &mut Vec<f32>) -> Result<(), DemErrorKind> {
         if self.fails.load(std::sync::atomic::Ordering::Relaxed) {
             out.clear();
-            return Err(Fault::Broken { format: "test", reason: "the disk is gone".into() });
+            return Err(DemErrorKind::Broken { format: "test", reason: "the disk is gone".into() });
         }
         self.raster.read(window, out)
     }

@@ -6,14 +6,14 @@ use std::io::Cursor;
 
 use glam::Vec3;
 use sandtable::dem::raster::Raster;
-use sandtable::dem::read::{Hints, read};
+use sandtable::dem::read::{DemHints, read};
 use sandtable::dem::tiff_windows::GeoTiffWindows;
 use sandtable::dem::windows::Windows;
 use sandtable::roam::active::ActiveSet;
 use sandtable::roam::bintree::Triangle;
 use sandtable::roam::block::{BlockSource, WholeGround};
 use sandtable::roam::criterion::spheres::Spheres;
-use sandtable::roam::ground::Ground;
+use sandtable::roam::ground::PatchedGround;
 use sandtable::roam::paging::ground::{PagedGround, PagingOptions, exact_spheres, finest_that_fits};
 use sandtable::roam::paging::walk::walk;
 use sandtable::roam::refine::rebuild::rebuild;
@@ -53,7 +53,7 @@ fn rebuilt(whole: WholeGround<'_>, eye: Vec3) -> BTreeSet<Corners> {
 /// Walks with `capacity` patches beside the whole in memory; returns the most triangles of a frame.
 fn assert_walks_agree(
     whole: &Raster,
-    mut paged: PagedGround<impl Windows, impl Fn(Ground<'_>) -> SphereMap>,
+    mut paged: PagedGround<impl Windows, impl Fn(PatchedGround<'_>) -> SphereMap>,
     (patch, reach, capacity): (u32, f32, usize),
 ) -> usize {
     let mut most = 0;
@@ -89,9 +89,9 @@ fn hilly(column: u32, row: u32) -> f32 {
 #[test]
 fn a_walk_over_a_tiled_file_is_the_walk_over_its_terrain_in_memory() {
     let bytes = file(&[Image::of(1537, 1025, hilly)], 256, Packing::Deflate);
-    let whole = read("a.tif", &bytes, &Hints::default()).expect("sound");
+    let whole = read("a.tif", &bytes, &DemHints::default()).expect("sound");
     let windows =
-        GeoTiffWindows::open("a.tif", Cursor::new(bytes), &Hints::default(), 1 << 21).expect("sound");
+        GeoTiffWindows::open("a.tif", Cursor::new(bytes), &DemHints::default(), 1 << 21).expect("sound");
     let options = PagingOptions { patch: 64, capacity: 12, exaggeration: 1.0 };
     let paged = PagedGround::open(windows, exact_spheres(25.0), &options).expect("sound");
     let most = assert_walks_agree(&whole, paged, (64, 25.0, 12));
@@ -105,9 +105,9 @@ fn walks_over_real_files_are_the_walks_over_their_terrain_in_memory() {
     {
         let Some(path) = data(name) else { return };
         let bytes = fs::read(&path).expect("readable");
-        let whole = read(name, &bytes, &Hints::default()).expect("sound");
+        let whole = read(name, &bytes, &DemHints::default()).expect("sound");
         let source = fs::File::open(&path).expect("readable");
-        let windows = GeoTiffWindows::open(name, source, &Hints::default(), 1 << 20).expect("sound");
+        let windows = GeoTiffWindows::open(name, source, &DemHints::default(), 1 << 20).expect("sound");
         let options = PagingOptions { patch: 16, capacity, exaggeration: 1.0 };
         let paged = PagedGround::open(windows, exact_spheres(reach), &options).expect("sound");
         assert_walks_agree(&whole, paged, (16, reach, capacity));
@@ -131,12 +131,12 @@ fn the_finest_overview_whose_patches_are_few_enough_is_taken() {
     let (half, quarter) = (full.halved(), full.halved().halved());
     let bytes = file(&[full, half, quarter], 512, Packing::Deflate);
     let open =
-        || GeoTiffWindows::open("a.tif", Cursor::new(&bytes), &Hints::default(), 1 << 22).expect("sound");
+        || GeoTiffWindows::open("a.tif", Cursor::new(&bytes), &DemHints::default(), 1 << 22).expect("sound");
     assert_eq!(finest_that_fits(open(), 2).expect("an overview fits").size(), (1500, 1500));
     assert_eq!(finest_that_fits(open(), 4).expect("it fits itself").size(), (3000, 3000));
     let bytes = file(&[Image::of(3000, 3000, |_, _| 1.0)], 512, Packing::Deflate);
     let alone =
-        GeoTiffWindows::open("a.tif", Cursor::new(&bytes), &Hints::default(), 1 << 22).expect("sound");
+        GeoTiffWindows::open("a.tif", Cursor::new(&bytes), &DemHints::default(), 1 << 22).expect("sound");
     let said = finest_that_fits(alone, 2).err().expect("nothing fits").to_string();
     assert!(said.contains("3000 x 3000") && said.contains("gdaladdo"), "{said}");
 }

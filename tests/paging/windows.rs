@@ -5,9 +5,9 @@ use std::io::Cursor;
 use std::path::Path;
 
 use sandtable::dem::raster::Raster;
-use sandtable::dem::read::{Hints, read};
+use sandtable::dem::read::{DemHints, read};
 use sandtable::dem::tiff_windows::GeoTiffWindows;
-use sandtable::dem::windows::{Window, Windows};
+use sandtable::dem::windows::{RasterWindow, Windows};
 
 use crate::data::{data, files_below};
 use crate::tiles::{Image, Packing, file};
@@ -22,9 +22,14 @@ impl Seeded {
         ((self.0 >> 33) % u64::from(bound)) as u32
     }
 
-    fn window(&mut self, (width, height): (u32, u32)) -> Window {
+    fn window(&mut self, (width, height): (u32, u32)) -> RasterWindow {
         let (column, row) = (self.below(width), self.below(height));
-        Window { column, row, width: 1 + self.below(width - column), height: 1 + self.below(height - row) }
+        RasterWindow {
+            column,
+            row,
+            width: 1 + self.below(width - column),
+            height: 1 + self.below(height - row),
+        }
     }
 }
 
@@ -39,7 +44,7 @@ fn assert_windows_match(windows: &mut impl Windows, whole: &mut Raster, seed: u6
     assert_eq!(windows.bare().crs, whole.crs, "{what}");
     let mut seeded = Seeded(seed);
     let (mut found, mut wanted) = (Vec::new(), Vec::new());
-    let all = Window { column: 0, row: 0, width: whole.width, height: whole.height };
+    let all = RasterWindow { column: 0, row: 0, width: whole.width, height: whole.height };
     let size = (whole.width, whole.height);
     for window in std::iter::once(all).chain((0..20).map(|_| seeded.window(size))) {
         windows.read(window, &mut found).unwrap_or_else(|fault| panic!("{what}: {fault}"));
@@ -64,10 +69,10 @@ fn windows_of_tiles_and_of_their_overviews_hold_what_the_whole_file_holds() {
         let half = full.halved();
         let quarter = half.halved();
         let bytes = file(&[full, half, quarter], 256, packing);
-        let mut whole = read("a.tif", &bytes, &Hints::default()).expect("sound");
+        let mut whole = read("a.tif", &bytes, &DemHints::default()).expect("sound");
         let cache = 6 * 256 * 256 * 4;
         let mut windows =
-            GeoTiffWindows::open("a.tif", Cursor::new(&bytes), &Hints::default(), cache).expect("sound");
+            GeoTiffWindows::open("a.tif", Cursor::new(&bytes), &DemHints::default(), cache).expect("sound");
         assert_windows_match(&mut windows, &mut whole, 1, "full");
         assert!(windows.cached_bytes() <= cache && windows.cached_bytes() > 0);
         let overviews = windows.overviews().to_vec();
@@ -76,7 +81,7 @@ fn windows_of_tiles_and_of_their_overviews_hold_what_the_whole_file_holds() {
         let mut half = windows.at_overview(&overviews[0]).expect("sound");
         assert_eq!(half.bare().geotransform()[1], 10.0 * 1537.0 / 769.0);
         let mut found = Vec::new();
-        half.read(Window { column: 300, row: 200, width: 9, height: 1 }, &mut found).expect("sound");
+        half.read(RasterWindow { column: 300, row: 200, width: 9, height: 1 }, &mut found).expect("sound");
         let wanted: Vec<f32> = (300..309)
             .map(|column| hilly(column * 2, 400))
             .map(|value| if value == -9999.0 { f32::NAN } else { value })
@@ -90,12 +95,14 @@ fn a_block_that_was_damaged_leaves_the_other_windows_readable() {
     let full = Image::of(300, 300, hilly);
     let mut bytes = file(&[full], 128, Packing::Deflate);
     bytes[8..40].fill(0xff);
-    let mut windows =
-        GeoTiffWindows::open("a.tif", Cursor::new(&bytes), &Hints::default(), 1 << 20).expect("sound header");
+    let mut windows = GeoTiffWindows::open("a.tif", Cursor::new(&bytes), &DemHints::default(), 1 << 20)
+        .expect("sound header");
     let mut out = Vec::new();
     for _ in 0..2 {
-        assert!(windows.read(Window { column: 0, row: 0, width: 9, height: 9 }, &mut out).is_err());
-        windows.read(Window { column: 130, row: 0, width: 9, height: 9 }, &mut out).expect("another block");
+        assert!(windows.read(RasterWindow { column: 0, row: 0, width: 9, height: 9 }, &mut out).is_err());
+        windows
+            .read(RasterWindow { column: 130, row: 0, width: 9, height: 9 }, &mut out)
+            .expect("another block");
         assert_eq!(out[0], hilly(130, 0));
     }
 }
@@ -107,7 +114,7 @@ fn a_picture_in_one_huge_block_is_refused_with_the_remedy() {
     for entry in 1..3 {
         bytes[directory + 2 + entry * 12 + 8..][..4].copy_from_slice(&4000u32.to_le_bytes());
     }
-    let refused = GeoTiffWindows::open("a.tif", Cursor::new(&bytes), &Hints::default(), 1 << 20);
+    let refused = GeoTiffWindows::open("a.tif", Cursor::new(&bytes), &DemHints::default(), 1 << 20);
     let said = refused.err().expect("refused").to_string();
     assert!(said.contains("4000 x 4000") && said.contains("TILED=YES"), "{said}");
 }
@@ -124,7 +131,7 @@ fn windows_of_every_real_geotiff_hold_what_the_whole_reader_holds() {
     for path in files_below(&folder).into_iter().chain(files_below(&formats)).filter(|path| is_tiff(path)) {
         let (name, bytes) = (path.to_string_lossy().into_owned(), fs::read(&path).expect("readable"));
         let companions = |name: &str| fs::read(name).ok();
-        let hints = Hints { companions: &companions, ..Hints::default() };
+        let hints = DemHints { companions: &companions, ..DemHints::default() };
         let opened = GeoTiffWindows::open(&name, fs::File::open(&path).expect("readable"), &hints, 1 << 18);
         match (read(&name, &bytes, &hints), opened) {
             (Ok(mut whole), Ok(mut windows)) => {
@@ -132,7 +139,8 @@ fn windows_of_every_real_geotiff_hold_what_the_whole_reader_holds() {
                 read_in_both += 1;
                 for overview in windows.overviews().to_vec() {
                     let mut reduced = windows.at_overview(&overview).expect("sound");
-                    let window = Window { column: 0, row: 0, width: overview.width, height: overview.height };
+                    let window =
+                        RasterWindow { column: 0, row: 0, width: overview.width, height: overview.height };
                     reduced.read(window, &mut Vec::new()).expect("sound");
                     tiled_with_overviews += 1;
                 }
@@ -155,7 +163,7 @@ fn hostile_geotiffs_are_errors_or_windows_and_never_a_panic() {
     for path in files {
         let bytes = fs::read(&path).expect("readable");
         let name = path.to_string_lossy();
-        match GeoTiffWindows::open(&name, Cursor::new(&bytes), &Hints::default(), 1 << 20) {
+        match GeoTiffWindows::open(&name, Cursor::new(&bytes), &DemHints::default(), 1 << 20) {
             Err(error) => {
                 assert!(!error.fault.to_string().is_empty());
                 refused += 1;
@@ -165,8 +173,12 @@ fn hostile_geotiffs_are_errors_or_windows_and_never_a_panic() {
                 let mut seeded = Seeded(3);
                 for _ in 0..8 {
                     let (column, row) = (seeded.below(width), seeded.below(height));
-                    let window =
-                        Window { column, row, width: 64.min(width - column), height: 64.min(height - row) };
+                    let window = RasterWindow {
+                        column,
+                        row,
+                        width: 64.min(width - column),
+                        height: 64.min(height - row),
+                    };
                     let _ = windows.read(window, &mut Vec::new());
                     assert!(windows.cached_bytes() <= 1 << 20);
                 }
@@ -188,10 +200,10 @@ fn every_byte_of_a_tiled_file_changed_in_turn_is_an_error_or_a_raster() {
         for value in [0, 1, 0x7f, 0xff] {
             let mut broken = whole.clone();
             broken[at] = value;
-            let opened = GeoTiffWindows::open("a.tif", Cursor::new(&broken), &Hints::default(), 1 << 16);
+            let opened = GeoTiffWindows::open("a.tif", Cursor::new(&broken), &DemHints::default(), 1 << 16);
             if let Ok(mut windows) = opened {
                 let (width, height) = windows.size();
-                let window = Window { column: 0, row: 0, width: width.min(20), height: height.min(20) };
+                let window = RasterWindow { column: 0, row: 0, width: width.min(20), height: height.min(20) };
                 let _ = windows.read(window, &mut Vec::new());
                 for overview in windows.overviews().to_vec() {
                     let _ = windows.at_overview(&overview);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec2, Vec3};
 use sandtable::description::parse::parse_bytes;
-use sandtable::draw::list::{DrawMesh, Layer};
+use sandtable::draw::list::{DepthLayer, DrawMesh};
 use sandtable::geom::polyline::Polyline;
 use sandtable::ribbon::drape::{check_clearance, drape};
 use sandtable::ribbon::plan::PlanMesh;
@@ -25,10 +25,10 @@ use sandtable::roam::spheres::{SphereMap, reach};
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::kind::FeatureKind;
-use sandtable::scene::picture::{camera as scene_camera, shoot};
-use sandtable::terrain::facets::Facets;
+use sandtable::scene::picture::{build_draw_list, camera as scene_camera};
+use sandtable::terrain::facets::TriangleSurface;
 use sandtable::terrain::query::{Interpolation, ground_height};
-use sandtable::view::flight::{Circle, Keeping};
+use sandtable::view::flight::{CircularFlight, Keeping};
 use sandtable::view::frustum::Frustum;
 
 use crate::common::scratch::Scratch;
@@ -154,7 +154,7 @@ fn paper_004_a_frame_of_a_terrain_with_sixty_three_times_the_samples_costs_hardl
             30.0 * libm::sinf(x * 0.05) * libm::cosf(y * 0.04) + 3.0 * libm::sinf(x * 0.7 + y * 0.45)
         });
         let middle = world.lattice.extent().max.as_vec2() / 2.0;
-        let circle = Circle {
+        let circle = CircularFlight {
             center: middle,
             radius_m: 400.0,
             step_m: 4.0,
@@ -222,9 +222,9 @@ fn paper_004_a_digital_terrain_model_is_heights_features_and_what_is_no_terrain(
     assert_eq!((scene.title.as_deref(), scene.labels.len()), (Some("Hill"), 1), "what is no terrain");
 
     let view = &scene.cameras[0];
-    let shot = shoot(&scene, &scene_camera(&scene, view, (640, 480)).expect("sound"), &|_| ());
+    let shot = build_draw_list(&scene, &scene_camera(&scene, view, (640, 480)).expect("sound"), &|_| ());
     assert!(shot.ground_triangles > 100, "the elevation model");
-    let draped = shot.list.items.iter().filter(|item| matches!(item.layer, Layer::Draped(_)));
+    let draped = shot.list.items.iter().filter(|item| matches!(item.layer, DepthLayer::Draped(_)));
     let mut ribbons = 0;
     for item in draped {
         let mesh = &shot.list.meshes[item.mesh.0 as usize];

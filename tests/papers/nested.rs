@@ -3,26 +3,26 @@
 use std::collections::BTreeSet;
 
 use glam::{DVec2, Vec3};
-use sandtable::dem::read::{Hints, read};
+use sandtable::dem::read::{DemHints, read};
 use sandtable::dem::warp::to_metric;
 use sandtable::roam::active::ActiveSet;
 use sandtable::roam::bintree::Triangle;
 use sandtable::roam::block::WholeGround;
 use sandtable::roam::criterion::Criterion;
 use sandtable::roam::criterion::spheres::Spheres;
-use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, Measure, Radius};
+use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::errors::midpoint::midpoint_error_at;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::Ground;
-use sandtable::roam::layout::Layout;
+use sandtable::roam::ground::PatchedGround;
+use sandtable::roam::layout::PatchLayout;
 use sandtable::roam::measure::height_difference;
 use sandtable::roam::refine::deferred::Deferred;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::roam::roughness::Roughness;
 use sandtable::roam::shown::PatchList;
 use sandtable::roam::spheres::{OwnRadius, SphereMap};
-use sandtable::terrain::brush::{Changes, Crater, TyreTrack};
+use sandtable::terrain::brush::{BrushChanges, Crater, TyreTrack};
 use sandtable::terrain::lattice::{Lattice, Post};
 
 use crate::common::data::data;
@@ -199,8 +199,8 @@ fn paper_003_the_constraint_saves_triangles_on_flat_ground_and_hardly_any_on_rou
 }
 
 /// The triangles that two eyes see together, and the mean of |mesh − terrain| over all posts.
-fn cost(lattice: &Lattice, layout: &Layout, map: &SphereMap) -> (usize, f64) {
-    let ground = Ground { lattice, layout, exaggeration: 1.0 };
+fn cost(lattice: &Lattice, layout: &PatchLayout, map: &SphereMap) -> (usize, f64) {
+    let ground = PatchedGround { lattice, layout, exaggeration: 1.0 };
     let (far, top) = (lattice.extent().max.as_vec2(), lattice.height_range().1);
     let (mut triangles, mut off_m) = (0, 0.0);
     for share in [glam::Vec2::new(0.2, 0.3), glam::Vec2::new(0.75, 0.6)] {
@@ -218,12 +218,12 @@ fn cost(lattice: &Lattice, layout: &Layout, map: &SphereMap) -> (usize, f64) {
 fn paper_003_the_crater_is_shown_by_fewer_triangles_with_about_the_same_height_difference() {
     let Some(path) = data("scenes/crater_lake_bt/crater.bt") else { return };
     let companions = |name: &str| std::fs::read(name).ok();
-    let hints = Hints { companions: &companions, ..Hints::default() };
+    let hints = DemHints { companions: &companions, ..DemHints::default() };
     let bytes = std::fs::read(&path).expect("readable");
     let raster = read(&path.to_string_lossy(), &bytes, &hints).expect("readable");
     let lattice = Lattice::from_raster(&to_metric(&raster, None).expect("it has a place")).expect("ground");
-    let layout = Layout::new(lattice.columns(), lattice.rows(), 64).expect("sound");
-    let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+    let layout = PatchLayout::new(lattice.columns(), lattice.rows(), 64).expect("sound");
+    let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
     let errors = ErrorMap::midpoint(&lattice, &layout);
     let roughness = Roughness::new(&lattice, (1, 1));
     let plain = cost(&lattice, &layout, &SphereMap::plain(ground, &errors, 150.0));
@@ -239,7 +239,7 @@ fn paper_003_the_crater_is_shown_by_fewer_triangles_with_about_the_same_height_d
 const OPTIONS: DynamicOptions = DynamicOptions {
     patch: 32,
     exaggeration: 1.0,
-    measure: Measure::Midpoint,
+    measure: ErrorMeasure::Midpoint,
     radius: Radius::Constrained((1, 1)),
     reach: 30.0,
 };
@@ -248,11 +248,11 @@ fn dynamic() -> DynamicTerrain {
     DynamicTerrain::new(World::hills(129, 129, 32).lattice, OPTIONS).expect("sound")
 }
 
-fn crater(lattice: &mut Lattice) -> Changes {
+fn crater(lattice: &mut Lattice) -> BrushChanges {
     Crater { center: DVec2::new(523.0, 617.0), radius_m: 45.0, depth_m: 9.0, rim_m: 2.0 }.apply(lattice)
 }
 
-fn tyre_track(lattice: &mut Lattice) -> Changes {
+fn tyre_track(lattice: &mut Lattice) -> BrushChanges {
     let line = vec![DVec2::new(690.0, 40.0), DVec2::new(880.0, 95.0), DVec2::new(940.0, 410.0)];
     TyreTrack { line, gauge_m: 20.0, rut_m: 14.0, depth_m: 0.3 }.apply(lattice)
 }
@@ -260,7 +260,7 @@ fn tyre_track(lattice: &mut Lattice) -> Changes {
 #[test]
 fn paper_003_after_a_crater_and_a_tyre_track_errors_and_spheres_are_those_computed_anew() {
     let mut terrain = dynamic();
-    for brush in [crater as fn(&mut Lattice) -> Changes, tyre_track, crater] {
+    for brush in [crater as fn(&mut Lattice) -> BrushChanges, tyre_track, crater] {
         terrain.edit(brush).expect("it digs");
         let anew = DynamicTerrain::new((**terrain.lattice()).clone(), OPTIONS).expect("sound");
         assert!(terrain.errors() == anew.errors() && terrain.spheres() == anew.spheres());
@@ -271,7 +271,7 @@ fn paper_003_after_a_crater_and_a_tyre_track_errors_and_spheres_are_those_comput
 #[test]
 fn paper_003_recomputation_goes_from_the_deformed_vertices_up_and_stops_where_no_sphere_changes() {
     let mut terrain = dynamic();
-    for brush in [crater as fn(&mut Lattice) -> Changes, tyre_track] {
+    for brush in [crater as fn(&mut Lattice) -> BrushChanges, tyre_track] {
         let before = terrain.clone();
         let edit = terrain.edit(brush).expect("it digs");
         let layout = *terrain.layout();
@@ -318,14 +318,14 @@ fn paper_003_the_constraint_saves_triangles_on_deformed_ground_too() {
 
 /// All that a mesh following an eye is made of.
 struct Walk<'a> {
-    ground: Ground<'a>,
+    ground: PatchedGround<'a>,
     spheres: &'a SphereMap,
     patches: Vec<Vertex>,
     mesh: Deferred<WholeGround<'a>>,
 }
 
 impl<'a> Walk<'a> {
-    fn new(ground: Ground<'a>, spheres: &'a SphereMap) -> Self {
+    fn new(ground: PatchedGround<'a>, spheres: &'a SphereMap) -> Self {
         let mesh = Deferred::new(WholeGround { ground, spheres }, 10.0).expect("small patches");
         Self { ground, spheres, patches: ground.layout.patches().collect(), mesh }
     }

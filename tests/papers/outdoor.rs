@@ -5,27 +5,27 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec2, Vec3};
 use image::{DynamicImage, ImageBuffer, ImageFormat};
-use sandtable::dem::read::{Hints, read};
+use sandtable::dem::read::{DemHints, read};
 use sandtable::draw::color::Srgba;
-use sandtable::draw::ground::Ramp;
+use sandtable::draw::ground::ColorRamp;
 use sandtable::mesh::check::check_with_area;
 use sandtable::mesh::trimesh::TriMesh;
 use sandtable::roam::active::ActiveSet;
 use sandtable::roam::bintree::Triangle;
 use sandtable::roam::criterion::Criterion;
-use sandtable::roam::criterion::block::Block;
+use sandtable::roam::criterion::block::BlockRelief;
 use sandtable::roam::criterion::flat::Flat;
 use sandtable::roam::criterion::midpoint::Midpoint;
 use sandtable::roam::criterion::screen::ScreenError;
 use sandtable::roam::displayed::DisplayedTerrain;
-use sandtable::roam::emit::geomipmap::{self, Levels, Pyramids};
+use sandtable::roam::emit::geomipmap::{self, PatchLevels, Pyramids};
 use sandtable::roam::emit::strips::{Strips, unstrip};
 use sandtable::roam::emit::{bintree, quadtree, world};
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::errors::exact::triangles_split_at;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::Ground;
-use sandtable::roam::layout::Layout;
+use sandtable::roam::ground::PatchedGround;
+use sandtable::roam::layout::PatchLayout;
 use sandtable::roam::refine::queues::{Goal, Queues};
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::terrain::lattice::{Lattice, Post};
@@ -40,8 +40,8 @@ fn paper_002_a_height_map_has_a_horizontal_and_a_vertical_scale_and_a_slope_at_e
     for post in lattice.posts() {
         assert!((lattice.slopes(post) - Vec2::new(0.5, 2.0)).length() < 1e-6, "{post:?}");
     }
-    let layout = Layout::new(5, 5, 4).expect("sound");
-    let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 10.0 };
+    let layout = PatchLayout::new(5, 5, 4).expect("sound");
+    let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 10.0 };
     let post = Post { column: 3, row: 2 };
     assert_eq!((lattice.height(post), ground.position(Vertex::new(3, 2)).z), (17.0, 170.0));
 }
@@ -95,7 +95,8 @@ fn paper_002_the_detail_of_every_triangle_is_under_control_by_one_tolerance() {
 fn read_grey(picture: DynamicImage, metres_per_value: f64) -> Vec<f32> {
     let mut file = Cursor::new(Vec::new());
     picture.write_to(&mut file, ImageFormat::Png).expect("it can be written");
-    let hints = Hints { png_height_scale: Some(metres_per_value), cell: Some(30.0), ..Hints::default() };
+    let hints =
+        DemHints { png_height_scale: Some(metres_per_value), cell: Some(30.0), ..DemHints::default() };
     let raster = read("map.png", file.get_ref(), &hints).expect("a height map");
     let lattice = Lattice::from_raster(&raster).expect("it holds ground");
     assert_eq!(lattice.cell(), DVec2::splat(30.0), "the horizontal scale");
@@ -174,7 +175,7 @@ fn paper_002_strips_and_fans_send_the_same_triangles_in_fewer_vertices() {
     assert!(in_fans < in_list, "{in_fans} in fans, {in_list} in the list");
 }
 
-fn emitted(world: &World, levels: &Levels) -> TriMesh {
+fn emitted(world: &World, levels: &PatchLevels) -> TriMesh {
     let mut mesh = TriMesh::default();
     geomipmap::triangles(
         &world.layout,
@@ -213,7 +214,7 @@ fn paper_002_the_borders_of_blocks_of_any_two_levels_are_stitched() {
     for seed in 0..12u32 {
         let of_patch = |at: u32| (at + seed).wrapping_mul(2_654_435_761) >> 16;
         let levels = (0..world.layout.patch_count() as u32).map(|at| of_patch(at) % 5).collect();
-        let levels = Levels::new(&world.layout, levels).expect("levels of 16 cells");
+        let levels = PatchLevels::new(&world.layout, levels).expect("levels of 16 cells");
         let mesh = emitted(&world, &levels);
         check_with_area(&mesh, area.x * area.y).unwrap_or_else(|flaw| panic!("{seed}: {flaw}"));
     }
@@ -247,7 +248,7 @@ fn paper_002_a_block_is_refined_while_err_times_r_over_d_is_above_k() {
     let map = ErrorMap::relief(&world.lattice, &world.layout);
     let (eye, mut refined) = (Vec3::new(30.0, -20.0, 70.0), 0);
     for k in [0.5, 3.0] {
-        let criterion = Block::with_k(world.ground(), &map, eye, k);
+        let criterion = BlockRelief::with_k(world.ground(), &map, eye, k);
         for vertex in world.vertices() {
             let err = world.largest_below(vertex, &|vertex| own[world.layout.index(vertex)]);
             let (r, d) = (vertex.step() as f32 * 10.0, world.ground().position(vertex).distance(eye));
@@ -264,7 +265,7 @@ fn paper_002_slopes_have_more_detail_than_level_ground() {
     let world = World::new((129, 129), 64, |x, _| (x - 64.0).max(0.0) * 9.0);
     let relief = ErrorMap::relief(&world.lattice, &world.layout);
     let eye = Vec3::new(640.0, 640.0, 900.0);
-    let criterion = Block::with_k(world.ground(), &relief, eye, 10.0);
+    let criterion = BlockRelief::with_k(world.ground(), &relief, eye, 10.0);
     let leaves = leaves(&rebuild(&world.layout, &criterion, world.layout.patches()));
     let on = |east: bool| {
         leaves.iter().filter(|leaf| leaf.corners().iter().all(|at| (at.x >= 64) == east)).count()
@@ -306,7 +307,7 @@ fn paper_002_the_ground_has_light_maps() {
 #[test]
 fn paper_002_the_surfaces_of_the_ground_are_blended_by_height() {
     let [grass, rock] = [Srgba::opaque(40, 120, 30), Srgba::opaque(120, 110, 100)];
-    let ramp = Ramp::new(vec![(100.0, grass), (300.0, rock)]).expect("rising");
+    let ramp = ColorRamp::new(vec![(100.0, grass), (300.0, rock)]).expect("rising");
     for (height_m, share) in
         [(0.0, 0.0), (100.0, 0.0), (150.0, 0.25), (200.0, 0.5), (300.0, 1.0), (900.0, 1.0)]
     {

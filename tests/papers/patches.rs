@@ -15,10 +15,10 @@ use sandtable::roam::criterion::variance::Variance;
 use sandtable::roam::culling::{Culling, cull, patches_in_view};
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::layout::Layout;
+use sandtable::roam::layout::PatchLayout;
 use sandtable::roam::paging::ground::{PagedGround, PagingOptions, exact_spheres};
 use sandtable::roam::paging::walk::walk;
-use sandtable::roam::refine::changes::Changes;
+use sandtable::roam::refine::changes::RefinementChanges;
 use sandtable::roam::refine::coherent::{Coherent, Hidden};
 use sandtable::roam::refine::queues::{Goal, Queues};
 use sandtable::roam::refine::rebuild::rebuild;
@@ -35,7 +35,7 @@ fn size(triangle: &Triangle) -> i32 {
 
 #[test]
 fn paper_000_patches_share_their_border_samples_and_hold_two_bintree_roots() {
-    let layout = Layout::new(1025, 1025, 64).expect("sound");
+    let layout = PatchLayout::new(1025, 1025, 64).expect("sound");
     assert_eq!(layout.patch_count(), 16 * 16);
     let patches: BTreeSet<Vertex> = layout.patches().collect();
     for &corner in &patches {
@@ -79,7 +79,7 @@ fn paper_000_neighbours_are_as_fine_or_one_level_apart_the_base_neighbour_never_
 
 #[test]
 fn paper_000_a_split_forces_coarser_base_neighbours_first_and_splits_alone_at_the_border() {
-    let layout = Layout::new(65, 65, 64).expect("sound");
+    let layout = PatchLayout::new(65, 65, 64).expect("sound");
     let mut active = ActiveSet::new(layout);
     let border = Vertex::new(32, 0);
     active.activate(border);
@@ -250,7 +250,7 @@ fn paper_000_adjusting_last_frame_s_mesh_gives_the_mesh_built_anew_with_far_fewe
         entered += seen.iter().filter(|corner| !before.contains(corner)).count();
         left += before.iter().filter(|corner| !seen.contains(corner)).count();
         let criterion = Midpoint::new(world.ground(), &errors, &camera, 3.0);
-        let Changes { splits, merges, .. } = adjusted.update(&criterion, &seen);
+        let RefinementChanges { splits, merges, .. } = adjusted.update(&criterion, &seen);
         let built = rebuild(&world.layout, &criterion, seen.iter().copied());
         assert!(*adjusted.active() == built, "before {:?}", camera.eye());
         adjusted.check().expect("sound");
@@ -288,7 +288,11 @@ fn paper_000_a_patch_never_refined_is_built_by_splits_and_one_that_was_is_adjust
         assert_eq!(changes.merges, 0, "by splits alone");
         assert!(changes.dirty.contains(&world.layout.patch_index(new)));
     }
-    assert_eq!(mesh.update(&criterion, &[here]), Changes::default(), "it stayed as it was last seen");
+    assert_eq!(
+        mesh.update(&criterion, &[here]),
+        RefinementChanges::default(),
+        "it stayed as it was last seen"
+    );
     let coarser = Flat::new(&world.layout, &world.errors, 4.0);
     let changes = mesh.update(&coarser, &[here]);
     assert!(changes.merges > 0 && changes.splits == 0, "from last time's mesh: {changes:?}");

@@ -13,9 +13,9 @@ use sandtable::roam::culling::patches_in_view;
 use sandtable::roam::emit::{bintree, quadtree};
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::errors::midpoint::midpoint_error_at;
-use sandtable::roam::graph::{Kind, Vertex};
-use sandtable::roam::layout::Layout;
-use sandtable::roam::quadtree::{Address, Node, SIDES, Side, Square};
+use sandtable::roam::graph::{Vertex, VertexKind};
+use sandtable::roam::layout::PatchLayout;
+use sandtable::roam::quadtree::{Address, NodeSide, NodeSquare, QuadNode, SIDES};
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::view::camera::Camera;
 use sandtable::view::frustum::Frustum;
@@ -23,8 +23,8 @@ use sandtable::view::frustum::Frustum;
 use crate::{World, camera, leaves, same};
 
 /// All nodes of a patch.
-fn nodes((east, north): (i32, i32), patch: i32) -> Vec<(Node, Square)> {
-    let (mut found, mut stack) = (Vec::new(), vec![Node { east, north, address: Address::ROOT }]);
+fn nodes((east, north): (i32, i32), patch: i32) -> Vec<(QuadNode, NodeSquare)> {
+    let (mut found, mut stack) = (Vec::new(), vec![QuadNode { east, north, address: Address::ROOT }]);
     while let Some(node) = stack.pop() {
         if let Some(square) = node.square(patch) {
             found.push((node, square));
@@ -36,7 +36,7 @@ fn nodes((east, north): (i32, i32), patch: i32) -> Vec<(Node, Square)> {
 
 #[test]
 fn paper_001_blocks_of_32_cells_cover_a_terrain_that_is_not_square() {
-    let layout = Layout::new(4097, 2049, 32).expect("sound");
+    let layout = PatchLayout::new(4097, 2049, 32).expect("sound");
     assert_eq!((layout.patch_count(), layout.columns(), layout.rows()), (128 * 64, 4097, 2049));
 }
 
@@ -49,7 +49,7 @@ fn paper_001_an_edge_vertex_depends_on_the_centres_at_its_sides_a_centre_on_two_
             continue;
         }
         match vertex.kind() {
-            Kind::Center => {
+            VertexKind::Center => {
                 let [from, to] = vertex.hypotenuse();
                 assert_eq!(one.middle(other), vertex, "two corners of one diagonal");
                 let (across, along) = ((other.x - one.x, other.y - one.y), (to.x - from.x, to.y - from.y));
@@ -62,7 +62,7 @@ fn paper_001_an_edge_vertex_depends_on_the_centres_at_its_sides_a_centre_on_two_
             }
             _ => {
                 let centers = [one, other].map(|parent| (parent.kind(), parent.step()));
-                assert_eq!(centers, [(Kind::Center, step); 2], "{vertex:?}");
+                assert_eq!(centers, [(VertexKind::Center, step); 2], "{vertex:?}");
             }
         }
     }
@@ -70,7 +70,7 @@ fn paper_001_an_edge_vertex_depends_on_the_centres_at_its_sides_a_centre_on_two_
 
 #[test]
 fn paper_001_restrictions_are_applied_until_nothing_more_is_activated() {
-    let mut active = ActiveSet::new(Layout::new(129, 65, 32).expect("sound"));
+    let mut active = ActiveSet::new(PatchLayout::new(129, 65, 32).expect("sound"));
     for (x, y) in [(1, 1), (77, 33), (128, 64), (63, 20)] {
         active.activate(Vertex::new(x, y));
         active.check().expect("every dependency is active");
@@ -109,7 +109,7 @@ fn paper_001_a_node_stores_five_vertices_and_each_has_an_error_of_its_own() {
 #[test]
 fn paper_001_addresses_in_base_4_tell_the_parent_the_children_and_the_neighbours() {
     let patch = 32;
-    let all: BTreeMap<String, Square> =
+    let all: BTreeMap<String, NodeSquare> =
         nodes((0, 0), patch).into_iter().map(|(node, square)| (node.address.to_string(), square)).collect();
     for (digits, square) in &all {
         let address = Address::parse(digits).expect("digits from 0 to 3");
@@ -121,20 +121,20 @@ fn paper_001_addresses_in_base_4_tell_the_parent_the_children_and_the_neighbours
             if let Some(below) = all.get(&child) {
                 let (dx, dy) = ((digit & 1) as i32, (digit >> 1) as i32);
                 let corner = square.corner.moved(dx * below.side, dy * below.side);
-                assert_eq!(*below, Square { corner, side: square.side / 2 });
+                assert_eq!(*below, NodeSquare { corner, side: square.side / 2 });
             }
         }
         for side in SIDES {
-            let node = Node { east: 0, north: 0, address };
+            let node = QuadNode { east: 0, north: 0, address };
             let (dx, dy) = side.step();
             let beyond =
-                Square { corner: square.corner.moved(dx * square.side, dy * square.side), ..*square };
+                NodeSquare { corner: square.corner.moved(dx * square.side, dy * square.side), ..*square };
             assert_eq!(node.neighbor(side).square(patch), Some(beyond), "{digits} {side:?}");
         }
     }
-    let by_hand = Node { east: 0, north: 0, address: Address::parse("021").expect("digits") };
-    assert_eq!(by_hand.neighbor(Side::East).to_string(), "0,0:030");
-    assert_eq!(by_hand.neighbor(Side::North).to_string(), "0,0:023");
+    let by_hand = QuadNode { east: 0, north: 0, address: Address::parse("021").expect("digits") };
+    assert_eq!(by_hand.neighbor(NodeSide::East).to_string(), "0,0:030");
+    assert_eq!(by_hand.neighbor(NodeSide::North).to_string(), "0,0:023");
 }
 
 #[test]
@@ -201,8 +201,8 @@ fn paper_001_six_patterns_and_their_quarter_turns_triangulate_every_state_of_a_n
         let turned = |&corners: &[Vertex; 3]| corners.map(|at| Vertex::new(2 - at.y, at.x));
         set(&triangles.iter().map(turned).collect::<Vec<_>>())
     };
-    let layout = Layout::new(3, 3, 2).expect("sound");
-    let edges = SIDES.map(|side| Square { corner: Vertex::new(0, 0), side: 2 }.edge(side));
+    let layout = PatchLayout::new(3, 3, 2).expect("sound");
+    let edges = SIDES.map(|side| NodeSquare { corner: Vertex::new(0, 0), side: 2 }.edge(side));
     let mut patterns = BTreeSet::new();
     for state in 0..16 {
         let mut active = ActiveSet::new(layout);

@@ -2,7 +2,7 @@
 
 use sandtable::ribbon::partition::overlap_m2;
 use sandtable::scene::kind::{FeatureKind, Scene};
-use sandtable::scene::roads::centreline::Carried;
+use sandtable::scene::roads::centreline::Support;
 
 use crate::common::places::text_of;
 use crate::common::scratch::Scratch;
@@ -46,7 +46,7 @@ fn swellendam_has_all_its_roads_and_buildings() {
     let steepest = scene.profiles.iter().flat_map(|profile| {
         let on_ground = profile.stations_m.windows(2).zip(profile.design_m.windows(2)).zip(&profile.carried);
         on_ground
-            .filter(|((stations, _), carried)| **carried == Carried::Ground && stations[1] > stations[0])
+            .filter(|((stations, _), carried)| **carried == Support::Ground && stations[1] > stations[0])
             .map(|((stations, design), _)| (design[1] - design[0]).abs() / (stations[1] - stations[0]))
     });
     let steepest = steepest.fold(0.0, f64::max);

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use sandtable::roam::criterion::Criterion;
 use sandtable::roam::criterion::anisotropic::Anisotropic;
-use sandtable::roam::criterion::block::Block;
+use sandtable::roam::criterion::block::BlockRelief;
 use sandtable::roam::criterion::midpoint::Midpoint;
 use sandtable::roam::criterion::variance::Variance;
 use sandtable::roam::graph::Vertex;
@@ -71,7 +71,7 @@ fn a_block_is_refined_while_relief_times_half_its_side_over_distance_is_above_k(
     let terrain = bump();
     let eye = looking_from(Vec3::new(0.0, 30.0, 40.0)).eye();
     let measure = 3.0 * (8.0 * 4.0) / 50.0;
-    let wants = |k_m: f32| Block::with_k(terrain.ground(), &terrain.relief, eye, k_m).wants(MIDDLE);
+    let wants = |k_m: f32| BlockRelief::with_k(terrain.ground(), &terrain.relief, eye, k_m).wants(MIDDLE);
     assert!(wants(measure * 0.999) && !wants(measure * 1.001));
 }
 

@@ -4,7 +4,7 @@ use glam::{DVec2, Vec3};
 use proptest::prelude::*;
 use sandtable::roam::criterion::Criterion;
 use sandtable::roam::criterion::anisotropic::Anisotropic;
-use sandtable::roam::criterion::block::Block;
+use sandtable::roam::criterion::block::BlockRelief;
 use sandtable::roam::criterion::flat::Flat;
 use sandtable::roam::criterion::midpoint::Midpoint;
 use sandtable::roam::criterion::screen::ScreenError;
@@ -13,8 +13,8 @@ use sandtable::roam::criterion::variance::Variance;
 use sandtable::roam::culling::{PatchHeights, patches_in_view};
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::Ground;
-use sandtable::roam::layout::Layout;
+use sandtable::roam::ground::PatchedGround;
+use sandtable::roam::layout::PatchLayout;
 use sandtable::roam::spheres::SphereMap;
 use sandtable::terrain::lattice::Lattice;
 use sandtable::view::camera::Camera;
@@ -24,7 +24,7 @@ use sandtable::view::frustum::Frustum;
 #[derive(Debug)]
 pub struct Terrain {
     pub lattice: Lattice,
-    pub layout: Layout,
+    pub layout: PatchLayout,
     pub exact: ErrorMap,
     pub midpoint: ErrorMap,
     pub relief: ErrorMap,
@@ -38,8 +38,8 @@ pub const CELL: DVec2 = DVec2::new(3.0, 4.0);
 impl Terrain {
     pub fn new(columns: u32, patch: u32, heights: Vec<f32>) -> Self {
         let lattice = Lattice::new(DVec2::ZERO, CELL, columns, heights).expect("sound");
-        let layout = Layout::new(columns, lattice.rows(), patch).expect("sound");
-        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.5 };
+        let layout = PatchLayout::new(columns, lattice.rows(), patch).expect("sound");
+        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.5 };
         let midpoint = midpoint_errors(&lattice, &layout);
         let radii = midpoint.values().iter().map(|error| error * 30.0).collect();
         Self {
@@ -53,8 +53,8 @@ impl Terrain {
         }
     }
 
-    pub fn ground(&self) -> Ground<'_> {
-        Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.5 }
+    pub fn ground(&self) -> PatchedGround<'_> {
+        PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.5 }
     }
 
     pub fn in_view(&self, camera: &Camera) -> Vec<Vertex> {
@@ -79,7 +79,7 @@ impl Terrain {
             ("midpoint", Any(Box::new(Midpoint::new(ground, &self.midpoint, camera, 9.0)))),
             ("variance", Any(Box::new(Variance::new(ground, &self.midpoint, camera, 20.0)))),
             ("anisotropic", Any(Box::new(Anisotropic::new(ground, &self.midpoint, camera, 6.0)))),
-            ("block", Any(Box::new(Block::new(ground, &self.relief, camera, 60.0)))),
+            ("block", Any(Box::new(BlockRelief::new(ground, &self.relief, camera, 60.0)))),
             ("whim", Any(Box::new(Whim { frame }))),
         ]
     }
@@ -89,7 +89,7 @@ impl Terrain {
 pub const MONOTONE: [&str; 2] = ["flat", "spheres"];
 
 /// Midpoint errors the slow and obvious way.
-pub fn midpoint_errors(lattice: &Lattice, layout: &Layout) -> ErrorMap {
+pub fn midpoint_errors(lattice: &Lattice, layout: &PatchLayout) -> ErrorMap {
     let columns = layout.columns();
     let own = (0..layout.vertex_count()).map(|index| {
         let vertex = Vertex::new((index % columns) as i32, (index / columns) as i32);

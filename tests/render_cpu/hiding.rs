@@ -2,8 +2,8 @@
 
 use glam::{DVec2, Vec3};
 use sandtable::draw::color::Srgba;
-use sandtable::draw::list::{DrawList, FeatureId, Layer};
-use sandtable::draw::material::{Alpha, Material};
+use sandtable::draw::list::{DepthLayer, DrawList, FeatureId};
+use sandtable::draw::material::{AlphaMode, Material};
 use sandtable::draw::pixels::Pixels;
 use sandtable::render::picture::Picture;
 use sandtable::view::camera::Camera;
@@ -32,9 +32,9 @@ fn draped_all_over(half_m: f32, height: impl Fn(f32, f32) -> f32) -> DrawList {
             draped_strip(&ground, &[middle - along * half, middle + along * half], width / 2.0)
         })
         .collect();
-    item(&mut list, ground, ground_material(), Layer::Ground, FeatureId::GROUND);
+    item(&mut list, ground, ground_material(), DepthLayer::Ground, FeatureId::GROUND);
     for strip in strips {
-        item(&mut list, strip, draped_material(RED), Layer::Draped(1), ROAD);
+        item(&mut list, strip, draped_material(RED), DepthLayer::Draped(1), ROAD);
     }
     list
 }
@@ -112,8 +112,8 @@ fn a_drape_does_not_shine_through_a_ridge() {
     let road = draped_strip(&ground, &line, 3.0);
     let mut list =
         DrawList { ground: Some(ground_map(81, 600.0, false, ridge).into()), ..DrawList::default() };
-    item(&mut list, ground, ground_material(), Layer::Ground, FeatureId::GROUND);
-    item(&mut list, road, draped_material(RED), Layer::Draped(1), ROAD);
+    item(&mut list, ground, ground_material(), DepthLayer::Ground, FeatureId::GROUND);
+    item(&mut list, road, draped_material(RED), DepthLayer::Draped(1), ROAD);
     // Half as high as far, the eye looks at the ridge's top and at the road through it.
     let seen_from = |y: f32| {
         let eye = Vec3::new(0.0, y, 0.5 * y.abs());
@@ -134,12 +134,12 @@ fn what_stands_or_lies_on_a_road_hides_it() {
     let road = draped_strip(&ground, &[DVec2::new(-90.0, 0.0), DVec2::new(90.0, 0.0)], 10.0);
     let mut list =
         DrawList { ground: Some(ground_map(11, 100.0, false, flat).into()), ..DrawList::default() };
-    item(&mut list, ground, ground_material(), Layer::Ground, FeatureId::GROUND);
-    item(&mut list, road, draped_material(RED), Layer::Draped(1), ROAD);
+    item(&mut list, ground, ground_material(), DepthLayer::Ground, FeatureId::GROUND);
+    item(&mut list, road, draped_material(RED), DepthLayer::Draped(1), ROAD);
     let house = box_mesh(Vec3::ZERO, Vec3::new(6.0, 6.0, 5.0));
-    item(&mut list, house, Material::default(), Layer::Solid, BOX);
+    item(&mut list, house, Material::default(), DepthLayer::Solid, BOX);
     let plate = box_mesh(Vec3::new(20.0, 0.0, 0.0), Vec3::new(6.0, 6.0, 0.02));
-    item(&mut list, plate, Material::default(), Layer::Solid, BOX);
+    item(&mut list, plate, Material::default(), DepthLayer::Solid, BOX);
     let camera = looking(Vec3::new(10.0, -90.0, 30.0), Vec3::new(10.0, 0.0, 0.0), (400, 300));
     let picture = shot(&list, &camera);
     // Just above the foot of the wall, on the plate, and on the road between them.
@@ -156,13 +156,13 @@ fn a_later_drape_covers_an_earlier_one_and_transparent_ones_keep_to_that() {
     let ground = ground_mesh(10, 100.0, flat);
     let lower = draped_strip(&ground, &[DVec2::new(-90.0, 0.0), DVec2::new(90.0, 3.0)], 30.0);
     let upper = draped_strip(&ground, &[DVec2::new(0.0, -90.0), DVec2::new(7.0, 90.0)], 10.0);
-    for alpha in [Alpha::Opaque, Alpha::Blend] {
+    for alpha in [AlphaMode::Opaque, AlphaMode::Blend] {
         let mut list =
             DrawList { ground: Some(ground_map(11, 100.0, false, flat).into()), ..DrawList::default() };
-        item(&mut list, ground.clone(), ground_material(), Layer::Ground, FeatureId::GROUND);
+        item(&mut list, ground.clone(), ground_material(), DepthLayer::Ground, FeatureId::GROUND);
         let under = Material { alpha, ..draped_material(Srgba([0, 255, 0, 200])) };
-        item(&mut list, lower.clone(), under, Layer::Draped(1), FOREST);
-        item(&mut list, upper.clone(), draped_material(RED), Layer::Draped(2), ROAD);
+        item(&mut list, lower.clone(), under, DepthLayer::Draped(1), FOREST);
+        item(&mut list, upper.clone(), draped_material(RED), DepthLayer::Draped(2), ROAD);
         let picture = shot(&list, &looking(Vec3::new(0.0, -80.0, 40.0), Vec3::ZERO, (200, 150)));
         assert_eq!(feature(&picture, 100, 75), ROAD);
         assert_eq!(picture.pixels.at(100, 75).0[1], 0, "green shows through");
@@ -176,10 +176,10 @@ fn masked_holes_show_what_is_behind_them() {
     plain_light(&mut list);
     let holes = Pixels::from_fn(2, 1, |x, _| Srgba([255, 0, 0, if x == 0 { 255 } else { 0 }]));
     let texture = Some(list.add_texture(holes));
-    let material = Material { texture, alpha: Alpha::Mask(0.5), ..Material::default() };
-    item(&mut list, wall(10.0, [-2.0, 2.0], [-2.0, 2.0], Srgba::WHITE), material, Layer::Solid, BOX);
+    let material = Material { texture, alpha: AlphaMode::Mask(0.5), ..Material::default() };
+    item(&mut list, wall(10.0, [-2.0, 2.0], [-2.0, 2.0], Srgba::WHITE), material, DepthLayer::Solid, BOX);
     let behind = wall(20.0, [-9.0, 9.0], [-9.0, 9.0], BLUE);
-    item(&mut list, behind, Material::default(), Layer::Solid, ROAD);
+    item(&mut list, behind, Material::default(), DepthLayer::Solid, ROAD);
     let picture = shot(&list, &northward((160, 120)));
     assert_eq!((feature(&picture, 66, 60), feature(&picture, 94, 60)), (BOX, ROAD));
     assert_eq!((picture.pixels.at(66, 60), picture.pixels.at(94, 60)), (RED, BLUE));
@@ -193,7 +193,7 @@ fn masked_holes_show_what_is_behind_them() {
 fn transparent_walls_blend_in_linear_light_and_by_depth_not_by_order() {
     let glass = |color: [u8; 3]| Material {
         base_color: Srgba([color[0], color[1], color[2], 128]),
-        alpha: Alpha::Blend,
+        alpha: AlphaMode::Blend,
         ..Material::default()
     };
     let walls = [(12.0, [255, 0, 0]), (10.0, [0, 255, 0]), (8.0, [0, 0, 255])];
@@ -201,10 +201,16 @@ fn transparent_walls_blend_in_linear_light_and_by_depth_not_by_order() {
         let mut list = DrawList::default();
         plain_light(&mut list);
         let back = wall(20.0, [-20.0, 20.0], [-20.0, 20.0], Srgba::opaque(0, 0, 0));
-        item(&mut list, back, Material::default(), Layer::Solid, ROAD);
+        item(&mut list, back, Material::default(), DepthLayer::Solid, ROAD);
         for index in order {
             let (y, color) = walls[index];
-            item(&mut list, wall(y, [-2.0, 2.0], [-2.0, 2.0], Srgba::WHITE), glass(color), Layer::Solid, BOX);
+            item(
+                &mut list,
+                wall(y, [-2.0, 2.0], [-2.0, 2.0], Srgba::WHITE),
+                glass(color),
+                DepthLayer::Solid,
+                BOX,
+            );
         }
         shot(&list, &northward((80, 60)))
     });
@@ -222,7 +228,7 @@ fn backs_are_left_out_unless_a_material_has_two_sides() {
     for (two_sided, seen) in [(false, FeatureId::NONE), (true, BOX)] {
         let mut list = DrawList::default();
         let away = wall(10.0, [2.0, -2.0], [-2.0, 2.0], GREEN);
-        item(&mut list, away, Material { two_sided, ..Material::default() }, Layer::Solid, BOX);
+        item(&mut list, away, Material { two_sided, ..Material::default() }, DepthLayer::Solid, BOX);
         list.lighting.to_sun = -Vec3::Y;
         let picture = shot(&list, &northward((80, 60)));
         assert_eq!(feature(&picture, 40, 30), seen);
@@ -239,11 +245,11 @@ fn more_transparent_layers_than_are_kept_still_show_the_nearest() {
     let mut list = DrawList::default();
     plain_light(&mut list);
     let veil =
-        Material { base_color: Srgba([255, 255, 255, 255]), alpha: Alpha::Blend, ..Material::default() };
+        Material { base_color: Srgba([255, 255, 255, 255]), alpha: AlphaMode::Blend, ..Material::default() };
     for step in 0..100 {
         let color = if step == 99 { GREEN } else { RED };
         let mesh = wall(110.0 - step as f32, [-9.0, 9.0], [-9.0, 9.0], color);
-        item(&mut list, mesh, veil.clone(), Layer::Solid, BOX);
+        item(&mut list, mesh, veil.clone(), DepthLayer::Solid, BOX);
     }
     assert_eq!(shot(&list, &northward((80, 60))).pixels.at(40, 30), GREEN);
 }

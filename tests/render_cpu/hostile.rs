@@ -3,11 +3,11 @@
 use glam::{Mat4, Vec3};
 use proptest::prelude::*;
 use sandtable::draw::color::Srgba;
-use sandtable::draw::list::{DrawList, DrawMesh, DrawVertex, FeatureId, Layer, MaterialId};
-use sandtable::draw::material::{Alpha, Material};
+use sandtable::draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureId, MaterialId};
+use sandtable::draw::material::{AlphaMode, Material};
 use sandtable::draw::pixels::Pixels;
 use sandtable::mesh::sink::{MeshSink, VertexId};
-use sandtable::render::cpu::{Options, RenderError, Samples, render};
+use sandtable::render::cpu::{Options, RenderError, SampleCount, render};
 
 use crate::landscape::{BOX, draped_material, ground_map, ground_material, ground_mesh, item};
 use crate::{count, northward, shot, wall};
@@ -26,7 +26,7 @@ fn triangles_with_a_corner_that_is_not_finite_are_left_out() {
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         let mut list = DrawList::default();
         let mesh = triangle([[-1.0, 5.0, -1.0], [1.0, 5.0, bad], [0.0, 5.0, 1.0]]);
-        item(&mut list, mesh, Material { two_sided: true, ..Material::default() }, Layer::Solid, BOX);
+        item(&mut list, mesh, Material { two_sided: true, ..Material::default() }, DepthLayer::Solid, BOX);
         assert_eq!(count(&shot(&list, &northward((40, 30))), FeatureId::NONE), 40 * 30);
     }
 }
@@ -35,7 +35,7 @@ fn triangles_with_a_corner_that_is_not_finite_are_left_out() {
 fn a_triangle_of_astronomic_size_through_the_near_plane_is_not_nearer_than_it() {
     let mut list = DrawList::default();
     let mesh = triangle([[0.0, -16.2, 0.0], [4.4, 0.0, -1.2e13], [0.0, 2e36, 0.0]]);
-    item(&mut list, mesh, Material { two_sided: true, ..Material::default() }, Layer::Solid, BOX);
+    item(&mut list, mesh, Material { two_sided: true, ..Material::default() }, DepthLayer::Solid, BOX);
     let picture = shot(&list, &crate::looking(Vec3::new(0.0, -15.0, 1.0), Vec3::ZERO, (67, 41)));
     assert!(picture.depth_m.iter().all(|&depth| depth > 0.499));
 }
@@ -47,7 +47,7 @@ fn a_matrix_that_is_not_finite_hides_its_item() {
         &mut list,
         wall(5.0, [-1.0, 1.0], [-1.0, 1.0], Srgba::WHITE),
         Material::default(),
-        Layer::Solid,
+        DepthLayer::Solid,
         BOX,
     );
     list.items[0].world_from_mesh = Mat4::NAN;
@@ -59,7 +59,7 @@ fn a_wall_as_wide_as_numbers_go_covers_the_picture() {
     for reach in [1e6, 1e12, 1e30] {
         let mut list = DrawList::default();
         let mesh = wall(5.0, [-reach, reach], [-reach, reach], Srgba::WHITE);
-        item(&mut list, mesh, Material::default(), Layer::Solid, BOX);
+        item(&mut list, mesh, Material::default(), DepthLayer::Solid, BOX);
         assert_eq!(count(&shot(&list, &northward((70, 130))), BOX), 70 * 130, "{reach:e}");
     }
 }
@@ -68,11 +68,11 @@ fn a_wall_as_wide_as_numbers_go_covers_the_picture() {
 fn textures_without_pixels_and_triangles_without_area_do_no_harm() {
     let mut list = DrawList::default();
     let texture = Some(list.add_texture(Pixels::filled(0, 0, Srgba::WHITE)));
-    for alpha in [Alpha::Opaque, Alpha::Mask(f32::NAN), Alpha::Blend] {
+    for alpha in [AlphaMode::Opaque, AlphaMode::Mask(f32::NAN), AlphaMode::Blend] {
         let material = Material { texture, alpha, ..Material::default() };
         let mesh = wall(5.0, [-1.0, 1.0], [-1.0, 1.0], Srgba::WHITE);
-        item(&mut list, mesh, material.clone(), Layer::Solid, BOX);
-        item(&mut list, triangle([[0.0, 5.0, 0.0]; 3]), material, Layer::Solid, BOX);
+        item(&mut list, mesh, material.clone(), DepthLayer::Solid, BOX);
+        item(&mut list, triangle([[0.0, 5.0, 0.0]; 3]), material, DepthLayer::Solid, BOX);
     }
     assert!(count(&shot(&list, &northward((40, 30))), BOX) > 0);
 }
@@ -82,7 +82,13 @@ fn lists_that_are_not_sound_are_refused_with_a_reason() {
     let camera = northward((40, 30));
     let refused = |list: &DrawList| render(list, &camera, &Options::default()).expect_err("not sound");
     let mut list = DrawList::default();
-    item(&mut list, wall(5.0, [-1.0, 1.0], [-1.0, 1.0], Srgba::WHITE), ground_material(), Layer::Solid, BOX);
+    item(
+        &mut list,
+        wall(5.0, [-1.0, 1.0], [-1.0, 1.0], Srgba::WHITE),
+        ground_material(),
+        DepthLayer::Solid,
+        BOX,
+    );
     assert_eq!(refused(&list), RenderError::NoGroundMap { item: 0 });
 
     let mut bare = list.clone();
@@ -108,7 +114,7 @@ fn ground_maps_of_one_post_or_one_row_can_be_read() {
         map.posts.truncate((columns * rows) as usize);
         let mut list = DrawList { ground: Some(map.into()), ..DrawList::default() };
         let mesh = ground_mesh(2, 10.0, |_, y| -3.0 + 0.1 * y);
-        item(&mut list, mesh, ground_material(), Layer::Ground, FeatureId::GROUND);
+        item(&mut list, mesh, ground_material(), DepthLayer::Ground, FeatureId::GROUND);
         assert!(count(&shot(&list, &northward((40, 30))), FeatureId::GROUND) > 100);
     }
 }
@@ -132,15 +138,15 @@ proptest! {
         draped in any::<bool>(),
     ) {
         let mut list = DrawList { ground: Some(ground_map(3, 5.0, true, |x, _| x).into()), ..DrawList::default() };
-        let alpha = if blends { Alpha::Blend } else { Alpha::Opaque };
+        let alpha = if blends { AlphaMode::Blend } else { AlphaMode::Opaque };
         for corners in corners {
             let base = if draped { draped_material(Srgba([9, 9, 9, 99])) } else { Material::default() };
             let material = Material { two_sided: true, alpha, ..base };
-            let layer = if draped { Layer::Draped(3) } else { Layer::Solid };
+            let layer = if draped { DepthLayer::Draped(3) } else { DepthLayer::Solid };
             item(&mut list, triangle(corners), material, layer, BOX);
         }
         let camera = crate::looking(Vec3::new(0.0, -15.0, 1.0), Vec3::ZERO, (67, 41));
-        for samples in [Samples::One, Samples::Eight] {
+        for samples in [SampleCount::One, SampleCount::Eight] {
             let options = Options { samples, anisotropy: u32::MAX };
             let picture = render(&list, &camera, &options).expect("indices are sound");
             prop_assert!(picture.depth_m.iter().all(|&depth| depth >= 0.5 * 0.999));

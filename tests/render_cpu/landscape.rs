@@ -2,10 +2,10 @@
 
 use glam::{DVec2, Mat4, Vec2, Vec3};
 use sandtable::draw::color::Srgba;
-use sandtable::draw::ground::{Contours, GroundMap, GroundPost, Ramp};
+use sandtable::draw::ground::{ColorRamp, Contours, GroundMap, GroundPost};
 use sandtable::draw::lighting::{Haze, Lighting};
-use sandtable::draw::list::{DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId, Layer};
-use sandtable::draw::material::{Albedo, Alpha, Material, Normals};
+use sandtable::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId};
+use sandtable::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use sandtable::draw::pixels::Pixels;
 use sandtable::mesh::sink::{MeshSink, VertexId};
 
@@ -34,7 +34,7 @@ pub fn vertex(position: Vec3, uv: Vec2) -> DrawVertex {
 }
 
 /// One item with all triangles of `mesh` where it stands.
-pub fn item(list: &mut DrawList, mesh: DrawMesh, material: Material, layer: Layer, feature: FeatureId) {
+pub fn item(list: &mut DrawList, mesh: DrawMesh, material: Material, layer: DepthLayer, feature: FeatureId) {
     let triangles = 0..mesh.triangles.len() as u32;
     let item = DrawItem {
         mesh: list.add_mesh(mesh),
@@ -96,7 +96,7 @@ pub fn ground_map(side: u32, half_m: f32, contours: bool, height: impl Fn(f32, f
         columns: side,
         rows: side,
         posts: (0..side * side).map(post).collect(),
-        ramp: Ramp::new(stops.to_vec()).expect("rising stops"),
+        ramp: ColorRamp::new(stops.to_vec()).expect("rising stops"),
         contours: contours.then_some(Contours {
             interval_m: 20.0,
             major_every: 5,
@@ -108,12 +108,12 @@ pub fn ground_map(side: u32, half_m: f32, contours: bool, height: impl Fn(f32, f
 
 /// The ground's material.
 pub fn ground_material() -> Material {
-    Material { normals: Normals::Ground, albedo: Albedo::GroundMap, ..Material::default() }
+    Material { normals: NormalSource::Ground, albedo: Albedo::GroundMap, ..Material::default() }
 }
 
 /// A draped material with a texture or without.
 pub fn draped_material(base_color: Srgba) -> Material {
-    Material { base_color, normals: Normals::Ground, ..Material::default() }
+    Material { base_color, normals: NormalSource::Ground, ..Material::default() }
 }
 
 /// The strip of `half_width` metres around the line through `centre`, cut to the triangles of `ground`.
@@ -235,16 +235,16 @@ pub fn landscape(cells: usize) -> DrawList {
         .collect();
     let road = draped_strip(&ground, &line, 12.0);
     let forest = draped_strip(&ground, &[DVec2::new(-2500.0, -5200.0), DVec2::new(-900.0, -3600.0)], 450.0);
-    item(&mut list, ground, ground_material(), Layer::Ground, FeatureId::GROUND);
-    let leaves = Material { alpha: Alpha::Blend, ..draped_material(Srgba([20, 90, 40, 150])) };
-    item(&mut list, forest, leaves, Layer::Draped(1), FOREST);
+    item(&mut list, ground, ground_material(), DepthLayer::Ground, FeatureId::GROUND);
+    let leaves = Material { alpha: AlphaMode::Blend, ..draped_material(Srgba([20, 90, 40, 150])) };
+    item(&mut list, forest, leaves, DepthLayer::Draped(1), FOREST);
     let texture = Some(list.add_texture(road_texture()));
-    item(&mut list, road, Material { texture, ..draped_material(Srgba::WHITE) }, Layer::Draped(2), ROAD);
+    item(&mut list, road, Material { texture, ..draped_material(Srgba::WHITE) }, DepthLayer::Draped(2), ROAD);
     let texture = Some(list.add_texture(wall_texture()));
     for (x, y) in [(60.0, -8_050.0), (-90.0, -7_900.0), (150.0, -7_600.0), (-120.0, -6_900.0)] {
         let foot = Vec3::new(x, y, height(x, y) - 6.0);
         let mesh = box_mesh(foot, Vec3::new(40.0, 25.0, 30.0));
-        item(&mut list, mesh, Material { texture, ..Material::default() }, Layer::Solid, BOX);
+        item(&mut list, mesh, Material { texture, ..Material::default() }, DepthLayer::Solid, BOX);
     }
     list
 }

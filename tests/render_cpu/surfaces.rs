@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 use sandtable::draw::color::{Srgba, linear_from_srgb};
 use sandtable::draw::ground::Contours;
-use sandtable::draw::list::{DrawList, FeatureId, Layer};
+use sandtable::draw::list::{DepthLayer, DrawList, FeatureId};
 use sandtable::draw::material::Material;
 use sandtable::draw::pixels::Pixels;
 use sandtable::view::camera::Camera;
@@ -30,7 +30,7 @@ fn texture_coordinates_are_correct_in_perspective() {
     plain_light(&mut list);
     let ramp = Pixels::from_fn(256, 256, |x, y| Srgba::opaque(x as u8, y as u8, 128));
     let texture = Some(list.add_texture(ramp));
-    item(&mut list, floor(), Material { texture, ..Material::default() }, Layer::Solid, BOX);
+    item(&mut list, floor(), Material { texture, ..Material::default() }, DepthLayer::Solid, BOX);
     let camera = northward((200, 150));
     let picture = shot(&list, &camera);
     let mut checked = 0;
@@ -57,7 +57,7 @@ fn a_floor_that_runs_beneath_and_behind_the_eye_is_whole() {
         [corner(-side, -side), corner(side, -side), corner(side, side), corner(-side, side)],
         Srgba::WHITE,
     );
-    item(&mut list, mesh, Material::default(), Layer::Solid, BOX);
+    item(&mut list, mesh, Material::default(), DepthLayer::Solid, BOX);
     let camera = looking(Vec3::ZERO, Vec3::new(0.3, 1.0, -0.2), (200, 150));
     let picture = shot(&list, &camera);
     for (x, y) in (0..200).flat_map(|x| (0..150).map(move |y| (x, y))) {
@@ -79,7 +79,7 @@ fn the_far_plane_and_the_near_plane_cut() {
             &mut list,
             wall(y, [-500.0, 500.0], [-500.0, 500.0], Srgba::WHITE),
             Material::default(),
-            Layer::Solid,
+            DepthLayer::Solid,
             BOX,
         );
         let camera = Camera::new(Vec3::ZERO, Vec3::Y, 0.8, (40, 30), (0.5, 100.0)).expect("sound");
@@ -102,7 +102,7 @@ fn a_border_pixel_shows_the_share_that_is_covered() {
         &mut list,
         wall(10.0, [-9.0, 0.003_75], [-9.0, 9.0], Srgba::WHITE),
         Material::default(),
-        Layer::Solid,
+        DepthLayer::Solid,
         BOX,
     );
     let picture = shot(&list, &camera);
@@ -120,7 +120,7 @@ fn haze_thickens_with_the_true_distance() {
         &mut list,
         wall(10.0, [-9.0, 9.0], [-9.0, 9.0], Srgba::opaque(200, 40, 40)),
         Material::default(),
-        Layer::Solid,
+        DepthLayer::Solid,
         BOX,
     );
     let camera = northward((120, 90));
@@ -141,14 +141,14 @@ fn contours_keep_their_width_from_near_to_far() {
         DrawList { ground: Some(ground_map(101, 500.0, false, slope).into()), ..DrawList::default() };
     plain_light(&mut list);
     let map = std::sync::Arc::make_mut(list.ground.as_mut().expect("just put there"));
-    map.ramp = sandtable::draw::ground::Ramp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop");
+    map.ramp = sandtable::draw::ground::ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop");
     map.contours = Some(Contours {
         interval_m: 10.0,
         major_every: 1_000_000,
         color: Srgba::opaque(0, 0, 0),
         width_px: 1.5,
     });
-    item(&mut list, ground_mesh(20, 500.0, slope), ground_material(), Layer::Ground, FeatureId::GROUND);
+    item(&mut list, ground_mesh(20, 500.0, slope), ground_material(), DepthLayer::Ground, FeatureId::GROUND);
     let camera = looking(Vec3::new(0.0, -420.0, -80.0), Vec3::new(0.0, 0.0, 20.0), (64, 900));
     let picture = shot(&list, &camera);
     // Down one column, the dark of each line adds up to its width.
@@ -172,7 +172,7 @@ fn a_lake_at_the_height_of_a_line_is_not_all_line() {
     let flat = |_: f32, _: f32| 20.0;
     let mut list = DrawList { ground: Some(ground_map(11, 100.0, true, flat).into()), ..DrawList::default() };
     plain_light(&mut list);
-    item(&mut list, ground_mesh(4, 100.0, flat), ground_material(), Layer::Ground, FeatureId::GROUND);
+    item(&mut list, ground_mesh(4, 100.0, flat), ground_material(), DepthLayer::Ground, FeatureId::GROUND);
     let picture = shot(&list, &looking(Vec3::new(0.0, -50.0, 60.0), Vec3::new(0.0, 0.0, 20.0), (60, 40)));
     let ramp = list.ground.as_ref().expect("there").ramp.linear_at(20.0);
     assert_eq!(picture.pixels.at(30, 20), Srgba::from_linear(ramp));
@@ -190,7 +190,7 @@ fn depths_and_features_are_those_at_the_pixel_s_centre() {
         ],
         Srgba::WHITE,
     );
-    item(&mut list, tilted, Material::default(), Layer::Solid, FeatureId(77));
+    item(&mut list, tilted, Material::default(), DepthLayer::Solid, FeatureId(77));
     let camera = northward((90, 70));
     let picture = shot(&list, &camera);
     for (x, y) in [(45, 35), (30, 30), (50, 44)] {

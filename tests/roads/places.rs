@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use sandtable::ribbon::texture::Surface;
+use sandtable::ribbon::texture::RibbonSurface;
 use sandtable::scene::kind::{FeatureKind, Scene};
 
 use crate::common::data::data;
@@ -29,8 +29,8 @@ fn porto_alegre_s_15_852_roads_lie_apart() {
                 [[road]]\nfile = 'PLACE/poa_osm.pbf'\nlayer = 'roads'\nwidth = 7\n";
     let Some(scene) = place("porto_alegre_br", text) else { return };
     assert_eq!(roads(&scene), 15_852);
-    let joints = area_m2(&scene, &[Surface::AsphaltJunction]);
-    let ribbons = area_m2(&scene, &[Surface::Asphalt]);
+    let joints = area_m2(&scene, &[RibbonSurface::AsphaltJunction]);
+    let ribbons = area_m2(&scene, &[RibbonSurface::Asphalt]);
     assert!(
         ribbons > 6e6 && (0.05..0.5).contains(&(joints / ribbons)),
         "{ribbons} m2 and {joints} m2 of junctions"
@@ -44,7 +44,7 @@ fn monaco_s_roads_lie_apart_and_its_tunnels_are_not_laid() {
     let Some(scene) = place("monaco", text) else { return };
     let laid: std::collections::BTreeSet<u32> = scene.ribbons.iter().map(|ribbon| ribbon.feature.0).collect();
     assert!(laid.len() < roads(&scene), "{} of {} have ground under them", laid.len(), roads(&scene));
-    assert!(area_m2(&scene, &[Surface::Shoulder]) > 1e4);
+    assert!(area_m2(&scene, &[RibbonSurface::Shoulder]) > 1e4);
 }
 
 #[test]
@@ -53,5 +53,5 @@ fn swellendam_s_717_roads_lie_apart() {
                 [[road]]\nfile = 'PLACE/training_data.gpkg'\nlayer = 'roads'\nwidth = 8\nsurface = 'gravel'\n";
     let Some(scene) = place("swellendam_za", text) else { return };
     assert!((50..=717).contains(&roads(&scene)), "{} roads on the model", roads(&scene));
-    assert!(area_m2(&scene, &[Surface::GravelJunction]) > 1e3);
+    assert!(area_m2(&scene, &[RibbonSurface::GravelJunction]) > 1e3);
 }

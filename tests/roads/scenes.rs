@@ -1,14 +1,18 @@
 //! Small scenes on level ground, where every area can be worked out by hand.
 
 use sandtable::mesh::sink::VertexId;
-use sandtable::ribbon::texture::Surface;
+use sandtable::ribbon::texture::RibbonSurface;
 use sandtable::scene::kind::Scene;
 
 use crate::common::scratch::Scratch;
 use crate::{area_m2, built, check_laid, scene};
 
-const ASPHALT: [Surface; 4] =
-    [Surface::Asphalt, Surface::AsphaltSolid, Surface::AsphaltEdges, Surface::AsphaltPlain];
+const ASPHALT: [RibbonSurface; 4] = [
+    RibbonSurface::Asphalt,
+    RibbonSurface::AsphaltSolid,
+    RibbonSurface::AsphaltEdges,
+    RibbonSurface::AsphaltPlain,
+];
 
 fn laid(features: &str) -> Scene {
     let scene = scene(&Scratch::new(), features);
@@ -17,7 +21,7 @@ fn laid(features: &str) -> Scene {
 }
 
 #[track_caller]
-fn assert_area(scene: &Scene, surfaces: &[Surface], expected_m2: f64) {
+fn assert_area(scene: &Scene, surfaces: &[RibbonSurface], expected_m2: f64) {
     let found = area_m2(scene, surfaces);
     assert!(
         (found - expected_m2).abs() < 0.01 + 1e-6 * expected_m2,
@@ -31,9 +35,9 @@ fn a_crossing_without_a_vertex_is_joined_and_both_roads_end_at_it() {
         "[[road]]\nwidth = 10\npoints = [[100, 500], [900, 500]]\n\
          [[road]]\nwidth = 6\nmarkings = 'solid'\npoints = [[500, 100], [500, 900]]\n",
     );
-    assert_area(&scene, &[Surface::AsphaltJunction], 60.0);
-    assert_area(&scene, &[Surface::Asphalt], 794.0 * 10.0);
-    assert_area(&scene, &[Surface::AsphaltSolid], 790.0 * 6.0);
+    assert_area(&scene, &[RibbonSurface::AsphaltJunction], 60.0);
+    assert_area(&scene, &[RibbonSurface::Asphalt], 794.0 * 10.0);
+    assert_area(&scene, &[RibbonSurface::AsphaltSolid], 790.0 * 6.0);
 }
 
 #[test]
@@ -42,8 +46,8 @@ fn a_track_ends_at_the_kerb_of_the_asphalt_that_goes_through() {
         "[[road]]\nwidth = 10\npoints = [[100, 500], [500, 500], [900, 500]]\n\
          [[road]]\nwidth = 4\nsurface = 'track'\npoints = [[500, 500], [500, 900]]\n",
     );
-    assert_area(&scene, &[Surface::Asphalt], 8000.0);
-    assert_area(&scene, &[Surface::Track, Surface::TrackJunction], 395.0 * 4.0);
+    assert_area(&scene, &[RibbonSurface::Asphalt], 8000.0);
+    assert_area(&scene, &[RibbonSurface::Track, RibbonSurface::TrackJunction], 395.0 * 4.0);
 }
 
 #[test]
@@ -52,9 +56,9 @@ fn asphalt_that_ends_on_gravel_is_joined_to_it_in_asphalt() {
         "[[road]]\nwidth = 8\nsurface = 'gravel'\npoints = [[100, 500], [500, 500], [900, 500]]\n\
          [[road]]\nwidth = 6\npoints = [[500, 500], [500, 900]]\n",
     );
-    assert_area(&scene, &[Surface::AsphaltJunction], 48.0);
-    assert_area(&scene, &[Surface::Gravel], 794.0 * 8.0);
-    assert_area(&scene, &[Surface::Asphalt], 396.0 * 6.0);
+    assert_area(&scene, &[RibbonSurface::AsphaltJunction], 48.0);
+    assert_area(&scene, &[RibbonSurface::Gravel], 794.0 * 8.0);
+    assert_area(&scene, &[RibbonSurface::Asphalt], 396.0 * 6.0);
 }
 
 #[test]
@@ -77,8 +81,8 @@ fn the_ground_below_an_overpass_runs_through_and_a_bridge_is_not_laid() {
     let ground = "crs = 'EPSG:32616'\n[[road]]\nfile = 'roads.geojson'\ncrs = 'EPSG:32616'\nwidth = 8\n";
     let scene = scene(&folder, ground);
     check_laid(&scene);
-    assert_area(&scene, &[Surface::AsphaltJunction], 0.0);
-    assert_area(&scene, &[Surface::Asphalt], (800.0 + 2.0 * 350.0) * 8.0);
+    assert_area(&scene, &[RibbonSurface::AsphaltJunction], 0.0);
+    assert_area(&scene, &[RibbonSurface::Asphalt], (800.0 + 2.0 * 350.0) * 8.0);
 }
 
 #[test]
@@ -88,13 +92,13 @@ fn shoulders_lie_beside_the_carriageway_and_join_below_every_other_road() {
          [[road]]\nwidth = 4\nsurface = 'track'\npoints = [[500, 500], [500, 900]]\n",
     );
     assert_area(&scene, &ASPHALT, 8000.0);
-    assert_area(&scene, &[Surface::Shoulder], 800.0 * 6.0 - 3.0 * 4.0);
+    assert_area(&scene, &[RibbonSurface::Shoulder], 800.0 * 6.0 - 3.0 * 4.0);
 }
 
 #[test]
 fn widths_at_each_point_give_trapezia_with_one_texture_length() {
     let scene = laid("[[road]]\nwidths = [4, 4, 12]\npoints = [[100, 500], [500, 500], [900, 500]]\n");
-    assert_area(&scene, &[Surface::Asphalt], 400.0 * 4.0 + 400.0 * 8.0);
+    assert_area(&scene, &[RibbonSurface::Asphalt], 400.0 * 4.0 + 400.0 * 8.0);
 }
 
 #[test]
@@ -120,7 +124,7 @@ fn a_road_beyond_all_measure_still_has_no_two_triangles_over_one_another() {
         "[[road]]\nwidth = 400\npoints = [[100, 100], [110, 100], [110, 115], [105, 101], [300, 700]]\n\
          [[road]]\nwidth = 300\njoin = 'round'\npoints = [[100, 900], [900, 100], [105, 895]]\n",
     );
-    assert!(area_m2(&scene, &ASPHALT) + area_m2(&scene, &[Surface::AsphaltJunction]) > 2e5);
+    assert!(area_m2(&scene, &ASPHALT) + area_m2(&scene, &[RibbonSurface::AsphaltJunction]) > 2e5);
 }
 
 #[test]

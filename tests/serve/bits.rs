@@ -154,7 +154,7 @@ fn the_ground_is_answered_alike_by_library_and_service_at_latitudes_and_longitud
 fn a_scene_is_asked_for_its_ground_and_its_source_in_its_own_coordinates() {
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/heightmap.toml");
     let dataset = open(&scene);
-    let epoch = dataset.service().expect("a scene has ground").now();
+    let epoch = dataset.service().expect("a scene has ground").snapshot();
     let extent = epoch.lattice().extent();
     let at: Vec<DVec2> = (0..50)
         .map(|index| {

@@ -8,8 +8,8 @@ use sandtable::app::arguments::{Access, StatedHeights};
 use sandtable::app::dataset::Dataset;
 use sandtable::terrain::profile::profile;
 use sandtable::terrain::sight::Curvature;
-use sandtable::terrain::sight::line::End;
-use sandtable::terrain::sight::viewshed::{Sector, Seen, ViewshedOptions, viewshed};
+use sandtable::terrain::sight::line::SightEnd;
+use sandtable::terrain::sight::viewshed::{PostVisibility, Sector, ViewshedOptions, viewshed};
 use serde_json::json;
 
 use crate::client::{Server, numbers};
@@ -110,7 +110,7 @@ fn on_a_real_model_profile_and_viewshed_are_the_librarys() {
     let Some(file) = data("dem/bigtujunga_utm11_i16_tiled.tif") else { return };
     let grey = StatedHeights::default();
     let dataset = Dataset::open(&file, grey, &Access { allow: Vec::new() }).expect("sound");
-    let epoch = dataset.service().expect("in metres").now();
+    let epoch = dataset.service().expect("in metres").snapshot();
     let lattice = epoch.lattice();
     let server = Server::start(Path::new("."), &[&format!("dem={}", file.display())]);
 
@@ -129,25 +129,25 @@ fn on_a_real_model_profile_and_viewshed_are_the_librarys() {
     assert!(stations.len() > 1000, "{}", stations.len());
 
     let options = ViewshedOptions {
-        observer: End { at: a, above_m: 10.0 },
+        observer: SightEnd { at: a, above_m: 10.0 },
         target_above_m: 1.5,
         range_m: 2500.0,
         sector: Sector::ALL,
         curvature: Curvature::default(),
     };
     let seen = viewshed(lattice, &options).expect("ground");
-    let count = |which: Seen| seen.posts.iter().filter(|&&post| post == which).count() as u64;
+    let count = |which: PostVisibility| seen.posts.iter().filter(|&&post| post == which).count() as u64;
     let path = format!(
         "/v1/viewshed?observer={},{}&crs=native&observer_height=10&target_height=1.5&range=2500",
         a.x, a.y
     );
     let answer = server.get(&path).ok();
-    assert_eq!(answer["counts"]["visible"].as_u64(), Some(count(Seen::Visible)));
-    assert_eq!(answer["counts"]["hidden"].as_u64(), Some(count(Seen::Hidden)));
+    assert_eq!(answer["counts"]["visible"].as_u64(), Some(count(PostVisibility::Visible)));
+    assert_eq!(answer["counts"]["hidden"].as_u64(), Some(count(PostVisibility::Hidden)));
     let told: String =
         answer["runs"].as_array().expect("rows").iter().filter_map(|row| row.as_str()).collect();
     let visible: u64 = runs(&told).filter(|&(_, letter)| letter == 'v').map(|(length, _)| length).sum();
-    assert_eq!(visible, count(Seen::Visible), "the runs tell the same as the counts");
+    assert_eq!(visible, count(PostVisibility::Visible), "the runs tell the same as the counts");
     assert!(visible > 100);
 }
 

@@ -2,30 +2,32 @@
 
 use std::fmt::{self, Display};
 
-use crate::app::failure::Failure;
-use crate::app::lod::method::{Emit, Lists, Method, Refine, Refiner, Rule, SphereRule, all, name};
+use crate::app::failure::CliError;
+use crate::app::lod::method::{
+    CriterionKind, Emit, IndexEmitter, LodMethod, Refine, Refiner, SphereRule, all, name,
+};
 
 /// What is compared where nothing is asked for: each criterion and each refiner once, those of spheres side by side.
-pub const SELECTION: &[Method] = &[
-    Method::Full,
-    Method::Geomipmap,
-    refining(Lists::Bintree, Rule::Screen, Refiner::Rebuild),
-    refining(Lists::Bintree, Rule::Variance, Refiner::Coherent),
-    refining(Lists::Bintree, Rule::Roughness, Refiner::Rebuild),
-    refining(Lists::Bintree, Rule::Anisotropic, Refiner::Coherent),
-    refining(Lists::Bintree, Rule::Block, Refiner::Coherent),
-    refining(Lists::Bintree, Rule::Spheres, Refiner::Rebuild),
-    refining(Lists::Quadtree, Rule::Spheres, Refiner::Rebuild),
-    refining(Lists::Strips, Rule::Spheres, Refiner::Rebuild),
-    refining(Lists::Bintree, Rule::Spheres, Refiner::Coherent),
-    refining(Lists::Bintree, Rule::Spheres, Refiner::Queues),
-    Method::Deferred { spheres: SphereRule::Plain },
-    Method::Deferred { spheres: SphereRule::Constrained },
-    Method::Deferred { spheres: SphereRule::Bounding },
+pub const SELECTION: &[LodMethod] = &[
+    LodMethod::Full,
+    LodMethod::Geomipmap,
+    refining(IndexEmitter::Bintree, CriterionKind::Screen, Refiner::Rebuild),
+    refining(IndexEmitter::Bintree, CriterionKind::Variance, Refiner::Coherent),
+    refining(IndexEmitter::Bintree, CriterionKind::Roughness, Refiner::Rebuild),
+    refining(IndexEmitter::Bintree, CriterionKind::Anisotropic, Refiner::Coherent),
+    refining(IndexEmitter::Bintree, CriterionKind::Block, Refiner::Coherent),
+    refining(IndexEmitter::Bintree, CriterionKind::Spheres, Refiner::Rebuild),
+    refining(IndexEmitter::Quadtree, CriterionKind::Spheres, Refiner::Rebuild),
+    refining(IndexEmitter::Strips, CriterionKind::Spheres, Refiner::Rebuild),
+    refining(IndexEmitter::Bintree, CriterionKind::Spheres, Refiner::Coherent),
+    refining(IndexEmitter::Bintree, CriterionKind::Spheres, Refiner::Queues),
+    LodMethod::Deferred { spheres: SphereRule::Plain },
+    LodMethod::Deferred { spheres: SphereRule::Constrained },
+    LodMethod::Deferred { spheres: SphereRule::Bounding },
 ];
 
-const fn refining(lists: Lists, rule: Rule, refiner: Refiner) -> Method {
-    Method::Refining { lists, rule, refiner }
+const fn refining(lists: IndexEmitter, rule: CriterionKind, refiner: Refiner) -> LodMethod {
+    LodMethod::Refining { lists, rule, refiner }
 }
 
 /// What was asked for; what is not said may be anything.
@@ -34,7 +36,7 @@ pub struct Wanted {
     /// What makes triangles.
     pub emit: Option<Emit>,
     /// When an error shows.
-    pub rule: Option<Rule>,
+    pub rule: Option<CriterionKind>,
     /// What refines.
     pub refine: Option<Refine>,
     /// So many triangles at most, which only queues keep.
@@ -49,18 +51,18 @@ impl Wanted {
     ///
     /// # Errors
     /// What is asked for does not go together; the message tells what does.
-    pub fn methods(self) -> Result<Vec<Method>, Failure> {
+    pub fn methods(self) -> Result<Vec<LodMethod>, CliError> {
         if self == Self::default() {
             return Ok(SELECTION.to_vec());
         }
         if let Some(why) = self.flaw() {
-            return Err(Failure::Usage(format!("{self} cannot be had: {why}")));
+            return Err(CliError::Usage(format!("{self} cannot be had: {why}")));
         }
         let emit = self.emit.unwrap_or(Emit::Bintree);
         Ok(all().into_iter().filter(|method| self.holds(method) && method.parts().0 == emit).collect())
     }
 
-    fn holds(&self, method: &Method) -> bool {
+    fn holds(&self, method: &LodMethod) -> bool {
         let (emit, rule, refine) = method.parts();
         self.emit.is_none_or(|wanted| wanted == emit)
             && (self.rule.is_none() || self.rule == rule)
@@ -140,9 +142,9 @@ mod tests {
 
     #[test]
     fn what_is_said_restricts_and_lists_are_the_bintree_s_unless_others_are_asked_for() {
-        let spheres = Wanted { rule: Some(Rule::Spheres), ..Wanted::default() };
+        let spheres = Wanted { rule: Some(CriterionKind::Spheres), ..Wanted::default() };
         let names = |wanted: Wanted| -> Vec<String> {
-            wanted.methods().expect("some").iter().map(Method::to_string).collect()
+            wanted.methods().expect("some").iter().map(LodMethod::to_string).collect()
         };
         let refiners = ["rebuild", "coherent", "queues", "deferred"];
         assert_eq!(names(spheres), refiners.map(|refine| format!("bintree/spheres/{refine}")));
@@ -154,11 +156,11 @@ mod tests {
     #[test]
     fn the_selection_has_every_value_once_at_least_and_only_what_there_is() {
         assert!(SELECTION.iter().all(|method| all().contains(method)));
-        let parts: Vec<_> = SELECTION.iter().map(Method::parts).collect();
+        let parts: Vec<_> = SELECTION.iter().map(LodMethod::parts).collect();
         for &emit in Emit::value_variants() {
             assert!(parts.iter().any(|part| part.0 == emit), "{emit:?}");
         }
-        for &rule in Rule::value_variants() {
+        for &rule in CriterionKind::value_variants() {
             assert!(parts.iter().any(|part| part.1 == Some(rule)), "{rule:?}");
         }
         for &refine in Refine::value_variants() {

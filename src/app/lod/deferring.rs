@@ -4,9 +4,9 @@
 //! as they are, without triangles beyond the border or over no data.
 
 use crate::app::lod::follow::Follow;
-use crate::app::lod::kept::{Kept, Stale};
+use crate::app::lod::kept::{PatchLists, Stale};
 use crate::app::lod::method::SphereRule;
-use crate::app::lod::prepared::Prepared;
+use crate::app::lod::prepared::PreparedGround;
 use crate::roam::block::WholeGround;
 use crate::roam::culling::{Culling, InView};
 use crate::roam::graph::Vertex;
@@ -20,21 +20,21 @@ type Walk<'a> = Deferred<WholeGround<'a>>;
 /// The deferred refiner at work.
 pub struct Deferring<'a> {
     spheres: SphereRule,
-    terrain: &'a Prepared,
+    terrain: &'a PreparedGround,
     walk: Option<Walk<'a>>,
-    sent: Kept<()>,
+    sent: PatchLists<()>,
     view: InView,
 }
 
 impl<'a> Deferring<'a> {
     /// By these spheres.
-    pub fn new(spheres: SphereRule, terrain: &'a Prepared) -> Self {
-        Self { spheres, terrain, walk: None, sent: Kept::new(terrain.layout), view: InView::default() }
+    pub fn new(spheres: SphereRule, terrain: &'a PreparedGround) -> Self {
+        Self { spheres, terrain, walk: None, sent: PatchLists::new(terrain.layout), view: InView::default() }
     }
 }
 
 /// A walk that starts anywhere.
-fn walk<'a>(terrain: &'a Prepared, spheres: SphereRule, camera: &Camera) -> Walk<'a> {
+fn walk<'a>(terrain: &'a PreparedGround, spheres: SphereRule, camera: &Camera) -> Walk<'a> {
     let source = WholeGround { ground: terrain.ground(), spheres: terrain.spheres(spheres, camera) };
     Deferred::new(source, terrain.lattice.cell().min_element())
         .expect("patches of the default size are small enough")
@@ -65,7 +65,7 @@ impl Follow for Deferring<'_> {
 }
 
 /// What is drawn of a patch, with vertices numbered row by row.
-fn drawn(terrain: &Prepared, walk: &Walk<'_>, corner: Vertex) -> PatchList {
+fn drawn(terrain: &PreparedGround, walk: &Walk<'_>, corner: Vertex) -> PatchList {
     let vertices = |numbers: &[u16; 3]| numbers.map(|number| walk.vertex(corner, number));
     let triangles = walk.indices(corner).iter().map(vertices);
     PatchList::of_vertices(&terrain.layout, corner, triangles)

@@ -5,9 +5,9 @@ use std::time::Instant;
 use glam::{UVec2, Vec2};
 
 use crate::app::lod::follow::Follow;
-use crate::app::lod::method::Method;
-use crate::app::lod::prepared::Prepared;
-use crate::app::lod::report::Report;
+use crate::app::lod::method::LodMethod;
+use crate::app::lod::prepared::PreparedGround;
+use crate::app::lod::report::FlightReport;
 use crate::roam::frames::LastFrame;
 use crate::roam::measure::{HeightDifference, height_difference_seen};
 use crate::roam::shown::PatchList;
@@ -20,10 +20,15 @@ pub const MEASURED: usize = 8;
 
 /// Flies `method`, which `follow` is. The first frame, which has none before it, starts the method and is not
 /// counted.
-pub fn fly(method: Method, follow: &mut dyn Follow, terrain: &Prepared, flight: &[Camera]) -> Report {
+pub fn fly(
+    method: LodMethod,
+    follow: &mut dyn Follow,
+    terrain: &PreparedGround,
+    flight: &[Camera],
+) -> FlightReport {
     let measured: Vec<usize> = measured_frames(flight.len()).collect();
     let mut last = LastFrame::default();
-    let mut tally = Tally::default();
+    let mut tally = FlightTally::default();
     for (frame, camera) in flight.iter().enumerate() {
         if frame == 0 {
             follow.prepare(camera);
@@ -57,7 +62,7 @@ fn triangles(shown: &[PatchList]) -> usize {
 
 /// How far what is shown is off at the posts in the picture: a patch can be large, and what of it is out of view may
 /// be left as it comes.
-fn difference_in_view(terrain: &Prepared, camera: &Camera, shown: &[PatchList]) -> HeightDifference {
+fn difference_in_view(terrain: &PreparedGround, camera: &Camera, shown: &[PatchList]) -> HeightDifference {
     let (lattice, size) = (&terrain.lattice, UVec2::from(camera.size()).as_vec2());
     let seen_px = |post: Post, shown_m: f64| {
         let (at, height_m) = (lattice.position(post), lattice.height(post));
@@ -81,7 +86,7 @@ fn measured_frames(frames: usize) -> impl Iterator<Item = usize> {
 
 /// What adds up over the frames.
 #[derive(Default)]
-struct Tally {
+struct FlightTally {
     times_ms: Vec<f64>,
     uploads: Vec<usize>,
     triangles: usize,
@@ -92,15 +97,15 @@ struct Tally {
     difference: HeightDifference,
 }
 
-impl Tally {
-    fn report(mut self, method: Method) -> Report {
+impl FlightTally {
+    fn report(mut self, method: LodMethod) -> FlightReport {
         let frames = self.times_ms.len();
         self.times_ms.sort_by(f64::total_cmp);
         self.uploads.sort_unstable();
         let mean = |sum: usize| sum as f64 / frames.max(1) as f64;
         let at = |share: f64| ((frames as f64 * share).ceil() as usize).saturating_sub(1);
         let time = |share: f64| self.times_ms.get(at(share)).copied().unwrap_or(0.0);
-        Report {
+        FlightReport {
             method,
             frames,
             triangles: mean(self.triangles),
@@ -130,9 +135,10 @@ mod tests {
 
     #[test]
     fn medians_and_percentiles_are_times_that_were_measured() {
-        let method = Method::Full;
+        let method = LodMethod::Full;
         let times_ms: Vec<f64> = (1..=200).rev().map(f64::from).collect();
-        let tally = Tally { times_ms, uploads: (0..200).collect(), triangles: 1000, ..Tally::default() };
+        let tally =
+            FlightTally { times_ms, uploads: (0..200).collect(), triangles: 1000, ..FlightTally::default() };
         let report = tally.report(method);
         assert_eq!((report.update_ms_median, report.update_ms_p99), (100.0, 198.0));
         assert_eq!((report.upload_bytes_median, report.triangles), (99, 5.0));

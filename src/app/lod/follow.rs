@@ -2,9 +2,9 @@
 
 use crate::app::lod::deferring::Deferring;
 use crate::app::lod::full::Full;
-use crate::app::lod::method::Method;
+use crate::app::lod::method::LodMethod;
 use crate::app::lod::mipmapping::Mipmapping;
-use crate::app::lod::prepared::Prepared;
+use crate::app::lod::prepared::PreparedGround;
 use crate::app::lod::refining::Refining;
 use crate::roam::shown::PatchList;
 use crate::view::camera::Camera;
@@ -25,13 +25,17 @@ pub trait Follow {
 }
 
 /// The method, ready to follow; `budget` is the most triangles of one that keeps a budget.
-pub fn follower<'a>(method: Method, terrain: &'a Prepared, budget: Option<usize>) -> Box<dyn Follow + 'a> {
+pub fn follower<'a>(
+    method: LodMethod,
+    terrain: &'a PreparedGround,
+    budget: Option<usize>,
+) -> Box<dyn Follow + 'a> {
     match method {
-        Method::Full => Box::new(Full::new(terrain)),
-        Method::Geomipmap => Box::new(Mipmapping::new(terrain)),
-        Method::Refining { lists, rule, refiner } => {
+        LodMethod::Full => Box::new(Full::new(terrain)),
+        LodMethod::Geomipmap => Box::new(Mipmapping::new(terrain)),
+        LodMethod::Refining { lists, rule, refiner } => {
             Box::new(Refining::new(lists, rule, refiner, terrain, budget))
         }
-        Method::Deferred { spheres } => Box::new(Deferring::new(spheres, terrain)),
+        LodMethod::Deferred { spheres } => Box::new(Deferring::new(spheres, terrain)),
     }
 }

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use crate::app::lod::follow::Follow;
-use crate::app::lod::prepared::Prepared;
+use crate::app::lod::prepared::PreparedGround;
 use crate::roam::culling::{Culling, cull};
 use crate::roam::emit::full;
 use crate::roam::emit::world::drawn_posts;
@@ -16,14 +16,14 @@ use crate::view::camera::Camera;
 
 /// The full mesh.
 pub struct Full<'a> {
-    terrain: &'a Prepared,
+    terrain: &'a PreparedGround,
     lists: Vec<PatchList>,
     view: Vec<Vertex>,
 }
 
 impl<'a> Full<'a> {
     /// Makes the lists of all patches, those that are equal once.
-    pub fn new(terrain: &'a Prepared) -> Self {
+    pub fn new(terrain: &'a PreparedGround) -> Self {
         let mut whole: Option<Arc<Vec<LocalTriangle>>> = None;
         let mut lists = Vec::with_capacity(terrain.layout.patch_count());
         for corner in terrain.layout.patches() {
@@ -38,7 +38,7 @@ impl<'a> Full<'a> {
     }
 }
 
-fn triangles(terrain: &Prepared, corner: Vertex) -> Arc<Vec<LocalTriangle>> {
+fn triangles(terrain: &PreparedGround, corner: Vertex) -> Arc<Vec<LocalTriangle>> {
     let mut drawn = Vec::new();
     full::triangles(&terrain.layout, [corner], |corners| {
         if drawn_posts(terrain.ground(), corners).is_some() {

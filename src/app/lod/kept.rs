@@ -1,7 +1,7 @@
 //! Index lists kept from frame to frame: only those of patches that changed or came into view are written.
 
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 use crate::roam::shown::PatchList;
 
 /// Which lists no longer hold.
@@ -15,16 +15,16 @@ pub enum Stale<'a> {
 
 /// The lists of all patches; `L` is what a method keeps of one.
 #[derive(Debug)]
-pub struct Kept<L> {
-    layout: Layout,
-    slots: Vec<Slot<L>>,
+pub struct PatchLists<L> {
+    layout: PatchLayout,
+    slots: Vec<PatchSlot<L>>,
     view: Vec<Vertex>,
     frame: u64,
     written: usize,
 }
 
 #[derive(Debug, Default)]
-struct Slot<L> {
+struct PatchSlot<L> {
     list: L,
     indices: usize,
     /// The frame it was last in view.
@@ -33,10 +33,10 @@ struct Slot<L> {
     shown: Option<PatchList>,
 }
 
-impl<L: Default> Kept<L> {
+impl<L: Default> PatchLists<L> {
     /// No patch is in view.
-    pub fn new(layout: Layout) -> Self {
-        let slots = (0..layout.patch_count()).map(|_| Slot::default()).collect();
+    pub fn new(layout: PatchLayout) -> Self {
+        let slots = (0..layout.patch_count()).map(|_| PatchSlot::default()).collect();
         // A patch that was never seen was last seen in frame 0, which is none.
         Self { layout, slots, view: Vec::new(), frame: 1, written: 0 }
     }
@@ -80,7 +80,7 @@ impl<L: Default> Kept<L> {
     pub fn shown(&mut self, draw: impl Fn(Vertex, &L) -> PatchList) -> Vec<PatchList> {
         let (layout, slots) = (&self.layout, &mut self.slots);
         let list = |&corner: &Vertex| {
-            let Slot { list, indices, shown, .. } = &mut slots[layout.patch_index(corner)];
+            let PatchSlot { list, indices, shown, .. } = &mut slots[layout.patch_index(corner)];
             let drawn = shown.get_or_insert_with(|| PatchList { indices: *indices, ..draw(corner, list) });
             drawn.clone()
         };
@@ -95,8 +95,8 @@ mod tests {
 
     #[test]
     fn a_list_is_written_when_its_patch_comes_into_view_or_is_stale_and_not_again() {
-        let layout = Layout::new(9, 5, 4).expect("sound");
-        let mut kept: Kept<usize> = Kept::new(layout);
+        let layout = PatchLayout::new(9, 5, 4).expect("sound");
+        let mut kept: PatchLists<usize> = PatchLists::new(layout);
         let [west, east] = [Vertex::new(0, 0), Vertex::new(4, 0)];
         let mut frame = 0;
         let mut written = |view: &[Vertex], stale: Stale<'_>| {

@@ -24,7 +24,7 @@ pub enum Emit {
 
 /// When an error shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Rule {
+pub enum CriterionKind {
     /// The largest length an error could span on the picture; kept at every post of the picture
     Screen,
     /// Variance and the land's width over distance
@@ -58,7 +58,7 @@ pub enum Refine {
 
 /// How bits of vertices are written as index lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lists {
+pub enum IndexEmitter {
     /// Triangles, in the order of the bintree's walk.
     Bintree,
     /// Triangles, in the order of the quadtree's nodes.
@@ -91,7 +91,7 @@ pub enum SphereRule {
 
 /// One way of showing the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub enum LodMethod {
     /// Every post.
     Full,
     /// A level for each patch.
@@ -99,9 +99,9 @@ pub enum Method {
     /// Bits of vertices, set where a criterion wants them, and index lists written of them.
     Refining {
         /// How lists are written.
-        lists: Lists,
+        lists: IndexEmitter,
         /// When an error shows.
-        rule: Rule,
+        rule: CriterionKind,
         /// What refines.
         refiner: Refiner,
     },
@@ -112,7 +112,7 @@ pub enum Method {
     },
 }
 
-impl Rule {
+impl CriterionKind {
     /// Which spheres it is about, if it is about spheres.
     pub fn spheres(self) -> Option<SphereRule> {
         match self {
@@ -124,9 +124,9 @@ impl Rule {
     }
 }
 
-impl Method {
+impl LodMethod {
     /// What it is on the command line; what does not refine has neither criterion nor refiner.
-    pub fn parts(&self) -> (Emit, Option<Rule>, Option<Refine>) {
+    pub fn parts(&self) -> (Emit, Option<CriterionKind>, Option<Refine>) {
         match *self {
             Self::Full => (Emit::Full, None, None),
             Self::Geomipmap => (Emit::Geomipmap, None, None),
@@ -136,11 +136,11 @@ impl Method {
     }
 }
 
-fn emit(lists: Lists) -> Emit {
+fn emit(lists: IndexEmitter) -> Emit {
     match lists {
-        Lists::Bintree => Emit::Bintree,
-        Lists::Quadtree => Emit::Quadtree,
-        Lists::Strips => Emit::Strips,
+        IndexEmitter::Bintree => Emit::Bintree,
+        IndexEmitter::Quadtree => Emit::Quadtree,
+        IndexEmitter::Strips => Emit::Strips,
     }
 }
 
@@ -152,15 +152,15 @@ fn refine(refiner: Refiner) -> Refine {
     }
 }
 
-fn rule(spheres: SphereRule) -> Rule {
+fn rule(spheres: SphereRule) -> CriterionKind {
     match spheres {
-        SphereRule::Plain => Rule::Spheres,
-        SphereRule::Constrained => Rule::Constrained,
-        SphereRule::Bounding => Rule::Bounding,
+        SphereRule::Plain => CriterionKind::Spheres,
+        SphereRule::Constrained => CriterionKind::Constrained,
+        SphereRule::Bounding => CriterionKind::Bounding,
     }
 }
 
-impl Display for Method {
+impl Display for LodMethod {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (emit, rule, refine) = self.parts();
         let parts = [Some(name(&emit)), rule.as_ref().map(name), refine.as_ref().map(name)];
@@ -175,15 +175,15 @@ pub fn name(value: &impl ValueEnum) -> String {
 }
 
 /// Every method that has a meaning, in the order in which they are compared.
-pub fn all() -> Vec<Method> {
-    const LISTS: [Lists; 3] = [Lists::Bintree, Lists::Quadtree, Lists::Strips];
+pub fn all() -> Vec<LodMethod> {
+    const LISTS: [IndexEmitter; 3] = [IndexEmitter::Bintree, IndexEmitter::Quadtree, IndexEmitter::Strips];
     const REFINERS: [Refiner; 3] = [Refiner::Rebuild, Refiner::Coherent, Refiner::Queues];
-    let mut all = vec![Method::Full, Method::Geomipmap];
+    let mut all = vec![LodMethod::Full, LodMethod::Geomipmap];
     for lists in LISTS {
-        for &rule in Rule::value_variants() {
-            all.extend(REFINERS.map(|refiner| Method::Refining { lists, rule, refiner }));
-            let spheres = rule.spheres().filter(|_| lists == Lists::Bintree);
-            all.extend(spheres.map(|spheres| Method::Deferred { spheres }));
+        for &rule in CriterionKind::value_variants() {
+            all.extend(REFINERS.map(|refiner| LodMethod::Refining { lists, rule, refiner }));
+            let spheres = rule.spheres().filter(|_| lists == IndexEmitter::Bintree);
+            all.extend(spheres.map(|spheres| LodMethod::Deferred { spheres }));
         }
     }
     all
@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn spheres_are_called_by_the_criterion_they_are_of() {
-        for &of in Rule::value_variants() {
+        for &of in CriterionKind::value_variants() {
             assert!(of.spheres().is_none_or(|spheres| rule(spheres) == of), "{of:?}");
         }
     }

@@ -1,41 +1,41 @@
 //! GeoMipMap: choose a level for each patch, write the lists of those whose own or neighbours' levels changed.
 
 use crate::app::lod::follow::Follow;
-use crate::app::lod::kept::{Kept, Stale};
-use crate::app::lod::prepared::Prepared;
+use crate::app::lod::kept::{PatchLists, Stale};
+use crate::app::lod::prepared::PreparedGround;
 use crate::roam::culling::{Culling, cull};
-use crate::roam::emit::geomipmap::{Levels, Pyramids, triangles};
+use crate::roam::emit::geomipmap::{PatchLevels, Pyramids, triangles};
 use crate::roam::emit::world::drawn_posts;
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 use crate::roam::shown::{LocalTriangle, PatchList, local};
 use crate::view::camera::Camera;
 
 /// The static method at work.
 pub struct Mipmapping<'a> {
-    terrain: &'a Prepared,
+    terrain: &'a PreparedGround,
     pyramids: Pyramids,
-    levels: Option<Levels>,
+    levels: Option<PatchLevels>,
     stale: Vec<usize>,
-    lists: Kept<Vec<LocalTriangle>>,
+    lists: PatchLists<Vec<LocalTriangle>>,
     view: Vec<Vertex>,
 }
 
 impl<'a> Mipmapping<'a> {
     /// Measures all levels of all patches.
-    pub fn new(terrain: &'a Prepared) -> Self {
+    pub fn new(terrain: &'a PreparedGround) -> Self {
         Self {
             terrain,
             pyramids: Pyramids::new(&terrain.lattice, &terrain.layout),
             levels: None,
             stale: Vec::new(),
-            lists: Kept::new(terrain.layout),
+            lists: PatchLists::new(terrain.layout),
             view: Vec::new(),
         }
     }
 
     /// Lists the patches whose level is another, and those beside them: their stitches may be others.
-    fn note_stale(&mut self, levels: &Levels) {
+    fn note_stale(&mut self, levels: &PatchLevels) {
         let layout = &self.terrain.layout;
         let last = self.levels.as_ref();
         let is_same = |corner| last.is_some_and(|last| last.of(layout, corner) == levels.of(layout, corner));
@@ -47,7 +47,7 @@ impl<'a> Mipmapping<'a> {
 }
 
 /// The places of a patch and of those around it.
-fn with_neighbours(layout: &Layout, corner: Vertex) -> impl Iterator<Item = usize> {
+fn with_neighbours(layout: &PatchLayout, corner: Vertex) -> impl Iterator<Item = usize> {
     let (layout, at) = (*layout, (corner.x / layout.patch(), corner.y / layout.patch()));
     let around = layout.patches_within((at.0 - 1, at.1 - 1), (at.0 + 1, at.1 + 1));
     around.map(move |corner| layout.patch_index(corner))
@@ -77,7 +77,7 @@ impl Follow for Mipmapping<'_> {
     }
 }
 
-fn write(terrain: &Prepared, levels: &Levels, corner: Vertex, list: &mut Vec<LocalTriangle>) {
+fn write(terrain: &PreparedGround, levels: &PatchLevels, corner: Vertex, list: &mut Vec<LocalTriangle>) {
     list.clear();
     let is_whole = terrain.is_whole(corner);
     triangles(&terrain.layout, levels, [corner], |corners| {

@@ -20,25 +20,25 @@ pub mod way;
 pub mod writing;
 
 use crate::app::arguments::LodOptions;
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 use crate::app::ground::metric_lattice;
-use crate::app::lod::prepared::Prepared;
+use crate::app::lod::prepared::PreparedGround;
 use crate::app::output;
-use crate::app::progress::Steps;
+use crate::app::progress::StepTimer;
 
 /// Flies every method that is asked for and prints them side by side.
 ///
 /// # Errors
 /// No method is what was asked for; the elevation file or the flight cannot be had or read.
-pub fn run(options: &LodOptions) -> Result<(), Failure> {
+pub fn run(options: &LodOptions) -> Result<(), CliError> {
     let methods = options.wanted().methods()?;
-    let steps = Steps::default();
+    let steps = StepTimer::default();
     steps.begin("reading elevation");
     let lattice = metric_lattice(&options.file, options.heights)?;
     let flight = way::cameras(&options.flight, options.frames as usize, &lattice)?;
     steps.begin("measuring terrain");
-    let terrain = Prepared::new(lattice, options.tolerance_px)
-        .map_err(|reason| Failure::input(format!("{}: {reason}", options.file.display())))?;
+    let terrain = PreparedGround::new(lattice, options.tolerance_px)
+        .map_err(|reason| CliError::input(format!("{}: {reason}", options.file.display())))?;
     let budget = options.budget.map(|triangles| triangles as usize);
     let reports: Vec<_> = methods
         .iter()

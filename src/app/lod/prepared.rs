@@ -2,10 +2,10 @@
 
 use std::sync::OnceLock;
 
-use crate::app::lod::method::{Rule, SphereRule};
+use crate::app::lod::method::{CriterionKind, SphereRule};
 use crate::roam::criterion::Criterion;
 use crate::roam::criterion::anisotropic::Anisotropic;
-use crate::roam::criterion::block::Block;
+use crate::roam::criterion::block::BlockRelief;
 use crate::roam::criterion::midpoint::Midpoint;
 use crate::roam::criterion::screen::ScreenError;
 use crate::roam::criterion::spheres::Spheres;
@@ -13,8 +13,8 @@ use crate::roam::criterion::variance::Variance;
 use crate::roam::culling::PatchHeights;
 use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
-use crate::roam::layout::{DEFAULT_PATCH, Layout};
+use crate::roam::ground::PatchedGround;
+use crate::roam::layout::{DEFAULT_PATCH, PatchLayout};
 use crate::roam::roughness::Roughness;
 use crate::roam::spheres::{SphereMap, reach};
 use crate::terrain::lattice::Lattice;
@@ -24,11 +24,11 @@ use crate::view::camera::Camera;
 const HALF_WINDOW: (u32, u32) = (1, 1);
 
 /// The ground, and what some methods ask for, made when it is first asked for.
-pub struct Prepared {
+pub struct PreparedGround {
     /// The heights.
     pub lattice: Lattice,
     /// The patches over them.
-    pub layout: Layout,
+    pub layout: PatchLayout,
     /// The drawn heights' range per patch.
     pub heights: PatchHeights,
     /// How many pixels an error may show.
@@ -60,17 +60,17 @@ impl WithCriterion for Nothing {
     fn call(self, _: &impl Criterion) {}
 }
 
-impl Prepared {
+impl PreparedGround {
     /// Lays patches over the ground.
     ///
     /// # Errors
     /// A sentence where that cannot be done.
     pub fn new(lattice: Lattice, tolerance_px: f32) -> Result<Self, String> {
         let (columns, rows) = (lattice.columns(), lattice.rows());
-        let layout = Layout::new(columns, rows, DEFAULT_PATCH).ok_or_else(|| {
+        let layout = PatchLayout::new(columns, rows, DEFAULT_PATCH).ok_or_else(|| {
             format!("patches of {DEFAULT_PATCH} cells cannot be laid over {columns} × {rows} posts: too many vertices")
         })?;
-        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
         Ok(Self {
             heights: PatchHeights::new(ground),
             whole: layout.patches().map(|corner| ground.is_whole(corner)).collect(),
@@ -87,8 +87,8 @@ impl Prepared {
     }
 
     /// What refinement reads; heights are drawn as they are.
-    pub fn ground(&self) -> Ground<'_> {
-        Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
+    pub fn ground(&self) -> PatchedGround<'_> {
+        PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
     }
 
     /// Whether the patch with south-west corner `corner` lies within the borders and has data at every post, so that
@@ -98,25 +98,31 @@ impl Prepared {
     }
 
     /// Makes all that the criterion asks for.
-    pub fn make(&self, rule: Rule, camera: &Camera) {
+    pub fn make(&self, rule: CriterionKind, camera: &Camera) {
         self.with_criterion(rule, camera, Nothing);
     }
 
     /// Calls `with` with the criterion for `camera`.
-    pub fn with_criterion<W: WithCriterion>(&self, rule: Rule, camera: &Camera, with: W) -> W::Out {
+    pub fn with_criterion<W: WithCriterion>(&self, rule: CriterionKind, camera: &Camera, with: W) -> W::Out {
         let (ground, tolerance_px) = (self.ground(), self.tolerance_px);
         let spheres = |which| Spheres::new(ground, self.spheres(which, camera), camera.eye());
         match rule {
-            Rule::Screen => {
+            CriterionKind::Screen => {
                 with.call(&ScreenError::new(ground, self.exact(), &self.heights, camera, tolerance_px))
             }
-            Rule::Variance => with.call(&Variance::new(ground, self.midpoint(), camera, tolerance_px)),
-            Rule::Roughness => with.call(&Midpoint::new(ground, self.midpoint(), camera, tolerance_px)),
-            Rule::Anisotropic => with.call(&Anisotropic::new(ground, self.midpoint(), camera, tolerance_px)),
-            Rule::Block => with.call(&Block::new(ground, self.relief(), camera, tolerance_px)),
-            Rule::Spheres => with.call(&spheres(SphereRule::Plain)),
-            Rule::Constrained => with.call(&spheres(SphereRule::Constrained)),
-            Rule::Bounding => with.call(&spheres(SphereRule::Bounding)),
+            CriterionKind::Variance => {
+                with.call(&Variance::new(ground, self.midpoint(), camera, tolerance_px))
+            }
+            CriterionKind::Roughness => {
+                with.call(&Midpoint::new(ground, self.midpoint(), camera, tolerance_px))
+            }
+            CriterionKind::Anisotropic => {
+                with.call(&Anisotropic::new(ground, self.midpoint(), camera, tolerance_px))
+            }
+            CriterionKind::Block => with.call(&BlockRelief::new(ground, self.relief(), camera, tolerance_px)),
+            CriterionKind::Spheres => with.call(&spheres(SphereRule::Plain)),
+            CriterionKind::Constrained => with.call(&spheres(SphereRule::Constrained)),
+            CriterionKind::Bounding => with.call(&spheres(SphereRule::Bounding)),
         }
     }
 

@@ -1,16 +1,16 @@
 //! Bits of vertices set by any criterion: cull patches, refine those in view, write the lists that changed.
 
 use crate::app::lod::follow::Follow;
-use crate::app::lod::kept::{Kept, Stale};
-use crate::app::lod::method::{Lists, Refiner, Rule};
-use crate::app::lod::prepared::{Prepared, WithCriterion};
+use crate::app::lod::kept::{PatchLists, Stale};
+use crate::app::lod::method::{CriterionKind, IndexEmitter, Refiner};
+use crate::app::lod::prepared::{PreparedGround, WithCriterion};
 use crate::app::lod::writing::{IndexList, Writer};
 use crate::roam::active::ActiveSet;
 use crate::roam::criterion::Criterion;
 use crate::roam::culling::{Culling, cull};
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
-use crate::roam::refine::changes::Changes;
+use crate::roam::layout::PatchLayout;
+use crate::roam::refine::changes::RefinementChanges;
 use crate::roam::refine::coherent::Coherent;
 use crate::roam::refine::queues::{Goal, Queues};
 use crate::roam::refine::rebuild::rebuild;
@@ -19,46 +19,46 @@ use crate::view::camera::Camera;
 
 /// A refiner at work.
 pub struct Refining<'a> {
-    rule: Rule,
-    terrain: &'a Prepared,
-    bits: Bits<'a>,
+    rule: CriterionKind,
+    terrain: &'a PreparedGround,
+    bits: RefinerState<'a>,
     writer: Writer<'a>,
-    lists: Kept<IndexList>,
+    lists: PatchLists<IndexList>,
     view: Vec<Vertex>,
 }
 
 /// The refiners with what they remember.
-enum Bits<'a> {
+enum RefinerState<'a> {
     Rebuild(ActiveSet),
     Coherent(Box<Coherent>),
     Queues(Box<Queues<'a>>),
 }
 
 /// A refiner's update as something that is done with a criterion.
-struct Step<'s, 'a> {
-    bits: &'s mut Bits<'a>,
-    layout: &'s Layout,
+struct UpdateStep<'s, 'a> {
+    bits: &'s mut RefinerState<'a>,
+    layout: &'s PatchLayout,
     patches: &'s [Vertex],
 }
 
-impl WithCriterion for Step<'_, '_> {
+impl WithCriterion for UpdateStep<'_, '_> {
     /// What changed, where the refiner knows.
-    type Out = Option<Changes>;
+    type Out = Option<RefinementChanges>;
 
     fn call(self, criterion: &impl Criterion) -> Self::Out {
         match self.bits {
-            Bits::Rebuild(active) => {
+            RefinerState::Rebuild(active) => {
                 *active = rebuild(self.layout, criterion, self.patches.iter().copied());
                 None
             }
-            Bits::Coherent(coherent) => Some(coherent.update(criterion, self.patches)),
-            Bits::Queues(queues) => Some(queues.update(criterion, self.patches)),
+            RefinerState::Coherent(coherent) => Some(coherent.update(criterion, self.patches)),
+            RefinerState::Queues(queues) => Some(queues.update(criterion, self.patches)),
         }
     }
 }
 
-impl<'a> Bits<'a> {
-    fn new(refiner: Refiner, terrain: &'a Prepared, budget: Option<usize>) -> Self {
+impl<'a> RefinerState<'a> {
+    fn new(refiner: Refiner, terrain: &'a PreparedGround, budget: Option<usize>) -> Self {
         let layout = terrain.layout;
         match refiner {
             Refiner::Rebuild => Self::Rebuild(ActiveSet::new(layout)),
@@ -82,18 +82,18 @@ impl<'a> Bits<'a> {
 impl<'a> Refining<'a> {
     /// By this criterion; queues keep the budget where there is one.
     pub fn new(
-        lists: Lists,
-        rule: Rule,
+        lists: IndexEmitter,
+        rule: CriterionKind,
         refiner: Refiner,
-        terrain: &'a Prepared,
+        terrain: &'a PreparedGround,
         budget: Option<usize>,
     ) -> Self {
         Self {
             rule,
             terrain,
-            bits: Bits::new(refiner, terrain, budget),
+            bits: RefinerState::new(refiner, terrain, budget),
             writer: Writer::new(lists, terrain),
-            lists: Kept::new(terrain.layout),
+            lists: PatchLists::new(terrain.layout),
             view: Vec::new(),
         }
     }
@@ -107,7 +107,7 @@ impl Follow for Refining<'_> {
     fn update(&mut self, camera: &Camera) {
         let terrain = self.terrain;
         cull(terrain.ground(), &terrain.heights, &Culling::frustum(camera), &mut self.view);
-        let step = Step { bits: &mut self.bits, layout: &terrain.layout, patches: &self.view };
+        let step = UpdateStep { bits: &mut self.bits, layout: &terrain.layout, patches: &self.view };
         let changes = terrain.with_criterion(self.rule, camera, step);
         let stale = changes.as_ref().map_or(Stale::All, |changes| Stale::Patches(&changes.dirty));
         let (writer, active) = (&mut self.writer, self.bits.active());

@@ -3,17 +3,17 @@
 use serde_json::{Value, json};
 
 use crate::app::lod::fly::MEASURED;
-use crate::app::lod::method::{Method, name};
-use crate::app::lod::prepared::Prepared;
-use crate::app::lod::way::Way;
+use crate::app::lod::method::{LodMethod, name};
+use crate::app::lod::prepared::PreparedGround;
+use crate::app::lod::way::FlightPath;
 use crate::app::output;
 use crate::roam::measure::HeightDifference;
 
 /// What one method did on a flight, over all frames but the first.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Report {
+pub struct FlightReport {
     /// The method.
-    pub method: Method,
+    pub method: LodMethod,
     /// Frames counted.
     pub frames: usize,
     /// Triangles shown, mean over frames.
@@ -37,11 +37,11 @@ pub struct Report {
 }
 
 /// One object a method; differences are null where nothing was in view.
-pub fn json(reports: &[Report]) -> Value {
+pub fn json(reports: &[FlightReport]) -> Value {
     reports.iter().map(object).collect()
 }
 
-fn object(report: &Report) -> Value {
+fn object(report: &FlightReport) -> Value {
     let (emit, rule, refine) = report.method.parts();
     let tenths = |mean: f64| (mean * 10.0).round() / 10.0;
     json!({
@@ -67,7 +67,12 @@ fn object(report: &Report) -> Value {
 /// What was flown over, a row a method, and what the columns are.
 ///
 /// `budget` is the most triangles that were asked for, instead of a tolerance.
-pub fn table(reports: &[Report], terrain: &Prepared, way: &Way, budget: Option<u32>) -> String {
+pub fn table(
+    reports: &[FlightReport],
+    terrain: &PreparedGround,
+    way: &FlightPath,
+    budget: Option<u32>,
+) -> String {
     let lattice = &terrain.lattice;
     let frames = reports.first().map_or(0, |report| report.frames);
     let cell = lattice.cell();
@@ -101,7 +106,7 @@ pub fn table(reports: &[Report], terrain: &Prepared, way: &Way, budget: Option<u
 }
 
 /// What is to be said where a budget cannot be kept.
-fn exceeded(reports: &[Report], most: usize) -> Option<String> {
+fn exceeded(reports: &[FlightReport], most: usize) -> Option<String> {
     let roots = 2 * reports.iter().map(|report| report.most_patches).max().unwrap_or(0);
     let found = reports.iter().map(|report| report.most_triangles).max().unwrap_or(0);
     (found > most).then(|| {
@@ -125,7 +130,7 @@ const HEADING: [&str; 11] = [
     "max px",
 ];
 
-fn row(report: &Report) -> [String; 11] {
+fn row(report: &FlightReport) -> [String; 11] {
     let difference = &report.difference;
     [
         report.method.to_string(),

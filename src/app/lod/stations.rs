@@ -6,8 +6,8 @@
 
 use glam::Vec3;
 
-use crate::app::failure::Failure;
-use crate::view::flight::Station;
+use crate::app::failure::CliError;
+use crate::view::flight::FlightStation;
 
 /// Stations that are read: more than any flight has frames.
 const MOST: usize = 100_000;
@@ -19,14 +19,14 @@ const FARTHEST_M: f32 = 1e7;
 ///
 /// # Errors
 /// A line holds no station, or there are too few or too many; the message names the place.
-pub fn parse(name: &str, text: &str) -> Result<Vec<Station>, Failure> {
+pub fn parse(name: &str, text: &str) -> Result<Vec<FlightStation>, CliError> {
     let lines = text.trim_start_matches('\u{feff}').lines().enumerate();
     let mut lines =
         lines.filter(|(_, line)| !line.trim().is_empty() && !line.trim_start().starts_with('#')).peekable();
     lines.next_if(|(_, line)| fields(line).all(|field| field.parse::<f32>().is_err()));
     let mut stations = Vec::new();
     for (index, line) in lines {
-        let wrong = |reason: String| Failure::input(format!("{name}:{}: {reason}", index + 1));
+        let wrong = |reason: String| CliError::input(format!("{name}:{}: {reason}", index + 1));
         if stations.len() == MOST {
             return Err(wrong(format!("a flight has at most {MOST} stations")));
         }
@@ -34,14 +34,14 @@ pub fn parse(name: &str, text: &str) -> Result<Vec<Station>, Failure> {
     }
     if stations.len() < 2 {
         let found = stations.len();
-        return Err(Failure::input(format!(
+        return Err(CliError::input(format!(
             "{name}: found {found} stations, a flight needs two or more lines of x,y,z,tx,ty,tz"
         )));
     }
     Ok(stations)
 }
 
-fn parse_station(line: &str) -> Result<Station, String> {
+fn parse_station(line: &str) -> Result<FlightStation, String> {
     let numbers: Option<Vec<f32>> = fields(line).map(|field| field.parse().ok()).collect();
     let Some([x, y, z, tx, ty, tz]) = numbers.as_deref() else {
         let found: String = line.trim().chars().take(60).collect();
@@ -55,7 +55,7 @@ fn parse_station(line: &str) -> Result<Station, String> {
     if eye == target {
         return Err("the eye is its own target; let it look somewhere".into());
     }
-    Ok(Station { eye, target })
+    Ok(FlightStation { eye, target })
 }
 
 fn fields(line: &str) -> impl Iterator<Item = &str> {
@@ -69,9 +69,8 @@ mod tests {
     #[test]
     fn stations_come_with_or_without_a_heading_and_with_any_separator() {
         let expected =
-            [[1.0, 2.0, 3.0, 4.0, 5.0, 6.0], [7.0, 8.0, 9.0, -1.0, 0.5, 1e3]].map(|n: [f32; 6]| Station {
-                eye: Vec3::new(n[0], n[1], n[2]),
-                target: Vec3::new(n[3], n[4], n[5]),
+            [[1.0, 2.0, 3.0, 4.0, 5.0, 6.0], [7.0, 8.0, 9.0, -1.0, 0.5, 1e3]].map(|n: [f32; 6]| {
+                FlightStation { eye: Vec3::new(n[0], n[1], n[2]), target: Vec3::new(n[3], n[4], n[5]) }
             });
         for text in [
             "1,2,3,4,5,6\n7,8,9,-1,0.5,1e3\n",
@@ -95,7 +94,7 @@ mod tests {
             ("x,y,z,tx,ty,tz\nx,y,z,tx,ty,tz\n", "f.csv:2: found"),
             ("1,2,3,4,5,6\n", "f.csv: found 1 stations"),
         ] {
-            let Err(Failure::Input(reason)) = parse("f.csv", text) else { panic!("{text:?} accepted") };
+            let Err(CliError::Input(reason)) = parse("f.csv", text) else { panic!("{text:?} accepted") };
             assert!(reason.starts_with(wanted), "{text:?}: {reason}");
         }
     }

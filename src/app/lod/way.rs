@@ -7,14 +7,14 @@ use std::str::FromStr;
 
 use glam::{DVec2, Vec2, Vec3};
 
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 use crate::app::files;
 use crate::app::lod::stations;
 use crate::geom::rect::Rect;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 use crate::view::camera::Camera;
-use crate::view::flight::{self, Circle, Keeping, Line, Station};
+use crate::view::flight::{self, CircularFlight, FlightStation, Keeping, StraightFlight};
 
 /// Posts along a side of the block about whose middle the circle is flown.
 const BLOCK: u32 = 513;
@@ -30,7 +30,7 @@ const MARGIN: f32 = 0.05;
 
 /// Which way is flown.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum FlightPath {
     /// Round the middle of the south-western block, one cell a frame.
     Circle,
     /// From the south-west to the north-east.
@@ -39,7 +39,7 @@ pub enum Way {
     File(PathBuf),
 }
 
-impl FromStr for Way {
+impl FromStr for FlightPath {
     type Err = Infallible;
 
     fn from_str(text: &str) -> Result<Self, Infallible> {
@@ -51,7 +51,7 @@ impl FromStr for Way {
     }
 }
 
-impl Display for Way {
+impl Display for FlightPath {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Circle => out.write_str("a circle"),
@@ -65,35 +65,40 @@ impl Display for Way {
 ///
 /// # Errors
 /// The file of stations cannot be had or read; a camera looks nowhere.
-pub fn cameras(way: &Way, frames: usize, lattice: &Lattice) -> Result<Vec<Camera>, Failure> {
+pub fn cameras(way: &FlightPath, frames: usize, lattice: &Lattice) -> Result<Vec<Camera>, CliError> {
     let (low, high) = lattice.height_range();
     let stations = stations(way, frames, lattice, (low + high) * 0.5)?;
     let Rect { min, max } = lattice.extent();
     let corners = (min.as_vec2().extend(low), max.as_vec2().extend(high));
-    let camera = |(frame, station): (usize, &Station)| {
+    let camera = |(frame, station): (usize, &FlightStation)| {
         let camera = station.camera(0.5, far_m(corners, station.eye));
-        camera.map_err(|error| Failure::input(format!("{way}, frame {}: {error}", frame + 1)))
+        camera.map_err(|error| CliError::input(format!("{way}, frame {}: {error}", frame + 1)))
     };
     stations.iter().enumerate().map(camera).collect()
 }
 
 /// The stations of a flight; where there is no data it is flown over ground at `missing_m`.
-fn stations(way: &Way, frames: usize, lattice: &Lattice, missing_m: f32) -> Result<Vec<Station>, Failure> {
+fn stations(
+    way: &FlightPath,
+    frames: usize,
+    lattice: &Lattice,
+    missing_m: f32,
+) -> Result<Vec<FlightStation>, CliError> {
     let cell = lattice.cell().as_vec2();
     let size_m = (cell.x * cell.y).sqrt();
     let keeping = Keeping { above_m: ABOVE * size_m, smoothing_m: 2.0 * size_m };
     let ground = |at: Vec2| drawn_z(lattice, at, missing_m);
     Ok(match way {
-        Way::Circle => {
+        FlightPath::Circle => {
             let side = (lattice.columns().min(lattice.rows()).min(BLOCK) - 1) as f32;
             let (center, radius_m) = (cell * side * 0.5, RADIUS * side * size_m);
-            Circle { center, radius_m, step_m: size_m, keeping }.stations(frames, &ground)
+            CircularFlight { center, radius_m, step_m: size_m, keeping }.stations(frames, &ground)
         }
-        Way::Line => {
+        FlightPath::Line => {
             let far = lattice.extent().max.as_vec2();
-            Line { from: far * MARGIN, to: far * (1.0 - MARGIN), keeping }.stations(frames, &ground)
+            StraightFlight { from: far * MARGIN, to: far * (1.0 - MARGIN), keeping }.stations(frames, &ground)
         }
-        Way::File(path) => {
+        FlightPath::File(path) => {
             let text = files::read_text(path)?;
             flight::along(&stations::parse(&files::text_name(path), &text)?, frames)
         }
@@ -126,7 +131,7 @@ mod tests {
     #[test]
     fn flights_stay_over_the_ground_and_see_all_of_it() {
         let lattice = lattice(40, 90);
-        for way in [Way::Circle, Way::Line] {
+        for way in [FlightPath::Circle, FlightPath::Line] {
             let cameras = cameras(&way, 50, &lattice).expect("sound");
             assert_eq!(cameras.len(), 50);
             for camera in cameras {
@@ -139,7 +144,7 @@ mod tests {
 
     #[test]
     fn the_smallest_ground_can_be_flown_over() {
-        for way in [Way::Circle, Way::Line] {
+        for way in [FlightPath::Circle, FlightPath::Line] {
             assert_eq!(cameras(&way, 2, &lattice(2, 2)).expect("sound").len(), 2, "{way}");
         }
     }

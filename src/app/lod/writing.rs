@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::app::lod::method::Lists;
-use crate::app::lod::prepared::Prepared;
+use crate::app::lod::method::IndexEmitter;
+use crate::app::lod::prepared::PreparedGround;
 use crate::roam::active::ActiveSet;
-use crate::roam::emit::bintree::Block;
+use crate::roam::emit::bintree::VertexBlock;
 use crate::roam::emit::quadtree;
 use crate::roam::emit::strips::{Strips, unstrip};
 use crate::roam::emit::world::drawn_posts;
@@ -24,16 +24,17 @@ pub struct IndexList {
 
 /// Writes lists one way.
 pub struct Writer<'a> {
-    terrain: &'a Prepared,
-    lists: Lists,
-    block: Block,
+    terrain: &'a PreparedGround,
+    lists: IndexEmitter,
+    block: VertexBlock,
     strips: Strips,
 }
 
 impl<'a> Writer<'a> {
     /// In the way of `lists`.
-    pub fn new(lists: Lists, terrain: &'a Prepared) -> Self {
-        let block = Block::of(&terrain.layout).expect("patches of the default size have 16-bit indices");
+    pub fn new(lists: IndexEmitter, terrain: &'a PreparedGround) -> Self {
+        let block =
+            VertexBlock::of(&terrain.layout).expect("patches of the default size have 16-bit indices");
         Self { terrain, lists, block, strips: Strips::default() }
     }
 
@@ -42,9 +43,9 @@ impl<'a> Writer<'a> {
         list.triangles.clear();
         list.strips.clear();
         match self.lists {
-            Lists::Bintree => self.write_bintree(active, corner, &mut list.triangles),
-            Lists::Quadtree => self.write_quadtree(active, corner, &mut list.triangles),
-            Lists::Strips => self.write_strips(active, corner, &mut list.strips),
+            IndexEmitter::Bintree => self.write_bintree(active, corner, &mut list.triangles),
+            IndexEmitter::Quadtree => self.write_quadtree(active, corner, &mut list.triangles),
+            IndexEmitter::Strips => self.write_strips(active, corner, &mut list.strips),
         }
         3 * list.triangles.len() + list.strips.len()
     }

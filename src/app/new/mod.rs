@@ -22,10 +22,10 @@ use clap::Args;
 use crate::annotate::nice::Nice;
 use crate::app::arguments::Access;
 use crate::app::check::contents;
-use crate::app::failure::Failure;
-use crate::app::new::paths::Place;
-use crate::app::new::text::{Camera, Ground, Vectors};
-use crate::app::progress::Steps;
+use crate::app::failure::CliError;
+use crate::app::new::paths::SceneFolder;
+use crate::app::new::text::{CameraDraft, GroundDraft, Vectors};
+use crate::app::progress::StepTimer;
 use crate::app::{files, load, output};
 use crate::description::parse::parse;
 use crate::scene::assets::Assets;
@@ -68,15 +68,15 @@ pub struct NewOptions {
 /// # Errors
 /// There is a scene file already; a file cannot be had or read; the folder cannot be written. Where the scene is written
 /// and cannot be built, what is wrong with it.
-pub fn run(options: &NewOptions) -> Result<(), Failure> {
-    let steps = Steps::default();
+pub fn run(options: &NewOptions) -> Result<(), CliError> {
+    let steps = StepTimer::default();
     steps.begin("looking at the files");
     let scene_file = options.folder.join(NAME);
-    let wrong = |reason: &str| Failure::input(format!("{}: {reason}", scene_file.display()));
+    let wrong = |reason: &str| CliError::input(format!("{}: {reason}", scene_file.display()));
     if scene_file.symlink_metadata().is_ok() {
         return Err(wrong("there is such a file already; remove it, or name another folder"));
     }
-    let place = Place::new(&options.folder)?;
+    let place = SceneFolder::new(&options.folder)?;
     let dem = options.dem.iter().map(|file| place.named(file)).collect::<Result<Vec<_>, _>>()?;
     let vectors = options.vectors.iter().map(|file| surveyed(file, &place)).collect::<Result<Vec<_>, _>>()?;
     let allow = place.to_allow(options.dem.iter().chain(&options.vectors))?;
@@ -85,8 +85,11 @@ pub fn run(options: &NewOptions) -> Result<(), Failure> {
     let made = !options.folder.exists();
     fs::create_dir_all(&options.folder).map_err(|error| wrong(&error.to_string()))?;
     let title = options.title.clone().unwrap_or_else(|| title_of(&options.dem[0]));
-    let ground =
-        ground(&scene_file, Ground { title, dem, crs: options.crs.clone(), ..Ground::default() }, &allow);
+    let ground = ground(
+        &scene_file,
+        GroundDraft { title, dem, crs: options.crs.clone(), ..GroundDraft::default() },
+        &allow,
+    );
     let ground = ground.inspect_err(|_| {
         if made {
             // Only where nobody has put anything into it meanwhile.
@@ -102,10 +105,10 @@ pub fn run(options: &NewOptions) -> Result<(), Failure> {
 }
 
 /// Prints what was made.
-fn report(scene_file: &Path, allow: &[PathBuf], scene: Result<Scene, Failure>) -> Result<(), Failure> {
+fn report(scene_file: &Path, allow: &[PathBuf], scene: Result<Scene, CliError>) -> Result<(), CliError> {
     let command = |verb: &str| paths::command(verb, scene_file, allow);
     let scene = scene.map_err(|failure| match failure {
-        Failure::Input(reason) => Failure::Input(format!(
+        CliError::Input(reason) => CliError::Input(format!(
             "{reason}\n{} is written, but cannot be built yet; mend it and try\n  {}",
             scene_file.display(),
             command("check")
@@ -120,17 +123,17 @@ fn report(scene_file: &Path, allow: &[PathBuf], scene: Result<Scene, Failure>) -
 }
 
 /// What a vector file holds.
-fn surveyed(file: &Path, place: &Place) -> Result<Vectors, Failure> {
+fn surveyed(file: &Path, place: &SceneFolder) -> Result<Vectors, CliError> {
     Ok(Vectors { file: place.named(file)?, layers: survey::layers(file)? })
 }
 
 /// The same with what the elevation tells: heights, extent, and a camera that sees all of it.
-fn ground(scene_file: &Path, mut ground: Ground, allow: &[PathBuf]) -> Result<Ground, Failure> {
-    let assets = Assets::new(scene_file, allow).map_err(Failure::input)?;
-    let built = |ground: &Ground| {
+fn ground(scene_file: &Path, mut ground: GroundDraft, allow: &[PathBuf]) -> Result<GroundDraft, CliError> {
+    let assets = Assets::new(scene_file, allow).map_err(CliError::input)?;
+    let built = |ground: &GroundDraft| {
         let document =
-            parse(&scene_file.to_string_lossy(), &text::terrain(ground)).map_err(Failure::input)?;
-        build(&document, &assets, &|_| ()).map_err(Failure::input)
+            parse(&scene_file.to_string_lossy(), &text::terrain(ground)).map_err(CliError::input)?;
+        build(&document, &assets, &|_| ()).map_err(CliError::input)
     };
     let plain = built(&ground)?;
     let lattice = &plain.terrain.lattice;
@@ -158,14 +161,14 @@ fn exaggeration(relief: f64) -> f64 {
 }
 
 /// The camera that a scene without any has, as a table says it; `None` where there is no ground in the middle to look at.
-fn camera(scene: &Scene) -> Option<Camera> {
+fn camera(scene: &Scene) -> Option<CameraDraft> {
     let view = scene.cameras.first()?;
     let lattice = &scene.terrain.lattice;
     let exaggeration = f64::from(scene.terrain.exaggeration);
     let at = |world: glam::Vec3| lattice.origin() + world.truncate().as_dvec2();
     let look_at = at(view.target);
     let ground_m = ground_height(lattice, Interpolation::Planar, look_at).height_m()?;
-    Some(Camera {
+    Some(CameraDraft {
         name: view.name.clone(),
         eye: at(view.eye),
         eye_elevation_m: f64::from(view.eye.z) / exaggeration,

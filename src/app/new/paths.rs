@@ -2,21 +2,21 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 
 /// The folder of a new scene file.
-pub(super) struct Place {
+pub(super) struct SceneFolder {
     /// Without links, whether it is there yet or not.
     folder: PathBuf,
 }
 
-impl Place {
+impl SceneFolder {
     /// The folder at `path`, which need not be there.
     ///
     /// # Errors
     /// It has no name, or there is a file in its way.
-    pub fn new(path: &Path) -> Result<Self, Failure> {
-        let wrong = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
+    pub fn new(path: &Path) -> Result<Self, CliError> {
+        let wrong = |reason: String| CliError::input(format!("{}: {reason}", path.display()));
         if path.exists() && !path.is_dir() {
             return Err(wrong("this is not a folder".into()));
         }
@@ -34,13 +34,14 @@ impl Place {
     ///
     /// # Errors
     /// There is no such file, or its name is not text.
-    pub fn named(&self, file: &Path) -> Result<String, Failure> {
+    pub fn named(&self, file: &Path) -> Result<String, CliError> {
         let real = real(file)?;
         let shared = self.folder.components().zip(real.components()).take_while(|(a, b)| a == b).count();
         let up = self.folder.components().skip(shared).map(|_| "..");
         let down = real.components().skip(shared).map(|part| part.as_os_str().to_str());
         let parts: Option<Vec<&str>> = up.map(Some).chain(down).collect();
-        let wrong = || Failure::input(format!("{}: its name is not Unicode text; rename it", file.display()));
+        let wrong =
+            || CliError::input(format!("{}: its name is not Unicode text; rename it", file.display()));
         parts.map(|parts| parts.join("/")).ok_or_else(wrong)
     }
 
@@ -49,7 +50,7 @@ impl Place {
     ///
     /// # Errors
     /// There is no such file.
-    pub fn to_allow<'f>(&self, files: impl Iterator<Item = &'f PathBuf>) -> Result<Vec<PathBuf>, Failure> {
+    pub fn to_allow<'f>(&self, files: impl Iterator<Item = &'f PathBuf>) -> Result<Vec<PathBuf>, CliError> {
         // As `Assets` has it: not where the parent is the root of the file system.
         let root = self.folder.parent().filter(|parent| parent.parent().is_some()).unwrap_or(&self.folder);
         let mut folders = Vec::new();
@@ -65,8 +66,8 @@ impl Place {
     }
 }
 
-fn real(file: &Path) -> Result<PathBuf, Failure> {
-    let wrong = |reason: &str| Failure::input(format!("{}: {reason}", file.display()));
+fn real(file: &Path) -> Result<PathBuf, CliError> {
+    let wrong = |reason: &str| CliError::input(format!("{}: {reason}", file.display()));
     let real = file.canonicalize().map_err(|_| wrong("there is no such file"))?;
     if real.is_file() { Ok(real) } else { Err(wrong("this is not a file")) }
 }

@@ -7,27 +7,27 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 use crate::app::files;
 use crate::description::expression::Expression;
 use crate::scene::attributes::Attributes;
 use crate::vector::error::VectorError;
-use crate::vector::feature::{Geometry, Layer};
-use crate::vector::read::{self, Hints};
+use crate::vector::feature::{Geometry, VectorLayer};
+use crate::vector::read::{self, VectorHints};
 
 /// One layer of a file.
-pub(super) struct Surveyed {
+pub(super) struct SurveyedLayer {
     /// How a scene asks for it; `None` where the file has one layer.
     pub layer: Option<String>,
     /// The tables that take something from it, in the order in which they are drawn.
-    pub found: Vec<Found>,
+    pub found: Vec<TableMatch>,
     /// What no table takes: `lines`, `polygons` or `points`, and how many.
     pub rest: Vec<(&'static str, usize)>,
 }
 
 /// A table and how many features it takes.
-pub(super) struct Found {
-    pub rule: &'static Rule,
+pub(super) struct TableMatch {
+    pub rule: &'static TableRule,
     pub count: usize,
     /// Whether they must be chosen, or are all that there is.
     pub chosen: Chosen,
@@ -43,7 +43,7 @@ pub(super) enum Chosen {
 }
 
 /// A table that may be written.
-pub(super) struct Rule {
+pub(super) struct TableRule {
     /// The table's name.
     pub table: &'static str,
     /// What its features are.
@@ -61,8 +61,8 @@ pub(super) struct Rule {
 }
 
 /// The rules, in the order in which tables are written: what lies lower first.
-pub(super) static RULES: [Rule; 12] = [
-    Rule {
+pub(super) static RULES: [TableRule; 12] = [
+    TableRule {
         table: "area",
         what: "Land cover",
         shape: "polygons",
@@ -81,7 +81,7 @@ pub(super) static RULES: [Rule; 12] = [
         ],
         names: &[],
     },
-    Rule {
+    TableRule {
         table: "lake",
         what: "Lakes",
         shape: "polygons",
@@ -90,7 +90,7 @@ pub(super) static RULES: [Rule; 12] = [
         keys: &["level_rule = \"lowest\""],
         names: &["lake", "water", "reservoir"],
     },
-    Rule {
+    TableRule {
         table: "river",
         what: "Streams",
         shape: "lines",
@@ -99,7 +99,7 @@ pub(super) static RULES: [Rule; 12] = [
         keys: &[],
         names: &["stream", "creek"],
     },
-    Rule {
+    TableRule {
         table: "river",
         what: "Rivers",
         shape: "lines",
@@ -108,7 +108,7 @@ pub(super) static RULES: [Rule; 12] = [
         keys: &[],
         names: &["river", "waterway"],
     },
-    Rule {
+    TableRule {
         table: "road",
         what: "Tracks and paths",
         shape: "lines",
@@ -117,7 +117,7 @@ pub(super) static RULES: [Rule; 12] = [
         keys: &["surface = \"track\""],
         names: &["track", "trail", "path"],
     },
-    Rule {
+    TableRule {
         table: "road",
         what: "Streets",
         shape: "lines",
@@ -126,7 +126,7 @@ pub(super) static RULES: [Rule; 12] = [
         keys: &["surface = \"if(surface in ('unpaved', 'gravel', 'dirt', 'ground'), 'gravel', 'asphalt')\""],
         names: &["road", "street"],
     },
-    Rule {
+    TableRule {
         table: "road",
         what: "Country roads",
         shape: "lines",
@@ -135,7 +135,7 @@ pub(super) static RULES: [Rule; 12] = [
         keys: &["surface = \"if(surface in ('unpaved', 'gravel', 'dirt', 'ground'), 'gravel', 'asphalt')\""],
         names: &[],
     },
-    Rule {
+    TableRule {
         table: "road",
         what: "Main roads",
         shape: "lines",
@@ -144,7 +144,7 @@ pub(super) static RULES: [Rule; 12] = [
         keys: &["surface = \"asphalt\""],
         names: &["highway"],
     },
-    Rule {
+    TableRule {
         table: "building",
         what: "Buildings",
         shape: "polygons",
@@ -153,7 +153,7 @@ pub(super) static RULES: [Rule; 12] = [
         keys: &["height = \"height ?? `building:levels` * 3 ?? levels * 3 ?? 6\""],
         names: &["building", "footprint", "house"],
     },
-    Rule {
+    TableRule {
         table: "fence",
         what: "Fences, walls and hedges",
         shape: "lines",
@@ -162,7 +162,7 @@ pub(super) static RULES: [Rule; 12] = [
         keys: &["kind = \"match(barrier, 'fence', 'fence', 'hedge', 'hedge', 'wall')\""],
         names: &["fence"],
     },
-    Rule {
+    TableRule {
         table: "fence",
         what: "Power lines",
         shape: "lines",
@@ -171,7 +171,7 @@ pub(super) static RULES: [Rule; 12] = [
         keys: &["kind = \"power-line\""],
         names: &["power"],
     },
-    Rule {
+    TableRule {
         table: "fence",
         what: "Boundaries",
         shape: "lines",
@@ -186,13 +186,14 @@ pub(super) static RULES: [Rule; 12] = [
 ///
 /// # Errors
 /// The file cannot be read; the message names it.
-pub(super) fn layers(file: &Path) -> Result<Vec<Surveyed>, Failure> {
+pub(super) fn layers(file: &Path) -> Result<Vec<SurveyedLayer>, CliError> {
     let bytes = files::read(file)?;
     let name = file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let beside = files::beside(file);
-    let read =
-        |layer: Option<&str>| read::read(&name, &bytes, &Hints { crs: None, layer, companions: &beside });
-    let wrong = |error: VectorError| Failure::input(format!("{}: {error}", file.display()));
+    let read = |layer: Option<&str>| {
+        read::read(&name, &bytes, &VectorHints { crs: None, layer, companions: &beside })
+    };
+    let wrong = |error: VectorError| CliError::input(format!("{}: {error}", file.display()));
     match read(None) {
         Ok(layer) => Ok(vec![surveyed(Arc::new(layer), None, &name)]),
         Err(VectorError::WhichLayer { names, .. }) => {
@@ -208,13 +209,13 @@ pub(super) fn layers(file: &Path) -> Result<Vec<Surveyed>, Failure> {
 
 /// The layers of one file without what another of them is named after: the schools of a file with all buildings are
 /// among these.
-fn without_repeats(mut layers: Vec<Surveyed>) -> Vec<Surveyed> {
-    let named_after = |layer: &Surveyed, rule: &Rule| {
+fn without_repeats(mut layers: Vec<SurveyedLayer>) -> Vec<SurveyedLayer> {
+    let named_after = |layer: &SurveyedLayer, rule: &TableRule| {
         let called = layer.layer.as_deref().unwrap_or_default().to_lowercase();
         rule.names.iter().any(|name| called.contains(name))
     };
     for rule in &RULES {
-        let takes = |layer: &Surveyed| layer.found.iter().any(|found| found.rule.what == rule.what);
+        let takes = |layer: &SurveyedLayer| layer.found.iter().any(|found| found.rule.what == rule.what);
         if layers.iter().any(|layer| named_after(layer, rule) && takes(layer)) {
             for layer in layers.iter_mut().filter(|layer| !named_after(layer, rule)) {
                 layer.found.retain(|found| found.rule.what != rule.what);
@@ -235,7 +236,7 @@ fn distinct(names: Vec<String>) -> Vec<String> {
     names.iter().filter(|name| kept(name) && !GPX_POINTS.contains(&name.as_str())).cloned().collect()
 }
 
-fn surveyed(layer: Arc<Layer>, name: Option<String>, called: &str) -> Surveyed {
+fn surveyed(layer: Arc<VectorLayer>, name: Option<String>, called: &str) -> SurveyedLayer {
     let mut taken = vec![false; layer.features.len()];
     let mut found = Vec::new();
     for rule in &RULES {
@@ -252,7 +253,7 @@ fn surveyed(layer: Arc<Layer>, name: Option<String>, called: &str) -> Surveyed {
         }
         if count > 0 {
             let chosen = if count == layer.features.len() { Chosen::All } else { Chosen::ByRule };
-            found.push(Found { rule, count, chosen });
+            found.push(TableMatch { rule, count, chosen });
         }
     }
     if found.is_empty() {
@@ -267,7 +268,7 @@ fn surveyed(layer: Arc<Layer>, name: Option<String>, called: &str) -> Surveyed {
             |(index, taken): &(usize, &bool)| !**taken && layer.features[*index].geometry.kind() == kind;
         (kind, taken.iter().enumerate().filter(left).count())
     });
-    Surveyed { layer: name, found, rest: rest.into_iter().filter(|rest| rest.1 > 0).collect() }
+    SurveyedLayer { layer: name, found, rest: rest.into_iter().filter(|rest| rest.1 > 0).collect() }
 }
 
 /// Whether a scene takes the shape where it wants `wanted`.
@@ -276,12 +277,12 @@ fn is_shaped(geometry: &Geometry, wanted: &str) -> bool {
 }
 
 /// The table that a layer's name speaks of.
-fn by_name(layer: &Layer, called: &str) -> Option<Found> {
+fn by_name(layer: &VectorLayer, called: &str) -> Option<TableMatch> {
     let called = called.to_lowercase();
     RULES.iter().find_map(|rule| {
         let count = layer.features.iter().filter(|feature| is_shaped(&feature.geometry, rule.shape)).count();
         let spoken_of = rule.names.iter().any(|name| called.contains(name));
-        (count > 0 && spoken_of).then_some(Found { rule, count, chosen: Chosen::All })
+        (count > 0 && spoken_of).then_some(TableMatch { rule, count, chosen: Chosen::All })
     })
 }
 

@@ -6,11 +6,11 @@ use glam::DVec2;
 use serde_json::Value;
 
 use crate::annotate::nice::Nice;
-use crate::app::new::survey::{Chosen, Found, RULES, Surveyed};
+use crate::app::new::survey::{Chosen, RULES, SurveyedLayer, TableMatch};
 
 /// What is known of the ground; zero and nothing where it is not yet.
 #[derive(Default)]
-pub(super) struct Ground {
+pub(super) struct GroundDraft {
     pub title: String,
     /// As the scene file names them.
     pub dem: Vec<String>,
@@ -25,11 +25,11 @@ pub(super) struct Ground {
     /// 0 for none stated.
     pub exaggeration: f64,
     pub contours_m: Option<f64>,
-    pub camera: Option<Camera>,
+    pub camera: Option<CameraDraft>,
 }
 
 /// A camera as its table says it.
-pub(super) struct Camera {
+pub(super) struct CameraDraft {
     pub name: String,
     pub eye: DVec2,
     pub eye_elevation_m: f64,
@@ -42,7 +42,7 @@ pub(super) struct Camera {
 pub(super) struct Vectors {
     /// As the scene file names it.
     pub file: String,
-    pub layers: Vec<Surveyed>,
+    pub layers: Vec<SurveyedLayer>,
 }
 
 /// The extent up to which things are drawn as wide as they are: on a picture a thousand pixels wide a pixel is then
@@ -50,7 +50,7 @@ pub(super) struct Vectors {
 const TRUE_TO_SCALE_M: f64 = 4000.0;
 
 /// The text of the scene file.
-pub(super) fn scene(ground: &Ground, vectors: &[Vectors]) -> String {
+pub(super) fn scene(ground: &GroundDraft, vectors: &[Vectors]) -> String {
     let mut out = head(ground);
     out.push_str(&terrain(ground));
     out.push_str(&style(ground));
@@ -66,7 +66,7 @@ pub(super) fn scene(ground: &Ground, vectors: &[Vectors]) -> String {
     let layers = || vectors.iter().flat_map(|file| file.layers.iter().map(move |layer| (file, layer)));
     for rule in &RULES {
         for (file, layer) in layers() {
-            let of_this_rule = |found: &&Found| found.rule.what == rule.what;
+            let of_this_rule = |found: &&TableMatch| found.rule.what == rule.what;
             layer
                 .found
                 .iter()
@@ -79,7 +79,7 @@ pub(super) fn scene(ground: &Ground, vectors: &[Vectors]) -> String {
     out
 }
 
-fn head(ground: &Ground) -> String {
+fn head(ground: &GroundDraft) -> String {
     let (title, crs) = (quoted(&ground.title), &ground.crs_name);
     format!(
         "# Lengths and heights are metres, angles degrees, file names relative to this file.\n\
@@ -91,7 +91,7 @@ fn head(ground: &Ground) -> String {
 }
 
 /// The table of the terrain; alone it is a scene.
-pub(super) fn terrain(ground: &Ground) -> String {
+pub(super) fn terrain(ground: &GroundDraft) -> String {
     let mut out = "\n[terrain]\n".to_owned();
     let dem = match &ground.dem[..] {
         [only] => quoted(only),
@@ -108,7 +108,7 @@ pub(super) fn terrain(ground: &Ground) -> String {
     out
 }
 
-fn style(ground: &Ground) -> String {
+fn style(ground: &GroundDraft) -> String {
     let mut out = "\n[style]\n# Or \"desert\", \"grey\", or stops of your own: [[0, \"#7f9f6b\"], [400, \"#c9cf97\"]].\n\
                    ramp = \"atlas\"\n"
         .to_owned();
@@ -121,7 +121,7 @@ fn style(ground: &Ground) -> String {
     out
 }
 
-fn table(out: &mut String, file: &Vectors, layer: &Surveyed, found: &Found, factor: f64) {
+fn table(out: &mut String, file: &Vectors, layer: &SurveyedLayer, found: &TableMatch, factor: f64) {
     let (rule, count) = (found.rule, found.count);
     let _ = writeln!(out, "\n# {} ({count}).\n[[{}]]\nfile = {}", rule.what, rule.table, quoted(&file.file));
     if let Some(layer) = &layer.layer {
@@ -139,7 +139,7 @@ fn table(out: &mut String, file: &Vectors, layer: &Surveyed, found: &Found, fact
 }
 
 /// What could be made of the rest.
-fn rest(out: &mut String, file: &Vectors, layer: &Surveyed) {
+fn rest(out: &mut String, file: &Vectors, layer: &SurveyedLayer) {
     for (kind, count) in &layer.rest {
         let _ = writeln!(out, "\n# In no table of this file ({count} {kind}); to draw them:");
         let instances = *kind == "points";
@@ -157,7 +157,7 @@ fn rest(out: &mut String, file: &Vectors, layer: &Surveyed) {
     }
 }
 
-fn camera(ground: &Ground) -> String {
+fn camera(ground: &GroundDraft) -> String {
     let Some(camera) = &ground.camera else {
         return "\n# Without a [[camera]] one is made that sees the whole ground.\n".into();
     };

@@ -9,11 +9,11 @@ use std::sync::{Arc, OnceLock};
 
 use crate::app::arguments::{Access, StatedHeights};
 use crate::app::dataset::Dataset;
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 use crate::app::serve::json;
 use crate::app::serve::params::Params;
-use crate::app::serve::reply::{Refusal, quoted};
-use crate::terrain::query::service::Epoch;
+use crate::app::serve::reply::{HttpError, quoted};
+use crate::terrain::query::service::Snapshot;
 
 /// What is asked for at `/v1/NAME` and is no dataset.
 const TAKEN: [&str; 3] = ["los", "profile", "viewshed"];
@@ -31,7 +31,7 @@ pub struct Served {
 
 /// Whether a dataset's ground in metres can be asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ground<'a> {
+pub enum GroundState<'a> {
     /// It is there.
     Ready,
     /// It is being made.
@@ -45,7 +45,7 @@ impl Served {
     ///
     /// # Errors
     /// The file cannot be had or read, or its name cannot be part of an address.
-    pub fn open(argument: &str, heights: StatedHeights, access: &Access) -> Result<Self, Failure> {
+    pub fn open(argument: &str, heights: StatedHeights, access: &Access) -> Result<Self, CliError> {
         let (name, path) = named(argument);
         check_name(&name, argument)?;
         let data = Dataset::open(&path, heights, access)?;
@@ -58,16 +58,16 @@ impl Served {
     pub fn prepare(&self) {
         self.ground.get_or_init(|| match self.data.service() {
             Ok(_) => Ok(()),
-            Err(Failure::Input(reason) | Failure::Usage(reason)) => Err(reason),
+            Err(CliError::Input(reason) | CliError::Usage(reason)) => Err(reason),
         });
     }
 
     /// Whether the ground can be asked.
-    pub fn ground(&self) -> Ground<'_> {
+    pub fn ground(&self) -> GroundState<'_> {
         match self.ground.get() {
-            Some(Ok(())) => Ground::Ready,
-            Some(Err(reason)) => Ground::None(reason),
-            None => Ground::Awaited,
+            Some(Ok(())) => GroundState::Ready,
+            Some(Err(reason)) => GroundState::None(reason),
+            None => GroundState::Awaited,
         }
     }
 
@@ -75,11 +75,11 @@ impl Served {
     ///
     /// # Errors
     /// There is none; the message says why.
-    pub fn epoch(&self) -> Result<Arc<Epoch>, Refusal> {
+    pub fn epoch(&self) -> Result<Arc<Snapshot>, HttpError> {
         self.prepare();
         match self.data.service() {
-            Ok(service) => Ok(service.now()),
-            Err(Failure::Input(reason) | Failure::Usage(reason)) => Err(Refusal::wrong(format!(
+            Ok(service) => Ok(service.snapshot()),
+            Err(CliError::Input(reason) | CliError::Usage(reason)) => Err(HttpError::wrong(format!(
                 "dataset {} has no ground in metres: {reason}",
                 quoted(&self.name)
             ))),
@@ -95,12 +95,12 @@ impl Datasets {
     ///
     /// # Errors
     /// As for [`Served::open`]; or two have the same name.
-    pub fn open(arguments: &[String], heights: StatedHeights, access: &Access) -> Result<Self, Failure> {
+    pub fn open(arguments: &[String], heights: StatedHeights, access: &Access) -> Result<Self, CliError> {
         let mut all: Vec<Served> = Vec::with_capacity(arguments.len());
         for argument in arguments {
             let next = Served::open(argument, heights, access)?;
             if all.iter().any(|other| other.name == next.name) {
-                return Err(Failure::Usage(format!(
+                return Err(CliError::Usage(format!(
                     "two datasets are named '{0}': give one of them another name, as in other={argument}",
                     next.name
                 )));
@@ -124,9 +124,9 @@ impl Datasets {
     ///
     /// # Errors
     /// There is none; the message lists those that there are.
-    pub fn find(&self, name: &str) -> Result<usize, Refusal> {
+    pub fn find(&self, name: &str) -> Result<usize, HttpError> {
         self.0.iter().position(|served| served.name == name).ok_or_else(|| {
-            Refusal::unknown(format!("there is no dataset {}; there are {}", quoted(name), self.names()))
+            HttpError::unknown(format!("there is no dataset {}; there are {}", quoted(name), self.names()))
         })
     }
 
@@ -134,12 +134,12 @@ impl Datasets {
     ///
     /// # Errors
     /// There is no such dataset, or one is named twice.
-    pub fn find_all(&self, list: &str) -> Result<Vec<usize>, Refusal> {
+    pub fn find_all(&self, list: &str) -> Result<Vec<usize>, HttpError> {
         let mut found = Vec::new();
         for name in list.split(',') {
             let index = self.find(name)?;
             if found.contains(&index) {
-                return Err(Refusal::wrong(format!("dataset {} is named twice", quoted(name))));
+                return Err(HttpError::wrong(format!("dataset {} is named twice", quoted(name))));
             }
             found.push(index);
         }
@@ -150,11 +150,11 @@ impl Datasets {
     ///
     /// # Errors
     /// There is no such dataset, or none is named and several are served.
-    pub fn asked(&self, params: &Params<'_>) -> Result<usize, Refusal> {
+    pub fn asked(&self, params: &Params<'_>) -> Result<usize, HttpError> {
         match params.get("dataset") {
             Some(name) => self.find(name),
             None if self.0.len() == 1 => Ok(0),
-            None => Err(Refusal::wrong(format!(
+            None => Err(HttpError::wrong(format!(
                 "'dataset' is missing; write it as in dataset={}, there are {}",
                 self.0[0].name,
                 self.names()
@@ -182,7 +182,7 @@ fn named(argument: &str) -> (String, PathBuf) {
     }
 }
 
-fn check_name(name: &str, argument: &str) -> Result<(), Failure> {
+fn check_name(name: &str, argument: &str) -> Result<(), CliError> {
     let wrong = if TAKEN.contains(&name) {
         "is the address of a question"
     } else if name.is_empty() {
@@ -194,7 +194,7 @@ fn check_name(name: &str, argument: &str) -> Result<(), Failure> {
     } else {
         return Ok(());
     };
-    Err(Failure::Usage(format!(
+    Err(CliError::Usage(format!(
         "the dataset name '{name}' {wrong}: give it another, as in hills={}",
         argument.split_once('=').map_or(argument, |(_, file)| file)
     )))

@@ -11,7 +11,7 @@
 
 use glam::DVec2;
 
-use crate::app::serve::reply::{Refusal, quoted};
+use crate::app::serve::reply::{HttpError, quoted};
 
 /// The units in a degree.
 const PER_DEGREE: f64 = 1e5;
@@ -23,14 +23,14 @@ const LONGEST_STEP: u32 = 7;
 ///
 /// # Errors
 /// A character is none of the format's, the text ends within a location, or there are more than `most` locations.
-pub fn decode(text: &str, most: usize) -> Result<Vec<DVec2>, Refusal> {
-    let mut steps = Steps { bytes: text.as_bytes(), at: 0 };
+pub fn decode(text: &str, most: usize) -> Result<Vec<DVec2>, HttpError> {
+    let mut steps = DeltaReader { bytes: text.as_bytes(), at: 0 };
     // A location takes two characters or more.
     let mut places = Vec::with_capacity((text.len() / 2).min(most));
     let (mut lat, mut lng) = (0i64, 0i64);
     while steps.at < steps.bytes.len() {
         if places.len() == most {
-            return Err(Refusal::wrong(format!(
+            return Err(HttpError::wrong(format!(
                 "the encoded polyline holds more than {most} locations, the most of one request"
             )));
         }
@@ -43,8 +43,8 @@ pub fn decode(text: &str, most: usize) -> Result<Vec<DVec2>, Refusal> {
     Ok(places)
 }
 
-fn wrong(text: &str, at: usize) -> Refusal {
-    Refusal::wrong(format!(
+fn wrong(text: &str, at: usize) -> HttpError {
+    HttpError::wrong(format!(
         "locations {} has no comma, so it was read as an encoded polyline, which it is not, from character {} on; \
          write locations as lat,lng|lat,lng or as an encoded polyline",
         quoted(text),
@@ -53,13 +53,13 @@ fn wrong(text: &str, at: usize) -> Refusal {
 }
 
 /// Reads steps one after the other.
-struct Steps<'a> {
+struct DeltaReader<'a> {
     bytes: &'a [u8],
     /// The next byte, or the one that is wrong.
     at: usize,
 }
 
-impl Steps<'_> {
+impl DeltaReader<'_> {
     /// The next step, or `None` where the text is wrong or at its end.
     fn next(&mut self) -> Option<i64> {
         let mut bits = 0i64;

@@ -8,8 +8,8 @@ use glam::DVec2;
 use crate::app::serve::params::Params;
 use crate::app::serve::places::Coordinates;
 use crate::app::serve::question::Service;
-use crate::app::serve::reply::Refusal;
-use crate::terrain::query::service::Epoch;
+use crate::app::serve::reply::HttpError;
+use crate::terrain::query::service::Snapshot;
 use crate::terrain::sight::Curvature;
 
 /// Heights above the ground reach from the ground to where aircraft fly.
@@ -28,7 +28,7 @@ impl Grounded {
     ///
     /// # Errors
     /// There is no such dataset or system, or no way between the two.
-    pub fn read(service: &Service, params: &Params<'_>) -> Result<Self, Refusal> {
+    pub fn read(service: &Service, params: &Params<'_>) -> Result<Self, HttpError> {
         let dataset = service.datasets.asked(params)?;
         let native = service.datasets.at(dataset).data.crs();
         let coordinates = Coordinates::read(params, &native, &service.wgs84)?;
@@ -39,12 +39,12 @@ impl Grounded {
     ///
     /// # Errors
     /// The dataset has none.
-    pub fn epoch(&self, service: &Service) -> Result<Arc<Epoch>, Refusal> {
+    pub fn epoch(&self, service: &Service) -> Result<Arc<Snapshot>, HttpError> {
         service.datasets.at(self.dataset).epoch()
     }
 
     /// The place of the request at a place on the ground; not finite where there is none.
-    pub fn back(&self, epoch: &Epoch, at: DVec2) -> DVec2 {
+    pub fn back(&self, epoch: &Snapshot, at: DVec2) -> DVec2 {
         epoch.crs().transform(&self.coordinates.crs, at).unwrap_or(DVec2::NAN)
     }
 }
@@ -53,7 +53,7 @@ impl Grounded {
 ///
 /// # Errors
 /// It is no number, or below the ground.
-pub fn above_m(params: &Params<'_>, name: &str, default: f64) -> Result<f64, Refusal> {
+pub fn above_m(params: &Params<'_>, name: &str, default: f64) -> Result<f64, HttpError> {
     params.number(name, 0.0..=HIGHEST_M, default)
 }
 
@@ -64,7 +64,7 @@ pub const OBSERVER_M: f64 = 2.0;
 ///
 /// # Errors
 /// `earth` is neither `round` nor `flat`, or the refraction is none that air has.
-pub fn curvature(params: &Params<'_>) -> Result<Curvature, Refusal> {
+pub fn curvature(params: &Params<'_>) -> Result<Curvature, HttpError> {
     let round = Curvature::default();
     let refraction = params.number("refraction", -1.0..=1.0, round.refraction)?;
     let earth = params.choice("earth", &[("round", round), ("flat", Curvature::FLAT)])?;

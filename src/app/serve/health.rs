@@ -1,9 +1,9 @@
 //! `/health`: whether the service answers, and of what.
 
-use crate::app::serve::datasets::{Ground, Served};
+use crate::app::serve::datasets::{GroundState, Served};
 use crate::app::serve::json;
 use crate::app::serve::question::Service;
-use crate::app::serve::reply::{Form, Reply};
+use crate::app::serve::reply::{BodyFormat, Reply};
 
 /// The page: status, version, and every dataset with its system, its extent (of the raster as read, out to its outer
 /// edges, in that system) and whether its ground in metres is `ready`, `awaited`, or why it has none.
@@ -17,7 +17,7 @@ pub fn page(service: &Service) -> Reply {
         write(served, &mut body);
     }
     json::raw(&mut body, "]}");
-    Reply { form: Form::Json, body }
+    Reply { form: BodyFormat::Json, body }
 }
 
 fn write(served: &Served, out: &mut Vec<u8>) {
@@ -46,9 +46,9 @@ fn write(served: &Served, out: &mut Vec<u8>) {
     json::whole(out, source.height.into());
     json::raw(out, ",\"ground\":");
     match served.ground() {
-        Ground::Ready => json::raw(out, "\"ready\""),
-        Ground::Awaited => json::raw(out, "\"awaited\""),
-        Ground::None(reason) => json::string(out, &format!("none: {reason}")),
+        GroundState::Ready => json::raw(out, "\"ready\""),
+        GroundState::Awaited => json::raw(out, "\"awaited\""),
+        GroundState::None(reason) => json::string(out, &format!("none: {reason}")),
     }
     json::raw(out, "}");
 }

@@ -15,11 +15,11 @@
 
 use glam::DVec2;
 
-use crate::app::failure::Failure;
-use crate::app::serve::datasets::{Ground, Served};
+use crate::app::failure::CliError;
+use crate::app::serve::datasets::{GroundState, Served};
 use crate::app::serve::places::Coordinates;
-use crate::app::serve::question::{Asked, Question, Service, Weight};
-use crate::app::serve::reply::{Form, Refusal, Reply, quoted};
+use crate::app::serve::question::{QueryRequest, Question, Service, Weight};
+use crate::app::serve::reply::{BodyFormat, HttpError, Reply, quoted};
 use crate::app::serve::{json, path};
 use crate::terrain::query::{Answer, Interpolation, Surface};
 
@@ -39,7 +39,7 @@ pub struct Heights {
     surface: Option<Surface>,
     interpolation: Interpolation,
     missing: Missing,
-    form: Form,
+    form: BodyFormat,
 }
 
 /// What stands for a height where there is none.
@@ -52,17 +52,17 @@ enum Missing {
 }
 
 impl Question for Heights {
-    fn read(service: &Service, asked: &Asked<'_>) -> Result<Self, Refusal> {
+    fn read(service: &Service, asked: &QueryRequest<'_>) -> Result<Self, HttpError> {
         let params = &asked.params;
         let datasets = service.datasets.find_all(asked.dataset)?;
         let most = service.limits.points();
         let surface = params.choice("surface", &SURFACES)?;
         let interpolation = interpolation(params.get("interpolation"))?;
-        let form = params.choice("format", &FORMS)?.unwrap_or(Form::Json);
+        let form = params.choice("format", &FORMS)?.unwrap_or(BodyFormat::Json);
         let missing = missing(params.get("nodata_value"))?;
         let coordinates = coordinates(service, asked, &datasets)?;
-        if form == Form::GeoJson && coordinates.crs != service.wgs84 {
-            return Err(Refusal::wrong(
+        if form == BodyFormat::GeoJson && coordinates.crs != service.wgs84 {
+            return Err(HttpError::wrong(
                 "format=geojson holds WGS 84 only (RFC 7946); leave crs out, or ask for format=json",
             ));
         }
@@ -76,18 +76,17 @@ impl Question for Heights {
     }
 
     fn weight(&self, service: &Service) -> Weight {
-        let ready =
-            self.datasets.iter().map(|&index| service.datasets.at(index)).all(|served| {
-                self.surface_of(served) == Surface::Source || served.ground() != Ground::Awaited
-            });
+        let ready = self.datasets.iter().map(|&index| service.datasets.at(index)).all(|served| {
+            self.surface_of(served) == Surface::Source || served.ground() != GroundState::Awaited
+        });
         if ready && self.places.len() <= LIGHT_POINTS { Weight::Light } else { Weight::Heavy }
     }
 
-    fn answer(self, service: &Service) -> Result<Reply, Refusal> {
+    fn answer(self, service: &Service) -> Result<Reply, HttpError> {
         let results = self.results(service)?;
         let mut body = Vec::with_capacity(64 + results.len() * RESULT_BYTES);
         match self.form {
-            Form::GeoJson => self.write_geojson(service, &results, &mut body),
+            BodyFormat::GeoJson => self.write_geojson(service, &results, &mut body),
             _ => self.write_json(service, &results, &mut body),
         }
         Ok(Reply { form: self.form, body })
@@ -97,9 +96,9 @@ impl Question for Heights {
 const SURFACES: [(&str, Surface); 3] =
     [("source", Surface::Source), ("ground", Surface::Ground), ("scene", Surface::Scene)];
 
-const FORMS: [(&str, Form); 2] = [("json", Form::Json), ("geojson", Form::GeoJson)];
+const FORMS: [(&str, BodyFormat); 2] = [("json", BodyFormat::Json), ("geojson", BodyFormat::GeoJson)];
 
-fn interpolation(text: Option<&str>) -> Result<Interpolation, Refusal> {
+fn interpolation(text: Option<&str>) -> Result<Interpolation, HttpError> {
     Ok(match text {
         None => Interpolation::default(),
         Some("nearest") => Interpolation::Nearest,
@@ -107,13 +106,13 @@ fn interpolation(text: Option<&str>) -> Result<Interpolation, Refusal> {
         Some("planar") => Interpolation::Planar,
         Some("distance-weighted") => Interpolation::DistanceWeighted4,
         Some("cubic") => {
-            return Err(Refusal::wrong(
+            return Err(HttpError::wrong(
                 "interpolation=cubic is not offered: it makes heights above and below all posts around; \
                  there are nearest, bilinear, planar and distance-weighted",
             ));
         }
         Some(other) => {
-            return Err(Refusal::wrong(format!(
+            return Err(HttpError::wrong(format!(
                 "interpolation is {}; there are nearest, bilinear, planar and distance-weighted",
                 quoted(other)
             )));
@@ -121,13 +120,13 @@ fn interpolation(text: Option<&str>) -> Result<Interpolation, Refusal> {
     })
 }
 
-fn missing(text: Option<&str>) -> Result<Missing, Refusal> {
+fn missing(text: Option<&str>) -> Result<Missing, HttpError> {
     match text {
         None | Some("null") => Ok(Missing::Null),
         Some(nan) if nan.eq_ignore_ascii_case("nan") => Ok(Missing::Nan),
         Some(text) => match text.trim().parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(Missing::Number(value)),
-            _ => Err(Refusal::wrong(format!(
+            _ => Err(HttpError::wrong(format!(
                 "nodata_value is {}; write null, nan or a number such as -9999",
                 quoted(text)
             ))),
@@ -136,17 +135,23 @@ fn missing(text: Option<&str>) -> Result<Missing, Refusal> {
 }
 
 /// The coordinates of the request, for which there must be a way to every dataset.
-fn coordinates(service: &Service, asked: &Asked<'_>, datasets: &[usize]) -> Result<Coordinates, Refusal> {
+fn coordinates(
+    service: &Service,
+    asked: &QueryRequest<'_>,
+    datasets: &[usize],
+) -> Result<Coordinates, HttpError> {
     let own = |index: usize| service.datasets.at(index).data.crs();
     let mut first = None;
     for &index in datasets {
         let coordinates = Coordinates::read(&asked.params, &own(index), &service.wgs84)?;
         let known = first.get_or_insert_with(|| coordinates.clone());
         if known.crs != coordinates.crs {
-            return Err(Refusal::wrong("crs=native needs datasets of one and the same system; write EPSG:n"));
+            return Err(HttpError::wrong(
+                "crs=native needs datasets of one and the same system; write EPSG:n",
+            ));
         }
     }
-    first.ok_or_else(|| Refusal::unknown("no dataset is named"))
+    first.ok_or_else(|| HttpError::unknown("no dataset is named"))
 }
 
 fn sampled(
@@ -154,20 +159,20 @@ fn sampled(
     vertices: &[DVec2],
     count: &str,
     most: usize,
-) -> Result<Vec<DVec2>, Refusal> {
+) -> Result<Vec<DVec2>, HttpError> {
     let wrong =
-        |found: String| Refusal::wrong(format!("samples is {found}; write a number from 2 to {most}"));
+        |found: String| HttpError::wrong(format!("samples is {found}; write a number from 2 to {most}"));
     let parsed = count.trim().parse::<usize>().ok().filter(|count| (2..=most).contains(count));
     let count = parsed.ok_or_else(|| wrong(quoted(count)))?;
     if vertices.len() < 2 {
-        return Err(Refusal::wrong("samples lie along a path, which needs two locations or more"));
+        return Err(HttpError::wrong("samples lie along a path, which needs two locations or more"));
     }
     Ok(path::samples(coordinates, vertices, count))
 }
 
 /// What was found at a place.
 #[derive(Clone, Copy)]
-struct Found {
+struct FoundHeights {
     answer: Answer,
     /// The index of the dataset that said so.
     dataset: usize,
@@ -189,12 +194,12 @@ impl Heights {
 
     /// For each place the first dataset's height; where none has one, the first dataset that holds the place; where
     /// none does, the first.
-    fn results(&self, service: &Service) -> Result<Vec<Found>, Refusal> {
+    fn results(&self, service: &Service) -> Result<Vec<FoundHeights>, HttpError> {
         let mut answers = vec![Answer::Outside; self.places.len()];
         let first = self.datasets[0];
         self.ask(service, first, &self.places, &mut answers)?;
-        let mut results: Vec<Found> =
-            answers.into_iter().map(|answer| Found { answer, dataset: first }).collect();
+        let mut results: Vec<FoundHeights> =
+            answers.into_iter().map(|answer| FoundHeights { answer, dataset: first }).collect();
         for &next in &self.datasets[1..] {
             let open: Vec<usize> =
                 (0..results.len()).filter(|&index| results[index].answer.height_m().is_none()).collect();
@@ -203,7 +208,7 @@ impl Heights {
             self.ask(service, next, &places, &mut answers)?;
             for (index, answer) in open.into_iter().zip(answers) {
                 if rank(answer) > rank(results[index].answer) {
-                    results[index] = Found { answer, dataset: next };
+                    results[index] = FoundHeights { answer, dataset: next };
                 }
             }
         }
@@ -216,7 +221,7 @@ impl Heights {
         index: usize,
         places: &[DVec2],
         answers: &mut [Answer],
-    ) -> Result<(), Refusal> {
+    ) -> Result<(), HttpError> {
         let served = service.datasets.at(index);
         let surface = self.surface_of(served);
         if surface != Surface::Source {
@@ -226,12 +231,14 @@ impl Heights {
         served
             .data
             .heights(surface, self.interpolation, &self.coordinates.crs, places, answers)
-            .map_err(|(Failure::Input(reason) | Failure::Usage(reason))| Refusal::wrong(reason))
+            .map_err(|(CliError::Input(reason) | CliError::Usage(reason))| HttpError::wrong(reason))
     }
 
-    fn write_json(&self, service: &Service, results: &[Found], out: &mut Vec<u8>) {
+    fn write_json(&self, service: &Service, results: &[FoundHeights], out: &mut Vec<u8>) {
         json::raw(out, "{\"results\":[");
-        for (index, (&Found { answer, dataset }, &place)) in results.iter().zip(&self.places).enumerate() {
+        for (index, (&FoundHeights { answer, dataset }, &place)) in
+            results.iter().zip(&self.places).enumerate()
+        {
             json::raw(out, if index == 0 { "{\"elevation\":" } else { ",{\"elevation\":" });
             match (answer.height_m(), self.missing) {
                 (Some(height), _) => json::number(out, height),
@@ -249,9 +256,11 @@ impl Heights {
 
     /// A position has no third coordinate where there is no height and no number is given to stand for it: GeoJSON
     /// knows neither null nor NaN there.
-    fn write_geojson(&self, service: &Service, results: &[Found], out: &mut Vec<u8>) {
+    fn write_geojson(&self, service: &Service, results: &[FoundHeights], out: &mut Vec<u8>) {
         json::raw(out, "{\"type\":\"FeatureCollection\",\"features\":[");
-        for (index, (&Found { answer, dataset }, &place)) in results.iter().zip(&self.places).enumerate() {
+        for (index, (&FoundHeights { answer, dataset }, &place)) in
+            results.iter().zip(&self.places).enumerate()
+        {
             let comma = if index == 0 { "" } else { "," };
             json::raw(out, comma);
             json::raw(out, "{\"type\":\"Feature\",\"geometry\":{\"type\":\"Point\",\"coordinates\":[");

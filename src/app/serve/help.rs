@@ -1,7 +1,7 @@
 //! `/`: what can be asked, as plain text.
 
 use crate::app::serve::question::Service;
-use crate::app::serve::reply::{Form, Reply};
+use crate::app::serve::reply::{BodyFormat, Reply};
 
 /// The page.
 pub fn page(service: &Service) -> Reply {
@@ -38,5 +38,5 @@ Example: /v1/{first}?locations=46.2,-122.19
 ",
         version = env!("CARGO_PKG_VERSION"),
     );
-    Reply { form: Form::Text, body: body.into_bytes() }
+    Reply { form: BodyFormat::Text, body: body.into_bytes() }
 }

@@ -12,7 +12,7 @@ use clap::Args;
 
 /// What may be asked.
 #[derive(Clone, Debug, Args)]
-pub struct Limits {
+pub struct ServeLimits {
     /// The most points of one request: locations, samples, vertices
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub max_points: u32,
@@ -33,7 +33,7 @@ pub struct Limits {
     pub grace: u16,
 }
 
-impl Limits {
+impl ServeLimits {
     /// The longest path and query of a request, in bytes. HTTP itself is refused from 65,535 bytes on, without a
     /// reason; this leaves room to give one.
     pub const LONGEST_URL: usize = 60_000;
@@ -74,8 +74,8 @@ impl Turnstile {
     }
 
     /// A place inside until it is dropped, or `None` where all are taken.
-    pub fn enter(&self) -> Option<Place> {
-        let place = Place(Arc::clone(&self.inside));
+    pub fn enter(&self) -> Option<Permit> {
+        let place = Permit(Arc::clone(&self.inside));
         // Counted in before it is compared, so that two who come at once cannot both have the last place.
         let before = self.inside.fetch_add(1, Ordering::Relaxed);
         (before < self.most).then_some(place)
@@ -84,9 +84,9 @@ impl Turnstile {
 
 /// A place inside a [`Turnstile`].
 #[derive(Debug)]
-pub struct Place(Arc<AtomicUsize>);
+pub struct Permit(Arc<AtomicUsize>);
 
-impl Drop for Place {
+impl Drop for Permit {
     fn drop(&mut self) {
         self.0.fetch_sub(1, Ordering::Relaxed);
     }

@@ -25,7 +25,7 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::time::{Instant, Sleep};
 
-use crate::app::serve::limits::{Place, Turnstile};
+use crate::app::serve::limits::{Permit, Turnstile};
 
 /// How long a connection is kept that asks nothing, or whose client takes an answer: long enough for a megabyte over a
 /// slow line, and for a client that asks once in a while.
@@ -97,11 +97,11 @@ pub struct Watched {
     stream: TcpStream,
     state: State,
     alarm: Pin<Box<Sleep>>,
-    _place: Place,
+    _place: Permit,
 }
 
 impl Watched {
-    fn new(stream: TcpStream, place: Place) -> Self {
+    fn new(stream: TcpStream, place: Permit) -> Self {
         // An answer is written at once; waiting to fill a packet would only delay it.
         let _ = stream.set_nodelay(true);
         let now = Instant::now();

@@ -10,17 +10,17 @@
 
 use crate::app::serve::ground::{self, Grounded};
 use crate::app::serve::json;
-use crate::app::serve::question::{Asked, Question, Service, Weight};
-use crate::app::serve::reply::{Form, Refusal, Reply};
-use crate::terrain::query::service::Epoch;
+use crate::app::serve::question::{QueryRequest, Question, Service, Weight};
+use crate::app::serve::reply::{BodyFormat, HttpError, Reply};
+use crate::terrain::query::service::Snapshot;
 use crate::terrain::sight::Curvature;
-use crate::terrain::sight::line::{Blocker, End, Sight, line_of_sight};
+use crate::terrain::sight::line::{Blocker, Sight, SightEnd, line_of_sight};
 
 /// Whether one point can be seen from another.
 pub struct Los {
     grounded: Grounded,
     /// Where both ends are, in the request's coordinates.
-    ends: [End; 2],
+    ends: [SightEnd; 2],
     curvature: Curvature,
 }
 
@@ -28,14 +28,14 @@ const KNOWN: [&str; 8] =
     ["dataset", "from", "to", "observer_height", "target_height", "refraction", "earth", "crs"];
 
 impl Question for Los {
-    fn read(service: &Service, asked: &Asked<'_>) -> Result<Self, Refusal> {
+    fn read(service: &Service, asked: &QueryRequest<'_>) -> Result<Self, HttpError> {
         let params = &asked.params;
         params.only(&KNOWN)?;
         let grounded = Grounded::read(service, params)?;
         let end = |what: &str, height: &str, default: f64| {
             let text = params.required(what, "46.2,-122.19")?;
             let at = grounded.coordinates.place(what, text)?;
-            Ok(End { at, above_m: ground::above_m(params, height, default)? })
+            Ok(SightEnd { at, above_m: ground::above_m(params, height, default)? })
         };
         let ends = [end("from", "observer_height", ground::OBSERVER_M)?, end("to", "target_height", 0.0)?];
         let curvature = ground::curvature(params)?;
@@ -47,17 +47,17 @@ impl Question for Los {
         Weight::Heavy
     }
 
-    fn answer(self, service: &Service) -> Result<Reply, Refusal> {
+    fn answer(self, service: &Service) -> Result<Reply, HttpError> {
         let epoch = self.grounded.epoch(service)?;
-        let on_ground = |what: &str, end: End| {
+        let on_ground = |what: &str, end: SightEnd| {
             let at = self.grounded.coordinates.bring(what, end.at, epoch.crs())?;
-            Ok(End { at, ..end })
+            Ok(SightEnd { at, ..end })
         };
         let (observer, target) = (on_ground("from", self.ends[0])?, on_ground("to", self.ends[1])?);
         let sight = line_of_sight(epoch.lattice(), observer, target, self.curvature);
         let mut body = Vec::with_capacity(256);
         self.write(service, &epoch, (observer, target, sight), &mut body);
-        Ok(Reply { form: Form::Json, body })
+        Ok(Reply { form: BodyFormat::Json, body })
     }
 }
 
@@ -65,8 +65,8 @@ impl Los {
     fn write(
         &self,
         service: &Service,
-        epoch: &Epoch,
-        (observer, target, sight): (End, End, Sight),
+        epoch: &Snapshot,
+        (observer, target, sight): (SightEnd, SightEnd, Sight),
         out: &mut Vec<u8>,
     ) {
         json::raw(out, "{\"dataset\":");
@@ -90,7 +90,7 @@ impl Los {
         json::raw(out, ",\"status\":\"OK\"}");
     }
 
-    fn write_blocker(&self, epoch: &Epoch, blocker: Blocker, out: &mut Vec<u8>) {
+    fn write_blocker(&self, epoch: &Snapshot, blocker: Blocker, out: &mut Vec<u8>) {
         json::raw(out, "{\"location\":");
         self.grounded.coordinates.write(out, self.grounded.back(epoch, blocker.at));
         json::raw(out, ",\"distance_m\":");

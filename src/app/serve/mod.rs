@@ -44,10 +44,10 @@ use tokio::net::TcpListener;
 use tokio::runtime::{Builder, Runtime};
 
 use crate::app::arguments::{Access, StatedHeights};
-use crate::app::failure::Failure;
+use crate::app::failure::CliError;
 use crate::app::output;
 use crate::app::serve::datasets::Datasets;
-use crate::app::serve::limits::{Limits, Turnstile};
+use crate::app::serve::limits::{ServeLimits, Turnstile};
 use crate::app::serve::listener::Gate;
 use crate::app::serve::question::{Log, Service};
 use crate::geom::crs::Crs;
@@ -71,7 +71,7 @@ pub struct ServeOptions {
     pub log: bool,
     /// What may be asked.
     #[command(flatten)]
-    pub limits: Limits,
+    pub limits: ServeLimits,
     /// What grey values mean.
     #[command(flatten)]
     pub heights: StatedHeights,
@@ -84,17 +84,17 @@ pub struct ServeOptions {
 ///
 /// # Errors
 /// A file cannot be had or read, two have the same name, or the address cannot be listened at.
-pub fn run(options: &ServeOptions) -> Result<(), Failure> {
+pub fn run(options: &ServeOptions) -> Result<(), CliError> {
     let runtime = runtime()?;
     // First of all, so that an address in use is told at once and not after minutes of reading.
     let listener = runtime.block_on(TcpListener::bind(options.listen));
-    let listener = listener.map_err(|error| Failure::input(format!("{}: {error}", options.listen)))?;
+    let listener = listener.map_err(|error| CliError::input(format!("{}: {error}", options.listen)))?;
     let datasets = Datasets::open(&options.files, options.heights, &options.access)?;
     let service = Arc::new(service(datasets, options));
     prepare(&service);
     let served = runtime.block_on(serve(listener, &service));
     runtime.shutdown_background();
-    served.map_err(|error| Failure::input(format!("{}: {error}", options.listen)))
+    served.map_err(|error| CliError::input(format!("{}: {error}", options.listen)))
 }
 
 fn service(datasets: Datasets, options: &ServeOptions) -> Service {
@@ -118,12 +118,12 @@ fn viewsheds_at_once() -> usize {
 }
 
 /// Threads that listen, one a core, and threads for what takes its time: so many that all viewsheds leave one a core.
-fn runtime() -> Result<Runtime, Failure> {
+fn runtime() -> Result<Runtime, CliError> {
     Builder::new_multi_thread()
         .enable_all()
         .max_blocking_threads(cores() + viewsheds_at_once())
         .build()
-        .map_err(|error| Failure::input(format!("no threads to be had: {error}")))
+        .map_err(|error| CliError::input(format!("no threads to be had: {error}")))
 }
 
 /// Makes the ground of every dataset, while questions about elevations as read are answered already.
@@ -139,8 +139,8 @@ fn prepare(service: &Arc<Service>) {
 async fn serve(listener: TcpListener, service: &Arc<Service>) -> io::Result<()> {
     let gate = Gate::new(listener, service.limits.max_connections as usize);
     let address = axum::serve::Listener::local_addr(&gate)?;
-    let (mut first, mut both) = (Stop::listen()?, Stop::listen()?);
-    output::complain(&format!("listening at http://{address}: {}", service.datasets.names()));
+    let (mut first, mut both) = (StopSignals::listen()?, StopSignals::listen()?);
+    output::warn(&format!("listening at http://{address}: {}", service.datasets.names()));
     let serving = axum::serve(gate, routes::router(Arc::clone(service)))
         .with_graceful_shutdown(async move { first.asked().await });
     let grace = Duration::from_secs(service.limits.grace.into());
@@ -155,14 +155,14 @@ async fn serve(listener: TcpListener, service: &Arc<Service>) -> io::Result<()> 
 }
 
 /// The signals that ask the program to end, from when it was made on.
-struct Stop {
+struct StopSignals {
     #[cfg(unix)]
     interrupt: tokio::signal::unix::Signal,
     #[cfg(unix)]
     terminate: tokio::signal::unix::Signal,
 }
 
-impl Stop {
+impl StopSignals {
     #[cfg(unix)]
     fn listen() -> io::Result<Self> {
         use tokio::signal::unix::{SignalKind, signal};

@@ -10,7 +10,7 @@ use std::fmt;
 use serde::Deserializer;
 use serde::de::{self, MapAccess, SeqAccess, Visitor};
 
-use crate::app::serve::reply::{Refusal, quoted};
+use crate::app::serve::reply::{HttpError, quoted};
 
 /// No request needs as many parameters; a list of millions must not be searched again and again.
 const MOST: usize = 32;
@@ -26,7 +26,7 @@ impl<'a> Params<'a> {
     ///
     /// # Errors
     /// A value is not UTF-8, or there are too many.
-    pub fn add_form(&mut self, text: &'a str) -> Result<(), Refusal> {
+    pub fn add_form(&mut self, text: &'a str) -> Result<(), HttpError> {
         for pair in text.split('&').filter(|pair| !pair.is_empty()) {
             let (name, value) = pair.split_once('=').unwrap_or((pair, ""));
             self.put(unescaped(name)?, unescaped(value)?)?;
@@ -38,11 +38,11 @@ impl<'a> Params<'a> {
     ///
     /// # Errors
     /// The bytes are no JSON object, or a value is neither a string, a number, nor a list of strings.
-    pub fn add_json(&mut self, bytes: &'a [u8]) -> Result<(), Refusal> {
+    pub fn add_json(&mut self, bytes: &'a [u8]) -> Result<(), HttpError> {
         let mut reader = serde_json::Deserializer::from_slice(bytes);
-        let read = reader.deserialize_map(Members(self)).and_then(|()| reader.end());
+        let read = reader.deserialize_map(JsonMembers(self)).and_then(|()| reader.end());
         read.map_err(|error| {
-            Refusal::wrong(format!("the body is not the JSON object that was expected: {error}"))
+            HttpError::wrong(format!("the body is not the JSON object that was expected: {error}"))
         })
     }
 
@@ -55,10 +55,10 @@ impl<'a> Params<'a> {
     ///
     /// # Errors
     /// It was; `example` shows how it is written.
-    pub fn required(&self, name: &str, example: &str) -> Result<&str, Refusal> {
+    pub fn required(&self, name: &str, example: &str) -> Result<&str, HttpError> {
         self.get(name)
             .filter(|value| !value.is_empty())
-            .ok_or_else(|| Refusal::wrong(format!("'{name}' is missing; write it as in {name}={example}")))
+            .ok_or_else(|| HttpError::wrong(format!("'{name}' is missing; write it as in {name}={example}")))
     }
 
     /// A finite number within `range`, or `default` where it is not given.
@@ -70,7 +70,7 @@ impl<'a> Params<'a> {
         name: &str,
         range: std::ops::RangeInclusive<f64>,
         default: f64,
-    ) -> Result<f64, Refusal> {
+    ) -> Result<f64, HttpError> {
         let Some(text) = self.get(name) else {
             return Ok(default);
         };
@@ -78,7 +78,7 @@ impl<'a> Params<'a> {
         value.ok_or_else(|| {
             let found = quoted(text);
             let (least, most) = range.into_inner();
-            Refusal::wrong(format!("{name} is {found}; write a number from {least} to {most}"))
+            HttpError::wrong(format!("{name} is {found}; write a number from {least} to {most}"))
         })
     }
 
@@ -86,14 +86,14 @@ impl<'a> Params<'a> {
     ///
     /// # Errors
     /// The word is none of them; the message lists all.
-    pub fn choice<T: Copy>(&self, name: &str, choices: &[(&str, T)]) -> Result<Option<T>, Refusal> {
+    pub fn choice<T: Copy>(&self, name: &str, choices: &[(&str, T)]) -> Result<Option<T>, HttpError> {
         let Some(text) = self.get(name) else {
             return Ok(None);
         };
         let found = choices.iter().find(|(word, _)| *word == text).map(|&(_, choice)| choice);
         found.map(Some).ok_or_else(|| {
             let words: Vec<&str> = choices.iter().map(|&(word, _)| word).collect();
-            Refusal::wrong(format!("{name} is {}; there are {}", quoted(text), words.join(", ")))
+            HttpError::wrong(format!("{name} is {}; there are {}", quoted(text), words.join(", ")))
         })
     }
 
@@ -101,23 +101,23 @@ impl<'a> Params<'a> {
     ///
     /// # Errors
     /// There is one.
-    pub fn only(&self, known: &[&str]) -> Result<(), Refusal> {
+    pub fn only(&self, known: &[&str]) -> Result<(), HttpError> {
         match self.pairs.iter().find(|(name, _)| !known.contains(&name.as_ref())) {
             None => Ok(()),
             Some((name, _)) => {
                 let known = known.join(", ");
-                Err(Refusal::wrong(format!("there is no parameter {}; there are {known}", quoted(name))))
+                Err(HttpError::wrong(format!("there is no parameter {}; there are {known}", quoted(name))))
             }
         }
     }
 
-    fn put(&mut self, name: Cow<'a, str>, value: Cow<'a, str>) -> Result<(), Refusal> {
+    fn put(&mut self, name: Cow<'a, str>, value: Cow<'a, str>) -> Result<(), HttpError> {
         if let Some(pair) = self.pairs.iter_mut().find(|(known, _)| *known == name) {
             pair.1 = value;
             return Ok(());
         }
         if self.pairs.len() == MOST {
-            return Err(Refusal::wrong(format!("more than {MOST} parameters")));
+            return Err(HttpError::wrong(format!("more than {MOST} parameters")));
         }
         self.pairs.push((name, value));
         Ok(())
@@ -125,7 +125,7 @@ impl<'a> Params<'a> {
 }
 
 /// `text` with `+` read as a space and `%xx` as a byte; borrowed where there is neither.
-fn unescaped(text: &str) -> Result<Cow<'_, str>, Refusal> {
+fn unescaped(text: &str) -> Result<Cow<'_, str>, HttpError> {
     let bytes = text.as_bytes();
     if !bytes.iter().any(|byte| matches!(byte, b'%' | b'+')) {
         return Ok(Cow::Borrowed(text));
@@ -144,9 +144,9 @@ fn unescaped(text: &str) -> Result<Cow<'_, str>, Refusal> {
             _ => out.push(byte),
         }
     }
-    String::from_utf8(out)
-        .map(Cow::Owned)
-        .map_err(|_| Refusal::wrong(format!("{} is not UTF-8 text after its escapes are read", quoted(text))))
+    String::from_utf8(out).map(Cow::Owned).map_err(|_| {
+        HttpError::wrong(format!("{} is not UTF-8 text after its escapes are read", quoted(text)))
+    })
 }
 
 fn hex(digit: u8) -> u8 {
@@ -154,9 +154,9 @@ fn hex(digit: u8) -> u8 {
 }
 
 /// Reads the members of a JSON object into parameters.
-struct Members<'p, 'a>(&'p mut Params<'a>);
+struct JsonMembers<'p, 'a>(&'p mut Params<'a>);
 
-impl<'a> Visitor<'a> for Members<'_, 'a> {
+impl<'a> Visitor<'a> for JsonMembers<'_, 'a> {
     type Value = ();
 
     fn expecting(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -164,8 +164,8 @@ impl<'a> Visitor<'a> for Members<'_, 'a> {
     }
 
     fn visit_map<A: MapAccess<'a>>(self, mut map: A) -> Result<(), A::Error> {
-        while let Some(Text(name)) = map.next_key()? {
-            if let Text(Some(value)) = map.next_value::<Text<Option<Cow<'a, str>>>>()? {
+        while let Some(TextValue(name)) = map.next_key()? {
+            if let TextValue(Some(value)) = map.next_value::<TextValue<Option<Cow<'a, str>>>>()? {
                 let name = name.unwrap_or_default();
                 self.0.put(name, value).map_err(|refusal| de::Error::custom(refusal.reason()))?;
             }
@@ -175,9 +175,9 @@ impl<'a> Visitor<'a> for Members<'_, 'a> {
 }
 
 /// The text of a value; `None` for null.
-struct Text<T>(T);
+struct TextValue<T>(T);
 
-impl<'de> de::Deserialize<'de> for Text<Option<Cow<'de, str>>> {
+impl<'de> de::Deserialize<'de> for TextValue<Option<Cow<'de, str>>> {
     fn deserialize<D: Deserializer<'de>>(reader: D) -> Result<Self, D::Error> {
         reader.deserialize_any(TextVisitor).map(Self)
     }

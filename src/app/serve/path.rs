@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use crate::app::serve::places::{Axes, Coordinates};
-use crate::geom::geodesic::Way;
+use crate::app::serve::places::{AxisOrder, Coordinates};
+use crate::geom::geodesic::Geodesic;
 
 /// `count` places along the path through `vertices`, the first at its start and the last at its end, all as far from
 /// the next as along the path.
@@ -14,9 +14,9 @@ pub fn samples(coordinates: &Coordinates, vertices: &[DVec2], count: usize) -> V
     if vertices.len() < 2 || count < 2 {
         return vertices.to_vec();
     }
-    let legs: Vec<Leg> =
-        vertices.windows(2).map(|pair| Leg::between(coordinates.axes, pair[0], pair[1])).collect();
-    let total: f64 = legs.iter().map(Leg::length).sum();
+    let legs: Vec<PathLeg> =
+        vertices.windows(2).map(|pair| PathLeg::between(coordinates.axes, pair[0], pair[1])).collect();
+    let total: f64 = legs.iter().map(PathLeg::length).sum();
     let mut places = Vec::with_capacity(count);
     let (mut leg, mut behind) = (0, 0.0);
     for index in 0..count - 1 {
@@ -32,16 +32,16 @@ pub fn samples(coordinates: &Coordinates, vertices: &[DVec2], count: usize) -> V
 }
 
 /// The way from one vertex to the next.
-enum Leg {
-    Geodesic(Way),
+enum PathLeg {
+    Geodesic(Geodesic),
     Straight { start: DVec2, end: DVec2 },
 }
 
-impl Leg {
-    fn between(axes: Axes, start: DVec2, end: DVec2) -> Self {
+impl PathLeg {
+    fn between(axes: AxisOrder, start: DVec2, end: DVec2) -> Self {
         match axes {
-            Axes::LatLng => Self::Geodesic(Way::between(start, end)),
-            Axes::Xy => Self::Straight { start, end },
+            AxisOrder::LatLng => Self::Geodesic(Geodesic::between(start, end)),
+            AxisOrder::Xy => Self::Straight { start, end },
         }
     }
 
@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn samples_are_equally_far_apart_along_the_path_and_keep_its_ends() {
-        let coordinates = Coordinates { crs: Crs::local(), axes: Axes::Xy };
+        let coordinates = Coordinates { crs: Crs::local(), axes: AxisOrder::Xy };
         let path = [DVec2::ZERO, DVec2::new(30.0, 0.0), DVec2::new(30.0, 0.0), DVec2::new(30.0, 10.0)];
         let places = samples(&coordinates, &path, 5);
         let expected = [(0.0, 0.0), (10.0, 0.0), (20.0, 0.0), (30.0, 0.0), (30.0, 10.0)];
@@ -81,7 +81,7 @@ mod tests {
 
     #[test]
     fn on_the_earth_they_follow_the_geodesic() {
-        let coordinates = Coordinates { crs: Crs::wgs84(), axes: Axes::LatLng };
+        let coordinates = Coordinates { crs: Crs::wgs84(), axes: AxisOrder::LatLng };
         let path = [DVec2::new(-1.0, 60.0), DVec2::new(1.0, 60.0)];
         let places = samples(&coordinates, &path, 3);
         assert!(places[1].x.abs() < 1e-12 && places[1].y > 60.003, "the middle lies north of the parallel");

@@ -7,7 +7,7 @@
 use glam::DVec2;
 
 use crate::app::serve::params::Params;
-use crate::app::serve::reply::{Refusal, quoted};
+use crate::app::serve::reply::{HttpError, quoted};
 use crate::app::serve::{encoded, json};
 use crate::geom::crs::{Crs, CrsError};
 
@@ -17,12 +17,12 @@ pub struct Coordinates {
     /// Their system.
     pub crs: Crs,
     /// Their order and names.
-    pub axes: Axes,
+    pub axes: AxisOrder,
 }
 
 /// The order and names of two coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Axes {
+pub enum AxisOrder {
     /// Latitude, longitude; `lat` and `lng` in answers.
     LatLng,
     /// `x`, `y`.
@@ -34,16 +34,16 @@ impl Coordinates {
     ///
     /// # Errors
     /// There is no such system, or no way from it to the dataset's.
-    pub fn read(params: &Params<'_>, native: &Crs, wgs84: &Crs) -> Result<Self, Refusal> {
-        let wrong = |error: CrsError| Refusal::wrong(format!("crs: {error}"));
+    pub fn read(params: &Params<'_>, native: &Crs, wgs84: &Crs) -> Result<Self, HttpError> {
+        let wrong = |error: CrsError| HttpError::wrong(format!("crs: {error}"));
         let coordinates = match params.get("crs") {
-            None => Self { crs: wgs84.clone(), axes: Axes::LatLng },
-            Some("native") => return Ok(Self { crs: native.clone(), axes: Axes::Xy }),
-            Some(text) => Self { crs: Crs::from_epsg(epsg(text)?).map_err(wrong)?, axes: Axes::Xy },
+            None => Self { crs: wgs84.clone(), axes: AxisOrder::LatLng },
+            Some("native") => return Ok(Self { crs: native.clone(), axes: AxisOrder::Xy }),
+            Some(text) => Self { crs: Crs::from_epsg(epsg(text)?).map_err(wrong)?, axes: AxisOrder::Xy },
         };
         // Whether there is a way between two datums does not hang on the place.
         match coordinates.crs.transform(native, DVec2::ZERO) {
-            Err(error @ CrsError::Datum { .. }) => Err(Refusal::wrong(format!(
+            Err(error @ CrsError::Datum { .. }) => Err(HttpError::wrong(format!(
                 "crs: {error}; crs=native takes coordinates of the dataset's own system"
             ))),
             _ => Ok(coordinates),
@@ -54,7 +54,7 @@ impl Coordinates {
     ///
     /// # Errors
     /// It is something else, or no place on Earth; `what` names the parameter.
-    pub fn place(&self, what: &str, text: &str) -> Result<DVec2, Refusal> {
+    pub fn place(&self, what: &str, text: &str) -> Result<DVec2, HttpError> {
         self.pair(text).ok_or_else(|| self.refuse(what, text))
     }
 
@@ -63,8 +63,8 @@ impl Coordinates {
     ///
     /// # Errors
     /// A place is none, or there are more than `most`; both are found before memory is taken for them.
-    pub fn places(&self, text: &str, most: usize) -> Result<Vec<DVec2>, Refusal> {
-        if self.axes == Axes::LatLng && !text.contains(',') {
+    pub fn places(&self, text: &str, most: usize) -> Result<Vec<DVec2>, HttpError> {
+        if self.axes == AxisOrder::LatLng && !text.contains(',') {
             let places = encoded::decode(text, most)?;
             return match places.iter().position(|&place| !self.holds(place)) {
                 None => Ok(places),
@@ -77,7 +77,7 @@ impl Coordinates {
         let text = text.trim_matches('|');
         let count = text.bytes().filter(|&byte| byte == b'|').count() + 1;
         if count > most {
-            return Err(Refusal::wrong(format!(
+            return Err(HttpError::wrong(format!(
                 "{count} locations, where {most} are the most of one request"
             )));
         }
@@ -93,8 +93,8 @@ impl Coordinates {
     /// Appends a place as an object of its coordinates.
     pub fn write(&self, out: &mut Vec<u8>, place: DVec2) {
         let (first, second) = match self.axes {
-            Axes::LatLng => (("{\"lat\":", place.y), (",\"lng\":", place.x)),
-            Axes::Xy => (("{\"x\":", place.x), (",\"y\":", place.y)),
+            AxisOrder::LatLng => (("{\"lat\":", place.y), (",\"lng\":", place.x)),
+            AxisOrder::Xy => (("{\"x\":", place.x), (",\"y\":", place.y)),
         };
         for (name, value) in [first, second] {
             json::raw(out, name);
@@ -107,42 +107,42 @@ impl Coordinates {
     ///
     /// # Errors
     /// It lies beyond what one of the systems covers; `what` names the parameter.
-    pub fn bring(&self, what: &str, place: DVec2, to: &Crs) -> Result<DVec2, Refusal> {
-        self.crs.transform(to, place).map_err(|error| Refusal::wrong(format!("{what}: {error}")))
+    pub fn bring(&self, what: &str, place: DVec2, to: &Crs) -> Result<DVec2, HttpError> {
+        self.crs.transform(to, place).map_err(|error| HttpError::wrong(format!("{what}: {error}")))
     }
 
     fn pair(&self, text: &str) -> Option<DVec2> {
         let (first, second) = text.split_once(',')?;
         let (first, second) = (first.trim().parse().ok()?, second.trim().parse().ok()?);
         let place = match self.axes {
-            Axes::LatLng => DVec2::new(second, first),
-            Axes::Xy => DVec2::new(first, second),
+            AxisOrder::LatLng => DVec2::new(second, first),
+            AxisOrder::Xy => DVec2::new(first, second),
         };
         self.holds(place).then_some(place)
     }
 
     fn holds(&self, place: DVec2) -> bool {
         match self.axes {
-            Axes::LatLng => (-90.0..=90.0).contains(&place.y) && (-180.0..=180.0).contains(&place.x),
-            Axes::Xy => place.is_finite(),
+            AxisOrder::LatLng => (-90.0..=90.0).contains(&place.y) && (-180.0..=180.0).contains(&place.x),
+            AxisOrder::Xy => place.is_finite(),
         }
     }
 
-    fn refuse(&self, what: &str, text: &str) -> Refusal {
+    fn refuse(&self, what: &str, text: &str) -> HttpError {
         let found = quoted(text);
-        Refusal::wrong(match self.axes {
-            Axes::LatLng => format!(
+        HttpError::wrong(match self.axes {
+            AxisOrder::LatLng => format!(
                 "{what} is {found}; write latitude,longitude in degrees, -90 to 90 and -180 to 180, as in 46.2,-122.19"
             ),
-            Axes::Xy => format!("{what} is {found}; write x,y, two numbers with a comma between"),
+            AxisOrder::Xy => format!("{what} is {found}; write x,y, two numbers with a comma between"),
         })
     }
 }
 
-fn epsg(text: &str) -> Result<u32, Refusal> {
+fn epsg(text: &str) -> Result<u32, HttpError> {
     let code = text.split_once(':').filter(|(authority, _)| authority.eq_ignore_ascii_case("epsg"));
     code.and_then(|(_, code)| code.parse().ok()).ok_or_else(|| {
-        Refusal::wrong(format!("crs is {}; write EPSG:n, for example EPSG:32616, or native", quoted(text)))
+        HttpError::wrong(format!("crs is {}; write EPSG:n, for example EPSG:32616, or native", quoted(text)))
     })
 }
 
@@ -152,14 +152,14 @@ mod tests {
     use proptest::prelude::*;
 
     fn lat_lng() -> Coordinates {
-        Coordinates { crs: Crs::wgs84(), axes: Axes::LatLng }
+        Coordinates { crs: Crs::wgs84(), axes: AxisOrder::LatLng }
     }
 
     #[test]
     fn latitude_comes_first_unless_a_system_is_named() {
         let expected = Ok(vec![DVec2::new(172.5, -43.5), DVec2::new(1.98, 27.6)]);
         assert_eq!(lat_lng().places("-43.5,172.5|27.6, 1.98|", 2), expected);
-        let xy = Coordinates { axes: Axes::Xy, ..lat_lng() };
+        let xy = Coordinates { axes: AxisOrder::Xy, ..lat_lng() };
         assert_eq!(xy.places("172.5,-43.5|1.98,27.6", 2), expected);
         assert_eq!(lat_lng().places("_p~iF~ps|U", 2), Ok(vec![DVec2::new(-120.2, 38.5)]));
     }

@@ -12,14 +12,14 @@ use glam::DVec2;
 
 use crate::app::serve::ground::Grounded;
 use crate::app::serve::json;
-use crate::app::serve::question::{Asked, Question, Service, Weight};
-use crate::app::serve::reply::{Form, Refusal, Reply};
+use crate::app::serve::question::{QueryRequest, Question, Service, Weight};
+use crate::app::serve::reply::{BodyFormat, HttpError, Reply};
 use crate::terrain::lattice::Lattice;
-use crate::terrain::profile::{Station, profile};
-use crate::terrain::query::service::Epoch;
+use crate::terrain::profile::{ProfileStation, profile};
+use crate::terrain::query::service::Snapshot;
 
 /// The ground along a line.
-pub struct Profile {
+pub struct ProfileQuestion {
     grounded: Grounded,
     /// The line's vertices, in the request's coordinates.
     vertices: Vec<DVec2>,
@@ -30,15 +30,15 @@ const KNOWN: [&str; 3] = ["dataset", "locations", "crs"];
 /// Bytes of a station in JSON, about.
 const STATION_BYTES: usize = 140;
 
-impl Question for Profile {
-    fn read(service: &Service, asked: &Asked<'_>) -> Result<Self, Refusal> {
+impl Question for ProfileQuestion {
+    fn read(service: &Service, asked: &QueryRequest<'_>) -> Result<Self, HttpError> {
         let params = &asked.params;
         params.only(&KNOWN)?;
         let grounded = Grounded::read(service, params)?;
         let text = params.required("locations", "46.2,-122.19|46.21,-122.2")?;
         let vertices = grounded.coordinates.places(text, service.limits.points())?;
         if vertices.len() < 2 {
-            return Err(Refusal::wrong("a profile lies along a line, which needs two locations or more"));
+            return Err(HttpError::wrong("a profile lies along a line, which needs two locations or more"));
         }
         Ok(Self { grounded, vertices })
     }
@@ -47,7 +47,7 @@ impl Question for Profile {
         Weight::Heavy
     }
 
-    fn answer(self, service: &Service) -> Result<Reply, Refusal> {
+    fn answer(self, service: &Service) -> Result<Reply, HttpError> {
         let epoch = self.grounded.epoch(service)?;
         let line: Vec<DVec2> = self
             .vertices
@@ -59,19 +59,19 @@ impl Question for Profile {
             .collect::<Result<_, _>>()?;
         let (expected, most) = (stations_at_most(epoch.lattice(), &line), service.limits.stations());
         if expected > most as f64 {
-            return Err(Refusal::wrong(format!(
+            return Err(HttpError::wrong(format!(
                 "the line may have {expected:.0} stations, {most} are the most of one profile; ask for a part of it"
             )));
         }
         let stations = profile(epoch.lattice(), &line);
         let mut body = Vec::with_capacity(128 + stations.len() * STATION_BYTES);
         self.write(service, &epoch, &stations, &mut body);
-        Ok(Reply { form: Form::Json, body })
+        Ok(Reply { form: BodyFormat::Json, body })
     }
 }
 
-impl Profile {
-    fn write(&self, service: &Service, epoch: &Epoch, stations: &[Station], out: &mut Vec<u8>) {
+impl ProfileQuestion {
+    fn write(&self, service: &Service, epoch: &Snapshot, stations: &[ProfileStation], out: &mut Vec<u8>) {
         json::raw(out, "{\"dataset\":");
         out.extend_from_slice(&service.datasets.at(self.grounded.dataset).name_json);
         json::raw(out, ",\"length_m\":");

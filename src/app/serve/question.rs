@@ -1,9 +1,9 @@
 //! What every question has in common: it is read from parameters, weighed, and answered.
 
 use crate::app::serve::datasets::Datasets;
-use crate::app::serve::limits::{Limits, Turnstile};
+use crate::app::serve::limits::{ServeLimits, Turnstile};
 use crate::app::serve::params::Params;
-use crate::app::serve::reply::{Refusal, Reply};
+use crate::app::serve::reply::{HttpError, Reply};
 use crate::geom::crs::Crs;
 
 /// All that is asked, one for the whole program.
@@ -11,7 +11,7 @@ pub struct Service {
     /// The datasets.
     pub datasets: Datasets,
     /// What may be asked.
-    pub limits: Limits,
+    pub limits: ServeLimits,
     /// WGS 84, which most requests speak in.
     pub wgs84: Crs,
     /// Requests that are being answered.
@@ -32,7 +32,7 @@ pub enum Log {
 }
 
 /// A request, as far as a question reads it.
-pub struct Asked<'a> {
+pub struct QueryRequest<'a> {
     /// What the address names after `/v1/`; empty where the question has an address of its own.
     pub dataset: &'a str,
     /// Its parameters.
@@ -54,7 +54,7 @@ pub trait Question: Sized + Send + 'static {
     ///
     /// # Errors
     /// A parameter is missing, wrong, or asks for more than may be asked.
-    fn read(service: &Service, asked: &Asked<'_>) -> Result<Self, Refusal>;
+    fn read(service: &Service, asked: &QueryRequest<'_>) -> Result<Self, HttpError>;
 
     /// On which thread it is to be answered.
     fn weight(&self, service: &Service) -> Weight;
@@ -63,5 +63,5 @@ pub trait Question: Sized + Send + 'static {
     ///
     /// # Errors
     /// What the datasets cannot answer.
-    fn answer(self, service: &Service) -> Result<Reply, Refusal>;
+    fn answer(self, service: &Service) -> Result<Reply, HttpError>;
 }

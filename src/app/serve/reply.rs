@@ -11,7 +11,7 @@ use crate::app::serve::json;
 
 /// What a body is written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
+pub enum BodyFormat {
     /// JSON.
     Json,
     /// GeoJSON (RFC 7946, 2016).
@@ -20,7 +20,7 @@ pub enum Form {
     Text,
 }
 
-impl Form {
+impl BodyFormat {
     fn content_type(self) -> HeaderValue {
         HeaderValue::from_static(match self {
             Self::Json => "application/json",
@@ -34,7 +34,7 @@ impl Form {
 #[derive(Debug)]
 pub struct Reply {
     /// What the body is written in.
-    pub form: Form,
+    pub form: BodyFormat,
     /// The body.
     pub body: Vec<u8>,
 }
@@ -50,7 +50,7 @@ impl Reply {
 
 /// Why there is no answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Refusal {
+pub struct HttpError {
     status: StatusCode,
     reason: String,
     hint: Hint,
@@ -68,7 +68,7 @@ enum Hint {
     Close,
 }
 
-impl Refusal {
+impl HttpError {
     /// The request is wrong: 400. `reason` says what was found and what to write instead.
     pub fn wrong(reason: impl Into<String>) -> Self {
         Self::with(StatusCode::BAD_REQUEST, reason)
@@ -121,7 +121,7 @@ impl Refusal {
         body.extend_from_slice(b"\",\"error\":");
         json::string(&mut body, &self.reason);
         body.extend_from_slice(b"}");
-        let mut response = Reply { form: Form::Json, body }.into_response();
+        let mut response = Reply { form: BodyFormat::Json, body }.into_response();
         *response.status_mut() = self.status;
         let headers = response.headers_mut();
         match self.hint {

@@ -23,13 +23,13 @@ use crate::app::output;
 use crate::app::serve::health;
 use crate::app::serve::heights::Heights;
 use crate::app::serve::help;
-use crate::app::serve::limits::{Limits, Place};
+use crate::app::serve::limits::{Permit, ServeLimits};
 use crate::app::serve::los::Los;
 use crate::app::serve::params::Params;
-use crate::app::serve::profile::Profile;
-use crate::app::serve::question::{Asked, Log, Question, Service, Weight};
-use crate::app::serve::reply::{Refusal, Reply, quoted};
-use crate::app::serve::viewshed::Viewshed;
+use crate::app::serve::profile::ProfileQuestion;
+use crate::app::serve::question::{Log, QueryRequest, Question, Service, Weight};
+use crate::app::serve::reply::{HttpError, Reply, quoted};
+use crate::app::serve::viewshed::ViewshedQuestion;
 
 /// A text longer than this is read on a thread of its own, because reading it takes longer than handing it there.
 const LIGHT_BYTES: usize = 32 * 1024;
@@ -68,11 +68,11 @@ async fn los(State(service): Shared, request: Request<Body>) -> Response<Body> {
 }
 
 async fn profile(State(service): Shared, request: Request<Body>) -> Response<Body> {
-    ask::<Profile>(service, "", request).await
+    ask::<ProfileQuestion>(service, "", request).await
 }
 
 async fn viewshed(State(service): Shared, request: Request<Body>) -> Response<Body> {
-    ask::<Viewshed>(service, "", request).await
+    ask::<ViewshedQuestion>(service, "", request).await
 }
 
 async fn heights(
@@ -87,22 +87,22 @@ async fn heights(
 }
 
 async fn nothing(State(service): Shared, request: Request<Body>) -> Response<Body> {
-    let line = Line::begin(&service, &request);
+    let line = LogLine::begin(&service, &request);
     let found = quoted(request.uri().path());
     let names = service.datasets.names();
     let reason = format!(
         "there is nothing at {found}; there are /, /health, /v1/los, /v1/profile, /v1/viewshed and /v1/DATASET, \
          where the datasets are {names}"
     );
-    line.end(Refusal::unknown(reason).into_response())
+    line.end(HttpError::unknown(reason).into_response())
 }
 
 fn page(service: &Service, request: &Request<Body>, write: fn(&Service) -> Reply) -> Response<Body> {
-    let line = Line::begin(service, request);
+    let line = LogLine::begin(service, request);
     line.end(match *request.method() {
         Method::GET | Method::HEAD => write(service).into_response(),
         Method::OPTIONS => options(READING),
-        _ => Refusal::method(READING).into_response(),
+        _ => HttpError::method(READING).into_response(),
     })
 }
 
@@ -116,23 +116,23 @@ fn options(allowed: &'static str) -> Response<Body> {
 
 /// Reads a question and answers it.
 async fn ask<Q: Question>(service: Arc<Service>, dataset: &str, request: Request<Body>) -> Response<Body> {
-    let line = Line::begin(&service, &request);
+    let line = LogLine::begin(&service, &request);
     if request.method() == Method::OPTIONS {
         return line.end(options(ASKING));
     }
     let answered = answered::<Q>(&service, dataset, request).await;
-    line.end(answered.map_or_else(Refusal::into_response, Reply::into_response))
+    line.end(answered.map_or_else(HttpError::into_response, Reply::into_response))
 }
 
 async fn answered<Q: Question>(
     service: &Arc<Service>,
     dataset: &str,
     request: Request<Body>,
-) -> Result<Reply, Refusal> {
+) -> Result<Reply, HttpError> {
     let place = service.requests.enter().ok_or_else(|| {
-        Refusal::busy(1, format!("{} requests are being answered; ask again", service.limits.max_requests))
+        HttpError::busy(1, format!("{} requests are being answered; ask again", service.limits.max_requests))
     })?;
-    let text = Text::of(request, &service.limits).await?;
+    let text = RequestText::of(request, &service.limits).await?;
     if text.len() > LIGHT_BYTES {
         let dataset = dataset.to_owned();
         return aside(service, place, move |service| text.read::<Q>(service, &dataset)?.answer(service))
@@ -149,9 +149,9 @@ async fn answered<Q: Question>(
 /// until the work is done, or dropped because it had not begun.
 async fn aside(
     service: &Arc<Service>,
-    place: Place,
-    work: impl FnOnce(&Service) -> Result<Reply, Refusal> + Send + 'static,
-) -> Result<Reply, Refusal> {
+    place: Permit,
+    work: impl FnOnce(&Service) -> Result<Reply, HttpError> + Send + 'static,
+) -> Result<Reply, HttpError> {
     let shared = Arc::clone(service);
     let mut task = tokio::task::spawn_blocking(move || {
         let answer = work(&shared);
@@ -160,11 +160,11 @@ async fn aside(
     });
     match tokio::time::timeout(service.limits.patience(), &mut task).await {
         Ok(Ok(answer)) => answer,
-        Ok(Err(_)) => Err(Refusal::with(StatusCode::INTERNAL_SERVER_ERROR, "answering failed")),
+        Ok(Err(_)) => Err(HttpError::with(StatusCode::INTERNAL_SERVER_ERROR, "answering failed")),
         Err(_) => {
             task.abort();
             let seconds = service.limits.timeout;
-            Err(Refusal::busy(
+            Err(HttpError::busy(
                 seconds,
                 format!("no answer within {seconds} s; ask for less at a time, or later"),
             ))
@@ -173,7 +173,7 @@ async fn aside(
 }
 
 /// What a request says.
-struct Text {
+struct RequestText {
     uri: Uri,
     body: Bytes,
     notation: Notation,
@@ -186,16 +186,16 @@ enum Notation {
     Json,
 }
 
-impl Text {
-    async fn of(request: Request<Body>, limits: &Limits) -> Result<Self, Refusal> {
+impl RequestText {
+    async fn of(request: Request<Body>, limits: &ServeLimits) -> Result<Self, HttpError> {
         let (head, body) = request.into_parts();
         let length = head.uri.path_and_query().map_or(0, |whole| whole.as_str().len());
-        if length > Limits::LONGEST_URL {
-            return Err(Refusal::with(
+        if length > ServeLimits::LONGEST_URL {
+            return Err(HttpError::with(
                 StatusCode::URI_TOO_LONG,
                 format!(
                     "the address is {length} bytes long, {} are the most; send the parameters in the body of a POST",
-                    Limits::LONGEST_URL
+                    ServeLimits::LONGEST_URL
                 ),
             ));
         }
@@ -210,7 +210,7 @@ impl Text {
                 let guessed = if looks_json { Notation::Json } else { Notation::Form };
                 Ok(Self { uri: head.uri, body, notation: declared.unwrap_or(guessed) })
             }
-            _ => Err(Refusal::method(ASKING)),
+            _ => Err(HttpError::method(ASKING)),
         }
     }
 
@@ -218,26 +218,26 @@ impl Text {
         self.uri.query().map_or(0, str::len) + self.body.len()
     }
 
-    fn read<Q: Question>(&self, service: &Service, dataset: &str) -> Result<Q, Refusal> {
+    fn read<Q: Question>(&self, service: &Service, dataset: &str) -> Result<Q, HttpError> {
         let mut params = Params::default();
         params.add_form(self.uri.query().unwrap_or_default())?;
         match self.notation {
             Notation::Json => params.add_json(&self.body)?,
             Notation::Form => {
                 let text = std::str::from_utf8(&self.body)
-                    .map_err(|error| Refusal::wrong(format!("the body is not UTF-8 text: {error}")))?;
+                    .map_err(|error| HttpError::wrong(format!("the body is not UTF-8 text: {error}")))?;
                 params.add_form(text.trim_end())?;
             }
         }
-        Q::read(service, &Asked { dataset, params })
+        Q::read(service, &QueryRequest { dataset, params })
     }
 }
 
 /// How the headers say that the body is written; `None` where they do not.
-fn notation(headers: &HeaderMap) -> Result<Option<Notation>, Refusal> {
+fn notation(headers: &HeaderMap) -> Result<Option<Notation>, HttpError> {
     let unknown = |what: &str, found: &HeaderValue, remedy: &str| {
         let found = quoted(&String::from_utf8_lossy(found.as_bytes()));
-        Refusal::with(StatusCode::UNSUPPORTED_MEDIA_TYPE, format!("the {what} is {found}; {remedy}"))
+        HttpError::with(StatusCode::UNSUPPORTED_MEDIA_TYPE, format!("the {what} is {found}; {remedy}"))
             .closing()
     };
     if let Some(coding) = headers.get(CONTENT_ENCODING).filter(|coding| *coding != "identity") {
@@ -257,11 +257,11 @@ fn notation(headers: &HeaderMap) -> Result<Option<Notation>, Refusal> {
 }
 
 /// The whole body, which must arrive in time and not be longer than may be.
-async fn whole(body: Body, headers: &HeaderMap, limits: &Limits) -> Result<Bytes, Refusal> {
+async fn whole(body: Body, headers: &HeaderMap, limits: &ServeLimits) -> Result<Bytes, HttpError> {
     let most = limits.longest_body();
     let too_long = || {
         let reason = format!("the body is longer than {most} bytes, the most of one request; ask in parts");
-        Refusal::with(StatusCode::PAYLOAD_TOO_LARGE, reason).closing()
+        HttpError::with(StatusCode::PAYLOAD_TOO_LARGE, reason).closing()
     };
     let stated = headers.get(CONTENT_LENGTH).and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
     if stated.is_some_and(|length| length > most as u64) {
@@ -273,15 +273,15 @@ async fn whole(body: Body, headers: &HeaderMap, limits: &Limits) -> Result<Bytes
         Ok(Err(_)) => Err(too_long()),
         Err(_) => {
             let reason = format!("the body did not arrive within {} s", limits.timeout);
-            Err(Refusal::with(StatusCode::REQUEST_TIMEOUT, reason).closing())
+            Err(HttpError::with(StatusCode::REQUEST_TIMEOUT, reason).closing())
         }
     }
 }
 
 /// The line of the log that tells of a request.
-struct Line(Option<(Method, String, Instant)>);
+struct LogLine(Option<(Method, String, Instant)>);
 
-impl Line {
+impl LogLine {
     fn begin(service: &Service, request: &Request<Body>) -> Self {
         let tell = service.log == Log::Requests;
         Self(tell.then(|| (request.method().clone(), request.uri().path().to_owned(), Instant::now())))
@@ -293,7 +293,7 @@ impl Line {
             let milliseconds = begun.elapsed().as_secs_f64() * 1e3;
             let status = response.status().as_u16();
             let path: String = path.chars().take(200).collect();
-            output::complain(&format!("{method} {path} {status} {milliseconds:.3} ms"));
+            output::warn(&format!("{method} {path} {status} {milliseconds:.3} ms"));
         }
         response
     }

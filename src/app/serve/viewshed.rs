@@ -15,24 +15,24 @@ use glam::DVec2;
 
 use crate::app::serve::ground::{self, Grounded};
 use crate::app::serve::json;
-use crate::app::serve::question::{Asked, Question, Service, Weight};
-use crate::app::serve::reply::{Form, Refusal, Reply, quoted};
+use crate::app::serve::question::{QueryRequest, Question, Service, Weight};
+use crate::app::serve::reply::{BodyFormat, HttpError, Reply, quoted};
 use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::query::service::Epoch;
-use crate::terrain::sight::line::End;
-use crate::terrain::sight::viewshed::{self, Sector, Seen, ViewshedOptions};
+use crate::terrain::query::service::Snapshot;
+use crate::terrain::sight::line::SightEnd;
+use crate::terrain::sight::viewshed::{self, PostVisibility, Sector, ViewshedOptions};
 
 /// Which posts can be seen from a point.
-pub struct Viewshed {
+pub struct ViewshedQuestion {
     grounded: Grounded,
     /// As asked; the observer in the request's coordinates.
     options: ViewshedOptions,
-    detail: Detail,
+    detail: ViewshedDetail,
 }
 
 /// How much of a viewshed is told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Detail {
+enum ViewshedDetail {
     /// Every post.
     Runs,
     /// The counts.
@@ -55,8 +55,8 @@ const KNOWN: [&str; 10] = [
 /// When to ask again where others' viewsheds are being looked for.
 const RETRY_AFTER_S: u16 = 2;
 
-impl Question for Viewshed {
-    fn read(service: &Service, asked: &Asked<'_>) -> Result<Self, Refusal> {
+impl Question for ViewshedQuestion {
+    fn read(service: &Service, asked: &QueryRequest<'_>) -> Result<Self, HttpError> {
         let params = &asked.params;
         params.only(&KNOWN)?;
         let grounded = Grounded::read(service, params)?;
@@ -64,14 +64,14 @@ impl Question for Viewshed {
         let at = grounded.coordinates.place("observer", text)?;
         let above_m = ground::above_m(params, "observer_height", ground::OBSERVER_M)?;
         let options = ViewshedOptions {
-            observer: End { at, above_m },
+            observer: SightEnd { at, above_m },
             target_above_m: ground::above_m(params, "target_height", 0.0)?,
             range_m: params.number("range", 0.0..=1e9, f64::INFINITY)?,
             sector: sector(params.get("sector"))?,
             curvature: ground::curvature(params)?,
         };
-        let details = [("runs", Detail::Runs), ("summary", Detail::Summary)];
-        let detail = params.choice("format", &details)?.unwrap_or(Detail::Runs);
+        let details = [("runs", ViewshedDetail::Runs), ("summary", ViewshedDetail::Summary)];
+        let detail = params.choice("format", &details)?.unwrap_or(ViewshedDetail::Runs);
         Ok(Self { grounded, options, detail })
     }
 
@@ -79,29 +79,28 @@ impl Question for Viewshed {
         Weight::Heavy
     }
 
-    fn answer(self, service: &Service) -> Result<Reply, Refusal> {
-        let _place = service
-            .viewsheds
-            .enter()
-            .ok_or_else(|| Refusal::busy(RETRY_AFTER_S, "other viewsheds are being looked for; ask again"))?;
+    fn answer(self, service: &Service) -> Result<Reply, HttpError> {
+        let _place = service.viewsheds.enter().ok_or_else(|| {
+            HttpError::busy(RETRY_AFTER_S, "other viewsheds are being looked for; ask again")
+        })?;
         let epoch = self.grounded.epoch(service)?;
         let lattice = epoch.lattice();
         let at = self.grounded.coordinates.bring("observer", self.options.observer.at, epoch.crs())?;
-        let window = Window::around(lattice, at, self.options.range_m);
+        let window = PostWindow::around(lattice, at, self.options.range_m);
         window.check(lattice, service.limits.max_posts)?;
-        let observer = End { at, ..self.options.observer };
+        let observer = SightEnd { at, ..self.options.observer };
         let seen =
             viewshed::viewshed(lattice, &ViewshedOptions { observer, ..self.options }).map_err(|answer| {
-                Refusal::wrong(format!("observer: there is no ground there ({})", answer.status()))
+                HttpError::wrong(format!("observer: there is no ground there ({})", answer.status()))
             })?;
         let mut body = Vec::with_capacity(1024);
         self.write(service, &epoch, &window, &seen, &mut body);
-        Ok(Reply { form: Form::Json, body })
+        Ok(Reply { form: BodyFormat::Json, body })
     }
 }
 
 /// `FROM,WIDTH`: where it begins, clockwise from north, and how far it turns.
-fn sector(text: Option<&str>) -> Result<Sector, Refusal> {
+fn sector(text: Option<&str>) -> Result<Sector, HttpError> {
     let Some(text) = text else {
         return Ok(Sector::ALL);
     };
@@ -114,7 +113,7 @@ fn sector(text: Option<&str>) -> Result<Sector, Refusal> {
         {
             Ok(Sector { from_deg: from_deg.rem_euclid(360.0), width_deg })
         }
-        _ => Err(Refusal::wrong(format!(
+        _ => Err(HttpError::wrong(format!(
             "sector is {}; write FROM,WIDTH in degrees clockwise from north, as in 45,90 for the north-east to the \
              south-east",
             quoted(text)
@@ -123,12 +122,12 @@ fn sector(text: Option<&str>) -> Result<Sector, Refusal> {
 }
 
 /// The posts that a viewshed is told of.
-struct Window {
+struct PostWindow {
     first: Post,
     last: Post,
 }
 
-impl Window {
+impl PostWindow {
     /// The posts within `range_m` of `at` eastward and northward; those of the border where there are none.
     fn around(lattice: &Lattice, at: DVec2, range_m: f64) -> Self {
         let grid = lattice.grid_at(at - lattice.origin());
@@ -150,26 +149,26 @@ impl Window {
         self.last.row.saturating_sub(self.first.row) + 1
     }
 
-    fn check(&self, lattice: &Lattice, most: u32) -> Result<(), Refusal> {
+    fn check(&self, lattice: &Lattice, most: u32) -> Result<(), HttpError> {
         let posts = u64::from(self.columns()) * u64::from(self.rows());
         if posts <= u64::from(most) {
             return Ok(());
         }
         // A square has two cells for each of the range, and up to three posts more.
         let range = 0.5 * (f64::from(most).sqrt() - 3.0) * lattice.cell().min_element();
-        Err(Refusal::wrong(format!(
+        Err(HttpError::wrong(format!(
             "the viewshed would have {posts} posts, {most} are the most of one request; ask for range={:.0} or less",
             range.max(0.0).floor()
         )))
     }
 }
 
-impl Viewshed {
+impl ViewshedQuestion {
     fn write(
         &self,
         service: &Service,
-        epoch: &Epoch,
-        window: &Window,
+        epoch: &Snapshot,
+        window: &PostWindow,
         seen: &viewshed::Viewshed,
         out: &mut Vec<u8>,
     ) {
@@ -193,7 +192,7 @@ impl Viewshed {
         }
         json::raw(out, "},\"visible_area_m2\":");
         json::number(out, told[0] as f64 * lattice.cell().element_product());
-        if self.detail == Detail::Runs {
+        if self.detail == ViewshedDetail::Runs {
             write_runs(window, seen, out);
         }
         json::raw(out, ",\"status\":\"OK\"}");
@@ -213,22 +212,22 @@ fn counts(seen: &viewshed::Viewshed) -> [u64; 3] {
     let mut counts = [0; 3];
     for &post in &seen.posts {
         match post {
-            Seen::Visible => counts[0] += 1,
-            Seen::Hidden => counts[1] += 1,
-            Seen::NoData => counts[2] += 1,
-            Seen::Beyond => {}
+            PostVisibility::Visible => counts[0] += 1,
+            PostVisibility::Hidden => counts[1] += 1,
+            PostVisibility::NoData => counts[2] += 1,
+            PostVisibility::Beyond => {}
         }
     }
     counts
 }
 
 /// The counts with the posts of the window that lie beyond.
-fn window_total(window: &Window, [visible, hidden, no_data]: &[u64; 3]) -> [u64; 4] {
+fn window_total(window: &PostWindow, [visible, hidden, no_data]: &[u64; 3]) -> [u64; 4] {
     let posts = u64::from(window.columns()) * u64::from(window.rows());
     [*visible, *hidden, *no_data, posts.saturating_sub(visible + hidden + no_data)]
 }
 
-fn write_runs(window: &Window, seen: &viewshed::Viewshed, out: &mut Vec<u8>) {
+fn write_runs(window: &PostWindow, seen: &viewshed::Viewshed, out: &mut Vec<u8>) {
     json::raw(out, ",\"runs\":[");
     for row in 0..window.rows() {
         let from = (window.first.row + row) as usize * seen.columns as usize + window.first.column as usize;
@@ -242,11 +241,11 @@ fn write_runs(window: &Window, seen: &viewshed::Viewshed, out: &mut Vec<u8>) {
     json::raw(out, "]");
 }
 
-fn letter(seen: Seen) -> u8 {
+fn letter(seen: PostVisibility) -> u8 {
     match seen {
-        Seen::Visible => b'v',
-        Seen::Hidden => b'h',
-        Seen::NoData => b'n',
-        Seen::Beyond => b'b',
+        PostVisibility::Visible => b'v',
+        PostVisibility::Hidden => b'h',
+        PostVisibility::NoData => b'n',
+        PostVisibility::Beyond => b'b',
     }
 }

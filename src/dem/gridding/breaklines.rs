@@ -9,7 +9,7 @@ use spade::Triangulation;
 use spade::handles::FixedVertexHandle;
 
 use crate::dem::gridding::sites::Sites;
-use crate::dem::gridding::tin::{Constrained, Vertex, vertex_of_site};
+use crate::dem::gridding::tin::{Constrained, TinVertex, vertex_of_site};
 
 /// Points along one segment of a breakline at most: a segment that spans the largest grid has fewer half cells.
 const MOST_ALONG: f64 = 1e6;
@@ -45,13 +45,13 @@ pub(super) fn constrain(web: &mut Constrained, sites: &Sites, lines: &[Vec<DVec3
 
 /// A segment with heights, for the place where another crosses it.
 #[derive(Clone, Copy)]
-struct Segment {
+struct BreaklineSegment {
     from: DVec3,
     to: DVec3,
 }
 
-impl Segment {
-    fn new(from: &Vertex, to: &Vertex) -> Self {
+impl BreaklineSegment {
+    fn new(from: &TinVertex, to: &TinVertex) -> Self {
         Self { from: from.at.extend(from.z), to: to.at.extend(to.z) }
     }
 
@@ -65,10 +65,10 @@ impl Segment {
 
 /// Adds a segment that crosses others.
 fn split(web: &mut Constrained, from: FixedVertexHandle, to: FixedVertexHandle, crossings: &mut Crossings) {
-    let own = Segment::new(web.vertex(from).data(), web.vertex(to).data());
-    let crossed: Vec<Segment> = web
+    let own = BreaklineSegment::new(web.vertex(from).data(), web.vertex(to).data());
+    let crossed: Vec<BreaklineSegment> = web
         .get_conflicting_edges_between_vertices(from, to)
-        .map(|edge| Segment::new(edge.from().data(), edge.to().data()))
+        .map(|edge| BreaklineSegment::new(edge.from().data(), edge.to().data()))
         .collect();
     let heights_at = |at: DVec2| {
         let nearest = crossed.iter().map(|other| other.height(at)).min_by(|a, b| a.1.total_cmp(&b.1));
@@ -78,7 +78,7 @@ fn split(web: &mut Constrained, from: FixedVertexHandle, to: FixedVertexHandle, 
     web.add_constraint_and_split(from, to, |at| {
         let at = DVec2::new(at.x, at.y);
         let (own, other) = heights_at(at);
-        Vertex { at, z: own + (other - own) * 0.5, site: None }
+        TinVertex { at, z: own + (other - own) * 0.5, site: None }
     });
     for vertex in web.vertices().skip(before) {
         let (own, other) = heights_at(vertex.data().at);

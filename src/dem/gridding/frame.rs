@@ -12,7 +12,7 @@ const SLACK_CELLS: f64 = 1e-6;
 
 /// Square cells in rows from the north-west.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct CellGrid {
     corner: DVec2,
     cell: f64,
     width: u32,
@@ -21,7 +21,7 @@ pub struct Frame {
 
 /// Why a lattice of cells cannot be had.
 #[derive(Debug, thiserror::Error, PartialEq)]
-pub enum FrameError {
+pub enum CellGridError {
     /// The size of a cell is no size.
     #[error("the cell size is {0}; it must be a number above 0")]
     Cell(f64),
@@ -42,13 +42,13 @@ pub enum FrameError {
     },
 }
 
-impl Frame {
+impl CellGrid {
     /// The cells that cover `extent`, their edges on multiples of `cell`: grids of neighbouring surveys with the same
     /// cell size then fit each other.
     ///
     /// # Errors
     /// [`FrameError`]; an extent without width or height still has one column or row.
-    pub fn around(extent: Rect, cell: f64) -> Result<Self, FrameError> {
+    pub fn around(extent: Rect, cell: f64) -> Result<Self, CellGridError> {
         check(extent, cell)?;
         let low = (extent.min / cell).floor();
         let high = (extent.max / cell).ceil().max(low + 1.0);
@@ -60,13 +60,13 @@ impl Frame {
     ///
     /// # Errors
     /// [`FrameError`].
-    pub fn within(extent: Rect, cell: f64) -> Result<Self, FrameError> {
+    pub fn within(extent: Rect, cell: f64) -> Result<Self, CellGridError> {
         check(extent, cell)?;
         let size = ((extent.max - extent.min) / cell - SLACK_CELLS).ceil().max(DVec2::ONE);
         Self::new(DVec2::new(extent.min.x, extent.max.y), cell, size, extent)
     }
 
-    fn new(corner: DVec2, cell: f64, size: DVec2, extent: Rect) -> Result<Self, FrameError> {
+    fn new(corner: DVec2, cell: f64, size: DVec2, extent: Rect) -> Result<Self, CellGridError> {
         let cells = size.x * size.y;
         if cells.is_finite() && cells <= MOST_SAMPLES as f64 {
             return Ok(Self { corner, cell, width: size.x as u32, height: size.y as u32 });
@@ -74,7 +74,7 @@ impl Frame {
         let sides = extent.max - extent.min;
         let by_area = (sides.x * sides.y / MOST_SAMPLES as f64).sqrt();
         let enough = by_area.max(sides.max_element() / MOST_SAMPLES as f64) * 1.01;
-        Err(FrameError::TooMany { columns: size.x, rows: size.y, enough })
+        Err(CellGridError::TooMany { columns: size.x, rows: size.y, enough })
     }
 
     /// The side of a cell in map units.
@@ -108,12 +108,12 @@ impl Frame {
     }
 }
 
-fn check(extent: Rect, cell: f64) -> Result<(), FrameError> {
+fn check(extent: Rect, cell: f64) -> Result<(), CellGridError> {
     if !(cell > 0.0 && cell.is_finite()) {
-        return Err(FrameError::Cell(cell));
+        return Err(CellGridError::Cell(cell));
     }
     let sound = extent.min.is_finite() && extent.max.is_finite() && !extent.is_empty();
-    if sound { Ok(()) } else { Err(FrameError::Empty(extent)) }
+    if sound { Ok(()) } else { Err(CellGridError::Empty(extent)) }
 }
 
 #[cfg(test)]
@@ -126,31 +126,32 @@ mod tests {
 
     #[test]
     fn edges_lie_on_multiples_of_the_cell_and_cover_the_points() {
-        let frame = Frame::around(rect(101.0, -3.0, 119.9, 10.0), 10.0).expect("a frame");
+        let frame = CellGrid::around(rect(101.0, -3.0, 119.9, 10.0), 10.0).expect("a frame");
         assert_eq!((frame.corner(), frame.width(), frame.height()), (DVec2::new(100.0, 10.0), 2, 2));
         assert_eq!(frame.center(1, 0), DVec2::new(115.0, 5.0));
-        let point = Frame::around(rect(10.0, 10.0, 10.0, 10.0), 10.0).expect("one cell");
+        let point = CellGrid::around(rect(10.0, 10.0, 10.0, 10.0), 10.0).expect("one cell");
         assert_eq!((point.width(), point.height()), (1, 1));
     }
 
     #[test]
     fn a_stated_extent_keeps_its_north_west_corner() {
-        let frame = Frame::within(rect(0.5, 0.5, 1.0, 0.8), 0.1).expect("a frame");
+        let frame = CellGrid::within(rect(0.5, 0.5, 1.0, 0.8), 0.1).expect("a frame");
         assert_eq!((frame.corner(), frame.width(), frame.height()), (DVec2::new(0.5, 0.8), 5, 3));
-        assert_eq!(Frame::within(rect(0.0, 0.0, 25.0, 21.0), 10.0).map(|frame| frame.width()), Ok(3));
+        assert_eq!(CellGrid::within(rect(0.0, 0.0, 25.0, 21.0), 10.0).map(|frame| frame.width()), Ok(3));
     }
 
     #[test]
     fn what_is_no_lattice_is_refused() {
         for cell in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(matches!(Frame::around(rect(0.0, 0.0, 1.0, 1.0), cell), Err(FrameError::Cell(_))));
+            assert!(matches!(CellGrid::around(rect(0.0, 0.0, 1.0, 1.0), cell), Err(CellGridError::Cell(_))));
         }
-        assert!(matches!(Frame::within(rect(1.0, 0.0, 0.0, 1.0), 1.0), Err(FrameError::Empty(_))));
-        assert!(matches!(Frame::within(rect(0.0, f64::NAN, 1.0, 1.0), 1.0), Err(FrameError::Empty(_))));
-        let Err(FrameError::TooMany { enough, .. }) = Frame::around(rect(0.0, 0.0, 1e6, 1e6), 1.0) else {
+        assert!(matches!(CellGrid::within(rect(1.0, 0.0, 0.0, 1.0), 1.0), Err(CellGridError::Empty(_))));
+        assert!(matches!(CellGrid::within(rect(0.0, f64::NAN, 1.0, 1.0), 1.0), Err(CellGridError::Empty(_))));
+        let Err(CellGridError::TooMany { enough, .. }) = CellGrid::around(rect(0.0, 0.0, 1e6, 1e6), 1.0)
+        else {
             panic!("accepted");
         };
-        assert!(Frame::around(rect(0.0, 0.0, 1e6, 1e6), enough).is_ok());
-        assert!(Frame::around(rect(0.0, 0.0, 1e300, 1e300), 1e-300).is_err());
+        assert!(CellGrid::around(rect(0.0, 0.0, 1e6, 1e6), enough).is_ok());
+        assert!(CellGrid::around(rect(0.0, 0.0, 1e300, 1e300), 1e-300).is_err());
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::dem::gridding::linear::{Positions, crossing};
+use crate::dem::gridding::linear::{CellCenters, crossing};
 use crate::dem::gridding::sites::Sites;
 
 /// The corners of the convex hull, counter-clockwise, none between two others on a side.
@@ -26,7 +26,7 @@ impl Hull {
     }
 
     /// For each row of cells, the columns whose centres lie inside or on the border; empty for rows that pass by.
-    pub fn columns(&self, cells: &Positions) -> Vec<std::ops::Range<usize>> {
+    pub fn columns(&self, cells: &CellCenters) -> Vec<std::ops::Range<usize>> {
         let mut spans = vec![(f64::INFINITY, f64::NEG_INFINITY); cells.y.len()];
         for (index, &from) in self.corners.iter().enumerate() {
             let to = self.corners[(index + 1) % self.corners.len()];
@@ -60,7 +60,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::dem::gridding::frame::Frame;
+    use crate::dem::gridding::frame::CellGrid;
     use crate::geom::rect::Rect;
 
     fn hull(points: &[(f64, f64)]) -> (Hull, Sites) {
@@ -83,7 +83,7 @@ mod tests {
     fn centres_on_the_border_lie_inside() {
         let (hull, sites) = hull(&[(0.5, 0.5), (4.5, 0.5), (0.5, 4.5)]);
         let extent = Rect { min: DVec2::ZERO, max: DVec2::splat(5.0) };
-        let cells = Positions::new(&Frame::around(extent, 1.0).expect("a frame"), sites.origin);
+        let cells = CellCenters::new(&CellGrid::around(extent, 1.0).expect("a frame"), sites.origin);
         assert_eq!(hull.columns(&cells), [0..1, 0..2, 0..3, 0..4, 0..5]);
     }
 }

@@ -20,7 +20,7 @@ const PARALLEL: usize = 16_384;
 
 /// A line that parts a subtree: no site of its left half lies above it, none of its right half below.
 #[derive(Clone, Copy, Debug, Default)]
-struct Plane {
+struct SplitLine {
     axis: usize,
     at: f64,
 }
@@ -29,7 +29,7 @@ struct Plane {
 pub(super) struct KdTree {
     at: Vec<DVec2>,
     sites: Vec<u32>,
-    planes: Vec<Plane>,
+    planes: Vec<SplitLine>,
     depth: u32,
 }
 
@@ -54,14 +54,14 @@ impl Near {
 const SPARE: usize = 32;
 
 /// The sites that a search finds.
-pub(super) struct Found {
+pub(super) struct NearestSites {
     near: Vec<Near>,
     wanted: usize,
     /// Nothing farther is wanted.
     limit2: f64,
 }
 
-impl Found {
+impl NearestSites {
     /// For searches of the `wanted` nearest, at least 1.
     pub fn new(wanted: usize) -> Self {
         Self { near: Vec::new(), wanted, limit2: 0.0 }
@@ -132,7 +132,7 @@ impl KdTree {
     pub fn new(at: &[DVec2]) -> Self {
         let depth = at.len().div_ceil(LEAF).next_power_of_two().ilog2();
         let mut order: Vec<(DVec2, u32)> = at.iter().zip(0..).map(|(&at, site)| (at, site)).collect();
-        let mut planes = vec![Plane::default(); (1 << depth) - 1];
+        let mut planes = vec![SplitLine::default(); (1 << depth) - 1];
         build(&mut order, &mut planes);
         let (at, sites) = order.into_iter().unzip();
         Self { at, sites, planes, depth }
@@ -144,7 +144,7 @@ impl KdTree {
 
     /// The site nearest to `q`; `None` where there is none at all.
     pub fn nearest(&self, q: DVec2) -> Option<u32> {
-        let mut found = Found::new(1);
+        let mut found = NearestSites::new(1);
         self.nearest_k(q, f64::INFINITY, &mut found);
         found.near.first().map(|near| near.site)
     }
@@ -153,7 +153,7 @@ impl KdTree {
     ///
     /// `limit2` is a squared distance inside which, or at which, so many are known to lie; infinite where nothing is
     /// known.
-    pub fn nearest_k(&self, q: DVec2, limit2: f64, found: &mut Found) {
+    pub fn nearest_k(&self, q: DVec2, limit2: f64, found: &mut NearestSites) {
         found.near.clear();
         found.limit2 = limit2;
         self.visit(self.root(), q, DVec2::ZERO, found);
@@ -161,7 +161,7 @@ impl KdTree {
     }
 
     /// `offset` is how far the subtree's box is from `q` along each axis, as far as the planes above tell.
-    fn visit(&self, part: Subtree, q: DVec2, offset: DVec2, found: &mut Found) {
+    fn visit(&self, part: Subtree, q: DVec2, offset: DVec2, found: &mut NearestSites) {
         if part.depth == 0 {
             for (at, &site) in self.at[part.start..part.end].iter().zip(&self.sites[part.start..part.end]) {
                 let distance2 = (*at - q).length_squared();
@@ -266,7 +266,7 @@ impl KdTree {
     }
 }
 
-fn build(order: &mut [(DVec2, u32)], planes: &mut [Plane]) {
+fn build(order: &mut [(DVec2, u32)], planes: &mut [SplitLine]) {
     let Some((plane, below)) = planes.split_first_mut() else { return };
     let (low, high) = order
         .iter()
@@ -276,12 +276,12 @@ fn build(order: &mut [(DVec2, u32)], planes: &mut [Plane]) {
     let (left_planes, right_planes) = below.split_at_mut(below.len() / 2);
     if middle == 0 {
         // No site left of the plane; it stands at the only one there is, or nowhere.
-        *plane = Plane { axis, at: order.first().map_or(0.0, |(at, _)| at[axis]) };
+        *plane = SplitLine { axis, at: order.first().map_or(0.0, |(at, _)| at[axis]) };
     } else {
         let by_axis =
             |a: &(DVec2, u32), b: &(DVec2, u32)| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1));
         let (_, (at, _), _) = order.select_nth_unstable_by(middle, by_axis);
-        *plane = Plane { axis, at: at[axis] };
+        *plane = SplitLine { axis, at: at[axis] };
     }
     let (left, right) = order.split_at_mut(middle);
     if left.len() > PARALLEL {
@@ -318,7 +318,7 @@ mod tests {
         for count in [0, 1, 2, 7, 9, 100, 777] {
             let at = places(count, count + 5);
             let tree = KdTree::new(&at);
-            let mut found = Found::new(12);
+            let mut found = NearestSites::new(12);
             for q in places(40, 99).into_iter().map(|q| q * 1.1 - 1.0) {
                 tree.nearest_k(q, f64::INFINITY, &mut found);
                 let all = sorted(&at, q);
@@ -334,7 +334,7 @@ mod tests {
     fn a_known_distance_changes_nothing() {
         let at = places(500, 3);
         let tree = KdTree::new(&at);
-        let (mut free, mut bounded) = (Found::new(5), Found::new(5));
+        let (mut free, mut bounded) = (NearestSites::new(5), NearestSites::new(5));
         for q in places(40, 12) {
             tree.nearest_k(q, f64::INFINITY, &mut free);
             tree.nearest_k(q, free.near()[4].distance2, &mut bounded);

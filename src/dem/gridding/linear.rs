@@ -18,14 +18,14 @@ use std::ops::Range;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use crate::dem::gridding::frame::Frame;
+use crate::dem::gridding::frame::CellGrid;
 use crate::dem::gridding::tin::Tin;
 
 /// Rows a task: enough that few triangles lie in two, few enough that all cores stay busy to the end.
 const BAND_ROWS: usize = 16;
 
 /// Where cells' centres lie, from the sites' origin.
-pub(super) struct Positions {
+pub(super) struct CellCenters {
     /// Of columns, rising.
     pub x: Vec<f64>,
     /// Of rows, falling.
@@ -33,9 +33,9 @@ pub(super) struct Positions {
     per_cell: f64,
 }
 
-impl Positions {
+impl CellCenters {
     /// The centres of a frame's cells.
-    pub fn new(frame: &Frame, origin: DVec2) -> Self {
+    pub fn new(frame: &CellGrid, origin: DVec2) -> Self {
         let corner = frame.corner() - origin;
         let cell = frame.cell();
         let x = (0..frame.width()).map(|column| corner.x + (f64::from(column) + 0.5) * cell);
@@ -112,7 +112,7 @@ fn cut(low: DVec3, high: DVec3, y: f64) -> (f64, f64) {
 /// Gives every cell whose centre lies in a triangle the triangle's height there; other cells are left as they are.
 ///
 /// A centre on an edge takes the height of the later of its triangles, which is the same but for rounding.
-pub(super) fn fill(tin: &Tin, cells: &Positions, out: &mut [f64]) {
+pub(super) fn fill(tin: &Tin, cells: &CellCenters, out: &mut [f64]) {
     let width = cells.x.len();
     let bands = bands(tin, cells);
     out.par_chunks_mut(BAND_ROWS * width).zip(bands.par_iter()).enumerate().for_each(
@@ -126,7 +126,7 @@ pub(super) fn fill(tin: &Tin, cells: &Positions, out: &mut [f64]) {
 }
 
 /// The triangles that meet each band of rows, in their order.
-fn bands(tin: &Tin, cells: &Positions) -> Vec<Vec<u32>> {
+fn bands(tin: &Tin, cells: &CellCenters) -> Vec<Vec<u32>> {
     let count = cells.y.len().div_ceil(BAND_ROWS);
     let mut bands = vec![Vec::with_capacity(tin.triangles.len() / count + 1); count];
     for index in 0..tin.triangles.len() {
@@ -141,7 +141,7 @@ fn bands(tin: &Tin, cells: &Positions) -> Vec<Vec<u32>> {
     bands
 }
 
-fn fill_triangle(corners: [DVec3; 3], cells: &Positions, band: &Range<usize>, out: &mut [f64]) {
+fn fill_triangle(corners: [DVec3; 3], cells: &CellCenters, band: &Range<usize>, out: &mut [f64]) {
     let [mut low, mut middle, mut high] = corners;
     if middle.y < low.y {
         std::mem::swap(&mut low, &mut middle);

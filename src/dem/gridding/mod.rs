@@ -26,20 +26,20 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use crate::dem::gridding::breaklines::Crossings;
-use crate::dem::gridding::frame::{Frame, FrameError};
+use crate::dem::gridding::frame::{CellGrid, CellGridError};
 use crate::dem::gridding::hull::Hull;
 use crate::dem::gridding::kd::KdTree;
-use crate::dem::gridding::linear::Positions;
+use crate::dem::gridding::linear::CellCenters;
 use crate::dem::gridding::natural::Naturals;
 use crate::dem::gridding::sites::Sites;
 use crate::dem::gridding::tin::Tin;
-use crate::dem::gridding::weighted::Weighted;
+use crate::dem::gridding::weighted::WeightedSites;
 use crate::dem::points::PointCloud;
 use crate::dem::raster::{Raster, Samples};
 
 /// How the height at a cell's centre comes from the points.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Method {
+pub enum GriddingMethod {
     /// On the plane through the corners of the Delaunay triangle around it, breaklines kept as edges of triangles.
     /// Continuous, with creases at the edges; reproduces planes.
     Tin,
@@ -81,12 +81,12 @@ pub struct Gridded {
     /// The grid, in 64 bits and the points' vertical unit.
     pub raster: Raster,
     /// Counts.
-    pub report: Report,
+    pub report: GriddingReport,
 }
 
 /// What a grid was made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Report {
+pub struct GriddingReport {
     /// Points as given, vertices of breaklines not among them.
     pub points: usize,
     /// Points and vertices of breaklines that shared their x and y with an earlier one; each position took the mean
@@ -105,7 +105,7 @@ pub struct Report {
 pub enum GridError {
     /// The lattice of cells cannot be had.
     #[error(transparent)]
-    Frame(#[from] FrameError),
+    Frame(#[from] CellGridError),
     /// A parameter of the method out of range.
     #[error("{what} is {value}; it must be {wanted}")]
     Parameter {
@@ -144,7 +144,12 @@ pub enum GridError {
 ///
 /// # Errors
 /// [`GridError`]: a point that is not finite, points that all lie on one line, a parameter out of range.
-pub fn grid(cloud: &PointCloud, frame: &Frame, method: Method, beyond: Beyond) -> Result<Gridded, GridError> {
+pub fn grid(
+    cloud: &PointCloud,
+    frame: &CellGrid,
+    method: GriddingMethod,
+    beyond: Beyond,
+) -> Result<Gridded, GridError> {
     check(method)?;
     let (heights, mut report) = heights(cloud, frame, method, beyond)?;
     report.filled = heights.iter().filter(|height| !height.is_nan()).count();
@@ -164,13 +169,13 @@ pub fn grid(cloud: &PointCloud, frame: &Frame, method: Method, beyond: Beyond) -
     Ok(Gridded { raster, report })
 }
 
-fn check(method: Method) -> Result<(), GridError> {
+fn check(method: GriddingMethod) -> Result<(), GridError> {
     let power = match method {
-        Method::InverseDistance { k: 0, .. } => {
+        GriddingMethod::InverseDistance { k: 0, .. } => {
             return Err(GridError::Parameter { what: "k", value: 0.0, wanted: "at least 1" });
         }
-        Method::InverseDistance { power, .. } | Method::Quadrant { power } => power,
-        Method::Tin | Method::Natural | Method::Nearest => return Ok(()),
+        GriddingMethod::InverseDistance { power, .. } | GriddingMethod::Quadrant { power } => power,
+        GriddingMethod::Tin | GriddingMethod::Natural | GriddingMethod::Nearest => return Ok(()),
     };
     if power > 0.0 && power.is_finite() {
         return Ok(());
@@ -180,12 +185,12 @@ fn check(method: Method) -> Result<(), GridError> {
 
 fn heights(
     cloud: &PointCloud,
-    frame: &Frame,
-    method: Method,
+    frame: &CellGrid,
+    method: GriddingMethod,
     beyond: Beyond,
-) -> Result<(Vec<f64>, Report), GridError> {
+) -> Result<(Vec<f64>, GriddingReport), GridError> {
     let along: Vec<DVec3> = match method {
-        Method::Tin => cloud.breaklines.iter().flatten().copied().collect(),
+        GriddingMethod::Tin => cloud.breaklines.iter().flatten().copied().collect(),
         _ => cloud
             .breaklines
             .iter()
@@ -193,30 +198,32 @@ fn heights(
             .collect(),
     };
     let sites = Sites::new(&cloud.points, &along)?;
-    let mut report = Report {
+    let mut report = GriddingReport {
         points: cloud.points.len(),
         duplicates: sites.duplicates,
         breaklines: cloud.breaklines.len(),
-        ..Report::default()
+        ..GriddingReport::default()
     };
-    let cells = Positions::new(frame, sites.origin);
+    let cells = CellCenters::new(frame, sites.origin);
     let mut out = vec![f64::NAN; cells.len()];
     match method {
-        Method::Tin => {
+        GriddingMethod::Tin => {
             let (tin, crossings) = Tin::new(&sites, &cloud.breaklines)?;
             report.crossings = crossings;
             linear::fill(&tin, &cells, &mut out);
         }
-        Method::Natural => {
+        GriddingMethod::Natural => {
             let naturals = Naturals::new(&sites)?;
             naturals.fill(&Hull::new(&sites), &cells, &mut out);
         }
-        Method::InverseDistance { .. } | Method::Quadrant { .. } | Method::Nearest => {
+        GriddingMethod::InverseDistance { .. }
+        | GriddingMethod::Quadrant { .. }
+        | GriddingMethod::Nearest => {
             let hull = Hull::new(&sites);
             if hull.is_flat() && beyond == Beyond::NoData {
                 return Err(GridError::Collinear { sites: sites.len() });
             }
-            Weighted::new(&sites, method).fill(&hull, &cells, &mut out);
+            WeightedSites::new(&sites, method).fill(&hull, &cells, &mut out);
         }
     }
     if beyond == Beyond::Nearest {
@@ -226,7 +233,7 @@ fn heights(
 }
 
 /// Gives every cell without data the height of the nearest site.
-fn fill_with_nearest(sites: &Sites, cells: &Positions, out: &mut [f64]) {
+fn fill_with_nearest(sites: &Sites, cells: &CellCenters, out: &mut [f64]) {
     if !out.iter().any(|height| height.is_nan()) {
         return;
     }

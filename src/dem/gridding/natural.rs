@@ -23,7 +23,7 @@ use rayon::prelude::*;
 
 use crate::dem::gridding::GridError;
 use crate::dem::gridding::hull::Hull;
-use crate::dem::gridding::linear::Positions;
+use crate::dem::gridding::linear::CellCenters;
 use crate::dem::gridding::sites::Sites;
 use crate::dem::gridding::tin::{OUTSIDE, Tin, delaunay, neighbours};
 
@@ -39,7 +39,7 @@ const SNAP: f64 = 1e-11;
 const ON_SIDE: f64 = 1e-12;
 
 /// A triangle with what a search asks of it.
-struct Cell {
+struct SearchTriangle {
     circumcentre: DVec2,
     radius2: f64,
     corners: [u32; 3],
@@ -51,13 +51,13 @@ struct Cell {
 pub(super) struct Naturals {
     at: Vec<DVec2>,
     z: Vec<f64>,
-    cells: Vec<Cell>,
+    cells: Vec<SearchTriangle>,
     snap2: f64,
 }
 
 /// What a search fills again for every centre.
 #[derive(Default)]
-struct Scratch {
+struct NeighborScratch {
     /// Sides yet to be looked across: the triangle and the side, the next in counter-clockwise order on top.
     sides: Vec<(u32, u8)>,
 }
@@ -70,7 +70,7 @@ impl Naturals {
         let cells = tin.triangles.iter().zip(neighbours).map(|(&corners, neighbours)| {
             let [a, b, c] = corners.map(|corner| tin.vertices[corner as usize].truncate());
             let from_a = circumcentre(b - a, c - a);
-            Cell { circumcentre: a + from_a, radius2: from_a.length_squared(), corners, neighbours }
+            SearchTriangle { circumcentre: a + from_a, radius2: from_a.length_squared(), corners, neighbours }
         });
         let high = sites.at.iter().fold(DVec2::ZERO, |high, at| high.max(*at));
         let snap = high.length() * SNAP;
@@ -83,12 +83,12 @@ impl Naturals {
     }
 
     /// Gives every cell in the hull its height; other cells are left as they are.
-    pub fn fill(&self, hull: &Hull, cells: &Positions, out: &mut [f64]) {
+    pub fn fill(&self, hull: &Hull, cells: &CellCenters, out: &mut [f64]) {
         let width = cells.x.len();
         let columns = hull.columns(cells);
         let bands = out.par_chunks_mut(BAND_ROWS * width).zip(cells.y.par_chunks(BAND_ROWS));
         let bands = bands.zip(columns.par_chunks(BAND_ROWS));
-        bands.for_each_init(Scratch::default, |scratch, ((out, y), columns)| {
+        bands.for_each_init(NeighborScratch::default, |scratch, ((out, y), columns)| {
             let mut row_start = 0;
             for ((row, &y), columns) in out.chunks_mut(width).zip(y).zip(columns) {
                 let mut around = row_start;
@@ -125,7 +125,7 @@ impl Naturals {
     }
 
     /// The height at `q`, which lies in the triangle `around`.
-    fn height(&self, q: DVec2, around: u32, scratch: &mut Scratch) -> f64 {
+    fn height(&self, q: DVec2, around: u32, scratch: &mut NeighborScratch) -> f64 {
         let corners = self.cells[around as usize].corners;
         for corner in corners {
             if self.at[corner as usize].distance_squared(q) <= self.snap2 {
@@ -142,11 +142,11 @@ impl Naturals {
     }
 
     /// Goes round the triangles that a site at `q` would make vanish.
-    fn gather(&self, q: DVec2, around: u32, scratch: &mut Scratch) -> Sums {
+    fn gather(&self, q: DVec2, around: u32, scratch: &mut NeighborScratch) -> AreaSums {
         let sides = &mut scratch.sides;
         sides.clear();
         sides.extend([(around, 2), (around, 1), (around, 0)]);
-        let mut sums = Sums::new(self.z[self.cells[around as usize].corners[0] as usize]);
+        let mut sums = AreaSums::new(self.z[self.cells[around as usize].corners[0] as usize]);
         let mut vanishing = 1;
         while let Some((index, side)) = sides.pop() {
             let cell = &self.cells[index as usize];
@@ -199,7 +199,7 @@ impl Naturals {
 /// The corner after each.
 const NEXT: [usize; 3] = [1, 2, 0];
 
-impl Cell {
+impl SearchTriangle {
     fn holds(&self, q: DVec2) -> bool {
         self.circumcentre.distance_squared(q) < self.radius2
     }
@@ -213,7 +213,7 @@ fn circumcentre(a: DVec2, b: DVec2) -> DVec2 {
 }
 
 /// The sums over the sides of all areas taken, each twice its area.
-struct Sums {
+struct AreaSums {
     /// Heights are summed as differences from this one.
     zero: f64,
     /// The areas' heights.
@@ -228,7 +228,7 @@ struct Sums {
     on_side: Option<f64>,
 }
 
-impl Sums {
+impl AreaSums {
     fn new(zero: f64) -> Self {
         Self {
             zero,

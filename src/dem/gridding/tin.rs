@@ -17,7 +17,7 @@ pub(super) const OUTSIDE: u32 = u32::MAX;
 
 /// A site as `spade` holds it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Vertex {
+pub(super) struct TinVertex {
     /// From the sites' origin.
     pub at: DVec2,
     /// Its height.
@@ -26,7 +26,7 @@ pub(super) struct Vertex {
     pub site: Option<u32>,
 }
 
-impl HasPosition for Vertex {
+impl HasPosition for TinVertex {
     type Scalar = f64;
 
     fn position(&self) -> Point2<f64> {
@@ -35,7 +35,7 @@ impl HasPosition for Vertex {
 }
 
 /// A triangulation that keeps edges.
-pub(super) type Constrained = ConstrainedDelaunayTriangulation<Vertex>;
+pub(super) type Constrained = ConstrainedDelaunayTriangulation<TinVertex>;
 
 /// Triangles over vertices.
 pub(super) struct Tin {
@@ -57,7 +57,7 @@ impl Tin {
     }
 
     /// The triangles of what `spade` made.
-    pub fn of<T: Triangulation<Vertex = Vertex>>(web: &T) -> Self {
+    pub fn of<T: Triangulation<Vertex = TinVertex>>(web: &T) -> Self {
         let vertices = web.vertices().map(|vertex| vertex.data().at.extend(vertex.data().z)).collect();
         let triangles =
             web.inner_faces().map(|face| face.vertices().map(|vertex| vertex.fix().index() as u32));
@@ -72,7 +72,7 @@ impl Tin {
 
 /// The neighbours of every triangle, in the order of [`Tin::of`]: for each side from corner i to corner i + 1 the
 /// triangle beyond, or [`OUTSIDE`].
-pub(super) fn neighbours(web: &DelaunayTriangulation<Vertex>) -> Vec<[u32; 3]> {
+pub(super) fn neighbours(web: &DelaunayTriangulation<TinVertex>) -> Vec<[u32; 3]> {
     // Face 0 is what lies beyond the hull; the inner faces follow.
     let beyond = |index: usize| index.checked_sub(1).map_or(OUTSIDE, |index| index as u32);
     web.inner_faces()
@@ -81,14 +81,14 @@ pub(super) fn neighbours(web: &DelaunayTriangulation<Vertex>) -> Vec<[u32; 3]> {
 }
 
 /// The Delaunay triangulation of the sites.
-pub(super) fn delaunay(sites: &Sites) -> Result<DelaunayTriangulation<Vertex>, GridError> {
+pub(super) fn delaunay(sites: &Sites) -> Result<DelaunayTriangulation<TinVertex>, GridError> {
     load(sites)
 }
 
-fn load<T: Triangulation<Vertex = Vertex>>(sites: &Sites) -> Result<T, GridError> {
+fn load<T: Triangulation<Vertex = TinVertex>>(sites: &Sites) -> Result<T, GridError> {
     let vertices = sites.at.iter().zip(&sites.z).enumerate();
-    let vertices: Vec<Vertex> =
-        vertices.map(|(index, (&at, &z))| Vertex { at, z, site: Some(index as u32) }).collect();
+    let vertices: Vec<TinVertex> =
+        vertices.map(|(index, (&at, &z))| TinVertex { at, z, site: Some(index as u32) }).collect();
     let unplaceable = |_| {
         // Offsets from a whole number are far below spade's limit and either zero or far above its smallest, unless
         // they were given as such.

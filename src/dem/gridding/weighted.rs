@@ -8,10 +8,10 @@ use std::ops::Range;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::dem::gridding::Method;
+use crate::dem::gridding::GriddingMethod;
 use crate::dem::gridding::hull::Hull;
-use crate::dem::gridding::kd::{Found, KdTree};
-use crate::dem::gridding::linear::Positions;
+use crate::dem::gridding::kd::{KdTree, NearestSites};
+use crate::dem::gridding::linear::CellCenters;
 use crate::dem::gridding::sites::Sites;
 
 /// Cells along the side of a tile whose cells share a search.
@@ -53,35 +53,35 @@ impl Tile<'_> {
 }
 
 /// What a task fills again for every tile.
-struct Scratch {
-    found: Found,
+struct SearchScratch {
+    found: NearestSites,
     candidates: Vec<(DVec2, u32)>,
 }
 
-impl Scratch {
+impl SearchScratch {
     fn new(wanted: usize) -> Self {
-        Self { found: Found::new(wanted), candidates: Vec::new() }
+        Self { found: NearestSites::new(wanted), candidates: Vec::new() }
     }
 }
 
 /// Sites that can be asked by distance.
-pub(super) struct Weighted<'a> {
+pub(super) struct WeightedSites<'a> {
     sites: &'a Sites,
     tree: KdTree,
-    method: Method,
+    method: GriddingMethod,
 }
 
-impl<'a> Weighted<'a> {
+impl<'a> WeightedSites<'a> {
     /// Sites for a method that goes by distance; any other is taken as the nearest.
-    pub fn new(sites: &'a Sites, method: Method) -> Self {
+    pub fn new(sites: &'a Sites, method: GriddingMethod) -> Self {
         Self { sites, tree: KdTree::new(&sites.at), method }
     }
 
     /// Gives every cell in the hull its height; other cells are left as they are.
-    pub fn fill(&self, hull: &Hull, cells: &Positions, out: &mut [f64]) {
+    pub fn fill(&self, hull: &Hull, cells: &CellCenters, out: &mut [f64]) {
         let columns = hull.columns(cells);
         let width = cells.x.len();
-        if let Method::Quadrant { power } = self.method {
+        if let GriddingMethod::Quadrant { power } = self.method {
             out.par_chunks_mut(width).zip(&cells.y).zip(columns).for_each(|((row, &y), columns)| {
                 for column in columns {
                     row[column] = self.by_quadrants(DVec2::new(cells.x[column], y), power);
@@ -92,7 +92,7 @@ impl<'a> Weighted<'a> {
         let bands =
             out.par_chunks_mut(TILE * width).zip(cells.y.par_chunks(TILE)).zip(columns.par_chunks(TILE));
         bands.for_each_init(
-            || Scratch::new(self.wanted()),
+            || SearchScratch::new(self.wanted()),
             |scratch, ((out, y), columns)| {
                 for left in (0..width).step_by(TILE) {
                     let x = &cells.x[left..(left + TILE).min(width)];
@@ -104,17 +104,17 @@ impl<'a> Weighted<'a> {
 
     fn wanted(&self) -> usize {
         match self.method {
-            Method::InverseDistance { k, .. } => k as usize,
+            GriddingMethod::InverseDistance { k, .. } => k as usize,
             _ => 1,
         }
     }
 
     /// Searches the tree once for all cells of a tile, where the tile is not much larger than what a cell needs.
-    fn fill_tile(&self, tile: &Tile, width: usize, scratch: &mut Scratch, out: &mut [f64]) {
+    fn fill_tile(&self, tile: &Tile, width: usize, scratch: &mut SearchScratch, out: &mut [f64]) {
         if tile.columns.iter().all(|columns| tile.part(columns).is_empty()) {
             return;
         }
-        let Scratch { found, candidates } = scratch;
+        let SearchScratch { found, candidates } = scratch;
         let wanted = self.wanted();
         let (centre, half) = tile.circle();
         self.tree.nearest_k(centre, f64::INFINITY, found);
@@ -149,16 +149,16 @@ impl<'a> Weighted<'a> {
 
     /// The squared distance from `q` to the farthest of the sites found for the cell before: as many as are wanted lie
     /// within it.
-    fn farthest2(&self, found: &Found, q: DVec2) -> f64 {
+    fn farthest2(&self, found: &NearestSites, q: DVec2) -> f64 {
         let distances2 =
             found.near().iter().map(|near| (self.sites.at[near.site as usize] - q).length_squared());
         distances2.fold(0.0, f64::max)
     }
 
-    fn by_nearest(&self, found: &Found) -> f64 {
+    fn by_nearest(&self, found: &NearestSites) -> f64 {
         let z = |site: u32| self.sites.z[site as usize];
         match self.method {
-            Method::InverseDistance { power, .. } => {
+            GriddingMethod::InverseDistance { power, .. } => {
                 mean(found.near().iter().map(|near| (near.distance2, z(near.site))), power)
             }
             _ => found.near().first().map_or(f64::NAN, |near| z(near.site)),

@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use crate::dem::points::las_crs;
-use crate::dem::points::las_header::{Header, broken};
-use crate::dem::points::{Hints, PointCloud, PointsError, laz};
+use crate::dem::points::las_header::{LasHeader, broken};
+use crate::dem::points::{PointCloud, PointHints, PointsError, laz};
 
 /// The class of the ground.
 pub const GROUND: u8 = 2;
@@ -27,15 +27,15 @@ pub fn recognises(bytes: &[u8]) -> bool {
 /// # Errors
 /// [`PointsError`]: a header that the file belies, a compression that is not read, a coordinate system that is not
 /// understood (unless the hints state one), no point of the classes asked for.
-pub fn read(bytes: &[u8], hints: &Hints) -> Result<PointCloud, PointsError> {
-    let header = Header::read(bytes)?;
+pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError> {
+    let header = LasHeader::read(bytes)?;
     let system = las_crs::read(&header.records(bytes), &header, hints.crs)?;
     let found = if header.compressed {
-        let mut found = Found::new(&header);
+        let mut found = LasPoints::new(&header);
         laz::unpack(bytes, &header, &mut |records| found.take(records))?;
         found
     } else {
-        let mut found = Found::new(&header);
+        let mut found = LasPoints::new(&header);
         found.take(&bytes[header.points_at..][..header.count as usize * header.record]);
         found
     };
@@ -52,15 +52,15 @@ pub fn read(bytes: &[u8], hints: &Hints) -> Result<PointCloud, PointsError> {
 }
 
 /// Points with their classes.
-struct Found<'a> {
-    header: &'a Header,
+struct LasPoints<'a> {
+    header: &'a LasHeader,
     points: Vec<DVec3>,
     classes: Vec<u8>,
     withheld: usize,
 }
 
-impl<'a> Found<'a> {
-    fn new(header: &'a Header) -> Self {
+impl<'a> LasPoints<'a> {
+    fn new(header: &'a LasHeader) -> Self {
         // A compressed file may promise more than it holds; what it does hold will grow the lists.
         let room = if header.compressed { 0 } else { header.count as usize };
         Self { header, points: Vec::with_capacity(room), classes: Vec::with_capacity(room), withheld: 0 }
@@ -137,6 +137,6 @@ fn census(classes: &[u8]) -> String {
 }
 
 /// Whether an uncompressed point's place can be had at all; the crate that unpacks wants at least one point.
-pub(super) fn check_not_empty(header: &Header) -> Result<(), PointsError> {
+pub(super) fn check_not_empty(header: &LasHeader) -> Result<(), PointsError> {
     if header.count > 0 { Ok(()) } else { Err(broken("it promises no points")) }
 }

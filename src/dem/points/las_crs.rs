@@ -5,7 +5,7 @@
 
 use crate::dem::geokeys::GeoKeys;
 use crate::dem::points::PointsError;
-use crate::dem::points::las_header::{Header, Record};
+use crate::dem::points::las_header::{LasHeader, Record};
 use crate::geom::crs::Crs;
 
 /// Who defined the records of coordinate systems.
@@ -17,7 +17,7 @@ const TEXTS: u16 = 34737;
 const WKT: u16 = 2112;
 
 /// What a file says of its coordinates.
-pub(super) struct System {
+pub(super) struct LasCrs {
     /// Of x and y.
     pub crs: Option<Crs>,
     /// Of z.
@@ -29,7 +29,11 @@ pub(super) struct System {
 }
 
 /// The system that the records state; for x and y `stated` instead, where the caller knows better.
-pub(super) fn read(records: &[Record], header: &Header, stated: Option<&Crs>) -> Result<System, PointsError> {
+pub(super) fn read(
+    records: &[Record],
+    header: &LasHeader,
+    stated: Option<&Crs>,
+) -> Result<LasCrs, PointsError> {
     let content = |id: u16| {
         let found = records.iter().find(|record| record.owner == OWNER && record.id == id);
         found.map(|record| record.content).filter(|content| !content.is_empty())
@@ -52,7 +56,7 @@ pub(super) fn read(records: &[Record], header: &Header, stated: Option<&Crs>) ->
         notes.push(format!("heights were taken to be in the unit of x and y, {of_plane} m"));
     }
     let vertical_datum = by_wkt.and_then(|text| quoted(vertical(text)?));
-    Ok(System { crs, metres_per_z: unit.unwrap_or(of_plane), vertical_datum, notes })
+    Ok(LasCrs { crs, metres_per_z: unit.unwrap_or(of_plane), vertical_datum, notes })
 }
 
 /// A text up to its first zero.

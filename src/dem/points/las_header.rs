@@ -25,7 +25,7 @@ const COMPRESSED: u8 = 0x80;
 
 /// A header whose promises the file can hold.
 #[derive(Debug)]
-pub(super) struct Header {
+pub(super) struct LasHeader {
     /// 0 to 4 of version 1.
     pub minor: u8,
     /// Where variable length records start.
@@ -64,7 +64,7 @@ pub(super) struct Record<'a> {
     pub content: &'a [u8],
 }
 
-impl Header {
+impl LasHeader {
     /// Reads and checks a header.
     pub fn read(bytes: &[u8]) -> Result<Self, PointsError> {
         let format = u8_at(bytes, 104)?;

@@ -16,7 +16,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use crate::dem::fault::bytes_at;
 use crate::dem::points::PointsError;
 use crate::dem::points::las::check_not_empty;
-use crate::dem::points::las_header::{Header, Record};
+use crate::dem::points::las_header::{LasHeader, Record};
 
 /// Points that are unpacked at once.
 const BATCH: u64 = 1 << 16;
@@ -25,7 +25,11 @@ const BATCH: u64 = 1 << 16;
 const VARIABLE: [u32; 2] = [0, u32::MAX];
 
 /// Unpacks all points and hands their records on, batch by batch.
-pub(super) fn unpack(bytes: &[u8], header: &Header, take: &mut dyn FnMut(&[u8])) -> Result<(), PointsError> {
+pub(super) fn unpack(
+    bytes: &[u8],
+    header: &LasHeader,
+    take: &mut dyn FnMut(&[u8]),
+) -> Result<(), PointsError> {
     check_not_empty(header)?;
     let records = header.records(bytes);
     let is_laszip = |record: &&Record| record.owner == b"laszip encoded" && record.id == 22204;
@@ -39,7 +43,7 @@ pub(super) fn unpack(bytes: &[u8], header: &Header, take: &mut dyn FnMut(&[u8]))
     decoded.unwrap_or_else(|_| Err(broken("its compressed points contradict each other")))
 }
 
-fn decode(file: Vec<u8>, header: &Header, take: &mut dyn FnMut(&[u8])) -> Result<(), PointsError> {
+fn decode(file: Vec<u8>, header: &LasHeader, take: &mut dyn FnMut(&[u8])) -> Result<(), PointsError> {
     let unreadable = |error: las::Error| broken(format!("its points cannot be unpacked: {error}"));
     let mut reader = las::Reader::new(Cursor::new(file)).map_err(unreadable)?;
     let mut left = header.count;
@@ -64,11 +68,11 @@ struct Items {
 }
 
 /// LASzip's number for an item, its bytes and its layers.
-type Item = (u16, usize, usize);
+type LazItem = (u16, usize, usize);
 
 impl Items {
     /// Reads the record and checks that it describes the header's points.
-    fn read(content: &[u8], header: &Header) -> Result<Self, PointsError> {
+    fn read(content: &[u8], header: &LasHeader) -> Result<Self, PointsError> {
         let short = || broken("its LASzip record is cut short");
         let u16_at = |at: usize| bytes_at(content, at).map(u16::from_le_bytes).ok_or_else(short);
         let compressor = u16_at(0)?;
@@ -81,7 +85,7 @@ impl Items {
             let what = format!("is packed by compressor {compressor}, for points of format {format}");
             return Err(PointsError::Unsupported { format: "LAZ", what });
         }
-        let is_item = |(index, &(kind, bytes, _)): (usize, &Item)| {
+        let is_item = |(index, &(kind, bytes, _)): (usize, &LazItem)| {
             let at = 34 + 6 * index;
             let stated = [at, at + 2, at + 4].map(|at| bytes_at(content, at).map(u16::from_le_bytes));
             matches!(stated, [Some(k), Some(b), Some(v)] if k == kind && usize::from(b) == bytes && versions.contains(&v))
@@ -94,7 +98,7 @@ impl Items {
     }
 
     /// Holds the chunks against the file.
-    fn check_chunks(&self, bytes: &[u8], header: &Header) -> Result<(), PointsError> {
+    fn check_chunks(&self, bytes: &[u8], header: &LasHeader) -> Result<(), PointsError> {
         if self.compressor == 1 {
             return Ok(());
         }
@@ -143,15 +147,15 @@ impl Items {
 }
 
 /// The items of a point format, in LASzip's order.
-fn items_of(header: &Header) -> Vec<Item> {
-    const POINT10: Item = (6, 20, 0);
-    const GPS_TIME: Item = (7, 8, 0);
-    const RGB12: Item = (8, 6, 0);
-    const WAVE_PACKET13: Item = (9, 29, 0);
-    const POINT14: Item = (10, 30, 9);
-    const RGB14: Item = (11, 6, 1);
-    const RGB_NIR14: Item = (12, 8, 2);
-    const WAVE_PACKET14: Item = (13, 29, 1);
+fn items_of(header: &LasHeader) -> Vec<LazItem> {
+    const POINT10: LazItem = (6, 20, 0);
+    const GPS_TIME: LazItem = (7, 8, 0);
+    const RGB12: LazItem = (8, 6, 0);
+    const WAVE_PACKET13: LazItem = (9, 29, 0);
+    const POINT14: LazItem = (10, 30, 9);
+    const RGB14: LazItem = (11, 6, 1);
+    const RGB_NIR14: LazItem = (12, 8, 2);
+    const WAVE_PACKET14: LazItem = (13, 29, 1);
     let mut items = match header.format {
         0 => vec![POINT10],
         1 => vec![POINT10, GPS_TIME],
@@ -173,7 +177,7 @@ fn items_of(header: &Header) -> Vec<Item> {
 }
 
 /// The file with a header of counts and places only, LASzip's record right behind it, all else where it was.
-fn with_plain_header(bytes: &[u8], header: &Header, laszip: &[u8]) -> Result<Vec<u8>, PointsError> {
+fn with_plain_header(bytes: &[u8], header: &LasHeader, laszip: &[u8]) -> Result<Vec<u8>, PointsError> {
     let mut file = bytes.to_vec();
     // Records of an extended kind come after the points and cannot be moved before them.
     let room = header.points_at.checked_sub(header.size).filter(|&room| room >= laszip.len());

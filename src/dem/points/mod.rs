@@ -11,7 +11,7 @@ pub mod table;
 
 use glam::DVec3;
 
-use crate::dem::fault::Fault;
+use crate::dem::fault::DemErrorKind;
 use crate::geom::crs::Crs;
 
 /// Points that are taken of one file; more than any flight line holds, and 1.5 GiB of memory.
@@ -37,7 +37,7 @@ pub struct PointCloud {
 
 /// What the caller knows of a file of points beyond its bytes.
 #[derive(Clone, Debug, Default)]
-pub struct Hints<'a> {
+pub struct PointHints<'a> {
     /// The system of x and y, in place of what the file says or where it says nothing.
     pub crs: Option<&'a Crs>,
     /// The classes of LAS points that are taken. Empty: ground (class 2) where the file has any, else all.
@@ -109,11 +109,11 @@ pub enum PointsError {
     },
 }
 
-impl From<Fault> for PointsError {
-    fn from(fault: Fault) -> Self {
+impl From<DemErrorKind> for PointsError {
+    fn from(fault: DemErrorKind) -> Self {
         match fault {
-            Fault::Georeference { reason, .. } => Self::Crs { reason },
-            Fault::Crs(error) => Self::Crs { reason: error.to_string() },
+            DemErrorKind::Georeference { reason, .. } => Self::Crs { reason },
+            DemErrorKind::Crs(error) => Self::Crs { reason: error.to_string() },
             other => Self::Crs { reason: other.to_string() },
         }
     }
@@ -130,6 +130,6 @@ pub fn recognises(name: &str, bytes: &[u8]) -> bool {
 ///
 /// # Errors
 /// [`PointsError`]; the caller names the file.
-pub fn read(bytes: &[u8], hints: &Hints) -> Result<PointCloud, PointsError> {
+pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError> {
     if las::recognises(bytes) { las::read(bytes, hints) } else { table::read(bytes, hints) }
 }

@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 
-use crate::dem::points::{Hints, MOST_POINTS, PointCloud, PointsError};
+use crate::dem::points::{MOST_POINTS, PointCloud, PointHints, PointsError};
 
 const X: [&str; 9] = ["x", "lon", "long", "longitude", "lng", "easting", "east", "e", "rechtswert"];
 const Y: [&str; 8] = ["y", "lat", "latitude", "northing", "north", "n", "hochwert", "lati"];
@@ -23,7 +23,7 @@ const LONGEST_QUOTE: usize = 60;
 ///
 /// # Errors
 /// [`PointsError`] for the first line that is no point, a header without x, y or z, or no point at all.
-pub fn read(bytes: &[u8], hints: &Hints) -> Result<PointCloud, PointsError> {
+pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError> {
     let text =
         std::str::from_utf8(bytes).map_err(|error| PointsError::NotText { at: error.valid_up_to() })?;
     let mut lines = lines(text).peekable();
@@ -125,7 +125,9 @@ mod tests {
     use super::*;
 
     fn points(text: &str) -> Result<Vec<DVec3>, String> {
-        read(text.as_bytes(), &Hints::default()).map(|cloud| cloud.points).map_err(|error| error.to_string())
+        read(text.as_bytes(), &PointHints::default())
+            .map(|cloud| cloud.points)
+            .map_err(|error| error.to_string())
     }
 
     #[test]
@@ -155,12 +157,12 @@ mod tests {
             let refused = points(text).expect_err(text);
             assert!(refused.contains(wanted), "{refused}");
         }
-        assert!(read(b"1 2 3\n\xff\xfe", &Hints::default()).is_err());
+        assert!(read(b"1 2 3\n\xff\xfe", &PointHints::default()).is_err());
     }
 
     #[test]
     fn points_without_a_height_are_left_out_and_counted() {
-        let cloud = read(b"x,y,z\n1,2,3\n4,5,\n6,7,nan\n", &Hints::default()).expect("one point");
+        let cloud = read(b"x,y,z\n1,2,3\n4,5,\n6,7,nan\n", &PointHints::default()).expect("one point");
         assert_eq!(cloud.points.len(), 1);
         assert_eq!(cloud.notes, ["2 points without a height were left out"]);
     }

@@ -6,7 +6,7 @@
 use std::fmt::Write;
 
 use crate::dem::raster::{Raster, Samples};
-use crate::dem::write::{WriteError, Written, check_place, projection_file};
+use crate::dem::write::{WriteError, WrittenDem, check_place, projection_file};
 
 const FORMAT: &str = "ESRI ASCII grid";
 
@@ -17,7 +17,7 @@ const HOLES: [f64; 3] = [-9999.0, -32768.0, -99999.0];
 ///
 /// # Errors
 /// It has no place, or rows that do not run east and south.
-pub(crate) fn write(raster: &Raster) -> Result<Written, WriteError> {
+pub(crate) fn write(raster: &Raster) -> Result<WrittenDem, WriteError> {
     check_place(raster, FORMAT)?;
     let hole = hole(raster)?;
     let (cell, south_west) = (raster.spacing(), raster.extent().min);
@@ -34,7 +34,7 @@ pub(crate) fn write(raster: &Raster) -> Result<Written, WriteError> {
         Samples::F32(values) => rows(&mut text, values, width, |value| value.is_nan(), hole),
         Samples::F64(values) => rows(&mut text, values, width, |value| value.is_nan(), hole),
     }
-    Ok(Written {
+    Ok(WrittenDem {
         bytes: text.into_bytes(),
         companions: projection_file(raster.crs.as_ref()).into_iter().collect(),
         stored: "text".into(),

@@ -5,7 +5,7 @@
 
 use crate::dem::raster::Raster;
 use crate::dem::write::values::{ValueType, stored};
-use crate::dem::write::{WriteError, Written, check_place, projection_file};
+use crate::dem::write::{WriteError, WrittenDem, check_place, projection_file};
 use crate::geom::crs::Crs;
 
 const FORMAT: &str = "BT terrain";
@@ -20,7 +20,7 @@ const HOLE: f64 = -32768.0;
 /// # Errors
 /// It has no place, rows that do not run east and south, less than two rows or columns, or a height that stands for
 /// no data here.
-pub(crate) fn write(raster: &Raster) -> Result<Written, WriteError> {
+pub(crate) fn write(raster: &Raster) -> Result<WrittenDem, WriteError> {
     check_place(raster, FORMAT)?;
     if raster.width.min(raster.height) < 2 {
         let reason =
@@ -45,7 +45,7 @@ pub(crate) fn write(raster: &Raster) -> Result<Written, WriteError> {
     let mut bytes = header(raster, value_type, unit);
     bytes.extend(values(raster, value_type));
     let stored = value_type.name().to_owned();
-    Ok(Written {
+    Ok(WrittenDem {
         bytes,
         companions: projection_file(raster.crs.as_ref()).into_iter().collect(),
         stored,
@@ -56,7 +56,7 @@ pub(crate) fn write(raster: &Raster) -> Result<Written, WriteError> {
 fn header(raster: &Raster, value_type: ValueType, metres_per_z: f32) -> Vec<u8> {
     let half = raster.spacing() * 0.5;
     let (min, max) = (raster.extent().min + half, raster.extent().max - half);
-    let system = System::of(raster.crs.as_ref());
+    let system = BtCrs::of(raster.crs.as_ref());
     let mut bytes = b"binterr1.3".to_vec();
     bytes.extend((raster.width as i32).to_le_bytes());
     bytes.extend((raster.height as i32).to_le_bytes());
@@ -92,7 +92,7 @@ fn values(raster: &Raster, value_type: ValueType) -> Vec<u8> {
 }
 
 /// What the header says of the system.
-struct System {
+struct BtCrs {
     /// 0 degrees, 1 metres, 2 feet, 3 US survey feet.
     unit: i16,
     /// UTM zone, negative in the south; 0 for none.
@@ -101,7 +101,7 @@ struct System {
     datum: i16,
 }
 
-impl System {
+impl BtCrs {
     fn of(crs: Option<&Crs>) -> Self {
         const WGS84: i16 = 6326;
         let Some(crs) = crs else { return Self { unit: 1, zone: 0, datum: WGS84 } };

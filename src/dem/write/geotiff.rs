@@ -15,7 +15,7 @@ use flate2::write::ZlibEncoder;
 use rayon::prelude::*;
 
 use crate::dem::raster::Raster;
-use crate::dem::write::Written;
+use crate::dem::write::WrittenDem;
 use crate::dem::write::keys;
 use crate::dem::write::values::{Stored, ValueType, stored};
 
@@ -23,7 +23,7 @@ use crate::dem::write::values::{Stored, ValueType, stored};
 const TILE: u32 = 256;
 
 /// Writes a raster; every raster can be.
-pub(crate) fn write(raster: &Raster) -> Written {
+pub(crate) fn write(raster: &Raster) -> WrittenDem {
     // A unit of heights without a name is brought to metres.
     let named = unit_name(raster.metres_per_z).is_some();
     let metric = (!named).then(|| super::metric(raster));
@@ -36,7 +36,7 @@ pub(crate) fn write(raster: &Raster) -> Written {
         .collect();
     let notes = if named { vec![] } else { vec!["heights are brought to metres".to_owned()] };
     let bytes = file(tags(raster, stored), &tiles);
-    Written { bytes, companions: Vec::new(), stored: stored.value_type.name().into(), notes }
+    WrittenDem { bytes, companions: Vec::new(), stored: stored.value_type.name().into(), notes }
 }
 
 /// GDAL's name of a vertical unit.
@@ -105,14 +105,14 @@ fn float_bytes(line: &[u8], size: usize) -> Vec<u8> {
 }
 
 /// What a tag holds.
-enum Field {
+enum TiffField {
     Shorts(Vec<u16>),
     Longs(Vec<u32>),
     Doubles(Vec<f64>),
     Text(String),
 }
 
-impl Field {
+impl TiffField {
     /// TIFF's number of the type, how many values there are, and their bytes.
     fn encoded(&self) -> (u16, u32, Vec<u8>) {
         let (kind, count, bytes) = match self {
@@ -128,17 +128,17 @@ impl Field {
 }
 
 /// All tags but those that list the tiles.
-fn tags(raster: &Raster, stored: Stored) -> Vec<(u16, Field)> {
+fn tags(raster: &Raster, stored: Stored) -> Vec<(u16, TiffField)> {
     let value_type = stored.value_type;
     let format = match value_type {
         ValueType::U16 | ValueType::U32 => 1,
         ValueType::I16 | ValueType::I32 => 2,
         ValueType::F32 | ValueType::F64 => 3,
     };
-    let short = |value: u16| Field::Shorts(vec![value]);
+    let short = |value: u16| TiffField::Shorts(vec![value]);
     let mut tags = vec![
-        (256, Field::Longs(vec![raster.width])),
-        (257, Field::Longs(vec![raster.height])),
+        (256, TiffField::Longs(vec![raster.width])),
+        (257, TiffField::Longs(vec![raster.height])),
         (258, short(value_type.bytes() as u16 * 8)),
         (259, short(8)),
         (262, short(1)),
@@ -151,48 +151,48 @@ fn tags(raster: &Raster, stored: Stored) -> Vec<(u16, Field)> {
     ];
     tags.extend(place(raster));
     let keys = keys::of(raster);
-    tags.push((34735, Field::Shorts(keys.directory)));
+    tags.push((34735, TiffField::Shorts(keys.directory)));
     if !keys.doubles.is_empty() {
-        tags.push((34736, Field::Doubles(keys.doubles)));
+        tags.push((34736, TiffField::Doubles(keys.doubles)));
     }
     if !keys.text.is_empty() {
-        tags.push((34737, Field::Text(keys.text)));
+        tags.push((34737, TiffField::Text(keys.text)));
     }
     if let Some(unit) = unit_name(raster.metres_per_z).filter(|unit| *unit != "m") {
         let xml = format!(
             "<GDALMetadata>\n  <Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">{unit}</Item>\n</GDALMetadata>\n"
         );
-        tags.push((42112, Field::Text(xml)));
+        tags.push((42112, TiffField::Text(xml)));
     }
     if let Some(nodata) = stored.nodata {
-        tags.push((42113, Field::Text(if nodata.is_nan() { "nan".into() } else { nodata.to_string() })));
+        tags.push((42113, TiffField::Text(if nodata.is_nan() { "nan".into() } else { nodata.to_string() })));
     }
     tags
 }
 
 /// Where the raster lies: a tie point and a scale with north up, a matrix otherwise, nothing where nobody said.
-fn place(raster: &Raster) -> Vec<(u16, Field)> {
+fn place(raster: &Raster) -> Vec<(u16, TiffField)> {
     let [x, x_per_column, x_per_row, y, y_per_column, y_per_row] = raster.geotransform();
     if !raster.georeferenced {
         Vec::new()
     } else if raster.is_north_up() {
         vec![
-            (33550, Field::Doubles(vec![x_per_column, -y_per_row, 0.0])),
-            (33922, Field::Doubles(vec![0.0, 0.0, 0.0, x, y, 0.0])),
+            (33550, TiffField::Doubles(vec![x_per_column, -y_per_row, 0.0])),
+            (33922, TiffField::Doubles(vec![0.0, 0.0, 0.0, x, y, 0.0])),
         ]
     } else {
         let rows = [[x_per_column, x_per_row, 0.0, x], [y_per_column, y_per_row, 0.0, y]];
         let matrix = [rows[0], rows[1], [0.0; 4], [0.0, 0.0, 0.0, 1.0]].concat();
-        vec![(34264, Field::Doubles(matrix))]
+        vec![(34264, TiffField::Doubles(matrix))]
     }
 }
 
 /// Header, directory, long values and tiles. At most 2²⁸ samples of eight bytes, they stay within the 4 GiB that a
 /// classic TIFF can point into.
-fn file(mut tags: Vec<(u16, Field)>, tiles: &[Vec<u8>]) -> Vec<u8> {
+fn file(mut tags: Vec<(u16, TiffField)>, tiles: &[Vec<u8>]) -> Vec<u8> {
     let lengths: Vec<u32> = tiles.iter().map(|tile| tile.len() as u32).collect();
-    tags.push((324, Field::Longs(vec![0; tiles.len()])));
-    tags.push((325, Field::Longs(lengths.clone())));
+    tags.push((324, TiffField::Longs(vec![0; tiles.len()])));
+    tags.push((325, TiffField::Longs(lengths.clone())));
     tags.sort_by_key(|(tag, _)| *tag);
     let mut tile_start = 8 + directory(&tags, 8).len() as u32;
     let starts = lengths.iter().map(|length| {
@@ -200,7 +200,7 @@ fn file(mut tags: Vec<(u16, Field)>, tiles: &[Vec<u8>]) -> Vec<u8> {
         tile_start += length;
         start
     });
-    let starts = Field::Longs(starts.collect());
+    let starts = TiffField::Longs(starts.collect());
     if let Some((_, field)) = tags.iter_mut().find(|(tag, _)| *tag == 324) {
         *field = starts;
     }
@@ -213,7 +213,7 @@ fn file(mut tags: Vec<(u16, Field)>, tiles: &[Vec<u8>]) -> Vec<u8> {
 }
 
 /// A directory that starts at `start`, and behind it the values that do not fit its entries.
-fn directory(tags: &[(u16, Field)], start: usize) -> Vec<u8> {
+fn directory(tags: &[(u16, TiffField)], start: usize) -> Vec<u8> {
     let mut entries = (tags.len() as u16).to_le_bytes().to_vec();
     let mut long = Vec::new();
     let long_start = start + 2 + tags.len() * 12 + 4;

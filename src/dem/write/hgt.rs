@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::dem::hgt::{SIZES, VOID};
 use crate::dem::raster::Raster;
-use crate::dem::write::{WriteError, Written, check_place};
+use crate::dem::write::{WriteError, WrittenDem, check_place};
 
 const FORMAT: &str = "SRTM tile";
 
@@ -16,7 +16,7 @@ const OFF_SAMPLES: f64 = 1e-3;
 /// # Errors
 /// It is no degree on WGS 84 in one of the sizes that tiles have, heights are out of range, or the name is that of
 /// another tile.
-pub(crate) fn write(raster: &Raster, stem: &str) -> Result<Written, WriteError> {
+pub(crate) fn write(raster: &Raster, stem: &str) -> Result<WrittenDem, WriteError> {
     check_place(raster, FORMAT)?;
     let size = (raster.width, raster.height);
     let is_wgs84 = raster.crs.as_ref().is_none_or(|crs| crs.epsg() == Some(4326));
@@ -49,7 +49,7 @@ pub(crate) fn write(raster: &Raster, stem: &str) -> Result<Written, WriteError> 
         bytes.extend(if value.is_nan() { VOID } else { metres as i16 }.to_be_bytes());
     }
     let notes = if rounded > 0.0 { vec!["heights are rounded to whole metres".to_owned()] } else { vec![] };
-    Ok(Written { bytes, companions: Vec::new(), stored: "int16".into(), notes })
+    Ok(WrittenDem { bytes, companions: Vec::new(), stored: "int16".into(), notes })
 }
 
 /// The name of the tile whose south-west corner this is.

@@ -7,7 +7,7 @@
 use crate::dem::raster::Raster;
 use crate::dem::vertical;
 use crate::geom::crs::Crs;
-use crate::geom::projection::{Datum, Definition, Method};
+use crate::geom::projection::{Datum, Definition, MapProjection};
 
 const USER_DEFINED: u16 = 32767;
 
@@ -60,27 +60,27 @@ pub(crate) fn length_code(metres: f64) -> Option<u16> {
 }
 
 /// What a key says.
-enum Value {
+enum GeoKeyValue {
     Code(u16),
     Numbers(Vec<f64>),
     Words(String),
 }
 
 #[derive(Default)]
-struct Keys(Vec<(u16, Value)>);
+struct Keys(Vec<(u16, GeoKeyValue)>);
 
 impl Keys {
     fn code(&mut self, key: u16, code: u16) {
-        self.0.push((key, Value::Code(code)));
+        self.0.push((key, GeoKeyValue::Code(code)));
     }
 
     fn number(&mut self, key: u16, number: f64) {
-        self.0.push((key, Value::Numbers(vec![number])));
+        self.0.push((key, GeoKeyValue::Numbers(vec![number])));
     }
 
     fn words(&mut self, key: u16, words: &str) {
         // The bar ends a text.
-        self.0.push((key, Value::Words(words.replace(['|', '\0'], " "))));
+        self.0.push((key, GeoKeyValue::Words(words.replace(['|', '\0'], " "))));
     }
 
     fn system(&mut self, crs: &Crs) {
@@ -109,7 +109,7 @@ impl Keys {
         self.code(3074, USER_DEFINED);
         self.code(3075, method);
         self.linear_unit(definition.metres_per_unit);
-        let polar = definition.method == Method::PolarStereographic;
+        let polar = definition.method == MapProjection::PolarStereographic;
         let true_scale = definition.parallel_1_deg.filter(|_| polar);
         self.number(latitude, true_scale.unwrap_or(definition.latitude_deg));
         self.number(longitude, definition.longitude_deg);
@@ -141,7 +141,7 @@ impl Keys {
         }
         self.number(2061, definition.prime_meridian_deg);
         if let Datum::ToWgs84(numbers) = &definition.datum {
-            self.0.push((2062, Value::Numbers(numbers.clone())));
+            self.0.push((2062, GeoKeyValue::Numbers(numbers.clone())));
         }
     }
 
@@ -160,13 +160,13 @@ impl Keys {
         let mut tags = KeyTags { directory: vec![1, 1, 0, self.0.len() as u16], ..KeyTags::default() };
         for (key, value) in self.0 {
             let entry = match value {
-                Value::Code(code) => [key, 0, 1, code],
-                Value::Numbers(numbers) => {
+                GeoKeyValue::Code(code) => [key, 0, 1, code],
+                GeoKeyValue::Numbers(numbers) => {
                     let at = tags.doubles.len() as u16;
                     tags.doubles.extend(&numbers);
                     [key, IN_DOUBLES, numbers.len() as u16, at]
                 }
-                Value::Words(words) => {
+                GeoKeyValue::Words(words) => {
                     let at = tags.text.len() as u16;
                     tags.text += &words;
                     tags.text.push('|');
@@ -189,16 +189,16 @@ fn epsg(crs: &Crs) -> Option<(u16, Option<f64>)> {
 }
 
 /// A projection's code, and its keys for latitude, longitude, easting and northing.
-fn method(method: Method) -> Option<(u16, [u16; 4])> {
+fn method(method: MapProjection) -> Option<(u16, [u16; 4])> {
     const NATURAL: [u16; 4] = [3081, 3080, 3082, 3083];
     Some(match method {
-        Method::Geographic => return None,
-        Method::TransverseMercator => (1, NATURAL),
-        Method::Mercator => (7, NATURAL),
-        Method::LambertConic2 => (8, [3085, 3084, 3086, 3087]),
-        Method::LambertConic1 => (9, NATURAL),
-        Method::LambertAzimuthal => (10, [3089, 3088, 3082, 3083]),
-        Method::Albers => (11, NATURAL),
-        Method::PolarStereographic => (15, [3081, 3095, 3082, 3083]),
+        MapProjection::Geographic => return None,
+        MapProjection::TransverseMercator => (1, NATURAL),
+        MapProjection::Mercator => (7, NATURAL),
+        MapProjection::LambertConic2 => (8, [3085, 3084, 3086, 3087]),
+        MapProjection::LambertConic1 => (9, NATURAL),
+        MapProjection::LambertAzimuthal => (10, [3089, 3088, 3082, 3083]),
+        MapProjection::Albers => (11, NATURAL),
+        MapProjection::PolarStereographic => (15, [3081, 3095, 3082, 3083]),
     })
 }

@@ -18,7 +18,7 @@ use crate::geom::wkt_text;
 
 /// A format that is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
+pub enum DemFormat {
     /// GeoTIFF, deflated in tiles of 256.
     GeoTiff,
     /// ESRI ASCII grid, with a `.prj` beside it.
@@ -31,7 +31,7 @@ pub enum Format {
     Png,
 }
 
-impl Format {
+impl DemFormat {
     /// By the extension of a name, without its dot and in any case.
     pub fn of_extension(extension: &str) -> Option<Self> {
         match extension.to_ascii_lowercase().as_str() {
@@ -58,7 +58,7 @@ impl Format {
 
 /// The bytes of a file and of those that belong beside it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Written {
+pub struct WrittenDem {
     /// The file.
     pub bytes: Vec<u8>,
     /// Files of the same name with another extension.
@@ -154,13 +154,13 @@ pub enum WriteError {
 /// let again = read("a.tif", &written.bytes, &Hints::default()).unwrap();
 /// assert_eq!(again.samples, raster.samples);
 /// ```
-pub fn write(raster: &Raster, format: Format, stem: &str) -> Result<Written, WriteError> {
+pub fn write(raster: &Raster, format: DemFormat, stem: &str) -> Result<WrittenDem, WriteError> {
     match format {
-        Format::GeoTiff => Ok(geotiff::write(raster)),
-        Format::Ascii => ascii::write(&metric(raster)),
-        Format::Bt => bt::write(raster),
-        Format::Hgt => hgt::write(&metric(raster), stem),
-        Format::Png => png::write(&metric(raster)),
+        DemFormat::GeoTiff => Ok(geotiff::write(raster)),
+        DemFormat::Ascii => ascii::write(&metric(raster)),
+        DemFormat::Bt => bt::write(raster),
+        DemFormat::Hgt => hgt::write(&metric(raster), stem),
+        DemFormat::Png => png::write(&metric(raster)),
     }
 }
 

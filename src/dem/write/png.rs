@@ -9,7 +9,7 @@ use flate2::write::ZlibEncoder;
 use flate2::{Compression, Crc};
 
 use crate::dem::raster::Raster;
-use crate::dem::write::{Companion, WriteError, Written, projection_file};
+use crate::dem::write::{Companion, WriteError, WrittenDem, projection_file};
 
 /// Steps from the lowest height to the highest: the 65,534 between the grey values for heights, less one for an offset
 /// on a multiple of the step.
@@ -19,7 +19,7 @@ const STEPS: f64 = 65533.0;
 ///
 /// # Errors
 /// All samples are no data.
-pub(crate) fn write(raster: &Raster) -> Result<Written, WriteError> {
+pub(crate) fn write(raster: &Raster) -> Result<WrittenDem, WriteError> {
     let valid = || raster.samples.iter().filter(|value| !value.is_nan());
     let (least, most) = valid().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
         (f64::min(least, value), f64::max(most, value))
@@ -36,7 +36,7 @@ pub(crate) fn write(raster: &Raster) -> Result<Written, WriteError> {
         notes.push(format!("heights are rounded to multiples of {scale} m"));
     }
     let companions = world_file(raster).into_iter().chain(projection_file(raster.crs.as_ref()));
-    Ok(Written {
+    Ok(WrittenDem {
         bytes: picture(raster, grey),
         companions: companions.collect(),
         stored: "uint16".into(),

@@ -5,8 +5,8 @@
 
 use std::cmp::Ordering;
 
-use crate::description::expression::syntax::{Binary, Function, Node, arms};
-use crate::description::expression::{Properties, as_number, holds};
+use crate::description::expression::syntax::{Binary, ExpressionNode, Function, arms};
+use crate::description::expression::{PropertyLookup, as_number, holds};
 use crate::description::features::Scalar;
 
 /// Says of a value whether it can be used.
@@ -14,7 +14,7 @@ type Usable<'u> = &'u dyn Fn(&Scalar) -> bool;
 
 /// The evaluation for one feature.
 pub(super) struct Evaluation<'p> {
-    pub properties: Properties<'p>,
+    pub properties: PropertyLookup<'p>,
 }
 
 /// Anything can be used.
@@ -29,31 +29,36 @@ fn numeric(value: &Scalar) -> bool {
 
 impl Evaluation<'_> {
     /// The value of `node`; only of a fallback's sides, also those in its branches, is it asked whether they are usable.
-    pub fn value(&self, node: &Node, usable: Usable<'_>) -> Option<Scalar> {
+    pub fn value(&self, node: &ExpressionNode, usable: Usable<'_>) -> Option<Scalar> {
         match node {
-            Node::Literal(value) => Some(value.clone()),
-            Node::Property(name) => (self.properties)(name),
-            Node::Negative(of) => self.number(of).and_then(|number| finite(-number)),
-            Node::Not(of) => Some(Scalar::Bool(!self.holds(of))),
-            Node::Binary(binary, left, right) => self.binary(*binary, (left, right), usable),
-            Node::In(of, list) => {
+            ExpressionNode::Literal(value) => Some(value.clone()),
+            ExpressionNode::Property(name) => (self.properties)(name),
+            ExpressionNode::Negative(of) => self.number(of).and_then(|number| finite(-number)),
+            ExpressionNode::Not(of) => Some(Scalar::Bool(!self.holds(of))),
+            ExpressionNode::Binary(binary, left, right) => self.binary(*binary, (left, right), usable),
+            ExpressionNode::In(of, list) => {
                 let of = self.value(of, &any)?;
                 let found = |part| self.value(part, &any).is_some_and(|part| equal(&of, &part));
                 Some(Scalar::Bool(list.iter().any(found)))
             }
-            Node::Call(function, parts) => self.call(*function, parts, usable),
+            ExpressionNode::Call(function, parts) => self.call(*function, parts, usable),
         }
     }
 
-    fn holds(&self, node: &Node) -> bool {
+    fn holds(&self, node: &ExpressionNode) -> bool {
         self.value(node, &any).is_some_and(|value| holds(&value))
     }
 
-    fn number(&self, node: &Node) -> Option<f64> {
+    fn number(&self, node: &ExpressionNode) -> Option<f64> {
         self.value(node, &numeric).as_ref().and_then(as_number)
     }
 
-    fn binary(&self, binary: Binary, (left, right): (&Node, &Node), usable: Usable<'_>) -> Option<Scalar> {
+    fn binary(
+        &self,
+        binary: Binary,
+        (left, right): (&ExpressionNode, &ExpressionNode),
+        usable: Usable<'_>,
+    ) -> Option<Scalar> {
         let numbers = || Some((self.number(left)?, self.number(right)?));
         let compared = |wanted: fn(Ordering) -> bool| {
             let (left, right) = (self.value(left, &any)?, self.value(right, &any)?);
@@ -77,7 +82,7 @@ impl Evaluation<'_> {
         }
     }
 
-    fn call(&self, function: Function, parts: &[Node], usable: Usable<'_>) -> Option<Scalar> {
+    fn call(&self, function: Function, parts: &[ExpressionNode], usable: Usable<'_>) -> Option<Scalar> {
         match function {
             Function::If if self.holds(&parts[0]) => self.value(&parts[1], usable),
             Function::If => self.value(&parts[2], usable),
@@ -94,17 +99,17 @@ impl Evaluation<'_> {
         }
     }
 
-    fn matched(&self, parts: &[Node], usable: Usable<'_>) -> Option<Scalar> {
+    fn matched(&self, parts: &[ExpressionNode], usable: Usable<'_>) -> Option<Scalar> {
         let (mut pairs, otherwise) = arms(parts);
         let of = self.value(&parts[0], &any);
-        let is = |case: &Node| {
+        let is = |case: &ExpressionNode| {
             of.as_ref().is_some_and(|of| self.value(case, &any).is_some_and(|case| equal(of, &case)))
         };
         let chosen = pairs.find(|(case, _)| is(case)).map(|(_, then)| then).or(otherwise)?;
         self.value(chosen, usable)
     }
 
-    fn folded(&self, parts: &[Node], fold: fn(f64, f64) -> f64) -> Option<Scalar> {
+    fn folded(&self, parts: &[ExpressionNode], fold: fn(f64, f64) -> f64) -> Option<Scalar> {
         let numbers: Option<Vec<f64>> = parts.iter().map(|part| self.number(part)).collect();
         numbers?.into_iter().reduce(fold).and_then(finite)
     }

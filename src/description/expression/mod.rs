@@ -64,8 +64,8 @@ use std::ops::Range;
 
 use crate::description::bounds::Bounds;
 use crate::description::expression::evaluate::{Evaluation, any};
-use crate::description::expression::parser::Parser;
-use crate::description::expression::syntax::Node;
+use crate::description::expression::parser::ExpressionParser;
+use crate::description::expression::syntax::ExpressionNode;
 use crate::description::features::Scalar;
 use crate::description::words::Word;
 
@@ -75,12 +75,12 @@ pub const MAX_TEXT_BYTES: usize = 4096;
 pub const MAX_DEPTH: usize = 200;
 
 /// Gives the value of a feature's property by its name; `None` where the feature has none.
-pub type Properties<'a> = &'a dyn Fn(&str) -> Option<Scalar>;
+pub type PropertyLookup<'a> = &'a dyn Fn(&str) -> Option<Scalar>;
 
 /// A computation over a feature's properties. Shown, it is a text that reads as the same expression.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
-    root: Node,
+    root: ExpressionNode,
 }
 
 /// Why a text is no expression.
@@ -112,7 +112,7 @@ impl Expression {
     /// # Errors
     /// See [`ExpressionError`].
     pub fn parse_among(text: &str, words: &[&str]) -> Result<Self, ExpressionError> {
-        Parser::new(text, words)?.whole().map(|root| Self { root })
+        ExpressionParser::new(text, words)?.whole().map(|root| Self { root })
     }
 
     /// Whether `text` can only be meant as an expression, not as a word: it holds more than letters, digits, `_` and
@@ -125,7 +125,7 @@ impl Expression {
     pub fn properties(&self) -> Vec<&str> {
         let mut names = Vec::new();
         self.root.visit(&mut |node| {
-            if let Node::Property(name) = node {
+            if let ExpressionNode::Property(name) = node {
                 names.push(name.as_str());
             }
         });
@@ -135,18 +135,22 @@ impl Expression {
     }
 
     /// Its value for a feature; `None` where a property that it needs is missing or of another kind.
-    pub fn value(&self, properties: Properties<'_>) -> Option<Scalar> {
+    pub fn value(&self, properties: PropertyLookup<'_>) -> Option<Scalar> {
         self.value_for(properties, &any)
     }
 
     /// As [`Self::value`], where only what `usable` says can be used: a fallback is taken for anything else.
-    pub fn value_for(&self, properties: Properties<'_>, usable: &dyn Fn(&Scalar) -> bool) -> Option<Scalar> {
+    pub fn value_for(
+        &self,
+        properties: PropertyLookup<'_>,
+        usable: &dyn Fn(&Scalar) -> bool,
+    ) -> Option<Scalar> {
         Evaluation { properties }.value(&self.root, usable).filter(usable)
     }
 
     /// Whether it holds for a feature: its value is true, a number that is not 0, or a text that is neither empty nor
     /// `no`, `false` or `0`.
-    pub fn holds(&self, properties: Properties<'_>) -> bool {
+    pub fn holds(&self, properties: PropertyLookup<'_>) -> bool {
         self.value(properties).is_some_and(|value| holds(&value))
     }
 }
@@ -168,10 +172,10 @@ pub fn holds(value: &Scalar) -> bool {
 
 /// A number, the same for all features or computed for each.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Quantity(Given<f64>);
+pub struct Quantity(FixedOrComputed<f64>);
 
 #[derive(Clone, Debug, PartialEq)]
-enum Given<T> {
+enum FixedOrComputed<T> {
     Fixed(T),
     OfFeatures(Expression, Bounds),
 }
@@ -179,20 +183,20 @@ enum Given<T> {
 impl Quantity {
     /// The same number for all.
     pub fn fixed(number: f64) -> Self {
-        Self(Given::Fixed(number))
+        Self(FixedOrComputed::Fixed(number))
     }
 
     /// What `expression` gives, where that lies within `bounds`.
     pub fn of_features(expression: Expression, bounds: Bounds) -> Self {
-        Self(Given::OfFeatures(expression, bounds))
+        Self(FixedOrComputed::OfFeatures(expression, bounds))
     }
 
     /// The number for a feature; `None` where its properties give none within the key's bounds. A text that is a number,
     /// or a number of metres (`"4.5 m"`) or feet (`"12 ft"`), is that number.
-    pub fn number(&self, properties: Properties<'_>) -> Option<f64> {
+    pub fn number(&self, properties: PropertyLookup<'_>) -> Option<f64> {
         match &self.0 {
-            Given::Fixed(number) => Some(*number),
-            Given::OfFeatures(expression, bounds) => {
+            FixedOrComputed::Fixed(number) => Some(*number),
+            FixedOrComputed::OfFeatures(expression, bounds) => {
                 let usable = |value: &Scalar| as_number(value).is_some_and(|number| bounds.hold(number));
                 expression.value_for(properties, &usable).as_ref().and_then(as_number)
             }
@@ -202,21 +206,21 @@ impl Quantity {
 
 /// A word, the same for all features or computed for each.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Choice<W> {
+pub enum ComputedWord<W> {
     /// The same for all.
     Fixed(W),
     /// What an expression gives.
     OfFeatures(Expression),
 }
 
-impl<W: Word> Choice<W> {
+impl<W: Word> ComputedWord<W> {
     /// What `expression` gives.
     pub fn of_features(expression: Expression) -> Self {
         Self::OfFeatures(expression)
     }
 
     /// The word for a feature; `None` where its properties give none of `W`'s words.
-    pub fn word(&self, properties: Properties<'_>) -> Option<W> {
+    pub fn word(&self, properties: PropertyLookup<'_>) -> Option<W> {
         let known = |value: &Scalar| match value {
             Scalar::Text(text) => W::ALL.iter().find(|(word, _)| word == text).map(|(_, value)| *value),
             Scalar::Bool(_) | Scalar::Number(_) => None,

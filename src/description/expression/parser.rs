@@ -2,30 +2,30 @@
 
 use std::ops::Range;
 
-use crate::description::expression::syntax::{Binary, FUNCTIONS, Node, RESERVED};
-use crate::description::expression::token::{Placed, Token, tokens, wrong};
+use crate::description::expression::syntax::{Binary, ExpressionNode, FUNCTIONS, RESERVED};
+use crate::description::expression::token::{ExpressionToken, SpannedToken, tokens, wrong};
 use crate::description::expression::{ExpressionError, MAX_DEPTH};
 use crate::description::features::Scalar;
 use crate::description::suggest::{nearest, quoted, remedy};
 
 /// A node and how many nodes lie one below another in it.
-type Deep = (Node, usize);
+type Deep = (ExpressionNode, usize);
 type Parsed = Result<Deep, ExpressionError>;
 
 /// How deep brackets may be nested: each costs the stack a dozen calls.
 const MAX_BRACKETS: usize = 32;
 
 /// The text while it is read.
-pub(super) struct Parser<'t> {
+pub(super) struct ExpressionParser<'t> {
     text: &'t str,
-    tokens: Vec<Placed>,
+    tokens: Vec<SpannedToken>,
     next: usize,
     brackets: usize,
     /// What the result must be one of; none for any.
     words: &'t [&'t str],
 }
 
-impl<'t> Parser<'t> {
+impl<'t> ExpressionParser<'t> {
     /// A parser of `text`, which gives one of `words`, or anything where they are none.
     ///
     /// # Errors
@@ -38,7 +38,7 @@ impl<'t> Parser<'t> {
     ///
     /// # Errors
     /// It is no expression, or one that cannot give one of the words.
-    pub fn whole(mut self) -> Result<Node, ExpressionError> {
+    pub fn whole(mut self) -> Result<ExpressionNode, ExpressionError> {
         let (root, _) = self.expression()?;
         if self.next < self.tokens.len() {
             let help = "join two parts with an operator such as `and`, `*` or `??`";
@@ -69,7 +69,7 @@ impl<'t> Parser<'t> {
         }
         let mut parsed = self.comparison()?;
         for _ in 0..count {
-            parsed = self.over(parsed, |of| Node::Not(Box::new(of)))?;
+            parsed = self.over(parsed, |of| ExpressionNode::Not(Box::new(of)))?;
         }
         Ok(parsed)
     }
@@ -89,8 +89,12 @@ impl<'t> Parser<'t> {
         if self.take_name("in") {
             let (list, deep) = self.list()?;
             let (of, deep) = (left.0, left.1.max(deep));
-            let within = self.over((of, deep), |of| Node::In(Box::new(of), list))?;
-            return if negated { self.over(within, |of| Node::Not(Box::new(of))) } else { Ok(within) };
+            let within = self.over((of, deep), |of| ExpressionNode::In(Box::new(of), list))?;
+            return if negated {
+                self.over(within, |of| ExpressionNode::Not(Box::new(of)))
+            } else {
+                Ok(within)
+            };
         }
         let Some(binary) = self.take_operator(&COMPARISONS) else { return Ok(left) };
         let right = self.fallback()?;
@@ -121,7 +125,7 @@ impl<'t> Parser<'t> {
         }
         let mut parsed = self.primary()?;
         for _ in 0..count {
-            parsed = self.over(parsed, |of| Node::Negative(Box::new(of)))?;
+            parsed = self.over(parsed, |of| ExpressionNode::Negative(Box::new(of)))?;
         }
         Ok(parsed)
     }
@@ -130,17 +134,21 @@ impl<'t> Parser<'t> {
         let place = self.place();
         let leaf = |node| Ok((node, 1));
         match self.tokens.get(self.next).map(|(token, _)| token.clone()) {
-            Some(Token::Number(number)) => self.after(leaf(Node::Literal(Scalar::Number(number)))),
-            Some(Token::Text(text)) => self.after(leaf(Node::Literal(Scalar::Text(text)))),
-            Some(Token::Property(name)) => self.after(leaf(Node::Property(name))),
-            Some(Token::Name(name)) if name == "true" || name == "false" => {
-                self.after(leaf(Node::Literal(Scalar::Bool(name == "true"))))
+            Some(ExpressionToken::Number(number)) => {
+                self.after(leaf(ExpressionNode::Literal(Scalar::Number(number))))
             }
-            Some(Token::Name(name)) if !RESERVED.contains(&name.as_str()) => {
+            Some(ExpressionToken::Text(text)) => {
+                self.after(leaf(ExpressionNode::Literal(Scalar::Text(text))))
+            }
+            Some(ExpressionToken::Property(name)) => self.after(leaf(ExpressionNode::Property(name))),
+            Some(ExpressionToken::Name(name)) if name == "true" || name == "false" => {
+                self.after(leaf(ExpressionNode::Literal(Scalar::Bool(name == "true"))))
+            }
+            Some(ExpressionToken::Name(name)) if !RESERVED.contains(&name.as_str()) => {
                 self.next += 1;
                 if self.peek_mark("(") { self.call(&name, place) } else { self.bare(name, place) }
             }
-            Some(Token::Mark("(")) => {
+            Some(ExpressionToken::Mark("(")) => {
                 self.open()?;
                 let inner = self.expression()?;
                 self.close()?;
@@ -160,7 +168,7 @@ impl<'t> Parser<'t> {
                 format!("write '{name}' for the word, `{name}` in backticks for a property of that name");
             return Err(self.wrong(place, format!("the word {name} must be in quotes"), help));
         }
-        Ok((Node::Property(name), 1))
+        Ok((ExpressionNode::Property(name), 1))
     }
 
     fn call(&mut self, name: &str, place: Range<usize>) -> Parsed {
@@ -183,23 +191,23 @@ impl<'t> Parser<'t> {
             let message = format!("`{name}` cannot have {count} argument{s}");
             return Err(self.wrong(place, message, format!("write {example}")));
         }
-        self.deepened(deep).map(|deep| (Node::Call(*function, list), deep))
+        self.deepened(deep).map(|deep| (ExpressionNode::Call(*function, list), deep))
     }
 
     /// `property('name')`, after its name.
     fn named_property(&mut self) -> Parsed {
         self.open()?;
         let name = match self.tokens.get(self.next) {
-            Some((Token::Text(name), _)) if !name.is_empty() => name.clone(),
+            Some((ExpressionToken::Text(name), _)) if !name.is_empty() => name.clone(),
             _ => return Err(self.unexpected("a property's name in quotes", "write property('its name')")),
         };
         self.next += 1;
         self.close()?;
-        Ok((Node::Property(name), 1))
+        Ok((ExpressionNode::Property(name), 1))
     }
 
     /// One or more expressions in brackets, and how deep the deepest is.
-    fn list(&mut self) -> Result<(Vec<Node>, usize), ExpressionError> {
+    fn list(&mut self) -> Result<(Vec<ExpressionNode>, usize), ExpressionError> {
         self.open()?;
         let (first, mut deepest) = self.expression()?;
         let mut list = vec![first];
@@ -224,10 +232,10 @@ impl<'t> Parser<'t> {
 
     fn join(&self, binary: Binary, left: Deep, right: Deep) -> Parsed {
         let deep = self.deepened(left.1.max(right.1))?;
-        Ok((Node::Binary(binary, Box::new(left.0), Box::new(right.0)), deep))
+        Ok((ExpressionNode::Binary(binary, Box::new(left.0), Box::new(right.0)), deep))
     }
 
-    fn over(&self, (node, deep): Deep, wrap: impl FnOnce(Node) -> Node) -> Parsed {
+    fn over(&self, (node, deep): Deep, wrap: impl FnOnce(ExpressionNode) -> ExpressionNode) -> Parsed {
         Ok((wrap(node), self.deepened(deep)?))
     }
 
@@ -261,7 +269,7 @@ impl<'t> Parser<'t> {
     }
 
     fn peek_mark(&self, mark: &str) -> bool {
-        matches!(self.tokens.get(self.next), Some((Token::Mark(found), _)) if *found == mark)
+        matches!(self.tokens.get(self.next), Some((ExpressionToken::Mark(found), _)) if *found == mark)
     }
 
     fn take_mark(&mut self, mark: &str) -> bool {
@@ -271,7 +279,7 @@ impl<'t> Parser<'t> {
     }
 
     fn peek_name(&self, name: &str, ahead: usize) -> bool {
-        matches!(self.tokens.get(self.next + ahead), Some((Token::Name(found), _)) if found == name)
+        matches!(self.tokens.get(self.next + ahead), Some((ExpressionToken::Name(found), _)) if found == name)
     }
 
     fn take_name(&mut self, name: &str) -> bool {
@@ -282,8 +290,8 @@ impl<'t> Parser<'t> {
 
     fn peek_operator(&self, operators: &[Binary]) -> Option<Binary> {
         let written = match &self.tokens.get(self.next)?.0 {
-            Token::Mark(mark) => mark,
-            Token::Name(name) => name.as_str(),
+            ExpressionToken::Mark(mark) => mark,
+            ExpressionToken::Name(name) => name.as_str(),
             _ => return None,
         };
         operators.iter().copied().find(|operator| operator.written() == written)
@@ -303,7 +311,7 @@ impl<'t> Parser<'t> {
 
     /// Where the last text that says `content` stands.
     fn place_of(&self, content: &str) -> Range<usize> {
-        let is = |placed: &&Placed| matches!(&placed.0, Token::Text(text) if text == content);
+        let is = |placed: &&SpannedToken| matches!(&placed.0, ExpressionToken::Text(text) if text == content);
         self.tokens.iter().rfind(is).map_or(0..0, |(_, place)| place.clone())
     }
 

@@ -10,21 +10,21 @@ pub(super) const RESERVED: [&str; 6] = ["and", "or", "not", "in", "true", "false
 
 /// A part of an expression.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Node {
+pub(super) enum ExpressionNode {
     /// A value written out; numbers are not negative.
     Literal(Scalar),
     /// A feature's property.
     Property(String),
     /// `-x`.
-    Negative(Box<Node>),
+    Negative(Box<ExpressionNode>),
     /// `not x`.
-    Not(Box<Node>),
+    Not(Box<ExpressionNode>),
     /// Two parts and what joins them.
-    Binary(Binary, Box<Node>, Box<Node>),
+    Binary(Binary, Box<ExpressionNode>, Box<ExpressionNode>),
     /// `x in (…)`; at least one.
-    In(Box<Node>, Vec<Node>),
+    In(Box<ExpressionNode>, Vec<ExpressionNode>),
     /// A function and its arguments, as many as it takes.
-    Call(Function, Vec<Node>),
+    Call(Function, Vec<ExpressionNode>),
 }
 
 /// What joins two parts.
@@ -117,9 +117,9 @@ impl Binary {
     }
 }
 
-impl Node {
+impl ExpressionNode {
     /// Calls `see` with it and all its parts.
-    pub fn visit<'n>(&'n self, see: &mut dyn FnMut(&'n Node)) {
+    pub fn visit<'n>(&'n self, see: &mut dyn FnMut(&'n ExpressionNode)) {
         see(self);
         match self {
             Self::Literal(_) | Self::Property(_) => {}
@@ -167,13 +167,15 @@ impl Node {
 }
 
 /// What a `match` compares with and gives, and what it gives else; of its arguments after the first.
-pub(super) fn arms(parts: &[Node]) -> (impl Iterator<Item = (&Node, &Node)>, Option<&Node>) {
+pub(super) fn arms(
+    parts: &[ExpressionNode],
+) -> (impl Iterator<Item = (&ExpressionNode, &ExpressionNode)>, Option<&ExpressionNode>) {
     let pairs = parts[1..].chunks_exact(2);
     let otherwise = pairs.remainder().first();
     (pairs.map(|pair| (&pair[0], &pair[1])), otherwise)
 }
 
-impl fmt::Display for Node {
+impl fmt::Display for ExpressionNode {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Literal(Scalar::Bool(value)) => write!(out, "{value}"),
@@ -230,7 +232,7 @@ pub(super) fn name_of(function: Function) -> &'static str {
 }
 
 /// `(a, b)`.
-struct List<'n>(&'n [Node]);
+struct List<'n>(&'n [ExpressionNode]);
 
 impl fmt::Display for List<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -4,7 +4,7 @@ use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop_oneof};
 
 use super::*;
 use crate::description::expression::syntax::{Binary, FUNCTIONS, Function};
-use crate::description::words::Surface;
+use crate::description::words::RoadSurface;
 
 fn road(name: &str) -> Option<Scalar> {
     let text = |text: &str| Some(Scalar::Text(text.into()));
@@ -110,10 +110,10 @@ fn a_fallback_is_taken_for_what_the_key_cannot_use() {
     assert_eq!(quantity("width", width), None);
     assert_eq!(quantity("maxheight", width), Some(12.5 * 0.3048));
     let choice = |text: &str| {
-        Choice::<Surface>::of_features(Expression::parse(text).expect("an expression")).word(&road)
+        ComputedWord::<RoadSurface>::of_features(Expression::parse(text).expect("an expression")).word(&road)
     };
-    assert_eq!(choice("highway ?? 'gravel'"), Some(Surface::Gravel), "primary is no surface");
-    assert_eq!(choice("if(lanes > 1, 'asphalt', 'track')"), Some(Surface::Asphalt));
+    assert_eq!(choice("highway ?? 'gravel'"), Some(RoadSurface::Gravel), "primary is no surface");
+    assert_eq!(choice("if(lanes > 1, 'asphalt', 'track')"), Some(RoadSurface::Asphalt));
     assert_eq!(choice("highway"), None);
 }
 
@@ -230,13 +230,13 @@ fn the_properties_that_it_looks_at_are_known() {
 }
 
 /// Any tree that the grammar can write.
-fn trees() -> impl Strategy<Value = Node> {
+fn trees() -> impl Strategy<Value = ExpressionNode> {
     let leaf = prop_oneof![
-        any::<bool>().prop_map(|value| Node::Literal(Scalar::Bool(value))),
-        (0.0..1e6).prop_map(|value| Node::Literal(Scalar::Number(value))),
-        "[a-z' `\"é-]{0,6}".prop_map(|text| Node::Literal(Scalar::Text(text))),
-        "[a-z:_ `\"'é-]{1,6}".prop_map(Node::Property),
-        Just(Node::Property("and".into())),
+        any::<bool>().prop_map(|value| ExpressionNode::Literal(Scalar::Bool(value))),
+        (0.0..1e6).prop_map(|value| ExpressionNode::Literal(Scalar::Number(value))),
+        "[a-z' `\"é-]{0,6}".prop_map(|text| ExpressionNode::Literal(Scalar::Text(text))),
+        "[a-z:_ `\"'é-]{1,6}".prop_map(ExpressionNode::Property),
+        Just(ExpressionNode::Property("and".into())),
     ];
     let binaries = [
         Binary::Or,
@@ -259,14 +259,18 @@ fn trees() -> impl Strategy<Value = Node> {
         let functions: Vec<Function> = FUNCTIONS.iter().map(|known| known.1).collect();
         let calls = (proptest::sample::select(functions), proptest::collection::vec(inner.clone(), 3..6));
         prop_oneof![
-            inner.clone().prop_map(|of| Node::Negative(Box::new(of))),
-            inner.clone().prop_map(|of| Node::Not(Box::new(of))),
-            pair.prop_map(|(join, left, right)| Node::Binary(join, Box::new(left), Box::new(right))),
-            (inner, some).prop_map(|(of, list)| Node::In(Box::new(of), list)),
+            inner.clone().prop_map(|of| ExpressionNode::Negative(Box::new(of))),
+            inner.clone().prop_map(|of| ExpressionNode::Not(Box::new(of))),
+            pair.prop_map(|(join, left, right)| ExpressionNode::Binary(
+                join,
+                Box::new(left),
+                Box::new(right)
+            )),
+            (inner, some).prop_map(|(of, list)| ExpressionNode::In(Box::new(of), list)),
             calls.prop_map(|(function, mut parts)| {
                 let most = FUNCTIONS.iter().find(|known| known.1 == function).map_or(0, |known| known.3);
                 parts.truncate(most);
-                Node::Call(function, parts)
+                ExpressionNode::Call(function, parts)
             }),
         ]
     })

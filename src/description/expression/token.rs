@@ -7,7 +7,7 @@ use crate::description::suggest::quoted;
 
 /// One of them.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Token {
+pub(super) enum ExpressionToken {
     /// A number; never negative, NaN or infinite.
     Number(f64),
     /// What stands between single quotes.
@@ -25,7 +25,7 @@ const MARKS: [&str; 16] =
     ["??", "!=", "<=", ">=", "==", "<>", "=", "<", ">", "+", "-", "*", "/", "(", ")", ","];
 
 /// A token and the bytes it takes.
-pub(super) type Placed = (Token, Range<usize>);
+pub(super) type SpannedToken = (ExpressionToken, Range<usize>);
 
 /// What is wrong with the bytes `at` of `text`.
 pub(super) fn wrong(
@@ -43,7 +43,7 @@ pub(super) fn wrong(
 ///
 /// # Errors
 /// It is too long, a quotation is not closed, or a character is none of the language's.
-pub(super) fn tokens(text: &str) -> Result<Vec<Placed>, ExpressionError> {
+pub(super) fn tokens(text: &str) -> Result<Vec<SpannedToken>, ExpressionError> {
     if text.len() > MAX_TEXT_BYTES {
         let message =
             format!("this expression has {} bytes, more than the {MAX_TEXT_BYTES} allowed", text.len());
@@ -60,7 +60,7 @@ pub(super) fn tokens(text: &str) -> Result<Vec<Placed>, ExpressionError> {
             }
             '\'' | '`' | '"' => quotation(text, &mut at, first)?,
             _ if first.is_ascii_digit() || first == '.' => number(text, &mut at)?,
-            _ if starts_name(first) => Token::Name(taken(text, &mut at, continues_name).to_owned()),
+            _ if starts_name(first) => ExpressionToken::Name(taken(text, &mut at, continues_name).to_owned()),
             _ => mark(text, &mut at)?,
         };
         tokens.push((token, start..at));
@@ -86,7 +86,7 @@ fn taken<'t>(text: &'t str, at: &mut usize, keep: impl Fn(char) -> bool) -> &'t 
     &rest[..end]
 }
 
-fn quotation(text: &str, at: &mut usize, quote: char) -> Result<Token, ExpressionError> {
+fn quotation(text: &str, at: &mut usize, quote: char) -> Result<ExpressionToken, ExpressionError> {
     let start = *at;
     let mut content = String::new();
     *at += 1;
@@ -104,16 +104,16 @@ fn quotation(text: &str, at: &mut usize, quote: char) -> Result<Token, Expressio
         *at += 1;
     }
     match quote {
-        '\'' => Ok(Token::Text(content)),
+        '\'' => Ok(ExpressionToken::Text(content)),
         _ if content.is_empty() => {
             Err(wrong(text, start..*at, "this names no property", "write its name between the quotes"))
         }
-        _ => Ok(Token::Property(content)),
+        _ => Ok(ExpressionToken::Property(content)),
     }
 }
 
 /// Digits with a point and an exponent, as in `12`, `.5` and `1.5e3`.
-fn number(text: &str, at: &mut usize) -> Result<Token, ExpressionError> {
+fn number(text: &str, at: &mut usize) -> Result<ExpressionToken, ExpressionError> {
     let start = *at;
     taken(text, at, |letter| letter.is_ascii_digit() || letter == '.');
     let rest = &text.as_bytes()[*at..];
@@ -124,7 +124,7 @@ fn number(text: &str, at: &mut usize) -> Result<Token, ExpressionError> {
     }
     let found = &text[start..*at];
     match found.parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(Token::Number(number)),
+        Ok(number) if number.is_finite() => Ok(ExpressionToken::Number(number)),
         _ => {
             let message = format!("\"{}\" is not a number", quoted(found));
             Err(wrong(text, start..*at, message, "write it as 12, 1.5 or 1e3"))
@@ -132,7 +132,7 @@ fn number(text: &str, at: &mut usize) -> Result<Token, ExpressionError> {
     }
 }
 
-fn mark(text: &str, at: &mut usize) -> Result<Token, ExpressionError> {
+fn mark(text: &str, at: &mut usize) -> Result<ExpressionToken, ExpressionError> {
     let rest = &text[*at..];
     let found = MARKS.into_iter().find(|mark| rest.starts_with(mark));
     let length = found.map_or_else(|| rest.chars().next().map_or(0, char::len_utf8), str::len);
@@ -142,7 +142,7 @@ fn mark(text: &str, at: &mut usize) -> Result<Token, ExpressionError> {
         (Some("<>"), _) => "write != for unlike",
         (Some(mark), _) => {
             *at += mark.len();
-            return Ok(Token::Mark(mark));
+            return Ok(ExpressionToken::Mark(mark));
         }
         (None, Some('!')) => "write `not` for the contrary",
         (None, Some('&')) => "write `and` where both must hold",

@@ -12,13 +12,13 @@ use crate::description::decode::document;
 use crate::description::documentation::{Documentation, default_of};
 use crate::description::expression::MAX_TEXT_BYTES;
 use crate::description::item::{MAX_COORDINATE, MAX_TEXT};
-use crate::description::reader::Reader;
-use crate::description::sketch::{Key, Needed, Part, Shape, Sketch};
+use crate::description::reader::TableReader;
+use crate::description::sketch::{KeyPart, KeyProbe, KeyShape, Needed, SchemaProbe};
 use crate::description::source_text::SourceText;
 
 /// The schema as one JSON object.
 pub fn schema() -> Value {
-    let root = Reader::sketch_root(|reader| document(reader, SourceText::new("", "")));
+    let root = TableReader::sketch_root(|reader| document(reader, SourceText::new("", "")));
     let documentation = Documentation::read();
     let mut tables = Map::new();
     let mut whole = object(&root, "", &documentation, &mut tables);
@@ -34,7 +34,7 @@ pub fn schema() -> Value {
 
 /// A table: its keys, and that it has no others.
 fn object(
-    sketch: &Sketch,
+    sketch: &SchemaProbe,
     table: &str,
     documentation: &Documentation,
     tables: &mut Map<String, Value>,
@@ -42,12 +42,12 @@ fn object(
     let mut properties = Map::new();
     for key in &sketch.keys {
         let mut value = match &key.part {
-            Part::Value(shape) => of_shape(shape),
-            Part::Table(inner) => {
+            KeyPart::Value(shape) => of_shape(shape),
+            KeyPart::Table(inner) => {
                 Value::Object(object(inner, &inside(table, key.name), documentation, tables))
             }
-            Part::Tables(inner) => repeated(inner, key.name, documentation, tables),
-            Part::Named => styles(sketch),
+            KeyPart::Tables(inner) => repeated(inner, key.name, documentation, tables),
+            KeyPart::Named => styles(sketch),
         };
         if let (Some(said), Value::Object(value)) = (documentation.of(table, key.name), &mut value) {
             value.insert("description".into(), said.into());
@@ -66,7 +66,7 @@ fn object(
 
 /// A list of tables, each defined once under its own name.
 fn repeated(
-    sketch: &Sketch,
+    sketch: &SchemaProbe,
     name: &'static str,
     documentation: &Documentation,
     tables: &mut Map<String, Value>,
@@ -83,9 +83,9 @@ fn repeated(
 }
 
 /// `[styles.NAME]`: keys of any one of the tables that can name a style.
-fn styles(root: &Sketch) -> Value {
-    let keys = |key: &Key| match &key.part {
-        Part::Tables(sketch) if is_styled(sketch) => {
+fn styles(root: &SchemaProbe) -> Value {
+    let keys = |key: &KeyProbe| match &key.part {
+        KeyPart::Tables(sketch) if is_styled(sketch) => {
             let known = sketch.keys.iter().filter(|inner| inner.name != STYLE);
             let properties: Map<String, Value> = known
                 .map(|inner| {
@@ -104,18 +104,18 @@ fn styles(root: &Sketch) -> Value {
 /// The key that names a style.
 const STYLE: &str = "style";
 
-fn is_styled(sketch: &Sketch) -> bool {
-    sketch.keys.iter().any(|key| key.name == STYLE && matches!(key.part, Part::Value(_)))
+fn is_styled(sketch: &SchemaProbe) -> bool {
+    sketch.keys.iter().any(|key| key.name == STYLE && matches!(key.part, KeyPart::Value(_)))
 }
 
-fn needed_keys(sketch: &Sketch) -> Vec<&'static str> {
+fn needed_keys(sketch: &SchemaProbe) -> Vec<&'static str> {
     sketch.keys.iter().filter(|key| key.needed == Needed::Yes).map(|key| key.name).collect()
 }
 
 /// What must be there where nothing is included: the needed keys of the tables that there is one of.
-fn completeness(sketch: &Sketch) -> Value {
+fn completeness(sketch: &SchemaProbe) -> Value {
     let inner = sketch.keys.iter().filter_map(|key| match &key.part {
-        Part::Table(table) => Some((key.name.to_owned(), completeness(table))),
+        KeyPart::Table(table) => Some((key.name.to_owned(), completeness(table))),
         _ => None,
     });
     let inner: Map<String, Value> = inner.filter(|(_, needs)| *needs != json!({})).collect();
@@ -154,34 +154,34 @@ fn common() -> Map<String, Value> {
     pairs.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
-fn of_shape(shape: &Shape) -> Value {
+fn of_shape(shape: &KeyShape) -> Value {
     match shape {
-        Shape::Number(bounds) => number(*bounds),
-        Shape::Whole(bounds) => {
+        KeyShape::Number(bounds) => number(*bounds),
+        KeyShape::Whole(bounds) => {
             json!({ "type": "integer", "minimum": bounds.start(), "maximum": bounds.end() })
         }
-        Shape::Quantity(bounds) => json!({ "anyOf": [number(*bounds), reference("expression")] }),
-        Shape::Switch => json!({ "type": "boolean" }),
-        Shape::Text => json!({ "type": "string", "maxLength": MAX_TEXT }),
-        Shape::FilledText => text(),
-        Shape::OneOrMoreTexts(most) => json!({ "anyOf": [text(), list(text(), 1, *most)] }),
-        Shape::Texts(most) => {
+        KeyShape::Quantity(bounds) => json!({ "anyOf": [number(*bounds), reference("expression")] }),
+        KeyShape::Switch => json!({ "type": "boolean" }),
+        KeyShape::Text => json!({ "type": "string", "maxLength": MAX_TEXT }),
+        KeyShape::FilledText => text(),
+        KeyShape::OneOrMoreTexts(most) => json!({ "anyOf": [text(), list(text(), 1, *most)] }),
+        KeyShape::Texts(most) => {
             json!({ "type": "object", "additionalProperties": text(), "minProperties": 1, "maxProperties": most })
         }
-        Shape::Expression => json!({ "allOf": [reference("expression")] }),
-        Shape::Word(words) => json!({ "enum": words }),
-        Shape::Choice(words) => json!({ "anyOf": [{ "enum": words }, reference("computed")] }),
-        Shape::Color => json!({ "allOf": [reference("color")] }),
-        Shape::Point => json!({ "allOf": [reference("point")] }),
-        Shape::Points(least, most) => list(reference("point"), *least, *most),
-        Shape::Range(bounds) => list(number(*bounds), 2, 2),
-        Shape::Numbers(bounds, most) => list(number(*bounds), 0, *most),
-        Shape::Ramp(words, most) => {
+        KeyShape::Expression => json!({ "allOf": [reference("expression")] }),
+        KeyShape::Word(words) => json!({ "enum": words }),
+        KeyShape::Choice(words) => json!({ "anyOf": [{ "enum": words }, reference("computed")] }),
+        KeyShape::Color => json!({ "allOf": [reference("color")] }),
+        KeyShape::Point => json!({ "allOf": [reference("point")] }),
+        KeyShape::Points(least, most) => list(reference("point"), *least, *most),
+        KeyShape::Range(bounds) => list(number(*bounds), 2, 2),
+        KeyShape::Numbers(bounds, most) => list(number(*bounds), 0, *most),
+        KeyShape::Ramp(words, most) => {
             let stop = json!({ "type": "array", "prefixItems": [{ "type": "number" }, reference("color")],
                                "minItems": 2, "maxItems": 2 });
             json!({ "anyOf": [{ "enum": words }, list(stop, 2, *most)] })
         }
-        Shape::Filter(most) => {
+        KeyShape::Filter(most) => {
             let values = json!({ "anyOf": [reference("scalar"), list(reference("scalar"), 1, *most)] });
             let table = json!({ "type": "object", "additionalProperties": values, "minProperties": 1 });
             json!({ "anyOf": [table, reference("expression")] })

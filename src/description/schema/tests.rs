@@ -7,18 +7,18 @@ use serde_json::Value;
 use super::*;
 use crate::description::defaults;
 
-fn sketch() -> Sketch {
-    Reader::sketch_root(|reader| document(reader, SourceText::new("", "")))
+fn sketch() -> SchemaProbe {
+    TableReader::sketch_root(|reader| document(reader, SourceText::new("", "")))
 }
 
 /// Every key as `table.key`.
-fn keys(sketch: &Sketch, table: &str) -> BTreeSet<String> {
+fn keys(sketch: &SchemaProbe, table: &str) -> BTreeSet<String> {
     let mut all = BTreeSet::new();
     for key in &sketch.keys {
         let path = inside(table, key.name);
         match &key.part {
-            Part::Table(inner) | Part::Tables(inner) => all.extend(keys(inner, &path)),
-            Part::Value(_) | Part::Named => {}
+            KeyPart::Table(inner) | KeyPart::Tables(inner) => all.extend(keys(inner, &path)),
+            KeyPart::Value(_) | KeyPart::Named => {}
         }
         all.insert(path);
     }

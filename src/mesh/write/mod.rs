@@ -14,7 +14,7 @@ use crate::mesh::trimesh::TriMesh;
 
 /// A format by the extension of its files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
+pub enum MeshFormat {
     /// Wavefront OBJ, text.
     Obj,
     /// Stanford PLY, binary.
@@ -25,7 +25,7 @@ pub enum Format {
     Glb,
 }
 
-impl Format {
+impl MeshFormat {
     /// The format of files with this extension, in upper or lower case.
     pub fn of_extension(extension: &str) -> Option<Self> {
         match extension.to_ascii_lowercase().as_str() {
@@ -71,12 +71,12 @@ fn plain(line: &str) -> String {
 ///
 /// # Errors
 /// `out` cannot be written, or the mesh is larger than the format can hold.
-pub fn write(format: Format, mesh: &TriMesh, remarks: &Remarks, out: &mut impl Write) -> io::Result<()> {
+pub fn write(format: MeshFormat, mesh: &TriMesh, remarks: &Remarks, out: &mut impl Write) -> io::Result<()> {
     match format {
-        Format::Obj => obj::write(mesh, remarks, out),
-        Format::Ply => ply::write(mesh, remarks, out),
-        Format::Stl => stl::write(mesh, remarks, out),
-        Format::Glb => glb::write(mesh, remarks, out),
+        MeshFormat::Obj => obj::write(mesh, remarks, out),
+        MeshFormat::Ply => ply::write(mesh, remarks, out),
+        MeshFormat::Stl => stl::write(mesh, remarks, out),
+        MeshFormat::Glb => glb::write(mesh, remarks, out),
     }
 }
 
@@ -120,8 +120,8 @@ mod tests {
 
     #[test]
     fn formats_go_by_extension_in_any_case() {
-        assert_eq!(Format::of_extension("GLB"), Some(Format::Glb));
-        assert_eq!(Format::of_extension("gltf"), None);
+        assert_eq!(MeshFormat::of_extension("GLB"), Some(MeshFormat::Glb));
+        assert_eq!(MeshFormat::of_extension("gltf"), None);
     }
 
     #[test]

@@ -7,12 +7,12 @@ use crate::draw::list::{DrawMesh, DrawVertex};
 use crate::mesh::sink::{MeshSink, VertexId};
 
 /// Unit directions and counter-clockwise triangles of them.
-pub(super) struct Ball {
+pub(super) struct UnitSphere {
     pub directions: Vec<Vec3>,
     pub triangles: Vec<[usize; 3]>,
 }
 
-impl Ball {
+impl UnitSphere {
     /// An icosahedron: 12 directions, 20 triangles.
     pub(super) fn coarse() -> Self {
         let golden = (1.0 + libm::sqrtf(5.0)) / 2.0;
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn a_ball_is_closed_and_faces_outward() {
-        for (ball, corners, triangles) in [(Ball::coarse(), 12, 20), (Ball::fine(), 42, 80)] {
+        for (ball, corners, triangles) in [(UnitSphere::coarse(), 12, 20), (UnitSphere::fine(), 42, 80)] {
             assert_eq!((ball.directions.len(), ball.triangles.len()), (corners, triangles));
             let sum: f32 = ball
                 .triangles

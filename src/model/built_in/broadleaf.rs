@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::draw::color::Srgba;
 use crate::draw::list::DrawMesh;
-use crate::model::built_in::blob::{Ball, between, waves};
+use crate::model::built_in::blob::{UnitSphere, between, waves};
 use crate::model::built_in::trunk;
 
 /// Leaves in the light, and those in the shade of others.
@@ -31,9 +31,10 @@ pub(super) fn mesh() -> DrawMesh {
     let mut mesh = DrawMesh::default();
     let bark = (Srgba::opaque(104, 86, 66), Srgba::opaque(62, 54, 44));
     trunk::add(&mut mesh, 6.5, (0.48, 0.30), bark);
-    Ball::fine().add_round(&mut mesh, |direction| leaves(&CROWN, direction, 0.0));
+    UnitSphere::fine().add_round(&mut mesh, |direction| leaves(&CROWN, direction, 0.0));
     for (index, lump) in BOUGHS.iter().enumerate() {
-        Ball::coarse().add_round(&mut mesh, |direction| leaves(lump, direction, index as f32 * 1.3 + 0.8));
+        UnitSphere::coarse()
+            .add_round(&mut mesh, |direction| leaves(lump, direction, index as f32 * 1.3 + 0.8));
     }
     mesh
 }

@@ -23,7 +23,7 @@ mod trunk;
 
 use crate::draw::list::{DrawMesh, MaterialId};
 use crate::draw::material::Material;
-use crate::model::kind::{Census, Model, Part};
+use crate::model::kind::{Census, Model, ModelPart};
 
 /// The names of all built-in models.
 pub const NAMES: [&str; 4] = ["conifer", "broadleaf", "shrub", "rock"];
@@ -45,7 +45,7 @@ fn model(name: &str, mesh: DrawMesh) -> Model {
     let census =
         Census { meshes: 1, vertices: mesh.vertices.len(), faces: mesh.triangles.len(), materials: 1 };
     Model {
-        parts: vec![Part { name: name.to_owned(), mesh, material: MaterialId(0) }],
+        parts: vec![ModelPart { name: name.to_owned(), mesh, material: MaterialId(0) }],
         materials: vec![Material { name: name.to_owned(), ..Material::default() }],
         census,
         ..Model::default()

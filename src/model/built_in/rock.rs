@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::draw::color::Srgba;
 use crate::draw::list::DrawMesh;
-use crate::model::built_in::blob::{Ball, between, waves};
+use crate::model::built_in::blob::{UnitSphere, between, waves};
 
 /// Faces to the sky, and those that the rain does not reach.
 const TOP: Srgba = Srgba::opaque(176, 168, 154);
@@ -22,6 +22,6 @@ pub(super) fn mesh() -> DrawMesh {
         at.with_z(at.z.max(-0.25))
     };
     let color = |normal: Vec3| between(SIDE, TOP, 0.5 + 0.5 * normal.z + 0.18 * waves(normal * 2.0, 1.0));
-    Ball::fine().add_sharp(&mut mesh, shape, color);
+    UnitSphere::fine().add_sharp(&mut mesh, shape, color);
     mesh
 }

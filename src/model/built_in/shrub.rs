@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::draw::color::Srgba;
 use crate::draw::list::DrawMesh;
-use crate::model::built_in::blob::{Ball, between, waves};
+use crate::model::built_in::blob::{UnitSphere, between, waves};
 
 const LIGHT: Srgba = Srgba::opaque(138, 150, 90);
 const SHADE: Srgba = Srgba::opaque(66, 84, 54);
@@ -20,7 +20,7 @@ const LUMPS: [(Vec3, Vec3); 3] = [
 pub(super) fn mesh() -> DrawMesh {
     let mut mesh = DrawMesh::default();
     for (index, &(middle, half)) in LUMPS.iter().enumerate() {
-        Ball::coarse().add_round(&mut mesh, |direction| {
+        UnitSphere::coarse().add_round(&mut mesh, |direction| {
             let uneven = waves(direction, index as f32 * 1.9);
             let at = middle + half * direction * (1.0 + 0.12 * uneven);
             (at, between(SHADE, LIGHT, 0.4 + 0.45 * direction.z + 0.2 * uneven))

@@ -8,7 +8,7 @@ use ::gltf::json::validation::Checked;
 
 use crate::model::error::ModelError;
 
-use super::data::{Data, View};
+use super::data::{BufferView, GltfBuffers};
 
 /// The most elements read from all accessors of a model, instances counted each time; bounds time and memory.
 const MAX_ELEMENTS: usize = 1 << 25;
@@ -16,7 +16,7 @@ const MAX_ELEMENTS: usize = 1 << 25;
 /// Reads accessors of one document.
 pub(super) struct Accessors<'a> {
     root: &'a Root,
-    data: &'a Data,
+    data: &'a GltfBuffers,
     read: Cell<usize>,
 }
 
@@ -45,7 +45,7 @@ impl Component {
 }
 
 /// How many elements of what accessor are read, and how they lie.
-struct Layout {
+struct AccessorLayout {
     count: usize,
     component: Component,
     /// Bytes of one element.
@@ -56,7 +56,7 @@ struct Layout {
 
 impl<'a> Accessors<'a> {
     /// A reader that has read nothing yet.
-    pub(super) fn new(root: &'a Root, data: &'a Data) -> Self {
+    pub(super) fn new(root: &'a Root, data: &'a GltfBuffers) -> Self {
         Self { root, data, read: Cell::new(0) }
     }
 
@@ -138,7 +138,7 @@ impl<'a> Accessors<'a> {
         Ok(elements)
     }
 
-    fn layout(&self, accessor: &Accessor, components: usize) -> Result<Layout, String> {
+    fn layout(&self, accessor: &Accessor, components: usize) -> Result<AccessorLayout, String> {
         let (Checked::Valid(kind), Checked::Valid(component)) = (accessor.type_, accessor.component_type)
         else {
             return Err("its type is none of those allowed".into());
@@ -154,7 +154,7 @@ impl<'a> Accessors<'a> {
         let count = count.ok_or_else(|| format!("{} elements are too many", accessor.count.0))?;
         let offset = usize::try_from(accessor.byte_offset.unwrap_or_default().0);
         let offset = offset.map_err(|_| "its offset is too large".to_owned())?;
-        Ok(Layout { count, component, size: component.kind.size() * components, offset })
+        Ok(AccessorLayout { count, component, size: component.kind.size() * components, offset })
     }
 
     fn sparse_places(
@@ -167,7 +167,7 @@ impl<'a> Accessors<'a> {
         };
         let component = Component { kind: kind.0, normalized: false };
         let offset = usize::try_from(sparse.indices.byte_offset.0).map_err(|_| "an offset is too large")?;
-        let layout = Layout { count, component, size: kind.0.size(), offset };
+        let layout = AccessorLayout { count, component, size: kind.0.size(), offset };
         let view = self
             .data
             .view(self.root, sparse.indices.buffer_view.value())
@@ -177,16 +177,19 @@ impl<'a> Accessors<'a> {
     }
 }
 
-impl Layout {
+impl AccessorLayout {
     fn sparse(&self, count: usize, offset: u64) -> Self {
         Self { count, offset: usize::try_from(offset).unwrap_or(usize::MAX), ..*self }
     }
 }
 
 /// The bytes of each element, once it is certain that all are there.
-fn slices<'a>(view: View<'a>, layout: &Layout) -> Result<impl Iterator<Item = &'a [u8]> + use<'a>, String> {
+fn slices<'a>(
+    view: BufferView<'a>,
+    layout: &AccessorLayout,
+) -> Result<impl Iterator<Item = &'a [u8]> + use<'a>, String> {
     let stride = view.stride.unwrap_or(layout.size);
-    let &Layout { count, size, offset, .. } = layout;
+    let &AccessorLayout { count, size, offset, .. } = layout;
     if stride < size {
         return Err(format!("its elements of {size} bytes lie {stride} bytes apart"));
     }
@@ -222,7 +225,7 @@ mod tests {
             [{{"buffer":0,"byteLength":8}},{{"buffer":0,"byteLength":8,"byteStride":4}}],"accessors":[{accessor}]}}"#
         );
         let root: Root = serde_json::from_str(&json).expect("sound JSON");
-        let data = Data::load(&root, Some(&[0, 1, 2, 3, 4, 5, 6, 7]), &Nothing);
+        let data = GltfBuffers::load(&root, Some(&[0, 1, 2, 3, 4, 5, 6, 7]), &Nothing);
         Accessors::new(&root, &data).vectors(0)
     }
 

@@ -9,18 +9,18 @@ use crate::model::error::ModelError;
 use crate::model::kind::Companions;
 
 /// The buffers of a document, or why one cannot be had: a buffer that nothing reads may be missing.
-pub(super) struct Data {
+pub(super) struct GltfBuffers {
     buffers: Vec<Result<Rc<[u8]>, String>>,
 }
 
 /// A part of a buffer with the distance between its elements, where it states one.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct View<'a> {
+pub(super) struct BufferView<'a> {
     pub bytes: &'a [u8],
     pub stride: Option<usize>,
 }
 
-impl Data {
+impl GltfBuffers {
     /// All buffers, each companion loaded once.
     pub(super) fn load(root: &Root, binary: Option<&[u8]>, companions: &dyn Companions) -> Self {
         let mut by_uri: BTreeMap<&str, Result<Rc<[u8]>, String>> = BTreeMap::new();
@@ -46,7 +46,7 @@ impl Data {
     ///
     /// # Errors
     /// [`ModelError::Gltf`] where its buffer cannot be had or it reaches past it.
-    pub(super) fn view(&self, root: &Root, index: usize) -> Result<View<'_>, ModelError> {
+    pub(super) fn view(&self, root: &Root, index: usize) -> Result<BufferView<'_>, ModelError> {
         let fail = |reason: &str| ModelError::gltf(format!("bufferViews[{index}]"), reason);
         let view = root.buffer_views.get(index).ok_or_else(|| fail("it is not there"))?;
         let place = view.buffer.value();
@@ -59,7 +59,7 @@ impl Data {
             .zip(length)
             .and_then(|(start, length)| buffer.get(start..start.checked_add(length)?))
             .ok_or_else(|| fail("it reaches past the end of its buffer"))?;
-        Ok(View { bytes, stride: view.byte_stride.map(|stride| stride.0) })
+        Ok(BufferView { bytes, stride: view.byte_stride.map(|stride| stride.0) })
     }
 }
 

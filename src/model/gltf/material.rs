@@ -1,26 +1,26 @@
 //! Materials: base colour and its texture, alpha, sides; how texture coordinates are changed before use.
 
 use ::gltf::json::Root;
-use ::gltf::json::material::AlphaMode;
+use ::gltf::json::material;
 use ::gltf::json::texture::Info;
 use ::gltf::json::validation::Checked;
 use glam::{Mat2, Vec2, Vec3};
 
 use crate::draw::color::Srgba;
-use crate::draw::material::{Alpha, Material, TextureId};
+use crate::draw::material::{AlphaMode, Material, TextureId};
 use crate::model::texture::Textures;
 
-use super::data::{self, Data};
+use super::data::{self, GltfBuffers};
 
 /// Which texture coordinates a material reads, and how it changes them (KHR_texture_transform).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct UvChange {
+pub(super) struct GltfUvTransform {
     pub set: u32,
     turn_and_scale: Mat2,
     offset: Vec2,
 }
 
-impl UvChange {
+impl GltfUvTransform {
     /// Set 0 as stored.
     pub(super) const NONE: Self = Self { set: 0, turn_and_scale: Mat2::IDENTITY, offset: Vec2::ZERO };
 
@@ -46,9 +46,9 @@ impl UvChange {
 /// The materials of a document, then one for what names none.
 pub(super) fn translate_all(
     root: &Root,
-    data: &Data,
+    data: &GltfBuffers,
     textures: &mut Textures<'_>,
-) -> Vec<(Material, UvChange)> {
+) -> Vec<(Material, GltfUvTransform)> {
     let mut images: Vec<Option<Option<TextureId>>> = vec![None; root.images.len()];
     let mut all: Vec<_> = root
         .materials
@@ -59,11 +59,11 @@ pub(super) fn translate_all(
                 let image = root.textures.get(info.index.value())?.source.value();
                 *images.get_mut(image)?.get_or_insert_with(|| picture(root, data, image, textures))
             });
-            let change = pbr.base_color_texture.as_ref().map_or(UvChange::NONE, UvChange::of);
+            let change = pbr.base_color_texture.as_ref().map_or(GltfUvTransform::NONE, GltfUvTransform::of);
             (translate(material, texture), change)
         })
         .collect();
-    all.push((Material { name: "(no material)".into(), ..Material::default() }, UvChange::NONE));
+    all.push((Material { name: "(no material)".into(), ..Material::default() }, GltfUvTransform::NONE));
     all
 }
 
@@ -72,9 +72,11 @@ fn translate(material: &::gltf::json::Material, texture: Option<TextureId>) -> M
     let mut base_color = Srgba::from_linear(Vec3::new(red, green, blue));
     base_color.0[3] = (opacity * 255.0 + 0.5) as u8;
     let alpha = match material.alpha_mode {
-        Checked::Valid(AlphaMode::Mask) => Alpha::Mask(material.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0)),
-        Checked::Valid(AlphaMode::Blend) => Alpha::Blend,
-        _ => Alpha::Opaque,
+        Checked::Valid(material::AlphaMode::Mask) => {
+            AlphaMode::Mask(material.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0))
+        }
+        Checked::Valid(material::AlphaMode::Blend) => AlphaMode::Blend,
+        _ => AlphaMode::Opaque,
     };
     Material {
         name: material.name.clone().unwrap_or_default(),
@@ -87,7 +89,7 @@ fn translate(material: &::gltf::json::Material, texture: Option<TextureId>) -> M
 }
 
 /// The texture of image `index`; `None`, with a note, where it cannot be had.
-fn picture(root: &Root, data: &Data, index: usize, textures: &mut Textures<'_>) -> Option<TextureId> {
+fn picture(root: &Root, data: &GltfBuffers, index: usize, textures: &mut Textures<'_>) -> Option<TextureId> {
     let image = root.images.get(index)?;
     let name = image.name.clone().unwrap_or_else(|| format!("image {index}"));
     match (image.buffer_view, &image.uri) {

@@ -26,7 +26,7 @@ use crate::model::error::ModelError;
 use crate::model::kind::{Census, Companions, Model};
 use crate::model::part::PartBuilder;
 
-use data::Data;
+use data::GltfBuffers;
 use shape::Painter;
 
 /// From glTF's axes (Y up, front +Z) to ours (Z up, front −Y): (x, −z, y).
@@ -39,7 +39,7 @@ const Z_UP: Mat4 =
 /// [`ModelError::Gltf`] and [`ModelError::TooLarge`]. A picture that cannot be had is a note.
 pub fn read(bytes: &[u8], companions: &dyn Companions) -> Result<Model, ModelError> {
     let (root, binary) = container::open(bytes)?;
-    let data = Data::load(&root, binary, companions);
+    let data = GltfBuffers::load(&root, binary, companions);
     let standing = nodes::standing(&root)?;
     let mut model = Model::default();
     let mut painter = Painter::new(&root, &data, companions);
@@ -146,14 +146,14 @@ mod tests {
 
     #[test]
     fn vertices_have_colours_and_materials_their_alpha() {
-        use crate::draw::material::Alpha;
+        use crate::draw::material::AlphaMode;
         let cut = r#"{"alphaMode":"MASK","alphaCutoff":0.3,"doubleSided":true}"#;
         let model = triangle(cut, r#"{"mesh":0}"#, "").expect("sound");
         let colors: Vec<[u8; 4]> = model.parts[0].mesh.vertices.iter().map(|vertex| vertex.color.0).collect();
         assert_eq!(colors, [[0, 0, 0, 255], [255, 0, 0, 255], [0, 255, 0, 255]]);
-        assert_eq!((model.materials[0].alpha, model.materials[0].two_sided), (Alpha::Mask(0.3), true));
+        assert_eq!((model.materials[0].alpha, model.materials[0].two_sided), (AlphaMode::Mask(0.3), true));
         let glass = triangle(r#"{"alphaMode":"BLEND"}"#, r#"{"mesh":0}"#, "").expect("sound");
-        assert_eq!(glass.materials[0].alpha, Alpha::Blend);
+        assert_eq!(glass.materials[0].alpha, AlphaMode::Blend);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use glam::{Mat4, Quat, Vec3};
 use crate::model::error::ModelError;
 
 /// The nodes of the scene and their places.
-pub(super) struct Standing {
+pub(super) struct NodeTransforms {
     /// Nodes of the scene, parents before children.
     pub order: Vec<usize>,
     /// The place of each node of the document in the scene, in glTF's axes; the identity outside it.
@@ -19,7 +19,7 @@ pub(super) struct Standing {
 ///
 /// # Errors
 /// [`ModelError::Gltf`] where nodes do not form trees.
-pub(super) fn standing(root: &Root) -> Result<Standing, ModelError> {
+pub(super) fn standing(root: &Root) -> Result<NodeTransforms, ModelError> {
     let is_child = check_trees(root)?;
     let scene = root.scene.map_or(0, |scene| scene.value());
     let mut open: Vec<(usize, Mat4)> = match root.scenes.get(scene) {
@@ -30,7 +30,7 @@ pub(super) fn standing(root: &Root) -> Result<Standing, ModelError> {
         }
     };
     let mut standing =
-        Standing { order: Vec::new(), world_from_node: vec![Mat4::IDENTITY; root.nodes.len()] };
+        NodeTransforms { order: Vec::new(), world_from_node: vec![Mat4::IDENTITY; root.nodes.len()] };
     let mut done = vec![false; root.nodes.len()];
     while let Some((index, world_from_parent)) = open.pop() {
         if std::mem::replace(&mut done[index], true) {

@@ -12,12 +12,12 @@ use crate::draw::pixels::Pixels;
 use crate::model::error::ModelError;
 use crate::model::kind::{Census, Companions};
 use crate::model::normals::{Smoothing, corner_normals};
-use crate::model::part::{Budget, Corner, PartBuilder};
+use crate::model::part::{Budget, ModelCorner, PartBuilder};
 use crate::model::texture::Textures;
 
 use super::accessor::Accessors;
-use super::data::Data;
-use super::material::{UvChange, translate_all};
+use super::data::GltfBuffers;
+use super::material::{GltfUvTransform, translate_all};
 use super::skin::Pose;
 use super::turned;
 
@@ -25,7 +25,7 @@ use super::turned;
 pub(super) struct Painter<'a> {
     root: &'a Root,
     accessors: Accessors<'a>,
-    materials: Vec<(Material, UvChange)>,
+    materials: Vec<(Material, GltfUvTransform)>,
     textures: Textures<'a>,
     budget: Budget,
     census: Census,
@@ -43,7 +43,7 @@ struct Vertices {
 
 impl<'a> Painter<'a> {
     /// A painter with all materials and textures of the document.
-    pub(super) fn new(root: &'a Root, data: &'a Data, companions: &'a dyn Companions) -> Self {
+    pub(super) fn new(root: &'a Root, data: &'a GltfBuffers, companions: &'a dyn Companions) -> Self {
         let mut textures = Textures::new(companions);
         let materials = translate_all(root, data, &mut textures);
         Self {
@@ -128,7 +128,7 @@ impl<'a> Painter<'a> {
         &self,
         primitive: &Primitive,
         pose: &Pose,
-        change: UvChange,
+        change: GltfUvTransform,
     ) -> Result<Option<Vertices>, ModelError> {
         let named = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|index| index.value());
         let Some(positions) = named(Semantic::Positions) else { return Ok(None) };
@@ -192,7 +192,7 @@ impl Vertices {
         &self,
         triangles: &[[u32; 3]],
         material: MaterialId,
-        change: UvChange,
+        change: GltfUvTransform,
         parts: &mut PartBuilder,
     ) -> usize {
         let finite =
@@ -208,7 +208,7 @@ impl Vertices {
                 let id = ids[place] as usize;
                 let stored = self.normals.as_ref().and_then(|normals| normals.get(id).copied());
                 let uv = self.uvs.as_ref().and_then(|uvs| uvs.get(id));
-                Corner {
+                ModelCorner {
                     position: self.positions[id],
                     normal: stored
                         .or_else(|| flat.get(triangle).map(|normals| normals[place]))

@@ -6,16 +6,16 @@ use glam::{Vec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::draw::list::MaterialId;
-use crate::draw::material::{Alpha, Material};
+use crate::draw::material::{AlphaMode, Material};
 use crate::model::error::ModelError;
 use crate::model::kind::{Census, Companions, Model};
 use crate::model::normals::{CREASE_COS, Smoothing, corner_normals};
-use crate::model::part::{Budget, Corner, PartBuilder};
+use crate::model::part::{Budget, ModelCorner, PartBuilder};
 use crate::model::texture::{Textures, load_any};
 use crate::model::triangulate::triangulate;
 
 use super::mtl::{self, Stated};
-use super::plain::{Face, Plain};
+use super::plain::{ObjFace, Plain};
 use super::text;
 
 /// The model of a checked file.
@@ -34,7 +34,7 @@ pub(super) fn assemble(plain: &Plain, companions: &dyn Companions) -> Result<Mod
     for object in &objects {
         let polygons = polygons(&object.mesh, &mut faces);
         meshes += usize::from(!polygons.is_empty());
-        let shape = Shape::new(&object.mesh, polygons, plain.says_smoothing);
+        let shape = ObjShape::new(&object.mesh, polygons, plain.says_smoothing);
         budget.take(shape.triangles.len())?;
         left_out += shape.left_out;
         let mut parts = PartBuilder::new(&object.name);
@@ -132,9 +132,9 @@ fn translate(stated: &Stated, textures: &mut Textures<'_>) -> Material {
     let mut base_color = color_of(diffuse);
     base_color.0[3] = (stated.opacity * 255.0 + 0.5) as u8;
     let alpha = match texture {
-        _ if base_color.0[3] < 255 => Alpha::Blend,
-        Some(id) if textures.is_cut_out(id) => Alpha::Mask(0.5),
-        _ => Alpha::Opaque,
+        _ if base_color.0[3] < 255 => AlphaMode::Blend,
+        Some(id) if textures.is_cut_out(id) => AlphaMode::Mask(0.5),
+        _ => AlphaMode::Opaque,
     };
     // The format knows no sides, and its files are modelled for viewers that draw both.
     Material { name: stated.name.clone(), base_color, texture, alpha, two_sided: true, ..Material::default() }
@@ -147,13 +147,13 @@ fn color_of(channels: [f32; 3]) -> Srgba {
 
 /// A face as a range of the object's indices.
 #[derive(Clone, Copy, Debug)]
-struct Polygon {
+struct FaceRange {
     first: usize,
     corners: usize,
-    face: Face,
+    face: ObjFace,
 }
 
-fn polygons<'a>(mesh: &tobj::Mesh, faces: &mut impl Iterator<Item = &'a Face>) -> Vec<Polygon> {
+fn polygons<'a>(mesh: &tobj::Mesh, faces: &mut impl Iterator<Item = &'a ObjFace>) -> Vec<FaceRange> {
     let triangles_only = mesh.indices.len() / 3;
     let count = if mesh.face_arities.is_empty() { triangles_only } else { mesh.face_arities.len() };
     let arities = (0..count).map(|index| mesh.face_arities.get(index).map_or(3, |&arity| arity as usize));
@@ -162,23 +162,23 @@ fn polygons<'a>(mesh: &tobj::Mesh, faces: &mut impl Iterator<Item = &'a Face>) -
         .zip(faces)
         .map(|(corners, &face)| {
             first += corners;
-            Polygon { first: first - corners, corners, face }
+            FaceRange { first: first - corners, corners, face }
         })
         .collect()
 }
 
 /// An object cut into triangles, Z up.
-struct Shape<'a> {
+struct ObjShape<'a> {
     mesh: &'a tobj::Mesh,
     positions: Vec<Vec3>,
     /// Positions in `mesh.indices`, with the face.
-    triangles: Vec<([usize; 3], Face)>,
+    triangles: Vec<([usize; 3], ObjFace)>,
     normals: Vec<[Vec3; 3]>,
     left_out: usize,
 }
 
-impl<'a> Shape<'a> {
-    fn new(mesh: &'a tobj::Mesh, polygons: Vec<Polygon>, says_smoothing: bool) -> Self {
+impl<'a> ObjShape<'a> {
+    fn new(mesh: &'a tobj::Mesh, polygons: Vec<FaceRange>, says_smoothing: bool) -> Self {
         let positions: Vec<Vec3> = vectors(&mesh.positions).collect();
         let mut shape = Self { mesh, positions, triangles: Vec::new(), normals: Vec::new(), left_out: 0 };
         for polygon in polygons {
@@ -225,7 +225,7 @@ impl<'a> Shape<'a> {
                     .and_then(|&index| stored_normals.get(index as usize)?.try_normalize())
                     .unwrap_or(computed[which]);
                 let uv = self.mesh.texcoord_indices.get(place).filter(|_| face.has_uvs);
-                Corner {
+                ModelCorner {
                     position: self.positions[id],
                     normal,
                     uv: uv.map_or(Vec2::ZERO, |&index| self.uv(index as usize)),
@@ -285,7 +285,7 @@ mod tests {
         let model = read(text.as_bytes(), &library).expect("a sound file");
         assert_eq!(
             (model.materials[0].base_color, model.materials[0].alpha),
-            (Srgba([255, 0, 0, 128]), Alpha::Blend)
+            (Srgba([255, 0, 0, 128]), AlphaMode::Blend)
         );
         assert_eq!(model.parts.iter().map(|part| part.material.0).collect::<Vec<_>>(), [0, 1]);
         assert_eq!(model.notes, ["material 'lost' is used but not defined"]);

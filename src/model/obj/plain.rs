@@ -14,7 +14,7 @@ use super::text::logical_lines;
 
 /// What the rewritten text does not say about a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Face {
+pub(super) struct ObjFace {
     /// Position in [`Plain::materials`]; `None` before the first `usemtl`.
     pub material: Option<u32>,
     /// The smoothing group; 0 is off.
@@ -31,7 +31,7 @@ pub(super) struct Plain {
     /// The rewritten text: `v`, `vt`, `vn`, `o` and `f` of three or more corners.
     pub text: String,
     /// A record for each `f` in `text`.
-    pub faces: Vec<Face>,
+    pub faces: Vec<ObjFace>,
     /// Names of materials in the order of their first use.
     pub materials: Vec<String>,
     /// What stands after each `mtllib`.
@@ -51,7 +51,7 @@ pub(super) struct Plain {
 /// # Errors
 /// [`ModelError::Obj`] with the line.
 pub(super) fn check(text: &str) -> Result<Plain, ModelError> {
-    let mut reader = Reader { totals: totals(text), ..Reader::default() };
+    let mut reader = ObjReader { totals: totals(text), ..ObjReader::default() };
     for (number, line) in logical_lines(text) {
         reader.statement(&line).map_err(|reason| ModelError::obj(number, reason))?;
         if reader.corners > MAX_TRIANGLES {
@@ -78,7 +78,7 @@ fn totals(text: &str) -> [usize; 3] {
 }
 
 #[derive(Default)]
-struct Reader {
+struct ObjReader {
     totals: [usize; 3],
     positions: String,
     colors: Vec<Option<[f32; 3]>>,
@@ -94,7 +94,7 @@ struct Reader {
     plain: Plain,
 }
 
-impl Reader {
+impl ObjReader {
     fn statement(&mut self, line: &str) -> Result<(), String> {
         let line = line.trim();
         let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
@@ -169,7 +169,7 @@ impl Reader {
         self.corners += corners.len();
         let has_uvs = corners.iter().all(|corner| corner[1].is_some());
         let has_normals = corners.iter().all(|corner| corner[2].is_some());
-        self.plain.faces.push(Face {
+        self.plain.faces.push(ObjFace {
             material: self.material,
             smoothing: self.smoothing,
             has_uvs,

@@ -10,28 +10,28 @@ use glam::{Mat4, Vec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::draw::list::MaterialId;
-use crate::draw::material::{Alpha, Material};
+use crate::draw::material::{AlphaMode, Material};
 use crate::model::error::ModelError;
 use crate::model::kind::{Census, Companions, Model};
 use crate::model::normals::{Smoothing, corner_normals};
-use crate::model::part::{Budget, Corner, PartBuilder};
+use crate::model::part::{Budget, ModelCorner, PartBuilder};
 use crate::model::texture::Textures;
 
-use super::File;
+use super::ThreeDsFile;
 use super::keyframer::world_from_nodes;
-use super::material::{Described, Map};
+use super::material::{Map, MaterialChunk};
 use super::mesh::TriObject;
 
 /// How texture coordinates of a material are changed before use.
 #[derive(Clone, Copy, Debug)]
-struct UvChange {
+struct MapUvTransform {
     scale: Vec2,
     offset: Vec2,
     /// Cosine and sine of the picture's turn about the middle of the square of coordinates.
     turn: Vec2,
 }
 
-impl UvChange {
+impl MapUvTransform {
     const NONE: Self = Self { scale: Vec2::ONE, offset: Vec2::ZERO, turn: Vec2::X };
 
     fn of(map: &Map) -> Self {
@@ -54,11 +54,11 @@ impl UvChange {
 #[derive(Debug, Default)]
 struct Palette<'a> {
     by_name: BTreeMap<&'a str, usize>,
-    changes: Vec<UvChange>,
+    changes: Vec<MapUvTransform>,
 }
 
 /// The model of a parsed file.
-pub(super) fn assemble(file: File, companions: &dyn Companions) -> Result<Model, ModelError> {
+pub(super) fn assemble(file: ThreeDsFile, companions: &dyn Companions) -> Result<Model, ModelError> {
     let mut textures = Textures::new(companions);
     let mut model = Model { census: census(&file), ..Model::default() };
     let mut palette = Palette::default();
@@ -83,7 +83,7 @@ pub(super) fn assemble(file: File, companions: &dyn Companions) -> Result<Model,
     Ok(model)
 }
 
-fn census(file: &File) -> Census {
+fn census(file: &ThreeDsFile) -> Census {
     Census {
         meshes: file.objects.iter().filter(|object| !object.faces.is_empty()).count(),
         vertices: file.objects.iter().map(|object| object.positions.len()).sum(),
@@ -92,7 +92,7 @@ fn census(file: &File) -> Census {
     }
 }
 
-fn translate(described: &Described, textures: &mut Textures<'_>) -> (Material, UvChange) {
+fn translate(described: &MaterialChunk, textures: &mut Textures<'_>) -> (Material, MapUvTransform) {
     let [painted, mask] = [&described.map, &described.opacity_map]
         .map(|map| map.as_ref().and_then(|map| textures.by_name(&map.file)));
     // 3D Studio paints the map over the diffuse colour.
@@ -100,9 +100,9 @@ fn translate(described: &Described, textures: &mut Textures<'_>) -> (Material, U
     let texture = mask.map_or(painted, |mask| textures.masked(painted, mask));
     base_color.0[3] = 255 - (described.transparency * 255.0 + 0.5) as u8;
     let alpha = match texture {
-        _ if base_color.0[3] < 255 => Alpha::Blend,
-        Some(id) if textures.is_cut_out(id) => Alpha::Mask(0.5),
-        _ => Alpha::Opaque,
+        _ if base_color.0[3] < 255 => AlphaMode::Blend,
+        Some(id) if textures.is_cut_out(id) => AlphaMode::Mask(0.5),
+        _ => AlphaMode::Opaque,
     };
     let material = Material {
         name: described.name.clone(),
@@ -113,12 +113,12 @@ fn translate(described: &Described, textures: &mut Textures<'_>) -> (Material, U
         ..Material::default()
     };
     let laid = described.map.as_ref().or(described.opacity_map.as_ref());
-    let change = laid.map_or(UvChange::NONE, UvChange::of);
+    let change = laid.map_or(MapUvTransform::NONE, MapUvTransform::of);
     (material, change)
 }
 
 /// Every object with every place it stands in.
-fn placed(file: &File) -> Vec<(&TriObject, Mat4)> {
+fn placed(file: &ThreeDsFile) -> Vec<(&TriObject, Mat4)> {
     let mut by_name = BTreeMap::new();
     for (index, object) in file.objects.iter().enumerate() {
         by_name.entry(object.name.as_str()).or_insert(index);
@@ -171,12 +171,12 @@ fn draw(object: &TriObject, world_from_stored: Mat4, palette: &Palette<'_>, mode
     let mut parts = PartBuilder::new(&object.name);
     for ((&face, ids), normals) in drawn.iter().zip(&triangles).zip(&normals) {
         let material = materials[face];
-        let change = palette.changes.get(material.0 as usize).copied().unwrap_or(UvChange::NONE);
+        let change = palette.changes.get(material.0 as usize).copied().unwrap_or(MapUvTransform::NONE);
         let corner = |corner: usize| {
             let id = ids[corner] as usize;
             let uv =
                 object.uvs.get(id).filter(|uv| uv.is_finite()).map_or(Vec2::ZERO, |&uv| change.apply(uv));
-            Corner { position: positions[id], normal: normals[corner], uv, color: Srgba::WHITE }
+            ModelCorner { position: positions[id], normal: normals[corner], uv, color: Srgba::WHITE }
         };
         parts.triangle(material, [corner(0), corner(1), corner(2)]);
     }
@@ -241,14 +241,14 @@ mod tests {
             offset: Vec2::ZERO,
             turn_rad: std::f32::consts::FRAC_PI_2,
         };
-        let lower_left = UvChange::NONE.apply(Vec2::ZERO);
-        assert!(UvChange::of(&map).apply(Vec2::X).abs_diff_eq(lower_left, 1e-6));
+        let lower_left = MapUvTransform::NONE.apply(Vec2::ZERO);
+        assert!(MapUvTransform::of(&map).apply(Vec2::X).abs_diff_eq(lower_left, 1e-6));
     }
 
     #[test]
     fn an_unturned_map_keeps_every_bit_of_common_coordinates() {
         for uv in [Vec2::ZERO, Vec2::new(0.25, 0.75), Vec2::ONE] {
-            assert_eq!(UvChange::NONE.apply(uv), Vec2::new(uv.x, 1.0 - uv.y));
+            assert_eq!(MapUvTransform::NONE.apply(uv), Vec2::new(uv.x, 1.0 - uv.y));
         }
     }
 }

@@ -19,7 +19,7 @@ pub(super) struct Chunk<'a> {
 impl<'a> Chunk<'a> {
     /// The chunk a file begins with.
     pub(super) fn first(bytes: &'a [u8]) -> Result<Self, ModelError> {
-        Cursor { bytes, offset: 0 }
+        ChunkCursor { bytes, offset: 0 }
             .chunk()?
             .ok_or_else(|| ModelError::three_ds(0, "it ends before its first chunk"))
     }
@@ -30,19 +30,19 @@ impl<'a> Chunk<'a> {
     }
 
     /// A cursor at the start of the body.
-    pub(super) fn read(&self) -> Cursor<'a> {
-        Cursor { bytes: self.body, offset: self.offset }
+    pub(super) fn read(&self) -> ChunkCursor<'a> {
+        ChunkCursor { bytes: self.body, offset: self.offset }
     }
 }
 
 /// Reads a chunk's body from front to back.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cursor<'a> {
+pub(super) struct ChunkCursor<'a> {
     bytes: &'a [u8],
     offset: usize,
 }
 
-impl<'a> Cursor<'a> {
+impl<'a> ChunkCursor<'a> {
     fn take<const N: usize>(&mut self) -> Result<[u8; N], ModelError> {
         let (head, rest) = self.bytes.split_first_chunk::<N>().ok_or_else(|| {
             let left = self.bytes.len();
@@ -169,14 +169,14 @@ mod tests {
     #[test]
     fn a_list_longer_than_its_chunk_is_refused_before_it_is_allocated() {
         let mut cursor = Chunk::first(&NESTED).expect("a chunk").read();
-        assert!(cursor.list(usize::MAX, 12, Cursor::vec3).is_err());
-        assert!(cursor.list(8, 1, Cursor::u8).is_err());
-        assert_eq!(cursor.list(7, 1, Cursor::u8).map(|bytes| bytes.len()), Ok(7));
+        assert!(cursor.list(usize::MAX, 12, ChunkCursor::vec3).is_err());
+        assert!(cursor.list(8, 1, ChunkCursor::u8).is_err());
+        assert_eq!(cursor.list(7, 1, ChunkCursor::u8).map(|bytes| bytes.len()), Ok(7));
     }
 
     #[test]
     fn a_name_without_an_end_is_refused() {
-        let mut cursor = Cursor { bytes: b"ab\0cd", offset: 0 };
+        let mut cursor = ChunkCursor { bytes: b"ab\0cd", offset: 0 };
         assert_eq!(cursor.text(), Ok("ab".into()));
         assert!(cursor.text().is_err());
     }

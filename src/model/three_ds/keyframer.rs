@@ -6,14 +6,14 @@ use glam::{Mat4, Quat, Vec3};
 
 use crate::model::error::ModelError;
 
-use super::chunk::{Chunk, Cursor};
+use super::chunk::{Chunk, ChunkCursor};
 
 /// No parent.
 const NO_PARENT: u16 = 0xFFFF;
 
 /// An object node as stored.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Node {
+pub(super) struct KeyframeNode {
     id: u16,
     parent: u16,
     /// The name of its object; `$$$DUMMY` for a node that only moves others.
@@ -24,9 +24,9 @@ pub(super) struct Node {
 }
 
 /// The object nodes of a keyframer chunk, in order.
-pub(super) fn parse(chunk: &Chunk<'_>) -> Result<Vec<Node>, ModelError> {
+pub(super) fn parse(chunk: &Chunk<'_>) -> Result<Vec<KeyframeNode>, ModelError> {
     const OBJECT_NODE: u16 = 0xB002;
-    let mut nodes: Vec<Node> = Vec::new();
+    let mut nodes: Vec<KeyframeNode> = Vec::new();
     for part in chunk.children() {
         let part = part?;
         if part.id == OBJECT_NODE {
@@ -38,14 +38,14 @@ pub(super) fn parse(chunk: &Chunk<'_>) -> Result<Vec<Node>, ModelError> {
     Ok(nodes)
 }
 
-fn node(chunk: &Chunk<'_>, id: u16) -> Result<Node, ModelError> {
+fn node(chunk: &Chunk<'_>, id: u16) -> Result<KeyframeNode, ModelError> {
     const HEADER: u16 = 0xB010;
     const PIVOT: u16 = 0xB013;
     const POSITION: u16 = 0xB020;
     const ROTATION: u16 = 0xB021;
     const SCALE: u16 = 0xB022;
     const ID: u16 = 0xB030;
-    let mut node = Node {
+    let mut node = KeyframeNode {
         id,
         parent: NO_PARENT,
         object: String::new(),
@@ -63,9 +63,9 @@ fn node(chunk: &Chunk<'_>, id: u16) -> Result<Node, ModelError> {
                 node.parent = cursor.u16()?;
             }
             PIVOT => node.pivot = cursor.vec3()?,
-            POSITION => position = first_key(cursor, Cursor::vec3)?.unwrap_or(Vec3::ZERO),
+            POSITION => position = first_key(cursor, ChunkCursor::vec3)?.unwrap_or(Vec3::ZERO),
             ROTATION => rotation = first_key(cursor, turn)?.unwrap_or(Quat::IDENTITY),
-            SCALE => scale = first_key(cursor, Cursor::vec3)?.unwrap_or(Vec3::ONE),
+            SCALE => scale = first_key(cursor, ChunkCursor::vec3)?.unwrap_or(Vec3::ONE),
             ID => node.id = cursor.u16()?,
             _ => {}
         }
@@ -77,8 +77,8 @@ fn node(chunk: &Chunk<'_>, id: u16) -> Result<Node, ModelError> {
 /// The first key of a track: `flags: u16, 8 bytes, keys: u32`, then for each key
 /// `frame: u32, spline flags: u16`, a float for each of the five spline flags set, and its value.
 fn first_key<'a, T>(
-    mut cursor: Cursor<'a>,
-    value: impl FnOnce(&mut Cursor<'a>) -> Result<T, ModelError>,
+    mut cursor: ChunkCursor<'a>,
+    value: impl FnOnce(&mut ChunkCursor<'a>) -> Result<T, ModelError>,
 ) -> Result<Option<T>, ModelError> {
     const SPLINE_FLAGS: u16 = 0b1_1111;
     cursor.skip(10)?;
@@ -92,7 +92,7 @@ fn first_key<'a, T>(
 }
 
 /// `angle, axis`; the angle turns clockwise seen against the axis.
-fn turn(cursor: &mut Cursor<'_>) -> Result<Quat, ModelError> {
+fn turn(cursor: &mut ChunkCursor<'_>) -> Result<Quat, ModelError> {
     let (angle, axis) = (cursor.f32()?, cursor.vec3()?);
     let axis = axis.try_normalize().unwrap_or(Vec3::Y);
     let (sin, cos) = libm::sincosf(-angle * 0.5);
@@ -102,7 +102,7 @@ fn turn(cursor: &mut Cursor<'_>) -> Result<Quat, ModelError> {
 
 /// Transforms of `nodes` to the world, in the same order. A parent that is missing, and a node among its
 /// own ancestors, stand in the world.
-pub(super) fn world_from_nodes(nodes: &[Node]) -> Vec<Mat4> {
+pub(super) fn world_from_nodes(nodes: &[KeyframeNode]) -> Vec<Mat4> {
     let mut by_id = std::collections::BTreeMap::new();
     for (index, node) in nodes.iter().enumerate() {
         by_id.entry(node.id).or_insert(index);
@@ -133,8 +133,8 @@ pub(super) fn world_from_nodes(nodes: &[Node]) -> Vec<Mat4> {
 mod tests {
     use super::*;
 
-    fn node(id: u16, parent: u16, x: f32) -> Node {
-        Node {
+    fn node(id: u16, parent: u16, x: f32) -> KeyframeNode {
+        KeyframeNode {
             id,
             parent,
             object: String::new(),

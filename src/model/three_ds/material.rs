@@ -5,11 +5,11 @@ use glam::Vec2;
 use crate::draw::color::Srgba;
 use crate::model::error::ModelError;
 
-use super::chunk::{Chunk, Cursor};
+use super::chunk::{Chunk, ChunkCursor};
 
 /// A material as stored.
 #[derive(Clone, Debug)]
-pub(super) struct Described {
+pub(super) struct MaterialChunk {
     pub name: String,
     pub diffuse: Srgba,
     /// 0 is opaque, 1 lets all light pass.
@@ -31,7 +31,7 @@ pub(super) struct Map {
 }
 
 /// The material in a material chunk.
-pub(super) fn parse(chunk: &Chunk<'_>) -> Result<Described, ModelError> {
+pub(super) fn parse(chunk: &Chunk<'_>) -> Result<MaterialChunk, ModelError> {
     const NAME: u16 = 0xA000;
     const DIFFUSE: u16 = 0xA020;
     const TRANSPARENCY: u16 = 0xA050;
@@ -40,7 +40,7 @@ pub(super) fn parse(chunk: &Chunk<'_>) -> Result<Described, ModelError> {
     const OPACITY_MAP: u16 = 0xA210;
     /// 3D Studio's own grey.
     const GREY: Srgba = Srgba::opaque(150, 150, 150);
-    let mut material = Described {
+    let mut material = MaterialChunk {
         name: String::new(),
         diffuse: GREY,
         transparency: 0.0,
@@ -105,7 +105,7 @@ fn map(chunk: &Chunk<'_>) -> Result<Option<Map>, ModelError> {
     const V_OFFSET: u16 = 0xA35A;
     const TURN_DEG: u16 = 0xA35C;
     let mut map = Map { file: String::new(), scale: Vec2::ONE, offset: Vec2::ZERO, turn_rad: 0.0 };
-    let number = |mut cursor: Cursor<'_>, target: &mut f32| -> Result<(), ModelError> {
+    let number = |mut cursor: ChunkCursor<'_>, target: &mut f32| -> Result<(), ModelError> {
         let value = cursor.f32()?;
         if value.is_finite() {
             *target = value;

@@ -4,7 +4,7 @@ use glam::{Mat4, Vec2, Vec3};
 
 use crate::model::error::ModelError;
 
-use super::chunk::{Chunk, Cursor};
+use super::chunk::{Chunk, ChunkCursor};
 
 /// A triangle mesh as stored.
 #[derive(Clone, Debug, Default)]
@@ -50,7 +50,7 @@ fn tri_object(name: String, chunk: &Chunk<'_>) -> Result<TriObject, ModelError> 
         match part.id {
             POINTS => {
                 let count = cursor.u16()?.into();
-                mesh.positions = cursor.list(count, 12, Cursor::vec3)?;
+                mesh.positions = cursor.list(count, 12, ChunkCursor::vec3)?;
             }
             FACES => faces(&mut mesh, cursor)?,
             TEXTURE_COORDINATES => {
@@ -58,7 +58,7 @@ fn tri_object(name: String, chunk: &Chunk<'_>) -> Result<TriObject, ModelError> 
                 mesh.uvs = cursor.list(count, 8, |cursor| Ok(Vec2::new(cursor.f32()?, cursor.f32()?)))?;
             }
             MATRIX => {
-                let axes = cursor.list(4, 12, Cursor::vec3)?;
+                let axes = cursor.list(4, 12, ChunkCursor::vec3)?;
                 let [x, y, z, origin] = [axes[0], axes[1], axes[2], axes[3]];
                 mesh.world_from_own =
                     Mat4::from_cols(x.extend(0.0), y.extend(0.0), z.extend(0.0), origin.extend(1.0));
@@ -70,7 +70,7 @@ fn tri_object(name: String, chunk: &Chunk<'_>) -> Result<TriObject, ModelError> 
 }
 
 /// Faces, then chunks that say more about them.
-fn faces(mesh: &mut TriObject, mut cursor: Cursor<'_>) -> Result<(), ModelError> {
+fn faces(mesh: &mut TriObject, mut cursor: ChunkCursor<'_>) -> Result<(), ModelError> {
     const MATERIAL_GROUP: u16 = 0x4130;
     const SMOOTHING: u16 = 0x4150;
     let count = cursor.u16()?.into();
@@ -85,9 +85,9 @@ fn faces(mesh: &mut TriObject, mut cursor: Cursor<'_>) -> Result<(), ModelError>
             MATERIAL_GROUP => {
                 let name = cursor.text()?;
                 let count = cursor.u16()?.into();
-                mesh.groups.push((name, cursor.list(count, 2, Cursor::u16)?));
+                mesh.groups.push((name, cursor.list(count, 2, ChunkCursor::u16)?));
             }
-            SMOOTHING => mesh.smoothing = cursor.list(count, 4, Cursor::u32)?,
+            SMOOTHING => mesh.smoothing = cursor.list(count, 4, ChunkCursor::u32)?,
             _ => {}
         }
     }

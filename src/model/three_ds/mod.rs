@@ -23,16 +23,16 @@ use crate::model::error::ModelError;
 use crate::model::kind::{Companions, Model};
 
 use chunk::Chunk;
-use keyframer::Node;
-use material::Described;
+use keyframer::KeyframeNode;
+use material::MaterialChunk;
 use mesh::TriObject;
 
 /// All that a picture needs of a 3DS file, as stored.
 #[derive(Debug, Default)]
-struct File {
+struct ThreeDsFile {
     objects: Vec<TriObject>,
-    materials: Vec<Described>,
-    nodes: Vec<Node>,
+    materials: Vec<MaterialChunk>,
+    nodes: Vec<KeyframeNode>,
 }
 
 /// The model in the bytes of a 3DS file.
@@ -43,7 +43,7 @@ pub fn read(bytes: &[u8], companions: &dyn Companions) -> Result<Model, ModelErr
     assemble::assemble(parse(bytes)?, companions)
 }
 
-fn parse(bytes: &[u8]) -> Result<File, ModelError> {
+fn parse(bytes: &[u8]) -> Result<ThreeDsFile, ModelError> {
     const MAIN: u16 = 0x4D4D;
     const EDITOR: u16 = 0x3D3D;
     const MATERIAL: u16 = 0xAFFF;
@@ -54,7 +54,7 @@ fn parse(bytes: &[u8]) -> Result<File, ModelError> {
         let reason = format!("it starts with chunk {:04X} where a 3DS file has {MAIN:04X}", main.id);
         return Err(ModelError::three_ds(0, reason));
     }
-    let mut file = File::default();
+    let mut file = ThreeDsFile::default();
     for section in main.children() {
         let section = section?;
         match section.id {

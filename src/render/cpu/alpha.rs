@@ -12,9 +12,9 @@ use crate::draw::pixels::Pixels;
 
 /// The alpha of a texture and its mip levels.
 #[derive(Debug)]
-pub struct Alpha {
+pub struct AlphaMask {
     /// The largest first; none where the texture is opaque or empty.
-    levels: Vec<Level>,
+    levels: Vec<AlphaLevel>,
 }
 
 /// How a mask is read for the samples of one pixel.
@@ -26,16 +26,16 @@ pub struct Reading {
 }
 
 #[derive(Debug)]
-struct Level {
+struct AlphaLevel {
     size: [u32; 2],
     alphas: Vec<u8>,
 }
 
-impl Alpha {
+impl AlphaMask {
     /// The alpha of `base` and of its `smaller` levels.
     pub fn of(base: &Pixels, smaller: &[Pixels]) -> Self {
         let is_opaque = base.data().iter().all(|color| color.0[3] == u8::MAX);
-        let levels = std::iter::once(base).chain(smaller).map(|level| Level {
+        let levels = std::iter::once(base).chain(smaller).map(|level| AlphaLevel {
             size: [level.width(), level.height()],
             alphas: level.data().iter().map(|color| color.0[3]).collect(),
         });
@@ -79,7 +79,7 @@ fn nearest_level(squared: f32) -> usize {
     (exponent as usize).saturating_sub(f32::MAX_EXP as usize - 1) / 2
 }
 
-impl Level {
+impl AlphaLevel {
     /// In 0..=1.
     fn bilinear(&self, uv: Vec2) -> f32 {
         let [width, height] = self.size;
@@ -125,10 +125,10 @@ mod tests {
     use crate::render::mip_levels::smaller_levels;
 
     /// A square whose left half is a hole.
-    fn half(side: u32) -> Alpha {
+    fn half(side: u32) -> AlphaMask {
         let alpha = |x: u32| if x < side / 2 { 0 } else { 255 };
         let pixels = Pixels::from_fn(side, side, |x, _| Srgba([0, 0, 0, alpha(x)]));
-        Alpha::of(&pixels, &smaller_levels(&pixels))
+        AlphaMask::of(&pixels, &smaller_levels(&pixels))
     }
 
     #[test]
@@ -160,7 +160,7 @@ mod tests {
 
     #[test]
     fn opaque_textures_and_hostile_coordinates_give_an_answer() {
-        let opaque = Alpha::of(&Pixels::filled(4, 4, Srgba::WHITE), &[]);
+        let opaque = AlphaMask::of(&Pixels::filled(4, 4, Srgba::WHITE), &[]);
         assert_eq!(opaque.at(Vec2::ZERO, &opaque.reading(Vec2::X, Vec2::Y, 8)), 1.0);
         let alpha = half(4);
         for coordinate in [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX] {

@@ -8,10 +8,10 @@ use rayon::prelude::*;
 
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
-use crate::render::cpu::geometry::Piece;
-use crate::render::cpu::pattern::Pattern;
-use crate::render::cpu::raster::Window;
-use crate::render::cpu::tile::{Frame, Scratch, draw_tile};
+use crate::render::cpu::geometry::FacePiece;
+use crate::render::cpu::pattern::SamplePattern;
+use crate::render::cpu::raster::PixelWindow;
+use crate::render::cpu::tile::{TileContext, TileScratch, draw_tile};
 use crate::render::cpu::visibility::TILE;
 
 /// The rows of a picture that a band writes.
@@ -26,17 +26,22 @@ pub struct BandRows<'a> {
 }
 
 /// Draws band `number`, counted from the top, into its rows.
-pub fn draw_band<const N: usize>(frame: &Frame, pattern: &Pattern<N>, number: u32, out: BandRows) {
+pub fn draw_band<const N: usize>(
+    frame: &TileContext,
+    pattern: &SamplePattern<N>,
+    number: u32,
+    out: BandRows,
+) {
     let [width, height] = frame.screen.size;
     let (top, bottom) = (number * TILE, (number * TILE + TILE).min(height));
-    let band = Window { from: [0, top], to: [width, bottom] };
-    let reaches = |piece: &&Piece| !piece.window.and(band).is_empty();
-    let pieces: Vec<Piece> = frame.geometry.pieces().filter(reaches).copied().collect();
+    let band = PixelWindow { from: [0, top], to: [width, bottom] };
+    let reaches = |piece: &&FacePiece| !piece.window.and(band).is_empty();
+    let pieces: Vec<FacePiece> = frame.geometry.pieces().filter(reaches).copied().collect();
     let window =
-        |tile: u32| Window { from: [tile * TILE, top], to: [(tile * TILE + TILE).min(width), bottom] };
+        |tile: u32| PixelWindow { from: [tile * TILE, top], to: [(tile * TILE + TILE).min(width), bottom] };
     let tiles: Vec<_> = (0..width.div_ceil(TILE))
         .into_par_iter()
-        .map_init(Scratch::new, |scratch, tile| {
+        .map_init(TileScratch::new, |scratch, tile| {
             (window(tile), draw_tile(frame, pattern, &pieces, window(tile), scratch))
         })
         .collect();

@@ -7,10 +7,10 @@
 
 use glam::Vec3;
 
-use crate::draw::list::Layer;
-use crate::render::cpu::geometry::{Face, FaceId, Geometry, Piece};
-use crate::render::cpu::pattern::{Mask, Pattern};
-use crate::render::cpu::raster::{Window, cover};
+use crate::draw::list::DepthLayer;
+use crate::render::cpu::geometry::{FaceId, FacePiece, ScreenFace, ScreenGeometry};
+use crate::render::cpu::pattern::{Mask, SamplePattern};
+use crate::render::cpu::raster::{PixelWindow, cover};
 use crate::render::cpu::shade::Shader;
 use crate::render::cpu::visibility::{SampleDepths, TILE, Visibility};
 
@@ -35,7 +35,7 @@ struct Fragment {
 /// The transparent fragments of one tile.
 #[derive(Debug)]
 pub struct Blend {
-    window: Window,
+    window: PixelWindow,
     heads: Vec<u32>,
     fragments: Vec<Fragment>,
 }
@@ -44,14 +44,14 @@ impl Blend {
     /// Room for one tile.
     pub fn new() -> Self {
         Self {
-            window: Window { from: [0; 2], to: [0; 2] },
+            window: PixelWindow { from: [0; 2], to: [0; 2] },
             heads: vec![END; (TILE * TILE) as usize],
             fragments: Vec::new(),
         }
     }
 
     /// Empties the tile and moves it to `window`.
-    pub fn clear(&mut self, window: Window) {
+    pub fn clear(&mut self, window: PixelWindow) {
         self.window = window;
         self.fragments.clear();
         self.heads.fill(END);
@@ -69,10 +69,10 @@ impl Blend {
     /// Adds what of a transparent piece lies before the opaque surfaces.
     pub fn draw<const N: usize>(
         &mut self,
-        piece: &Piece,
-        (geometry, shader): (&Geometry, &Shader),
+        piece: &FacePiece,
+        (geometry, shader): (&ScreenGeometry, &Shader),
         visibility: &Visibility<N>,
-        pattern: &Pattern<N>,
+        pattern: &SamplePattern<N>,
     ) {
         let face = geometry.face(piece.face);
         let slope = SampleDepths::of(face, pattern);
@@ -95,7 +95,7 @@ impl Blend {
     }
 
     /// Puts a fragment before the first of its pixel that does not lie in front of it.
-    fn insert(&mut self, pixel: usize, mut fragment: Fragment, face: &Face) {
+    fn insert(&mut self, pixel: usize, mut fragment: Fragment, face: &ScreenFace) {
         let (mut before, mut here, mut count) = (END, self.heads[pixel], 0);
         while here != END && self.fragments[here as usize].inverse_depth > fragment.inverse_depth * face.reach
         {
@@ -136,8 +136,8 @@ impl Blend {
         &self,
         (x, y): (u32, u32),
         colors: &mut [Vec3; N],
-        (geometry, shader): (&Geometry, &Shader),
-        pattern: &Pattern<N>,
+        (geometry, shader): (&ScreenGeometry, &Shader),
+        pattern: &SamplePattern<N>,
     ) -> Option<FaceId> {
         let mut chain = [None; MOST_LAYERS];
         let mut count = 0;
@@ -167,11 +167,17 @@ impl Blend {
 ///
 /// In the same plane a drape shows over the ground and over drapes that come before it in the list, and is
 /// covered by drapes that come after it.
-fn shows_before(face: &Face, new: f32, there: Option<&Face>, depth: f32, shader: &Shader) -> bool {
+fn shows_before(
+    face: &ScreenFace,
+    new: f32,
+    there: Option<&ScreenFace>,
+    depth: f32,
+    shader: &Shader,
+) -> bool {
     let Some(opaque) = there else { return new > depth };
     match (shader.item(face).layer, shader.item(opaque).layer) {
-        (Layer::Draped(_), Layer::Draped(_)) if opaque.item > face.item => new > depth * face.reach,
-        (Layer::Draped(_), Layer::Ground | Layer::Draped(_)) => new * face.reach >= depth,
+        (DepthLayer::Draped(_), DepthLayer::Draped(_)) if opaque.item > face.item => new > depth * face.reach,
+        (DepthLayer::Draped(_), DepthLayer::Ground | DepthLayer::Draped(_)) => new * face.reach >= depth,
         _ => new > depth,
     }
 }

@@ -7,9 +7,9 @@
 
 use glam::Vec2;
 
-use crate::render::cpu::geometry::Face;
+use crate::render::cpu::geometry::ScreenFace;
 use crate::render::cpu::hit::Shares;
-use crate::render::cpu::pattern::{Mask, Pattern};
+use crate::render::cpu::pattern::{Mask, SamplePattern};
 use crate::render::cpu::texture::Texture;
 
 /// The part of a pixel's side that a sample reads the mask over: the square root of an eighth, as there are eight
@@ -20,7 +20,7 @@ const SAMPLE_SIDE: f32 = 0.354;
 #[derive(Clone, Copy, Debug)]
 pub struct Cutout<'a> {
     /// The face.
-    pub face: &'a Face,
+    pub face: &'a ScreenFace,
     /// Below this alpha there is a hole.
     pub cutoff: f32,
     /// The alpha at the face's corners, apart from the texture's.
@@ -33,7 +33,12 @@ pub struct Cutout<'a> {
 
 impl Cutout<'_> {
     /// Those of `samples`, all on the face, of pixel `(x, y)` at which there is no hole.
-    pub fn solid<const N: usize>(&self, (x, y): (u32, u32), samples: Mask, pattern: &Pattern<N>) -> Mask {
+    pub fn solid<const N: usize>(
+        &self,
+        (x, y): (u32, u32),
+        samples: Mask,
+        pattern: &SamplePattern<N>,
+    ) -> Mask {
         let [right, down] = pattern.centroid(samples);
         let shares = Shares::of(self.face, [x as f32 + 0.5 + right, y as f32 + 0.5 + down]);
         let [a, b, c] = self.alphas;

@@ -8,11 +8,11 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::draw::list::{DrawItem, DrawList, Layer};
-use crate::draw::material::Alpha;
+use crate::draw::list::{DepthLayer, DrawItem, DrawList};
+use crate::draw::material::AlphaMode;
 use crate::render::cpu::clip::{Outline, clipped};
-use crate::render::cpu::plane::Planes;
-use crate::render::cpu::raster::{Corner, Window, doubled_area, snapped};
+use crate::render::cpu::plane::TrianglePlanes;
+use crate::render::cpu::raster::{PixelWindow, SubpixelPoint, doubled_area, snapped};
 use crate::render::cpu::screen::{Projection, Screen};
 
 /// Triangles a chunk; a power of two, so that a face's id splits into chunk and place.
@@ -35,20 +35,20 @@ impl FaceId {
 
 /// One triangle of the list that may be seen.
 #[derive(Clone, Copy, Debug)]
-pub struct Face {
+pub struct ScreenFace {
     /// The item's index in the list.
     pub item: u32,
     /// The triangle's index in its mesh.
     pub triangle: u32,
     /// Depth and corner shares over the picture.
-    pub planes: Planes,
+    pub planes: TrianglePlanes,
     /// The least and greatest inverse depth of the part before the near plane.
     pub range: [f32; 2],
     /// For draped items, 1 + the part of a depth by which it may lie behind; 1 for all else.
     pub reach: f32,
 }
 
-impl Face {
+impl ScreenFace {
     /// Whether it lies in the ground's plane, and not before it by a shape of its own.
     pub fn is_draped(&self) -> bool {
         self.reach > 1.0
@@ -62,7 +62,7 @@ impl Face {
 
 /// How a piece enters the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pass {
+pub enum RasterPass {
     /// Hides what is behind it.
     Opaque,
     /// Hides what is behind it where its alpha reaches the cut-off.
@@ -73,28 +73,28 @@ pub enum Pass {
 
 /// A triangular part of a face's outline.
 #[derive(Clone, Copy, Debug)]
-pub struct Piece {
+pub struct FacePiece {
     /// Sub-pixel corners with a positive area.
-    pub corners: [Corner; 3],
+    pub corners: [SubpixelPoint; 3],
     /// The pixels it may touch; never empty.
-    pub window: Window,
+    pub window: PixelWindow,
     /// Its face.
     pub face: FaceId,
     /// How it is drawn.
-    pub pass: Pass,
+    pub pass: RasterPass,
 }
 
 /// The faces of up to [`CHUNK`] triangles that follow each other in the list.
 #[derive(Debug, Default)]
-struct Chunk {
-    faces: Vec<Face>,
-    pieces: Vec<Piece>,
+struct FaceChunk {
+    faces: Vec<ScreenFace>,
+    pieces: Vec<FacePiece>,
 }
 
 /// All faces and pieces of a list as one camera sees them.
 #[derive(Debug)]
-pub struct Geometry {
-    chunks: Vec<Chunk>,
+pub struct ScreenGeometry {
+    chunks: Vec<FaceChunk>,
 }
 
 /// What the triangles of one item have in common.
@@ -102,12 +102,12 @@ struct ItemSetup<'a> {
     item: &'a DrawItem,
     index: u32,
     projection: Projection,
-    pass: Pass,
+    pass: RasterPass,
     two_sided: bool,
     is_draped: bool,
 }
 
-impl Geometry {
+impl ScreenGeometry {
     /// The faces of a checked `list` that `screen` may see, in the list's order.
     ///
     /// `None` where the list draws more triangles than ids can number (2^32).
@@ -129,13 +129,13 @@ impl Geometry {
     }
 
     /// The face with this id, which must be one of this geometry's.
-    pub fn face(&self, id: FaceId) -> &Face {
+    pub fn face(&self, id: FaceId) -> &ScreenFace {
         let id = u64::from(id.0);
         &self.chunks[(id / CHUNK) as usize].faces[(id % CHUNK) as usize]
     }
 
     /// All pieces in the list's order.
-    pub fn pieces(&self) -> impl Iterator<Item = &Piece> {
+    pub fn pieces(&self) -> impl Iterator<Item = &FacePiece> {
         self.chunks.iter().flat_map(|chunk| &chunk.pieces)
     }
 }
@@ -147,8 +147,8 @@ fn build_chunk(
     ends: &[u64],
     triangles: std::ops::Range<u64>,
     first_id: u32,
-) -> Chunk {
-    let mut chunk = Chunk::default();
+) -> FaceChunk {
+    let mut chunk = FaceChunk::default();
     let mut index = ends.partition_point(|&end| end <= triangles.start);
     let mut next = triangles.start;
     while next < triangles.end {
@@ -175,19 +175,19 @@ impl<'a> ItemSetup<'a> {
             index: index as u32,
             projection: screen.projection(&item.world_from_mesh),
             pass: match material.alpha {
-                Alpha::Opaque => Pass::Opaque,
-                Alpha::Mask(_) => Pass::Mask,
-                Alpha::Blend => Pass::Blend,
+                AlphaMode::Opaque => RasterPass::Opaque,
+                AlphaMode::Mask(_) => RasterPass::Mask,
+                AlphaMode::Blend => RasterPass::Blend,
             },
             two_sided: material.two_sided,
-            is_draped: matches!(item.layer, Layer::Draped(_)),
+            is_draped: matches!(item.layer, DepthLayer::Draped(_)),
         }
     }
 }
 
 /// Adds the triangle's face and pieces, if it can be seen.
 fn add_triangle(
-    chunk: &mut Chunk,
+    chunk: &mut FaceChunk,
     list: &DrawList,
     screen: &Screen,
     setup: &ItemSetup,
@@ -202,7 +202,7 @@ fn add_triangle(
         return;
     }
     let Some(outline) = clipped(points, screen) else { return };
-    let Some(planes) = Planes::of(points) else { return };
+    let Some(planes) = TrianglePlanes::of(points) else { return };
     if !(planes.faces_eye || setup.two_sided) {
         return;
     }
@@ -212,7 +212,7 @@ fn add_triangle(
         return;
     }
     let reach = if setup.is_draped { 1.0 + drape_tolerance(&offsets, screen.eye()) } else { 1.0 };
-    chunk.faces.push(Face {
+    chunk.faces.push(ScreenFace {
         item: setup.index,
         triangle,
         planes,
@@ -223,11 +223,11 @@ fn add_triangle(
 
 /// The outline as a fan of snapped triangles that may touch a pixel.
 fn push_pieces(
-    pieces: &mut Vec<Piece>,
+    pieces: &mut Vec<FacePiece>,
     outline: &Outline,
-    planes: &Planes,
+    planes: &TrianglePlanes,
     screen: &Screen,
-    (face, pass): (FaceId, Pass),
+    (face, pass): (FaceId, RasterPass),
 ) {
     let snap = |corner: &DVec3| [snapped(corner.x / corner.z), snapped(corner.y / corner.z)];
     let [first, rest @ ..] = outline.corners() else { return };
@@ -235,9 +235,9 @@ fn push_pieces(
         let [a, b, c] = [snap(first), snap(&pair[0]), snap(&pair[1])];
         // Counter-clockwise as seen is the negative sense on a picture whose rows run down.
         let corners = if planes.faces_eye { [a, c, b] } else { [a, b, c] };
-        let window = Window::around(&corners, screen.size);
+        let window = PixelWindow::around(&corners, screen.size);
         if doubled_area(&corners) > 0 && !window.is_empty() {
-            pieces.push(Piece { corners, window, face, pass });
+            pieces.push(FacePiece { corners, window, face, pass });
         }
     }
 }

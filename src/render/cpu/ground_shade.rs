@@ -6,16 +6,16 @@
 use glam::{Vec2, Vec3};
 
 use crate::draw::ground::{GroundMap, GroundPost};
-use crate::render::cpu::hit::Hit;
-use crate::render::cpu::texture::Footprint;
-use crate::render::ground_levels::{Level, Size, add, smaller_levels};
+use crate::render::cpu::hit::FacePoint;
+use crate::render::cpu::texture::TexelFootprint;
+use crate::render::ground_levels::{GroundLevel, PostCount, add, smaller_levels};
 
 /// A ground map with its smaller levels.
 #[derive(Debug)]
-pub struct Ground<'a> {
+pub struct GroundShader<'a> {
     map: &'a GroundMap,
     posts_per_metre: Vec2,
-    smaller: Vec<Level>,
+    smaller: Vec<GroundLevel>,
     stops: Vec<(f32, Vec3)>,
 }
 
@@ -27,7 +27,7 @@ pub struct GroundPoint {
     gradient: Vec2,
 }
 
-impl<'a> Ground<'a> {
+impl<'a> GroundShader<'a> {
     /// `map`, which has passed its check, with all smaller levels.
     pub fn new(map: &'a GroundMap) -> Self {
         let smaller = smaller_levels(map).collect();
@@ -36,9 +36,9 @@ impl<'a> Ground<'a> {
     }
 
     /// The ground beneath a hit, over the pixel's footprint.
-    pub fn at(&self, hit: &Hit, most_taps: u32) -> GroundPoint {
+    pub fn at(&self, hit: &FacePoint, most_taps: u32) -> GroundPoint {
         let [right, down] = [hit.right.truncate(), hit.down.truncate()];
-        let footprint = Footprint::new(right, down, self.posts_per_metre, most_taps);
+        let footprint = TexelFootprint::new(right, down, self.posts_per_metre, most_taps);
         let level = footprint.level.min(self.smaller.len() as f32);
         let (lower, part) = (level as usize, level - (level as usize) as f32);
         let share = 1.0 / footprint.taps as f32;
@@ -54,7 +54,7 @@ impl<'a> Ground<'a> {
     }
 
     /// The map's colour at a point: the ramp with contours on it, in linear light.
-    pub fn albedo(&self, point: &GroundPoint, hit: &Hit) -> Vec3 {
+    pub fn albedo(&self, point: &GroundPoint, hit: &FacePoint) -> Vec3 {
         let height = point.post.height_m;
         let color = self.ramp_at(height);
         let Some(contours) = &self.map.contours else { return color };
@@ -75,7 +75,7 @@ impl<'a> Ground<'a> {
     fn add_bilinear(&self, sum: &mut GroundPoint, at: Vec2, level: usize, weight: f32) {
         let (size, posts) = match level.checked_sub(1) {
             Some(index) => (self.smaller[index].size, self.smaller[index].posts.as_slice()),
-            None => (Size::of(self.map), self.map.posts.as_slice()),
+            None => (PostCount::of(self.map), self.map.posts.as_slice()),
         };
         let (columns, rows) = (size.columns as usize, size.rows as usize);
         let scale = 1.0 / (1u64 << level) as f32;
@@ -119,7 +119,7 @@ fn split(coordinate: f32, count: usize) -> (usize, f32) {
 mod tests {
     use super::*;
     use crate::draw::color::Srgba;
-    use crate::draw::ground::Ramp;
+    use crate::draw::ground::ColorRamp;
 
     fn map(columns: u32, rows: u32, height: impl Fn(f32, f32) -> f32) -> GroundMap {
         let post = |index: u32| GroundPost {
@@ -134,19 +134,19 @@ mod tests {
             columns,
             rows,
             posts: (0..columns * rows).map(post).collect(),
-            ramp: Ramp::new(stops.to_vec()).expect("rising"),
+            ramp: ColorRamp::new(stops.to_vec()).expect("rising"),
             contours: None,
         }
     }
 
-    fn hit(world: Vec3, pixel_m: f32) -> Hit {
-        Hit { world, distance_m: 1.0, right: Vec3::X * pixel_m, down: Vec3::Y * pixel_m }
+    fn hit(world: Vec3, pixel_m: f32) -> FacePoint {
+        FacePoint { world, distance_m: 1.0, right: Vec3::X * pixel_m, down: Vec3::Y * pixel_m }
     }
 
     #[test]
     fn close_up_the_reading_is_the_map_s_own() {
         let map = map(6, 5, |x, y| x * x - 3.0 * y + x * y);
-        let ground = Ground::new(&map);
+        let ground = GroundShader::new(&map);
         for at in [(-30.0, 70.0), (-27.3, 81.2), (-20.0, 90.0), (-99.0, 77.0), (99.0, 999.0)] {
             let at = Vec2::from(at);
             let point = ground.at(&hit(at.extend(0.0), 0.01), 8);
@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn every_level_keeps_an_even_slope_in_place() {
         let map = map(129, 129, |x, y| 3.0 * x - 2.0 * y);
-        let ground = Ground::new(&map);
+        let ground = GroundShader::new(&map);
         let middle = Vec2::new(-30.0 + 2.0 * 64.0, 70.0 + 5.0 * 64.0);
         for pixel_m in [0.1, 4.0, 9.0, 20.0] {
             let point = ground.at(&hit(middle.extend(0.0), pixel_m), 1);
@@ -171,14 +171,14 @@ mod tests {
     #[test]
     fn far_away_sharp_ground_reads_as_its_mean() {
         let map = map(64, 64, |x, y| if (x + y) % 2.0 == 0.0 { 0.0 } else { 10.0 });
-        let point = Ground::new(&map).at(&hit(Vec3::new(31.0, 230.0, 0.0), 100.0), 8);
+        let point = GroundShader::new(&map).at(&hit(Vec3::new(31.0, 230.0, 0.0), 100.0), 8);
         assert!((point.post.height_m - 5.0).abs() < 0.2, "{}", point.post.height_m);
     }
 
     #[test]
     fn the_ramp_is_the_list_s_ramp() {
         let map = map(2, 2, |_, _| 0.0);
-        let ground = Ground::new(&map);
+        let ground = GroundShader::new(&map);
         for height in [-5.0, 0.0, 3.3, 9.0, 14.2, 20.0, 99.0] {
             assert!((ground.ramp_at(height) - map.ramp.linear_at(height)).length() < 1e-6, "{height}");
         }

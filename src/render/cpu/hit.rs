@@ -2,12 +2,12 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::render::cpu::geometry::Face;
+use crate::render::cpu::geometry::ScreenFace;
 use crate::render::cpu::screen::Screen;
 
 /// A point of a face, with how it moves from pixel to pixel.
 #[derive(Clone, Copy, Debug)]
-pub struct Hit {
+pub struct FacePoint {
     /// In world space.
     pub world: Vec3,
     /// Metres from the eye.
@@ -26,9 +26,9 @@ pub struct Shares {
     down: Vec2,
 }
 
-impl Hit {
+impl FacePoint {
     /// The point of `face` seen at pixel position `at`.
-    pub fn of(face: &Face, screen: &Screen, at: [f32; 2]) -> Self {
+    pub fn of(face: &ScreenFace, screen: &Screen, at: [f32; 2]) -> Self {
         let plane = &face.planes.inverse_depth;
         let depth_m = 1.0 / face.inverse_depth(at);
         let ray = screen.ray_at(at);
@@ -46,7 +46,7 @@ impl Hit {
 
 impl Shares {
     /// The shares at pixel position `at`, kept inside the triangle.
-    pub fn of(face: &Face, at: [f32; 2]) -> Self {
+    pub fn of(face: &ScreenFace, at: [f32; 2]) -> Self {
         let planes = &face.planes;
         let depth = 1.0 / planes.inverse_depth.at(at);
         let (second, third) = (planes.second.at(at) * depth, planes.third.at(at) * depth);

@@ -58,14 +58,14 @@ use rayon::prelude::*;
 
 use crate::draw::color::Srgba;
 use crate::draw::list::{DrawList, FeatureId};
-use crate::draw::material::{Albedo, Normals};
+use crate::draw::material::{Albedo, NormalSource};
 use crate::draw::pixels::Pixels;
 use crate::render::cpu::band::{BandRows, draw_band};
-use crate::render::cpu::geometry::Geometry;
-use crate::render::cpu::pattern::{EIGHT, FOUR, ONE, Pattern};
+use crate::render::cpu::geometry::ScreenGeometry;
+use crate::render::cpu::pattern::{EIGHT, FOUR, ONE, SamplePattern};
 use crate::render::cpu::screen::Screen;
 use crate::render::cpu::shade::Shader;
-use crate::render::cpu::tile::Frame;
+use crate::render::cpu::tile::TileContext;
 use crate::render::cpu::visibility::TILE;
 use crate::render::picture::Picture;
 use crate::view::camera::Camera;
@@ -74,7 +74,7 @@ use crate::view::camera::Camera;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
     /// Samples a pixel. Default: eight.
-    pub samples: Samples,
+    pub samples: SampleCount,
     /// The most readings of a texture or of the ground map along a pixel seen at a grazing angle, 1..=16.
     /// Default: 8.
     pub anisotropy: u32,
@@ -82,7 +82,7 @@ pub struct Options {
 
 /// In how many places each pixel is tested for what it sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Samples {
+pub enum SampleCount {
     /// Once, at the centre: jagged, for drafts.
     One,
     /// Four times.
@@ -112,7 +112,7 @@ pub enum RenderError {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { samples: Samples::Eight, anisotropy: 8 }
+        Self { samples: SampleCount::Eight, anisotropy: 8 }
     }
 }
 
@@ -125,14 +125,15 @@ impl Default for Options {
 pub fn render(list: &DrawList, camera: &Camera, options: &Options) -> Result<Picture, RenderError> {
     check(list)?;
     let screen = Screen::of(camera);
-    let geometry =
-        Geometry::of(list, &screen).ok_or_else(|| RenderError::TooManyTriangles(list.triangle_count()))?;
+    let geometry = ScreenGeometry::of(list, &screen)
+        .ok_or_else(|| RenderError::TooManyTriangles(list.triangle_count()))?;
     let shader = Shader::new(list, &screen, options.anisotropy.clamp(1, 16));
-    let frame = Frame { screen: &screen, geometry: &geometry, shader: &shader, lighting: &list.lighting };
+    let frame =
+        TileContext { screen: &screen, geometry: &geometry, shader: &shader, lighting: &list.lighting };
     Ok(match options.samples {
-        Samples::One => draw(&frame, &ONE),
-        Samples::Four => draw(&frame, &FOUR),
-        Samples::Eight => draw(&frame, &EIGHT),
+        SampleCount::One => draw(&frame, &ONE),
+        SampleCount::Four => draw(&frame, &FOUR),
+        SampleCount::Eight => draw(&frame, &EIGHT),
     })
 }
 
@@ -140,7 +141,7 @@ fn check(list: &DrawList) -> Result<(), RenderError> {
     list.check().map_err(RenderError::List)?;
     let needs_ground = list.items.iter().position(|item| {
         let material = &list.materials[item.material.0 as usize];
-        material.albedo == Albedo::GroundMap || material.normals == Normals::Ground
+        material.albedo == Albedo::GroundMap || material.normals == NormalSource::Ground
     });
     match needs_ground {
         Some(item) if list.ground.is_none() => Err(RenderError::NoGroundMap { item }),
@@ -149,7 +150,7 @@ fn check(list: &DrawList) -> Result<(), RenderError> {
 }
 
 /// All bands of the picture.
-fn draw<const N: usize>(frame: &Frame, pattern: &Pattern<N>) -> Picture {
+fn draw<const N: usize>(frame: &TileContext, pattern: &SamplePattern<N>) -> Picture {
     let [width, height] = frame.screen.size;
     let (count, band) = (width as usize * height as usize, (width * TILE) as usize);
     let mut pixels = Pixels::filled(width, height, Srgba::WHITE);

@@ -5,7 +5,7 @@
 //! earlier stays true, if not tight; it is found anew once [`STALE`] more pieces have been drawn into the block, which
 //! costs less than a fifth of what they did.
 
-use crate::render::cpu::raster::Window;
+use crate::render::cpu::raster::PixelWindow;
 use crate::render::cpu::visibility::TILE;
 
 /// Pixels along the side of a block.
@@ -43,7 +43,7 @@ impl Occlusion {
     /// Whether all of `window`, in pixels of the tile, is nearer than the inverse depth `nearest`.
     ///
     /// `depths` are those of the tile's samples, row by row, [`TILE`] pixels a row.
-    pub fn hides<const N: usize>(&mut self, window: Window, nearest: f32, depths: &[[f32; N]]) -> bool {
+    pub fn hides<const N: usize>(&mut self, window: PixelWindow, nearest: f32, depths: &[[f32; N]]) -> bool {
         let [columns, rows] = blocks(window);
         if columns.len() * rows.len() > MOST_BLOCKS {
             return false;
@@ -60,7 +60,7 @@ impl Occlusion {
     }
 
     /// Takes note that something was drawn in `window`, in pixels of the tile.
-    pub fn note(&mut self, window: Window) {
+    pub fn note(&mut self, window: PixelWindow) {
         let [columns, rows] = blocks(window);
         for row in rows {
             for drawn in &mut self.drawn[row][columns.clone()] {
@@ -71,7 +71,7 @@ impl Occlusion {
 }
 
 /// The columns and rows of blocks that a window touches.
-fn blocks(window: Window) -> [std::ops::Range<usize>; 2] {
+fn blocks(window: PixelWindow) -> [std::ops::Range<usize>; 2] {
     [0, 1].map(|axis| (window.from[axis] / BLOCK) as usize..window.to[axis].div_ceil(BLOCK) as usize)
 }
 
@@ -92,7 +92,7 @@ fn farthest<const N: usize>(depths: &[[f32; N]], column: usize, row: usize) -> f
 mod tests {
     use super::*;
 
-    const ALL: Window = Window { from: [0; 2], to: [TILE; 2] };
+    const ALL: PixelWindow = PixelWindow { from: [0; 2], to: [TILE; 2] };
 
     fn depths(depth: f32) -> Vec<[f32; 1]> {
         vec![[depth]; (TILE * TILE) as usize]
@@ -102,7 +102,7 @@ mod tests {
     fn only_what_lies_behind_every_sample_of_its_blocks_is_hidden() {
         let mut depths = depths(0.5);
         depths[(TILE * 3 + 20) as usize] = [0.1];
-        let window = |left: u32, right: u32| Window { from: [left, 2], to: [right, 5] };
+        let window = |left: u32, right: u32| PixelWindow { from: [left, 2], to: [right, 5] };
         let mut occlusion = Occlusion::new();
         assert!(occlusion.hides(window(3, 12), 0.4, &depths));
         assert!(!occlusion.hides(window(3, 12), 0.5, &depths));
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn what_has_come_nearer_is_found_once_enough_was_drawn() {
         let mut occlusion = Occlusion::new();
-        let window = Window { from: [0; 2], to: [8; 2] };
+        let window = PixelWindow { from: [0; 2], to: [8; 2] };
         assert!(!occlusion.hides(window, 0.4, &depths(0.1)));
         (1..STALE).for_each(|_| occlusion.note(ALL));
         assert!(!occlusion.hides(window, 0.4, &depths(0.5)));

@@ -11,22 +11,22 @@ pub type Mask = u8;
 ///
 /// The first sample is the one nearest to the pixel's centre; the mean of all is the centre.
 #[derive(Debug)]
-pub struct Pattern<const N: usize> {
+pub struct SamplePattern<const N: usize> {
     /// Offsets from the pixel's centre in sixteenths of a pixel, X right and Y down.
     pub sixteenths: [[i32; 2]; N],
 }
 
 /// The centre alone.
-pub const ONE: Pattern<1> = Pattern { sixteenths: [[0, 0]] };
+pub const ONE: SamplePattern<1> = SamplePattern { sixteenths: [[0, 0]] };
 
 /// The rotated grid of four.
-pub const FOUR: Pattern<4> = Pattern { sixteenths: [[-2, -6], [6, -2], [-6, 2], [2, 6]] };
+pub const FOUR: SamplePattern<4> = SamplePattern { sixteenths: [[-2, -6], [6, -2], [-6, 2], [2, 6]] };
 
 /// Eight samples in as many rows and columns.
-pub const EIGHT: Pattern<8> =
-    Pattern { sixteenths: [[1, -3], [-1, 3], [5, 1], [-3, -5], [-5, 5], [-7, -1], [3, 7], [7, -7]] };
+pub const EIGHT: SamplePattern<8> =
+    SamplePattern { sixteenths: [[1, -3], [-1, 3], [5, 1], [-3, -5], [-5, 5], [-7, -1], [3, 7], [7, -7]] };
 
-impl<const N: usize> Pattern<N> {
+impl<const N: usize> SamplePattern<N> {
     /// Every sample.
     pub const FULL: Mask = ((1u16 << N) - 1) as Mask;
 
@@ -57,7 +57,7 @@ impl<const N: usize> Pattern<N> {
 mod tests {
     use super::*;
 
-    fn assert_sound<const N: usize>(pattern: &Pattern<N>) {
+    fn assert_sound<const N: usize>(pattern: &SamplePattern<N>) {
         let all = pattern.sixteenths;
         assert_eq!(all.iter().fold([0, 0], |sum, at| [sum[0] + at[0], sum[1] + at[1]]), [0, 0]);
         let distance = |at: &[i32; 2]| at[0] * at[0] + at[1] * at[1];
@@ -75,7 +75,10 @@ mod tests {
         assert_sound(&ONE);
         assert_sound(&FOUR);
         assert_sound(&EIGHT);
-        assert_eq!((Pattern::<1>::FULL, Pattern::<4>::FULL, Pattern::<8>::FULL), (1, 15, 255));
+        assert_eq!(
+            (SamplePattern::<1>::FULL, SamplePattern::<4>::FULL, SamplePattern::<8>::FULL),
+            (1, 15, 255)
+        );
     }
 
     #[test]

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 /// `x·right + y·down + start` at pixel position `(x, y)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Plane {
+pub struct ScreenPlane {
     /// The change over one pixel to the right.
     pub right: f64,
     /// The change over one pixel down.
@@ -13,7 +13,7 @@ pub struct Plane {
     pub start: f64,
 }
 
-impl Plane {
+impl ScreenPlane {
     /// The plane whose coefficients are the components of `vector`.
     pub fn of(vector: DVec3) -> Self {
         Self { right: vector.x, down: vector.y, start: vector.z }
@@ -32,18 +32,18 @@ impl Plane {
 
 /// What the homogeneous corners of a triangle say about every point of it on the picture.
 #[derive(Clone, Copy, Debug)]
-pub struct Planes {
+pub struct TrianglePlanes {
     /// `1 / w`, `w` being metres along the viewing direction.
-    pub inverse_depth: Plane,
+    pub inverse_depth: ScreenPlane,
     /// The share of the second corner, divided by `w`.
-    pub second: Plane,
+    pub second: ScreenPlane,
     /// The share of the third corner, divided by `w`.
-    pub third: Plane,
+    pub third: ScreenPlane,
     /// Whether the corners run counter-clockwise as seen.
     pub faces_eye: bool,
 }
 
-impl Planes {
+impl TrianglePlanes {
     /// The planes of a triangle with corners `(x·w, y·w, w)`; `None` where it is seen edge-on or a corner
     /// is not finite.
     ///
@@ -55,9 +55,9 @@ impl Planes {
         let normal = ab.cross(ac);
         let volume = a.dot(normal);
         let planes = Self {
-            inverse_depth: Plane::of(normal / volume),
-            second: Plane::of(ac.cross(a) / volume),
-            third: Plane::of(a.cross(ab) / volume),
+            inverse_depth: ScreenPlane::of(normal / volume),
+            second: ScreenPlane::of(ac.cross(a) / volume),
+            third: ScreenPlane::of(a.cross(ab) / volume),
             faces_eye: volume < 0.0,
         };
         let finite =
@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn each_corner_has_its_own_depth_and_share() {
-        let planes = Planes::of(CORNERS).expect("a sound triangle");
+        let planes = TrianglePlanes::of(CORNERS).expect("a sound triangle");
         for (index, corner) in CORNERS.into_iter().enumerate() {
             let at = [(corner.x / corner.z) as f32, (corner.y / corner.z) as f32];
             let depth = 1.0 / planes.inverse_depth.at(at);
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn shares_are_perspective_correct_halfway_along_an_edge() {
-        let planes = Planes::of(CORNERS).expect("a sound triangle");
+        let planes = TrianglePlanes::of(CORNERS).expect("a sound triangle");
         let middle = (CORNERS[1] + CORNERS[2]) / 2.0;
         let at = [(middle.x / middle.z) as f32, (middle.y / middle.z) as f32];
         let depth = 1.0 / planes.inverse_depth.at(at);
@@ -98,8 +98,8 @@ mod tests {
     #[test]
     fn triangles_without_area_or_with_infinite_corners_have_no_planes() {
         let [a, b, _] = CORNERS;
-        assert!(Planes::of([a, b, b]).is_none());
-        assert!(Planes::of([a, b, DVec3::splat(f64::INFINITY)]).is_none());
-        assert!(Planes::of([a, b, DVec3::NAN]).is_none());
+        assert!(TrianglePlanes::of([a, b, b]).is_none());
+        assert!(TrianglePlanes::of([a, b, DVec3::splat(f64::INFINITY)]).is_none());
+        assert!(TrianglePlanes::of([a, b, DVec3::NAN]).is_none());
     }
 }

@@ -7,7 +7,7 @@
 //!
 //! Blocks of 8×8 pixels are passed over or taken whole where the edge functions' extremes allow it.
 
-use crate::render::cpu::pattern::{Mask, Pattern};
+use crate::render::cpu::pattern::{Mask, SamplePattern};
 
 /// Corners are snapped to `2^-SUBPIXEL_BITS` pixels.
 ///
@@ -22,18 +22,18 @@ const BLOCK: u32 = 8;
 const ONE_PIXEL: i64 = 1 << SUBPIXEL_BITS;
 
 /// A corner in units of `2^-SUBPIXEL_BITS` pixels from the picture's upper left corner.
-pub type Corner = [i32; 2];
+pub type SubpixelPoint = [i32; 2];
 
 /// The pixels `from[0]..to[0]` × `from[1]..to[1]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Window {
+pub struct PixelWindow {
     /// First column and row.
     pub from: [u32; 2],
     /// Past the last column and row.
     pub to: [u32; 2],
 }
 
-impl Window {
+impl PixelWindow {
     /// The pixels in both.
     pub fn and(self, other: Self) -> Self {
         let from = [self.from[0].max(other.from[0]), self.from[1].max(other.from[1])];
@@ -46,7 +46,7 @@ impl Window {
     }
 
     /// The pixels of a picture of `size` that the triangle of `corners` may touch.
-    pub fn around(corners: &[Corner; 3], size: [u32; 2]) -> Self {
+    pub fn around(corners: &[SubpixelPoint; 3], size: [u32; 2]) -> Self {
         let bound = |axis: usize| {
             let [a, b, c] = corners.map(|corner| corner[axis]);
             let pixel = |position: i32| (position >> SUBPIXEL_BITS).clamp(0, size[axis] as i32) as u32;
@@ -66,14 +66,15 @@ pub fn snapped(pixel: f64) -> i32 {
 }
 
 /// Twice the triangle's area in square sub-pixels; positive where the corners run clockwise as seen.
-pub fn doubled_area([a, b, c]: &[Corner; 3]) -> i64 {
-    let side = |from: &Corner, to: &Corner, axis: usize| i64::from(to[axis]) - i64::from(from[axis]);
+pub fn doubled_area([a, b, c]: &[SubpixelPoint; 3]) -> i64 {
+    let side =
+        |from: &SubpixelPoint, to: &SubpixelPoint, axis: usize| i64::from(to[axis]) - i64::from(from[axis]);
     side(a, b, 0) * side(a, c, 1) - side(a, c, 0) * side(a, b, 1)
 }
 
 /// One edge: not negative at the samples on its inner side.
 #[derive(Clone, Copy)]
-struct Edge<const N: usize> {
+struct EdgeFunction<const N: usize> {
     /// At the centre of the window's first pixel.
     origin: i64,
     /// The change over one pixel to the right and one down.
@@ -85,8 +86,8 @@ struct Edge<const N: usize> {
     most: i64,
 }
 
-impl<const N: usize> Edge<N> {
-    fn new(from: Corner, to: Corner, first: [u32; 2], pattern: &Pattern<N>) -> Self {
+impl<const N: usize> EdgeFunction<N> {
+    fn new(from: SubpixelPoint, to: SubpixelPoint, first: [u32; 2], pattern: &SamplePattern<N>) -> Self {
         let along = [0, 1].map(|axis| i64::from(to[axis]) - i64::from(from[axis]));
         let value = |offset: [i64; 2]| along[0] * offset[1] - along[1] * offset[0];
         let center = first.map(|pixel| i64::from(pixel) * ONE_PIXEL + ONE_PIXEL / 2);
@@ -119,16 +120,16 @@ impl<const N: usize> Edge<N> {
 /// The corners run clockwise as seen, that is, with a positive [`doubled_area`]. Each pixel is visited at
 /// most once, and never with an empty mask; blocks come row by row.
 pub fn cover<const N: usize>(
-    corners: &[Corner; 3],
-    pattern: &Pattern<N>,
-    window: Window,
+    corners: &[SubpixelPoint; 3],
+    pattern: &SamplePattern<N>,
+    window: PixelWindow,
     mut visit: impl FnMut(u32, u32, Mask),
 ) {
     if window.is_empty() {
         return;
     }
     let [a, b, c] = *corners;
-    let edges = [(a, b), (b, c), (c, a)].map(|(from, to)| Edge::new(from, to, window.from, pattern));
+    let edges = [(a, b), (b, c), (c, a)].map(|(from, to)| EdgeFunction::new(from, to, window.from, pattern));
     let [width, height] = [0, 1].map(|axis| window.to[axis] - window.from[axis]);
     for top in (0..height).step_by(BLOCK as usize) {
         let rows = [top, (top + BLOCK).min(height)];
@@ -141,7 +142,7 @@ pub fn cover<const N: usize>(
             let whole = extremes.iter().all(|&(least, _)| least >= 0);
             for row in rows[0]..rows[1] {
                 for column in columns[0]..columns[1] {
-                    let mask = if whole { Pattern::<N>::FULL } else { covered(&edges, column, row) };
+                    let mask = if whole { SamplePattern::<N>::FULL } else { covered(&edges, column, row) };
                     if mask != 0 {
                         visit(window.from[0] + column, window.from[1] + row, mask);
                     }
@@ -152,8 +153,8 @@ pub fn cover<const N: usize>(
 }
 
 /// The samples of one pixel on the inner side of all edges.
-fn covered<const N: usize>(edges: &[Edge<N>; 3], column: u32, row: u32) -> Mask {
-    let mut mask = Pattern::<N>::FULL;
+fn covered<const N: usize>(edges: &[EdgeFunction<N>; 3], column: u32, row: u32) -> Mask {
+    let mut mask = SamplePattern::<N>::FULL;
     for edge in edges {
         let center = edge.at(column, row);
         if center + edge.most < 0 {
@@ -174,7 +175,7 @@ mod tests {
     use crate::render::cpu::pattern::{EIGHT, FOUR, ONE};
 
     const SIDE: u32 = 40;
-    const ALL: Window = Window { from: [0, 0], to: [SIDE, SIDE] };
+    const ALL: PixelWindow = PixelWindow { from: [0, 0], to: [SIDE, SIDE] };
 
     /// A small generator of even numbers (Steele and others, "Fast Splittable Pseudorandom Number
     /// Generators", 2014).
@@ -186,11 +187,11 @@ mod tests {
     }
 
     /// How often each sample is covered by the triangles, either way round.
-    fn counts<const N: usize>(triangles: &[[Corner; 3]], pattern: &Pattern<N>) -> Vec<[u32; N]> {
+    fn counts<const N: usize>(triangles: &[[SubpixelPoint; 3]], pattern: &SamplePattern<N>) -> Vec<[u32; N]> {
         let mut counts = vec![[0; N]; (SIDE * SIDE) as usize];
         for &[a, b, c] in triangles {
             let corners = if doubled_area(&[a, b, c]) > 0 { [a, b, c] } else { [a, c, b] };
-            cover(&corners, pattern, Window::around(&corners, [SIDE; 2]).and(ALL), |x, y, mask| {
+            cover(&corners, pattern, PixelWindow::around(&corners, [SIDE; 2]).and(ALL), |x, y, mask| {
                 for (sample, count) in counts[(y * SIDE + x) as usize].iter_mut().enumerate() {
                     *count += u32::from(mask >> sample & 1);
                 }
@@ -200,11 +201,11 @@ mod tests {
     }
 
     /// A mesh over the whole square whose inner corners are shaken but never fold a triangle.
-    fn shaken_mesh(seed: u64) -> Vec<[Corner; 3]> {
+    fn shaken_mesh(seed: u64) -> Vec<[SubpixelPoint; 3]> {
         const CELLS: i32 = 7;
         let mut state = seed;
         let side = SIDE as i32 * ONE_PIXEL as i32;
-        let corners: Vec<Corner> = (0..=CELLS)
+        let corners: Vec<SubpixelPoint> = (0..=CELLS)
             .flat_map(|row| (0..=CELLS).map(move |column| [column, row]))
             .map(|at| {
                 at.map(|step| {
@@ -255,7 +256,7 @@ mod tests {
         let mut state = 7;
         let mut error_sum = 0.0;
         for _ in 0..60 {
-            let corners: [Corner; 3] = std::array::from_fn(|_| {
+            let corners: [SubpixelPoint; 3] = std::array::from_fn(|_| {
                 std::array::from_fn(|_| (random(&mut state) % (u64::from(SIDE) << SUBPIXEL_BITS)) as i32)
             });
             let covered: u32 = counts(&[corners], &EIGHT).iter().flatten().sum();

@@ -4,13 +4,13 @@ use glam::{Mat3, Vec3};
 use rayon::prelude::*;
 
 use crate::draw::list::{DrawItem, DrawList, DrawVertex};
-use crate::draw::material::{Albedo, Alpha, Material, Normals};
+use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use crate::render::cpu::cutout::Cutout;
-use crate::render::cpu::geometry::Face;
-use crate::render::cpu::ground_shade::{Ground, GroundPoint};
-use crate::render::cpu::hit::{Hit, Shares};
+use crate::render::cpu::geometry::ScreenFace;
+use crate::render::cpu::ground_shade::{GroundPoint, GroundShader};
+use crate::render::cpu::hit::{FacePoint, Shares};
 use crate::render::cpu::screen::Screen;
-use crate::render::cpu::texture::{Footprint, Texel, Texture, Weighting};
+use crate::render::cpu::texture::{Texel, TexelFootprint, Texture, Weighting};
 
 /// A draw list with everything that is made once a frame for shading it.
 #[derive(Debug)]
@@ -18,12 +18,12 @@ pub struct Shader<'a> {
     list: &'a DrawList,
     screen: &'a Screen,
     textures: Vec<Texture<'a>>,
-    ground: Option<Ground<'a>>,
+    ground: Option<GroundShader<'a>>,
     most_taps: u32,
 }
 
 /// A face's vertices and their shares at a point.
-type Corners<'a> = ([&'a DrawVertex; 3], Shares);
+type FaceCorners<'a> = ([&'a DrawVertex; 3], Shares);
 
 /// What a surface sends to the eye.
 #[derive(Clone, Copy, Debug)]
@@ -41,27 +41,27 @@ impl<'a> Shader<'a> {
             list,
             screen,
             textures: list.textures.par_iter().map(Texture::new).collect(),
-            ground: list.ground.as_deref().map(Ground::new),
+            ground: list.ground.as_deref().map(GroundShader::new),
             most_taps,
         }
     }
 
     /// The item a face belongs to.
-    pub fn item(&self, face: &Face) -> &'a DrawItem {
+    pub fn item(&self, face: &ScreenFace) -> &'a DrawItem {
         &self.list.items[face.item as usize]
     }
 
     /// Whether a face looks the same as any other at its place: coloured and lit by the ground map alone.
-    pub fn is_mapped(&self, face: &Face) -> bool {
+    pub fn is_mapped(&self, face: &ScreenFace) -> bool {
         let material = self.material(self.item(face));
-        material.albedo == Albedo::GroundMap && material.normals == Normals::Ground
+        material.albedo == Albedo::GroundMap && material.normals == NormalSource::Ground
     }
 
     /// What `face` shows at pixel position `at`.
-    pub fn shade(&self, face: &Face, at: [f32; 2]) -> Shaded {
+    pub fn shade(&self, face: &ScreenFace, at: [f32; 2]) -> Shaded {
         let item = self.item(face);
         let material = self.material(item);
-        let hit = Hit::of(face, self.screen, at);
+        let hit = FacePoint::of(face, self.screen, at);
         let ground = self.ground_beneath(material, &hit);
         let corners = || (self.corners(item, face), Shares::of(face, at));
         let (albedo, alpha) = match (material.albedo, &ground) {
@@ -69,7 +69,7 @@ impl<'a> Shader<'a> {
             _ => self.surface_color(material, corners()),
         };
         let (normal, [sun, sky]) = match (material.normals, &ground) {
-            (Normals::Ground, Some((_, point))) => (point.normal(), point.visibility()),
+            (NormalSource::Ground, Some((_, point))) => (point.normal(), point.visibility()),
             _ => (vertex_normal(item, face, corners()), [1.0, 1.0]),
         };
         let lighting = &self.list.lighting;
@@ -82,13 +82,13 @@ impl<'a> Shader<'a> {
     }
 
     /// A masked face with its mask; one without a mask has no hole.
-    pub fn cutout<'b>(&'b self, face: &'b Face) -> Cutout<'b> {
+    pub fn cutout<'b>(&'b self, face: &'b ScreenFace) -> Cutout<'b> {
         let item = self.item(face);
         let material = self.material(item);
         let corners = self.corners(item, face);
         Cutout {
             face,
-            cutoff: if let Alpha::Mask(cutoff) = material.alpha { cutoff } else { 0.0 },
+            cutoff: if let AlphaMode::Mask(cutoff) = material.alpha { cutoff } else { 0.0 },
             alphas: corners.map(|corner| material.base_color.alpha() * corner.color.alpha()),
             texture: material
                 .texture
@@ -101,23 +101,27 @@ impl<'a> Shader<'a> {
         &self.list.materials[item.material.0 as usize]
     }
 
-    fn corners(&self, item: &DrawItem, face: &Face) -> [&'a DrawVertex; 3] {
+    fn corners(&self, item: &DrawItem, face: &ScreenFace) -> [&'a DrawVertex; 3] {
         let mesh = &self.list.meshes[item.mesh.0 as usize];
         mesh.triangles[face.triangle as usize].map(|id| &mesh.vertices[id.index()])
     }
 
-    fn ground_beneath(&self, material: &Material, hit: &Hit) -> Option<(&Ground<'a>, GroundPoint)> {
-        let wanted = material.albedo == Albedo::GroundMap || material.normals == Normals::Ground;
+    fn ground_beneath(
+        &self,
+        material: &Material,
+        hit: &FacePoint,
+    ) -> Option<(&GroundShader<'a>, GroundPoint)> {
+        let wanted = material.albedo == Albedo::GroundMap || material.normals == NormalSource::Ground;
         self.ground.as_ref().filter(|_| wanted).map(|ground| (ground, ground.at(hit, self.most_taps)))
     }
 
     /// Base colour × vertex colour × texture, in linear light, and alpha.
-    fn surface_color(&self, material: &Material, (corners, shares): Corners) -> (Vec3, f32) {
+    fn surface_color(&self, material: &Material, (corners, shares): FaceCorners) -> (Vec3, f32) {
         let texel = self.texel(material, &corners, &shares);
         let vertex = shares.blend(corners.map(|corner| corner.color.linear()));
         let alpha = match material.alpha {
-            Alpha::Blend => alpha(material, &corners, &shares, &texel),
-            Alpha::Opaque | Alpha::Mask(_) => 1.0,
+            AlphaMode::Blend => alpha(material, &corners, &shares, &texel),
+            AlphaMode::Opaque | AlphaMode::Mask(_) => 1.0,
         };
         (material.base_color.linear() * vertex * texel.color, alpha)
     }
@@ -126,8 +130,9 @@ impl<'a> Shader<'a> {
         let Some(id) = material.texture else { return Texel { color: Vec3::ONE, alpha: 1.0 } };
         let texture = &self.textures[id.0 as usize];
         let [uv, right, down] = shares.blend_uv(corners.map(|corner| corner.uv));
-        let footprint = Footprint::new(right, down, texture.size(), self.most_taps);
-        let weighting = if material.alpha == Alpha::Opaque { Weighting::Even } else { Weighting::ByAlpha };
+        let footprint = TexelFootprint::new(right, down, texture.size(), self.most_taps);
+        let weighting =
+            if material.alpha == AlphaMode::Opaque { Weighting::Even } else { Weighting::ByAlpha };
         texture.sample(uv, &footprint, weighting)
     }
 }
@@ -139,7 +144,7 @@ fn alpha(material: &Material, corners: &[&DrawVertex; 3], shares: &Shares, texel
 }
 
 /// The unit normal in world space on the side that is seen; the triangle's own where vertices have none.
-fn vertex_normal(item: &DrawItem, face: &Face, (corners, shares): Corners) -> Vec3 {
+fn vertex_normal(item: &DrawItem, face: &ScreenFace, (corners, shares): FaceCorners) -> Vec3 {
     let blended = shares.blend(corners.map(|corner| Vec3::from(corner.normal)));
     let to_world = Mat3::from_mat4(item.world_from_mesh);
     let normal = (to_world * blended).try_normalize().unwrap_or_else(|| {

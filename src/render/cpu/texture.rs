@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 
 use crate::draw::color::{Srgba, linear_from_srgb};
 use crate::draw::pixels::Pixels;
-use crate::render::cpu::alpha::{Alpha, neighbours};
+use crate::render::cpu::alpha::{AlphaMask, neighbours};
 use crate::render::mip_levels::smaller_levels;
 
 /// A texture with its mip levels.
@@ -16,7 +16,7 @@ use crate::render::mip_levels::smaller_levels;
 pub struct Texture<'a> {
     base: &'a Pixels,
     smaller: Vec<Pixels>,
-    alpha: Alpha,
+    alpha: AlphaMask,
     linear: [f32; 256],
 }
 
@@ -40,7 +40,7 @@ pub struct Texel {
 
 /// How many texels a pixel spans, and where from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Footprint {
+pub struct TexelFootprint {
     /// The longer of the pixel's two sides, in whatever the map's unit is.
     pub axis: Vec2,
     /// Readings along the axis, at least 1.
@@ -49,7 +49,7 @@ pub struct Footprint {
     pub level: f32,
 }
 
-impl Footprint {
+impl TexelFootprint {
     /// The footprint of a pixel whose sides span `right` and `down`, measured in cells of `scale` per unit.
     ///
     /// At most `most_taps` readings are taken; where that is too few, the level rises instead. What is not finite
@@ -80,7 +80,7 @@ impl<'a> Texture<'a> {
     /// `base` with all smaller levels; an empty picture reads as opaque white.
     pub fn new(base: &'a Pixels) -> Self {
         let smaller = smaller_levels(base);
-        let alpha = Alpha::of(base, &smaller);
+        let alpha = AlphaMask::of(base, &smaller);
         Self { base, smaller, alpha, linear: std::array::from_fn(|channel| linear_from_srgb(channel as u8)) }
     }
 
@@ -90,14 +90,14 @@ impl<'a> Texture<'a> {
     }
 
     /// Its alpha by itself, for masks.
-    pub fn alpha(&self) -> &Alpha {
+    pub fn alpha(&self) -> &AlphaMask {
         &self.alpha
     }
 
     /// The colour over a footprint around `uv`, trilinear.
     ///
     /// (0, 0) is the upper left corner, (1, 1) the lower right; the picture repeats in both directions.
-    pub fn sample(&self, uv: Vec2, footprint: &Footprint, weighting: Weighting) -> Texel {
+    pub fn sample(&self, uv: Vec2, footprint: &TexelFootprint, weighting: Weighting) -> Texel {
         if self.base.data().is_empty() {
             return Texel { color: Vec3::ONE, alpha: 1.0 };
         }
@@ -163,8 +163,8 @@ impl Sum {
 mod tests {
     use super::*;
 
-    fn sharp() -> Footprint {
-        Footprint { axis: Vec2::ZERO, taps: 1, level: 0.0 }
+    fn sharp() -> TexelFootprint {
+        TexelFootprint { axis: Vec2::ZERO, taps: 1, level: 0.0 }
     }
 
     fn checker(side: u32) -> Pixels {
@@ -187,7 +187,7 @@ mod tests {
         for side in [8, 12, 16] {
             let pixels = checker(side);
             let texture = Texture::new(&pixels);
-            let blurred = Footprint { level: 99.0, ..sharp() };
+            let blurred = TexelFootprint { level: 99.0, ..sharp() };
             let texel = texture.sample(Vec2::new(0.3, 0.1), &blurred, Weighting::Even);
             assert!((texel.color.x - 0.5).abs() < 0.02, "{side}: {}", texel.color.x);
         }
@@ -197,7 +197,7 @@ mod tests {
     fn odd_sides_keep_their_mean_light_too() {
         let pixels = Pixels::from_fn(7, 5, |x, _| Srgba::opaque(if x < 2 { 255 } else { 0 }, 0, 0));
         let texture = Texture::new(&pixels);
-        let texel = texture.sample(Vec2::ZERO, &Footprint { level: 99.0, ..sharp() }, Weighting::Even);
+        let texel = texture.sample(Vec2::ZERO, &TexelFootprint { level: 99.0, ..sharp() }, Weighting::Even);
         assert!((texel.color.x - 2.0 / 7.0).abs() < 0.01, "{}", texel.color.x);
     }
 
@@ -211,9 +211,9 @@ mod tests {
 
     #[test]
     fn grazing_footprints_take_several_sharp_readings() {
-        let long = Footprint::new(Vec2::new(8.0, 0.0), Vec2::new(0.0, 1.0), Vec2::ONE, 8);
+        let long = TexelFootprint::new(Vec2::new(8.0, 0.0), Vec2::new(0.0, 1.0), Vec2::ONE, 8);
         assert_eq!((long.taps, long.level), (8, 0.0));
-        let round = Footprint::new(Vec2::new(8.0, 0.0), Vec2::new(0.0, 8.0), Vec2::ONE, 8);
+        let round = TexelFootprint::new(Vec2::new(8.0, 0.0), Vec2::new(0.0, 8.0), Vec2::ONE, 8);
         assert_eq!((round.taps, round.level), (1, 3.0));
     }
 
@@ -222,7 +222,7 @@ mod tests {
         let (pixels, empty) = (checker(4), Pixels::filled(0, 3, Srgba::WHITE));
         let texture = Texture::new(&pixels);
         for coordinate in [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX] {
-            let footprint = Footprint::new(Vec2::splat(coordinate), Vec2::ONE, texture.size(), 8);
+            let footprint = TexelFootprint::new(Vec2::splat(coordinate), Vec2::ONE, texture.size(), 8);
             texture.sample(Vec2::splat(coordinate), &footprint, Weighting::Even);
         }
         let white = Texture::new(&empty).sample(Vec2::ZERO, &sharp(), Weighting::Even);

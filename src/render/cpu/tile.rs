@@ -4,11 +4,11 @@ use glam::Vec3;
 
 use crate::draw::color::Srgba;
 use crate::draw::lighting::Lighting;
-use crate::draw::list::{FeatureId, Layer};
+use crate::draw::list::{DepthLayer, FeatureId};
 use crate::render::cpu::blend::Blend;
-use crate::render::cpu::geometry::{Face, FaceId, Geometry, Pass, Piece};
-use crate::render::cpu::pattern::{Mask, Pattern};
-use crate::render::cpu::raster::Window;
+use crate::render::cpu::geometry::{FaceId, FacePiece, RasterPass, ScreenFace, ScreenGeometry};
+use crate::render::cpu::pattern::{Mask, SamplePattern};
+use crate::render::cpu::raster::PixelWindow;
 use crate::render::cpu::screen::Screen;
 use crate::render::cpu::shade::Shader;
 use crate::render::cpu::visibility::{Visibility, samples_of};
@@ -19,11 +19,11 @@ const SAME_SLOPE: f32 = 0.01;
 
 /// Everything the tiles of a frame share.
 #[derive(Debug)]
-pub struct Frame<'a> {
+pub struct TileContext<'a> {
     /// Where things are on the picture.
     pub screen: &'a Screen,
     /// What may be seen.
-    pub geometry: &'a Geometry,
+    pub geometry: &'a ScreenGeometry,
     /// How it looks.
     pub shader: &'a Shader<'a>,
     /// The sky.
@@ -43,12 +43,12 @@ pub struct PixelOut {
 
 /// Memory that one tile after another uses.
 #[derive(Debug)]
-pub struct Scratch<const N: usize> {
+pub struct TileScratch<const N: usize> {
     visibility: Visibility<N>,
     blend: Blend,
 }
 
-impl<const N: usize> Scratch<N> {
+impl<const N: usize> TileScratch<N> {
     /// Room for one tile.
     pub fn new() -> Self {
         Self { visibility: Visibility::new(), blend: Blend::new() }
@@ -57,27 +57,27 @@ impl<const N: usize> Scratch<N> {
 
 /// The pixels of `window`, row by row, from all `pieces` of its band in the list's order.
 pub fn draw_tile<const N: usize>(
-    frame: &Frame,
-    pattern: &Pattern<N>,
-    pieces: &[Piece],
-    window: Window,
-    scratch: &mut Scratch<N>,
+    frame: &TileContext,
+    pattern: &SamplePattern<N>,
+    pieces: &[FacePiece],
+    window: PixelWindow,
+    scratch: &mut TileScratch<N>,
 ) -> Vec<PixelOut> {
-    let Scratch { visibility, blend } = scratch;
+    let TileScratch { visibility, blend } = scratch;
     visibility.clear(window, frame.screen.far);
     blend.clear(window);
-    let here: Vec<&Piece> = pieces.iter().filter(|piece| !piece.window.and(window).is_empty()).collect();
+    let here: Vec<&FacePiece> = pieces.iter().filter(|piece| !piece.window.and(window).is_empty()).collect();
     let mut solids = Vec::new();
-    for &piece in here.iter().filter(|piece| piece.pass != Pass::Blend) {
+    for &piece in here.iter().filter(|piece| piece.pass != RasterPass::Blend) {
         let face = frame.geometry.face(piece.face);
-        if frame.shader.item(face).layer == Layer::Solid {
+        if frame.shader.item(face).layer == DepthLayer::Solid {
             solids.push((piece, face));
         } else {
             draw_piece(frame, pattern, (piece, face), visibility);
         }
     }
     draw_solids(frame, pattern, solids, visibility);
-    for piece in here.into_iter().filter(|piece| piece.pass == Pass::Blend) {
+    for piece in here.into_iter().filter(|piece| piece.pass == RasterPass::Blend) {
         blend.draw(piece, (frame.geometry, frame.shader), visibility, pattern);
     }
     let rows = window.from[1]..window.to[1];
@@ -89,9 +89,9 @@ pub fn draw_tile<const N: usize>(
 /// Solids, the nearest first: of those behind, what is hidden as a whole is passed over, and of the rest masks need
 /// be read only where nothing is in front. The picture does not depend on their order.
 fn draw_solids<const N: usize>(
-    frame: &Frame,
-    pattern: &Pattern<N>,
-    mut solids: Vec<(&Piece, &Face)>,
+    frame: &TileContext,
+    pattern: &SamplePattern<N>,
+    mut solids: Vec<(&FacePiece, &ScreenFace)>,
     visibility: &mut Visibility<N>,
 ) {
     solids.sort_by(|(_, a), (_, b)| b.range[1].total_cmp(&a.range[1]));
@@ -103,26 +103,26 @@ fn draw_solids<const N: usize>(
 }
 
 fn draw_piece<const N: usize>(
-    frame: &Frame,
-    pattern: &Pattern<N>,
-    (piece, face): (&Piece, &Face),
+    frame: &TileContext,
+    pattern: &SamplePattern<N>,
+    (piece, face): (&FacePiece, &ScreenFace),
     visibility: &mut Visibility<N>,
 ) {
     match piece.pass {
-        Pass::Opaque if face.is_draped() => visibility.draw_draped(piece, face, pattern),
-        Pass::Opaque => visibility.draw_nearer(piece, face, pattern),
-        Pass::Mask => {
+        RasterPass::Opaque if face.is_draped() => visibility.draw_draped(piece, face, pattern),
+        RasterPass::Opaque => visibility.draw_nearer(piece, face, pattern),
+        RasterPass::Mask => {
             let cutout = frame.shader.cutout(face);
             visibility.draw_masked(piece, face, pattern, |at, samples| cutout.solid(at, samples, pattern));
         }
-        Pass::Blend => {}
+        RasterPass::Blend => {}
     }
 }
 
 /// One pixel: each face it sees shaded once, averaged over the samples.
 fn resolve<const N: usize>(
-    frame: &Frame,
-    pattern: &Pattern<N>,
+    frame: &TileContext,
+    pattern: &SamplePattern<N>,
     visibility: &Visibility<N>,
     blend: &Blend,
     (x, y): (u32, u32),
@@ -130,7 +130,7 @@ fn resolve<const N: usize>(
     let faces = visibility.faces(x, y);
     let center = [x as f32 + 0.5, y as f32 + 0.5];
     let mut colors = [Vec3::ZERO; N];
-    let mut left = Pattern::<N>::FULL;
+    let mut left = SamplePattern::<N>::FULL;
     while left != 0 {
         let id = faces[left.trailing_zeros() as usize];
         let mask = left & alike(frame, visibility, (x, y), left.trailing_zeros() as usize);
@@ -159,14 +159,14 @@ fn resolve<const N: usize>(
 ///
 /// Ground triangles are often no larger than a few pixels; this spares about a sixth of a frame's time.
 fn alike<const N: usize>(
-    frame: &Frame,
+    frame: &TileContext,
     visibility: &Visibility<N>,
     (x, y): (u32, u32),
     first: usize,
 ) -> Mask {
     let (faces, depths) = (visibility.faces(x, y), visibility.depths(x, y));
     let mut mask = samples_of(faces, faces[first]);
-    if mask == Pattern::<N>::FULL || faces[first] == FaceId::NONE {
+    if mask == SamplePattern::<N>::FULL || faces[first] == FaceId::NONE {
         return mask;
     }
     let face = frame.geometry.face(faces[first]);
@@ -182,7 +182,7 @@ fn alike<const N: usize>(
 }
 
 /// The depth and feature of a face at a pixel's centre.
-fn seen_at(frame: &Frame, id: FaceId, center: [f32; 2]) -> (f32, FeatureId) {
+fn seen_at(frame: &TileContext, id: FaceId, center: [f32; 2]) -> (f32, FeatureId) {
     if id == FaceId::NONE {
         return (f32::INFINITY, FeatureId::NONE);
     }

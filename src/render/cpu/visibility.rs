@@ -5,10 +5,10 @@
 //! a draped face meets is ground or a drape that it lies over. Solids come last, in any order: the nearest wins, and of
 //! two at the same depth the first of the list.
 
-use crate::render::cpu::geometry::{Face, FaceId, Piece};
+use crate::render::cpu::geometry::{FaceId, FacePiece, ScreenFace};
 use crate::render::cpu::occlusion::Occlusion;
-use crate::render::cpu::pattern::{Mask, Pattern};
-use crate::render::cpu::raster::{Window, cover};
+use crate::render::cpu::pattern::{Mask, SamplePattern};
+use crate::render::cpu::raster::{PixelWindow, cover};
 
 /// Pixels along the side of a tile: 8 bytes a sample keep a tile of 8 samples within 256 KiB, the second
 /// level cache of common processors.
@@ -17,7 +17,7 @@ pub const TILE: u32 = 64;
 /// The faces seen in one tile and their inverse depths.
 #[derive(Debug)]
 pub struct Visibility<const N: usize> {
-    window: Window,
+    window: PixelWindow,
     faces: Vec<[FaceId; N]>,
     depths: Vec<[f32; N]>,
     occlusion: Occlusion,
@@ -28,7 +28,7 @@ impl<const N: usize> Visibility<N> {
     pub fn new() -> Self {
         let pixels = (TILE * TILE) as usize;
         Self {
-            window: Window { from: [0; 2], to: [0; 2] },
+            window: PixelWindow { from: [0; 2], to: [0; 2] },
             faces: vec![[FaceId::NONE; N]; pixels],
             depths: vec![[0.0; N]; pixels],
             occlusion: Occlusion::new(),
@@ -37,7 +37,7 @@ impl<const N: usize> Visibility<N> {
 
     /// Empties the tile and moves it to `window`, of at most [`TILE`] pixels a side; what lies beyond
     /// `farthest_m` will not be seen.
-    pub fn clear(&mut self, window: Window, farthest_m: f64) {
+    pub fn clear(&mut self, window: PixelWindow, farthest_m: f64) {
         self.window = window;
         self.occlusion.clear();
         self.faces.fill([FaceId::NONE; N]);
@@ -61,11 +61,11 @@ impl<const N: usize> Visibility<N> {
     /// Whether a solid's piece may be seen in front of what is there; if so, takes note that it is drawn.
     ///
     /// To be asked of solids only, after everything else is drawn: it notes nothing else.
-    pub fn may_show(&mut self, piece: &Piece, face: &Face) -> bool {
+    pub fn may_show(&mut self, piece: &FacePiece, face: &ScreenFace) -> bool {
         let here = piece.window.and(self.window);
         let [left, top] = self.window.from;
         let within = |[x, y]: [u32; 2]| [x - left, y - top];
-        let window = Window { from: within(here.from), to: within(here.to) };
+        let window = PixelWindow { from: within(here.from), to: within(here.to) };
         if self.occlusion.hides(window, face.range[1], &self.depths) {
             return false;
         }
@@ -75,13 +75,13 @@ impl<const N: usize> Visibility<N> {
 
     /// Draws a piece of a solid or of the ground where it is nearer than what is there. Solids may come in any order:
     /// of two at the same depth the first of the list is kept.
-    pub fn draw_nearer(&mut self, piece: &Piece, face: &Face, pattern: &Pattern<N>) {
+    pub fn draw_nearer(&mut self, piece: &FacePiece, face: &ScreenFace, pattern: &SamplePattern<N>) {
         let id = piece.face;
         self.draw(piece, face, pattern, |new, there, other| new > there || (new == there && id.0 < other.0));
     }
 
     /// Draws a piece of a draped face where it is behind what is there by no more than the face's reach.
-    pub fn draw_draped(&mut self, piece: &Piece, face: &Face, pattern: &Pattern<N>) {
+    pub fn draw_draped(&mut self, piece: &FacePiece, face: &ScreenFace, pattern: &SamplePattern<N>) {
         self.draw(piece, face, pattern, |new, there, _| new * face.reach >= there);
     }
 
@@ -90,9 +90,9 @@ impl<const N: usize> Visibility<N> {
     /// The nearer of both depths is kept, so that drapes laid over each other do not sink step by step.
     fn draw(
         &mut self,
-        piece: &Piece,
-        face: &Face,
-        pattern: &Pattern<N>,
+        piece: &FacePiece,
+        face: &ScreenFace,
+        pattern: &SamplePattern<N>,
         is_seen: impl Fn(f32, f32, FaceId) -> bool,
     ) {
         let slope = SampleDepths::of(face, pattern);
@@ -114,9 +114,9 @@ impl<const N: usize> Visibility<N> {
     /// Solids may come in any order: of two at the same depth the first of the list is kept.
     pub fn draw_masked(
         &mut self,
-        piece: &Piece,
-        face: &Face,
-        pattern: &Pattern<N>,
+        piece: &FacePiece,
+        face: &ScreenFace,
+        pattern: &SamplePattern<N>,
         solid: impl Fn((u32, u32), Mask) -> Mask,
     ) {
         let slope = SampleDepths::of(face, pattern);
@@ -155,14 +155,14 @@ pub struct SampleDepths<const N: usize> {
 
 impl<const N: usize> SampleDepths<N> {
     /// The differences for one face.
-    pub fn of(face: &Face, pattern: &Pattern<N>) -> Self {
+    pub fn of(face: &ScreenFace, pattern: &SamplePattern<N>) -> Self {
         let plane = &face.planes.inverse_depth;
         let change = |[x, y]: [i32; 2]| (plane.right * f64::from(x) + plane.down * f64::from(y)) / 16.0;
         Self { offsets: pattern.sixteenths.map(|offset| change(offset) as f32) }
     }
 
     /// The inverse depths at the samples of a pixel, kept to what the face's corners span.
-    pub fn at(&self, face: &Face, x: u32, y: u32) -> [f32; N] {
+    pub fn at(&self, face: &ScreenFace, x: u32, y: u32) -> [f32; N] {
         let center = face.planes.inverse_depth.at([x as f32 + 0.5, y as f32 + 0.5]) as f32;
         let [least, most] = face.range;
         self.offsets.map(|offset| (center + offset).max(least).min(most))

@@ -22,7 +22,7 @@ use rayon::prelude::*;
 use crate::draw::ground::{GroundMap, GroundPost};
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
-use crate::render::ground_levels::{Size, smaller_levels};
+use crate::render::ground_levels::{PostCount, smaller_levels};
 
 /// More levels than the largest texture has; the shader's array is as long.
 pub(in crate::render::gpu) const MOST_LEVELS: usize = 24;
@@ -32,9 +32,9 @@ const PORTION_BYTES: usize = 16 << 20;
 
 /// A level and its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::render::gpu) struct Placed {
+pub(in crate::render::gpu) struct PlacedLevel {
     /// How many posts.
-    pub size: Size,
+    pub size: PostCount,
     /// Its first column in the texture that holds it.
     pub first: u32,
 }
@@ -49,12 +49,12 @@ pub(in crate::render::gpu) struct GroundTextures {
 }
 
 /// The levels of a map of `size`, down to two posts a side.
-pub(in crate::render::gpu) fn levels(size: Size) -> Vec<Placed> {
-    let next = |last: &Placed| {
+pub(in crate::render::gpu) fn levels(size: PostCount) -> Vec<PlacedLevel> {
+    let next = |last: &PlacedLevel| {
         let first = if last.size == size { 0 } else { last.first + last.size.columns };
-        last.size.halved().map(|size| Placed { size, first })
+        last.size.halved().map(|size| PlacedLevel { size, first })
     };
-    successors(Some(Placed { size, first: 0 }), next).take(MOST_LEVELS).collect()
+    successors(Some(PlacedLevel { size, first: 0 }), next).take(MOST_LEVELS).collect()
 }
 
 impl GroundTextures {
@@ -63,15 +63,17 @@ impl GroundTextures {
     /// # Errors
     /// [`GpuError::GroundSize`].
     pub fn upload(gpu: &Gpu, map: Option<&GroundMap>) -> Result<Self, GpuError> {
-        let levels = map.map_or_else(Vec::new, |map| levels(Size::of(map)));
-        let one = Size { columns: 1, rows: 1 };
+        let levels = map.map_or_else(Vec::new, |map| levels(PostCount::of(map)));
+        let one = PostCount { columns: 1, rows: 1 };
         let posts_size = levels.first().map_or(one, |level| level.size);
         let coarse_size = match (levels.get(1), levels.last()) {
-            (Some(largest), Some(last)) => Size { columns: last.first + last.size.columns, ..largest.size },
+            (Some(largest), Some(last)) => {
+                PostCount { columns: last.first + last.size.columns, ..largest.size }
+            }
             _ => one,
         };
         let limit = gpu.limits.max_texture_dimension_2d;
-        let Size { columns, rows } = posts_size;
+        let PostCount { columns, rows } = posts_size;
         if columns.max(rows).max(coarse_size.columns) > limit {
             return Err(GpuError::GroundSize { columns, rows, limit, adapter: gpu.name().into() });
         }
@@ -82,7 +84,7 @@ impl GroundTextures {
         Ok(textures)
     }
 
-    fn fill(&self, gpu: &Gpu, map: &GroundMap, levels: &[Placed]) {
+    fn fill(&self, gpu: &Gpu, map: &GroundMap, levels: &[PlacedLevel]) {
         write(gpu, &self.posts, &levels[0], &map.posts);
         for (place, level) in levels[1..].iter().zip(smaller_levels(map)) {
             write(gpu, &self.coarse, place, &level.posts);
@@ -90,7 +92,7 @@ impl GroundTextures {
     }
 }
 
-fn texture(gpu: &Gpu, Size { columns: width, rows: height }: Size) -> wgpu::Texture {
+fn texture(gpu: &Gpu, PostCount { columns: width, rows: height }: PostCount) -> wgpu::Texture {
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("ground"),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
@@ -103,7 +105,7 @@ fn texture(gpu: &Gpu, Size { columns: width, rows: height }: Size) -> wgpu::Text
     })
 }
 
-fn write(gpu: &Gpu, texture: &wgpu::Texture, place: &Placed, posts: &[GroundPost]) {
+fn write(gpu: &Gpu, texture: &wgpu::Texture, place: &PlacedLevel, posts: &[GroundPost]) {
     let stride = place.size.columns as usize;
     let row_bytes = stride * size_of::<[u32; 4]>();
     let portion = (PORTION_BYTES / row_bytes).max(1);
@@ -140,7 +142,7 @@ mod tests {
 
     #[test]
     fn levels_shrink_to_two_posts_a_side_and_lie_side_by_side() {
-        let levels = |columns, rows| levels(Size { columns, rows });
+        let levels = |columns, rows| levels(PostCount { columns, rows });
         let placed = levels(9, 4);
         let sizes: Vec<_> =
             placed.iter().map(|level| (level.size.columns, level.size.rows, level.first)).collect();

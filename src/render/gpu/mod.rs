@@ -11,7 +11,7 @@
 //! pictures differ from machine to machine by a little. Where the very bytes matter, use the CPU.
 
 use crate::draw::list::DrawList;
-use crate::draw::material::{Albedo, Normals};
+use crate::draw::material::{Albedo, NormalSource};
 use crate::render::gpu::adapter::{Api, Gpu};
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::passes::Recording;
@@ -76,7 +76,7 @@ fn check(list: &DrawList) -> Result<(), GpuError> {
     list.check().map_err(GpuError::List)?;
     let needs_ground = list.items.iter().position(|item| {
         let material = &list.materials[item.material.0 as usize];
-        material.albedo == Albedo::GroundMap || material.normals == Normals::Ground
+        material.albedo == Albedo::GroundMap || material.normals == NormalSource::Ground
     });
     match needs_ground {
         Some(item) if list.ground.is_none() => Err(GpuError::List(format!(

@@ -5,8 +5,8 @@
 
 use crate::draw::list::DrawList;
 use crate::render::gpu::adapter::Gpu;
-use crate::render::gpu::pipelines::{Pass, Pipelines};
-use crate::render::gpu::plan::{Plan, Step};
+use crate::render::gpu::pipelines::{GpuPass, Pipelines};
+use crate::render::gpu::plan::{DrawCall, Plan};
 use crate::render::gpu::readback::Targets;
 use crate::render::gpu::uniforms::Instance;
 use crate::render::gpu::upload::Resources;
@@ -53,7 +53,7 @@ impl Recording<'_> {
         pass.set_bind_group(0, &self.resources.frame, &[]);
         pass.set_pipeline(&self.pipelines.sky);
         pass.draw(0..3, 0..1);
-        self.draw(&mut pass, Pass::Color, &self.plan.color);
+        self.draw(&mut pass, GpuPass::Color, &self.plan.color);
     }
 
     fn features(&self, encoder: &mut wgpu::CommandEncoder) {
@@ -75,10 +75,10 @@ impl Recording<'_> {
             ..Default::default()
         });
         pass.set_bind_group(0, &self.resources.frame, &[]);
-        self.draw(&mut pass, Pass::Feature, &self.plan.features);
+        self.draw(&mut pass, GpuPass::Feature, &self.plan.features);
     }
 
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, which: Pass, steps: &[Step]) {
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, which: GpuPass, steps: &[DrawCall]) {
         let mut bound = None;
         for step in steps {
             let item = &self.list.items[step.items.start];

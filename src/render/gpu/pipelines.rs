@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::draw::list::DrawVertex;
 use crate::render::gpu::adapter::{Api, Gpu};
-use crate::render::gpu::plan::{Plan, Rule, Step, Way};
-use crate::render::gpu::uniforms::{Frame, Instance, SurfaceConstants};
+use crate::render::gpu::plan::{DepthRule, DrawCall, PipelineKey, Plan};
+use crate::render::gpu::uniforms::{FrameUniforms, Instance, SurfaceConstants};
 
 /// What colours are drawn to and read back as.
 pub(in crate::render::gpu) const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -37,7 +37,7 @@ pub(in crate::render::gpu) struct Layouts {
 
 /// The two passes of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::render::gpu) enum Pass {
+pub(in crate::render::gpu) enum GpuPass {
     /// Colours, several samples a pixel.
     Color,
     /// Features and depths at pixels' centres.
@@ -49,7 +49,7 @@ pub(in crate::render::gpu) enum Pass {
 pub(in crate::render::gpu) struct Pipelines {
     /// Draws the sky behind everything.
     pub sky: wgpu::RenderPipeline,
-    by_way: BTreeMap<(Pass, Way), wgpu::RenderPipeline>,
+    by_way: BTreeMap<(GpuPass, PipelineKey), wgpu::RenderPipeline>,
 }
 
 impl Layouts {
@@ -82,7 +82,7 @@ impl Layouts {
         };
         Self {
             frame: group(&[
-                (both, uniform(size_of::<Frame>(), false)),
+                (both, uniform(size_of::<FrameUniforms>(), false)),
                 (fragment, texture(wgpu::TextureSampleType::Uint)),
                 (fragment, texture(wgpu::TextureSampleType::Uint)),
                 (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
@@ -113,8 +113,8 @@ impl Pipelines {
             bind_group_layouts: &[Some(&layouts.frame)],
             immediate_size: 0,
         });
-        let color = plan.color.iter().map(|step| (Pass::Color, step.way));
-        let features = plan.features.iter().map(|step| (Pass::Feature, step.way));
+        let color = plan.color.iter().map(|step| (GpuPass::Color, step.way));
+        let features = plan.features.iter().map(|step| (GpuPass::Feature, step.way));
         let mut by_way = BTreeMap::new();
         for (pass, way) in color.chain(features) {
             by_way.entry((pass, way)).or_insert_with(|| pipeline(gpu, &layout, &shader, pass, way));
@@ -123,7 +123,7 @@ impl Pipelines {
     }
 
     /// The pipeline for a step of the plan these were made for.
-    pub fn get(&self, pass: Pass, step: &Step) -> Option<&wgpu::RenderPipeline> {
+    pub fn get(&self, pass: GpuPass, step: &DrawCall) -> Option<&wgpu::RenderPipeline> {
         self.by_way.get(&(pass, step.way))
     }
 }
@@ -132,18 +132,18 @@ fn pipeline(
     gpu: &Gpu,
     layout: &wgpu::PipelineLayout,
     shader: &wgpu::ShaderModule,
-    pass: Pass,
-    way: Way,
+    pass: GpuPass,
+    way: PipelineKey,
 ) -> wgpu::RenderPipeline {
     let (nearer, nearer_px) =
         if is_tested_nearer(way.rule) { (DRAPE_NEARER, f64::from(DRAPE_NEARER_PX)) } else { (1.0, 0.0) };
     let vertex_constants = [("nearer", nearer)];
     let fragment_constants = [("nearer", nearer), ("nearer_px", nearer_px)];
     let entry_point = match (pass, gpu.api()) {
-        (Pass::Feature, _) => "feature",
-        (Pass::Color, Api::Gl) => "color_and_depth",
-        (Pass::Color, Api::Vulkan) if way.masked && gpu.samples == 4 => "masked_color",
-        (Pass::Color, Api::Vulkan) => "color",
+        (GpuPass::Feature, _) => "feature",
+        (GpuPass::Color, Api::Gl) => "color_and_depth",
+        (GpuPass::Color, Api::Vulkan) if way.masked && gpu.samples == 4 => "masked_color",
+        (GpuPass::Color, Api::Vulkan) => "color",
     };
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(entry_point),
@@ -197,17 +197,17 @@ fn options<'a>(constants: &'a [(&'a str, f64)]) -> wgpu::PipelineCompilationOpti
     wgpu::PipelineCompilationOptions { constants, ..Default::default() }
 }
 
-fn is_tested_nearer(rule: Rule) -> bool {
-    matches!(rule, Rule::Drape | Rule::DrapeBlend)
+fn is_tested_nearer(rule: DepthRule) -> bool {
+    matches!(rule, DepthRule::Drape | DepthRule::DrapeBlend)
 }
 
 /// Depth is reversed: greater is nearer.
-fn depth_state(rule: Rule) -> wgpu::DepthStencilState {
+fn depth_state(rule: DepthRule) -> wgpu::DepthStencilState {
     let (writes, compare) = match rule {
-        Rule::Solid => (true, wgpu::CompareFunction::Greater),
-        Rule::Blend => (false, wgpu::CompareFunction::Greater),
-        Rule::Drape | Rule::DrapeBlend => (false, wgpu::CompareFunction::GreaterEqual),
-        Rule::DrapeDepth => (true, wgpu::CompareFunction::GreaterEqual),
+        DepthRule::Solid => (true, wgpu::CompareFunction::Greater),
+        DepthRule::Blend => (false, wgpu::CompareFunction::Greater),
+        DepthRule::Drape | DepthRule::DrapeBlend => (false, wgpu::CompareFunction::GreaterEqual),
+        DepthRule::DrapeDepth => (true, wgpu::CompareFunction::GreaterEqual),
     };
     wgpu::DepthStencilState {
         format: DEPTH,
@@ -222,24 +222,24 @@ fn depth_state(rule: Rule) -> wgpu::DepthStencilState {
     }
 }
 
-fn target(pass: Pass, rule: Rule) -> [Option<wgpu::ColorTargetState>; 1] {
+fn target(pass: GpuPass, rule: DepthRule) -> [Option<wgpu::ColorTargetState>; 1] {
     let write_mask = match rule {
-        Rule::DrapeDepth => wgpu::ColorWrites::empty(),
+        DepthRule::DrapeDepth => wgpu::ColorWrites::empty(),
         _ => wgpu::ColorWrites::ALL,
     };
-    let blends = matches!(rule, Rule::Blend | Rule::DrapeBlend) && pass == Pass::Color;
+    let blends = matches!(rule, DepthRule::Blend | DepthRule::DrapeBlend) && pass == GpuPass::Color;
     let blend = blends.then_some(wgpu::BlendState::ALPHA_BLENDING);
     let format = match pass {
-        Pass::Color => COLOR,
-        Pass::Feature => FEATURE,
+        GpuPass::Color => COLOR,
+        GpuPass::Feature => FEATURE,
     };
     [Some(wgpu::ColorTargetState { format, blend, write_mask })]
 }
 
-fn multisample(gpu: &Gpu, pass: Pass) -> wgpu::MultisampleState {
+fn multisample(gpu: &Gpu, pass: GpuPass) -> wgpu::MultisampleState {
     let count = match pass {
-        Pass::Color => gpu.samples,
-        Pass::Feature => 1,
+        GpuPass::Color => gpu.samples,
+        GpuPass::Feature => 1,
     };
     wgpu::MultisampleState { count, ..Default::default() }
 }
@@ -258,14 +258,14 @@ fn sky(gpu: &Gpu, layout: &wgpu::PipelineLayout, shader: &wgpu::ShaderModule) ->
         depth_stencil: Some(wgpu::DepthStencilState {
             depth_write_enabled: Some(false),
             depth_compare: Some(wgpu::CompareFunction::Always),
-            ..depth_state(Rule::Blend)
+            ..depth_state(DepthRule::Blend)
         }),
-        multisample: multisample(gpu, Pass::Color),
+        multisample: multisample(gpu, GpuPass::Color),
         fragment: Some(wgpu::FragmentState {
             module: shader,
             entry_point: Some("sky_color"),
             compilation_options: Default::default(),
-            targets: &target(Pass::Color, Rule::Solid),
+            targets: &target(GpuPass::Color, DepthRule::Solid),
         }),
         multiview_mask: None,
         cache: None,
@@ -301,7 +301,7 @@ mod tests {
                 other => panic!("{name} is {other:?}"),
             }
         };
-        assert_eq!(size_of_struct("Frame"), size_of::<Frame>());
+        assert_eq!(size_of_struct("Frame"), size_of::<FrameUniforms>());
         assert_eq!(size_of_struct("Surface"), size_of::<SurfaceConstants>());
     }
 }

@@ -13,13 +13,13 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use crate::draw::list::{DrawItem, DrawList, Layer};
-use crate::draw::material::Alpha;
+use crate::draw::list::{DepthLayer, DrawItem, DrawList};
+use crate::draw::material::AlphaMode;
 use crate::view::camera::Camera;
 
 /// The rule by which an item meets the depth buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::render::gpu) enum Rule {
+pub(in crate::render::gpu) enum DepthRule {
     /// Drawn where nearer, leaving its depth.
     Solid,
     /// Drawn where nearer, mixed with what is there, leaving no depth.
@@ -34,18 +34,18 @@ pub(in crate::render::gpu) enum Rule {
 
 /// One draw call.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(in crate::render::gpu) struct Step {
+pub(in crate::render::gpu) struct DrawCall {
     /// Indices into the draw list's items: part of a run, so that they differ in place and feature only.
     pub items: Range<usize>,
     /// What it needs of a pipeline.
-    pub way: Way,
+    pub way: PipelineKey,
 }
 
 /// All that tells one pipeline of a pass from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::render::gpu) struct Way {
+pub(in crate::render::gpu) struct PipelineKey {
     /// How it meets the depth buffer.
-    pub rule: Rule,
+    pub rule: DepthRule,
     /// Whether backs are drawn too.
     pub two_sided: bool,
     /// Whether alpha cuts holes.
@@ -56,9 +56,9 @@ pub(in crate::render::gpu) struct Way {
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(in crate::render::gpu) struct Plan {
     /// What makes the colours.
-    pub color: Vec<Step>,
+    pub color: Vec<DrawCall>,
     /// What makes the feature and depth buffers: the same items, blended ones like solid ones.
-    pub features: Vec<Step>,
+    pub features: Vec<DrawCall>,
 }
 
 impl Plan {
@@ -69,38 +69,38 @@ impl Plan {
         for run in list.runs().filter(|run| !list.items[run.start].triangles.is_empty()) {
             let item = &list.items[run.start];
             let material = &list.materials[item.material.0 as usize];
-            let masked = matches!(material.alpha, Alpha::Mask(_));
-            let way = |rule| Way { rule, two_sided: material.two_sided, masked };
-            let is_blend = material.alpha == Alpha::Blend;
+            let masked = matches!(material.alpha, AlphaMode::Mask(_));
+            let way = |rule| PipelineKey { rule, two_sided: material.two_sided, masked };
+            let is_blend = material.alpha == AlphaMode::Blend;
             match (item.layer, is_blend) {
-                (Layer::Draped(_), _) => {
+                (DepthLayer::Draped(_), _) => {
                     for index in run {
-                        let step = |rule| Step { items: index..index + 1, way: way(rule) };
-                        plan.features.extend([step(Rule::Drape), step(Rule::DrapeDepth)]);
+                        let step = |rule| DrawCall { items: index..index + 1, way: way(rule) };
+                        plan.features.extend([step(DepthRule::Drape), step(DepthRule::DrapeDepth)]);
                         match is_blend {
-                            true => plan.color.push(step(Rule::DrapeBlend)),
-                            false => plan.color.extend([step(Rule::Drape), step(Rule::DrapeDepth)]),
+                            true => plan.color.push(step(DepthRule::DrapeBlend)),
+                            false => plan.color.extend([step(DepthRule::Drape), step(DepthRule::DrapeDepth)]),
                         }
                     }
                 }
                 (_, false) => {
-                    let step = Step { items: run, way: way(Rule::Solid) };
+                    let step = DrawCall { items: run, way: way(DepthRule::Solid) };
                     plan.color.push(step.clone());
                     plan.features.push(step);
                 }
                 (_, true) => {
                     let middle = middle_of(list, item);
                     blended.extend(run.clone().map(|index| {
-                        let step = Step { items: index..index + 1, way: way(Rule::Blend) };
+                        let step = DrawCall { items: index..index + 1, way: way(DepthRule::Blend) };
                         (depth_of(middle, &list.items[index], camera), step)
                     }));
-                    plan.features.push(Step { items: run, way: way(Rule::Solid) });
+                    plan.features.push(DrawCall { items: run, way: way(DepthRule::Solid) });
                 }
             }
         }
         // Stable, so that equally far items keep the list's order.
         blended.sort_by(|a, b| b.0.total_cmp(&a.0));
-        plan.color.extend(blended.into_iter().map(|(_, step): (f32, Step)| step));
+        plan.color.extend(blended.into_iter().map(|(_, step): (f32, DrawCall)| step));
         plan
     }
 }
@@ -132,7 +132,7 @@ mod tests {
     use crate::draw::material::Material;
     use crate::mesh::sink::{MeshSink, VertexId};
 
-    fn list(items: &[(Layer, Alpha, f32)]) -> DrawList {
+    fn list(items: &[(DepthLayer, AlphaMode, f32)]) -> DrawList {
         let mut list = DrawList::default();
         let mut mesh = DrawMesh::default();
         for position in [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]] {
@@ -149,52 +149,63 @@ mod tests {
         list
     }
 
-    fn color_order(list: &DrawList) -> Vec<(usize, Rule)> {
+    fn color_order(list: &DrawList) -> Vec<(usize, DepthRule)> {
         let camera = Camera::new(Vec3::ZERO, Vec3::Y, 1.0, (8, 8), (1.0, 100.0)).expect("sound");
         Plan::of(list, &camera).color.iter().map(|step| (step.items.start, step.way.rule)).collect()
     }
 
     #[test]
     fn blended_solids_come_last_and_farthest_first() {
-        use Alpha::{Blend, Opaque};
+        use AlphaMode::{Blend, Opaque};
         let list = list(&[
-            (Layer::Ground, Opaque, 9.0),
-            (Layer::Solid, Blend, 5.0),
-            (Layer::Solid, Opaque, 4.0),
-            (Layer::Solid, Blend, 50.0),
-            (Layer::Solid, Blend, 7.0),
+            (DepthLayer::Ground, Opaque, 9.0),
+            (DepthLayer::Solid, Blend, 5.0),
+            (DepthLayer::Solid, Opaque, 4.0),
+            (DepthLayer::Solid, Blend, 50.0),
+            (DepthLayer::Solid, Blend, 7.0),
         ]);
-        let expected =
-            [(0, Rule::Solid), (2, Rule::Solid), (3, Rule::Blend), (4, Rule::Blend), (1, Rule::Blend)];
+        let expected = [
+            (0, DepthRule::Solid),
+            (2, DepthRule::Solid),
+            (3, DepthRule::Blend),
+            (4, DepthRule::Blend),
+            (1, DepthRule::Blend),
+        ];
         assert_eq!(color_order(&list), expected);
     }
 
     #[test]
     fn a_blended_drape_keeps_its_place_below_a_higher_one() {
         let list = list(&[
-            (Layer::Ground, Alpha::Opaque, 9.0),
-            (Layer::Draped(0), Alpha::Blend, 9.0),
-            (Layer::Draped(1), Alpha::Opaque, 9.0),
+            (DepthLayer::Ground, AlphaMode::Opaque, 9.0),
+            (DepthLayer::Draped(0), AlphaMode::Blend, 9.0),
+            (DepthLayer::Draped(1), AlphaMode::Opaque, 9.0),
         ]);
-        let expected = [(0, Rule::Solid), (1, Rule::DrapeBlend), (2, Rule::Drape), (2, Rule::DrapeDepth)];
+        let expected = [
+            (0, DepthRule::Solid),
+            (1, DepthRule::DrapeBlend),
+            (2, DepthRule::Drape),
+            (2, DepthRule::DrapeDepth),
+        ];
         assert_eq!(color_order(&list), expected);
     }
 
     #[test]
     fn what_is_alike_is_drawn_at_once_unless_it_is_blended() {
-        let mut list = list(&[(Layer::Solid, Alpha::Opaque, 5.0), (Layer::Solid, Alpha::Blend, 5.0)]);
+        let mut list =
+            list(&[(DepthLayer::Solid, AlphaMode::Opaque, 5.0), (DepthLayer::Solid, AlphaMode::Blend, 5.0)]);
         let [solid, glass] = [list.items[0].clone(), list.items[1].clone()];
         list.items = vec![solid.clone(), solid.clone(), solid, glass.clone(), glass];
         let camera = Camera::new(Vec3::ZERO, Vec3::Y, 1.0, (8, 8), (1.0, 100.0)).expect("sound");
         let plan = Plan::of(&list, &camera);
-        let ranges = |steps: &[Step]| steps.iter().map(|step| step.items.clone()).collect::<Vec<_>>();
+        let ranges = |steps: &[DrawCall]| steps.iter().map(|step| step.items.clone()).collect::<Vec<_>>();
         assert_eq!(ranges(&plan.color), [0..3, 3..4, 4..5]);
         assert_eq!(ranges(&plan.features), [0..3, 3..5]);
     }
 
     #[test]
     fn items_without_triangles_are_not_drawn() {
-        let mut list = list(&[(Layer::Solid, Alpha::Opaque, 5.0)]);
+        let mut list = list(&[(DepthLayer::Solid, AlphaMode::Opaque, 5.0)]);
         list.items[0].triangles = 1..1;
         assert_eq!(color_order(&list), []);
     }

@@ -4,9 +4,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use crate::draw::list::{DrawItem, DrawList};
-use crate::draw::material::{Albedo, Alpha, Material, Normals};
+use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use crate::render::gpu::ground::{MOST_LEVELS, levels};
-use crate::render::ground_levels::Size;
+use crate::render::ground_levels::PostCount;
 use crate::view::camera::Camera;
 
 /// How many ramp stops lie in one row of their texture; any number below the smallest limit will do.
@@ -24,7 +24,7 @@ const BLEND: u32 = 8;
 /// What is the same for a whole picture: `Frame` in the shader.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub(in crate::render::gpu) struct Frame {
+pub(in crate::render::gpu) struct FrameUniforms {
     eye: [f32; 4],
     right: [f32; 4],
     up: [f32; 4],
@@ -64,7 +64,7 @@ fn with(vector: Vec3, w: f32) -> [f32; 4] {
     vector.extend(w).to_array()
 }
 
-impl Frame {
+impl FrameUniforms {
     /// The constants of `list` seen by `camera`.
     pub fn of(list: &DrawList, camera: &Camera) -> Self {
         let tan = camera.tan_half_fov();
@@ -91,7 +91,7 @@ impl Frame {
     fn of_ground(list: &DrawList) -> Self {
         let mut frame = Self::zeroed();
         let Some(map) = &list.ground else { return frame };
-        let levels = levels(Size::of(map));
+        let levels = levels(PostCount::of(map));
         for (place, level) in frame.ground_levels.iter_mut().zip(&levels) {
             *place = [level.size.columns, level.size.rows, level.first, 0];
         }
@@ -117,19 +117,19 @@ impl SurfaceConstants {
     /// The constants of `material`.
     pub fn of(material: &Material) -> Self {
         let mut flags = 0;
-        if material.normals == Normals::Ground {
+        if material.normals == NormalSource::Ground {
             flags |= FROM_GROUND_NORMAL;
         }
         if material.albedo == Albedo::GroundMap {
             flags |= FROM_GROUND_ALBEDO;
         }
         let cutoff = match material.alpha {
-            Alpha::Opaque => 0.0,
-            Alpha::Mask(cutoff) => {
+            AlphaMode::Opaque => 0.0,
+            AlphaMode::Mask(cutoff) => {
                 flags |= MASK;
                 cutoff
             }
-            Alpha::Blend => {
+            AlphaMode::Blend => {
                 flags |= BLEND;
                 SEEN_ALPHA
             }

@@ -7,14 +7,14 @@ use wgpu::util::align_to;
 use crate::draw::color::Srgba;
 use crate::draw::ground::GroundMap;
 use crate::draw::list::{DrawList, DrawMesh};
-use crate::draw::material::{Alpha, Material};
+use crate::draw::material::{AlphaMode, Material};
 use crate::draw::pixels::Pixels;
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::ground::GroundTextures;
 use crate::render::gpu::mips::{levels, premultiplied};
 use crate::render::gpu::pipelines::Layouts;
-use crate::render::gpu::uniforms::{Frame, Instance, RAMP_COLUMNS, SurfaceConstants};
+use crate::render::gpu::uniforms::{FrameUniforms, Instance, RAMP_COLUMNS, SurfaceConstants};
 use crate::view::camera::Camera;
 
 /// A mesh on the device.
@@ -81,8 +81,8 @@ impl Resources {
     pub fn texture_of(&self, material: &Material) -> &wgpu::BindGroup {
         let forms = material.texture.map(|id| &self.textures[id.0 as usize]);
         let form = forms.and_then(|forms| match material.alpha {
-            Alpha::Opaque => forms.straight.as_ref(),
-            Alpha::Mask(_) | Alpha::Blend => forms.premultiplied.as_ref(),
+            AlphaMode::Opaque => forms.straight.as_ref(),
+            AlphaMode::Mask(_) | AlphaMode::Blend => forms.premultiplied.as_ref(),
         });
         form.unwrap_or(&self.white)
     }
@@ -149,7 +149,7 @@ fn frame(
     list: &DrawList,
     camera: &Camera,
 ) -> Result<wgpu::BindGroup, GpuError> {
-    let constants = Frame::of(list, camera);
+    let constants = FrameUniforms::of(list, camera);
     let what = || "the camera".into();
     let buffer = buffer(gpu, what, wgpu::BufferUsages::UNIFORM, bytes_of(&constants))?;
     let ground = GroundTextures::upload(gpu, list.ground.as_deref())?;
@@ -214,7 +214,7 @@ fn textures(gpu: &Gpu, layouts: &Layouts, sampler: &wgpu::Sampler, list: &DrawLi
     for item in list.items.iter().filter(|item| !item.triangles.is_empty()) {
         let material = &list.materials[item.material.0 as usize];
         if let Some(id) = material.texture {
-            wanted[id.0 as usize][usize::from(material.alpha != Alpha::Opaque)] = true;
+            wanted[id.0 as usize][usize::from(material.alpha != AlphaMode::Opaque)] = true;
         }
     }
     let limit = gpu.limits.max_texture_dimension_2d;

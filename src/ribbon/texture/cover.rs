@@ -228,7 +228,7 @@ fn hashed(column: u32, row: u32, seed: u32) -> f32 {
 mod tests {
     use super::*;
     use crate::description::words::Word;
-    use crate::ribbon::texture::{Surface, texture};
+    use crate::ribbon::texture::{RibbonSurface, texture};
 
     fn covers() -> impl Iterator<Item = Cover> {
         Cover::ALL.iter().map(|(_, cover)| *cover)
@@ -237,7 +237,7 @@ mod tests {
     #[test]
     fn every_cover_lets_the_ground_through() {
         for cover in covers() {
-            let pixels = texture(Surface::Cover(cover));
+            let pixels = texture(RibbonSurface::Cover(cover));
             let alphas = pixels.data().iter().map(|texel| texel.0[3]);
             assert!(alphas.clone().all(|alpha| alpha > 0 && alpha < 255), "{cover:?}");
         }
@@ -248,7 +248,7 @@ mod tests {
         let differs =
             |a: Srgba, b: Srgba| -> f64 { a.0.iter().zip(b.0).map(|(&a, b)| f64::from(a.abs_diff(b))).sum() };
         for cover in covers() {
-            let pixels = texture(Surface::Cover(cover));
+            let pixels = texture(RibbonSurface::Cover(cover));
             let (width, height) = (pixels.width(), pixels.height());
             let rows = |upper: u32, lower: u32| -> f64 {
                 (0..width).map(|x| differs(pixels.at(x, upper), pixels.at(x, lower))).sum::<f64>()
@@ -268,7 +268,7 @@ mod tests {
     #[test]
     fn no_two_covers_look_alike_from_afar() {
         let mean = |cover: Cover| -> [f64; 3] {
-            let pixels = texture(Surface::Cover(cover));
+            let pixels = texture(RibbonSurface::Cover(cover));
             let count = pixels.data().len() as f64;
             std::array::from_fn(|channel| {
                 pixels.data().iter().map(|texel| f64::from(texel.0[channel])).sum::<f64>() / count

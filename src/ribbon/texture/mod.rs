@@ -8,11 +8,11 @@ mod water;
 use crate::description::words::Cover;
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
-use crate::ribbon::texture::road::{Center, Lines};
+use crate::ribbon::texture::road::{Center, RoadMarkings};
 
 /// What a ribbon is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Surface {
+pub enum RibbonSurface {
     /// A paved road: dark carriageway, light edge lines and a dashed centre line.
     Asphalt,
     /// A paved road with a solid centre line.
@@ -51,7 +51,7 @@ pub enum Surface {
     Border,
 }
 
-impl Surface {
+impl RibbonSurface {
     /// Whether it joins roads or rivers rather than being one.
     pub fn is_junction(self) -> bool {
         matches!(self, Self::AsphaltJunction | Self::GravelJunction | Self::TrackJunction | Self::Confluence)
@@ -66,29 +66,33 @@ impl Surface {
 const SIZE: u32 = 128;
 
 /// The texture of `surface`: U across (0 left edge, 1 right edge), V along.
-pub fn texture(surface: Surface) -> Pixels {
+pub fn texture(surface: RibbonSurface) -> Pixels {
     Pixels::from_fn(SIZE, SIZE, |x, y| {
         let (u, v) = ((x as f32 + 0.5) / SIZE as f32, (y as f32 + 0.5) / SIZE as f32);
         let grain = grain(x, y);
         match surface {
-            Surface::Asphalt => road::asphalt(u, Lines::Edges { center: Some(Center::Dashed(v)) }, grain),
-            Surface::AsphaltSolid => road::asphalt(u, Lines::Edges { center: Some(Center::Solid) }, grain),
-            Surface::AsphaltEdges => road::asphalt(u, Lines::Edges { center: None }, grain),
-            Surface::AsphaltPlain => road::asphalt(u, Lines::None, grain),
-            Surface::Shoulder => shade(road::SHOULDER, (grain - 0.5) * 34.0),
-            Surface::Gravel => road::gravel(u, grain),
-            Surface::Track => road::track(u, grain),
-            Surface::AsphaltJunction => shade(road::ASPHALT, (grain - 0.5) * 14.0),
-            Surface::GravelJunction => shade(road::GRAVEL, (grain - 0.5) * 34.0),
-            Surface::TrackJunction => shade(road::WORN, (grain - 0.5) * 30.0),
-            Surface::River => water::river(u, grain),
-            Surface::Trench => boundary::trench(u, grain),
-            Surface::Boundary => boundary::boundary(u, grain),
-            Surface::Confluence => water::stream(grain),
-            Surface::Bank => water::bank(u, grain),
-            Surface::Cover(cover) => cover::texel(cover, u, v, grain),
-            Surface::Border => Srgba::WHITE,
-            Surface::Lake => shade([74, 124, 158], (grain - 0.5) * 5.0),
+            RibbonSurface::Asphalt => {
+                road::asphalt(u, RoadMarkings::Edges { center: Some(Center::Dashed(v)) }, grain)
+            }
+            RibbonSurface::AsphaltSolid => {
+                road::asphalt(u, RoadMarkings::Edges { center: Some(Center::Solid) }, grain)
+            }
+            RibbonSurface::AsphaltEdges => road::asphalt(u, RoadMarkings::Edges { center: None }, grain),
+            RibbonSurface::AsphaltPlain => road::asphalt(u, RoadMarkings::None, grain),
+            RibbonSurface::Shoulder => shade(road::SHOULDER, (grain - 0.5) * 34.0),
+            RibbonSurface::Gravel => road::gravel(u, grain),
+            RibbonSurface::Track => road::track(u, grain),
+            RibbonSurface::AsphaltJunction => shade(road::ASPHALT, (grain - 0.5) * 14.0),
+            RibbonSurface::GravelJunction => shade(road::GRAVEL, (grain - 0.5) * 34.0),
+            RibbonSurface::TrackJunction => shade(road::WORN, (grain - 0.5) * 30.0),
+            RibbonSurface::River => water::river(u, grain),
+            RibbonSurface::Trench => boundary::trench(u, grain),
+            RibbonSurface::Boundary => boundary::boundary(u, grain),
+            RibbonSurface::Confluence => water::stream(grain),
+            RibbonSurface::Bank => water::bank(u, grain),
+            RibbonSurface::Cover(cover) => cover::texel(cover, u, v, grain),
+            RibbonSurface::Border => Srgba::WHITE,
+            RibbonSurface::Lake => shade([74, 124, 158], (grain - 0.5) * 5.0),
         }
     })
 }
@@ -98,11 +102,12 @@ pub fn texture(surface: Surface) -> Pixels {
 /// A line of a road is a twentieth of the road's width, and a dash with its gap two and a half widths: what is painted
 /// keeps its proportion to the road, as on a sand table, where roads are drawn wider than they are to be seen at all. A
 /// line of the 15 cm that is painted on real roads would be lost in any picture of more than a street.
-pub fn texture_length_m(surface: Surface, width_m: f64) -> f64 {
+pub fn texture_length_m(surface: RibbonSurface, width_m: f64) -> f64 {
     match surface {
-        Surface::Asphalt | Surface::AsphaltSolid | Surface::AsphaltEdges | Surface::AsphaltPlain => {
-            width_m * 2.5
-        }
+        RibbonSurface::Asphalt
+        | RibbonSurface::AsphaltSolid
+        | RibbonSurface::AsphaltEdges
+        | RibbonSurface::AsphaltPlain => width_m * 2.5,
         _ => width_m * 2.0,
     }
 }
@@ -129,11 +134,11 @@ mod tests {
         let light = |surface, x: u32, y: u32| texture(surface).at(x, y).0[0] > 230;
         let (edge, center, in_dash, in_gap) = (SIZE / 12, SIZE / 2, 4, SIZE - 4);
         for (surface, expected) in [
-            (Surface::Asphalt, [true, true, false]),
-            (Surface::AsphaltSolid, [true, true, true]),
-            (Surface::AsphaltEdges, [true, false, false]),
-            (Surface::AsphaltPlain, [false; 3]),
-            (Surface::AsphaltJunction, [false; 3]),
+            (RibbonSurface::Asphalt, [true, true, false]),
+            (RibbonSurface::AsphaltSolid, [true, true, true]),
+            (RibbonSurface::AsphaltEdges, [true, false, false]),
+            (RibbonSurface::AsphaltPlain, [false; 3]),
+            (RibbonSurface::AsphaltJunction, [false; 3]),
         ] {
             let found =
                 [(edge, in_gap), (center, in_dash), (center, in_gap)].map(|(x, y)| light(surface, x, y));
@@ -143,9 +148,9 @@ mod tests {
 
     #[test]
     fn a_road_has_light_edge_lines_and_water_none() {
-        let road = texture(Surface::Asphalt);
+        let road = texture(RibbonSurface::Asphalt);
         let light = |pixels: &Pixels| (0..SIZE).filter(|&x| pixels.at(x, SIZE - 4).0[0] > 230).count();
         assert!(light(&road) > 8);
-        assert_eq!(light(&texture(Surface::Lake)), 0);
+        assert_eq!(light(&texture(RibbonSurface::Lake)), 0);
     }
 }

@@ -17,7 +17,7 @@ pub(super) const SHOULDER: [u8; 3] = [186, 172, 142];
 
 /// What is painted on a carriageway.
 #[derive(Clone, Copy)]
-pub(super) enum Lines {
+pub(super) enum RoadMarkings {
     /// Nothing.
     None,
     /// Edge lines, and what there is in the middle.
@@ -33,12 +33,12 @@ pub(super) enum Center {
     Dashed(f32),
 }
 
-pub(super) fn asphalt(u: f32, lines: Lines, grain: f32) -> Srgba {
+pub(super) fn asphalt(u: f32, lines: RoadMarkings, grain: f32) -> Srgba {
     let from_edge = u.min(1.0 - u);
     let in_middle = (u - 0.5).abs() < 0.028;
     let painted = match lines {
-        Lines::None => false,
-        Lines::Edges { center } => {
+        RoadMarkings::None => false,
+        RoadMarkings::Edges { center } => {
             from_edge < 0.115
                 || in_middle
                     && match center {

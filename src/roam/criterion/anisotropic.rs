@@ -14,20 +14,20 @@ use crate::roam::criterion::Criterion;
 use crate::roam::criterion::lens::Lens;
 use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
+use crate::roam::ground::PatchedGround;
 use crate::view::camera::Camera;
 
 /// The length of a vertical error on the picture, over the tolerance.
 #[derive(Clone, Copy, Debug)]
 pub struct Anisotropic<'a> {
-    ground: Ground<'a>,
+    ground: PatchedGround<'a>,
     errors: &'a ErrorMap,
     lens: Lens,
 }
 
 impl<'a> Anisotropic<'a> {
     /// The criterion for one camera; `tolerance_px` is above 0.
-    pub fn new(ground: Ground<'a>, errors: &'a ErrorMap, camera: &Camera, tolerance_px: f32) -> Self {
+    pub fn new(ground: PatchedGround<'a>, errors: &'a ErrorMap, camera: &Camera, tolerance_px: f32) -> Self {
         Self { ground, errors, lens: Lens::new(ground, camera, tolerance_px) }
     }
 }

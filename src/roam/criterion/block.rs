@@ -13,36 +13,36 @@ use glam::Vec3;
 use crate::roam::criterion::Criterion;
 use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
+use crate::roam::ground::PatchedGround;
 use crate::view::camera::Camera;
 
 /// err · r / d over k.
 #[derive(Clone, Copy, Debug)]
-pub struct Block<'a> {
-    ground: Ground<'a>,
+pub struct BlockRelief<'a> {
+    ground: PatchedGround<'a>,
     relief: &'a ErrorMap,
     eye: Vec3,
     cell_m: f32,
     over_k: f32,
 }
 
-impl<'a> Block<'a> {
+impl<'a> BlockRelief<'a> {
     /// The criterion for one camera, k such that the relief of the finest blocks spans `tolerance_px` pixels,
     /// above 0, where they are just refined: with a post's spacing c and λ the pixels of a metre at a distance of
     /// one metre, k = τ · c / λ.
-    pub fn new(ground: Ground<'a>, relief: &'a ErrorMap, camera: &Camera, tolerance_px: f32) -> Self {
+    pub fn new(ground: PatchedGround<'a>, relief: &'a ErrorMap, camera: &Camera, tolerance_px: f32) -> Self {
         let cell_m = ground.lattice.cell().max_element() as f32;
         Self::with_k(ground, relief, camera.eye(), tolerance_px * cell_m / camera.pixels_per_metre(1.0))
     }
 
     /// The criterion as published, for an eye in drawn world space; `k_m`, metres, is above 0.
-    pub fn with_k(ground: Ground<'a>, relief: &'a ErrorMap, eye: Vec3, k_m: f32) -> Self {
+    pub fn with_k(ground: PatchedGround<'a>, relief: &'a ErrorMap, eye: Vec3, k_m: f32) -> Self {
         let cell_m = ground.lattice.cell().max_element() as f32;
         Self { ground, relief, eye, cell_m, over_k: ground.exaggeration / k_m }
     }
 }
 
-impl Criterion for Block<'_> {
+impl Criterion for BlockRelief<'_> {
     #[inline]
     fn excess(&self, vertex: Vertex) -> f32 {
         let relief = self.relief.at(self.ground.layout, vertex);

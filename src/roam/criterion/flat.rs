@@ -3,19 +3,19 @@
 use crate::roam::criterion::Criterion;
 use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 
 /// The object-space error over a tolerance in metres: what a mesh without a camera is made by.
 #[derive(Clone, Copy, Debug)]
 pub struct Flat<'a> {
-    layout: &'a Layout,
+    layout: &'a PatchLayout,
     errors: &'a ErrorMap,
     tolerance_m: f32,
 }
 
 impl<'a> Flat<'a> {
     /// Errors above `tolerance_m`, 0 or more, are refined.
-    pub fn new(layout: &'a Layout, errors: &'a ErrorMap, tolerance_m: f32) -> Self {
+    pub fn new(layout: &'a PatchLayout, errors: &'a ErrorMap, tolerance_m: f32) -> Self {
         Self { layout, errors, tolerance_m }
     }
 }

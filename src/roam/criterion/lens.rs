@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::roam::ground::Ground;
+use crate::roam::ground::PatchedGround;
 use crate::view::camera::Camera;
 
 /// The eye, and how many tolerances a metre of error spans at a distance of one metre.
@@ -14,13 +14,13 @@ pub(super) struct Lens {
 
 impl Lens {
     /// Errors are metres without exaggeration; `tolerance_px`, above 0, is pixels in the middle of the picture.
-    pub(super) fn new(ground: Ground<'_>, camera: &Camera, tolerance_px: f32) -> Self {
+    pub(super) fn new(ground: PatchedGround<'_>, camera: &Camera, tolerance_px: f32) -> Self {
         let scale = camera.pixels_per_metre(1.0) * ground.exaggeration / tolerance_px;
         Self { eye: camera.eye(), scale }
     }
 
     /// A lens of given strength: tolerances spanned by a drawn metre at a distance of one metre.
-    pub(super) fn of_strength(ground: Ground<'_>, eye: Vec3, strength: f32) -> Self {
+    pub(super) fn of_strength(ground: PatchedGround<'_>, eye: Vec3, strength: f32) -> Self {
         Self { eye, scale: strength * ground.exaggeration }
     }
 

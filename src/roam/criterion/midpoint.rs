@@ -12,20 +12,20 @@ use crate::roam::criterion::Criterion;
 use crate::roam::criterion::lens::Lens;
 use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
+use crate::roam::ground::PatchedGround;
 use crate::view::camera::Camera;
 
 /// The error of a vertex on the picture, over the tolerance, as if all of it stood at the vertex.
 #[derive(Clone, Copy, Debug)]
 pub struct Midpoint<'a> {
-    ground: Ground<'a>,
+    ground: PatchedGround<'a>,
     errors: &'a ErrorMap,
     lens: Lens,
 }
 
 impl<'a> Midpoint<'a> {
     /// The criterion for one camera; `tolerance_px` is above 0.
-    pub fn new(ground: Ground<'a>, errors: &'a ErrorMap, camera: &Camera, tolerance_px: f32) -> Self {
+    pub fn new(ground: PatchedGround<'a>, errors: &'a ErrorMap, camera: &Camera, tolerance_px: f32) -> Self {
         Self { ground, errors, lens: Lens::new(ground, camera, tolerance_px) }
     }
 }

@@ -6,7 +6,7 @@ use crate::roam::criterion::Criterion;
 use crate::roam::culling::PatchHeights;
 use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
+use crate::roam::ground::PatchedGround;
 use crate::view::camera::Camera;
 use crate::view::frustum::Frustum;
 
@@ -18,21 +18,21 @@ use crate::view::frustum::Frustum;
 /// smaller). What the camera cannot see is not wanted.
 #[derive(Clone, Copy, Debug)]
 pub struct ScreenError<'a> {
-    ground: Ground<'a>,
+    ground: PatchedGround<'a>,
     errors: &'a ErrorMap,
     heights: &'a PatchHeights,
     frustum: Frustum,
-    reach: Reach,
+    reach: ErrorReach,
 }
 
 /// Distances at which errors span the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Reach {
+struct ErrorReach {
     eye: Vec3,
     metres_per_metre: f32,
 }
 
-impl Reach {
+impl ErrorReach {
     fn new(camera: &Camera, tolerance_px: f32, exaggeration: f32) -> Self {
         // A length δ at distance d from the eye, θ off the viewing direction, spans at most δ / (d · cos² θ) on the
         // picture's plane: cos θ since depth is shorter than distance, and once more since the plane is met at a slant.
@@ -56,13 +56,13 @@ impl Reach {
 impl<'a> ScreenError<'a> {
     /// The criterion for one camera.
     pub fn new(
-        ground: Ground<'a>,
+        ground: PatchedGround<'a>,
         errors: &'a ErrorMap,
         heights: &'a PatchHeights,
         camera: &Camera,
         tolerance_px: f32,
     ) -> Self {
-        let reach = Reach::new(camera, tolerance_px, ground.exaggeration);
+        let reach = ErrorReach::new(camera, tolerance_px, ground.exaggeration);
         Self { ground, errors, heights, frustum: Frustum::of(camera), reach }
     }
 }
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn an_error_is_refined_up_to_the_distance_where_it_spans_the_tolerance() {
         let camera = Camera::new(Vec3::ZERO, Vec3::Y, 0.8, (640, 480), (1.0, 9000.0)).expect("sound");
-        let criterion = Reach::new(&camera, 2.0, 1.0);
+        let criterion = ErrorReach::new(&camera, 2.0, 1.0);
         let at = |distance: f32| criterion.excess(3.0, Vec3::Y * distance, Vec3::Y * distance) > 1.0;
         let seen_px = |distance: f32| 3.0 * camera.pixels_per_metre(distance);
         assert!(at(500.0) && seen_px(500.0) > 2.0);

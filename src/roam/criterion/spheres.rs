@@ -4,20 +4,20 @@ use glam::Vec3;
 
 use crate::roam::criterion::Criterion;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
+use crate::roam::ground::PatchedGround;
 use crate::roam::spheres::SphereMap;
 
 /// A vertex is wanted while the eye is inside its sphere.
 #[derive(Clone, Copy, Debug)]
 pub struct Spheres<'a> {
-    ground: Ground<'a>,
+    ground: PatchedGround<'a>,
     map: &'a SphereMap,
     eye: Vec3,
 }
 
 impl<'a> Spheres<'a> {
     /// The spheres of `map` as seen from `eye`, drawn world space.
-    pub fn new(ground: Ground<'a>, map: &'a SphereMap, eye: Vec3) -> Self {
+    pub fn new(ground: PatchedGround<'a>, map: &'a SphereMap, eye: Vec3) -> Self {
         Self { ground, map, eye }
     }
 }

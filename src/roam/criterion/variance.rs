@@ -17,32 +17,32 @@ use crate::roam::criterion::Criterion;
 use crate::roam::criterion::lens::Lens;
 use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
+use crate::roam::ground::PatchedGround;
 use crate::view::camera::Camera;
 
 /// k · Variance · LandWidth / Distance.
 #[derive(Clone, Copy, Debug)]
 pub struct Variance<'a> {
-    ground: Ground<'a>,
+    ground: PatchedGround<'a>,
     errors: &'a ErrorMap,
     lens: Lens,
 }
 
 impl<'a> Variance<'a> {
     /// The criterion for one camera, k such that it stands for a tolerance of `tolerance_px` pixels, above 0.
-    pub fn new(ground: Ground<'a>, errors: &'a ErrorMap, camera: &Camera, tolerance_px: f32) -> Self {
+    pub fn new(ground: PatchedGround<'a>, errors: &'a ErrorMap, camera: &Camera, tolerance_px: f32) -> Self {
         let k = camera.pixels_per_metre(1.0) / (land_width_m(ground) * tolerance_px);
         Self::with_k(ground, errors, camera.eye(), k)
     }
 
     /// The criterion as published, for an eye in drawn world space; the greater `k`, 0 or more, the finer.
-    pub fn with_k(ground: Ground<'a>, errors: &'a ErrorMap, eye: Vec3, k: f32) -> Self {
+    pub fn with_k(ground: PatchedGround<'a>, errors: &'a ErrorMap, eye: Vec3, k: f32) -> Self {
         Self { ground, errors, lens: Lens::of_strength(ground, eye, k * land_width_m(ground)) }
     }
 }
 
 /// The longer side of the terrain, metres.
-fn land_width_m(ground: Ground<'_>) -> f32 {
+fn land_width_m(ground: PatchedGround<'_>) -> f32 {
     ground.lattice.extent().size().max_element() as f32
 }
 

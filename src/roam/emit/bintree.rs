@@ -5,9 +5,9 @@
 
 use crate::roam::active::ActiveSet;
 use crate::roam::bintree::Triangle;
-use crate::roam::emit::walk::{self, Key};
+use crate::roam::emit::walk::{self, WalkKey};
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 
 /// Calls `emit` with the leaves of the patches whose south-west corners are listed, counter-clockwise from the
 /// apex. Within a patch every leaf shares an edge with the one before.
@@ -31,34 +31,34 @@ pub fn triangles_where(
 ) {
     let layout = active.layout();
     let columns = layout.columns() as i32;
-    let vertices = |keys: [Key; 3]| keys.map(|key| vertex(columns, key));
+    let vertices = |keys: [WalkKey; 3]| keys.map(|key| vertex(columns, key));
     let roots = Triangle::roots(corner, layout.patch()).map(|root| root.corners().map(|at| key(layout, at)));
     walk::leaves(active, roots, |keys| enter(vertices(keys)), |keys| emit(vertices(keys)));
 }
 
 /// The key of a vertex of the layout, tagged with its row.
-pub fn key(layout: &Layout, vertex: Vertex) -> Key {
-    Key::new(layout.index(vertex) as u32, vertex.y as u32)
+pub fn key(layout: &PatchLayout, vertex: Vertex) -> WalkKey {
+    WalkKey::new(layout.index(vertex) as u32, vertex.y as u32)
 }
 
 /// The vertex of a key that is tagged with its row; `columns` vertices make a row.
-pub fn vertex(columns: i32, key: Key) -> Vertex {
+pub fn vertex(columns: i32, key: WalkKey) -> Vertex {
     let y = key.tag() as i32;
     Vertex::new(key.index() as i32 - y * columns, y)
 }
 
 /// The (patch + 1)² vertices of one patch, row by row from the south-west: what index lists point into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Block {
+pub struct VertexBlock {
     patch: i32,
 }
 
 /// Cells along the side of the largest patch whose vertices can be told apart by 16 bits: 129² of them.
 pub const LARGEST_BLOCK: i32 = 128;
 
-impl Block {
+impl VertexBlock {
     /// The block of every patch of a layout; `None` where its patches are larger than [`LARGEST_BLOCK`].
-    pub fn of(layout: &Layout) -> Option<Self> {
+    pub fn of(layout: &PatchLayout) -> Option<Self> {
         (layout.patch() <= LARGEST_BLOCK).then_some(Self { patch: layout.patch() })
     }
 
@@ -86,7 +86,7 @@ impl Block {
     ) {
         let (layout, side) = (active.layout(), self.patch + 1);
         let local = |at: Vertex| ((at.y - corner.y) * side + at.x - corner.x) as u32;
-        let key = |at: Vertex| Key::new(layout.index(at) as u32, local(at));
+        let key = |at: Vertex| WalkKey::new(layout.index(at) as u32, local(at));
         let roots = Triangle::roots(corner, layout.patch()).map(|root| root.corners().map(key));
         walk::leaves(
             active,
@@ -149,7 +149,7 @@ mod tests {
         #[test]
         fn a_patch_s_short_indices_name_its_leaves((columns, rows, vertices) in activations()) {
             let active = active_set(columns, rows, 16, &vertices);
-            let block = Block::of(active.layout()).expect("small patches");
+            let block = VertexBlock::of(active.layout()).expect("small patches");
             for corner in active.layout().patches() {
                 let (mut walked, mut list) = (Vec::new(), Vec::new());
                 triangles(&active, [corner], |corners| walked.push(corners));
@@ -167,7 +167,7 @@ mod tests {
             columns in 2u32..49, rows in 2u32..49, holes in proptest::collection::vec(0usize..2400, 0..5),
             tolerance_m in 0.0..10.0f32,
         ) {
-            let layout = Layout::new(columns, rows, 16).expect("sound");
+            let layout = PatchLayout::new(columns, rows, 16).expect("sound");
             let lattice = lattice(columns, rows, &holes);
             let errors = ErrorMap::exact(&lattice, &layout);
             let active = rebuild(&layout, &Flat::new(&layout, &errors, tolerance_m), layout.patches());
@@ -189,14 +189,14 @@ mod tests {
 
     #[test]
     fn the_largest_block_is_the_last_that_sixteen_bits_hold() {
-        let block = |patch| Block::of(&Layout::new(300, 300, patch).expect("sound"));
-        assert_eq!(block(128).map(Block::vertex_count), Some(129 * 129));
+        let block = |patch| VertexBlock::of(&PatchLayout::new(300, 300, patch).expect("sound"));
+        assert_eq!(block(128).map(VertexBlock::vertex_count), Some(129 * 129));
         assert_eq!(block(256), None);
     }
 
     #[test]
     fn the_deepest_patch_is_walked_to_its_posts() {
-        let layout = Layout::new(4097, 4097, 4096).expect("sound");
+        let layout = PatchLayout::new(4097, 4097, 4096).expect("sound");
         let mut active = ActiveSet::new(layout);
         active.activate(Vertex::new(1, 0));
         active.activate(Vertex::new(4095, 4096));

@@ -7,8 +7,8 @@ use crate::mesh::trimesh::TriMesh;
 use crate::roam::active::ActiveSet;
 use crate::roam::emit::{full, world};
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
-use crate::roam::layout::Layout;
+use crate::roam::ground::PatchedGround;
+use crate::roam::layout::PatchLayout;
 use crate::terrain::lattice::Lattice;
 
 /// Columns, rows and vertices to activate, some of them beyond the borders.
@@ -21,7 +21,7 @@ pub fn activations() -> impl Strategy<Value = Activations> {
 
 /// The closure of the listed vertices.
 pub fn active_set(columns: u32, rows: u32, patch: u32, vertices: &[(i32, i32)]) -> ActiveSet {
-    let mut active = ActiveSet::new(Layout::new(columns, rows, patch).expect("sound"));
+    let mut active = ActiveSet::new(PatchLayout::new(columns, rows, patch).expect("sound"));
     vertices.iter().for_each(|&(x, y)| active.activate(Vertex::new(x, y)));
     active
 }
@@ -39,16 +39,16 @@ pub fn lattice(columns: u32, rows: u32, holes: &[usize]) -> Lattice {
 /// The mesh in world space of what `emit` emits.
 pub fn mesh_of(
     lattice: &Lattice,
-    layout: &Layout,
+    layout: &PatchLayout,
     emit: impl FnOnce(&mut dyn FnMut([Vertex; 3])),
 ) -> TriMesh {
     let mut mesh = TriMesh::default();
-    emit(&mut world::placing(Ground { lattice, layout, exaggeration: 2.0 }, &mut mesh));
+    emit(&mut world::placing(PatchedGround { lattice, layout, exaggeration: 2.0 }, &mut mesh));
     mesh
 }
 
 /// The plan area of the full mesh, square metres.
-pub fn full_area_m2(lattice: &Lattice, layout: &Layout) -> f64 {
+pub fn full_area_m2(lattice: &Lattice, layout: &PatchLayout) -> f64 {
     let mesh = mesh_of(lattice, layout, |place| full::triangles(layout, layout.patches(), place));
     crate::mesh::check::check(&mesh).expect("the full mesh is conforming").plan_area_m2
 }

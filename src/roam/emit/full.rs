@@ -2,12 +2,12 @@
 
 use crate::roam::bintree::Triangle;
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 
 /// Calls `emit` with the two finest triangles of every cell of the lattice in the patches whose south-west
 /// corners are listed, counter-clockwise from the right angle; row by row within a patch.
 pub fn triangles(
-    layout: &Layout,
+    layout: &PatchLayout,
     patches: impl IntoIterator<Item = Vertex>,
     mut emit: impl FnMut([Vertex; 3]),
 ) {
@@ -36,7 +36,7 @@ mod tests {
         fn the_full_mesh_covers_the_ground_but_for_its_holes(
             columns in 2u32..40, rows in 2u32..40, holes in proptest::collection::vec(0usize..1600, 0..4),
         ) {
-            let layout = Layout::new(columns, rows, 16).expect("sound");
+            let layout = PatchLayout::new(columns, rows, 16).expect("sound");
             let lattice = lattice(columns, rows, &holes);
             let mesh = mesh_of(&lattice, &layout, |place| triangles(&layout, layout.patches(), place));
             let checked = check::check(&mesh);
@@ -51,7 +51,7 @@ mod tests {
 
     #[test]
     fn the_full_mesh_is_the_bintree_with_every_vertex_active() {
-        let layout = Layout::new(33, 17, 16).expect("sound");
+        let layout = PatchLayout::new(33, 17, 16).expect("sound");
         let mut active = ActiveSet::new(layout);
         (0..33)
             .flat_map(|x| (0..17).map(move |y| Vertex::new(x, y)))

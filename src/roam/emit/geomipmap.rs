@@ -30,26 +30,26 @@ use crate::roam::bintree::Triangle;
 use crate::roam::culling::PatchHeights;
 use crate::roam::errors::exact::triangle_error;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
-use crate::roam::layout::Layout;
-use crate::roam::quadtree::{SIDES, Side};
+use crate::roam::ground::PatchedGround;
+use crate::roam::layout::PatchLayout;
+use crate::roam::quadtree::{NodeSide, SIDES};
 use crate::terrain::lattice::Lattice;
 use crate::view::camera::Camera;
 
 /// The error of every level of every patch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pyramids {
-    layout: Layout,
+    layout: PatchLayout,
     errors: Vec<Vec<f32>>,
 }
 
 /// The level of every patch, in the layout's patch order.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Levels(Vec<u32>);
+pub struct PatchLevels(Vec<u32>);
 
 impl Pyramids {
     /// Measures all levels; in parallel over patches. Costs a few visits a post and level.
-    pub fn new(lattice: &Lattice, layout: &Layout) -> Self {
+    pub fn new(lattice: &Lattice, layout: &PatchLayout) -> Self {
         let patches: Vec<Vertex> = layout.patches().collect();
         let errors = patches.par_iter().map(|&corner| level_errors(lattice, layout, corner)).collect();
         Self { layout: *layout, errors }
@@ -70,11 +70,11 @@ impl Pyramids {
     /// `tolerance_px` pixels.
     pub fn for_view(
         &self,
-        ground: Ground<'_>,
+        ground: PatchedGround<'_>,
         heights: &PatchHeights,
         camera: &Camera,
         tolerance_px: f32,
-    ) -> Levels {
+    ) -> PatchLevels {
         // Twice longer than its share at the picture's middle where seen aslant, as in the screen-space criterion.
         let aslant = 1.0 + camera.tan_half_fov().length_squared();
         let metres_at_one = tolerance_px / (camera.pixels_per_metre(1.0) * aslant * ground.exaggeration);
@@ -85,11 +85,11 @@ impl Pyramids {
     }
 
     /// The coarsest levels that are within `tolerance_m` of the ground.
-    pub fn within(&self, tolerance_m: f32) -> Levels {
+    pub fn within(&self, tolerance_m: f32) -> PatchLevels {
         self.chosen(|_| tolerance_m)
     }
 
-    fn chosen(&self, tolerance_m: impl Fn(Vertex) -> f32) -> Levels {
+    fn chosen(&self, tolerance_m: impl Fn(Vertex) -> f32) -> PatchLevels {
         let coarsest = |corner: Vertex| {
             let errors = &self.errors[self.layout.patch_index(corner)];
             let tolerance_m = tolerance_m(corner);
@@ -101,7 +101,7 @@ impl Pyramids {
                 levels[self.layout.patch_index(neighbor)] = 0;
             }
         }
-        Levels(levels)
+        PatchLevels(levels)
     }
 
     /// Whether the patch must be drawn at level 0 for its holes, or for pinned posts.
@@ -110,22 +110,22 @@ impl Pyramids {
     }
 }
 
-impl Levels {
+impl PatchLevels {
     /// Levels chosen otherwise, one a patch in the layout's order; `None` where their number is wrong or one is
     /// coarser than a single square. Holes are only kept where a level is fine enough.
-    pub fn new(layout: &Layout, levels: Vec<u32>) -> Option<Self> {
+    pub fn new(layout: &PatchLayout, levels: Vec<u32>) -> Option<Self> {
         let coarsest = layout.patch().trailing_zeros();
         let sound = levels.len() == layout.patch_count() && levels.iter().all(|&level| level <= coarsest);
         sound.then_some(Self(levels))
     }
 
     /// The level of a patch.
-    pub fn of(&self, layout: &Layout, corner: Vertex) -> u32 {
+    pub fn of(&self, layout: &PatchLayout, corner: Vertex) -> u32 {
         self.0[layout.patch_index(corner)]
     }
 
     /// The step between posts along one side of a patch: the coarser of the two that meet there.
-    fn border_step(&self, layout: &Layout, corner: Vertex, side: Side) -> i32 {
+    fn border_step(&self, layout: &PatchLayout, corner: Vertex, side: NodeSide) -> i32 {
         let own = self.of(layout, corner);
         let other = beside(layout, corner, side).map_or(own, |neighbor| self.of(layout, neighbor));
         1 << own.max(other)
@@ -135,8 +135,8 @@ impl Levels {
 /// Calls `emit` with the triangles of the patches whose south-west corners are listed, counter-clockwise.
 /// Patches that are not listed still say where the borders' posts are.
 pub fn triangles(
-    layout: &Layout,
-    levels: &Levels,
+    layout: &PatchLayout,
+    levels: &PatchLevels,
     patches: impl IntoIterator<Item = Vertex>,
     mut emit: impl FnMut([Vertex; 3]),
 ) {
@@ -148,7 +148,7 @@ pub fn triangles(
         }
         inner_cells(layout, corner, step, &mut emit);
         for side in SIDES {
-            let edge = Edge { corner, patch: layout.patch(), step, side };
+            let edge = PatchEdge { corner, patch: layout.patch(), step, side };
             match levels.border_step(layout, corner, side) {
                 border if border == step => edge.plain(&mut emit),
                 border => edge.stitched(border, &mut emit),
@@ -158,7 +158,7 @@ pub fn triangles(
 }
 
 /// The triangles of all cells that do not touch a side.
-fn inner_cells(layout: &Layout, corner: Vertex, step: i32, emit: &mut impl FnMut([Vertex; 3])) {
+fn inner_cells(layout: &PatchLayout, corner: Vertex, step: i32, emit: &mut impl FnMut([Vertex; 3])) {
     let inner = || (step..layout.patch() - step).step_by(step as usize);
     for y in inner() {
         for x in inner() {
@@ -169,22 +169,22 @@ fn inner_cells(layout: &Layout, corner: Vertex, step: i32, emit: &mut impl FnMut
 
 /// The outermost cells of a patch along one side, cut off at the corners' diagonals.
 #[derive(Clone, Copy)]
-struct Edge {
+struct PatchEdge {
     corner: Vertex,
     patch: i32,
     step: i32,
-    side: Side,
+    side: NodeSide,
 }
 
-impl Edge {
+impl PatchEdge {
     /// The vertex `along` the side, counter-clockwise, and `inward` of it.
     fn at(&self, along: i32, inward: i32) -> Vertex {
         let far = self.patch;
         match self.side {
-            Side::South => self.corner.moved(along, inward),
-            Side::East => self.corner.moved(far - inward, along),
-            Side::North => self.corner.moved(far - along, far - inward),
-            Side::West => self.corner.moved(inward, far - along),
+            NodeSide::South => self.corner.moved(along, inward),
+            NodeSide::East => self.corner.moved(far - inward, along),
+            NodeSide::North => self.corner.moved(far - along, far - inward),
+            NodeSide::West => self.corner.moved(inward, far - along),
         }
     }
 
@@ -224,7 +224,7 @@ impl Edge {
 }
 
 /// The patch beyond a side, where there is one.
-fn beside(layout: &Layout, corner: Vertex, side: Side) -> Option<Vertex> {
+fn beside(layout: &PatchLayout, corner: Vertex, side: NodeSide) -> Option<Vertex> {
     let (dx, dy) = side.step();
     let patch = layout.patch();
     let place = (corner.x / patch + dx, corner.y / patch + dy);
@@ -237,7 +237,7 @@ fn nearest_m(eye: Vec3, min: Vec3, max: Vec3) -> f32 {
 }
 
 /// The errors of a patch's levels, each raised to those of the finer ones.
-fn level_errors(lattice: &Lattice, layout: &Layout, corner: Vertex) -> Vec<f32> {
+fn level_errors(lattice: &Lattice, layout: &PatchLayout, corner: Vertex) -> Vec<f32> {
     let mut worst = 0f32;
     let coarser = (1..=layout.patch().trailing_zeros()).map(|level| {
         worst = worst.max(level_error(lattice, layout, corner, 1 << level));
@@ -247,7 +247,7 @@ fn level_errors(lattice: &Lattice, layout: &Layout, corner: Vertex) -> Vec<f32> 
 }
 
 /// The largest error of the triangles that join every `step`-th post.
-fn level_error(lattice: &Lattice, layout: &Layout, corner: Vertex, step: i32) -> f32 {
+fn level_error(lattice: &Lattice, layout: &PatchLayout, corner: Vertex, step: i32) -> f32 {
     let starts = || (0..layout.patch()).step_by(step as usize);
     starts()
         .flat_map(|y| starts().map(move |x| corner.moved(x, y)))
@@ -264,8 +264,8 @@ mod tests {
     use crate::roam::emit::full;
     use proptest::prelude::*;
 
-    fn layout(columns: u32, rows: u32) -> Layout {
-        Layout::new(columns, rows, 16).expect("sound")
+    fn layout(columns: u32, rows: u32) -> PatchLayout {
+        PatchLayout::new(columns, rows, 16).expect("sound")
     }
 
     proptest! {
@@ -274,7 +274,7 @@ mod tests {
             columns in 2u32..60, rows in 2u32..60, levels in proptest::collection::vec(0u32..=4, 16),
         ) {
             let (layout, lattice) = (layout(columns, rows), lattice(columns, rows, &[]));
-            let levels = Levels::new(&layout, levels[..layout.patch_count()].to_vec()).expect("one a patch");
+            let levels = PatchLevels::new(&layout, levels[..layout.patch_count()].to_vec()).expect("one a patch");
             let mesh = mesh_of(&lattice, &layout, |place| triangles(&layout, &levels, layout.patches(), place));
             let area = lattice.extent().size().x * lattice.extent().size().y;
             prop_assert_eq!(check::check_with_area(&mesh, area).err(), None);
@@ -297,7 +297,7 @@ mod tests {
     fn level_0_is_the_full_mesh_and_the_coarsest_two_triangles_a_patch() {
         let layout = layout(33, 49);
         let emitted = |level| {
-            let levels = Levels::new(&layout, vec![level; layout.patch_count()]).expect("one a patch");
+            let levels = PatchLevels::new(&layout, vec![level; layout.patch_count()]).expect("one a patch");
             sorted(|emit| triangles(&layout, &levels, layout.patches(), emit))
         };
         assert_eq!(emitted(0), sorted(|emit| full::triangles(&layout, layout.patches(), emit)));
@@ -307,8 +307,8 @@ mod tests {
 
     #[test]
     fn levels_that_are_no_levels_are_refused() {
-        assert_eq!(Levels::new(&layout(33, 33), vec![0; 3]), None);
-        assert_eq!(Levels::new(&layout(33, 33), vec![5; 4]), None);
+        assert_eq!(PatchLevels::new(&layout(33, 33), vec![0; 3]), None);
+        assert_eq!(PatchLevels::new(&layout(33, 33), vec![5; 4]), None);
     }
 
     #[test]
@@ -319,7 +319,7 @@ mod tests {
         assert_eq!(pyramids.error_m(corner, 0), 0.0);
         let mut worst = 0f32;
         for level in 1..pyramids.level_count() {
-            let levels = Levels::new(&layout, vec![level]).expect("one patch");
+            let levels = PatchLevels::new(&layout, vec![level]).expect("one patch");
             let mut mesh = mesh_of(&lattice, &layout, |place| triangles(&layout, &levels, [corner], place));
             // The meshes of tests are drawn at twice their height.
             mesh.positions.iter_mut().for_each(|position| position.z /= 2.0);
@@ -338,7 +338,7 @@ mod tests {
     #[test]
     fn patches_far_from_the_eye_are_coarser_and_hold_the_tolerance_at_their_nearest_point() {
         let (layout, lattice) = (layout(129, 129), lattice(129, 129, &[]));
-        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
         let heights = PatchHeights::new(ground);
         let pyramids = Pyramids::new(&lattice, &layout);
         let eye = Vec3::new(10.0, 10.0, 20.0);

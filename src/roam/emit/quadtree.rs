@@ -25,7 +25,7 @@
 use crate::roam::active::ActiveSet;
 use crate::roam::bintree::Triangle;
 use crate::roam::emit::bintree::{key, vertex};
-use crate::roam::emit::walk::Key;
+use crate::roam::emit::walk::WalkKey;
 use crate::roam::graph::Vertex;
 
 /// A side of a fan's triangles: from one place of the ring to another, counter-clockwise.
@@ -64,7 +64,7 @@ const TURNS: [(usize, u8); 16] = [
 
 /// A pattern turned into place.
 #[derive(Clone, Copy)]
-struct Fan {
+struct TriangleFan {
     count: usize,
     rims: [Rim; 8],
     /// The bit of the child whose square the triangle lies in, 0 where it lies in two.
@@ -72,10 +72,10 @@ struct Fan {
 }
 
 /// The patterns of all sixteen states.
-const FANS: [Fan; 16] = turned_patterns();
+const FANS: [TriangleFan; 16] = turned_patterns();
 
-const fn turned_patterns() -> [Fan; 16] {
-    let mut fans = [Fan { count: 0, rims: [(0, 0); 8], quarters: [0; 8] }; 16];
+const fn turned_patterns() -> [TriangleFan; 16] {
+    let mut fans = [TriangleFan { count: 0, rims: [(0, 0); 8], quarters: [0; 8] }; 16];
     let mut state = 0;
     while state < 16 {
         let (basic, turns) = TURNS[state];
@@ -108,13 +108,13 @@ const fn quarter(from: u8, to: u8) -> u8 {
 /// A node on its way down: its centre and how far below the patch it is.
 #[derive(Clone, Copy)]
 struct Visit {
-    center: Key,
+    center: WalkKey,
     level: u32,
 }
 
 /// The ring of a node and what is active about it.
-struct Around {
-    ring: [Key; 8],
+struct NodeRing {
+    ring: [WalkKey; 8],
     state: usize,
     children: u8,
 }
@@ -122,7 +122,7 @@ struct Around {
 /// The way down one patch.
 struct Descent<'a> {
     active: &'a ActiveSet,
-    origin: Key,
+    origin: WalkKey,
     finest: u32,
 }
 
@@ -133,7 +133,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Calls `visit` with every node of a patch whose centre is active.
-    fn nodes(&self, corner: Vertex, mut visit: impl FnMut(Key, &Around)) {
+    fn nodes(&self, corner: Vertex, mut visit: impl FnMut(WalkKey, &NodeRing)) {
         let half = self.active.layout().patch() / 2;
         let center = key(self.active.layout(), corner.moved(half, half));
         let mut waiting = Vec::with_capacity(3 * self.finest as usize + 1);
@@ -145,7 +145,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Looks round a node of half side `half` and puts its active children on `waiting`.
-    fn around(&self, node: Visit, half: i32, waiting: &mut Vec<Visit>) -> Around {
+    fn around(&self, node: Visit, half: i32, waiting: &mut Vec<Visit>) -> NodeRing {
         let at = |x: i32, y: i32| key(self.active.layout(), Vertex::new(x, y));
         let (zero, east, north) = (self.origin, at(half, 0), at(0, half));
         let center = node.center;
@@ -153,7 +153,7 @@ impl<'a> Descent<'a> {
         let (s, n) = (center.moved(north, zero), center.moved(zero, north));
         let corners =
             [w.moved(north, zero), e.moved(north, zero), w.moved(zero, north), e.moved(zero, north)];
-        let bit = |key: Key| usize::from(self.active.bit(key.index()));
+        let bit = |key: WalkKey| usize::from(self.active.bit(key.index()));
         let state = bit(w) | bit(s) << 1 | bit(e) << 2 | bit(n) << 3;
         let mut children = 0;
         if node.level < self.finest {
@@ -166,7 +166,7 @@ impl<'a> Descent<'a> {
             }
         }
         let [sw, se, nw, ne] = corners;
-        Around { ring: [sw, s, se, e, ne, n, nw, w], state, children }
+        NodeRing { ring: [sw, s, se, e, ne, n, nw, w], state, children }
     }
 
     /// The two triangles of a patch whose centre is inactive.
@@ -228,7 +228,7 @@ pub fn fans(active: &ActiveSet, patches: impl IntoIterator<Item = Vertex>, mut e
 }
 
 /// Calls `visit` with the rims of a node that no child replaces, in unbroken runs, each as long as it can be.
-fn rims_in_runs(around: &Around, mut visit: impl FnMut(&[Rim])) {
+fn rims_in_runs(around: &NodeRing, mut visit: impl FnMut(&[Rim])) {
     let fan = &FANS[around.state];
     let kept = |at: usize| fan.quarters[at % fan.count] & around.children == 0;
     // Starting behind a gap keeps a run that goes over the end of the list in one piece.

@@ -28,7 +28,7 @@ pub struct Strips {
     vertices: Vec<Vertex>,
     starts: Vec<usize>,
     triangles: usize,
-    end: End,
+    end: StripTail,
 }
 
 /// What is sent.
@@ -51,7 +51,7 @@ impl StripStats {
 
 /// The last triangle of the strip that is being made: what of it has been sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum End {
+enum StripTail {
     /// No triangle yet.
     #[default]
     Nothing,
@@ -93,7 +93,7 @@ impl Strips {
     pub fn clear(&mut self) {
         self.vertices.clear();
         self.starts.clear();
-        (self.triangles, self.end) = (0, End::Nothing);
+        (self.triangles, self.end) = (0, StripTail::Nothing);
     }
 
     /// Adds a triangle, counter-clockwise: to the strip where it shares an edge with the one before, else to a
@@ -101,42 +101,42 @@ impl Strips {
     pub fn push(&mut self, corners: [Vertex; 3]) {
         self.triangles += 1;
         let follows = match self.end {
-            End::Nothing => None,
-            End::Whole(first) => self.go_on_from_first(first, corners),
-            End::AllBut { older, newer, last } => self.go_on(older, newer, last, corners),
+            StripTail::Nothing => None,
+            StripTail::Whole(first) => self.go_on_from_first(first, corners),
+            StripTail::AllBut { older, newer, last } => self.go_on(older, newer, last, corners),
         };
         self.end = follows.unwrap_or_else(|| {
             self.finish();
             self.starts.push(self.vertices.len());
-            End::Whole(corners)
+            StripTail::Whole(corners)
         });
     }
 
     /// Sends what is left of the last triangle; the next one starts a strip.
     pub fn finish(&mut self) {
         match std::mem::take(&mut self.end) {
-            End::Nothing => {}
-            End::Whole(corners) => self.vertices.extend(corners),
-            End::AllBut { last, .. } => self.vertices.push(last),
+            StripTail::Nothing => {}
+            StripTail::Whole(corners) => self.vertices.extend(corners),
+            StripTail::AllBut { last, .. } => self.vertices.push(last),
         }
     }
 
-    fn go_on_from_first(&mut self, [a, b, c]: [Vertex; 3], next: [Vertex; 3]) -> Option<End> {
+    fn go_on_from_first(&mut self, [a, b, c]: [Vertex; 3], next: [Vertex; 3]) -> Option<StripTail> {
         let turned = [[a, b, c], [b, c, a], [c, a, b]];
         let [outer, older, newer] = turned.into_iter().find(|corners| !next.contains(&corners[0]))?;
         let last = beyond(older, newer, next)?;
         self.vertices.extend([outer, older, newer]);
-        Some(End::AllBut { older, newer, last })
+        Some(StripTail::AllBut { older, newer, last })
     }
 
-    fn go_on(&mut self, older: Vertex, newer: Vertex, last: Vertex, next: [Vertex; 3]) -> Option<End> {
+    fn go_on(&mut self, older: Vertex, newer: Vertex, last: Vertex, next: [Vertex; 3]) -> Option<StripTail> {
         if let Some(beyond) = beyond(newer, last, next) {
             self.vertices.push(last);
-            return Some(End::AllBut { older: newer, newer: last, last: beyond });
+            return Some(StripTail::AllBut { older: newer, newer: last, last: beyond });
         }
         let beyond = beyond(older, last, next)?;
         self.vertices.extend([older, last]);
-        Some(End::AllBut { older, newer: last, last: beyond })
+        Some(StripTail::AllBut { older, newer: last, last: beyond })
     }
 
     /// The strips, each the vertices to send. Call [`Strips::finish`] first after [`Strips::push`].
@@ -174,8 +174,8 @@ mod tests {
     use crate::mesh::check;
     use crate::roam::emit::examples::{activations, active_set, full_area_m2, lattice, mesh_of, sorted};
     use crate::roam::emit::{quadtree, world};
-    use crate::roam::ground::Ground;
-    use crate::roam::layout::Layout;
+    use crate::roam::ground::PatchedGround;
+    use crate::roam::layout::PatchLayout;
     use proptest::prelude::*;
 
     fn unstripped(strips: &Strips, emit: &mut dyn FnMut([Vertex; 3])) {
@@ -204,7 +204,7 @@ mod tests {
             let lattice = lattice(columns, rows, &holes);
             let active = active_set(columns, rows, 16, &vertices);
             let layout = active.layout();
-            let ground = Ground { lattice: &lattice, layout, exaggeration: 1.0 };
+            let ground = PatchedGround { lattice: &lattice, layout, exaggeration: 1.0 };
             let drawn = |corners| world::drawn_posts(ground, corners).is_some();
             let mut strips = Strips::default();
             strips.add_patches(&active, layout.patches(), drawn);
@@ -236,7 +236,7 @@ mod tests {
 
     /// A patch of 64 refined round a few places, as views do.
     fn refined() -> ActiveSet {
-        let mut active = ActiveSet::new(Layout::new(129, 129, 64).expect("sound"));
+        let mut active = ActiveSet::new(PatchLayout::new(129, 129, 64).expect("sound"));
         for index in 0..400 {
             let (x, y) = ((index * index * 7 + index * 31) % 129, (index * 53) % 61 + index % 3);
             active.activate(Vertex::new(x, y));

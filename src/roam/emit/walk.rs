@@ -23,9 +23,9 @@ const DEEPEST: usize = 26;
 
 /// A vertex: its place in the layout's order and a tag below 2³¹ that is linear in its coordinates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Key(u64);
+pub struct WalkKey(u64);
 
-impl Key {
+impl WalkKey {
     /// The key of the vertex at `index` in the layout's order.
     pub const fn new(index: u32, tag: u32) -> Self {
         Self((tag as u64) << 32 | index as u64)
@@ -54,15 +54,15 @@ impl Key {
 
 /// A triangle with the ends of its hypotenuse in the order of the walk.
 #[derive(Clone, Copy, Default)]
-struct Stop {
-    entry: Key,
-    apex: Key,
-    exit: Key,
+struct WalkTriangle {
+    entry: WalkKey,
+    apex: WalkKey,
+    exit: WalkKey,
     depth: u32,
 }
 
-impl Stop {
-    fn halves(&self, middle: Key) -> [Self; 2] {
+impl WalkTriangle {
+    fn halves(&self, middle: WalkKey) -> [Self; 2] {
         let depth = self.depth + 1;
         [
             Self { entry: self.entry, apex: middle, exit: self.apex, depth },
@@ -71,7 +71,7 @@ impl Stop {
     }
 
     /// Its corners, counter-clockwise from the apex.
-    fn corners(&self) -> [Key; 3] {
+    fn corners(&self) -> [WalkKey; 3] {
         if self.depth.is_multiple_of(2) {
             [self.apex, self.entry, self.exit]
         } else {
@@ -86,13 +86,13 @@ impl Stop {
 /// first's the other way round. A triangle that `enter` refuses is left out with all below it.
 pub fn leaves(
     active: &ActiveSet,
-    roots: [[Key; 3]; 2],
-    mut enter: impl FnMut([Key; 3]) -> bool,
-    mut emit: impl FnMut([Key; 3]),
+    roots: [[WalkKey; 3]; 2],
+    mut enter: impl FnMut([WalkKey; 3]) -> bool,
+    mut emit: impl FnMut([WalkKey; 3]),
 ) {
     let finest = 2 * active.layout().patch().trailing_zeros();
-    let [first, second] = roots.map(|[apex, entry, exit]| Stop { entry, apex, exit, depth: 0 });
-    let mut waiting = [Stop::default(); DEEPEST];
+    let [first, second] = roots.map(|[apex, entry, exit]| WalkTriangle { entry, apex, exit, depth: 0 });
+    let mut waiting = [WalkTriangle::default(); DEEPEST];
     waiting[0] = second;
     let mut count = 1;
     let mut stop = first;

@@ -4,12 +4,12 @@ use glam::Vec3;
 
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
+use crate::roam::ground::PatchedGround;
 use crate::terrain::lattice::Post;
 
 /// The posts of a triangle of vertices of the layout; `None` where it lies beyond the border, so that it has no
 /// area, or where one of its corners has no data.
-pub fn drawn_posts(ground: Ground<'_>, corners: [Vertex; 3]) -> Option<[Post; 3]> {
+pub fn drawn_posts(ground: PatchedGround<'_>, corners: [Vertex; 3]) -> Option<[Post; 3]> {
     let posts = corners.map(|vertex| ground.layout.post(vertex));
     let has_data = posts.iter().all(|&post| !ground.lattice.height(post).is_nan());
     (has_data && doubled_area(posts) != 0).then_some(posts)
@@ -22,12 +22,12 @@ fn doubled_area(posts: [Post; 3]) -> i64 {
 }
 
 /// Where a post with data is drawn, metres.
-pub fn position(ground: Ground<'_>, post: Post) -> Vec3 {
+pub fn position(ground: PatchedGround<'_>, post: Post) -> Vec3 {
     ground.lattice.position(post).extend(ground.lattice.height(post) * ground.exaggeration)
 }
 
 /// What writes an emitter's triangles to `sink`, those that are drawn, with one vertex a post.
-pub fn placing<'a>(ground: Ground<'a>, sink: &'a mut impl MeshSink<Vec3>) -> impl FnMut([Vertex; 3]) {
+pub fn placing<'a>(ground: PatchedGround<'a>, sink: &'a mut impl MeshSink<Vec3>) -> impl FnMut([Vertex; 3]) {
     let mut ids = vec![NOT_PLACED; ground.lattice.heights().len()];
     move |corners| {
         if let Some(posts) = drawn_posts(ground, corners) {
@@ -50,7 +50,7 @@ const NOT_PLACED: u32 = 0;
 mod tests {
     use super::*;
     use crate::mesh::trimesh::TriMesh;
-    use crate::roam::layout::Layout;
+    use crate::roam::layout::PatchLayout;
     use crate::terrain::lattice::Lattice;
     use glam::DVec2;
 
@@ -59,9 +59,10 @@ mod tests {
         let mut heights = vec![1.0; 4 * 3];
         heights[11] = f32::NAN;
         let lattice = Lattice::new(DVec2::ZERO, DVec2::new(2.0, 3.0), 4, heights).expect("sound");
-        let layout = Layout::new(4, 3, 4).expect("sound");
+        let layout = PatchLayout::new(4, 3, 4).expect("sound");
         let mut mesh = TriMesh::default();
-        let mut place = placing(Ground { lattice: &lattice, layout: &layout, exaggeration: 5.0 }, &mut mesh);
+        let mut place =
+            placing(PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 5.0 }, &mut mesh);
         let triangle = |points: [(i32, i32); 3]| points.map(|(x, y)| Vertex::new(x, y));
         place(triangle([(0, 0), (4, 0), (0, 2)]));
         place(triangle([(4, 0), (3, 1), (0, 2)]));

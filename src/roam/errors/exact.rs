@@ -19,13 +19,13 @@ use rayon::prelude::*;
 
 use crate::roam::bintree::Triangle;
 use crate::roam::errors::ErrorMap;
-use crate::roam::errors::near::{self, Gathered};
+use crate::roam::errors::near::{self, BlockPosts};
 use crate::roam::errors::plane::PostPlane;
 use crate::roam::errors::rows::{RowSpan, RowSpans};
 use crate::roam::errors::scan::{Hypotenuse, PostTriangle, Worst, larger, largest};
-use crate::roam::errors::survey::Survey;
+use crate::roam::errors::survey::TileSurvey;
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 use crate::terrain::lattice::{Lattice, Post};
 
 /// Pinned ground may be off by this many metres: rounding of f32 heights, nothing a picture shows.
@@ -44,14 +44,14 @@ const STRIP_ROWS: i32 = 64;
 
 impl ErrorMap {
     /// Measures `lattice`; in parallel, the same for any number of threads.
-    pub fn exact(lattice: &Lattice, layout: &Layout) -> Self {
+    pub fn exact(lattice: &Lattice, layout: &PatchLayout) -> Self {
         Self::raised(own_errors(lattice, layout), layout)
     }
 }
 
 /// Every vertex's [`own_error`], in the order of [`Layout::index`]; 0 at patch corners, which split nothing.
-pub fn own_errors(lattice: &Lattice, layout: &Layout) -> Vec<f32> {
-    let measured = Measured { lattice, layout, survey: Survey::of(lattice) };
+pub fn own_errors(lattice: &Lattice, layout: &PatchLayout) -> Vec<f32> {
+    let measured = MeasuredLattice { lattice, layout, survey: TileSurvey::of(lattice) };
     let mut errors = vec![0f32; layout.vertex_count()];
     errors.par_chunks_mut(BLOCK_ROWS * layout.columns()).enumerate().for_each(|(band, errors)| {
         measured.band((band * BLOCK_ROWS) as i32, errors);
@@ -66,7 +66,7 @@ pub fn own_errors(lattice: &Lattice, layout: &Layout) -> Vec<f32> {
 /// not raised to that of its children. Infinite and 0 as for [`triangle_error`]; 0 at patch corners.
 ///
 /// The same bits that [`own_errors`] holds.
-pub fn own_error(lattice: &Lattice, layout: &Layout, vertex: Vertex) -> f32 {
+pub fn own_error(lattice: &Lattice, layout: &PatchLayout, vertex: Vertex) -> f32 {
     if layout.is_corner(vertex) {
         return 0.0;
     }
@@ -76,13 +76,13 @@ pub fn own_error(lattice: &Lattice, layout: &Layout, vertex: Vertex) -> f32 {
     }
 }
 
-fn general_error(lattice: &Lattice, layout: &Layout, vertex: Vertex) -> f32 {
+fn general_error(lattice: &Lattice, layout: &PatchLayout, vertex: Vertex) -> f32 {
     let error = |triangle| triangle_error(lattice, layout, &triangle);
     triangles_split_at(layout, vertex).into_iter().flatten().map(error).fold(0.0, f32::max)
 }
 
 /// The triangles that `vertex` splits; one of them may be missing at the terrain's border.
-pub fn triangles_split_at(layout: &Layout, vertex: Vertex) -> [Option<Triangle>; 2] {
+pub fn triangles_split_at(layout: &PatchLayout, vertex: Vertex) -> [Option<Triangle>; 2] {
     let [from, to] = vertex.hypotenuse();
     vertex.parents().map(|apex| {
         let turn = (from.x - apex.x) * (to.y - apex.y) - (from.y - apex.y) * (to.x - apex.x);
@@ -99,7 +99,7 @@ struct Diamond<'a> {
 
 impl<'a> Diamond<'a> {
     /// `None` where it reaches beyond the lattice.
-    fn new(lattice: &'a Lattice, layout: &Layout, vertex: Vertex) -> Option<Self> {
+    fn new(lattice: &'a Lattice, layout: &PatchLayout, vertex: Vertex) -> Option<Self> {
         let on = |triangle: Triangle| PostTriangle::new(lattice, &triangle);
         match triangles_split_at(layout, vertex) {
             [Some(first), Some(second)] => Some(Self { first: on(first)?, second: Some(on(second)?) }),
@@ -117,7 +117,7 @@ impl<'a> Diamond<'a> {
         self.triangles().all(|(triangle, _)| triangle.is_plain(lattice.pinned()))
     }
 
-    fn is_known_plain(&self, survey: &Survey) -> bool {
+    fn is_known_plain(&self, survey: &TileSurvey) -> bool {
         self.triangles().all(|(triangle, _)| {
             let (first, last) = triangle.bounds();
             survey.is_plain(first, last)
@@ -138,19 +138,19 @@ impl<'a> Diamond<'a> {
 }
 
 /// What is measured, and what is known of it.
-struct Measured<'a> {
+struct MeasuredLattice<'a> {
     lattice: &'a Lattice,
-    layout: &'a Layout,
-    survey: Survey,
+    layout: &'a PatchLayout,
+    survey: TileSurvey,
 }
 
-impl<'a> Measured<'a> {
+impl<'a> MeasuredLattice<'a> {
     /// Measures the vertices up to [`NEAR_STEP`] of the rows from `south` on that `errors` holds.
     fn band(&self, south: i32, errors: &mut [f32]) {
         let columns = self.layout.columns();
         for west in (0..columns as i32).step_by(near::BLOCK_COLUMNS) {
             let east = (west + near::BLOCK_COLUMNS as i32).min(columns as i32);
-            let block = Block { west, east, south, north: south + (errors.len() / columns) as i32 };
+            let block = VertexSpan { west, east, south, north: south + (errors.len() / columns) as i32 };
             let finest = 2 * near::LARGEST_STEP.min(self.layout.patch() / 2);
             if finest == 2 * near::LARGEST_STEP && self.is_plain_around(block) {
                 self.near(block, errors);
@@ -165,10 +165,10 @@ impl<'a> Measured<'a> {
     }
 
     /// Measures the vertices up to [`near::LARGEST_STEP`] of a block of plain ground.
-    fn near(&self, block: Block, errors: &mut [f32]) {
+    fn near(&self, block: VertexSpan, errors: &mut [f32]) {
         let (heights, columns) = (self.lattice.heights(), self.lattice.columns() as usize);
         let rows = (block.north - block.south) as usize;
-        let gathered = Gathered::of(heights, columns, Vertex::new(block.west, block.south), rows);
+        let gathered = BlockPosts::of(heights, columns, Vertex::new(block.west, block.south), rows);
         for (row, errors) in errors.chunks_exact_mut(self.layout.columns()).enumerate() {
             gathered.measure_row(row, &mut errors[block.west as usize..block.east as usize]);
         }
@@ -183,7 +183,13 @@ impl<'a> Measured<'a> {
     }
 
     /// Stores what `measure` finds for each vertex of a block on multiples of `stride`.
-    fn each(&self, block: Block, errors: &mut [f32], stride: i32, measure: impl Fn(Vertex) -> Option<f32>) {
+    fn each(
+        &self,
+        block: VertexSpan,
+        errors: &mut [f32],
+        stride: i32,
+        measure: impl Fn(Vertex) -> Option<f32>,
+    ) {
         for (row, y) in (block.south..block.north).enumerate().step_by(stride as usize) {
             let errors = &mut errors[row * self.layout.columns()..];
             for x in (block.west..block.east).step_by(stride as usize) {
@@ -210,14 +216,14 @@ impl<'a> Measured<'a> {
     }
 
     /// Whether triangles of the block may reach beyond the lattice.
-    fn reaches_out(&self, block: Block) -> bool {
+    fn reaches_out(&self, block: VertexSpan) -> bool {
         let (low, high) = (-near::LARGEST_STEP, near::LARGEST_STEP - 1);
         let (first, last) = (Vertex::new(block.west, block.south), Vertex::new(block.east, block.north));
         !(self.is_post(first.moved(low, low)) && self.is_post(last.moved(high, high)))
     }
 
     /// Whether all posts that the block's vertices up to [`near::LARGEST_STEP`] look at are known to be plain.
-    fn is_plain_around(&self, block: Block) -> bool {
+    fn is_plain_around(&self, block: VertexSpan) -> bool {
         let end = (self.lattice.columns() as i32 - 1, self.lattice.rows() as i32 - 1);
         let clamp = |x: i32, y: i32| (x.clamp(0, end.0), y.clamp(0, end.1));
         let reach = near::LARGEST_STEP;
@@ -234,7 +240,7 @@ impl<'a> Measured<'a> {
             .flat_map(|y| (0..columns).step_by(far as usize).map(move |x| Vertex::new(x, y)))
             .filter(|&vertex| !self.layout.is_corner(vertex))
             .collect();
-        let strips: Vec<(usize, Strip<'_>)> = vertices
+        let strips: Vec<(usize, ErrorStrip<'_>)> = vertices
             .par_iter()
             .enumerate()
             .flat_map_iter(|(at, &vertex)| self.strips(vertex).into_iter().map(move |strip| (at, strip)))
@@ -248,27 +254,27 @@ impl<'a> Measured<'a> {
         found
     }
 
-    fn strips(&self, vertex: Vertex) -> Vec<Strip<'a>> {
+    fn strips(&self, vertex: Vertex) -> Vec<ErrorStrip<'a>> {
         let diamond = Diamond::new(self.lattice, self.layout, vertex);
         let plain =
             diamond.filter(|diamond| diamond.is_known_plain(&self.survey) || diamond.is_plain(self.lattice));
         let Some(diamond) = plain else {
-            return vec![Strip::General(vertex)];
+            return vec![ErrorStrip::General(vertex)];
         };
         let mut strips = Vec::new();
         for (&triangle, hypotenuse) in diamond.triangles() {
             let rows = triangle.rows();
             for first in (0..rows).step_by(STRIP_ROWS as usize) {
-                strips.push(Strip::Plain(triangle, hypotenuse, first..rows.min(first + STRIP_ROWS)));
+                strips.push(ErrorStrip::Plain(triangle, hypotenuse, first..rows.min(first + STRIP_ROWS)));
             }
         }
         strips
     }
 
-    fn strip_error(&self, strip: &Strip<'_>) -> f32 {
+    fn strip_error(&self, strip: &ErrorStrip<'_>) -> f32 {
         match strip {
-            Strip::General(vertex) => general_error(self.lattice, self.layout, *vertex),
-            Strip::Plain(triangle, hypotenuse, rows) => {
+            ErrorStrip::General(vertex) => general_error(self.lattice, self.layout, *vertex),
+            ErrorStrip::Plain(triangle, hypotenuse, rows) => {
                 let mut worst = Worst::default();
                 triangle.scan(rows.clone(), *hypotenuse, &mut worst);
                 largest(&worst)
@@ -279,7 +285,7 @@ impl<'a> Measured<'a> {
 
 /// Vertices measured together, ends excluded.
 #[derive(Clone, Copy)]
-struct Block {
+struct VertexSpan {
     west: i32,
     east: i32,
     south: i32,
@@ -287,7 +293,7 @@ struct Block {
 }
 
 /// A part of a vertex's error.
-enum Strip<'a> {
+enum ErrorStrip<'a> {
     /// All of it, post by post.
     General(Vertex),
     /// That of some rows of a triangle.
@@ -298,12 +304,12 @@ enum Strip<'a> {
 ///
 /// Infinite where it covers both data and no data, or where it is off a pinned post; 0 where it covers no
 /// data at all or has no area.
-pub fn triangle_error(lattice: &Lattice, layout: &Layout, triangle: &Triangle) -> f32 {
+pub fn triangle_error(lattice: &Lattice, layout: &PatchLayout, triangle: &Triangle) -> f32 {
     let posts = triangle.corners().map(|vertex| layout.post(vertex));
     let Some(plane) = PostPlane::through(lattice, posts) else {
         return 0.0;
     };
-    let mut seen = Seen::default();
+    let mut seen = CoveredPosts::default();
     for row in RowSpans::of(posts) {
         seen.scan(lattice, &plane, row);
         if seen.error() == f32::INFINITY {
@@ -315,14 +321,14 @@ pub fn triangle_error(lattice: &Lattice, layout: &Layout, triangle: &Triangle) -
 
 /// What a triangle was found to cover.
 #[derive(Default)]
-struct Seen {
+struct CoveredPosts {
     worst: f32,
     data: bool,
     no_data: bool,
     worst_pinned: f32,
 }
 
-impl Seen {
+impl CoveredPosts {
     fn scan(&mut self, lattice: &Lattice, plane: &PostPlane, span: RowSpan) {
         let first = lattice.index(Post { column: span.first, row: span.row });
         let line = plane.along(span.row);
@@ -365,7 +371,7 @@ mod tests {
     }
 
     /// The error by testing every post against the triangle, the slow and obvious way.
-    fn plain_error(lattice: &Lattice, layout: &Layout, triangle: &Triangle) -> f32 {
+    fn plain_error(lattice: &Lattice, layout: &PatchLayout, triangle: &Triangle) -> f32 {
         let posts = triangle.corners().map(|vertex| layout.post(vertex));
         let [a, b, c] = posts.map(|post| {
             glam::DVec3::new(f64::from(post.column), f64::from(post.row), f64::from(lattice.height(post)))
@@ -391,7 +397,7 @@ mod tests {
     #[test]
     fn scanned_errors_equal_the_plain_ones_across_the_border_too() {
         let lattice = hilly(21, 14);
-        let layout = Layout::new(21, 14, 8).expect("sound");
+        let layout = PatchLayout::new(21, 14, 8).expect("sound");
         for corner in layout.patches() {
             let mut stack = Triangle::roots(corner, layout.patch()).to_vec();
             while let Some(triangle) = stack.pop().filter(|triangle| !triangle.is_finest()) {
@@ -422,7 +428,7 @@ mod tests {
             spots in proptest::collection::vec((0..150u32, 0..150u32), 0..4),
         ) {
             let lattice = spoilt(columns, rows, &spots);
-            let layout = Layout::new(columns, rows, 1 << log).expect("sound");
+            let layout = PatchLayout::new(columns, rows, 1 << log).expect("sound");
             for (index, &error) in own_errors(&lattice, &layout).iter().enumerate() {
                 let (x, y) = (index % layout.columns(), index / layout.columns());
                 let vertex = Vertex::new(x as i32, y as i32);
@@ -442,22 +448,23 @@ mod tests {
         let heights =
             (0..257 * 257).map(|index| 900.0 + (index % 257) as f32 * 3.7 - (index / 257) as f32 * 1.3);
         let lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 257, heights.collect()).expect("sound");
-        let worst =
-            own_errors(&lattice, &Layout::new(257, 257, 256).expect("sound")).into_iter().fold(0.0, f32::max);
+        let worst = own_errors(&lattice, &PatchLayout::new(257, 257, 256).expect("sound"))
+            .into_iter()
+            .fold(0.0, f32::max);
         assert!(worst < 1e-3, "{worst}");
     }
 
     #[test]
     fn errors_never_shrink_towards_the_roots() {
         let lattice = hilly(50, 37);
-        let layout = Layout::new(50, 37, 16).expect("sound");
+        let layout = PatchLayout::new(50, 37, 16).expect("sound");
         ErrorMap::exact(&lattice, &layout).check(&layout).expect("monotone");
     }
 
     #[test]
     fn flat_ground_has_no_error_and_a_hole_an_infinite_one() {
         let mut heights = vec![3.0; 17 * 17];
-        let layout = Layout::new(17, 17, 16).expect("sound");
+        let layout = PatchLayout::new(17, 17, 16).expect("sound");
         let make =
             |heights: &[f32]| Lattice::new(DVec2::ZERO, DVec2::ONE, 17, heights.to_vec()).expect("sound");
         let center = Vertex::new(8, 8);
@@ -470,7 +477,7 @@ mod tests {
     fn ground_that_is_pinned_is_refined_to_its_posts() {
         let mut lattice = hilly(17, 17);
         lattice.pin(Post { column: 4, row: 4 }, 50.0);
-        let layout = Layout::new(17, 17, 16).expect("sound");
+        let layout = PatchLayout::new(17, 17, 16).expect("sound");
         let map = ErrorMap::exact(&lattice, &layout);
         assert_eq!(map.at(&layout, Vertex::new(4, 4)), f32::INFINITY);
         assert!(map.at(&layout, Vertex::new(12, 12)).is_finite());

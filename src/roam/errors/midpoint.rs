@@ -11,9 +11,9 @@
 use std::borrow::Cow;
 
 use crate::roam::errors::ErrorMap;
-use crate::roam::errors::sweep::{Measure, Source};
+use crate::roam::errors::sweep::{OwnError, SweepSource};
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 use crate::terrain::lattice::Lattice;
 
 impl ErrorMap {
@@ -21,7 +21,7 @@ impl ErrorMap {
     ///
     /// A vertex that has no data, nor have the ends of its hypotenuse, has no error of its own; where only some
     /// of the three have data it is infinite. Patch corners have none. Pinned posts are not looked at.
-    pub fn midpoint(lattice: &Lattice, layout: &Layout) -> Self {
+    pub fn midpoint(lattice: &Lattice, layout: &PatchLayout) -> Self {
         let mut map = Self { errors: Vec::new() };
         map.measure_midpoint(lattice, layout);
         map
@@ -29,12 +29,12 @@ impl ErrorMap {
 
     /// Like [`ErrorMap::midpoint`], in the memory of this map where it has the size: new memory of millions of
     /// errors takes as long to come by as they take to measure.
-    pub fn measure_midpoint(&mut self, lattice: &Lattice, layout: &Layout) {
+    pub fn measure_midpoint(&mut self, lattice: &Lattice, layout: &PatchLayout) {
         if self.errors.len() != layout.vertex_count() {
             self.errors = vec![0f32; layout.vertex_count()];
         }
         let heights = heights(lattice, layout);
-        let source = Source::new(&heights, layout);
+        let source = SweepSource::new(&heights, layout);
         if !source.sweep::<Midpoints>(&mut self.errors) {
             let sound = source.sweep::<TornMidpoints>(&mut self.errors);
             debug_assert!(sound, "a measure that takes holes took none");
@@ -43,7 +43,7 @@ impl ErrorMap {
 }
 
 /// The height at every vertex: beyond a border, that of the nearest post on it.
-fn heights<'a>(lattice: &'a Lattice, layout: &Layout) -> Cow<'a, [f32]> {
+fn heights<'a>(lattice: &'a Lattice, layout: &PatchLayout) -> Cow<'a, [f32]> {
     if lattice.columns() as usize == layout.columns() && lattice.rows() as usize == layout.rows() {
         return Cow::Borrowed(lattice.heights());
     }
@@ -59,7 +59,7 @@ fn heights<'a>(lattice: &'a Lattice, layout: &Layout) -> Cow<'a, [f32]> {
 
 /// The midpoint error of a vertex of the layout alone, metres, the very bits that a map is raised from: see
 /// [`ErrorMap::midpoint`] for holes; 0 at patch corners.
-pub fn midpoint_error_at(lattice: &Lattice, layout: &Layout, vertex: Vertex) -> f32 {
+pub fn midpoint_error_at(lattice: &Lattice, layout: &PatchLayout, vertex: Vertex) -> f32 {
     if layout.is_corner(vertex) {
         return 0.0;
     }
@@ -97,7 +97,7 @@ struct Midpoints;
 /// Heights of which some are NaN.
 struct TornMidpoints;
 
-impl Measure for Midpoints {
+impl OwnError for Midpoints {
     const HOLES: bool = false;
 
     fn own(from: f32, to: f32, at: f32) -> f32 {
@@ -105,7 +105,7 @@ impl Measure for Midpoints {
     }
 }
 
-impl Measure for TornMidpoints {
+impl OwnError for TornMidpoints {
     const HOLES: bool = true;
 
     fn own(from: f32, to: f32, at: f32) -> f32 {
@@ -120,7 +120,7 @@ mod tests {
     use proptest::prelude::*;
 
     /// The same by its words: every vertex's own error, then every vertex after its children.
-    fn plain(lattice: &Lattice, layout: &Layout) -> Vec<f32> {
+    fn plain(lattice: &Lattice, layout: &PatchLayout) -> Vec<f32> {
         let mut errors = vec![0f32; layout.vertex_count()];
         let mut step = 1;
         while step < layout.patch() {
@@ -172,7 +172,7 @@ mod tests {
             let fit = |posts: u32| if snug { (posts - 1).next_multiple_of(patch) + 1 } else { posts };
             let (columns, rows) = (fit(columns), fit(rows));
             let lattice = rough(columns, rows, &holes);
-            let layout = Layout::new(columns, rows, patch).expect("sound");
+            let layout = PatchLayout::new(columns, rows, patch).expect("sound");
             let expected = plain(&lattice, &layout);
             for threads in [1, 2] {
                 let map = pool(threads).install(|| ErrorMap::midpoint(&lattice, &layout));
@@ -185,7 +185,7 @@ mod tests {
         fn given_errors_are_raised_to_their_children_and_no_further(
             columns in 2u32..100, rows in 2u32..200, power in 1u32..7,
         ) {
-            let layout = Layout::new(columns, rows, 1 << power).expect("sound");
+            let layout = PatchLayout::new(columns, rows, 1 << power).expect("sound");
             let own: Vec<f32> = (0..layout.vertex_count()).map(|at| (at * 7919 % 1009) as f32).collect();
             let mut expected = own.clone();
             let mut step = 1;
@@ -217,7 +217,7 @@ mod tests {
     fn a_single_bump_is_seen_by_all_its_ancestors_and_by_nobody_else() {
         let mut heights = vec![0f32; 17 * 17];
         heights[5 * 17 + 4] = 8.0;
-        let layout = Layout::new(17, 17, 16).expect("sound");
+        let layout = PatchLayout::new(17, 17, 16).expect("sound");
         let map = ErrorMap::midpoint(&lattice(17, heights), &layout);
         assert_eq!(map.at(&layout, Vertex::new(4, 5)), 8.0);
         assert_eq!(map.at(&layout, Vertex::new(8, 8)), 8.0);
@@ -230,7 +230,7 @@ mod tests {
         for row in heights.chunks_exact_mut(17) {
             row[..9].fill(f32::NAN);
         }
-        let layout = Layout::new(17, 17, 16).expect("sound");
+        let layout = PatchLayout::new(17, 17, 16).expect("sound");
         let map = ErrorMap::midpoint(&lattice(17, heights), &layout);
         assert_eq!(map.at(&layout, Vertex::new(8, 8)), f32::INFINITY);
         assert_eq!(map.at(&layout, Vertex::new(3, 3)), 0.0);
@@ -238,7 +238,7 @@ mod tests {
 
     #[test]
     fn measuring_again_forgets_what_was_measured_before() {
-        let layout = Layout::new(33, 33, 8).expect("sound");
+        let layout = PatchLayout::new(33, 33, 8).expect("sound");
         let mut map = ErrorMap::midpoint(&rough(33, 33, &[]), &layout);
         let flat = lattice(33, vec![5.0; 33 * 33]);
         map.measure_midpoint(&flat, &layout);

@@ -22,10 +22,10 @@ pub mod survey;
 mod sweep;
 
 use crate::roam::errors::scan::larger;
-use crate::roam::errors::sweep::{Given, Source};
-use crate::roam::graph::{Kind, Vertex};
-use crate::roam::layout::Layout;
-use crate::roam::levels::{Beside, PassRow, both_sides};
+use crate::roam::errors::sweep::{KnownErrors, SweepSource};
+use crate::roam::graph::{Vertex, VertexKind};
+use crate::roam::layout::PatchLayout;
+use crate::roam::levels::{ChildRows, PassRow, both_sides};
 
 /// The object-space error of every vertex, in metres without exaggeration.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +39,7 @@ impl ErrorMap {
     ///
     /// # Panics
     /// Where there is not one error a vertex.
-    pub fn raised(own: Vec<f32>, layout: &Layout) -> Self {
+    pub fn raised(own: Vec<f32>, layout: &PatchLayout) -> Self {
         assert_eq!(own.len(), layout.vertex_count(), "one error a vertex");
         let mut map = Self { errors: own };
         map.raise_to_children(layout);
@@ -53,13 +53,13 @@ impl ErrorMap {
 
     /// The errors of the row of vertices `y`.
     #[inline]
-    pub(in crate::roam) fn row(&self, layout: &Layout, y: usize) -> &[f32] {
+    pub(in crate::roam) fn row(&self, layout: &PatchLayout, y: usize) -> &[f32] {
         &self.errors[y * layout.columns()..][..layout.columns()]
     }
 
     /// The error at a vertex of the layout it was measured with: metres, or infinite.
     #[inline]
-    pub fn at(&self, layout: &Layout, vertex: Vertex) -> f32 {
+    pub fn at(&self, layout: &PatchLayout, vertex: Vertex) -> f32 {
         self.errors[layout.index(vertex)]
     }
 
@@ -68,13 +68,13 @@ impl ErrorMap {
     #[inline]
     pub(in crate::roam) fn renew_row(
         &mut self,
-        layout: &Layout,
+        layout: &PatchLayout,
         row: PassRow,
         mut own: impl FnMut(usize) -> f32,
         changed: &mut Vec<Vertex>,
     ) {
         let (reach, columns) = (row.pass.child_reach(), layout.columns());
-        let Beside { here, south, north } = row.of(&mut self.errors, layout);
+        let ChildRows { here, south, north } = row.of(&mut self.errors, layout);
         let mut put = |here: &mut [f32], x: usize, error: f32| {
             if std::mem::replace(&mut here[x], error) != error {
                 changed.push(Vertex::new(x as i32, row.y as i32));
@@ -82,7 +82,7 @@ impl ErrorMap {
         };
         if row.pass.is_finest() {
             row.columns().for_each(|x| put(here, x, own(x)));
-        } else if row.pass.kind == Kind::Center {
+        } else if row.pass.kind == VertexKind::Center {
             for x in row.columns() {
                 let below = larger(larger(here[x - reach], here[x + reach]), larger(south[x], north[x]));
                 put(here, x, larger(own(x), below));
@@ -97,9 +97,9 @@ impl ErrorMap {
     }
 
     /// Makes every vertex's error at least that of its children, finest level first; patch corners get none.
-    fn raise_to_children(&mut self, layout: &Layout) {
+    fn raise_to_children(&mut self, layout: &PatchLayout) {
         let mut raised = vec![0f32; self.errors.len()];
-        let sound = Source::new(&self.errors, layout).sweep::<Given>(&mut raised);
+        let sound = SweepSource::new(&self.errors, layout).sweep::<KnownErrors>(&mut raised);
         debug_assert!(sound, "given errors are taken as they are");
         self.errors = raised;
     }
@@ -108,7 +108,7 @@ impl ErrorMap {
     ///
     /// # Errors
     /// A sentence naming the first pair that is out of order.
-    pub fn check(&self, layout: &Layout) -> Result<(), String> {
+    pub fn check(&self, layout: &PatchLayout) -> Result<(), String> {
         for index in 0..layout.vertex_count() {
             let vertex = Vertex::new((index % layout.columns()) as i32, (index / layout.columns()) as i32);
             if layout.is_corner(vertex) {

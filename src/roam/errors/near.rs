@@ -16,7 +16,7 @@
 use std::ops::{Add, Mul, Sub};
 
 use crate::roam::errors::scan::larger;
-use crate::roam::graph::{Kind, Vertex};
+use crate::roam::graph::{Vertex, VertexKind};
 
 /// The largest step that is treated here.
 pub const LARGEST_STEP: i32 = 4;
@@ -95,12 +95,12 @@ pub fn error(heights: &[f32], columns: usize, vertex: Vertex) -> f32 {
 }
 
 /// The posts of a block, those of equal triangles together.
-pub struct Gathered {
+pub struct BlockPosts {
     rows: Vec<[[f32; LANES]; PERIOD + 2 * MARGIN]>,
     first: Vertex,
 }
 
-impl Gathered {
+impl BlockPosts {
     /// The posts of the block of `rows` rows and [`BLOCK_COLUMNS`] columns from vertex `first` on, which lies on a
     /// multiple of [`PERIOD`] both ways, and those around it. Posts beyond the lattice's borders repeat those on
     /// them.
@@ -160,18 +160,18 @@ fn diamond_error<const N: usize>(vertex: Vertex, post: impl Fn(isize, isize) -> 
         (to.x > from.x) == (to.y > from.y)
     };
     match (vertex.step(), vertex.kind()) {
-        (1, Kind::EastEdge) => off_middle(post(0, 0), post(-1, 0), post(1, 0)),
-        (1, Kind::NorthEdge) => off_middle(post(0, 0), post(0, -1), post(0, 1)),
-        (1, Kind::Center) if rises() => center_of_step_one(post),
-        (1, Kind::Center) => center_of_step_one(mirrored),
-        (2, Kind::EastEdge) => edge::<2, N>(post),
-        (2, Kind::NorthEdge) => edge::<2, N>(turned),
-        (2, Kind::Center) if rises() => center::<2, N>(post),
-        (2, Kind::Center) => center::<2, N>(mirrored),
-        (_, Kind::EastEdge) => edge::<4, N>(post),
-        (_, Kind::NorthEdge) => edge::<4, N>(turned),
-        (_, Kind::Center) if rises() => center::<4, N>(post),
-        (_, Kind::Center) => center::<4, N>(mirrored),
+        (1, VertexKind::EastEdge) => off_middle(post(0, 0), post(-1, 0), post(1, 0)),
+        (1, VertexKind::NorthEdge) => off_middle(post(0, 0), post(0, -1), post(0, 1)),
+        (1, VertexKind::Center) if rises() => center_of_step_one(post),
+        (1, VertexKind::Center) => center_of_step_one(mirrored),
+        (2, VertexKind::EastEdge) => edge::<2, N>(post),
+        (2, VertexKind::NorthEdge) => edge::<2, N>(turned),
+        (2, VertexKind::Center) if rises() => center::<2, N>(post),
+        (2, VertexKind::Center) => center::<2, N>(mirrored),
+        (_, VertexKind::EastEdge) => edge::<4, N>(post),
+        (_, VertexKind::NorthEdge) => edge::<4, N>(turned),
+        (_, VertexKind::Center) if rises() => center::<4, N>(post),
+        (_, VertexKind::Center) => center::<4, N>(mirrored),
     }
 }
 

@@ -9,13 +9,13 @@ use rayon::prelude::*;
 use crate::roam::bintree::Triangle;
 use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 use crate::terrain::lattice::Lattice;
 
 impl ErrorMap {
     /// The relief of `lattice` around every vertex in metres, raised to that of the children: infinite over data
     /// and no data at once, 0 over no data at all. In parallel over patches, the same for any number of threads.
-    pub fn relief(lattice: &Lattice, layout: &Layout) -> Self {
+    pub fn relief(lattice: &Lattice, layout: &PatchLayout) -> Self {
         let patches: Vec<Vertex> = layout.patches().collect();
         let measured: Vec<PatchRanges> =
             patches.par_iter().map(|&corner| PatchRanges::measure(lattice, layout, corner)).collect();
@@ -72,7 +72,7 @@ struct PatchRanges {
 }
 
 impl PatchRanges {
-    fn measure(lattice: &Lattice, layout: &Layout, corner: Vertex) -> Self {
+    fn measure(lattice: &Lattice, layout: &PatchLayout, corner: Vertex) -> Self {
         let side = layout.patch() as usize + 1;
         let mut patch = Self { corner, side, ranges: vec![Range::NOTHING; side * side] };
         for root in Triangle::roots(corner, layout.patch()) {
@@ -82,7 +82,7 @@ impl PatchRanges {
     }
 
     /// The range of a triangle; recursion is as deep as the patch has levels.
-    fn cover(&mut self, lattice: &Lattice, layout: &Layout, triangle: &Triangle) -> Range {
+    fn cover(&mut self, lattice: &Lattice, layout: &PatchLayout, triangle: &Triangle) -> Range {
         if triangle.is_finest() {
             return finest(lattice, layout, triangle);
         }
@@ -95,7 +95,7 @@ impl PatchRanges {
     }
 }
 
-fn finest(lattice: &Lattice, layout: &Layout, triangle: &Triangle) -> Range {
+fn finest(lattice: &Lattice, layout: &PatchLayout, triangle: &Triangle) -> Range {
     let posts = triangle.corners().map(|vertex| layout.post(vertex));
     // Legs are one cell long: a corner beyond the border falls on another corner.
     if posts[0] == posts[1] || posts[1] == posts[2] || posts[2] == posts[0] {
@@ -111,7 +111,7 @@ mod tests {
     use proptest::prelude::*;
 
     /// The relief of the two triangles at a vertex by asking every post whether it lies in them.
-    fn plain_m(lattice: &Lattice, layout: &Layout, vertex: Vertex) -> f32 {
+    fn plain_m(lattice: &Lattice, layout: &PatchLayout, vertex: Vertex) -> f32 {
         let [from, to] = vertex.hypotenuse();
         let apexes = vertex.parents().into_iter().filter(|&apex| layout.contains(apex));
         let sides: Vec<[Vertex; 3]> = apexes.map(|apex| [apex, from, to]).collect();
@@ -141,7 +141,7 @@ mod tests {
         ) {
             let mut heights = heights;
             heights[hole] = f32::NAN;
-            let layout = Layout::new(17, 33, 8).expect("sound");
+            let layout = PatchLayout::new(17, 33, 8).expect("sound");
             let lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 17, heights).expect("sound");
             let all = layout.patches().next().map(|_| (0..33).flat_map(|y| (0..17).map(move |x| Vertex::new(x, y))));
             let vertices: Vec<Vertex> =
@@ -158,7 +158,7 @@ mod tests {
 
     #[test]
     fn ground_beyond_the_border_and_ground_without_data_have_no_relief() {
-        let layout = Layout::new(10, 17, 16).expect("sound");
+        let layout = PatchLayout::new(10, 17, 16).expect("sound");
         let mut heights: Vec<f32> = (0..170).map(|index| index as f32).collect();
         heights[..80].fill(f32::NAN);
         let lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 10, heights).expect("sound");

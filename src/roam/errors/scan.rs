@@ -46,7 +46,7 @@ pub enum Hypotenuse {
 
 /// Signs tell in which direction from the apex the triangle lies.
 #[derive(Clone, Copy, Debug)]
-enum Shape {
+enum ScanShape {
     /// Legs of `leg` cells.
     Corner { east: i32, north: i32, leg: i32 },
     /// The hypotenuse runs east, `reach` rows away.
@@ -64,7 +64,7 @@ pub struct PostTriangle<'a> {
     apex_height: f32,
     per_column: f32,
     per_row: f32,
-    shape: Shape,
+    shape: ScanShape,
 }
 
 impl<'a> PostTriangle<'a> {
@@ -85,13 +85,13 @@ impl<'a> PostTriangle<'a> {
             let north = (from.1 - apex.1).signum();
             let scale = 0.5 / reach as f32;
             let rise = if to.0 > from.0 { right - left } else { left - right };
-            (Shape::Upright { north, reach }, rise * scale, (left + right) * (scale * north as f32))
+            (ScanShape::Upright { north, reach }, rise * scale, (left + right) * (scale * north as f32))
         } else if from.0 == to.0 {
             let reach = (from.0 - apex.0).abs();
             let east = (from.0 - apex.0).signum();
             let scale = 0.5 / reach as f32;
             let rise = if to.1 > from.1 { right - left } else { left - right };
-            (Shape::Aslant { east, reach }, (left + right) * (scale * east as f32), rise * scale)
+            (ScanShape::Aslant { east, reach }, (left + right) * (scale * east as f32), rise * scale)
         } else {
             let ((ahead, along), (aside, across)) = if from.1 == apex.1 {
                 ((from.0, left), (to.1, right))
@@ -102,7 +102,7 @@ impl<'a> PostTriangle<'a> {
             let leg = (ahead - apex.0).abs();
             let scale = 1.0 / leg as f32;
             (
-                Shape::Corner { east, north, leg },
+                ScanShape::Corner { east, north, leg },
                 along * (scale * east as f32),
                 across * (scale * north as f32),
             )
@@ -113,9 +113,9 @@ impl<'a> PostTriangle<'a> {
     /// How many rows of posts it covers, counted from the apex or, where that stands aside, from the south.
     pub fn rows(&self) -> i32 {
         match self.shape {
-            Shape::Corner { leg, .. } => leg + 1,
-            Shape::Upright { reach, .. } => reach + 1,
-            Shape::Aslant { reach, .. } => 2 * reach + 1,
+            ScanShape::Corner { leg, .. } => leg + 1,
+            ScanShape::Upright { reach, .. } => reach + 1,
+            ScanShape::Aslant { reach, .. } => 2 * reach + 1,
         }
     }
 
@@ -124,9 +124,9 @@ impl<'a> PostTriangle<'a> {
         let (x, y) = self.apex;
         let reach_to = |from: i32, by: i32| (from.min(from + by), from.max(from + by));
         let ((west, east), (south, north)) = match self.shape {
-            Shape::Corner { east, north, leg } => (reach_to(x, east * leg), reach_to(y, north * leg)),
-            Shape::Upright { north, reach } => ((x - reach, x + reach), reach_to(y, north * reach)),
-            Shape::Aslant { east, reach } => (reach_to(x, east * reach), (y - reach, y + reach)),
+            ScanShape::Corner { east, north, leg } => (reach_to(x, east * leg), reach_to(y, north * leg)),
+            ScanShape::Upright { north, reach } => ((x - reach, x + reach), reach_to(y, north * reach)),
+            ScanShape::Aslant { east, reach } => (reach_to(x, east * reach), (y - reach, y + reach)),
         };
         ((west, south), (east, north))
     }
@@ -162,18 +162,18 @@ impl<'a> PostTriangle<'a> {
         let (x, y) = self.apex;
         let left = i32::from(hypotenuse == Hypotenuse::Left);
         match self.shape {
-            Shape::Corner { east, north, leg } => {
+            ScanShape::Corner { east, north, leg } => {
                 for up in rows {
                     let reach = leg - up - left;
                     visit(y + north * up, if east > 0 { x } else { x - reach }, reach + 1);
                 }
             }
-            Shape::Upright { north, reach } => {
+            ScanShape::Upright { north, reach } => {
                 for up in rows.start..rows.end.min(reach + 1 - left) {
                     visit(y + north * up, x - up, 2 * up + 1);
                 }
             }
-            Shape::Aslant { east, reach } => {
+            ScanShape::Aslant { east, reach } => {
                 for up in rows {
                     let (near, far) = ((up - reach).abs(), reach - left);
                     visit(y - reach + up, if east > 0 { x + near } else { x - far }, far - near + 1);

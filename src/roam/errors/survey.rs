@@ -13,12 +13,12 @@ const TILE: usize = 32;
 
 /// Which tiles of a lattice are plain.
 #[derive(Clone, Debug)]
-pub struct Survey {
+pub struct TileSurvey {
     tiles_east: usize,
     blemished: Vec<bool>,
 }
 
-impl Survey {
+impl TileSurvey {
     /// Looks at every post once.
     pub fn of(lattice: &Lattice) -> Self {
         let columns = lattice.columns() as usize;
@@ -67,7 +67,7 @@ mod tests {
         heights[40 * 100 + 70] = f32::NAN;
         let mut lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 100, heights).expect("sound");
         lattice.pin(Post { column: 99, row: 69 }, 2.0);
-        let survey = Survey::of(&lattice);
+        let survey = TileSurvey::of(&lattice);
         assert!(survey.is_plain((0, 0), (99, 31)) && survey.is_plain((0, 0), (63, 69)));
         assert!(!survey.is_plain((60, 30), (64, 32)) && !survey.is_plain((96, 64), (96, 64)));
         assert!(survey.is_plain((96, 32), (99, 63)));

@@ -19,10 +19,10 @@
 
 use rayon::prelude::*;
 
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 
 /// What a vertex's own error is.
-pub trait Measure {
+pub trait OwnError {
     /// Whether values may be NaN. Where they may not, a sweep stops at the first that is.
     const HOLES: bool;
 
@@ -31,9 +31,9 @@ pub trait Measure {
 }
 
 /// Own errors that are already known, at their vertices.
-pub struct Given;
+pub struct KnownErrors;
 
-impl Measure for Given {
+impl OwnError for KnownErrors {
     const HOLES: bool = true;
 
     fn own(_: f32, _: f32, at: f32) -> f32 {
@@ -49,7 +49,7 @@ const BAND_ROWS: usize = 64;
 
 /// A lattice of values, one error a cell of it, and where errors go.
 #[derive(Clone, Copy)]
-pub struct Source<'a> {
+pub struct SweepSource<'a> {
     /// Heights or own errors, row by row.
     values: &'a [f32],
     /// The largest error below each cell; none on the finest level.
@@ -60,12 +60,12 @@ pub struct Source<'a> {
     patch: usize,
 }
 
-impl<'a> Source<'a> {
+impl<'a> SweepSource<'a> {
     /// One value a vertex of the layout.
     ///
     /// # Panics
     /// Where there is not.
-    pub fn new(values: &'a [f32], layout: &Layout) -> Self {
+    pub fn new(values: &'a [f32], layout: &PatchLayout) -> Self {
         assert_eq!(values.len(), layout.vertex_count(), "one value a vertex");
         let (columns, rows) = (layout.columns(), layout.rows());
         Self { values, cells: None, columns, rows, patch: layout.patch() as usize }
@@ -75,7 +75,7 @@ impl<'a> Source<'a> {
     ///
     /// Whether the values were what the measure asks for; where they were not, what was written has no meaning.
     #[must_use]
-    pub fn sweep<M: Measure>(&self, out: &mut [f32]) -> bool {
+    pub fn sweep<M: OwnError>(&self, out: &mut [f32]) -> bool {
         let levels = self.patch.ilog2().min(BAND_LEVELS);
         let side = 1usize << levels;
         let (columns, rows) = ((self.columns - 1) / side, (self.rows - 1) / side);
@@ -95,7 +95,7 @@ impl<'a> Source<'a> {
         }
         let patch = self.patch / side;
         let source =
-            Source { values: &values, cells: Some(&cells), columns: columns + 1, rows: rows + 1, patch };
+            SweepSource { values: &values, cells: Some(&cells), columns: columns + 1, rows: rows + 1, patch };
         let mut errors = vec![0f32; values.len()];
         let sound = source.sweep::<M>(&mut errors);
         let to_rows = out.chunks_exact_mut(self.columns).step_by(side);
@@ -106,7 +106,7 @@ impl<'a> Source<'a> {
     }
 
     /// Bands of rows, each a multiple of `side`, the last with one row more.
-    fn bands<'b>(&self, side: usize, mut out: &'b mut [f32], mut cells: &'b mut [f32]) -> Vec<Band<'b>>
+    fn bands<'b>(&self, side: usize, mut out: &'b mut [f32], mut cells: &'b mut [f32]) -> Vec<SweepBand<'b>>
     where
         'a: 'b,
     {
@@ -124,7 +124,7 @@ impl<'a> Source<'a> {
             let rows = if rest <= height + 1 { rest } else { height };
             let (own, others) = out.split_at_mut(rows * self.columns);
             let (own_cells, other_cells) = cells.split_at_mut(rows / side * ((self.columns - 1) / side));
-            bands.push(Band { source: *self, first, rows, out: own, cells: own_cells });
+            bands.push(SweepBand { source: *self, first, rows, out: own, cells: own_cells });
             (out, cells, first) = (others, other_cells, first + rows);
         }
         bands
@@ -132,8 +132,8 @@ impl<'a> Source<'a> {
 }
 
 /// Rows that one thread writes.
-struct Band<'a> {
-    source: Source<'a>,
+struct SweepBand<'a> {
+    source: SweepSource<'a>,
     first: usize,
     rows: usize,
     out: &'a mut [f32],
@@ -143,7 +143,7 @@ struct Band<'a> {
 
 /// Between the steps of a level: the last rows that came from the next finer one, and what was made of them.
 #[derive(Default)]
-struct Level {
+struct SweepLevel {
     /// Source by row modulo 4.
     rows: [Vec<f32>; 4],
     /// Errors of the cells by row modulo 4, with a 0 before and after each row.
@@ -160,7 +160,7 @@ struct Level {
     zeros: Vec<f32>,
 }
 
-impl Level {
+impl SweepLevel {
     fn new(columns: usize) -> Self {
         let row = |length: usize| vec![0f32; length];
         Self {
@@ -180,20 +180,20 @@ impl Level {
 
 /// Where a sweep of a band starts and ends: rows of the source, ends included.
 #[derive(Clone, Copy)]
-struct Reach {
+struct SweepReach {
     south: usize,
     north: usize,
 }
 
-impl Band<'_> {
-    fn sweep<M: Measure>(&mut self, levels: u32) -> bool {
+impl SweepBand<'_> {
+    fn sweep<M: OwnError>(&mut self, levels: u32) -> bool {
         // What an end of the reach spoils lies within the coarsest square beside it.
         let early = 1usize << levels;
         let south = self.first.saturating_sub(early);
         let north = (self.first + self.rows - 1).next_multiple_of(early) + early;
-        let reach = Reach { south, north: north.min(self.source.rows - 1) };
-        let mut stages: Vec<Level> =
-            (0..=levels).map(|level| Level::new(((self.source.columns - 1) >> level) + 1)).collect();
+        let reach = SweepReach { south, north: north.min(self.source.rows - 1) };
+        let mut stages: Vec<SweepLevel> =
+            (0..=levels).map(|level| SweepLevel::new(((self.source.columns - 1) >> level) + 1)).collect();
         for pair in 0..(reach.north - reach.south) / 2 {
             if !M::HOLES && self.has_hole(reach, pair) {
                 return false;
@@ -205,7 +205,7 @@ impl Band<'_> {
     }
 
     /// Whether a value is NaN, of those that one step of the finest level reads first.
-    fn has_hole(&self, reach: Reach, pair: usize) -> bool {
+    fn has_hole(&self, reach: SweepReach, pair: usize) -> bool {
         let columns = self.source.columns;
         let rows = if pair == 0 { 0..3 } else { 2 * pair + 1..2 * pair + 3 };
         let values = &self.source.values[(reach.south + rows.start) * columns..];
@@ -213,7 +213,7 @@ impl Band<'_> {
     }
 
     /// Copies the cells that one step needs into the finest stage.
-    fn take_cells(&self, stage: &mut Level, reach: Reach, pair: usize) {
+    fn take_cells(&self, stage: &mut SweepLevel, reach: SweepReach, pair: usize) {
         let Some(cells) = self.source.cells else { return };
         let width = self.source.columns - 1;
         for row in 2 * pair..2 * pair + 3 {
@@ -226,12 +226,13 @@ impl Band<'_> {
     }
 
     /// Works off rows 2·pair to 2·pair + 2 of a level, counted from the reach's south end in the level's steps.
-    fn step<M: Measure>(&mut self, stages: &mut [Level], level: usize, reach: Reach, pair: usize) {
+    fn step<M: OwnError>(&mut self, stages: &mut [SweepLevel], level: usize, reach: SweepReach, pair: usize) {
         let last = ((reach.north - reach.south) >> (level + 1)) - 1;
         let (finer, coarser) = stages.split_at_mut(level + 1);
         let (here, next) = (&mut finer[level], &mut coarser[0]);
         let source = self.source;
-        let Level { rows, cells, odds, mid_evens, low_east, high_east, north, center, around, zeros } = here;
+        let SweepLevel { rows, cells, odds, mid_evens, low_east, high_east, north, center, around, zeros } =
+            here;
         let row = |index: usize| match level {
             0 => &source.values[(reach.south + index) * source.columns..][..source.columns],
             _ => rows[index % 4].as_slice(),
@@ -355,14 +356,14 @@ fn join(evens: &[f32], odds: &[f32], row: &mut [f32]) {
     }
 }
 
-fn own_east<M: Measure>(evens: &[f32], odds: &[f32], out: &mut [f32]) {
+fn own_east<M: OwnError>(evens: &[f32], odds: &[f32], out: &mut [f32]) {
     let ends = evens.iter().zip(&evens[1..]);
     for (out, (&at, (&west, &east))) in out.iter_mut().zip(odds.iter().zip(ends)) {
         *out = M::own(west, east, at);
     }
 }
 
-fn own_north<M: Measure>(low: &[f32], mid: &[f32], high: &[f32], out: &mut [f32]) {
+fn own_north<M: OwnError>(low: &[f32], mid: &[f32], high: &[f32], out: &mut [f32]) {
     let ends = low.iter().zip(high);
     for (out, (&at, (&south, &north))) in out.iter_mut().zip(mid.iter().zip(ends)) {
         *out = M::own(south, north, at);
@@ -371,7 +372,7 @@ fn own_north<M: Measure>(low: &[f32], mid: &[f32], high: &[f32], out: &mut [f32]
 
 /// The hypotenuse of an even centre joins the near row's value before it to the far row's after it, that of an odd
 /// one the near row's after it to the far row's before it. Chosen by masks: a condition would keep the loop scalar.
-fn own_center<M: Measure>(near: &[f32], odds: &[f32], far: &[f32], out: &mut [f32]) {
+fn own_center<M: OwnError>(near: &[f32], odds: &[f32], far: &[f32], out: &mut [f32]) {
     let count = out.len();
     let (near, near_after, far, far_after) =
         (&near[..count], &near[1..=count], &far[..count], &far[1..=count]);

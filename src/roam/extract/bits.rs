@@ -1,6 +1,6 @@
 //! The first two passes of extraction: one bit a vertex, and the vertices' numbers, which are counts of bits.
 
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 
 /// Columns and rows of the blocks that are passed over where their centre is not active: sixteen errors are one
 /// line of the cache, and a quarter of a word of bits.
@@ -8,7 +8,7 @@ const BLOCK: usize = 16;
 
 /// Which vertices are active, row by row, and how many are before each word.
 #[derive(Clone, Debug, Default)]
-pub struct Bits {
+pub struct ActiveBits {
     pub words: Vec<u64>,
     pub before: Vec<u32>,
     /// The numbers of active vertices with even coordinates; of others, whatever was there.
@@ -21,8 +21,8 @@ pub struct Bits {
     pub patch: usize,
 }
 
-impl Bits {
-    pub fn set(&mut self, layout: &Layout, errors: &[f32], tolerance_m: f32) {
+impl ActiveBits {
+    pub fn set(&mut self, layout: &PatchLayout, errors: &[f32], tolerance_m: f32) {
         (self.columns, self.rows) = (layout.columns(), layout.rows());
         self.patch = layout.patch() as usize;
         self.width = self.columns.div_ceil(64);
@@ -111,7 +111,7 @@ impl Bits {
     }
 
     /// Room for all triangles and for those that are written and then thought better of.
-    pub fn most_triangles(layout: &Layout, vertices: &[u32]) -> usize {
+    pub fn most_triangles(layout: &PatchLayout, vertices: &[u32]) -> usize {
         2 * layout.patch_count() + 2 * vertices.len() + 4
     }
 

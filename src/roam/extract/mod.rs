@@ -23,9 +23,9 @@ mod bits;
 
 use crate::roam::bintree::Triangle;
 use crate::roam::errors::ErrorMap;
-use crate::roam::extract::bits::{Bits, places};
+use crate::roam::extract::bits::{ActiveBits, places};
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 
 /// A mesh of posts, and the memory it was made in: extracting again reuses it.
 #[derive(Clone, Debug, Default)]
@@ -34,7 +34,7 @@ pub struct Extract {
     /// As long as the longest list so far; the first `count` are the mesh's.
     triangles: Vec<[u32; 3]>,
     count: usize,
-    bits: Bits,
+    bits: ActiveBits,
 }
 
 impl Extract {
@@ -93,10 +93,10 @@ impl Extract {
 ///
 /// Where patches reach past the lattice's border, triangles beyond it are left out, as they are drawn. Errors know
 /// nothing of data: see [`Extract::retain`].
-pub fn extract(layout: &Layout, errors: &ErrorMap, tolerance_m: f32, out: &mut Extract) {
+pub fn extract(layout: &PatchLayout, errors: &ErrorMap, tolerance_m: f32, out: &mut Extract) {
     out.bits.set(layout, errors.values(), tolerance_m);
     out.bits.number(&mut out.vertices);
-    let most = Bits::most_triangles(layout, &out.vertices);
+    let most = ActiveBits::most_triangles(layout, &out.vertices);
     if out.triangles.len() < most {
         out.triangles = vec![[0; 3]; most];
     }
@@ -109,7 +109,7 @@ pub fn extract(layout: &Layout, errors: &ErrorMap, tolerance_m: f32, out: &mut E
 }
 
 /// Replaces the vertices beyond a border by the posts they stand for.
-fn clamp_to_border(layout: &Layout, out: &mut Extract) {
+fn clamp_to_border(layout: &PatchLayout, out: &mut Extract) {
     let (columns, rows) = (layout.columns() as i32, layout.rows() as i32);
     let last = layout.post(Vertex::new(columns - 1, rows - 1));
     if (last.column as i32, last.row as i32) == (columns - 1, rows - 1) {
@@ -143,13 +143,13 @@ struct Star {
 
 impl Star {
     /// Of edges' middles and centres by turns, from the finest step.
-    fn all(bits: &Bits) -> Vec<Self> {
+    fn all(bits: &ActiveBits) -> Vec<Self> {
         let steps = (0..bits.patch.ilog2()).map(|level| 1isize << level);
         let first = |step: isize| [((step, 0), (step / 2, step / 2)), ((-step, -step), (0, -step))];
         steps.flat_map(first).map(|(corner, child)| Self::new(bits, corner, child)).collect()
     }
 
-    fn new(bits: &Bits, mut corner: (isize, isize), mut child: (isize, isize)) -> Self {
+    fn new(bits: &ActiveBits, mut corner: (isize, isize), mut child: (isize, isize)) -> Self {
         let mut star = Self::default();
         for at in 0..4 {
             star.corners[at] = (corner.1 / 2 * bits.even_width as isize + corner.0 / 2) as usize;
@@ -163,7 +163,7 @@ impl Star {
 
 /// The pass that writes triangles.
 struct Emitter<'a> {
-    bits: &'a Bits,
+    bits: &'a ActiveBits,
     stars: &'a [Star],
     triangles: &'a mut [[u32; 3]],
     count: usize,
@@ -171,7 +171,7 @@ struct Emitter<'a> {
 
 impl Emitter<'_> {
     /// The roots of patches that are not split.
-    fn roots(&mut self, layout: &Layout) {
+    fn roots(&mut self, layout: &PatchLayout) {
         let half = layout.patch() / 2;
         for corner in layout.patches() {
             if !self.bits.get((corner.x + half) as usize, (corner.y + half) as usize) {
@@ -211,7 +211,7 @@ impl Emitter<'_> {
 
     /// Finest north edges at even columns, finest centres between them.
     fn odd_row(&mut self, y: usize) {
-        let Bits { words, before, width, columns, .. } = self.bits;
+        let ActiveBits { words, before, width, columns, .. } = self.bits;
         let row = |y: usize| (&words[y * width..][..*width], &before[y * width..][..*width]);
         let ((low, low_before), (mid, mid_before), (high, high_before)) = (row(y - 1), row(y), row(y + 1));
         for place in 0..*width {
@@ -253,7 +253,7 @@ impl Emitter<'_> {
 
     /// Finest east edges at odd columns, coarser vertices between them.
     fn even_row(&mut self, y: usize) {
-        let Bits { words, before, width, columns, .. } = self.bits;
+        let ActiveBits { words, before, width, columns, .. } = self.bits;
         let row = |y: usize| (&words[y * width..][..*width], &before[y * width..][..*width]);
         let ((low, low_before), (mid, mid_before), (high, high_before)) = (row(y - 1), row(y), row(y + 1));
         for place in 0..*width {
@@ -396,7 +396,12 @@ mod tests {
         triangles
     }
 
-    fn displayed(lattice: &Arc<Lattice>, layout: &Layout, map: &ErrorMap, tolerance_m: f32) -> Vec<[u32; 3]> {
+    fn displayed(
+        lattice: &Arc<Lattice>,
+        layout: &PatchLayout,
+        map: &ErrorMap,
+        tolerance_m: f32,
+    ) -> Vec<[u32; 3]> {
         let active = rebuild(layout, &Flat::new(layout, map, tolerance_m), layout.patches());
         let terrain = DisplayedTerrain::new(lattice.clone(), active, 1.0, layout.patches().collect());
         let mut mesh = TriMesh::default();
@@ -428,7 +433,7 @@ mod tests {
             let fit = |posts: u32| if snug { (posts - 1).next_multiple_of(patch) + 1 } else { posts };
             let (columns, rows) = (fit(columns), fit(rows));
             let lattice = rough(columns, rows, &holes);
-            let layout = Layout::new(columns, rows, patch).expect("sound");
+            let layout = PatchLayout::new(columns, rows, patch).expect("sound");
             let map = ErrorMap::midpoint(&lattice, &layout);
             let mut out = Extract::default();
             for tolerance_m in tolerances {
@@ -441,7 +446,7 @@ mod tests {
 
     #[test]
     fn flat_ground_is_two_triangles_a_patch() {
-        let layout = Layout::new(129, 65, 64).expect("sound");
+        let layout = PatchLayout::new(129, 65, 64).expect("sound");
         let map = ErrorMap::raised(vec![0.0; 129 * 65], &layout);
         let mut out = Extract::default();
         extract(&layout, &map, 0.0, &mut out);

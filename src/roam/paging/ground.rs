@@ -13,9 +13,9 @@ use crate::dem::windows::Windows;
 use crate::roam::block::{BlockError, BlockSource, PatchBlock, RootSphere};
 use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
-use crate::roam::layout::{DEFAULT_PATCH, Layout, MOST_PATCHES};
-use crate::roam::paging::region::{Frame, Patches, Region};
+use crate::roam::ground::PatchedGround;
+use crate::roam::layout::{DEFAULT_PATCH, MOST_PATCHES, PatchLayout};
+use crate::roam::paging::region::{PagedFrame, PagedRegion, Patches};
 use crate::roam::paging::summary::{self, PatchSummary};
 use crate::roam::spheres::SphereMap;
 use crate::terrain::lattice::{Lattice, LatticeError};
@@ -97,7 +97,7 @@ pub struct PagingCounts {
 pub struct PagedGround<W, S> {
     windows: W,
     spheres: S,
-    frame: Frame,
+    frame: PagedFrame,
     summaries: Vec<PatchSummary>,
     cache: Recent<usize, Arc<PatchBlock>>,
     capacity: usize,
@@ -107,7 +107,7 @@ pub struct PagedGround<W, S> {
 
 /// Measures plain nested spheres: the own radius is the exact error as drawn, times `reach` metres of distance a metre
 /// of error.
-pub fn exact_spheres(reach: f32) -> impl Fn(Ground<'_>) -> SphereMap {
+pub fn exact_spheres(reach: f32) -> impl Fn(PatchedGround<'_>) -> SphereMap {
     move |ground| {
         let errors = ErrorMap::exact(ground.lattice, ground.layout);
         let own = errors.values().iter().map(|error| error * ground.exaggeration * reach).collect();
@@ -125,17 +125,17 @@ pub fn finest_that_fits<R: Read + Seek>(
     patch: u32,
 ) -> Result<GeoTiffWindows<R>, PagingError> {
     let (columns, rows) = file.size();
-    if Layout::paged(columns, rows, patch).is_some() {
+    if PatchLayout::paged(columns, rows, patch).is_some() {
         return Ok(file);
     }
-    let fits = |width, height| Layout::paged(width, height, patch).is_some();
+    let fits = |width, height| PatchLayout::paged(width, height, patch).is_some();
     match file.overviews().iter().find(|overview| fits(overview.width, overview.height)) {
         Some(overview) => Ok(file.at_overview(overview)?),
         None => Err(PagingError::Patches { columns, rows, patch }),
     }
 }
 
-impl<W: Windows, S: Fn(Ground<'_>) -> SphereMap> PagedGround<W, S> {
+impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> PagedGround<W, S> {
     /// Reads the whole terrain once, piece by piece, for the summaries of its patches.
     ///
     /// # Errors
@@ -145,9 +145,9 @@ impl<W: Windows, S: Fn(Ground<'_>) -> SphereMap> PagedGround<W, S> {
         warp::check_metric(windows.bare()).map_err(PagingError::NotMetric)?;
         let (origin, cell) = Lattice::frame(windows.bare())?;
         let ((columns, rows), patch) = (windows.size(), options.patch);
-        let layout = Layout::paged(columns, rows, patch).filter(|_| patch <= LARGEST_PATCH);
+        let layout = PatchLayout::paged(columns, rows, patch).filter(|_| patch <= LARGEST_PATCH);
         let layout = layout.ok_or(PagingError::Patches { columns, rows, patch })?;
-        let frame = Frame { layout, origin, cell, exaggeration: options.exaggeration };
+        let frame = PagedFrame { layout, origin, cell, exaggeration: options.exaggeration };
         let summaries = summary::of_all(&mut windows, &frame, &spheres)?;
         if summaries.iter().all(|summary| summary.low > summary.high) {
             return Err(LatticeError::Empty.into());
@@ -258,7 +258,7 @@ impl<W: Windows, S: Fn(Ground<'_>) -> SphereMap> PagedGround<W, S> {
     /// Reads and measures a patch.
     fn load(&mut self, corner: Vertex) -> Result<PatchBlock, BlockError> {
         let patches = Patches::one(&self.frame.layout, corner);
-        let region = Region::read(&mut self.windows, &self.frame, patches, &mut self.buffer);
+        let region = PagedRegion::read(&mut self.windows, &self.frame, patches, &mut self.buffer);
         let region = region.map_err(|reason| {
             let (column, row) = (corner.x as u32, corner.y as u32);
             BlockError { column, row, reason }
@@ -268,8 +268,8 @@ impl<W: Windows, S: Fn(Ground<'_>) -> SphereMap> PagedGround<W, S> {
     }
 }
 
-impl<W: Windows, S: Fn(Ground<'_>) -> SphereMap> BlockSource for PagedGround<W, S> {
-    fn layout(&self) -> &Layout {
+impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> BlockSource for PagedGround<W, S> {
+    fn layout(&self) -> &PatchLayout {
         &self.frame.layout
     }
 

@@ -4,17 +4,17 @@ use std::fmt::Display;
 
 use glam::DVec2;
 
-use crate::dem::windows::{Window, Windows};
+use crate::dem::windows::{RasterWindow, Windows};
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
-use crate::roam::layout::Layout;
+use crate::roam::ground::PatchedGround;
+use crate::roam::layout::PatchLayout;
 use crate::terrain::lattice::{Lattice, Post};
 
 /// The whole terrain, without its heights.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame {
+pub struct PagedFrame {
     /// Its patches.
-    pub layout: Layout,
+    pub layout: PatchLayout,
     /// Map coordinates of its south-west post.
     pub origin: DVec2,
     /// Metres between posts, eastward and northward.
@@ -34,7 +34,7 @@ pub struct Patches {
 
 impl Patches {
     /// One patch, by its south-west corner.
-    pub fn one(layout: &Layout, corner: Vertex) -> Self {
+    pub fn one(layout: &PatchLayout, corner: Vertex) -> Self {
         let at = (corner.x / layout.patch(), corner.y / layout.patch());
         Self { first: at, last: at }
     }
@@ -43,7 +43,7 @@ impl Patches {
     ///
     /// The first one's diagonal runs as that of the terrain's first patch, so that the region's vertices have the
     /// parents and children that they have in the terrain.
-    fn with_surroundings(self, layout: &Layout) -> Self {
+    fn with_surroundings(self, layout: &PatchLayout) -> Self {
         let (east, north) = ((layout.columns() as i32 - 1), (layout.rows() as i32 - 1));
         let (east, north) = (east / layout.patch(), north / layout.patch());
         let mut first = ((self.first.0 - 1).max(0), (self.first.1 - 1).max(0));
@@ -57,21 +57,21 @@ impl Patches {
 
 /// A piece of the terrain in memory.
 #[derive(Clone, Debug)]
-pub struct Region {
+pub struct PagedRegion {
     lattice: Lattice,
-    layout: Layout,
+    layout: PatchLayout,
     first: Vertex,
     exaggeration: f32,
 }
 
-impl Region {
+impl PagedRegion {
     /// Reads `patches` with all that their errors and spheres depend on. `buffer` is scratch.
     ///
     /// # Errors
     /// A sentence: the samples cannot be had, or hold a height that no ground has.
     pub fn read(
         windows: &mut impl Windows,
-        frame: &Frame,
+        frame: &PagedFrame,
         patches: Patches,
         buffer: &mut Vec<f32>,
     ) -> Result<Self, String> {
@@ -82,20 +82,20 @@ impl Region {
         let (columns, rows) = (end.column - first.x as u32 + 1, end.row - first.y as u32 + 1);
         // Rasters are counted from the north.
         let top = windows.size().1 - 1 - end.row;
-        let window = Window { column: first.x as u32, row: top, width: columns, height: rows };
+        let window = RasterWindow { column: first.x as u32, row: top, width: columns, height: rows };
         windows.read(window, buffer).map_err(sentence)?;
         let heights = buffer.chunks_exact(columns as usize).rev().flatten().copied().collect();
         let post = Post { column: first.x as u32, row: first.y as u32 };
         let lattice = Lattice::part((frame.origin, frame.cell), post, columns, heights).map_err(sentence)?;
-        let layout = Layout::new(columns, rows, side as u32);
+        let layout = PatchLayout::new(columns, rows, side as u32);
         let layout = layout.ok_or_else(|| format!("{columns} x {rows} posts are too many at once"))?;
         Ok(Self { lattice, layout, first, exaggeration: frame.exaggeration })
     }
 
     /// The piece as a ground of its own: vertices are counted from its own south-west, their positions are those of
     /// the whole terrain.
-    pub fn ground(&self) -> Ground<'_> {
-        Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: self.exaggeration }
+    pub fn ground(&self) -> PatchedGround<'_> {
+        PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: self.exaggeration }
     }
 
     /// A vertex of the terrain as this region counts it.
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn a_region_begins_at_an_even_patch_and_reaches_one_patch_round() {
-        let layout = Layout::new(10 * 16 + 1, 7 * 16 + 1, 16).expect("sound");
+        let layout = PatchLayout::new(10 * 16 + 1, 7 * 16 + 1, 16).expect("sound");
         for corner in layout.patches() {
             let patches = Patches::one(&layout, corner);
             let around = patches.with_surroundings(&layout);

@@ -9,8 +9,8 @@ use crate::dem::windows::Windows;
 use crate::roam::block::BlockError;
 use crate::roam::culling::PatchHeights;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
-use crate::roam::paging::region::{Frame, Patches, Region};
+use crate::roam::ground::PatchedGround;
+use crate::roam::paging::region::{PagedFrame, PagedRegion, Patches};
 use crate::roam::spheres::SphereMap;
 
 /// Patches along a square of the pass. With the surroundings 10 or 11 are measured for 8, 1.6 times the work of none,
@@ -35,7 +35,12 @@ pub struct PatchSummary {
 
 impl PatchSummary {
     /// The patch with south-west corner `corner` of a ground that is in memory with its surroundings.
-    pub fn of(ground: Ground<'_>, spheres: &SphereMap, heights: &PatchHeights, corner: Vertex) -> Self {
+    pub fn of(
+        ground: PatchedGround<'_>,
+        spheres: &SphereMap,
+        heights: &PatchHeights,
+        corner: Vertex,
+    ) -> Self {
         let side = ground.layout.patch();
         let z = |x, y| ground.lattice.height(ground.layout.post(corner.moved(x, y))) * ground.exaggeration;
         let middle = corner.moved(side / 2, side / 2);
@@ -63,14 +68,14 @@ impl PatchSummary {
 /// The first piece that cannot be read, by its south-west patch.
 pub fn of_all(
     windows: &mut impl Windows,
-    frame: &Frame,
-    spheres: &impl Fn(Ground<'_>) -> SphereMap,
+    frame: &PagedFrame,
+    spheres: &impl Fn(PatchedGround<'_>) -> SphereMap,
 ) -> Result<Vec<PatchSummary>, BlockError> {
     let (layout, mut buffer) = (&frame.layout, Vec::new());
     let nothing = PatchSummary { corners: [f32::NAN; 4], middle: 0.0, radius: 0.0, low: 0.0, high: 0.0 };
     let mut summaries = vec![nothing; layout.patch_count()];
     for square in squares(frame) {
-        let region = Region::read(windows, frame, square, &mut buffer).map_err(|reason| {
+        let region = PagedRegion::read(windows, frame, square, &mut buffer).map_err(|reason| {
             let side = layout.patch() as u32;
             let (column, row) = (square.first.0 as u32 * side, square.first.1 as u32 * side);
             BlockError { column, row, reason }
@@ -86,7 +91,7 @@ pub fn of_all(
 }
 
 /// The terrain's patches in squares, row by row.
-fn squares(frame: &Frame) -> impl Iterator<Item = Patches> + use<> {
+fn squares(frame: &PagedFrame) -> impl Iterator<Item = Patches> + use<> {
     let side = frame.layout.patch();
     let count = |vertices: usize| (vertices as i32 - 1) / side;
     let (east, north) = (count(frame.layout.columns()), count(frame.layout.rows()));

@@ -11,7 +11,7 @@ use crate::roam::bintree::Triangle;
 use crate::roam::block::{BlockError, BlockSource, PatchBlock};
 use crate::roam::criterion::spheres::distance;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
+use crate::roam::ground::PatchedGround;
 use crate::roam::paging::ground::PagedGround;
 use crate::roam::spheres::SphereMap;
 
@@ -46,7 +46,7 @@ fn is_active(block: &PatchBlock, (corner, side): (Vertex, i32), eye: Vec3, verte
 ///
 /// # Errors
 /// A patch cannot be read; those before it were visited.
-pub fn walk<W: Windows, S: Fn(Ground<'_>) -> SphereMap>(
+pub fn walk<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap>(
     ground: &mut PagedGround<W, S>,
     eye: Vec3,
     patches: impl IntoIterator<Item = Vertex>,

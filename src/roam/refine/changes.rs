@@ -1,11 +1,11 @@
 //! What an update did, and how that is kept while it goes on.
 
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 
 /// What one update changed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Changes {
+pub struct RefinementChanges {
     /// Vertices that became active.
     pub splits: usize,
     /// Vertices that became inactive.
@@ -17,22 +17,22 @@ pub struct Changes {
 
 /// Changes as they come.
 #[derive(Clone, Debug)]
-pub(super) struct Tally {
-    changes: Changes,
+pub(super) struct ChangeTally {
+    changes: RefinementChanges,
     marked: Vec<bool>,
 }
 
-impl Tally {
-    pub(super) fn new(layout: &Layout) -> Self {
-        Self { changes: Changes::default(), marked: vec![false; layout.patch_count()] }
+impl ChangeTally {
+    pub(super) fn new(layout: &PatchLayout) -> Self {
+        Self { changes: RefinementChanges::default(), marked: vec![false; layout.patch_count()] }
     }
 
-    pub(super) fn split(&mut self, layout: &Layout, vertex: Vertex) {
+    pub(super) fn split(&mut self, layout: &PatchLayout, vertex: Vertex) {
         self.changes.splits += 1;
         self.touch(layout, vertex);
     }
 
-    pub(super) fn merge(&mut self, layout: &Layout, vertex: Vertex) {
+    pub(super) fn merge(&mut self, layout: &PatchLayout, vertex: Vertex) {
         self.changes.merges += 1;
         self.touch(layout, vertex);
     }
@@ -43,7 +43,7 @@ impl Tally {
     }
 
     /// All changes since the last call.
-    pub(super) fn take(&mut self) -> Changes {
+    pub(super) fn take(&mut self) -> RefinementChanges {
         let mut changes = std::mem::take(&mut self.changes);
         changes.dirty.sort_unstable();
         for &patch in &changes.dirty {
@@ -52,7 +52,7 @@ impl Tally {
         changes
     }
 
-    fn touch(&mut self, layout: &Layout, vertex: Vertex) {
+    fn touch(&mut self, layout: &PatchLayout, vertex: Vertex) {
         for apex in vertex.parents().into_iter().filter(|&apex| layout.contains(apex)) {
             let patch = layout.patch_holding(vertex, apex);
             if !self.marked[patch] {

@@ -23,9 +23,9 @@ use crate::roam::active::ActiveSet;
 use crate::roam::bintree::Triangle;
 use crate::roam::criterion::Criterion;
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
-use crate::roam::refine::changes::{Changes, Tally};
-use crate::roam::refine::listed::Listed;
+use crate::roam::layout::PatchLayout;
+use crate::roam::refine::changes::{ChangeTally, RefinementChanges};
+use crate::roam::refine::listed::ListedPatches;
 
 /// What becomes of a patch that is no longer listed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,9 +54,9 @@ pub struct Coherent {
     active: ActiveSet,
     states: Vec<u8>,
     known: Vec<Vertex>,
-    listed: Listed,
+    listed: ListedPatches,
     hidden: Hidden,
-    tally: Tally,
+    tally: ChangeTally,
     taken_up: Vec<Vertex>,
     given_up: Vec<Vertex>,
     fresh: Vec<Vertex>,
@@ -65,20 +65,20 @@ pub struct Coherent {
 
 impl Coherent {
     /// The roots of all patches, which are forgotten once they are no longer listed.
-    pub fn new(layout: Layout) -> Self {
+    pub fn new(layout: PatchLayout) -> Self {
         Self::with_hidden(layout, Hidden::default())
     }
 
     /// The roots of all patches.
-    pub fn with_hidden(layout: Layout, hidden: Hidden) -> Self {
+    pub fn with_hidden(layout: PatchLayout, hidden: Hidden) -> Self {
         let empty = Vec::new;
         Self {
             active: ActiveSet::new(layout),
             states: vec![0; layout.vertex_count()],
             known: empty(),
-            listed: Listed::new(&layout),
+            listed: ListedPatches::new(&layout),
             hidden,
-            tally: Tally::new(&layout),
+            tally: ChangeTally::new(&layout),
             taken_up: empty(),
             given_up: empty(),
             fresh: empty(),
@@ -92,7 +92,7 @@ impl Coherent {
     }
 
     /// Adjusts the mesh to a view; `patches` are the south-west corners of patches of the layout.
-    pub fn update(&mut self, criterion: &impl Criterion, patches: &[Vertex]) -> Changes {
+    pub fn update(&mut self, criterion: &impl Criterion, patches: &[Vertex]) -> RefinementChanges {
         let layout = *self.active.layout();
         self.listed.renew(&layout, patches);
         if self.hidden == Hidden::Forget {
@@ -125,7 +125,7 @@ impl Coherent {
 
     /// Asks every vertex with a visited triangle again, notes where the answer is another, and strikes off the
     /// others.
-    fn ask_again(&mut self, layout: &Layout, criterion: &impl Criterion) {
+    fn ask_again(&mut self, layout: &PatchLayout, criterion: &impl Criterion) {
         let (states, listed, keeps) = (&mut self.states, &self.listed, self.hidden == Hidden::Keep);
         let (taken_up, given_up) = (&mut self.taken_up, &mut self.given_up);
         self.known.retain(|&vertex| {
@@ -146,7 +146,7 @@ impl Coherent {
     }
 
     /// A visited triangle's vertex is wanted: it is activated, the halves are visited.
-    fn take_up(&mut self, layout: &Layout, vertex: Vertex) {
+    fn take_up(&mut self, layout: &PatchLayout, vertex: Vertex) {
         let state = &mut self.states[layout.index(vertex)];
         if *state & WANTED != 0 || *state & (BEFORE | AFTER) == 0 {
             return;
@@ -161,7 +161,7 @@ impl Coherent {
     }
 
     /// The triangle on one side of a vertex is visited.
-    fn visit(&mut self, layout: &Layout, vertex: Vertex, side: u8) {
+    fn visit(&mut self, layout: &PatchLayout, vertex: Vertex, side: u8) {
         let state = &mut self.states[layout.index(vertex)];
         let before = *state;
         *state |= side | KNOWN;
@@ -178,7 +178,7 @@ impl Coherent {
     }
 
     /// A vertex is no longer wanted: what was visited through it is left.
-    fn give_up(&mut self, layout: &Layout, vertex: Vertex) {
+    fn give_up(&mut self, layout: &PatchLayout, vertex: Vertex) {
         let state = &mut self.states[layout.index(vertex)];
         if *state & WANTED == 0 {
             return;
@@ -192,7 +192,7 @@ impl Coherent {
     }
 
     /// The triangle on one side of a vertex is no longer visited.
-    fn leave(&mut self, layout: &Layout, vertex: Vertex, side: u8) {
+    fn leave(&mut self, layout: &PatchLayout, vertex: Vertex, side: u8) {
         let state = &mut self.states[layout.index(vertex)];
         let before = *state;
         *state &= !side;
@@ -209,7 +209,7 @@ impl Coherent {
     }
 
     /// Deactivates what no visited triangle wants and no active child needs.
-    fn release(&mut self, layout: &Layout) {
+    fn release(&mut self, layout: &PatchLayout) {
         while let Some(vertex) = self.released.pop() {
             let free = layout.contains(vertex) && self.states[layout.index(vertex)] & WANTED == 0;
             if free && self.active.merge(vertex) {
@@ -260,7 +260,7 @@ fn halves(vertex: Vertex, sides: u8) -> impl Iterator<Item = Vertex> {
 }
 
 /// Whether one of the triangles that `vertex` splits lies in a listed patch.
-fn is_listed(layout: &Layout, listed: &Listed, vertex: Vertex) -> bool {
+fn is_listed(layout: &PatchLayout, listed: &ListedPatches, vertex: Vertex) -> bool {
     let inside = |&apex: &Vertex| layout.contains(apex) && listed.holds(layout.patch_holding(vertex, apex));
     vertex.parents().iter().any(inside)
 }

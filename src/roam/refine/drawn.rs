@@ -7,9 +7,9 @@
 use crate::roam::bintree::Triangle;
 use crate::roam::emit::world::drawn_posts;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
-use crate::roam::layout::Layout;
-use crate::roam::refine::listed::Listed;
+use crate::roam::ground::PatchedGround;
+use crate::roam::layout::PatchLayout;
+use crate::roam::refine::listed::ListedPatches;
 
 /// Triangles: those that are drawn, and all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,7 +31,7 @@ impl Count {
 /// What a ground draws.
 #[derive(Clone, Debug)]
 pub(super) struct Drawn<'a> {
-    ground: Ground<'a>,
+    ground: PatchedGround<'a>,
     whole: Vec<bool>,
     /// Per vertex a bit for each of the triangles that it splits: whether there is anything to draw in it.
     shows: Vec<u8>,
@@ -39,7 +39,7 @@ pub(super) struct Drawn<'a> {
 
 impl<'a> Drawn<'a> {
     /// Looks at every post once, and at every triangle of patches with holes or across the border.
-    pub(super) fn new(ground: Ground<'a>) -> Self {
+    pub(super) fn new(ground: PatchedGround<'a>) -> Self {
         let layout = ground.layout;
         let whole = layout.patches().map(|corner| ground.is_whole(corner)).collect();
         let mut drawn = Self { ground, whole, shows: vec![0; layout.vertex_count()] };
@@ -55,14 +55,14 @@ impl<'a> Drawn<'a> {
         drawn
     }
 
-    pub(super) fn layout(&self) -> &'a Layout {
+    pub(super) fn layout(&self) -> &'a PatchLayout {
         self.ground.layout
     }
 
     /// Whether a triangle of a listed patch that `vertex` splits is drawn, or anything that it can be split into;
     /// `vertex` splits one at least.
     #[inline]
-    pub(super) fn shows(&self, listed: &Listed, vertex: Vertex) -> bool {
+    pub(super) fn shows(&self, listed: &ListedPatches, vertex: Vertex) -> bool {
         let (layout, sides) = (self.layout(), self.shows[self.layout().index(vertex)]);
         let is_listed = |apex| layout.contains(apex) && listed.holds(layout.patch_holding(vertex, apex));
         let shows = |apex| sides & side(vertex, apex) != 0 && is_listed(apex);
@@ -76,7 +76,7 @@ impl<'a> Drawn<'a> {
     }
 
     /// How many triangles more the listed patches have once `vertex` is active.
-    pub(super) fn added(&self, listed: &Listed, vertex: Vertex) -> Count {
+    pub(super) fn added(&self, listed: &ListedPatches, vertex: Vertex) -> Count {
         let layout = self.layout();
         let mut added = Count::default();
         for apex in vertex.parents().into_iter().filter(|&apex| layout.contains(apex)) {

@@ -1,14 +1,14 @@
 //! The patches that an update is asked for, against those of the update before.
 
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 
 const NOW: u8 = 1;
 const BEFORE: u8 = 2;
 
 /// The listed patches, with what came and went. Nothing is allocated once the lists have grown.
 #[derive(Clone, Debug)]
-pub(super) struct Listed {
+pub(super) struct ListedPatches {
     marks: Vec<u8>,
     now: Vec<Vertex>,
     before: Vec<Vertex>,
@@ -16,9 +16,9 @@ pub(super) struct Listed {
     left: Vec<Vertex>,
 }
 
-impl Listed {
+impl ListedPatches {
     /// No patch.
-    pub(super) fn new(layout: &Layout) -> Self {
+    pub(super) fn new(layout: &PatchLayout) -> Self {
         let none = Vec::new;
         Self {
             marks: vec![0; layout.patch_count()],
@@ -30,7 +30,7 @@ impl Listed {
     }
 
     /// Takes a new list, south-west corners of patches of the layout; what is listed twice counts once.
-    pub(super) fn renew(&mut self, layout: &Layout, patches: &[Vertex]) {
+    pub(super) fn renew(&mut self, layout: &PatchLayout, patches: &[Vertex]) {
         std::mem::swap(&mut self.now, &mut self.before);
         for list in [&mut self.now, &mut self.entered, &mut self.left] {
             list.clear();
@@ -85,9 +85,9 @@ mod tests {
 
     #[test]
     fn what_comes_and_goes_is_told_once() {
-        let layout = Layout::new(33, 9, 8).expect("sound");
+        let layout = PatchLayout::new(33, 9, 8).expect("sound");
         let patches: Vec<Vertex> = layout.patches().collect();
-        let mut listed = Listed::new(&layout);
+        let mut listed = ListedPatches::new(&layout);
         listed.renew(&layout, &[patches[0], patches[1], patches[0]]);
         assert_eq!((listed.now(), listed.entered().len(), listed.left().len()), (&patches[..2], 2, 0));
         listed.renew(&layout, &patches[1..3]);

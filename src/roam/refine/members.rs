@@ -1,17 +1,17 @@
 //! Vertices that are listed once each, whatever is asked of them.
 
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 
 /// A list of vertices, with a bit for each of the layout that says whether it is in.
 #[derive(Clone, Debug)]
-pub(super) struct Members {
+pub(super) struct VertexSet {
     list: Vec<Vertex>,
     bits: Vec<u64>,
 }
 
-impl Members {
-    pub(super) fn new(layout: &Layout) -> Self {
+impl VertexSet {
+    pub(super) fn new(layout: &PatchLayout) -> Self {
         Self { list: Vec::new(), bits: vec![0; layout.vertex_count().div_ceil(64)] }
     }
 
@@ -20,7 +20,7 @@ impl Members {
         self.bits[index / 64] >> (index % 64) & 1 == 1
     }
 
-    pub(super) fn insert(&mut self, layout: &Layout, vertex: Vertex) {
+    pub(super) fn insert(&mut self, layout: &PatchLayout, vertex: Vertex) {
         let index = layout.index(vertex);
         if !self.holds(index) {
             self.bits[index / 64] |= 1 << (index % 64);
@@ -29,7 +29,7 @@ impl Members {
     }
 
     /// Keeps those for which `keep`, told the vertex and its index, says so.
-    pub(super) fn retain(&mut self, layout: &Layout, mut keep: impl FnMut(Vertex, usize) -> bool) {
+    pub(super) fn retain(&mut self, layout: &PatchLayout, mut keep: impl FnMut(Vertex, usize) -> bool) {
         let bits = &mut self.bits;
         self.list.retain(|&vertex| {
             let index = layout.index(vertex);

@@ -25,12 +25,12 @@ use crate::roam::active::ActiveSet;
 use crate::roam::bintree::Triangle;
 use crate::roam::criterion::Criterion;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::Ground;
-use crate::roam::layout::Layout;
-use crate::roam::refine::changes::{Changes, Tally};
+use crate::roam::ground::PatchedGround;
+use crate::roam::layout::PatchLayout;
+use crate::roam::refine::changes::{ChangeTally, RefinementChanges};
 use crate::roam::refine::drawn::{Count, Drawn};
-use crate::roam::refine::listed::Listed;
-use crate::roam::refine::members::Members;
+use crate::roam::refine::listed::ListedPatches;
+use crate::roam::refine::members::VertexSet;
 
 /// So many splits in turn may find no room before an update is content. What is left over is a triangle or two
 /// of the budget; trying every other leaf for them would cost more than the whole frame.
@@ -76,7 +76,13 @@ impl Goal {
     /// The excess of a vertex; under a budget 0 where splitting it can never draw anything. Where rounding leaves
     /// open on which side of 1 it is, the criterion's plain answer settles it, so that this refiner wants what the
     /// others want.
-    fn priority(self, drawn: &Drawn<'_>, listed: &Listed, criterion: &impl Criterion, vertex: Vertex) -> f32 {
+    fn priority(
+        self,
+        drawn: &Drawn<'_>,
+        listed: &ListedPatches,
+        criterion: &impl Criterion,
+        vertex: Vertex,
+    ) -> f32 {
         if matches!(self, Self::Budget(_)) && !drawn.shows(listed, vertex) {
             return 0.0;
         }
@@ -95,11 +101,11 @@ pub struct Queues<'a> {
     active: ActiveSet,
     drawn: Drawn<'a>,
     goal: Goal,
-    listed: Listed,
-    tally: Tally,
+    listed: ListedPatches,
+    tally: ChangeTally,
     count: Count,
-    splittable: Members,
-    mergeable: Members,
+    splittable: VertexSet,
+    mergeable: VertexSet,
     splits: BinaryHeap<u64>,
     merges: BinaryHeap<Reverse<u64>>,
     forced: Vec<Vertex>,
@@ -109,17 +115,17 @@ pub struct Queues<'a> {
 
 impl<'a> Queues<'a> {
     /// The roots of all patches of a ground, whose heights say what is drawn.
-    pub fn new(ground: Ground<'a>, goal: Goal) -> Self {
+    pub fn new(ground: PatchedGround<'a>, goal: Goal) -> Self {
         let layout = *ground.layout;
         Self {
             active: ActiveSet::new(layout),
             drawn: Drawn::new(ground),
             goal,
-            listed: Listed::new(&layout),
-            tally: Tally::new(&layout),
+            listed: ListedPatches::new(&layout),
+            tally: ChangeTally::new(&layout),
             count: Count::default(),
-            splittable: Members::new(&layout),
-            mergeable: Members::new(&layout),
+            splittable: VertexSet::new(&layout),
+            mergeable: VertexSet::new(&layout),
             splits: BinaryHeap::new(),
             merges: BinaryHeap::new(),
             forced: Vec::new(),
@@ -147,7 +153,7 @@ impl<'a> Queues<'a> {
 
     /// Adjusts the mesh to a view; `patches` are the south-west corners of patches of the layout. A vertex
     /// that is merged and then forced to return counts both ways, and its patches are dirty.
-    pub fn update(&mut self, criterion: &impl Criterion, patches: &[Vertex]) -> Changes {
+    pub fn update(&mut self, criterion: &impl Criterion, patches: &[Vertex]) -> RefinementChanges {
         let layout = *self.active.layout();
         self.listed.renew(&layout, patches);
         self.recount(&layout);
@@ -167,7 +173,7 @@ impl<'a> Queues<'a> {
     }
 
     /// Counts the triangles of patches that came and went, and takes in the leaves of those that came.
-    fn recount(&mut self, layout: &Layout) {
+    fn recount(&mut self, layout: &PatchLayout) {
         for &corner in self.listed.left() {
             self.count = self.count.minus(count(&self.active, &self.drawn, corner));
         }
@@ -298,7 +304,7 @@ impl<'a> Queues<'a> {
     }
 
     /// Undoes the merges of a trade that found no room.
-    fn take_back(&mut self, layout: &Layout) {
+    fn take_back(&mut self, layout: &PatchLayout) {
         while let Some((vertex, priority)) = self.undo.pop() {
             self.active.activate(vertex);
             self.tally.take_back_merge();
@@ -407,20 +413,24 @@ fn excess_of(entry: u64) -> f32 {
     f32::from_bits((entry >> 32) as u32)
 }
 
-fn vertex_of(layout: &Layout, entry: u64) -> Vertex {
+fn vertex_of(layout: &PatchLayout, entry: u64) -> Vertex {
     let index = entry as u32 as usize;
     Vertex::new((index % layout.columns()) as i32, (index / layout.columns()) as i32)
 }
 
 /// The right-angled corners of the triangles that `vertex` splits in listed patches.
-fn listed_apexes(layout: &Layout, listed: &Listed, vertex: Vertex) -> impl Iterator<Item = Vertex> {
+fn listed_apexes(
+    layout: &PatchLayout,
+    listed: &ListedPatches,
+    vertex: Vertex,
+) -> impl Iterator<Item = Vertex> {
     let inside =
         move |&apex: &Vertex| layout.contains(apex) && listed.holds(layout.patch_holding(vertex, apex));
     vertex.parents().into_iter().filter(inside)
 }
 
 /// Whether one of the triangles that `vertex` would split is there, in a listed patch.
-fn has_leaf(active: &ActiveSet, listed: &Listed, vertex: Vertex) -> bool {
+fn has_leaf(active: &ActiveSet, listed: &ListedPatches, vertex: Vertex) -> bool {
     listed_apexes(active.layout(), listed, vertex).any(|apex| active.is_active(apex))
 }
 

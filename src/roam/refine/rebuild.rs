@@ -10,13 +10,13 @@ use crate::roam::active::ActiveSet;
 use crate::roam::bintree::Triangle;
 use crate::roam::criterion::Criterion;
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
+use crate::roam::layout::PatchLayout;
 
 /// Sets the bits for one view, from the roots of the patches whose south-west corners are listed.
 ///
 /// The other patches are left as coarse as their neighbours allow.
 pub fn rebuild(
-    layout: &Layout,
+    layout: &PatchLayout,
     criterion: &impl Criterion,
     patches: impl IntoIterator<Item = Vertex>,
 ) -> ActiveSet {

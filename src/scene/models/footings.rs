@@ -9,14 +9,14 @@ use crate::description::document::Document;
 use crate::description::features::ModelPlacement;
 use crate::description::words::{Clamp, Footing};
 use crate::geom::polygon;
-use crate::scene::footprint::Footprint;
-use crate::scene::kind::{Placement, Stance};
+use crate::scene::footprint::ModelFootprint;
+use crate::scene::kind::{GroundFit, Placement};
 use crate::scene::models::Group;
 use crate::scene::models::library::Library;
-use crate::scene::place::Places;
+use crate::scene::place::WorldFrame;
 use crate::scene::stand::{Grounds, outline, stand};
 use crate::terrain::earthwork::Volumes;
-use crate::terrain::finest::Finest;
+use crate::terrain::finest::FullResolution;
 use crate::terrain::lattice::{HIGHEST_M, Lattice};
 use crate::terrain::pad::{self, Batters};
 
@@ -38,7 +38,7 @@ pub fn lay(
     document: &Document,
     groups: &[Group<'_>],
     placements: &[Placement],
-    (library, places): (&Library<'_>, &Places<'_>),
+    (library, places): (&Library<'_>, &WorldFrame<'_>),
     lattice: &mut Lattice,
 ) -> Result<BTreeMap<usize, Volumes>, Diagnostic> {
     let (mut volumes, mut cells) = (BTreeMap::new(), 0);
@@ -50,7 +50,7 @@ pub fn lay(
                 continue;
             }
             let reach = polygon::bounds(&outline(placement, &footprint.grown(PAD_REACH)));
-            cells += Finest { lattice, exaggeration: places.exaggeration }.cell_count(&reach);
+            cells += FullResolution { lattice, exaggeration: places.exaggeration }.cell_count(&reach);
             if cells > MAX_CELLS {
                 return Err(too_large(document, group.table));
             }
@@ -69,12 +69,12 @@ pub fn lay(
 
 fn level(
     placement: &Placement,
-    footprint: &Footprint,
+    footprint: &ModelFootprint,
     exaggeration: f32,
     lattice: &mut Lattice,
 ) -> Option<Volumes> {
-    let upright = Placement { standing: Stance { tilt_rad: 0.0, ..placement.standing }, ..*placement };
-    let finest = Finest { lattice, exaggeration };
+    let upright = Placement { standing: GroundFit { tilt_rad: 0.0, ..placement.standing }, ..*placement };
+    let finest = FullResolution { lattice, exaggeration };
     let found = stand(&upright, footprint, &Grounds { displayed: &finest, finest })?;
     let level_z = match placement.clamp {
         Clamp::Absolute => f64::from(found.base(footprint)[0].z),

@@ -12,8 +12,8 @@ use crate::description::words::Clamp;
 use crate::model::kind::Model;
 use crate::model::{built_in, read};
 use crate::scene::assets::Assets;
-use crate::scene::collected::Collected;
-use crate::scene::footprint::Footprint;
+use crate::scene::collected::SceneBuilder;
+use crate::scene::footprint::ModelFootprint;
 
 /// Where a model comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +29,7 @@ pub struct Library<'a> {
     document: &'a Document,
     assets: &'a Assets,
     models: Vec<Model>,
-    about: Vec<(Footprint, Maker)>,
+    about: Vec<(ModelFootprint, Maker)>,
     known: BTreeMap<String, usize>,
 }
 
@@ -47,7 +47,7 @@ impl<'a> Library<'a> {
         &mut self,
         name: &str,
         span: Range<usize>,
-        collected: &mut Collected,
+        collected: &mut SceneBuilder,
     ) -> Result<usize, Diagnostic> {
         if let Some(&model) = self.known.get(name) {
             return Ok(model);
@@ -57,7 +57,7 @@ impl<'a> Library<'a> {
             None => (self.load(name, span)?, Maker::File),
         };
         collected.notes.extend(model.notes.iter().map(|note| format!("{name}: {note}")));
-        self.about.push((Footprint::of(&model), maker));
+        self.about.push((ModelFootprint::of(&model), maker));
         self.models.push(model);
         self.known.insert(name.to_owned(), self.models.len() - 1);
         Ok(self.models.len() - 1)
@@ -77,7 +77,7 @@ impl<'a> Library<'a> {
     }
 
     /// Where a model touches the ground.
-    pub fn footprint(&self, model: usize) -> &Footprint {
+    pub fn footprint(&self, model: usize) -> &ModelFootprint {
         &self.about[model].0
     }
 

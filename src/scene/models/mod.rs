@@ -20,18 +20,18 @@ use toml::Spanned;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::expression::Quantity;
-use crate::description::features::{ModelPlacement, Scalar, Source};
+use crate::description::features::{FeatureSource, ModelPlacement, Scalar};
 use crate::model::kind::Model;
 use crate::scene::assets::Assets;
 use crate::scene::attributes::Attributes;
-use crate::scene::collected::Collected;
-use crate::scene::kind::{FeatureKind, Placement, Stance};
+use crate::scene::collected::SceneBuilder;
+use crate::scene::kind::{FeatureKind, GroundFit, Placement};
 use crate::scene::models::library::Library;
-use crate::scene::place::Places;
+use crate::scene::place::WorldFrame;
 use crate::scene::scatter;
 use crate::scene::sources::{Sourced, Sources};
-use crate::terrain::facets::Facets;
-use crate::terrain::finest::Finest;
+use crate::terrain::facets::TriangleSurface;
+use crate::terrain::finest::FullResolution;
 use crate::terrain::lattice::Lattice;
 
 /// The most models that stand in a scene, however they came there: some fifty megabytes of placements, and more than
@@ -56,9 +56,9 @@ pub struct Group<'a> {
 /// A file or a source cannot be had or read, a model stands off the ground, or there are more than can be placed.
 pub fn place(
     document: &Document,
-    (places, sources, assets): (&Places<'_>, &Sources<'_>, &Assets),
+    (places, sources, assets): (&WorldFrame<'_>, &Sources<'_>, &Assets),
     lattice: &mut Lattice,
-    collected: &mut Collected,
+    collected: &mut SceneBuilder,
 ) -> Result<(Vec<Model>, Vec<Placement>), Diagnostic> {
     let mut library = Library::new(document, assets);
     let mut placements = Vec::new();
@@ -81,9 +81,9 @@ pub fn place(
         } else if let Some(source) = &table.instances {
             let points = sources.points(source)?;
             within(document, source, placements.len() + points.len())?;
-            let mut choice = Choice::new(table, &mut library, collected)?;
+            let mut choice = ModelChoice::new(table, &mut library, collected)?;
             for Sourced { attributes, shape } in points {
-                let ground = Finest { lattice, exaggeration: places.exaggeration };
+                let ground = FullResolution { lattice, exaggeration: places.exaggeration };
                 if ground.displayed_z(shape).is_none() {
                     off += 1;
                     continue;
@@ -106,7 +106,7 @@ pub fn place(
 ///
 /// # Errors
 /// There are more, said at the place of `source`.
-pub fn within(document: &Document, source: &Source, count: usize) -> Result<(), Diagnostic> {
+pub fn within(document: &Document, source: &FeatureSource, count: usize) -> Result<(), Diagnostic> {
     if count <= MAX_MODELS {
         return Ok(());
     }
@@ -121,7 +121,7 @@ fn placed(
     (library, model): (&Library<'_>, usize),
     (attributes, at): (&Attributes, DVec2),
     name: String,
-    collected: &mut Collected,
+    collected: &mut SceneBuilder,
 ) -> Placement {
     let mut number = |key: &'static str, stated: &Option<Spanned<Quantity>>, default: f64| {
         attributes.number_or((key, stated.as_ref()), default, &mut collected.defaulted) as f32
@@ -143,9 +143,9 @@ fn placed(
     }
 }
 
-fn standing(table: &ModelPlacement) -> Stance {
+fn standing(table: &ModelPlacement) -> GroundFit {
     let number = |stated: &Option<Spanned<f64>>| stated.as_ref().map_or(0.0, |value| *value.get_ref()) as f32;
-    Stance {
+    GroundFit {
         anchor: table.anchor.as_ref().map(Spanned::get_ref).copied().unwrap_or_default(),
         tilt_rad: number(&table.tilt).to_radians(),
         sink_m: number(&table.sink),
@@ -154,18 +154,18 @@ fn standing(table: &ModelPlacement) -> Stance {
 }
 
 /// Which model stands at which of a table's points.
-struct Choice<'a> {
+struct ModelChoice<'a> {
     table: &'a ModelPlacement,
     file: usize,
     variants: Vec<(&'a str, usize)>,
     unknown: usize,
 }
 
-impl<'a> Choice<'a> {
+impl<'a> ModelChoice<'a> {
     fn new(
         table: &'a ModelPlacement,
         library: &mut Library<'_>,
-        collected: &mut Collected,
+        collected: &mut SceneBuilder,
     ) -> Result<Self, Diagnostic> {
         let file = library.get(table.file.get_ref(), table.file.span(), collected)?;
         let mut variants = Vec::new();

@@ -6,25 +6,25 @@
 use std::collections::BTreeMap;
 
 use crate::description::words::Clamp;
-use crate::scene::collected::Collected;
-use crate::scene::footprint::Footprint;
+use crate::scene::collected::SceneBuilder;
+use crate::scene::footprint::ModelFootprint;
 use crate::scene::kind::Placement;
 use crate::scene::models::Group;
 use crate::scene::models::library::Library;
-use crate::scene::place::Places;
-use crate::scene::report::{Cell, Column, Report};
-use crate::scene::stand::{Grounds, Stand, stand};
+use crate::scene::place::WorldFrame;
+use crate::scene::report::{ReportCell, ReportColumn, SceneReport};
+use crate::scene::stand::{Grounds, ModelPose, stand};
 use crate::terrain::earthwork::Volumes;
-use crate::terrain::facets::Facets;
-use crate::terrain::finest::Finest;
+use crate::terrain::facets::TriangleSurface;
+use crate::terrain::finest::FullResolution;
 use crate::terrain::lattice::Lattice;
 
-const fn column(name: &'static str, unit: &'static str) -> Column {
-    Column { name, unit }
+const fn column(name: &'static str, unit: &'static str) -> ReportColumn {
+    ReportColumn { name, unit }
 }
 
 /// One row for a model that stands `at` a place.
-const MODELS: (&str, &[Column]) = (
+const MODELS: (&str, &[ReportColumn]) = (
     "models",
     &[
         column("name", ""),
@@ -41,7 +41,7 @@ const MODELS: (&str, &[Column]) = (
 );
 
 /// One row for a table with instances.
-const INSTANCES: (&str, &[Column]) = (
+const INSTANCES: (&str, &[ReportColumn]) = (
     "instances",
     &[
         column("name", ""),
@@ -61,11 +61,11 @@ const INSTANCES: (&str, &[Column]) = (
 pub fn tell(
     groups: &[Group<'_>],
     placements: &[Placement],
-    (library, volumes, places): (&Library<'_>, &BTreeMap<usize, Volumes>, &Places<'_>),
+    (library, volumes, places): (&Library<'_>, &BTreeMap<usize, Volumes>, &WorldFrame<'_>),
     lattice: &Lattice,
-    collected: &mut Collected,
+    collected: &mut SceneBuilder,
 ) {
-    let finest = Finest { lattice, exaggeration: places.exaggeration };
+    let finest = FullResolution { lattice, exaggeration: places.exaggeration };
     for group in groups {
         let all: Vec<Told> = group
             .placements
@@ -80,7 +80,7 @@ pub fn tell(
             note(group, &name, &mut collected.notes);
             collected.report.add(INSTANCES, instances(group, name, &all));
         } else {
-            let report: &mut Report = &mut collected.report;
+            let report: &mut SceneReport = &mut collected.report;
             all.iter().for_each(|told| report.add(MODELS, told.row(name.clone())));
         }
     }
@@ -98,12 +98,12 @@ struct Told {
 impl Told {
     fn of(
         placement: &Placement,
-        footprint: &Footprint,
-        finest: &Finest<'_>,
+        footprint: &ModelFootprint,
+        finest: &FullResolution<'_>,
         moved: Option<Volumes>,
     ) -> Option<Self> {
         let grounds = Grounds { displayed: finest, finest: *finest };
-        let found: Stand = stand(placement, footprint, &grounds)?;
+        let found: ModelPose = stand(placement, footprint, &grounds)?;
         let gap = |corner: glam::Vec3| {
             Some(f64::from(corner.z) - finest.displayed_z(corner.truncate().as_dvec2())?)
         };
@@ -117,16 +117,16 @@ impl Told {
         })
     }
 
-    fn row(&self, name: String) -> Vec<Cell> {
+    fn row(&self, name: String) -> Vec<ReportCell> {
         let [front_left, front_right, back_right, back_left] = self.gaps_m.map(number);
         vec![
-            Cell::Text(name),
+            ReportCell::Text(name),
             number(self.anchor_m),
             front_left,
             front_right,
             back_right,
             back_left,
-            Cell::Number(self.tilt_deg),
+            ReportCell::Number(self.tilt_deg),
             number(self.plinth_m),
             number(self.moved.map(|moved| moved.cut_m3)),
             number(self.moved.map(|moved| moved.fill_m3)),
@@ -134,17 +134,17 @@ impl Told {
     }
 }
 
-fn instances(group: &Group<'_>, name: String, all: &[Told]) -> Vec<Cell> {
+fn instances(group: &Group<'_>, name: String, all: &[Told]) -> Vec<ReportCell> {
     let gaps = || all.iter().flat_map(|told| told.gaps_m).flatten();
     let total = |of: fn(&Volumes) -> f64| {
         let moved: Vec<f64> = all.iter().filter_map(|told| told.moved.as_ref()).map(of).collect();
         (!moved.is_empty()).then(|| moved.iter().sum())
     };
     vec![
-        Cell::Text(name),
-        Cell::Count(group.placements.len()),
-        Cell::Count(group.off),
-        Cell::Count(group.unknown),
+        ReportCell::Text(name),
+        ReportCell::Count(group.placements.len()),
+        ReportCell::Count(group.off),
+        ReportCell::Count(group.unknown),
         number(gaps().min_by(f64::total_cmp)),
         number(gaps().max_by(f64::total_cmp)),
         number(all.iter().map(|told| told.tilt_deg).max_by(f64::total_cmp)),
@@ -154,8 +154,8 @@ fn instances(group: &Group<'_>, name: String, all: &[Told]) -> Vec<Cell> {
     ]
 }
 
-fn number(value: Option<f64>) -> Cell {
-    value.map_or(Cell::Empty, Cell::Number)
+fn number(value: Option<f64>) -> ReportCell {
+    value.map_or(ReportCell::Empty, ReportCell::Number)
 }
 
 fn note(group: &Group<'_>, name: &str, notes: &mut Vec<String>) {

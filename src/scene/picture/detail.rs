@@ -11,11 +11,11 @@ use std::collections::BTreeMap;
 use glam::{Mat4, Vec3};
 use rayon::prelude::*;
 
-use crate::draw::list::{DrawItem, DrawList, FeatureId, Layer, MaterialId, MeshId};
+use crate::draw::list::{DepthLayer, DrawItem, DrawList, FeatureId, MaterialId, MeshId};
 use crate::draw::material::{Material, TextureId};
-use crate::model::detail::{Detail, Form, Seen};
+use crate::model::detail::{ApparentSize, DetailForm, ModelDetail};
 use crate::model::impostor::Impostor;
-use crate::model::kind::{Model, Part};
+use crate::model::kind::{Model, ModelPart};
 use crate::scene::kind::Scene;
 use crate::view::camera::Camera;
 use crate::view::frustum::Frustum;
@@ -34,7 +34,7 @@ pub(super) enum Viewer<'a> {
 
 /// A model set in its place.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Placed {
+pub(super) struct PlacedModel {
     /// Which of the scene's models.
     pub model: usize,
     /// Its place: a rotation, a uniform scale and a translation.
@@ -45,19 +45,19 @@ pub(super) struct Placed {
 
 /// The ball around a model, in its own space.
 #[derive(Clone, Copy, Debug, Default)]
-struct Ball {
+struct BoundingSphere {
     center: Vec3,
     radius: f32,
 }
 
 /// Adds all that stands where `viewer` may see it.
-pub(super) fn add(list: &mut DrawList, scene: &Scene, placed: &[Placed], viewer: Viewer<'_>) {
-    let balls: Vec<Ball> = scene.models.iter().map(Ball::around).collect();
+pub(super) fn add(list: &mut DrawList, scene: &Scene, placed: &[PlacedModel], viewer: Viewer<'_>) {
+    let balls: Vec<BoundingSphere> = scene.models.iter().map(BoundingSphere::around).collect();
     let groups = match viewer {
-        Viewer::Anyone => grouped(placed.iter().map(|stand| (stand, Form::Full))),
+        Viewer::Anyone => grouped(placed.iter().map(|stand| (stand, DetailForm::Full))),
         Viewer::Camera(camera) => {
             let frustum = Frustum::of(camera);
-            let in_view: Vec<&Placed> = placed
+            let in_view: Vec<&PlacedModel> = placed
                 .par_iter()
                 .filter(|stand| balls[stand.model].in_world(stand).is_in(&frustum))
                 .collect();
@@ -65,17 +65,17 @@ pub(super) fn add(list: &mut DrawList, scene: &Scene, placed: &[Placed], viewer:
             grouped(in_view.into_iter().zip(forms))
         }
     };
-    let mut listed = Listed { list, models: BTreeMap::new(), impostors: BTreeMap::new() };
+    let mut listed = ModelItems { list, models: BTreeMap::new(), impostors: BTreeMap::new() };
     for (&(model, form), stands) in &groups {
         let details = || scene.details[model].get();
         let source = &scene.models[model];
         match form {
-            Form::Full => listed.add_parts((model, source), &source.parts, stands),
-            Form::Level(level) => {
+            DetailForm::Full => listed.add_parts((model, source), &source.parts, stands),
+            DetailForm::Level(level) => {
                 let parts = details().and_then(|detail| Some(&detail.levels.get(usize::from(level))?.parts));
                 listed.add_parts((model, source), parts.unwrap_or(&source.parts), stands);
             }
-            Form::Impostor(view) => match details().and_then(|detail| detail.impostor.as_ref()) {
+            DetailForm::Impostor(view) => match details().and_then(|detail| detail.impostor.as_ref()) {
                 Some(impostor) => listed.add_views((model, impostor), view.triangles(), stands),
                 None => listed.add_parts((model, source), &source.parts, stands),
             },
@@ -83,9 +83,9 @@ pub(super) fn add(list: &mut DrawList, scene: &Scene, placed: &[Placed], viewer:
     }
 }
 
-type Groups<'a> = BTreeMap<(usize, Form), Vec<&'a Placed>>;
+type Groups<'a> = BTreeMap<(usize, DetailForm), Vec<&'a PlacedModel>>;
 
-fn grouped<'a>(stands: impl Iterator<Item = (&'a Placed, Form)>) -> Groups<'a> {
+fn grouped<'a>(stands: impl Iterator<Item = (&'a PlacedModel, DetailForm)>) -> Groups<'a> {
     let mut groups = Groups::new();
     for (stand, form) in stands {
         groups.entry((stand.model, form)).or_default().push(stand);
@@ -94,35 +94,40 @@ fn grouped<'a>(stands: impl Iterator<Item = (&'a Placed, Form)>) -> Groups<'a> {
 }
 
 /// The form in which each is drawn.
-fn forms(scene: &Scene, camera: &Camera, balls: &[Ball], in_view: &[&Placed]) -> Vec<Form> {
+fn forms(
+    scene: &Scene,
+    camera: &Camera,
+    balls: &[BoundingSphere],
+    in_view: &[&PlacedModel],
+) -> Vec<DetailForm> {
     let triangles: Vec<usize> = scene.models.iter().map(Model::triangle_count).collect();
     let total = in_view.iter().fold(0usize, |sum, stand| sum.saturating_add(triangles[stand.model]));
     if total <= FULL_TRIANGLES {
-        return vec![Form::Full; in_view.len()];
+        return vec![DetailForm::Full; in_view.len()];
     }
     prepare(scene, in_view);
-    let form = |stand: &&Placed| {
+    let form = |stand: &&PlacedModel| {
         let detail = scene.details[stand.model].get()?;
         Some(detail.form(&balls[stand.model].seen(stand, camera)))
     };
-    in_view.par_iter().map(|stand| form(stand).unwrap_or(Form::Full)).collect()
+    in_view.par_iter().map(|stand| form(stand).unwrap_or(DetailForm::Full)).collect()
 }
 
 /// Makes the simpler forms of the models in view, where they are not yet made.
 ///
 /// They are made before they are put in place, not in it: making them shares work out among threads, and a thread that
 /// helps another picture meanwhile must not come to wait for itself.
-fn prepare(scene: &Scene, in_view: &[&Placed]) {
+fn prepare(scene: &Scene, in_view: &[&PlacedModel]) {
     let mut wanted: Vec<usize> = in_view.iter().map(|stand| stand.model).collect();
     wanted.sort_unstable();
     wanted.dedup();
     wanted.par_iter().filter(|&&model| scene.details[model].get().is_none()).for_each(|&model| {
         // Another picture may have been faster; it made the same.
-        let _ = scene.details[model].set(Detail::of(&scene.models[model]));
+        let _ = scene.details[model].set(ModelDetail::of(&scene.models[model]));
     });
 }
 
-impl Ball {
+impl BoundingSphere {
     fn around(model: &Model) -> Self {
         model.bounds().map_or_else(Self::default, |(min, max)| Self {
             center: (min + max) * 0.5,
@@ -131,7 +136,7 @@ impl Ball {
     }
 
     /// The ball in world space.
-    fn in_world(&self, stand: &Placed) -> Self {
+    fn in_world(&self, stand: &PlacedModel) -> Self {
         let scale = stand.world_from_model.x_axis.truncate().length();
         Self { center: stand.world_from_model.transform_point3(self.center), radius: self.radius * scale }
     }
@@ -141,7 +146,7 @@ impl Ball {
     }
 
     /// How the model in this ball of its own space is seen.
-    fn seen(&self, stand: &Placed, camera: &Camera) -> Seen {
+    fn seen(&self, stand: &PlacedModel, camera: &Camera) -> ApparentSize {
         let world = self.in_world(stand);
         let scale = if self.radius > 0.0 { world.radius / self.radius } else { 1.0 };
         let offset = camera.eye() - world.center;
@@ -150,20 +155,20 @@ impl Ball {
         let along = |axis: glam::Vec4| axis.truncate().dot(offset);
         let axes = &stand.world_from_model;
         let towards_eye = Vec3::new(along(axes.x_axis), along(axes.y_axis), along(axes.z_axis));
-        Seen { px_per_unit, across_px: 2.0 * self.radius * px_per_unit, towards_eye }
+        ApparentSize { px_per_unit, across_px: 2.0 * self.radius * px_per_unit, towards_eye }
     }
 }
 
 /// A draw list with what has been listed of each model.
-struct Listed<'a> {
+struct ModelItems<'a> {
     list: &'a mut DrawList,
     /// The first material of each model.
     models: BTreeMap<usize, MaterialId>,
     impostors: BTreeMap<usize, (MeshId, MaterialId)>,
 }
 
-impl Listed<'_> {
-    fn add_parts(&mut self, (index, model): (usize, &Model), parts: &[Part], stands: &[&Placed]) {
+impl ModelItems<'_> {
+    fn add_parts(&mut self, (index, model): (usize, &Model), parts: &[ModelPart], stands: &[&PlacedModel]) {
         let list = &mut *self.list;
         let MaterialId(first) = *self.models.entry(index).or_insert_with(|| list_materials(list, model));
         for part in parts {
@@ -177,7 +182,7 @@ impl Listed<'_> {
         &mut self,
         (index, impostor): (usize, &Impostor),
         triangles: std::ops::Range<u32>,
-        stands: &[&Placed],
+        stands: &[&PlacedModel],
     ) {
         let list = &mut *self.list;
         let (mesh, material) = *self.impostors.entry(index).or_insert_with(|| {
@@ -193,14 +198,14 @@ impl Listed<'_> {
         mesh: MeshId,
         triangles: std::ops::Range<u32>,
         material: MaterialId,
-        stands: &[&Placed],
+        stands: &[&PlacedModel],
     ) {
         self.list.items.extend(stands.iter().map(|stand| DrawItem {
             mesh,
             triangles: triangles.clone(),
             material,
             world_from_mesh: stand.world_from_model,
-            layer: Layer::Solid,
+            layer: DepthLayer::Solid,
             feature: stand.feature,
         }));
     }

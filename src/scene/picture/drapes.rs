@@ -5,16 +5,16 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use crate::draw::color::Srgba;
-use crate::draw::list::{DrawList, DrawMesh, Layer, MaterialId};
-use crate::draw::material::{Alpha, Material, Normals};
+use crate::draw::list::{DepthLayer, DrawList, DrawMesh, MaterialId};
+use crate::draw::material::{AlphaMode, Material, NormalSource};
 use crate::ribbon::drape::drape;
-use crate::ribbon::texture::{Surface, texture};
+use crate::ribbon::texture::{RibbonSurface, texture};
 use crate::scene::kind::Scene;
 use crate::scene::picture::add_mesh;
-use crate::terrain::facets::Facets;
+use crate::terrain::facets::TriangleSurface;
 
 /// Adds all ribbons, lower layers first.
-pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn Facets) {
+pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn TriangleSurface) {
     let meshes: Vec<DrawMesh> = scene
         .ribbons
         .par_iter()
@@ -24,7 +24,7 @@ pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn Facets) {
             mesh
         })
         .collect();
-    let mut materials: BTreeMap<(Surface, [u8; 4]), MaterialId> = BTreeMap::new();
+    let mut materials: BTreeMap<(RibbonSurface, [u8; 4]), MaterialId> = BTreeMap::new();
     let mut order: Vec<_> =
         scene.ribbons.iter().zip(meshes).filter(|(_, mesh)| !mesh.triangles.is_empty()).collect();
     order.sort_by_key(|(ribbon, _)| ribbon.layer);
@@ -32,18 +32,18 @@ pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn Facets) {
         let material = *materials
             .entry((ribbon.surface, ribbon.tint.0))
             .or_insert_with(|| draped_material(list, ribbon.surface, ribbon.tint));
-        add_mesh(list, mesh, material, Layer::Draped(ribbon.layer), ribbon.feature);
+        add_mesh(list, mesh, material, DepthLayer::Draped(ribbon.layer), ribbon.feature);
     }
 }
 
-fn draped_material(list: &mut DrawList, surface: Surface, tint: Srgba) -> MaterialId {
+fn draped_material(list: &mut DrawList, surface: RibbonSurface, tint: Srgba) -> MaterialId {
     let texture = list.add_texture(texture(surface));
     list.add_material(Material {
         name: format!("{surface:?}").to_lowercase(),
         base_color: tint,
         texture: Some(texture),
-        alpha: if surface.lets_through() { Alpha::Blend } else { Alpha::Opaque },
-        normals: Normals::Ground,
+        alpha: if surface.lets_through() { AlphaMode::Blend } else { AlphaMode::Opaque },
+        normals: NormalSource::Ground,
         ..Material::default()
     })
 }

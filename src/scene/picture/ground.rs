@@ -3,8 +3,8 @@
 use glam::Vec3;
 
 use crate::draw::color::Srgba;
-use crate::draw::list::{DrawList, DrawMesh, DrawVertex, FeatureId, Layer};
-use crate::draw::material::{Albedo, Material, Normals};
+use crate::draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureId};
+use crate::draw::material::{Albedo, Material, NormalSource};
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::roam::displayed::DisplayedTerrain;
 use crate::scene::kind::Terrain;
@@ -36,16 +36,16 @@ pub(super) fn add(list: &mut DrawList, terrain: &Terrain, displayed: &DisplayedT
     let walls = plinth(&sink.0, &terrain.lattice, terrain.exaggeration);
     let material = list.add_material(Material {
         name: "ground".into(),
-        normals: Normals::Ground,
+        normals: NormalSource::Ground,
         albedo: Albedo::GroundMap,
         ..Material::default()
     });
-    add_mesh(list, sink.0, material, Layer::Ground, FeatureId::GROUND);
+    add_mesh(list, sink.0, material, DepthLayer::Ground, FeatureId::GROUND);
     walls
 }
 
 /// Adds the walls.
 pub(super) fn add_plinth(list: &mut DrawList, walls: DrawMesh) {
     let material = list.add_material(Material { name: "plinth".into(), ..Material::default() });
-    add_mesh(list, walls, material, Layer::Solid, FeatureId::GROUND);
+    add_mesh(list, walls, material, DepthLayer::Solid, FeatureId::GROUND);
 }

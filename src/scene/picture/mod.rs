@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use glam::{Mat4, Vec3};
 
-use crate::draw::list::{DrawItem, DrawList, DrawMesh, FeatureId, Layer, MaterialId};
+use crate::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, FeatureId, MaterialId};
 use crate::roam::criterion::screen::ScreenError;
 use crate::roam::culling::patches_in_view;
 use crate::roam::displayed::DisplayedTerrain;
@@ -23,7 +23,7 @@ use crate::view::camera::{Camera, CameraError};
 use crate::view::frustum::Frustum;
 
 /// What one camera sees of a scene.
-pub struct Shot {
+pub struct ViewDraw {
     /// What to draw.
     pub list: DrawList,
     /// The displayed ground.
@@ -44,11 +44,11 @@ pub fn camera(scene: &Scene, view: &View, size: (u32, u32)) -> Result<Camera, Ca
 }
 
 /// The draw list for one camera. `step` is called with what is done next.
-pub fn shoot(scene: &Scene, camera: &Camera, step: &dyn Fn(&'static str)) -> Shot {
+pub fn build_draw_list(scene: &Scene, camera: &Camera, step: &dyn Fn(&'static str)) -> ViewDraw {
     step("refining terrain");
     let displayed = Arc::new(display(&scene.terrain, camera));
     let (list, ground_triangles) = listed(scene, &displayed, Viewer::Camera(camera), step);
-    Shot { list, displayed, ground_triangles }
+    ViewDraw { list, displayed, ground_triangles }
 }
 
 /// What is to be drawn of a scene whose terrain is shown as `displayed`, and how many triangles of it are ground: all
@@ -90,7 +90,13 @@ pub fn display(terrain: &Terrain, camera: &Camera) -> DisplayedTerrain {
     DisplayedTerrain::new(Arc::clone(&terrain.lattice), active, terrain.exaggeration, patches)
 }
 
-fn add_mesh(list: &mut DrawList, mesh: DrawMesh, material: MaterialId, layer: Layer, feature: FeatureId) {
+fn add_mesh(
+    list: &mut DrawList,
+    mesh: DrawMesh,
+    material: MaterialId,
+    layer: DepthLayer,
+    feature: FeatureId,
+) {
     let triangles = 0..mesh.triangles.len() as u32;
     let mesh = list.add_mesh(mesh);
     list.items.push(DrawItem { mesh, triangles, material, world_from_mesh: Mat4::IDENTITY, layer, feature });

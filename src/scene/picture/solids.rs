@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::draw::list::{DrawList, Layer};
+use crate::draw::list::{DepthLayer, DrawList};
 use crate::draw::material::Material;
 use crate::ribbon::texture::texture;
 use crate::scene::kind::{Coat, Scene};
@@ -23,6 +23,6 @@ pub(super) fn add(list: &mut DrawList, scene: &Scene) {
             };
             list.add_material(material)
         });
-        add_mesh(list, solid.mesh.clone(), material, Layer::Solid, solid.feature);
+        add_mesh(list, solid.mesh.clone(), material, DepthLayer::Solid, solid.feature);
     }
 }

@@ -2,19 +2,19 @@
 
 use rayon::prelude::*;
 
-use crate::draw::list::{DrawList, DrawMesh, Layer};
+use crate::draw::list::{DepthLayer, DrawList, DrawMesh};
 use crate::draw::material::Material;
 use crate::scene::kind::Scene;
 use crate::scene::picture::add_mesh;
-use crate::terrain::facets::Facets;
-use crate::terrain::finest::Finest;
-use crate::terrain::underfoot::Underfoot;
+use crate::terrain::facets::TriangleSurface;
+use crate::terrain::finest::FullResolution;
+use crate::terrain::underfoot::SupportSurface;
 
 /// Adds all uprights that have ground under them.
-pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn Facets) {
+pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn TriangleSurface) {
     let terrain = &scene.terrain;
-    let ground = Finest { lattice: &terrain.lattice, exaggeration: terrain.exaggeration };
-    let under = Underfoot { displayed, ground };
+    let ground = FullResolution { lattice: &terrain.lattice, exaggeration: terrain.exaggeration };
+    let under = SupportSurface { displayed, ground };
     let meshes: Vec<DrawMesh> =
         scene.uprights.par_iter().map(|standing| standing.upright.mesh(under)).collect();
     let mut material = None;
@@ -23,7 +23,7 @@ pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn Facets) {
             let material = *material.get_or_insert_with(|| {
                 list.add_material(Material { name: "upright".into(), ..Material::default() })
             });
-            add_mesh(list, mesh, material, Layer::Solid, standing.feature);
+            add_mesh(list, mesh, material, DepthLayer::Solid, standing.feature);
         }
     }
 }

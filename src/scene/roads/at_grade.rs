@@ -21,11 +21,11 @@ const MOST_PAIRS: usize = 20_000_000;
 const MOST_CROSSINGS: usize = 1_000_000;
 
 /// A road and a station on it.
-pub type Place = (usize, f64);
+pub type RoadStation = (usize, f64);
 
 /// A leg of a road.
 #[derive(Clone, Copy)]
-struct Leg {
+struct RoadLeg {
     road: usize,
     start_m: f64,
     ends: [DVec2; 2],
@@ -34,9 +34,12 @@ struct Leg {
 
 /// The crossings of those roads for which `counts` holds: the same place on both roads, each pair of places once, in
 /// order of the roads. `None` where the lines are too tangled to compare all that may cross.
-pub fn crossings(roads: &[Centreline], counts: impl Fn(&Centreline) -> bool) -> Option<Vec<[Place; 2]>> {
+pub fn crossings(
+    roads: &[Centreline],
+    counts: impl Fn(&Centreline) -> bool,
+) -> Option<Vec<[RoadStation; 2]>> {
     let chosen = roads.iter().enumerate().filter(|(_, road)| counts(road));
-    let legs: Vec<Leg> = chosen.flat_map(|(index, road)| legs(index, road)).collect();
+    let legs: Vec<RoadLeg> = chosen.flat_map(|(index, road)| legs(index, road)).collect();
     let total_m: f64 = legs.iter().map(|leg| leg.ends[0].distance(leg.ends[1])).sum();
     let square_m = (2.0 * total_m / legs.len().max(1) as f64).max(SMALLEST_SQUARE_M);
     let mut squares: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
@@ -49,7 +52,7 @@ pub fn crossings(roads: &[Centreline], counts: impl Fn(&Centreline) -> bool) -> 
 }
 
 /// The crossings of legs that share a square, each once.
-fn compare<'a>(legs: &[Leg], squares: impl Iterator<Item = &'a Vec<usize>>) -> Vec<[Place; 2]> {
+fn compare<'a>(legs: &[RoadLeg], squares: impl Iterator<Item = &'a Vec<usize>>) -> Vec<[RoadStation; 2]> {
     let mut found = Vec::new();
     for inside in squares {
         for (position, &one) in inside.iter().enumerate() {
@@ -63,9 +66,9 @@ fn compare<'a>(legs: &[Leg], squares: impl Iterator<Item = &'a Vec<usize>>) -> V
     found.into_iter().map(|(_, places)| places).collect()
 }
 
-fn legs(road: usize, centreline: &Centreline) -> impl Iterator<Item = Leg> + '_ {
+fn legs(road: usize, centreline: &Centreline) -> impl Iterator<Item = RoadLeg> + '_ {
     let (points, stations) = (centreline.line.points(), centreline.line.stations());
-    let leg = move |(ends, &start_m): (&[DVec2], &f64)| Leg {
+    let leg = move |(ends, &start_m): (&[DVec2], &f64)| RoadLeg {
         road,
         start_m,
         ends: [ends[0], ends[1]],
@@ -75,7 +78,7 @@ fn legs(road: usize, centreline: &Centreline) -> impl Iterator<Item = Leg> + '_ 
 }
 
 /// Visits the squares that a leg passes through, row by row.
-fn each_square(leg: &Leg, square_m: f64, visit: &mut impl FnMut((i64, i64))) {
+fn each_square(leg: &RoadLeg, square_m: f64, visit: &mut impl FnMut((i64, i64))) {
     let [from, to] = leg.ends;
     let index = |at: f64| (at / square_m).floor() as i64;
     let (low, high) = (from.y.min(to.y), from.y.max(to.y));
@@ -92,7 +95,7 @@ fn each_square(leg: &Leg, square_m: f64, visit: &mut impl FnMut((i64, i64))) {
 }
 
 /// Where two legs of one level cross or touch; `None` where they do not, and for legs side by side.
-fn crossing(one: &Leg, other: &Leg) -> Option<[Place; 2]> {
+fn crossing(one: &RoadLeg, other: &RoadLeg) -> Option<[RoadStation; 2]> {
     if one.level != other.level {
         return None;
     }
@@ -105,14 +108,14 @@ fn crossing(one: &Leg, other: &Leg) -> Option<[Place; 2]> {
     let is_on = parts.iter().all(|part| (0.0..=1.0).contains(part));
     // Legs of one road that follow each other touch at their vertex.
     let follows = one.road == other.road && (one.ends[1] == other.ends[0] || other.ends[1] == one.ends[0]);
-    let place = |leg: &Leg, part: f64| (leg.road, leg.start_m + leg.ends[0].distance(leg.ends[1]) * part);
+    let place = |leg: &RoadLeg, part: f64| (leg.road, leg.start_m + leg.ends[0].distance(leg.ends[1]) * part);
     (is_on && !follows).then(|| [place(one, parts[0]), place(other, parts[1])])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::roads::centreline::{Carried, tests::road};
+    use crate::scene::roads::centreline::{Support, tests::road};
 
     #[test]
     fn every_pair_of_a_dense_web_is_found_once() {
@@ -120,10 +123,10 @@ mod tests {
             let turned = |(x, y): (f64, f64)| (0..quarter).fold((x, y), |(x, y), _| (-y, x));
             let ends = |index: u32| 10.0 * f64::from(index);
             let east = |index| {
-                road(&[(-5.0, ends(index)), (200.0, ends(index) + 3.0)].map(turned), Carried::Ground, 0)
+                road(&[(-5.0, ends(index)), (200.0, ends(index) + 3.0)].map(turned), Support::Ground, 0)
             };
             let north = |index| {
-                road(&[(ends(index), -5.0), (ends(index) + 2.0, 200.0)].map(turned), Carried::Ground, 0)
+                road(&[(ends(index), -5.0), (ends(index) + 2.0, 200.0)].map(turned), Support::Ground, 0)
             };
             let roads: Vec<Centreline> = (0..15).map(east).chain((0..15).map(north)).collect();
             let found = crossings(&roads, |_| true).expect("not too tangled");
@@ -139,6 +142,6 @@ mod tests {
     fn lines_all_over_each_other_are_not_compared() {
         let back_and_forth = |index: u32| (f64::from(index % 2) * 1e4, f64::from(index) * 0.01);
         let points: Vec<(f64, f64)> = (0..12_000).map(back_and_forth).collect();
-        assert_eq!(crossings(&[road(&points, Carried::Ground, 0)], |_| true), None);
+        assert_eq!(crossings(&[road(&points, Support::Ground, 0)], |_| true), None);
     }
 }

@@ -5,15 +5,15 @@ use glam::DVec2;
 use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
-use crate::description::features::Road;
+use crate::description::features::RoadTable;
 use crate::description::words::{self, Markings};
 use crate::draw::list::FeatureId;
 use crate::geom::polyline::{Polyline, kept};
 use crate::geom::rect::Rect;
 use crate::ribbon::stroke::{StrokeOptions, Widths};
-use crate::ribbon::texture::{Surface, texture_length_m};
+use crate::ribbon::texture::{RibbonSurface, texture_length_m};
 use crate::scene::attributes::Attributes;
-use crate::scene::collected::Collected;
+use crate::scene::collected::SceneBuilder;
 use crate::scene::kind::FeatureKind;
 use crate::scene::near;
 use crate::scene::sources::Sources;
@@ -23,7 +23,7 @@ const REACH_M: f64 = 1000.0;
 
 /// What carries a stretch of road.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Carried {
+pub enum Support {
     /// The ground.
     Ground,
     /// A bridge over it.
@@ -47,9 +47,9 @@ pub struct Centreline {
     /// How wide the unpaved strip on either side is, in metres; 0 where there is none.
     pub shoulder_m: f64,
     /// What it is paved with.
-    pub surface: Surface,
+    pub surface: RibbonSurface,
     /// What carries it.
-    pub carried: Carried,
+    pub carried: Support,
     /// What passes over what: roads of different levels do not meet.
     pub level: i32,
     /// The feature it is.
@@ -68,7 +68,7 @@ pub fn collect(
     document: &Document,
     sources: &Sources<'_>,
     extent: &Rect,
-    collected: &mut Collected,
+    collected: &mut SceneBuilder,
 ) -> Result<Vec<Centreline>, Diagnostic> {
     let mut all = Vec::new();
     for (table, road) in document.roads.iter().enumerate() {
@@ -118,10 +118,10 @@ impl Centreline {
 
 /// One road line with all that its table says of it.
 fn centreline(
-    (table, road): (usize, &Road),
+    (table, road): (usize, &RoadTable),
     attributes: Attributes,
     line: Polyline,
-    collected: &mut Collected,
+    collected: &mut SceneBuilder,
 ) -> Centreline {
     let defaulted = &mut collected.defaulted;
     let surface = surface(road, &attributes);
@@ -156,7 +156,7 @@ fn centreline(
 }
 
 /// The widths stated for the points of an inline line, at the vertices that are left of it.
-fn widths_m(road: &Road, shape: &[DVec2]) -> Option<Vec<f64>> {
+fn widths_m(road: &RoadTable, shape: &[DVec2]) -> Option<Vec<f64>> {
     let stated = road.widths.as_ref()?.get_ref();
     let widths_m: Option<Vec<f64>> =
         kept(shape, near::MERGE_M).into_iter().map(|index| stated.get(index).copied()).collect();
@@ -164,38 +164,38 @@ fn widths_m(road: &Road, shape: &[DVec2]) -> Option<Vec<f64>> {
 }
 
 /// What it is paved with and what is painted on it.
-fn surface(road: &Road, attributes: &Attributes) -> Surface {
+fn surface(road: &RoadTable, attributes: &Attributes) -> RibbonSurface {
     match attributes.word(road.surface.as_ref()).unwrap_or_default() {
-        words::Surface::Gravel => Surface::Gravel,
-        words::Surface::Track => Surface::Track,
-        words::Surface::Asphalt => match attributes.word(road.markings.as_ref()).unwrap_or_default() {
-            Markings::Dashed => Surface::Asphalt,
-            Markings::Solid => Surface::AsphaltSolid,
-            Markings::Edges => Surface::AsphaltEdges,
-            Markings::None => Surface::AsphaltPlain,
+        words::RoadSurface::Gravel => RibbonSurface::Gravel,
+        words::RoadSurface::Track => RibbonSurface::Track,
+        words::RoadSurface::Asphalt => match attributes.word(road.markings.as_ref()).unwrap_or_default() {
+            Markings::Dashed => RibbonSurface::Asphalt,
+            Markings::Solid => RibbonSurface::AsphaltSolid,
+            Markings::Edges => RibbonSurface::AsphaltEdges,
+            Markings::None => RibbonSurface::AsphaltPlain,
         },
     }
 }
 
 /// What carries a road, by the expressions stated for it, else by its properties as OpenStreetMap has them.
-pub(in crate::scene) fn carried(road: &Road, attributes: &Attributes) -> Carried {
+pub(in crate::scene) fn carried(road: &RoadTable, attributes: &Attributes) -> Support {
     let holds = |stated: &Option<toml::Spanned<_>>, property| match stated {
         Some(expression) => attributes.holds(expression.get_ref()),
         None => attributes.affirm(property),
     };
     match (holds(&road.tunnel, "tunnel"), holds(&road.bridge, "bridge")) {
-        (true, _) => Carried::Tunnel,
-        (false, true) => Carried::Bridge,
-        (false, false) => Carried::Ground,
+        (true, _) => Support::Tunnel,
+        (false, true) => Support::Bridge,
+        (false, false) => Support::Ground,
     }
 }
 
-fn level(road: &Road, attributes: &Attributes, carried: Carried) -> i32 {
+fn level(road: &RoadTable, attributes: &Attributes, carried: Support) -> i32 {
     let tagged = || attributes.get("layer").as_ref().and_then(crate::description::expression::as_number);
     let by_kind = match carried {
-        Carried::Ground => 0.0,
-        Carried::Bridge => 1.0,
-        Carried::Tunnel => -1.0,
+        Support::Ground => 0.0,
+        Support::Bridge => 1.0,
+        Support::Tunnel => -1.0,
     };
     let level = attributes.number(road.level.as_ref()).or_else(tagged).unwrap_or(by_kind);
     level.round().clamp(-20.0, 20.0) as i32
@@ -206,7 +206,7 @@ pub(in crate::scene::roads) mod tests {
     use super::*;
 
     /// A road along these points, six metres wide, from the document's first table.
-    pub fn road(points: &[(f64, f64)], carried: Carried, level: i32) -> Centreline {
+    pub fn road(points: &[(f64, f64)], carried: Support, level: i32) -> Centreline {
         let line = Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line");
         Centreline {
             line,
@@ -214,7 +214,7 @@ pub(in crate::scene::roads) mod tests {
             options: StrokeOptions::default(),
             widths_m: None,
             shoulder_m: 0.0,
-            surface: Surface::Asphalt,
+            surface: RibbonSurface::Asphalt,
             carried,
             level,
             feature: FeatureId(2),
@@ -230,10 +230,10 @@ pub(in crate::scene::roads) mod tests {
     #[test]
     fn a_part_of_a_road_is_as_wide_as_the_road_there() {
         let mut road = centreline(
-            (0, &Road::default()),
+            (0, &RoadTable::default()),
             Attributes::default(),
             line(&[(0.0, 0.0), (10.0, 0.0), (30.0, 0.0)]),
-            &mut Collected::default(),
+            &mut SceneBuilder::default(),
         );
         let part = line(&[(5.0, 0.0), (10.0, 0.0), (20.0, 0.0)]);
         assert_eq!(road.widths_along(&part, 5.0), None);
@@ -244,7 +244,7 @@ pub(in crate::scene::roads) mod tests {
     #[test]
     fn widths_stay_with_their_points_where_points_are_merged() {
         let widths = toml::Spanned::new(0..0, vec![3.0, 4.0, 5.0]);
-        let road = Road { widths: Some(widths), ..Road::default() };
+        let road = RoadTable { widths: Some(widths), ..RoadTable::default() };
         let shape = [DVec2::ZERO, DVec2::X * 0.001, DVec2::X * 9.0];
         assert_eq!(widths_m(&road, &shape), Some(vec![3.0, 5.0]));
     }

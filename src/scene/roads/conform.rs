@@ -10,20 +10,20 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::geom::polyline::Polyline;
-use crate::scene::collected::Collected;
-use crate::scene::report::{Cell, Column};
-use crate::scene::roads::centreline::{Carried, Centreline};
-use crate::scene::roads::meetings::{Meetings, meetings};
+use crate::scene::collected::SceneBuilder;
+use crate::scene::report::{ReportCell, ReportColumn};
+use crate::scene::roads::centreline::{Centreline, Support};
+use crate::scene::roads::meetings::{RoadMeetings, meetings};
 use crate::scene::roads::profiles::RoadProfile;
-use crate::scene::roads::route::{Route, Stretch, points_between};
+use crate::scene::roads::route::{Route, RouteStretch, points_between};
 use crate::scene::roads::stretches;
-use crate::scene::roads::survey::{Rules, Survey, conforms};
+use crate::scene::roads::survey::{NetworkSurvey, Rules, conforms};
 use crate::terrain::alignment::design::design;
 use crate::terrain::alignment::network::NodeId;
 use crate::terrain::densify;
 use crate::terrain::earthwork::Volumes;
 use crate::terrain::grading::grade;
-use crate::terrain::grading::strip::{End, Strip};
+use crate::terrain::grading::strip::{GradingStrip, StripEnd};
 use crate::terrain::lattice::Lattice;
 
 /// The length of a vertical curve in metres: for a crest between grades of 4 % up and down at 50 km/h.
@@ -37,16 +37,16 @@ const CURVE_CELLS: f64 = 2.0;
 const POSTS_ACROSS: f64 = 4.0;
 
 /// What is reported of each road.
-const COLUMNS: [Column; 9] = [
-    Column { name: "name", unit: "" },
-    Column { name: "length", unit: "m" },
-    Column { name: "highest grade", unit: "%" },
-    Column { name: "cut", unit: "m3" },
-    Column { name: "fill", unit: "m3" },
-    Column { name: "highest fill", unit: "m" },
-    Column { name: "deepest cut", unit: "m" },
-    Column { name: "bridges", unit: "" },
-    Column { name: "tunnels", unit: "" },
+const COLUMNS: [ReportColumn; 9] = [
+    ReportColumn { name: "name", unit: "" },
+    ReportColumn { name: "length", unit: "m" },
+    ReportColumn { name: "highest grade", unit: "%" },
+    ReportColumn { name: "cut", unit: "m3" },
+    ReportColumn { name: "fill", unit: "m3" },
+    ReportColumn { name: "highest fill", unit: "m" },
+    ReportColumn { name: "deepest cut", unit: "m" },
+    ReportColumn { name: "bridges", unit: "" },
+    ReportColumn { name: "tunnels", unit: "" },
 ];
 
 /// Designs the roads that the ground follows, grades the ground for them and cuts them where bridges and tunnels begin.
@@ -59,20 +59,20 @@ pub fn conform(
     document: &Document,
     lattice: &mut Lattice,
     roads: &mut Vec<Centreline>,
-    collected: &mut Collected,
+    collected: &mut SceneBuilder,
 ) -> Result<(), Diagnostic> {
     let rules: Vec<Option<Rules>> =
         roads.iter().map(|road| Rules::of(document, road, &mut collected.defaulted)).collect();
     if rules.iter().all(Option::is_none) {
         return Ok(());
     }
-    let is_carried = |road: &Centreline| road.carried == Carried::Ground;
+    let is_carried = |road: &Centreline| road.carried == Support::Ground;
     let meetings = meetings(roads, |road| is_carried(road) && conforms(&document.roads[road.table]));
     if meetings.is_tangled {
         let note = "conforming roads cross each other too often to find every place: they meet at their vertices only";
         collected.notes.push(note.into());
     }
-    let survey = Survey::of(document, lattice, roads, &rules, &meetings)?;
+    let survey = NetworkSurvey::of(document, lattice, roads, &rules, &meetings)?;
     let curve_m = CURVE_M.max(CURVE_CELLS * lattice.cell().max_element());
     let design = design(&survey.network, &survey.courses, &survey.pins, curve_m);
     let routes: Vec<Route> = survey.routes(&design).into_iter().map(Route::with_ends).collect();
@@ -93,18 +93,18 @@ struct Earthworks<'a> {
     rules: &'a [Option<Rules>],
     /// The nodes where bridges and tunnels begin.
     walls: BTreeSet<NodeId>,
-    meetings: &'a Meetings,
+    meetings: &'a RoadMeetings,
 }
 
 impl Earthworks<'_> {
     /// Grades the ground for every stretch on it; the earth moved for each route.
-    fn build(&self, lattice: &mut Lattice, routes: &[Route], collected: &mut Collected) -> Vec<Volumes> {
-        let strips: Vec<(usize, Strip)> = routes
+    fn build(&self, lattice: &mut Lattice, routes: &[Route], collected: &mut SceneBuilder) -> Vec<Volumes> {
+        let strips: Vec<(usize, GradingStrip)> = routes
             .iter()
             .enumerate()
             .flat_map(|(index, route)| self.strips(route).into_iter().map(move |strip| (index, strip)))
             .collect();
-        let (owners, strips): (Vec<usize>, Vec<Strip>) = strips.into_iter().unzip();
+        let (owners, strips): (Vec<usize>, Vec<GradingStrip>) = strips.into_iter().unzip();
         make_denser(lattice, &strips, collected);
         let mut volumes = vec![Volumes::default(); routes.len()];
         if !strips.is_empty() {
@@ -116,37 +116,37 @@ impl Earthworks<'_> {
         volumes
     }
 
-    fn strips(&self, route: &Route) -> Vec<Strip> {
+    fn strips(&self, route: &Route) -> Vec<GradingStrip> {
         let Some(rules) = &self.rules[route.road] else { return Vec::new() };
         let all = route.stretches();
-        let on_ground = all.iter().enumerate().filter(|(_, stretch)| stretch.carried == Carried::Ground);
-        let strip = |(index, stretch): (usize, &Stretch)| {
+        let on_ground = all.iter().enumerate().filter(|(_, stretch)| stretch.carried == Support::Ground);
+        let strip = |(index, stretch): (usize, &RouteStretch)| {
             let points = points_between(&self.roads[route.road].line, stretch.from_m, stretch.to_m);
             let (stations_m, levels_m) = route.levels_along(stretch);
             let beside = [index.checked_sub(1).and_then(|before| all.get(before)), all.get(index + 1)];
             let ends = [self.end(route, beside[0], 0), self.end(route, beside[1], usize::MAX)];
             let line = Polyline::new(points, 0.0)?;
-            Some(Strip { line, stations_m, levels_m, section: rules.section, ends })
+            Some(GradingStrip { line, stations_m, levels_m, section: rules.section, ends })
         };
         on_ground.filter_map(strip).collect()
     }
 
     /// What stands at an end of a stretch: by the stretch beyond, or by what meets the road at its own end.
-    fn end(&self, route: &Route, beyond: Option<&Stretch>, stop: usize) -> End {
+    fn end(&self, route: &Route, beyond: Option<&RouteStretch>, stop: usize) -> StripEnd {
         let stops = &self.meetings.stops[route.road];
         let is_wall = match beyond {
-            Some(stretch) => stretch.carried != Carried::Ground,
+            Some(stretch) => stretch.carried != Support::Ground,
             None => self.walls.contains(&stops[stop.min(stops.len() - 1)].node),
         };
-        if is_wall { End::Wall } else { End::Open }
+        if is_wall { StripEnd::Wall } else { StripEnd::Open }
     }
 }
 
 /// The nodes where a bridge or a tunnel of one road ends that may go on as another on the ground.
-fn walls(roads: &[Centreline], routes: &[Route], meetings: &Meetings) -> BTreeSet<NodeId> {
+fn walls(roads: &[Centreline], routes: &[Route], meetings: &RoadMeetings) -> BTreeSet<NodeId> {
     let mut nodes = BTreeSet::new();
     for (road, stops) in roads.iter().zip(&meetings.stops) {
-        if road.carried != Carried::Ground {
+        if road.carried != Support::Ground {
             nodes.extend([stops[0].node, stops[stops.len() - 1].node]);
         }
     }
@@ -154,13 +154,13 @@ fn walls(roads: &[Centreline], routes: &[Route], meetings: &Meetings) -> BTreeSe
         let (all, stops) = (route.stretches(), &meetings.stops[route.road]);
         let ends = [(&all[0], stops[0]), (&all[all.len() - 1], stops[stops.len() - 1])];
         nodes
-            .extend(ends.iter().filter(|(end, _)| end.carried != Carried::Ground).map(|(_, stop)| stop.node));
+            .extend(ends.iter().filter(|(end, _)| end.carried != Support::Ground).map(|(_, stop)| stop.node));
     }
     nodes
 }
 
 /// Puts more posts between those there are, where the carriageways are narrower than a few cells.
-fn make_denser(lattice: &mut Lattice, strips: &[Strip], collected: &mut Collected) {
+fn make_denser(lattice: &mut Lattice, strips: &[GradingStrip], collected: &mut SceneBuilder) {
     let widths = strips.iter().map(|strip| 2.0 * strip.section.half_width_m);
     let narrowest_m = widths.fold(f64::INFINITY, f64::min);
     let wanted = densify::doublings_for(lattice, narrowest_m / POSTS_ACROSS);
@@ -190,14 +190,14 @@ fn make_denser(lattice: &mut Lattice, strips: &[Strip], collected: &mut Collecte
 }
 
 /// Reports a road and keeps its profile.
-fn tell(road: &Centreline, route: &Route, volumes: &Volumes, collected: &mut Collected) {
+fn tell(road: &Centreline, route: &Route, volumes: &Volumes, collected: &mut SceneBuilder) {
     let name = collected.name(road.feature).to_owned();
     let all = route.stretches();
     let carried_at =
         |station: f64| all.iter().find(|at| station < at.to_m).unwrap_or(&all[all.len() - 1]).carried;
-    let carried: Vec<Carried> = route.stations_m.iter().map(|&station| carried_at(station)).collect();
+    let carried: Vec<Support> = route.stations_m.iter().map(|&station| carried_at(station)).collect();
     let rises: Vec<f64> = (0..carried.len())
-        .filter(|&index| carried[index] == Carried::Ground)
+        .filter(|&index| carried[index] == Support::Ground)
         .map(|index| route.design_m[index] - route.ground_m[index])
         .collect();
     let steepest =
@@ -209,15 +209,15 @@ fn tell(road: &Centreline, route: &Route, volumes: &Volumes, collected: &mut Col
     let count = |kind| all.iter().filter(|stretch| stretch.carried == kind).count();
     let highest = |sign: f64| rises.iter().fold(0.0, |most: f64, rise| most.max(rise * sign));
     let row = vec![
-        Cell::Text(name.clone()),
-        Cell::Number(road.line.length()),
-        Cell::Number(steepest * 100.0),
-        Cell::Number(volumes.cut_m3),
-        Cell::Number(volumes.fill_m3),
-        Cell::Number(highest(1.0)),
-        Cell::Number(highest(-1.0)),
-        Cell::Count(count(Carried::Bridge)),
-        Cell::Count(count(Carried::Tunnel)),
+        ReportCell::Text(name.clone()),
+        ReportCell::Number(road.line.length()),
+        ReportCell::Number(steepest * 100.0),
+        ReportCell::Number(volumes.cut_m3),
+        ReportCell::Number(volumes.fill_m3),
+        ReportCell::Number(highest(1.0)),
+        ReportCell::Number(highest(-1.0)),
+        ReportCell::Count(count(Support::Bridge)),
+        ReportCell::Count(count(Support::Tunnel)),
     ];
     collected.report.add(("conformed roads", &COLUMNS), row);
     collected.profiles.push(RoadProfile {
@@ -235,7 +235,7 @@ fn total(
     document: &Document,
     roads: &[Centreline],
     (routes, volumes): (&[Route], &[Volumes]),
-    collected: &mut Collected,
+    collected: &mut SceneBuilder,
 ) {
     let mut tables: BTreeMap<usize, (usize, Volumes, [usize; 2])> = BTreeMap::new();
     for (route, moved) in routes.iter().zip(volumes) {
@@ -244,8 +244,8 @@ fn total(
         sum.cut_m3 += moved.cut_m3;
         sum.fill_m3 += moved.fill_m3;
         for stretch in route.stretches() {
-            spans[0] += usize::from(stretch.carried == Carried::Bridge);
-            spans[1] += usize::from(stretch.carried == Carried::Tunnel);
+            spans[0] += usize::from(stretch.carried == Support::Bridge);
+            spans[1] += usize::from(stretch.carried == Support::Tunnel);
         }
     }
     for (table, (count, Volumes { cut_m3, fill_m3 }, [bridges, tunnels])) in tables {

@@ -19,7 +19,7 @@ const LEAST_SINE: f64 = 0.25;
 
 /// A way that others may pass over.
 #[derive(Clone, Copy, Debug)]
-pub struct Way<'a> {
+pub struct PassedLine<'a> {
     /// Its centreline in world coordinates.
     pub line: &'a Polyline,
     /// Its width in metres.
@@ -30,7 +30,7 @@ pub struct Way<'a> {
 
 /// Where a way passes over another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Crossing {
+pub struct Overpass {
     /// Which of the upper ways.
     pub upper: usize,
     /// Which of the lower ways.
@@ -46,7 +46,7 @@ pub struct Crossing {
 }
 
 /// A run of a line's segments.
-struct Piece {
+struct LineRun {
     way: usize,
     segments: Range<usize>,
     rect: Rect,
@@ -54,7 +54,7 @@ struct Piece {
 
 /// Every place where one of `upper` crosses one of `lower` whose level is lower, by upper way and station. Lines that
 /// only touch end to end do not cross.
-pub fn find(upper: &[Way<'_>], lower: &[Way<'_>]) -> Vec<Crossing> {
+pub fn find(upper: &[PassedLine<'_>], lower: &[PassedLine<'_>]) -> Vec<Overpass> {
     let mut below = pieces(lower);
     below.sort_by(|a, b| a.rect.min.x.total_cmp(&b.rect.min.x));
     let widest = below.iter().map(|piece| piece.rect.size().x).fold(0.0, f64::max);
@@ -77,20 +77,24 @@ pub fn find(upper: &[Way<'_>], lower: &[Way<'_>]) -> Vec<Crossing> {
     found
 }
 
-fn pieces(ways: &[Way<'_>]) -> Vec<Piece> {
+fn pieces(ways: &[PassedLine<'_>]) -> Vec<LineRun> {
     let cut = |(way, line): (usize, &Polyline)| {
         let count = line.points().len() - 1;
         let piece = move |from: usize, points: &[DVec2]| {
             let segments = from..(from + SEGMENTS).min(count);
             let rect = Rect::around(points[segments.start..=segments.end].iter().copied());
-            Piece { way, segments, rect }
+            LineRun { way, segments, rect }
         };
         (0..count).step_by(SEGMENTS).map(|from| piece(from, line.points())).collect::<Vec<_>>()
     };
     ways.iter().enumerate().flat_map(|(index, way)| cut((index, way.line))).collect()
 }
 
-fn cross((piece, over): (&Piece, &Way<'_>), (other, under): (&Piece, &Way<'_>), found: &mut Vec<Crossing>) {
+fn cross(
+    (piece, over): (&LineRun, &PassedLine<'_>),
+    (other, under): (&LineRun, &PassedLine<'_>),
+    found: &mut Vec<Overpass>,
+) {
     for above in piece.segments.clone() {
         for below in other.segments.clone() {
             let ends = |line: &Polyline, segment: usize| [line.points()[segment], line.points()[segment + 1]];
@@ -109,7 +113,7 @@ fn cross((piece, over): (&Piece, &Way<'_>), (other, under): (&Piece, &Way<'_>), 
                 (to - from).normalize_or_zero()
             };
             let sine = direction(over.line, above).perp_dot(direction(under.line, below)).abs();
-            found.push(Crossing {
+            found.push(Overpass {
                 upper: piece.way,
                 lower: other.way,
                 at: over.line.at(upper_m),
@@ -143,8 +147,8 @@ mod tests {
         Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line")
     }
 
-    fn way(line: &Polyline, level: i32) -> Way<'_> {
-        Way { line, width_m: 6.0, level }
+    fn way(line: &Polyline, level: i32) -> PassedLine<'_> {
+        PassedLine { line, width_m: 6.0, level }
     }
 
     #[test]

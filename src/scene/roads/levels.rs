@@ -8,12 +8,12 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use crate::scene::roads::centreline::{Carried, Centreline};
-use crate::scene::roads::chains::{Chain, End};
-use crate::scene::roads::crossings::{self, Crossing, Way};
-use crate::scene::roads::spans::{Place, Span, place};
+use crate::scene::roads::centreline::{Centreline, Support};
+use crate::scene::roads::chains::{ChainEnd, SpanChain};
+use crate::scene::roads::crossings::{self, Overpass, PassedLine};
+use crate::scene::roads::spans::{PointKey, RoadSpan, place};
 use crate::structure::bridge::depth_m;
-use crate::structure::deck_profile::{DeckProfile, Floor};
+use crate::structure::deck_profile::{ClearancePoint, DeckProfile};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::deck::Deck;
 use crate::terrain::query::{Interpolation, ground_height};
@@ -68,11 +68,11 @@ pub struct Passage {
 
 /// How a chain runs.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Run {
+pub struct ChainRun {
     /// Its elevations by station.
     pub profile: DeckProfile,
     /// The ground below it, at stations rising, where there is some.
-    pub ground: Vec<Floor>,
+    pub ground: Vec<ClearancePoint>,
     /// What passes below; none below a tunnel.
     pub passages: Vec<Passage>,
     /// The widest span between piers, in metres.
@@ -82,15 +82,20 @@ pub struct Run {
 }
 
 /// How every chain runs; `None` where there is no ground along it.
-pub fn settle(spans: &[Span], chains: &[Chain], roads: &[Centreline], site: &Site<'_>) -> Vec<Option<Run>> {
+pub fn settle(
+    spans: &[RoadSpan],
+    chains: &[SpanChain],
+    roads: &[Centreline],
+    site: &Site<'_>,
+) -> Vec<Option<ChainRun>> {
     let below = Below::new(spans, chains, roads);
-    let samples: Vec<Vec<Floor>> = chains.iter().map(|chain| sampled(chain, spans, site)).collect();
+    let samples: Vec<Vec<ClearancePoint>> = chains.iter().map(|chain| sampled(chain, spans, site)).collect();
     let meetings = meetings(spans, chains, &samples, &below);
     let mut order: Vec<usize> = (0..chains.len()).collect();
     order.sort_by_key(|&chain| {
         (below.leans_on_another(&chains[chain]), top_level(&chains[chain], spans), chain)
     });
-    let mut runs: Vec<Option<Run>> = vec![None; chains.len()];
+    let mut runs: Vec<Option<ChainRun>> = vec![None; chains.len()];
     for index in order {
         let run = below.run((index, &samples[index]), (spans, chains), &meetings, &runs, site);
         runs[index] = run;
@@ -98,19 +103,19 @@ pub fn settle(spans: &[Span], chains: &[Chain], roads: &[Centreline], site: &Sit
     runs
 }
 
-fn top_level(chain: &Chain, spans: &[Span]) -> i32 {
+fn top_level(chain: &SpanChain, spans: &[RoadSpan]) -> i32 {
     chain.links.iter().map(|link| spans[link.span].level).max().unwrap_or(0)
 }
 
 /// The widest span between piers of a bridge as high as this.
-fn by_height(profile: &DeckProfile, ground: &[Floor]) -> f64 {
-    let above = |floor: &Floor| profile.level_m(floor.station_m) - floor.level_m;
+fn by_height(profile: &DeckProfile, ground: &[ClearancePoint]) -> f64 {
+    let above = |floor: &ClearancePoint| profile.level_m(floor.station_m) - floor.level_m;
     let highest = ground.iter().map(above).fold(0.0, f64::max);
     (SPACING_PER_HEIGHT * highest).clamp(PIER_SPACING_M, WIDEST_SPACING_M)
 }
 
 /// The ground along a chain: twice a cell, and often enough on short ones.
-fn sampled(chain: &Chain, spans: &[Span], site: &Site<'_>) -> Vec<Floor> {
+fn sampled(chain: &SpanChain, spans: &[RoadSpan], site: &Site<'_>) -> Vec<ClearancePoint> {
     let step = (site.lattice.cell().min_element() / 2.0)
         .min(chain.length_m / 16.0)
         .max(chain.length_m / MOST_SAMPLES);
@@ -118,7 +123,7 @@ fn sampled(chain: &Chain, spans: &[Span], site: &Site<'_>) -> Vec<Floor> {
     let station = |index: usize| chain.length_m * index as f64 / count as f64;
     let floor = |station_m: f64| {
         let level_m = site.ground_m(chain.at(spans, station_m))?;
-        Some(Floor { station_m, level_m })
+        Some(ClearancePoint { station_m, level_m })
     };
     (0..=count).filter_map(|index| floor(station(index))).collect()
 }
@@ -126,7 +131,7 @@ fn sampled(chain: &Chain, spans: &[Span], site: &Site<'_>) -> Vec<Floor> {
 /// What chains pass over and lean on.
 struct Below {
     /// Where spans cross lower ways: the roads on the ground first, then the spans.
-    crossings: Vec<Crossing>,
+    crossings: Vec<Overpass>,
     /// Which span each of the crossings' upper ways is.
     bridges: Vec<usize>,
     /// Which road each of the first lower ways is.
@@ -135,26 +140,26 @@ struct Below {
     /// Which chain and link each span is.
     link_of: Vec<(usize, usize)>,
     /// The vertices inside spans, by place: span and station.
-    inside: BTreeMap<Place, (usize, f64)>,
+    inside: BTreeMap<PointKey, (usize, f64)>,
 }
 
 impl Below {
-    fn new(spans: &[Span], chains: &[Chain], all_roads: &[Centreline]) -> Self {
+    fn new(spans: &[RoadSpan], chains: &[SpanChain], all_roads: &[Centreline]) -> Self {
         let bridges: Vec<usize> =
-            (0..spans.len()).filter(|&span| spans[span].carried == Carried::Bridge).collect();
+            (0..spans.len()).filter(|&span| spans[span].carried == Support::Bridge).collect();
         let roads: Vec<usize> =
-            (0..all_roads.len()).filter(|&road| all_roads[road].carried == Carried::Ground).collect();
-        let over = |&span: &usize| Way {
+            (0..all_roads.len()).filter(|&road| all_roads[road].carried == Support::Ground).collect();
+        let over = |&span: &usize| PassedLine {
             line: &spans[span].line,
             width_m: spans[span].options.width_m,
             level: spans[span].level,
         };
-        let upper: Vec<Way<'_>> = bridges.iter().map(over).collect();
+        let upper: Vec<PassedLine<'_>> = bridges.iter().map(over).collect();
         let on_ground = roads.iter().map(|&road| {
             let road = &all_roads[road];
-            Way { line: &road.line, width_m: road.options.width_m, level: road.level }
+            PassedLine { line: &road.line, width_m: road.options.width_m, level: road.level }
         });
-        let lower: Vec<Way<'_>> = on_ground.chain(upper.iter().copied()).collect();
+        let lower: Vec<PassedLine<'_>> = on_ground.chain(upper.iter().copied()).collect();
         let mut link_of = vec![(0, 0); spans.len()];
         for (index, chain) in chains.iter().enumerate() {
             for (link, placed) in chain.links.iter().enumerate() {
@@ -178,29 +183,29 @@ impl Below {
     }
 
     /// The chain and station on it of a place inside another chain's line.
-    fn host(&self, at: Place, chains: &[Chain]) -> Option<(usize, f64)> {
+    fn host(&self, at: PointKey, chains: &[SpanChain]) -> Option<(usize, f64)> {
         let &(span, on_span_m) = self.inside.get(&at)?;
         let (chain, link) = self.link_of[span];
-        Some((chain, Chain::station_m(&chains[chain].links[link], on_span_m)))
+        Some((chain, SpanChain::station_m(&chains[chain].links[link], on_span_m)))
     }
 
-    fn leans_on_another(&self, chain: &Chain) -> bool {
-        chain.ends.iter().any(|end| matches!(end, End::Onward(at) if self.inside.contains_key(at)))
+    fn leans_on_another(&self, chain: &SpanChain) -> bool {
+        chain.ends.iter().any(|end| matches!(end, ChainEnd::Onward(at) if self.inside.contains_key(at)))
     }
 
     fn run(
         &self,
-        (index, ground): (usize, &[Floor]),
-        (spans, chains): (&[Span], &[Chain]),
-        meetings: &BTreeMap<Place, f64>,
-        runs: &[Option<Run>],
+        (index, ground): (usize, &[ClearancePoint]),
+        (spans, chains): (&[RoadSpan], &[SpanChain]),
+        meetings: &BTreeMap<PointKey, f64>,
+        runs: &[Option<ChainRun>],
         site: &Site<'_>,
-    ) -> Option<Run> {
+    ) -> Option<ChainRun> {
         let chain = &chains[index];
         let own = ground_ends(ground)?;
         let end_m = |end: usize| match chain.ends[end] {
-            End::Ground | End::Loose => own[end],
-            End::Onward(at) => {
+            ChainEnd::Ground | ChainEnd::Loose => own[end],
+            ChainEnd::Onward(at) => {
                 let host = self.host(at, chains).filter(|&(host, _)| host != index);
                 let on_host =
                     host.and_then(|(host, station)| Some(runs[host].as_ref()?.profile.level_m(station)));
@@ -213,11 +218,12 @@ impl Below {
         let spacing_m =
             stated.unwrap_or_else(|| by_height(&DeckProfile::straight(chain.length_m, ends_m), ground));
         let depth_m = depth_m(spacing_m.min(chain.length_m));
-        let is_bridge = first.carried == Carried::Bridge;
+        let is_bridge = first.carried == Support::Bridge;
         let passages = if is_bridge { self.passages(index, (spans, chains), runs, site) } else { Vec::new() };
         let stated = first.levels_m.as_ref().and_then(|levels| {
             let stations = first.line.stations().iter();
-            let points = stations.zip(levels).map(|(&station_m, &level_m)| Floor { station_m, level_m });
+            let points =
+                stations.zip(levels).map(|(&station_m, &level_m)| ClearancePoint { station_m, level_m });
             DeckProfile::stated(points.collect())
         });
         let profile = stated.unwrap_or_else(|| {
@@ -226,19 +232,19 @@ impl Below {
             }
             let room = CLEARANCE_M + depth_m / f64::from(site.exaggeration);
             let floors = passages.iter().flat_map(|passage| {
-                passage.reach_m.map(|station_m| Floor { station_m, level_m: passage.level_m + room })
+                passage.reach_m.map(|station_m| ClearancePoint { station_m, level_m: passage.level_m + room })
             });
             DeckProfile::clearing((chain.length_m, ends_m), ground, &floors.collect::<Vec<_>>(), STEEPEST)
         });
-        Some(Run { profile, ground: ground.to_vec(), passages, spacing_m, depth_m })
+        Some(ChainRun { profile, ground: ground.to_vec(), passages, spacing_m, depth_m })
     }
 
     /// What passes below a chain, by station.
     fn passages(
         &self,
         index: usize,
-        (spans, chains): (&[Span], &[Chain]),
-        runs: &[Option<Run>],
+        (spans, chains): (&[RoadSpan], &[SpanChain]),
+        runs: &[Option<ChainRun>],
         site: &Site<'_>,
     ) -> Vec<Passage> {
         let chain = &chains[index];
@@ -252,11 +258,11 @@ impl Below {
                 None => site.ground_m(crossing.at),
                 Some(lower) => {
                     let (host, link) = self.link_of[self.bridges[lower]];
-                    let station = Chain::station_m(&chains[host].links[link], crossing.lower_m);
+                    let station = SpanChain::station_m(&chains[host].links[link], crossing.lower_m);
                     runs[host].as_ref().map(|run| run.profile.level_m(station))
                 }
             };
-            let station = Chain::station_m(&chain.links[link], crossing.upper_m);
+            let station = SpanChain::station_m(&chain.links[link], crossing.upper_m);
             let half = crossing.half_m.min(self.widths_m[crossing.lower] * 3.0);
             let reach_m = [(station - half).max(0.0), (station + half).min(chain.length_m)];
             all.extend(level_m.map(|level_m| Passage { reach_m, level_m }));
@@ -267,7 +273,7 @@ impl Below {
 }
 
 /// The stretches of a chain over water, each with the highest ground under it.
-fn wet(chain: &Chain, spans: &[Span], site: &Site<'_>) -> Vec<Passage> {
+fn wet(chain: &SpanChain, spans: &[RoadSpan], site: &Site<'_>) -> Vec<Passage> {
     let mut all: Vec<Passage> = Vec::new();
     if site.water.facets().is_empty() {
         return all;
@@ -293,16 +299,21 @@ fn wet(chain: &Chain, spans: &[Span], site: &Site<'_>) -> Vec<Passage> {
 }
 
 /// The ground at both ends of a chain, or where there is some nearest to them.
-fn ground_ends(ground: &[Floor]) -> Option<[f64; 2]> {
+fn ground_ends(ground: &[ClearancePoint]) -> Option<[f64; 2]> {
     Some([ground.first()?.level_m, ground.last()?.level_m])
 }
 
 /// The levels of the places where chains meet above or below the ground.
-fn meetings(spans: &[Span], chains: &[Chain], samples: &[Vec<Floor>], below: &Below) -> BTreeMap<Place, f64> {
-    let mut levels: BTreeMap<Place, f64> = BTreeMap::new();
-    let mut lowest: BTreeMap<Place, f64> = BTreeMap::new();
+fn meetings(
+    spans: &[RoadSpan],
+    chains: &[SpanChain],
+    samples: &[Vec<ClearancePoint>],
+    below: &Below,
+) -> BTreeMap<PointKey, f64> {
+    let mut levels: BTreeMap<PointKey, f64> = BTreeMap::new();
+    let mut lowest: BTreeMap<PointKey, f64> = BTreeMap::new();
     // What pulls at a place: the level at the other end of a chain, fixed or a place's, and the chain's length.
-    let mut pulls: Vec<(Place, (Option<Place>, f64), f64)> = Vec::new();
+    let mut pulls: Vec<(PointKey, (Option<PointKey>, f64), f64)> = Vec::new();
     for (chain, ground) in chains.iter().zip(samples) {
         let Some(own) = ground_ends(ground) else { continue };
         let settled = spans[chain.links[0].span].levels_m.as_ref();
@@ -311,13 +322,13 @@ fn meetings(spans: &[Span], chains: &[Chain], samples: &[Vec<Floor>], below: &Be
             _ => own,
         };
         for end in 0..2 {
-            let End::Onward(at) = chain.ends[end] else { continue };
+            let ChainEnd::Onward(at) = chain.ends[end] else { continue };
             let other = match chain.ends[1 - end] {
-                End::Onward(other) if settled.is_none() => (Some(other), own[1 - end]),
+                ChainEnd::Onward(other) if settled.is_none() => (Some(other), own[1 - end]),
                 _ => (None, own[1 - end]),
             };
             levels.entry(at).or_insert(own[end]);
-            if spans[chain.links[0].span].carried == Carried::Bridge && settled.is_none() {
+            if spans[chain.links[0].span].carried == Support::Bridge && settled.is_none() {
                 lowest.insert(at, own[end]);
             }
             let pull = if settled.is_some() { ((None, own[end]), 1e-3) } else { (other, chain.length_m) };
@@ -332,7 +343,7 @@ fn meetings(spans: &[Span], chains: &[Chain], samples: &[Vec<Floor>], below: &Be
     pulls.sort_by_key(|pull| pull.0);
     for _ in 0..EVENINGS {
         for group in pulls.chunk_by(|a, b| a.0 == b.0) {
-            let level = |&(other, level): &(Option<Place>, f64)| other.map_or(level, |at| levels[&at]);
+            let level = |&(other, level): &(Option<PointKey>, f64)| other.map_or(level, |at| levels[&at]);
             let weight: f64 = group.iter().map(|pull| 1.0 / pull.2).sum();
             let sum: f64 = group.iter().map(|pull| level(&pull.1) / pull.2).sum();
             levels.insert(group[0].0, sum / weight);

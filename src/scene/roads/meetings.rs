@@ -17,7 +17,7 @@ const SAME_M: f64 = 0.01;
 
 /// A node on a centreline.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stop {
+pub struct RoadStop {
     /// Metres along the centreline.
     pub station_m: f64,
     /// The node.
@@ -26,9 +26,9 @@ pub struct Stop {
 
 /// The nodes of all roads.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Meetings {
+pub struct RoadMeetings {
     /// For each road its nodes in order of station: its ends first and last, and between them where others meet it.
-    pub stops: Vec<Vec<Stop>>,
+    pub stops: Vec<Vec<RoadStop>>,
     /// How many nodes there are.
     pub nodes: usize,
     /// Whether the lines were too tangled to find where they cross without a vertex.
@@ -37,29 +37,29 @@ pub struct Meetings {
 
 /// A vertex of a road.
 #[derive(Clone, Copy)]
-struct Vertex {
+struct RoadVertex {
     road: usize,
     index: usize,
     is_end: bool,
 }
 
 /// Finds where the roads end and meet. Only roads for which `crosses` holds meet where they cross without a vertex.
-pub fn meetings(roads: &[Centreline], crosses: impl Fn(&Centreline) -> bool) -> Meetings {
-    let mut places: BTreeMap<(i64, i64), Vec<Vertex>> = BTreeMap::new();
+pub fn meetings(roads: &[Centreline], crosses: impl Fn(&Centreline) -> bool) -> RoadMeetings {
+    let mut places: BTreeMap<(i64, i64), Vec<RoadVertex>> = BTreeMap::new();
     for (road, centreline) in roads.iter().enumerate() {
         let points = centreline.line.points();
         for (index, at) in points.iter().enumerate() {
             let is_end = index == 0 || index + 1 == points.len();
-            places.entry(key(*at)).or_default().push(Vertex { road, index, is_end });
+            places.entry(key(*at)).or_default().push(RoadVertex { road, index, is_end });
         }
     }
-    let mut found = Meetings { stops: vec![Vec::new(); roads.len()], ..Meetings::default() };
+    let mut found = RoadMeetings { stops: vec![Vec::new(); roads.len()], ..RoadMeetings::default() };
     for vertices in places.values() {
         if vertices.iter().any(|vertex| vertex.is_end) {
             found.join(roads, vertices);
             continue;
         }
-        let mut by_level: BTreeMap<i32, Vec<Vertex>> = BTreeMap::new();
+        let mut by_level: BTreeMap<i32, Vec<RoadVertex>> = BTreeMap::new();
         for vertex in vertices {
             by_level.entry(roads[vertex.road].level).or_default().push(*vertex);
         }
@@ -76,17 +76,17 @@ fn key(at: DVec2) -> (i64, i64) {
     (place.x as i64, place.y as i64)
 }
 
-impl Meetings {
+impl RoadMeetings {
     fn node(&mut self) -> NodeId {
         self.nodes += 1;
         NodeId(self.nodes as u32 - 1)
     }
 
-    fn join(&mut self, roads: &[Centreline], vertices: &[Vertex]) {
+    fn join(&mut self, roads: &[Centreline], vertices: &[RoadVertex]) {
         let node = self.node();
         for vertex in vertices {
             let station_m = roads[vertex.road].line.stations()[vertex.index];
-            self.stops[vertex.road].push(Stop { station_m, node });
+            self.stops[vertex.road].push(RoadStop { station_m, node });
         }
     }
 
@@ -110,7 +110,7 @@ impl Meetings {
             };
             for ((road, station_m), held) in crossing.into_iter().zip(held) {
                 if held.is_none() {
-                    self.stops[road].push(Stop { station_m, node });
+                    self.stops[road].push(RoadStop { station_m, node });
                 }
             }
         }
@@ -124,13 +124,13 @@ impl Meetings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::roads::centreline::{Carried, tests::road};
+    use crate::scene::roads::centreline::{Support, tests::road};
 
     #[test]
     fn ends_meet_whatever_is_there_and_through_roads_only_their_own_level() {
-        let east = road(&[(0.0, 0.0), (50.0, 0.0), (100.0, 0.0)], Carried::Ground, 0);
-        let over = road(&[(50.0, -50.0), (50.0, 0.0), (50.0, 50.0)], Carried::Bridge, 1);
-        let on = road(&[(50.0, 50.0), (50.0, 90.0)], Carried::Ground, 0);
+        let east = road(&[(0.0, 0.0), (50.0, 0.0), (100.0, 0.0)], Support::Ground, 0);
+        let over = road(&[(50.0, -50.0), (50.0, 0.0), (50.0, 50.0)], Support::Bridge, 1);
+        let on = road(&[(50.0, 50.0), (50.0, 90.0)], Support::Ground, 0);
         let found = meetings(&[east, over, on], |_| true);
         assert_eq!(found.nodes, 5);
         assert_eq!(found.stops.iter().map(Vec::len).collect::<Vec<_>>(), [2, 2, 2]);
@@ -139,21 +139,21 @@ mod tests {
 
     #[test]
     fn a_t_is_a_node_in_the_middle_of_the_road_that_goes_on() {
-        let through = road(&[(0.0, 0.0), (50.0, 0.0), (100.0, 0.0)], Carried::Ground, 0);
-        let side = road(&[(50.0, 0.0), (50.0, 80.0)], Carried::Ground, 0);
+        let through = road(&[(0.0, 0.0), (50.0, 0.0), (100.0, 0.0)], Support::Ground, 0);
+        let side = road(&[(50.0, 0.0), (50.0, 80.0)], Support::Ground, 0);
         let found = meetings(&[through, side], |_| true);
         assert_eq!(found.nodes, 4);
-        assert_eq!(found.stops[0][1], Stop { station_m: 50.0, node: found.stops[1][0].node });
+        assert_eq!(found.stops[0][1], RoadStop { station_m: 50.0, node: found.stops[1][0].node });
     }
 
     #[test]
     fn roads_that_cross_without_a_vertex_meet_once() {
-        let east = road(&[(0.0, 0.0), (100.0, 0.0)], Carried::Ground, 0);
-        let north = road(&[(40.0, -50.0), (40.0, 50.0)], Carried::Ground, 0);
-        let high = road(&[(60.0, -50.0), (60.0, 50.0)], Carried::Bridge, 1);
+        let east = road(&[(0.0, 0.0), (100.0, 0.0)], Support::Ground, 0);
+        let north = road(&[(40.0, -50.0), (40.0, 50.0)], Support::Ground, 0);
+        let high = road(&[(60.0, -50.0), (60.0, 50.0)], Support::Bridge, 1);
         let found = meetings(&[east, north, high], |_| true);
         assert_eq!(found.nodes, 7);
-        assert_eq!(found.stops[0][1], Stop { station_m: 40.0, node: found.stops[1][1].node });
+        assert_eq!(found.stops[0][1], RoadStop { station_m: 40.0, node: found.stops[1][1].node });
         assert_eq!(found.stops[2].len(), 2);
     }
 }

@@ -14,13 +14,13 @@ use crate::geom::rect::Rect;
 use crate::mesh::sink::MeshSink;
 use crate::ribbon::chain::stations;
 use crate::ribbon::crossing::crossings;
-use crate::ribbon::junction::{self, Bed, Network, Street};
+use crate::ribbon::junction::{self, Street, StreetNetwork, StreetSupport};
 use crate::ribbon::plan::{PlanMesh, PlanVertex};
-use crate::ribbon::stroke::{Course, StrokeOptions, Widths, stroke_course};
-use crate::ribbon::texture::Surface;
-use crate::scene::collected::Collected;
+use crate::ribbon::stroke::{StrokeOptions, StrokePath, Widths, stroke_course};
+use crate::ribbon::texture::RibbonSurface;
+use crate::scene::collected::SceneBuilder;
 use crate::scene::near::Clipped;
-use crate::scene::roads::centreline::{Carried, Centreline};
+use crate::scene::roads::centreline::{Centreline, Support};
 
 /// Metres in one repeat of a junction's surface.
 const JUNCTION_TEXTURE_M: f64 = 15.0;
@@ -30,40 +30,41 @@ const NOTHING_M2: f64 = 1e-6;
 
 /// Joints by the rank of their pavement, from the least: where a lesser road meets a better one, the better one goes
 /// through.
-const JOINTS: [Surface; 3] = [Surface::TrackJunction, Surface::GravelJunction, Surface::AsphaltJunction];
+const JOINTS: [RibbonSurface; 3] =
+    [RibbonSurface::TrackJunction, RibbonSurface::GravelJunction, RibbonSurface::AsphaltJunction];
 
 /// Lays the roads that the ground carries on it.
-pub fn lay(all: &[Centreline], extent: &Rect, collected: &mut Collected) {
-    let shouldered: Vec<Strip<'_>> =
-        all.iter().filter(|road| road.shoulder_m > 0.0).map(Strip::with_shoulders).collect();
+pub fn lay(all: &[Centreline], extent: &Rect, collected: &mut SceneBuilder) {
+    let shouldered: Vec<RoadStrip<'_>> =
+        all.iter().filter(|road| road.shoulder_m > 0.0).map(RoadStrip::with_shoulders).collect();
     lay_strips(&shouldered, extent, collected);
-    let carriageways: Vec<Strip<'_>> = all.iter().map(Strip::carriageway).collect();
+    let carriageways: Vec<RoadStrip<'_>> = all.iter().map(RoadStrip::carriageway).collect();
     lay_strips(&carriageways, extent, collected);
 }
 
 /// What meets among `all`, whatever carries it: for each its continuations, so that a bridge can begin on the edge where
 /// its road ends.
-pub fn connect(all: &[Centreline]) -> Network {
-    let strips: Vec<Strip<'_>> = all.iter().map(Strip::carriageway).collect();
-    junction::connect(&strips.iter().map(Strip::street).collect::<Vec<_>>())
+pub fn connect(all: &[Centreline]) -> StreetNetwork {
+    let strips: Vec<RoadStrip<'_>> = all.iter().map(RoadStrip::carriageway).collect();
+    junction::connect(&strips.iter().map(RoadStrip::street).collect::<Vec<_>>())
 }
 
 /// How good a pavement is among roads that meet.
-pub fn rank_of(surface: Surface) -> u8 {
+pub fn rank_of(surface: RibbonSurface) -> u8 {
     match surface {
-        Surface::Track => 0,
-        Surface::Gravel => 1,
+        RibbonSurface::Track => 0,
+        RibbonSurface::Gravel => 1,
         _ => 2,
     }
 }
 
 /// A strip of one surface along a road.
-struct Strip<'a> {
+struct RoadStrip<'a> {
     road: &'a Centreline,
     /// The width at each vertex, where it changes.
     widths_m: Option<Vec<f64>>,
     options: StrokeOptions,
-    surface: Surface,
+    surface: RibbonSurface,
     rank: u8,
 }
 
@@ -74,7 +75,7 @@ struct Class {
     level: i32,
 }
 
-impl<'a> Strip<'a> {
+impl<'a> RoadStrip<'a> {
     fn carriageway(road: &'a Centreline) -> Self {
         let rank = rank_of(road.surface);
         Self { road, widths_m: widths_m(road, 0.0), options: road.options, surface: road.surface, rank }
@@ -87,7 +88,7 @@ impl<'a> Strip<'a> {
             road,
             widths_m: widths_m(road, more_m),
             options: StrokeOptions { width_m: road.options.width_m + more_m, ..road.options },
-            surface: Surface::Shoulder,
+            surface: RibbonSurface::Shoulder,
             rank: 0,
         }
     }
@@ -104,14 +105,14 @@ impl<'a> Strip<'a> {
             line: &self.road.line,
             widths: self.widths(),
             options: self.options,
-            bed: if self.is_laid() { Bed::Ground } else { Bed::Structure },
+            bed: if self.is_laid() { StreetSupport::Ground } else { StreetSupport::Structure },
             level: self.road.level,
             rank: self.rank,
         }
     }
 
     fn is_laid(&self) -> bool {
-        self.road.carried == Carried::Ground
+        self.road.carried == Support::Ground
     }
 
     fn class(&self) -> Class {
@@ -128,14 +129,14 @@ fn widths_m(road: &Centreline, more_m: f64) -> Option<Vec<f64>> {
 }
 
 /// Lays strips and the surfaces that join them.
-fn lay_strips(strips: &[Strip<'_>], extent: &Rect, collected: &mut Collected) {
-    let streets: Vec<Street<'_>> = strips.iter().map(Strip::street).collect();
+fn lay_strips(strips: &[RoadStrip<'_>], extent: &Rect, collected: &mut SceneBuilder) {
+    let streets: Vec<Street<'_>> = strips.iter().map(RoadStrip::street).collect();
     let network = junction::connect(&streets);
     let ribbons = ribbons(strips, &network, extent);
     for (strip, joints) in strips.iter().zip(joints(strips, &ribbons, &network, extent)) {
         for (rank, plan) in joints {
             let joint = match strip.surface {
-                Surface::Shoulder => Surface::Shoulder,
+                RibbonSurface::Shoulder => RibbonSurface::Shoulder,
                 _ => JOINTS[usize::from(rank)],
             };
             collected.lay(plan, joint, strip.road.feature);
@@ -150,7 +151,7 @@ fn lay_strips(strips: &[Strip<'_>], extent: &Rect, collected: &mut Collected) {
 }
 
 /// The ribbons of strips; an empty one where the ground does not carry it.
-fn ribbons(strips: &[Strip<'_>], network: &Network, extent: &Rect) -> Vec<(PlanMesh, Class)> {
+fn ribbons(strips: &[RoadStrip<'_>], network: &StreetNetwork, extent: &Rect) -> Vec<(PlanMesh, Class)> {
     let lengths_m: Vec<f64> = strips.iter().map(|strip| strip.road.line.length()).collect();
     let stations = stations(&lengths_m, &network.links);
     strips
@@ -158,7 +159,7 @@ fn ribbons(strips: &[Strip<'_>], network: &Network, extent: &Rect) -> Vec<(PlanM
         .enumerate()
         .map(|(index, strip)| {
             let mut ribbon = Clipped { plan: PlanMesh::default(), extent };
-            let course = Course {
+            let course = StrokePath {
                 line: &strip.road.line,
                 widths: strip.widths(),
                 beyond: network.continuations[index],
@@ -175,9 +176,9 @@ fn ribbons(strips: &[Strip<'_>], network: &Network, extent: &Rect) -> Vec<(PlanM
 /// The joints that are told as a part of each strip, by their rank: those at shared vertices before those where ribbons
 /// share ground for another reason.
 fn joints(
-    strips: &[Strip<'_>],
+    strips: &[RoadStrip<'_>],
     ribbons: &[(PlanMesh, Class)],
-    network: &Network,
+    network: &StreetNetwork,
     extent: &Rect,
 ) -> Vec<BTreeMap<u8, PlanMesh>> {
     let mut joints: Vec<BTreeMap<u8, Clipped<'_>>> = Vec::new();

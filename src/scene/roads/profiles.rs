@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::draw::list::FeatureId;
-use crate::scene::roads::centreline::Carried;
+use crate::scene::roads::centreline::Support;
 
 /// A road's longitudinal profile.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub struct RoadProfile {
     /// The road's level on the centreline in metres.
     pub design_m: Vec<f64>,
     /// What carries the road at each station; where that changes, what carries it from there on.
-    pub carried: Vec<Carried>,
+    pub carried: Vec<Support>,
 }
 
 impl RoadProfile {
@@ -32,9 +32,9 @@ impl RoadProfile {
             let ground = Some(self.ground_m[index]).filter(|ground| !ground.is_nan());
             let ground = ground.map(|ground| format!("{ground:.3}")).unwrap_or_default();
             let carried = match self.carried[index] {
-                Carried::Ground => "ground",
-                Carried::Bridge => "bridge",
-                Carried::Tunnel => "tunnel",
+                Support::Ground => "ground",
+                Support::Bridge => "bridge",
+                Support::Tunnel => "tunnel",
             };
             let design_m = self.design_m[index];
             writeln!(text, "{station_m:.3},{ground},{design_m:.3},{carried}")
@@ -56,7 +56,7 @@ mod tests {
             stations_m: vec![0.0, 12.5],
             ground_m: vec![101.25, f64::NAN],
             design_m: vec![101.25, 102.0],
-            carried: vec![Carried::Ground, Carried::Bridge],
+            carried: vec![Support::Ground, Support::Bridge],
         };
         let table =
             "station_m,ground_m,design_m,carried\n0.000,101.250,101.250,ground\n12.500,,102.000,bridge\n";

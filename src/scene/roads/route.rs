@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use crate::geom::polyline::Polyline;
-use crate::scene::roads::centreline::Carried;
-use crate::terrain::alignment::spans::{Span, SpanKind};
+use crate::scene::roads::centreline::Support;
+use crate::terrain::alignment::spans::{DesignSpan, SpanKind};
 
 /// Stretches shorter than this are not told apart from their neighbours, in metres.
 const SHORTEST_M: f64 = 0.05;
@@ -21,14 +21,14 @@ pub struct Route {
     /// The road there.
     pub design_m: Vec<f64>,
     /// Where it leaves the ground, in order and apart from each other.
-    pub spans: Vec<Span>,
+    pub spans: Vec<DesignSpan>,
 }
 
 /// A stretch of a road.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch {
+pub struct RouteStretch {
     /// What carries it.
-    pub carried: Carried,
+    pub carried: Support,
     /// The station where it begins, in metres.
     pub from_m: f64,
     /// The station where it ends.
@@ -37,23 +37,23 @@ pub struct Stretch {
 
 impl Route {
     /// The road from its start to its end, stretch by stretch; at least one.
-    pub fn stretches(&self) -> Vec<Stretch> {
+    pub fn stretches(&self) -> Vec<RouteStretch> {
         let length_m = self.length_m();
-        let mut all: Vec<Stretch> = Vec::new();
+        let mut all: Vec<RouteStretch> = Vec::new();
         let mut add = |carried, to_m: f64| {
             let from_m = all.last().map_or(0.0, |last| last.to_m);
             match all.last_mut() {
                 Some(last) if last.carried == carried || to_m - from_m < SHORTEST_M => last.to_m = to_m,
                 // At the very start there is nothing to add it to: what comes next begins there.
                 None if to_m < SHORTEST_M && to_m < length_m => {}
-                _ => all.push(Stretch { carried, from_m, to_m }),
+                _ => all.push(RouteStretch { carried, from_m, to_m }),
             }
         };
         for span in &self.spans {
-            add(Carried::Ground, span.from_m);
+            add(Support::Ground, span.from_m);
             add(carried(span.kind), span.to_m);
         }
-        add(Carried::Ground, length_m);
+        add(Support::Ground, length_m);
         all
     }
 
@@ -68,7 +68,7 @@ impl Route {
 
     /// Adds a station wherever a stretch ends, so that each has its own.
     pub fn with_ends(mut self) -> Self {
-        for Stretch { to_m, .. } in self.stretches() {
+        for RouteStretch { to_m, .. } in self.stretches() {
             let place = self.stations_m.partition_point(|&station| station < to_m);
             if self.stations_m.get(place).is_some_and(|&station| station > to_m) {
                 let (ground, design) = (at(&self.stations_m, &self.ground_m, to_m), self.design_at(to_m));
@@ -81,7 +81,7 @@ impl Route {
     }
 
     /// The road's stations and levels along a stretch, with both ends of it, in stations of its own from 0.
-    pub fn levels_along(&self, stretch: &Stretch) -> (Vec<f64>, Vec<f64>) {
+    pub fn levels_along(&self, stretch: &RouteStretch) -> (Vec<f64>, Vec<f64>) {
         let first = self.stations_m.partition_point(|&at| at <= stretch.from_m);
         let past = self.stations_m.partition_point(|&at| at < stretch.to_m).max(first);
         let mut stations = vec![0.0];
@@ -95,10 +95,10 @@ impl Route {
 }
 
 /// What carries a span.
-pub fn carried(kind: SpanKind) -> Carried {
+pub fn carried(kind: SpanKind) -> Support {
     match kind {
-        SpanKind::Bridge => Carried::Bridge,
-        SpanKind::Tunnel => Carried::Tunnel,
+        SpanKind::Bridge => Support::Bridge,
+        SpanKind::Tunnel => Support::Tunnel,
     }
 }
 
@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     fn route(spans: &[(SpanKind, f64, f64)]) -> Route {
-        let span = |&(kind, from_m, to_m): &(SpanKind, f64, f64)| Span { kind, from_m, to_m };
+        let span = |&(kind, from_m, to_m): &(SpanKind, f64, f64)| DesignSpan { kind, from_m, to_m };
         Route {
             road: 0,
             stations_m: vec![0.0, 40.0, 100.0],
@@ -135,22 +135,22 @@ mod tests {
         }
     }
 
-    fn stretches(spans: &[(SpanKind, f64, f64)]) -> Vec<(Carried, f64, f64)> {
+    fn stretches(spans: &[(SpanKind, f64, f64)]) -> Vec<(Support, f64, f64)> {
         route(spans).stretches().into_iter().map(|at| (at.carried, at.from_m, at.to_m)).collect()
     }
 
     #[test]
     fn stretches_cover_the_road_without_gap_or_overlap() {
         use SpanKind::{Bridge, Tunnel};
-        assert_eq!(stretches(&[]), [(Carried::Ground, 0.0, 100.0)]);
-        assert_eq!(stretches(&[(Bridge, 0.0, 100.0)]), [(Carried::Bridge, 0.0, 100.0)]);
+        assert_eq!(stretches(&[]), [(Support::Ground, 0.0, 100.0)]);
+        assert_eq!(stretches(&[(Bridge, 0.0, 100.0)]), [(Support::Bridge, 0.0, 100.0)]);
         assert_eq!(
             stretches(&[(Bridge, 20.0, 50.0), (Tunnel, 50.01, 99.99)]),
-            [(Carried::Ground, 0.0, 20.0), (Carried::Bridge, 20.0, 50.01), (Carried::Tunnel, 50.01, 100.0)]
+            [(Support::Ground, 0.0, 20.0), (Support::Bridge, 20.0, 50.01), (Support::Tunnel, 50.01, 100.0)]
         );
         assert_eq!(
             stretches(&[(Bridge, 0.01, 30.0), (Bridge, 30.0, 60.0)]),
-            [(Carried::Bridge, 0.0, 60.0), (Carried::Ground, 60.0, 100.0)]
+            [(Support::Bridge, 0.0, 60.0), (Support::Ground, 60.0, 100.0)]
         );
     }
 

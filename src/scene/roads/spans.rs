@@ -11,13 +11,13 @@ use crate::description::document::Document;
 use crate::description::words;
 use crate::geom::polyline::Polyline;
 use crate::geom::rect::Rect;
-use crate::ribbon::junction::{self, Bed, Street};
+use crate::ribbon::junction::{self, Street, StreetSupport};
 use crate::ribbon::stroke::{StrokeOptions, Widths};
-use crate::ribbon::texture::{Surface, texture_length_m};
-use crate::scene::collected::Collected;
+use crate::ribbon::texture::{RibbonSurface, texture_length_m};
+use crate::scene::collected::SceneBuilder;
 use crate::scene::kind::FeatureKind;
 use crate::scene::near;
-use crate::scene::roads::centreline::{self, Carried, Centreline};
+use crate::scene::roads::centreline::{self, Centreline, Support};
 use crate::scene::roads::network::rank_of;
 use crate::scene::sources::Sources;
 
@@ -26,7 +26,7 @@ const REACH_M: f64 = 1000.0;
 
 /// Who says that something is a bridge or a tunnel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum By {
+pub enum SpanOrigin {
     /// The road's own properties, or the expressions over them.
     Tag,
     /// The cut or fill that the road would need.
@@ -35,7 +35,7 @@ pub enum By {
     Table,
 }
 
-impl By {
+impl SpanOrigin {
     /// As the report says it.
     pub fn word(self) -> &'static str {
         match self {
@@ -48,11 +48,11 @@ impl By {
 
 /// A bridge or a tunnel, from one end of its line to the other.
 #[derive(Clone, Debug)]
-pub struct Span {
+pub struct RoadSpan {
     /// The centreline in world coordinates, within the elevation model.
     pub line: Polyline,
     /// What carries it; never the ground.
-    pub carried: Carried,
+    pub carried: Support,
     /// Which of the roads it is; `None` where a table states it.
     pub road: Option<usize>,
     /// Its elevation in metres at each vertex, where that is settled.
@@ -62,7 +62,7 @@ pub struct Span {
     /// Its carriageway.
     pub options: StrokeOptions,
     /// What it is paved with.
-    pub surface: Surface,
+    pub surface: RibbonSurface,
     /// What passes over what.
     pub level: i32,
     /// The widest span between piers that is stated, in metres, at least 1.
@@ -70,12 +70,12 @@ pub struct Span {
     /// The road's name, or the one given; may be empty.
     pub name: String,
     /// Who says that it is one.
-    pub by: By,
+    pub by: SpanOrigin,
     /// The place in the scene file, for messages.
     pub place: Range<usize>,
 }
 
-impl Span {
+impl RoadSpan {
     /// Its first (0) or last (1) vertex.
     pub fn end(&self, end: usize) -> DVec2 {
         let points = self.line.points();
@@ -85,10 +85,10 @@ impl Span {
 
 /// Where a vertex is, so that vertices that mean one point have one place: to the centimetre, which is what a change of
 /// system may round.
-pub type Place = (i64, i64);
+pub type PointKey = (i64, i64);
 
 /// The place of a point.
-pub fn place(at: DVec2) -> Place {
+pub fn place(at: DVec2) -> PointKey {
     let at = (at / 0.01).round();
     (at.x as i64, at.y as i64)
 }
@@ -102,10 +102,10 @@ pub fn collect(
     sources: &Sources<'_>,
     roads: &[Centreline],
     extent: &Rect,
-    collected: &mut Collected,
-) -> Result<Vec<Span>, Diagnostic> {
+    collected: &mut SceneBuilder,
+) -> Result<Vec<RoadSpan>, Diagnostic> {
     let spans = |(index, road)| of_road(document, (index, road), extent, collected);
-    let mut all: Vec<Span> = roads.iter().enumerate().filter_map(spans).collect();
+    let mut all: Vec<RoadSpan> = roads.iter().enumerate().filter_map(spans).collect();
     all.extend(of_tables(document, sources, extent, collected)?);
     go_on(&mut all, roads);
     Ok(all)
@@ -115,9 +115,9 @@ fn of_road(
     document: &Document,
     (index, road): (usize, &Centreline),
     extent: &Rect,
-    collected: &Collected,
-) -> Option<Span> {
-    if road.carried == Carried::Ground {
+    collected: &SceneBuilder,
+) -> Option<RoadSpan> {
+    if road.carried == Support::Ground {
         return None;
     }
     let (line, levels_m) = within(&road.line, road.levels_m.as_deref(), extent)?;
@@ -125,7 +125,7 @@ fn of_road(
     let is_tagged = centreline::carried(table, &road.attributes) == road.carried;
     // Ids of features count from 2.
     let feature = collected.features.get((road.feature.0 as usize).checked_sub(2)?);
-    Some(Span {
+    Some(RoadSpan {
         line,
         carried: road.carried,
         road: Some(index),
@@ -136,7 +136,7 @@ fn of_road(
         level: road.level,
         pier_spacing_m: None,
         name: feature.map(|feature| feature.name.clone()).unwrap_or_default(),
-        by: if is_tagged { By::Tag } else { By::Rule },
+        by: if is_tagged { SpanOrigin::Tag } else { SpanOrigin::Rule },
         place: table.source.span(),
     })
 }
@@ -145,8 +145,8 @@ fn of_tables(
     document: &Document,
     sources: &Sources<'_>,
     extent: &Rect,
-    collected: &mut Collected,
-) -> Result<Vec<Span>, Diagnostic> {
+    collected: &mut SceneBuilder,
+) -> Result<Vec<RoadSpan>, Diagnostic> {
     let mut all = Vec::new();
     for bridge in &document.bridges {
         let given = bridge.name.as_deref();
@@ -164,10 +164,10 @@ fn of_tables(
                 ..StrokeOptions::default()
             };
             let deck_m = attributes.number(bridge.deck.as_ref());
-            all.push(Span {
+            all.push(RoadSpan {
                 levels_m: deck_m.map(|level| vec![level; line.points().len()]),
                 line,
-                carried: Carried::Bridge,
+                carried: Support::Bridge,
                 road: None,
                 beyond: [None; 2],
                 options,
@@ -175,7 +175,7 @@ fn of_tables(
                 level: 1,
                 pier_spacing_m: bridge.pier_spacing.as_ref().map(|value| *value.get_ref()),
                 name: attributes.name(given),
-                by: By::Table,
+                by: SpanOrigin::Table,
                 place: bridge.source.span(),
             });
         }
@@ -183,11 +183,11 @@ fn of_tables(
     Ok(all)
 }
 
-fn surface(word: words::Surface) -> Surface {
+fn surface(word: words::RoadSurface) -> RibbonSurface {
     match word {
-        words::Surface::Asphalt => Surface::Asphalt,
-        words::Surface::Gravel => Surface::Gravel,
-        words::Surface::Track => Surface::Track,
+        words::RoadSurface::Asphalt => RibbonSurface::Asphalt,
+        words::RoadSurface::Gravel => RibbonSurface::Gravel,
+        words::RoadSurface::Track => RibbonSurface::Track,
     }
 }
 
@@ -220,17 +220,17 @@ fn within(line: &Polyline, levels_m: Option<&[f64]>, extent: &Rect) -> Option<(P
 }
 
 /// Finds what goes on at the spans' ends, so that their edges are those of the ribbons there.
-fn go_on(spans: &mut [Span], roads: &[Centreline]) {
-    let ends: BTreeSet<Place> =
+fn go_on(spans: &mut [RoadSpan], roads: &[Centreline]) {
+    let ends: BTreeSet<PointKey> =
         spans.iter().flat_map(|span| [place(span.end(0)), place(span.end(1))]).collect();
     let meets = |road: &&Centreline| {
-        road.carried == Carried::Ground && road.line.points().iter().any(|&at| ends.contains(&place(at)))
+        road.carried == Support::Ground && road.line.points().iter().any(|&at| ends.contains(&place(at)))
     };
     let of_spans = spans.iter().map(|span| Street {
         line: &span.line,
         widths: Widths::Constant(span.options.width_m),
         options: span.options,
-        bed: Bed::Structure,
+        bed: StreetSupport::Structure,
         level: span.level,
         rank: rank_of(span.surface),
     });
@@ -238,7 +238,7 @@ fn go_on(spans: &mut [Span], roads: &[Centreline]) {
         line: &road.line,
         widths: road.widths(),
         options: road.options,
-        bed: Bed::Ground,
+        bed: StreetSupport::Ground,
         level: road.level,
         rank: rank_of(road.surface),
     });

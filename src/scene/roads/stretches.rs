@@ -1,8 +1,8 @@
 //! Roads cut where the ground gives way to a bridge or a tunnel.
 
 use crate::geom::polyline::Polyline;
-use crate::scene::roads::centreline::{Carried, Centreline};
-use crate::scene::roads::route::{Route, Stretch, points_between};
+use crate::scene::roads::centreline::{Centreline, Support};
+use crate::scene::roads::route::{Route, RouteStretch, points_between};
 
 /// How far a deck may be off the design level between its vertices, in metres: less than anyone sees, and than a
 /// carriageway's own evenness.
@@ -20,19 +20,19 @@ pub fn cut(road: &Centreline, route: &Route) -> Vec<Centreline> {
     route.stretches().iter().filter_map(|stretch| part(road, route, stretch)).collect()
 }
 
-fn part(road: &Centreline, route: &Route, stretch: &Stretch) -> Option<Centreline> {
+fn part(road: &Centreline, route: &Route, stretch: &RouteStretch) -> Option<Centreline> {
     let is_whole = stretch.from_m <= 0.0 && stretch.to_m >= road.line.length();
     let line = match stretch.carried {
-        Carried::Ground if is_whole => road.line.clone(),
-        Carried::Ground => Polyline::new(points_between(&road.line, stretch.from_m, stretch.to_m), SAME_M)?,
-        Carried::Bridge | Carried::Tunnel => deck(&road.line, route, stretch)?,
+        Support::Ground if is_whole => road.line.clone(),
+        Support::Ground => Polyline::new(points_between(&road.line, stretch.from_m, stretch.to_m), SAME_M)?,
+        Support::Bridge | Support::Tunnel => deck(&road.line, route, stretch)?,
     };
     let level_at = |station: &f64| route.design_at(stretch.from_m + station);
     let levels_m = Some(line.stations().iter().map(level_at).collect());
     let level = road.level
         + match (road.carried, stretch.carried) {
-            (Carried::Ground, Carried::Bridge) => 1,
-            (Carried::Ground, Carried::Tunnel) => -1,
+            (Support::Ground, Support::Bridge) => 1,
+            (Support::Ground, Support::Tunnel) => -1,
             _ => 0,
         };
     let widths_m = road.widths_along(&line, stretch.from_m);
@@ -40,7 +40,7 @@ fn part(road: &Centreline, route: &Route, stretch: &Stretch) -> Option<Centrelin
 }
 
 /// The line along a stretch, with vertices wherever its level bends.
-fn deck(line: &Polyline, route: &Route, stretch: &Stretch) -> Option<Polyline> {
+fn deck(line: &Polyline, route: &Route, stretch: &RouteStretch) -> Option<Polyline> {
     let (stations, levels) = route.levels_along(stretch);
     let bends = bends(&stations, &levels).into_iter().map(|at| stretch.from_m + at);
     let inside = |at: &f64| *at > stretch.from_m && *at < stretch.to_m;
@@ -77,13 +77,13 @@ fn bends(stations: &[f64], levels: &[f64]) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::scene::roads::centreline::tests::road;
-    use crate::terrain::alignment::spans::{Span, SpanKind};
+    use crate::terrain::alignment::spans::{DesignSpan, SpanKind};
 
     #[test]
     fn a_road_is_cut_into_stretches_that_end_on_each_other() {
         for quarter in 0..4 {
             let turned = |(x, y): (f64, f64)| (0..quarter).fold((x, y), |(x, y), _| (-y, x));
-            let whole = road(&[(0.0, 0.0), (60.0, 0.0), (60.0, 40.0)].map(turned), Carried::Ground, 0);
+            let whole = road(&[(0.0, 0.0), (60.0, 0.0), (60.0, 40.0)].map(turned), Support::Ground, 0);
             let stations_m: Vec<f64> = (0..=100).map(f64::from).collect();
             let arch = |at: &f64| 20.0 - (at - 50.0) * (at - 50.0) / 400.0;
             let route = Route {
@@ -91,12 +91,12 @@ mod tests {
                 design_m: stations_m.iter().map(arch).collect(),
                 ground_m: vec![0.0; 101],
                 stations_m,
-                spans: vec![Span { kind: SpanKind::Bridge, from_m: 20.5, to_m: 80.0 }],
+                spans: vec![DesignSpan { kind: SpanKind::Bridge, from_m: 20.5, to_m: 80.0 }],
             };
             let parts = cut(&whole, &route);
             assert_eq!(
                 parts.iter().map(|part| (part.carried, part.level)).collect::<Vec<_>>(),
-                [(Carried::Ground, 0), (Carried::Bridge, 1), (Carried::Ground, 0)]
+                [(Support::Ground, 0), (Support::Bridge, 1), (Support::Ground, 0)]
             );
             for pair in parts.windows(2) {
                 let (end, start) = (pair[0].line.points().last(), pair[1].line.points().first());

@@ -7,15 +7,15 @@ use toml::Spanned;
 use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
-use crate::description::features::Road;
+use crate::description::features::RoadTable;
 use crate::description::words;
 use crate::scene::attributes::Defaulted;
-use crate::scene::roads::centreline::{Carried, Centreline};
-use crate::scene::roads::meetings::Meetings;
+use crate::scene::roads::centreline::{Centreline, Support};
+use crate::scene::roads::meetings::RoadMeetings;
 use crate::scene::roads::route::{Route, points_between};
-use crate::terrain::alignment::design::{Course, Design};
-use crate::terrain::alignment::network::{Network, Section};
-use crate::terrain::alignment::spans::{Limits, Span, SpanKind};
+use crate::terrain::alignment::design::{Design, SectionGround};
+use crate::terrain::alignment::network::{RoadSection, SectionNetwork};
+use crate::terrain::alignment::spans::{DesignSpan, EarthworkLimits, SpanKind};
 use crate::terrain::grading::strip;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::profile::profile;
@@ -29,9 +29,9 @@ pub struct Rules {
     /// The steepest rise, metres per metre.
     pub max_grade: f64,
     /// What embankments and cuttings may be.
-    pub limits: Limits,
+    pub limits: EarthworkLimits,
     /// Its cross section.
-    pub section: strip::Section,
+    pub section: strip::CrossSection,
 }
 
 impl Rules {
@@ -45,11 +45,11 @@ impl Rules {
         let value = |key: &Option<Spanned<f64>>| key.as_ref().map(|value| *value.get_ref());
         Some(Self {
             max_grade: road.attributes.number_or(stated, defaults::MAX_GRADE_PERCENT, defaulted) / 100.0,
-            limits: Limits {
+            limits: EarthworkLimits {
                 max_fill_m: value(&table.max_fill).unwrap_or(f64::INFINITY),
                 max_cut_m: value(&table.max_cut).unwrap_or(f64::INFINITY),
             },
-            section: strip::Section {
+            section: strip::CrossSection {
                 half_width_m: road.options.width_m / 2.0,
                 shoulder_m: road
                     .attributes
@@ -64,31 +64,31 @@ impl Rules {
 }
 
 /// Whether the ground follows the roads of a table.
-pub fn conforms(table: &Road) -> bool {
-    table.profile.as_ref().is_some_and(|profile| *profile.get_ref() == words::Profile::Conform)
+pub fn conforms(table: &RoadTable) -> bool {
+    table.profile.as_ref().is_some_and(|profile| *profile.get_ref() == words::ProfileMode::Conform)
 }
 
 /// A network of roads with what is known of it.
-pub struct Survey {
+pub struct NetworkSurvey {
     /// The sections between nodes.
-    pub network: Network,
+    pub network: SectionNetwork,
     /// One a section.
-    pub courses: Vec<Course>,
+    pub courses: Vec<SectionGround>,
     /// One a node: the ground where a single road ends, NaN elsewhere.
     pub pins: Vec<f64>,
     /// One a road of the network.
-    surveyed: Vec<Surveyed>,
+    surveyed: Vec<SurveyedRoad>,
 }
 
 /// A road with its sections.
-struct Surveyed {
+struct SurveyedRoad {
     road: usize,
     sections: Range<usize>,
     /// Where its sections begin along it.
     starts_m: Vec<f64>,
 }
 
-impl Survey {
+impl NetworkSurvey {
     /// Surveys the roads that have rules.
     ///
     /// # Errors
@@ -98,9 +98,9 @@ impl Survey {
         lattice: &Lattice,
         roads: &[Centreline],
         rules: &[Option<Rules>],
-        meetings: &Meetings,
+        meetings: &RoadMeetings,
     ) -> Result<Self, Diagnostic> {
-        let network = Network { nodes: meetings.nodes, sections: Vec::new() };
+        let network = SectionNetwork { nodes: meetings.nodes, sections: Vec::new() };
         let mut survey = Self { network, courses: Vec::new(), pins: Vec::new(), surveyed: Vec::new() };
         let mut stations = 0.0;
         for (index, (road, rules)) in roads.iter().zip(rules).enumerate() {
@@ -120,7 +120,7 @@ impl Survey {
         lattice: &Lattice,
         (index, road): (usize, &Centreline),
         rules: &Rules,
-        meetings: &Meetings,
+        meetings: &RoadMeetings,
     ) {
         let (first, stops) = (self.network.sections.len(), &meetings.stops[index]);
         for pair in stops.windows(2) {
@@ -128,19 +128,23 @@ impl Survey {
             let points = points_between(&road.line, pair[0].station_m, pair[1].station_m);
             let points: Vec<_> = points.into_iter().map(|point| point + origin).collect();
             let stations = profile(lattice, &points);
-            self.network.sections.push(Section {
+            self.network.sections.push(RoadSection {
                 ends: [pair[0].node, pair[1].node],
                 stations_m: stations.iter().map(|at| at.station_m).collect(),
                 max_grade: rules.max_grade,
             });
-            self.courses.push(Course {
+            self.courses.push(SectionGround {
                 ground_m: stations.iter().map(|at| at.ground.height_m().unwrap_or(f64::NAN)).collect(),
                 stated: stated(road.carried),
                 limits: rules.limits,
             });
         }
         let starts_m = stops.iter().map(|stop| stop.station_m).collect();
-        self.surveyed.push(Surveyed { road: index, sections: first..self.network.sections.len(), starts_m });
+        self.surveyed.push(SurveyedRoad {
+            road: index,
+            sections: first..self.network.sections.len(),
+            starts_m,
+        });
     }
 
     /// A road that ends where no other of the network does ends on the ground.
@@ -161,7 +165,7 @@ impl Survey {
         routes.filter(|route| route.design_m.iter().all(|level| level.is_finite())).collect()
     }
 
-    fn route(&self, surveyed: &Surveyed, design: &Design) -> Route {
+    fn route(&self, surveyed: &SurveyedRoad, design: &Design) -> Route {
         let mut route = Route {
             road: surveyed.road,
             stations_m: Vec::new(),
@@ -176,7 +180,7 @@ impl Survey {
             route.stations_m.extend(stations.map(|at| start_m + at));
             route.ground_m.extend(self.courses[section].ground_m.iter().skip(skipped));
             route.design_m.extend(design.levels_m[section].iter().skip(skipped));
-            route.spans.extend(design.spans[section].iter().map(|span| Span {
+            route.spans.extend(design.spans[section].iter().map(|span| DesignSpan {
                 kind: span.kind,
                 from_m: start_m + span.from_m,
                 to_m: start_m + span.to_m,
@@ -186,11 +190,11 @@ impl Survey {
     }
 }
 
-fn stated(carried: Carried) -> Option<SpanKind> {
+fn stated(carried: Support) -> Option<SpanKind> {
     match carried {
-        Carried::Ground => None,
-        Carried::Bridge => Some(SpanKind::Bridge),
-        Carried::Tunnel => Some(SpanKind::Tunnel),
+        Support::Ground => None,
+        Support::Bridge => Some(SpanKind::Bridge),
+        Support::Tunnel => Some(SpanKind::Tunnel),
     }
 }
 

@@ -18,25 +18,25 @@ use toml::Spanned;
 use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
-use crate::description::features::Scatter;
+use crate::description::features::ScatterTable;
 use crate::description::words::Clamp;
 use crate::draw::list::FeatureId;
 use crate::geom::rect::Rect;
 use crate::scene::attributes::Attributes;
-use crate::scene::collected::Collected;
-use crate::scene::kind::{FeatureKind, Placement, Stance};
+use crate::scene::collected::SceneBuilder;
+use crate::scene::kind::{FeatureKind, GroundFit, Placement};
 use crate::scene::models::library::Library;
 use crate::scene::models::within;
-use crate::scene::place::Places;
-use crate::scene::report::{Cell, Column};
+use crate::scene::place::WorldFrame;
+use crate::scene::report::{ReportCell, ReportColumn};
 use crate::scene::scatter::bands::Bands;
 use crate::scene::scatter::chance::{Chance, seed_of};
-use crate::scene::scatter::pattern::{Candidate, Pattern};
+use crate::scene::scatter::pattern::{PatternPoint, PointPattern};
 use crate::scene::scatter::taken::Taken;
 use crate::scene::sources::{Sourced, Sources};
 use crate::scene::stand::outline;
 use crate::terrain::lattice::Lattice;
-use crate::terrain::query::gradient::{Gradient, Patch, ground_gradient};
+use crate::terrain::query::gradient::{Gradient, GradientSurface, ground_gradient};
 use crate::terrain::query::{Interpolation, ground_height};
 use crate::vector::feature::Polygon;
 
@@ -51,16 +51,16 @@ const MAX_SQUARES: usize = 1 << 25;
 const ROWS_AT_ONCE: usize = 256;
 
 /// One row for each `[[scatter]]`.
-const SCATTERED: (&str, &[Column]) = (
+const SCATTERED: (&str, &[ReportColumn]) = (
     "scattered",
     &[
-        Column { name: "name", unit: "" },
-        Column { name: "models", unit: "" },
-        Column { name: "areas", unit: "" },
-        Column { name: "by slope", unit: "" },
-        Column { name: "by elevation", unit: "" },
-        Column { name: "by roads, water and buildings", unit: "" },
-        Column { name: "off the ground", unit: "" },
+        ReportColumn { name: "name", unit: "" },
+        ReportColumn { name: "models", unit: "" },
+        ReportColumn { name: "areas", unit: "" },
+        ReportColumn { name: "by slope", unit: "" },
+        ReportColumn { name: "by elevation", unit: "" },
+        ReportColumn { name: "by roads, water and buildings", unit: "" },
+        ReportColumn { name: "off the ground", unit: "" },
     ],
 );
 
@@ -70,10 +70,10 @@ const SCATTERED: (&str, &[Column]) = (
 /// A source or a model file cannot be had, or there are more models or areas than can be placed.
 pub fn strew(
     document: &Document,
-    (places, sources): (&Places<'_>, &Sources<'_>),
+    (places, sources): (&WorldFrame<'_>, &Sources<'_>),
     lattice: &Lattice,
     (library, placements): (&mut Library<'_>, &mut Vec<Placement>),
-    collected: &mut Collected,
+    collected: &mut SceneBuilder,
 ) -> Result<(), Diagnostic> {
     if document.scatters.is_empty() {
         return Ok(());
@@ -83,8 +83,9 @@ pub fn strew(
     for table in &document.scatters {
         let species = Species::of(table, library, collected)?;
         let feature = collected.add(FeatureKind::Scattered, table.name.clone().unwrap_or_default());
-        let ground = Ground { table, places, lattice, taken: &taken, library, species: &species, feature };
-        let (mut stood, mut counts, mut areas) = (Vec::new(), Counts::default(), 0);
+        let ground =
+            ScatterGround { table, places, lattice, taken: &taken, library, species: &species, feature };
+        let (mut stood, mut counts, mut areas) = (Vec::new(), ScatterCounts::default(), 0);
         for Sourced { attributes, shape } in sources.polygons(&table.source)? {
             let pattern = pattern(table, &attributes, species.seed, collected);
             if pattern.is_crowded() {
@@ -117,7 +118,11 @@ struct Species {
 }
 
 impl Species {
-    fn of(table: &Scatter, library: &mut Library<'_>, collected: &mut Collected) -> Result<Self, Diagnostic> {
+    fn of(
+        table: &ScatterTable,
+        library: &mut Library<'_>,
+        collected: &mut SceneBuilder,
+    ) -> Result<Self, Diagnostic> {
         let mut models = Vec::new();
         let names = table.of.as_ref();
         for name in names.into_iter().flat_map(Spanned::get_ref) {
@@ -133,7 +138,7 @@ impl Species {
 
 /// How many places of a pattern nothing stands at, by why, and in how many areas the spacing takes from the density.
 #[derive(Clone, Copy, Debug, Default)]
-struct Counts {
+struct ScatterCounts {
     crowded: usize,
     slope: usize,
     elevation: usize,
@@ -141,7 +146,7 @@ struct Counts {
     off: usize,
 }
 
-impl Counts {
+impl ScatterCounts {
     fn add(&mut self, other: Self) {
         self.crowded += other.crowded;
         self.slope += other.slope;
@@ -152,18 +157,23 @@ impl Counts {
 }
 
 /// The pattern of one area.
-fn pattern(table: &Scatter, attributes: &Attributes, seed: u64, collected: &mut Collected) -> Pattern {
+fn pattern(
+    table: &ScatterTable,
+    attributes: &Attributes,
+    seed: u64,
+    collected: &mut SceneBuilder,
+) -> PointPattern {
     let stated = ("[[scatter]] density", table.density.as_ref());
     let density = attributes.number_or(stated, defaults::DENSITY_PER_HA, &mut collected.defaulted) / 1e4;
     let spacing_m = attributes.number(table.spacing.as_ref());
-    Pattern::new(seed, density, spacing_m.unwrap_or(SPACING_PART / density.sqrt()))
+    PointPattern::new(seed, density, spacing_m.unwrap_or(SPACING_PART / density.sqrt()))
 }
 
 /// An area in bands, its squares counted.
 fn bands(
     document: &Document,
-    table: &Scatter,
-    (area, pattern): (&Polygon, &Pattern),
+    table: &ScatterTable,
+    (area, pattern): (&Polygon, &PointPattern),
     (lattice, squares): (&Lattice, &mut usize),
 ) -> Result<Bands, Diagnostic> {
     let to_map = |ring: &Vec<DVec2>| ring.iter().map(|at| at + lattice.origin()).collect::<Vec<_>>();
@@ -189,9 +199,9 @@ fn bands(
 }
 
 /// What decides at a place.
-struct Ground<'a> {
-    table: &'a Scatter,
-    places: &'a Places<'a>,
+struct ScatterGround<'a> {
+    table: &'a ScatterTable,
+    places: &'a WorldFrame<'a>,
     lattice: &'a Lattice,
     taken: &'a Taken,
     library: &'a Library<'a>,
@@ -199,10 +209,10 @@ struct Ground<'a> {
     feature: FeatureId,
 }
 
-impl Ground<'_> {
+impl ScatterGround<'_> {
     /// What stands in a row of squares, and how much does not.
-    fn row(&self, bands: &Bands, pattern: &Pattern, row: i64) -> (Vec<Placement>, Counts) {
-        let (mut standing, mut counts) = (Vec::new(), Counts::default());
+    fn row(&self, bands: &Bands, pattern: &PointPattern, row: i64) -> (Vec<Placement>, ScatterCounts) {
+        let (mut standing, mut counts) = (Vec::new(), ScatterCounts::default());
         for column in bands.columns(row) {
             for place in pattern.places((column, row)).filter(|place| bands.contains(row, place.at)) {
                 standing.extend(self.stand(&place, &mut counts));
@@ -212,7 +222,7 @@ impl Ground<'_> {
     }
 
     /// What stands at a place, or why nothing does.
-    fn stand(&self, place: &Candidate, counts: &mut Counts) -> Option<Placement> {
+    fn stand(&self, place: &PatternPoint, counts: &mut ScatterCounts) -> Option<Placement> {
         let Some((height_m, gradient)) = self.ground_at(place.at) else {
             counts.off += 1;
             return None;
@@ -236,20 +246,22 @@ impl Ground<'_> {
 
     fn ground_at(&self, at: DVec2) -> Option<(f64, Gradient)> {
         let height_m = ground_height(self.lattice, Interpolation::Planar, at).height_m()?;
-        Some((height_m, ground_gradient(self.lattice, Patch::Planar, at).ok()?))
+        Some((height_m, ground_gradient(self.lattice, GradientSurface::Planar, at).ok()?))
     }
 
     /// A model at a place, its looks drawn from the place's fate. It stands as deep in a slope as its foot is wide, so
     /// that its downhill side does not float.
-    fn placement(&self, place: &Candidate, gradient: Gradient) -> Placement {
+    fn placement(&self, place: &PatternPoint, gradient: Gradient) -> Placement {
         let mut chance = Chance::from_number(place.fate);
         let model = self.species.models[chance.below(self.species.models.len())];
         let [from, to] = self.table.scale.as_ref().map_or(defaults::SCATTER_SCALE, |scale| *scale.get_ref());
         let scale = (from + (to - from) * chance.part()) as f32;
         let heading_rad = (chance.part() * TAU) as f32;
         let rise = (gradient.0.length() as f32) * self.places.exaggeration;
-        let standing =
-            Stance { sink_m: rise * self.library.footprint(model).radius() * scale, ..Stance::default() };
+        let standing = GroundFit {
+            sink_m: rise * self.library.footprint(model).radius() * scale,
+            ..GroundFit::default()
+        };
         let clamp = self.library.clamp(model, Clamp::Ground);
         let at = (place.at - self.lattice.origin()).as_vec2();
         Placement { model, at, clamp, height_m: 0.0, heading_rad, scale, standing, feature: self.feature }
@@ -261,7 +273,7 @@ fn outside(range: Option<&Spanned<[f64; 2]>>, value: f64) -> bool {
 }
 
 /// The ground that roads, water and buildings take, and what stands on it already.
-fn taken_by(placements: &[Placement], library: &Library<'_>, collected: &Collected) -> Taken {
+fn taken_by(placements: &[Placement], library: &Library<'_>, collected: &SceneBuilder) -> Taken {
     let mut taken = Taken::default();
     let kind = |feature: FeatureId| {
         let index = (feature.0 as usize).checked_sub(FeatureId::GROUND.0 as usize + 1);
@@ -287,7 +299,11 @@ fn taken_by(placements: &[Placement], library: &Library<'_>, collected: &Collect
     taken
 }
 
-fn tell(table: &Scatter, (count, areas, counts): (usize, usize, Counts), collected: &mut Collected) {
+fn tell(
+    table: &ScatterTable,
+    (count, areas, counts): (usize, usize, ScatterCounts),
+    collected: &mut SceneBuilder,
+) {
     let name = table.name.clone().unwrap_or_default();
     let models = if count == 1 { "1 model stands".into() } else { format!("{count} models stand") };
     let called =
@@ -301,13 +317,13 @@ fn tell(table: &Scatter, (count, areas, counts): (usize, usize, Counts), collect
     collected.report.add(
         SCATTERED,
         vec![
-            Cell::Text(name),
-            Cell::Count(count),
-            Cell::Count(areas),
-            Cell::Count(counts.slope),
-            Cell::Count(counts.elevation),
-            Cell::Count(counts.taken),
-            Cell::Count(counts.off),
+            ReportCell::Text(name),
+            ReportCell::Count(count),
+            ReportCell::Count(areas),
+            ReportCell::Count(counts.slope),
+            ReportCell::Count(counts.elevation),
+            ReportCell::Count(counts.taken),
+            ReportCell::Count(counts.off),
         ],
     );
 }

@@ -23,7 +23,7 @@ const MOST_OF_A_SQUARE: usize = 9;
 
 /// A pattern of places.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pattern {
+pub struct PointPattern {
     seed: u64,
     spacing_m: f64,
     side_m: f64,
@@ -33,7 +33,7 @@ pub struct Pattern {
 
 /// A place where something may stand.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Candidate {
+pub struct PatternPoint {
     /// Map coordinates.
     pub at: DVec2,
     /// Who gives way.
@@ -42,7 +42,7 @@ pub struct Candidate {
     pub fate: u64,
 }
 
-impl Pattern {
+impl PointPattern {
     /// A pattern of `density` places to the square metre, no two nearer than `spacing_m`; as many as that leaves room
     /// for.
     pub fn new(seed: u64, density: f64, spacing_m: f64) -> Self {
@@ -69,11 +69,11 @@ impl Pattern {
     }
 
     /// The places in a square, by its column and row.
-    pub fn places(&self, square: (i64, i64)) -> impl Iterator<Item = Candidate> + '_ {
+    pub fn places(&self, square: (i64, i64)) -> impl Iterator<Item = PatternPoint> + '_ {
         self.candidates(square).filter(move |candidate| self.stands(candidate, square))
     }
 
-    fn stands(&self, candidate: &Candidate, (column, row): (i64, i64)) -> bool {
+    fn stands(&self, candidate: &PatternPoint, (column, row): (i64, i64)) -> bool {
         let around = (-1..=1).flat_map(move |north| (-1..=1).map(move |east| (column + east, row + north)));
         self.spacing_m == 0.0
             || around.flat_map(|square| self.candidates(square)).all(|other| {
@@ -82,7 +82,7 @@ impl Pattern {
     }
 
     /// One in the mean, as many as chance has it: a Poisson number, by the inverse of its distribution.
-    fn candidates(&self, (column, row): (i64, i64)) -> impl Iterator<Item = Candidate> + use<> {
+    fn candidates(&self, (column, row): (i64, i64)) -> impl Iterator<Item = PatternPoint> + use<> {
         let mut chance = Chance::of(self.seed, (column, row));
         let (drawn, mut below, mut each, mut count) = (chance.part(), 0.0, libm::exp(-1.0), 0);
         while count < MOST_OF_A_SQUARE {
@@ -94,7 +94,7 @@ impl Pattern {
             each /= count as f64;
         }
         let (corner, side_m) = (DVec2::new(column as f64, row as f64), self.side_m);
-        (0..count).map(move |_| Candidate {
+        (0..count).map(move |_| PatternPoint {
             at: (corner + DVec2::new(chance.part(), chance.part())) * side_m,
             rank: chance.number(),
             fate: chance.number(),
@@ -106,7 +106,7 @@ impl Pattern {
 mod tests {
     use super::*;
 
-    fn places(pattern: &Pattern, side: i64) -> Vec<DVec2> {
+    fn places(pattern: &PointPattern, side: i64) -> Vec<DVec2> {
         let squares = (0..side).flat_map(|row| (0..side).map(move |column| (column, row)));
         squares.flat_map(|square| pattern.places(square).map(|place| place.at).collect::<Vec<_>>()).collect()
     }
@@ -114,7 +114,7 @@ mod tests {
     #[test]
     fn it_is_as_dense_as_asked_and_keeps_its_distance() {
         for (density, spacing_m) in [(0.01, 5.0), (0.01, 0.0), (0.01, 9.0), (4.0, 0.25), (1e-6, 300.0)] {
-            let pattern = Pattern::new(3, density, spacing_m);
+            let pattern = PointPattern::new(3, density, spacing_m);
             let side = 150;
             let found = places(&pattern, side);
             let area = (side as f64 * pattern.side_m()).powi(2);
@@ -132,13 +132,13 @@ mod tests {
 
     #[test]
     fn spacing_that_leaves_no_room_takes_from_the_density() {
-        let pattern = Pattern::new(0, 0.01, 20.0);
+        let pattern = PointPattern::new(0, 0.01, 20.0);
         assert!((pattern.density() - 0.95 / (PI * 400.0)).abs() < 1e-12 && pattern.is_crowded());
     }
 
     #[test]
     fn another_seed_is_another_pattern() {
-        let [a, b] = [1, 2].map(|seed| places(&Pattern::new(seed, 0.01, 5.0), 20));
+        let [a, b] = [1, 2].map(|seed| places(&PointPattern::new(seed, 0.01, 5.0), 20));
         assert!(a.iter().all(|place| !b.contains(place)));
     }
 }

@@ -4,19 +4,19 @@ use glam::DVec2;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
-use crate::description::features::Lake;
+use crate::description::features::LakeTable;
 use crate::description::words::{LevelRule, Word};
 use crate::draw::list::FeatureId;
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::ribbon::area;
 use crate::ribbon::plan::PlanMesh;
-use crate::ribbon::texture::Surface;
+use crate::ribbon::texture::RibbonSurface;
 use crate::scene::attributes::Attributes;
-use crate::scene::collected::Collected;
+use crate::scene::collected::SceneBuilder;
 use crate::scene::kind::FeatureKind;
 use crate::scene::near::Clipped;
-use crate::scene::report::{Cell, Column};
+use crate::scene::report::{ReportCell, ReportColumn};
 use crate::scene::sources::{Sourced, Sources};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
@@ -27,17 +27,17 @@ use crate::vector::feature::Polygon;
 const LAKE_TEXTURE_M: f64 = 400.0;
 
 /// What the report says of each lake.
-const TABLE: (&str, &[Column]) = (
+const TABLE: (&str, &[ReportColumn]) = (
     "lakes",
     &[
-        Column { name: "name", unit: "" },
-        Column { name: "level", unit: "m" },
-        Column { name: "rule", unit: "" },
-        Column { name: "lowest shore", unit: "m" },
-        Column { name: "highest shore", unit: "m" },
-        Column { name: "area", unit: "m2" },
-        Column { name: "cut", unit: "m3" },
-        Column { name: "fill", unit: "m3" },
+        ReportColumn { name: "name", unit: "" },
+        ReportColumn { name: "level", unit: "m" },
+        ReportColumn { name: "rule", unit: "" },
+        ReportColumn { name: "lowest shore", unit: "m" },
+        ReportColumn { name: "highest shore", unit: "m" },
+        ReportColumn { name: "area", unit: "m2" },
+        ReportColumn { name: "cut", unit: "m3" },
+        ReportColumn { name: "fill", unit: "m3" },
     ],
 );
 
@@ -50,7 +50,7 @@ pub fn lay(
     document: &Document,
     sources: &Sources<'_>,
     lattice: &mut Lattice,
-    collected: &mut Collected,
+    collected: &mut SceneBuilder,
 ) -> Result<(), Diagnostic> {
     for lake in &document.lakes {
         for Sourced { attributes, shape } in sources.polygons(&lake.source)? {
@@ -70,14 +70,14 @@ pub fn lay(
             let shore = Shore::of(lattice, &shape);
             let level = level_of(document, lake, (&attributes, &shore), collected)?;
             let feature = flood(lattice, (name, &shape, &shore), level, collected);
-            collected.lay(plan.plan, Surface::Lake, feature);
+            collected.lay(plan.plan, RibbonSurface::Lake, feature);
         }
     }
     Ok(())
 }
 
 /// A lake's level with the rule it was found by.
-struct Level {
+struct LakeLevel {
     level_m: f64,
     rule: &'static str,
 }
@@ -86,8 +86,8 @@ struct Level {
 fn flood(
     lattice: &mut Lattice,
     (name, shape, shore): (String, &Polygon, &Shore),
-    level: Level,
-    collected: &mut Collected,
+    level: LakeLevel,
+    collected: &mut SceneBuilder,
 ) -> FeatureId {
     let flooded = shore::flood(lattice, &shape.exterior, &shape.holes, level.level_m as f32);
     let (level_m, volumes) = (level.level_m, flooded.volumes);
@@ -103,18 +103,18 @@ fn flood(
             called(&name)
         ));
     }
-    let number = |value: Option<f64>| value.map_or(Cell::Empty, Cell::Number);
+    let number = |value: Option<f64>| value.map_or(ReportCell::Empty, ReportCell::Number);
     collected.report.add(
         TABLE,
         vec![
-            Cell::Text(name.clone()),
-            Cell::Number(level_m),
-            Cell::Text(level.rule.into()),
+            ReportCell::Text(name.clone()),
+            ReportCell::Number(level_m),
+            ReportCell::Text(level.rule.into()),
             number(shore.lowest_m()),
             number(shore.highest_m()),
-            Cell::Number(area_m2(shape)),
-            Cell::Number(volumes.cut_m3),
-            Cell::Number(volumes.fill_m3),
+            ReportCell::Number(area_m2(shape)),
+            ReportCell::Number(volumes.cut_m3),
+            ReportCell::Number(volumes.fill_m3),
         ],
     );
     collected.add(FeatureKind::Lake, name)
@@ -123,12 +123,12 @@ fn flood(
 /// The stated level, or that of the rule.
 fn level_of(
     document: &Document,
-    lake: &Lake,
+    lake: &LakeTable,
     (attributes, shore): (&Attributes, &Shore),
-    collected: &mut Collected,
-) -> Result<Level, Diagnostic> {
+    collected: &mut SceneBuilder,
+) -> Result<LakeLevel, Diagnostic> {
     if let Some(level_m) = attributes.number(lake.level.as_ref()) {
-        return Ok(Level { level_m, rule: "given" });
+        return Ok(LakeLevel { level_m, rule: "given" });
     }
     let rule = lake.level_rule.as_ref().map_or_else(LevelRule::default, |rule| *rule.get_ref());
     if lake.level.is_some() {
@@ -136,7 +136,7 @@ fn level_of(
         *collected.defaulted.entry(("[[lake]] level", default)).or_default() += 1;
     }
     let name = LevelRule::ALL.iter().find(|(_, word)| *word == rule).map_or("", |(name, _)| *name);
-    shore.level_m(rule).map(|level_m| Level { level_m, rule: name }).ok_or_else(|| {
+    shore.level_m(rule).map(|level_m| LakeLevel { level_m, rule: name }).ok_or_else(|| {
         let message = "no ground lies along this lake's shore to take its level from";
         document.error_at(lake.source.span(), message).with_help("state it: level = <metres>")
     })

@@ -4,15 +4,15 @@ use std::collections::BTreeMap;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
-use crate::description::features::River;
+use crate::description::features::RiverTable;
 use crate::description::words::Water;
 use crate::draw::list::FeatureId;
 use crate::geom::polyline::Polyline;
-use crate::ribbon::junction::{Bed, Street};
+use crate::ribbon::junction::{Street, StreetSupport};
 use crate::ribbon::stroke::{StrokeOptions, Widths};
-use crate::ribbon::texture::{Surface, texture_length_m};
+use crate::ribbon::texture::{RibbonSurface, texture_length_m};
 use crate::scene::attributes::Attributes;
-use crate::scene::collected::Collected;
+use crate::scene::collected::SceneBuilder;
 use crate::scene::kind::FeatureKind;
 use crate::scene::near;
 use crate::scene::sources::Sources;
@@ -54,7 +54,7 @@ impl Stream {
     /// How its water is stroked.
     pub fn options(&self) -> StrokeOptions {
         let width_m = self.widest_m();
-        let texture_length_m = texture_length_m(Surface::River, width_m);
+        let texture_length_m = texture_length_m(RibbonSurface::River, width_m);
         StrokeOptions { width_m, texture_length_m, ..StrokeOptions::default() }
     }
 
@@ -64,7 +64,7 @@ impl Stream {
             line: &self.line,
             widths: Widths::PerVertex(&self.widths_m),
             options: self.options(),
-            bed: Bed::Ground,
+            bed: StreetSupport::Ground,
             level: 0,
             rank: 0,
         }
@@ -79,10 +79,10 @@ pub fn collect(
     document: &Document,
     sources: &Sources<'_>,
     lattice: &Lattice,
-    collected: &mut Collected,
+    collected: &mut SceneBuilder,
 ) -> Result<Vec<Stream>, Diagnostic> {
     let extent = lattice.extent();
-    let mut drawn: Vec<(&River, Attributes, Polyline)> = Vec::new();
+    let mut drawn: Vec<(&RiverTable, Attributes, Polyline)> = Vec::new();
     let mut widths_m: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
     for river in &document.rivers {
         let lines = sources.lines(&river.source)?;
@@ -116,10 +116,10 @@ fn kept(line: &Polyline, points: &[glam::DVec2], widths_m: &[f64]) -> Vec<f64> {
 }
 
 fn stream(
-    river: &River,
+    river: &RiverTable,
     attributes: &Attributes,
     (line, stated, flow): (Polyline, Option<Vec<f64>>, Flow),
-    collected: &mut Collected,
+    collected: &mut SceneBuilder,
 ) -> Stream {
     let mut stated = stated.filter(|widths| widths.len() == line.points().len());
     let line = match flow {

@@ -19,29 +19,29 @@ use crate::geom::rect::Rect;
 use crate::mesh::sink::MeshSink;
 use crate::ribbon::junction::{self, Street};
 use crate::ribbon::plan::{PlanMesh, PlanVertex};
-use crate::ribbon::stroke::{Continuations, Course, Stations, StrokeOptions, Widths, stroke_course};
-use crate::ribbon::texture::Surface;
-use crate::scene::collected::Collected;
+use crate::ribbon::stroke::{Continuations, Stations, StrokeOptions, StrokePath, Widths, stroke_course};
+use crate::ribbon::texture::RibbonSurface;
+use crate::scene::collected::SceneBuilder;
 use crate::scene::near::Clipped;
-use crate::scene::report::{Cell, Column};
+use crate::scene::report::{ReportCell, ReportColumn};
 use crate::scene::sources::Sources;
 use crate::scene::water::network::{self, Stream};
 use crate::terrain::channel::{self, Channel, Climb, Cut, Cuts};
 use crate::terrain::lattice::Lattice;
 
 /// What the report says of each river.
-const TABLE: (&str, &[Column]) = (
+const TABLE: (&str, &[ReportColumn]) = (
     "rivers",
     &[
-        Column { name: "name", unit: "" },
-        Column { name: "length", unit: "m" },
-        Column { name: "from", unit: "m" },
-        Column { name: "to", unit: "m" },
-        Column { name: "deepest cut", unit: "m" },
-        Column { name: "cut", unit: "m3" },
-        Column { name: "fill", unit: "m3" },
-        Column { name: "climbs", unit: "" },
-        Column { name: "greatest climb", unit: "m" },
+        ReportColumn { name: "name", unit: "" },
+        ReportColumn { name: "length", unit: "m" },
+        ReportColumn { name: "from", unit: "m" },
+        ReportColumn { name: "to", unit: "m" },
+        ReportColumn { name: "deepest cut", unit: "m" },
+        ReportColumn { name: "cut", unit: "m3" },
+        ReportColumn { name: "fill", unit: "m3" },
+        ReportColumn { name: "climbs", unit: "" },
+        ReportColumn { name: "greatest climb", unit: "m" },
     ],
 );
 
@@ -57,7 +57,7 @@ pub fn lay(
     document: &Document,
     sources: &Sources<'_>,
     lattice: &mut Lattice,
-    collected: &mut Collected,
+    collected: &mut SceneBuilder,
 ) -> Result<(), Diagnostic> {
     let streams = network::collect(document, sources, lattice, collected)?;
     let falling: Vec<&Stream> = streams.iter().filter(|stream| stream.water == Water::Falls).collect();
@@ -83,7 +83,7 @@ fn channel_of(stream: &Stream) -> Channel {
 }
 
 /// Tells what cutting came to: a row a river, and a note on them all.
-fn tell(streams: &[&Stream], cuts: &Cuts, collected: &mut Collected) {
+fn tell(streams: &[&Stream], cuts: &Cuts, collected: &mut SceneBuilder) {
     for (stream, cut) in streams.iter().zip(&cuts.cuts) {
         collected.report.add(TABLE, row(stream, cut));
     }
@@ -101,7 +101,7 @@ fn tell(streams: &[&Stream], cuts: &Cuts, collected: &mut Collected) {
 }
 
 /// Tells where water climbs: a note on them all, with the greatest.
-fn tell_of_climbs(streams: &[&Stream], cuts: &Cuts, collected: &mut Collected) {
+fn tell_of_climbs(streams: &[&Stream], cuts: &Cuts, collected: &mut SceneBuilder) {
     let climbing = cuts.cuts.iter().filter(|cut| !cut.climbs.is_empty()).count();
     let count: usize = cuts.cuts.iter().map(|cut| cut.climbs.len()).sum();
     let all = streams.iter().zip(&cuts.cuts).filter_map(|(stream, cut)| Some((&stream.name, greatest(cut)?)));
@@ -121,24 +121,25 @@ fn greatest(cut: &Cut) -> Option<&Climb> {
     cut.climbs.iter().max_by(|a, b| a.rise_m.total_cmp(&b.rise_m))
 }
 
-fn row(stream: &Stream, cut: &Cut) -> Vec<Cell> {
-    let level =
-        |of: fn((f64, f64)) -> f64| cut.levels_m.map_or(Cell::Empty, |levels| Cell::Number(of(levels)));
+fn row(stream: &Stream, cut: &Cut) -> Vec<ReportCell> {
+    let level = |of: fn((f64, f64)) -> f64| {
+        cut.levels_m.map_or(ReportCell::Empty, |levels| ReportCell::Number(of(levels)))
+    };
     vec![
-        Cell::Text(stream.name.clone()),
-        Cell::Number(stream.line.length()),
+        ReportCell::Text(stream.name.clone()),
+        ReportCell::Number(stream.line.length()),
         level(|levels| levels.0),
         level(|levels| levels.1),
-        Cell::Number(cut.deepest_m),
-        Cell::Number(cut.volumes.cut_m3),
-        Cell::Number(cut.volumes.fill_m3),
-        Cell::Count(cut.climbs.len()),
-        greatest(cut).map_or(Cell::Empty, |climb| Cell::Number(climb.rise_m)),
+        ReportCell::Number(cut.deepest_m),
+        ReportCell::Number(cut.volumes.cut_m3),
+        ReportCell::Number(cut.volumes.fill_m3),
+        ReportCell::Count(cut.climbs.len()),
+        greatest(cut).map_or(ReportCell::Empty, |climb| ReportCell::Number(climb.rise_m)),
     ]
 }
 
 /// Lays water, banks and confluences; narrower water over wider, so that a mouth shows in the river that it flows into.
-fn ribbons(streams: &[Stream], extent: &Rect, collected: &mut Collected) {
+fn ribbons(streams: &[Stream], extent: &Rect, collected: &mut SceneBuilder) {
     let streets: Vec<Street<'_>> = streams.iter().map(Stream::street).collect();
     let network = junction::connect(&streets);
     let mut order: Vec<usize> = (0..streams.len()).collect();
@@ -148,13 +149,13 @@ fn ribbons(streams: &[Stream], extent: &Rect, collected: &mut Collected) {
             (&streams[index], ends_of_one_width(&streams[index], network.continuations[index]));
         let mut water = Clipped { plan: PlanMesh::default(), extent };
         along(&stream.line, &stream.widths_m, beyond, &stream.options(), &mut water);
-        collected.lay(water.plan, Surface::River, stream.feature);
+        collected.lay(water.plan, RibbonSurface::River, stream.feature);
         if stream.bank_m > 0.0 {
             let widths_m: Vec<f64> =
                 stream.widths_m.iter().map(|width| width + 2.0 * stream.bank_m).collect();
             let mut banks = Clipped { plan: PlanMesh::default(), extent };
             along(&stream.line, &widths_m, beyond, &stream.options(), &mut banks);
-            collected.lay(banks.plan, Surface::Bank, stream.feature);
+            collected.lay(banks.plan, RibbonSurface::Bank, stream.feature);
         }
     }
     confluences(streams, &network.continuations, extent, collected);
@@ -174,7 +175,7 @@ fn along(
     sink: &mut impl MeshSink<PlanVertex>,
 ) {
     let widths = Widths::PerVertex(widths_m);
-    stroke_course(&Course { line, widths, beyond, stations: Stations::default() }, options, sink);
+    stroke_course(&StrokePath { line, widths, beyond, stations: Stations::default() }, options, sink);
 }
 
 /// A river at a vertex: the water's width there, which river it is, and where.
@@ -185,7 +186,7 @@ fn confluences(
     streams: &[Stream],
     continuations: &[Continuations],
     extent: &Rect,
-    collected: &mut Collected,
+    collected: &mut SceneBuilder,
 ) {
     let mut ends: BTreeMap<(i64, i64), bool> = BTreeMap::new();
     for (stream, beyond) in streams.iter().zip(continuations) {
@@ -207,7 +208,7 @@ fn confluences(
         if let Some(&(width_m, index, at)) = widest {
             let mut plan = Clipped { plan: PlanMesh::default(), extent };
             disc(at, width_m / 2.0, &mut plan);
-            collected.lay(plan.plan, Surface::Confluence, streams[index].feature);
+            collected.lay(plan.plan, RibbonSurface::Confluence, streams[index].feature);
         }
     }
 }

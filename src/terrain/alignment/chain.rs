@@ -3,7 +3,7 @@
 //! Files cut roads where a name or a speed limit changes. A vertical curve, a bridge or a tunnel goes on across such a
 //! cut, and ends only where other roads meet.
 
-use crate::terrain::alignment::network::{Levels, Network};
+use crate::terrain::alignment::network::{SectionNetwork, StationLevels};
 
 /// Which way a section is gone along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub enum Direction {
 
 /// A section in a chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Link {
+pub struct SectionLink {
     /// Which of the network's sections.
     pub section: usize,
     /// Which way the chain goes along it.
@@ -27,13 +27,13 @@ pub struct Link {
 
 /// Sections from node to node, each of which continues the one before.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Chain {
+pub struct SectionChain {
     /// At least one; no section twice.
-    pub links: Vec<Link>,
+    pub links: Vec<SectionLink>,
 }
 
 /// Every section in exactly one chain. A chain goes on where exactly two sections of one grade meet.
-pub fn chains(network: &Network) -> Vec<Chain> {
+pub fn chains(network: &SectionNetwork) -> Vec<SectionChain> {
     let arms = network.arms();
     let follows = |section: usize, end: usize| -> Option<(usize, usize)> {
         let [one, other] = arms[network.sections[section].ends[end].index()][..] else { return None };
@@ -62,28 +62,28 @@ pub fn chains(network: &Network) -> Vec<Chain> {
 
 /// The chain from this end of this section on.
 fn walk(
-    network: &Network,
+    network: &SectionNetwork,
     (mut section, mut end): (usize, usize),
     follows: &impl Fn(usize, usize) -> Option<(usize, usize)>,
     taken: &mut [bool],
-) -> Chain {
+) -> SectionChain {
     let (mut links, mut start_m) = (Vec::new(), 0.0);
     loop {
         taken[section] = true;
         let direction = if end == 0 { Direction::Forward } else { Direction::Backward };
-        links.push(Link { section, direction, start_m });
+        links.push(SectionLink { section, direction, start_m });
         start_m += network.sections[section].length_m();
         match follows(section, 1 - end) {
             Some((next, at)) if !taken[next] => (section, end) = (next, at),
-            _ => return Chain { links },
+            _ => return SectionChain { links },
         }
     }
 }
 
-impl Chain {
+impl SectionChain {
     /// The chain's stations: those of its sections on end, each shared one once.
-    pub fn stations(&self, network: &Network) -> Vec<f64> {
-        let along = |link: &Link| {
+    pub fn stations(&self, network: &SectionNetwork) -> Vec<f64> {
+        let along = |link: &SectionLink| {
             let section = &network.sections[link.section];
             let station = |&at: &f64| match link.direction {
                 Direction::Forward => link.start_m + at,
@@ -95,11 +95,11 @@ impl Chain {
     }
 
     /// What stands at the chain's stations; where two sections share one, what either says of it.
-    pub fn gather(&self, levels: &Levels) -> Vec<f64> {
+    pub fn gather(&self, levels: &StationLevels) -> Vec<f64> {
         self.joined(|link| levels[link.section].clone())
     }
 
-    fn joined(&self, of: impl Fn(&Link) -> Vec<f64>) -> Vec<f64> {
+    fn joined(&self, of: impl Fn(&SectionLink) -> Vec<f64>) -> Vec<f64> {
         let mut all: Vec<f64> = Vec::new();
         for (index, link) in self.links.iter().enumerate() {
             let mut own = of(link);
@@ -119,7 +119,7 @@ impl Chain {
     }
 
     /// Puts what stands at the chain's stations back to its sections.
-    pub fn scatter(&self, values: &[f64], levels: &mut Levels) {
+    pub fn scatter(&self, values: &[f64], levels: &mut StationLevels) {
         let mut first = 0;
         for link in &self.links {
             let own = &mut levels[link.section];
@@ -137,16 +137,16 @@ impl Chain {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::alignment::network::{NodeId, Section};
+    use crate::terrain::alignment::network::{NodeId, RoadSection};
 
-    fn network(ends: &[[u32; 2]]) -> Network {
-        let section = |&[from, to]: &[u32; 2]| Section {
+    fn network(ends: &[[u32; 2]]) -> SectionNetwork {
+        let section = |&[from, to]: &[u32; 2]| RoadSection {
             ends: [NodeId(from), NodeId(to)],
             stations_m: vec![0.0, 4.0, 10.0],
             max_grade: 0.1,
         };
         let nodes = ends.iter().flatten().max().map_or(0, |&most| most as usize + 1);
-        Network { nodes, sections: ends.iter().map(section).collect() }
+        SectionNetwork { nodes, sections: ends.iter().map(section).collect() }
     }
 
     #[test]

@@ -7,7 +7,7 @@
 
 /// The levels of a profile with its kinks rounded over `window_m` metres; stations rise from 0, levels are finite.
 pub fn eased(stations_m: &[f64], levels_m: &[f64], window_m: f64) -> Vec<f64> {
-    let profile = Profile::new(stations_m, levels_m);
+    let profile = EasedProfile::new(stations_m, levels_m);
     let length_m = stations_m[stations_m.len() - 1];
     let ease = |(&station, &level): (&f64, &f64)| {
         let half = (window_m / 2.0).min(station).min(length_m - station);
@@ -18,14 +18,14 @@ pub fn eased(stations_m: &[f64], levels_m: &[f64], window_m: f64) -> Vec<f64> {
 }
 
 /// A profile that is straight between its stations.
-struct Profile<'a> {
+struct EasedProfile<'a> {
     stations_m: &'a [f64],
     levels_m: &'a [f64],
     /// The area under the profile from its start to each station, above its first level.
     areas: Vec<f64>,
 }
 
-impl<'a> Profile<'a> {
+impl<'a> EasedProfile<'a> {
     fn new(stations_m: &'a [f64], levels_m: &'a [f64]) -> Self {
         let mut areas = vec![0.0];
         let mut area = 0.0;

@@ -16,11 +16,11 @@
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
-use crate::terrain::alignment::network::{Levels, Network, Section};
+use crate::terrain::alignment::network::{RoadSection, SectionNetwork, StationLevels};
 
 /// The highest profile that nowhere lies above `levels` and keeps the grade; infinite where none of the levels reaches.
 /// `levels` may be NaN where nothing is asked for.
-pub fn below(network: &Network, levels: &Levels) -> Levels {
+pub fn below(network: &SectionNetwork, levels: &StationLevels) -> StationLevels {
     let mut nodes = vec![f64::INFINITY; network.nodes];
     for (section, levels) in network.sections.iter().zip(levels) {
         let swept = sweep(section, levels, [f64::INFINITY; 2]);
@@ -29,7 +29,7 @@ pub fn below(network: &Network, levels: &Levels) -> Levels {
         }
     }
     spread(network, &mut nodes);
-    let ends = |section: &Section| section.ends.map(|node| nodes[node.index()]);
+    let ends = |section: &RoadSection| section.ends.map(|node| nodes[node.index()]);
     network
         .sections
         .iter()
@@ -40,7 +40,7 @@ pub fn below(network: &Network, levels: &Levels) -> Levels {
 
 /// The lowest profile that nowhere lies below `levels` and keeps the grade; minus infinity where none of the levels
 /// reaches.
-pub fn above(network: &Network, levels: &Levels) -> Levels {
+pub fn above(network: &SectionNetwork, levels: &StationLevels) -> StationLevels {
     let mut turned = below(network, &negated(levels.clone()));
     for levels in &mut turned {
         levels.iter_mut().for_each(|level| *level = -*level);
@@ -48,13 +48,13 @@ pub fn above(network: &Network, levels: &Levels) -> Levels {
     turned
 }
 
-fn negated(mut levels: Levels) -> Levels {
+fn negated(mut levels: StationLevels) -> StationLevels {
     levels.iter_mut().flatten().for_each(|level| *level = -*level);
     levels
 }
 
 /// The lowest cone at each station, of those over the section's own levels and at its ends.
-fn sweep(section: &Section, levels: &[f64], [first, last]: [f64; 2]) -> Vec<f64> {
+fn sweep(section: &RoadSection, levels: &[f64], [first, last]: [f64; 2]) -> Vec<f64> {
     let stations = &section.stations_m;
     let mut swept: Vec<f64> = Vec::with_capacity(stations.len());
     let (mut lowest, mut before) = (first, 0.0);
@@ -74,7 +74,7 @@ fn sweep(section: &Section, levels: &[f64], [first, last]: [f64; 2]) -> Vec<f64>
 }
 
 /// Lowers every node to the lowest cone over any other.
-fn spread(network: &Network, nodes: &mut [f64]) {
+fn spread(network: &SectionNetwork, nodes: &mut [f64]) {
     let arms = network.arms();
     let starts = nodes.iter().enumerate().filter(|(_, level)| level.is_finite());
     let mut waiting: BinaryHeap<Reverse<Reached>> =
@@ -123,13 +123,13 @@ mod tests {
     use proptest::prelude::*;
 
     /// A star of three sections of the given stations that meet in node 0.
-    fn star(stations: [Vec<f64>; 3], max_grade: f64) -> Network {
-        let section = |(index, stations_m): (u32, Vec<f64>)| Section {
+    fn star(stations: [Vec<f64>; 3], max_grade: f64) -> SectionNetwork {
+        let section = |(index, stations_m): (u32, Vec<f64>)| RoadSection {
             ends: [NodeId(0), NodeId(index)],
             stations_m,
             max_grade,
         };
-        Network { nodes: 4, sections: (1..).zip(stations).map(section).collect() }
+        SectionNetwork { nodes: 4, sections: (1..).zip(stations).map(section).collect() }
     }
 
     proptest! {
@@ -143,7 +143,7 @@ mod tests {
                 along.collect::<Vec<f64>>()
             });
             let network = star(stations, grade);
-            let levels: Levels = steps.iter().map(|steps| steps.iter().map(|step| step.1).collect()).collect();
+            let levels: StationLevels = steps.iter().map(|steps| steps.iter().map(|step| step.1).collect()).collect();
             let (low, high) = (below(&network, &levels), above(&network, &levels));
             prop_assert_eq!(network.check(&low, 1e-9), Ok(()));
             prop_assert_eq!(network.check(&high, 1e-9), Ok(()));

@@ -1,11 +1,11 @@
 //! The profile of limited grade that lies nearest to given levels.
 
 use crate::terrain::alignment::envelope::{above, below};
-use crate::terrain::alignment::network::{Levels, Network};
+use crate::terrain::alignment::network::{SectionNetwork, StationLevels};
 
 /// The profile that keeps the grade and whose greatest distance from `levels` is the least there is, midway between the
 /// [envelopes](crate::terrain::alignment::envelope); NaN where no level reaches.
-pub fn nearest(network: &Network, levels: &Levels) -> Levels {
+pub fn nearest(network: &SectionNetwork, levels: &StationLevels) -> StationLevels {
     let mut middle = above(network, levels);
     for (lower, upper) in middle.iter_mut().flatten().zip(below(network, levels).iter().flatten()) {
         // Both are infinite, of opposite signs, where no level reaches.
@@ -18,7 +18,7 @@ pub fn nearest(network: &Network, levels: &Levels) -> Levels {
 ///
 /// What the grade does not allow is shared: the pins themselves move to the nearest levels it does. Every other level then
 /// gives way to the pins' cones.
-pub fn through(network: &Network, levels: &Levels, pins: &[f64]) -> Levels {
+pub fn through(network: &SectionNetwork, levels: &StationLevels, pins: &[f64]) -> StationLevels {
     let mut pinned = network.nowhere();
     for (section, levels) in network.sections.iter().zip(&mut pinned) {
         let last = levels.len() - 1;
@@ -44,12 +44,12 @@ pub fn through(network: &Network, levels: &Levels, pins: &[f64]) -> Levels {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::alignment::network::{NodeId, Section};
+    use crate::terrain::alignment::network::{NodeId, RoadSection};
 
-    fn road(levels: &[f64], step_m: f64, max_grade: f64) -> (Network, Levels) {
+    fn road(levels: &[f64], step_m: f64, max_grade: f64) -> (SectionNetwork, StationLevels) {
         let stations_m = (0..levels.len()).map(|index| index as f64 * step_m).collect();
-        let section = Section { ends: [NodeId(0), NodeId(1)], stations_m, max_grade };
-        (Network { nodes: 2, sections: vec![section] }, vec![levels.to_vec()])
+        let section = RoadSection { ends: [NodeId(0), NodeId(1)], stations_m, max_grade };
+        (SectionNetwork { nodes: 2, sections: vec![section] }, vec![levels.to_vec()])
     }
 
     #[test]

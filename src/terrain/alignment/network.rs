@@ -13,7 +13,7 @@ impl NodeId {
 
 /// A stretch of road between two nodes and none between.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Section {
+pub struct RoadSection {
     /// Where it begins and ends; may be one node.
     pub ends: [NodeId; 2],
     /// Distances from its beginning in metres, from 0, never falling; at least two.
@@ -22,7 +22,7 @@ pub struct Section {
     pub max_grade: f64,
 }
 
-impl Section {
+impl RoadSection {
     /// Its length in metres.
     pub fn length_m(&self) -> f64 {
         self.stations_m[self.stations_m.len() - 1]
@@ -30,18 +30,18 @@ impl Section {
 }
 
 /// One number a station of every section, such as heights in metres; NaN where there is none.
-pub type Levels = Vec<Vec<f64>>;
+pub type StationLevels = Vec<Vec<f64>>;
 
 /// A network of sections.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Network {
+pub struct SectionNetwork {
     /// How many nodes there are.
     pub nodes: usize,
     /// Their ends are all among the nodes.
-    pub sections: Vec<Section>,
+    pub sections: Vec<RoadSection>,
 }
 
-impl Network {
+impl SectionNetwork {
     /// Where sections end at each node: section and end, 0 or 1, in order.
     pub fn arms(&self) -> Vec<Vec<(usize, usize)>> {
         let mut arms = vec![Vec::new(); self.nodes];
@@ -54,7 +54,7 @@ impl Network {
     }
 
     /// Levels that are NaN everywhere.
-    pub fn nowhere(&self) -> Levels {
+    pub fn nowhere(&self) -> StationLevels {
         self.sections.iter().map(|section| vec![f64::NAN; section.stations_m.len()]).collect()
     }
 
@@ -63,7 +63,7 @@ impl Network {
     ///
     /// # Errors
     /// A sentence that names the first place that does not.
-    pub fn check(&self, levels: &Levels, slack: f64) -> Result<(), String> {
+    pub fn check(&self, levels: &StationLevels, slack: f64) -> Result<(), String> {
         let mut at_node = vec![f64::NAN; self.nodes];
         for (index, (section, levels)) in self.sections.iter().zip(levels).enumerate() {
             for (stations, pair) in section.stations_m.windows(2).zip(levels.windows(2)) {

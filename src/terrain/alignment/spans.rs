@@ -34,7 +34,7 @@ pub enum SpanKind {
 
 /// A stretch that the ground does not carry.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Span {
+pub struct DesignSpan {
     /// What carries it.
     pub kind: SpanKind,
     /// The station where it begins, in metres.
@@ -45,14 +45,14 @@ pub struct Span {
 
 /// How high embankments and how deep cuttings may be, in metres; infinite for any.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
+pub struct EarthworkLimits {
     /// The highest embankment.
     pub max_fill_m: f64,
     /// The deepest cutting.
     pub max_cut_m: f64,
 }
 
-impl Limits {
+impl EarthworkLimits {
     /// How much of what is allowed the road needs where it lies `rise_m` above the ground: above 0 for fill, below for
     /// cut, beyond ±1 for more than is allowed. 0 where there is no ground.
     pub fn need(&self, rise_m: f64) -> f64 {
@@ -67,7 +67,7 @@ impl Limits {
 }
 
 /// The spans of a road with this [need](Limits::need) at its stations, in order and apart from each other.
-pub fn spans(stations_m: &[f64], needs: &[f64]) -> Vec<Span> {
+pub fn spans(stations_m: &[f64], needs: &[f64]) -> Vec<DesignSpan> {
     let (Some(&start), Some(&end)) = (stations_m.first(), stations_m.last()) else { return Vec::new() };
     let fills = exceeding(stations_m, needs, SpanKind::Bridge);
     let cuts: Vec<f64> = needs.iter().map(|need| -need).collect();
@@ -87,7 +87,7 @@ pub fn spans(stations_m: &[f64], needs: &[f64]) -> Vec<Span> {
 }
 
 /// Where the need is above [`ABUTMENT`], for as long as it somewhere exceeds 1.
-fn exceeding(stations_m: &[f64], needs: &[f64], kind: SpanKind) -> Vec<Span> {
+fn exceeding(stations_m: &[f64], needs: &[f64], kind: SpanKind) -> Vec<DesignSpan> {
     let mut found = Vec::new();
     let (mut from_m, mut highest) = (None, 0.0_f64);
     for index in 0..needs.len() {
@@ -104,7 +104,7 @@ fn exceeding(stations_m: &[f64], needs: &[f64], kind: SpanKind) -> Vec<Span> {
             (Some(_), true) => highest = highest.max(need),
             (Some(from), false) => {
                 if highest > 1.0 {
-                    found.push(Span { kind, from_m: from, to_m: crossing(index - 1) });
+                    found.push(DesignSpan { kind, from_m: from, to_m: crossing(index - 1) });
                 }
                 from_m = None;
             }
@@ -114,14 +114,14 @@ fn exceeding(stations_m: &[f64], needs: &[f64], kind: SpanKind) -> Vec<Span> {
     if let (Some(from_m), Some(&to_m)) = (from_m, stations_m.last())
         && highest > 1.0
     {
-        found.push(Span { kind, from_m, to_m });
+        found.push(DesignSpan { kind, from_m, to_m });
     }
     found
 }
 
 /// Spans of one kind in order, those with little between made one.
-fn merged(spans: Vec<Span>) -> Vec<Span> {
-    let mut all: Vec<Span> = Vec::with_capacity(spans.len());
+fn merged(spans: Vec<DesignSpan>) -> Vec<DesignSpan> {
+    let mut all: Vec<DesignSpan> = Vec::with_capacity(spans.len());
     for span in spans {
         match all.last_mut() {
             Some(last) if span.from_m - last.to_m < NEAREST_M => last.to_m = span.to_m,
@@ -169,9 +169,9 @@ mod tests {
 
     #[test]
     fn without_limits_or_ground_nothing_is_needed() {
-        let any = Limits { max_fill_m: f64::INFINITY, max_cut_m: f64::INFINITY };
+        let any = EarthworkLimits { max_fill_m: f64::INFINITY, max_cut_m: f64::INFINITY };
         assert_eq!((any.need(900.0), any.need(-900.0), any.need(f64::NAN)), (0.0, 0.0, 0.0));
-        let some = Limits { max_fill_m: 8.0, max_cut_m: 10.0 };
+        let some = EarthworkLimits { max_fill_m: 8.0, max_cut_m: 10.0 };
         assert_eq!((some.need(4.0), some.need(-20.0)), (0.5, -2.0));
     }
 }

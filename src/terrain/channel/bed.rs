@@ -1,13 +1,13 @@
 //! The posts of channels' beds, and the heights they are to have.
 
-use crate::terrain::channel::carve::Piece;
-use crate::terrain::channel::course::{Course, Station};
+use crate::terrain::channel::carve::CenterlinePiece;
+use crate::terrain::channel::course::{ChannelCourse, CourseStation};
 use crate::terrain::channel::{ChannelError, Cut, MOST_VISITS};
 use crate::terrain::lattice::{Lattice, Post};
 use glam::DVec2;
 
 /// Posts by where the lattice stores them, rising, each with what it is to become.
-pub(super) struct Bed {
+pub(super) struct ChannelBed {
     posts: Vec<u32>,
     /// Metres.
     pub heights_m: Vec<f64>,
@@ -31,10 +31,14 @@ struct Wish {
     height_m: f64,
 }
 
-impl Bed {
+impl ChannelBed {
     /// The posts under the water set to its level and banks blended. Where the water stands above the ground, in a pit or
     /// before a lake, no post of the triangles that its centreline crosses stays below it.
-    pub fn shaped(lattice: &Lattice, courses: &[Course], pieces: &[Piece]) -> Result<Self, ChannelError> {
+    pub fn shaped(
+        lattice: &Lattice,
+        courses: &[ChannelCourse],
+        pieces: &[CenterlinePiece],
+    ) -> Result<Self, ChannelError> {
         let wishes = wishes(lattice, courses)?;
         let touched = pieces.iter().flat_map(|piece| piece.posts.map(|post| (post, piece)));
         let mut posts: Vec<u32> =
@@ -128,11 +132,11 @@ impl Bed {
 const MOST_WAITING: usize = 4_000_000;
 
 /// What channels would have of the posts under their water and banks: for each post the wish of the nearest channel.
-fn wishes(lattice: &Lattice, courses: &[Course]) -> Result<Vec<Wish>, ChannelError> {
+fn wishes(lattice: &Lattice, courses: &[ChannelCourse]) -> Result<Vec<Wish>, ChannelError> {
     let stretches = || {
         let of_course = |(course, channel): (_, u32)| {
-            let pairs = Course::pairs(course);
-            pairs.filter_map(move |ends| Some((Around::of(lattice, course, ends)?, channel)))
+            let pairs = ChannelCourse::pairs(course);
+            pairs.filter_map(move |ends| Some((StretchPosts::of(lattice, course, ends)?, channel)))
         };
         courses.iter().zip(0..).flat_map(of_course)
     };
@@ -159,17 +163,17 @@ fn keep_nearest(wishes: &mut Vec<Wish>) {
 }
 
 /// The posts around a stretch of centreline between two stations.
-struct Around {
-    ends: [Station; 2],
+struct StretchPosts {
+    ends: [CourseStation; 2],
     bed_m: f64,
     bank_m: f64,
     columns: (u32, u32),
     rows: (u32, u32),
 }
 
-impl Around {
+impl StretchPosts {
     /// `None` where there is no ground or no post is near.
-    fn of(lattice: &Lattice, course: &Course, ends: [Station; 2]) -> Option<Self> {
+    fn of(lattice: &Lattice, course: &ChannelCourse, ends: [CourseStation; 2]) -> Option<Self> {
         if ends.iter().any(|end| end.level_m.is_nan()) {
             return None;
         }

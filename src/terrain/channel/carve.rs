@@ -16,8 +16,8 @@
 //! No post is moved further than its channels may cut. A stretch that still rises when nothing more may be moved climbs:
 //! it is given up, and all is carved anew without it, so that nothing is dug for its sake.
 
-use crate::terrain::channel::bed::Bed;
-use crate::terrain::channel::course::{Course, Station};
+use crate::terrain::channel::bed::ChannelBed;
+use crate::terrain::channel::course::{ChannelCourse, CourseStation};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::Diagonal;
 use glam::DVec2;
@@ -39,7 +39,7 @@ const ROUNDS: usize = 6;
 
 /// A stretch of centreline within one triangle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Piece {
+pub(super) struct CenterlinePiece {
     /// Where the lattice stores the triangle's posts.
     pub posts: [u32; 3],
     /// What each gains from the stretch's start to its end.
@@ -54,8 +54,8 @@ pub(super) struct Piece {
 }
 
 /// All stretches of `courses` over ground, those of the course with the highest source first, each downstream.
-pub(super) fn pieces(lattice: &Lattice, courses: &[Course]) -> Vec<Piece> {
-    let source = |course: &Course| {
+pub(super) fn pieces(lattice: &Lattice, courses: &[ChannelCourse]) -> Vec<CenterlinePiece> {
+    let source = |course: &ChannelCourse| {
         let mut levels = course.stations.iter().map(|station| station.level_m);
         levels.find(|level| !level.is_nan()).unwrap_or(f64::NEG_INFINITY)
     };
@@ -63,14 +63,14 @@ pub(super) fn pieces(lattice: &Lattice, courses: &[Course]) -> Vec<Piece> {
     order.sort_by(|&a, &b| source(&courses[b]).total_cmp(&source(&courses[a])));
     let of_course = |index: usize| {
         let pairs = courses[index].pairs();
-        pairs.filter_map(move |[from, to]| Piece::between(lattice, index as u32, [&from, &to]))
+        pairs.filter_map(move |[from, to]| CenterlinePiece::between(lattice, index as u32, [&from, &to]))
     };
     order.into_iter().flat_map(of_course).collect()
 }
 
-impl Piece {
+impl CenterlinePiece {
     /// The stretch between two stations in a row; `None` where it has no ground or no length.
-    fn between(lattice: &Lattice, channel: u32, [from, to]: [&Station; 2]) -> Option<Self> {
+    fn between(lattice: &Lattice, channel: u32, [from, to]: [&CourseStation; 2]) -> Option<Self> {
         let middle = (from.grid + to.grid) * 0.5;
         let last = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
         if !(middle.cmpge(DVec2::ZERO).all() && middle.cmple(last).all()) {
@@ -110,12 +110,12 @@ fn triangle(diagonal: Diagonal, part: DVec2) -> ([usize; 3], Weigh) {
 }
 
 /// A stretch with its posts' places in the bed.
-struct Stretch {
+struct CarveStretch {
     places: [usize; 3],
     shares: [f64; 3],
 }
 
-impl Stretch {
+impl CarveStretch {
     /// The posts that it moves away from.
     fn behind(&self) -> impl Iterator<Item = usize> + use<> {
         self.places.into_iter().zip(self.shares).filter(|(_, share)| *share < 0.0).map(|(place, _)| place)
@@ -123,10 +123,12 @@ impl Stretch {
 }
 
 /// Lowers the bed's posts until no piece rises but those that climb: by how much, in metres, with the piece's index.
-pub(super) fn carve(bed: &mut Bed, pieces: &[Piece]) -> Vec<(usize, f64)> {
-    let stretch =
-        |piece: &Piece| Stretch { places: piece.posts.map(|post| bed.place(post)), shares: piece.shares };
-    let stretches: Vec<Stretch> = pieces.iter().map(stretch).collect();
+pub(super) fn carve(bed: &mut ChannelBed, pieces: &[CenterlinePiece]) -> Vec<(usize, f64)> {
+    let stretch = |piece: &CenterlinePiece| CarveStretch {
+        places: piece.posts.map(|post| bed.place(post)),
+        shares: piece.shares,
+    };
+    let stretches: Vec<CarveStretch> = pieces.iter().map(stretch).collect();
     let touching = Touching::of(&stretches, bed.heights_m.len());
     let shaped = (bed.heights_m.clone(), bed.fixed.clone());
     let mut is_given_up = vec![false; stretches.len()];
@@ -146,7 +148,7 @@ pub(super) fn carve(bed: &mut Bed, pieces: &[Piece]) -> Vec<(usize, f64)> {
 }
 
 /// Mends every stretch that is not given up until none can be mended any more.
-fn relax(bed: &mut Bed, stretches: &[Stretch], touching: &Touching, is_given_up: &[bool]) {
+fn relax(bed: &mut ChannelBed, stretches: &[CarveStretch], touching: &Touching, is_given_up: &[bool]) {
     let mut waiting: Vec<bool> = is_given_up.iter().map(|given_up| !given_up).collect();
     let mut mends = vec![0u8; stretches.len()];
     let mut is_calm = false;
@@ -169,12 +171,12 @@ fn relax(bed: &mut Bed, stretches: &[Stretch], touching: &Touching, is_given_up:
     }
 }
 
-fn rise_m(bed: &Bed, stretch: &Stretch) -> f64 {
+fn rise_m(bed: &ChannelBed, stretch: &CarveStretch) -> f64 {
     stretch.places.iter().zip(stretch.shares).map(|(&place, share)| share * bed.heights_m[place]).sum()
 }
 
 /// Lowers the posts ahead in a stretch that rises, raises those behind to a lake ahead, and returns those it has moved.
-fn mend(bed: &mut Bed, stretch: &Stretch, mends: u8) -> Vec<usize> {
+fn mend(bed: &mut ChannelBed, stretch: &CarveStretch, mends: u8) -> Vec<usize> {
     let excess_m = rise_m(bed, stretch);
     if excess_m <= ROUNDING_M {
         return Vec::new();
@@ -186,7 +188,7 @@ fn mend(bed: &mut Bed, stretch: &Stretch, mends: u8) -> Vec<usize> {
     moved
 }
 
-fn lower_ahead(bed: &mut Bed, stretch: &Stretch, (excess_m, mends): (f64, u8)) -> Vec<usize> {
+fn lower_ahead(bed: &mut ChannelBed, stretch: &CarveStretch, (excess_m, mends): (f64, u8)) -> Vec<usize> {
     let lowest_behind_m = stretch.behind().map(|place| bed.heights_m[place]).fold(f64::INFINITY, f64::min);
     let posts = stretch.places.into_iter().zip(stretch.shares);
     let mut ahead: Vec<(usize, f64)> =
@@ -204,7 +206,7 @@ fn lower_ahead(bed: &mut Bed, stretch: &Stretch, (excess_m, mends): (f64, u8)) -
 }
 
 /// Raises the posts behind a stretch to the lake that lies ahead, where one does, and makes them part of it.
-fn raise_behind(bed: &mut Bed, stretch: &Stretch) -> Vec<usize> {
+fn raise_behind(bed: &mut ChannelBed, stretch: &CarveStretch) -> Vec<usize> {
     let fixed_ahead = stretch
         .places
         .into_iter()
@@ -223,7 +225,7 @@ fn raise_behind(bed: &mut Bed, stretch: &Stretch) -> Vec<usize> {
 
 /// The height to which those of the posts `ahead`, the highest first, that lie above it are to be lowered, so that the
 /// stretch rises by `excess_m` less.
-fn gentle_m(bed: &Bed, ahead: &[(usize, f64)], excess_m: f64) -> f64 {
+fn gentle_m(bed: &ChannelBed, ahead: &[(usize, f64)], excess_m: f64) -> f64 {
     let (mut sum, mut shares, mut to_m) = (0.0, 0.0, f64::NEG_INFINITY);
     for (index, &(place, share)) in ahead.iter().enumerate() {
         sum += share * bed.heights_m[place];
@@ -244,7 +246,7 @@ struct Touching {
 }
 
 impl Touching {
-    fn of(stretches: &[Stretch], posts: usize) -> Self {
+    fn of(stretches: &[CarveStretch], posts: usize) -> Self {
         let mut starts = vec![0u32; posts + 1];
         for place in stretches.iter().flat_map(|stretch| stretch.places) {
             starts[place + 1] += 1;

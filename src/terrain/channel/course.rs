@@ -18,9 +18,9 @@ use crate::terrain::query::{Interpolation, ground_height};
 use crate::terrain::sight::crossings::crossings;
 
 /// A channel with its stations, downstream.
-pub(super) struct Course {
+pub(super) struct ChannelCourse {
     /// Every vertex, and every crossing with an edge of the finest triangles.
-    pub stations: Vec<Station>,
+    pub stations: Vec<CourseStation>,
     /// How far beyond the bed the ground is blended.
     pub bank_m: f64,
     /// How deep the ground may be cut.
@@ -29,7 +29,7 @@ pub(super) struct Course {
 
 /// A place on a centreline.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Station {
+pub(super) struct CourseStation {
     /// Metres from the line's start.
     pub station_m: f64,
     /// Posts from the lattice's first.
@@ -54,7 +54,7 @@ pub(super) struct Station {
     pub lowest_m: f64,
 }
 
-impl Station {
+impl CourseStation {
     /// How far from the centreline posts are set to the water's level: under the water, and as far again on either side
     /// as the water is wide, but no further than the corners of the cells it touches. So water as wide as cells are lies
     /// level on its whole width, and a brook on wide cells leaves the posts beside it alone.
@@ -63,10 +63,11 @@ impl Station {
     }
 }
 
-impl Course {
+impl ChannelCourse {
     /// Every two stations in a row that are of one reach.
-    pub fn pairs(&self) -> impl Iterator<Item = [Station; 2]> + '_ {
-        let of_one_reach = |pair: &&[Station]| pair[0].reach.is_some() && pair[0].reach == pair[1].reach;
+    pub fn pairs(&self) -> impl Iterator<Item = [CourseStation; 2]> + '_ {
+        let of_one_reach =
+            |pair: &&[CourseStation]| pair[0].reach.is_some() && pair[0].reach == pair[1].reach;
         self.stations.windows(2).filter(of_one_reach).map(|pair| [pair[0], pair[1]])
     }
 
@@ -79,7 +80,7 @@ impl Course {
             let (start_m, end_m) = (channel.line.stations()[index], channel.line.stations()[index + 1]);
             let halves = [channel.widths_m[index] / 2.0, channel.widths_m[index + 1] / 2.0];
             let mut add = |part: f64, grid: DVec2, vertex: Option<usize>| {
-                let place = Place {
+                let place = StationPoint {
                     station_m: start_m + (end_m - start_m) * part,
                     at: pair[0].lerp(pair[1], part),
                     half_m: halves[0] + (halves[1] - halves[0]) * part,
@@ -101,14 +102,14 @@ impl Course {
 }
 
 /// Where a station lies.
-struct Place {
+struct StationPoint {
     station_m: f64,
     at: DVec2,
     half_m: f64,
 }
 
-impl Place {
-    fn station(self, lattice: &Lattice, across: DVec2, grid: DVec2, vertex: Option<usize>) -> Station {
+impl StationPoint {
+    fn station(self, lattice: &Lattice, across: DVec2, grid: DVec2, vertex: Option<usize>) -> CourseStation {
         let Self { station_m, at, half_m } = self;
         let ground = |aside_m: f64| height(lattice, at + across * aside_m);
         let middle = ground(0.0);
@@ -122,7 +123,7 @@ impl Place {
         let ((left, left_bank), (right, right_bank)) = (side(1.0), side(-1.0));
         let lake_m = lake_at(lattice, grid);
         let raw_m = if middle.is_nan() { f64::NAN } else { middle.min(left).min(right) };
-        Station {
+        CourseStation {
             station_m,
             grid,
             at,

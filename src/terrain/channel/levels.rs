@@ -11,17 +11,17 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::terrain::channel::course::{Course, Station};
+use crate::terrain::channel::course::{ChannelCourse, CourseStation};
 use crate::terrain::channel::flow::node;
 use crate::terrain::channel::reaches::{Sill, reaches};
 use crate::terrain::channel::{Channel, Climb, Cut};
-use crate::terrain::fall::{Weighted, falling};
+use crate::terrain::fall::{WeightedLevel, falling};
 
 /// The least that a station weighs in metres: two on one spot still count.
 const LEAST_WEIGHT_M: f64 = 1e-3;
 
 /// A vertex that several courses share.
-struct Node {
+struct ChannelNode {
     /// The courses that have it.
     courses: BTreeSet<usize>,
     /// The lowest level that water has when it comes here.
@@ -32,12 +32,12 @@ struct Node {
 
 /// Shared vertices, and for each course which of its stations are such.
 struct Nodes {
-    nodes: Vec<Node>,
+    nodes: Vec<ChannelNode>,
     of_courses: Vec<Vec<(usize, usize)>>,
 }
 
 /// Finds the level at every station that has ground.
-pub(super) fn settle(courses: &mut [Course], channels: &[Channel]) {
+pub(super) fn settle(courses: &mut [ChannelCourse], channels: &[Channel]) {
     courses.iter_mut().for_each(fit);
     let mut nodes = Nodes::shared(courses, channels);
     relax(courses, &mut nodes, lower);
@@ -48,7 +48,7 @@ pub(super) fn settle(courses: &mut [Course], channels: &[Channel]) {
 }
 
 /// The reaches of a course, and the levels of each by itself.
-fn fit(course: &mut Course) {
+fn fit(course: &mut ChannelCourse) {
     let grounded: Vec<usize> =
         (0..course.stations.len()).filter(|&at| !course.stations[at].raw_m.is_nan()).collect();
     let sill = |&at: &usize| Sill {
@@ -67,7 +67,7 @@ fn fit(course: &mut Course) {
 }
 
 /// The levels of the stations `reach` by themselves: those nearest to the ground that never rise and keep both bounds.
-fn fit_reach(course: &mut Course, reach: &[usize], sills: &[Sill]) {
+fn fit_reach(course: &mut ChannelCourse, reach: &[usize], sills: &[Sill]) {
     let mut highest_ahead_m = f64::NEG_INFINITY;
     for (&at, sill) in reach.iter().zip(sills).rev() {
         highest_ahead_m = highest_ahead_m.max(sill.ground_m);
@@ -79,7 +79,7 @@ fn fit_reach(course: &mut Course, reach: &[usize], sills: &[Sill]) {
         let stands_for_m = station_m((index + 1).min(last)) - station_m(index.saturating_sub(1));
         // Ground deeper than the level may go would only pull down what lies below it.
         let level_m = sill.ground_m.max(course.stations[reach[index]].lowest_m);
-        Weighted { level_m, weight: (stands_for_m / 2.0).max(LEAST_WEIGHT_M) }
+        WeightedLevel { level_m, weight: (stands_for_m / 2.0).max(LEAST_WEIGHT_M) }
     };
     let fitted = falling(&sills.iter().enumerate().map(weighted).collect::<Vec<_>>());
     let mut lowest_bank_m = f64::INFINITY;
@@ -92,7 +92,7 @@ fn fit_reach(course: &mut Course, reach: &[usize], sills: &[Sill]) {
 }
 
 impl Nodes {
-    fn shared(courses: &[Course], channels: &[Channel]) -> Self {
+    fn shared(courses: &[ChannelCourse], channels: &[Channel]) -> Self {
         let mut at: BTreeMap<(i64, i64), BTreeSet<usize>> = BTreeMap::new();
         for (index, channel) in channels.iter().enumerate() {
             for &point in channel.line.points() {
@@ -101,14 +101,14 @@ impl Nodes {
         }
         at.retain(|_, courses| courses.len() > 1);
         let places: BTreeMap<(i64, i64), usize> = at.keys().copied().zip(0..).collect();
-        let nodes = at.into_values().map(|courses| Node {
+        let nodes = at.into_values().map(|courses| ChannelNode {
             courses,
             cap_m: f64::INFINITY,
             floor_m: f64::NEG_INFINITY,
         });
-        let stations_of = |(course, channel): (&Course, &Channel)| {
+        let stations_of = |(course, channel): (&ChannelCourse, &Channel)| {
             let points = channel.line.points();
-            let node_of = |station: &Station| {
+            let node_of = |station: &CourseStation| {
                 station.vertex.and_then(|vertex| places.get(&node(points[vertex])).copied())
             };
             let stations = course.stations.iter().enumerate();
@@ -119,7 +119,11 @@ impl Nodes {
 }
 
 /// Visits every course, and again those that share a node which `visit` has changed, until nothing changes.
-fn relax(courses: &mut [Course], nodes: &mut Nodes, visit: fn(&mut Course, &mut Nodes, usize) -> Vec<usize>) {
+fn relax(
+    courses: &mut [ChannelCourse],
+    nodes: &mut Nodes,
+    visit: fn(&mut ChannelCourse, &mut Nodes, usize) -> Vec<usize>,
+) {
     let mut waiting: BTreeSet<usize> = (0..courses.len()).collect();
     while let Some(index) = waiting.pop_first() {
         for node in visit(&mut courses[index], nodes, index) {
@@ -130,7 +134,7 @@ fn relax(courses: &mut [Course], nodes: &mut Nodes, visit: fn(&mut Course, &mut 
 
 /// Lowers a course to what flows in at its nodes, as far as it may be cut, and returns the nodes that it reaches lower
 /// than all before.
-fn lower(course: &mut Course, nodes: &mut Nodes, index: usize) -> Vec<usize> {
+fn lower(course: &mut ChannelCourse, nodes: &mut Nodes, index: usize) -> Vec<usize> {
     let (mut lowered, mut lowest_m, mut reach) = (Vec::new(), f64::INFINITY, None);
     let mut own = nodes.of_courses[index].iter().peekable();
     for (at, station) in course.stations.iter_mut().enumerate() {
@@ -157,7 +161,7 @@ fn lower(course: &mut Course, nodes: &mut Nodes, index: usize) -> Vec<usize> {
 }
 
 /// Tells the nodes from which water of this course comes to a lake, and returns those that knew of none so high.
-fn raise_floor(course: &mut Course, nodes: &mut Nodes, index: usize) -> Vec<usize> {
+fn raise_floor(course: &mut ChannelCourse, nodes: &mut Nodes, index: usize) -> Vec<usize> {
     let mut raised = Vec::new();
     let stations_and_nodes = floors(course, nodes, index);
     for (at, floor_m) in stations_and_nodes {
@@ -172,7 +176,7 @@ fn raise_floor(course: &mut Course, nodes: &mut Nodes, index: usize) -> Vec<usiz
 }
 
 /// The highest lake downstream of each of a course's nodes, with the node's station.
-fn floors(course: &Course, nodes: &Nodes, index: usize) -> Vec<((usize, usize), f64)> {
+fn floors(course: &ChannelCourse, nodes: &Nodes, index: usize) -> Vec<((usize, usize), f64)> {
     let (mut found, mut highest_m) = (Vec::new(), f64::NEG_INFINITY);
     let mut own = nodes.of_courses[index].iter().rev().peekable();
     let mut reach = None;
@@ -194,7 +198,7 @@ fn floors(course: &Course, nodes: &Nodes, index: usize) -> Vec<((usize, usize), 
 }
 
 /// Raises the levels of a course to the highest lake that its water has yet to reach.
-fn keep_above_lakes(course: &mut Course, nodes: &Nodes, index: usize) {
+fn keep_above_lakes(course: &mut ChannelCourse, nodes: &Nodes, index: usize) {
     let (mut floor_m, mut reach) = (f64::NEG_INFINITY, None);
     let mut own = nodes.of_courses[index].iter().rev().peekable();
     for (at, station) in course.stations.iter_mut().enumerate().rev() {
@@ -217,7 +221,7 @@ fn keep_above_lakes(course: &mut Course, nodes: &Nodes, index: usize) {
 }
 
 /// The levels at a course's ends, nothing cut yet.
-pub(super) fn ends(course: &Course) -> Cut {
+pub(super) fn ends(course: &ChannelCourse) -> Cut {
     let mut levels = course.stations.iter().map(|station| station.level_m).filter(|level| !level.is_nan());
     let first = levels.next();
     let last = levels.next_back().or(first);
@@ -225,14 +229,14 @@ pub(super) fn ends(course: &Course) -> Cut {
 }
 
 /// Where a course goes from one reach to the next. The ground there stays as it is.
-fn climbs(course: &Course) -> Vec<Climb> {
-    let grounded: Vec<&Station> = course
+fn climbs(course: &ChannelCourse) -> Vec<Climb> {
+    let grounded: Vec<&CourseStation> = course
         .stations
         .iter()
         .filter(|station| station.reach.is_some() && !station.level_m.is_nan())
         .collect();
     let breaks = grounded.windows(2).filter(|pair| pair[0].reach != pair[1].reach);
-    let climb = |pair: &[&Station]| Climb {
+    let climb = |pair: &[&CourseStation]| Climb {
         from_m: pair[0].station_m,
         to_m: pair[1].station_m,
         rise_m: pair[1].level_m - pair[0].level_m,

@@ -26,9 +26,9 @@ mod levels;
 mod reaches;
 
 use crate::geom::polyline::Polyline;
-use crate::terrain::channel::bed::Bed;
-use crate::terrain::channel::carve::Piece;
-use crate::terrain::channel::course::Course;
+use crate::terrain::channel::bed::ChannelBed;
+use crate::terrain::channel::carve::CenterlinePiece;
+use crate::terrain::channel::course::ChannelCourse;
 use crate::terrain::earthwork::Volumes;
 use crate::terrain::lattice::Lattice;
 
@@ -96,14 +96,15 @@ pub const MOST_VISITS: usize = 200_000_000;
 /// # Errors
 /// See [`ChannelError`]; the ground is then as it was.
 pub fn cut(lattice: &mut Lattice, channels: &[Channel]) -> Result<Cuts, ChannelError> {
-    let mut courses: Vec<Course> = channels.iter().map(|channel| Course::of(lattice, channel)).collect();
+    let mut courses: Vec<ChannelCourse> =
+        channels.iter().map(|channel| ChannelCourse::of(lattice, channel)).collect();
     levels::settle(&mut courses, channels);
     let pieces = carve::pieces(lattice, &courses);
-    let mut bed = Bed::shaped(lattice, &courses, &pieces)?;
+    let mut bed = ChannelBed::shaped(lattice, &courses, &pieces)?;
     let climbing = carve::carve(&mut bed, &pieces);
     let mut cuts: Vec<Cut> = courses.iter().map(levels::ends).collect();
     for (index, rise_m) in climbing {
-        let Piece { channel, stations_m: [from_m, to_m], .. } = pieces[index];
+        let CenterlinePiece { channel, stations_m: [from_m, to_m], .. } = pieces[index];
         cuts[channel as usize].climbs.push(Climb { from_m, to_m, rise_m });
     }
     cuts.iter_mut().for_each(|cut| joined(&mut cut.climbs));

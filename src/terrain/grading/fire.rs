@@ -3,9 +3,9 @@
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
-use crate::terrain::grading::Works;
+use crate::terrain::grading::GradingWorks;
 use crate::terrain::grading::formation::{Formation, LegId, world};
-use crate::terrain::grading::strip::Strip;
+use crate::terrain::grading::strip::GradingStrip;
 use crate::terrain::lattice::{Lattice, Post};
 
 /// A post that the fire has come to.
@@ -32,7 +32,11 @@ impl Ord for Front {
 }
 
 /// Sets every post between the formation and the daylight line to the batter of the carriageway that is nearest.
-pub(in crate::terrain::grading) fn batter(strips: &[Strip], mut formation: Formation, works: &mut Works<'_>) {
+pub(in crate::terrain::grading) fn batter(
+    strips: &[GradingStrip],
+    mut formation: Formation,
+    works: &mut GradingWorks<'_>,
+) {
     let mut front = BinaryHeap::new();
     for post in std::mem::take(&mut formation.posts) {
         spread(strips, &formation, works.lattice, post, &mut front);
@@ -62,7 +66,7 @@ pub(in crate::terrain::grading) fn batter(strips: &[Strip], mut formation: Forma
 
 /// Brings the fire from a post to its neighbours that belong to no leg.
 fn spread(
-    strips: &[Strip],
+    strips: &[GradingStrip],
     formation: &Formation,
     lattice: &Lattice,
     post: Post,

@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use crate::geom::rect::Rect;
-use crate::terrain::grading::Works;
-use crate::terrain::grading::strip::{Beside, Strip};
+use crate::terrain::grading::GradingWorks;
+use crate::terrain::grading::strip::{GradingStrip, StripOffset};
 use crate::terrain::lattice::{Lattice, Post};
 
 /// A leg of a strip among all legs of all strips, counted from 1: 0 is none.
@@ -18,8 +18,9 @@ pub(in crate::terrain::grading) struct Legs {
 }
 
 impl Legs {
-    fn of(strips: &[Strip]) -> Self {
-        let legs = |(index, strip): (u32, &Strip)| (0..strip.legs() as u32).map(move |leg| (index, leg));
+    fn of(strips: &[GradingStrip]) -> Self {
+        let legs =
+            |(index, strip): (u32, &GradingStrip)| (0..strip.legs() as u32).map(move |leg| (index, leg));
         Self { all: (0..).zip(strips).flat_map(legs).collect() }
     }
 
@@ -34,7 +35,7 @@ impl Legs {
     }
 
     /// Where a world position lies beside a leg.
-    pub fn beside(&self, strips: &[Strip], id: LegId, at: DVec2) -> Beside {
+    pub fn beside(&self, strips: &[GradingStrip], id: LegId, at: DVec2) -> StripOffset {
         let (strip, leg) = self.place(id);
         strips[strip].beside(leg, at)
     }
@@ -60,7 +61,7 @@ pub(in crate::terrain::grading) struct Formation {
 
 impl Formation {
     /// Gives every post within a cell's diagonal of a carriageway with its shoulders to the nearest of them.
-    pub fn of(lattice: &Lattice, strips: &[Strip]) -> Self {
+    pub fn of(lattice: &Lattice, strips: &[GradingStrip]) -> Self {
         let legs = Legs::of(strips);
         let mut formation = Self { owners: vec![0; lattice.heights().len()], legs, posts: Vec::new() };
         for id in formation.legs.ids() {
@@ -73,7 +74,7 @@ impl Formation {
         formation
     }
 
-    fn claim(&mut self, lattice: &Lattice, strips: &[Strip], id: LegId) {
+    fn claim(&mut self, lattice: &Lattice, strips: &[GradingStrip], id: LegId) {
         let (index, leg) = self.legs.place(id);
         let strip = &strips[index];
         let margin = lattice.cell().length();
@@ -104,7 +105,7 @@ impl Formation {
     }
 
     /// Sets every post of the formation to its level.
-    pub fn lay(&self, strips: &[Strip], works: &mut Works<'_>) {
+    pub fn lay(&self, strips: &[GradingStrip], works: &mut GradingWorks<'_>) {
         for &post in &self.posts {
             let Some(id) = self.owner(works.lattice.index(post)) else { continue };
             let beside = self.legs.beside(strips, id, world(works.lattice, post));

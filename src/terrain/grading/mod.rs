@@ -31,27 +31,27 @@ pub mod strip;
 use crate::terrain::earthwork::Volumes;
 use crate::terrain::grading::fire::batter;
 use crate::terrain::grading::formation::Formation;
-use crate::terrain::grading::strip::Strip;
+use crate::terrain::grading::strip::GradingStrip;
 use crate::terrain::lattice::{Lattice, Post};
 
 /// Grades the lattice for strips of road: the earth moved for each, in their order.
 ///
 /// Every post that is set is pinned. A post that two strips reach belongs to the nearer carriageway.
-pub fn grade(lattice: &mut Lattice, strips: &[Strip]) -> Vec<Volumes> {
+pub fn grade(lattice: &mut Lattice, strips: &[GradingStrip]) -> Vec<Volumes> {
     let formation = Formation::of(lattice, strips);
-    let mut works = Works { lattice, volumes: vec![Volumes::default(); strips.len()] };
+    let mut works = GradingWorks { lattice, volumes: vec![Volumes::default(); strips.len()] };
     formation.lay(strips, &mut works);
     batter(strips, formation, &mut works);
     works.volumes
 }
 
 /// The ground under way, and the earth moved so far.
-struct Works<'a> {
+struct GradingWorks<'a> {
     lattice: &'a mut Lattice,
     volumes: Vec<Volumes>,
 }
 
-impl Works<'_> {
+impl GradingWorks<'_> {
     /// Sets a post for a strip.
     fn set(&mut self, post: Post, level_m: f64, strip: usize) {
         let rise = level_m - f64::from(self.lattice.height(post));
@@ -69,10 +69,10 @@ impl Works<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::alignment::design::{Course, design};
-    use crate::terrain::alignment::network::{Network, NodeId, Section};
-    use crate::terrain::alignment::spans::Limits;
-    use crate::terrain::grading::strip::End;
+    use crate::terrain::alignment::design::{SectionGround, design};
+    use crate::terrain::alignment::network::{NodeId, RoadSection, SectionNetwork};
+    use crate::terrain::alignment::spans::EarthworkLimits;
+    use crate::terrain::grading::strip::StripEnd;
     use crate::terrain::grading::strip::tests::{FLAT, strip};
     use crate::terrain::profile::profile;
     use crate::terrain::query::{Interpolation, ground_height};
@@ -159,7 +159,10 @@ mod tests {
         let mut open = hill();
         grade(&mut open, &[strip(&points, [110.0; 2], FLAT)]);
         let mut portal = hill();
-        grade(&mut portal, &[Strip { ends: [End::Open, End::Wall], ..strip(&points, [110.0; 2], FLAT) }]);
+        grade(
+            &mut portal,
+            &[GradingStrip { ends: [StripEnd::Open, StripEnd::Wall], ..strip(&points, [110.0; 2], FLAT) }],
+        );
         let behind = points[1] + way * 6.0;
         assert!(planar(&open, behind) < 120.0);
         assert_eq!(planar(&portal, behind), 130.0);
@@ -234,17 +237,20 @@ mod tests {
     }
 
     /// A road along these points, designed for a lattice.
-    fn designed(lattice: &Lattice, points: &[DVec2], max_grade: f64) -> Strip {
+    fn designed(lattice: &Lattice, points: &[DVec2], max_grade: f64) -> GradingStrip {
         let map: Vec<DVec2> = points.iter().map(|at| *at + lattice.origin()).collect();
         let stations = profile(lattice, &map);
         let stations_m: Vec<f64> = stations.iter().map(|at| at.station_m).collect();
         let ground_m = stations.iter().map(|at| at.ground.height_m().expect("ground")).collect();
         let ends = [NodeId(0), NodeId(1)];
-        let network =
-            Network { nodes: 2, sections: vec![Section { ends, stations_m: stations_m.clone(), max_grade }] };
-        let limits = Limits { max_fill_m: f64::INFINITY, max_cut_m: f64::INFINITY };
-        let design = design(&network, &[Course { ground_m, stated: None, limits }], &[f64::NAN; 2], 50.0);
+        let network = SectionNetwork {
+            nodes: 2,
+            sections: vec![RoadSection { ends, stations_m: stations_m.clone(), max_grade }],
+        };
+        let limits = EarthworkLimits { max_fill_m: f64::INFINITY, max_cut_m: f64::INFINITY };
+        let design =
+            design(&network, &[SectionGround { ground_m, stated: None, limits }], &[f64::NAN; 2], 50.0);
         let flat = strip(points, [0.0; 2], FLAT);
-        Strip { stations_m, levels_m: design.levels_m[0].clone(), ..flat }
+        GradingStrip { stations_m, levels_m: design.levels_m[0].clone(), ..flat }
     }
 }

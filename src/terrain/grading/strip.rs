@@ -27,7 +27,7 @@ const EASE: f64 = 4.0;
 
 /// What a road's cross section looks like.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Section {
+pub struct CrossSection {
     /// Half the carriageway's width in metres.
     pub half_width_m: f64,
     /// Each shoulder's width in metres.
@@ -42,7 +42,7 @@ pub struct Section {
 
 /// What stands where a strip ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum StripEnd {
     /// Nothing, or more road: batters go round it.
     Open,
     /// A wall: an abutment, that an embankment would else run past into the valley, or the portal in the hill over a
@@ -52,7 +52,7 @@ pub enum End {
 
 /// A stretch of road on the ground.
 #[derive(Clone, Debug)]
-pub struct Strip {
+pub struct GradingStrip {
     /// Its centreline in world coordinates.
     pub line: Polyline,
     /// Stations along `line` in metres, from 0, rising, at least two.
@@ -60,14 +60,14 @@ pub struct Strip {
     /// The road's level on the centreline at each of them, in metres.
     pub levels_m: Vec<f64>,
     /// Across.
-    pub section: Section,
+    pub section: CrossSection,
     /// What stands at its ends.
-    pub ends: [End; 2],
+    pub ends: [StripEnd; 2],
 }
 
 /// A place beside a leg of a strip.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Beside {
+pub struct StripOffset {
     /// How far from the edge of the formation, shoulders included, in metres; below 0 within.
     pub out_m: f64,
     /// The station of the leg that the place is beside.
@@ -78,14 +78,14 @@ pub struct Beside {
     pub beyond_m: f64,
 }
 
-impl Strip {
+impl GradingStrip {
     /// How many legs it has.
     pub fn legs(&self) -> usize {
         self.line.points().len() - 1
     }
 
     /// Where a world position lies beside a leg.
-    pub fn beside(&self, leg: usize, at: DVec2) -> Beside {
+    pub fn beside(&self, leg: usize, at: DVec2) -> StripOffset {
         let points = self.line.points();
         let (from, to) = (points[leg], points[leg + 1]);
         let (length, way) = (from.distance(to), (to - from).normalize_or_zero());
@@ -107,7 +107,7 @@ impl Strip {
         // Each end's ease reaches to the middle at most, so that one of the two is no more than the distance itself.
         let within = if along < length / 2.0 { from_start } else { length - to_end };
         let station_m = self.line.stations()[leg] + within.clamp(0.0, length);
-        Beside { out_m, station_m, aside_m: left.abs(), beyond_m }
+        StripOffset { out_m, station_m, aside_m: left.abs(), beyond_m }
     }
 
     /// What the station of a place `distance` metres along a leg from one of its vertices differs by from that, where the
@@ -146,24 +146,24 @@ impl Strip {
     }
 
     /// The level of the formation at a place beside the strip.
-    pub fn formation(&self, beside: &Beside) -> f64 {
+    pub fn formation(&self, beside: &StripOffset) -> f64 {
         self.level(beside.station_m) - self.section.crown * beside.aside_m.min(self.section.half_width_m)
     }
 
     /// Where the batters at a place would lie: the fill's, below which there may be no ground, and the cut's, above
     /// which there may be none.
-    pub fn batters(&self, beside: &Beside) -> (f64, f64) {
+    pub fn batters(&self, beside: &StripOffset) -> (f64, f64) {
         let edge = self.formation(beside);
-        let Section { fill_slope, cut_slope, .. } = self.section;
+        let CrossSection { fill_slope, cut_slope, .. } = self.section;
         let out = beside.out_m.max(0.0);
         let steps = |slope: f64| if slope > 0.0 { out / slope } else { f64::INFINITY };
         (edge - steps(fill_slope), edge + steps(cut_slope))
     }
 
     /// Whether a place lies behind a wall, where no batter goes.
-    pub fn is_behind_wall(&self, leg: usize, beside: &Beside) -> bool {
+    pub fn is_behind_wall(&self, leg: usize, beside: &StripOffset) -> bool {
         let end = if leg == 0 && beside.station_m <= 0.0 { self.ends[0] } else { self.ends[1] };
-        beside.beyond_m > 0.0 && end == End::Wall
+        beside.beyond_m > 0.0 && end == StripEnd::Wall
     }
 }
 
@@ -171,23 +171,23 @@ impl Strip {
 pub(in crate::terrain::grading) mod tests {
     use super::*;
 
-    pub const FLAT: Section =
-        Section { half_width_m: 5.0, shoulder_m: 1.0, crown: 0.0, fill_slope: 1.5, cut_slope: 1.0 };
+    pub const FLAT: CrossSection =
+        CrossSection { half_width_m: 5.0, shoulder_m: 1.0, crown: 0.0, fill_slope: 1.5, cut_slope: 1.0 };
 
     /// A strip along these points, its level rising evenly from the first to the second.
-    pub fn strip(points: &[DVec2], [first, last]: [f64; 2], section: Section) -> Strip {
+    pub fn strip(points: &[DVec2], [first, last]: [f64; 2], section: CrossSection) -> GradingStrip {
         let line = Polyline::new(points.iter().copied(), 0.0).expect("a line");
         let stations_m = line.stations().to_vec();
         let level = |station: &f64| first + (last - first) * station / line.length();
         let levels_m = stations_m.iter().map(level).collect();
-        Strip { line, stations_m, levels_m, section, ends: [End::Open; 2] }
+        GradingStrip { line, stations_m, levels_m, section, ends: [StripEnd::Open; 2] }
     }
 
     #[test]
     fn a_place_beside_a_straight_strip_has_its_foot_s_station() {
         let strip = strip(&[DVec2::ZERO, DVec2::new(100.0, 0.0)], [0.0, 10.0], FLAT);
         let beside = strip.beside(0, DVec2::new(30.0, 8.0));
-        assert_eq!(beside, Beside { out_m: 2.0, station_m: 30.0, aside_m: 8.0, beyond_m: 0.0 });
+        assert_eq!(beside, StripOffset { out_m: 2.0, station_m: 30.0, aside_m: 8.0, beyond_m: 0.0 });
         assert_eq!(strip.formation(&beside), 3.0);
         assert_eq!(strip.batters(&beside), (3.0 - 2.0 / 1.5, 5.0));
         assert_eq!(strip.beside(0, DVec2::new(104.0, 9.0)).out_m, 5.0, "ends are square");
@@ -222,7 +222,8 @@ pub(in crate::terrain::grading) mod tests {
 
     #[test]
     fn a_crown_falls_to_the_kerbs_and_no_further() {
-        let strip = strip(&[DVec2::ZERO, DVec2::new(0.0, 50.0)], [7.0, 7.0], Section { crown: 0.02, ..FLAT });
+        let strip =
+            strip(&[DVec2::ZERO, DVec2::new(0.0, 50.0)], [7.0, 7.0], CrossSection { crown: 0.02, ..FLAT });
         let levels = [0.0, 2.5, 5.0, 5.5].map(|x| strip.formation(&strip.beside(0, DVec2::new(x, 20.0))));
         assert_eq!(levels, [7.0, 6.95, 6.9, 6.9]);
     }

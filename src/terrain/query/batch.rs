@@ -29,7 +29,7 @@ use crate::dem::raster::{Raster, Samples};
 use crate::dem::sample::ON_CENTRE;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::source::raster_height;
-use crate::terrain::query::tiles::{Slot, Tiles};
+use crate::terrain::query::tiles::{HeightTiles, TileSlot};
 use crate::terrain::query::{Answer, Interpolation, Status, ground_height};
 
 /// Positions per chunk: the arrays of one take 6 KiB and stay in the first cache. With fewer than 32 the passes cost
@@ -50,7 +50,7 @@ const WHOLE: f64 = 6_755_399_441_055_744.0;
 
 /// Where the positions of a chunk lie: the cell's column and row, whole numbers, and the part of it, east and north (of a
 /// raster: south); NaN for what must be asked by itself.
-struct Places {
+struct CellPositions {
     column: [f64; CHUNK],
     row: [f64; CHUNK],
     x: [f64; CHUNK],
@@ -58,12 +58,12 @@ struct Places {
 }
 
 /// The corners of the cells of a chunk: of each two in the row that comes first, and two in the next.
-struct Corners<S> {
+struct CellCorners<S> {
     first: [[S; 2]; CHUNK],
     next: [[S; 2]; CHUNK],
 }
 
-impl Places {
+impl CellPositions {
     const EMPTY: Self = Self { column: [0.0; CHUNK], row: [0.0; CHUNK], x: [0.0; CHUNK], y: [0.0; CHUNK] };
 
     /// Whether the positions lie so far apart that each has cache lines of its own.
@@ -108,14 +108,14 @@ pub fn answers(
 /// Where the three slices are not equally long.
 pub fn bilinear_ground(
     lattice: &Lattice,
-    tiles: Option<&Tiles>,
+    tiles: Option<&HeightTiles>,
     at: &[DVec2],
     (heights_m, statuses): (&mut [f64], &mut [Status]),
 ) -> usize {
     assert_eq!((at.len(), at.len()), (heights_m.len(), statuses.len()), "one answer per position");
-    let axes = [0, 1].map(|axis| Axis::of(lattice, axis));
-    let mut places = Places::EMPTY;
-    let mut corners = Corners { first: [[0f32; 2]; CHUNK], next: [[0f32; 2]; CHUNK] };
+    let axes = [0, 1].map(|axis| LatticeAxis::of(lattice, axis));
+    let mut places = CellPositions::EMPTY;
+    let mut corners = CellCorners { first: [[0f32; 2]; CHUNK], next: [[0f32; 2]; CHUNK] };
     let mut scattered = 0;
     for ((at, heights_m), statuses) in
         at.chunks(CHUNK).zip(heights_m.chunks_mut(CHUNK)).zip(statuses.chunks_mut(CHUNK))
@@ -159,8 +159,8 @@ fn bilinear_samples<S: Copy + Default + Into<f64>>(
 ) {
     let grid_from_map = raster.map_from_grid.matrix2.inverse();
     let has_cells = raster.width >= 2 && raster.height >= 2;
-    let mut places = Places::EMPTY;
-    let mut corners = Corners { first: [[S::default(); 2]; CHUNK], next: [[S::default(); 2]; CHUNK] };
+    let mut places = CellPositions::EMPTY;
+    let mut corners = CellCorners { first: [[S::default(); 2]; CHUNK], next: [[S::default(); 2]; CHUNK] };
     for ((at, heights_m), statuses) in
         at.chunks(CHUNK).zip(heights_m.chunks_mut(CHUNK)).zip(statuses.chunks_mut(CHUNK))
     {
@@ -177,23 +177,23 @@ fn bilinear_samples<S: Copy + Default + Into<f64>>(
 }
 
 /// Slices as arrays, whose length the compiler knows; the last chunk of a batch may be shorter.
-type Chunk<'a> =
+type ArrayChunks<'a> =
     (Result<&'a [DVec2; CHUNK], TryFromSliceError>, Result<&'a mut [f64; CHUNK], TryFromSliceError>);
 
 #[inline(always)]
-fn whole_chunk<'a>(at: &'a [DVec2], heights_m: &'a mut [f64]) -> Chunk<'a> {
+fn whole_chunk<'a>(at: &'a [DVec2], heights_m: &'a mut [f64]) -> ArrayChunks<'a> {
     (at.try_into(), heights_m.try_into())
 }
 
 /// One axis of a lattice.
-struct Axis {
+struct LatticeAxis {
     origin: f64,
     cell: f64,
     skipped: f64,
     last: f64,
 }
 
-impl Axis {
+impl LatticeAxis {
     fn of(lattice: &Lattice, axis: usize) -> Self {
         let first = lattice.first();
         let posts = [lattice.columns(), lattice.rows()][axis];
@@ -226,7 +226,12 @@ impl Axis {
 
 /// The samples west and north of each position and the part of the way to the next, by the steps of
 /// [`crate::dem::sample`]; NaN for positions on or beyond the outer samples' centres or on lines of centres.
-fn place_between_samples(raster: &Raster, grid_from_map: DMat2, at: &[DVec2; CHUNK], places: &mut Places) {
+fn place_between_samples(
+    raster: &Raster,
+    grid_from_map: DMat2,
+    at: &[DVec2; CHUNK],
+    places: &mut CellPositions,
+) {
     let translation = raster.map_from_grid.translation;
     let last = [f64::from(raster.width - 1), f64::from(raster.height - 1)];
     let part_of = |grid: f64, last: f64| {
@@ -270,7 +275,7 @@ pub(in crate::terrain::query) fn index_of(whole: f64) -> usize {
 }
 
 /// Reads the corners from rows of `columns` samples.
-fn gather<S: Copy>(samples: &[S], columns: u32, places: &Places, corners: &mut Corners<S>) {
+fn gather<S: Copy>(samples: &[S], columns: u32, places: &CellPositions, corners: &mut CellCorners<S>) {
     let stride = columns as usize;
     let mut indices = [0usize; CHUNK];
     for (index, (row, column)) in indices.iter_mut().zip(places.row.iter().zip(&places.column)) {
@@ -284,8 +289,8 @@ fn gather<S: Copy>(samples: &[S], columns: u32, places: &Places, corners: &mut C
 }
 
 /// Reads the corners from tiles.
-fn gather_tiles(tiles: &Tiles, places: &Places, corners: &mut Corners<f32>) {
-    let mut slots = [Slot::default(); CHUNK];
+fn gather_tiles(tiles: &HeightTiles, places: &CellPositions, corners: &mut CellCorners<f32>) {
+    let mut slots = [TileSlot::default(); CHUNK];
     for (slot, (&column, &row)) in slots.iter_mut().zip(places.column.iter().zip(&places.row)) {
         *slot = tiles.slot(column, row);
     }
@@ -295,7 +300,7 @@ fn gather_tiles(tiles: &Tiles, places: &Places, corners: &mut Corners<f32>) {
 }
 
 /// The formula of [`crate::terrain::query::cell::bilinear`].
-fn mix(places: &Places, corners: &Corners<f32>, heights_m: &mut [f64; CHUNK]) {
+fn mix(places: &CellPositions, corners: &CellCorners<f32>, heights_m: &mut [f64; CHUNK]) {
     for (index, height_m) in heights_m.iter_mut().enumerate() {
         let [[sw, se], [nw, ne]] = [corners.first[index].map(f64::from), corners.next[index].map(f64::from)];
         let (south, north) = (sw + (se - sw) * places.x[index], nw + (ne - nw) * places.x[index]);
@@ -305,8 +310,8 @@ fn mix(places: &Places, corners: &Corners<f32>, heights_m: &mut [f64; CHUNK]) {
 
 /// The formula of [`crate::dem::sample`], where all four corners count.
 fn mix_by_weights<S: Copy + Into<f64>>(
-    places: &Places,
-    corners: &Corners<S>,
+    places: &CellPositions,
+    corners: &CellCorners<S>,
     metres_per_z: f64,
     heights_m: &mut [f64; CHUNK],
 ) {

@@ -5,7 +5,7 @@
 
 use crate::terrain::earthwork::Volumes;
 use crate::terrain::lattice::Lattice;
-use crate::terrain::query::pieces::{Piece, Region};
+use crate::terrain::query::pieces::{GridRegion, TrianglePiece};
 use crate::terrain::query::zone::{Known, add_rises, in_cubic_metres};
 
 /// The difference between two epochs.
@@ -29,7 +29,7 @@ pub struct OtherPosts;
 ///
 /// # Panics
 /// Where the region is one of a larger lattice.
-pub fn moved(before: &Lattice, after: &Lattice, region: &Region) -> Result<Moved, OtherPosts> {
+pub fn moved(before: &Lattice, after: &Lattice, region: &GridRegion) -> Result<Moved, OtherPosts> {
     let frame = |lattice: &Lattice| {
         (lattice.origin(), lattice.cell(), lattice.first(), lattice.columns(), lattice.rows())
     };
@@ -51,7 +51,7 @@ pub fn moved(before: &Lattice, after: &Lattice, region: &Region) -> Result<Moved
     Ok(Moved { volumes, no_data_m2: no_data_cells.max(0.0) * cell.x * cell.y })
 }
 
-fn add((volumes, no_data_cells): &mut (Volumes, f64), piece: Piece<'_>, rises: [f64; 4]) {
+fn add((volumes, no_data_cells): &mut (Volumes, f64), piece: TrianglePiece<'_>, rises: [f64; 4]) {
     if add_rises(volumes, piece, rises) == Known::No {
         *no_data_cells += piece.fan().map(|(_, area)| area).sum::<f64>();
     }
@@ -79,7 +79,7 @@ mod tests {
     #[test]
     fn a_raised_post_is_a_pyramid_over_the_triangles_round_it() {
         let before = ground();
-        let whole = Region::whole(&before);
+        let whole = GridRegion::whole(&before);
         // Eight triangles, or four, of half a cell, a third of the rise high on average.
         for (post, triangles) in [(Post { column: 7, row: 9 }, 8.0), (Post { column: 7, row: 8 }, 4.0)] {
             let after = raised(&before, post, 6.0);
@@ -97,7 +97,7 @@ mod tests {
         let before = ground();
         let (low, high) = (Post { column: 7, row: 9 }, Post { column: 8, row: 9 });
         let after = raised(&raised(&before, low, -2.0), high, 2.0);
-        let found = moved(&before, &after, &Region::whole(&before)).expect("the same posts");
+        let found = moved(&before, &after, &GridRegion::whole(&before)).expect("the same posts");
         let net = found.volumes.fill_m3 - found.volumes.cut_m3;
         // Eight triangles sink at the one, four rise at the other.
         assert!((net - (4.0 - 8.0) * 4.0 * 2.0 / 3.0).abs() < 1e-9, "{found:?}");
@@ -110,7 +110,7 @@ mod tests {
         let after =
             raised(&raised(&before, Post { column: 5, row: 5 }, 3.0), Post { column: 25, row: 25 }, 3.0);
         let near = [(0.0, 0.0), (40.0, 0.0), (40.0, 20.0), (0.0, 20.0)].map(DVec2::from).to_vec();
-        let region = Region::new(&before, &[near]).expect("sound");
+        let region = GridRegion::new(&before, &[near]).expect("sound");
         let found = moved(&before, &after, &region).expect("the same posts");
         assert!((found.volumes.fill_m3 - 8.0 * 4.0 * 3.0 / 3.0).abs() < 1e-9, "{found:?}");
     }
@@ -121,10 +121,10 @@ mod tests {
         let mut heights = before.heights().to_vec();
         heights[before.index(Post { column: 5, row: 5 })] = f32::NAN;
         let after = Lattice::new(before.origin(), before.cell(), 33, heights).expect("sound");
-        let found = moved(&before, &after, &Region::whole(&before)).expect("the same posts");
+        let found = moved(&before, &after, &GridRegion::whole(&before)).expect("the same posts");
         assert_eq!(found, Moved { volumes: Volumes::default(), no_data_m2: 8.0 * 4.0 });
         let other = Lattice::new(DVec2::ONE, DVec2::new(4.0, 2.0), 33, before.heights().to_vec());
-        let compared = moved(&before, &other.expect("sound"), &Region::whole(&before));
+        let compared = moved(&before, &other.expect("sound"), &GridRegion::whole(&before));
         assert_eq!(compared, Err(OtherPosts));
     }
 }

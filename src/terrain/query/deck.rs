@@ -14,7 +14,7 @@
 use glam::DVec2;
 
 use crate::geom::rect::Rect;
-use crate::terrain::facets::{Facet, facet_contains, plane_z};
+use crate::terrain::facets::{SurfaceTriangle, facet_contains, plane_z};
 
 /// Buckets per triangle: about one triangle a bucket where they lie side by side.
 const BUCKETS_PER_TRIANGLE: f64 = 1.0;
@@ -29,7 +29,7 @@ const MOST_BUCKETS: f64 = 1024.0;
 /// Triangles over the ground; Z is the height in metres, without exaggeration.
 #[derive(Clone, Debug)]
 pub struct Deck {
-    facets: Vec<Facet>,
+    facets: Vec<SurfaceTriangle>,
     bounds: Rect,
     columns: usize,
     rows: usize,
@@ -55,7 +55,7 @@ impl Deck {
     ///
     /// # Errors
     /// See [`DeckError`].
-    pub fn new(triangles: &[Facet]) -> Result<Self, DeckError> {
+    pub fn new(triangles: &[SurfaceTriangle]) -> Result<Self, DeckError> {
         if u32::try_from(triangles.len()).is_err() {
             return Err(DeckError::TooMany(triangles.len()));
         }
@@ -63,7 +63,7 @@ impl Deck {
         {
             return Err(DeckError::NotFinite(index));
         }
-        let facets: Vec<Facet> = triangles.iter().copied().filter_map(counter_clockwise).collect();
+        let facets: Vec<SurfaceTriangle> = triangles.iter().copied().filter_map(counter_clockwise).collect();
         let bounds = Rect::around(facets.iter().flatten().map(|corner| corner.truncate().as_dvec2()));
         let mut deck = Self { facets, bounds, columns: 0, rows: 0, starts: vec![0], members: Vec::new() };
         if !deck.facets.is_empty() {
@@ -86,7 +86,7 @@ impl Deck {
     }
 
     /// The triangles, counter-clockwise seen from above.
-    pub fn facets(&self) -> &[Facet] {
+    pub fn facets(&self) -> &[SurfaceTriangle] {
         &self.facets
     }
 
@@ -143,7 +143,7 @@ impl Deck {
     }
 
     /// The south-westernmost and the north-easternmost bucket that a triangle may lie over.
-    fn buckets_under(&self, facet: &Facet) -> ((usize, usize), (usize, usize)) {
+    fn buckets_under(&self, facet: &SurfaceTriangle) -> ((usize, usize), (usize, usize)) {
         let over = Rect::around(facet.map(|corner| corner.truncate().as_dvec2()));
         (self.bucket(over.min), self.bucket(over.max))
     }
@@ -160,7 +160,7 @@ impl Deck {
     }
 }
 
-fn counter_clockwise([a, b, c]: Facet) -> Option<Facet> {
+fn counter_clockwise([a, b, c]: SurfaceTriangle) -> Option<SurfaceTriangle> {
     let [p, q, r] = [a, b, c].map(|corner| corner.truncate().as_dvec2());
     let area = (q - p).perp_dot(r - p);
     if area > 0.0 { Some([a, b, c]) } else { (area < 0.0).then_some([a, c, b]) }
@@ -171,7 +171,7 @@ mod tests {
     use super::*;
     use glam::Vec3;
 
-    fn slab(low: (f32, f32), high: (f32, f32), z: f32) -> [Facet; 2] {
+    fn slab(low: (f32, f32), high: (f32, f32), z: f32) -> [SurfaceTriangle; 2] {
         let at = |x: f32, y: f32| Vec3::new(x, y, z);
         let [a, b, c, d] = [at(low.0, low.1), at(high.0, low.1), at(high.0, high.1), at(low.0, high.1)];
         [[a, b, c], [a, d, c]]
@@ -192,7 +192,7 @@ mod tests {
 
     #[test]
     fn every_triangle_of_a_long_strip_is_found() {
-        let strip: Vec<Facet> = (0..300)
+        let strip: Vec<SurfaceTriangle> = (0..300)
             .flat_map(|index| {
                 let x = index as f32 * 3.0;
                 slab((x, x * 0.7), (x + 3.0, x * 0.7 + 8.0), index as f32)

@@ -12,7 +12,7 @@ use crate::terrain::query::{Diagonal, Status};
 
 /// Which surface between the posts is asked for its gradient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Patch {
+pub enum GradientSurface {
     /// The finest triangles.
     #[default]
     Planar,
@@ -56,15 +56,15 @@ impl Gradient {
 /// # Errors
 /// [`Status::NoData`] where a corner of the triangle, or of the bilinear cell, has no data, [`Status::Outside`] beyond
 /// the lattice.
-pub fn ground_gradient(lattice: &Lattice, patch: Patch, at: DVec2) -> Result<Gradient, Status> {
+pub fn ground_gradient(lattice: &Lattice, patch: GradientSurface, at: DVec2) -> Result<Gradient, Status> {
     let (cell, part) = lattice.cell_at(at - lattice.origin()).ok_or(Status::Outside)?;
     let [sw, se, nw, ne] = lattice.corner_heights(cell).map(f64::from);
     let DVec2 { x, y } = part;
     let per_cell = match patch {
-        Patch::Bilinear => {
+        GradientSurface::Bilinear => {
             DVec2::new((1.0 - y) * (se - sw) + y * (ne - nw), (1.0 - x) * (nw - sw) + x * (ne - se))
         }
-        Patch::Planar => match Diagonal::of_cell(u64::from(cell.column), u64::from(cell.row)) {
+        GradientSurface::Planar => match Diagonal::of_cell(u64::from(cell.column), u64::from(cell.row)) {
             Diagonal::Rising if x >= y => DVec2::new(se - sw, ne - se),
             Diagonal::Rising => DVec2::new(ne - nw, nw - sw),
             Diagonal::Falling if x + y <= 1.0 => DVec2::new(se - sw, nw - sw),
@@ -80,7 +80,7 @@ mod tests {
     use super::*;
     use crate::terrain::query::{Interpolation, ground_height};
 
-    const PATCHES: [Patch; 2] = [Patch::Planar, Patch::Bilinear];
+    const PATCHES: [GradientSurface; 2] = [GradientSurface::Planar, GradientSurface::Bilinear];
 
     fn lattice(cell_m: f64, side: u32, height: impl Fn(DVec2) -> f64) -> Lattice {
         let at = |index: u32| DVec2::new(f64::from(index % side), f64::from(index / side)) * cell_m;
@@ -156,9 +156,10 @@ mod tests {
         let ground =
             lattice(10.0, 12, |at| libm::sin(at.x * 0.37) * 20.0 + libm::cos(at.y * 0.71 + at.x * 0.2) * 9.0);
         let step = 1e-4;
-        for (patch, interpolation) in
-            [(Patch::Planar, Interpolation::Planar), (Patch::Bilinear, Interpolation::Bilinear)]
-        {
+        for (patch, interpolation) in [
+            (GradientSurface::Planar, Interpolation::Planar),
+            (GradientSurface::Bilinear, Interpolation::Bilinear),
+        ] {
             for index in 0..300 {
                 let at = DVec2::new(f64::from(index * 29 % 109) + 0.137, f64::from(index * 43 % 109) + 0.271);
                 let height =

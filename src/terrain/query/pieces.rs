@@ -47,7 +47,7 @@ pub enum RegionError {
 
 /// A polygon over a lattice, in grid coordinates: columns and rows of posts.
 #[derive(Clone, Debug)]
-pub struct Region {
+pub struct GridRegion {
     /// The outer ring counter-clockwise, holes clockwise.
     rings: Vec<Vec<DVec2>>,
     cells: Cells,
@@ -77,7 +77,7 @@ pub enum Half {
 
 /// What a polygon leaves of one of the finest triangles.
 #[derive(Clone, Copy, Debug)]
-pub struct Piece<'a> {
+pub struct TrianglePiece<'a> {
     /// The cell, by its south-west post.
     pub cell: Post,
     /// Which of its triangles.
@@ -86,12 +86,12 @@ pub struct Piece<'a> {
     /// [`Piece::fan`].
     pub ring: &'a [DVec2],
     /// Whether it is the whole triangle.
-    pub extent: Extent,
+    pub extent: PieceExtent,
 }
 
 /// How much of a triangle a piece is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
+pub enum PieceExtent {
     /// All of it.
     Whole,
     /// Some of it, or some of a hole in it.
@@ -140,7 +140,7 @@ impl Half {
     }
 }
 
-impl Piece<'_> {
+impl TrianglePiece<'_> {
     /// Triangles whose signed areas add up to the piece: three corners and the area in cells, negative for what must be
     /// taken away.
     pub fn fan(&self) -> impl Iterator<Item = ([DVec2; 3], f64)> + '_ {
@@ -152,7 +152,7 @@ impl Piece<'_> {
     }
 }
 
-impl Region {
+impl GridRegion {
     /// The polygon whose outer ring and holes, in map coordinates and either way round, do not cross themselves or each
     /// other.
     ///
@@ -212,7 +212,7 @@ impl Region {
     }
 
     /// Adds every piece up: one sum for each band of rows from the south, in order, each made by `add` from its default.
-    pub fn fold<T: Default + Send>(&self, add: impl Fn(&mut T, Piece<'_>) + Sync) -> Vec<T> {
+    pub fn fold<T: Default + Send>(&self, add: impl Fn(&mut T, TrianglePiece<'_>) + Sync) -> Vec<T> {
         let Range { start, end } = self.cells.rows.clone();
         let bands: Vec<u32> = (start..end).step_by(BAND as usize).collect();
         let sum_of = |first: u32| {
@@ -263,7 +263,7 @@ impl Cells {
 }
 
 /// Visits the pieces of rings that lie within `cells`.
-fn visit(rings: Vec<Vec<DVec2>>, cells: Cells, add: &mut impl FnMut(Piece<'_>)) {
+fn visit(rings: Vec<Vec<DVec2>>, cells: Cells, add: &mut impl FnMut(TrianglePiece<'_>)) {
     if rings.is_empty() || cells.columns.is_empty() || cells.rows.is_empty() {
         return;
     }
@@ -274,37 +274,37 @@ fn visit(rings: Vec<Vec<DVec2>>, cells: Cells, add: &mut impl FnMut(Piece<'_>)) 
         rings.iter().for_each(|ring| visit_cell(ring, cell, add));
     } else {
         let ([first, second], axis, line) = cells.halves();
-        visit(clipped(&rings, axis, line, Side::Below), first, add);
-        visit(clipped(&rings, axis, line, Side::Above), second, add);
+        visit(clipped(&rings, axis, line, LineSide::Below), first, add);
+        visit(clipped(&rings, axis, line, LineSide::Above), second, add);
     }
 }
 
-fn visit_whole(cells: &Cells, add: &mut impl FnMut(Piece<'_>)) {
+fn visit_whole(cells: &Cells, add: &mut impl FnMut(TrianglePiece<'_>)) {
     for row in cells.rows.clone() {
         for column in cells.columns.clone() {
             let cell = Post { column, row };
             for half in Half::of_cell(cell) {
-                add(Piece { cell, half, ring: &half.corners(), extent: Extent::Whole });
+                add(TrianglePiece { cell, half, ring: &half.corners(), extent: PieceExtent::Whole });
             }
         }
     }
 }
 
 /// The pieces that a ring within one cell leaves of its two triangles.
-fn visit_cell(ring: &[DVec2], cell: Post, add: &mut impl FnMut(Piece<'_>)) {
+fn visit_cell(ring: &[DVec2], cell: Post, add: &mut impl FnMut(TrianglePiece<'_>)) {
     let corner = DVec2::new(f64::from(cell.column), f64::from(cell.row));
     let local: Vec<DVec2> = ring.iter().map(|&at| at - corner).collect();
     for half in Half::of_cell(cell) {
         let piece = clip(&local, |at| half.side(at), |at| at);
         if piece.len() >= 3 {
-            add(Piece { cell, half, ring: &piece, extent: Extent::Part });
+            add(TrianglePiece { cell, half, ring: &piece, extent: PieceExtent::Part });
         }
     }
 }
 
 /// Which side of a line of posts is kept.
 #[derive(Clone, Copy)]
-enum Side {
+enum LineSide {
     Below,
     Above,
 }
@@ -312,17 +312,17 @@ enum Side {
 /// What of the rings lies in a rectangle of cells.
 fn clipped_to(rings: &[Vec<DVec2>], cells: &Cells) -> Vec<Vec<DVec2>> {
     let (low, high) = cells.corners();
-    let mut kept = clipped(rings, 0, low.x, Side::Above);
-    kept = clipped(&kept, 0, high.x, Side::Below);
-    kept = clipped(&kept, 1, low.y, Side::Above);
-    clipped(&kept, 1, high.y, Side::Below)
+    let mut kept = clipped(rings, 0, low.x, LineSide::Above);
+    kept = clipped(&kept, 0, high.x, LineSide::Below);
+    kept = clipped(&kept, 1, low.y, LineSide::Above);
+    clipped(&kept, 1, high.y, LineSide::Below)
 }
 
 /// What of the rings lies on one side of a line of posts; where they cross it, they end exactly on it.
-fn clipped(rings: &[Vec<DVec2>], axis: usize, line: f64, side: Side) -> Vec<Vec<DVec2>> {
+fn clipped(rings: &[Vec<DVec2>], axis: usize, line: f64, side: LineSide) -> Vec<Vec<DVec2>> {
     let sign = match side {
-        Side::Below => -1.0,
-        Side::Above => 1.0,
+        LineSide::Below => -1.0,
+        LineSide::Above => 1.0,
     };
     let snap = |mut at: DVec2| {
         at[axis] = line;
@@ -361,7 +361,7 @@ mod tests {
         Lattice::new(DVec2::new(100.0, 200.0), DVec2::new(2.0, 3.0), columns, heights).expect("sound")
     }
 
-    fn area_of(region: &Region) -> f64 {
+    fn area_of(region: &GridRegion) -> f64 {
         region
             .fold(|sum: &mut f64, piece| *sum += piece.fan().map(|(_, area)| area).sum::<f64>())
             .iter()
@@ -383,7 +383,7 @@ mod tests {
         let center = DVec2::new(300.0, 650.0);
         let mut rings = vec![star(center, 190.0, 30), star(center, 50.0, 12)];
         for _ in 0..2 {
-            let region = Region::new(&lattice, &rings).expect("sound");
+            let region = GridRegion::new(&lattice, &rings).expect("sound");
             let exact = polygon::doubled_area(&rings[0]).abs() - polygon::doubled_area(&rings[1]).abs();
             assert!((area_of(&region) - exact / 2.0 / 6.0).abs() < 1e-8);
             assert!((region.area_cells() - exact / 2.0 / 6.0).abs() < 1e-8);
@@ -395,15 +395,16 @@ mod tests {
     fn every_piece_lies_in_its_triangle_and_whole_ones_are_not_repeated() {
         let lattice = level(40, 40);
         let rings = [star(DVec2::new(140.0, 260.0), 37.0, 14)];
-        let region = Region::new(&lattice, &rings).expect("sound");
-        let found = region.fold(|found: &mut Vec<(Post, Half, Extent)>, piece| {
+        let region = GridRegion::new(&lattice, &rings).expect("sound");
+        let found = region.fold(|found: &mut Vec<(Post, Half, PieceExtent)>, piece| {
             for &at in piece.ring {
                 let slack = piece.half.side(at).min(at.min_element()).min(1.0 - at.max_element());
                 assert!(slack >= -1e-9, "{at} in {:?}", piece.half);
             }
             found.push((piece.cell, piece.half, piece.extent));
         });
-        let whole: Vec<_> = found.concat().into_iter().filter(|found| found.2 == Extent::Whole).collect();
+        let whole: Vec<_> =
+            found.concat().into_iter().filter(|found| found.2 == PieceExtent::Whole).collect();
         assert!(whole.len() > 100);
         for (index, one) in whole.iter().enumerate() {
             assert!(!whole[index + 1..].contains(one), "{one:?} twice");
@@ -416,23 +417,23 @@ mod tests {
         let square = |low: (f64, f64), high: (f64, f64)| {
             [(low.0, low.1), (high.0, low.1), (high.0, high.1), (low.0, high.1)].map(DVec2::from).to_vec()
         };
-        let half = Region::new(&lattice, &[square((90.0, 215.0), (110.0, 300.0))]).expect("sound");
+        let half = GridRegion::new(&lattice, &[square((90.0, 215.0), (110.0, 300.0))]).expect("sound");
         assert_eq!(area_of(&half), 5.0 * 5.0);
-        let none = Region::new(&lattice, &[square((0.0, 0.0), (90.0, 90.0))]).expect("sound");
+        let none = GridRegion::new(&lattice, &[square((0.0, 0.0), (90.0, 90.0))]).expect("sound");
         assert_eq!(area_of(&none), 0.0);
-        assert_eq!(area_of(&Region::whole(&lattice)), 100.0);
-        let all = Region::new(&lattice, &[square((-1e6, -1e6), (1e6, 1e6))]).expect("sound");
+        assert_eq!(area_of(&GridRegion::whole(&lattice)), 100.0);
+        let all = GridRegion::new(&lattice, &[square((-1e6, -1e6), (1e6, 1e6))]).expect("sound");
         assert_eq!(area_of(&all), 100.0);
     }
 
     #[test]
     fn rings_that_enclose_nothing_are_refused() {
         let lattice = level(3, 3);
-        assert_eq!(Region::new(&lattice, &[]).err(), Some(RegionError::TooFew(0)));
+        assert_eq!(GridRegion::new(&lattice, &[]).err(), Some(RegionError::TooFew(0)));
         let two = vec![DVec2::ZERO, DVec2::ONE];
-        assert_eq!(Region::new(&lattice, &[two]).err(), Some(RegionError::TooFew(0)));
+        assert_eq!(GridRegion::new(&lattice, &[two]).err(), Some(RegionError::TooFew(0)));
         let infinite = vec![DVec2::ZERO, DVec2::ONE, DVec2::INFINITY];
-        assert_eq!(Region::new(&lattice, &[infinite]).err(), Some(RegionError::NotFinite(0)));
+        assert_eq!(GridRegion::new(&lattice, &[infinite]).err(), Some(RegionError::NotFinite(0)));
     }
 
     #[test]

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::dem::raster::Raster;
 use crate::geom::crs::Crs;
-use crate::terrain::facets::Facets;
+use crate::terrain::facets::TriangleSurface;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::batch::{self, TASK};
 use crate::terrain::query::deck::Deck;
@@ -26,12 +26,12 @@ const STRETCH: usize = 1 << 20;
 /// is edited.
 #[derive(Clone)]
 pub struct HeightService {
-    now: Arc<RwLock<Arc<Epoch>>>,
+    now: Arc<RwLock<Arc<Snapshot>>>,
 }
 
 /// The ground between two edits.
 #[derive(Clone)]
-pub struct Epoch {
+pub struct Snapshot {
     number: u64,
     source: Arc<Raster>,
     crs: Crs,
@@ -45,7 +45,7 @@ pub struct Epoch {
 /// What is drawn now.
 #[derive(Clone)]
 struct Displayed {
-    facets: Arc<dyn Facets>,
+    facets: Arc<dyn TriangleSurface>,
     exaggeration: f64,
 }
 
@@ -53,57 +53,57 @@ impl HeightService {
     /// A service on a raster as read and the lattice made of it, asked in coordinates of `crs`.
     pub fn new(source: Arc<Raster>, crs: Crs, lattice: Arc<Lattice>) -> Self {
         let tiles = Arc::default();
-        Self::at(Epoch { number: 0, source, crs, lattice, tiles, decks: None, displayed: None })
+        Self::at(Snapshot { number: 0, source, crs, lattice, tiles, decks: None, displayed: None })
     }
 
-    fn at(epoch: Epoch) -> Self {
+    fn at(epoch: Snapshot) -> Self {
         Self { now: Arc::new(RwLock::new(Arc::new(epoch))) }
     }
 
     /// The epoch in use.
-    pub fn now(&self) -> Arc<Epoch> {
+    pub fn snapshot(&self) -> Arc<Snapshot> {
         // An epoch is put in place whole, so a thread that panicked elsewhere left none half made.
         Arc::clone(&self.now.read().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// Puts an edited lattice in place of the ground, for every clone of this service; returns the new epoch.
-    pub fn publish(&self, lattice: Arc<Lattice>) -> Arc<Epoch> {
-        self.replace(|now| Epoch { lattice, tiles: Arc::default(), ..Epoch::clone(now) })
+    pub fn publish(&self, lattice: Arc<Lattice>) -> Arc<Snapshot> {
+        self.replace(|now| Snapshot { lattice, tiles: Arc::default(), ..Snapshot::clone(now) })
     }
 
     /// Puts decks in place of those there are, for every clone of this service; returns the new epoch.
-    pub fn publish_decks(&self, decks: Arc<Deck>) -> Arc<Epoch> {
-        self.replace(|now| Epoch { decks: Some(decks), ..Epoch::clone(now) })
+    pub fn publish_decks(&self, decks: Arc<Deck>) -> Arc<Snapshot> {
+        self.replace(|now| Snapshot { decks: Some(decks), ..Snapshot::clone(now) })
     }
 
     /// Puts the next epoch in place.
-    fn replace(&self, next: impl FnOnce(&Epoch) -> Epoch) -> Arc<Epoch> {
+    fn replace(&self, next: impl FnOnce(&Snapshot) -> Snapshot) -> Arc<Snapshot> {
         let mut now = self.now.write().unwrap_or_else(PoisonError::into_inner);
-        let next = Arc::new(Epoch { number: now.number + 1, ..next(&now) });
+        let next = Arc::new(Snapshot { number: now.number + 1, ..next(&now) });
         *now = Arc::clone(&next);
         next
     }
 
     /// A service of its own, on the epoch in use now, with decks over the ground.
     pub fn with_decks(&self, decks: Arc<Deck>) -> Self {
-        Self::at(Epoch { decks: Some(decks), ..Epoch::clone(&self.now()) })
+        Self::at(Snapshot { decks: Some(decks), ..Snapshot::clone(&self.snapshot()) })
     }
 
     /// A service of its own, on the epoch in use now, with the surface displayed now, whose Z is the height times
     /// `exaggeration`.
-    pub fn displaying(&self, facets: Arc<dyn Facets>, exaggeration: f64) -> Self {
+    pub fn displaying(&self, facets: Arc<dyn TriangleSurface>, exaggeration: f64) -> Self {
         let displayed = Some(Displayed { facets, exaggeration });
-        Self::at(Epoch { displayed, ..Epoch::clone(&self.now()) })
+        Self::at(Snapshot { displayed, ..Snapshot::clone(&self.snapshot()) })
     }
 
     /// [`Epoch::height`] of the epoch in use.
     pub fn height(&self, surface: Surface, interpolation: Interpolation, at: DVec2) -> Answer {
-        self.now().height(surface, interpolation, at)
+        self.snapshot().height(surface, interpolation, at)
     }
 
     /// [`Epoch::heights`] of the epoch in use: one epoch for the whole batch.
     pub fn heights(&self, surface: Surface, interpolation: Interpolation, at: &[DVec2], out: &mut [Answer]) {
-        self.now().heights(surface, interpolation, at, out);
+        self.snapshot().heights(surface, interpolation, at, out);
     }
 
     /// [`Epoch::heights_apart`] of the epoch in use: one epoch for the whole batch.
@@ -114,11 +114,11 @@ impl HeightService {
         at: &[DVec2],
         out: (&mut [f64], &mut [Status]),
     ) {
-        self.now().heights_apart(surface, interpolation, at, out);
+        self.snapshot().heights_apart(surface, interpolation, at, out);
     }
 }
 
-impl Epoch {
+impl Snapshot {
     /// How many edits were put in place before it.
     pub fn number(&self) -> u64 {
         self.number
@@ -239,7 +239,7 @@ impl Epoch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::facets::Facet;
+    use crate::terrain::facets::SurfaceTriangle;
     use glam::Vec3;
 
     fn service(height: impl Fn(u32, u32) -> f32) -> HeightService {
@@ -253,7 +253,7 @@ mod tests {
 
     fn bridge(z: f32) -> Arc<Deck> {
         let at = |x: f32, y: f32| Vec3::new(x, y, z);
-        let facets: [Facet; 2] = [
+        let facets: [SurfaceTriangle; 2] = [
             [at(10.0, 30.0), at(60.0, 30.0), at(60.0, 50.0)],
             [at(10.0, 30.0), at(60.0, 50.0), at(10.0, 50.0)],
         ];
@@ -285,7 +285,7 @@ mod tests {
     fn decks_stay_when_the_ground_changes_and_are_an_epoch_of_their_own() {
         let service = service(|_, _| 0.0);
         let clone = service.clone();
-        let (first, at) = (service.now(), DVec2::new(1030.0, 2040.0));
+        let (first, at) = (service.snapshot(), DVec2::new(1030.0, 2040.0));
         assert_eq!(service.publish_decks(bridge(9.0)).number(), 1);
         let flat = vec![2.0; 36];
         let lattice = Lattice::new(first.lattice().origin(), first.lattice().cell(), 6, flat).expect("sound");

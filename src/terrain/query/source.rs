@@ -36,7 +36,7 @@ pub fn raster_height(raster: &Raster, interpolation: Interpolation, at: DVec2) -
 /// A raster that names no system lies in `from`. A position that cannot be brought to the raster's system lies
 /// [`Answer::Outside`].
 pub fn source_height(source: &Raster, from: &Crs, interpolation: Interpolation, at: DVec2) -> Answer {
-    raster_height(source, interpolation, Way::new(source, from).position(at))
+    raster_height(source, interpolation, SourceTransform::new(source, from).position(at))
 }
 
 /// [`source_height`] at many positions, in order, spread over all threads.
@@ -61,7 +61,7 @@ pub(in crate::terrain::query) fn source_task(
     at: &[DVec2],
     (heights_m, statuses): (&mut [f64], &mut [Status]),
 ) {
-    let way = Way::new(source, from);
+    let way = SourceTransform::new(source, from);
     if interpolation != Interpolation::Bilinear {
         for ((&at, height_m), status) in at.iter().zip(heights_m).zip(statuses) {
             (*height_m, *status) = raster_height(source, interpolation, way.position(at)).parts();
@@ -80,7 +80,7 @@ pub(in crate::terrain::query) fn source_task(
 }
 
 /// The way from one system's positions to a raster's own.
-struct Way<'a> {
+struct SourceTransform<'a> {
     from: &'a Crs,
     /// The raster's system, where it is another.
     to: Option<&'a Crs>,
@@ -88,7 +88,7 @@ struct Way<'a> {
     degrees: Option<(f64, f64)>,
 }
 
-impl<'a> Way<'a> {
+impl<'a> SourceTransform<'a> {
     fn new(source: &'a Raster, from: &'a Crs) -> Self {
         let own = source.crs.as_ref();
         let degrees = own.filter(|own| own.is_geographic()).map(|_| source.extent());
@@ -155,7 +155,7 @@ mod tests {
     use crate::dem::read;
 
     fn read_grid(text: &str, crs: Option<Crs>) -> Raster {
-        let hints = read::Hints { crs, ..read::Hints::default() };
+        let hints = read::DemHints { crs, ..read::DemHints::default() };
         read::read("a.asc", text.as_bytes(), &hints).expect("sound")
     }
 

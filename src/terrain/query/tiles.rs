@@ -27,27 +27,27 @@ const CELLS: u32 = 3;
 const LEAST_POSTS: usize = 1 << 20;
 
 /// The heights of a lattice in tiles.
-pub struct Tiles {
+pub struct HeightTiles {
     /// Tiles per row of tiles.
     across: u32,
-    lines: Vec<Line>,
+    lines: Vec<CacheLine>,
 }
 
 /// A tile, in one cache line.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-struct Line([f32; 16]);
+struct CacheLine([f32; 16]);
 
 /// Where a cell's corners lie: the tile's number times 16, and the south-west corner's in it.
 #[derive(Clone, Copy, Default)]
-pub struct Slot(usize);
+pub struct TileSlot(usize);
 
-impl Tiles {
+impl HeightTiles {
     /// The tiles of a lattice.
     pub fn new(lattice: &Lattice) -> Self {
         let across = (lattice.columns() - 1).div_ceil(CELLS);
         let down = (lattice.rows() - 1).div_ceil(CELLS);
-        let mut lines = vec![Line([f32::NAN; 16]); across as usize * down as usize];
+        let mut lines = vec![CacheLine([f32::NAN; 16]); across as usize * down as usize];
         lines.par_chunks_mut(across as usize).enumerate().for_each(|(row, lines)| {
             for (line, column) in lines.iter_mut().zip(0u32..) {
                 *line = line_at(lattice, Post { column: column * CELLS, row: row as u32 * CELLS });
@@ -58,18 +58,18 @@ impl Tiles {
 
     /// Where the corners of the cell at `column` and `row`, whole numbers, lie.
     #[inline(always)]
-    pub fn slot(&self, column: f64, row: f64) -> Slot {
+    pub fn slot(&self, column: f64, row: f64) -> TileSlot {
         const THIRD: f64 = 1.0 / 3.0;
         // (n − 1)/3 rounded to the nearest is n/3 rounded down: it never lies midway between two whole numbers.
         let tile = |at: f64| rounded((at - 1.0) * THIRD);
         let (x, y) = (tile(column), tile(row));
         let (east, north) = (column - 3.0 * x, row - 3.0 * y);
-        Slot(index_of((y * f64::from(self.across) + x) * 16.0 + north * 4.0 + east))
+        TileSlot(index_of((y * f64::from(self.across) + x) * 16.0 + north * 4.0 + east))
     }
 
     /// The corners of a cell: south-west and south-east, north-west and north-east.
     #[inline(always)]
-    pub fn corners(&self, slot: Slot) -> [[f32; 2]; 2] {
+    pub fn corners(&self, slot: TileSlot) -> [[f32; 2]; 2] {
         let line = &self.lines[slot.0 >> 4].0;
         // A cell's south-west corner is at most in the third column and row: the hold is for the compiler.
         let cell = &line[(slot.0 & 15).min(10)..][..6];
@@ -92,8 +92,8 @@ impl Tiles {
 }
 
 /// The tile whose south-west post is `first`; posts beyond the lattice are no data.
-fn line_at(lattice: &Lattice, first: Post) -> Line {
-    let mut line = Line([f32::NAN; 16]);
+fn line_at(lattice: &Lattice, first: Post) -> CacheLine {
+    let mut line = CacheLine([f32::NAN; 16]);
     let width = (lattice.columns() - first.column).min(4) as usize;
     let heights = lattice.heights();
     for row in 0..(lattice.rows() - first.row).min(4) {
@@ -107,14 +107,14 @@ fn line_at(lattice: &Lattice, first: Post) -> Line {
 /// Tiles that are made when they pay; see the module.
 #[derive(Default)]
 pub struct LazyTiles {
-    tiles: OnceLock<Tiles>,
+    tiles: OnceLock<HeightTiles>,
     scattered: AtomicUsize,
     is_making: AtomicBool,
 }
 
 impl LazyTiles {
     /// The tiles, if they are made.
-    pub fn get(&self) -> Option<&Tiles> {
+    pub fn get(&self) -> Option<&HeightTiles> {
         self.tiles.get()
     }
 
@@ -130,7 +130,7 @@ impl LazyTiles {
         let pays = posts >= LEAST_POSTS && self.scattered.load(Ordering::Relaxed) >= posts;
         if pays && self.tiles.get().is_none() && !self.is_making.swap(true, Ordering::Relaxed) {
             // Nobody else sets it: `is_making` never becomes false again.
-            let _ = self.tiles.set(Tiles::new(lattice));
+            let _ = self.tiles.set(HeightTiles::new(lattice));
         }
     }
 }
@@ -146,7 +146,7 @@ mod tests {
             for rows in 2..12u32 {
                 let heights = (0..columns * rows).map(|index| index as f32).collect();
                 let lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, columns, heights).expect("sound");
-                Tiles::new(&lattice).check(&lattice).expect("every cell");
+                HeightTiles::new(&lattice).check(&lattice).expect("every cell");
             }
         }
     }

@@ -8,7 +8,7 @@ use glam::DVec2;
 
 use crate::terrain::earthwork::Volumes;
 use crate::terrain::lattice::Lattice;
-use crate::terrain::query::pieces::{Extent, Half, Piece, Region};
+use crate::terrain::query::pieces::{GridRegion, Half, PieceExtent, TrianglePiece};
 
 /// What lies within a polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +38,7 @@ pub struct ZoneHeights {
 
 /// What has been added up of a band, heights counted from the reference.
 #[derive(Clone, Copy)]
-struct Sums {
+struct BandSums {
     cells: f64,
     no_data_cells: f64,
     sum: f64,
@@ -47,7 +47,7 @@ struct Sums {
     high: f64,
 }
 
-impl Default for Sums {
+impl Default for BandSums {
     fn default() -> Self {
         let (low, high) = (f64::INFINITY, f64::NEG_INFINITY);
         Self { cells: 0.0, no_data_cells: 0.0, sum: 0.0, squares: 0.0, low, high }
@@ -58,14 +58,14 @@ impl Default for Sums {
 ///
 /// # Panics
 /// Where the region is one of a larger lattice.
-pub fn zone(lattice: &Lattice, region: &Region) -> Zone {
+pub fn zone(lattice: &Lattice, region: &GridRegion) -> Zone {
     // Counted from a height nearby, squares keep their digits.
     let reference = lattice.heights().iter().copied().find(|height| !height.is_nan()).map_or(0.0, f64::from);
-    let bands = region.fold(|sums: &mut Sums, piece| {
+    let bands = region.fold(|sums: &mut BandSums, piece| {
         let corners = lattice.corner_heights(piece.cell).map(|height| f64::from(height) - reference);
         sums.add(region, piece, corners);
     });
-    let total = bands.into_iter().fold(Sums::default(), Sums::and);
+    let total = bands.into_iter().fold(BandSums::default(), BandSums::and);
     let cell = lattice.cell();
     let cell_m2 = cell.x * cell.y;
     let heights = (total.cells > 0.0).then(|| {
@@ -91,7 +91,7 @@ pub fn zone(lattice: &Lattice, region: &Region) -> Zone {
 ///
 /// # Panics
 /// Where the region is one of a larger lattice.
-pub fn volumes_to_level(lattice: &Lattice, region: &Region, level_m: f64) -> Volumes {
+pub fn volumes_to_level(lattice: &Lattice, region: &GridRegion, level_m: f64) -> Volumes {
     let bands = region.fold(|volumes: &mut Volumes, piece| {
         let corners = lattice.corner_heights(piece.cell).map(|height| level_m - f64::from(height));
         add_rises(volumes, piece, corners);
@@ -112,7 +112,7 @@ pub(in crate::terrain::query) fn in_cubic_metres(lattice: &Lattice, bands: Vec<V
 /// Adds what a piece is cut and filled where its cell's corners rise by `rises`; returns whether they are known.
 pub(in crate::terrain::query) fn add_rises(
     volumes: &mut Volumes,
-    piece: Piece<'_>,
+    piece: TrianglePiece<'_>,
     rises: [f64; 4],
 ) -> Known {
     if piece.half.corners().iter().any(|&at| piece.half.height(rises, at).is_nan()) {
@@ -155,8 +155,8 @@ fn above_and_below(mut heights: [f64; 3]) -> (f64, f64) {
     }
 }
 
-impl Sums {
-    fn add(&mut self, region: &Region, piece: Piece<'_>, corners: [f64; 4]) {
+impl BandSums {
+    fn add(&mut self, region: &GridRegion, piece: TrianglePiece<'_>, corners: [f64; 4]) {
         let height = |at: DVec2| piece.half.height(corners, at);
         if piece.half.corners().iter().any(|&at| height(at).is_nan()) {
             self.no_data_cells += piece.fan().map(|(_, area)| area).sum::<f64>();
@@ -191,10 +191,10 @@ impl Sums {
 
 /// Whether a vertex of a piece lies in the region: where a clipped ring runs back along lines of posts, it may have posts
 /// for vertices that do not. Everywhere else a vertex is one of the polygon's, or a crossing of its border.
-fn is_in(region: &Region, piece: Piece<'_>, at: DVec2) -> bool {
+fn is_in(region: &GridRegion, piece: TrianglePiece<'_>, at: DVec2) -> bool {
     let is_post = Half::corners(piece.half).contains(&at);
     let corner = DVec2::new(f64::from(piece.cell.column), f64::from(piece.cell.row));
-    piece.extent == Extent::Whole || !is_post || region.holds(corner + at)
+    piece.extent == PieceExtent::Whole || !is_post || region.holds(corner + at)
 }
 
 #[cfg(test)]
@@ -224,7 +224,7 @@ mod tests {
         let plane = |at: DVec2| 1000.0 + 0.5 * at.x - 0.25 * at.y;
         let [a, b, c] = [0, 1, 2].map(|index| plane(triangle[index]));
         let area = (triangle[1] - triangle[0]).perp_dot(triangle[2] - triangle[0]) / 2.0;
-        let found = zone(&ground, &Region::new(&ground, &[triangle]).expect("sound"));
+        let found = zone(&ground, &GridRegion::new(&ground, &[triangle]).expect("sound"));
         let heights = found.heights.expect("data");
         let mean = (a + b + c) / 3.0;
         let variance = (a * a + b * b + c * c - a * b - b * c - c * a) / 18.0;
@@ -240,7 +240,7 @@ mod tests {
         let top = DVec2::splat(300.0);
         let ground = lattice(1201, DVec2::splat(0.5), |at| 100.0 - 0.4 * at.distance(top));
         let base = circle(top, 250.0, 2000);
-        let region = Region::new(&ground, &[base]).expect("sound");
+        let region = GridRegion::new(&ground, &[base]).expect("sound");
         let exact = std::f64::consts::PI * 250.0 * 250.0 * 100.0 / 3.0;
         let volumes = volumes_to_level(&ground, &region, 0.0);
         assert!((volumes.cut_m3 / exact - 1.0).abs() < 1e-5, "{} for {exact}", volumes.cut_m3);
@@ -253,11 +253,11 @@ mod tests {
     fn over_whole_waves_a_sinusoid_has_mean_zero_and_deviation_of_its_amplitude_over_root_two() {
         let wave = std::f64::consts::TAU / 200.0;
         let ground = lattice(401, DVec2::ONE, |at| 10.0 * libm::sin(at.x * wave));
-        let heights = zone(&ground, &Region::whole(&ground)).heights.expect("data");
+        let heights = zone(&ground, &GridRegion::whole(&ground)).heights.expect("data");
         assert!(heights.mean_m.abs() < 1e-6, "{heights:?}");
         assert!((heights.std_m - 10.0 / 2f64.sqrt()).abs() < 2e-3, "{heights:?}");
         assert_eq!((heights.min_m, heights.max_m), (-10.0, 10.0));
-        let volumes = volumes_to_level(&ground, &Region::whole(&ground), 0.0);
+        let volumes = volumes_to_level(&ground, &GridRegion::whole(&ground), 0.0);
         assert!((volumes.cut_m3 - volumes.fill_m3).abs() < 1.0);
         let exact = 10.0 * 2.0 / wave * 2.0 * 400.0;
         assert!((volumes.cut_m3 / exact - 1.0).abs() < 2e-4, "{volumes:?} for {exact}");
@@ -268,13 +268,13 @@ mod tests {
         let ground =
             lattice(11, DVec2::splat(10.0), |at| if at == DVec2::splat(50.0) { f64::NAN } else { 7.0 });
         let over = ring(&[(-50.0, 0.0), (100.0, 0.0), (100.0, 100.0), (-50.0, 100.0)]);
-        let found = zone(&ground, &Region::new(&ground, &[over]).expect("sound"));
+        let found = zone(&ground, &GridRegion::new(&ground, &[over]).expect("sound"));
         // The post (5, 5) has both coordinates odd: eight triangles of half a cell meet there.
         assert_eq!((found.area_m2, found.no_data_m2, found.outside_m2), (9600.0, 400.0, 5000.0));
         let heights = found.heights.expect("data");
         assert_eq!([heights.min_m, heights.max_m, heights.mean_m, heights.std_m], [7.0, 7.0, 7.0, 0.0]);
         let away = ring(&[(500.0, 500.0), (510.0, 500.0), (500.0, 510.0)]);
-        let found = zone(&ground, &Region::new(&ground, &[away]).expect("sound"));
+        let found = zone(&ground, &GridRegion::new(&ground, &[away]).expect("sound"));
         assert_eq!((found.heights, found.outside_m2), (None, 50.0));
     }
 
@@ -283,7 +283,8 @@ mod tests {
         let ground = lattice(9, DVec2::ONE, |at| if at == DVec2::splat(4.0) { 100.0 } else { at.x });
         // An L round the peak: clipped, its ring runs along lines of posts.
         let angle = ring(&[(0.5, 0.5), (7.5, 0.5), (7.5, 2.5), (2.5, 2.5), (2.5, 7.5), (0.5, 7.5)]);
-        let heights = zone(&ground, &Region::new(&ground, &[angle]).expect("sound")).heights.expect("data");
+        let heights =
+            zone(&ground, &GridRegion::new(&ground, &[angle]).expect("sound")).heights.expect("data");
         assert!((heights.min_m - 0.5).abs() < 1e-12 && (heights.max_m - 7.5).abs() < 1e-12, "{heights:?}");
     }
 

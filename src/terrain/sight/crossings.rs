@@ -31,7 +31,7 @@ pub(in crate::terrain) const POSITION_ERROR: f64 = 1e-8;
 
 /// A place on a line where the ground bends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Crossing {
+pub struct LineCrossing {
     /// How far along the line, 0 at its start and 1 at its end.
     pub part: f64,
     /// Grid position: columns and rows of posts from the lattice's first.
@@ -41,7 +41,7 @@ pub struct Crossing {
 }
 
 /// The parts of a line between which it is walked: from the first to the second, 0..=1.
-pub(in crate::terrain) type Parts = (f64, f64);
+pub(in crate::terrain) type LinePart = (f64, f64);
 
 /// Visits every crossing of the line `from`..`to` with edges of the finest triangles, in order, ends excluded, until
 /// `visit` breaks. Both ends are grid positions and may lie off the lattice, where there are no crossings; a line that
@@ -52,7 +52,7 @@ pub fn crossings<B>(
     lattice: &Lattice,
     from: DVec2,
     to: DVec2,
-    visit: impl FnMut(Crossing) -> ControlFlow<B>,
+    visit: impl FnMut(LineCrossing) -> ControlFlow<B>,
 ) -> ControlFlow<B> {
     match parts_on(lattice, from, to) {
         Some(parts) => crossings_within(lattice, from, to, parts, visit),
@@ -62,7 +62,7 @@ pub fn crossings<B>(
 
 /// The parts of the line between which it lies on the lattice, its border included; `None` where it does not, or is not
 /// finite. Where the line comes in or leaves, the part is that of the crossing with the border.
-fn parts_on(lattice: &Lattice, from: DVec2, to: DVec2) -> Option<Parts> {
+fn parts_on(lattice: &Lattice, from: DVec2, to: DVec2) -> Option<LinePart> {
     if !(from.is_finite() && to.is_finite() && (to - from).is_finite()) {
         return None;
     }
@@ -73,7 +73,7 @@ fn parts_on(lattice: &Lattice, from: DVec2, to: DVec2) -> Option<Parts> {
 }
 
 /// The parts between which a coordinate that runs `from`..`to` lies within 0..=`last`.
-fn parts_between(from: f64, to: f64, last: f64) -> Option<Parts> {
+fn parts_between(from: f64, to: f64, last: f64) -> Option<LinePart> {
     let inside = |at: f64| (0.0..=last).contains(&at);
     if from == to {
         return inside(from).then_some((0.0, 1.0));
@@ -88,7 +88,7 @@ fn parts_between(from: f64, to: f64, last: f64) -> Option<Parts> {
 
 /// Which edge a line crosses.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::terrain) enum Edge {
+pub(in crate::terrain) enum CellEdge {
     /// Along this column of posts.
     Column(f64),
     /// Along this row of posts.
@@ -103,12 +103,12 @@ pub(in crate::terrain) fn crossing_at(
     lattice: &Lattice,
     (from, to): (DVec2, DVec2),
     part: f64,
-    edge: Edge,
-) -> Crossing {
+    edge: CellEdge,
+) -> LineCrossing {
     match edge {
-        Edge::Column(column) => on_column(lattice, part, column, from.y + (to.y - from.y) * part),
-        Edge::Row(row) => on_row(lattice, part, from.x + (to.x - from.x) * part, row),
-        Edge::Post(post) => at_post(lattice, part, post),
+        CellEdge::Column(column) => on_column(lattice, part, column, from.y + (to.y - from.y) * part),
+        CellEdge::Row(row) => on_row(lattice, part, from.x + (to.x - from.x) * part, row),
+        CellEdge::Post(post) => at_post(lattice, part, post),
     }
 }
 
@@ -116,12 +116,12 @@ fn crossings_within<B>(
     lattice: &Lattice,
     from: DVec2,
     to: DVec2,
-    (first, through): Parts,
-    mut visit: impl FnMut(Crossing) -> ControlFlow<B>,
+    (first, through): LinePart,
+    mut visit: impl FnMut(LineCrossing) -> ControlFlow<B>,
 ) -> ControlFlow<B> {
     let mut last = first;
-    let mut columns = Lines::new(from.x, to.x, lattice.columns());
-    let mut rows = Lines::new(from.y, to.y, lattice.rows());
+    let mut columns = PostLines::new(from.x, to.x, lattice.columns());
+    let mut rows = PostLines::new(from.y, to.y, lattice.rows());
     columns.pass(first);
     rows.pass(first);
     loop {
@@ -133,9 +133,9 @@ fn crossings_within<B>(
             return ControlFlow::Continue(());
         }
         let edge = match (columns.part == next, rows.part == next) {
-            (true, true) => Edge::Post(DVec2::new(columns.line, rows.line)),
-            (true, false) => Edge::Column(columns.line),
-            _ => Edge::Row(rows.line),
+            (true, true) => CellEdge::Post(DVec2::new(columns.line, rows.line)),
+            (true, false) => CellEdge::Column(columns.line),
+            _ => CellEdge::Row(rows.line),
         };
         visit(crossing_at(lattice, (from, to), next, edge))?;
         if columns.part == next {
@@ -149,7 +149,7 @@ fn crossings_within<B>(
 }
 
 /// The lines of posts of a lattice that one coordinate passes, in order.
-struct Lines {
+struct PostLines {
     start: f64,
     length: f64,
     step: f64,
@@ -161,7 +161,7 @@ struct Lines {
     part: f64,
 }
 
-impl Lines {
+impl PostLines {
     /// From the first line after the line's start.
     fn new(from: f64, to: f64, count: u32) -> Self {
         let (length, most) = (to - from, f64::from(count - 1));
@@ -193,27 +193,27 @@ impl Lines {
     }
 }
 
-fn at_post(lattice: &Lattice, part: f64, grid: DVec2) -> Crossing {
+fn at_post(lattice: &Lattice, part: f64, grid: DVec2) -> LineCrossing {
     let post = Post { column: grid.x as u32, row: grid.y as u32 };
-    Crossing { part, grid, height_m: f64::from(lattice.height(post)) }
+    LineCrossing { part, grid, height_m: f64::from(lattice.height(post)) }
 }
 
 /// On the column of posts `column`, at `y` rows.
-fn on_column(lattice: &Lattice, part: f64, column: f64, y: f64) -> Crossing {
+fn on_column(lattice: &Lattice, part: f64, column: f64, y: f64) -> LineCrossing {
     let y = y.clamp(0.0, f64::from(lattice.rows() - 1));
     let south = Post { column: column as u32, row: (y as u32).min(lattice.rows() - 2) };
     let north = Post { row: south.row + 1, ..south };
     let height_m = between(lattice, south, north, y - f64::from(south.row));
-    Crossing { part, grid: DVec2::new(column, y), height_m }
+    LineCrossing { part, grid: DVec2::new(column, y), height_m }
 }
 
 /// On the row of posts `row`, at `x` columns.
-fn on_row(lattice: &Lattice, part: f64, x: f64, row: f64) -> Crossing {
+fn on_row(lattice: &Lattice, part: f64, x: f64, row: f64) -> LineCrossing {
     let x = x.clamp(0.0, f64::from(lattice.columns() - 1));
     let west = Post { column: (x as u32).min(lattice.columns() - 2), row: row as u32 };
     let east = Post { column: west.column + 1, ..west };
     let height_m = between(lattice, west, east, x - f64::from(west.column));
-    Crossing { part, grid: DVec2::new(x, row), height_m }
+    LineCrossing { part, grid: DVec2::new(x, row), height_m }
 }
 
 /// The height `part` of the way from one post to another; at a post, that post's alone.
@@ -234,8 +234,8 @@ pub(in crate::terrain) fn diagonal_between(
     lattice: &Lattice,
     from: DVec2,
     to: DVec2,
-    (first, last): Parts,
-) -> Option<Crossing> {
+    (first, last): LinePart,
+) -> Option<LineCrossing> {
     let middle = from.lerp(to, 0.5 * (first + last));
     // Casting rounds down, and what is below 0 becomes 0.
     let cell = Post {
@@ -259,7 +259,7 @@ pub(in crate::terrain) fn diagonal_between(
     let x = (grid.x - corner.x).clamp(0.0, 1.0);
     let [sw, se, nw, ne] = lattice.corner_heights(cell).map(f64::from);
     let height_m = if rising { sw + (ne - sw) * x } else { nw + (se - nw) * x };
-    Some(Crossing { part, grid, height_m })
+    Some(LineCrossing { part, grid, height_m })
 }
 
 #[cfg(test)]
@@ -273,7 +273,7 @@ mod tests {
         Lattice::new(DVec2::ZERO, DVec2::new(10.0, 20.0), columns, heights).expect("sound")
     }
 
-    fn walked(lattice: &Lattice, from: DVec2, to: DVec2) -> Vec<Crossing> {
+    fn walked(lattice: &Lattice, from: DVec2, to: DVec2) -> Vec<LineCrossing> {
         let mut found = Vec::new();
         let _ = crossings(lattice, from, to, |crossing| {
             found.push(crossing);

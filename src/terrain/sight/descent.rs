@@ -24,7 +24,7 @@ use std::ops::ControlFlow;
 use glam::DVec2;
 
 use crate::terrain::lattice::Lattice;
-use crate::terrain::sight::crossings::{Crossing, Edge, Parts, crossing_at, diagonal_between};
+use crate::terrain::sight::crossings::{CellEdge, LineCrossing, LinePart, crossing_at, diagonal_between};
 use crate::terrain::sight::pyramid::{FACTOR_BITS, FINEST_BITS, Pyramid};
 
 /// What is asked of the ground along a line.
@@ -34,14 +34,14 @@ pub(in crate::terrain) trait Probe {
 
     /// Whether no crossing between these parts can matter, on ground that is nowhere there higher than `highest_m` nor,
     /// should the probe ask, lower than `lowest_m` tells.
-    fn rules_out(&self, parts: Parts, highest_m: f64, lowest_m: impl FnOnce() -> f64) -> bool;
+    fn rules_out(&self, parts: LinePart, highest_m: f64, lowest_m: impl FnOnce() -> f64) -> bool;
 
     /// Is told that what was last seen lies before cells that were ruled out, and that crossings from this part on come
     /// next; that at the part itself is among them, where there is one.
     fn resume(&mut self, _part: f64) {}
 
     /// Looks at a crossing.
-    fn see(&mut self, crossing: Crossing) -> ControlFlow<Self::Found>;
+    fn see(&mut self, crossing: LineCrossing) -> ControlFlow<Self::Found>;
 
     /// Is told that all crossings up to the line's end were seen since the walk last resumed.
     fn finish(&mut self) {}
@@ -55,8 +55,8 @@ pub(in crate::terrain) fn descend<P: Probe>(
     (from, to): (DVec2, DVec2),
     probe: &mut P,
 ) -> ControlFlow<P::Found> {
-    let mut x = Axis::new(from.x, to.x, lattice.columns() - 1);
-    let mut y = Axis::new(from.y, to.y, lattice.rows() - 1);
+    let mut x = AxisWalk::new(from.x, to.x, lattice.columns() - 1);
+    let mut y = AxisWalk::new(from.y, to.y, lattice.rows() - 1);
     let top_bits = pyramid.top_bits();
     let (mut bits, mut part, mut entered) = (0, 0.0, None);
     let mut was_seen = false;
@@ -124,11 +124,11 @@ pub(in crate::terrain) fn descend<P: Probe>(
 
 /// The edge by which the line leaves the block.
 #[inline]
-fn edge_left(x: &Axis, y: &Axis, leaves_x: bool, leaves_y: bool, bits: u32) -> Edge {
+fn edge_left(x: &AxisWalk, y: &AxisWalk, leaves_x: bool, leaves_y: bool, bits: u32) -> CellEdge {
     match (leaves_x, leaves_y) {
-        (true, true) => Edge::Post(DVec2::new(x.far_line(bits), y.far_line(bits))),
-        (true, false) => Edge::Column(x.far_line(bits)),
-        _ => Edge::Row(y.far_line(bits)),
+        (true, true) => CellEdge::Post(DVec2::new(x.far_line(bits), y.far_line(bits))),
+        (true, false) => CellEdge::Column(x.far_line(bits)),
+        _ => CellEdge::Row(y.far_line(bits)),
     }
 }
 
@@ -150,7 +150,7 @@ fn lowest_of(corners: [f32; 4]) -> f64 {
 }
 
 /// One coordinate of a line, and the block that it is in.
-struct Axis {
+struct AxisWalk {
     from: f64,
     length: f64,
     /// 1 where the coordinate grows or stays, 0 where it falls: what is added to a block's number for its far border.
@@ -161,7 +161,7 @@ struct Axis {
     exit: f64,
 }
 
-impl Axis {
+impl AxisWalk {
     /// In the cell ahead of the line's start.
     fn new(from: f64, to: f64, cells: u32) -> Self {
         let length = to - from;

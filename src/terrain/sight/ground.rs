@@ -16,10 +16,10 @@ use rayon::prelude::*;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::Answer;
 use crate::terrain::sight::Curvature;
-use crate::terrain::sight::crossings::{Crossing, POSITION_ERROR, Parts};
+use crate::terrain::sight::crossings::{LineCrossing, LinePart, POSITION_ERROR};
 use crate::terrain::sight::descent::{Probe, descend};
-use crate::terrain::sight::line::{End, Look, Sight};
-use crate::terrain::sight::pyramid::{PostRect, Pyramid};
+use crate::terrain::sight::line::{GroundedSight, Sight, SightEnd};
+use crate::terrain::sight::pyramid::{Pyramid, PyramidRect};
 use crate::terrain::sight::rise::{Raised, Rise, Seeker};
 
 /// Lines of sight per task of a batch: some hundred microseconds' work.
@@ -57,7 +57,7 @@ impl SightGround {
     ///
     /// # Panics
     /// Where `lattice` is of another size, or `edited` leaves it.
-    pub fn edited(&self, lattice: Arc<Lattice>, edited: PostRect) -> Self {
+    pub fn edited(&self, lattice: Arc<Lattice>, edited: PyramidRect) -> Self {
         let mut pyramid = Pyramid::clone(&self.pyramid);
         pyramid.mend(&lattice, edited);
         Self::with(lattice, pyramid)
@@ -75,8 +75,8 @@ impl SightGround {
 
     /// Whether `target` can be seen from `observer`: what
     /// [`line_of_sight`](crate::terrain::sight::line::line_of_sight) says of it, to the last bit.
-    pub fn line_of_sight(&self, observer: End, target: End, curvature: Curvature) -> Sight {
-        match Look::new(&self.lattice, observer, target, curvature) {
+    pub fn line_of_sight(&self, observer: SightEnd, target: SightEnd, curvature: Curvature) -> Sight {
+        match GroundedSight::new(&self.lattice, observer, target, curvature) {
             Ok(look) => {
                 let margin_m = self.slack_m + look.line.rounding_m();
                 let mut blocking = Blocking { look: &look, margin_m };
@@ -90,7 +90,7 @@ impl SightGround {
     ///
     /// # Panics
     /// Where `out` is not as long as `pairs`.
-    pub fn lines_of_sight(&self, pairs: &[(End, End)], curvature: Curvature, out: &mut [Sight]) {
+    pub fn lines_of_sight(&self, pairs: &[(SightEnd, SightEnd)], curvature: Curvature, out: &mut [Sight]) {
         assert_eq!(pairs.len(), out.len(), "one answer per pair");
         pairs.par_chunks(CHUNK).zip(out.par_chunks_mut(CHUNK)).for_each(|(pairs, out)| {
             for (&(observer, target), out) in pairs.iter().zip(out) {
@@ -106,12 +106,12 @@ impl SightGround {
     /// As for [`required_rise`](crate::terrain::sight::rise::required_rise).
     pub fn required_rise(
         &self,
-        observer: End,
-        target: End,
+        observer: SightEnd,
+        target: SightEnd,
         curvature: Curvature,
         raised: Raised,
     ) -> Result<Option<Rise>, Answer> {
-        let look = Look::new(&self.lattice, observer, target, curvature)?;
+        let look = GroundedSight::new(&self.lattice, observer, target, curvature)?;
         let mut seeker = Seeker::new(look, raised, self.slack_m + look.line.rounding_m());
         match descend(&self.lattice, &self.pyramid, look.grid, &mut seeker) {
             ControlFlow::Continue(()) => Ok(seeker.found()),
@@ -127,20 +127,20 @@ impl SightGround {
 
 /// The search for what blocks a line first.
 struct Blocking<'a> {
-    look: &'a Look,
+    look: &'a GroundedSight,
     margin_m: f64,
 }
 
 impl Probe for Blocking<'_> {
-    type Found = Crossing;
+    type Found = LineCrossing;
 
     #[inline]
-    fn rules_out(&self, parts: Parts, highest_m: f64, _: impl FnOnce() -> f64) -> bool {
+    fn rules_out(&self, parts: LinePart, highest_m: f64, _: impl FnOnce() -> f64) -> bool {
         highest_m + self.margin_m < self.look.line.lowest_m(parts)
     }
 
     #[inline]
-    fn see(&mut self, crossing: Crossing) -> ControlFlow<Crossing> {
+    fn see(&mut self, crossing: LineCrossing) -> ControlFlow<LineCrossing> {
         self.look.blocked(crossing)
     }
 }

@@ -7,11 +7,11 @@ use glam::DVec2;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Answer, Interpolation, ground_height};
 use crate::terrain::sight::Curvature;
-use crate::terrain::sight::crossings::{Crossing, crossings};
+use crate::terrain::sight::crossings::{LineCrossing, crossings};
 
 /// One end of a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct End {
+pub struct SightEnd {
     /// Map coordinates in the lattice's system, metres.
     pub at: DVec2,
     /// Metres above the ground there.
@@ -45,8 +45,8 @@ pub struct Blocker {
 /// Costs three crossings a cell of the way to the first blocker;
 /// [`SightGround::line_of_sight`](crate::terrain::sight::ground::SightGround::line_of_sight) gives the same answer for
 /// less.
-pub fn line_of_sight(lattice: &Lattice, observer: End, target: End, curvature: Curvature) -> Sight {
-    match Look::new(lattice, observer, target, curvature) {
+pub fn line_of_sight(lattice: &Lattice, observer: SightEnd, target: SightEnd, curvature: Curvature) -> Sight {
+    match GroundedSight::new(lattice, observer, target, curvature) {
         Ok(look) => {
             look.sight(crossings(lattice, look.grid.0, look.grid.1, |crossing| look.blocked(crossing)))
         }
@@ -56,7 +56,7 @@ pub fn line_of_sight(lattice: &Lattice, observer: End, target: End, curvature: C
 
 /// A line of sight between two ends that have ground under them.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::terrain) struct Look {
+pub(in crate::terrain) struct GroundedSight {
     observer: DVec2,
     target: DVec2,
     /// Both as grid positions.
@@ -66,18 +66,18 @@ pub(in crate::terrain) struct Look {
     pub(in crate::terrain) line: SightLine,
 }
 
-impl Look {
+impl GroundedSight {
     /// The line from one end to the other.
     ///
     /// # Errors
     /// What the ground answers at the first end, the observer's before the target's, that has none.
     pub(in crate::terrain) fn new(
         lattice: &Lattice,
-        observer: End,
-        target: End,
+        observer: SightEnd,
+        target: SightEnd,
         curvature: Curvature,
     ) -> Result<Self, Answer> {
-        let ground = |end: End| match ground_height(lattice, Interpolation::Planar, end.at) {
+        let ground = |end: SightEnd| match ground_height(lattice, Interpolation::Planar, end.at) {
             Answer::Height(height_m) => Ok(height_m + end.above_m),
             missing => Err(missing),
         };
@@ -95,7 +95,7 @@ impl Look {
 
     /// Breaks where the ground at a crossing stands higher than the line.
     #[inline]
-    pub(in crate::terrain) fn blocked(&self, crossing: Crossing) -> ControlFlow<Crossing> {
+    pub(in crate::terrain) fn blocked(&self, crossing: LineCrossing) -> ControlFlow<LineCrossing> {
         if self.line.is_below(crossing.height_m, crossing.part) {
             return ControlFlow::Break(crossing);
         }
@@ -103,7 +103,7 @@ impl Look {
     }
 
     /// What came of looking along the whole line.
-    pub(in crate::terrain) fn sight(&self, looked: ControlFlow<Crossing>) -> Sight {
+    pub(in crate::terrain) fn sight(&self, looked: ControlFlow<LineCrossing>) -> Sight {
         match looked {
             ControlFlow::Break(crossing) => Sight::Blocked(self.place(crossing)),
             ControlFlow::Continue(()) => Sight::Clear,
@@ -111,7 +111,7 @@ impl Look {
     }
 
     /// A crossing as a place on the map.
-    pub(in crate::terrain) fn place(&self, crossing: Crossing) -> Blocker {
+    pub(in crate::terrain) fn place(&self, crossing: LineCrossing) -> Blocker {
         Blocker {
             at: self.observer.lerp(self.target, crossing.part),
             distance_m: self.length_m * crossing.part,
@@ -175,8 +175,8 @@ mod tests {
         Lattice::new(DVec2::new(5e5, 4e6), DVec2::splat(100.0), 101, heights).expect("sound")
     }
 
-    fn end(x: f64, y: f64, above_m: f64) -> End {
-        End { at: DVec2::new(5e5 + x, 4e6 + y), above_m }
+    fn end(x: f64, y: f64, above_m: f64) -> SightEnd {
+        SightEnd { at: DVec2::new(5e5 + x, 4e6 + y), above_m }
     }
 
     #[test]

@@ -4,12 +4,12 @@
 //! over distance, is steeper than any before. On straight ground the edge between hidden and seen is where the steepest
 //! direction so far meets it.
 
-use crate::terrain::profile::Station;
+use crate::terrain::profile::ProfileStation;
 use crate::terrain::sight::Curvature;
 
 /// A stretch of a line in sight of its start.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch {
+pub struct VisibleStretch {
     /// Where it begins, metres along the line.
     pub from_m: f64,
     /// Where it ends.
@@ -18,11 +18,11 @@ pub struct Stretch {
 
 /// The stretches of a straight line's ground that an eye `eye_m` high at its first station sees, in order; ground without
 /// data is not seen and hides nothing.
-pub fn seen_along(stations: &[Station], eye_m: f64, curvature: Curvature) -> Vec<Stretch> {
-    let mut seen: Vec<Stretch> = Vec::new();
+pub fn seen_along(stations: &[ProfileStation], eye_m: f64, curvature: Curvature) -> Vec<VisibleStretch> {
+    let mut seen: Vec<VisibleStretch> = Vec::new();
     let mut steepest = f64::NEG_INFINITY;
     for pair in stations.windows(2) {
-        let sunk = |station: &Station| {
+        let sunk = |station: &ProfileStation| {
             let along_m = station.station_m;
             let height_m = station.ground.height_m()?;
             Some((along_m, height_m - eye_m - curvature.drop_per_square_m() * along_m * along_m))
@@ -43,7 +43,7 @@ pub fn seen_along(stations: &[Station], eye_m: f64, curvature: Curvature) -> Vec
         steepest = steepest.max(direction(to));
         match seen.last_mut().filter(|last| last.to_m == from_m) {
             Some(last) => last.to_m = to.0,
-            None => seen.push(Stretch { from_m, to_m: to.0 }),
+            None => seen.push(VisibleStretch { from_m, to_m: to.0 }),
         }
     }
     seen
@@ -64,8 +64,8 @@ mod tests {
     use super::*;
     use crate::terrain::query::Answer;
 
-    fn stations(heights: &[(f64, f64)]) -> Vec<Station> {
-        let station = |&(station_m, height): &(f64, f64)| Station {
+    fn stations(heights: &[(f64, f64)]) -> Vec<ProfileStation> {
+        let station = |&(station_m, height): &(f64, f64)| ProfileStation {
             station_m,
             at: DVec2::new(station_m, 0.0),
             ground: if height.is_nan() { Answer::NoData } else { Answer::Height(height) },
@@ -78,7 +78,10 @@ mod tests {
         let ground = stations(&[(0.0, 0.0), (100.0, 0.0), (200.0, 50.0), (300.0, 0.0), (500.0, 200.0)]);
         let seen = seen_along(&ground, 10.0, Curvature::FLAT);
         // Over the ridge the line rises 40 m in 200; 10 + x/5 meets x − 300 at 387.5.
-        assert_eq!(seen, [Stretch { from_m: 0.0, to_m: 200.0 }, Stretch { from_m: 387.5, to_m: 500.0 }]);
+        assert_eq!(
+            seen,
+            [VisibleStretch { from_m: 0.0, to_m: 200.0 }, VisibleStretch { from_m: 387.5, to_m: 500.0 }]
+        );
     }
 
     #[test]
@@ -94,6 +97,9 @@ mod tests {
     fn a_hole_is_not_seen_and_hides_nothing() {
         let ground = stations(&[(0.0, 0.0), (100.0, 0.0), (200.0, f64::NAN), (300.0, 0.0), (400.0, 0.0)]);
         let seen = seen_along(&ground, 10.0, Curvature::FLAT);
-        assert_eq!(seen, [Stretch { from_m: 0.0, to_m: 100.0 }, Stretch { from_m: 300.0, to_m: 400.0 }]);
+        assert_eq!(
+            seen,
+            [VisibleStretch { from_m: 0.0, to_m: 100.0 }, VisibleStretch { from_m: 300.0, to_m: 400.0 }]
+        );
     }
 }

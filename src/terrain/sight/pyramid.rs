@@ -35,12 +35,12 @@ pub const FINEST: u32 = 1 << FINEST_BITS;
 pub struct Pyramid {
     columns: u32,
     rows: u32,
-    levels: Vec<Level>,
+    levels: Vec<PyramidLevel>,
 }
 
 /// The blocks of one size.
 #[derive(Clone, Debug, PartialEq)]
-struct Level {
+struct PyramidLevel {
     /// Blocks eastward; there are as many rows as `highest` has room for.
     columns: u32,
     highest: Vec<f32>,
@@ -49,7 +49,7 @@ struct Level {
 
 /// A rectangle of posts, both corners included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PostRect {
+pub struct PyramidRect {
     /// The south-west corner.
     pub first: Post,
     /// The north-east corner.
@@ -82,13 +82,13 @@ impl Pyramid {
     /// The pyramid of a lattice; one pass over its heights, on all threads.
     pub fn new(lattice: &Lattice) -> Self {
         let (columns, rows) = (lattice.columns(), lattice.rows());
-        let mut levels = vec![Level::sized(columns - 1, rows - 1, FINEST_BITS)];
+        let mut levels = vec![PyramidLevel::sized(columns - 1, rows - 1, FINEST_BITS)];
         while let Some(finer) = levels.last().filter(|level| level.highest.len() > 1) {
-            levels.push(Level::sized(finer.columns, finer.rows(), FACTOR_BITS));
+            levels.push(PyramidLevel::sized(finer.columns, finer.rows(), FACTOR_BITS));
         }
         let mut pyramid = Self { columns, rows, levels };
         let last = Post { column: columns - 1, row: rows - 1 };
-        pyramid.mend(lattice, PostRect { first: Post { column: 0, row: 0 }, last });
+        pyramid.mend(lattice, PyramidRect { first: Post { column: 0, row: 0 }, last });
         pyramid
     }
 
@@ -97,9 +97,9 @@ impl Pyramid {
     ///
     /// # Panics
     /// Where the lattice is not of the size that the pyramid was made for, or `edited` leaves it.
-    pub fn mend(&mut self, lattice: &Lattice, edited: PostRect) {
+    pub fn mend(&mut self, lattice: &Lattice, edited: PyramidRect) {
         assert_eq!((self.columns, self.rows), (lattice.columns(), lattice.rows()), "one pyramid a lattice");
-        let PostRect { first, last } = edited;
+        let PyramidRect { first, last } = edited;
         assert!(last.column < self.columns && last.row < self.rows, "{last:?} is outside the lattice");
         // A post counts for the cells on both its sides.
         let cell = |post: Post, back: u32| {
@@ -145,7 +145,7 @@ impl Pyramid {
         Self::side_bits(self.levels.len() - 1)
     }
 
-    fn level(&self, bits: u32) -> &Level {
+    fn level(&self, bits: u32) -> &PyramidLevel {
         &self.levels[((bits - FINEST_BITS) / FACTOR_BITS) as usize]
     }
 
@@ -199,7 +199,7 @@ fn extremes(lattice: &Lattice, bits: u32, column: u32, row: u32) -> (f32, f32) {
     found
 }
 
-impl Level {
+impl PyramidLevel {
     /// A level of blocks with sides of 2^`bits` of what lies below it, `columns` × `rows` of these.
     fn sized(columns: u32, rows: u32, bits: u32) -> Self {
         let [columns, rows] = [columns, rows].map(|count| count.div_ceil(1 << bits));
@@ -310,7 +310,7 @@ mod tests {
                     lattice.pin(post((column, row)), -500.0 + (column * 31 + row) as f32 * 10.0);
                 }
             }
-            pyramid.mend(&lattice, PostRect { first: post(first), last: post(last) });
+            pyramid.mend(&lattice, PyramidRect { first: post(first), last: post(last) });
             assert_eq!(pyramid.check(&lattice), Ok(()), "after {first:?} to {last:?}");
         }
     }

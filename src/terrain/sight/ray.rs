@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::query::{Diagonal, Interpolation, ground_height};
-use crate::terrain::sight::crossings::{Crossing, Parts};
+use crate::terrain::sight::crossings::{LineCrossing, LinePart};
 use crate::terrain::sight::descent::{Probe, descend};
 use crate::terrain::sight::ground::SightGround;
 
@@ -32,7 +32,7 @@ pub struct Ray {
 
 /// Where a ray meets the ground first.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit {
+pub struct RayHit {
     /// Metres along the ray.
     pub distance_m: f64,
     /// World space, metres; its Z is the ground's height.
@@ -46,8 +46,8 @@ impl SightGround {
     /// it does not, or where the ray is none: not finite, or without a direction.
     ///
     /// A ray within a triangle's plane meets it where it comes to it.
-    pub fn pick(&self, ray: Ray, farthest_m: f64) -> Option<Hit> {
-        let span = Span::new(self, ray, farthest_m)?;
+    pub fn pick(&self, ray: Ray, farthest_m: f64) -> Option<RayHit> {
+        let span = RaySpan::new(self, ray, farthest_m)?;
         let lattice = self.lattice();
         if span.grid.0 == span.grid.1 {
             return span.plumb(lattice, ray);
@@ -64,7 +64,7 @@ impl SightGround {
     ///
     /// # Panics
     /// Where `out` is not as long as `rays`.
-    pub fn picks(&self, rays: &[Ray], farthest_m: f64, out: &mut [Option<Hit>]) {
+    pub fn picks(&self, rays: &[Ray], farthest_m: f64, out: &mut [Option<RayHit>]) {
         assert_eq!(rays.len(), out.len(), "one answer per ray");
         rays.par_chunks(CHUNK).zip(out.par_chunks_mut(CHUNK)).for_each(|(rays, out)| {
             for (&ray, out) in rays.iter().zip(out) {
@@ -75,7 +75,7 @@ impl SightGround {
 }
 
 /// What of a ray can meet the ground.
-struct Span {
+struct RaySpan {
     /// Metres along the ray, where it begins and ends.
     metres: (f64, f64),
     /// Both ends' grid positions, on the lattice.
@@ -89,10 +89,10 @@ struct Span {
 /// A triangle that a ray meets, and at which part of its span.
 struct Met {
     part: f64,
-    facet: Facet,
+    facet: TrianglePlane,
 }
 
-impl Span {
+impl RaySpan {
     fn new(ground: &SightGround, ray: Ray, farthest_m: f64) -> Option<Self> {
         let lattice = ground.lattice();
         let direction = ray.direction.try_normalize()?;
@@ -141,7 +141,7 @@ impl Span {
     }
 
     /// Where a ray straight up or down meets the ground.
-    fn plumb(&self, lattice: &Lattice, ray: Ray) -> Option<Hit> {
+    fn plumb(&self, lattice: &Lattice, ray: Ray) -> Option<RayHit> {
         let grid = self.grid.0;
         let height = planar(lattice, grid)?;
         let (low, high) = (self.z.0.min(self.z.1), self.z.0.max(self.z.1));
@@ -149,15 +149,15 @@ impl Span {
             return None;
         }
         let along = (height - ray.origin.z) / ray.direction.try_normalize()?.z;
-        let facet = Facet::near(lattice, grid)?;
+        let facet = TrianglePlane::near(lattice, grid)?;
         let at = ray.origin.truncate().extend(height);
-        Some(Hit { distance_m: along, at, normal: facet.normal(lattice) })
+        Some(RayHit { distance_m: along, at, normal: facet.normal(lattice) })
     }
 
-    fn hit(&self, lattice: &Lattice, met: Met) -> Hit {
+    fn hit(&self, lattice: &Lattice, met: Met) -> RayHit {
         let grid = self.grid(met.part);
         let skipped = DVec2::new(f64::from(lattice.first().column), f64::from(lattice.first().row));
-        Hit {
+        RayHit {
             distance_m: self.metres.0 + (self.metres.1 - self.metres.0) * met.part,
             at: ((grid + skipped) * lattice.cell()).extend(met.facet.height_m(grid)),
             normal: met.facet.normal(lattice),
@@ -175,7 +175,7 @@ fn planar(lattice: &Lattice, grid: DVec2) -> Option<f64> {
 /// The search for the triangle that a ray meets first.
 struct Picking<'a> {
     lattice: &'a Lattice,
-    span: &'a Span,
+    span: &'a RaySpan,
     /// The crossing before, where the triangles since were looked at, and the ray's height over the ground there.
     before: Option<(f64, f64)>,
     /// Whether that crossing is the last of the span.
@@ -187,7 +187,7 @@ impl Picking<'_> {
     fn between(&self, before: Option<(f64, f64)>, here: (f64, Option<f64>)) -> Option<Met> {
         let start = before.map_or(0.0, |(part, _)| part);
         let (end, over) = here;
-        let facet = || Facet::between(self.lattice, self.span.grid(start), self.span.grid(end));
+        let facet = || TrianglePlane::between(self.lattice, self.span.grid(start), self.span.grid(end));
         // The span's ends lie within a triangle, whose plane tells the ground there.
         let over_at = |part: f64| Some(self.span.z(part) - facet()?.height_m(self.span.grid(part)));
         let first = before.map(|(_, over)| over).or_else(|| over_at(start))?;
@@ -210,7 +210,7 @@ impl Probe for Picking<'_> {
     type Found = Met;
 
     #[inline]
-    fn rules_out(&self, parts: Parts, highest_m: f64, lowest_m: impl FnOnce() -> f64) -> bool {
+    fn rules_out(&self, parts: LinePart, highest_m: f64, lowest_m: impl FnOnce() -> f64) -> bool {
         let ends = (self.span.z(parts.0), self.span.z(parts.1));
         let margin_m = self.span.margin_m;
         ends.0.min(ends.1) > highest_m + margin_m || ends.0.max(ends.1) < lowest_m() - margin_m
@@ -225,7 +225,7 @@ impl Probe for Picking<'_> {
     }
 
     #[inline]
-    fn see(&mut self, crossing: Crossing) -> ControlFlow<Met> {
+    fn see(&mut self, crossing: LineCrossing) -> ControlFlow<Met> {
         let over = self.span.z(crossing.part) - crossing.height_m;
         let changes_side = self.before.is_none_or(|(_, before)| before * over <= 0.0);
         if changes_side && let Some(met) = self.between(self.before, (crossing.part, Some(over))) {
@@ -237,14 +237,14 @@ impl Probe for Picking<'_> {
 }
 
 /// The plane of a finest triangle, over grid positions.
-struct Facet {
+struct TrianglePlane {
     corner: DVec2,
     south_west_m: f64,
     /// Metres of rise per cell, eastward and northward.
     slope: DVec2,
 }
 
-impl Facet {
+impl TrianglePlane {
     /// The triangle that a line between two grid positions runs over, which meets no edge between them; `None` where it
     /// has no data. Of the two that a line along an edge runs over, one that has.
     fn between(lattice: &Lattice, from: DVec2, to: DVec2) -> Option<Self> {

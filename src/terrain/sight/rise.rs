@@ -17,9 +17,9 @@ use std::ops::ControlFlow;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::Answer;
 use crate::terrain::sight::Curvature;
-use crate::terrain::sight::crossings::{Crossing, Parts, crossings};
+use crate::terrain::sight::crossings::{LineCrossing, LinePart, crossings};
 use crate::terrain::sight::descent::Probe;
-use crate::terrain::sight::line::{Blocker, End, Look};
+use crate::terrain::sight::line::{Blocker, GroundedSight, SightEnd};
 
 /// Which end of a line of sight is raised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,12 +63,12 @@ impl Raised {
 /// What the ground answers at the first end, the observer's before the target's, that has no height.
 pub fn required_rise(
     lattice: &Lattice,
-    observer: End,
-    target: End,
+    observer: SightEnd,
+    target: SightEnd,
     curvature: Curvature,
     raised: Raised,
 ) -> Result<Option<Rise>, Answer> {
-    let look = Look::new(lattice, observer, target, curvature)?;
+    let look = GroundedSight::new(lattice, observer, target, curvature)?;
     let mut seeker = Seeker::new(look, raised, 0.0);
     match crossings(lattice, look.grid.0, look.grid.1, |crossing| seeker.see(crossing)) {
         ControlFlow::Continue(()) => Ok(seeker.found()),
@@ -78,16 +78,16 @@ pub fn required_rise(
 
 /// The search for the crossing that asks for most.
 pub(in crate::terrain) struct Seeker {
-    look: Look,
+    look: GroundedSight,
     raised: Raised,
     /// How far the line and the ground under it may be mistaken, in metres.
     margin_m: f64,
     most_m: f64,
-    at: Option<Crossing>,
+    at: Option<LineCrossing>,
 }
 
 impl Seeker {
-    pub(in crate::terrain) fn new(look: Look, raised: Raised, margin_m: f64) -> Self {
+    pub(in crate::terrain) fn new(look: GroundedSight, raised: Raised, margin_m: f64) -> Self {
         Self { look, raised, margin_m, most_m: f64::NEG_INFINITY, at: None }
     }
 
@@ -99,7 +99,7 @@ impl Seeker {
 impl Probe for Seeker {
     type Found = Infallible;
 
-    fn rules_out(&self, parts: Parts, highest_m: f64, _: impl FnOnce() -> f64) -> bool {
+    fn rules_out(&self, parts: LinePart, highest_m: f64, _: impl FnOnce() -> f64) -> bool {
         let above_m = highest_m + self.margin_m - self.look.line.lowest_m(parts);
         // What is asked for most where the ground stands above the line is where the line is lifted least.
         let lifts = [self.raised.lift(parts.0), self.raised.lift(parts.1)];
@@ -110,7 +110,7 @@ impl Probe for Seeker {
         (if most_m > 0.0 { most_m * ROUNDING } else { most_m / ROUNDING }) < self.most_m
     }
 
-    fn see(&mut self, crossing: Crossing) -> ControlFlow<Infallible> {
+    fn see(&mut self, crossing: LineCrossing) -> ControlFlow<Infallible> {
         let above_m = crossing.height_m - self.look.line.height_m(crossing.part);
         let rise_m = above_m / self.raised.lift(crossing.part);
         if rise_m > self.most_m {

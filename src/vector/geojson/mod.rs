@@ -14,9 +14,9 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use crate::geom::crs::Crs;
-use crate::vector::collect::{Collector, Parts, position};
+use crate::vector::collect::{Collector, FeatureParts, position};
 use crate::vector::error::VectorError;
-use crate::vector::feature::Layer;
+use crate::vector::feature::VectorLayer;
 
 /// The largest file read. A file of vertices costs ten bytes of memory for each of its own, a hostile one
 /// (measured: a list of a single unknown member) thirty-five, which this keeps to some two gigabytes.
@@ -27,7 +27,7 @@ pub const MAX_BYTES: usize = 64 << 20;
 /// # Errors
 /// [`VectorError`]; features without a geometry, lines of one vertex and rings of two are no errors but
 /// left out, which [`Layer::notes`] says.
-pub fn read(bytes: &[u8]) -> Result<Layer, VectorError> {
+pub fn read(bytes: &[u8]) -> Result<VectorLayer, VectorError> {
     read_as(bytes, None)
 }
 
@@ -35,7 +35,7 @@ pub fn read(bytes: &[u8]) -> Result<Layer, VectorError> {
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_as(bytes: &[u8], stated: Option<&Crs>) -> Result<Layer, VectorError> {
+pub fn read_as(bytes: &[u8], stated: Option<&Crs>) -> Result<VectorLayer, VectorError> {
     if bytes.len() > MAX_BYTES {
         return Err(VectorError::TooLarge { bytes: bytes.len(), limit: MAX_BYTES });
     }
@@ -62,7 +62,7 @@ pub fn read_as(bytes: &[u8], stated: Option<&Crs>) -> Result<Layer, VectorError>
 }
 
 /// What of a feature collection its features become.
-fn layer(features: Vec<geojson::Feature>, crs: Crs) -> Result<Layer, VectorError> {
+fn layer(features: Vec<geojson::Feature>, crs: Crs) -> Result<VectorLayer, VectorError> {
     let mut collector = Collector::new(crs);
     for feature in features {
         add(&mut collector, feature)?;
@@ -75,14 +75,14 @@ fn layer(features: Vec<geojson::Feature>, crs: Crs) -> Result<Layer, VectorError
 /// # Errors
 /// As of [`Collector::add`].
 fn add(collector: &mut Collector, feature: geojson::Feature) -> Result<(), VectorError> {
-    let mut parts = Parts::default();
+    let mut parts = FeatureParts::default();
     if let Some(geometry) = feature.geometry {
         add_shape(&mut parts, geometry.value);
     }
     collector.add(parts, feature.properties.unwrap_or_default().into_iter().collect())
 }
 
-fn add_shape(parts: &mut Parts, value: GeometryValue) {
+fn add_shape(parts: &mut FeatureParts, value: GeometryValue) {
     match value {
         GeometryValue::Point { coordinates } => add_points(parts, &[coordinates]),
         GeometryValue::MultiPoint { coordinates } => add_points(parts, &coordinates),
@@ -100,22 +100,22 @@ fn add_shape(parts: &mut Parts, value: GeometryValue) {
     }
 }
 
-fn add_points(parts: &mut Parts, positions: &[Position]) {
+fn add_points(parts: &mut FeatureParts, positions: &[Position]) {
     vertices(positions, parts).into_iter().for_each(|at| parts.point(at));
 }
 
-fn add_line(parts: &mut Parts, line: &[Position]) {
+fn add_line(parts: &mut FeatureParts, line: &[Position]) {
     let vertices = vertices(line, parts);
     parts.line(vertices);
 }
 
-fn add_polygon(parts: &mut Parts, rings: &[Vec<Position>]) {
+fn add_polygon(parts: &mut FeatureParts, rings: &[Vec<Position>]) {
     let rings: Vec<_> = rings.iter().map(|ring| vertices(ring, parts)).collect();
     parts.polygon(rings);
 }
 
 /// The first three numbers of each position, the third NaN where there are two; those that have fewer are left out.
-fn vertices(positions: &[Position], parts: &mut Parts) -> Vec<DVec3> {
+fn vertices(positions: &[Position], parts: &mut FeatureParts) -> Vec<DVec3> {
     let mut all = Vec::with_capacity(positions.len());
     for given in positions {
         match given.as_slice() {
@@ -194,7 +194,7 @@ mod tests {
     use crate::vector::feature::{Geometry, Polygon};
     use glam::DVec2;
 
-    fn layer_of(geometry: &str) -> Layer {
+    fn layer_of(geometry: &str) -> VectorLayer {
         let text = format!(r#"{{"type":"Feature","properties":{{"a":1}},"geometry":{geometry}}}"#);
         read(text.as_bytes()).expect("valid GeoJSON")
     }
@@ -283,7 +283,7 @@ mod tests {
         assert_eq!(layer.notes, expected);
     }
 
-    fn with_crs(crs: &str) -> Result<Layer, VectorError> {
+    fn with_crs(crs: &str) -> Result<VectorLayer, VectorError> {
         let text = format!(r#"{{"type":"FeatureCollection","crs":{crs},"features":[]}}"#);
         read(text.as_bytes())
     }

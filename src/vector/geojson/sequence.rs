@@ -6,7 +6,7 @@ use geojson::GeoJson;
 use crate::geom::crs::Crs;
 use crate::vector::collect::Collector;
 use crate::vector::error::VectorError;
-use crate::vector::feature::Layer;
+use crate::vector::feature::VectorLayer;
 use crate::vector::geojson::{MAX_BYTES, add};
 
 /// What each text of a sequence starts with (RFC 7464).
@@ -24,7 +24,7 @@ pub(in crate::vector) fn is_lines(text: &[u8]) -> bool {
 /// # Errors
 /// [`VectorError`] for the first text that is no GeoJSON; the last one too, though RFC 8142 would forgive it for being
 /// cut short.
-pub(in crate::vector) fn read(bytes: &[u8], stated: Option<&Crs>) -> Result<Layer, VectorError> {
+pub(in crate::vector) fn read(bytes: &[u8], stated: Option<&Crs>) -> Result<VectorLayer, VectorError> {
     if bytes.len() > MAX_BYTES {
         return Err(VectorError::TooLarge { bytes: bytes.len(), limit: MAX_BYTES });
     }

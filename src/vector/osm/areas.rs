@@ -6,10 +6,10 @@
 use std::collections::BTreeMap;
 
 use crate::vector::error::VectorError;
-use crate::vector::osm::Positions;
-use crate::vector::osm::data::{Data, Relation, Role, Tags, Way};
+use crate::vector::osm::OsmLine;
+use crate::vector::osm::data::{OsmData, OsmTags, OsmWay, Relation, Role};
 use crate::vector::osm::saying;
-use crate::vector::rings::{self, Rule};
+use crate::vector::rings::{self, HoleRule};
 
 /// The most vertices that the areas of one extract may have: far more than any has, and a gigabyte. Relations can
 /// name the same ways again and again.
@@ -17,7 +17,7 @@ const MOST_VERTICES: usize = 1 << 25;
 
 /// Makes areas, and knows which ways they stand for.
 pub(super) struct Areas<'a> {
-    data: &'a Data,
+    data: &'a OsmData,
     /// By the way's index: whether an area of a relation stands for it.
     stood_for: Vec<bool>,
     steps: u64,
@@ -26,19 +26,19 @@ pub(super) struct Areas<'a> {
 
 impl<'a> Areas<'a> {
     /// None yet.
-    pub fn new(data: &'a Data) -> Self {
+    pub fn new(data: &'a OsmData) -> Self {
         let stood_for = vec![false; data.ways().len()];
         Self { data, stood_for, steps: rings::MOST_STEPS, vertices_left: MOST_VERTICES }
     }
 
     /// Whether an area of a relation stands for this way, so that it is none of its own.
-    pub fn stand_for(&self, way: &Way) -> bool {
+    pub fn stand_for(&self, way: &OsmWay) -> bool {
         self.data.way(way.id).is_some_and(|index| self.stood_for[index])
     }
 
     /// Lets the area of a relation with these tags stand for those of its outer ways that say nothing else. An outer
     /// way that says more, as the building that a named site is made of, stays an area of its own; GDAL drops it.
-    pub fn stand_for_outer_ways(&mut self, relation: &Relation, tags: Tags) {
+    pub fn stand_for_outer_ways(&mut self, relation: &Relation, tags: OsmTags) {
         let data = self.data;
         for index in outer_ways(data, relation) {
             let mut own = saying(data, data.ways()[index].tags);
@@ -48,7 +48,7 @@ impl<'a> Areas<'a> {
 
     /// The tags of a relation or, where it has none but its type, those of the first of its outer ways that has any:
     /// old relations are tagged so.
-    pub fn tags_of(&self, relation: &Relation) -> Tags {
+    pub fn tags_of(&self, relation: &Relation) -> OsmTags {
         let data = self.data;
         if data.tags(relation.tags).any(|tag| tag.0 != "type") {
             return relation.tags;
@@ -62,12 +62,12 @@ impl<'a> Areas<'a> {
     ///
     /// # Errors
     /// The areas of this extract are more than are taken.
-    pub fn polygons(&mut self, relation: &Relation) -> Result<Option<Vec<Vec<Positions>>>, VectorError> {
+    pub fn polygons(&mut self, relation: &Relation) -> Result<Option<Vec<Vec<OsmLine>>>, VectorError> {
         let data = self.data;
         let mut ids: Vec<i64> = data.members(relation).iter().map(|member| member.0).collect();
         ids.sort_unstable();
         ids.dedup();
-        let ways: Option<Vec<&Way>> =
+        let ways: Option<Vec<&OsmWay>> =
             ids.iter().map(|&id| data.way(id).map(|index| &data.ways()[index])).collect();
         let Some(loops) = ways.filter(|ways| !ways.is_empty()).and_then(|ways| closed_loops(data, &ways))
         else {
@@ -82,23 +82,23 @@ impl<'a> Areas<'a> {
         };
         let vertices = loops.iter().map(Vec::len).sum();
         self.vertices_left = self.vertices_left.checked_sub(vertices).ok_or_else(too_much)?;
-        let rings: Vec<Positions> =
+        let rings: Vec<OsmLine> =
             loops.iter().map(|ids| ids.iter().filter_map(|&id| data.position(id)).collect()).collect();
         if rings.iter().zip(&loops).any(|(ring, ids)| ring.len() < ids.len()) {
             return Ok(None);
         }
-        rings::polygons(rings, Rule::Nesting, &mut self.steps).map(Some).map_err(|_| too_much())
+        rings::polygons(rings, HoleRule::Nesting, &mut self.steps).map(Some).map_err(|_| too_much())
     }
 }
 
 /// The indices of the outer ways of a relation that the extract has.
-fn outer_ways<'a>(data: &'a Data, relation: &'a Relation) -> impl Iterator<Item = usize> + 'a {
+fn outer_ways<'a>(data: &'a OsmData, relation: &'a Relation) -> impl Iterator<Item = usize> + 'a {
     let outer = data.members(relation).iter().filter(|member| member.1 == Role::Outer);
     outer.filter_map(|member| data.way(member.0))
 }
 
 /// The closed lists of nodes that the ways make, joined at their ends; `None` where some are left over.
-fn closed_loops(data: &Data, ways: &[&Way]) -> Option<Vec<Vec<i64>>> {
+fn closed_loops(data: &OsmData, ways: &[&OsmWay]) -> Option<Vec<Vec<i64>>> {
     let mut ends: BTreeMap<i64, Vec<usize>> = BTreeMap::new();
     for (index, way) in ways.iter().enumerate() {
         let refs = data.refs(way);

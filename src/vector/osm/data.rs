@@ -13,7 +13,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::vector::collect::position;
-use crate::vector::osm::Positions;
+use crate::vector::osm::OsmLine;
 
 /// The most bytes that an extract may take in memory. A hostile file of small numbers, well packed, would take
 /// thousands of times its size; a city's takes ten.
@@ -28,7 +28,7 @@ pub(super) struct TooMuch;
 
 /// A place.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Node {
+pub(super) struct OsmNode {
     pub id: i64,
     longitude: i32,
     latitude: i32,
@@ -36,17 +36,17 @@ pub(super) struct Node {
 
 /// Where a thing's tags lie.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Tags {
+pub(super) struct OsmTags {
     start: u32,
     end: u32,
 }
 
 /// A list of nodes.
 #[derive(Debug)]
-pub(super) struct Way {
+pub(super) struct OsmWay {
     pub id: i64,
     refs: Range<u32>,
-    pub tags: Tags,
+    pub tags: OsmTags,
 }
 
 /// A list of ways; members of other kinds are not kept.
@@ -54,7 +54,7 @@ pub(super) struct Way {
 pub(super) struct Relation {
     pub id: i64,
     members: Range<u32>,
-    pub tags: Tags,
+    pub tags: OsmTags,
 }
 
 /// The role that a way has in a relation.
@@ -68,43 +68,43 @@ pub(super) enum Role {
 
 /// The number of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Text(u32);
+pub(super) struct TextId(u32);
 
 /// All of an extract.
 #[derive(Default)]
-pub(super) struct Data {
-    nodes: Vec<Node>,
-    node_tags: Vec<(Node, Tags)>,
-    ways: Vec<Way>,
+pub(super) struct OsmData {
+    nodes: Vec<OsmNode>,
+    node_tags: Vec<(OsmNode, OsmTags)>,
+    ways: Vec<OsmWay>,
     refs: Vec<i64>,
     relations: Vec<Relation>,
     members: Vec<(i64, Role)>,
-    tags: Vec<(Text, Text)>,
+    tags: Vec<(TextId, TextId)>,
     texts: Vec<Arc<str>>,
-    numbers: HashMap<Arc<str>, Text>,
+    numbers: HashMap<Arc<str>, TextId>,
     taken: usize,
 }
 
-impl Node {
+impl OsmNode {
     /// Longitude and latitude in degrees.
     pub fn degrees(self) -> (f64, f64) {
         (f64::from(self.longitude) / PER_DEGREE, f64::from(self.latitude) / PER_DEGREE)
     }
 }
 
-impl Data {
+impl OsmData {
     /// The number of a text, which is kept if it is new.
     ///
     /// # Errors
     /// [`TooMuch`].
-    pub fn text(&mut self, text: &str) -> Result<Text, TooMuch> {
+    pub fn text(&mut self, text: &str) -> Result<TextId, TooMuch> {
         /// A text costs its bytes and what keeps it.
         const OVERHEAD: usize = 64;
         if let Some(&known) = self.numbers.get(text) {
             return Ok(known);
         }
         self.take(text.len() + OVERHEAD)?;
-        let number = Text(self.texts.len() as u32);
+        let number = TextId(self.texts.len() as u32);
         let text: Arc<str> = text.into();
         self.texts.push(Arc::clone(&text));
         self.numbers.insert(text, number);
@@ -115,23 +115,28 @@ impl Data {
     ///
     /// # Errors
     /// [`TooMuch`].
-    pub fn add_tags(&mut self, tags: &[(Text, Text)]) -> Result<Tags, TooMuch> {
+    pub fn add_tags(&mut self, tags: &[(TextId, TextId)]) -> Result<OsmTags, TooMuch> {
         self.take(size_of_val(tags))?;
         let start = self.tags.len() as u32;
         self.tags.extend_from_slice(tags);
-        Ok(Tags { start, end: self.tags.len() as u32 })
+        Ok(OsmTags { start, end: self.tags.len() as u32 })
     }
 
     /// Keeps a node, its coordinates in ten-millionths of a degree.
     ///
     /// # Errors
     /// [`TooMuch`].
-    pub fn add_node(&mut self, id: i64, [longitude, latitude]: [i32; 2], tags: Tags) -> Result<(), TooMuch> {
-        self.take(size_of::<Node>())?;
-        let node = Node { id, longitude, latitude };
+    pub fn add_node(
+        &mut self,
+        id: i64,
+        [longitude, latitude]: [i32; 2],
+        tags: OsmTags,
+    ) -> Result<(), TooMuch> {
+        self.take(size_of::<OsmNode>())?;
+        let node = OsmNode { id, longitude, latitude };
         self.nodes.push(node);
         if tags.start < tags.end {
-            self.take(size_of::<(Node, Tags)>())?;
+            self.take(size_of::<(OsmNode, OsmTags)>())?;
             self.node_tags.push((node, tags));
         }
         Ok(())
@@ -141,11 +146,11 @@ impl Data {
     ///
     /// # Errors
     /// [`TooMuch`].
-    pub fn add_way(&mut self, id: i64, refs: &[i64], tags: Tags) -> Result<(), TooMuch> {
-        self.take(size_of::<Way>() + size_of_val(refs))?;
+    pub fn add_way(&mut self, id: i64, refs: &[i64], tags: OsmTags) -> Result<(), TooMuch> {
+        self.take(size_of::<OsmWay>() + size_of_val(refs))?;
         let start = self.refs.len() as u32;
         self.refs.extend_from_slice(refs);
-        self.ways.push(Way { id, refs: start..self.refs.len() as u32, tags });
+        self.ways.push(OsmWay { id, refs: start..self.refs.len() as u32, tags });
         Ok(())
     }
 
@@ -153,7 +158,7 @@ impl Data {
     ///
     /// # Errors
     /// [`TooMuch`].
-    pub fn add_relation(&mut self, id: i64, members: &[(i64, Role)], tags: Tags) -> Result<(), TooMuch> {
+    pub fn add_relation(&mut self, id: i64, members: &[(i64, Role)], tags: OsmTags) -> Result<(), TooMuch> {
         self.take(size_of::<Relation>() + size_of_val(members))?;
         let start = self.members.len() as u32;
         self.members.extend_from_slice(members);
@@ -177,12 +182,12 @@ impl Data {
     }
 
     /// Nodes that have tags, in the file's order.
-    pub fn tagged_nodes(&self) -> impl Iterator<Item = (Node, Tags)> + '_ {
+    pub fn tagged_nodes(&self) -> impl Iterator<Item = (OsmNode, OsmTags)> + '_ {
         self.node_tags.iter().copied()
     }
 
     /// All ways, sorted by id.
-    pub fn ways(&self) -> &[Way] {
+    pub fn ways(&self) -> &[OsmWay] {
         &self.ways
     }
 
@@ -202,12 +207,12 @@ impl Data {
     }
 
     /// The ids of a way's nodes.
-    pub fn refs(&self, way: &Way) -> &[i64] {
+    pub fn refs(&self, way: &OsmWay) -> &[i64] {
         &self.refs[way.refs.start as usize..way.refs.end as usize]
     }
 
     /// Where those of a way's nodes are that the extract has.
-    pub fn positions(&self, way: &Way) -> Positions {
+    pub fn positions(&self, way: &OsmWay) -> OsmLine {
         self.refs(way).iter().filter_map(|&id| self.position(id)).collect()
     }
 
@@ -219,14 +224,14 @@ impl Data {
     }
 
     /// Keys and values.
-    pub fn tags(&self, tags: Tags) -> impl Iterator<Item = (&str, &str)> {
-        let text = |Text(number): Text| &*self.texts[number as usize];
+    pub fn tags(&self, tags: OsmTags) -> impl Iterator<Item = (&str, &str)> {
+        let text = |TextId(number): TextId| &*self.texts[number as usize];
         let all = &self.tags[tags.start as usize..tags.end as usize];
         all.iter().map(move |&(key, value)| (text(key), text(value)))
     }
 
     /// The value that `key` has.
-    pub fn value(&self, tags: Tags, key: &str) -> Option<&str> {
+    pub fn value(&self, tags: OsmTags, key: &str) -> Option<&str> {
         self.tags(tags).find(|tag| tag.0 == key).map(|tag| tag.1)
     }
 }

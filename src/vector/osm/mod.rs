@@ -29,11 +29,11 @@ mod xml;
 use glam::DVec3;
 
 use crate::geom::crs::Crs;
-use crate::vector::collect::{Collector, Parts, Properties, position};
+use crate::vector::collect::{Collector, FeatureParts, Properties, position};
 use crate::vector::error::VectorError;
-use crate::vector::feature::Layer;
+use crate::vector::feature::VectorLayer;
 use crate::vector::osm::areas::Areas;
-use crate::vector::osm::data::{Data, Tags, Way};
+use crate::vector::osm::data::{OsmData, OsmTags, OsmWay};
 
 /// Whether `bytes` are an extract as protocol buffers.
 pub(super) fn is_pbf(bytes: &[u8]) -> bool {
@@ -48,8 +48,8 @@ pub(super) fn read_pbf(
     bytes: &[u8],
     stated: Option<&Crs>,
     wanted: Option<&str>,
-) -> Result<Layer, VectorError> {
-    let kind = Kind::named(wanted)?;
+) -> Result<VectorLayer, VectorError> {
+    let kind = OsmLayer::named(wanted)?;
     features(&pbf::read(bytes)?, stated, kind)
 }
 
@@ -61,14 +61,14 @@ pub(super) fn read_xml(
     bytes: &[u8],
     stated: Option<&Crs>,
     wanted: Option<&str>,
-) -> Result<Layer, VectorError> {
-    let kind = Kind::named(wanted)?;
+) -> Result<VectorLayer, VectorError> {
+    let kind = OsmLayer::named(wanted)?;
     features(&xml::read(bytes)?, stated, kind)
 }
 
 /// A layer of an extract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum OsmLayer {
     Points,
     Lines,
     Multipolygons,
@@ -80,15 +80,15 @@ enum Kind {
 }
 
 /// Every layer by its name.
-const LAYERS: [(&str, Kind); 8] = [
-    ("points", Kind::Points),
-    ("lines", Kind::Lines),
-    ("multipolygons", Kind::Multipolygons),
-    ("roads", Kind::Roads),
-    ("railways", Kind::Railways),
-    ("waterways", Kind::Waterways),
-    ("water", Kind::Water),
-    ("buildings", Kind::Buildings),
+const LAYERS: [(&str, OsmLayer); 8] = [
+    ("points", OsmLayer::Points),
+    ("lines", OsmLayer::Lines),
+    ("multipolygons", OsmLayer::Multipolygons),
+    ("roads", OsmLayer::Roads),
+    ("railways", OsmLayer::Railways),
+    ("waterways", OsmLayer::Waterways),
+    ("water", OsmLayer::Water),
+    ("buildings", OsmLayer::Buildings),
 ];
 
 /// Keys that make a closed way an area (`closed_ways_are_polygons`).
@@ -115,7 +115,7 @@ const AREA_TAGS: [(&str, &str); 2] = [("highway", "platform"), ("public_transpor
 /// Keys that say nothing of what a thing is (`unsignificant`).
 const SAYING_NOTHING: [&str; 6] = ["created_by", "converted_by", "source", "time", "ele", "attribution"];
 
-impl Kind {
+impl OsmLayer {
     fn named(wanted: Option<&str>) -> Result<Self, VectorError> {
         let names = LAYERS.map(|(name, _)| name);
         let Some(wanted) = wanted else { return Err(VectorError::which_layer(&names)) };
@@ -124,7 +124,7 @@ impl Kind {
     }
 
     /// Whether things with these tags, of the right shape, belong to it.
-    fn holds(self, data: &Data, tags: Tags) -> bool {
+    fn holds(self, data: &OsmData, tags: OsmTags) -> bool {
         match self {
             Self::Points | Self::Lines | Self::Multipolygons => saying(data, tags).next().is_some(),
             Self::Roads => data.value(tags, "highway").is_some(),
@@ -140,12 +140,12 @@ impl Kind {
 }
 
 /// The tags that say what a thing is.
-fn saying(data: &Data, tags: Tags) -> impl Iterator<Item = (&str, &str)> {
+fn saying(data: &OsmData, tags: OsmTags) -> impl Iterator<Item = (&str, &str)> {
     data.tags(tags).filter(|(key, _)| !SAYING_NOTHING.contains(key))
 }
 
 /// Whether a closed way with these tags is an area.
-fn makes_area(data: &Data, tags: Tags) -> bool {
+fn makes_area(data: &OsmData, tags: OsmTags) -> bool {
     match data.value(tags, "area") {
         Some("yes") => true,
         Some("no") => false,
@@ -153,31 +153,33 @@ fn makes_area(data: &Data, tags: Tags) -> bool {
     }
 }
 
-fn features(data: &Data, stated: Option<&Crs>, kind: Kind) -> Result<Layer, VectorError> {
+fn features(data: &OsmData, stated: Option<&Crs>, kind: OsmLayer) -> Result<VectorLayer, VectorError> {
     let mut collector = Collector::new(stated.cloned().unwrap_or_else(Crs::wgs84));
     match kind {
-        Kind::Points => points(data, &mut collector)?,
-        Kind::Lines | Kind::Roads | Kind::Railways | Kind::Waterways => lines(data, kind, &mut collector)?,
-        Kind::Multipolygons | Kind::Water | Kind::Buildings => areas(data, kind, &mut collector)?,
+        OsmLayer::Points => points(data, &mut collector)?,
+        OsmLayer::Lines | OsmLayer::Roads | OsmLayer::Railways | OsmLayer::Waterways => {
+            lines(data, kind, &mut collector)?
+        }
+        OsmLayer::Multipolygons | OsmLayer::Water | OsmLayer::Buildings => areas(data, kind, &mut collector)?,
     }
     Ok(collector.finish())
 }
 
-fn points(data: &Data, collector: &mut Collector) -> Result<(), VectorError> {
+fn points(data: &OsmData, collector: &mut Collector) -> Result<(), VectorError> {
     for (node, tags) in data.tagged_nodes() {
-        if !Kind::Points.holds(data, tags) {
+        if !OsmLayer::Points.holds(data, tags) {
             continue;
         }
         let elevation = data.value(tags, "ele").and_then(|text| text.trim().parse().ok());
         let (x, y) = node.degrees();
-        let mut parts = Parts::default();
+        let mut parts = FeatureParts::default();
         parts.point(position(x, y, elevation));
         collector.add(parts, properties(data, tags, "osm_id", node.id))?;
     }
     Ok(())
 }
 
-fn lines(data: &Data, kind: Kind, collector: &mut Collector) -> Result<(), VectorError> {
+fn lines(data: &OsmData, kind: OsmLayer, collector: &mut Collector) -> Result<(), VectorError> {
     let mut cut = 0;
     for way in data.ways() {
         if !kind.holds(data, way.tags) || is_area(data, way) {
@@ -186,7 +188,7 @@ fn lines(data: &Data, kind: Kind, collector: &mut Collector) -> Result<(), Vecto
         let line = data.positions(way);
         cut += usize::from(line.len() < data.refs(way).len());
         if line.len() >= 2 {
-            let mut parts = Parts::default();
+            let mut parts = FeatureParts::default();
             parts.line(line);
             collector.add(parts, properties(data, way.tags, "osm_id", way.id))?;
         }
@@ -197,7 +199,7 @@ fn lines(data: &Data, kind: Kind, collector: &mut Collector) -> Result<(), Vecto
     Ok(())
 }
 
-fn areas(data: &Data, kind: Kind, collector: &mut Collector) -> Result<(), VectorError> {
+fn areas(data: &OsmData, kind: OsmLayer, collector: &mut Collector) -> Result<(), VectorError> {
     let mut areas = Areas::new(data);
     let mut incomplete = 0;
     for relation in data.relations() {
@@ -210,7 +212,7 @@ fn areas(data: &Data, kind: Kind, collector: &mut Collector) -> Result<(), Vecto
         }
         match areas.polygons(relation)? {
             Some(polygons) => {
-                let mut parts = Parts::default();
+                let mut parts = FeatureParts::default();
                 polygons.into_iter().for_each(|rings| parts.polygon(rings));
                 collector.add(parts, properties(data, tags, "osm_id", relation.id))?;
                 areas.stand_for_outer_ways(relation, tags);
@@ -223,7 +225,7 @@ fn areas(data: &Data, kind: Kind, collector: &mut Collector) -> Result<(), Vecto
         if !kind.holds(data, way.tags) || !is_area(data, way) || areas.stand_for(way) {
             continue;
         }
-        let mut parts = Parts::default();
+        let mut parts = FeatureParts::default();
         parts.polygon([data.positions(way)]);
         if !parts.is_empty() {
             collector.add(parts, properties(data, way.tags, "osm_way_id", way.id))?;
@@ -233,12 +235,12 @@ fn areas(data: &Data, kind: Kind, collector: &mut Collector) -> Result<(), Vecto
 }
 
 /// Whether the way is closed and its tags make it an area.
-fn is_area(data: &Data, way: &Way) -> bool {
+fn is_area(data: &OsmData, way: &OsmWay) -> bool {
     let refs = data.refs(way);
     refs.len() >= 4 && refs.first() == refs.last() && makes_area(data, way.tags)
 }
 
-fn properties(data: &Data, tags: Tags, id_key: &str, id: i64) -> Properties {
+fn properties(data: &OsmData, tags: OsmTags, id_key: &str, id: i64) -> Properties {
     let mut properties: Properties =
         data.tags(tags).map(|(key, value)| (key.to_owned(), value.into())).collect();
     properties.insert(id_key.into(), id.to_string().into());
@@ -246,7 +248,7 @@ fn properties(data: &Data, tags: Tags, id_key: &str, id: i64) -> Properties {
 }
 
 /// A ring or a line.
-type Positions = Vec<DVec3>;
+type OsmLine = Vec<DVec3>;
 
 #[cfg(test)]
 mod tests {
@@ -269,7 +271,7 @@ mod tests {
         format!("<way id='{id}'>{nodes}{tags}</way>")
     }
 
-    fn layer(content: &str, wanted: &str) -> Layer {
+    fn layer(content: &str, wanted: &str) -> VectorLayer {
         read_xml(extract(content).as_bytes(), None, Some(wanted)).expect(wanted)
     }
 

@@ -8,10 +8,10 @@
 //! Numbers of nodes follow one another as differences. The limits on the sizes of headers and blobs are the
 //! format's own, and they are held before anything is unpacked.
 
-use crate::vector::cursor::Cursor;
+use crate::vector::cursor::ByteCursor;
 use crate::vector::error::VectorError;
-use crate::vector::osm::data::{Data, Role, Text, TooMuch};
-use crate::vector::osm::protobuf::{Malformed, Packed, Value, fields, signed};
+use crate::vector::osm::data::{OsmData, Role, TextId, TooMuch};
+use crate::vector::osm::protobuf::{FieldValue, Malformed, Packed, fields, signed};
 use crate::vector::packed::inflate_zlib;
 
 const FORMAT: &str = "OpenStreetMap extract (PBF)";
@@ -23,19 +23,19 @@ const KNOWN: [&[u8]; 2] = [b"OsmSchema-V0.6", b"DenseNodes"];
 const NANO_PER_UNIT: i64 = 100;
 
 /// What can go wrong in a block.
-enum Fault {
+enum PbfError {
     Malformed,
     TooMuch,
     NotOnEarth,
 }
 
-impl From<Malformed> for Fault {
+impl From<Malformed> for PbfError {
     fn from(_: Malformed) -> Self {
         Self::Malformed
     }
 }
 
-impl From<TooMuch> for Fault {
+impl From<TooMuch> for PbfError {
     fn from(_: TooMuch) -> Self {
         Self::TooMuch
     }
@@ -45,9 +45,9 @@ impl From<TooMuch> for Fault {
 ///
 /// # Errors
 /// [`VectorError`].
-pub(super) fn read(bytes: &[u8]) -> Result<Data, VectorError> {
-    let mut data = Data::default();
-    let mut cursor = Cursor::new(bytes);
+pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
+    let mut data = OsmData::default();
+    let mut cursor = ByteCursor::new(bytes);
     while !cursor.rest().is_empty() {
         let at = cursor.at();
         let broken = |reason: &str| VectorError::broken(FORMAT, format!("byte {at}"), reason);
@@ -57,9 +57,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<Data, VectorError> {
             b"OSMHeader" => check_header(&unpack(blob, at)?)?,
             b"OSMData" => block(&unpack(blob, at)?, &mut data).map_err(|fault| {
                 broken(match fault {
-                    Fault::Malformed => "a block is cut short or contradicts itself",
-                    Fault::TooMuch => "it holds more than fits in memory; cut it down with 'osmium extract'",
-                    Fault::NotOnEarth => "a node lies beyond the poles or the date line",
+                    PbfError::Malformed => "a block is cut short or contradicts itself",
+                    PbfError::TooMuch => {
+                        "it holds more than fits in memory; cut it down with 'osmium extract'"
+                    }
+                    PbfError::NotOnEarth => "a node lies beyond the poles or the date line",
                 })
             })?,
             _ => {}
@@ -70,14 +72,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<Data, VectorError> {
 }
 
 /// The type and the bytes of the next blob.
-fn next_blob<'a>(cursor: &mut Cursor<'a>) -> Option<(&'a [u8], &'a [u8])> {
+fn next_blob<'a>(cursor: &mut ByteCursor<'a>) -> Option<(&'a [u8], &'a [u8])> {
     let length = u32::from_be_bytes(cursor.array()?) as usize;
     let header = cursor.take(Some(length).filter(|&length| length <= MOST_HEADER_BYTES)?)?;
     let (mut kind, mut size) = (None, None);
     for field in fields(header) {
         match field.ok()? {
-            (1, Value::Bytes(name)) => kind = Some(name),
-            (3, Value::Number(bytes)) => size = usize::try_from(bytes).ok(),
+            (1, FieldValue::Bytes(name)) => kind = Some(name),
+            (3, FieldValue::Number(bytes)) => size = usize::try_from(bytes).ok(),
             _ => {}
         }
     }
@@ -91,9 +93,9 @@ fn unpack(blob: &[u8], at: usize) -> Result<Vec<u8>, VectorError> {
     let (mut raw, mut packed, mut size, mut other) = (None, None, None, false);
     for field in fields(blob) {
         match field.map_err(|_| broken("it is cut short"))? {
-            (1, Value::Bytes(bytes)) => raw = Some(bytes),
-            (2, Value::Number(bytes)) => size = usize::try_from(bytes).ok(),
-            (3, Value::Bytes(bytes)) => packed = Some(bytes),
+            (1, FieldValue::Bytes(bytes)) => raw = Some(bytes),
+            (2, FieldValue::Number(bytes)) => size = usize::try_from(bytes).ok(),
+            (3, FieldValue::Bytes(bytes)) => packed = Some(bytes),
             (4..=7, _) => other = true,
             _ => {}
         }
@@ -118,7 +120,7 @@ fn unpack(blob: &[u8], at: usize) -> Result<Vec<u8>, VectorError> {
 fn check_header(header: &[u8]) -> Result<(), VectorError> {
     for field in fields(header) {
         let field = field.map_err(|_| VectorError::broken(FORMAT, "its header", "it is cut short"))?;
-        if let (4, Value::Bytes(name)) = field
+        if let (4, FieldValue::Bytes(name)) = field
             && !KNOWN.contains(&name)
         {
             return Err(VectorError::Unsupported {
@@ -132,20 +134,20 @@ fn check_header(header: &[u8]) -> Result<(), VectorError> {
 }
 
 /// A text of a block, and its number in the data once it is used there.
-type Entry<'a> = (&'a [u8], Option<Text>);
+type Entry<'a> = (&'a [u8], Option<TextId>);
 
 /// One block while it is read.
-struct Block<'a> {
+struct PbfBlock<'a> {
     texts: Vec<Entry<'a>>,
     granularity: i64,
     offset: [i64; 2],
-    tags: Vec<(Text, Text)>,
+    tags: Vec<(TextId, TextId)>,
     refs: Vec<i64>,
     members: Vec<(i64, Role)>,
 }
 
-fn block(message: &[u8], data: &mut Data) -> Result<(), Fault> {
-    let mut block = Block {
+fn block(message: &[u8], data: &mut OsmData) -> Result<(), PbfError> {
+    let mut block = PbfBlock {
         texts: Vec::new(),
         granularity: NANO_PER_UNIT,
         offset: [0; 2],
@@ -179,7 +181,7 @@ fn block(message: &[u8], data: &mut Data) -> Result<(), Fault> {
     Ok(())
 }
 
-fn texts(table: &[u8]) -> Result<Vec<Entry<'_>>, Fault> {
+fn texts(table: &[u8]) -> Result<Vec<Entry<'_>>, PbfError> {
     let mut texts = Vec::new();
     for field in fields(table) {
         if let (1, value) = field? {
@@ -189,11 +191,11 @@ fn texts(table: &[u8]) -> Result<Vec<Entry<'_>>, Fault> {
     Ok(texts)
 }
 
-impl Block<'_> {
+impl PbfBlock<'_> {
     /// The number in `data` of the block's text `index`.
-    fn text(&mut self, index: u64, data: &mut Data) -> Result<Text, Fault> {
+    fn text(&mut self, index: u64, data: &mut OsmData) -> Result<TextId, PbfError> {
         let entry = usize::try_from(index).ok().and_then(|index| self.texts.get_mut(index));
-        let (bytes, number) = entry.ok_or(Fault::Malformed)?;
+        let (bytes, number) = entry.ok_or(PbfError::Malformed)?;
         match number {
             Some(known) => Ok(*known),
             None => Ok(*number.insert(data.text(&String::from_utf8_lossy(bytes))?)),
@@ -201,22 +203,23 @@ impl Block<'_> {
     }
 
     /// In ten-millionths of a degree, from the block's units.
-    fn place(&self, place: [i64; 2]) -> Result<[i32; 2], Fault> {
+    fn place(&self, place: [i64; 2]) -> Result<[i32; 2], PbfError> {
         const HALVES: [i64; 2] = [180 * 10_000_000, 90 * 10_000_000];
         let mut units = [0; 2];
         for axis in 0..2 {
             let nano = place[axis].checked_mul(self.granularity);
-            let nano = nano.and_then(|nano| nano.checked_add(self.offset[axis])).ok_or(Fault::NotOnEarth)?;
+            let nano =
+                nano.and_then(|nano| nano.checked_add(self.offset[axis])).ok_or(PbfError::NotOnEarth)?;
             let rounded = nano.saturating_add(NANO_PER_UNIT / 2).div_euclid(NANO_PER_UNIT);
             if rounded.abs() > HALVES[axis] {
-                return Err(Fault::NotOnEarth);
+                return Err(PbfError::NotOnEarth);
             }
             units[axis] = rounded as i32;
         }
         Ok(units)
     }
 
-    fn node(&mut self, message: &[u8], data: &mut Data) -> Result<(), Fault> {
+    fn node(&mut self, message: &[u8], data: &mut OsmData) -> Result<(), PbfError> {
         let (mut id, mut place, mut keys, mut values) = (0, [0; 2], &[][..], &[][..]);
         for field in fields(message) {
             match field? {
@@ -235,7 +238,7 @@ impl Block<'_> {
     }
 
     /// Ids and coordinates as rows of differences; tags of all in one row, each node's ended by a 0.
-    fn dense_nodes(&mut self, message: &[u8], data: &mut Data) -> Result<(), Fault> {
+    fn dense_nodes(&mut self, message: &[u8], data: &mut OsmData) -> Result<(), PbfError> {
         let [mut ids, mut latitudes, mut longitudes, mut tags] = [<&[u8]>::default(); 4];
         for field in fields(message) {
             match field? {
@@ -253,7 +256,7 @@ impl Block<'_> {
         while let Some(step) = ids.next_signed() {
             id = id.wrapping_add(step);
             for (axis, steps) in [&mut longitudes, &mut latitudes].into_iter().enumerate() {
-                place[axis] = place[axis].wrapping_add(steps.next_signed().ok_or(Fault::Malformed)?);
+                place[axis] = place[axis].wrapping_add(steps.next_signed().ok_or(PbfError::Malformed)?);
             }
             self.tags.clear();
             if has_tags {
@@ -263,23 +266,23 @@ impl Block<'_> {
             let tags = data.add_tags(&self.tags)?;
             data.add_node(id, place, tags)?;
         }
-        if ids.is_whole() { Ok(()) } else { Err(Fault::Malformed) }
+        if ids.is_whole() { Ok(()) } else { Err(PbfError::Malformed) }
     }
 
     /// Reads the tags of one dense node: keys and values in turn, until a 0.
-    fn read_dense_tags(&mut self, tags: &mut Packed<'_>, data: &mut Data) -> Result<(), Fault> {
+    fn read_dense_tags(&mut self, tags: &mut Packed<'_>, data: &mut OsmData) -> Result<(), PbfError> {
         loop {
-            let key = tags.next_unsigned().ok_or(Fault::Malformed)?;
+            let key = tags.next_unsigned().ok_or(PbfError::Malformed)?;
             if key == 0 {
                 return Ok(());
             }
-            let value = tags.next_unsigned().ok_or(Fault::Malformed)?;
+            let value = tags.next_unsigned().ok_or(PbfError::Malformed)?;
             let tag = (self.text(key, data)?, self.text(value, data)?);
             self.tags.push(tag);
         }
     }
 
-    fn way(&mut self, message: &[u8], data: &mut Data) -> Result<(), Fault> {
+    fn way(&mut self, message: &[u8], data: &mut OsmData) -> Result<(), PbfError> {
         let (mut id, [mut keys, mut values, mut refs]) = (0, [<&[u8]>::default(); 3]);
         for field in fields(message) {
             match field? {
@@ -297,14 +300,14 @@ impl Block<'_> {
             self.refs.push(node);
         }
         if !steps.is_whole() {
-            return Err(Fault::Malformed);
+            return Err(PbfError::Malformed);
         }
         self.read_tags(keys, values, data)?;
         let tags = data.add_tags(&self.tags)?;
         Ok(data.add_way(id, &self.refs, tags)?)
     }
 
-    fn relation(&mut self, message: &[u8], data: &mut Data) -> Result<(), Fault> {
+    fn relation(&mut self, message: &[u8], data: &mut OsmData) -> Result<(), PbfError> {
         const WAY: u64 = 1;
         let (mut id, [mut keys, mut values, mut roles, mut members, mut kinds]) =
             (0, [<&[u8]>::default(); 5]);
@@ -324,15 +327,15 @@ impl Block<'_> {
         let mut member = 0i64;
         while let Some(step) = members.next_signed() {
             member = member.wrapping_add(step);
-            let kind = kinds.next_unsigned().ok_or(Fault::Malformed)?;
+            let kind = kinds.next_unsigned().ok_or(PbfError::Malformed)?;
             let role = roles.next_unsigned().and_then(|role| usize::try_from(role).ok());
-            let (role, _) = role.and_then(|role| self.texts.get(role)).ok_or(Fault::Malformed)?;
+            let (role, _) = role.and_then(|role| self.texts.get(role)).ok_or(PbfError::Malformed)?;
             if kind == WAY {
                 self.members.push((member, if *role == b"inner" { Role::Inner } else { Role::Outer }));
             }
         }
         if !members.is_whole() {
-            return Err(Fault::Malformed);
+            return Err(PbfError::Malformed);
         }
         self.read_tags(keys, values, data)?;
         let tags = data.add_tags(&self.tags)?;
@@ -340,14 +343,14 @@ impl Block<'_> {
     }
 
     /// Reads tags from a row of keys and one of values.
-    fn read_tags(&mut self, keys: &[u8], values: &[u8], data: &mut Data) -> Result<(), Fault> {
+    fn read_tags(&mut self, keys: &[u8], values: &[u8], data: &mut OsmData) -> Result<(), PbfError> {
         self.tags.clear();
         let (mut keys, mut values) = (Packed::new(keys), Packed::new(values));
         while let Some(key) = keys.next_unsigned() {
-            let value = values.next_unsigned().ok_or(Fault::Malformed)?;
+            let value = values.next_unsigned().ok_or(PbfError::Malformed)?;
             let tag = (self.text(key, data)?, self.text(value, data)?);
             self.tags.push(tag);
         }
-        if keys.is_whole() { Ok(()) } else { Err(Fault::Malformed) }
+        if keys.is_whole() { Ok(()) } else { Err(PbfError::Malformed) }
     }
 }

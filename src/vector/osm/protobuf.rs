@@ -3,7 +3,7 @@
 //! A message is fields one after another, each a number `field << 3 | wire type` and a value: 0 a number of seven
 //! bits a byte, 1 eight bytes, 2 a length and that many bytes, 5 four bytes.
 
-use crate::vector::cursor::Cursor;
+use crate::vector::cursor::ByteCursor;
 
 /// The message is cut short, or no message.
 #[derive(Debug)]
@@ -11,7 +11,7 @@ pub(super) struct Malformed;
 
 /// A field's value.
 #[derive(Clone, Copy)]
-pub(super) enum Value<'a> {
+pub(super) enum FieldValue<'a> {
     /// A number.
     Number(u64),
     /// Text, a message, or numbers in a row.
@@ -20,7 +20,7 @@ pub(super) enum Value<'a> {
     Other,
 }
 
-impl<'a> Value<'a> {
+impl<'a> FieldValue<'a> {
     /// The number that it is.
     pub fn number(self) -> Result<u64, Malformed> {
         match self {
@@ -39,8 +39,10 @@ impl<'a> Value<'a> {
 }
 
 /// The fields of a message, in its order.
-pub(super) fn fields<'a>(message: &'a [u8]) -> impl Iterator<Item = Result<(u64, Value<'a>), Malformed>> {
-    let mut cursor = Cursor::new(message);
+pub(super) fn fields<'a>(
+    message: &'a [u8],
+) -> impl Iterator<Item = Result<(u64, FieldValue<'a>), Malformed>> {
+    let mut cursor = ByteCursor::new(message);
     std::iter::from_fn(move || {
         if cursor.rest().is_empty() {
             return None;
@@ -48,29 +50,29 @@ pub(super) fn fields<'a>(message: &'a [u8]) -> impl Iterator<Item = Result<(u64,
         let field = field(&mut cursor).ok_or(Malformed);
         if field.is_err() {
             // Nothing that follows means anything.
-            cursor = Cursor::new(&[]);
+            cursor = ByteCursor::new(&[]);
         }
         Some(field)
     })
 }
 
-fn field<'a>(cursor: &mut Cursor<'a>) -> Option<(u64, Value<'a>)> {
+fn field<'a>(cursor: &mut ByteCursor<'a>) -> Option<(u64, FieldValue<'a>)> {
     let key = varint(cursor)?;
     let value = match key & 7 {
-        0 => Value::Number(varint(cursor)?),
-        1 => cursor.take(8).map(|_| Value::Other)?,
+        0 => FieldValue::Number(varint(cursor)?),
+        1 => cursor.take(8).map(|_| FieldValue::Other)?,
         2 => {
             let length = usize::try_from(varint(cursor)?).ok()?;
-            Value::Bytes(cursor.take(length)?)
+            FieldValue::Bytes(cursor.take(length)?)
         }
-        5 => cursor.take(4).map(|_| Value::Other)?,
+        5 => cursor.take(4).map(|_| FieldValue::Other)?,
         _ => return None,
     };
     Some((key >> 3, value))
 }
 
 /// A number, least significant seven bits first.
-fn varint(cursor: &mut Cursor<'_>) -> Option<u64> {
+fn varint(cursor: &mut ByteCursor<'_>) -> Option<u64> {
     let mut number = 0;
     for shift in (0..64).step_by(7) {
         let byte = cursor.byte()?;
@@ -83,12 +85,12 @@ fn varint(cursor: &mut Cursor<'_>) -> Option<u64> {
 }
 
 /// Numbers in a row; ends at the first that is cut short, which [`Packed::is_whole`] tells.
-pub(super) struct Packed<'a>(Cursor<'a>);
+pub(super) struct Packed<'a>(ByteCursor<'a>);
 
 impl<'a> Packed<'a> {
     /// The numbers in `bytes`.
     pub fn new(bytes: &'a [u8]) -> Self {
-        Self(Cursor::new(bytes))
+        Self(ByteCursor::new(bytes))
     }
 
     /// The number after the last one; `None` where there is none.

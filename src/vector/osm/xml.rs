@@ -1,7 +1,7 @@
 //! Extracts as XML, version 0.6: `node`, `way` and `relation` elements with `tag`, `nd` and `member` in them.
 
 use crate::vector::error::VectorError;
-use crate::vector::osm::data::{Data, PER_DEGREE, Role, Text, TooMuch};
+use crate::vector::osm::data::{OsmData, PER_DEGREE, Role, TextId, TooMuch};
 use crate::vector::xml::{self, Element, Xml};
 
 const FORMAT: &str = "OpenStreetMap XML";
@@ -10,7 +10,7 @@ const FORMAT: &str = "OpenStreetMap XML";
 ///
 /// # Errors
 /// [`VectorError`].
-pub(super) fn read(bytes: &[u8]) -> Result<Data, VectorError> {
+pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
     let text = xml::decode(bytes, FORMAT)?;
     let mut xml = Xml::new(&text, FORMAT);
     let root = xml.root()?;
@@ -21,8 +21,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Data, VectorError> {
             remedy: "apply changes first, for example with: osmium apply-changes".into(),
         });
     }
-    let mut data = Data::default();
-    let mut scratch = Scratch::default();
+    let mut data = OsmData::default();
+    let mut scratch = ElementScratch::default();
     xml.children(|xml, element| match element.name() {
         "node" | "way" | "relation" => {
             scratch.read(xml, element, &mut data)?;
@@ -37,18 +37,18 @@ pub(super) fn read(bytes: &[u8]) -> Result<Data, VectorError> {
 
 /// What lies in one element, before it is kept.
 #[derive(Default)]
-struct Scratch {
-    tags: Vec<(Text, Text)>,
+struct ElementScratch {
+    tags: Vec<(TextId, TextId)>,
     refs: Vec<i64>,
     members: Vec<(i64, Role)>,
 }
 
-impl Scratch {
+impl ElementScratch {
     fn read<'a>(
         &mut self,
         xml: &mut Xml<'a>,
         element: &Element<'a>,
-        data: &mut Data,
+        data: &mut OsmData,
     ) -> Result<(), VectorError> {
         self.tags.clear();
         self.refs.clear();
@@ -75,7 +75,7 @@ impl Scratch {
         })
     }
 
-    fn keep(&self, xml: &Xml<'_>, element: &Element<'_>, data: &mut Data) -> Result<(), VectorError> {
+    fn keep(&self, xml: &Xml<'_>, element: &Element<'_>, data: &mut OsmData) -> Result<(), VectorError> {
         let deleted = [("visible", "false"), ("action", "delete")];
         if deleted.iter().any(|&(name, value)| element.attribute(name).as_deref() == Some(value)) {
             return Ok(());

@@ -10,32 +10,32 @@ use serde_json::{Number, Value};
 
 use crate::vector::codepage::Encoding;
 use crate::vector::collect::Properties;
-use crate::vector::cursor::Cursor;
+use crate::vector::cursor::ByteCursor;
 use crate::vector::error::VectorError;
 
 const FORMAT: &str = "dBASE table (.dbf)";
 
 /// A table.
-pub(super) struct Table<'a> {
-    columns: Vec<Column>,
+pub(super) struct DbfTable<'a> {
+    columns: Vec<DbfColumn>,
     encoding: Encoding,
     /// All whole rows that there are.
     rows: std::slice::ChunksExact<'a, u8>,
 }
 
-struct Column {
+struct DbfColumn {
     name: String,
     kind: u8,
     length: usize,
 }
 
 /// One row.
-pub(super) struct Row<'a> {
-    table: &'a Table<'a>,
+pub(super) struct DbfRow<'a> {
+    table: &'a DbfTable<'a>,
     bytes: &'a [u8],
 }
 
-impl<'a> Table<'a> {
+impl<'a> DbfTable<'a> {
     /// The table that `bytes` are, its texts in `encoding` or, without, what its language driver says.
     ///
     /// # Errors
@@ -64,12 +64,12 @@ impl<'a> Table<'a> {
     }
 
     /// The row with this index; `None` past the end.
-    pub fn row(&'a self, index: usize) -> Option<Row<'a>> {
-        self.rows.clone().nth(index).map(|bytes| Row { table: self, bytes })
+    pub fn row(&'a self, index: usize) -> Option<DbfRow<'a>> {
+        self.rows.clone().nth(index).map(|bytes| DbfRow { table: self, bytes })
     }
 }
 
-fn columns(bytes: &[u8], encoding: Encoding) -> Vec<Column> {
+fn columns(bytes: &[u8], encoding: Encoding) -> Vec<DbfColumn> {
     let (descriptors, _) = bytes.as_chunks::<32>();
     let descriptors = descriptors.iter().take_while(|descriptor| descriptor[0] != 0x0d);
     let column = |descriptor: &[u8; 32]| {
@@ -79,12 +79,12 @@ fn columns(bytes: &[u8], encoding: Encoding) -> Vec<Column> {
             b'C' => usize::from(descriptor[16]) + (usize::from(descriptor[17]) << 8),
             _ => usize::from(descriptor[16]),
         };
-        Column { name: encoding.decode(name).trim().to_owned(), kind: descriptor[11], length }
+        DbfColumn { name: encoding.decode(name).trim().to_owned(), kind: descriptor[11], length }
     };
     descriptors.map(column).collect()
 }
 
-impl Row<'_> {
+impl DbfRow<'_> {
     /// Whether it is marked as deleted.
     pub fn is_deleted(&self) -> bool {
         self.bytes[0] == b'*'
@@ -92,8 +92,8 @@ impl Row<'_> {
 
     /// Its values by their columns' names; what is blank or not understood is null.
     pub fn properties(&self) -> Properties {
-        let mut cursor = Cursor::new(&self.bytes[1..]);
-        let value = |column: &Column| {
+        let mut cursor = ByteCursor::new(&self.bytes[1..]);
+        let value = |column: &DbfColumn| {
             let bytes = cursor.take(column.length)?;
             Some((column.name.clone(), value(column.kind, bytes, self.table.encoding)))
         };
@@ -175,7 +175,7 @@ mod tests {
             ("built", b'D', 8),
         ];
         let bytes = table(&columns, &[b" Stra\xdfe  2 7.50T19990131", b"*                       "], 0x57);
-        let table = Table::open(&bytes, None).expect("sound");
+        let table = DbfTable::open(&bytes, None).expect("sound");
         let row = table.row(0).expect("there");
         assert!(!row.is_deleted());
         let expected =
@@ -193,7 +193,7 @@ mod tests {
             let mut turned = bytes.clone();
             turned[end] ^= 0xff;
             for bytes in [&bytes[..end], &turned] {
-                let Ok(table) = Table::open(bytes, None) else { continue };
+                let Ok(table) = DbfTable::open(bytes, None) else { continue };
                 (0..table.rows()).for_each(|row| drop(table.row(row).expect("counted").properties()));
             }
         }

@@ -22,12 +22,12 @@ use glam::DVec3;
 
 use crate::geom::crs::Crs;
 use crate::vector::codepage::Encoding;
-use crate::vector::collect::{Collector, Parts, Properties, position};
-use crate::vector::cursor::Cursor;
+use crate::vector::collect::{Collector, FeatureParts, Properties, position};
+use crate::vector::cursor::ByteCursor;
 use crate::vector::error::VectorError;
-use crate::vector::feature::Layer;
-use crate::vector::rings::{self, Rule};
-use crate::vector::shapefile::dbf::Table;
+use crate::vector::feature::VectorLayer;
+use crate::vector::rings::{self, HoleRule};
+use crate::vector::shapefile::dbf::DbfTable;
 
 const FORMAT: &str = "ESRI shapefile";
 const HEADER_BYTES: usize = 100;
@@ -59,7 +59,7 @@ pub(super) fn is_shapefile(bytes: &[u8]) -> bool {
 ///
 /// # Errors
 /// [`VectorError`]: a record that contradicts itself, no system where none is `stated`, surfaces (multipatch).
-pub(super) fn read(files: &Files<'_>, stated: Option<&Crs>) -> Result<Layer, VectorError> {
+pub(super) fn read(files: &Files<'_>, stated: Option<&Crs>) -> Result<VectorLayer, VectorError> {
     let crs = match (stated, &files.system) {
         (Some(crs), _) => crs.clone(),
         (None, Some(text)) => Crs::parse(&String::from_utf8_lossy(text)).map_err(VectorError::Crs)?,
@@ -69,19 +69,19 @@ pub(super) fn read(files: &Files<'_>, stated: Option<&Crs>) -> Result<Layer, Vec
     };
     let mut collector = Collector::new(crs);
     let encoding = encoding(files, &mut collector);
-    let table = files.table.as_deref().map(|bytes| Table::open(bytes, encoding)).transpose()?;
+    let table = files.table.as_deref().map(|bytes| DbfTable::open(bytes, encoding)).transpose()?;
     let places = match &files.index {
         Some(index) => indexed_or_whole(files.shapes, index, &mut collector)?,
         None => one_after_another(files.shapes)?,
     };
-    let rows = table.as_ref().map_or(0, Table::rows);
+    let rows = table.as_ref().map_or(0, DbfTable::rows);
     if table.is_some() && rows != places.len() {
         collector.note(format!("{} shapes, but {rows} rows in the .dbf file", places.len()));
     }
     let (mut steps, mut deleted, mut outside) = (rings::MOST_STEPS, 0, 0);
     for (index, &place) in places.iter().enumerate() {
         let row = table.as_ref().and_then(|table| table.row(index));
-        if row.as_ref().is_some_and(dbf::Row::is_deleted) {
+        if row.as_ref().is_some_and(dbf::DbfRow::is_deleted) {
             deleted += 1;
             continue;
         }
@@ -89,7 +89,7 @@ pub(super) fn read(files: &Files<'_>, stated: Option<&Crs>) -> Result<Layer, Vec
             Some(content) => shape(content, index, &mut steps)?,
             None => {
                 outside += 1;
-                Parts::default()
+                FeatureParts::default()
             }
         };
         collector.add(shape, row.map_or_else(Properties::new, |row| row.properties()))?;
@@ -168,7 +168,7 @@ fn one_after_another(shapes: &[u8]) -> Result<Vec<usize>, VectorError> {
 
 /// The content of the record at `at`, by the length in its own header: some writers' indices state others.
 fn content(shapes: &[u8], at: usize) -> Option<&[u8]> {
-    let mut record = Cursor::new(shapes.get(at..)?);
+    let mut record = ByteCursor::new(shapes.get(at..)?);
     record.take(4)?;
     let words = record.array().map(u32::from_be_bytes)?;
     record.take(2 * words as usize)
@@ -183,12 +183,12 @@ fn broken(index: usize, reason: impl Into<String>) -> VectorError {
 }
 
 /// The shape that a record's content is.
-fn shape(content: &[u8], index: usize, steps: &mut u64) -> Result<Parts, VectorError> {
+fn shape(content: &[u8], index: usize, steps: &mut u64) -> Result<FeatureParts, VectorError> {
     let short = || broken(index, "its counts of parts and points do not fit its length");
-    let mut cursor = Cursor::new(content);
+    let mut cursor = ByteCursor::new(content);
     let kind = cursor.u32_le().ok_or_else(short)?;
     let has_z = matches!(kind, 11 | 13 | 15 | 18);
-    let mut parts = Parts::default();
+    let mut parts = FeatureParts::default();
     match kind {
         0 => {}
         1 | 11 | 21 => parts.point(point(cursor, has_z).ok_or_else(short)?),
@@ -202,7 +202,7 @@ fn shape(content: &[u8], index: usize, steps: &mut u64) -> Result<Parts, VectorE
         }
         5 | 15 | 25 => {
             let rings = lines(cursor, has_z).ok_or_else(short)?;
-            let polygons = rings::polygons(rings, Rule::Direction, steps)
+            let polygons = rings::polygons(rings, HoleRule::Direction, steps)
                 .map_err(|_| broken(index, "its rings are too many, too much inside each other"))?;
             polygons.into_iter().for_each(|rings| parts.polygon(rings));
         }
@@ -218,19 +218,19 @@ fn shape(content: &[u8], index: usize, steps: &mut u64) -> Result<Parts, VectorE
     Ok(parts)
 }
 
-fn point(mut cursor: Cursor<'_>, has_z: bool) -> Option<DVec3> {
+fn point(mut cursor: ByteCursor<'_>, has_z: bool) -> Option<DVec3> {
     let (x, y) = (cursor.f64_le()?, cursor.f64_le()?);
     Some(position(x, y, if has_z { Some(elevation(cursor.f64_le()?)) } else { None }))
 }
 
-fn multipoint(mut cursor: Cursor<'_>, has_z: bool) -> Option<Vec<DVec3>> {
+fn multipoint(mut cursor: ByteCursor<'_>, has_z: bool) -> Option<Vec<DVec3>> {
     cursor.take(4 * 8)?;
     let count = cursor.u32_le()? as usize;
     points(&mut cursor, count, has_z)
 }
 
 /// The vertices of each part of a line or an area.
-fn lines(mut cursor: Cursor<'_>, has_z: bool) -> Option<Vec<Vec<DVec3>>> {
+fn lines(mut cursor: ByteCursor<'_>, has_z: bool) -> Option<Vec<Vec<DVec3>>> {
     cursor.take(4 * 8)?;
     let (parts, count) = (cursor.u32_le()? as usize, cursor.u32_le()? as usize);
     let (starts, _) = cursor.take(parts.checked_mul(4)?)?.as_chunks::<4>();
@@ -240,7 +240,7 @@ fn lines(mut cursor: Cursor<'_>, has_z: bool) -> Option<Vec<Vec<DVec3>>> {
     starts.windows(2).map(|pair| points.get(pair[0]..pair[1]).map(<[_]>::to_vec)).collect()
 }
 
-fn points(cursor: &mut Cursor<'_>, count: usize, has_z: bool) -> Option<Vec<DVec3>> {
+fn points(cursor: &mut ByteCursor<'_>, count: usize, has_z: bool) -> Option<Vec<DVec3>> {
     let number = |bytes: &[u8; 8]| f64::from_le_bytes(*bytes);
     let (places, _) = cursor.take(count.checked_mul(16)?)?.as_chunks::<8>();
     let elevations = if has_z {
@@ -302,7 +302,7 @@ mod tests {
         Files { shapes, index: None, table: None, system: None, encoding: None }
     }
 
-    fn read_plain(shapes: &[u8]) -> Result<Layer, VectorError> {
+    fn read_plain(shapes: &[u8]) -> Result<VectorLayer, VectorError> {
         read(&files(shapes), Some(&Crs::local()))
     }
 

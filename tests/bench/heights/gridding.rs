@@ -6,8 +6,8 @@
 //! are of the calls alone.
 
 use glam::{DVec2, DVec3};
-use sandtable::dem::gridding::frame::Frame;
-use sandtable::dem::gridding::{self, Beyond, Method};
+use sandtable::dem::gridding::frame::CellGrid;
+use sandtable::dem::gridding::{self, Beyond, GriddingMethod};
 use sandtable::dem::points::PointCloud;
 use sandtable::geom::rect::Rect;
 use spade::{
@@ -37,9 +37,10 @@ pub fn print() {
         notes: Vec::new(),
     };
     let extent = Rect { min: DVec2::splat(-0.5), max: DVec2::splat(SIDE as f64 - 0.5) };
-    let frame = Frame::within(extent, 1.0).expect("a lattice");
-    let ours = |method: Method| gridding::grid(&cloud, &frame, method, Beyond::NoData).expect("a grid");
-    let by_distance = Method::InverseDistance { k: 12, power: 2.0 };
+    let frame = CellGrid::within(extent, 1.0).expect("a lattice");
+    let ours =
+        |method: GriddingMethod| gridding::grid(&cloud, &frame, method, Beyond::NoData).expect("a grid");
+    let by_distance = GriddingMethod::InverseDistance { k: 12, power: 2.0 };
     println!(
         "{POINTS} points to {SIDE} x {SIDE} cells; medians of {ROUNDS} rounds, ratio = peer / ours in a round\n"
     );
@@ -47,25 +48,25 @@ pub fn print() {
     let values = interleaved(
         ROUNDS,
         &mut [
-            &mut || time_ms(|| ours(Method::Tin)),
+            &mut || time_ms(|| ours(GriddingMethod::Tin)),
             &mut || time_ms(|| spade_linear(&points)),
-            &mut || time_ms(|| ours(Method::Natural)),
+            &mut || time_ms(|| ours(GriddingMethod::Natural)),
             &mut || time_ms(|| spade_natural(&points)),
             &mut || time_ms(|| ours(by_distance)),
-            &mut || time_ms(|| ours(Method::Quadrant { power: 1.0 })),
-            &mut || time_ms(|| ours(Method::Nearest)),
+            &mut || time_ms(|| ours(GriddingMethod::Quadrant { power: 1.0 })),
+            &mut || time_ms(|| ours(GriddingMethod::Nearest)),
             &mut || time_ms(|| triangulation(&points)),
         ],
     );
-    let heights = |method: Method| ours(method).raster.samples.iter().collect::<Vec<f64>>();
+    let heights = |method: GriddingMethod| ours(method).raster.samples.iter().collect::<Vec<f64>>();
     let rows = [
-        ("TIN-linear", heights(Method::Tin)),
+        ("TIN-linear", heights(GriddingMethod::Tin)),
         ("  spade barycentric", north_up(&spade_linear(&points))),
-        ("natural neighbour", heights(Method::Natural)),
+        ("natural neighbour", heights(GriddingMethod::Natural)),
         ("  spade natural neighbour", north_up(&spade_natural(&points))),
         ("12 nearest, inverse square", heights(by_distance)),
-        ("nearest by quadrant", heights(Method::Quadrant { power: 1.0 })),
-        ("nearest", heights(Method::Nearest)),
+        ("nearest by quadrant", heights(GriddingMethod::Quadrant { power: 1.0 })),
+        ("nearest", heights(GriddingMethod::Nearest)),
     ];
     for (index, (name, heights)) in rows.iter().enumerate() {
         let peer = name.starts_with("  ");
@@ -91,7 +92,7 @@ pub fn print() {
     beside_gdal(&points, &ours, by_distance);
 }
 
-fn beside_python(points: &[DVec3], ours: &dyn Fn(Method) -> gridding::Gridded) {
+fn beside_python(points: &[DVec3], ours: &dyn Fn(GriddingMethod) -> gridding::Gridded) {
     let Some(python) = peers::python() else { return };
     let table = table(points);
     let mut scipy = Vec::new();
@@ -105,15 +106,19 @@ fn beside_python(points: &[DVec3], ours: &dyn Fn(Method) -> gridding::Gridded) {
                 scipy.push(times.first().copied().unwrap_or(f64::NAN));
                 0.0
             },
-            &mut || time_ms(|| ours(Method::Tin)),
-            &mut || time_ms(|| ours(Method::Natural)),
+            &mut || time_ms(|| ours(GriddingMethod::Tin)),
+            &mut || time_ms(|| ours(GriddingMethod::Natural)),
         ],
     );
     row("scipy griddata linear", &scipy, &values[1]);
     row("startin natural neighbour", &startin, &values[2]);
 }
 
-fn beside_gdal(points: &[DVec3], ours: &dyn Fn(Method) -> gridding::Gridded, by_distance: Method) {
+fn beside_gdal(
+    points: &[DVec3],
+    ours: &dyn Fn(GriddingMethod) -> gridding::Gridded,
+    by_distance: GriddingMethod,
+) {
     if !peers::is_there("gdal_grid") {
         return;
     }
@@ -131,7 +136,7 @@ fn beside_gdal(points: &[DVec3], ours: &dyn Fn(Method) -> gridding::Gridded, by_
         SLOW_ROUNDS,
         &mut [
             &mut || gdal("linear:radius=-1"),
-            &mut || time_ms(|| ours(Method::Tin)),
+            &mut || time_ms(|| ours(GriddingMethod::Tin)),
             &mut || gdal("invdistnn:radius=20:max_points=12"),
             &mut || time_ms(|| ours(by_distance)),
         ],

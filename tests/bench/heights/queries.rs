@@ -12,8 +12,8 @@ use glam::DVec2;
 use sandtable::dem::raster::{Raster, Samples};
 use sandtable::geom::crs::Crs;
 use sandtable::terrain::lattice::{Lattice, Post};
-use sandtable::terrain::query::service::{Epoch, HeightService};
-use sandtable::terrain::query::tiles::Tiles;
+use sandtable::terrain::query::service::{HeightService, Snapshot};
+use sandtable::terrain::query::tiles::HeightTiles;
 use sandtable::terrain::query::{Answer, Interpolation, Status, Surface};
 
 use crate::rounds::{ROUNDS, interleaved, median, ratio, time_ms};
@@ -49,17 +49,18 @@ pub fn print() {
 }
 
 fn tiles(field: &Field) {
-    let epoch = field.service.now();
+    let epoch = field.service.snapshot();
     let lattice = epoch.lattice();
-    let made = interleaved(3, &mut [&mut || time_ms(|| Tiles::new(lattice))]);
+    let made = interleaved(3, &mut [&mut || time_ms(|| HeightTiles::new(lattice))]);
     let share = 16.0 / 9.0;
     println!("{}²: tiles are made in {:.0} ms and hold {share:.2} × the field", field.n, median(&made[0]));
 }
 
 fn compare(field: &Field, what: &'static str, at: &[DVec2], peer: Option<&mut Peer>) {
-    let cold = field.service.now();
+    let cold = field.service.snapshot();
     // A service of its own, whose tiles are made by the questions before the first round.
-    let warm = HeightService::new(Arc::clone(cold.source()), Crs::local(), Arc::clone(cold.lattice())).now();
+    let warm =
+        HeightService::new(Arc::clone(cold.source()), Crs::local(), Arc::clone(cold.lattice())).snapshot();
     let mut out = Out::new();
     for _ in 0..=cold.lattice().heights().len() / POINTS + 1 {
         out.apart(&warm, Surface::Ground, &field.random);
@@ -111,8 +112,8 @@ fn rate(work: impl FnOnce()) -> f64 {
 }
 
 /// An epoch like this one that has not been asked anything.
-fn fresh(epoch: &Epoch) -> Arc<Epoch> {
-    HeightService::new(Arc::clone(epoch.source()), Crs::local(), Arc::clone(epoch.lattice())).now()
+fn fresh(epoch: &Snapshot) -> Arc<Snapshot> {
+    HeightService::new(Arc::clone(epoch.source()), Crs::local(), Arc::clone(epoch.lattice())).snapshot()
 }
 
 /// Where answers go.
@@ -131,17 +132,17 @@ impl Out {
         }
     }
 
-    fn apart(&mut self, epoch: &Epoch, surface: Surface, at: &[DVec2]) {
+    fn apart(&mut self, epoch: &Snapshot, surface: Surface, at: &[DVec2]) {
         let out = (&mut self.heights_m[..], &mut self.statuses[..]);
         epoch.heights_apart(surface, Interpolation::Bilinear, at, out);
     }
 
-    fn heights_after(&mut self, epoch: &Epoch, at: &[DVec2]) -> f64 {
+    fn heights_after(&mut self, epoch: &Snapshot, at: &[DVec2]) -> f64 {
         self.apart(epoch, Surface::Ground, at);
         self.heights_m.iter().sum()
     }
 
-    fn answers(&mut self, epoch: &Epoch, at: &[DVec2]) {
+    fn answers(&mut self, epoch: &Snapshot, at: &[DVec2]) {
         epoch.heights(Surface::Ground, Interpolation::Bilinear, at, &mut self.answers);
     }
 
@@ -227,7 +228,7 @@ impl Field {
         let write = |name: String, bytes: &[u8]| {
             fs::write(peers::folder().join(name), bytes).expect("the folder can be written");
         };
-        let epoch = self.service.now();
+        let epoch = self.service.snapshot();
         let bytes = |values: &[f32]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>();
         write(format!("field_{}.f32", self.n), &bytes(epoch.lattice().heights()));
         for (name, at) in [("random", &self.random), ("line", &self.line)] {

@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3};
 use sandtable::terrain::lattice::Lattice;
 use sandtable::terrain::sight::Curvature;
 use sandtable::terrain::sight::ground::SightGround;
-use sandtable::terrain::sight::line::{End, Sight};
+use sandtable::terrain::sight::line::{Sight, SightEnd};
 use sandtable::terrain::sight::pyramid::Pyramid;
 use sandtable::terrain::sight::ray::Ray;
 
@@ -71,8 +71,9 @@ fn builds(n: usize, ground: &SightGround, peers: &mut [Embree]) {
 }
 
 fn lines(ground: &SightGround, pairs: &[[u32; 4]], peers: &mut [Embree]) {
-    let end = |x: u32, y: u32| End { at: DVec2::new(f64::from(x), f64::from(y)) * CELL_M, above_m: ABOVE_M };
-    let asked: Vec<(End, End)> =
+    let end =
+        |x: u32, y: u32| SightEnd { at: DVec2::new(f64::from(x), f64::from(y)) * CELL_M, above_m: ABOVE_M };
+    let asked: Vec<(SightEnd, SightEnd)> =
         pairs.iter().map(|&[x, y, to_x, to_y]| (end(x, y), end(to_x, to_y))).collect();
     let mut blocked = 0;
     let mut ours = || {

@@ -8,9 +8,9 @@
 use std::fs;
 use std::path::Path;
 
-use sandtable::dem::read::{Hints, read};
+use sandtable::dem::read::{DemHints, read};
 use sandtable::dem::tiff_windows::GeoTiffWindows;
-use sandtable::dem::windows::{Window, Windows};
+use sandtable::dem::windows::{RasterWindow, Windows};
 
 use crate::fields;
 use crate::peers;
@@ -60,7 +60,7 @@ fn row(python: &str, file: &Path, title: &str, what: &str, runs: usize, work: fn
 /// Reads the file whole and returns its last height.
 fn whole(file: &Path) -> f64 {
     let bytes = fs::read(file).expect("it was written");
-    let raster = read("field.tif", &bytes, &Hints::default()).expect("a plain file");
+    let raster = read("field.tif", &bytes, &DemHints::default()).expect("a plain file");
     raster.at(SIDE as u32 - 1, SIDE as u32 - 1)
 }
 
@@ -68,10 +68,10 @@ fn whole(file: &Path) -> f64 {
 fn first(file: &Path) -> f64 {
     let opened = fs::File::open(file).expect("it was written");
     let mut windows =
-        GeoTiffWindows::open("field.tif", opened, &Hints::default(), CACHE_BYTES).expect("a plain file");
+        GeoTiffWindows::open("field.tif", opened, &DemHints::default(), CACHE_BYTES).expect("a plain file");
     let middle = SIDE as u32 / 2;
     let mut height = Vec::new();
-    let window = Window { column: middle, row: middle, width: 1, height: 1 };
+    let window = RasterWindow { column: middle, row: middle, width: 1, height: 1 };
     windows.read(window, &mut height).expect("inside");
     f64::from(height[0])
 }

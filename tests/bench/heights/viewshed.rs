@@ -11,8 +11,8 @@ use glam::DVec2;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use sandtable::terrain::lattice::{Lattice, Post};
 use sandtable::terrain::sight::Curvature;
-use sandtable::terrain::sight::line::{End, Sight, line_of_sight};
-use sandtable::terrain::sight::viewshed::{Sector, Seen, Viewshed, ViewshedOptions, viewshed};
+use sandtable::terrain::sight::line::{Sight, SightEnd, line_of_sight};
+use sandtable::terrain::sight::viewshed::{PostVisibility, Sector, Viewshed, ViewshedOptions, viewshed};
 
 use crate::rounds::{interleaved, median, ratio, time_ms};
 use crate::{fields, peers};
@@ -59,7 +59,7 @@ fn threads(count: usize) -> ThreadPool {
 
 fn print_from(lattice: &Lattice, raster: &Path, post: Post) {
     let options = ViewshedOptions {
-        observer: End { at: lattice.map_position(post), above_m: EYE_M },
+        observer: SightEnd { at: lattice.map_position(post), above_m: EYE_M },
         target_above_m: 0.0,
         range_m: f64::INFINITY,
         sector: Sector::ALL,
@@ -105,7 +105,7 @@ fn print_from(lattice: &Lattice, raster: &Path, post: Post) {
 
 fn report(lattice: &Lattice, options: &ViewshedOptions, swept: &Viewshed) {
     let line = |post: Post| {
-        let target = End { at: lattice.map_position(post), above_m: options.target_above_m };
+        let target = SightEnd { at: lattice.map_position(post), above_m: options.target_above_m };
         line_of_sight(lattice, options.observer, target, options.curvature)
     };
     let sampled = lattice.posts().zip(&swept.posts).step_by(STRIDE);
@@ -113,7 +113,7 @@ fn report(lattice: &Lattice, options: &ViewshedOptions, swept: &Viewshed) {
     let ms = time_ms(|| {
         for (post, &seen) in sampled {
             count += 1;
-            wrong += usize::from((line(post) == Sight::Clear) != (seen == Seen::Visible));
+            wrong += usize::from((line(post) == Sight::Clear) != (seen == PostVisibility::Visible));
         }
     });
     let all = swept.posts.len() as f64;
@@ -127,7 +127,7 @@ fn report(lattice: &Lattice, options: &ViewshedOptions, swept: &Viewshed) {
 
 /// How much of what can be seen GDAL finds, and how much of what it finds can be seen.
 fn recall(exact: &Viewshed, gdal: &[u8]) {
-    let seen = |index: usize| exact.posts[index] == Seen::Visible;
+    let seen = |index: usize| exact.posts[index] == PostVisibility::Visible;
     let found = (0..gdal.len()).filter(|&index| gdal[index] > 0).count() as f64;
     let both = (0..gdal.len()).filter(|&index| gdal[index] > 0 && seen(index)).count() as f64;
     let visible = exact.counts().visible as f64;

@@ -14,7 +14,7 @@ use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::errors::exact::own_errors;
 use sandtable::roam::errors::midpoint::midpoint_error_at;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::layout::Layout;
+use sandtable::roam::layout::PatchLayout;
 use sandtable::terrain::lattice::Lattice;
 
 use crate::fields::fractal;
@@ -56,7 +56,7 @@ fn print_map_times(n: usize, patches: &[u32]) {
         ),
     ];
     for &patch in patches {
-        let layout = Layout::new(n as u32, n as u32, patch).expect("sound");
+        let layout = PatchLayout::new(n as u32, n as u32, patch).expect("sound");
         let lattice = &lattice;
         contestants.push((
             format!("exact, patches of {patch}, own errors"),
@@ -82,7 +82,7 @@ fn print_map_times(n: usize, patches: &[u32]) {
 
 fn print_triangle_counts(n: usize, bounds_m: &[f32]) {
     let lattice = Arc::new(lattice_of(n));
-    let layout = Layout::new(n as u32, n as u32, (n - 1) as u32).expect("sound");
+    let layout = PatchLayout::new(n as u32, n as u32, (n - 1) as u32).expect("sound");
     let exact = ErrorMap::exact(&lattice, &layout);
     let midpoint = ErrorMap::midpoint(&lattice, &layout);
     let wedgies = wedgies(&lattice, &layout);
@@ -116,14 +116,14 @@ fn row(lattice: &Arc<Lattice>, active: ActiveSet) -> (usize, f64) {
     (mesh.triangles.len(), measure(lattice, &mesh).expect("a mesh on posts").max_m)
 }
 
-fn vertices(layout: &Layout) -> impl Iterator<Item = Vertex> + use<> {
+fn vertices(layout: &PatchLayout) -> impl Iterator<Item = Vertex> + use<> {
     let (columns, layout) = (layout.columns(), *layout);
     (0..layout.vertex_count())
         .map(move |index| Vertex::new((index % columns) as i32, (index / columns) as i32))
         .filter(move |&vertex| !layout.is_corner(vertex))
 }
 
-fn above(map: &ErrorMap, layout: &Layout, tolerance_m: f32) -> ActiveSet {
+fn above(map: &ErrorMap, layout: &PatchLayout, tolerance_m: f32) -> ActiveSet {
     let mut active = ActiveSet::new(*layout);
     for vertex in vertices(layout).filter(|&vertex| map.at(layout, vertex) > tolerance_m) {
         active.activate(vertex);
@@ -132,7 +132,7 @@ fn above(map: &ErrorMap, layout: &Layout, tolerance_m: f32) -> ActiveSet {
 }
 
 /// The mesh of midpoint errors at the highest tolerance that keeps `bound_m`, found by halving.
-fn lowered(lattice: &Arc<Lattice>, layout: &Layout, midpoint: &ErrorMap, bound_m: f32) -> (usize, f64) {
+fn lowered(lattice: &Arc<Lattice>, layout: &PatchLayout, midpoint: &ErrorMap, bound_m: f32) -> (usize, f64) {
     let (mut low, mut high) = (0.0, bound_m);
     let mut best = row(lattice, above(midpoint, layout, 0.0));
     for _ in 0..12 {
@@ -148,7 +148,7 @@ fn lowered(lattice: &Arc<Lattice>, layout: &Layout, midpoint: &ErrorMap, bound_m
 }
 
 /// Duchaineau et al. 1997, equation 1: a wedgie is as thick as its own midpoint is off and its thicker child.
-fn wedgies(lattice: &Lattice, layout: &Layout) -> ErrorMap {
+fn wedgies(lattice: &Lattice, layout: &PatchLayout) -> ErrorMap {
     let mut thickness = vec![0f32; layout.vertex_count()];
     let mut finest_first: Vec<Vertex> = vertices(layout).collect();
     finest_first.sort_by_key(|vertex| (vertex.step(), vertex.parents()[0].step() > vertex.step()));

@@ -6,23 +6,23 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::{DVec2, Vec3};
-use sandtable::dem::read::{Hints, read};
+use sandtable::dem::read::{DemHints, read};
 use sandtable::dem::warp::to_metric;
 use sandtable::mesh::trimesh::TriMesh;
 use sandtable::roam::criterion::spheres::Spheres;
 use sandtable::roam::culling::patches_in_view;
 use sandtable::roam::displayed::DisplayedTerrain;
-use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, Measure, Radius};
+use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
 use sandtable::roam::edit::{mend_exact, mend_midpoint, mend_spheres};
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::errors::exact::own_errors;
-use sandtable::roam::ground::Ground;
-use sandtable::roam::layout::Layout;
+use sandtable::roam::ground::PatchedGround;
+use sandtable::roam::layout::PatchLayout;
 use sandtable::roam::refine::deferred::Deferred;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::roam::roughness::Roughness;
 use sandtable::roam::spheres::{OwnRadius, SphereMap};
-use sandtable::terrain::brush::{Changes, PostRect, set_heights};
+use sandtable::terrain::brush::{BrushChanges, PostRect, set_heights};
 use sandtable::terrain::lattice::{Lattice, Post};
 use sandtable::view::frustum::Frustum;
 
@@ -53,9 +53,9 @@ fn print_nesting() {
     println!("\nNesting plain spheres over midpoint errors, ms, least of {REBUILDS}");
     for posts in [513, 4097] {
         let lattice = ground(posts);
-        let layout = Layout::new(posts, posts, 64).expect("sound");
+        let layout = PatchLayout::new(posts, posts, 64).expect("sound");
         let errors = ErrorMap::midpoint(&lattice, &layout);
-        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
         let [one, two] = [1, 2].map(|threads| {
             let pool =
                 rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be had");
@@ -78,16 +78,16 @@ fn print_edits() {
     for posts in [513, 1025, 4097].into_iter().filter(|&posts| only.is_none_or(|only: u32| only == posts)) {
         let lattice = ground(posts);
         for (patch, measure) in
-            [(64, Measure::Midpoint), (posts - 1, Measure::Midpoint), (64, Measure::Exact)]
+            [(64, ErrorMeasure::Midpoint), (posts - 1, ErrorMeasure::Midpoint), (64, ErrorMeasure::Exact)]
         {
             print_row(&lattice, patch, measure);
         }
     }
 }
 
-fn print_row(lattice: &Lattice, patch: u32, measure: Measure) {
+fn print_row(lattice: &Lattice, patch: u32, measure: ErrorMeasure) {
     let mut lattice = lattice.clone();
-    let layout = Layout::new(lattice.columns(), lattice.rows(), patch).expect("sound");
+    let layout = PatchLayout::new(lattice.columns(), lattice.rows(), patch).expect("sound");
     let anew =
         (0..REBUILDS).map(|_| timed(|| make(&lattice, &layout, measure)).1).fold(f64::INFINITY, f64::min);
     let mut maps = make(&lattice, &layout, measure);
@@ -96,10 +96,10 @@ fn print_row(lattice: &Lattice, patch: u32, measure: Measure) {
         let changes = bump(&mut lattice, number);
         let change = changes.pieces.first().expect("a bump changes heights");
         let (errors, spent) = timed(|| match measure {
-            Measure::Midpoint => mend_midpoint(&mut maps.errors, &lattice, &layout, change),
-            Measure::Exact => mend_exact(&mut maps.own, &mut maps.errors, &lattice, &layout, change),
+            ErrorMeasure::Midpoint => mend_midpoint(&mut maps.errors, &lattice, &layout, change),
+            ErrorMeasure::Exact => mend_exact(&mut maps.own, &mut maps.errors, &lattice, &layout, change),
         });
-        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
         let own = own_radius(&maps.errors, measure);
         let (_, more) = timed(|| mend_spheres(&mut maps.spheres, ground, &own, change, &errors));
         errors_us.push(spent);
@@ -123,10 +123,10 @@ fn print_row(lattice: &Lattice, patch: u32, measure: Measure) {
 }
 
 /// Edits of a terrain that mends everything and tells the dirty patches, writing the heights included.
-fn whole_edits(lattice: &Lattice, patch: u32, measure: Measure) -> Vec<f64> {
+fn whole_edits(lattice: &Lattice, patch: u32, measure: ErrorMeasure) -> Vec<f64> {
     let radius = match measure {
-        Measure::Midpoint => Radius::Plain,
-        Measure::Exact => Radius::Bounding,
+        ErrorMeasure::Midpoint => Radius::Plain,
+        ErrorMeasure::Exact => Radius::Bounding,
     };
     let options = DynamicOptions { patch, exaggeration: 1.0, measure, radius, reach: REACH };
     let mut terrain = DynamicTerrain::new(lattice.clone(), options).expect("sound");
@@ -141,7 +141,7 @@ fn print_walked() {
     let options = DynamicOptions {
         patch: 64,
         exaggeration: 1.0,
-        measure: Measure::Midpoint,
+        measure: ErrorMeasure::Midpoint,
         radius: Radius::Plain,
         reach: REACH,
     };
@@ -179,28 +179,28 @@ struct Maps {
     spheres: SphereMap,
 }
 
-fn make(lattice: &Lattice, layout: &Layout, measure: Measure) -> Maps {
+fn make(lattice: &Lattice, layout: &PatchLayout, measure: ErrorMeasure) -> Maps {
     let (own, errors) = match measure {
-        Measure::Midpoint => (Vec::new(), ErrorMap::midpoint(lattice, layout)),
-        Measure::Exact => {
+        ErrorMeasure::Midpoint => (Vec::new(), ErrorMap::midpoint(lattice, layout)),
+        ErrorMeasure::Exact => {
             let own = own_errors(lattice, layout);
             (own.clone(), ErrorMap::raised(own, layout))
         }
     };
-    let ground = Ground { lattice, layout, exaggeration: 1.0 };
+    let ground = PatchedGround { lattice, layout, exaggeration: 1.0 };
     let spheres = SphereMap::of(ground, &own_radius(&errors, measure));
     Maps { own, errors, spheres }
 }
 
-fn own_radius(errors: &ErrorMap, measure: Measure) -> OwnRadius<'_> {
+fn own_radius(errors: &ErrorMap, measure: ErrorMeasure) -> OwnRadius<'_> {
     match measure {
-        Measure::Midpoint => OwnRadius::Plain { errors, reach: REACH },
-        Measure::Exact => OwnRadius::Bounding { errors, reach: REACH },
+        ErrorMeasure::Midpoint => OwnRadius::Plain { errors, reach: REACH },
+        ErrorMeasure::Exact => OwnRadius::Bounding { errors, reach: REACH },
     }
 }
 
 /// Raises a round bump of 5 m at one of many places.
-fn bump(lattice: &mut Lattice, number: u32) -> Changes {
+fn bump(lattice: &mut Lattice, number: u32) -> BrushChanges {
     let places = lattice.columns() - SIDE;
     let at = |prime: u32| (u64::from(number) * u64::from(prime) % u64::from(places)) as u32;
     let first = Post { column: at(7919), row: at(104_729) };
@@ -208,7 +208,7 @@ fn bump(lattice: &mut Lattice, number: u32) -> Changes {
 }
 
 /// Raises a round bump of 5 m whose south-west corner is `first`.
-fn bump_at(lattice: &mut Lattice, first: Post) -> Changes {
+fn bump_at(lattice: &mut Lattice, first: Post) -> BrushChanges {
     let last = Post { column: first.column + SIDE - 1, row: first.row + SIDE - 1 };
     let posts = PostRect { first, last };
     let half = f64::from(SIDE / 2);
@@ -280,7 +280,7 @@ fn print_constrained() {
 fn real(path: &Path) -> Option<Lattice> {
     let bytes = std::fs::read(path).ok()?;
     let companions = |name: &str| std::fs::read(name).ok();
-    let hints = Hints { companions: &companions, ..Hints::default() };
+    let hints = DemHints { companions: &companions, ..DemHints::default() };
     let raster = read(&path.to_string_lossy(), &bytes, &hints).expect("a file of the test data");
     Some(Lattice::from_raster(&to_metric(&raster, None).expect("it has a place")).expect("it holds ground"))
 }
@@ -293,8 +293,8 @@ struct Sight {
 }
 
 fn compare(name: &str, lattice: &Arc<Lattice>, reach: f32) {
-    let layout = Layout::new(lattice.columns(), lattice.rows(), 64).expect("sound");
-    let ground = Ground { lattice, layout: &layout, exaggeration: 1.0 };
+    let layout = PatchLayout::new(lattice.columns(), lattice.rows(), 64).expect("sound");
+    let ground = PatchedGround { lattice, layout: &layout, exaggeration: 1.0 };
     let errors = ErrorMap::midpoint(lattice, &layout);
     let roughness = Roughness::new(lattice, (1, 1));
     let plain = see(lattice, &layout, &SphereMap::plain(ground, &errors, reach));
@@ -321,8 +321,8 @@ fn compare(name: &str, lattice: &Arc<Lattice>, reach: f32) {
     );
 }
 
-fn see(lattice: &Arc<Lattice>, layout: &Layout, spheres: &SphereMap) -> Sight {
-    let ground = Ground { lattice, layout, exaggeration: 1.0 };
+fn see(lattice: &Arc<Lattice>, layout: &PatchLayout, spheres: &SphereMap) -> Sight {
+    let ground = PatchedGround { lattice, layout, exaggeration: 1.0 };
     let (far, top) = (lattice.extent().max.as_vec2(), lattice.height_range().1);
     let eyes = (0..8u16).map(|eye| {
         let angle = f32::from(eye) * std::f32::consts::FRAC_PI_4;
@@ -334,7 +334,7 @@ fn see(lattice: &Arc<Lattice>, layout: &Layout, spheres: &SphereMap) -> Sight {
     Sight { triangles: mean(|sight| sight.triangles), mean_m: mean(|sight| sight.mean_m) }
 }
 
-fn see_from(lattice: &Arc<Lattice>, ground: Ground<'_>, spheres: &SphereMap, eye: Vec3) -> Sight {
+fn see_from(lattice: &Arc<Lattice>, ground: PatchedGround<'_>, spheres: &SphereMap, eye: Vec3) -> Sight {
     let layout = ground.layout;
     let active = rebuild(layout, &Spheres::new(ground, spheres, eye), layout.patches());
     let shown = DisplayedTerrain::new(Arc::clone(lattice), active, 1.0, layout.patches().collect());

@@ -8,14 +8,14 @@ use sandtable::mesh::trimesh::TriMesh;
 use sandtable::roam::active::ActiveSet;
 use sandtable::roam::bintree::Triangle;
 use sandtable::roam::criterion::flat::Flat;
-use sandtable::roam::emit::bintree::Block;
-use sandtable::roam::emit::geomipmap::{self, Levels, Pyramids};
+use sandtable::roam::emit::bintree::VertexBlock;
+use sandtable::roam::emit::geomipmap::{self, PatchLevels, Pyramids};
 use sandtable::roam::emit::strips::{StripStats, Strips};
 use sandtable::roam::emit::{bintree, full, quadtree, world};
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::Ground;
-use sandtable::roam::layout::Layout;
+use sandtable::roam::ground::PatchedGround;
+use sandtable::roam::layout::PatchLayout;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::terrain::lattice::Lattice;
 
@@ -31,7 +31,7 @@ const ROUNDS: usize = 31;
 pub fn print() {
     let heights = fractal(POSTS as usize);
     let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), POSTS, heights).expect("sound");
-    let layout = Layout::new(POSTS, POSTS, 64).expect("sound");
+    let layout = PatchLayout::new(POSTS, POSTS, 64).expect("sound");
     let errors = ErrorMap::exact(&lattice, &layout);
     let pyramids = Pyramids::new(&lattice, &layout);
     println!("Emitters, fractal {POSTS}², patches of 64, least of {ROUNDS} interleaved rounds");
@@ -45,9 +45,9 @@ pub fn print() {
 /// What all rows of a table read.
 struct Field<'a> {
     lattice: &'a Lattice,
-    layout: &'a Layout,
+    layout: &'a PatchLayout,
     active: &'a ActiveSet,
-    levels: &'a Levels,
+    levels: &'a PatchLevels,
 }
 
 /// One way to emit: its name and what makes it do so once, returning what was sent.
@@ -152,7 +152,7 @@ fn by_corners(active: &ActiveSet, mut emit: impl FnMut([Vertex; 3])) {
 }
 
 fn index_lists(active: &ActiveSet, list: &mut Vec<[u16; 3]>) -> StripStats {
-    let block = Block::of(active.layout()).expect("small patches");
+    let block = VertexBlock::of(active.layout()).expect("small patches");
     list.clear();
     active.layout().patches().for_each(|corner| block.append(active, corner, |_| true, list));
     StripStats { triangles: list.len(), vertices: 3 * list.len(), strips: list.len() }
@@ -172,14 +172,14 @@ fn fans(active: &ActiveSet) -> StripStats {
 
 fn placed(field: &Field<'_>) -> StripStats {
     let mut mesh = TriMesh::default();
-    let ground = Ground { lattice: field.lattice, layout: field.layout, exaggeration: 1.0 };
+    let ground = PatchedGround { lattice: field.lattice, layout: field.layout, exaggeration: 1.0 };
     bintree::triangles(field.active, field.layout.patches(), world::placing(ground, &mut mesh));
     let triangles = black_box(&mesh).triangles.len();
     StripStats { triangles, vertices: mesh.positions.len(), strips: triangles }
 }
 
 /// The bits of the object-space tolerance whose mesh has about `wanted` triangles.
-fn bits(layout: &Layout, errors: &ErrorMap, wanted: usize) -> ActiveSet {
+fn bits(layout: &PatchLayout, errors: &ErrorMap, wanted: usize) -> ActiveSet {
     let at = |tolerance_m| rebuild(layout, &Flat::new(layout, errors, tolerance_m), layout.patches());
     at(tolerance_for(wanted, |tolerance_m| {
         let active = at(tolerance_m);
@@ -188,8 +188,8 @@ fn bits(layout: &Layout, errors: &ErrorMap, wanted: usize) -> ActiveSet {
 }
 
 /// The levels of the object-space tolerance whose mesh has about `wanted` triangles.
-fn levels(layout: &Layout, pyramids: &Pyramids, wanted: usize) -> Levels {
-    let count = |levels: &Levels| {
+fn levels(layout: &PatchLayout, pyramids: &Pyramids, wanted: usize) -> PatchLevels {
+    let count = |levels: &PatchLevels| {
         read(|read| geomipmap::triangles(layout, levels, layout.patches(), |corners| read.add(corners)))
             .triangles
     };

@@ -6,12 +6,12 @@ use std::fs;
 use std::time::Instant;
 
 use glam::{DAffine2, DMat2, DVec2, Vec3};
-use sandtable::dem::fault::Fault;
+use sandtable::dem::fault::DemErrorKind;
 use sandtable::dem::raster::{Raster, Samples};
-use sandtable::dem::windows::{Window, Windows};
+use sandtable::dem::windows::{RasterWindow, Windows};
 use sandtable::roam::block::BlockSource;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::Ground;
+use sandtable::roam::ground::PatchedGround;
 use sandtable::roam::paging::ground::{PagedGround, PagingOptions, exact_spheres};
 use sandtable::roam::paging::walk::walk;
 use sandtable::roam::spheres::SphereMap;
@@ -67,7 +67,7 @@ impl Windows for Rolling {
         &self.bare
     }
 
-    fn read(&mut self, window: Window, out: &mut Vec<f32>) -> Result<(), Fault> {
+    fn read(&mut self, window: RasterWindow, out: &mut Vec<f32>) -> Result<(), DemErrorKind> {
         out.clear();
         for row in window.row..window.row + window.height {
             out.extend((window.column..window.column + window.width).map(|column| {
@@ -122,7 +122,11 @@ pub fn print() {
     }
 }
 
-fn row<S: Fn(Ground<'_>) -> SphereMap>(ground: &mut PagedGround<Rolling, S>, metres: f32, elsewhere: i32) {
+fn row<S: Fn(PatchedGround<'_>) -> SphereMap>(
+    ground: &mut PagedGround<Rolling, S>,
+    metres: f32,
+    elsewhere: i32,
+) {
     forget_peak();
     let eye_at = |frame: u16| Vec3::new(20_000.0, 15_000.0 + metres * f32::from(frame), 150.0);
     let (mut seen, mut near, mut triangles, mut worst) = (0, 0, 0u64, 0);
@@ -157,7 +161,10 @@ fn row<S: Fn(Ground<'_>) -> SphereMap>(ground: &mut PagedGround<Rolling, S>, met
 }
 
 /// The least time of twenty loads of patches that are not kept, those from patch number `elsewhere` on.
-fn load_ms<S: Fn(Ground<'_>) -> SphereMap>(ground: &mut PagedGround<Rolling, S>, elsewhere: i32) -> f64 {
+fn load_ms<S: Fn(PatchedGround<'_>) -> SphereMap>(
+    ground: &mut PagedGround<Rolling, S>,
+    elsewhere: i32,
+) -> f64 {
     let far = (0..20).map(|at| Vertex::new(64 * (elsewhere + at % 5), 64 * (elsewhere + at / 5)));
     far.map(|corner| {
         let start = Instant::now();
@@ -167,7 +174,10 @@ fn load_ms<S: Fn(Ground<'_>) -> SphereMap>(ground: &mut PagedGround<Rolling, S>,
     .fold(f64::INFINITY, f64::min)
 }
 
-fn in_view<S: Fn(Ground<'_>) -> SphereMap>(ground: &PagedGround<Rolling, S>, eye: Vec3) -> Vec<Vertex> {
+fn in_view<S: Fn(PatchedGround<'_>) -> SphereMap>(
+    ground: &PagedGround<Rolling, S>,
+    eye: Vec3,
+) -> Vec<Vertex> {
     let ahead = eye + Vec3::new(0.0, 1000.0, -80.0);
     let camera = Camera::new(eye, ahead, 1.047, (1920, 1080), (1.0, 30_000.0)).expect("a sound camera");
     let frustum = Frustum::of(&camera);

@@ -20,9 +20,9 @@ use sandtable::roam::criterion::variance::Variance;
 use sandtable::roam::culling::{Culling, PatchHeights, cull};
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::Ground;
-use sandtable::roam::layout::{DEFAULT_PATCH, Layout};
-use sandtable::roam::refine::changes::Changes;
+use sandtable::roam::ground::PatchedGround;
+use sandtable::roam::layout::{DEFAULT_PATCH, PatchLayout};
+use sandtable::roam::refine::changes::RefinementChanges;
 use sandtable::roam::refine::coherent::Coherent;
 use sandtable::roam::refine::queues::{Goal, Queues};
 use sandtable::roam::refine::rebuild::rebuild;
@@ -74,7 +74,7 @@ impl Rule {
 /// The terrain and what is measured of it once.
 struct World {
     lattice: Lattice,
-    layout: Layout,
+    layout: PatchLayout,
     errors: ErrorMap,
     heights: PatchHeights,
 }
@@ -83,14 +83,15 @@ impl World {
     fn new() -> Self {
         let spacing = DVec2::splat(f64::from(SPACING_M));
         let lattice = Lattice::new(DVec2::ZERO, spacing, POSTS, fractal(POSTS as usize)).expect("sound");
-        let layout = Layout::new(POSTS, POSTS, DEFAULT_PATCH).expect("sound");
+        let layout = PatchLayout::new(POSTS, POSTS, DEFAULT_PATCH).expect("sound");
         let errors = ErrorMap::midpoint(&lattice, &layout);
-        let heights = PatchHeights::new(Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 });
+        let heights =
+            PatchHeights::new(PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 });
         Self { lattice, layout, errors, heights }
     }
 
-    fn ground(&self) -> Ground<'_> {
-        Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
+    fn ground(&self) -> PatchedGround<'_> {
+        PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
     }
 
     fn spheres(&self, metres_per_metre: f32) -> SphereMap {
@@ -134,11 +135,11 @@ impl Method<'_> {
         }
     }
 
-    fn update(&mut self, criterion: &impl Criterion, patches: &[Vertex]) -> Changes {
+    fn update(&mut self, criterion: &impl Criterion, patches: &[Vertex]) -> RefinementChanges {
         match self {
             Self::Rebuild(active) => {
                 *active = rebuild(active.layout(), criterion, patches.iter().copied());
-                Changes::default()
+                RefinementChanges::default()
             }
             Self::Coherent(refiner) => refiner.update(criterion, patches),
             Self::Queues(refiner) => refiner.update(criterion, patches),

@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::extract::{Extract, extract};
-use sandtable::roam::layout::Layout;
+use sandtable::roam::layout::PatchLayout;
 use sandtable::terrain::lattice::Lattice;
 
 use crate::fields;
@@ -57,14 +57,14 @@ struct Ground {
     size: usize,
     rounds: usize,
     lattice: Lattice,
-    layout: Layout,
+    layout: PatchLayout,
 }
 
 impl Ground {
     fn new(size: usize, rounds: usize) -> Self {
         let posts = size as u32;
         let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), posts, fields::fractal(size));
-        let layout = Layout::new(posts, posts, posts - 1).expect("a power of two");
+        let layout = PatchLayout::new(posts, posts, posts - 1).expect("a power of two");
         Self { size, rounds, lattice: lattice.expect("sound ground"), layout }
     }
 

@@ -3,11 +3,11 @@
 use sandtable::roam::block::WholeGround;
 use sandtable::roam::criterion::spheres::Spheres;
 use sandtable::roam::culling::{Culling, InView, PatchHeights};
-use sandtable::roam::emit::bintree::Block;
+use sandtable::roam::emit::bintree::VertexBlock;
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::Ground;
-use sandtable::roam::layout::{DEFAULT_PATCH, Layout};
+use sandtable::roam::ground::PatchedGround;
+use sandtable::roam::layout::{DEFAULT_PATCH, PatchLayout};
 use sandtable::roam::refine::deferred::Deferred;
 use sandtable::roam::refine::queues::{Goal, Queues};
 use sandtable::roam::refine::rebuild::rebuild;
@@ -20,7 +20,7 @@ use crate::flight;
 /// A ground measured once.
 pub struct World {
     lattice: Lattice,
-    layout: Layout,
+    layout: PatchLayout,
     errors: ErrorMap,
     heights: PatchHeights,
 }
@@ -30,16 +30,16 @@ impl World {
     pub fn new(heights: &[f32]) -> Self {
         let lattice = flight::lattice(heights);
         let layout =
-            Layout::new(lattice.columns(), lattice.rows(), DEFAULT_PATCH).expect("patches can be laid");
+            PatchLayout::new(lattice.columns(), lattice.rows(), DEFAULT_PATCH).expect("patches can be laid");
         let errors = ErrorMap::midpoint(&lattice, &layout);
-        let ground = Ground { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
         let heights = PatchHeights::new(ground);
         Self { layout, errors, heights, lattice }
     }
 
     /// What refinement reads.
-    pub fn ground(&self) -> Ground<'_> {
-        Ground { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
+    pub fn ground(&self) -> PatchedGround<'_> {
+        PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
     }
 
     /// The spheres in which errors show: `reach` metres of distance a metre of error.
@@ -108,7 +108,7 @@ impl Walk for Following<'_> {
 pub struct Rebuilding<'a> {
     world: &'a World,
     spheres: &'a SphereMap,
-    block: Block,
+    block: VertexBlock,
     seen: InView,
     indices: Vec<[u16; 3]>,
 }
@@ -116,7 +116,7 @@ pub struct Rebuilding<'a> {
 impl<'a> Rebuilding<'a> {
     /// By these spheres.
     pub fn new(world: &'a World, spheres: &'a SphereMap) -> Self {
-        let block = Block::of(&world.layout).expect("small patches");
+        let block = VertexBlock::of(&world.layout).expect("small patches");
         Self { world, spheres, block, seen: InView::default(), indices: Vec::new() }
     }
 }
@@ -150,7 +150,7 @@ impl Walk for Rebuilding<'_> {
 pub struct Queueing<'a> {
     world: &'a World,
     spheres: &'a SphereMap,
-    block: Block,
+    block: VertexBlock,
     seen: InView,
     queues: Queues<'a>,
     indices: Vec<[u16; 3]>,
@@ -161,7 +161,7 @@ pub struct Queueing<'a> {
 impl<'a> Queueing<'a> {
     /// With at most `budget` triangles.
     pub fn new(world: &'a World, spheres: &'a SphereMap, budget: usize) -> Self {
-        let block = Block::of(&world.layout).expect("small patches");
+        let block = VertexBlock::of(&world.layout).expect("small patches");
         let queues = Queues::new(world.ground(), Goal::Budget(budget));
         let corners = world.layout.patches().collect();
         Self { world, spheres, block, seen: InView::default(), queues, indices: Vec::new(), work: 0, corners }

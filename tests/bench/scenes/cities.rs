@@ -1,6 +1,6 @@
 //! Real places, whole: from the scene file to the finished scene and to its picture.
 
-use sandtable::app::arguments::{Backend, Size};
+use sandtable::app::arguments::{Backend, PictureSize};
 use sandtable::app::picture::picture_of;
 use sandtable::scene::kind::FeatureKind;
 
@@ -8,7 +8,7 @@ use crate::tests_common::places::{PLACES, text_of};
 use crate::tests_common::scratch::Scratch;
 use crate::{built, peak_mib, seconds};
 
-const SIZE: Size = Size { width: 1920, height: 1080 };
+const SIZE: PictureSize = PictureSize { width: 1920, height: 1080 };
 
 /// Prints a row a place; places without data say so.
 pub fn print() {

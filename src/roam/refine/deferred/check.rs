@@ -1,7 +1,7 @@
 //! What must hold of a patch whenever it is up to date.
 
-use crate::roam::refine::deferred::patch::{PatchMesh, Station};
-use crate::roam::refine::deferred::topology::{NONE, Node, Topology, triangle};
+use crate::roam::refine::deferred::patch::{EyeStation, PatchMesh};
+use crate::roam::refine::deferred::topology::{NONE, Topology, TopologyNode, triangle};
 
 impl PatchMesh {
     /// Whether every active vertex has its parents active and counts its active children; a vertex is active exactly
@@ -10,7 +10,7 @@ impl PatchMesh {
     ///
     /// # Errors
     /// A sentence naming the first flaw.
-    pub fn check(&self, topology: &Topology, station: &Station) -> Result<(), String> {
+    pub fn check(&self, topology: &Topology, station: &EyeStation) -> Result<(), String> {
         for (vertex, node) in topology.nodes().iter().enumerate() {
             if !Topology::is_corner(vertex as u16) {
                 self.check_vertex(topology, station, vertex as u16, node)?;
@@ -22,9 +22,9 @@ impl PatchMesh {
     fn check_vertex(
         &self,
         topology: &Topology,
-        station: &Station,
+        station: &EyeStation,
         vertex: u16,
-        node: &Node,
+        node: &TopologyNode,
     ) -> Result<(), String> {
         let flaw = |what: &str| Err(format!("vertex {:?} {what}", topology.places()[vertex as usize]));
         let active = self.is_active(vertex);

@@ -29,11 +29,11 @@ use glam::Vec3;
 use crate::roam::active::ActiveSet;
 use crate::roam::block::{BlockError, BlockSource, PatchBlock};
 use crate::roam::graph::Vertex;
-use crate::roam::layout::Layout;
-use crate::roam::refine::changes::Changes;
-use crate::roam::refine::deferred::patch::{Counts, Decider, PatchMesh, Station};
+use crate::roam::layout::PatchLayout;
+use crate::roam::refine::changes::RefinementChanges;
+use crate::roam::refine::deferred::patch::{Decider, EyeStation, PatchMesh, UpdateCounts};
 use crate::roam::refine::deferred::topology::Topology;
-use crate::roam::refine::deferred::wheel::{FARTHEST, Link, Links, Wheel};
+use crate::roam::refine::deferred::wheel::{FARTHEST, Links, Wheel, WheelLink};
 
 /// Ticks that a post's distance is cut into. With coarser ticks more vertices may change before the next tick and are
 /// looked at every frame; with finer ones a frame turns more slots. Arbitrary within a few times of this.
@@ -47,7 +47,7 @@ const VERTEX_BITS: u32 = 15;
 
 /// One patch of the walk.
 #[derive(Clone, Copy, Debug, Default)]
-struct Shown {
+struct WalkedPatch {
     /// Its place among the meshes, if it has one.
     mesh: Option<u32>,
     /// A patch without a mesh needs none before this tick.
@@ -59,18 +59,18 @@ struct Shown {
 struct Meshes(Vec<PatchMesh>);
 
 impl Links for Meshes {
-    fn link(&mut self, entry: u32) -> &mut Link {
+    fn link(&mut self, entry: u32) -> &mut WheelLink {
         self.0[(entry >> VERTEX_BITS) as usize].link(vertex_of(entry))
     }
 
-    fn leave(&mut self, entry: u32) -> Link {
+    fn leave(&mut self, entry: u32) -> WheelLink {
         self.0[(entry >> VERTEX_BITS) as usize].leave(vertex_of(entry))
     }
 }
 
 /// Lists that every update fills anew; kept for their memory.
 #[derive(Debug, Default)]
-struct Scratch {
+struct UpdateScratch {
     due: Vec<u32>,
     inside_m: Vec<f64>,
     todo: Vec<u16>,
@@ -81,9 +81,9 @@ struct Scratch {
 #[derive(Debug)]
 pub struct Deferred<S> {
     source: S,
-    layout: Layout,
+    layout: PatchLayout,
     topologies: [Topology; 2],
-    patches: Vec<Shown>,
+    patches: Vec<WalkedPatch>,
     meshes: Meshes,
     /// The update in which each mesh was last listed.
     seen: Vec<u64>,
@@ -93,13 +93,13 @@ pub struct Deferred<S> {
     spare: Vec<u32>,
     wheel: Wheel,
     visible: Vec<Vertex>,
-    station: Station,
+    station: EyeStation,
     /// Whether the listed patches are right for where the eye is.
     settled: bool,
     frame: u64,
-    changes: Changes,
-    counts: Counts,
-    scratch: Scratch,
+    changes: RefinementChanges,
+    counts: UpdateCounts,
+    scratch: UpdateScratch,
 }
 
 impl<S: BlockSource> Deferred<S> {
@@ -116,19 +116,19 @@ impl<S: BlockSource> Deferred<S> {
             source,
             layout,
             topologies: [topology(0), topology(1)],
-            patches: vec![Shown::default(); layout.patch_count()],
+            patches: vec![WalkedPatch::default(); layout.patch_count()],
             meshes: Meshes::default(),
             seen: Vec::new(),
             behind: Vec::new(),
             spare: Vec::new(),
             wheel: Wheel::new(0),
             visible: Vec::new(),
-            station: Station { eye: Vec3::NAN, travelled: 0.0, ticks_per_m: TICKS_PER_POST / cell_m },
+            station: EyeStation { eye: Vec3::NAN, travelled: 0.0, ticks_per_m: TICKS_PER_POST / cell_m },
             settled: false,
             frame: 0,
-            changes: Changes::default(),
-            counts: Counts::default(),
-            scratch: Scratch::default(),
+            changes: RefinementChanges::default(),
+            counts: UpdateCounts::default(),
+            scratch: UpdateScratch::default(),
         })
     }
 
@@ -136,10 +136,13 @@ impl<S: BlockSource> Deferred<S> {
     ///
     /// # Errors
     /// Where a patch cannot be had; the patches before it are up to date, and the update can be asked for again.
-    pub fn update(&mut self, eye: Vec3, visible: &[Vertex]) -> Result<&Changes, BlockError> {
-        self.changes = Changes { dirty: std::mem::take(&mut self.changes.dirty), ..Changes::default() };
+    pub fn update(&mut self, eye: Vec3, visible: &[Vertex]) -> Result<&RefinementChanges, BlockError> {
+        self.changes = RefinementChanges {
+            dirty: std::mem::take(&mut self.changes.dirty),
+            ..RefinementChanges::default()
+        };
         self.changes.dirty.clear();
-        self.counts = Counts::default();
+        self.counts = UpdateCounts::default();
         if self.settled && eye == self.station.eye && visible == self.visible {
             return Ok(&self.changes);
         }
@@ -165,7 +168,7 @@ impl<S: BlockSource> Deferred<S> {
     }
 
     /// What the last update changed. A patch that has come into view is not dirty for that alone.
-    pub fn changes(&self) -> &Changes {
+    pub fn changes(&self) -> &RefinementChanges {
         &self.changes
     }
 
@@ -277,7 +280,7 @@ impl<S: BlockSource> Deferred<S> {
         let mut given_up = vec![false; self.meshes.0.len()];
         for &(_, index, mesh) in &held {
             given_up[mesh as usize] = true;
-            self.patches[index] = Shown::default();
+            self.patches[index] = WalkedPatch::default();
             self.spare.push(mesh);
         }
         self.wheel.retain(&mut self.meshes, |entry| !given_up[(entry >> VERTEX_BITS) as usize]);
@@ -418,6 +421,6 @@ fn vertex_of(entry: u32) -> u16 {
 }
 
 /// Which of the two orientations a patch has.
-fn parity(layout: &Layout, corner: Vertex) -> usize {
+fn parity(layout: &PatchLayout, corner: Vertex) -> usize {
     ((corner.x / layout.patch() + corner.y / layout.patch()) % 2) as usize
 }

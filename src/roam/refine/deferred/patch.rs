@@ -14,8 +14,8 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::roam::block::PatchBlock;
-use crate::roam::refine::deferred::topology::{CENTER, NONE, Node, Topology, triangle};
-use crate::roam::refine::deferred::wheel::{FARTHEST, Link, Wheel};
+use crate::roam::refine::deferred::topology::{CENTER, NONE, Topology, TopologyNode, triangle};
+use crate::roam::refine::deferred::wheel::{FARTHEST, Wheel, WheelLink};
 
 /// Slack is shortened by this share before it is turned into ticks: more than all rounding on the way.
 const SAFETY: f64 = 1.0 - 1e-9;
@@ -38,7 +38,7 @@ const ONE_CHILD: u8 = 32;
 
 /// Where the eye is and how far it has come.
 #[derive(Clone, Copy, Debug)]
-pub struct Station {
+pub struct EyeStation {
     /// The eye, drawn world space.
     pub eye: Vec3,
     /// Ticks travelled, with their fraction.
@@ -47,7 +47,7 @@ pub struct Station {
     pub ticks_per_m: f64,
 }
 
-impl Station {
+impl EyeStation {
     /// The last full tick.
     pub fn tick(&self) -> u64 {
         self.travelled as u64
@@ -79,10 +79,10 @@ impl Station {
 /// One vertex: where its sphere is and where it waits. Sixteen bytes, so that a line of the cache holds four; what
 /// changes with the neighbours is kept apart, a byte each, so that a line holds sixty-four.
 #[derive(Clone, Copy, Debug)]
-struct Cell {
+struct VertexCell {
     z: f32,
     radius: f32,
-    link: Link,
+    link: WheelLink,
 }
 
 /// The mesh of one patch.
@@ -98,7 +98,7 @@ pub struct PatchMesh {
     partial: bool,
     /// Which of the two orientations it has.
     pub parity: usize,
-    cells: Vec<Cell>,
+    cells: Vec<VertexCell>,
     flags: Vec<u8>,
     /// Where each vertex's four triangles are in the index list.
     slots: Vec<[u16; 4]>,
@@ -114,18 +114,18 @@ pub struct Decider<'a> {
     /// The vertices of the patch.
     pub topology: &'a Topology,
     /// Where the eye is.
-    pub station: &'a Station,
+    pub station: &'a EyeStation,
     /// Where what was decided waits for its next time.
     pub wheel: &'a mut Wheel,
     /// What is to be decided yet, in the same patch.
     pub todo: &'a mut Vec<u16>,
     /// What was done.
-    pub counts: &'a mut Counts,
+    pub counts: &'a mut UpdateCounts,
 }
 
 /// What an update counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct UpdateCounts {
     /// Vertices activated.
     pub splits: usize,
     /// Vertices deactivated.
@@ -149,7 +149,7 @@ impl PatchMesh {
             let hole = if z.is_nan() { HOLE } else { 0 };
             self.flags.push(hole | (absent * ONE_PARENT));
             let z = if z.is_nan() { 0.0 } else { z };
-            self.cells.push(Cell { z, radius: block.radii[at], link: Link::FREE });
+            self.cells.push(VertexCell { z, radius: block.radii[at], link: WheelLink::FREE });
         }
         self.flags[CENTER as usize] |= BOTH_PARENTS;
         self.slots.clear();
@@ -217,13 +217,13 @@ impl PatchMesh {
     }
 
     /// Notes that a vertex is in no list of the wheel any more; returns what its link was.
-    pub fn leave(&mut self, vertex: u16) -> Link {
+    pub fn leave(&mut self, vertex: u16) -> WheelLink {
         self.flags[vertex as usize] &= !WAITING;
         self.cells[vertex as usize].link
     }
 
     /// The link of a vertex; what it says counts only while the vertex waits.
-    pub fn link(&mut self, vertex: u16) -> &mut Link {
+    pub fn link(&mut self, vertex: u16) -> &mut WheelLink {
         &mut self.cells[vertex as usize].link
     }
 
@@ -389,7 +389,7 @@ impl PatchMesh {
 }
 
 /// The two triangles that activating a vertex makes of the one on its parent's side.
-fn halves(node: &Node, vertex: u16, side: usize) -> [[u16; 3]; 2] {
+fn halves(node: &TopologyNode, vertex: u16, side: usize) -> [[u16; 3]; 2] {
     let [first, parent, second] = [2 * side, 2 * side + 1, (2 * side + 2) % 4].map(|at| node.ring[at]);
     [[vertex, first, parent], [vertex, parent, second]]
 }

@@ -17,7 +17,7 @@
 //! Vertices are numbered by level, coarsest first, and row by row within a level: what a patch of a few triangles
 //! reads lies together.
 
-use crate::roam::graph::{Kind, Vertex};
+use crate::roam::graph::{Vertex, VertexKind};
 
 /// No vertex, no triangle, no place: outside the patch or not there.
 pub const NONE: u16 = u16::MAX;
@@ -27,7 +27,7 @@ pub const CENTER: u16 = 4;
 
 /// What activation changes around one vertex of a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Node {
+pub struct TopologyNode {
     /// The corners around it; parents are 1 and 3, [`NONE`] outside the patch.
     pub ring: [u16; 4],
     /// The vertices that split its four triangles, [`NONE`] where there is none in the patch.
@@ -45,7 +45,7 @@ pub fn triangle(vertex: u16, side: usize) -> u32 {
 #[derive(Clone, Debug)]
 pub struct Topology {
     side: i32,
-    nodes: Vec<Node>,
+    nodes: Vec<TopologyNode>,
     places: Vec<[u8; 2]>,
     numbers: Vec<u16>,
     roots: [[u16; 3]; 2],
@@ -56,8 +56,8 @@ impl Topology {
     pub fn new(side: i32, corner: Vertex) -> Self {
         // Only the parity of the patch matters, and small coordinates keep away from overflow.
         let corner = Vertex::new((corner.x / side + corner.y / side) % 2 * side, 0);
-        let place = Place::new(side, corner);
-        let mut nodes: Vec<Node> = place.vertices.iter().map(|&vertex| place.node(vertex)).collect();
+        let place = VertexNumbering::new(side, corner);
+        let mut nodes: Vec<TopologyNode> = place.vertices.iter().map(|&vertex| place.node(vertex)).collect();
         let places =
             place.vertices.iter().map(|at| [(at.x - corner.x) as u8, (at.y - corner.y) as u8]).collect();
         for parent in 0..nodes.len() {
@@ -82,7 +82,7 @@ impl Topology {
     }
 
     /// The vertices in the order of their numbers.
-    pub fn nodes(&self) -> &[Node] {
+    pub fn nodes(&self) -> &[TopologyNode] {
         &self.nodes
     }
 
@@ -138,21 +138,21 @@ impl Topology {
 }
 
 /// A patch's vertices by number, and their numbers by place.
-struct Place {
+struct VertexNumbering {
     side: i32,
     corner: Vertex,
     vertices: Vec<Vertex>,
     numbers: Vec<u16>,
 }
 
-impl Place {
+impl VertexNumbering {
     fn new(side: i32, corner: Vertex) -> Self {
         let mut vertices: Vec<Vertex> =
             (0..=side).flat_map(|y| (0..=side).map(move |x| corner.moved(x, y))).collect();
         // On each level squares' centres come before edges' middles.
         vertices.sort_by_key(|at| {
             let is_corner = (at.x | at.y) & (side - 1) == 0;
-            if is_corner { (i32::MIN, false) } else { (-at.step(), at.kind() != Kind::Center) }
+            if is_corner { (i32::MIN, false) } else { (-at.step(), at.kind() != VertexKind::Center) }
         });
         let mut numbers = vec![NONE; vertices.len()];
         for (number, at) in vertices.iter().enumerate() {
@@ -167,9 +167,9 @@ impl Place {
         if inside { self.numbers[(y * (self.side + 1) + x) as usize] } else { NONE }
     }
 
-    fn node(&self, vertex: Vertex) -> Node {
+    fn node(&self, vertex: Vertex) -> TopologyNode {
         if Topology::is_corner(self.local(vertex)) {
-            return Node { ring: [NONE; 4], children: [NONE; 4], splits: [0; 2] };
+            return TopologyNode { ring: [NONE; 4], children: [NONE; 4], splits: [0; 2] };
         }
         let [from, to] = vertex.hypotenuse();
         let [parent, other] = vertex.parents();
@@ -184,7 +184,7 @@ impl Place {
                 }
             }
         }
-        Node { ring: ring.map(|corner| self.local(corner)), children, splits: [0; 2] }
+        TopologyNode { ring: ring.map(|corner| self.local(corner)), children, splits: [0; 2] }
     }
 }
 

@@ -29,22 +29,22 @@ const NEXT_TIME: usize = LEVELS * SLOTS as usize;
 /// The owner of the entries' links.
 pub trait Links {
     /// The link of an entry that is in a list.
-    fn link(&mut self, entry: u32) -> &mut Link;
+    fn link(&mut self, entry: u32) -> &mut WheelLink;
 
     /// Notes that an entry is in no list any more; returns what its link was.
-    fn leave(&mut self, entry: u32) -> Link;
+    fn leave(&mut self, entry: u32) -> WheelLink;
 }
 
 /// What an entry knows of its list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Link {
+pub struct WheelLink {
     /// The next entry, or [`FREE`].
     pub next: u32,
     /// The list it is in.
     list: u16,
 }
 
-impl Link {
+impl WheelLink {
     /// In no list yet.
     pub const FREE: Self = Self { next: FREE, list: u16::MAX };
 }
@@ -66,11 +66,11 @@ impl Wheel {
     /// Puts `entry`, which is in no list, where it is handed out at tick `due` or up to a sixteenth of the way
     /// earlier; at the next taking where that is now. Returns the link that its owner must keep of it.
     #[must_use]
-    pub fn put(&mut self, entry: u32, due: u64) -> Link {
+    pub fn put(&mut self, entry: u32, due: u64) -> WheelLink {
         let due = due.min(self.now + FARTHEST);
         let list = if due <= self.now { NEXT_TIME } else { self.slot(due) };
         let next = std::mem::replace(&mut self.heads[list], entry);
-        Link { next, list: list as u16 }
+        WheelLink { next, list: list as u16 }
     }
 
     /// The slot of a tick after now, marked as filled.
@@ -87,7 +87,7 @@ impl Wheel {
     }
 
     /// The tick at which what is in the list of `link` is handed out; 0 if that is every time.
-    pub fn begin(&self, link: Link) -> u64 {
+    pub fn begin(&self, link: WheelLink) -> u64 {
         let list = u64::from(link.list);
         if list as usize == NEXT_TIME {
             return 0;
@@ -99,7 +99,7 @@ impl Wheel {
 
     /// Takes an entry out of the list it is in, walking the list.
     pub fn remove(&mut self, links: &mut impl Links, entry: u32) {
-        let Link { next, list } = links.leave(entry);
+        let WheelLink { next, list } = links.leave(entry);
         let head = &mut self.heads[list as usize];
         if *head == entry {
             *head = next;
@@ -171,13 +171,13 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    impl Links for Vec<Link> {
-        fn link(&mut self, entry: u32) -> &mut Link {
+    impl Links for Vec<WheelLink> {
+        fn link(&mut self, entry: u32) -> &mut WheelLink {
             &mut self[entry as usize]
         }
 
-        fn leave(&mut self, entry: u32) -> Link {
-            std::mem::replace(&mut self[entry as usize], Link::FREE)
+        fn leave(&mut self, entry: u32) -> WheelLink {
+            std::mem::replace(&mut self[entry as usize], WheelLink::FREE)
         }
     }
 
@@ -188,7 +188,7 @@ mod tests {
             ahead in proptest::collection::vec(0u64..1 << 20, 1..60),
             strides in proptest::collection::vec(0u64..1 << 14, 1..400),
         ) {
-            let mut links = vec![Link::FREE; ahead.len()];
+            let mut links = vec![WheelLink::FREE; ahead.len()];
             let mut wheel = Wheel::new(start);
             for (vertex, &ahead) in ahead.iter().enumerate() {
                 links[vertex] = wheel.put(vertex as u32, start + ahead);
@@ -205,17 +205,17 @@ mod tests {
                     prop_assert!(ahead == 0 || start + ahead >= last, "late");
                     prop_assert!(start + ahead - ahead / 8 <= now + 1, "{ahead} at {}", now - start);
                 }
-                let left = links.iter().enumerate().filter(|(_, link)| **link != Link::FREE);
+                let left = links.iter().enumerate().filter(|(_, link)| **link != WheelLink::FREE);
                 for (vertex, _) in left {
                     prop_assert!(start + ahead[vertex] > now, "{} is overdue at {}", ahead[vertex], now - start);
                 }
             }
-            prop_assert_eq!(waiting, links.iter().filter(|link| **link != Link::FREE).count());
+            prop_assert_eq!(waiting, links.iter().filter(|link| **link != WheelLink::FREE).count());
         }
 
         #[test]
         fn what_is_taken_out_is_not_handed_out(ahead in proptest::collection::vec(0u64..500, 2..40)) {
-            let mut links = vec![Link::FREE; ahead.len()];
+            let mut links = vec![WheelLink::FREE; ahead.len()];
             let mut wheel = Wheel::new(7);
             for (vertex, &ahead) in ahead.iter().enumerate() {
                 links[vertex] = wheel.put(vertex as u32, 7 + ahead);

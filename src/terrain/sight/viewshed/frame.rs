@@ -9,8 +9,8 @@ use crate::terrain::lattice::{Lattice, Post};
 
 /// One eighth of the circle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
-    ring_axis: Axis,
+pub(super) struct OctantFrame {
+    ring_axis: OctantAxis,
     ring_sign: i64,
     cross_sign: i64,
     /// Grid position of the observer along the ring axis.
@@ -33,27 +33,32 @@ pub(super) struct Frame {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Axis {
+enum OctantAxis {
     Columns,
     Rows,
 }
 
-impl Frame {
+impl OctantFrame {
     /// The frames around an observer at grid position `eye` on the lattice: eight, or fewer on its border, where a
     /// frame without a cell is left out; its one row of posts lies in the next frame too.
     pub fn all(lattice: &Lattice, eye: DVec2) -> impl Iterator<Item = Self> {
         const SIGNS: [(i64, i64); 4] = [(1, 1), (1, -1), (-1, 1), (-1, -1)];
         let frame = move |axis, signs| Self::new(lattice, eye, axis, signs);
-        let frames = [Axis::Columns, Axis::Rows]
+        let frames = [OctantAxis::Columns, OctantAxis::Rows]
             .into_iter()
             .flat_map(move |axis| SIGNS.map(|signs| frame(axis, signs)));
         frames.filter(|frame| frame.rings > 1 && frame.last > 0)
     }
 
-    fn new(lattice: &Lattice, eye: DVec2, ring_axis: Axis, (ring_sign, cross_sign): (i64, i64)) -> Self {
+    fn new(
+        lattice: &Lattice,
+        eye: DVec2,
+        ring_axis: OctantAxis,
+        (ring_sign, cross_sign): (i64, i64),
+    ) -> Self {
         let counts = [i64::from(lattice.columns()), i64::from(lattice.rows())];
         let (steps, cells) = ([1, counts[0]], lattice.cell().to_array());
-        let (ring, cross) = if ring_axis == Axis::Columns { (0, 1) } else { (1, 0) };
+        let (ring, cross) = if ring_axis == OctantAxis::Columns { (0, 1) } else { (1, 0) };
         let behind = |at: f64, sign: i64| if sign > 0 { at.floor() as i64 } else { at.ceil() as i64 };
         let left = |start: i64, sign: i64, count: i64| if sign > 0 { count - 1 - start } else { start };
         let eye = eye.to_array();
@@ -93,8 +98,8 @@ impl Frame {
         let ring = (self.ring_start + self.ring_sign * ring as i64) as u32;
         let cross = (self.cross_start + self.cross_sign * j) as u32;
         match self.ring_axis {
-            Axis::Columns => Post { column: ring, row: cross },
-            Axis::Rows => Post { column: cross, row: ring },
+            OctantAxis::Columns => Post { column: ring, row: cross },
+            OctantAxis::Rows => Post { column: cross, row: ring },
         }
     }
 
@@ -109,8 +114,8 @@ impl Frame {
             let ring = self.ring_sign as f64 * self.ring_cell_m;
             let cross = self.cross_sign as f64 * self.cross_cell_m * u;
             match self.ring_axis {
-                Axis::Columns => DVec2::new(ring, cross),
-                Axis::Rows => DVec2::new(cross, ring),
+                OctantAxis::Columns => DVec2::new(ring, cross),
+                OctantAxis::Rows => DVec2::new(cross, ring),
             }
         })
     }

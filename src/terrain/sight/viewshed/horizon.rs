@@ -18,7 +18,7 @@
 
 /// A terrain edge as the observer sees it, `u0` < `u1`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Edge {
+pub(super) struct HorizonEdge {
     pub u0: f64,
     pub v0: f64,
     pub u1: f64,
@@ -27,7 +27,7 @@ pub(super) struct Edge {
     pub error: f64,
 }
 
-impl Edge {
+impl HorizonEdge {
     fn slope(&self) -> f64 {
         (self.v1 - self.v0) / (self.u1 - self.u0)
     }
@@ -35,14 +35,14 @@ impl Edge {
 
 /// A stretch of the horizon from `u` to the next piece's, or to the end of the bucket.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Piece {
+struct HorizonPiece {
     u: f64,
     v: f64,
     slope: f64,
     error: f64,
 }
 
-impl Piece {
+impl HorizonPiece {
     const NOTHING: f64 = f64::NEG_INFINITY;
 
     fn at(&self, u: f64) -> f64 {
@@ -61,13 +61,13 @@ pub(super) struct Doubt {
 
 #[derive(Clone, Debug, Default)]
 struct Bucket {
-    pieces: Vec<Piece>,
+    pieces: Vec<HorizonPiece>,
     doubts: Vec<Doubt>,
 }
 
 /// Where the horizon stands on one ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Span {
+pub(super) struct HorizonSpan {
     /// Certainly no lower.
     pub low: f64,
     /// Certainly no higher.
@@ -85,7 +85,7 @@ pub(super) struct Horizon {
     low: Vec<f64>,
     floor: Vec<f64>,
     floor_is_stale: bool,
-    scratch: Vec<Piece>,
+    scratch: Vec<HorizonPiece>,
 }
 
 /// How many buckets to either side a floor takes in: an edge with an end in a bucket ends at most so many away, where
@@ -105,7 +105,12 @@ impl Horizon {
             floor_is_stale: true,
             scratch: Vec::new(),
         };
-        horizon.buckets[0].pieces.push(Piece { u: 0.0, v: Piece::NOTHING, slope: 0.0, error: 0.0 });
+        horizon.buckets[0].pieces.push(HorizonPiece {
+            u: 0.0,
+            v: HorizonPiece::NOTHING,
+            slope: 0.0,
+            error: 0.0,
+        });
         horizon.measure_all();
         horizon
     }
@@ -127,7 +132,7 @@ impl Horizon {
                 if piece.u < middle {
                     halves[0].pieces.push(piece);
                     halves[1].pieces.clear();
-                    halves[1].pieces.push(Piece { u: middle, v: piece.at(middle), ..piece });
+                    halves[1].pieces.push(HorizonPiece { u: middle, v: piece.at(middle), ..piece });
                 } else {
                     if piece.u == middle {
                         halves[1].pieces.clear();
@@ -194,12 +199,12 @@ impl Horizon {
 
     /// Where the horizon stands on the ray `u`, `None` where only looking can tell; `shake` is how far off `u` may be
     /// and `v` what is to be seen there.
-    pub fn span(&self, u: f64, v: f64, shake: f64) -> Option<Span> {
+    pub fn span(&self, u: f64, v: f64, shake: f64) -> Option<HorizonSpan> {
         let bucket = &self.buckets[self.bucket_of(u)];
         let after = bucket.pieces.iter().take_while(|piece| piece.u <= u).count();
         let piece = bucket.pieces[after.saturating_sub(1)];
         let at = piece.at(u);
-        let span = Span { low: at - piece.error, high: at + piece.error };
+        let span = HorizonSpan { low: at - piece.error, high: at + piece.error };
         let doubted =
             |doubt: &Doubt| u >= doubt.u0 - shake && u <= doubt.u1 + shake && v <= doubt.v && v >= span.low;
         (!bucket.doubts.iter().any(doubted)).then_some(span)
@@ -221,11 +226,11 @@ impl Horizon {
     }
 
     /// Takes in an edge; what of it lies off the wedge does not matter.
-    pub fn insert(&mut self, edge: &Edge) {
+    pub fn insert(&mut self, edge: &HorizonEdge) {
         if edge.u1 <= self.from || edge.u0 >= self.to {
             return;
         }
-        let line = Piece { u: edge.u0, v: edge.v0, slope: edge.slope(), error: edge.error };
+        let line = HorizonPiece { u: edge.u0, v: edge.v0, slope: edge.slope(), error: edge.error };
         let high = edge.v0.max(edge.v1) + edge.error;
         for index in self.bucket_of(edge.u0)..=self.bucket_of(edge.u1) {
             // an edge may end where a bucket begins
@@ -237,7 +242,7 @@ impl Horizon {
     }
 
     /// Whether a line changes a bucket from `start` to `end`: most do not, and need no bucket made anew.
-    fn stands_out(&self, index: usize, line: &Piece, start: f64, end: f64) -> bool {
+    fn stands_out(&self, index: usize, line: &HorizonPiece, start: f64, end: f64) -> bool {
         let pieces = &self.buckets[index].pieces;
         let (line_start, line_end) = (line.at(start), line.at(end));
         let ends = pieces.iter().skip(1).map(|next| next.u).chain([f64::INFINITY]);
@@ -252,7 +257,7 @@ impl Horizon {
         })
     }
 
-    fn insert_in(&mut self, index: usize, line: &Piece, start: f64, end: f64) {
+    fn insert_in(&mut self, index: usize, line: &HorizonPiece, start: f64, end: f64) {
         let last = self.border(index + 1);
         let mut merged = Merged { pieces: std::mem::take(&mut self.scratch), tag: Tag::None, changed: false };
         let pieces = &self.buckets[index].pieces;
@@ -307,26 +312,26 @@ enum Tag {
 
 /// A bucket being made anew.
 struct Merged {
-    pieces: Vec<Piece>,
+    pieces: Vec<HorizonPiece>,
     tag: Tag,
     changed: bool,
 }
 
 impl Merged {
     /// `piece` counts from `u` on; what is the same line as before, and no less sure, goes on.
-    fn push(&mut self, tag: Tag, piece: &Piece, u: f64) {
+    fn push(&mut self, tag: Tag, piece: &HorizonPiece, u: f64) {
         match self.pieces.last_mut() {
             Some(last) if self.tag == tag && last.error == piece.error => {}
-            Some(last) if last.u == u => *last = Piece { u, v: piece.at(u), ..*piece },
+            Some(last) if last.u == u => *last = HorizonPiece { u, v: piece.at(u), ..*piece },
             _ if piece.u == u => self.pieces.push(*piece),
-            _ => self.pieces.push(Piece { u, v: piece.at(u), ..*piece }),
+            _ => self.pieces.push(HorizonPiece { u, v: piece.at(u), ..*piece }),
         }
         self.tag = tag;
         self.changed |= tag == Tag::New;
     }
 
     /// The greater of the old piece `at` and the new line, from `start` to `end`.
-    fn greater(&mut self, (at, old): (usize, &Piece), new: &Piece, start: f64, end: f64) {
+    fn greater(&mut self, (at, old): (usize, &HorizonPiece), new: &HorizonPiece, start: f64, end: f64) {
         let (first, last) = (new.at(start) - old.at(start), new.at(end) - old.at(end));
         if first <= 0.0 && last <= 0.0 {
             self.winner(Tag::Old(at), old, new.error, -first.max(last), start);
@@ -343,10 +348,10 @@ impl Merged {
     }
 
     /// The winner of a stretch; one that wins by less than the loser may be off is as unsure as that.
-    fn winner(&mut self, tag: Tag, piece: &Piece, loser_error: f64, gap: f64, u: f64) {
+    fn winner(&mut self, tag: Tag, piece: &HorizonPiece, loser_error: f64, gap: f64, u: f64) {
         let error = if gap < loser_error { piece.error.max(loser_error) } else { piece.error };
         self.changed |= error != piece.error;
-        self.push(tag, &Piece { error, ..*piece }, u);
+        self.push(tag, &HorizonPiece { error, ..*piece }, u);
     }
 }
 
@@ -367,14 +372,14 @@ mod tests {
     fn it_is_the_greatest_of_all_edges_however_often_it_is_split() {
         let mut seeded = Seeded(5);
         let mut horizon = Horizon::new(0.0, 1.0);
-        let mut edges: Vec<Edge> = Vec::new();
+        let mut edges: Vec<HorizonEdge> = Vec::new();
         for turn in 1..=200 {
             if turn % 40 == 0 {
                 horizon.grow(f64::from(turn) / 10.0);
             }
             let start = seeded.part() * 1.1 - 0.1;
             let end = start + seeded.part() * 0.2 + 1e-6;
-            let edge = Edge { u0: start, v0: seeded.part(), u1: end, v1: seeded.part(), error: 1e-9 };
+            let edge = HorizonEdge { u0: start, v0: seeded.part(), u1: end, v1: seeded.part(), error: 1e-9 };
             horizon.insert(&edge);
             edges.push(edge);
             horizon.check().expect("sound");
@@ -392,7 +397,7 @@ mod tests {
     #[test]
     fn a_doubt_leaves_open_what_is_lower_than_it_and_not_hidden() {
         let mut horizon = Horizon::new(0.0, 1.0);
-        horizon.insert(&Edge { u0: 0.0, v0: 1.0, u1: 1.0, v1: 1.0, error: 0.0 });
+        horizon.insert(&HorizonEdge { u0: 0.0, v0: 1.0, u1: 1.0, v1: 1.0, error: 0.0 });
         horizon.doubt(Doubt { u0: 0.3, u1: 0.3001, v: 2.0 });
         assert_eq!(horizon.span(0.30005, 1.5, 0.0), None);
         assert!(horizon.span(0.30005, 2.5, 0.0).is_some() && horizon.span(0.30005, 0.5, 0.0).is_some());

@@ -25,15 +25,15 @@ use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::query::{Answer, Interpolation, ground_height};
 use crate::terrain::sight::Curvature;
 use crate::terrain::sight::crossings::crossings;
-use crate::terrain::sight::line::{End, SightLine};
-use crate::terrain::sight::viewshed::frame::Frame;
-use crate::terrain::sight::viewshed::sweep::{Lines, Margins, Scene, sweep};
+use crate::terrain::sight::line::{SightEnd, SightLine};
+use crate::terrain::sight::viewshed::frame::OctantFrame;
+use crate::terrain::sight::viewshed::sweep::{Margins, SightLines, SweepScene, sweep};
 
 /// What a viewshed is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewshedOptions {
     /// Who looks.
-    pub observer: End,
+    pub observer: SightEnd,
     /// Metres above the ground of what is looked for, at every post.
     pub target_above_m: f64,
     /// How far is looked, in metres along the ground; without limit where infinite.
@@ -56,7 +56,7 @@ pub struct Sector {
 /// What a viewshed says of a post.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-pub enum Seen {
+pub enum PostVisibility {
     /// Beyond the range or out of the sector.
     Beyond,
     /// There is no data.
@@ -75,7 +75,7 @@ pub struct Viewshed {
     /// Rows.
     pub rows: u32,
     /// Row by row from the south-west, as [`Lattice::heights`].
-    pub posts: Vec<Seen>,
+    pub posts: Vec<PostVisibility>,
     /// How many posts were looked at along their own line: the rest were decided by the sweep. A measure of the work,
     /// no part of the answer.
     pub looked_at: usize,
@@ -83,7 +83,7 @@ pub struct Viewshed {
 
 /// How many posts there are of each kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct ViewshedCounts {
     /// In sight.
     pub visible: usize,
     /// Behind terrain.
@@ -96,13 +96,13 @@ pub struct Counts {
 
 impl Viewshed {
     /// The number of posts of each kind.
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> ViewshedCounts {
         let mut by_kind = [0; 4];
         for &seen in &self.posts {
             by_kind[seen as usize] += 1;
         }
         let [beyond, no_data, hidden, visible] = by_kind;
-        Counts { visible, hidden, no_data, beyond }
+        ViewshedCounts { visible, hidden, no_data, beyond }
     }
 }
 
@@ -122,11 +122,11 @@ pub fn viewshed(lattice: &Lattice, options: &ViewshedOptions) -> Result<Viewshed
     let exact = |post: Post| looking.reaches(post) && looking.sees(post);
     let sure = |post: Post| !looking.may_meet_a_diagonal_at(post);
     let scene = looking.scene();
-    let wedges = wedges(Frame::all(lattice, looking.eye), &options.sector);
+    let wedges = wedges(OctantFrame::all(lattice, looking.eye), &options.sector);
     let looked_at = AtomicUsize::new(0);
     wedges.par_iter().with_max_len(1).for_each(|(frame, rays)| {
         looked_at.fetch_add(
-            sweep(&scene, frame, *rays, Lines { exact: &exact, sure: &sure }, &visible),
+            sweep(&scene, frame, *rays, SightLines { exact: &exact, sure: &sure }, &visible),
             Ordering::Relaxed,
         );
     });
@@ -153,7 +153,7 @@ pub fn viewshed_by_lines(lattice: &Lattice, options: &ViewshedOptions) -> Result
 const PARTS: usize = 4;
 
 /// The wedges that a sector touches.
-fn wedges(frames: impl Iterator<Item = Frame>, sector: &Sector) -> Vec<(Frame, (f64, f64))> {
+fn wedges(frames: impl Iterator<Item = OctantFrame>, sector: &Sector) -> Vec<(OctantFrame, (f64, f64))> {
     let parts = (0..PARTS).map(|part| (part as f64 / PARTS as f64, (part + 1) as f64 / PARTS as f64));
     let all = frames.flat_map(|frame| parts.clone().map(move |rays| (frame, rays)));
     all.filter(|(frame, rays)| sector.may_touch(frame.directions(*rays))).collect()
@@ -219,10 +219,10 @@ impl<'a> Looking<'a> {
     }
 
     /// What is said of every post, where `sees` tells of those within reach that have data.
-    fn posts(&self, sees: impl Fn(usize, Post) -> bool + Sync) -> Vec<Seen> {
+    fn posts(&self, sees: impl Fn(usize, Post) -> bool + Sync) -> Vec<PostVisibility> {
         let columns = self.lattice.columns();
         let is_everywhere = self.options.range_m.is_infinite() && self.options.sector.width_deg >= 360.0;
-        let mut posts = vec![Seen::Beyond; self.lattice.heights().len()];
+        let mut posts = vec![PostVisibility::Beyond; self.lattice.heights().len()];
         let rows =
             posts.par_chunks_mut(columns as usize).zip(self.lattice.heights().par_chunks(columns as usize));
         rows.enumerate().for_each(|(row, (posts, heights))| {
@@ -230,9 +230,9 @@ impl<'a> Looking<'a> {
                 let post = Post { column: column as u32, row: row as u32 };
                 if is_everywhere || self.reaches(post) {
                     *seen = match (height.is_nan(), row * columns as usize + column) {
-                        (true, _) => Seen::NoData,
-                        (false, index) if sees(index, post) => Seen::Visible,
-                        _ => Seen::Hidden,
+                        (true, _) => PostVisibility::NoData,
+                        (false, index) if sees(index, post) => PostVisibility::Visible,
+                        _ => PostVisibility::Hidden,
                     };
                 }
             }
@@ -246,9 +246,9 @@ impl<'a> Looking<'a> {
         (low.y..=high.y).flat_map(move |row| (low.x..=high.x).map(move |column| Post { column, row }))
     }
 
-    fn scene(&self) -> Scene<'a> {
+    fn scene(&self) -> SweepScene<'a> {
         let drop_per_square_m = self.options.curvature.drop_per_square_m();
-        Scene {
+        SweepScene {
             lattice: self.lattice,
             eye_m: self.eye_m,
             target_m: self.options.target_above_m,

@@ -1,16 +1,16 @@
 //! The strip of cells that the observer stands in: its edges pass the observer on all sides, so they are cut to the
 //! wedge and, where they come too near for `rise / x` to say anything, taken for as high as their higher end.
 
-use crate::terrain::sight::viewshed::sweep::{Mark, NEAREST, Ring, Sweep};
+use crate::terrain::sight::viewshed::sweep::{NEAREST, PostRing, RingPost, Sweep};
 
 impl Sweep<'_> {
     /// Takes in the strip that the observer stands in, or stands just before: its edges are cut to the wedge.
     pub(super) fn near_strip(&mut self, ring: usize) {
         let parity = self.frame.parity(ring - 1);
         for j in 0..self.ring.end().min(self.before.end()) {
-            let corner = |ring: &Ring, j: i64| {
+            let corner = |ring: &PostRing, j: i64| {
                 let height = *ring.heights.get(usize::try_from(j - ring.first).ok()?)?;
-                Some(Corner { x: ring.x, y: j as f64 - self.frame.offset, height })
+                Some(WedgeCorner { x: ring.x, y: j as f64 - self.frame.offset, height })
             };
             let (a, d) = (corner(&self.before, j), corner(&self.before, j + 1));
             let (b, c) = (corner(&self.ring, j), corner(&self.ring, j + 1));
@@ -25,7 +25,7 @@ impl Sweep<'_> {
         }
     }
 
-    fn near_edge(&mut self, from: Corner, to: Corner) {
+    fn near_edge(&mut self, from: WedgeCorner, to: WedgeCorner) {
         if (from.height + to.height).is_nan() {
             // its ends are posts of rings; one nearer than NEAREST still hides what lies right behind it
             for end in
@@ -35,7 +35,7 @@ impl Sweep<'_> {
             }
             return;
         }
-        let is_observer = |corner: &Corner| corner.x == 0.0 && corner.y == 0.0;
+        let is_observer = |corner: &WedgeCorner| corner.x == 0.0 && corner.y == 0.0;
         if is_observer(&from) || is_observer(&to) {
             return;
         }
@@ -60,10 +60,10 @@ impl Sweep<'_> {
         }
     }
 
-    fn mark(&self, corner: &Corner) -> Mark {
+    fn mark(&self, corner: &WedgeCorner) -> RingPost {
         let u = corner.y / corner.x;
         let sag = corner.x * (self.bend.along + self.bend.across * u * u);
-        Mark { u, v: (corner.height - self.scene.eye_m) / corner.x - sag }
+        RingPost { u, v: (corner.height - self.scene.eye_m) / corner.x - sag }
     }
 
     /// Ground of this height stands nearer than [`NEAREST`] somewhere in the wedge.
@@ -76,13 +76,13 @@ impl Sweep<'_> {
 
 /// A post, or a place on an edge, in the frame of the wedge.
 #[derive(Clone, Copy)]
-struct Corner {
+struct WedgeCorner {
     x: f64,
     y: f64,
     height: f64,
 }
 
-impl Corner {
+impl WedgeCorner {
     fn toward(&self, to: &Self, t: f64) -> Self {
         let blend = |from: f64, to: f64| from + (to - from) * t;
         Self { x: blend(self.x, to.x), y: blend(self.y, to.y), height: blend(self.height, to.height) }

@@ -22,8 +22,8 @@ use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::sight::viewshed::frame::Frame;
-use crate::terrain::sight::viewshed::horizon::{Doubt, Edge, Horizon};
+use crate::terrain::sight::viewshed::frame::OctantFrame;
+use crate::terrain::sight::viewshed::horizon::{Doubt, Horizon, HorizonEdge};
 
 /// How far off the numbers here may be from those of a line of sight.
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +55,7 @@ const LAST: f64 = 1.0 + 4.0 * f64::EPSILON;
 const CHUNK: usize = 16;
 
 /// What a sweep looks through.
-pub(super) struct Scene<'a> {
+pub(super) struct SweepScene<'a> {
     pub lattice: &'a Lattice,
     /// Height of the eye, metres.
     pub eye_m: f64,
@@ -69,7 +69,7 @@ pub(super) struct Scene<'a> {
 
 /// What single lines of sight say.
 #[derive(Clone, Copy)]
-pub(super) struct Lines<'a> {
+pub(super) struct SightLines<'a> {
     /// Whether a post can be seen.
     pub exact: &'a dyn Fn(Post) -> bool,
     /// Whether nothing that ends at a post can stand before it by rounding.
@@ -79,10 +79,10 @@ pub(super) struct Lines<'a> {
 /// Looks at every post of a wedge: sets what is seen in `visible`, in the order of the lattice's heights. `lines` are
 /// asked where only looking along the line can tell; the number of times is returned.
 pub(super) fn sweep(
-    scene: &Scene<'_>,
-    frame: &Frame,
+    scene: &SweepScene<'_>,
+    frame: &OctantFrame,
     (from, to): (f64, f64),
-    lines: Lines<'_>,
+    lines: SightLines<'_>,
     visible: &[AtomicBool],
 ) -> usize {
     let mut sweep = Sweep {
@@ -95,18 +95,18 @@ pub(super) fn sweep(
         horizon: Horizon::new(from, to),
         near: f64::NEG_INFINITY,
         bend: bend(scene, frame),
-        chunk: Chunk::default(),
-        before: Ring::default(),
-        ring: Ring::default(),
+        chunk: RingChunk::default(),
+        before: PostRing::default(),
+        ring: PostRing::default(),
         looked: 0,
     };
     sweep.run();
     sweep.looked
 }
 
-fn bend(scene: &Scene<'_>, frame: &Frame) -> Bend {
+fn bend(scene: &SweepScene<'_>, frame: &OctantFrame) -> CurvatureDrop {
     let drop = scene.drop_per_square_m;
-    Bend {
+    CurvatureDrop {
         along: drop * frame.ring_cell_m * frame.ring_cell_m,
         across: drop * frame.cross_cell_m * frame.cross_cell_m,
     }
@@ -114,31 +114,31 @@ fn bend(scene: &Scene<'_>, frame: &Frame) -> Bend {
 
 /// What curvature takes from heights, per square cell along and across.
 #[derive(Clone, Copy)]
-pub(super) struct Bend {
+pub(super) struct CurvatureDrop {
     pub(super) along: f64,
     pub(super) across: f64,
 }
 
 pub(super) struct Sweep<'a> {
-    pub(super) scene: &'a Scene<'a>,
-    pub(super) frame: &'a Frame,
+    pub(super) scene: &'a SweepScene<'a>,
+    pub(super) frame: &'a OctantFrame,
     from: f64,
     to: f64,
-    lines: Lines<'a>,
+    lines: SightLines<'a>,
     visible: &'a [AtomicBool],
     horizon: Horizon,
     /// As high as anything nearer than [`NEAREST`] may stand.
     pub(super) near: f64,
-    pub(super) bend: Bend,
-    chunk: Chunk,
-    pub(super) before: Ring,
-    pub(super) ring: Ring,
+    pub(super) bend: CurvatureDrop,
+    chunk: RingChunk,
+    pub(super) before: PostRing,
+    pub(super) ring: PostRing,
     looked: usize,
 }
 
 /// A ring of posts within the wedge, and a few beyond.
 #[derive(Default)]
-pub(super) struct Ring {
+pub(super) struct PostRing {
     number: usize,
     pub(super) x: f64,
     pub(super) first: i64,
@@ -157,19 +157,19 @@ pub(super) struct Ring {
 
 /// A post of a ring as the observer sees it.
 #[derive(Clone, Copy)]
-pub(super) struct Mark {
+pub(super) struct RingPost {
     pub(super) u: f64,
     pub(super) v: f64,
 }
 
-impl Ring {
+impl PostRing {
     pub(super) fn end(&self) -> i64 {
         self.first + self.v.len() as i64
     }
 
-    fn get(&self, j: i64) -> Option<Mark> {
+    fn get(&self, j: i64) -> Option<RingPost> {
         let index = usize::try_from(j - self.first).ok()?;
-        Some(Mark { u: *self.u.get(index)?, v: *self.v.get(index)? })
+        Some(RingPost { u: *self.u.get(index)?, v: *self.v.get(index)? })
     }
 
     fn is_loud(&self, j: i64) -> bool {
@@ -187,7 +187,7 @@ impl Ring {
 
 /// Heights of some rings, read together.
 #[derive(Default)]
-struct Chunk {
+struct RingChunk {
     ring: usize,
     rings: usize,
     first: i64,
@@ -322,7 +322,7 @@ impl Sweep<'_> {
             if is_ground && !self.ring.loud[index] {
                 continue;
             }
-            let target = Mark { u: self.ring.u[index], v: self.ring.v[index] + lift };
+            let target = RingPost { u: self.ring.u[index], v: self.ring.v[index] + lift };
             let floor = floor[((target.u * count) as usize).min(last)];
             let is_low = !is_near && target.v + self.ring.error < floor;
             // a border belongs to the wedge that it begins
@@ -336,7 +336,7 @@ impl Sweep<'_> {
     }
 
     /// Looks at post `j` of the ring.
-    fn look(&mut self, j: i64, target: Mark) {
+    fn look(&mut self, j: i64, target: RingPost) {
         let post = self.frame.post(self.ring.number, j);
         let seen = if self.ring.x <= NEAR { None } else { self.seen(j, target, self.ring.error) };
         let seen = seen.filter(|&seen| !seen || (self.lines.sure)(post)).unwrap_or_else(|| {
@@ -349,8 +349,8 @@ impl Sweep<'_> {
     }
 
     /// Whether the target on post `j` can be seen; `None` where only looking can tell.
-    fn seen(&self, j: i64, target: Mark, error: f64) -> Option<bool> {
-        let Mark { u, v } = target;
+    fn seen(&self, j: i64, target: RingPost, error: f64) -> Option<bool> {
+        let RingPost { u, v } = target;
         let span = self.horizon.span(u, v - error, self.scene.margins.across / self.ring.x)?;
         if v + error < span.low {
             return Some(false);
@@ -399,7 +399,7 @@ impl Sweep<'_> {
             let slope = (next.v - mark.v) / (next.u - mark.u);
             let cut = |gap: bool| if gap { shake } else { 0.0 };
             let (start, end) = (cut(ends.0), cut(ends.1));
-            self.horizon.insert(&Edge {
+            self.horizon.insert(&HorizonEdge {
                 u0: mark.u + start,
                 v0: mark.v + slope * start,
                 u1: next.u - end,
@@ -446,7 +446,7 @@ impl Sweep<'_> {
 
     /// Whether the rung from `a` out to `b` lies nowhere higher than both rings. All three are straight from `b`'s ray
     /// to `a`'s, so it is enough that either ring is as high where the rung leaves the other.
-    fn rung_is_under(&self, j: i64, a: Mark, b: Mark) -> bool {
+    fn rung_is_under(&self, j: i64, a: RingPost, b: RingPost) -> bool {
         let within = self.ring.get(j + 1).is_some_and(|c| a.u <= c.u);
         within && a.v <= self.ring.between(j, a.u)
             || self.before.get(j - 1).is_some_and(|near| near.u <= b.u)
@@ -454,12 +454,12 @@ impl Sweep<'_> {
     }
 
     /// The same for the diagonal from `a` out to the next post's `c`.
-    fn outward_is_under(&self, j: i64, a: Mark, c: Mark) -> bool {
+    fn outward_is_under(&self, j: i64, a: RingPost, c: RingPost) -> bool {
         a.u <= c.u && (a.v <= self.ring.between(j, a.u) || c.v <= self.before.between(j, c.u))
     }
 
     /// The same for the diagonal from `b` in to the next post's `d`, which passes the rays of `a` and `c`.
-    fn inward_is_under(&self, j: i64, [a, b, c, d]: [Mark; 4]) -> bool {
+    fn inward_is_under(&self, j: i64, [a, b, c, d]: [RingPost; 4]) -> bool {
         let at = |u: f64| b.v + (d.v - b.v) * ((u - b.u) / (d.u - b.u));
         let far = self.ring.get(j + 2).is_some_and(|far| d.u <= far.u);
         let near = self.before.get(j - 1).is_some_and(|near| near.u <= b.u);
@@ -470,12 +470,12 @@ impl Sweep<'_> {
     }
 
     /// Takes in an edge across the strip, from one ray to a later one.
-    fn cross_edge(&mut self, from: Mark, to: Mark) {
+    fn cross_edge(&mut self, from: RingPost, to: RingPost) {
         let error = self.ring.error;
         self.cross(from, to, (self.before.x, self.ring.x), error);
     }
 
-    pub(super) fn cross(&mut self, from: Mark, to: Mark, (near_x, far_x): (f64, f64), error: f64) {
+    pub(super) fn cross(&mut self, from: RingPost, to: RingPost, (near_x, far_x): (f64, f64), error: f64) {
         let (from, to) = if from.u <= to.u { (from, to) } else { (to, from) };
         if (from.v + to.v).is_nan() {
             return;
@@ -495,7 +495,7 @@ impl Sweep<'_> {
         }
         // a ray may just miss an end of it; there the rings hide as much
         let slope = (to.v - from.v) / width;
-        self.horizon.insert(&Edge {
+        self.horizon.insert(&HorizonEdge {
             u0: from.u + shake,
             v0: from.v + slope * shake,
             u1: to.u - shake,
