@@ -5,6 +5,7 @@ pub mod app;
 pub mod dem;
 pub mod description;
 pub mod draw;
+pub mod earthworks;
 pub mod export;
 pub mod geom;
 pub mod mesh;

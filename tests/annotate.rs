@@ -51,7 +51,7 @@ fn landscape(width: u32, height: u32) -> Pixels {
     })
 }
 
-/// Coloured grain, quickly made.
+/// Colored grain, quickly made.
 fn grain(width: u32, height: u32) -> Pixels {
     Pixels::from_fn(width, height, |x, y| {
         let [a, b, c, _] = (x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA6B)).to_le_bytes();
@@ -107,7 +107,7 @@ fn sheet(width: u32, height: u32) -> Annotations {
         title: Some("Cross Mountain and the Coal Creek Valley".to_owned()),
         subtitle: Some("Anderson and Campbell Counties, Tennessee — view to the north-west".to_owned()),
         north: Some(NorthArrow { direction: Vec2::new(0.62, -0.50).normalize(), foreshortening: 0.45 }),
-        scale_bar: Some(ScaleBar { pixels_per_metre: h * 0.000_043, distance_m: 12_400.0 }),
+        scale_bar: Some(ScaleBar { pixels_per_meter: h * 0.000_043, distance_m: 12_400.0 }),
         legend: Some(Legend {
             ramp: ColorRamp::new(stops).expect("rising stops"),
             low_m: 252.0,
@@ -149,7 +149,7 @@ fn trouble(width: u32, height: u32) -> Annotations {
         title: Some("Great Smoky Mountains ".repeat(9)),
         subtitle: Some("one\ntwo\nthree".to_owned()),
         north: Some(NorthArrow { direction: Vec2::new(-0.9, 0.2), foreshortening: 0.1 }),
-        scale_bar: Some(ScaleBar { pixels_per_metre: h * 0.13, distance_m: 4.2 }),
+        scale_bar: Some(ScaleBar { pixels_per_meter: h * 0.13, distance_m: 4.2 }),
         legend: Some(Legend {
             low_m: -12.5,
             high_m: 31.0,
@@ -238,7 +238,7 @@ fn furniture_whose_figures_make_no_sense_is_left_out_and_reported() {
     let mut odd = Annotations { labels: vec![], ..sheet(960, 540) };
     odd.title = Some("\u{7}\n".to_owned());
     odd.subtitle = None;
-    odd.scale_bar = Some(ScaleBar { pixels_per_metre: f32::NAN, distance_m: 1.0 });
+    odd.scale_bar = Some(ScaleBar { pixels_per_meter: f32::NAN, distance_m: 1.0 });
     odd.north = Some(NorthArrow { direction: Vec2::ZERO, foreshortening: 0.5 });
     odd.legend = odd.legend.map(|legend| Legend { low_m: 9.0, high_m: 9.0, ..legend });
     odd.credit = Some(String::new());

@@ -18,11 +18,11 @@ fn page() -> String {
     fs::read_to_string(Path::new(ROOT).join("src/ARCHITECTURE.md")).expect("the map is there")
 }
 
-/// Every room with its floor.
-fn floors() -> BTreeMap<String, u32> {
-    let rows = table(&page(), "| floor | room | what lives there | knows nothing of |");
-    assert!(rows.len() > 10, "the table of rooms was not found");
-    rows.into_iter().map(|row| (row[1].clone(), row[0].parse().expect("a floor is a number"))).collect()
+/// Every module with its layer.
+fn layers() -> BTreeMap<String, u32> {
+    let rows = table(&page(), "| layer | module | what lives there | knows nothing of |");
+    assert!(rows.len() > 10, "the table of modules was not found");
+    rows.into_iter().map(|row| (row[1].clone(), row[0].parse().expect("a layer is a number"))).collect()
 }
 
 fn rust_files(folder: &Path) -> Vec<PathBuf> {
@@ -61,8 +61,8 @@ fn names(code: &str, name: &str) -> bool {
 }
 
 #[test]
-fn every_folder_of_the_source_is_a_room_on_the_map_and_every_room_is_there() {
-    let floors = floors();
+fn every_source_folder_is_in_the_table_and_every_module_exists() {
+    let layers = layers();
     let mut folders: Vec<String> = fs::read_dir(Path::new(ROOT).join("src"))
         .expect("readable")
         .map(|entry| entry.expect("readable").path())
@@ -70,19 +70,19 @@ fn every_folder_of_the_source_is_a_room_on_the_map_and_every_room_is_there() {
         .map(|path| path.file_name().expect("named").to_string_lossy().into_owned())
         .collect();
     folders.sort();
-    let rooms: Vec<String> = floors.keys().cloned().collect();
-    assert_eq!(folders, rooms, "folders of src/ on the left, rooms of the map on the right");
+    let modules: Vec<String> = layers.keys().cloned().collect();
+    assert_eq!(folders, modules, "folders of src/ on the left, modules of the table on the right");
 }
 
 #[test]
-fn no_room_reaches_upward_or_sideways() {
-    let floors = floors();
+fn no_module_imports_upward_or_sideways() {
+    let layers = layers();
     let mut wrong = Vec::new();
     for (file, code) in sources().iter().filter(|(file, _)| file.contains('/')) {
-        let room = file.split('/').next().expect("in a room");
-        for (other, floor) in floors.iter().filter(|(other, _)| other.as_str() != room) {
-            if *floor >= floors[room] && names(code, &format!("crate::{other}")) {
-                wrong.push(format!("{file} (floor {}) names {other} (floor {floor})", floors[room]));
+        let module = file.split('/').next().expect("in a module");
+        for (other, layer) in layers.iter().filter(|(other, _)| other.as_str() != module) {
+            if *layer >= layers[module] && names(code, &format!("crate::{other}")) {
+                wrong.push(format!("{file} (layer {}) names {other} (layer {layer})", layers[module]));
             }
         }
     }
@@ -90,15 +90,15 @@ fn no_room_reaches_upward_or_sideways() {
 }
 
 #[test]
-fn what_has_one_door_is_named_nowhere_else() {
-    let doors = table(&page(), "| what | only in |");
-    assert!(doors.len() > 5, "the table of doors was not found");
+fn a_dependency_with_one_user_is_named_nowhere_else() {
+    let users = table(&page(), "| what | only in |");
+    assert!(users.len() > 5, "the table of users was not found");
     let mut wrong = Vec::new();
     for (file, code) in sources() {
-        for door in &doors {
-            let allowed = door[1].split(", ").any(|place| file.starts_with(place));
-            if !allowed && names(&code, &door[0]) {
-                wrong.push(format!("{file} names {}, which belongs in {}", door[0], door[1]));
+        for user in &users {
+            let allowed = user[1].split(", ").any(|place| file.starts_with(place));
+            if !allowed && names(&code, &user[0]) {
+                wrong.push(format!("{file} names {}, which belongs in {}", user[0], user[1]));
             }
         }
     }

@@ -12,8 +12,8 @@ use sandtable::ribbon::texture::RibbonSurface;
 use sandtable::ribbon::texture::cover::cover_length_m;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
-use sandtable::scene::kind::{FeatureKind, Scene};
 use sandtable::scene::picture::{build_draw_list, camera};
+use sandtable::scene::{FeatureKind, Scene};
 
 use common::scratch::Scratch;
 

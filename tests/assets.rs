@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use sandtable::model::kind::Companions;
+use sandtable::model::Companions;
 use sandtable::scene::assets::{AssetError, Assets};
 
 #[path = "common/skip.rs"]

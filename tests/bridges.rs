@@ -11,8 +11,8 @@ use glam::DVec2;
 use sandtable::app::arguments::Access;
 use sandtable::app::load;
 use sandtable::draw::list::{DrawMesh, FeatureId};
-use sandtable::scene::kind::{FeatureKind, Scene};
 use sandtable::scene::report::{ReportCell, ReportTable};
+use sandtable::scene::{FeatureKind, Scene};
 use sandtable::structure::deck_check::closed;
 use sandtable::terrain::query::{Interpolation, Surface};
 

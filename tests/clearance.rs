@@ -6,6 +6,7 @@ use glam::{DAffine2, DVec2, Vec3};
 use proptest::prelude::*;
 use sandtable::dem::raster::{Raster, Samples};
 use sandtable::draw::list::DrawMesh;
+use sandtable::earthworks::leveling;
 use sandtable::geom::crs::Crs;
 use sandtable::geom::polyline::Polyline;
 use sandtable::mesh::check;
@@ -18,14 +19,13 @@ use sandtable::roam::criterion::screen::ScreenError;
 use sandtable::roam::culling::{PatchHeights, patches_in_view};
 use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::ground::PatchedGround;
 use sandtable::roam::layout::PatchLayout;
+use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::roam::refine::rebuild::rebuild;
-use sandtable::terrain::earthwork;
-use sandtable::terrain::facets::TriangleSurface;
 use sandtable::terrain::lattice::Lattice;
 use sandtable::terrain::query::service::HeightService;
 use sandtable::terrain::query::{Answer, Interpolation, Surface};
+use sandtable::terrain::triangle_surface::TriangleSurface;
 use sandtable::view::camera::Camera;
 use sandtable::view::frustum::Frustum;
 
@@ -149,7 +149,7 @@ fn a_lake_is_perfectly_level_however_coarse_the_ground_around_it() {
         [(900.0, 800.0), (1700.0, 760.0), (2050.0, 1300.0), (1500.0, 1750.0), (980.0, 1500.0)]
             .map(DVec2::from)
             .into();
-    earthwork::level(&mut lattice, std::slice::from_ref(&shore), 371.25);
+    leveling::level(&mut lattice, std::slice::from_ref(&shore), 371.25);
     let world = World::new(lattice);
     let mut plan = PlanMesh::default();
     area::fill(&shore, &[], 100.0, &mut plan);
@@ -186,7 +186,7 @@ fn displayed_heights_are_those_of_the_drawn_triangles_and_ground_heights_never_c
         crs: None,
         nodata: None,
         vertical_datum: None,
-        metres_per_z: 1.0,
+        meters_per_z: 1.0,
         georeferenced: false,
     };
     let world = World::new(lattice);

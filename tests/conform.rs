@@ -7,18 +7,18 @@ use std::path::Path;
 
 use glam::DVec2;
 use sandtable::description::parse::parse_bytes;
+use sandtable::scene::Scene;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
-use sandtable::scene::kind::Scene;
 use sandtable::scene::report::{ReportCell, ReportTable};
-use sandtable::scene::roads::centreline::Support;
+use sandtable::scene::roads::centerline::Support;
 use sandtable::scene::roads::profiles::RoadProfile;
 use sandtable::terrain::query::{Interpolation, ground_height};
 
 use common::data::data;
 use common::scratch::Scratch;
 
-/// How far a level that was rounded to f32 may be off, in metres.
+/// How far a level that was rounded to f32 may be off, in meters.
 const ROUNDED_M: f64 = 1e-3;
 
 fn scene(file: &Path, text: &str) -> Result<Scene, String> {
@@ -132,7 +132,7 @@ fn roads_that_meet_agree_on_their_level_whether_or_not_they_share_a_vertex() {
 }
 
 #[test]
-fn a_ravine_is_bridged_and_a_ridge_tunnelled_by_rule() {
+fn a_ravine_is_bridged_and_a_ridge_tunneled_by_rule() {
     let land = |x: f64, _: f64| match x {
         x if (300.0..340.0).contains(&x) => 60.0,
         x if (540.0..660.0).contains(&x) => 160.0,

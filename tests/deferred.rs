@@ -3,20 +3,20 @@
 use glam::{DAffine2, DMat2, DVec2, Vec3};
 use proptest::prelude::*;
 use sandtable::dem::raster::{Raster, Samples};
+use sandtable::earthworks::brush::Crater;
 use sandtable::roam::bintree::Triangle;
 use sandtable::roam::block::{BlockSource, PatchBlock, WholeGround};
 use sandtable::roam::criterion::spheres::Spheres;
 use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::PatchedGround;
 use sandtable::roam::layout::PatchLayout;
 use sandtable::roam::paging::ground::{PagedGround, PagingOptions, exact_spheres};
+use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::roam::refine::changes::RefinementChanges;
 use sandtable::roam::refine::deferred::Deferred;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::roam::spheres::SphereMap;
-use sandtable::terrain::brush::Crater;
 use sandtable::terrain::lattice::{Lattice, Post};
 
 fn hills(columns: u32, rows: u32, holes: &[usize]) -> Lattice {
@@ -229,7 +229,7 @@ fn raster_of(lattice: &Lattice) -> Raster {
         width: columns,
         height: rows,
         samples: Samples::F32(samples.collect()),
-        metres_per_z: 1.0,
+        meters_per_z: 1.0,
         map_from_grid: DAffine2 { matrix2: axes, translation: DVec2::new(-5.0, f64::from(rows) * 8.0 - 4.0) },
         georeferenced: true,
         crs: None,

@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use glam::DVec2;
-use sandtable::dem::fault::DemError;
+use sandtable::dem::error::DemError;
+use sandtable::dem::formats::rgb_png::HeightEncoding;
 use sandtable::dem::raster::Raster;
 use sandtable::dem::read::{DemHints, read};
-use sandtable::dem::rgb_png::HeightEncoding;
 use sandtable::dem::sample::{Sampled, bilinear, nearest};
 use sandtable::dem::stats;
 use sandtable::dem::warp::to_metric;
@@ -237,11 +237,11 @@ fn every_system_agrees_with_proj_in_both_directions() {
             let off = (ours - wanted) * DVec2::new(111_320.0 * wanted.y.to_radians().cos(), 111_320.0);
             worst = worst.max(off.length());
             let back = wgs84.transform(crs, ours).expect("where it came from");
-            let metres = if crs.is_geographic() { 111_320.0 } else { crs.metres_per_unit() };
-            assert!((back - sample.at).length() * metres < 1e-3, "{file}: {back} for {}", sample.at);
+            let meters = if crs.is_geographic() { 111_320.0 } else { crs.meters_per_unit() };
+            assert!((back - sample.at).length() * meters < 1e-3, "{file}: {back} for {}", sample.at);
             checked += 1;
         }
-        // Ten decimals of a degree are 11 micrometres. The equal-area systems differ by the authalic latitude,
+        // Ten decimals of a degree are 11 micrometers. The equal-area systems differ by the authalic latitude,
         // whose short series the oracle's PROJ 9.1 still used.
         let allowed = match crs.name() {
             "EPSG:27700" => 0.01,
@@ -374,7 +374,7 @@ fn map_tiles_of_heights_are_the_model_that_they_were_made_of() {
             let wanted = if wanted.is_nan() { -500.0 } else { wanted };
             assert!((ours - wanted).abs() <= step, "{file}: {ours} for {wanted}");
         }
-        let refused = read(file, &bytes, &hints(None)).expect_err("colours").to_string();
+        let refused = read(file, &bytes, &hints(None)).expect_err("colors").to_string();
         assert!(refused.contains("terrain-rgb") && refused.contains("terrarium"), "{refused}");
     }
     let fuji = fs::read(folder.join("dem/fuji_terrain_rgb.png")).expect("a file of the test data");
@@ -448,7 +448,7 @@ fn a_grid_that_old_gdal_cannot_read_is_read() {
 }
 
 #[test]
-fn every_raster_with_a_place_comes_to_metres_or_is_refused_for_a_reason() {
+fn every_raster_with_a_place_comes_to_meters_or_is_refused_for_a_reason() {
     let Some(folder) = data() else { return };
     for (file, entry) in oracle(&folder) {
         let Ok(raster) = open(&folder.join(&file)) else { continue };

@@ -98,7 +98,7 @@ fn streams_fall_from_end_to_end() {
     let ground = ground();
     for (order, points) in lines(&ground, "assets/jacksboro/streams.geojson", "order") {
         let fall = ground.at(points[0]) - ground.at(points[points.len() - 1]);
-        // Where the flood crossed a depression the raw ground rises again: behind the dams by thirty metres.
+        // Where the flood crossed a depression the raw ground rises again: behind the dams by thirty meters.
         assert!(fall > -12.0, "a stream of order {order} rises {:.0} m", -fall);
     }
 }

@@ -8,12 +8,12 @@ use common::forest::{forest, overlook, seen_from};
 use glam::Vec3;
 use sandtable::draw::list::DrawList;
 use sandtable::mesh::sink::VertexId;
-use sandtable::model::kind::{Companions, Model, ModelPart};
 use sandtable::model::read::read;
 use sandtable::model::simplify::levels;
+use sandtable::model::{Companions, Model, ModelPart};
 use sandtable::render::cpu::{Options, render};
 use sandtable::render::picture::Picture;
-use sandtable::scene::kind::Scene;
+use sandtable::scene::Scene;
 use sandtable::scene::picture::{build_draw_list, display, draw_list};
 use sandtable::view::camera::Camera;
 
@@ -51,7 +51,7 @@ fn mean_difference([one, other]: &[Picture; 2]) -> (f64, usize) {
     (sum as f64 / 3.0 / f64::from(count.max(1)), count as usize)
 }
 
-/// The mean colours of both pictures where both have a model.
+/// The mean colors of both pictures where both have a model.
 fn mean_colors([one, other]: &[Picture; 2]) -> [Vec3; 2] {
     let features = one.features.iter().zip(&other.features);
     let both: Vec<bool> = features.map(|(a, b)| a.0 > 1 && b.0 > 1).collect();
@@ -74,7 +74,7 @@ fn a_forest_looks_the_same_at_a_tenth_of_its_triangles() {
     let triangles = lists.each_ref().map(DrawList::triangle_count);
     let (mean, pixels) = mean_difference(&pictures);
     let colors = mean_colors(&pictures);
-    println!("{triangles:?} triangles, {mean:.2} steps over {pixels} pixels, mean colours {colors:?}");
+    println!("{triangles:?} triangles, {mean:.2} steps over {pixels} pixels, mean colors {colors:?}");
     assert!(triangles[0] * 10 < triangles[1], "{triangles:?}");
     assert!(pixels > 20_000, "{pixels}");
     assert!(mean < 10.0, "{mean}");

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3, Vec3};
 use proptest::prelude::*;
+use sandtable::earthworks::brush::{BrushChanges, Crater, Embankment, TireTrack, Trench, set_heights};
 use sandtable::roam::active::ActiveSet;
 use sandtable::roam::criterion::spheres::Spheres;
 use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, Edit, ErrorMeasure, Radius, mend_active};
 use sandtable::roam::refine::rebuild::rebuild;
-use sandtable::terrain::brush::{BrushChanges, Crater, Embankment, PostRect, Trench, TyreTrack, set_heights};
 use sandtable::terrain::lattice::{Lattice, Post};
+use sandtable::terrain::post_rect::PostRect;
 
 const CELL_M: f64 = 10.0;
 
@@ -61,7 +62,7 @@ impl Brush {
                 Trench { line: line(at), bottom_m: 15.0, top_m: 60.0, depth_m: *depth_m }.apply(lattice)
             }
             Self::Track { line: at, depth_m } => {
-                TyreTrack { line: line(at), gauge_m: 40.0, rut_m: 25.0, depth_m: *depth_m }.apply(lattice)
+                TireTrack { line: line(at), gauge_m: 40.0, rut_m: 25.0, depth_m: *depth_m }.apply(lattice)
             }
             Self::Bank { line: at, level_m } => {
                 let line: Vec<DVec3> = line(at).iter().map(|at| at.extend(*level_m)).collect();

@@ -19,8 +19,8 @@ use sandtable::draw::list::{DepthLayer, DrawItem};
 use sandtable::mesh::check;
 use sandtable::mesh::trimesh::TriMesh;
 use sandtable::ribbon::drape::check_clearance;
-use sandtable::scene::kind::{Scene, View};
 use sandtable::scene::picture::ViewDraw;
+use sandtable::scene::{Scene, View};
 
 /// Small enough to be quick and to be kept, large enough for annotations.
 const SIZE: PictureSize = PictureSize { width: 480, height: 270 };

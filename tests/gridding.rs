@@ -28,7 +28,7 @@ const ALL: [GriddingMethod; 5] = [
 
 fn cloud(points: Vec<DVec3>) -> PointCloud {
     let notes = Vec::new();
-    PointCloud { points, breaklines: Vec::new(), crs: None, metres_per_z: 1.0, vertical_datum: None, notes }
+    PointCloud { points, breaklines: Vec::new(), crs: None, meters_per_z: 1.0, vertical_datum: None, notes }
 }
 
 /// Points at random on a square of a side, the same for the same seed.
@@ -58,8 +58,8 @@ fn made(cloud: &PointCloud, frame: &CellGrid, method: GriddingMethod) -> Vec<f64
     heights(&grid(cloud, frame, method, Beyond::NoData).expect("a grid"))
 }
 
-/// The centres of a frame's cells, in the order of a raster.
-fn centres(frame: &CellGrid) -> Vec<DVec2> {
+/// The centers of a frame's cells, in the order of a raster.
+fn centers(frame: &CellGrid) -> Vec<DVec2> {
     (0..frame.height())
         .flat_map(|row| (0..frame.width()).map(move |column| (column, row)))
         .map(|(column, row)| frame.center(column, row))
@@ -82,7 +82,7 @@ fn web(points: &[DVec3]) -> DelaunayTriangulation<Vertex> {
 }
 
 #[test]
-fn triangles_and_natural_neighbours_agree_with_spade() {
+fn triangles_and_natural_neighbors_agree_with_spade() {
     let points = random(2000, 100.0, 5, hilly);
     let frame = square(100.0, 0.7);
     let web = web(&points);
@@ -92,7 +92,7 @@ fn triangles_and_natural_neighbours_agree_with_spade() {
         made(&cloud(points), &frame, GriddingMethod::Natural),
     );
     let mut compared = 0;
-    for ((at, ours), ours_natural) in centres(&frame).iter().zip(ours_linear).zip(ours_natural) {
+    for ((at, ours), ours_natural) in centers(&frame).iter().zip(ours_linear).zip(ours_natural) {
         let at = Point2::new(at.x, at.y);
         let theirs = linear.interpolate(|vertex| vertex.data().0.z, at);
         assert_eq!(theirs.is_none(), ours.is_nan(), "{at:?}");
@@ -121,7 +121,7 @@ fn inverse_distance_is_that_of_a_full_search_bit_for_bit() {
         let ours = made(&cloud(points.clone()), &frame, GriddingMethod::InverseDistance { k, power });
         let mut sorted = points.clone();
         sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-        for (at, ours) in centres(&frame).into_iter().zip(ours).filter(|(_, ours)| !ours.is_nan()).step_by(37)
+        for (at, ours) in centers(&frame).into_iter().zip(ours).filter(|(_, ours)| !ours.is_nan()).step_by(37)
         {
             let mut near: Vec<(f64, f64)> =
                 sorted.iter().map(|point| ((point.truncate() - at).length_squared(), point.z)).collect();
@@ -234,7 +234,7 @@ fn any_order_and_any_number_of_threads_give_the_same_bits() {
 
 #[test]
 fn a_regular_grid_comes_back_where_its_posts_are() {
-    // All neighbours on common circles, all border posts on the hull: what exact predicates are for.
+    // All neighbors on common circles, all border posts on the hull: what exact predicates are for.
     let posts =
         (0..40u32).flat_map(|y| (0..30u32).map(move |x| DVec2::new(f64::from(x) * 0.1, f64::from(y) * 0.1)));
     let points: Vec<DVec3> = posts.map(|at| at.extend(hilly(at * 20.0))).collect();
@@ -291,7 +291,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn triangles_and_natural_neighbours_reproduce_planes(
+    fn triangles_and_natural_neighbors_reproduce_planes(
         seed in 0u64..1000, count in 10usize..400, slope in (-3.0f64..3.0, -3.0f64..3.0), far in 0.0f64..1e6,
     ) {
         let plane = |at: DVec2| slope.0 * at.x + slope.1 * at.y + 500.0;
@@ -300,7 +300,7 @@ proptest! {
         let extent = Rect { min: DVec2::splat(far), max: DVec2::splat(far + 60.0) };
         let frame = CellGrid::within(extent, 1.5).expect("a lattice");
         for method in [GriddingMethod::Tin, GriddingMethod::Natural] {
-            for (at, height) in centres(&frame).into_iter().zip(made(&cloud(points.clone()), &frame, method)) {
+            for (at, height) in centers(&frame).into_iter().zip(made(&cloud(points.clone()), &frame, method)) {
                 prop_assert!(height.is_nan() || (height - plane(at - far)).abs() < 1e-6, "{:?} at {}: {}", method, at, height);
             }
         }
@@ -368,8 +368,8 @@ fn heights_of_a_survey_in_feet_are_taken_in_feet() {
     let Some(path) = data("pointcloud/autzen_trim.laz") else { return };
     let cloud = read(&bytes(&path), &PointHints::default()).expect("read");
     let crs = cloud.crs.expect("it states a system");
-    assert!(!crs.is_geographic() && (crs.metres_per_unit() - 0.3048).abs() < 1e-5, "{}", crs.name());
-    assert!((cloud.metres_per_z - 0.3048).abs() < 1e-5, "{}", cloud.metres_per_z);
+    assert!(!crs.is_geographic() && (crs.meters_per_unit() - 0.3048).abs() < 1e-5, "{}", crs.name());
+    assert!((cloud.meters_per_z - 0.3048).abs() < 1e-5, "{}", cloud.meters_per_z);
 }
 
 #[test]

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use glam::{DAffine2, DMat2, DVec2, Vec3};
 use proptest::prelude::*;
 use sandtable::dem::raster::{Raster, Samples};
+use sandtable::earthworks::brush::Crater;
 use sandtable::geom::crs::Crs;
 use sandtable::mesh::trimesh::TriMesh;
 use sandtable::roam::criterion::screen::ScreenError;
@@ -15,17 +16,16 @@ use sandtable::roam::culling::{PatchHeights, patches_in_view};
 use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
 use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::ground::PatchedGround;
 use sandtable::roam::layout::PatchLayout;
+use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::roam::refine::rebuild::rebuild;
-use sandtable::terrain::brush::Crater;
-use sandtable::terrain::facets::{TriangleSurface, facet_contains, plane_z};
 use sandtable::terrain::lattice::{Lattice, Post};
 use sandtable::terrain::query::batch::bilinear_ground;
 use sandtable::terrain::query::service::{HeightService, Snapshot};
 use sandtable::terrain::query::source::{raster_height, source_heights};
 use sandtable::terrain::query::tiles::HeightTiles;
 use sandtable::terrain::query::{Answer, Interpolation, Status, Surface, ground_height};
+use sandtable::terrain::triangle_surface::{TriangleSurface, facet_contains, plane_z};
 use sandtable::view::camera::Camera;
 use sandtable::view::frustum::Frustum;
 
@@ -64,7 +64,7 @@ fn raster_of(lattice: &Lattice) -> Raster {
         width: lattice.columns(),
         height: lattice.rows(),
         samples: Samples::F32(rows.flatten().copied().collect()),
-        metres_per_z: 1.0,
+        meters_per_z: 1.0,
         map_from_grid: DAffine2 {
             matrix2: DMat2::from_diagonal(DVec2::new(cell.x, -cell.y)),
             translation: corner,
@@ -151,7 +151,7 @@ proptest! {
         size in (1u32..40, 1u32..40),
         turned in 0.0f64..6.3,
         cell in (0.1f64..40.0, 0.1f64..40.0),
-        metres_per_z in prop_oneof![Just(1.0), Just(0.3048)],
+        meters_per_z in prop_oneof![Just(1.0), Just(0.3048)],
         is_wide in any::<bool>(),
         seed in any::<u64>(),
     ) {
@@ -167,7 +167,7 @@ proptest! {
             DAffine2::from_scale_angle_translation(DVec2::new(cell.0, -cell.1), turned, DVec2::new(5e5, 4e6));
         let plain = rough(DVec2::ZERO, DVec2::ONE, (2, 2), 1, 0);
         let raster = Raster {
-            width: size.0, height: size.1, samples, metres_per_z, map_from_grid, ..raster_of(&plain)
+            width: size.0, height: size.1, samples, meters_per_z, map_from_grid, ..raster_of(&plain)
         };
         let at: Vec<DVec2> = (0..2000)
             .map(|index| {
@@ -254,7 +254,7 @@ fn readers_see_whole_epochs_while_the_ground_is_edited() {
                     ground_height(epoch.lattice(), Interpolation::Bilinear, at).height_m() == Some(*height)
                 });
                 assert!(whole, "epoch {} is mixed with another", epoch.number());
-                // Every edit sinks the whole ground's lowest post by a metre.
+                // Every edit sinks the whole ground's lowest post by a meter.
                 let low = epoch.lattice().height_range().0;
                 assert_eq!(
                     f64::from(low),

@@ -15,8 +15,8 @@ use sandtable::scene::picture::{build_draw_list, display, draw_list};
 fn leaving_out_what_is_beside_the_picture_changes_no_pixel() {
     let scene = forest(300, &["firtree.obj", "tent.glb"]);
     let eye = Vec3::new(900.0, 700.0, 360.0);
-    for (turn, towards) in [Vec3::X, Vec3::Y, Vec3::NEG_X, Vec3::NEG_Y].into_iter().enumerate() {
-        let camera = seen_from(&scene, eye, eye + towards * 100.0 - Vec3::Z * 15.0, (320, 200));
+    for (turn, toward) in [Vec3::X, Vec3::Y, Vec3::NEG_X, Vec3::NEG_Y].into_iter().enumerate() {
+        let camera = seen_from(&scene, eye, eye + toward * 100.0 - Vec3::Z * 15.0, (320, 200));
         let seen = build_draw_list(&scene, &camera, &|_| ()).list;
         let (all, _) = draw_list(&scene, &display(&scene.terrain, &camera), &|_| ());
         assert!(
@@ -74,7 +74,7 @@ fn a_forest_is_nearly_the_same_picture_on_both_renderers() {
             cpu.features.iter().zip(&picture.features).filter(|(a, b)| a != b).count() as f64 / count;
         println!("{}: {mean:.3} steps, {others:.4} other features", gpu.name());
         assert!(mean < 1.5, "{mean} steps on {}", gpu.name());
-        // The CPU tells features at its first sample, the GPU at a pixel's centre; outlines of trees are many.
+        // The CPU tells features at its first sample, the GPU at a pixel's center; outlines of trees are many.
         assert!(others < 0.15, "{others} on {}", gpu.name());
     }
 }

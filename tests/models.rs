@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use glam::Vec3;
 use sandtable::model::error::ModelError;
-use sandtable::model::kind::{Companions, Model};
 use sandtable::model::read::read;
+use sandtable::model::{Companions, Model};
 use serde_json::Value;
 
 /// Files under `models/` that must be refused, with a word their error must have.

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 use sandtable::description::parse::parse_bytes;
+use sandtable::scene::Scene;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
-use sandtable::scene::kind::Scene;
 use sandtable::scene::picture::{build_draw_list, camera};
 
 /// A folder of its own for one test, with `hill.asc` in it: `columns` × `rows` posts 10 m apart from (5, 5).

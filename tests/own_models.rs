@@ -6,8 +6,8 @@ mod models;
 use std::path::PathBuf;
 
 use glam::Vec3;
-use sandtable::model::kind::{Census, Companions, Model};
 use sandtable::model::read::read;
+use sandtable::model::{Census, Companions, Model};
 
 fn folder() -> PathBuf {
     concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models").into()
@@ -52,7 +52,7 @@ fn every_model_reads_with_its_census() {
 }
 
 #[test]
-fn every_model_stands_on_the_ground_in_metres() {
+fn every_model_stands_on_the_ground_in_meters() {
     for (name, low, high) in [
         ("watchtower.3ds", Vec3::new(-3.0, -3.7, -0.5), Vec3::new(3.0, 3.0, 12.5)),
         ("farmhouse.obj", Vec3::new(-6.6, -6.0, -0.7), Vec3::new(6.6, 4.6, 8.5)),
@@ -75,11 +75,11 @@ fn the_nodes_of_the_truck_set_six_wheels() {
     let truck = asset("truck.3ds");
     assert_eq!(truck.triangle_count(), 1008);
     let wheels = truck.parts.iter().filter(|part| part.name == "wheel");
-    assert_eq!(wheels.count(), 12, "a tyre and a hub each");
+    assert_eq!(wheels.count(), 12, "a tire and a hub each");
 }
 
 #[test]
-fn colours_survive_all_three_formats() {
+fn colors_survive_all_three_formats() {
     let color = |name: &str, material: &str| {
         let model = asset(name);
         model.materials.iter().find(|each| each.name == material).expect("the material is there").base_color
@@ -109,6 +109,6 @@ fn surfaces_face_outward() {
             let corners = part.mesh.triangles.iter().map(|triangle| triangle.map(at));
             volume += corners.map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum::<f32>();
         }
-        assert!(volume > 1.0, "{name}: {volume} cubic metres");
+        assert!(volume > 1.0, "{name}: {volume} cubic meters");
     }
 }

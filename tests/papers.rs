@@ -21,8 +21,8 @@ use sandtable::roam::bintree::Triangle;
 use sandtable::roam::culling::PatchHeights;
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::PatchedGround;
 use sandtable::roam::layout::PatchLayout;
+use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::terrain::lattice::Lattice;
 use sandtable::view::camera::Camera;
 

@@ -8,13 +8,13 @@ use sandtable::description::parse::parse_bytes;
 use sandtable::draw::list::{DrawItem, FeatureId};
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
-use sandtable::scene::kind::{Scene, View};
 use sandtable::scene::picture::{ViewDraw, build_draw_list, camera};
 use sandtable::scene::report::ReportCell;
-use sandtable::terrain::facets::TriangleSurface;
+use sandtable::scene::{Scene, View};
 use sandtable::terrain::query::{Interpolation, ground_height};
+use sandtable::terrain::triangle_surface::TriangleSurface;
 
-/// A house of 30 × 20 m and 12 m high, its foot at z = −2, as an OBJ file (Y up, front towards +Z).
+/// A house of 30 × 20 m and 12 m high, its foot at z = −2, as an OBJ file (Y up, front toward +Z).
 const HOUSE: &str = "v -15 -2 10\nv 15 -2 10\nv 15 -2 -10\nv -15 -2 -10\nv -15 10 10\nv 15 10 10\nv 15 10 -10\n\
                      v -15 10 -10\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 5 6 7 8\nf 4 3 2 1\n";
 const LOWEST_Z: f32 = -2.0;
@@ -122,7 +122,7 @@ fn each(lines: &str, mut check: impl FnMut(&[f64])) {
     assert!(count > 30, "{count} houses were looked at");
 }
 
-/// Heights are f32 at some hundred metres.
+/// Heights are f32 at some hundred meters.
 const ROUNDING_M: f64 = 1e-3;
 
 #[test]

@@ -32,7 +32,7 @@ fn raster(width: u32, samples: Samples, crs: Option<&str>) -> Raster {
         width,
         height,
         samples,
-        metres_per_z: 1.0,
+        meters_per_z: 1.0,
         map_from_grid: DAffine2 {
             matrix2: DMat2::from_diagonal(DVec2::new(cell, -cell)),
             translation: corner,
@@ -181,7 +181,7 @@ fn systems_with_and_without_a_code_come_back_as_they_were() {
 #[test]
 fn feet_the_vertical_datum_and_a_turned_place_come_back() {
     let mut one = hills("EPSG:32612");
-    one.metres_per_z = 0.3048;
+    one.meters_per_z = 0.3048;
     one.vertical_datum = Some("NAVD88".into());
     one.map_from_grid = DAffine2 {
         matrix2: DMat2::from_cols(DVec2::new(9.0, 3.0), DVec2::new(3.0, -9.0)),
@@ -192,7 +192,7 @@ fn feet_the_vertical_datum_and_a_turned_place_come_back() {
         let again =
             back("a.tif", &write(&one, DemFormat::GeoTiff, "a").expect("it can be"), DemHints::default());
         assert_same(&again, &one);
-        assert_eq!((again.metres_per_z, again.vertical_datum.as_deref()), (0.3048, Some(datum)));
+        assert_eq!((again.meters_per_z, again.vertical_datum.as_deref()), (0.3048, Some(datum)));
     }
 }
 

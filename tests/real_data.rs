@@ -27,9 +27,9 @@ use sandtable::draw::list::{DepthLayer, FeatureId};
 use sandtable::render::cpu;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
-use sandtable::scene::kind::{FeatureKind, Scene};
 use sandtable::scene::picture::{ViewDraw, build_draw_list, camera};
-use sandtable::terrain::facets::TriangleSurface;
+use sandtable::scene::{FeatureKind, Scene};
+use sandtable::terrain::triangle_surface::TriangleSurface;
 
 use common::scratch::Scratch;
 
@@ -74,7 +74,7 @@ fn picture(scene: &Scene, view: &str, name: &str, size: (u32, u32)) -> Pictured 
     Pictured { shot, pixels, ground_pixels }
 }
 
-/// The largest distance in metres of a draped corner from the displayed ground, and how many were looked at.
+/// The largest distance in meters of a draped corner from the displayed ground, and how many were looked at.
 ///
 /// # Panics
 /// Where a corner is off by more than the rounding of its coordinates: they are 32-bit floats, up to 4 mm off

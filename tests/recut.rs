@@ -17,12 +17,12 @@ use sandtable::roam::culling::patches_in_view;
 use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::roam::graph::Vertex;
 use sandtable::roam::refine::coherent::Coherent;
-use sandtable::scene::kind::Scene;
+use sandtable::scene::Scene;
 use sandtable::scene::picture::{camera, recut};
 use sandtable::view::camera::Camera;
 use sandtable::view::frustum::Frustum;
 
-/// f32 world coordinates in a scene of ten kilometres, times the slope of a mountain side.
+/// f32 world coordinates in a scene of ten kilometers, times the slope of a mountain side.
 const ROUNDING_M: f64 = 5e-3;
 
 /// A walk that keeps what it cut.

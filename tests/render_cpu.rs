@@ -64,13 +64,13 @@ fn quad(corners: [Vec3; 4], color: Srgba) -> DrawMesh {
     mesh
 }
 
-/// A rectangle that faces a viewer in the south: `y` metres north, `x` and `z` from low to high.
+/// A rectangle that faces a viewer in the south: `y` meters north, `x` and `z` from low to high.
 fn wall(y: f32, x: [f32; 2], z: [f32; 2], color: Srgba) -> DrawMesh {
     let corner = |x: f32, z: f32| Vec3::new(x, y, z);
     quad([corner(x[0], z[0]), corner(x[1], z[0]), corner(x[1], z[1]), corner(x[0], z[1])], color)
 }
 
-/// Ten metres south of the origin's surroundings, looking north.
+/// Ten meters south of the origin's surroundings, looking north.
 fn northward(size: (u32, u32)) -> Camera {
     looking(Vec3::ZERO, Vec3::Y, size)
 }

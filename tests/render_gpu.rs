@@ -32,7 +32,7 @@ struct Seen {
     color: Srgba,
     feature: FeatureId,
     depth_m: f32,
-    /// The point of the surface that the pixel's centre shows.
+    /// The point of the surface that the pixel's center shows.
     world: Vec3,
 }
 

@@ -1,8 +1,8 @@
 //! One draw list, two renderers, one picture: what may differ, and by how much.
 //!
-//! Rounding is the driver's, so a few pixels on outlines show a neighbour's feature and colours differ by a
-//! fraction of a step. The CPU renderer tells features at its first sample, which lies at the very centre of
-//! a pixel only where there is one; so features and depths are held against one sample, colours against the
+//! Rounding is the driver's, so a few pixels on outlines show a neighbor's feature and colors differ by a
+//! fraction of a step. The CPU renderer tells features at its first sample, which lies at the very center of
+//! a pixel only where there is one; so features and depths are held against one sample, colors against the
 //! four that the GPU takes too.
 
 mod common;
@@ -33,7 +33,7 @@ struct Difference {
 const ALLOWED: Difference = Difference { features: 1e-3, depths: 1e-3, mean: 0.75, far_off: 2e-3 };
 
 impl Difference {
-    /// Features and depths from `one`, colours from `four` samples a pixel, against `other`.
+    /// Features and depths from `one`, colors from `four` samples a pixel, against `other`.
     fn of(one: &Picture, four: &Picture, other: &Picture) -> Self {
         let count = one.features.len() as f64;
         let share = |pixels: usize| pixels as f64 / count;

@@ -13,13 +13,13 @@ use sandtable::description::parse::parse_bytes;
 use sandtable::ribbon::partition::overlap_m2;
 use sandtable::ribbon::plan::PlanMesh;
 use sandtable::ribbon::texture::RibbonSurface;
+use sandtable::scene::Scene;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
-use sandtable::scene::kind::Scene;
 
 use common::scratch::Scratch;
 
-/// Level ground of 1 km² in plain metres, and what `features` says of the rest.
+/// Level ground of 1 km² in plain meters, and what `features` says of the rest.
 fn scene(folder: &Scratch, features: &str) -> Scene {
     let row = "100 ".repeat(21);
     let grid = format!(
@@ -46,8 +46,8 @@ fn area_m2(scene: &Scene, surfaces: &[RibbonSurface]) -> f64 {
 /// What every laid scene promises.
 ///
 /// # Panics
-/// Where a triangle faces down, or two lie over one another by more than rounding: a square millimetre for each square
-/// metre that is covered, a sliver of which each triangle may leave.
+/// Where a triangle faces down, or two lie over one another by more than rounding: a square millimeter for each square
+/// meter that is covered, a sliver of which each triangle may leave.
 fn check_laid(scene: &Scene) {
     let plans: Vec<&PlanMesh> = scene.ribbons.iter().map(|ribbon| &ribbon.plan).collect();
     for [a, b, c] in plans.iter().flat_map(|plan| plan.corners()) {

@@ -8,9 +8,9 @@ use common::scratch::Scratch;
 use glam::{DVec2, Vec2};
 use sandtable::description::parse::parse_bytes;
 use sandtable::geom::polygon;
+use sandtable::scene::Scene;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
-use sandtable::scene::kind::Scene;
 use sandtable::scene::report::ReportCell;
 use sandtable::terrain::query::gradient::{GradientSurface, ground_gradient};
 use sandtable::terrain::query::{Interpolation, ground_height};
@@ -198,7 +198,7 @@ fn the_number_of_threads_changes_nothing() {
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         let scene = pool.install(|| scene(&text)).expect("sound");
-        let looks = |placement: &sandtable::scene::kind::Placement| {
+        let looks = |placement: &sandtable::scene::Placement| {
             [placement.at.x, placement.at.y, placement.scale, placement.heading_rad].map(f32::to_bits)
         };
         scene.placements.iter().map(looks).collect::<Vec<_>>()

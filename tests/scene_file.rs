@@ -115,7 +115,7 @@ surface = "if(surface = 'gravel', 'gravel', 'asphalt')"
 shoulder = 1.5
 markings = "solid"
 join = "round"
-mitre_limit = 3
+miter_limit = 3
 profile = "conform"
 max_grade = "max_grade ?? 6"
 crown = 2.5
@@ -397,7 +397,7 @@ const BROKEN: &[(&str, &[&str])] = &[
         "[[model]]\nfile = \"m\"\nat = [0, 0]\nscale = 0\n",
         &["hill.toml:6:9:", "`scale` must be greater than 0"],
     ),
-    // words, colours, systems
+    // words, colors, systems
     (
         "[[road]]\nfile = \"r\"\nsurface = \"asfalt\"\n",
         &[
@@ -412,7 +412,7 @@ const BROKEN: &[(&str, &[&str])] = &[
         "[[label]]\ntext = \"a\"\nat = [0, 0]\nkind = \"peak\"\n",
         &["hill.toml:6:8:", "it may be `summit`, `place`, `water` or `point`"],
     ),
-    ("[style]\nramp = \"gray\"\n", &["hill.toml:4:8:", "did you mean `grey`?"]),
+    ("[style]\nramp = \"gray\"\n", &["hill.toml:4:8:", "did you mean `gray`?"]),
     ("[style]\nramp = [[0, \"#fff\"]]\n", &["hill.toml:4:8:", "from 2 to 256 stops, but this has 1"]),
     (
         "[style]\nramp = [[9, \"#fff\"], [3, \"#000\"]]\n",
@@ -420,7 +420,7 @@ const BROKEN: &[(&str, &[&str])] = &[
     ),
     (
         "[style]\nramp = [[9, \"white\"], [10, \"#000\"]]\n",
-        &["hill.toml:4:13:", "\"white\" is not a colour", "#rrggbb"],
+        &["hill.toml:4:13:", "\"white\" is not a color", "#rrggbb"],
     ),
     (
         "crs = \"ESPG:4326\"\n",
@@ -494,7 +494,7 @@ fn one_mistake_gives_one_message() {
 
 #[test]
 fn all_mistakes_are_told_in_one_run_in_the_order_of_the_file() {
-    let text = "colour = 1\n[terrain]\ncell = -1\n[[road]]\nwidht = 3\nsurface = \"ice\"\n[[camera]]\n";
+    let text = "color = 1\n[terrain]\ncell = -1\n[[road]]\nwidht = 3\nsurface = \"ice\"\n[[camera]]\n";
     let errors = read(text).expect_err("it is broken");
     let lines: Vec<usize> = errors.as_slice().iter().map(|error| error.position().line).collect();
     assert_eq!(lines, [1, 2, 3, 4, 5, 6, 7, 7, 7], "{errors}");
@@ -541,8 +541,8 @@ fn later_rooms_can_point_at_a_value() {
 fn a_byte_order_mark_and_windows_line_ends_are_welcome() {
     let text = format!("\u{feff}{}", COMPLETE.replace('\n', "\r\n"));
     read(&text).unwrap_or_else(|errors| panic!("{errors}"));
-    let shown = messages("\u{feff}colour = 1\r\n[terrain]\r\ndem = \"a\"\r\n");
-    assert!(shown.contains("hill.toml:1:1:") && shown.contains("1 | colour = 1\n  | ^^^^^^"), "{shown}");
+    let shown = messages("\u{feff}color = 1\r\n[terrain]\r\ndem = \"a\"\r\n");
+    assert!(shown.contains("hill.toml:1:1:") && shown.contains("1 | color = 1\n  | ^^^^^^"), "{shown}");
 }
 
 #[test]

@@ -8,12 +8,12 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use sandtable::terrain::lattice::{Lattice, Post};
+use sandtable::terrain::post_rect::PostRect;
 use sandtable::terrain::profile::{ProfileSummary, profile};
 use sandtable::terrain::sight::Curvature;
 use sandtable::terrain::sight::crossings::crossings;
 use sandtable::terrain::sight::ground::SightGround;
 use sandtable::terrain::sight::line::{Sight, SightEnd, line_of_sight};
-use sandtable::terrain::sight::pyramid::PyramidRect;
 use sandtable::terrain::sight::ray::{Ray, RayHit};
 use sandtable::terrain::sight::rise::{Raised, required_rise};
 
@@ -159,7 +159,7 @@ fn the_rise_that_is_needed_is_the_plain_walks_to_the_last_bit_and_just_enough() 
                     target.above_m += if raised == Raised::Observer { 0.0 } else { rise.rise_m + more_m };
                     line_of_sight(lattice, observer, target, curvature)
                 };
-                // Of heights of millions of metres an f64 keeps some 1e-9, and the line is lifted by a thousandth at least.
+                // Of heights of millions of meters an f64 keeps some 1e-9, and the line is lifted by a thousandth at least.
                 let little_m = 1e-3;
                 let enough = match risen(little_m) {
                     Sight::Blocked(blocker) => !inner(blocker.distance_m),
@@ -196,7 +196,7 @@ fn after_an_edit_lines_are_those_of_the_new_ground_and_the_old_ground_keeps_its_
     for row in 20..40 {
         edited.pin(Post { column: 33, row }, 50.0);
     }
-    let rect = PyramidRect { first: Post { column: 33, row: 20 }, last: Post { column: 33, row: 39 } };
+    let rect = PostRect { first: Post { column: 33, row: 20 }, last: Post { column: 33, row: 39 } };
     let after = before.edited(Arc::new(edited.clone()), rect);
     let end = |column: f64| SightEnd { at: ORIGIN + DVec2::new(column, 30.0) * CELL, above_m: 2.0 };
     assert_eq!(before.line_of_sight(end(3.0), end(60.5), Curvature::FLAT), Sight::Clear);
@@ -453,7 +453,7 @@ fn a_profile_over_a_sinusoid_has_its_length_its_ascent_and_its_extremes() {
     let (lowest, highest) = (summary.lowest.expect("ground"), summary.highest.expect("ground"));
     assert_eq!((lowest.height_m, highest.height_m), (-50.0, 50.0));
     assert_eq!((highest.station_m, lowest.station_m), (160.0, 480.0), "the first of each");
-    // ∫√(1 + (dz/dx)²) dx by steps of a millimetre.
+    // ∫√(1 + (dz/dx)²) dx by steps of a millimeter.
     let amplitude = 50.0 * std::f64::consts::TAU / 640.0;
     let exact: f64 = (0..640_000)
         .map(|step| {
@@ -470,7 +470,7 @@ fn on_a_real_elevation_model_lines_and_rays_are_those_of_the_plain_walk() {
     let Some(path) = common::data::data("dem/bigtujunga_utm11_i16_tiled.tif") else { return };
     let bytes = std::fs::read(path).expect("readable");
     let raster = sandtable::dem::read::read("dem.tif", &bytes, &Default::default()).expect("sound");
-    let ground = SightGround::new(Arc::new(Lattice::from_raster(&raster).expect("in metres")));
+    let ground = SightGround::new(Arc::new(Lattice::from_raster(&raster).expect("in meters")));
     assert_eq!(ground.pyramid().check(ground.lattice()), Ok(()));
     let mut random = Random(6);
     for _ in 0..3000 {

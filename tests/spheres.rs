@@ -10,13 +10,13 @@ use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::errors::midpoint::midpoint_error_at;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::PatchedGround;
 use sandtable::roam::layout::PatchLayout;
+use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::roam::roughness::Roughness;
 use sandtable::roam::spheres::{SphereMap, reach};
-use sandtable::terrain::facets::TriangleSurface;
 use sandtable::terrain::lattice::Lattice;
+use sandtable::terrain::triangle_surface::TriangleSurface;
 use sandtable::view::camera::Camera;
 
 const EXAGGERATION: f32 = 1.5;

@@ -158,7 +158,7 @@ fn assert_same_system(found: &Crs, wanted: &str, expected: &Value, title: &str) 
     let at = |side: usize| expected["bbox"][side].as_f64().expect("a number");
     let middle = DVec2::new(at(0) + at(2), at(1) + at(3)) / 2.0;
     let back = found.transform(&wanted, middle).unwrap_or_else(|error| panic!("{title}: {error}"));
-    // What a .prj file says of a datum may leave out the shift that its code implies: hundreds of metres.
+    // What a .prj file says of a datum may leave out the shift that its code implies: hundreds of meters.
     assert!(back.distance(middle) < 200.0, "{title}: {} is not {}", found.name(), wanted.name());
 }
 

@@ -9,16 +9,18 @@ use sandtable::app::load;
 use sandtable::dem::read as dem;
 use sandtable::description::parse::parse_bytes;
 use sandtable::draw::list::DepthLayer;
+use sandtable::earthworks::channel;
+use sandtable::earthworks::channel::flow;
+use sandtable::earthworks::channel::flow::Flow;
+use sandtable::earthworks::channel::{Channel, check_rise};
+use sandtable::earthworks::shore;
 use sandtable::geom::polyline::Polyline;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
-use sandtable::scene::kind::{FeatureKind, Scene};
 use sandtable::scene::picture::{build_draw_list, camera};
 use sandtable::scene::report::ReportCell;
-use sandtable::terrain::channel::flow::{self, Flow};
-use sandtable::terrain::channel::{self, Channel, check_rise};
+use sandtable::scene::{FeatureKind, Scene};
 use sandtable::terrain::lattice::{Lattice, Post};
-use sandtable::terrain::shore;
 use sandtable::vector::feature::Geometry;
 use sandtable::vector::read as vector;
 use sandtable::view::camera::Camera;
@@ -26,7 +28,7 @@ use sandtable::view::camera::Camera;
 use common::data::data;
 use common::scratch::Scratch;
 
-/// Rounding of a thousand metres to f32, on either side of a place.
+/// Rounding of a thousand meters to f32, on either side of a place.
 const ROUNDING_M: f64 = 1e-3;
 
 const SIDE: u32 = 48;
@@ -133,7 +135,7 @@ fn a_brook_on_ground_that_falls_already_takes_no_more_than_the_fall_across_it() 
     let network = [(line.expect("a line"), 1.0)];
     let channels = channels(&lattice, &network);
     let cuts = channel::cut(&mut lattice, &channels).expect("narrow enough");
-    // It is a metre wide, and the ground falls by a tenth.
+    // It is a meter wide, and the ground falls by a tenth.
     assert!(cuts.cuts[0].deepest_m < 0.06, "{:?}", cuts.cuts[0]);
     let moved = lattice.heights().iter().zip(&before).filter(|(after, before)| after != before).count();
     assert!(moved < 20, "a strip 3 m wide and 440 m long holds 13 posts 10 m apart, not {moved}");

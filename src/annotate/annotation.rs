@@ -38,7 +38,7 @@ pub struct PictureLabel {
     /// The upper end of the leader line; `None`, or a point not above the anchor, leaves its length to
     /// the placement.
     pub top_px: Option<Vec2>,
-    /// Metres from the eye to the place; among labels of a kind the nearer are placed first.
+    /// Meters from the eye to the place; among labels of a kind the nearer are placed first.
     pub depth_m: f32,
     /// Whether the place is seen, not hidden behind terrain.
     pub visible: bool,

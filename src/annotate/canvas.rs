@@ -1,6 +1,6 @@
 //! Painting drawings on a picture: `tiny_skia` over [`Pixels`], in place.
 //!
-//! `tiny_skia` wants colours multiplied by alpha, pictures hold them straight. For opaque pixels the two
+//! `tiny_skia` wants colors multiplied by alpha, pictures hold them straight. For opaque pixels the two
 //! are the same bytes, so a rendered picture is painted on without a copy. The few translucent pixels are
 //! multiplied first and remembered; when painting ends, those still untouched get their old bytes back and
 //! only the painted ones are divided again, so that annotating never changes a pixel it does not paint.
@@ -11,7 +11,7 @@ use crate::annotate::drawing::{Drawing, PaintedPath};
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 
-/// A picture being painted on; [`Canvas::finish`] makes it a picture of straight colours again.
+/// A picture being painted on; [`Canvas::finish`] makes it a picture of straight colors again.
 pub struct Canvas<'a> {
     pixels: &'a mut Pixels,
     translucent: Vec<Translucent>,
@@ -48,7 +48,7 @@ impl<'a> Canvas<'a> {
         drawing.marks().iter().for_each(|mark| fill(&mut map, mark));
     }
 
-    /// Ends painting: colours are straight again.
+    /// Ends painting: colors are straight again.
     pub fn finish(self) {
         let data = self.pixels.data_mut();
         for pixel in self.translucent {
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn paint_on_a_transparent_picture_keeps_its_own_straight_colour() {
+    fn paint_on_a_transparent_picture_keeps_its_own_straight_color() {
         let mut pixels = Pixels::filled(8, 8, Srgba([200, 200, 200, 0]));
         let mut canvas = Canvas::over(&mut pixels);
         canvas.draw(&square(Srgba([250, 120, 60, 128])));
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn half_of_white_over_black_is_grey() {
+    fn half_of_white_over_black_is_gray() {
         let mut pixels = Pixels::filled(8, 8, Srgba::opaque(0, 0, 0));
         let mut canvas = Canvas::over(&mut pixels);
         canvas.draw(&square(Srgba([255, 255, 255, 128])));

@@ -1,4 +1,4 @@
-//! A chart's frame: title, axes with round ticks and units, and the scale between metres and pixels.
+//! A chart's frame: title, axes with round ticks and units, and the scale between meters and pixels.
 //!
 //! ```text
 //!   title                                     note
@@ -28,8 +28,8 @@ use crate::draw::pixels::Pixels;
 const SKY: Srgba = Srgba::opaque(0xee, 0xf2, 0xf3);
 /// Lines at round heights and distances.
 const GRID: Srgba = Srgba([0x1e, 0x23, 0x27, 0x1c]);
-/// Distances from this one on are counted in kilometres.
-const KILOMETRES_FROM_M: f64 = 5000.0;
+/// Distances from this one on are counted in kilometers.
+const KILOMETERS_FROM_M: f64 = 5000.0;
 /// Ground this level, as a share of the line's length, is not stretched to the plot's full height: noise is no mountain.
 const LEAST_RELIEF: f64 = 1.0 / 400.0;
 /// Room below the lowest and above the highest height, as shares of the relief: for labels, and for the ground to stand
@@ -53,12 +53,12 @@ pub struct Surroundings {
     pub end: String,
 }
 
-/// Between metres and pixels.
+/// Between meters and pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChartFrame {
     /// Where things are plotted.
     pub plot: PixelBox,
-    /// Metres along the line at the plot's right edge; 0 at its left.
+    /// Meters along the line at the plot's right edge; 0 at its left.
     length_m: f64,
     /// Heights at the plot's lower and upper edge.
     heights_m: (f64, f64),
@@ -97,7 +97,7 @@ pub struct Chart {
 
 /// Begins a chart of `size` pixels for a line `length_m` long and heights from `low_m` to `high_m`.
 ///
-/// What is not finite, or a line without length, is charted as a metre.
+/// What is not finite, or a line without length, is charted as a meter.
 pub fn begin(size: (u32, u32), around: &Surroundings, length_m: f64, (low_m, high_m): (f64, f64)) -> Chart {
     let sheet = Sheet::new(size.0, size.1);
     let mut setter = Typesetter::new();
@@ -204,7 +204,7 @@ impl Chart {
     fn along_axis(&mut self, around: &Surroundings) {
         let (sheet, frame) = (self.sheet, self.frame);
         let face = figures(&sheet);
-        let (unit_m, unit) = if frame.length_m >= KILOMETRES_FROM_M { (1000.0, "km") } else { (1.0, "m") };
+        let (unit_m, unit) = if frame.length_m >= KILOMETERS_FROM_M { (1000.0, "km") } else { (1.0, "m") };
         let most = (frame.plot.size().x / (face.size_px * 7.0)) as usize;
         let (marks, decimals) = ticks(0.0, frame.length_m / unit_m, most.clamp(2, 12));
         let baseline = frame.plot.max.y + sheet.px(8.0) + face.size_px * CAP_HEIGHT;

@@ -23,7 +23,7 @@ const POINTS_A_PIXEL: f32 = 4.0;
 /// The ground at a place along a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChartPoint {
-    /// Metres along the line.
+    /// Meters along the line.
     pub along_m: f64,
     /// What is there.
     pub ground: ChartGround,
@@ -32,7 +32,7 @@ pub struct ChartPoint {
 /// What is known of the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ChartGround {
-    /// Its height in metres.
+    /// Its height in meters.
     Height(f64),
     /// The model has no data there.
     NoData,
@@ -130,7 +130,7 @@ pub fn hatch_gaps(chart: &mut Chart, points: &[ChartPoint]) {
     }
 }
 
-/// Stretches without ground: from and to in metres, and what their places say.
+/// Stretches without ground: from and to in meters, and what their places say.
 fn gaps(points: &[ChartPoint]) -> Vec<(f64, f64, &'static str)> {
     let mut gaps: Vec<(f64, f64, &'static str)> = Vec::new();
     for pair in points.windows(2) {

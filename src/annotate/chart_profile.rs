@@ -17,7 +17,7 @@ pub struct ProfileChart {
     pub around: Surroundings,
     /// The ground, in order along the line.
     pub points: Vec<ChartPoint>,
-    /// Where the line has vertices between its ends, metres along it.
+    /// Where the line has vertices between its ends, meters along it.
     pub bends_m: Vec<f64>,
 }
 

@@ -31,11 +31,11 @@ pub struct SightChart {
     pub around: Surroundings,
     /// The ground, in order from the observer.
     pub points: Vec<ChartPoint>,
-    /// What of it the observer sees: from and to, metres.
+    /// What of it the observer sees: from and to, meters.
     pub seen_m: Vec<(f64, f64)>,
-    /// The observer's eye, metres.
+    /// The observer's eye, meters.
     pub eye_m: f64,
-    /// The target's height, metres, at the last point.
+    /// The target's height, meters, at the last point.
     pub target_m: f64,
     /// What blocks the line first, along and high, and what is said of it.
     pub blocker: Option<(f64, f64, String)>,

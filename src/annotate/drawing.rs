@@ -1,4 +1,4 @@
-//! Drawings: filled paths with colours, laid out before a pixel is touched.
+//! Drawings: filled paths with colors, laid out before a pixel is touched.
 //!
 //! Strokes and letters become filled outlines at once. One primitive keeps the canvas small, and makes the
 //! bounds of a drawing the bounds of what it will paint, halos included.
@@ -19,7 +19,7 @@ const STROKE_PRECISION: f32 = 4.0;
 pub struct PaintedPath {
     /// The outline in pixels, filled by the non-zero rule.
     pub path: Path,
-    /// The colour, with straight alpha.
+    /// The color, with straight alpha.
     pub color: Srgba,
 }
 

@@ -19,18 +19,18 @@ const RAMP_SHARE: f32 = 0.24;
 /// Widest note, in ems: longer ones are cut.
 const WIDEST_NOTE_EM: f32 = 16.0;
 
-/// What the colours of the ground mean.
+/// What the colors of the ground mean.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Legend {
-    /// Colour by height.
+    /// Color by height.
     pub ramp: ColorRamp,
-    /// Lowest height shown, in metres.
+    /// Lowest height shown, in meters.
     pub low_m: f32,
-    /// Highest height shown, in metres; above `low_m`.
+    /// Highest height shown, in meters; above `low_m`.
     pub high_m: f32,
     /// How many times heights are stretched in the picture; said where it is not 1.
     pub vertical_exaggeration: f32,
-    /// Height between contour lines in metres, where there are any.
+    /// Height between contour lines in meters, where there are any.
     pub contour_interval: Option<f32>,
     /// A line that says what heights count from, for instance `Heights: NAVD88`.
     pub vertical_datum: Option<String>,

@@ -47,12 +47,12 @@ pub struct MapFurniture {
     pub title: String,
     /// The line below it.
     pub subtitle: String,
-    /// What the map's colours mean beside heights, from the top.
+    /// What the map's colors mean beside heights, from the top.
     pub key: Vec<(Srgba, String)>,
-    /// What the ground's colours mean.
+    /// What the ground's colors mean.
     pub heights: Legend,
-    /// Pixels that one metre spans on the map.
-    pub pixels_per_metre: f32,
+    /// Pixels that one meter spans on the map.
+    pub pixels_per_meter: f32,
 }
 
 /// Where somebody looks from, and how far; all lengths in pixels of the map, Y down.
@@ -192,7 +192,7 @@ fn beside(
         north::compose(&arrow, sheet, setter),
         Some(key(&furniture.key, column.size().x, sheet, (setter, report))),
         legend::compose(&furniture.heights, sheet, setter, report),
-        scale_bar::compose_on_map(furniture.pixels_per_metre, column.size().x * 0.72, sheet, setter),
+        scale_bar::compose_on_map(furniture.pixels_per_meter, column.size().x * 0.72, sheet, setter),
     ];
     let mut top = column.min.y;
     for piece in pieces.into_iter().flatten() {
@@ -256,7 +256,7 @@ mod tests {
                 contour_interval: None,
                 vertical_datum: None,
             },
-            pixels_per_metre: 0.1,
+            pixels_per_meter: 0.1,
         }
     }
 

@@ -1,7 +1,7 @@
 //! Names, heights and furniture painted on a finished picture.
 //!
 //! [`paint::annotate`] is the one door: it takes a picture and [`annotation::Annotations`] in picture
-//! coordinates, paints, and says in a [`report::Report`] what it drew and what it could not.
+//! coordinates, paints, and says in a [`report::AnnotationReport`] what it drew and what it could not.
 //!
 //! ```text
 //! Annotations ──► furniture (title, north, scale_bar, legend, credit) ──► Drawing ──► Canvas ──► Pixels

@@ -100,15 +100,15 @@ pub fn short_number(value: f64, decimals: usize) -> String {
 }
 
 /// A distance as a reader says it: `340 m`, `12.4 km`, `152 km`.
-pub fn distance(metres: f64) -> String {
-    if metres < 10.0 {
-        format!("{} m", short_number(metres, 2))
-    } else if metres < 999.5 {
-        format!("{} m", number(metres, 0))
-    } else if metres < 99_950.0 {
-        format!("{} km", number(metres / 1000.0, 1))
+pub fn distance(meters: f64) -> String {
+    if meters < 10.0 {
+        format!("{} m", short_number(meters, 2))
+    } else if meters < 999.5 {
+        format!("{} m", number(meters, 0))
+    } else if meters < 99_950.0 {
+        format!("{} km", number(meters / 1000.0, 1))
     } else {
-        format!("{} km", number(metres / 1000.0, 0))
+        format!("{} km", number(meters / 1000.0, 0))
     }
 }
 

@@ -5,7 +5,7 @@
 //!       1062 m            1062 m            1062 m          ▲ Name      Name ▲
 //!          │              │                       │           1062 m  1062 m
 //!          ▲              ▲                       ▲
-//!       centred       to the right          to the left          beside it
+//!       centered       to the right          to the left          beside it
 //! ```
 //!
 //! Readers look above a place first, so the text stands at the end of a leader line; where that is taken
@@ -46,12 +46,12 @@ pub struct LabelPosition {
     pub alignment: Alignment,
 }
 
-/// How lines of text stand under each other; the numbers index [`Stance::texts`].
+/// How lines of text stand under each other; the numbers index [`LabelMetrics::texts`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Alignment {
     /// Flush left: the text stands to the right of what it names.
     Left = 0,
-    /// Centred: the text stands over what it names.
+    /// Centered: the text stands over what it names.
     Center = 1,
     /// Flush right: the text stands to the left of what it names.
     Right = 2,
@@ -74,7 +74,7 @@ const MEETINGS: [(f32, Alignment); 3] =
 
 /// All positions, the best first.
 pub fn positions(stance: &LabelMetrics) -> Vec<LabelPosition> {
-    let on_place = (stance.preference == Preference::OnPlace).then(|| centred_on_place(stance));
+    let on_place = (stance.preference == Preference::OnPlace).then(|| centered_on_place(stance));
     let above = LENGTHS
         .iter()
         .filter(|&&length| stance.reach.length() * length <= stance.longest)
@@ -88,7 +88,7 @@ pub fn spot(stance: &LabelMetrics) -> PixelBox {
     PixelBox::around(stance.anchor, stance.symbol)
 }
 
-fn centred_on_place(stance: &LabelMetrics) -> LabelPosition {
+fn centered_on_place(stance: &LabelMetrics) -> LabelPosition {
     let alignment = Alignment::Center;
     let text = moved_center(stance.texts[alignment as usize], stance.anchor);
     LabelPosition { candidate: LabelCandidate { text, symbol: None, leader: None }, alignment }
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_candidate_is_centred_over_the_leaders_wished_end() {
+    fn the_first_candidate_is_centered_over_the_leaders_wished_end() {
         let first = candidates(&stance())[0];
         let end = stance().anchor + stance().reach;
         assert!((first.text.center().x - end.x).abs() <= 0.5);
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_stand_flush_towards_what_they_name() {
+    fn lines_stand_flush_toward_what_they_name() {
         for position in positions(&stance()) {
             let off = position.candidate.text.center().x - stance().anchor.x - 4.0;
             match position.alignment {

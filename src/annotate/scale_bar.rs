@@ -26,16 +26,16 @@ const PARTS: i64 = 4;
 /// How large things are at one distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScaleBar {
-    /// Pixels that one metre across the view spans there.
-    pub pixels_per_metre: f32,
-    /// The distance from the eye for which that holds, in metres; printed under the bar.
+    /// Pixels that one meter across the view spans there.
+    pub pixels_per_meter: f32,
+    /// The distance from the eye for which that holds, in meters; printed under the bar.
     pub distance_m: f32,
 }
 
 impl ScaleBar {
-    /// How large `camera` shows things `distance_m` metres along its viewing direction.
+    /// How large `camera` shows things `distance_m` meters along its viewing direction.
     pub fn seen_by(camera: &Camera, distance_m: f32) -> Self {
-        Self { pixels_per_metre: camera.pixels_per_metre(distance_m), distance_m }
+        Self { pixels_per_meter: camera.pixels_per_meter(distance_m), distance_m }
     }
 }
 
@@ -49,9 +49,9 @@ pub struct RoundBar {
 }
 
 /// The longest round bar of at most `longest_px`; `None` where the scale is not a positive number or the
-/// bar would stand for less than a millimetre or more than a hundred thousand kilometres.
+/// bar would stand for less than a millimeter or more than a hundred thousand kilometers.
 pub fn measure(bar: &ScaleBar, longest_px: f32) -> Option<RoundBar> {
-    let scale = f64::from(bar.pixels_per_metre);
+    let scale = f64::from(bar.pixels_per_meter);
     let sound = scale > 0.0 && bar.distance_m.is_finite() && bar.distance_m > 0.0;
     let length = Nice::at_most(f64::from(longest_px) / scale).filter(|_| sound)?;
     let sensible = (1e-3..=1e8).contains(&length.value());
@@ -64,22 +64,22 @@ pub fn compose(bar: &ScaleBar, sheet: &Sheet, setter: &mut Typesetter) -> Option
     let measure = measure(bar, sheet.px(LONGEST))?;
     let note = TextStyle::upright(sheet.type_px(14.0), TextStyle::REGULAR);
     let where_true = setter.line(&format!("at {} from the eye", distance(f64::from(bar.distance_m))), note);
-    Some(labelled(&measure, Some(&where_true), sheet, setter))
+    Some(labeled(&measure, Some(&where_true), sheet, setter))
 }
 
 /// The scale bar of a map, which has one scale all over; otherwise as [`compose`], no longer than `longest_px`.
 pub fn compose_on_map(
-    pixels_per_metre: f32,
+    pixels_per_meter: f32,
     longest_px: f32,
     sheet: &Sheet,
     setter: &mut Typesetter,
 ) -> Option<Drawing> {
     // every distance will do
-    let measure = measure(&ScaleBar { pixels_per_metre, distance_m: 1.0 }, longest_px)?;
-    Some(labelled(&measure, None, sheet, setter))
+    let measure = measure(&ScaleBar { pixels_per_meter, distance_m: 1.0 }, longest_px)?;
+    Some(labeled(&measure, None, sheet, setter))
 }
 
-fn labelled(measure: &RoundBar, note: Option<&TextLine>, sheet: &Sheet, setter: &mut Typesetter) -> Drawing {
+fn labeled(measure: &RoundBar, note: Option<&TextLine>, sheet: &Sheet, setter: &mut Typesetter) -> Drawing {
     let face = TextStyle::upright(sheet.type_px(16.0), TextStyle::REGULAR);
     let figures = figures(&measure.length).map(|text| setter.line(&text, face));
     let unit = setter.line(&format!(" {}", unit(&measure.length).0), face);
@@ -142,8 +142,8 @@ fn draw_bar(drawing: &mut Drawing, bar: PixelBox, sheet: &Sheet) {
 
 /// The figures at the start, the middle and the end.
 fn figures(length: &Nice) -> [String; 3] {
-    let (_, metres_per_unit) = unit(length);
-    let full = length.value() / metres_per_unit;
+    let (_, meters_per_unit) = unit(length);
+    let full = length.value() / meters_per_unit;
     let half = full * 0.5;
     let decimals = |value: f64| (0..=4).find(|&n| is_whole(value * [1.0, 10.0, 1e2, 1e3, 1e4][n]));
     ["0".to_owned(), number(half, decimals(half).unwrap_or(4)), number(full, decimals(full).unwrap_or(4))]
@@ -163,8 +163,8 @@ mod tests {
 
     use super::*;
 
-    fn bar(pixels_per_metre: f32) -> ScaleBar {
-        ScaleBar { pixels_per_metre, distance_m: 12_400.0 }
+    fn bar(pixels_per_meter: f32) -> ScaleBar {
+        ScaleBar { pixels_per_meter, distance_m: 12_400.0 }
     }
 
     #[test]
@@ -175,9 +175,9 @@ mod tests {
     }
 
     #[test]
-    fn figures_are_exact_in_metres_and_kilometres() {
-        let said = |metres: f64| {
-            let length = Nice::at_most(metres).expect("positive");
+    fn figures_are_exact_in_meters_and_kilometers() {
+        let said = |meters: f64| {
+            let length = Nice::at_most(meters).expect("positive");
             (figures(&length)[1].clone(), figures(&length)[2].clone(), unit(&length).0)
         };
         assert_eq!(said(1000.0), ("0.5".to_owned(), "1".to_owned(), "km"));
@@ -193,7 +193,7 @@ mod tests {
             assert_eq!(measure(&bar(scale), 260.0), None, "{scale}");
         }
         for distance_m in [0.0, -5.0, f32::NAN, f32::INFINITY] {
-            assert_eq!(measure(&ScaleBar { pixels_per_metre: 0.05, distance_m }, 260.0), None);
+            assert_eq!(measure(&ScaleBar { pixels_per_meter: 0.05, distance_m }, 260.0), None);
         }
     }
 

@@ -1,4 +1,4 @@
-//! The sheet: sizes and colours shared by everything painted, designed for a picture 1080 pixels high.
+//! The sheet: sizes and colors shared by everything painted, designed for a picture 1080 pixels high.
 //!
 //! Sizes grow in proportion above 1080 pixels. Below, they shrink more slowly than the picture, because
 //! type stops being legible long before a picture stops being useful.
@@ -29,7 +29,7 @@ const DESIGN_HEIGHT: f32 = 1080.0;
 const DESIGN_ASPECT: f32 = 0.75;
 /// Share of the sizes that does not shrink with the picture below the design height.
 const STEADY_SHARE: f32 = 0.32;
-/// Type is never smaller: below this the embedded light face falls apart into grey.
+/// Type is never smaller: below this the embedded light face falls apart into gray.
 const SMALLEST_TYPE_PX: f32 = 9.5;
 
 /// The picture as a sheet to lay things out on.

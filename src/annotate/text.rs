@@ -7,7 +7,7 @@
 //! come out as boxes and are counted.
 //!
 //! A light face is too thin on a picture. Its outline is drawn a second time with a fine stroke of the same
-//! colour, which gives the strength of a regular or medium face without a second font.
+//! color, which gives the strength of a regular or medium face without a second font.
 
 use std::sync::Arc;
 
@@ -169,7 +169,7 @@ pub fn write(drawing: &mut Drawing, lines: &[(&TextLine, Vec2)], color: Srgba) {
 }
 
 /// Draws one halo, reaching `reach` pixels around the letters, under all of `lines`: drawn before any is
-/// written, it covers no neighbour's letters, and where lines are close it stays one even tone.
+/// written, it covers no neighbor's letters, and where lines are close it stays one even tone.
 pub fn halos(drawing: &mut Drawing, lines: &[(&TextLine, Vec2)], reach: f32) {
     let mut all = PathBuilder::new();
     for (path, _) in lines.iter().filter_map(|(line, at)| placed(line, *at)) {

@@ -18,8 +18,8 @@ use crate::app::profile::ProfileOptions;
 use crate::app::report::ReportOptions;
 use crate::app::serve::ServeOptions;
 use crate::app::viewshed::ViewshedArguments;
-use crate::dem::raw::RawLayout;
-use crate::dem::rgb_png::HeightEncoding;
+use crate::dem::formats::raw::RawLayout;
+use crate::dem::formats::rgb_png::HeightEncoding;
 use crate::terrain::query::Interpolation;
 
 /// Elevation models and what stands on them, made into scenes, and scenes into pictures.
@@ -67,7 +67,7 @@ pub enum Command {
     Serve(ServeOptions),
     /// What building a scene found out about single features: earth moved, gaps left, levels taken
     Report(ReportOptions),
-    /// Write a scene as a file that modelling programs open
+    /// Write a scene as a file that modeling programs open
     Export(ExportOptions),
     /// Turn an elevation file into a mesh that is nowhere off by more than a given height
     Mesh(MeshOptions),
@@ -153,7 +153,7 @@ pub struct DemInfoOptions {
     /// The file and the form of the answer.
     #[command(flatten)]
     pub info: InfoOptions,
-    /// What grey values mean.
+    /// What gray values mean.
     #[command(flatten)]
     pub heights: StatedHeights,
 }
@@ -161,20 +161,20 @@ pub struct DemInfoOptions {
 /// What the help of a command that reads elevation says of folders.
 pub const FOLDER_HELP: &str = "\
 Where an elevation file is wanted a folder may be named: the elevation files in it, sorted by name, are then tiles of
-one raster and are joined. Of values that tiles share the first tile's is kept; grey or colour pictures, tables and RAW
+one raster and are joined. Of values that tiles share the first tile's is kept; gray or color pictures, tables and RAW
 files in it are passed over.";
 
-/// What an elevation file does not say of its heights: what grey values and colours mean in metres, and how samples
+/// What an elevation file does not say of its heights: what gray values and colors mean in meters, and how samples
 /// without a header are laid out.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct StatedHeights {
-    /// Metres per grey value of a PNG, which needs it, or of a RAW file [default: 1]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    /// Meters per gray value of a PNG, which needs it, or of a RAW file [default: 1]
+    #[arg(long, value_name = "METERS", allow_negative_numbers = true)]
     pub height_scale: Option<f64>,
-    /// Height in metres of value 0 of a grey PNG or a RAW file [default: 0]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    /// Height in meters of value 0 of a gray PNG or a RAW file [default: 0]
+    #[arg(long, value_name = "METERS", allow_negative_numbers = true)]
     pub height_offset: Option<f64>,
-    /// What the colours of a PNG mean: terrain-rgb (Mapbox) or terrarium (Mapzen)
+    /// What the colors of a PNG mean: terrain-rgb (Mapbox) or terrarium (Mapzen)
     #[arg(long, value_name = "ENCODING", conflicts_with_all = ["height_scale", "height_offset"])]
     pub height_encoding: Option<HeightEncoding>,
     /// That the file is RAW, and its layout: 1201x1201:i16be, then :skip=BYTES and :nodata=VALUE
@@ -185,14 +185,14 @@ pub struct StatedHeights {
 /// `mesh`.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Coordinates are metres from the south-west post, X east, Y north, Z up; the file says where that is.\n\
+    after_help = "Coordinates are meters from the south-west post, X east, Y north, Z up; the file says where that is.\n\
                   An elevation file in degrees is brought to its UTM zone first. Ground without data is left out."
 )]
 pub struct MeshOptions {
     /// The elevation file
     pub file: PathBuf,
     /// The most that the mesh may be off, vertically, at any post of the elevation file
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = metres_from_zero)]
+    #[arg(long, value_name = "METERS", allow_negative_numbers = true, value_parser = meters_from_zero)]
     pub max_error: f64,
     /// Where the mesh goes: .obj, .ply, .stl or .glb
     #[arg(short, long, value_name = "OUT")]
@@ -200,10 +200,10 @@ pub struct MeshOptions {
     /// The coordinate system of an elevation file that names none, for example EPSG:4326
     #[arg(long, value_name = "CRS")]
     pub crs: Option<String>,
-    /// Metres between the posts of an elevation file that does not say
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    /// Meters between the posts of an elevation file that does not say
+    #[arg(long, value_name = "METERS", allow_negative_numbers = true)]
     pub cell: Option<f64>,
-    /// What grey values mean.
+    /// What gray values mean.
     #[command(flatten)]
     pub heights: StatedHeights,
 }
@@ -238,15 +238,15 @@ pub struct LodOptions {
     /// Print a JSON array with one object per method
     #[arg(long)]
     pub json: bool,
-    /// What grey values mean.
+    /// What gray values mean.
     #[command(flatten)]
     pub heights: StatedHeights,
 }
 
-pub(in crate::app) fn metres_from_zero(text: &str) -> Result<f64, String> {
+pub(in crate::app) fn meters_from_zero(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(metres) if metres.is_finite() && metres >= 0.0 => Ok(metres),
-        _ => Err("write metres as a number from 0 on".into()),
+        Ok(meters) if meters.is_finite() && meters >= 0.0 => Ok(meters),
+        _ => Err("write meters as a number from 0 on".into()),
     }
 }
 
@@ -254,7 +254,7 @@ pub(in crate::app) fn metres_from_zero(text: &str) -> Result<f64, String> {
 const LOD_HELP: &str = "\
 Flights: the eye of a circle or a line is 30 cells above the ground's mean height along the way and looks 8° down;
 a circle goes one cell a frame round the middle of the south-western 513 posts. A file has a station a line,
-x,y,z,tx,ty,tz: the eye and what it looks at, metres from the south-west post, x east, y north, z the elevation;
+x,y,z,tx,ty,tz: the eye and what it looks at, meters from the south-west post, x east, y north, z the elevation;
 frames are spread over it at equal distances.
 
 Methods: without --emit, --criterion, --refine and --budget a selection is compared; with any of them all methods that
@@ -266,7 +266,7 @@ Columns, over all frames but the first: triangles and vertices named by the inde
 not shown in the frame before (mean); milliseconds to bring triangles and lists up to date; upload: bytes of 16-bit
 index lists sent a frame (median): of the patches that changed or came into view, or of all that are shown where a
 method does not know which stayed the same; full sends nothing after the first frame;
-mean, RMS and maximum metres between what is shown and the elevation model, and the most that is on the picture in
+mean, RMS and maximum meters between what is shown and the elevation model, and the most that is on the picture in
 pixels, at every post in the picture, hidden ones among them, in eight frames.";
 
 impl LodOptions {
@@ -357,9 +357,9 @@ mod tests {
 
     #[test]
     fn an_error_is_a_finite_number_from_zero_on() {
-        assert_eq!(metres_from_zero("2.5"), Ok(2.5));
+        assert_eq!(meters_from_zero("2.5"), Ok(2.5));
         for wrong in ["-1", "NaN", "inf", "1e999", "five", ""] {
-            assert!(metres_from_zero(wrong).is_err(), "{wrong}");
+            assert!(meters_from_zero(wrong).is_err(), "{wrong}");
         }
     }
 

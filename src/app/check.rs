@@ -4,8 +4,8 @@ use crate::app::arguments::CheckOptions;
 use crate::app::failure::CliError;
 use crate::app::progress::StepTimer;
 use crate::app::{load, output};
-use crate::scene::kind::{FeatureKind, Scene};
-use crate::scene::views::whole_metres;
+use crate::scene::views::whole_meters;
+use crate::scene::{FeatureKind, Scene};
 
 /// Loads the scene, checks its invariants and prints what is in it.
 ///
@@ -37,8 +37,8 @@ pub fn contents(scene: &Scene) -> Vec<String> {
         lattice.rows(),
         size.x,
         size.y,
-        whole_metres(low),
-        whole_metres(high),
+        whole_meters(low),
+        whole_meters(high),
         scene.crs.name()
     );
     let mut parts: Vec<String> = scene.census().into_iter().map(count_of).collect();

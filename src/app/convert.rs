@@ -15,11 +15,12 @@ use crate::app::{output, rasters};
 use crate::dem::raster::Raster;
 use crate::dem::voids;
 use crate::dem::warp::WarpError;
-use crate::dem::warp_to::{self, Resampling, Warped};
+use crate::dem::warp::target;
+use crate::dem::warp::target::{Resampling, Warped};
 use crate::dem::write::{DemFormat, WrittenDem};
 use crate::geom::crs::Crs;
 
-/// A cell of more degrees than this was meant in metres.
+/// A cell of more degrees than this was meant in meters.
 const LARGEST_CELL_DEG: f64 = 1.0;
 
 /// `dem convert`.
@@ -27,7 +28,7 @@ const LARGEST_CELL_DEG: f64 = 1.0;
 #[command(
     after_help = "Cells as large as the file's or finer lie bilinearly between its samples; from twice as large on they hold the mean\n\
                   of the samples in them. A shift between datums goes by the numbers of the systems' definitions (towgs84),\n\
-                  good to some metres; one that needs a grid file is refused."
+                  good to some meters; one that needs a grid file is refused."
 )]
 pub struct ConvertOptions {
     /// The elevation files, tiles of one raster where there are several, and the file to write: .tif, .asc, .bt, .hgt or
@@ -46,7 +47,7 @@ pub struct ConvertOptions {
     /// Side of a cell in units of the system that it is brought to [default: its own]
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = above_zero)]
     pub cell: Option<f64>,
-    /// What grey values mean.
+    /// What gray values mean.
     #[command(flatten)]
     pub heights: StatedHeights,
 }
@@ -138,10 +139,10 @@ fn brought(
     if let Some(cell) = cell.filter(|&cell| is_in_degrees && cell > LARGEST_CELL_DEG) {
         return Err(about(input, &degrees(source, cell)));
     }
-    warp_to::to_system(source, target, cell).map_err(|error| about(input, &remedy(&error)))
+    target::to_system(source, target, cell).map_err(|error| about(input, &remedy(&error)))
 }
 
-/// A cell in metres for a raster in degrees, and what would take it.
+/// A cell in meters for a raster in degrees, and what would take it.
 fn degrees(source: &Raster, cell: f64) -> String {
     let center = source.crs.as_ref().and_then(|crs| crs.transform(&Crs::wgs84(), source.center()).ok());
     let zone = center.map_or_else(
@@ -160,7 +161,7 @@ fn remedy(error: &WarpError) -> String {
             "no coordinate system is named, and the coordinates, {min_x} to {max_x} and {min_y} to {max_y}, look like degrees; name it, for example --source-crs EPSG:4326"
         ),
         WarpError::NoPlace => {
-            "it does not say where it lies or how far apart its samples are; give --cell METRES".into()
+            "it does not say where it lies or how far apart its samples are; give --cell METERS".into()
         }
         other => other.to_string(),
     }
@@ -187,7 +188,7 @@ fn summary(
     let valid = raster.samples.iter().filter(|value| !value.is_nan()).count();
     let how = match method {
         Resampling::Kept => "no, the samples are the file's",
-        Resampling::Bilinear => "bilinear, between the four samples around each cell's centre",
+        Resampling::Bilinear => "bilinear, between the four samples around each cell's center",
         Resampling::Average => "average of the samples in each cell",
     };
     let mut lines = vec![

@@ -67,10 +67,10 @@ impl Dataset {
         }
     }
 
-    /// The service on the ground, in metres.
+    /// The service on the ground, in meters.
     ///
     /// # Errors
-    /// The elevation file has no place in metres; the message names it.
+    /// The elevation file has no place in meters; the message names it.
     pub fn service(&self) -> Result<&HeightService, CliError> {
         match &self.kind {
             DatasetKind::Scene(service) => Ok(service),

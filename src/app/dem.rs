@@ -19,7 +19,7 @@ use crate::geom::crs::Crs;
 /// What the caller says of the place of an elevation file that does not say it.
 #[derive(Clone, Debug, Default)]
 pub struct StatedPlace {
-    /// Metres between its posts.
+    /// Meters between its posts.
     pub cell: Option<f64>,
     /// Its coordinate system.
     pub crs: Option<Crs>,
@@ -170,7 +170,7 @@ impl About {
             "georeferenced": raster.georeferenced,
             "nodata": nodata(raster.nodata),
             "vertical_datum": raster.vertical_datum,
-            "metres_per_z": raster.metres_per_z,
+            "meters_per_z": raster.meters_per_z,
             "valid": stats.valid,
             "enclosed_voids": voids,
             "enclosed_void_samples": cells,
@@ -208,7 +208,7 @@ impl About {
             format!("  valid    {} of {} samples", stats.valid, raster.samples.len()),
             format!("  voids    {without} samples, {cells} of them enclosed, in {voids} voids"),
             format!("  heights  {heights}"),
-            format!("  unit     {} m", raster.metres_per_z),
+            format!("  unit     {} m", raster.meters_per_z),
             format!("  datum    {}", raster.vertical_datum.as_deref().unwrap_or("none stated")),
         ];
         lines.extend(notes.iter().map(|note| format!("  note     {note}")));

@@ -1,11 +1,11 @@
-//! `sandtable export`: a scene as a file that modelling programs open.
+//! `sandtable export`: a scene as a file that modeling programs open.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
 
-use crate::app::arguments::{Access, metres_from_zero};
+use crate::app::arguments::{Access, meters_from_zero};
 use crate::app::failure::CliError;
 use crate::app::progress::StepTimer;
 use crate::app::{files, load, output};
@@ -14,13 +14,13 @@ use crate::export::{glb, obj, prepare};
 use crate::roam::criterion::flat::Flat;
 use crate::roam::displayed::DisplayedTerrain;
 use crate::roam::refine::rebuild::rebuild;
-use crate::scene::kind::{Scene, SceneFeature, Terrain};
 use crate::scene::picture;
+use crate::scene::{Scene, SceneFeature, Terrain};
 
 /// `export`.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Lengths and heights are metres, heights without exaggeration, counted from the south-west post; the file\n\
+    after_help = "Lengths and heights are meters, heights without exaggeration, counted from the south-west post; the file\n\
                   says where that is. In a .glb north is -Z and up is Y; in an .obj north is Y and up is Z.\n\
                   Beside an .obj go its .mtl and its textures. Light, labels and furniture are not exported."
 )]
@@ -30,8 +30,8 @@ pub struct ExportOptions {
     /// Where the scene goes; the name says the format, .glb or .obj
     #[arg(short, long, value_name = "OUT.glb|.obj")]
     pub output: PathBuf,
-    /// How far the ground may be off at any post, in metres; where something lies level in it, it is exact
-    #[arg(long, value_name = "METRES", default_value = "1", value_parser = metres_from_zero)]
+    /// How far the ground may be off at any post, in meters; where something lies level in it, it is exact
+    #[arg(long, value_name = "METERS", default_value = "1", value_parser = meters_from_zero)]
     pub max_error: f64,
     /// Which folders may be read.
     #[command(flatten)]
@@ -140,7 +140,7 @@ fn remarks(options: &ExportOptions, scene: &Scene) -> Vec<String> {
     let title = scene.title.clone().unwrap_or_else(|| "a scene".into());
     vec![
         format!("{title}, written by sandtable"),
-        "metres from the south-west post; heights are elevations".to_owned(),
+        "meters from the south-west post; heights are elevations".to_owned(),
         format!("origin: easting {} northing {} in {}", origin.x, origin.y, scene.crs.name()),
         format!("the ground is off by at most {} m at every post", options.max_error),
     ]

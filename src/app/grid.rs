@@ -59,12 +59,12 @@ Points: text (.xyz, .csv, .txt; x, y, z with or without a header), LAS and LAZ, 
 elevations (lines and polygons in them give their vertices). Files in different coordinate systems are brought to the
 first one's. Points that share their x and y become one of their mean height.
 
-Methods: tin takes the plane through the corners of the Delaunay triangle around a cell's centre, and breaklines are
-edges of triangles; natural weighs natural neighbours by the area that they would lose (Sibson); idw weighs the k nearest
+Methods: tin takes the plane through the corners of the Delaunay triangle around a cell's center, and breaklines are
+edges of triangles; natural weighs natural neighbors by the area that they would lose (Sibson); idw weighs the k nearest
 points by distance; quadrant weighs the nearest point of each of four quadrants; nearest takes the nearest. All but tin
 take points along breaklines instead of edges.
 
-Heights are written in metres.";
+Heights are written in meters.";
 
 /// A method by its name on the command line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -72,7 +72,7 @@ pub enum MethodChoice {
     /// Planes of a triangulation that keeps breaklines
     #[default]
     Tin,
-    /// Natural neighbours
+    /// Natural neighbors
     Natural,
     /// Inverse distance, k nearest points
     Idw,
@@ -209,7 +209,7 @@ fn read_all(inputs: &[PathBuf], options: &GridOptions) -> Result<PointCloud, Cli
 fn read_points(path: &Path, crs: Option<&Crs>, classes: &[u8]) -> Result<PointCloud, CliError> {
     let bytes = files::read(path)?;
     let name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
-    if points::recognises(&name, &bytes) {
+    if points::recognizes(&name, &bytes) {
         let wrong = |error| CliError::input(format!("{}: {error}", path.display()));
         return points::read(&bytes, &points::PointHints { crs, classes }).map_err(wrong);
     }
@@ -246,7 +246,7 @@ fn of_layer(layer: VectorLayer, points: Vec<DVec3>, breaklines: Vec<Vec<DVec3>>)
         points,
         breaklines,
         crs: Some(layer.crs),
-        metres_per_z: 1.0,
+        meters_per_z: 1.0,
         vertical_datum: None,
         notes: layer.notes,
     }
@@ -292,7 +292,7 @@ fn joined(mut first: PointCloud, mut second: PointCloud) -> Result<PointCloud, S
             *point = at.extend(point.z);
         }
     }
-    let factor = second.metres_per_z / first.metres_per_z;
+    let factor = second.meters_per_z / first.meters_per_z;
     for point in
         second.points.iter_mut().chain(second.breaklines.iter_mut().flatten()).filter(|_| factor != 1.0)
     {
@@ -326,11 +326,11 @@ fn summary(
         ("coordinates", crs.to_owned()),
     ];
     if report.filled == 0 {
-        rows.push(("note", "no cell's centre lies between the points: choose a smaller --cell".into()));
+        rows.push(("note", "no cell's center lies between the points: choose a smaller --cell".into()));
     }
     let crossings = report.crossings;
     if crossings.count > 0 {
-        let gap = crossings.largest_gap * raster.metres_per_z;
+        let gap = crossings.largest_gap * raster.meters_per_z;
         let told =
             format!("breaklines cross {} times, up to {gap:.3} m apart: the mean was taken", crossings.count);
         rows.push(("note", told));

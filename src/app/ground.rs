@@ -1,4 +1,4 @@
-//! From an elevation file to ground in metres, for commands that take no scene.
+//! From an elevation file to ground in meters, for commands that take no scene.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use crate::terrain::query::service::HeightService;
 /// The lattice of the elevation file at `path`; one in degrees is brought to the UTM zone of its middle.
 ///
 /// # Errors
-/// The file cannot be had or read, or has no place in metres; the message names it.
+/// The file cannot be had or read, or has no place in meters; the message names it.
 pub fn metric_lattice(path: &Path, heights: StatedHeights) -> Result<Lattice, CliError> {
     let raster = read_raster(path, heights)?;
     let wrong = |reason: String| CliError::input(format!("{}: {reason}", path.display()));
@@ -26,7 +26,7 @@ pub fn metric_lattice(path: &Path, heights: StatedHeights) -> Result<Lattice, Cl
 /// A height service on the ground of an elevation file; one in degrees is brought to the UTM zone of its middle.
 ///
 /// # Errors
-/// Why it has no place in metres.
+/// Why it has no place in meters.
 pub fn service(raster: &Arc<Raster>) -> Result<HeightService, String> {
     let metric = warp::to_metric(raster, None).map_err(|error| explain(&error))?;
     let lattice = Lattice::from_raster(&metric).map_err(|error| error.to_string())?;

@@ -19,7 +19,7 @@ use crate::terrain::query::{Answer, Surface};
 /// `height`.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Heights are metres, whatever unit the file has. A point without one has a status that says why:\n\
+    after_help = "Heights are meters, whatever unit the file has. A point without one has a status that says why:\n\
                         NoData where the model has a hole, Outside beyond it."
 )]
 pub struct HeightOptions {
@@ -44,7 +44,7 @@ pub struct HeightOptions {
     /// Print a JSON array with one object per point
     #[arg(long)]
     pub json: bool,
-    /// What grey values mean.
+    /// What gray values mean.
     #[command(flatten)]
     pub heights: StatedHeights,
     /// What may be read.
@@ -57,7 +57,7 @@ pub struct HeightOptions {
 pub enum SurfaceChoice {
     /// The raster as read, in its own grid
     Source,
-    /// The ground in metres, after a scene's earthworks
+    /// The ground in meters, after a scene's earthworks
     Ground,
     /// The higher of the ground and the decks over it
     Scene,

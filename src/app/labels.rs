@@ -8,7 +8,7 @@ use crate::annotate::north::NorthArrow;
 use crate::annotate::scale_bar::ScaleBar;
 use crate::description::words;
 use crate::render::picture::Picture;
-use crate::scene::kind::{Scene, SceneLabel};
+use crate::scene::{Scene, SceneLabel};
 use crate::view::camera::Camera;
 
 /// Everything to be written on the picture.

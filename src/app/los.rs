@@ -33,23 +33,23 @@ use crate::terrain::sight::rise::{Raised, Rise, required_rise};
 pub struct LosOptions {
     /// The elevation file or scene
     pub file: PathBuf,
-    /// Where the observer stands, and metres above the ground there
+    /// Where the observer stands, and meters above the ground there
     #[arg(long, value_name = "X,Y[,H]", allow_hyphen_values = true)]
     pub from: Observer,
-    /// Where the target stands, and metres above the ground there
+    /// Where the target stands, and meters above the ground there
     #[arg(long, value_name = "X,Y[,H]", allow_hyphen_values = true)]
     pub to: Observer,
-    /// Metres of the observer's eye above the ground, where --from gives none
-    #[arg(long, value_name = "METRES", default_value = "2", allow_negative_numbers = true, value_parser = metres)]
+    /// Meters of the observer's eye above the ground, where --from gives none
+    #[arg(long, value_name = "METERS", default_value = "2", allow_negative_numbers = true, value_parser = meters)]
     pub observer_height: f64,
-    /// Metres of the target above the ground, where --to gives none
-    #[arg(long, value_name = "METRES", default_value = "0", allow_negative_numbers = true, value_parser = metres)]
+    /// Meters of the target above the ground, where --to gives none
+    #[arg(long, value_name = "METERS", default_value = "0", allow_negative_numbers = true, value_parser = meters)]
     pub target_height: f64,
     /// The coordinate system of both positions, for example EPSG:4326 [default: the file's]
     #[arg(long, value_name = "CRS")]
     pub crs: Option<String>,
     /// The refraction coefficient: the share of the Earth's curvature that bent light makes up for [default: 1/7]
-    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = metres)]
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = meters)]
     pub refraction: Option<f64>,
     /// As if the Earth were flat
     #[arg(long, conflicts_with = "refraction")]
@@ -63,7 +63,7 @@ pub struct LosOptions {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
-    /// What grey values mean.
+    /// What gray values mean.
     #[command(flatten)]
     pub heights: StatedHeights,
     /// What may be read.
@@ -72,14 +72,14 @@ pub struct LosOptions {
 }
 
 /// A finite number.
-fn metres(text: &str) -> Result<f64, String> {
+fn meters(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| "write a number".into())
 }
 
 /// Runs the command.
 ///
 /// # Errors
-/// The file cannot be had or read, has no place in metres, or an end has no ground under it.
+/// The file cannot be had or read, has no place in meters, or an end has no ground under it.
 pub fn run(options: &LosOptions) -> Result<(), CliError> {
     if let Some(path) = &options.output {
         check_picture_place(path, &options.file)?;
@@ -106,7 +106,7 @@ struct SightOutcome<'a> {
     crs: &'a Crs,
     ground: &'a Crs,
     ends: [SightEnd; 2],
-    /// The ground under both ends, metres.
+    /// The ground under both ends, meters.
     feet_m: [f64; 2],
     curvature: Curvature,
     blocker: Option<Blocker>,

@@ -1,6 +1,6 @@
 //! A map of what can be seen: the ground in the house's tints and shaded, what is hidden in the dark.
 //!
-//! Every post has one colour; a pixel is the mean of the posts under it where it is larger than the distance between
+//! Every post has one color; a pixel is the mean of the posts under it where it is larger than the distance between
 //! posts, and a bilinear blend of the four around where it is smaller. Means are taken in linear light.
 
 use glam::{DVec2, Vec2, Vec3};
@@ -24,12 +24,12 @@ const LEAST_PX: f64 = 48.0;
 const RELIEF: f64 = 2.0;
 /// The share of light that shade leaves.
 const AMBIENT: f32 = 0.32;
-/// The grey of level ground in the standard light, whose tint is shown as it is.
+/// The gray of level ground in the standard light, whose tint is shown as it is.
 const LEVEL: f32 = 180.6;
 /// What stands in for hidden ground's tint, and how much of it: dusk, dark enough to tell and light enough to read.
 const DUSK: Srgba = Srgba::opaque(0x3a, 0x42, 0x5c);
 const DUSK_SHARE: f32 = 0.66;
-/// Ground that was not looked at: faded towards paper.
+/// Ground that was not looked at: faded toward paper.
 const FADED: Srgba = Srgba::opaque(0xf4, 0xf2, 0xec);
 const FADED_SHARE: f32 = 0.62;
 /// Where there is no data.
@@ -71,7 +71,7 @@ pub fn viewshed_map(
             contour_interval: None,
             vertical_datum: words.vertical_datum,
         },
-        pixels_per_metre: frame.pixels_per_m as f32,
+        pixels_per_meter: frame.pixels_per_m as f32,
     };
     compose(&map, &furniture).0
 }
@@ -99,21 +99,21 @@ fn shown(seen: PostVisibility, tint: Vec3) -> Vec3 {
     }
 }
 
-/// The colour of every post in linear light.
+/// The color of every post in linear light.
 fn colors(lattice: &Lattice, viewshed: &Viewshed, ramp: &ColorRamp) -> Vec<Vec3> {
     const STEPS: usize = 512;
     let table = ramp.table(STEPS);
     let (low, high) = ramp.range();
-    let greys = hillshade(lattice, &HillshadeOptions { exaggeration: RELIEF, ..HillshadeOptions::default() });
-    let color = |((&height, &grey), &seen): ((&f32, &u8), &PostVisibility)| {
-        if height.is_nan() || grey == NO_DATA {
+    let grays = hillshade(lattice, &HillshadeOptions { exaggeration: RELIEF, ..HillshadeOptions::default() });
+    let color = |((&height, &gray), &seen): ((&f32, &u8), &PostVisibility)| {
+        if height.is_nan() || gray == NO_DATA {
             return EMPTY.linear();
         }
         let step = (height - low) / (high - low) * (STEPS - 1) as f32;
-        let light = AMBIENT + (1.0 - AMBIENT) * f32::from(grey) / LEVEL;
+        let light = AMBIENT + (1.0 - AMBIENT) * f32::from(gray) / LEVEL;
         shown(seen, table[(step as usize).min(STEPS - 1)]) * light
     };
-    lattice.heights().par_iter().zip(&greys).zip(&viewshed.posts).map(color).collect()
+    lattice.heights().par_iter().zip(&grays).zip(&viewshed.posts).map(color).collect()
 }
 
 /// The map's pixels over the lattice: north up, square, half a cell beyond the outer posts.

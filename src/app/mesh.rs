@@ -37,7 +37,7 @@ const KEEP_EVERYTHING: f64 = -1.0;
 /// Writes the mesh and prints what it holds and how far it is off.
 ///
 /// # Errors
-/// The elevation file cannot be had, read or brought to metres; the mesh cannot be written; its name is that of no
+/// The elevation file cannot be had, read or brought to meters; the mesh cannot be written; its name is that of no
 /// format.
 pub fn run(options: &MeshOptions) -> Result<(), CliError> {
     let format = format_of(&options.output)?;
@@ -107,10 +107,10 @@ fn remedy(error: &WarpError) -> String {
             "no coordinate system is named, and the coordinates, {min_x} to {max_x} and {min_y} to {max_y}, look like degrees; name it, for example --crs EPSG:4326"
         ),
         WarpError::NoPlace => {
-            "it does not say where it lies or how far apart its posts are; give --cell METRES".into()
+            "it does not say where it lies or how far apart its posts are; give --cell METERS".into()
         }
         WarpError::NoZone { west, east, south, north } => format!(
-            "it reaches from longitude {west} to {east} and from latitude {south} to {north}, which no UTM zone covers well; cut it, or warp it to a projected system in metres first"
+            "it reaches from longitude {west} to {east} and from latitude {south} to {north}, which no UTM zone covers well; cut it, or warp it to a projected system in meters first"
         ),
         other => other.to_string(),
     }
@@ -182,7 +182,7 @@ fn remarks(options: &MeshOptions, ground: &MeshGround, built: &BuiltMesh) -> Rem
     let (name, crs) = (file_name(&options.file), ground.crs.name());
     let lines = [
         format!("terrain mesh of {name}, written by sandtable"),
-        "metres from the south-west post: X east, Y north, Z up".to_owned(),
+        "meters from the south-west post: X east, Y north, Z up".to_owned(),
         format!(
             "origin: X 0, Y 0 is easting {} northing {} in {crs}; Z is the elevation",
             origin.x, origin.y
@@ -193,14 +193,14 @@ fn remarks(options: &MeshOptions, ground: &MeshGround, built: &BuiltMesh) -> Rem
             options.max_error
         ),
     ];
-    Remarks::new(&lines, &format!("metres; origin E {} N {}; {crs}", origin.x, origin.y))
+    Remarks::new(&lines, &format!("meters; origin E {} N {}; {crs}", origin.x, origin.y))
 }
 
 fn file_name(path: &Path) -> String {
     path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// A maximum in tenths of a millimetre, rounded up: what is told is still a bound.
+/// A maximum in tenths of a millimeter, rounded up: what is told is still a bound.
 fn told(max_m: f64) -> f64 {
     (max_m * 1e4).ceil() / 1e4
 }

@@ -7,8 +7,8 @@ use serde_json::json;
 use crate::app::arguments::InfoOptions;
 use crate::app::failure::CliError;
 use crate::app::{files, output};
+use crate::model::Model;
 use crate::model::error::ModelError;
-use crate::model::kind::Model;
 use crate::model::read;
 use crate::scene::assets::Assets;
 

@@ -14,8 +14,8 @@ use crate::draw::list::DrawList;
 use crate::draw::pixels::Pixels;
 use crate::render::picture::Picture;
 use crate::render::{cpu, gpu};
-use crate::scene::kind::{Scene, View};
 use crate::scene::picture::{ViewDraw, build_draw_list, camera};
+use crate::scene::{Scene, View};
 use crate::view::camera::Camera;
 
 /// An annotated picture with what it was made from.

@@ -16,12 +16,12 @@ use crate::vector::read::{self, VectorHints};
 #[derive(Clone, Debug, PartialEq)]
 pub struct PositionList(pub Vec<DVec2>);
 
-/// `X,Y` or `X,Y,H`: a position and metres above the ground there.
+/// `X,Y` or `X,Y,H`: a position and meters above the ground there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observer {
     /// The position.
     pub at: DVec2,
-    /// Metres above the ground, where they are given.
+    /// Meters above the ground, where they are given.
     pub above_m: Option<f64>,
 }
 
@@ -48,7 +48,7 @@ impl FromStr for Observer {
         match numbers(text).as_deref() {
             Some(&[x, y]) => Ok(Self { at: DVec2::new(x, y), above_m: None }),
             Some(&[x, y, above_m]) => Ok(Self { at: DVec2::new(x, y), above_m: Some(above_m) }),
-            _ => Err("write a position as X,Y or, with metres above the ground, X,Y,H".into()),
+            _ => Err("write a position as X,Y or, with meters above the ground, X,Y,H".into()),
         }
     }
 }
@@ -123,7 +123,7 @@ fn vector_way(path: &Path, stated: Option<Crs>) -> Result<InputLine, CliError> {
     }
 }
 
-/// `x, y` as a reader wants them: degrees to a metre or so, metres to the metre.
+/// `x, y` as a reader wants them: degrees to a meter or so, meters to the meter.
 pub fn spoken(crs: &Crs, at: DVec2) -> String {
     let decimals = if crs.is_geographic() { 5 } else { 0 };
     format!("{:.decimals$}, {:.decimals$}", at.x, at.y)

@@ -31,8 +31,8 @@ const MOST_STEPS: f64 = 1e7;
 /// `profile`.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The table has station,x,y,height,status a line: metres from the start, the position in the system asked \
-                  in, metres. There is a station wherever the ground bends, and on the model's border."
+    after_help = "The table has station,x,y,height,status a line: meters from the start, the position in the system asked \
+                  in, meters. There is a station wherever the ground bends, and on the model's border."
 )]
 pub struct ProfileOptions {
     /// The elevation file or scene
@@ -52,8 +52,8 @@ pub struct ProfileOptions {
     /// How heights between posts are found
     #[arg(long, value_enum, default_value = "planar")]
     pub interpolation: InterpolationChoice,
-    /// Also a station every so many metres
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    /// Also a station every so many meters
+    #[arg(long, value_name = "METERS", allow_negative_numbers = true)]
     pub step: Option<f64>,
     /// Where a chart goes
     #[arg(short, long, value_name = "OUT.png")]
@@ -64,7 +64,7 @@ pub struct ProfileOptions {
     /// Print one JSON object instead of a table
     #[arg(long)]
     pub json: bool,
-    /// What grey values mean.
+    /// What gray values mean.
     #[command(flatten)]
     pub heights: StatedHeights,
     /// What may be read.
@@ -75,7 +75,7 @@ pub struct ProfileOptions {
 /// Runs the command.
 ///
 /// # Errors
-/// The file cannot be had or read, has no place in metres, or the line cannot be brought there.
+/// The file cannot be had or read, has no place in meters, or the line cannot be brought there.
 pub fn run(options: &ProfileOptions) -> Result<(), CliError> {
     if let Some(path) = &options.output {
         check_picture_place(path, &options.file)?;
@@ -122,7 +122,7 @@ fn step_m(options: &ProfileOptions, line: &[DVec2]) -> Result<Option<f64>, CliEr
     let Some(step_m) = options.step else { return Ok(None) };
     let length_m: f64 = line.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
     if !(step_m > 0.0 && step_m.is_finite()) {
-        return Err(CliError::Usage(format!("--step {step_m}: give metres above 0")));
+        return Err(CliError::Usage(format!("--step {step_m}: give meters above 0")));
     }
     if length_m / step_m > MOST_STEPS {
         let most = MOST_STEPS;
@@ -248,7 +248,7 @@ fn chart(
     }
 }
 
-/// Where the line has vertices between its ends, metres along it.
+/// Where the line has vertices between its ends, meters along it.
 fn bends_m(line: &[DVec2]) -> Vec<f64> {
     let lengths = line.windows(2).map(|pair| pair[0].distance(pair[1]));
     let mut reached: Vec<f64> = lengths

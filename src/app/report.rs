@@ -9,7 +9,7 @@ use crate::app::arguments::Access;
 use crate::app::failure::CliError;
 use crate::app::progress::StepTimer;
 use crate::app::{files, load, output};
-use crate::scene::kind::Scene;
+use crate::scene::Scene;
 use crate::scene::report::{ReportCell, ReportColumn, ReportTable, SceneReport};
 
 /// How many rows of a table are printed; a file or JSON holds all.

@@ -39,14 +39,14 @@ pub struct ViewshedArguments {
     /// The coordinate system of the position, for instance EPSG:4326 [default: the file's or scene's]
     #[arg(long, value_name = "CRS")]
     pub crs: Option<String>,
-    /// Metres of the eye above the ground
-    #[arg(long, value_name = "METRES", default_value_t = 2.0, value_parser = metres)]
+    /// Meters of the eye above the ground
+    #[arg(long, value_name = "METERS", default_value_t = 2.0, value_parser = meters)]
     pub observer_height: f64,
-    /// Metres of what is looked for above the ground
-    #[arg(long, value_name = "METRES", default_value_t = 0.0, value_parser = metres)]
+    /// Meters of what is looked for above the ground
+    #[arg(long, value_name = "METERS", default_value_t = 0.0, value_parser = meters)]
     pub target_height: f64,
-    /// How far to look, in metres [default: without limit]
-    #[arg(long, value_name = "METRES", value_parser = metres_above_zero)]
+    /// How far to look, in meters [default: without limit]
+    #[arg(long, value_name = "METERS", value_parser = meters_above_zero)]
     pub range: Option<f64>,
     /// Look only between two azimuths, in degrees clockwise from north
     #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true)]
@@ -63,7 +63,7 @@ pub struct ViewshedArguments {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
-    /// What the grey values of a picture mean.
+    /// What the gray values of a picture mean.
     #[command(flatten)]
     pub heights: StatedHeights,
     /// What may be read.
@@ -86,14 +86,14 @@ impl FromStr for Pair {
     }
 }
 
-fn metres(text: &str) -> Result<f64, String> {
-    let number = text.parse::<f64>().ok().filter(|metres| (0.0..=1e5).contains(metres));
-    number.ok_or_else(|| "write metres as a number from 0 to 100000".into())
+fn meters(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|meters| (0.0..=1e5).contains(meters));
+    number.ok_or_else(|| "write meters as a number from 0 to 100000".into())
 }
 
-fn metres_above_zero(text: &str) -> Result<f64, String> {
-    let number = text.parse::<f64>().ok().filter(|metres| metres.is_finite() && *metres > 0.0);
-    number.ok_or_else(|| "write metres as a number above 0".into())
+fn meters_above_zero(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|meters| meters.is_finite() && *meters > 0.0);
+    number.ok_or_else(|| "write meters as a number above 0".into())
 }
 
 fn below_one(text: &str) -> Result<f64, String> {
@@ -244,7 +244,7 @@ fn raster(lattice: &Lattice, seen: &Viewshed, crs: &Crs) -> Raster {
         width: seen.columns,
         height: seen.rows,
         samples: Samples::F32(rows.flatten().map(value).collect()),
-        metres_per_z: 1.0,
+        meters_per_z: 1.0,
         map_from_grid: DAffine2 {
             matrix2: DMat2::from_diagonal(DVec2::new(cell.x, -cell.y)),
             translation: north_west + DVec2::new(-0.5, 0.5) * cell,

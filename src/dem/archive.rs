@@ -5,7 +5,7 @@ use std::io::Read;
 
 use flate2::read::{DeflateDecoder, MultiGzDecoder};
 
-use crate::dem::fault::{DemErrorKind, bytes_at};
+use crate::dem::error::{DemErrorKind, bytes_at};
 
 /// The most bytes that are unpacked: a file of the largest raster.
 const MOST_BYTES: u64 = 1 << 30;

@@ -2,7 +2,7 @@
 
 use glam::{DAffine2, DMat2, DVec2};
 
-use crate::dem::fault::DemErrorKind;
+use crate::dem::error::DemErrorKind;
 use crate::dem::raster::north_up;
 use crate::dem::read::DemFile;
 
@@ -30,7 +30,7 @@ pub(crate) struct PlaceTags {
     pub ties: Vec<f64>,
     /// ModelTransformation.
     pub matrix: Vec<f64>,
-    /// Whether positions are those of samples' centres (PixelIsPoint).
+    /// Whether positions are those of samples' centers (PixelIsPoint).
     pub is_point: bool,
 }
 
@@ -72,7 +72,7 @@ pub(crate) fn beside(
     Ok(RasterPlace { map_from_grid: north_up(corner, size), stated: cell.is_some() })
 }
 
-/// The six numbers of a world file: x per column, y per column, x per row, y per row, and the centre of the
+/// The six numbers of a world file: x per column, y per column, x per row, y per row, and the center of the
 /// first sample.
 fn world_file(text: &str) -> Result<DAffine2, DemErrorKind> {
     let numbers: Vec<f64> =
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_world_file_states_the_centre_of_the_first_sample() {
+    fn a_world_file_states_the_center_of_the_first_sample() {
         let place = world_file("2,0\n0\n0\n-2\n101\n199\n").expect("six numbers");
         assert_eq!(place.transform_point2(DVec2::ZERO), DVec2::new(100.0, 200.0));
         assert!(world_file("1 2 3").is_err());

@@ -10,7 +10,7 @@
 
 use glam::{DVec2, I64Vec2};
 
-use crate::dem::fault::MOST_SAMPLES;
+use crate::dem::error::MOST_SAMPLES;
 use crate::dem::raster::{Raster, Samples};
 use crate::geom::crs::Crs;
 
@@ -195,11 +195,11 @@ fn alike(first: &Raster, tile: &Raster, other: usize) -> Result<(), MosaicError>
     if first.crs != tile.crs {
         return differ("coordinate systems", crs(first), crs(tile));
     }
-    if first.metres_per_z != tile.metres_per_z {
+    if first.meters_per_z != tile.meters_per_z {
         return differ(
             "vertical units",
-            format!("{} m", first.metres_per_z),
-            format!("{} m", tile.metres_per_z),
+            format!("{} m", first.meters_per_z),
+            format!("{} m", tile.meters_per_z),
         );
     }
     if let (Some(one), Some(two)) = (&first.vertical_datum, &tile.vertical_datum)
@@ -230,7 +230,7 @@ fn turns(tiles: &[Raster]) -> Vec<f64> {
     let west = |index: usize| tiles[index].extent().min.x;
     let mut order: Vec<usize> = (0..tiles.len()).collect();
     order.sort_by(|&a, &b| west(a).total_cmp(&west(b)));
-    // The mosaic starts behind the widest step between neighbours; behind the step across ±180° where none is wider.
+    // The mosaic starts behind the widest step between neighbors; behind the step across ±180° where none is wider.
     let across = west(order[0]) + 360.0 - west(order[order.len() - 1]);
     let mut widest = (across, 0);
     for at in 1..order.len() {
@@ -330,7 +330,7 @@ fn join<T: Copy + Into<f64>>(
         width: frame.width as u32,
         height: frame.height as u32,
         samples: wrap(values),
-        metres_per_z: first.metres_per_z,
+        meters_per_z: first.meters_per_z,
         map_from_grid,
         georeferenced: true,
         crs: first.crs.clone(),
@@ -395,7 +395,7 @@ mod tests {
         let mut coarse = tile(2.0, 0.0, 2, 2, vec![0.0; 4]);
         coarse.map_from_grid.matrix2 *= 2.0;
         assert!(refused(coarse).contains("cells are 10 by -10 and 20 by -20"));
-        let in_feet = Raster { metres_per_z: 0.3048, ..one() };
+        let in_feet = Raster { meters_per_z: 0.3048, ..one() };
         assert!(refused(in_feet).contains("vertical units are 1 m and 0.3048 m"));
         let named = Raster { crs: Some(Crs::wgs84()), ..one() };
         assert!(refused(named).contains("coordinate systems are none stated and EPSG:4326"));
@@ -421,7 +421,7 @@ mod tests {
     fn longitudes_go_on_across_the_date_line() {
         for order in [[178.0, -180.0], [-180.0, 178.0]] {
             let tiles = order.map(|west| degrees(west, vec![west as f32, 0.0]));
-            let mosaic = mosaic(tiles.into()).expect("neighbours");
+            let mosaic = mosaic(tiles.into()).expect("neighbors");
             assert_eq!((mosaic.raster.width, mosaic.gaps), (4, 0), "{order:?}");
             assert_eq!([mosaic.raster.at(0, 0), mosaic.raster.at(2, 0)], [178.0, -180.0]);
             assert!((mosaic.raster.extent().size().x - 4.0).abs() < 1e-9);

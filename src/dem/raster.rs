@@ -7,7 +7,7 @@ use crate::geom::rect::Rect;
 
 /// Elevations row by row from the raster's first sample, with their georeference.
 ///
-/// A value is the elevation at its sample's centre: sample (column, row) stands at grid position
+/// A value is the elevation at its sample's center: sample (column, row) stands at grid position
 /// (column + 0.5, row + 0.5), as GDAL counts. Formats whose values stand on grid nodes are shifted by half
 /// a sample to meet this.
 #[derive(Clone, Debug)]
@@ -23,12 +23,12 @@ pub struct Raster {
     pub height: u32,
     /// Elevations in the file's vertical unit with scale and offset applied, NaN where there is no data.
     pub samples: Samples,
-    /// Metres in the vertical unit: 1, or 0.3048 and the like where the file states feet.
-    pub metres_per_z: f64,
+    /// Meters in the vertical unit: 1, or 0.3048 and the like where the file states feet.
+    pub meters_per_z: f64,
     /// Grid position (column, row) to map coordinates; can be inverted.
     pub map_from_grid: DAffine2,
     /// Whether `map_from_grid` was stated by the file, a companion or the caller; where not, samples were set
-    /// 1 apart with the centre of the south-west sample at (0, 0).
+    /// 1 apart with the center of the south-west sample at (0, 0).
     pub georeferenced: bool,
     /// The coordinate reference system; `None` where the file names none.
     pub crs: Option<Crs>,
@@ -119,7 +119,7 @@ impl Raster {
         self.map_from_grid.matrix2.inverse() * (at - self.map_from_grid.translation)
     }
 
-    /// Distance between neighbouring samples along a row and along a column, in map units.
+    /// Distance between neighboring samples along a row and along a column, in map units.
     pub fn spacing(&self) -> DVec2 {
         let axes = self.map_from_grid.matrix2;
         DVec2::new(axes.x_axis.length(), axes.y_axis.length())
@@ -131,7 +131,7 @@ impl Raster {
         x_axis.y == 0.0 && y_axis.x == 0.0 && x_axis.x > 0.0 && y_axis.y < 0.0
     }
 
-    /// Map coordinates of the centre of the raster.
+    /// Map coordinates of the center of the raster.
     pub fn center(&self) -> DVec2 {
         self.map_from_grid.transform_point2(self.grid_size() * 0.5)
     }
@@ -164,7 +164,7 @@ pub(crate) fn north_up(corner: DVec2, cell: DVec2) -> DAffine2 {
 pub(crate) mod tests {
     use super::*;
 
-    /// A raster in metres, ten apart, whose south-west outer corner is at (1000, 2000).
+    /// A raster in meters, ten apart, whose south-west outer corner is at (1000, 2000).
     pub(crate) fn small(width: u32, height: u32, values: Vec<f32>) -> Raster {
         assert_eq!(values.len(), (width * height) as usize);
         Raster {
@@ -173,7 +173,7 @@ pub(crate) mod tests {
             width,
             height,
             samples: Samples::F32(values),
-            metres_per_z: 1.0,
+            meters_per_z: 1.0,
             map_from_grid: north_up(
                 DVec2::new(1000.0, 2000.0 + 10.0 * f64::from(height)),
                 DVec2::splat(10.0),

@@ -1,28 +1,30 @@
 //! Bytes to a raster: the format is told by content, then by extension.
 
 use crate::dem::archive;
-use crate::dem::fault::{DemError, DemErrorKind};
+use crate::dem::error::{DemError, DemErrorKind};
+use crate::dem::formats::raw;
+use crate::dem::formats::raw::RawLayout;
+use crate::dem::formats::rgb_png::HeightEncoding;
+use crate::dem::formats::{ascii, bt, dted, ehdr, envi, hgt, png, surfer, terragen, usgs, xyz};
 use crate::dem::raster::Raster;
-use crate::dem::raw::{self, RawLayout};
-use crate::dem::rgb_png::HeightEncoding;
-use crate::dem::{ascii, bt, dted, ehdr, envi, geotiff, hgt, png, surfer, terragen, usgs, xyz};
+use crate::dem::tiff::geotiff;
 use crate::geom::crs::Crs;
 
 /// What the caller knows of a file beyond its bytes.
 #[derive(Clone)]
 pub struct DemHints<'a> {
-    /// Metres per grey value of a PNG, which is refused without it, or per value of a RAW file. Default 1 there; other
+    /// Meters per gray value of a PNG, which is refused without it, or per value of a RAW file. Default 1 there; other
     /// formats do not look at it.
     pub png_height_scale: Option<f64>,
-    /// Elevation in metres of value 0. Default 0.
+    /// Elevation in meters of value 0. Default 0.
     pub png_height_offset: Option<f64>,
-    /// What the colours of a PNG mean; a colour PNG is refused without it.
+    /// What the colors of a PNG mean; a color PNG is refused without it.
     pub height_encoding: Option<HeightEncoding>,
     /// That the file is RAW, and how it is laid out.
     pub raw: Option<RawLayout>,
     /// What heights are counted from, in place of what the file says.
     pub vertical_datum: Option<String>,
-    /// Distance in metres between samples of a file without georeference; its south-west sample then stands
+    /// Distance in meters between samples of a file without georeference; its south-west sample then stands
     /// at (0, 0). Files with a georeference keep theirs.
     pub cell: Option<f64>,
     /// The coordinate system, in place of what the file says or where it says nothing.
@@ -103,7 +105,7 @@ impl DemFile<'_> {
         self.companion("hdr").or_else(|| (self.hints.companions)(&format!("{}.hdr", self.name)))
     }
 
-    /// The hinted metres per value, checked.
+    /// The hinted meters per value, checked.
     pub fn height_scale(&self) -> Result<Option<f64>, DemErrorKind> {
         match self.hints.png_height_scale {
             Some(scale) if !(scale.is_finite() && scale != 0.0) => Err(DemErrorKind::Hint {
@@ -129,7 +131,7 @@ impl DemFile<'_> {
     pub fn cell(&self) -> Result<Option<f64>, DemErrorKind> {
         match self.hints.cell {
             Some(cell) if !(cell.is_finite() && cell > 0.0) => {
-                Err(DemErrorKind::Hint { what: "cell", value: cell, wanted: "a positive number of metres" })
+                Err(DemErrorKind::Hint { what: "cell", value: cell, wanted: "a positive number of meters" })
             }
             cell => Ok(cell),
         }
@@ -167,28 +169,28 @@ fn read_source(source: &DemFile) -> Result<Raster, DemErrorKind> {
     if let Some(layout) = &source.hints.raw {
         return raw::read(source, layout);
     }
-    match FORMATS.iter().find(|(recognises, _)| recognises(bytes)) {
+    match FORMATS.iter().find(|(recognizes, _)| recognizes(bytes)) {
         Some((_, read)) => read(source),
         None => read_by_name(source),
     }
 }
 
 /// Whether content is that of a format.
-type Recognises = fn(&[u8]) -> bool;
+type Recognizes = fn(&[u8]) -> bool;
 
 /// Reads content of a format.
 type Reads = fn(&DemFile) -> Result<Raster, DemErrorKind>;
 
 /// The formats whose content says what they are.
-const FORMATS: [(Recognises, Reads); 8] = [
-    (geotiff::recognises, geotiff::read),
-    (png::recognises, png::read),
-    (bt::recognises, bt::read),
-    (ascii::recognises, ascii::read),
-    (dted::recognises, dted::read),
-    (terragen::recognises, terragen::read),
-    (surfer::recognises, surfer::read),
-    (usgs::recognises, usgs::read),
+const FORMATS: [(Recognizes, Reads); 8] = [
+    (geotiff::recognizes, geotiff::read),
+    (png::recognizes, png::read),
+    (bt::recognizes, bt::read),
+    (ascii::recognizes, ascii::read),
+    (dted::recognizes, dted::read),
+    (terragen::recognizes, terragen::read),
+    (surfer::recognizes, surfer::read),
+    (usgs::recognizes, usgs::read),
 ];
 
 /// Reads content that does not say what it is: by the header beside it, or else by its extension.

@@ -1,7 +1,7 @@
 //! The elevation at a point between samples.
 //!
-//! The convention is GDAL's: a value stands at its sample's centre. In the outer half sample along the border
-//! the nearest row or column is held. Neighbours without data drop out and the weights of the others grow to
+//! The convention is GDAL's: a value stands at its sample's center. In the outer half sample along the border
+//! the nearest row or column is held. Neighbors without data drop out and the weights of the others grow to
 //! one; only where none is left is there no data.
 
 use glam::DVec2;
@@ -12,9 +12,9 @@ use crate::dem::raster::Raster;
 /// coordinates are written with a dozen digits.
 const BORDER: f64 = 1e-6;
 
-/// A position nearer than this, in samples, to a row or column of centres lies on it: rounding in map
-/// coordinates must not give a neighbour, or a hole beside it, a say in an exact value.
-pub(crate) const ON_CENTRE: f64 = 1e-7;
+/// A position nearer than this, in samples, to a row or column of centers lies on it: rounding in map
+/// coordinates must not give a neighbor, or a hole beside it, a say in an exact value.
+pub(crate) const ON_CENTER: f64 = 1e-7;
 
 /// What a raster says of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,13 +57,13 @@ pub fn bilinear(raster: &Raster, at_map: DVec2) -> Sampled {
     bilinear_at_grid(raster, raster.grid_from_map(at_map))
 }
 
-/// The bilinear value at a grid position (column, row), where (0.5, 0.5) is the first sample's centre.
+/// The bilinear value at a grid position (column, row), where (0.5, 0.5) is the first sample's center.
 pub fn bilinear_at_grid(raster: &Raster, at: DVec2) -> Sampled {
     if !inside(raster, at) {
         return Sampled::Outside;
     }
-    let (left, right, across) = neighbours(at.x, raster.width);
-    let (above, below, down) = neighbours(at.y, raster.height);
+    let (left, right, across) = neighbors(at.x, raster.width);
+    let (above, below, down) = neighbors(at.y, raster.height);
     let corners = [
         (left, above, (1.0 - across) * (1.0 - down)),
         (right, above, across * (1.0 - down)),
@@ -88,15 +88,15 @@ fn inside(raster: &Raster, at: DVec2) -> bool {
 
 /// The two samples on either side of a position along one axis, and how far it lies from the first to the
 /// second.
-fn neighbours(at: f64, count: u32) -> (u32, u32, f64) {
+fn neighbors(at: f64, count: u32) -> (u32, u32, f64) {
     let from_first = (at - 0.5).clamp(0.0, f64::from(count - 1));
     let first = from_first as u32;
     let part = from_first - f64::from(first);
-    if part <= ON_CENTRE {
+    if part <= ON_CENTER {
         return (first, first, 0.0);
     }
     let second = (first + 1).min(count - 1);
-    if part >= 1.0 - ON_CENTRE { (second, second, 0.0) } else { (first, second, part) }
+    if part >= 1.0 - ON_CENTER { (second, second, 0.0) } else { (first, second, part) }
 }
 
 #[cfg(test)]
@@ -105,7 +105,7 @@ mod tests {
     use crate::dem::raster::tests::small;
 
     #[test]
-    fn a_plane_is_kept_between_centres_and_held_beyond_them() {
+    fn a_plane_is_kept_between_centers_and_held_beyond_them() {
         let raster = small(3, 2, vec![0.0, 10.0, 20.0, 100.0, 110.0, 120.0]);
         assert_eq!(bilinear(&raster, DVec2::new(1015.0, 2010.0)), Sampled::Ok(60.0));
         assert_eq!(bilinear(&raster, DVec2::new(1000.0, 2020.0)), Sampled::Ok(0.0));

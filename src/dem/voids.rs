@@ -1,10 +1,10 @@
 //! Voids: samples without data, enclosed by samples with data, and the filling of them.
 //!
-//! A void is a set of samples without data that are neighbours along rows and columns, none of them on the raster's
+//! A void is a set of samples without data that are neighbors along rows and columns, none of them on the raster's
 //! border: what reaches the border is where the data ends, and is left.
 //!
 //! Filling stretches a **membrane** over each void from its rim: heights inside solve Laplace's equation, so that each
-//! is the mean of its four neighbours, weighted by nearness where cells are not square. It passes through the rim
+//! is the mean of its four neighbors, weighted by nearness where cells are not square. It passes through the rim
 //! without a step, has no hill or hollow of its own, and reproduces a plane exactly; ridges and valleys across a wide
 //! void are lost, which is why voids above a size are left. Solved by successive over-relaxation (Young 1954) in the
 //! order of the samples, so that the same bits come out everywhere.
@@ -134,7 +134,7 @@ fn each(raster: &Raster, mut visit: impl FnMut(Void)) {
     }
 }
 
-/// How much a neighbour along a row and one along a column count: as the inverse squares of their distances, halved
+/// How much a neighbor along a row and one along a column count: as the inverse squares of their distances, halved
 /// so that the four add up to 1.
 fn weights(raster: &Raster) -> DVec2 {
     let mut spacing = raster.spacing();
@@ -150,7 +150,7 @@ fn weights(raster: &Raster) -> DVec2 {
 struct Membrane {
     /// Those of the void's samples, then those of the rim, which stay.
     heights: Vec<f64>,
-    /// Per sample of the void: where its west, east, north and south neighbours stand in `heights`.
+    /// Per sample of the void: where its west, east, north and south neighbors stand in `heights`.
     around: Vec<[u32; 4]>,
     weights: DVec2,
     /// The lowest and the highest of the rim: no height of a membrane lies beyond.
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn a_membrane_is_the_mean_of_its_neighbours_and_stays_within_its_rim() {
+    fn a_membrane_is_the_mean_of_its_neighbors_and_stays_within_its_rim() {
         let mut raster = plane(40, |_, _| false);
         let rough = |index: usize| ((index * 7919) % 1009) as f64;
         for index in 0..raster.samples.len() {

@@ -3,7 +3,7 @@
 //! What is larger than the memory is asked for piece by piece. A raster in memory answers the same questions, so
 //! whatever works on windows can be tested against one that works on the whole.
 
-use crate::dem::fault::DemErrorKind;
+use crate::dem::error::DemErrorKind;
 use crate::dem::raster::{Raster, scaled};
 
 /// A rectangle of a raster's samples.
@@ -42,8 +42,8 @@ pub trait Windows {
     /// to be looked at.
     fn bare(&self) -> &Raster;
 
-    /// Fills `out` with the heights of `window` in metres, row by row from its first; NaN without data. They are
-    /// those that reading the whole raster and bringing it to metres would give, to the last bit.
+    /// Fills `out` with the heights of `window` in meters, row by row from its first; NaN without data. They are
+    /// those that reading the whole raster and bringing it to meters would give, to the last bit.
     ///
     /// # Errors
     /// The samples cannot be had; another window may still be read.
@@ -69,7 +69,7 @@ impl Windows for Raster {
         out.clear();
         for row in window.row..window.row + window.height {
             let columns = window.column..window.column + window.width;
-            out.extend(columns.map(|column| scaled(self.at(column, row), self.metres_per_z, 0.0) as f32));
+            out.extend(columns.map(|column| scaled(self.at(column, row), self.meters_per_z, 0.0) as f32));
         }
         Ok(())
     }
@@ -81,9 +81,9 @@ mod tests {
     use crate::dem::raster::tests::small;
 
     #[test]
-    fn a_window_of_a_raster_in_memory_holds_its_heights_in_metres() {
+    fn a_window_of_a_raster_in_memory_holds_its_heights_in_meters() {
         let mut raster = small(3, 3, (0..9u8).map(f32::from).collect());
-        raster.metres_per_z = 0.5;
+        raster.meters_per_z = 0.5;
         let mut out = vec![7.0; 5];
         raster.read(RasterWindow { column: 1, row: 1, width: 2, height: 2 }, &mut out).expect("inside");
         assert_eq!(out, [2.0, 2.5, 3.5, 4.0]);

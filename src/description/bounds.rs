@@ -46,5 +46,5 @@ impl fmt::Display for Short {
     }
 }
 
-/// Heights in metres: from below any sea to above any camera's orbit.
+/// Heights in meters: from below any sea to above any camera's orbit.
 pub const ELEVATION: Bounds = Bounds::Within(-1e7, 1e7);

@@ -188,7 +188,7 @@ pub(super) fn any_crs(reader: &mut TableReader<'_, '_>, key: &'static str) -> Op
     reader.get(key, |item| item.crs(|_| Ok(())))
 }
 
-/// A scene's own system must be metric, since its heights, widths and distances are metres.
+/// A scene's own system must be metric, since its heights, widths and distances are meters.
 fn metric(crs: &Crs) -> Result<(), String> {
     if crs.is_geographic() {
         return Err(format!(
@@ -196,7 +196,7 @@ fn metric(crs: &Crs) -> Result<(), String> {
             crs.name()
         ));
     }
-    let unit = crs.metres_per_unit();
+    let unit = crs.meters_per_unit();
     if unit != 1.0 {
         return Err(format!(
             "the scene's coordinate system must be metric, but a unit of {} is {unit} m",

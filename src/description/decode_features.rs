@@ -13,19 +13,19 @@ use crate::description::reader::TableReader;
 use crate::description::selection::Selection;
 use crate::description::words::{Clamp, ProfileMode, Water, Word};
 
-/// Widths of roads and rivers in metres.
+/// Widths of roads and rivers in meters.
 const WIDTH: Bounds = Bounds::Above(0.0, 10_000.0);
-/// Widths of strips beside something, in metres.
+/// Widths of strips beside something, in meters.
 const STRIP: Bounds = Bounds::Within(0.0, 1000.0);
-/// Sizes of what stands on the ground, in metres.
+/// Sizes of what stands on the ground, in meters.
 const SIZE: Bounds = Bounds::Above(0.0, 1000.0);
-/// Distances between things, in metres.
+/// Distances between things, in meters.
 const DISTANCE: Bounds = Bounds::Above(0.0, 10_000.0);
-/// Metres out for each metre of height of a batter.
+/// Meters out for each meter of height of a batter.
 const BATTER: Bounds = Bounds::Within(0.0, 20.0);
 /// Angles from level to upright, in degrees.
 const SLOPE: Bounds = Bounds::Within(0.0, 90.0);
-/// Metres per unit of a model.
+/// Meters per unit of a model.
 const SCALE: Bounds = Bounds::Above(0.0, 1e6);
 
 /// What may be scattered without a file.
@@ -40,7 +40,7 @@ pub(super) fn road(reader: &mut TableReader<'_, '_>) -> Option<RoadTable> {
     let shoulder = quantity(reader, "shoulder", STRIP);
     let markings = choice(reader, "markings");
     let join = reader.get("join", |item| item.word());
-    let mitre_limit = number(reader, "mitre_limit", Bounds::Within(1.0, 10.0));
+    let miter_limit = number(reader, "miter_limit", Bounds::Within(1.0, 10.0));
     let profile = reader.get("profile", |item| item.word());
     let earthworks =
         ["max_grade", "crown", "fill_slope", "cut_slope", "max_fill", "max_cut"].map(|key| reader.has(key));
@@ -68,7 +68,7 @@ pub(super) fn road(reader: &mut TableReader<'_, '_>) -> Option<RoadTable> {
         shoulder,
         markings,
         join,
-        mitre_limit,
+        miter_limit,
         profile,
         max_grade,
         crown,
@@ -209,7 +209,7 @@ pub(super) fn model(reader: &mut TableReader<'_, '_>) -> Option<ModelPlacement> 
             reader.error(span, "`height` says nothing for a model that stands on the ground", help);
         }
         (Clamp::Relative | Clamp::Absolute, None, Some(clamp)) => {
-            reader.error(clamp.span(), "this needs a `height`", "add `height = ...` in metres");
+            reader.error(clamp.span(), "this needs a `height`", "add `height = ...` in meters");
         }
         _ => {}
     }

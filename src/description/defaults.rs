@@ -25,15 +25,15 @@ pub const LABEL_HEIGHT_M: f64 = 0.0;
 pub const ROAD_WIDTH_M: f64 = 6.0;
 /// `[[road]] shoulder`.
 pub const ROAD_SHOULDER_M: f64 = 0.0;
-/// `[[road]] mitre_limit`, in half widths.
-pub const MITRE_LIMIT: f64 = 2.0;
+/// `[[road]] miter_limit`, in half widths.
+pub const MITER_LIMIT: f64 = 2.0;
 /// `[[road]] max_grade` in percent: what country roads in hills are built to.
 pub const MAX_GRADE_PERCENT: f64 = 8.0;
 /// `[[road]] crown` in percent.
 pub const CROWN_PERCENT: f64 = 0.0;
-/// `[[road]] fill_slope`: metres out for each metre down; loose earth stands at 1 : 1.5.
+/// `[[road]] fill_slope`: meters out for each meter down; loose earth stands at 1 : 1.5.
 pub const FILL_SLOPE: f64 = 1.5;
-/// `[[road]] cut_slope`: metres out for each metre up; grown ground stands steeper than filled.
+/// `[[road]] cut_slope`: meters out for each meter up; grown ground stands steeper than filled.
 pub const CUT_SLOPE: f64 = 1.0;
 /// `[[bridge]] width`: a road with its footways.
 pub const BRIDGE_WIDTH_M: f64 = 8.0;
@@ -55,7 +55,7 @@ pub const SAG: f64 = 0.03;
 
 /// `[[model]] heading`: north.
 pub const HEADING_DEG: f64 = 0.0;
-/// `[[model]] scale`: metres per unit.
+/// `[[model]] scale`: meters per unit.
 pub const MODEL_SCALE: f64 = 1.0;
 /// `[[model]] tilt`: upright.
 pub const TILT_DEG: f64 = 0.0;

@@ -1,6 +1,6 @@
 //! A message that points at a place in the scene file.
 //!
-//! Rendered as text without colour, so that it reads the same on a terminal, in a log and in a test:
+//! Rendered as text without color, so that it reads the same on a terminal, in a log and in a test:
 //!
 //! ```text
 //! hill.toml:12:1: error: unknown key `widht` in [[road]]

@@ -1,7 +1,7 @@
 //! The scene file's tables, one struct each: the reference of what a scene file may say. The tables of features stand in
 //! [`crate::description::features`].
 //!
-//! A scene file is TOML in UTF-8. Lengths and heights are metres, angles degrees, compass directions
+//! A scene file is TOML in UTF-8. Lengths and heights are meters, angles degrees, compass directions
 //! clockwise from north, coordinates `[easting, northing]` or `[longitude, latitude]`, and file names
 //! relative to the file they stand in, unless a key says otherwise. Keys that are not listed here are errors. Every
 //! number is finite; the range of each is stated, with `(` where the end itself is not allowed.
@@ -63,8 +63,8 @@ pub struct Document {
     pub title: Option<String>,
     /// `subtitle`: a second line under the title. Default: none.
     pub subtitle: Option<String>,
-    /// `crs`: the scene's coordinate system, `EPSG:n` or a proj string, in metres. Default: the DEM's own, or
-    /// the UTM zone of its centre where it is in degrees.
+    /// `crs`: the scene's coordinate system, `EPSG:n` or a proj string, in meters. Default: the DEM's own, or
+    /// the UTM zone of its center where it is in degrees.
     pub crs: Option<Spanned<String>>,
     /// `points_crs`: the coordinate system that inline points are written in, unless a feature says
     /// otherwise. Default: the scene's.
@@ -120,12 +120,12 @@ pub struct TerrainTable {
     pub dem: Spanned<Vec<String>>,
     /// `crs`: the DEM's coordinate system where the file names none or a wrong one. Default: what it names.
     pub crs: Option<Spanned<String>>,
-    /// `height_scale`: metres per unit of a sample's value, in (0, 10⁶]; needed for grey PNG, 1 by default for RAW,
+    /// `height_scale`: meters per unit of a sample's value, in (0, 10⁶]; needed for gray PNG, 1 by default for RAW,
     /// not looked at for others.
     pub height_scale: Option<Spanned<f64>>,
-    /// `height_offset`: height in metres of sample value 0 of a grey PNG or RAW, in [−10⁷, 10⁷]. Default 0.
+    /// `height_offset`: height in meters of sample value 0 of a gray PNG or RAW, in [−10⁷, 10⁷]. Default 0.
     pub height_offset: Option<Spanned<f64>>,
-    /// `height_encoding`: what the colours of a PNG mean, `"terrain-rgb"` or `"terrarium"`; needed for colour PNG.
+    /// `height_encoding`: what the colors of a PNG mean, `"terrain-rgb"` or `"terrarium"`; needed for color PNG.
     pub height_encoding: Option<Spanned<HeightEncodingWord>>,
     /// `raw`: that the file is RAW and how it is laid out, such as `"1201x1201:i16be"`.
     pub raw: Option<Spanned<String>>,
@@ -134,7 +134,7 @@ pub struct TerrainTable {
     pub vertical_datum: Option<Spanned<String>>,
     /// `fill_voids`: whether samples without data that others enclose are filled by a membrane. Default: no.
     pub fill_voids: Option<Spanned<bool>>,
-    /// `cell`: distance in metres between samples of a file without georeference, in (0, 10⁶]; its south-west
+    /// `cell`: distance in meters between samples of a file without georeference, in (0, 10⁶]; its south-west
     /// sample then stands at (0, 0).
     pub cell: Option<Spanned<f64>>,
     /// `vertical_exaggeration`: how many times heights are stretched when drawn, in (0, 1000]. Default 1.
@@ -146,14 +146,14 @@ pub struct TerrainTable {
 /// `[style]`: how the ground looks.
 #[derive(Clone, Debug, Default)]
 pub struct StyleTable {
-    /// `ramp`: `"atlas"`, `"desert"`, `"grey"`, or from 2 to 256 stops `[[height, "#rrggbb"], ...]`. Default
+    /// `ramp`: `"atlas"`, `"desert"`, `"gray"`, or from 2 to 256 stops `[[height, "#rrggbb"], ...]`. Default
     /// `"atlas"`.
     pub ramp: Option<Spanned<RampChoice>>,
     /// `[style.contours]`: contour lines. Default: none.
     pub contours: Option<ContourTable>,
     /// `[style.light]`: where the light comes from.
     pub light: LightTable,
-    /// `haze`: distance in metres at which 63 % of what is seen is haze, in [0, 10⁹]; 0 for clear air.
+    /// `haze`: distance in meters at which 63 % of what is seen is haze, in [0, 10⁹]; 0 for clear air.
     /// Default: eight times the longest side of the terrain, its drawn height included.
     pub haze: Option<Spanned<f64>>,
 }
@@ -163,16 +163,16 @@ pub struct StyleTable {
 pub enum RampChoice {
     /// A built-in ramp, stretched from the lowest to the highest ground.
     Named(RampName),
-    /// At least two heights in metres, growing, and their colours.
+    /// At least two heights in meters, growing, and their colors.
     Stops(Vec<(f64, Color)>),
 }
 
-/// A colour as written: sRGB red, green, blue and straight alpha.
+/// A color as written: sRGB red, green, blue and straight alpha.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Color(pub [u8; 4]);
 
 impl Color {
-    /// The colour that `#rgb`, `#rrggbb` or `#rrggbbaa` names; without alpha it is opaque.
+    /// The color that `#rgb`, `#rrggbb` or `#rrggbbaa` names; without alpha it is opaque.
     pub fn parse(text: &str) -> Option<Self> {
         let digits = text.strip_prefix('#')?.chars().map(|digit| digit.to_digit(16));
         let digits: Vec<u8> =
@@ -194,7 +194,7 @@ impl Color {
 /// `[style.contours]`.
 #[derive(Clone, Debug)]
 pub struct ContourTable {
-    /// `interval`, needed: height in metres between lines, in [0.01, 10⁵].
+    /// `interval`, needed: height in meters between lines, in [0.01, 10⁵].
     pub interval: Spanned<f64>,
     /// `major_every`: every how many lines one is drawn heavier, from 1 to 1000. Default 5.
     pub major_every: Option<Spanned<u32>>,
@@ -214,7 +214,7 @@ pub struct LightTable {
 /// `[[label]]`.
 #[derive(Clone, Debug)]
 pub struct LabelTable {
-    /// `text`, needed: what it says; `{height}` becomes the ground's elevation in whole metres.
+    /// `text`, needed: what it says; `{height}` becomes the ground's elevation in whole meters.
     pub text: Spanned<String>,
     /// `at`, needed: the place it names.
     pub at: Spanned<[f64; 2]>,
@@ -271,7 +271,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn colours_have_three_six_or_eight_digits() {
+    fn colors_have_three_six_or_eight_digits() {
         assert_eq!(Color::parse("#fa0"), Some(Color([255, 170, 0, 255])));
         assert_eq!(Color::parse("#102030"), Some(Color([16, 32, 48, 255])));
         assert_eq!(Color::parse("#10203040"), Some(Color([16, 32, 48, 64])));

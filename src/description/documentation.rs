@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn defaults_that_are_values_are_read_and_others_are_not() {
         assert_eq!(default_of("In (0, 10]. Default 6."), Some(Value::from(6)));
-        assert_eq!(default_of("Metres. Default 1.5."), Some(Value::from(1.5)));
+        assert_eq!(default_of("Meters. Default 1.5."), Some(Value::from(1.5)));
         assert_eq!(default_of("Default 315 (north-west)."), Some(Value::from(315)));
         assert_eq!(default_of("Default `\"asphalt\"`."), Some(Value::from("asphalt")));
         assert_eq!(default_of("Default `[0.8, 1.2]`."), Some(serde_json::json!([0.8, 1.2])));

@@ -1,6 +1,6 @@
 //! The tables of features: what lies and stands on the ground, one struct each.
 //!
-//! A number that may differ from feature to feature is a [`Quantity`], a word that may a [`Choice`]: written as such, or
+//! A number that may differ from feature to feature is a [`Quantity`], a word that may a [`ComputedWord`]: written as such, or
 //! as an expression over the feature's properties ([`crate::description::expression`]). Where the properties give no
 //! value within its range the default is taken, and the scene's notes say how often.
 //!
@@ -83,7 +83,7 @@ pub enum Scalar {
 pub struct RoadTable {
     /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
-    /// `points`, `file`, `layer`, `where` and `crs`: the centreline.
+    /// `points`, `file`, `layer`, `where` and `crs`: the centerline.
     pub source: FeatureSource,
     /// `width`: of the carriageway, in (0, 10 000]. Default 6.
     pub width: Option<Spanned<Quantity>>,
@@ -93,30 +93,30 @@ pub struct RoadTable {
     pub surface: Option<Spanned<ComputedWord<RoadSurface>>>,
     /// `shoulder`: width of the unpaved strip on either side, in [0, 1000]. Default 0.
     pub shoulder: Option<Spanned<Quantity>>,
-    /// `markings`: the lines on asphalt, `"dashed"` (edge lines and a dashed centre line), `"solid"` (a solid centre
+    /// `markings`: the lines on asphalt, `"dashed"` (edge lines and a dashed center line), `"solid"` (a solid center
     /// line), `"edges"` or `"none"`. Default `"dashed"`.
     pub markings: Option<Spanned<ComputedWord<Markings>>>,
-    /// `join`: how segments meet, `"mitre"`, `"bevel"` or `"round"`. Default `"mitre"`.
+    /// `join`: how segments meet, `"miter"`, `"bevel"` or `"round"`. Default `"miter"`.
     pub join: Option<Spanned<Join>>,
-    /// `mitre_limit`: how long a mitre may be in half widths before it is cut off, in [1, 10]. Default 2.
-    pub mitre_limit: Option<Spanned<f64>>,
+    /// `miter_limit`: how long a miter may be in half widths before it is cut off, in [1, 10]. Default 2.
+    pub miter_limit: Option<Spanned<f64>>,
     /// `profile`: `"drape"`, the road follows the ground, or `"conform"`, the ground follows the road. Default
     /// `"drape"`.
     pub profile: Option<Spanned<ProfileMode>>,
     /// `max_grade`, only where it conforms: the steepest rise along it in percent, in (0, 100]. Default 8.
     pub max_grade: Option<Spanned<Quantity>>,
-    /// `crown`, only where it conforms: the fall across from the centreline to either side in percent, in [0, 20].
+    /// `crown`, only where it conforms: the fall across from the centerline to either side in percent, in [0, 20].
     /// Default 0: flat across.
     pub crown: Option<Spanned<f64>>,
-    /// `fill_slope`, only where it conforms: metres out for each metre down on an embankment's batter, in [0, 20].
+    /// `fill_slope`, only where it conforms: meters out for each meter down on an embankment's batter, in [0, 20].
     /// Default 1.5.
     pub fill_slope: Option<Spanned<f64>>,
-    /// `cut_slope`, only where it conforms: metres out for each metre up on a cutting's batter, in [0, 20]. Default 1.
+    /// `cut_slope`, only where it conforms: meters out for each meter up on a cutting's batter, in [0, 20]. Default 1.
     pub cut_slope: Option<Spanned<f64>>,
-    /// `max_fill`, only where it conforms: the height in metres of the highest embankment, in (0, 10 000]; a bridge
+    /// `max_fill`, only where it conforms: the height in meters of the highest embankment, in (0, 10 000]; a bridge
     /// stands where more is needed. Default: any.
     pub max_fill: Option<Spanned<f64>>,
-    /// `max_cut`, only where it conforms: the depth in metres of the deepest cutting, in (0, 10 000]; a tunnel runs
+    /// `max_cut`, only where it conforms: the depth in meters of the deepest cutting, in (0, 10 000]; a tunnel runs
     /// where more is needed. Default: any.
     pub max_cut: Option<Spanned<f64>>,
     /// `bridge`: whether a line is a bridge. Default: whether its property `bridge` is there and not `no`.
@@ -133,7 +133,7 @@ pub struct RoadTable {
 pub struct BridgeTable {
     /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
-    /// `points`, `file`, `layer`, `where` and `crs`: the centreline, from abutment to abutment.
+    /// `points`, `file`, `layer`, `where` and `crs`: the centerline, from abutment to abutment.
     pub source: FeatureSource,
     /// `width`: between the parapets, in (0, 10 000]. Default 8.
     pub width: Option<Spanned<Quantity>>,
@@ -150,7 +150,7 @@ pub struct BridgeTable {
 pub struct RiverTable {
     /// `name`: for messages and the feature list. Default: none.
     pub name: Option<String>,
-    /// `points`, `file`, `layer`, `where` and `crs`: the centreline.
+    /// `points`, `file`, `layer`, `where` and `crs`: the centerline.
     pub source: FeatureSource,
     /// `width`: of the water, in (0, 10 000]. Default 8.
     pub width: Option<Spanned<Quantity>>,
@@ -165,7 +165,7 @@ pub struct RiverTable {
     /// `water`: `"falls"`, its level never rises downstream and the ground is cut to it, or `"drape"`, it lies on the
     /// ground as it is. Default `"falls"`.
     pub water: Option<Spanned<Water>>,
-    /// `max_cut`, only where it falls: how deep in metres the ground may be cut, in (0, 10 000]. Where water that falls
+    /// `max_cut`, only where it falls: how deep in meters the ground may be cut, in (0, 10 000]. Where water that falls
     /// would need more, the line does not follow the model's valley: the ground there stays as it is, and the report tells
     /// of it. Default 10.
     pub max_cut: Option<Spanned<f64>>,
@@ -210,11 +210,11 @@ pub struct BuildingTable {
     pub name: Option<String>,
     /// `points`, `file`, `layer`, `where` and `crs`: the footprints.
     pub source: FeatureSource,
-    /// `height`: from its base to the ridge, in (0, 1000]. Default: the property `height`, else three metres for each
+    /// `height`: from its base to the ridge, in (0, 1000]. Default: the property `height`, else three meters for each
     /// of `building:levels` or `levels`, else 6.
     pub height: Option<Spanned<Quantity>>,
     /// `base`: which ground under the footprint it stands on, `"lowest"`, `"mean"`, `"highest"`, or `"pad"`: the ground
-    /// is levelled to its mean. Default `"lowest"`.
+    /// is leveled to its mean. Default `"lowest"`.
     pub base: Option<Spanned<BaseRule>>,
     /// `roof`: `"flat"`, `"gabled"`, `"hipped"` or `"pyramidal"`. Default: the property `roof:shape`, else `"flat"`.
     pub roof: Option<Spanned<ComputedWord<RoofShape>>>,
@@ -272,7 +272,7 @@ pub struct ModelPlacement {
     pub variant: Option<Spanned<Expression>>,
     /// `heading`: which way its front points, in [−360, 360]. Default 0 (north).
     pub heading: Option<Spanned<Quantity>>,
-    /// `scale`: metres per unit of the model file, in (0, 10⁶]. Default 1.
+    /// `scale`: meters per unit of the model file, in (0, 10⁶]. Default 1.
     pub scale: Option<Spanned<Quantity>>,
     /// `clamp`: `"ground"`, its lowest point on the ground, or the origin of a built-in model; `"relative"`, `height` above
     /// the ground;
@@ -288,7 +288,7 @@ pub struct ModelPlacement {
     /// `sink`: how deep it stands in the ground, in [0, 1000]. Default 0.
     pub sink: Option<Spanned<f64>>,
     /// `footing`: what fills the gap to the ground, `"none"`, `"plinth"` (a block down to the ground) or `"pad"` (the
-    /// ground is levelled). Default `"none"`.
+    /// ground is leveled). Default `"none"`.
     pub footing: Option<Spanned<Footing>>,
 }
 
@@ -306,7 +306,7 @@ pub struct ScatterTable {
     /// `spacing`: how near to each other they may stand, in [0, 10 000]; where it leaves no room for the density, fewer stand.
     /// Default: half the side of the square that each has to itself.
     pub spacing: Option<Spanned<Quantity>>,
-    /// `scale`: metres per unit of the model, from and to, each in (0, 10⁶]. Default `[0.8, 1.2]`.
+    /// `scale`: meters per unit of the model, from and to, each in (0, 10⁶]. Default `[0.8, 1.2]`.
     pub scale: Option<Spanned<[f64; 2]>>,
     /// `slope`: where the ground's slope in degrees lies from and to these, each in [0, 90]. Default `[0, 90]`.
     pub slope: Option<Spanned<[f64; 2]>>,

@@ -16,7 +16,7 @@ use crate::description::suggest::{quoted, remedy};
 use crate::description::words::{RampName, Word};
 use crate::geom::crs::Crs;
 
-/// The largest coordinate, in any unit: beyond it centimetres are lost to rounding.
+/// The largest coordinate, in any unit: beyond it centimeters are lost to rounding.
 pub(super) const MAX_COORDINATE: f64 = 1e9;
 /// The most inline points of one feature; longer lines belong in a file.
 const MAX_POINTS: usize = 100_000;
@@ -378,7 +378,7 @@ impl<'i> KeyValue<'_, 'i> {
         match refused {
             None => Some(text),
             Some(reason) => {
-                let help = "write \"EPSG:n\", for example \"EPSG:32616\", or a proj string in metres";
+                let help = "write \"EPSG:n\", for example \"EPSG:32616\", or a proj string in meters";
                 self.wrong(reason, help);
                 None
             }
@@ -410,12 +410,12 @@ impl<'i> KeyValue<'_, 'i> {
         }
         let help = "write \"#rgb\", \"#rrggbb\" or \"#rrggbbaa\" in hexadecimal digits";
         let DeValue::String(text) = self.value.get_ref() else {
-            self.wrong_kind("a colour in quotes", help);
+            self.wrong_kind("a color in quotes", help);
             return None;
         };
         let color = Color::parse(text);
         if color.is_none() {
-            self.wrong(format!("\"{}\" is not a colour", quoted(text)), help);
+            self.wrong(format!("\"{}\" is not a color", quoted(text)), help);
         }
         color
     }
@@ -485,7 +485,7 @@ impl<'i> KeyValue<'_, 'i> {
     }
 
     fn stops(&mut self, list: &DeArray<'i>) -> Option<Vec<(f64, Color)>> {
-        let help = "write [[height, \"#rrggbb\"], ...] with heights in metres that grow";
+        let help = "write [[height, \"#rrggbb\"], ...] with heights in meters that grow";
         if !(2..=MAX_LIST).contains(&list.len()) {
             self.wrong(format!("a ramp has from 2 to {MAX_LIST} stops, but this has {}", list.len()), help);
             return None;
@@ -507,7 +507,7 @@ impl<'i> KeyValue<'_, 'i> {
                 Some((height?, color?))
             }
             _ => {
-                self.wrong("a stop is a height and a colour", help);
+                self.wrong("a stop is a height and a color", help);
                 None
             }
         }

@@ -1,6 +1,6 @@
 //! Takes the keys out of one TOML table, one by one; what is left over at the end was not known.
 //!
-//! Hand-written rather than derived: a derived deserialiser stops at the first error, loses the place of a
+//! Hand-written rather than derived: a derived deserializer stops at the first error, loses the place of a
 //! value inside flattened structs, and cannot say which key was meant. Here reading never stops, and every
 //! key that is asked for is thereby known, so that the list of valid keys cannot drift from the code.
 
@@ -143,7 +143,7 @@ impl<'r, 'i> TableReader<'r, 'i> {
         self.table.get_key_value(key).map(|(key, _)| key.span())
     }
 
-    /// Notes an error about the table, unless a key that is none looks like one of `keys` misspelt.
+    /// Notes an error about the table, unless a key that is none looks like one of `keys` misspelled.
     pub fn error_if_unexplained(&mut self, keys: &[&'static str], message: String, help: &str) {
         let explains = |unknown: &str| nearest(unknown, keys.iter().copied()).is_some();
         let asked_for = |key: &str| self.known.contains(&key);
@@ -327,7 +327,7 @@ impl<'r, 'i> TableReader<'r, 'i> {
     }
 
     /// Reports the keys that nobody asked for, and the keys that were needed and are not there unless a
-    /// misspelt one explains it.
+    /// misspelled one explains it.
     fn finish(mut self) {
         let mut explained = Vec::new();
         for (key, _) in std::mem::take(&mut self.table) {

@@ -1,8 +1,8 @@
 //! What the decoder asks for, written down while it asks.
 //!
 //! The scene file's schema is not written beside the decoder, where the two would drift apart, but by it: a reader can be
-//! told to sketch ([`crate::description::reader::Reader::sketch_root`]). It then has no table to read; each key that is
-//! asked for goes into a [`Sketch`] with the [`Shape`] that its value must have, and the decoder runs as always.
+//! told to sketch ([`crate::description::reader::ObjReader::sketch_root`]). It then has no table to read; each key that is
+//! asked for goes into a [`SchemaProbe`] with the [`KeyShape`] that its value must have, and the decoder runs as always.
 
 use std::ops::RangeInclusive;
 
@@ -69,7 +69,7 @@ pub(super) enum KeyShape {
     Range(Bounds),
     /// Up to so many numbers.
     Numbers(Bounds, usize),
-    /// One of these words, or up to so many heights with colours.
+    /// One of these words, or up to so many heights with colors.
     Ramp(Vec<&'static str>, usize),
     /// A table of values or lists of up to so many, or an expression.
     Filter(usize),

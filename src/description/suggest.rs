@@ -8,7 +8,7 @@ const MAX_COMPARED: usize = 64;
 /// The word of `valid` that `word` is most likely meant to be, or `None` where none is near.
 ///
 /// Near is: the same but for case, `-` and `_`; or within one edit (insertion, deletion, replacement or swap
-/// of neighbours) for every three characters; or one word contains the other and is at least four
+/// of neighbors) for every three characters; or one word contains the other and is at least four
 /// characters long. The first of equals wins.
 pub fn nearest<'a>(word: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word = folded(word);

@@ -29,7 +29,7 @@ pub enum Clamp {
     /// `ground`: its lowest point stands on the ground.
     #[default]
     Ground,
-    /// `relative`: its origin is `height` metres above the ground.
+    /// `relative`: its origin is `height` meters above the ground.
     Relative,
     /// `absolute`: its origin is at elevation `height`.
     Absolute,
@@ -59,7 +59,7 @@ impl Word for LabelKind {
         &[("summit", Self::Summit), ("place", Self::Place), ("water", Self::Water), ("point", Self::Point)];
 }
 
-/// A built-in colour ramp.
+/// A built-in color ramp.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum RampName {
     /// `atlas`: green lowland over yellow and brown to white.
@@ -67,16 +67,16 @@ pub enum RampName {
     Atlas,
     /// `desert`: sand over red rock.
     Desert,
-    /// `grey`: dark to light.
-    Grey,
+    /// `gray`: dark to light.
+    Gray,
 }
 
 impl Word for RampName {
     const ALL: &'static [(&'static str, Self)] =
-        &[("atlas", Self::Atlas), ("desert", Self::Desert), ("grey", Self::Grey)];
+        &[("atlas", Self::Atlas), ("desert", Self::Desert), ("gray", Self::Gray)];
 }
 
-/// What the colours of a PNG mean in metres.
+/// What the colors of a PNG mean in meters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum HeightEncodingWord {
     /// `terrain-rgb`: Mapbox's.
@@ -93,9 +93,9 @@ impl Word for HeightEncodingWord {
 /// How two segments of a road meet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Join {
-    /// `mitre`: both edges go on until they meet.
+    /// `miter`: both edges go on until they meet.
     #[default]
-    Mitre,
+    Miter,
     /// `bevel`: the outer corner is cut off.
     Bevel,
     /// `round`: the outer corner is an arc.
@@ -104,16 +104,16 @@ pub enum Join {
 
 impl Word for Join {
     const ALL: &'static [(&'static str, Self)] =
-        &[("mitre", Self::Mitre), ("bevel", Self::Bevel), ("round", Self::Round)];
+        &[("miter", Self::Miter), ("bevel", Self::Bevel), ("round", Self::Round)];
 }
 
 /// The lines on a paved road.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Markings {
-    /// `dashed`: edge lines and a dashed centre line.
+    /// `dashed`: edge lines and a dashed center line.
     #[default]
     Dashed,
-    /// `solid`: edge lines and a solid centre line.
+    /// `solid`: edge lines and a solid center line.
     Solid,
     /// `edges`: edge lines only.
     Edges,
@@ -240,7 +240,7 @@ pub enum BaseRule {
     Mean,
     /// `highest`: the highest under its footprint.
     Highest,
-    /// `pad`: the ground is levelled to its mean.
+    /// `pad`: the ground is leveled to its mean.
     Pad,
 }
 
@@ -335,7 +335,7 @@ pub enum Footing {
     None,
     /// `plinth`: a block down to the ground.
     Plinth,
-    /// `pad`: the ground is levelled.
+    /// `pad`: the ground is leveled.
     Pad,
 }
 

@@ -1,19 +1,19 @@
-//! Colours: 8-bit sRGB as authored, linear light for arithmetic.
+//! Colors: 8-bit sRGB as authored, linear light for arithmetic.
 //!
-//! Both conversions go through tables or `libm`, so that a colour is the same number on every platform.
+//! Both conversions go through tables or `libm`, so that a color is the same number on every platform.
 
 use glam::Vec3;
 
-/// An sRGB colour with straight alpha, as written in files and scene descriptions.
+/// An sRGB color with straight alpha, as written in files and scene descriptions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct Srgba(pub [u8; 4]);
 
 impl Srgba {
-    /// Opaque white: the colour that changes nothing when multiplied.
+    /// Opaque white: the color that changes nothing when multiplied.
     pub const WHITE: Self = Self([255; 4]);
 
-    /// An opaque colour.
+    /// An opaque color.
     pub const fn opaque(red: u8, green: u8, blue: u8) -> Self {
         Self([red, green, blue, 255])
     }
@@ -29,7 +29,7 @@ impl Srgba {
         f32::from(self.0[3]) / 255.0
     }
 
-    /// The opaque colour nearest to `linear` light; values outside 0..=1 are clamped.
+    /// The opaque color nearest to `linear` light; values outside 0..=1 are clamped.
     pub fn from_linear(linear: Vec3) -> Self {
         Self::opaque(srgb_from_linear(linear.x), srgb_from_linear(linear.y), srgb_from_linear(linear.z))
     }

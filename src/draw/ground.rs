@@ -1,6 +1,6 @@
-//! The ground as a map: heights, slopes and light per post, and how they are coloured.
+//! The ground as a map: heights, slopes and light per post, and how they are colored.
 //!
-//! The mesh that is drawn may be coarse; colour, contours and shading are taken from here at every pixel,
+//! The mesh that is drawn may be coarse; color, contours and shading are taken from here at every pixel,
 //! so the picture shows the elevation model and not the triangles.
 
 use glam::Vec2;
@@ -10,9 +10,9 @@ use crate::draw::color::Srgba;
 /// What the ground looks like, sampled at the posts of a regular grid; row 0 is the southernmost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundMap {
-    /// World X and Y of the south-west post, in metres.
+    /// World X and Y of the south-west post, in meters.
     pub origin: Vec2,
-    /// Distance between posts eastward and northward, in metres, both positive.
+    /// Distance between posts eastward and northward, in meters, both positive.
     pub cell: Vec2,
     /// Posts per row.
     pub columns: u32,
@@ -20,7 +20,7 @@ pub struct GroundMap {
     pub rows: u32,
     /// One entry a post, row by row from the south-west.
     pub posts: Vec<GroundPost>,
-    /// Colour by height.
+    /// Color by height.
     pub ramp: ColorRamp,
     /// Contour lines; `None` draws none.
     pub contours: Option<Contours>,
@@ -30,11 +30,11 @@ pub struct GroundMap {
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct GroundPost {
-    /// Height in metres, without vertical exaggeration; posts without data hold a neighbour's height.
+    /// Height in meters, without vertical exaggeration; posts without data hold a neighbor's height.
     pub height_m: f32,
-    /// Rise eastward, metres per metre, with vertical exaggeration.
+    /// Rise eastward, meters per meter, with vertical exaggeration.
     pub slope_east: f32,
-    /// Rise northward, metres per metre, with vertical exaggeration.
+    /// Rise northward, meters per meter, with vertical exaggeration.
     pub slope_north: f32,
     /// Share of the sun that reaches the post past other terrain, 0..=1.
     pub sun_visibility: f32,
@@ -42,14 +42,14 @@ pub struct GroundPost {
     pub sky_visibility: f32,
 }
 
-/// Colours at rising heights, blended linearly in linear light between them.
+/// Colors at rising heights, blended linearly in linear light between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorRamp {
     stops: Vec<(f32, Srgba)>,
 }
 
 impl ColorRamp {
-    /// A ramp from `stops` of height in metres and colour.
+    /// A ramp from `stops` of height in meters and color.
     ///
     /// `None` where there is no stop, or heights do not rise strictly or are not finite.
     pub fn new(stops: Vec<(f32, Srgba)>) -> Option<Self> {
@@ -63,7 +63,7 @@ impl ColorRamp {
         &self.stops
     }
 
-    /// The ramp as `steps` colours in linear light, evenly spaced from the lowest to the highest stop.
+    /// The ramp as `steps` colors in linear light, evenly spaced from the lowest to the highest stop.
     pub fn table(&self, steps: usize) -> Vec<glam::Vec3> {
         let (low, high) = self.range();
         (0..steps)
@@ -76,7 +76,7 @@ impl ColorRamp {
         (self.stops[0].0, self.stops[self.stops.len() - 1].0)
     }
 
-    /// The colour at `height_m` in linear light; the end colours beyond the ends.
+    /// The color at `height_m` in linear light; the end colors beyond the ends.
     pub fn linear_at(&self, height_m: f32) -> glam::Vec3 {
         let above = self.stops.partition_point(|stop| stop.0 <= height_m);
         match (above.checked_sub(1).map(|below| self.stops[below]), self.stops.get(above)) {
@@ -98,11 +98,11 @@ impl ColorRamp {
 /// lines are `width_px` wide, heavier ones `width_px · (1 + f(interval))`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contours {
-    /// Height between lines, in metres.
+    /// Height between lines, in meters.
     pub interval_m: f32,
     /// Every how many lines one is drawn heavier; 1 makes all heavy.
     pub major_every: u32,
-    /// The colour, with alpha as strength.
+    /// The color, with alpha as strength.
     pub color: Srgba,
     /// Width of an ordinary line in pixels; heavier ones are twice as wide where ordinary ones show.
     pub width_px: f32,
@@ -143,7 +143,7 @@ impl GroundMap {
             let (columns, rows, held) = (self.columns, self.rows, self.posts.len());
             return Err(format!("the ground map of {columns}×{rows} posts holds {held}"));
         }
-        // Renderers count in posts per metre.
+        // Renderers count in posts per meter.
         let sound = self.cell.min_element() > 0.0
             && self.cell.recip().is_finite()
             && self.cell.is_finite()

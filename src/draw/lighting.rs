@@ -2,16 +2,16 @@
 //!
 //! With albedo `a`, unit normal `n`, sun visibility `s` and sky visibility `v` (both 1 where nothing
 //! stands in the way), a surface point shows
-//! `lit = a · (s · sun · max(n·to_sun, 0) + v · mix(bounce, sky, (n.z + 1) / 2))` and, `d` metres from the
+//! `lit = a · (s · sun · max(n·to_sun, 0) + v · mix(bounce, sky, (n.z + 1) / 2))` and, `d` meters from the
 //! eye, `mix(lit, haze.color, 1 − exp(−d / haze.distance_m))`. Where nothing is drawn, a ray with unit
 //! direction `r` shows `mix(haze.color, zenith, sqrt(max(r.z, 0)))`.
 
 use glam::Vec3;
 
-/// The light of a scene; colours are linear.
+/// The light of a scene; colors are linear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lighting {
-    /// Unit vector from the ground towards the sun.
+    /// Unit vector from the ground toward the sun.
     pub to_sun: Vec3,
     /// Light of the sun on a surface that faces it.
     pub sun: Vec3,
@@ -21,16 +21,16 @@ pub struct Lighting {
     pub bounce: Vec3,
     /// Haze with distance.
     pub haze: Haze,
-    /// The sky's colour overhead.
+    /// The sky's color overhead.
     pub zenith: Vec3,
 }
 
 /// Haze that thickens with distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Haze {
-    /// The colour of the horizon, linear.
+    /// The color of the horizon, linear.
     pub color: Vec3,
-    /// The distance in metres at which 63 % of what is seen is haze; infinite for clear air.
+    /// The distance in meters at which 63 % of what is seen is haze; infinite for clear air.
     pub distance_m: f32,
 }
 
@@ -56,7 +56,7 @@ impl Lighting {
         albedo * (direct + ambient)
     }
 
-    /// `color` as seen through `distance_m` metres of air.
+    /// `color` as seen through `distance_m` meters of air.
     pub fn hazed(&self, color: Vec3, distance_m: f32) -> Vec3 {
         let clear = libm::expf(-distance_m / self.haze.distance_m);
         self.haze.color.lerp(color, clear)

@@ -43,13 +43,13 @@ impl FeatureId {
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct DrawVertex {
-    /// Position in metres, in the mesh's own space.
+    /// Position in meters, in the mesh's own space.
     pub position: [f32; 3],
     /// Unit normal in the mesh's own space; not read where the material takes the ground's.
     pub normal: [f32; 3],
     /// Texture coordinates; V runs downward, (0, 0) is the texture's upper left corner.
     pub uv: [f32; 2],
-    /// Multiplied with the material's colour.
+    /// Multiplied with the material's color.
     pub color: Srgba,
 }
 

@@ -26,23 +26,23 @@ pub enum NormalSource {
     Ground,
 }
 
-/// Where the colour that is lit comes from.
+/// Where the color that is lit comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Albedo {
-    /// Base colour × vertex colour × texture.
+    /// Base color × vertex color × texture.
     Surface,
-    /// The ground map's ramp and contours; base colour and texture are not used.
+    /// The ground map's ramp and contours; base color and texture are not used.
     GroundMap,
 }
 
-/// A surface's colour and how it is shaded.
+/// A surface's color and how it is shaded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// The name in the source file, for messages.
     pub name: String,
-    /// Multiplied with vertex colour and texture.
+    /// Multiplied with vertex color and texture.
     pub base_color: Srgba,
-    /// The base colour texture, repeated in both directions, filtered bilinearly with mip levels.
+    /// The base color texture, repeated in both directions, filtered bilinearly with mip levels.
     pub texture: Option<TextureId>,
     /// What alpha means.
     pub alpha: AlphaMode,
@@ -50,7 +50,7 @@ pub struct Material {
     pub two_sided: bool,
     /// Where the normal comes from.
     pub normals: NormalSource,
-    /// Where the colour comes from.
+    /// Where the color comes from.
     pub albedo: Albedo,
 }
 

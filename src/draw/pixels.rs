@@ -11,7 +11,7 @@ pub struct Pixels {
 }
 
 impl Pixels {
-    /// A picture of one colour. A side of zero gives an empty picture.
+    /// A picture of one color. A side of zero gives an empty picture.
     pub fn filled(width: u32, height: u32, color: Srgba) -> Self {
         Self { width, height, data: vec![color; width as usize * height as usize] }
     }

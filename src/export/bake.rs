@@ -34,10 +34,10 @@ impl Baked {
 pub fn bake(map: &GroundMap) -> Baked {
     let cells = Vec2::new((map.columns.max(2) - 1) as f32, (map.rows.max(2) - 1) as f32);
     let size = cells * map.cell;
-    // As many pixels east as north to the metre, as many to the cell as there is room for.
-    let metres_per_px =
+    // As many pixels east as north to the meter, as many to the cell as there is room for.
+    let meters_per_px =
         (map.cell.min_element() / PIXELS_PER_CELL).max(size.max_element() / LONGEST_PX as f32);
-    let pixels = (size / metres_per_px).round().max(Vec2::ONE);
+    let pixels = (size / meters_per_px).round().max(Vec2::ONE);
     let (width, height) = (pixels.x as u32, pixels.y as u32);
     let step = size / pixels;
     let rows: Vec<Vec<Srgba>> = (0..height)
@@ -71,7 +71,7 @@ mod tests {
     use super::*;
     use crate::draw::ground::{ColorRamp, Contours, GroundPost};
 
-    /// Ground that rises eastward, 10 m a post of 20 m, coloured dark below and light above.
+    /// Ground that rises eastward, 10 m a post of 20 m, colored dark below and light above.
     fn map(contours: Option<Contours>) -> GroundMap {
         let post = |index: u32| GroundPost { height_m: (index % 5) as f32 * 10.0, ..GroundPost::default() };
         GroundMap {

@@ -3,11 +3,11 @@
 //! ```text
 //!  scene ─► node "world" (X east, Y north, Z up ─► glTF's Y up) ─► a node an item ─► mesh ─► primitives
 //!
-//!  one buffer:  │ positions │ normals │ texture coordinates │ colours │ indices │ images │
+//!  one buffer:  │ positions │ normals │ texture coordinates │ colors │ indices │ images │
 //! ```
 //!
 //! One buffer view holds all positions, one all normals and so on, so that a city of ten thousand roads has five views
-//! and not fifty thousand. Colours are linear light in glTF, whatever textures are.
+//! and not fifty thousand. Colors are linear light in glTF, whatever textures are.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};

@@ -13,9 +13,9 @@ use crate::draw::list::{DrawMesh, DrawVertex};
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::mesh::sink::{MeshSink, VertexId};
-use crate::terrain::facets::{SurfaceTriangle, facet_contains, plane_z};
+use crate::terrain::triangle_surface::{SurfaceTriangle, facet_contains, plane_z};
 
-/// What is left is kept from this area on, in square metres: less is what rounding to f32 makes of nothing.
+/// What is left is kept from this area on, in square meters: less is what rounding to f32 makes of nothing.
 const SLIVER_M2: f64 = 1e-4;
 
 /// `ground` without what the triangles of `drapes` cover. Both in world space.

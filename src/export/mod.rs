@@ -1,6 +1,6 @@
 //! Draw lists as files that other programs open: binary glTF and OBJ.
 //!
-//! What is drawn for a camera is not yet what a modelling program can show: the ground's colour comes from a map that is
+//! What is drawn for a camera is not yet what a modeling program can show: the ground's color comes from a map that is
 //! read at every pixel, and what lies on the ground lies in its very triangles, where a program that draws both sees
 //! them flicker. So a list is prepared first:
 //!

@@ -1,6 +1,6 @@
-//! Wavefront OBJ with its material library and textures: the files that every modelling program reads.
+//! Wavefront OBJ with its material library and textures: the files that every modeling program reads.
 //!
-//! Coordinates are metres, X east, Y north, Z up, as [`crate::mesh::write`] has them; a remark at the top says so. Every
+//! Coordinates are meters, X east, Y north, Z up, as [`crate::mesh::write`] has them; a remark at the top says so. Every
 //! item is an object with vertices of its own, so that what the list shares is written as often as it is shown.
 
 use std::collections::{BTreeMap, BTreeSet};

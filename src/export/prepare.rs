@@ -10,7 +10,7 @@ use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use crate::export::bake::{Baked, bake};
 use crate::export::inlay::inlaid;
 
-/// How far above the ground, in metres, lies what lets the ground through: it cannot take the ground's place, and in
+/// How far above the ground, in meters, lies what lets the ground through: it cannot take the ground's place, and in
 /// the same plane the two would flicker.
 const LIFT_M: f32 = 0.05;
 

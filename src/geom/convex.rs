@@ -4,8 +4,8 @@ use glam::DVec2;
 
 use crate::geom::polygon;
 
-/// Polygons that reach less deep into one another than this touch, in metres: what shares an edge does not overlap, and
-/// over a kilometre of it this depth makes no more than a thousandth of a square metre.
+/// Polygons that reach less deep into one another than this touch, in meters: what shares an edge does not overlap, and
+/// over a kilometer of it this depth makes no more than a thousandth of a square meter.
 const TOUCHING_M: f64 = 1e-6;
 
 /// Whether two convex polygons overlap by more than a touch: some line through a side of one has the other behind it

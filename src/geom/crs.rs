@@ -7,7 +7,7 @@
 //!
 //! Exactness, held against PROJ by `tests/dem_oracle.rs`: UTM, Lambert, Albers and azimuthal systems agree to
 //! better than 0.1 mm. A seven-parameter datum shift is only as good as its parameters: EPSG:27700 agrees
-//! with PROJ's own seven-parameter shift to about 3 mm, which itself is good to some metres (the grid
+//! with PROJ's own seven-parameter shift to about 3 mm, which itself is good to some meters (the grid
 //! OSTN15 is not used).
 
 use std::sync::Arc;
@@ -106,22 +106,22 @@ impl Crs {
     ///
     /// # Errors
     /// [`CrsError::Unknown`] where the code is not in the table or the unit is not a positive length.
-    pub fn from_epsg_in(code: u32, metres_per_unit: f64) -> Result<Self, CrsError> {
+    pub fn from_epsg_in(code: u32, meters_per_unit: f64) -> Result<Self, CrsError> {
         let plain = Self::from_epsg(code)?;
-        let own = plain.metres_per_unit();
+        let own = plain.meters_per_unit();
         // The registry's feet are written with twelve digits or so.
-        if plain.is_geographic() || (own - metres_per_unit).abs() <= 1e-10 * own {
+        if plain.is_geographic() || (own - meters_per_unit).abs() <= 1e-10 * own {
             return Ok(plain);
         }
-        let name = format!("EPSG:{code} +to_meter={metres_per_unit}");
-        if !(metres_per_unit.is_finite() && metres_per_unit > 0.0) {
+        let name = format!("EPSG:{code} +to_meter={meters_per_unit}");
+        if !(meters_per_unit.is_finite() && meters_per_unit > 0.0) {
             return Err(unknown(&name, "the unit is not a positive length"));
         }
         let table = epsg_text(code).unwrap_or_default();
         let kept = table.split_whitespace().filter(|word| {
             !word.starts_with("+units=") && !word.starts_with("+to_meter=") && *word != "+no_defs"
         });
-        let text = kept.collect::<Vec<_>>().join(" ") + &format!(" +to_meter={metres_per_unit}");
+        let text = kept.collect::<Vec<_>>().join(" ") + &format!(" +to_meter={meters_per_unit}");
         Self::build(name, None, &text)
     }
 
@@ -192,14 +192,14 @@ impl Crs {
         Self::from_epsg(4326).expect("EPSG:4326 is in the table")
     }
 
-    /// A plane in metres with no known place on Earth: what a raster without a system lies in. Nothing can be
+    /// A plane in meters with no known place on Earth: what a raster without a system lies in. Nothing can be
     /// transformed to or from it.
     pub fn local() -> Self {
         let proj = Self::utm_at(0.0, 0.0).inner.proj.clone();
         let datum = DatumTie::Adrift("no place on Earth".into());
         Self {
             inner: Arc::new(Inner {
-                name: "local metres".into(),
+                name: "local meters".into(),
                 epsg: None,
                 text: String::new(),
                 proj,
@@ -230,17 +230,17 @@ impl Crs {
         self.inner.proj.is_latlong()
     }
 
-    /// Metres in one unit of its coordinates; 1 for a geographic system, whose unit is the degree.
-    pub fn metres_per_unit(&self) -> f64 {
+    /// Meters in one unit of its coordinates; 1 for a geographic system, whose unit is the degree.
+    pub fn meters_per_unit(&self) -> f64 {
         if self.is_geographic() { 1.0 } else { self.inner.proj.to_meter() }
     }
 
-    /// Whether coordinates are eastings and northings in metres.
+    /// Whether coordinates are eastings and northings in meters.
     pub fn is_metric(&self) -> bool {
-        !self.is_geographic() && self.metres_per_unit() == 1.0
+        !self.is_geographic() && self.meters_per_unit() == 1.0
     }
 
-    /// Semi-major and semi-minor axis of its ellipsoid in metres.
+    /// Semi-major and semi-minor axis of its ellipsoid in meters.
     pub fn ellipsoid(&self) -> (f64, f64) {
         self.inner.proj.ellipse_parameters()
     }
@@ -257,7 +257,7 @@ impl Crs {
         let meridian_deg = self.inner.proj.from_greenwich().to_degrees();
         let mut definition = proj_words::definition(&self.inner.text, ellipsoid, meridian_deg)?;
         definition.name = self.name().into();
-        definition.metres_per_unit = self.metres_per_unit();
+        definition.meters_per_unit = self.meters_per_unit();
         Some(definition)
     }
 
@@ -339,7 +339,7 @@ fn parse_epsg(text: &str, rest: &str) -> Result<Crs, CrsError> {
     let (code, unit) = rest.trim().split_once(char::is_whitespace).unwrap_or((rest.trim(), ""));
     let code = code.parse().map_err(|_| unknown(&shortened(text), "the code is not a number"))?;
     match unit.trim().strip_prefix("+to_meter=").map(str::parse) {
-        Some(Ok(metres)) => Crs::from_epsg_in(code, metres),
+        Some(Ok(meters)) => Crs::from_epsg_in(code, meters),
         None if unit.trim().is_empty() => Crs::from_epsg(code),
         _ => Err(unknown(&shortened(text), "only +to_meter=number may follow the code")),
     }
@@ -379,7 +379,7 @@ fn settle_datum(text: &str) -> (String, DatumTie) {
     }
 }
 
-/// Whether an ellipsoid is WGS 84's or GRS 80's, on which modern datums stand within a metre or two of
+/// Whether an ellipsoid is WGS 84's or GRS 80's, on which modern datums stand within a meter or two of
 /// WGS 84, as PROJ too takes them. The two differ by 0.1 mm at the pole.
 fn is_like_wgs84((major, minor): (f64, f64)) -> bool {
     (major - 6_378_137.0).abs() < 1e-3 && (minor - 6_356_752.314_2).abs() < 1e-3
@@ -458,7 +458,7 @@ mod tests {
             "EPSG:",
             "EPSG:0",
             "EPSG:99999999999",
-            "EPSG:4326 metres",
+            "EPSG:4326 meters",
             "+proj=nowhere",
             "PROJCS[",
             "utm 16",

@@ -1,8 +1,8 @@
 //! The shift between two systems' datums, in words: what a transform does to positions beyond the projection.
 //!
 //! A shift goes by way of WGS 84 and by the numbers that the systems' definitions state (PROJ's `+towgs84`, position
-//! vector): three translations in metres, or those with three rotations in arc seconds and a scale in parts per
-//! million. It is only as good as those: some metres for old national datums. Grids of shifts are not used; a datum
+//! vector): three translations in meters, or those with three rotations in arc seconds and a scale in parts per
+//! million. It is only as good as those: some meters for old national datums. Grids of shifts are not used; a datum
 //! that needs one is refused before there is a shift to put into words.
 
 use std::fmt;
@@ -31,7 +31,7 @@ const NAMED: [(&str, &str); 15] = [
 pub enum DatumShift {
     /// Both systems stand on one datum.
     NotNeeded,
-    /// Both datums are taken to coincide with WGS 84, as PROJ takes them; they do to within two metres or so.
+    /// Both datums are taken to coincide with WGS 84, as PROJ takes them; they do to within two meters or so.
     Coincident,
     /// By these numbers to WGS 84 and from it; `None` for a side that coincides with it.
     ByWgs84 {

@@ -1,6 +1,6 @@
 //! The shortest way between two places on the WGS 84 ellipsoid.
 //!
-//! After Karney, *Algorithms for geodesics*, 2013, as `geo` brings it: right to some nanometres over any distance, at
+//! After Karney, *Algorithms for geodesics*, 2013, as `geo` brings it: right to some nanometers over any distance, at
 //! about a microsecond a call. On a sphere (the haversine) the same way would be up to half a per cent off.
 
 use geo::{Bearing, Destination, Distance, Geodesic, Point};
@@ -21,12 +21,12 @@ impl Geodesic {
         Self { start, bearing_deg: Geodesic.bearing(from, to), length_m: Geodesic.distance(from, to) }
     }
 
-    /// Its length in metres.
+    /// Its length in meters.
     pub fn length_m(&self) -> f64 {
         self.length_m
     }
 
-    /// The place `distance_m` metres from its start; longitude within ±180°.
+    /// The place `distance_m` meters from its start; longitude within ±180°.
     pub fn at(&self, distance_m: f64) -> DVec2 {
         if distance_m == 0.0 {
             return self.start;

@@ -6,14 +6,14 @@
 
 use crate::geom::crs::epsg_text;
 
-/// A coordinate reference system by its parameters. Angles in degrees, lengths in metres.
+/// A coordinate reference system by its parameters. Angles in degrees, lengths in meters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Definition {
     /// What the file calls it, for messages.
     pub name: String,
     /// How the ellipsoid is brought to the plane.
     pub method: MapProjection,
-    /// Latitude of the origin; for [`Method::PolarStereographic`] its sign says which pole.
+    /// Latitude of the origin; for [`MapProjection::PolarStereographic`] its sign says which pole.
     pub latitude_deg: f64,
     /// Longitude of the origin, from the prime meridian.
     pub longitude_deg: f64,
@@ -34,7 +34,7 @@ pub struct Definition {
     /// Longitude of the prime meridian east of Greenwich.
     pub prime_meridian_deg: f64,
     /// The length of the unit that coordinates are written in; 1 for a geographic system.
-    pub metres_per_unit: f64,
+    pub meters_per_unit: f64,
 }
 
 /// A map projection.
@@ -61,7 +61,7 @@ pub enum MapProjection {
 /// An ellipsoid of revolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipsoid {
-    /// Semi-major axis in metres.
+    /// Semi-major axis in meters.
     pub major_m: f64,
     /// Inverse flattening; 0 for a sphere.
     pub inverse_flattening: f64,
@@ -72,7 +72,7 @@ pub struct Ellipsoid {
 pub enum Datum {
     /// As that of the geographic system with this EPSG code, ellipsoid and prime meridian included.
     OfEpsg(u32),
-    /// By three or seven parameters: metres, arc seconds, parts per million (position vector).
+    /// By three or seven parameters: meters, arc seconds, parts per million (position vector).
     ToWgs84(Vec<f64>),
     /// The file does not say.
     Unstated,
@@ -94,7 +94,7 @@ impl Definition {
             ellipsoid,
             datum,
             prime_meridian_deg: 0.0,
-            metres_per_unit: 1.0,
+            meters_per_unit: 1.0,
         }
     }
 
@@ -104,7 +104,7 @@ impl Definition {
         let Datum::OfEpsg(base) = self.datum else { return None };
         match self.method {
             MapProjection::Geographic => Some(base),
-            MapProjection::TransverseMercator if self.metres_per_unit == 1.0 => match base {
+            MapProjection::TransverseMercator if self.meters_per_unit == 1.0 => match base {
                 4277 => self.is_at([49.0, -2.0, 0.999_601_271_7, 4e5, -1e5]).then_some(27700),
                 _ => self.utm_code(base),
             },
@@ -149,7 +149,7 @@ impl Definition {
             text += &format!(" +pm={}", finite("prime meridian", self.prime_meridian_deg)?);
         }
         if self.method != MapProjection::Geographic {
-            text += &format!(" +to_meter={}", finite("unit", self.metres_per_unit)?);
+            text += &format!(" +to_meter={}", finite("unit", self.meters_per_unit)?);
         }
         Ok(text)
     }

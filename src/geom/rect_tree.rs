@@ -1,6 +1,6 @@
 //! Finds the rectangles that meet another one, among many.
 //!
-//! The rectangles are put in the order of a curve that fills the plane (Morton 1966), so that neighbours in the order
+//! The rectangles are put in the order of a curve that fills the plane (Morton 1966), so that neighbors in the order
 //! lie near each other, and eight in a row get a rectangle around them, eight of those another, up to one around all:
 //!
 //! ```text

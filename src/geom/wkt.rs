@@ -106,7 +106,7 @@ fn projected(node: &WktNode) -> Result<Wkt, String> {
         scale: at(&["scale_factor"]).unwrap_or(1.0),
         false_easting_m: at(&["false_easting"]).unwrap_or(0.0) * unit,
         false_northing_m: at(&["false_northing"]).unwrap_or(0.0) * unit,
-        metres_per_unit: unit,
+        meters_per_unit: unit,
         ..base
     };
     let polar = definition.method == MapProjection::PolarStereographic;
@@ -338,7 +338,7 @@ mod tests {
             .replace(r#"UNIT["Meter",1.0]"#, r#"UNIT["Foot_US",0.3048006096012192]"#);
         let crs = Crs::parse(&text).expect("plain WKT");
         assert_eq!(crs.epsg(), None);
-        assert_eq!(crs.metres_per_unit(), 0.304_800_609_601_219_2);
+        assert_eq!(crs.meters_per_unit(), 0.304_800_609_601_219_2);
         assert!(crs.name().contains("+lat_1=36 +lat_2=34.5"), "{}", crs.name());
         assert!(crs.name().contains("+x_0=152400.3048"), "{}", crs.name());
     }

@@ -19,7 +19,7 @@ pub fn of(crs: &Crs) -> Option<String> {
         _ => "unnamed".into(),
     };
     let (method, parameters) = projection(&definition)?;
-    let unit = definition.metres_per_unit;
+    let unit = definition.meters_per_unit;
     let mut text = format!("PROJCS[\"{name}\",{}],PROJECTION[\"{method}\"]", geographic(&definition, &base));
     for (parameter, value) in parameters {
         text += &format!(",PARAMETER[\"{parameter}\",{value}]");
@@ -128,8 +128,8 @@ fn spheroid_name(major_m: f64, inverse_flattening: f64) -> &'static str {
     }
 }
 
-fn unit_name(metres: f64) -> &'static str {
-    match metres {
+fn unit_name(meters: f64) -> &'static str {
+    match meters {
         1.0 => "metre",
         0.3048 => "foot",
         feet if (feet - 1200.0 / 3937.0).abs() < 1e-9 => "US survey foot",

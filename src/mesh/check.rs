@@ -14,7 +14,7 @@ use crate::mesh::trimesh::TriMesh;
 /// What a sound mesh measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshSummary {
-    /// Sum of the triangles' areas seen from above, in square metres.
+    /// Sum of the triangles' areas seen from above, in square meters.
     pub plan_area_m2: f64,
     /// Edges that belong to one triangle only.
     pub border_edges: usize,

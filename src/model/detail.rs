@@ -9,8 +9,8 @@
 
 use glam::Vec3;
 
+use crate::model::Model;
 use crate::model::impostor::{Impostor, ImpostorDirection};
-use crate::model::kind::Model;
 use crate::model::simplify::{DetailLevel, levels};
 
 /// How far a level's surface may be off on the picture, in pixels.
@@ -40,7 +40,7 @@ pub struct ApparentSize {
     /// Pixels across the ball around the model.
     pub across_px: f32,
     /// Where the eye is seen from the model's middle, in the model's space; any length but 0.
-    pub towards_eye: Vec3,
+    pub toward_eye: Vec3,
 }
 
 /// One form of a model.
@@ -48,9 +48,9 @@ pub struct ApparentSize {
 pub enum DetailForm {
     /// The model itself.
     Full,
-    /// One of [`Detail::levels`].
+    /// One of [`ModelDetail::levels`].
     Level(u8),
-    /// A view of [`Detail::impostor`].
+    /// A view of [`ModelDetail::impostor`].
     Impostor(ImpostorDirection),
 }
 
@@ -67,7 +67,7 @@ impl ModelDetail {
     /// The simplest form that looks right.
     pub fn form(&self, seen: &ApparentSize) -> DetailForm {
         if self.impostor.is_some() && seen.across_px <= IMPOSTOR_PX {
-            return DetailForm::Impostor(ImpostorDirection::nearest(seen.towards_eye));
+            return DetailForm::Impostor(ImpostorDirection::nearest(seen.toward_eye));
         }
         let fits = |level: &DetailLevel| level.error * seen.px_per_unit <= TOLERANCE_PX;
         self.levels.iter().rposition(fits).map_or(DetailForm::Full, |level| DetailForm::Level(level as u8))
@@ -84,7 +84,7 @@ mod tests {
     }
 
     fn seen(px_per_unit: f32) -> ApparentSize {
-        ApparentSize { px_per_unit, across_px: px_per_unit * 10.0, towards_eye: Vec3::X }
+        ApparentSize { px_per_unit, across_px: px_per_unit * 10.0, toward_eye: Vec3::X }
     }
 
     #[test]

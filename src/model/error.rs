@@ -1,6 +1,6 @@
 //! Why a model cannot be read.
 
-/// Why the bytes of a model file do not become a [`crate::model::kind::Model`].
+/// Why the bytes of a model file do not become a [`crate::model::Model`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ModelError {
     /// The file holds nothing.

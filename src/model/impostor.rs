@@ -6,7 +6,7 @@
 //!   90° ─ 1     60° ─ 21                          cropped to what the model covers there
 //!   32° ─ 21     5° ─ 21     64 in all                ┌──▲──┐
 //!                                                     │ ▲▲▲ │  alpha: share covered
-//!   texture: 8 × 8 tiles, a view each                 │  ┃  │  colour: without light
+//!   texture: 8 × 8 tiles, a view each                 │  ┃  │  color: without light
 //!                                                     └──╨──┘
 //! ```
 //! The quad of the view nearest to the eye's is drawn like any other mesh: two triangles, a masked texture, normals
@@ -30,12 +30,12 @@ use crate::draw::material::{AlphaMode, Material};
 use crate::draw::pixels::Pixels;
 use crate::mesh::sink::MeshSink;
 use crate::model::impostor_raster::{ImpostorRaster, ImpostorSource, SAMPLES};
-use crate::model::kind::{Model, ModelPart};
+use crate::model::{Model, ModelPart};
 
 /// Pixels along the side of a tile: twice what an impostor is drawn with, so that masks stay crisp.
 pub(super) const TILE: u32 = 64;
 
-/// Empty pixels along the border of a tile: two mip levels keep neighbours apart.
+/// Empty pixels along the border of a tile: two mip levels keep neighbors apart.
 const GUTTER: u32 = 4;
 
 /// Pixels of a tile that hold the view, along its side.
@@ -72,14 +72,14 @@ pub struct Impostor {
 }
 
 impl ImpostorDirection {
-    /// The view nearest to that of an eye in direction `towards_eye` of the model's space; not zero.
-    pub fn nearest(towards_eye: Vec3) -> Self {
-        let elevation = libm::atan2f(towards_eye.z, towards_eye.truncate().length()).to_degrees();
+    /// The view nearest to that of an eye in direction `toward_eye` of the model's space; not zero.
+    pub fn nearest(toward_eye: Vec3) -> Self {
+        let elevation = libm::atan2f(toward_eye.z, toward_eye.truncate().length()).to_degrees();
         let ring = RINGS_DEG.windows(2).filter(|pair| elevation > (pair[0] + pair[1]) * 0.5).count();
         if ring == RINGS_DEG.len() - 1 {
             return Self(VIEWS as u8 - 1);
         }
-        let turn = libm::atan2f(towards_eye.y, towards_eye.x) / std::f32::consts::TAU;
+        let turn = libm::atan2f(toward_eye.y, toward_eye.x) / std::f32::consts::TAU;
         let step = (turn * AROUND as f32).round().rem_euclid(AROUND as f32) as usize % AROUND;
         Self((ring * AROUND + step) as u8)
     }
@@ -94,9 +94,9 @@ impl ImpostorDirection {
         let (ring, step) = (usize::from(self.0) / AROUND, usize::from(self.0) % AROUND);
         let (sin_up, cos_up) = libm::sincosf(RINGS_DEG[ring].to_radians());
         let (sin, cos) = libm::sincosf(step as f32 / AROUND as f32 * std::f32::consts::TAU);
-        let towards_eye = Vec3::new(cos_up * cos, cos_up * sin, sin_up);
+        let toward_eye = Vec3::new(cos_up * cos, cos_up * sin, sin_up);
         let right = Vec3::new(-sin, cos, 0.0);
-        ViewAxes { right, up: towards_eye.cross(right), towards_eye }
+        ViewAxes { right, up: toward_eye.cross(right), toward_eye }
     }
 }
 
@@ -105,10 +105,10 @@ impl ImpostorDirection {
 pub(super) struct ViewAxes {
     pub right: Vec3,
     pub up: Vec3,
-    pub towards_eye: Vec3,
+    pub toward_eye: Vec3,
 }
 
-/// One view as rasterised.
+/// One view as rasterized.
 struct ImpostorView {
     pixels: Vec<Srgba>,
     corners: [DrawVertex; 4],
@@ -164,9 +164,8 @@ fn shoot(source: &ImpostorSource<'_>, view: ImpostorDirection) -> Option<Imposto
             [u32::from(view.0) % TILES, u32::from(view.0) / TILES].map(|tile| (tile * TILE + GUTTER) as f32);
         let uv = Vec2::new(left + across * INNER as f32, top + down * INNER as f32) / (TILE * TILES) as f32;
         DrawVertex {
-            position: (axes.right * at.x + axes.up * at.y + axes.towards_eye * source.depth(&axes))
-                .to_array(),
-            normal: normals.at(Vec2::new(across, down), axes.towards_eye).to_array(),
+            position: (axes.right * at.x + axes.up * at.y + axes.toward_eye * source.depth(&axes)).to_array(),
+            normal: normals.at(Vec2::new(across, down), axes.toward_eye).to_array(),
             uv: uv.to_array(),
             color,
         }
@@ -175,7 +174,7 @@ fn shoot(source: &ImpostorSource<'_>, view: ImpostorDirection) -> Option<Imposto
     Some(ImpostorView { pixels: tile(&raster), corners })
 }
 
-/// The raster's samples as a tile with its gutter: colours of what is covered, alpha the share covered.
+/// The raster's samples as a tile with its gutter: colors of what is covered, alpha the share covered.
 fn tile(raster: &ImpostorRaster) -> Vec<Srgba> {
     let mut pixels = vec![Srgba([0; 4]); (TILE * TILE) as usize];
     for row in 0..INNER {
@@ -310,13 +309,13 @@ mod tests {
         let impostor = impostor();
         assert_eq!(impostor.mesh.triangles.len(), VIEWS * 2);
         for view in (0..VIEWS as u8).map(ImpostorDirection) {
-            let towards_eye = view.axes().towards_eye;
-            assert_eq!(ImpostorDirection::nearest(towards_eye), view);
+            let toward_eye = view.axes().toward_eye;
+            assert_eq!(ImpostorDirection::nearest(toward_eye), view);
             let range = view.triangles();
             for triangle in &impostor.mesh.triangles[range.start as usize..range.end as usize] {
                 let corners = triangle.map(|id| Vec3::from(impostor.mesh.vertices[id.index()].position));
                 let [a, b, c] = corners;
-                assert!((b - a).cross(c - a).normalize().dot(towards_eye) > 0.999);
+                assert!((b - a).cross(c - a).normalize().dot(toward_eye) > 0.999);
                 let center = Vec3::new(5.0, 0.0, 2.0);
                 assert!(corners.iter().all(|corner| (corner.distance(center) - 8f32.sqrt()).abs() < 0.1));
             }
@@ -324,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_covers_a_disc_and_shows_its_colours_where_they_are() {
+    fn a_ball_covers_a_disc_and_shows_its_colors_where_they_are() {
         let impostor = impostor();
         let level = (0..TILE * TILE).map(|at| impostor.texture.at(at % TILE, at / TILE));
         let covered: f32 = level.map(Srgba::alpha).sum();
@@ -339,11 +338,11 @@ mod tests {
     fn normals_at_the_corners_lean_outward_as_those_of_the_ball() {
         let impostor = impostor();
         for view in (0..VIEWS as u8).map(ImpostorDirection) {
-            let ViewAxes { right, up, towards_eye } = view.axes();
+            let ViewAxes { right, up, toward_eye } = view.axes();
             let first = usize::from(view.0) * 4;
             let normals: Vec<Vec3> =
                 impostor.mesh.vertices[first..first + 4].iter().map(|vertex| vertex.normal.into()).collect();
-            assert!(normals.iter().all(|normal| normal.dot(towards_eye) > 0.3));
+            assert!(normals.iter().all(|normal| normal.dot(toward_eye) > 0.3));
             assert!(normals[1].dot(right) > 0.3 && normals[0].dot(right) < -0.3);
             assert!(normals[2].dot(up) > 0.3 && normals[1].dot(up) < -0.3);
         }

@@ -1,4 +1,4 @@
-//! A model seen from infinitely far in one direction: colours and normals of what is in front, on a grid of samples.
+//! A model seen from infinitely far in one direction: colors and normals of what is in front, on a grid of samples.
 //!
 //! No light, no perspective, no filtering but several samples a pixel: what an impostor needs and nothing more. The
 //! renderers stand above this room and do not lend themselves.
@@ -10,7 +10,7 @@ use crate::draw::list::{DrawMesh, DrawVertex};
 use crate::draw::material::{AlphaMode, Material};
 use crate::draw::pixels::Pixels;
 use crate::model::impostor::{INNER, ViewAxes};
-use crate::model::kind::{Model, ModelPart};
+use crate::model::{Model, ModelPart};
 
 /// Samples along the side of a pixel.
 pub(super) const SAMPLES: u32 = 3;
@@ -36,7 +36,7 @@ pub(super) struct ImpostorSource<'a> {
 /// What a sample sees.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
-    /// Towards the eye; greater is nearer.
+    /// Toward the eye; greater is nearer.
     depth: f32,
     /// In linear light.
     pub color: Vec3,
@@ -66,7 +66,7 @@ impl<'a> ImpostorSource<'a> {
 
     /// How far along the view its quad stands: through the model's middle.
     pub(super) fn depth(&self, axes: &ViewAxes) -> f32 {
-        self.middle.dot(axes.towards_eye)
+        self.middle.dot(axes.toward_eye)
     }
 
     fn triangles(&self) -> impl Iterator<Item = (&'a DrawMesh, &'a Material, [&'a DrawVertex; 3])> {
@@ -121,7 +121,7 @@ impl ImpostorRaster {
         if area == 0.0 || !area.is_finite() || (is_back && !material.two_sided) {
             return;
         }
-        let depths = corners.map(|corner| Vec3::from(corner.position).dot(axes.towards_eye));
+        let depths = corners.map(|corner| Vec3::from(corner.position).dot(axes.toward_eye));
         let (from, to) = window(&[a, b, c]);
         for row in from[1]..to[1] {
             for column in from[0]..to[0] {
@@ -159,7 +159,7 @@ impl ImpostorRaster {
     }
 }
 
-/// The samples whose centres a triangle may cover: first, and past the last.
+/// The samples whose centers a triangle may cover: first, and past the last.
 fn window(corners: &[Vec2; 3]) -> ([usize; 2], [usize; 2]) {
     let [a, b, c] = *corners;
     let low = a.min(b).min(c).max(Vec2::ZERO);
@@ -168,7 +168,7 @@ fn window(corners: &[Vec2; 3]) -> ([usize; 2], [usize; 2]) {
     (from, [(high.x.ceil() as usize).clamp(from[0], SIDE), (high.y.ceil() as usize).clamp(from[1], SIDE)])
 }
 
-/// Colour in linear light and unit normal; `None` where the surface has a hole.
+/// Color in linear light and unit normal; `None` where the surface has a hole.
 fn looks(
     source: &ImpostorSource<'_>,
     material: &Material,

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec2, Vec3, Vec4};
 
 use crate::draw::list::DrawVertex;
 
-/// What a step of colour from black to white counts, as a part of the length over which it moves: as much as
+/// What a step of color from black to white counts, as a part of the length over which it moves: as much as
 /// moving its middle by half that length.
 const COLOR_WEIGHT: f64 = 0.5;
 
@@ -54,7 +54,7 @@ pub(super) fn blend([a, b, c]: [DVec3; 3], [first, second, third]: [f64; 3]) -> 
     a * first + b * second + c * third
 }
 
-/// How far the looks of a triangle at `shares` are off those of `wanted`, in the model's units: colours and normals
+/// How far the looks of a triangle at `shares` are off those of `wanted`, in the model's units: colors and normals
 /// as if they had moved over `reach`, texture coordinates by how far they have moved on the triangle.
 pub(super) fn difference(
     wanted: &DrawVertex,

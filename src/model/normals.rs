@@ -13,7 +13,7 @@ use glam::Vec3;
 /// a finely cut cone, all are smooth. Bounds the time that a hostile file can take.
 const MAX_FAN: usize = 256;
 
-/// Cosine of the sharpest angle between neighbours that still looks round where a file does not say: 40°
+/// Cosine of the sharpest angle between neighbors that still looks round where a file does not say: 40°
 /// keeps an octagonal column angular and rounds a sphere of ten segments.
 pub(super) const CREASE_COS: f32 = 0.766;
 
@@ -30,7 +30,7 @@ pub(super) enum Smoothing<'a> {
     Crease(f32),
 }
 
-/// Unit normals of the corners of `triangles`; +Z for a triangle without area that has no neighbour.
+/// Unit normals of the corners of `triangles`; +Z for a triangle without area that has no neighbor.
 /// Indices must lie within `positions`, and masks must be as many as triangles.
 pub(super) fn corner_normals(
     positions: &[Vec3],

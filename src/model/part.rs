@@ -10,8 +10,8 @@ use glam::{Vec2, Vec3};
 use crate::draw::color::Srgba;
 use crate::draw::list::{DrawMesh, DrawVertex, MaterialId};
 use crate::mesh::sink::{MeshSink, VertexId};
+use crate::model::ModelPart;
 use crate::model::error::ModelError;
-use crate::model::kind::ModelPart;
 
 /// The most triangles a model may have once all its instances are placed; bounds the memory that a small
 /// file with many instances can ask for to some hundred megabytes. Arbitrary, but above what a scene can use.

@@ -1,7 +1,7 @@
 //! Any model file to a [`Model`]: by content first, by extension where the content says nothing.
 
 use crate::model::error::ModelError;
-use crate::model::kind::{Companions, Model};
+use crate::model::{Companions, Model};
 use crate::model::{gltf, obj, three_ds};
 
 /// The formats that can be read.

@@ -1,10 +1,10 @@
-//! Simpler forms of a model: points drawn into their neighbours one by one, cheapest first.
+//! Simpler forms of a model: points drawn into their neighbors one by one, cheapest first.
 //!
 //! # How
 //! ```text
-//!     p ── q          Every step moves a point p into a neighbour q (a half-edge collapse): the triangles
+//!     p ── q          Every step moves a point p into a neighbor q (a half-edge collapse): the triangles
 //!    ╱ ╲  ╱           between them go, the others around p now reach q. No place is ever made up, and normals,
-//!   ·────·            texture coordinates and colours are those of the file.
+//!   ·────·            texture coordinates and colors are those of the file.
 //! ```
 //! What a step costs is the sum of squared distances of q from all the planes that p and q stand for (`quadric`), and
 //! what it changes of the looks there (`nearest::difference`). Borders and seams have planes of their own, upright
@@ -27,10 +27,10 @@ use std::collections::BinaryHeap;
 use glam::{DVec3, Vec3};
 
 use crate::draw::list::DrawVertex;
-use crate::model::kind::{Model, ModelPart};
 use crate::model::nearest::{blend, difference, nearest_shares};
 use crate::model::quadric::Quadric;
 use crate::model::soup::{PointId, Soup, SoupWedge, WedgeId};
+use crate::model::{Model, ModelPart};
 
 /// Models of fewer triangles have no levels: they cost no more than the items that draw them.
 pub const FEWEST_TRIANGLES: usize = 64;
@@ -188,7 +188,7 @@ impl Simplifier {
         StopReason::Reached
     }
 
-    /// The step from one point into another; `None` where they are no neighbours or it may not be done.
+    /// The step from one point into another; `None` where they are no neighbors or it may not be done.
     fn step(&self, from: PointId, to: PointId) -> Option<CollapseStep> {
         let ring = self.soup.triangles_at(from);
         if ring.len() > WIDEST_RING || self.soup.triangles_at(to).len() > WIDEST_RING {

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! point ── a place; vertices of any part that are equal there in every bit
-//!   └─ wedge ── one part's vertex at that place: normal, texture coordinates, colour
+//!   └─ wedge ── one part's vertex at that place: normal, texture coordinates, color
 //!        └─ triangle ── three wedges of one part
 //! ```
 //!
@@ -16,7 +16,7 @@ use glam::{DVec3, Vec3};
 
 use crate::draw::list::{DrawMesh, DrawVertex};
 use crate::mesh::sink::{MeshSink, VertexId};
-use crate::model::kind::{Model, ModelPart};
+use crate::model::{Model, ModelPart};
 
 /// The index of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

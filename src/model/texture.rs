@@ -8,7 +8,7 @@ use image::{ImageFormat, ImageReader, Limits};
 use crate::draw::color::Srgba;
 use crate::draw::material::TextureId;
 use crate::draw::pixels::Pixels;
-use crate::model::kind::Companions;
+use crate::model::Companions;
 
 /// The longest side of a texture in pixels: what every graphics adapter takes.
 const MAX_SIDE: u32 = 8192;
@@ -19,7 +19,7 @@ const MAX_PIXELS: u64 = 64 << 20;
 pub(super) struct Textures<'a> {
     companions: &'a dyn Companions,
     by_name: BTreeMap<String, Option<TextureId>>,
-    /// Textures made of two: the colours of the one, the holes of the other.
+    /// Textures made of two: the colors of the one, the holes of the other.
     masked: BTreeMap<(Option<TextureId>, TextureId), Option<TextureId>>,
     pixels: Vec<Pixels>,
     used: u64,
@@ -67,7 +67,7 @@ impl<'a> Textures<'a> {
         }
     }
 
-    /// The texture with the colours of `color`, white where there is none, and the opacity of `mask`: its alpha where it
+    /// The texture with the colors of `color`, white where there is none, and the opacity of `mask`: its alpha where it
     /// has any, else its brightness. One picture that is named for both and has no alpha stays as it is, since
     /// exporters name it so to say that alpha would count. `color`, with a note, where that would be too many pixels.
     pub(super) fn masked(&mut self, color: Option<TextureId>, mask: TextureId) -> Option<TextureId> {
@@ -226,8 +226,8 @@ mod tests {
     fn an_opacity_map_cuts_holes_by_its_brightness_or_its_alpha() {
         let folder = Folder("", Vec::new());
         let mut textures = Textures::new(&folder);
-        let grey = |level: u8| Srgba::opaque(level, level, level);
-        let halves = Pixels::from_fn(2, 1, |x, _| grey(if x == 0 { 0 } else { 255 }));
+        let gray = |level: u8| Srgba::opaque(level, level, level);
+        let halves = Pixels::from_fn(2, 1, |x, _| gray(if x == 0 { 0 } else { 255 }));
         let clear = Pixels::from_fn(1, 1, |_, _| Srgba([255, 255, 255, 77]));
         textures.pixels = vec![Pixels::filled(4, 2, Srgba::opaque(10, 200, 30)), halves, clear];
         let [leaf, halves, clear] = [0, 1, 2].map(TextureId);

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use crate::draw::ground::{GroundMap, GroundPost};
 
-/// Every second post counts half, its neighbours a quarter each.
+/// Every second post counts half, its neighbors a quarter each.
 const KERNEL: [(usize, f32); 3] = [(0, 0.25), (1, 0.5), (2, 0.25)];
 
 /// Columns and rows of posts.
@@ -67,15 +67,15 @@ fn halved(from: PostCount, posts: &[GroundPost]) -> Option<GroundLevel> {
     let size = from.halved()?;
     let [columns, rows, stride] = [from.columns, from.rows, size.columns].map(|count| count as usize);
     // Past the border, the border's posts stand in.
-    let neighbour =
+    let neighbor =
         |index: usize, step: usize, count: usize| (2 * index + step).saturating_sub(1).min(count - 1);
     let post = |index: usize| {
         let (row, column) = (index / stride, index % stride);
         let mut sum = GroundPost::default();
         for (down, height) in KERNEL {
-            let line = neighbour(row, down, rows) * columns;
+            let line = neighbor(row, down, rows) * columns;
             for (across, width) in KERNEL {
-                add(&mut sum, &posts[line + neighbour(column, across, columns)], height * width);
+                add(&mut sum, &posts[line + neighbor(column, across, columns)], height * width);
             }
         }
         sum

@@ -41,7 +41,7 @@ fn halved(level: &Pixels) -> Option<Pixels> {
     }))
 }
 
-/// The mean colour weighted by alpha, so that the colour of what is invisible does not bleed into what is
+/// The mean color weighted by alpha, so that the color of what is invisible does not bleed into what is
 /// not; where all is invisible, the plain mean, for surfaces that ignore alpha.
 fn mean(seen: Vec4, all: Vec3) -> Srgba {
     let light = if seen.w > 0.0 { seen.truncate() / seen.w } else { all };
@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_checkerboard_averages_to_half_the_light_not_half_the_bytes() {
+    fn a_checcurboard_averages_to_half_the_light_not_half_the_bytes() {
         let board = Pixels::from_fn(4, 4, |x, y| match (x + y) % 2 {
             0 => Srgba::WHITE,
             _ => Srgba::opaque(0, 0, 0),
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn odd_sides_keep_a_single_colour_and_every_texel_counts_equally() {
+    fn odd_sides_keep_a_single_color_and_every_texel_counts_equally() {
         let color = Srgba([10, 200, 90, 128]);
         for level in smaller_levels(&Pixels::filled(7, 3, color)) {
             assert!(level.data().iter().all(|&texel| texel == color), "{level:?}");

@@ -9,10 +9,10 @@ use crate::draw::pixels::Pixels;
 /// of what lies behind it below that.
 #[derive(Clone, Debug)]
 pub struct Picture {
-    /// Colours, opaque.
+    /// Colors, opaque.
     pub pixels: Pixels,
-    /// Metres from the eye along the viewing direction at the pixel's centre; infinite for sky.
+    /// Meters from the eye along the viewing direction at the pixel's center; infinite for sky.
     pub depth_m: Vec<f32>,
-    /// The feature at the pixel's centre; [`FeatureId::NONE`] for sky.
+    /// The feature at the pixel's center; [`FeatureId::NONE`] for sky.
     pub features: Vec<FeatureId>,
 }

@@ -7,7 +7,7 @@ use crate::mesh::sink::MeshSink;
 use crate::ribbon::plan::PlanVertex;
 
 /// Writes the polygon with `exterior` and `holes`, in world coordinates, to `sink`; the texture repeats every
-/// `texture_m` metres east and north.
+/// `texture_m` meters east and north.
 pub fn fill(exterior: &[DVec2], holes: &[Vec<DVec2>], texture_m: f64, sink: &mut impl MeshSink<PlanVertex>) {
     for triangle in polygon::triangulate(exterior, holes) {
         let corner = |at: DVec2| PlanVertex { at, uv: (DVec2::new(at.x, -at.y) / texture_m).as_vec2() };

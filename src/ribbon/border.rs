@@ -22,7 +22,7 @@ const DRAWN: f64 = 0.62;
 /// The most dashes along one ring; a longer ring has longer ones.
 const MOST_DASHES: f64 = 5000.0;
 
-/// Vertices nearer to each other than this are one, in metres.
+/// Vertices nearer to each other than this are one, in meters.
 const MERGE_M: f64 = 0.01;
 
 /// Whether a line has gaps.

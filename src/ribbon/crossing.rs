@@ -15,7 +15,7 @@ use crate::geom::rect_tree::RectTree;
 use crate::ribbon::junction::JunctionNode;
 use crate::ribbon::plan::PlanMesh;
 
-/// Ground smaller than this is rounding, in square metres: a sliver of 10 m by 0.1 mm.
+/// Ground smaller than this is rounding, in square meters: a sliver of 10 m by 0.1 mm.
 const SLIVER_M2: f64 = 1e-3;
 
 /// A piece that shares ground with more others than this is shared whole: where so many lie over one another, nothing

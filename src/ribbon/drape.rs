@@ -15,7 +15,7 @@ use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::ribbon::plan::{PlanMesh, TextureMap};
-use crate::terrain::facets::{SurfaceTriangle, TriangleSurface, plane_z};
+use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface, plane_z};
 
 /// Pieces smaller than this are rounding left over where edges coincide.
 const SLIVER_M2: f64 = 1e-7;
@@ -59,7 +59,7 @@ fn write_piece(
     }
 }
 
-/// The largest vertical distance in metres between a draped mesh and the displayed ground, at the middle of
+/// The largest vertical distance in meters between a draped mesh and the displayed ground, at the middle of
 /// every triangle and at every corner above displayed ground: the invariant this room exists for. Infinite
 /// where the middle of a triangle lies off the ground.
 pub fn check_clearance(draped: &DrawMesh, ground: &dyn TriangleSurface) -> f64 {

@@ -1,12 +1,12 @@
 //! How two segments of a ribbon meet.
 //!
-//! Both end on the mitre, the line that halves the angle between them, and share an edge. Where the join is not a mitre,
-//! or the mitre would be longer than its limit, they share the inner corner only, and a fan from there fills the outer
+//! Both end on the miter, the line that halves the angle between them, and share an edge. Where the join is not a miter,
+//! or the miter would be longer than its limit, they share the inner corner only, and a fan from there fills the outer
 //! side: with nothing more than the bevel's triangle, or round the vertex in an arc. Where even the inner corner would
 //! reach past a short segment's middle, both segments end square and the fan starts at the vertex:
 //!
 //! ```text
-//!   mitre  ───────╲           bevel  ──────┬╲          square  ──────┬─╲
+//!   miter  ───────╲           bevel  ──────┬╲          square  ──────┬─╲
 //!          ─────╲  ╲                 ─────╲│ ╲                 ──────●  ╲
 //!                ╲  ╲                      ╲  ╲                ──────┼╲  ╲
 //!                 ╲  ╲                      ╲  ╲                     ╲ ╲  ╲
@@ -20,12 +20,12 @@ use crate::description::words::Join;
 /// no picture shows.
 const ARC_STEP_RAD: f64 = std::f64::consts::PI / 12.0;
 
-/// A vertex of a centreline with its neighbours and the ribbon about it.
+/// A vertex of a centerline with its neighbors and the ribbon about it.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::ribbon) struct RibbonBend {
     /// The vertex before, the vertex, and the one after; no two in a row at one place.
     pub points: [DVec2; 3],
-    /// Half of the ribbon's width at the vertex in metres.
+    /// Half of the ribbon's width at the vertex in meters.
     pub half_m: f64,
 }
 
@@ -71,23 +71,23 @@ impl JointFan {
         }
     }
 
-    /// How far across its centre lies.
+    /// How far across its center lies.
     pub fn center_u(&self) -> f32 {
         if self.center == DVec2::ZERO { 0.5 } else { 1.0 - self.rim_u() }
     }
 }
 
 impl RibbonBend {
-    /// The mitre's left end, as a way from the vertex; `None` where it would be longer than `limit` half widths, or its
+    /// The miter's left end, as a way from the vertex; `None` where it would be longer than `limit` half widths, or its
     /// inner corner would reach past the middle of either segment, where the next joint's may.
-    pub fn mitred(&self, limit: f64) -> Option<DVec2> {
+    pub fn mitered(&self, limit: f64) -> Option<DVec2> {
         self.shared().filter(|to_left| to_left.length() <= limit * self.half_m)
     }
 
     /// What the segments end on.
     pub fn joint(&self, join: Join, limit: f64) -> RibbonJoint {
-        let mitred = if join == Join::Mitre { self.mitred(limit) } else { None };
-        if let Some(to_left) = mitred.or_else(|| self.straight()) {
+        let mitered = if join == Join::Miter { self.mitered(limit) } else { None };
+        if let Some(to_left) = mitered.or_else(|| self.straight()) {
             return RibbonJoint::Shared(to_left);
         }
         let [before, after] = self.directions().map(|along| along.perp() * self.half_m);
@@ -111,11 +111,11 @@ impl RibbonBend {
 
     /// The shared edge's left end, whatever its length, where the inner corner fits.
     fn shared(&self) -> Option<DVec2> {
-        let mitre = self.mitre()?;
-        let reach = (mitre.length_squared() - 1.0).max(0.0).sqrt() * self.half_m;
+        let miter = self.miter()?;
+        let reach = (miter.length_squared() - 1.0).max(0.0).sqrt() * self.half_m;
         let [before, at, after] = self.points;
         let shortest = at.distance(before).min(at.distance(after));
-        (2.0 * reach <= shortest).then_some(mitre * self.half_m)
+        (2.0 * reach <= shortest).then_some(miter * self.half_m)
     }
 
     /// The edge of a turn too slight to have an outer side.
@@ -123,8 +123,8 @@ impl RibbonBend {
         if self.turn_rad().abs() < 1e-3 { self.shared() } else { None }
     }
 
-    /// The way to the left end of the mitre in half widths; `None` where the line turns back on itself.
-    fn mitre(&self) -> Option<DVec2> {
+    /// The way to the left end of the miter in half widths; `None` where the line turns back on itself.
+    fn miter(&self) -> Option<DVec2> {
         let [before, after] = self.directions();
         let sum = before.perp() + after.perp();
         let square = sum.length_squared();
@@ -135,9 +135,9 @@ impl RibbonBend {
     fn corners(&self, join: Join, limit: f64) -> Vec<DVec2> {
         match join {
             Join::Bevel => Vec::new(),
-            Join::Mitre => self
-                .mitre()
-                .filter(|mitre| mitre.length() <= limit)
+            Join::Miter => self
+                .miter()
+                .filter(|miter| miter.length() <= limit)
                 .map(|it| it * self.half_m)
                 .into_iter()
                 .collect(),

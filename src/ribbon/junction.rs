@@ -3,12 +3,12 @@
 //! Lines that share a vertex meet there, if they lie on one level; a line that ends there meets what goes on, whatever
 //! the level. Where two ends of one width meet and nothing else does, the ribbons go on in one another and share an edge.
 //! Where three or more arms meet, and where two do that cannot go on, the junction is the hull of all arms cut square
-//! where the kerbs of neighbouring arms meet:
+//! where the curbs of neighboring arms meet:
 //!
 //! ```text
 //!          │   │
-//!          │   │            ─── the arms' kerbs
-//!   ───────┼───┼───         a junction of three arms: cut where the kerbs
+//!          │   │            ─── the arms' curbs
+//!   ───────┼───┼───         a junction of three arms: cut where the curbs
 //!          │ J │            meet, so that the whole width has no markings
 //!   ───────┴───┴───
 //! ```
@@ -25,23 +25,23 @@ use crate::geom::polyline::Polyline;
 use crate::ribbon::joint::RibbonBend;
 use crate::ribbon::stroke::{Continuations, StrokeOptions, Widths};
 
-/// Vertices nearer to each other than this are one, in metres: files that mean one point write the same numbers, up to
+/// Vertices nearer to each other than this are one, in meters: files that mean one point write the same numbers, up to
 /// the rounding of a change of system.
 const SAME_M: f64 = 0.01;
 
-/// Widths that differ by less than this are one, in metres: what two file formats make of one number.
+/// Widths that differ by less than this are one, in meters: what two file formats make of one number.
 const SAME_WIDTH_M: f64 = 1e-6;
 
 /// How far a junction may reach along an arm, in widths of its widest arm: where two arms leave at a small angle their
-/// kerbs meet far away, and the ground between them is better left to their ribbons.
+/// curbs meet far away, and the ground between them is better left to their ribbons.
 const LONGEST_REACH: f64 = 2.5;
 
-/// A road as lines go: a centreline and the width about it.
+/// A road as lines go: a centerline and the width about it.
 #[derive(Clone, Copy, Debug)]
 pub struct Street<'a> {
-    /// The centreline.
+    /// The centerline.
     pub line: &'a Polyline,
-    /// Metres from kerb to kerb.
+    /// Meters from curb to curb.
     pub widths: Widths<'a>,
     /// How it is stroked.
     pub options: StrokeOptions,
@@ -278,12 +278,12 @@ impl Streets<'_> {
     fn go_on(&self, [a, b]: [Arm; 2]) -> bool {
         let (one, other) = (&self.0[a.street], &self.0[b.street]);
         let half_m = self.half_m(&a);
-        let limit = one.options.mitre_limit.min(other.options.mitre_limit);
+        let limit = one.options.miter_limit.min(other.options.miter_limit);
         let points = [one.line.points()[a.next], one.line.points()[a.vertex], other.line.points()[b.next]];
         self.is_end(&a)
             && self.is_end(&b)
             && (half_m - self.half_m(&b)).abs() < SAME_WIDTH_M
-            && RibbonBend { points, half_m }.mitred(limit).is_some()
+            && RibbonBend { points, half_m }.mitered(limit).is_some()
     }
 
     /// The junction of several arms.
@@ -308,9 +308,9 @@ impl Streets<'_> {
         let widest = around.iter().map(|spoke| spoke.half_m).fold(0.0, f64::max);
         let mut corners = Vec::with_capacity(2 * around.len());
         for (index, spoke) in around.iter().enumerate() {
-            let neighbours =
+            let neighbors =
                 [&around[(index + 1) % around.len()], &around[(index + around.len() - 1) % around.len()]];
-            let wanted = neighbours.into_iter().map(|other| spoke.kerbs_meet(other)).fold(0.0, f64::max);
+            let wanted = neighbors.into_iter().map(|other| spoke.curbs_meet(other)).fold(0.0, f64::max);
             let reach = wanted.min(2.0 * widest * LONGEST_REACH).min(spoke.longest_m);
             let (end, aside) = (at + spoke.along * reach, spoke.along.perp() * spoke.half_m);
             corners.extend([end + aside, end - aside]);
@@ -327,9 +327,9 @@ struct HullArm {
 }
 
 impl HullArm {
-    /// How far along it its kerb meets that of a neighbour; 0 where they part. Kerbs of unequal arms that are nearly
+    /// How far along it its curb meets that of a neighbor; 0 where they part. Curbs of unequal arms that are nearly
     /// one line meet far away, where neither is any more: no further than the wider one's half.
-    fn kerbs_meet(&self, other: &Self) -> f64 {
+    fn curbs_meet(&self, other: &Self) -> f64 {
         let (sine, cosine) = (self.along.perp_dot(other.along).abs(), self.along.dot(other.along));
         if sine < 1e-9 {
             return 0.0;
@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn a_t_is_cut_where_the_kerbs_meet() {
+    fn a_t_is_cut_where_the_curbs_meet() {
         for quarter in 0..4 {
             let turned = |points: &[(f64, f64)]| -> Polyline {
                 line(&points.iter().map(|&p| (0..quarter).fold(p, |(x, y), _| (-y, x))).collect::<Vec<_>>())

@@ -23,7 +23,7 @@ use crate::geom::rect_tree::RectTree;
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::ribbon::plan::{PlanMesh, PlanVertex, TextureMap};
 
-/// Triangles, overlaps and leftovers smaller than this are rounding, in square metres: a sliver of 10 m by 0.1 mm.
+/// Triangles, overlaps and leftovers smaller than this are rounding, in square meters: a sliver of 10 m by 0.1 mm.
 const SLIVER_M2: f64 = 1e-3;
 
 /// Pieces smaller than this are dropped while a triangle is being cut: many of them may still lie side by side.
@@ -40,7 +40,7 @@ pub fn apart<'a>(plans: impl IntoIterator<Item = &'a PlanMesh> + Clone) -> Vec<P
     plans.into_iter().map(|plan| left_of(plan, &mut rests)).collect()
 }
 
-/// The area in square metres that more than one triangle of `plans` covers, counted once for every pair: 0 but for
+/// The area in square meters that more than one triangle of `plans` covers, counted once for every pair: 0 but for
 /// rounding after [`apart`].
 pub fn overlap_m2<'a>(plans: impl IntoIterator<Item = &'a PlanMesh>) -> f64 {
     let covering = Covering::new(plans);
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bevelled_bend_lies_over_itself_no_more() {
+    fn a_beveled_bend_lies_over_itself_no_more() {
         let bend = [ribbon(&[(0.0, 0.0), (100.0, 0.0), (60.0, 8.0)], 12.0)];
         assert!(overlap_m2(&bend) > 10.0);
         assert!(overlap_m2(&apart(&bend)) < 1e-2);

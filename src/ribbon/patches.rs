@@ -1,7 +1,7 @@
 //! Everything that lies on the ground, cut patch by patch, so that a frame cuts again only what changed.
 //!
 //! Plans are divided once along the borders of the terrain's patches. A patch's part can then be cut to the displayed
-//! triangles without a look at its neighbours, and stays right until one of its own triangles changes:
+//! triangles without a look at its neighbors, and stays right until one of its own triangles changes:
 //!
 //! ```text
 //!   ┌────────┬────────┬────────┐
@@ -22,9 +22,9 @@ use crate::geom::rect::Rect;
 use crate::mesh::sink::MeshSink;
 use crate::ribbon::drape::{check_clearance, drape};
 use crate::ribbon::plan::{PlanMesh, PlanVertex, TextureMap};
-use crate::terrain::facets::TriangleSurface;
+use crate::terrain::triangle_surface::TriangleSurface;
 
-/// Parts smaller than this are rounding, in square metres.
+/// Parts smaller than this are rounding, in square meters.
 const SLIVER_M2: f64 = 1e-7;
 
 /// Where patches meet: rising world X of the borders that run north, and Y of those that run east, the outermost among
@@ -129,7 +129,7 @@ impl Drapes {
         self.patches.iter().filter(|patch| !patch.parts.is_empty()).count()
     }
 
-    /// The largest clearance in metres between what was cut and what is displayed now: 0 but for rounding where every
+    /// The largest clearance in meters between what was cut and what is displayed now: 0 but for rounding where every
     /// patch that changed was cut again. See [`check_clearance`].
     pub fn check(&self, ground: &dyn TriangleSurface) -> f64 {
         let cut: Vec<&DrawMesh> = self.patches.iter().flat_map(|patch| &patch.cut).collect();

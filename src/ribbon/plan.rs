@@ -7,7 +7,7 @@ use crate::mesh::sink::{MeshSink, VertexId};
 /// A corner in plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanVertex {
-    /// World X and Y in metres.
+    /// World X and Y in meters.
     pub at: DVec2,
     /// Texture coordinates.
     pub uv: Vec2,
@@ -42,7 +42,7 @@ impl PlanMesh {
         parts
     }
 
-    /// The sum of all triangles' areas in square metres.
+    /// The sum of all triangles' areas in square meters.
     pub fn area_m2(&self) -> f64 {
         self.corners().map(|[a, b, c]| (b.at - a.at).perp_dot(c.at - a.at) / 2.0).sum()
     }

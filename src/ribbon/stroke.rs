@@ -1,7 +1,7 @@
-//! A centreline and a width to a ribbon in plan.
+//! A centerline and a width to a ribbon in plan.
 //!
 //! Each segment becomes a quad between the edges that its joints (`joint`) end on; fans fill the outer sides of bends that
-//! are not mitred. U runs from the left edge (0) to the right edge (1), V along the centreline in texture lengths, so that
+//! are not mitered. U runs from the left edge (0) to the right edge (1), V along the centerline in texture lengths, so that
 //! a texture's lines keep their share of the width and its dashes their length.
 
 use glam::{DVec2, Vec2};
@@ -19,26 +19,26 @@ const TAPER_STEP: f64 = 1.1;
 /// The most cross-sections in one taper: a ribbon that grows twentyfold from vertex to vertex has kinks anyway.
 const MOST_STEPS: f64 = 32.0;
 
-/// Triangles smaller than this have no direction worth a texture, in square metres.
+/// Triangles smaller than this have no direction worth a texture, in square meters.
 const NOTHING_M2: f64 = 1e-9;
 
 /// How a ribbon is stroked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrokeOptions {
-    /// Width in metres, above 0. Default 6.
+    /// Width in meters, above 0. Default 6.
     pub width_m: f64,
-    /// How segments meet. Default: mitred.
+    /// How segments meet. Default: mitered.
     pub join: Join,
-    /// How long a mitre may be, in half widths, at least 1. Default 2: turns of up to 120 degrees keep their
-    /// mitre; sharper ones would grow spikes.
-    pub mitre_limit: f64,
-    /// Metres along the centreline in one repeat of the texture, above 0. Default 12.
+    /// How long a miter may be, in half widths, at least 1. Default 2: turns of up to 120 degrees keep their
+    /// miter; sharper ones would grow spikes.
+    pub miter_limit: f64,
+    /// Meters along the centerline in one repeat of the texture, above 0. Default 12.
     pub texture_length_m: f64,
 }
 
 impl Default for StrokeOptions {
     fn default() -> Self {
-        Self { width_m: 6.0, join: Join::Mitre, mitre_limit: 2.0, texture_length_m: 12.0 }
+        Self { width_m: 6.0, join: Join::Miter, miter_limit: 2.0, texture_length_m: 12.0 }
     }
 }
 
@@ -52,7 +52,7 @@ pub struct Continuations {
     pub after: Option<DVec2>,
 }
 
-/// How wide a ribbon is along its line, in metres; every width above 0.
+/// How wide a ribbon is along its line, in meters; every width above 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Widths<'a> {
     /// As wide everywhere.
@@ -77,9 +77,9 @@ impl Widths<'_> {
 /// Where the texture stands along a line, so that it can go on from one ribbon to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stations {
-    /// The station of the line's first vertex in metres.
+    /// The station of the line's first vertex in meters.
     pub first_m: f64,
-    /// Metres of station for each metre along the line: 1, or −1 where the texture runs against it.
+    /// Meters of station for each meter along the line: 1, or −1 where the texture runs against it.
     pub per_m: f64,
 }
 
@@ -93,7 +93,7 @@ impl Default for Stations {
 /// A ribbon's way: what its options do not say.
 #[derive(Clone, Copy, Debug)]
 pub struct StrokePath<'a> {
-    /// The centreline.
+    /// The centerline.
     pub line: &'a Polyline,
     /// How wide it is; instead of the options' width.
     pub widths: Widths<'a>,
@@ -158,7 +158,7 @@ impl StrokePath<'_> {
         } else {
             self.beyond.after.map(|after| [points[index - 1], points[index], after])
         };
-        let shared = around.and_then(|points| RibbonBend { points, half_m }.mitred(options.mitre_limit));
+        let shared = around.and_then(|points| RibbonBend { points, half_m }.mitered(options.miter_limit));
         let segment = index.saturating_sub(1);
         let square = (points[segment + 1] - points[segment]).normalize_or_zero().perp() * half_m;
         let to_left = shared.unwrap_or(square);
@@ -175,7 +175,7 @@ impl StrokePath<'_> {
         let points = self.line.points();
         let around = [points[index - 1], points[index], points[index + 1]];
         let bend = RibbonBend { points: around, half_m: self.widths.at(index) / 2.0 };
-        match bend.joint(options.join, options.mitre_limit) {
+        match bend.joint(options.join, options.miter_limit) {
             RibbonJoint::Shared(to_left) => {
                 let edge = self.edge(index, [to_left, -to_left], options, sink);
                 (edge, edge)
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mitred_bend_covers_length_times_width_however_it_is_turned() {
+    fn a_mitered_bend_covers_length_times_width_however_it_is_turned() {
         let options = StrokeOptions { width_m: 4.0, ..StrokeOptions::default() };
         for quarter in 0..4 {
             let mesh = stroked(&turned(&[(0.0, 0.0), (100.0, 0.0), (160.0, 80.0)], quarter), &options);
@@ -309,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_past_the_limit_is_bevelled_and_grows_no_spike() {
+    fn a_turn_past_the_limit_is_beveled_and_grows_no_spike() {
         let mesh = stroked(&[(0.0, 0.0), (100.0, 0.0), (0.0, 8.0)], &StrokeOptions::default());
         let farthest = mesh.vertices.iter().map(|vertex| vertex.at.x).fold(0.0, f64::max);
         assert!(farthest < 103.1, "{farthest}");
@@ -326,7 +326,7 @@ mod tests {
     fn expected_m2(length_m: f64, half_m: f64, join: Join) -> f64 {
         let turns = [std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_6];
         let outer = |turn: f64| match join {
-            Join::Mitre => libm::tan(turn / 2.0),
+            Join::Miter => libm::tan(turn / 2.0),
             Join::Bevel => libm::sin(turn) / 2.0,
             Join::Round => turn / 2.0,
         };
@@ -338,7 +338,7 @@ mod tests {
     fn joints_are_as_large_as_they_are_by_trigonometry_however_they_are_turned() {
         let points = [(0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (50.0, 100.0 + 50.0 * 3f64.sqrt())];
         for quarter in 0..4 {
-            for (join, slack) in [(Join::Mitre, 1e-9), (Join::Bevel, 1e-9), (Join::Round, 0.02)] {
+            for (join, slack) in [(Join::Miter, 1e-9), (Join::Bevel, 1e-9), (Join::Round, 0.02)] {
                 let options = StrokeOptions { width_m: 12.0, join, ..StrokeOptions::default() };
                 let mesh = stroked(&turned(&points, quarter), &options);
                 let expected = expected_m2(300.0, 6.0, join);

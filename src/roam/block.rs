@@ -5,19 +5,19 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
 use crate::roam::layout::PatchLayout;
+use crate::roam::patched_ground::PatchedGround;
 use crate::roam::spheres::SphereMap;
 
 /// The vertices of one patch, (patch + 1)² of them, row by row from the south-west; those on a border are the same
 /// in both patches that share it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PatchBlock {
-    /// World X of each column and Y of each row, metres.
+    /// World X of each column and Y of each row, meters.
     pub plan: [Vec<f32>; 2],
-    /// Drawn Z, metres; NaN without data.
+    /// Drawn Z, meters; NaN without data.
     pub z: Vec<f32>,
-    /// Radius of the nested sphere, metres.
+    /// Radius of the nested sphere, meters.
     pub radii: Vec<f32>,
 }
 
@@ -38,7 +38,7 @@ pub struct BlockError {
 pub struct RootSphere {
     /// The patch's middle, drawn world space.
     pub center: Vec3,
-    /// Its radius, metres.
+    /// Its radius, meters.
     pub radius: f32,
 }
 

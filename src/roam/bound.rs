@@ -9,7 +9,7 @@ use crate::mesh::trimesh::TriMesh;
 use crate::roam::errors::rows::RowSpans;
 use crate::terrain::lattice::{Lattice, Post};
 
-/// Vertical distances between a mesh and the ground, metres.
+/// Vertical distances between a mesh and the ground, meters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
     /// The largest.

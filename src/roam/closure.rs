@@ -2,7 +2,7 @@
 //!
 //! Raising errors to those of the children makes one threshold enough to choose vertices by, but splits triangles
 //! that are good enough. Here a triangle is split only where it is itself off by more than the tolerance, and
-//! where a neighbour forces it (the forced split of Duchaineau et al. 1997).
+//! where a neighbor forces it (the forced split of Duchaineau et al. 1997).
 //!
 //! Both are rules of one kind, "if this vertex is active, so is that one": an active vertex makes its parents
 //! active, and the right-angled corner of a triangle that is off by too much makes the middle of its hypotenuse
@@ -22,7 +22,7 @@ use crate::terrain::lattice::Lattice;
 /// The fewest active vertices that leave no triangle off by more than `tolerance_m` at any post it covers, no
 /// triangle over both data and no data but the finest, and pinned posts exact.
 ///
-/// The tolerance is in metres without exaggeration; distances are measured within one part in a million of the
+/// The tolerance is in meters without exaggeration; distances are measured within one part in a million of the
 /// relief under a triangle. Negative and NaN tolerances keep everything.
 pub fn least_closure(lattice: &Lattice, layout: &PatchLayout, tolerance_m: f32) -> ActiveSet {
     let mut growth = Growth {
@@ -70,7 +70,7 @@ struct Growth<'a> {
 }
 
 impl Growth<'_> {
-    /// One that a neighbour has forced apart meanwhile needs no look.
+    /// One that a neighbor has forced apart meanwhile needs no look.
     fn is_off(&self, triangle: &Triangle) -> bool {
         !self.active.is_active(triangle.split_vertex())
             && is_off(self.lattice, self.layout, &self.survey, triangle, self.tolerance_m)

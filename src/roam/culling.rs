@@ -11,7 +11,7 @@
 use glam::Vec3;
 
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
+use crate::roam::patched_ground::PatchedGround;
 use crate::view::camera::Camera;
 use crate::view::frustum::Frustum;
 use crate::view::wedge::GroundWedge;
@@ -223,8 +223,8 @@ pub struct InView {
 }
 
 impl InView {
-    /// The south-west corners of the patches that hold data and are not culled, by squares: neighbours in the list
-    /// are neighbours on the ground.
+    /// The south-west corners of the patches that hold data and are not culled, by squares: neighbors in the list
+    /// are neighbors on the ground.
     pub fn update(
         &mut self,
         ground: PatchedGround<'_>,

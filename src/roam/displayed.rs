@@ -9,9 +9,9 @@ use crate::mesh::sink::MeshSink;
 use crate::roam::active::ActiveSet;
 use crate::roam::emit::{bintree, world};
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
-use crate::terrain::facets::{SurfaceTriangle, TriangleSurface};
+use crate::roam::patched_ground::PatchedGround;
 use crate::terrain::lattice::Lattice;
+use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 
 /// A displayed terrain: the ground and the bits that say how finely it is shown.
 #[derive(Clone, Debug)]
@@ -135,7 +135,7 @@ mod tests {
             let terrain = DisplayedTerrain::new(lattice, active, 1.0, layout.patches().collect());
             let mut strictly_inside = 0;
             terrain.visit_facets(&Rect { min: at, max: at }, &mut |facet| {
-                strictly_inside += usize::from(crate::terrain::facets::facet_contains(facet, at));
+                strictly_inside += usize::from(crate::terrain::triangle_surface::facet_contains(facet, at));
             });
             prop_assert!((1..=6).contains(&strictly_inside), "{} facets", strictly_inside);
             prop_assert!(terrain.displayed_z(at).is_some());

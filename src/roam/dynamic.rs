@@ -1,4 +1,4 @@
-//! A terrain whose heights change while it is shown (003's dynamic terrain: craters, tyre tracks).
+//! A terrain whose heights change while it is shown (003's dynamic terrain: craters, tire tracks).
 //!
 //! Whatever is computed from the heights is mended after each edit by what the edit changed, and equals, bit for
 //! bit, what would be made from the new heights from scratch. An edit tells which patches are dirty, so that
@@ -12,6 +12,7 @@
 
 use std::sync::Arc;
 
+use crate::earthworks::brush::{BrushChanges, Change};
 use crate::roam::active::ActiveSet;
 use crate::roam::block::{BlockError, BlockSource, PatchBlock, RootSphere, WholeGround};
 use crate::roam::criterion::Criterion;
@@ -21,14 +22,13 @@ use crate::roam::edit::{Mended, mend_exact, mend_midpoint, mend_spheres};
 use crate::roam::errors::ErrorMap;
 use crate::roam::errors::exact::own_errors;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
 use crate::roam::layout::PatchLayout;
 use crate::roam::levels::VertexRect;
+use crate::roam::patched_ground::PatchedGround;
 use crate::roam::roughness::Roughness;
 use crate::roam::spheres::{OwnRadius, SphereMap};
-use crate::terrain::brush::{BrushChanges, Change};
-use crate::terrain::earthwork::Volumes;
 use crate::terrain::lattice::Lattice;
+use crate::terrain::volumes::Volumes;
 
 /// What the error of a vertex measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,7 +61,7 @@ pub struct DynamicOptions {
     pub measure: ErrorMeasure,
     /// The spheres.
     pub radius: Radius,
-    /// Metres of distance per metre of drawn error; see [`OwnRadius`].
+    /// Meters of distance per meter of drawn error; see [`OwnRadius`].
     pub reach: f32,
 }
 
@@ -111,7 +111,7 @@ impl BlockSource for DynamicTerrain {
 }
 
 impl DynamicTerrain {
-    /// The terrain over `lattice`; `None` where patches cannot be laid over it (see [`Layout::new`]).
+    /// The terrain over `lattice`; `None` where patches cannot be laid over it (see [`PatchLayout::new`]).
     pub fn new(lattice: Lattice, options: DynamicOptions) -> Option<Self> {
         let layout = PatchLayout::new(lattice.columns(), lattice.rows(), options.patch)?;
         let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: options.exaggeration };

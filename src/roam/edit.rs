@@ -8,17 +8,17 @@
 //! The result equals, bit for bit, one made anew from the heights as they are now. Where an edit comes in several
 //! rectangles, all heights are changed first and each rectangle is then mended in turn.
 
+use crate::earthworks::brush::Change;
 use crate::roam::errors::ErrorMap;
 use crate::roam::errors::exact::{own_error, triangles_split_at};
 use crate::roam::errors::midpoint::torn_off;
 use crate::roam::errors::plane::PostPlane;
 use crate::roam::field::HeightField;
 use crate::roam::graph::{Vertex, VertexKind};
-use crate::roam::ground::PatchedGround;
 use crate::roam::layout::PatchLayout;
 use crate::roam::levels::{LevelPass, PassRow, VertexRect, passes};
+use crate::roam::patched_ground::PatchedGround;
 use crate::roam::spheres::{OwnRadius, SphereMap};
-use crate::terrain::brush::Change;
 use crate::terrain::lattice::{Lattice, Post};
 
 /// The vertices whose value changed.
@@ -68,7 +68,7 @@ impl Mended {
             VertexKind::Center => {
                 self.rect(done - 2).grown(0, step).union(self.rect(done - 1).grown(step, 0))
             }
-            // The centres of half the step are the last pass before the edges of this one.
+            // The centers of half the step are the last pass before the edges of this one.
             VertexKind::EastEdge => self.rect(done - 1).grown(step / 2, step / 2),
             VertexKind::NorthEdge => self.rect(done - 2).grown(step / 2, step / 2),
         }
@@ -153,7 +153,7 @@ fn renew_midpoints(
 }
 
 /// Mends a map of exact errors after `change`, and `own`, the errors of the vertices alone that it was raised from, in
-/// the order of [`Layout::index`]; `lattice` holds the new heights.
+/// the order of [`PatchLayout::index`]; `lattice` holds the new heights.
 ///
 /// A big triangle's error reads every post it covers. It is not scanned again where its corners stand and no changed
 /// post was or is as far off its plane as the worst.
@@ -215,7 +215,7 @@ fn stands(lattice: &Lattice, layout: &PatchLayout, vertex: Vertex, own: f32, cha
         })
 }
 
-/// From the lowest to the highest of three posts, metres.
+/// From the lowest to the highest of three posts, meters.
 fn relief(lattice: &Lattice, posts: [Post; 3]) -> f64 {
     let [a, b, c] = posts.map(|post| f64::from(lattice.height(post)));
     a.max(b).max(c) - a.min(b).min(c)

@@ -1,10 +1,10 @@
-//! Rows of vertices with their heights and places, for loops that look at many: the same values as [`Ground`]'s, without
+//! Rows of vertices with their heights and places, for loops that look at many: the same values as [`PatchedGround`]'s, without
 //! a look for the post of each.
 
 use glam::DVec2;
 
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
+use crate::roam::patched_ground::PatchedGround;
 use crate::terrain::lattice::Post;
 
 /// A ground laid open.
@@ -57,25 +57,25 @@ impl<'a> HeightField<'a> {
 }
 
 impl FieldRow<'_> {
-    /// The height of the post that the vertex in column `x` stands for, metres; NaN without data.
+    /// The height of the post that the vertex in column `x` stands for, meters; NaN without data.
     #[inline]
     pub fn height(&self, x: usize) -> f32 {
         self.heights[x.min(self.heights.len() - 1)]
     }
 
-    /// World X of the vertex in column `x`, metres.
+    /// World X of the vertex in column `x`, meters.
     #[inline]
     pub fn x(&self, x: usize) -> f64 {
         place(x.min(self.heights.len() - 1) as u32 + self.first, self.cell)
     }
 
-    /// World Y of the row, metres.
+    /// World Y of the row, meters.
     #[inline]
     pub fn y(&self) -> f64 {
         self.y
     }
 
-    /// Drawn Z of the vertex in column `x`, metres; 0 where it has no data.
+    /// Drawn Z of the vertex in column `x`, meters; 0 where it has no data.
     #[inline]
     pub fn z(&self, x: usize) -> f64 {
         let height = self.height(x);

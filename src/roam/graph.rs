@@ -1,10 +1,10 @@
 //! The vertex graph as pure arithmetic on coordinates.
 //!
-//! With `k` the largest power of two that divides both coordinates, a vertex is the centre of a square of
+//! With `k` the largest power of two that divides both coordinates, a vertex is the center of a square of
 //! side 2k where both coordinates divided by k are odd, else the middle of an edge of length 2k:
 //!
 //! ```text
-//! o───────e───────o      k = 1: c is a centre (both odd), e are edge middles
+//! o───────e───────o      k = 1: c is a center (both odd), e are edge middles
 //! │       │       │      k = 2 and more: o
 //! e───────c───────e
 //! │       │       │      a triangle is split at its hypotenuse's middle, which is
@@ -13,7 +13,7 @@
 //!
 //! Splitting at a vertex needs the two triangles that share its hypotenuse, and those exist once their own
 //! right-angled corners are active: these corners are the vertex's parents. For an edge middle they are the
-//! two centres beside it; for a centre they are the two edge middles among the corners of its square.
+//! two centers beside it; for a center they are the two edge middles among the corners of its square.
 
 /// A grid vertex, counted from the south-west corner of the first patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -116,7 +116,7 @@ impl Vertex {
         offsets.into_iter().take(present).map(move |(dx, dy)| self.moved(dx * reach, dy * reach))
     }
 
-    /// Whether a centre's hypotenuse runs from south-west to north-east: it joins the corners of its square
+    /// Whether a center's hypotenuse runs from south-west to north-east: it joins the corners of its square
     /// whose coordinates, in units of the square's side, are both even or both odd.
     #[inline]
     const fn diagonal_rises(self) -> bool {

@@ -41,7 +41,7 @@ impl PatchLayout {
         (layout.columns() as u64 * layout.rows() as u64 <= MOST_VERTICES).then_some(layout)
     }
 
-    /// As [`Layout::new`], for patches that are had one at a time: at most [`MOST_PATCHES`] of them, with any number
+    /// As [`PatchLayout::new`], for patches that are had one at a time: at most [`MOST_PATCHES`] of them, with any number
     /// of vertices in all.
     pub fn paged(columns: u32, rows: u32, patch: u32) -> Option<Self> {
         let layout = Self::over(columns, rows, patch)?;
@@ -93,14 +93,14 @@ impl PatchLayout {
         north.flat_map(move |y| east.clone().map(move |x| Vertex::new(x * patch, y * patch)))
     }
 
-    /// The place of the patch with south-west corner `corner` in [`Layout::patches`].
+    /// The place of the patch with south-west corner `corner` in [`PatchLayout::patches`].
     #[inline]
     pub fn patch_index(&self, corner: Vertex) -> usize {
         let shift = self.patch.trailing_zeros();
         ((corner.y >> shift) * self.patches_east + (corner.x >> shift)) as usize
     }
 
-    /// The place in [`Layout::patches`] of the patch that holds the triangle which `vertex` splits and whose
+    /// The place in [`PatchLayout::patches`] of the patch that holds the triangle which `vertex` splits and whose
     /// right-angled corner is `apex`, one of its parents; both are vertices of the layout.
     #[inline]
     pub fn patch_holding(&self, vertex: Vertex, apex: Vertex) -> usize {

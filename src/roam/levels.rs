@@ -1,7 +1,7 @@
 //! The vertices of a layout level by level, the finest first: all of them, or those inside a rectangle.
 //!
 //! Whatever is nested up the vertex graph (errors, spheres) is made in passes: at each step the edge middles, whose
-//! children are the centres of half the step, then the centres, whose children are those edge middles. Vertices of
+//! children are the centers of half the step, then the centers, whose children are those edge middles. Vertices of
 //! one pass do not depend on each other, so a pass may run in parallel, and a change of a few vertices is followed
 //! upwards by sweeping, pass by pass, the rectangle that can have changed.
 
@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::roam::graph::{Vertex, VertexKind};
 use crate::roam::layout::PatchLayout;
-use crate::terrain::brush::PostRect;
+use crate::terrain::post_rect::PostRect;
 
 /// All vertices of one kind and one step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,7 +62,7 @@ impl LevelPass {
         self.rows_within(layout, rect).flat_map(of_row)
     }
 
-    /// Whether the hypotenuse of the centre in column `x` and row `y` runs from south-west to north-east.
+    /// Whether the hypotenuse of the center in column `x` and row `y` runs from south-west to north-east.
     #[inline]
     pub fn rises(self, x: usize, y: usize) -> bool {
         let side = self.step.trailing_zeros() + 1;
@@ -249,8 +249,8 @@ pub fn for_rows(
             SweepRows::Odd => (index, index + 1),
         };
         let at = |index: usize| read.get(index).copied();
-        let neighbours = [at(south).or(at(north)), at(north).or(at(south))].map(Option::unwrap_or_default);
-        write(first + 2 * half * index, row, neighbours);
+        let neighbors = [at(south).or(at(north)), at(north).or(at(south))].map(Option::unwrap_or_default);
+        write(first + 2 * half * index, row, neighbors);
     });
 }
 

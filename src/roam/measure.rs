@@ -7,7 +7,7 @@
 //! Not measured: posts without data, posts of patches that are not shown, and posts under triangles that are left
 //! out because a corner has no data.
 //!
-//! What is off in metres far away is small on the picture: with a picture, pixels are measured too.
+//! What is off in meters far away is small on the picture: with a picture, pixels are measured too.
 
 use rayon::prelude::*;
 
@@ -17,7 +17,7 @@ use crate::roam::layout::PatchLayout;
 use crate::roam::shown::{LocalTriangle, PatchList};
 use crate::terrain::lattice::{Lattice, Post};
 
-/// `|shown − elevation model|` over posts, in metres without exaggeration.
+/// `|shown − elevation model|` over posts, in meters without exaggeration.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HeightDifference {
     /// How many posts were measured.
@@ -29,17 +29,17 @@ pub struct HeightDifference {
 }
 
 impl HeightDifference {
-    /// The mean in metres; `None` where nothing was measured.
+    /// The mean in meters; `None` where nothing was measured.
     pub fn mean_m(&self) -> Option<f64> {
         (self.posts > 0).then(|| self.sum / self.posts as f64)
     }
 
-    /// The root of the mean square in metres; `None` where nothing was measured.
+    /// The root of the mean square in meters; `None` where nothing was measured.
     pub fn rms_m(&self) -> Option<f64> {
         (self.posts > 0).then(|| (self.squares / self.posts as f64).sqrt())
     }
 
-    /// The largest in metres; `None` where nothing was measured.
+    /// The largest in meters; `None` where nothing was measured.
     pub fn max_m(&self) -> Option<f64> {
         (self.posts > 0).then_some(self.max_m)
     }
@@ -85,7 +85,7 @@ pub fn height_difference_seen(
     let patches: Vec<PatchMeasure> =
         shown.par_iter().map(|list| Scan::new(lattice, layout, list, &seen_px).measured()).collect();
     let mut border: Vec<OnBorder> = patches.iter().flat_map(|patch| &patch.border).copied().collect();
-    // Neighbours agree about a border post but for rounding; the larger counts.
+    // Neighbors agree about a border post but for rounding; the larger counts.
     border.sort_unstable_by(|a, b| a.post.cmp(&b.post).then(b.off_m.total_cmp(&a.off_m)));
     border.dedup_by_key(|measured| measured.post);
     let mut whole = patches.iter().fold(HeightDifference::default(), |sum, patch| sum.with(patch.inside));
@@ -206,8 +206,8 @@ mod tests {
     use crate::roam::active::ActiveSet;
     use crate::roam::displayed::DisplayedTerrain;
     use crate::roam::graph::Vertex;
-    use crate::roam::ground::PatchedGround;
-    use crate::terrain::facets::TriangleSurface;
+    use crate::roam::patched_ground::PatchedGround;
+    use crate::terrain::triangle_surface::TriangleSurface;
     use glam::DVec2;
     use proptest::prelude::*;
     use std::sync::Arc;

@@ -1,20 +1,20 @@
 //! The restricted quadtree as pure arithmetic: nodes by their address in base 4, and the five vertices of each.
 //!
 //! An address is the string of turns from the root, one digit a level: the parent's is without the last digit, a
-//! child's has one more, and a neighbour's is found by counting in the digits of its axis with a carry. A node
+//! child's has one more, and a neighbor's is found by counting in the digits of its axis with a carry. A node
 //! stores five vertices; its corners belong to nodes above. In patches of 2ⁿ cells the root is the patch and the
 //! nodes with n − 1 digits, two cells wide, are the finest.
 //!
 //! ```text
 //! ┌───┬───┐            ●── north ──●        ●  a vertex of a node above
 //! │ 2 │ 3 │            │           │
-//! ├───┼───┤          west centre east      south = {0, 1}   west = {0, 2}
+//! ├───┼───┤          west center east      south = {0, 1}   west = {0, 2}
 //! │ 0 │ 1 │            │           │        north = {2, 3}   east = {1, 3}
 //! └───┴───┘            ●── south ──●
 //! ```
 //!
-//! Dependencies: a centre depends on the two corners of its node on the diagonal that is perpendicular to the
-//! line to the parent's centre; an edge vertex depends on the two centres beside it. They are the vertex graph's
+//! Dependencies: a center depends on the two corners of its node on the diagonal that is perpendicular to the
+//! line to the parent's center; an edge vertex depends on the two centers beside it. They are the vertex graph's
 //! own: see [`Vertex::parents`].
 //!
 //! Source: the restricted quadtree with five-vertex nodes and base-4 indices, after Lindstrom et al. 1996.
@@ -37,13 +37,13 @@ pub struct Address(u32);
 /// A side of a node, in the order its edge vertices are stored: counter-clockwise from the west.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NodeSide {
-    /// Towards smaller x.
+    /// Toward smaller x.
     West,
-    /// Towards smaller y.
+    /// Toward smaller y.
     South,
-    /// Towards larger x.
+    /// Toward larger x.
     East,
-    /// Towards larger y.
+    /// Toward larger y.
     North,
 }
 
@@ -51,7 +51,7 @@ pub enum NodeSide {
 pub const SIDES: [NodeSide; 4] = [NodeSide::West, NodeSide::South, NodeSide::East, NodeSide::North];
 
 impl NodeSide {
-    /// The step towards this side, in x and y.
+    /// The step toward this side, in x and y.
     pub const fn step(self) -> (i32, i32) {
         match self {
             Self::West => (-1, 0),
@@ -91,7 +91,7 @@ impl Address {
         if digit > 3 || self.level() == MOST_DIGITS { None } else { Some(Self(self.0 << 2 | digit)) }
     }
 
-    /// The neighbour on the same level, and whether the carry left the patch: then it is the address in the
+    /// The neighbor on the same level, and whether the carry left the patch: then it is the address in the
     /// next patch on that side.
     ///
     /// Digit by digit from the last: a digit on the near half moves to the far half and the count ends; one on
@@ -166,7 +166,7 @@ impl NodeSquare {
         self.center().moved(dx * half, dy * half)
     }
 
-    /// The five vertices of the node in their stored order: centre, west, south, east, north.
+    /// The five vertices of the node in their stored order: center, west, south, east, north.
     pub fn vertices(self) -> [Vertex; 5] {
         let [west, south, east, north] = SIDES.map(|side| self.edge(side));
         [self.center(), west, south, east, north]
@@ -200,7 +200,7 @@ impl QuadNode {
         (side >= 2).then_some(NodeSquare { corner, side })
     }
 
-    /// The node whose centre is `center`, in patches of `patch` cells; `None` for a vertex that is no centre.
+    /// The node whose center is `center`, in patches of `patch` cells; `None` for a vertex that is no center.
     pub fn of_center(center: Vertex, patch: i32) -> Option<Self> {
         let half = center.step();
         if center.kind() != VertexKind::Center || half <= 0 || half >= patch {
@@ -216,8 +216,8 @@ impl QuadNode {
         Some(Self { east, north, address })
     }
 
-    /// The two corners of the node that its centre depends on: those on the diagonal perpendicular to the line
-    /// to the parent's centre. `None` for a root, whose corners are always there.
+    /// The two corners of the node that its center depends on: those on the diagonal perpendicular to the line
+    /// to the parent's center. `None` for a root, whose corners are always there.
     pub fn center_depends_on(self, patch: i32) -> Option<[Vertex; 2]> {
         let center = self.square(patch)?.center();
         let above = self.parent()?.square(patch)?.center();
@@ -225,7 +225,7 @@ impl QuadNode {
         Some([center.moved(-dy, dx), center.moved(dy, -dx)])
     }
 
-    /// The two centres that an edge vertex depends on: those of the nodes beside it, of which one may lie
+    /// The two centers that an edge vertex depends on: those of the nodes beside it, of which one may lie
     /// outside the terrain.
     pub fn edge_depends_on(self, side: NodeSide, patch: i32) -> Option<[Vertex; 2]> {
         Some([self.square(patch)?.center(), self.neighbor(side).square(patch)?.center()])

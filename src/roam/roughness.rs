@@ -3,17 +3,17 @@
 //! `f = (1/n) Σ (z − z_i)²` over a window of M × N posts around the post, itself included: n = M · N, or those of it
 //! that are there and hold data (constrained nested error criterion; 3 × 3 in the paper's tests). The factor that it gives,
 //! `k = 1 − 1/(f + 1 + ξ)` with `0 < k < 1`, is near 1 on rough ground and near 0 on flat ground. It is no length and
-//! knows no scale: a slope counts as roughness, and metres are what f is measured in, as the paper has it.
+//! knows no scale: a slope counts as roughness, and meters are what f is measured in, as the paper has it.
 
 use rayon::prelude::*;
 
-use crate::terrain::brush::PostRect;
 use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::post_rect::PostRect;
 
 /// The paper's ξ: keeps k above 0 on level ground, so that an infinite error stays infinite.
 const XI: f64 = 1e-6;
 
-/// The local roughness of every post, square metres of height without exaggeration.
+/// The local roughness of every post, square meters of height without exaggeration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Roughness {
     columns: usize,
@@ -77,7 +77,7 @@ fn local(lattice: &Lattice, post: Post, half_window: (u32, u32)) -> f32 {
             }
         }
     }
-    // Without data the post is no neighbour of itself either.
+    // Without data the post is no neighbor of itself either.
     if count > 0 { (sum / f64::from(count)) as f32 } else { 0.0 }
 }
 
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn a_spike_is_eight_times_as_rough_as_each_of_its_neighbours() {
+    fn a_spike_is_eight_times_as_rough_as_each_of_its_neighbors() {
         let mut heights = vec![10.0; 25];
         heights[12] = 14.0;
         let roughness = Roughness::new(&lattice(heights), (1, 1));
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_without_data_or_beyond_the_border_are_left_out() {
+    fn neighbors_without_data_or_beyond_the_border_are_left_out() {
         let mut heights = vec![10.0; 25];
         (heights[0], heights[5], heights[1]) = (12.0, f32::NAN, 13.0);
         let roughness = Roughness::new(&lattice(heights), (1, 1));

@@ -9,8 +9,8 @@ use crate::roam::active::ActiveSet;
 use crate::roam::emit::bintree::VertexBlock;
 use crate::roam::emit::world::drawn_posts;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
 use crate::roam::layout::PatchLayout;
+use crate::roam::patched_ground::PatchedGround;
 
 /// Why there are indices.
 const SHORT: &str = "patches of at most 128 cells have 16-bit indices";
@@ -89,8 +89,8 @@ pub fn local(layout: &PatchLayout, corner: Vertex, vertex: Vertex) -> u16 {
 mod tests {
     use super::*;
     use crate::roam::displayed::DisplayedTerrain;
-    use crate::terrain::facets::TriangleSurface;
     use crate::terrain::lattice::Lattice;
+    use crate::terrain::triangle_surface::TriangleSurface;
     use glam::{DVec2, Vec2, Vec3};
     use std::collections::BTreeSet;
 

@@ -15,9 +15,9 @@ use crate::roam::errors::midpoint::midpoint_error_at;
 use crate::roam::errors::scan::larger;
 use crate::roam::field::{FieldRow, HeightField};
 use crate::roam::graph::{Vertex, VertexKind};
-use crate::roam::ground::PatchedGround;
 use crate::roam::layout::PatchLayout;
 use crate::roam::levels::{ChildRows, PassRow, SweepRows, both_sides, for_rows};
+use crate::roam::patched_ground::PatchedGround;
 use crate::roam::roughness::Roughness;
 use crate::view::camera::Camera;
 
@@ -25,7 +25,7 @@ use crate::view::camera::Camera;
 /// a child's sphere reach out of its parent's. Smaller than any error that shows, a thousand times the rounding.
 const MARGIN: f64 = 1e-6;
 
-/// The radius of every vertex's sphere, metres in drawn world space about the drawn vertex.
+/// The radius of every vertex's sphere, meters in drawn world space about the drawn vertex.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SphereMap {
     radii: Vec<f32>,
@@ -33,7 +33,7 @@ pub struct SphereMap {
 
 /// What a vertex's own radius is, before it is grown to hold its children's spheres.
 ///
-/// `reach`, the papers' λ·d/τ, is metres of distance per metre of drawn error: see [`reach`]. No error gives radius
+/// `reach`, the papers' λ·d/τ, is meters of distance per meter of drawn error: see [`reach`]. No error gives radius
 /// 0, an infinite one an infinite radius.
 #[derive(Clone, Copy, Debug)]
 pub enum OwnRadius<'a> {
@@ -43,13 +43,13 @@ pub enum OwnRadius<'a> {
     Plain {
         /// δ without exaggeration.
         errors: &'a ErrorMap,
-        /// Metres per metre, finite and not negative.
+        /// Meters per meter, finite and not negative.
         reach: f32,
     },
     /// `r' = k · reach · δ` with δ the vertex's own midpoint error and `k = 1 − 1/(f + 1 + ξ)` of its local roughness
     /// f: fewer triangles on flat ground (constrained nested error criterion). Promises nothing.
     Constrained {
-        /// Metres per metre, finite and not negative.
+        /// Meters per meter, finite and not negative.
         reach: f32,
         /// f.
         roughness: &'a Roughness,
@@ -64,21 +64,21 @@ pub enum OwnRadius<'a> {
     Bounding {
         /// Exact errors, without exaggeration.
         errors: &'a ErrorMap,
-        /// Metres per metre, finite and not negative.
+        /// Meters per meter, finite and not negative.
         reach: f32,
     },
 }
 
-/// Metres of distance per metre of drawn error for a tolerance of `tolerance_px` in every corner of the camera's
-/// picture, where pixels are largest; `camera.pixels_per_metre(1.0) / tolerance_px`, as the paper has it, holds in
+/// Meters of distance per meter of drawn error for a tolerance of `tolerance_px` in every corner of the camera's
+/// picture, where pixels are largest; `camera.pixels_per_meter(1.0) / tolerance_px`, as the paper has it, holds in
 /// its middle only.
 pub fn reach(camera: &Camera, tolerance_px: f32) -> f32 {
     let corner = 1.0 + camera.tan_half_fov().length_squared();
-    camera.pixels_per_metre(1.0) * corner / tolerance_px
+    camera.pixels_per_meter(1.0) * corner / tolerance_px
 }
 
 impl OwnRadius<'_> {
-    /// The own radius of a vertex of the layout, metres; 0 for patch corners, which are always there.
+    /// The own radius of a vertex of the layout, meters; 0 for patch corners, which are always there.
     #[inline]
     pub fn of(&self, ground: PatchedGround<'_>, vertex: Vertex) -> f32 {
         if ground.layout.is_corner(vertex) {
@@ -125,7 +125,7 @@ fn scaled(error: f32, radius: impl FnOnce(f64) -> f64) -> f32 {
     }
 }
 
-/// The largest drawn distance from a vertex to the corners of the triangles it splits, metres.
+/// The largest drawn distance from a vertex to the corners of the triangles it splits, meters.
 fn extent(ground: PatchedGround<'_>, vertex: Vertex) -> f64 {
     let center = ground.position(vertex).as_dvec3();
     let parents = vertex.parents().into_iter().filter(|&parent| ground.layout.contains(parent));
@@ -167,7 +167,7 @@ impl SphereMap {
         Self::nested(ground, radii)
     }
 
-    /// The spheres whose own radii, in the order of [`Layout::index`], are given: each grown until it holds those of
+    /// The spheres whose own radii, in the order of [`PatchLayout::index`], are given: each grown until it holds those of
     /// its children. A vertex that never shows has radius 0 and an own radius of 0; infinite radii are allowed.
     ///
     /// In parallel over rows, the same for any number of threads.
@@ -201,13 +201,13 @@ impl SphereMap {
         Self { radii }
     }
 
-    /// The radius of a vertex's sphere, metres.
+    /// The radius of a vertex's sphere, meters.
     #[inline]
     pub fn at(&self, layout: &PatchLayout, vertex: Vertex) -> f32 {
         self.radii[layout.index(vertex)]
     }
 
-    /// All radii, in the order of [`Layout::index`].
+    /// All radii, in the order of [`PatchLayout::index`].
     pub fn values(&self) -> &[f32] {
         &self.radii
     }
@@ -301,7 +301,7 @@ impl<'a> Nest<'a> {
         Self { here: field.row(y), beside: beside.map(|y| field.row(y)), radii }
     }
 
-    /// The radius about the edge middle in column `x` that holds the spheres of the centres around.
+    /// The radius about the edge middle in column `x` that holds the spheres of the centers around.
     #[inline]
     fn about_edge(&self, reach: usize, x: usize) -> f32 {
         let ([south, north], [below, above]) = (self.radii, &self.beside);
@@ -318,7 +318,7 @@ impl<'a> Nest<'a> {
         holding(squares, [south[west], south[east], north[west], north[east]])
     }
 
-    /// The radius about the centre in column `x` that holds the spheres of the edge middles around; `row` has the radii
+    /// The radius about the center in column `x` that holds the spheres of the edge middles around; `row` has the radii
     /// of its own row.
     #[inline]
     fn about_center(&self, reach: usize, x: usize, row: &[f32]) -> f32 {

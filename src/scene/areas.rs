@@ -1,6 +1,6 @@
 //! Areas: what covers the ground, with the lines along their outlines.
 //!
-//! Areas lie below everything else on the ground, and a later one over an earlier. Textures are laid out in world metres,
+//! Areas lie below everything else on the ground, and a later one over an earlier. Textures are laid out in world meters,
 //! aligned with north, so that areas side by side make one pattern.
 
 use glam::DVec2;
@@ -18,8 +18,8 @@ use crate::ribbon::border::{Dashes, border};
 use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
 use crate::ribbon::texture::cover::{border_color, cover_length_m};
-use crate::scene::collected::SceneBuilder;
-use crate::scene::kind::FeatureKind;
+use crate::scene::FeatureKind;
+use crate::scene::builder::SceneBuilder;
 use crate::scene::near::Clipped;
 use crate::scene::sources::{Sourced, Sources};
 use crate::vector::feature::Polygon;
@@ -102,7 +102,7 @@ impl AreaPatch {
     }
 }
 
-/// Metres in one repeat of a cover's texture; hatching is as wide as the border wants it.
+/// Meters in one repeat of a cover's texture; hatching is as wide as the border wants it.
 fn texture_m(cover: Cover, border_width_m: f64) -> f64 {
     match cover {
         Cover::Restricted => cover_length_m(cover) * border_width_m / defaults::BORDER_WIDTH_M,

@@ -14,7 +14,7 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::description::suggest::{nearest, quoted};
-use crate::model::kind::Companions;
+use crate::model::Companions;
 
 /// The largest file read.
 pub const MAX_BYTES: u64 = 2 << 30;

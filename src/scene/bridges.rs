@@ -17,35 +17,35 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::geom::rect::Rect;
 use crate::ribbon::texture::RibbonSurface;
-use crate::scene::collected::SceneBuilder;
-use crate::scene::kind::{Coat, FeatureKind, Solid};
+use crate::scene::builder::SceneBuilder;
 use crate::scene::report::{ReportCell, ReportColumn};
-use crate::scene::roads::centreline::{Centreline, Support};
+use crate::scene::roads::centerline::{Centerline, Support};
 use crate::scene::roads::chains::{self, ChainEnd, SpanChain, SpanLink};
 use crate::scene::roads::levels::{self, ChainRun, Site};
 use crate::scene::roads::spans::{self, PointKey, RoadSpan};
 use crate::scene::sources::Sources;
+use crate::scene::{Coat, FeatureKind, Solid};
 use crate::structure::bridge::{self, Across, BridgeOptions, magnified};
 use crate::structure::deck::DeckCourse;
 use crate::structure::deck_profile::{ClearancePoint, DeckProfile};
 use crate::structure::tunnel::Portal;
-use crate::terrain::facets::SurfaceTriangle;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::deck::Deck;
+use crate::terrain::triangle_surface::SurfaceTriangle;
 
 /// The most piers in a scene.
 const MOST_PIERS: f64 = 200_000.0;
 
-/// The longest underpass, in metres: under a broad road or a railway yard.
+/// The longest underpass, in meters: under a broad road or a railway yard.
 const LONGEST_UNDERPASS_M: f64 = 60.0;
 
-/// The ground that a tunnel has over it somewhere, at least, in metres; less is an underpass, or too little to show.
+/// The ground that a tunnel has over it somewhere, at least, in meters; less is an underpass, or too little to show.
 const LEAST_COVER_M: f64 = 3.0;
 
 /// How far up a portal's wall the hill has to rise behind it.
 const BURIED: f64 = 0.4;
 
-/// How high the soffit is over the ground where an abutment ends, in metres: high enough to see through below.
+/// How high the soffit is over the ground where an abutment ends, in meters: high enough to see through below.
 const ABUTMENT_M: f64 = 1.5;
 
 /// The longest part of a bridge that an abutment takes.
@@ -77,7 +77,7 @@ pub fn build(
     document: &Document,
     sources: &Sources<'_>,
     (lattice, exaggeration): (&Lattice, f32),
-    roads: &mut [Centreline],
+    roads: &mut [Centerline],
     collected: &mut SceneBuilder,
 ) -> Result<(), Diagnostic> {
     let extent = lattice.extent();
@@ -205,7 +205,7 @@ impl<'a> BuiltChain<'a> {
             line: &span.line,
             beyond: span.beyond,
             width_m: span.options.width_m,
-            mitre_limit: span.options.mitre_limit,
+            miter_limit: span.options.miter_limit,
         };
         (course, self.run.profile.part(link.reach_m[0], link.reach_m[1]))
     }
@@ -280,7 +280,7 @@ impl<'a> BuiltChain<'a> {
     }
 
     /// The portals of the chain, or a road on the ground in its place.
-    fn tunnel(&self, extent: &Rect, roads: &mut [Centreline], collected: &mut SceneBuilder) {
+    fn tunnel(&self, extent: &Rect, roads: &mut [Centerline], collected: &mut SceneBuilder) {
         let cover = |floor: &ClearancePoint| floor.level_m - self.run.profile.level_m(floor.station_m);
         let cover_m = self.run.ground.iter().map(cover).fold(f64::NEG_INFINITY, f64::max);
         let is_shallow = cover_m < LEAST_COVER_M;

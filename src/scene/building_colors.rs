@@ -1,10 +1,10 @@
-//! Colours as OpenStreetMap's properties write them: `#rgb`, `#rrggbb`, or one of the names that CSS began with.
+//! Colors as OpenStreetMap's properties write them: `#rgb`, `#rrggbb`, or one of the names that CSS began with.
 
 use crate::description::document::Color;
 use crate::description::features::Scalar;
 use crate::draw::color::Srgba;
 
-/// The names in use on buildings (CSS Color Module Level 4, its basic colours and a few more), muted to what paint and
+/// The names in use on buildings (CSS Color Module Level 4, its basic colors and a few more), muted to what paint and
 /// stone look like in daylight: a wall tagged `red` is brick, not a signal.
 const NAMES: [(&str, Srgba); 22] = [
     ("white", Srgba::opaque(244, 242, 238)),
@@ -31,7 +31,7 @@ const NAMES: [(&str, Srgba); 22] = [
     ("pink", Srgba::opaque(226, 184, 176)),
 ];
 
-/// The colour that a property's value names, in whatever case; `None` where it names none.
+/// The color that a property's value names, in whatever case; `None` where it names none.
 pub fn color_named(value: &Scalar) -> Option<Srgba> {
     let Scalar::Text(text) = value else { return None };
     let text = text.trim().to_lowercase();

@@ -3,7 +3,7 @@
 //! Two passes, since the ground is not finished before the roads have moved it:
 //!
 //! ```text
-//!  lay_out: footprints, pads levelled ─► (roads conform) ─► raise: bases from the ground as it is now, solids
+//!  lay_out: footprints, pads leveled ─► (roads conform) ─► raise: bases from the ground as it is now, solids
 //! ```
 
 use glam::DVec2;
@@ -17,31 +17,32 @@ use crate::description::features::{BuildingTable, Scalar};
 use crate::description::words::{BaseRule, RoofShape as RoofWord, Word};
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
+use crate::earthworks::leveling;
 use crate::geom::rect::Rect;
 use crate::scene::attributes::Attributes;
+use crate::scene::builder::SceneBuilder;
 use crate::scene::building_colors::color_named;
-use crate::scene::collected::SceneBuilder;
-use crate::scene::kind::{Coat, FeatureKind, FeatureSolid, Solid};
 use crate::scene::report::{ReportCell, ReportColumn};
 use crate::scene::sources::{Sourced, Sources};
+use crate::scene::{Coat, FeatureKind, FeatureSolid, Solid};
 use crate::structure::building::{BuildingLevels, Paint, raise as raised};
 use crate::structure::building_footing::WallFooting;
 use crate::structure::building_footprint::BuildingFootprint;
+use crate::structure::draped_solid::DrapedSolid;
 use crate::structure::roof::{UnitRoof, roof};
-use crate::structure::upright::DrapedSolid;
-use crate::terrain::earthwork;
-use crate::terrain::finest::FullResolution;
+use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::query::pieces::GridRegion;
 use crate::terrain::query::zone::zone;
+use crate::terrain::volumes::Volumes;
 
-/// The tallest that a property may say, metres; as `height` in a scene file.
+/// The tallest that a property may say, meters; as `height` in a scene file.
 const TALLEST_M: f64 = 1000.0;
 /// Rise over run of a roof of 30 degrees.
 const PITCH: f64 = 0.577_350_269;
 /// The most of a building's height that is roof where nobody says how much, so that wide halls keep their walls.
 const MOST_ROOF: f64 = 0.5;
-/// How deep walls go below the lowest ground under them, metres.
+/// How deep walls go below the lowest ground under them, meters.
 const FOUNDATION_M: f64 = 1.0;
 
 /// A building with its place found, not raised yet.
@@ -90,7 +91,7 @@ const PADS: (&str, &[ReportColumn]) = (
     ],
 );
 
-/// The document's buildings with their footprints mended, and the ground levelled under those whose base is a pad.
+/// The document's buildings with their footprints mended, and the ground leveled under those whose base is a pad.
 ///
 /// # Errors
 /// A source cannot be had.
@@ -137,9 +138,9 @@ fn pad(
     if parts.iter().any(|part| is_taken(lattice, part)) {
         return None;
     }
-    let mut volumes = earthwork::Volumes::default();
+    let mut volumes = Volumes::default();
     for part in parts {
-        let moved = earthwork::level(lattice, part.rings(), mean_m as f32);
+        let moved = leveling::level(lattice, part.rings(), mean_m as f32);
         volumes.cut_m3 += moved.cut_m3;
         volumes.fill_m3 += moved.fill_m3;
     }
@@ -161,7 +162,7 @@ fn is_taken(lattice: &Lattice, footprint: &BuildingFootprint) -> bool {
     })
 }
 
-/// The heights of the ground under a building, metres.
+/// The heights of the ground under a building, meters.
 #[derive(Clone, Copy)]
 struct GroundUnder {
     low_m: f64,
@@ -267,21 +268,21 @@ fn property(attributes: &Attributes, names: &[&str], (low, high): (f64, f64)) ->
         .find(|&number| number > low && number <= high)
 }
 
-/// How high above its base a building begins, 0 for nearly all, and how high it ends, metres.
+/// How high above its base a building begins, 0 for nearly all, and how high it ends, meters.
 fn heights(
     building: &BuildingTable,
     attributes: &Attributes,
     collected: &mut SceneBuilder,
     tally: &mut BuildingTally,
 ) -> (f64, f64) {
-    let storeys = |names: &[&str]| property(attributes, names, (0.0, TALLEST_M / defaults::LEVEL_HEIGHT_M));
+    let stories = |names: &[&str]| property(attributes, names, (0.0, TALLEST_M / defaults::LEVEL_HEIGHT_M));
     let known = property(attributes, &["height"], (0.0, TALLEST_M))
-        .or_else(|| storeys(&["building:levels", "levels"]).map(|levels| levels * defaults::LEVEL_HEIGHT_M))
+        .or_else(|| stories(&["building:levels", "levels"]).map(|levels| levels * defaults::LEVEL_HEIGHT_M))
         .unwrap_or(defaults::BUILDING_HEIGHT_M);
     let stated = ("[[building]] height", building.height.as_ref());
     let height_m = attributes.number_or(stated, known, &mut collected.defaulted);
     let low_m = property(attributes, &["min_height"], (0.0, TALLEST_M))
-        .or_else(|| storeys(&["building:min_level"]).map(|levels| levels * defaults::LEVEL_HEIGHT_M))
+        .or_else(|| stories(&["building:min_level"]).map(|levels| levels * defaults::LEVEL_HEIGHT_M))
         .unwrap_or(0.0);
     if low_m >= height_m {
         tally.raised_whole += 1;
@@ -304,7 +305,7 @@ fn wanted_roof(building: &BuildingTable, attributes: &Attributes) -> RoofWord {
     attributes.word(building.roof.as_ref()).or_else(tagged).unwrap_or_default()
 }
 
-/// How much of a building's height is roof, metres.
+/// How much of a building's height is roof, meters.
 fn roof_height(building: &BuildingTable, attributes: &Attributes, made: &UnitRoof, height_m: f64) -> f64 {
     if made.run_m <= 0.0 {
         return 0.0;
@@ -329,7 +330,7 @@ fn paint(
         let tagged = || names.iter().find_map(|name| color_named(&attributes.get(name)?));
         stated.as_ref().map(|color| Srgba(color.get_ref().0)).or_else(tagged)
     };
-    // Walls and roofs are solid, whatever the colour's alpha says.
+    // Walls and roofs are solid, whatever the color's alpha says.
     let solid = |Srgba([red, green, blue, _]): Srgba| Srgba::opaque(red, green, blue);
     let wall = color(&building.wall_color, ["building:colour", "building:color"]);
     let roof = color(&building.roof_color, ["roof:colour", "roof:color"]);

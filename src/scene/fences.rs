@@ -1,7 +1,7 @@
 //! What stands or runs along lines: fences, walls, hedges, power lines, trenches, obstacle belts and boundaries.
 //!
 //! Two passes, as for buildings: trenches are dug before the roads come, everything is set where the ground is finished.
-//! What stands is only planned here; [`crate::structure::upright`] sets it on the displayed ground for every picture.
+//! What stands is only planned here; [`crate::structure::draped_solid`] sets it on the displayed ground for every picture.
 
 use glam::DVec2;
 
@@ -12,29 +12,29 @@ use crate::description::expression::as_number;
 use crate::description::features::{FenceTable, Scalar};
 use crate::description::words::FenceKind;
 use crate::draw::list::FeatureId;
+use crate::earthworks::brush::Trench;
 use crate::geom::polyline::Polyline;
 use crate::geom::rect::Rect;
 use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::stroke::{Continuations, StrokeOptions, stroke};
 use crate::ribbon::texture::{RibbonSurface, texture_length_m};
 use crate::scene::attributes::Attributes;
-use crate::scene::collected::SceneBuilder;
-use crate::scene::kind::{FeatureKind, FeatureSolid};
+use crate::scene::builder::SceneBuilder;
 use crate::scene::near::{self, Clipped};
 use crate::scene::report::{ReportCell, ReportColumn};
 use crate::scene::sources::Sources;
+use crate::scene::{FeatureKind, FeatureSolid};
+use crate::structure::draped_solid::DrapedSolid;
 use crate::structure::fence::{Posts, rails, spans, stands};
 use crate::structure::hedge::hedge;
 use crate::structure::obstacle::{self, Obstacles};
 use crate::structure::power::{PowerLine, clear};
 use crate::structure::trench::{bare_m, parapets};
-use crate::structure::upright::DrapedSolid;
 use crate::structure::wall::wall;
-use crate::terrain::brush::Trench;
-use crate::terrain::earthwork::Volumes;
-use crate::terrain::facets::TriangleSurface;
-use crate::terrain::finest::FullResolution;
+use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::Lattice;
+use crate::terrain::triangle_surface::TriangleSurface;
+use crate::terrain::volumes::Volumes;
 
 /// The most posts, pylons, obstacles, dashes and lengths of hedge in a scene: a few hundred megabytes of triangles.
 const MOST_PIECES: f64 = 300_000.0;

@@ -10,8 +10,8 @@
 use glam::{DVec2, DVec3, Vec3};
 
 use crate::geom::polygon;
-use crate::model::kind::Model;
-use crate::terrain::facets::{SurfaceTriangle, TriangleSurface};
+use crate::model::Model;
+use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 
 /// How much of a model's height counts as its foot.
 const FOOT_PART: f32 = 0.1;
@@ -104,12 +104,12 @@ impl Under {
         self.corners.extend(piece.iter().map(|&p| p.extend(z(p))));
     }
 
-    /// The part of the outline that has ground under it, in square metres.
+    /// The part of the outline that has ground under it, in square meters.
     pub fn area_m2(&self) -> f64 {
         self.area_m2
     }
 
-    /// The mean gradient: rise per metre east and north.
+    /// The mean gradient: rise per meter east and north.
     pub fn gradient(&self) -> DVec2 {
         self.rise / self.area_m2
     }
@@ -141,8 +141,8 @@ mod tests {
     use crate::draw::color::Srgba;
     use crate::draw::list::{DrawMesh, DrawVertex, MaterialId};
     use crate::mesh::sink::MeshSink;
-    use crate::model::kind::ModelPart;
-    use crate::terrain::finest::FullResolution;
+    use crate::model::ModelPart;
+    use crate::terrain::full_resolution::FullResolution;
     use crate::terrain::lattice::Lattice;
 
     fn model(points: &[[f32; 3]]) -> Model {

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
+use crate::dem::formats::raw::RawLayout;
+use crate::dem::formats::rgb_png::HeightEncoding;
 use crate::dem::mosaic;
 use crate::dem::raster::Raster;
-use crate::dem::raw::RawLayout;
 use crate::dem::read::{self, DemHints};
-use crate::dem::rgb_png::HeightEncoding;
 use crate::dem::voids;
 use crate::dem::warp;
 use crate::description::diagnostic::Diagnostic;
@@ -14,7 +14,7 @@ use crate::description::document::Document;
 use crate::description::words;
 use crate::geom::crs::Crs;
 use crate::scene::assets::Assets;
-use crate::scene::place::parse_crs;
+use crate::scene::world_frame::parse_crs;
 use crate::terrain::lattice::Lattice;
 
 /// The raster as read and the lattice made of it.

@@ -1,8 +1,8 @@
 //! From the scene file to what a renderer draws.
 //!
-//! `build` turns a document and its assets into a [`kind::Scene`], one pass a file: the ground (`ground`), what lies on
+//! `build` turns a document and its assets into a [`Scene`], one pass a file: the ground (`ground`), what lies on
 //! it (`areas`, `water`, `roads`), what stands on it (`buildings`, `fences`), models (`models`, `scatter`; `footprint` and
-//! `stand` say how they meet the ground), labels and cameras (`views`); the passes gather what they make in `collected`.
+//! `placement` say how they meet the ground), labels and cameras (`views`); the passes gather what they make in `builder`.
 //! `picture` turns a scene and a camera into a draw list.
 
 pub mod areas;
@@ -10,23 +10,315 @@ pub mod assets;
 pub mod attributes;
 pub mod bridges;
 pub mod build;
+pub mod builder;
 pub mod building_colors;
 pub mod buildings;
-pub mod collected;
 pub mod fences;
 pub mod footprint;
 pub mod ground;
-pub mod kind;
 pub mod models;
 pub mod near;
 pub mod picture;
-pub mod place;
+pub mod placement;
 pub mod plinth;
 pub mod report;
 pub mod roads;
 pub mod scatter;
 pub mod sources;
-pub mod stand;
 pub mod style;
 pub mod views;
 pub mod water;
+pub mod world_frame;
+
+use std::sync::{Arc, OnceLock};
+
+use glam::{DVec2, Vec2, Vec3};
+
+use crate::description::document::FurnitureTable;
+use crate::description::words::{Anchor, Clamp, Footing, LabelKind};
+use crate::draw::color::Srgba;
+use crate::draw::ground::GroundMap;
+use crate::draw::lighting::Lighting;
+use crate::draw::list::{DrawMesh, FeatureId};
+use crate::geom::crs::Crs;
+use crate::geom::rect::Rect;
+use crate::model::Model;
+use crate::model::detail::ModelDetail;
+use crate::ribbon::plan::PlanMesh;
+use crate::ribbon::texture::RibbonSurface;
+use crate::roam::culling::PatchHeights;
+use crate::roam::errors::ErrorMap;
+use crate::roam::layout::PatchLayout;
+use crate::roam::patched_ground::PatchedGround;
+use crate::scene::report::SceneReport;
+use crate::scene::roads::profiles::RoadProfile;
+use crate::structure::draped_solid::DrapedSolid;
+use crate::terrain::lattice::Lattice;
+use crate::terrain::query::service::HeightService;
+
+/// A digital terrain model: the ground, what lies and stands on it, and how it is to be seen.
+pub struct Scene {
+    /// The picture's title.
+    pub title: Option<String>,
+    /// A second line under it.
+    pub subtitle: Option<String>,
+    /// The map coordinates' system.
+    pub crs: Crs,
+    /// The terrain.
+    pub terrain: Terrain,
+    /// Answers height queries in map coordinates.
+    pub heights: HeightService,
+    /// What the ground looks like.
+    pub map: Arc<GroundMap>,
+    /// Light, haze and sky.
+    pub lighting: Lighting,
+    /// Areas, rivers, lakes and roads, in drawing order.
+    pub ribbons: Vec<Ribbon>,
+    /// What has a shape of its own: buildings, bridges.
+    pub solids: Vec<Solid>,
+    /// What is set on the displayed ground for every picture: walls, fences, lines, footings.
+    pub uprights: Vec<FeatureSolid>,
+    /// Model files, each loaded once.
+    pub models: Vec<Model>,
+    /// Simpler forms of each model, made when a picture first needs them.
+    pub details: Vec<OnceLock<ModelDetail>>,
+    /// What stands on the ground.
+    pub placements: Vec<Placement>,
+    /// Names and heights.
+    pub labels: Vec<SceneLabel>,
+    /// Views; at least one.
+    pub cameras: Vec<View>,
+    /// What frames the picture.
+    pub furniture: FurnitureTable,
+    /// Every feature, in the order of their ids from 2 up.
+    pub features: Vec<SceneFeature>,
+    /// What was done that a user should know: features off the model, missing textures, earth moved.
+    pub notes: Vec<String>,
+    /// What was found out about single features.
+    pub report: SceneReport,
+    /// The longitudinal profiles of the roads that the ground follows.
+    pub profiles: Vec<RoadProfile>,
+    /// The files it was made of, besides the scene file itself.
+    pub files: Vec<std::path::PathBuf>,
+}
+
+/// The ground with what refinement needs to know of it.
+pub struct Terrain {
+    /// The heights.
+    pub lattice: Arc<Lattice>,
+    /// The patches over them.
+    pub layout: PatchLayout,
+    /// The errors of their vertices.
+    pub errors: ErrorMap,
+    /// The drawn heights' range per patch.
+    pub patch_heights: PatchHeights,
+    /// How many times heights are stretched when drawn.
+    pub exaggeration: f32,
+    /// How many pixels the drawn ground may be off.
+    pub tolerance_px: f32,
+}
+
+impl Terrain {
+    /// What refinement reads.
+    pub fn ground(&self) -> PatchedGround<'_> {
+        PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: self.exaggeration }
+    }
+
+    /// The box of the ground in world space, drawn heights.
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        let (low, high) = self.lattice.height_range();
+        let Rect { min, max } = self.lattice.extent();
+        let corner = |plan: DVec2, z: f32| plan.as_vec2().extend(z * self.exaggeration);
+        (corner(min, low), corner(max, high))
+    }
+}
+
+/// What a feature is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum FeatureKind {
+    /// A lake.
+    Lake,
+    /// A river or stream.
+    River,
+    /// A road.
+    Road,
+    /// A bridge.
+    Bridge,
+    /// A tunnel.
+    Tunnel,
+    /// Something that covers the ground.
+    Area,
+    /// A building.
+    Building,
+    /// A fence, or something else that runs along a line.
+    Fence,
+    /// A model.
+    Model,
+    /// Models strewn over areas: one feature a table, however many stand there.
+    Scattered,
+}
+
+impl FeatureKind {
+    /// Every kind, in the order in which they are told.
+    pub const ALL: [Self; 10] = [
+        Self::Lake,
+        Self::River,
+        Self::Road,
+        Self::Bridge,
+        Self::Tunnel,
+        Self::Area,
+        Self::Building,
+        Self::Fence,
+        Self::Model,
+        Self::Scattered,
+    ];
+
+    /// Its name for a count of one, or of several.
+    pub fn noun(self, count: usize) -> &'static str {
+        let (one, several) = match self {
+            Self::Lake => ("lake", "lakes"),
+            Self::River => ("river", "rivers"),
+            Self::Road => ("road", "roads"),
+            Self::Bridge => ("bridge", "bridges"),
+            Self::Tunnel => ("tunnel", "tunnels"),
+            Self::Area => ("area", "areas"),
+            Self::Building => ("building", "buildings"),
+            Self::Fence => ("line", "lines"),
+            Self::Model => ("model", "models"),
+            Self::Scattered => ("scatter of models", "scatters of models"),
+        };
+        if count == 1 { one } else { several }
+    }
+}
+
+/// One feature of the scene: one road line, one lake polygon, one model.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SceneFeature {
+    /// What it is.
+    pub kind: FeatureKind,
+    /// Its name; may be empty.
+    pub name: String,
+}
+
+/// Something that lies on the ground.
+pub struct Ribbon {
+    /// Its triangles in plan.
+    pub plan: PlanMesh,
+    /// What it is made of.
+    pub surface: RibbonSurface,
+    /// Multiplied with the surface's own color and alpha; white changes nothing.
+    pub tint: Srgba,
+    /// Where it lies among others: a higher number covers a lower.
+    pub layer: u8,
+    /// The feature it belongs to.
+    pub feature: FeatureId,
+}
+
+/// Something built with a shape of its own.
+pub struct Solid {
+    /// Its triangles in world space, heights drawn times the scene's exaggeration.
+    pub mesh: DrawMesh,
+    /// What its triangles show.
+    pub coat: Coat,
+    /// The feature it belongs to.
+    pub feature: FeatureId,
+}
+
+/// Something that stands on the ground as it is displayed.
+pub struct FeatureSolid {
+    /// What it is.
+    pub upright: DrapedSolid,
+    /// The feature it belongs to.
+    pub feature: FeatureId,
+}
+
+/// What a solid's triangles show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Coat {
+    /// The colors of their vertices.
+    Painted,
+    /// A surface's texture, times the colors of their vertices.
+    Surface(RibbonSurface),
+}
+
+/// A model in its place.
+pub struct Placement {
+    /// Which of the scene's models.
+    pub model: usize,
+    /// World X and Y of its origin.
+    pub at: Vec2,
+    /// How its height is found.
+    pub clamp: Clamp,
+    /// Meters above the ground, or elevation, as `clamp` says; 0 where it stands on the ground.
+    pub height_m: f32,
+    /// Which way its front points, radians clockwise from north.
+    pub heading_rad: f32,
+    /// Meters per unit of the model.
+    pub scale: f32,
+    /// How it meets the ground.
+    pub standing: GroundFit,
+    /// The feature it is.
+    pub feature: FeatureId,
+}
+
+/// How a model meets the ground it stands on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GroundFit {
+    /// Which ground under it counts.
+    pub anchor: Anchor,
+    /// How far it may lean with the ground, in radians.
+    pub tilt_rad: f32,
+    /// How deep it stands in the ground, in meters.
+    pub sink_m: f32,
+    /// What fills the gap.
+    pub footing: Footing,
+}
+
+impl Placement {
+    /// Whether its place depends on all of the ground under its footprint and not only on that under its origin.
+    pub fn needs_footprint(&self) -> bool {
+        self.standing.anchor != Anchor::Origin || self.standing.tilt_rad > 0.0
+    }
+}
+
+/// A name on the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneLabel {
+    /// What it says.
+    pub text: String,
+    /// The place on the ground, world space, drawn height.
+    pub ground: Vec3,
+    /// Where the leader line starts, at or above the ground.
+    pub anchor: Vec3,
+    /// What it names.
+    pub kind: LabelKind,
+}
+
+/// A view of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    /// How `--camera` calls it.
+    pub name: String,
+    /// The eye, world space.
+    pub eye: Vec3,
+    /// What it looks at, world space.
+    pub target: Vec3,
+    /// Vertical field of view in radians.
+    pub fov_y_rad: f32,
+}
+
+impl Scene {
+    /// The view called `name`, or the first where no name is given.
+    pub fn view(&self, name: Option<&str>) -> Option<&View> {
+        match name {
+            Some(name) => self.cameras.iter().find(|view| view.name == name),
+            None => self.cameras.first(),
+        }
+    }
+
+    /// How many features there are of each kind, kinds in order, only those present.
+    pub fn census(&self) -> Vec<(FeatureKind, usize)> {
+        let count = |kind| self.features.iter().filter(|feature| feature.kind == kind).count();
+        FeatureKind::ALL.map(|kind| (kind, count(kind))).into_iter().filter(|&(_, count)| count > 0).collect()
+    }
+}

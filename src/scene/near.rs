@@ -6,12 +6,12 @@ use crate::geom::polyline::Polyline;
 use crate::geom::rect::Rect;
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::ribbon::plan::{PlanMesh, PlanVertex};
+use crate::scene::FeatureKind;
 use crate::scene::attributes::Attributes;
-use crate::scene::collected::SceneBuilder;
-use crate::scene::kind::FeatureKind;
+use crate::scene::builder::SceneBuilder;
 use crate::scene::sources::Sourced;
 
-/// Vertices nearer to each other than this have no direction worth a joint, in metres.
+/// Vertices nearer to each other than this have no direction worth a joint, in meters.
 pub const MERGE_M: f64 = 0.01;
 
 /// The lines of `kind` of which some part lies within `reach_m` of the ground's `extent`, with their attributes; the

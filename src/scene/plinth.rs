@@ -13,14 +13,14 @@ use crate::terrain::query::{Answer, Interpolation, ground_height};
 /// How far the base lies below the lowest ground, as a share of the ground's longer side.
 const DEPTH: f64 = 0.02;
 
-/// The wall's colour at the ground and at the base: a cut through soil.
+/// The wall's color at the ground and at the base: a cut through soil.
 const TOP: Srgba = Srgba::opaque(196, 168, 136);
 const FOOT: Srgba = Srgba::opaque(132, 110, 90);
 
 /// Walls under the border edges of `ground`, a mesh emitted from `lattice`, heights drawn times `exaggeration`.
 ///
 /// A border edge gets a wall where there is no ground beyond it: at the lattice's border and around holes, not
-/// where a neighbouring patch is merely out of view.
+/// where a neighboring patch is merely out of view.
 pub fn plinth(ground: &DrawMesh, lattice: &Lattice, exaggeration: f32) -> DrawMesh {
     let base =
         lattice.height_range().0 * exaggeration - (lattice.extent().size().max_element() * DEPTH) as f32;

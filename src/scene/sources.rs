@@ -13,7 +13,7 @@ use crate::description::features::{FeatureSource, Match, Scalar};
 use crate::geom::crs::Crs;
 use crate::scene::assets::Assets;
 use crate::scene::attributes::Attributes;
-use crate::scene::place::{WorldFrame, parse_crs};
+use crate::scene::world_frame::{WorldFrame, parse_crs};
 use crate::vector::error::VectorError;
 use crate::vector::feature::{Geometry, Polygon, VectorLayer};
 use crate::vector::filter::{Condition, Filter};

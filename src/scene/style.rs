@@ -35,7 +35,7 @@ const DESERT: [(f32, [u8; 3]); 5] = [
 ];
 
 /// A neutral ground for overlays.
-const GREY: [(f32, [u8; 3]); 2] = [(0.0, [168, 168, 168]), (1.0, [236, 236, 236])];
+const GRAY: [(f32, [u8; 3]); 2] = [(0.0, [168, 168, 168]), (1.0, [236, 236, 236])];
 
 /// The document's ramp over the ground's range of heights.
 ///
@@ -48,7 +48,7 @@ pub fn ramp(
     let named = |name| match name {
         words::RampName::Atlas => stretched(&ATLAS, lattice),
         words::RampName::Desert => stretched(&DESERT, lattice),
-        words::RampName::Grey => stretched(&GREY, lattice),
+        words::RampName::Gray => stretched(&GRAY, lattice),
     };
     let Some(choice) = &document.style.ramp else {
         return Ok(named(words::RampName::default()));
@@ -86,7 +86,7 @@ pub fn contours(document: &Document) -> Option<Contours> {
     })
 }
 
-/// The document's light, and haze over ground whose drawn box is `extent_m` metres long or, if that is more,
+/// The document's light, and haze over ground whose drawn box is `extent_m` meters long or, if that is more,
 /// high.
 pub fn lighting(document: &Document, extent_m: f32) -> Lighting {
     let angle = |stated: &Option<Spanned<f64>>, default: f64| {
@@ -145,7 +145,7 @@ pub fn ground_map(
 }
 
 /// Heights with posts without data taking the last known height of their row, then of the row below: they only
-/// colour the pixels within half a cell of the edge of data.
+/// color the pixels within half a cell of the edge of data.
 fn filled_heights(lattice: &Lattice) -> Vec<f32> {
     let columns = lattice.columns() as usize;
     let mut heights = lattice.heights().to_vec();
@@ -182,7 +182,7 @@ mod tests {
     fn a_named_ramp_fits_any_ground_that_a_lattice_takes() {
         for height in [0.0, -0.3, 8848.0, 9.99e6, -1e7] {
             let level = Lattice::new(DVec2::ZERO, DVec2::ONE, 2, vec![height; 4]).expect("sound");
-            for stops in [ATLAS.as_slice(), DESERT.as_slice(), GREY.as_slice()] {
+            for stops in [ATLAS.as_slice(), DESERT.as_slice(), GRAY.as_slice()] {
                 stretched(stops, &level);
             }
         }

@@ -6,8 +6,8 @@ use toml::Spanned;
 use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::{CameraTable, Document};
-use crate::scene::kind::{SceneLabel, Terrain, View};
-use crate::scene::place::WorldFrame;
+use crate::scene::world_frame::WorldFrame;
+use crate::scene::{SceneLabel, Terrain, View};
 use crate::terrain::query::{Interpolation, ground_height};
 
 /// The document's labels, `{height}` filled in.
@@ -22,7 +22,7 @@ pub fn labels(
     let label = |table: &crate::description::document::LabelTable| {
         let world = places.point(&table.at, table.crs.as_ref())?;
         let ground = places.on_ground(&terrain.lattice, &table.at, world)?;
-        let elevation = whole_metres(ground.z / terrain.exaggeration);
+        let elevation = whole_meters(ground.z / terrain.exaggeration);
         let above = table.height.as_ref().map_or(defaults::LABEL_HEIGHT_M, |height| *height.get_ref()) as f32;
         Ok(SceneLabel {
             text: table.text.get_ref().replace("{height}", &elevation),
@@ -34,8 +34,8 @@ pub fn labels(
     document.labels.iter().map(label).collect()
 }
 
-/// A height in whole metres, without a sign before 0.
-pub fn whole_metres(height_m: f32) -> String {
+/// A height in whole meters, without a sign before 0.
+pub fn whole_meters(height_m: f32) -> String {
     let rounded = height_m.round();
     format!("{:.0}", if rounded == 0.0 { 0.0 } else { rounded })
 }
@@ -57,7 +57,7 @@ pub fn cameras(
 }
 
 fn camera(table: &CameraTable, places: &WorldFrame<'_>, terrain: &Terrain) -> Result<View, Diagnostic> {
-    let metres = |stated: &Option<Spanned<f64>>, default: f64| {
+    let meters = |stated: &Option<Spanned<f64>>, default: f64| {
         stated.as_ref().map_or(default, |value| *value.get_ref()) as f32
     };
     let eye_world = places.point(&table.eye, table.crs.as_ref())?;
@@ -67,12 +67,12 @@ fn camera(table: &CameraTable, places: &WorldFrame<'_>, terrain: &Terrain) -> Re
             let ground = places.on_ground(&terrain.lattice, &table.eye, eye_world).map_err(|error| {
                 error.with_help("give the camera an eye_elevation where its eye is not above the model")
             })?;
-            ground + Vec3::Z * metres(&table.eye_height, defaults::EYE_HEIGHT_M)
+            ground + Vec3::Z * meters(&table.eye_height, defaults::EYE_HEIGHT_M)
         }
     };
     let target_world = places.point(&table.look_at, table.crs.as_ref())?;
     let target = places.on_ground(&terrain.lattice, &table.look_at, target_world)?;
-    let target = target + Vec3::Z * metres(&table.look_at_height, 0.0);
+    let target = target + Vec3::Z * meters(&table.look_at_height, 0.0);
     if (target - eye).try_normalize().is_none() {
         let message = "the camera looks at the place where its eye is";
         let help = "move look_at, or give it another look_at_height";
@@ -82,7 +82,7 @@ fn camera(table: &CameraTable, places: &WorldFrame<'_>, terrain: &Terrain) -> Re
         name: table.name.get_ref().clone(),
         eye,
         target,
-        fov_y_rad: metres(&table.field_of_view, defaults::FIELD_OF_VIEW_DEG).to_radians(),
+        fov_y_rad: meters(&table.field_of_view, defaults::FIELD_OF_VIEW_DEG).to_radians(),
     })
 }
 
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn no_height_is_written_as_minus_nothing() {
-        let written = [-0.3, 0.0, 0.4, -0.6, 311.5].map(whole_metres);
+        let written = [-0.3, 0.0, 0.4, -0.6, 311.5].map(whole_meters);
         assert_eq!(written, ["0", "0", "0", "-1", "312"]);
     }
 }

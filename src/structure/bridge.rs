@@ -23,17 +23,17 @@ use crate::structure::deck_check;
 use crate::structure::deck_profile::DeckProfile;
 use crate::structure::faces::Faces;
 use crate::structure::pier;
-use crate::terrain::facets::SurfaceTriangle;
 use crate::terrain::query::deck::Deck;
+use crate::terrain::triangle_surface::SurfaceTriangle;
 
-/// The elevation of the ground at a world position in metres; `None` where there is none.
+/// The elevation of the ground at a world position in meters; `None` where there is none.
 pub type GroundHeight<'a> = dyn Fn(DVec2) -> Option<f64> + 'a;
 
-/// How far below the ground walls and piers are founded, in metres: the ground is drawn coarser when it is far away, by
+/// How far below the ground walls and piers are founded, in meters: the ground is drawn coarser when it is far away, by
 /// about a pixel, and nothing may show its foot then.
 pub const FOUNDED_M: f64 = 3.0;
 
-/// The width of the widest bridges that are built, about, in metres: a wider one is a symbol, drawn larger than life.
+/// The width of the widest bridges that are built, about, in meters: a wider one is a symbol, drawn larger than life.
 const WIDEST_REAL_M: f64 = 20.0;
 
 /// Over how many widths a deck turns from how the ground lies across its end to level.
@@ -43,7 +43,7 @@ const TILT_WIDTHS: f64 = 2.0;
 /// should.
 const MEETING_BREAKS: u32 = 24;
 
-/// How far above or below a parapet's foot a carriageway lies that it would stand in the way of, in metres.
+/// How far above or below a parapet's foot a carriageway lies that it would stand in the way of, in meters.
 const SAME_DECK_M: f64 = 1.5;
 
 /// The steepest fall across that a deck takes over from the ground at its end: between a steep road and a warped deck.
@@ -64,15 +64,15 @@ pub enum Across {
 /// How a bridge is built.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BridgeOptions {
-    /// Metres from the carriageway to the soffit, above 0; see [`depth_m`].
+    /// Meters from the carriageway to the soffit, above 0; see [`depth_m`].
     pub depth_m: f64,
-    /// Stations of the piers, in metres.
+    /// Stations of the piers, in meters.
     pub piers_m: Vec<f64>,
-    /// How far the abutments at its start and end reach below it, in metres; `None` where it goes on in another bridge.
+    /// How far the abutments at its start and end reach below it, in meters; `None` where it goes on in another bridge.
     pub abutments_m: [Option<f64>; 2],
     /// How its start and end lie across.
     pub across: [Across; 2],
-    /// Metres along the carriageway in one repeat of its texture, above 0.
+    /// Meters along the carriageway in one repeat of its texture, above 0.
     pub texture_length_m: f64,
     /// How many times elevations are stretched when drawn.
     pub exaggeration: f32,
@@ -85,13 +85,13 @@ pub struct BridgeSolids {
     pub carriageway: DrawMesh,
     /// All the rest.
     pub body: DrawMesh,
-    /// The carriageway's triangles, elevations in metres without exaggeration.
+    /// The carriageway's triangles, elevations in meters without exaggeration.
     pub deck: Vec<SurfaceTriangle>,
     /// How many piers stand.
     pub piers: usize,
 }
 
-/// How deep a deck is for its longest span: an eighteenth of it, as for girders of concrete, from 0.6 to 4 metres.
+/// How deep a deck is for its longest span: an eighteenth of it, as for girders of concrete, from 0.6 to 4 meters.
 pub fn depth_m(longest_span_m: f64) -> f64 {
     (longest_span_m / 18.0).clamp(0.6, 4.0)
 }
@@ -146,7 +146,7 @@ pub fn build(
     bridge
 }
 
-/// The section that stands nearest to a station; there is one at every pier unless it stands on a mitre.
+/// The section that stands nearest to a station; there is one at every pier unless it stands on a miter.
 fn nearest(sections: &[DeckSection], station_m: f64) -> &DeckSection {
     let after =
         sections.partition_point(|section| section.station_m < station_m).clamp(1, sections.len() - 1);
@@ -240,7 +240,7 @@ fn lay_carriageway(sections: &[DeckSection], options: &BridgeOptions) -> BridgeS
 
 /// The cross-section, as points on a section.
 struct SectionRings {
-    /// Side, part of the way to the carriageway's edge, metres above it.
+    /// Side, part of the way to the carriageway's edge, meters above it.
     points: [(usize, f64, f64); 12],
     exaggeration: f32,
 }
@@ -284,9 +284,9 @@ impl SectionRings {
     }
 }
 
-/// How high parapets stand over the carriageway, in metres.
+/// How high parapets stand over the carriageway, in meters.
 const PARAPET_M: f64 = 1.1;
-/// How thick they are, in metres.
+/// How thick they are, in meters.
 pub(in crate::structure) const PARAPET_THICK_M: f64 = 0.4;
 /// How wide the soffit is, as a part of the carriageway.
 pub(in crate::structure) const GIRDER: f64 = 0.62;
@@ -353,7 +353,7 @@ mod tests {
     }
 
     fn course(line: &Polyline) -> DeckCourse<'_> {
-        DeckCourse { line, beyond: [None; 2], width_m: 8.0, mitre_limit: 2.0 }
+        DeckCourse { line, beyond: [None; 2], width_m: 8.0, miter_limit: 2.0 }
     }
 
     fn none() -> Deck {

@@ -164,9 +164,9 @@ fn floor(faces: &mut Faces, footprint: &BuildingFootprint, roof: &UnitRoof, foot
 /// What a sound building measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measures {
-    /// Cubic metres within its faces.
+    /// Cubic meters within its faces.
     pub volume_m3: f64,
-    /// Square metres of plan under its roof.
+    /// Square meters of plan under its roof.
     pub roof_m2: f64,
 }
 

@@ -9,8 +9,8 @@ use crate::draw::color::Srgba;
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::structure::faces::Faces;
-use crate::terrain::facets::TriangleSurface;
-use crate::terrain::underfoot::runs;
+use crate::terrain::support_surface::runs;
+use crate::terrain::triangle_surface::TriangleSurface;
 
 /// The foot of a building's walls.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +19,7 @@ pub struct WallFooting {
     pub rings: Vec<Vec<DVec2>>,
     /// World Z at which the building's own walls end.
     pub foot_z: f32,
-    /// The walls' colour.
+    /// The walls' color.
     pub color: Srgba,
 }
 

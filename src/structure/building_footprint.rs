@@ -2,14 +2,14 @@
 //!
 //! Files hold rings that run either way, repeat vertices, cross themselves and touch their own holes. What an odd number
 //! of rings run around is kept (the rule by which such a polygon is painted), as polygons that cross nothing; vertices
-//! that say nothing are dropped. What encloses less than a quarter of a square metre is no building.
+//! that say nothing are dropped. What encloses less than a quarter of a square meter is no building.
 
 use glam::DVec2;
 
 use crate::geom::polygon;
 use crate::geom::region::Region;
 
-/// Vertices nearer to each other than this, and those nearer to the line between their neighbours, are dropped: less
+/// Vertices nearer to each other than this, and those nearer to the line between their neighbors, are dropped: less
 /// than a wall's plaster, more than an f32 can tell apart 30 km from the origin.
 const MERGE_M: f64 = 0.01;
 
@@ -67,7 +67,7 @@ impl BuildingFootprint {
         self.rings.len() > 1
     }
 
-    /// Square metres, courtyards left out.
+    /// Square meters, courtyards left out.
     pub fn area_m2(&self) -> f64 {
         self.rings.iter().map(|ring| polygon::doubled_area(ring) / 2.0).sum()
     }
@@ -83,7 +83,7 @@ impl BuildingFootprint {
     }
 }
 
-/// A ring without the vertices that lie on their neighbours or on the line between them.
+/// A ring without the vertices that lie on their neighbors or on the line between them.
 fn without_needless(ring: &[DVec2]) -> Vec<DVec2> {
     let mut kept: Vec<DVec2> = Vec::with_capacity(ring.len());
     for &at in ring {

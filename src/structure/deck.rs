@@ -1,13 +1,13 @@
 //! The course of a deck: lines across it, from which everything along a bridge is drawn out.
 //!
-//! At every vertex of the centreline stands a section, on the mitre as a ribbon's is; between vertices more stand where
-//! the deck's height bends. A deck is a closed solid, so a turn never splits it: where a mitre would reach too far, it
+//! At every vertex of the centerline stands a section, on the miter as a ribbon's is; between vertices more stand where
+//! the deck's height bends. A deck is a closed solid, so a turn never splits it: where a miter would reach too far, it
 //! is shortened on the outer side, and where its inner corner would pass the next one's, on the inner side.
 //!
 //! ```text
 //!            left
 //!      ┬──────┬──────┬╲
-//!      │      │      │  ╲      a section: its place on the centreline,
+//!      │      │      │  ╲      a section: its place on the centerline,
 //!      ┼──────┼──────┼    ╲    the ways from there to both edges, and
 //!      │      │      │╲     ╲  the elevations of both edges
 //!      ┴──────┴──────┴  ╲    ╱
@@ -19,46 +19,46 @@ use glam::{DVec2, Vec3};
 use crate::geom::polyline::Polyline;
 use crate::structure::bridge::{PARAPET_THICK_M, magnified};
 
-/// How far along a segment the inner corner of a mitre may reach, as a part of it: below a half, so that the corners at
+/// How far along a segment the inner corner of a miter may reach, as a part of it: below a half, so that the corners at
 /// its two ends never pass each other.
 const LONGEST_INNER: f64 = 0.45;
 
 /// How far apart sections put in stand at least, in widths: nearer ones would be one where coordinates are rounded to
-/// f32, a hundred kilometres from the origin, and the solid between them would have no sides.
+/// f32, a hundred kilometers from the origin, and the solid between them would have no sides.
 const LEAST_APART: f64 = 0.02;
 
-/// The most sections that are put in between the vertices of one centreline: enough for one every metre of a long
+/// The most sections that are put in between the vertices of one centerline: enough for one every meter of a long
 /// bridge, and a bound for lines that go on and on.
 const MOST_BREAKS: usize = 4096;
 
 /// A line across a deck.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeckSection {
-    /// Where it stands along the centreline, in metres.
+    /// Where it stands along the centerline, in meters.
     pub station_m: f64,
-    /// Its place on the centreline, in the world.
+    /// Its place on the centerline, in the world.
     pub at: DVec2,
     /// The ways from there to the left and to the right edge of the carriageway.
     pub aside: [DVec2; 2],
-    /// The elevations of the left and the right edge, in metres.
+    /// The elevations of the left and the right edge, in meters.
     pub edges_m: [f64; 2],
 }
 
 /// What a deck is drawn out along.
 #[derive(Clone, Copy, Debug)]
 pub struct DeckCourse<'a> {
-    /// The centreline in world coordinates.
+    /// The centerline in world coordinates.
     pub line: &'a Polyline,
     /// The vertices beyond its first and its last one, of the roads that go on there.
     pub beyond: [Option<DVec2>; 2],
-    /// From edge to edge of the carriageway, in metres, above 0.
+    /// From edge to edge of the carriageway, in meters, above 0.
     pub width_m: f64,
-    /// How long a mitre may be, in half widths, at least 1.
-    pub mitre_limit: f64,
+    /// How long a miter may be, in half widths, at least 1.
+    pub miter_limit: f64,
 }
 
 impl DeckCourse<'_> {
-    /// Sections at every vertex and, where they do not come in the way of a mitre, at the stations `breaks_m`, stations
+    /// Sections at every vertex and, where they do not come in the way of a miter, at the stations `breaks_m`, stations
     /// rising. `level_m` gives the elevation at a station.
     pub fn sections(&self, breaks_m: &[f64], level_m: &dyn Fn(f64) -> f64) -> Vec<DeckSection> {
         let mut breaks: Vec<f64> = breaks_m.iter().copied().take(MOST_BREAKS).collect();
@@ -106,22 +106,22 @@ impl DeckCourse<'_> {
         let own = if index == 0 { leaving } else { arriving };
         let square = own.unwrap_or(DVec2::X).perp() * half;
         let (Some(arriving), Some(leaving)) = (arriving, leaving) else { return [square, -square] };
-        let Some(mitre) = mitre(arriving, leaving) else { return [square, -square] };
+        let Some(miter) = miter(arriving, leaving) else { return [square, -square] };
         let shortest = [before, after]
             .into_iter()
             .flatten()
             .map(|other| other.distance(points[index]))
             .fold(f64::INFINITY, f64::min);
-        let reach = (mitre.length_squared() - 1.0).max(0.0).sqrt() * half;
-        if mitre.length() <= self.mitre_limit && 2.0 * reach <= shortest {
-            return [mitre * half, mitre * -half];
+        let reach = (miter.length_squared() - 1.0).max(0.0).sqrt() * half;
+        if miter.length() <= self.miter_limit && 2.0 * reach <= shortest {
+            return [miter * half, miter * -half];
         }
         // What goes on beyond an end does so with an edge of its own; see `ribbon::stroke`.
         if is_end {
             return [square, -square];
         }
-        let outer = mitre * half * (self.mitre_limit / mitre.length()).min(1.0);
-        let inner = mitre * half * (LONGEST_INNER * shortest / reach).min(1.0);
+        let outer = miter * half * (self.miter_limit / miter.length()).min(1.0);
+        let inner = miter * half * (LONGEST_INNER * shortest / reach).min(1.0);
         if arriving.perp_dot(leaving) > 0.0 { [inner, -outer] } else { [outer, -inner] }
     }
 }
@@ -130,8 +130,8 @@ fn section(station_m: f64, at: DVec2, aside: [DVec2; 2], level_m: &dyn Fn(f64) -
     DeckSection { station_m, at, aside, edges_m: [level_m(station_m); 2] }
 }
 
-/// The way to the left end of the mitre, in half widths; `None` where the line turns back on itself.
-fn mitre(arriving: DVec2, leaving: DVec2) -> Option<DVec2> {
+/// The way to the left end of the miter, in half widths; `None` where the line turns back on itself.
+fn miter(arriving: DVec2, leaving: DVec2) -> Option<DVec2> {
     let sum = arriving.perp() + leaving.perp();
     let square = sum.length_squared();
     (square > 1e-12).then(|| sum * (2.0 / square))
@@ -147,7 +147,7 @@ impl DeckSection {
         plan.as_vec2().extend((middle + (edge - middle) * part + above_m) as f32)
     }
 
-    /// The carriageway's left and right edge in the world, elevations in metres.
+    /// The carriageway's left and right edge in the world, elevations in meters.
     pub fn edges(&self) -> [Vec3; 2] {
         [0, 1].map(|side| (self.at + self.aside[side]).as_vec2().extend(self.edges_m[side] as f32))
     }
@@ -179,7 +179,7 @@ mod tests {
     fn a_gentle_course_covers_width_times_length_however_it_is_turned() {
         for quarter in 0..4 {
             let line = turned(&[(0.0, 0.0), (80.0, 0.0), (150.0, 30.0), (190.0, 90.0)], quarter);
-            let course = DeckCourse { line: &line, beyond: [None; 2], width_m: 8.0, mitre_limit: 2.0 };
+            let course = DeckCourse { line: &line, beyond: [None; 2], width_m: 8.0, miter_limit: 2.0 };
             let breaks: Vec<f64> = (0..40).map(|index| f64::from(index) * 7.0).collect();
             let sections = course.sections(&breaks, &|_| 0.0);
             assert!(sections.len() > 25);
@@ -189,11 +189,11 @@ mod tests {
     }
 
     #[test]
-    fn an_end_is_mitred_with_what_goes_on_there() {
+    fn an_end_is_mitered_with_what_goes_on_there() {
         let line = turned(&[(0.0, 0.0), (50.0, 0.0)], 0);
         let beyond = [Some(DVec2::new(-30.0, 30.0)), None];
         let sections =
-            DeckCourse { line: &line, beyond, width_m: 6.0, mitre_limit: 2.0 }.sections(&[], &|_| 0.0);
+            DeckCourse { line: &line, beyond, width_m: 6.0, miter_limit: 2.0 }.sections(&[], &|_| 0.0);
         let [left, right] = sections[0].aside;
         assert_eq!(left, -right);
         assert!((left.y - 3.0).abs() < 1e-12 && left.x > 1.0 || left.x < -1.0, "{left}");
@@ -215,7 +215,7 @@ mod tests {
                 points.push((at.x, at.y));
             }
             let line = turned(&points, quarter);
-            let course = DeckCourse { line: &line, beyond: [None; 2], width_m, mitre_limit: 2.0 };
+            let course = DeckCourse { line: &line, beyond: [None; 2], width_m, miter_limit: 2.0 };
             let breaks: Vec<f64> = (0..200).map(|index| f64::from(index) * 3.0).collect();
             let sections = course.sections(&breaks, &|_| 0.0);
             for pair in sections.windows(2) {

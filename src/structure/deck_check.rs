@@ -9,13 +9,13 @@ use crate::draw::list::DrawMesh;
 /// A position, bit by bit.
 type CornerBits = [u32; 3];
 
-/// Edges nearer than this to each other are one, in metres: what is computed in two ways is rounded to f32 in two ways,
+/// Edges nearer than this to each other are one, in meters: what is computed in two ways is rounded to f32 in two ways,
 /// and a face thinner than this has no area that f32 could hold.
 const SAME_M: f32 = 1e-3;
 
 /// Whether every edge of a triangle is run along once in each direction, or as often in one as in the other: then the
 /// meshes are the whole surface of one or several solids. Positions are compared whichever mesh and vertex they belong
-/// to: bit by bit, and where that leaves edges over, to a millimetre.
+/// to: bit by bit, and where that leaves edges over, to a millimeter.
 ///
 /// # Errors
 /// A sentence that names an edge where the surface is open.

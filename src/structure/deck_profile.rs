@@ -14,28 +14,28 @@
 //!   ▓▓▓▓▓▓▓╲______________________╱▓▓▓▓
 //! ```
 
-/// How far rounding may take a deck down below the corner it rounds, in metres: what is lifted over the ground has this
+/// How far rounding may take a deck down below the corner it rounds, in meters: what is lifted over the ground has this
 /// much to spare.
 const ROUNDED_OFF_M: f64 = 0.2;
 
-/// How far from a corner its vertical curve may begin, in metres: longer ones would look no smoother.
+/// How far from a corner its vertical curve may begin, in meters: longer ones would look no smoother.
 const LONGEST_CURVE_M: f64 = 40.0;
 
 /// Into how many parts a vertical curve is cut.
 const CURVE_PARTS: u32 = 6;
 
-/// How high a deck lies over the ground where nothing asks for more, in metres: the ground must not show through.
+/// How high a deck lies over the ground where nothing asks for more, in meters: the ground must not show through.
 const OVER_GROUND_M: f64 = 0.3;
 
-/// How fast it may rise to that from its ends: [`OVER_GROUND_M`] within ten metres.
+/// How fast it may rise to that from its ends: [`OVER_GROUND_M`] within ten meters.
 const TO_OVER_GROUND: f64 = 0.03;
 
 /// What a deck has to clear at a station.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClearancePoint {
-    /// Where, in metres along the deck.
+    /// Where, in meters along the deck.
     pub station_m: f64,
-    /// The elevation it must not lie below, in metres.
+    /// The elevation it must not lie below, in meters.
     pub level_m: f64,
 }
 
@@ -91,7 +91,7 @@ impl DeckProfile {
         Self { points: rounded(&upper_hull(&points)) }
     }
 
-    /// The elevation at a station in metres, that of the nearer end beyond the ends.
+    /// The elevation at a station in meters, that of the nearer end beyond the ends.
     pub fn level_m(&self, station_m: f64) -> f64 {
         let last = self.points.len() - 1;
         let after = self.points.partition_point(|point| point.station_m < station_m).clamp(1, last);
@@ -117,7 +117,7 @@ impl DeckProfile {
         Self { points }
     }
 
-    /// The steepest rise or fall, metres a metre.
+    /// The steepest rise or fall, meters a meter.
     pub fn steepest(&self) -> f64 {
         self.points.windows(2).map(|pair| grade(pair[0], pair[1]).abs()).fold(0.0, f64::max)
     }

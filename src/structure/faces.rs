@@ -1,4 +1,4 @@
-//! Flat faces with one colour each, from which all structures are made.
+//! Flat faces with one color each, from which all structures are made.
 
 use glam::{DVec2, Vec2, Vec3};
 

@@ -7,7 +7,7 @@ use crate::structure::faces::Faces;
 use crate::structure::fence_band::{BandSection, FenceBand, SectionCorner};
 use crate::structure::fence_track::Track;
 use crate::structure::power_beam::square;
-use crate::terrain::underfoot::SupportSurface;
+use crate::terrain::support_surface::SupportSurface;
 
 const WOOD: Srgba = Srgba::opaque(150, 124, 92);
 const RAIL: Srgba = Srgba::opaque(176, 150, 114);
@@ -20,7 +20,7 @@ const RAIL_THICKNESS: f64 = 0.45;
 /// Where something stands, and which way the line runs there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PostPosition {
-    /// World X and Y, metres.
+    /// World X and Y, meters.
     pub at: DVec2,
     /// A unit vector along the line.
     pub along: DVec2,
@@ -31,9 +31,9 @@ pub struct PostPosition {
 pub struct Posts {
     /// Where they stand.
     pub stands: Vec<PostPosition>,
-    /// From side to side, metres.
+    /// From side to side, meters.
     pub width_m: f64,
-    /// Above the ground, metres.
+    /// Above the ground, meters.
     pub height_m: f64,
 }
 

@@ -17,15 +17,16 @@ use glam::{DVec2, DVec3, Vec3};
 use crate::draw::color::Srgba;
 use crate::structure::faces::Faces;
 use crate::structure::fence_track::{Ends, Track, TrackJoint, TrackStretch};
-use crate::terrain::facets::TriangleSurface;
-use crate::terrain::underfoot::{self, GroundRun};
+use crate::terrain::support_surface;
+use crate::terrain::support_surface::GroundRun;
+use crate::terrain::triangle_surface::TriangleSurface;
 
 /// A corner of a cross-section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SectionCorner {
     /// Where between the feet: 0 at the right one, 1 at the left one; beyond them for what overhangs.
     pub share: f64,
-    /// Metres above the ground there.
+    /// Meters above the ground there.
     pub up_m: f64,
 }
 
@@ -36,7 +37,7 @@ pub struct BandSection {
     pub feet: (f64, f64),
     /// From the right up and over to the left: convex.
     pub corners: Vec<SectionCorner>,
-    /// The colour of each side, from the first corner to the second, and so on; where there is one for each corner, the
+    /// The color of each side, from the first corner to the second, and so on; where there is one for each corner, the
     /// last side closes the section.
     pub colors: Vec<Srgba>,
 }
@@ -46,9 +47,9 @@ pub struct BandSection {
 pub struct Ruffle {
     /// By what share its corners above the ground wander, in 0..=1: 0 for masonry, more for leaves.
     pub share: f64,
-    /// By how many steps of 255 its colour varies.
+    /// By how many steps of 255 its color varies.
     pub shade: f32,
-    /// Metres between rows that are added for it, above 0.
+    /// Meters between rows that are added for it, above 0.
     pub every_m: f64,
 }
 
@@ -211,7 +212,7 @@ struct Foot {
 impl Foot {
     fn new(pair: &[TrackJoint], share: f64, ground: &dyn TriangleSurface) -> Self {
         let (from, to) = (pair[0].across(share), pair[1].across(share));
-        Self { from, to, runs: underfoot::runs(ground, from, to) }
+        Self { from, to, runs: support_surface::runs(ground, from, to) }
     }
 
     fn reaches_end(&self) -> bool {
@@ -228,7 +229,7 @@ struct BandSegment {
     ends: bool,
 }
 
-/// A fixed number in −1..=1 for each place (to the centimetre) and salt (a 64-bit integer hash, Steele et al. 2014).
+/// A fixed number in −1..=1 for each place (to the centimeter) and salt (a 64-bit integer hash, Steele et al. 2014).
 pub fn noise(at: DVec2, salt: u64) -> f64 {
     let place = (at * 100.0).round();
     let mut hash = (place.x as i64 as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15)
@@ -239,14 +240,14 @@ pub fn noise(at: DVec2, salt: u64) -> f64 {
     ((hash ^ hash >> 31) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
-/// A colour, lighter or darker by some steps of 255.
+/// A color, lighter or darker by some steps of 255.
 pub fn shaded(color: Srgba, by: f32) -> Srgba {
     let [red, green, blue, alpha] = color.0;
     let channel = |value: u8| (f32::from(value) + by).clamp(0.0, 255.0) as u8;
     Srgba([channel(red), channel(green), channel(blue), alpha])
 }
 
-/// The largest vertical distance in metres between the feet of `band` and the ground, at every row and half-way to the
+/// The largest vertical distance in meters between the feet of `band` and the ground, at every row and half-way to the
 /// next: 0 but for rounding, whatever the ground. Infinite where there is no ground under a foot.
 pub fn check_feet(band: &FenceBand, ground: &dyn TriangleSurface) -> f64 {
     let off = |at: DVec3| match ground.displayed_z(at.truncate()) {

@@ -1,6 +1,6 @@
 //! A line with a width in plan: what a wall, a hedge or the rail of a fence is built along.
 //!
-//! At every vertex the track's two sides meet on the mitre, so that what is built along it turns without a gap:
+//! At every vertex the track's two sides meet on the miter, so that what is built along it turns without a gap:
 //!
 //! ```text
 //!  left ───────╮            ● joint: a point of the line and the way to the track's left side
@@ -8,17 +8,17 @@
 //!  right ─╮│   │
 //! ```
 //!
-//! Where the line turns back so sharply that the mitre would become a spike, the track ends square and begins anew.
+//! Where the line turns back so sharply that the miter would become a spike, the track ends square and begins anew.
 
 use glam::DVec2;
 
-/// How long a mitre may be in half widths: turns of up to 120 degrees keep theirs.
-const MITRE_LIMIT: f64 = 2.0;
+/// How long a miter may be in half widths: turns of up to 120 degrees keep theirs.
+const MITER_LIMIT: f64 = 2.0;
 
 /// Where two segments meet, or one ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackJoint {
-    /// World X and Y, metres.
+    /// World X and Y, meters.
     pub at: DVec2,
     /// From there to the track's left side; to its right side it is as far the other way.
     pub to_left: DVec2,
@@ -57,12 +57,12 @@ pub struct Track {
 }
 
 impl Track {
-    /// The track along `points`, no two neighbours the same, `half_width_m` to either side. It runs round where the last
+    /// The track along `points`, no two neighbors the same, `half_width_m` to either side. It runs round where the last
     /// point is the first.
     pub fn new(points: &[DVec2], half_width_m: f64) -> Self {
         let last = points.len().saturating_sub(1);
         let round = last >= 3 && points[0] == points[last];
-        let around = round.then(|| mitre([points[last - 1], points[0], points[1]], half_width_m)).flatten();
+        let around = round.then(|| miter([points[last - 1], points[0], points[1]], half_width_m)).flatten();
         let square = |from: DVec2, to: DVec2| (to - from).normalize_or_zero().perp() * half_width_m;
         let mut stretches = Vec::new();
         let mut joints = Vec::new();
@@ -73,7 +73,7 @@ impl Track {
                 joints.push(end(around.unwrap_or_else(|| square(at, points[1]))));
             } else if index == last && last > 0 {
                 joints.push(end(around.unwrap_or_else(|| square(points[last - 1], at))));
-            } else if let Some(to_left) = mitre([points[index - 1], at, points[index + 1]], half_width_m) {
+            } else if let Some(to_left) = miter([points[index - 1], at, points[index + 1]], half_width_m) {
                 joints.push(end(to_left));
             } else {
                 joints.push(end(square(points[index - 1], at)));
@@ -87,15 +87,15 @@ impl Track {
     }
 }
 
-/// From the middle one of three vertices to the left side; `None` where the mitre would be longer than it may be, or its
+/// From the middle one of three vertices to the left side; `None` where the miter would be longer than it may be, or its
 /// inner corner would reach past the middle of either segment.
-fn mitre([before, at, after]: [DVec2; 3], half_width_m: f64) -> Option<DVec2> {
+fn miter([before, at, after]: [DVec2; 3], half_width_m: f64) -> Option<DVec2> {
     let sum = (at - before).normalize_or_zero().perp() + (after - at).normalize_or_zero().perp();
     let square = sum.length_squared();
     let to_left = (square > 1e-12).then(|| sum * (2.0 / square))?;
     let reach = (to_left.length_squared() - 1.0).max(0.0).sqrt() * half_width_m;
     let shortest = at.distance(before).min(at.distance(after));
-    (to_left.length() <= MITRE_LIMIT && 2.0 * reach <= shortest).then(|| to_left * half_width_m)
+    (to_left.length() <= MITER_LIMIT && 2.0 * reach <= shortest).then(|| to_left * half_width_m)
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What is built on the ground with a shape of its own: outlines and centrelines with elevations become solids.
+//! What is built on the ground with a shape of its own: outlines and centerlines with elevations become solids.
 //!
 //! Positions are world space; heights are handed in as they are drawn, times the scene's exaggeration, so that a solid
 //! meets the ground it stands on.
@@ -10,6 +10,7 @@ pub mod building_footprint;
 pub mod deck;
 pub mod deck_check;
 pub mod deck_profile;
+pub mod draped_solid;
 pub mod faces;
 pub mod fence;
 pub mod fence_band;
@@ -24,5 +25,4 @@ pub mod roof;
 pub mod roof_hipped;
 pub mod trench;
 pub mod tunnel;
-pub mod upright;
 pub mod wall;

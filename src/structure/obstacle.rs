@@ -13,7 +13,7 @@ use crate::draw::color::Srgba;
 use crate::structure::faces::Faces;
 use crate::structure::fence::{PostPosition, spans};
 use crate::structure::power_beam::{beam, square};
-use crate::terrain::underfoot::SupportSurface;
+use crate::terrain::support_surface::SupportSurface;
 
 const CONCRETE: Srgba = Srgba::opaque(184, 180, 170);
 const STEEL: Srgba = Srgba::opaque(112, 84, 68);
@@ -35,7 +35,7 @@ pub enum Obstacle {
 pub struct Obstacles {
     /// Where each stands.
     pub stands: Vec<(PostPosition, Obstacle)>,
-    /// Above the ground, metres.
+    /// Above the ground, meters.
     pub height_m: f64,
 }
 

@@ -16,13 +16,13 @@ use crate::structure::bridge::{BridgeOptions, FOUNDED_M, GIRDER, GroundHeight, P
 use crate::structure::deck::DeckSection;
 use crate::structure::faces::Faces;
 
-/// How much a shaft widens downward on each side, metres a metre.
+/// How much a shaft widens downward on each side, meters a meter.
 const BATTER: f64 = 0.02;
 
-/// The lowest pier that is worth building, in metres from the ground to the soffit.
+/// The lowest pier that is worth building, in meters from the ground to the soffit.
 const LOWEST_M: f64 = 0.5;
 
-/// How far what carries the deck reaches into it, in metres, so that no slit shows.
+/// How far what carries the deck reaches into it, in meters, so that no slit shows.
 const INTO_DECK_M: f64 = 0.1;
 
 /// How wide a shaft is, as a part of the soffit.

@@ -15,8 +15,8 @@ use crate::draw::color::Srgba;
 use crate::structure::faces::Faces;
 use crate::structure::fence::PostPosition;
 use crate::structure::power_beam::beam;
-use crate::terrain::facets::TriangleSurface;
-use crate::terrain::underfoot::{GroundRun, SupportSurface, runs};
+use crate::terrain::support_surface::{GroundRun, SupportSurface, runs};
+use crate::terrain::triangle_surface::TriangleSurface;
 
 const STEEL: Srgba = Srgba::opaque(138, 144, 150);
 const WOOD: Srgba = Srgba::opaque(122, 98, 74);
@@ -25,7 +25,7 @@ const WIRE: Srgba = Srgba::opaque(70, 72, 76);
 /// Up to this height a line runs on wooden poles, above it on lattice towers.
 pub const TALLEST_POLE_M: f64 = 15.0;
 
-/// Least height of a wire above the ground as a share of the pylon's: six metres under a pylon of thirty.
+/// Least height of a wire above the ground as a share of the pylon's: six meters under a pylon of thirty.
 const CLEARANCE: f64 = 0.2;
 /// Where the lowest wires are fastened, as a share of the pylon's height.
 const LOWEST_WIRE: f64 = 0.68;
@@ -43,15 +43,15 @@ const MOST_SPLITS: u32 = 6;
 pub struct PowerLine {
     /// The pylons, in the order of the line.
     pub pylons: Vec<PostPosition>,
-    /// From the ground to its top, metres.
+    /// From the ground to its top, meters.
     pub height_m: f64,
-    /// Between the outermost wires, metres.
+    /// Between the outermost wires, meters.
     pub width_m: f64,
     /// How deep a wire hangs, as a share of its span.
     pub sag: f64,
 }
 
-/// A pylon's wires: where each is fastened, metres across the line (left is positive) and up.
+/// A pylon's wires: where each is fastened, meters across the line (left is positive) and up.
 fn fastenings(line: &PowerLine) -> Vec<(f64, f64)> {
     let (height, half) = (line.height_m, line.width_m / 2.0);
     if height <= TALLEST_POLE_M {
@@ -63,7 +63,7 @@ fn fastenings(line: &PowerLine) -> Vec<(f64, f64)> {
 }
 
 impl PowerLine {
-    /// Adds the pylons that have ground under them, and the wires between neighbours that have, to `faces`.
+    /// Adds the pylons that have ground under them, and the wires between neighbors that have, to `faces`.
     pub fn build(&self, under: SupportSurface<'_>, faces: &mut Faces) {
         let feet: Vec<Option<f64>> = self.pylons.iter().map(|stand| under.z(stand.at)).collect();
         for (stand, foot) in self.pylons.iter().zip(&feet) {
@@ -252,7 +252,7 @@ fn worst([from, to]: [PostPosition; 2], height_m: f64, ground: &dyn TriangleSurf
     too_near.then_some(least.1)
 }
 
-/// The largest depth in metres by which a wire of `line` comes nearer to the displayed ground than it may, where it need
+/// The largest depth in meters by which a wire of `line` comes nearer to the displayed ground than it may, where it need
 /// not; 0 where all hang as they should. What a straight wire would lack is not counted.
 pub fn check_wires(line: &PowerLine, under: SupportSurface<'_>) -> f64 {
     let clearance_m = line.height_m * CLEARANCE;
@@ -276,11 +276,11 @@ pub fn check_wires(line: &PowerLine, under: SupportSurface<'_>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::finest::FullResolution;
+    use crate::terrain::full_resolution::FullResolution;
     use crate::terrain::lattice::Lattice;
     use glam::DVec2;
 
-    /// A ridge of `height_m` across the middle of a kilometre of level ground.
+    /// A ridge of `height_m` across the middle of a kilometer of level ground.
     fn ridge(height_m: f32) -> Lattice {
         let height = |index: u32| if index % 101 == 50 { height_m } else { 0.0 };
         Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 101, (0..101 * 11).map(height).collect())

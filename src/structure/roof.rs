@@ -34,7 +34,7 @@ pub struct UnitRoof {
     pub edge: Vec<Vec<DVec3>>,
     /// Flat polygons, counter-clockwise seen from above, X, Y and rise.
     pub faces: Vec<Vec<DVec3>>,
-    /// How far it is in plan from the eaves to the ridge, metres; 0 for a flat one. Rise over run is its pitch.
+    /// How far it is in plan from the eaves to the ridge, meters; 0 for a flat one. Rise over run is its pitch.
     pub run_m: f64,
 }
 
@@ -91,7 +91,7 @@ fn gabled(footprint: &BuildingFootprint) -> Option<UnitRoof> {
     Some(UnitRoof { shape: words::RoofShape::Gabled, edge: vec![edge], faces: vec![side, other], run_m })
 }
 
-/// No vertex of a gabled roof's footprint may lie nearer to the ridge, metres.
+/// No vertex of a gabled roof's footprint may lie nearer to the ridge, meters.
 const LEAST_ASIDE_M: f64 = 0.02;
 
 /// The ring with a vertex where it crosses the line on which `aside` is 0, and the two places of these in it; `None`
@@ -128,10 +128,10 @@ fn pyramidal(footprint: &BuildingFootprint) -> Option<UnitRoof> {
     Some(UnitRoof { shape: words::RoofShape::Pyramidal, edge: level_edge(footprint), faces, run_m: nearest })
 }
 
-/// How far the middle must lie within every wall's line for one point to roof them all, metres.
+/// How far the middle must lie within every wall's line for one point to roof them all, meters.
 const LEAST_VIEW_M: f64 = 0.05;
 
-/// The centre of a ring's area.
+/// The center of a ring's area.
 pub fn centroid(ring: &[DVec2]) -> DVec2 {
     let first = ring.first().copied().unwrap_or_default();
     let (mut sum, mut area) = (DVec2::ZERO, 0.0);
@@ -182,7 +182,7 @@ impl RoofRectangle {
     }
 }
 
-/// The area in plan that a roof's faces cover, in square metres; each must face up.
+/// The area in plan that a roof's faces cover, in square meters; each must face up.
 ///
 /// # Errors
 /// A sentence about the first face that does not.

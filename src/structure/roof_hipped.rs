@@ -84,7 +84,7 @@ fn face(ring: &[DVec2], walls: &[Wall], index: usize) -> Vec<DVec2> {
     left
 }
 
-/// A face's corners among all corners, the neighbours that are one taken together; X, Y and the distance from the wall.
+/// A face's corners among all corners, the neighbors that are one taken together; X, Y and the distance from the wall.
 fn welded(face: &[DVec2], wall: Wall, corners: &mut Vec<DVec3>) -> Vec<usize> {
     let mut found: Vec<usize> = Vec::with_capacity(face.len());
     for &at in face {

@@ -14,10 +14,10 @@ const PARAPET_WIDTH: f64 = 0.8;
 /// Its height as a share of the trench's depth: what a trench of that depth yields, loosened by a quarter, piled on both
 /// sides.
 const PARAPET_HEIGHT: f64 = 0.35;
-/// How far its surface wanders, and its colour in steps of 255.
+/// How far its surface wanders, and its color in steps of 255.
 const RUFFLE: (f64, f32) = (0.12, 8.0);
 
-/// From the outer foot of one parapet to that of the other, metres: all the ground that is bare earth.
+/// From the outer foot of one parapet to that of the other, meters: all the ground that is bare earth.
 pub fn bare_m(width_m: f64) -> f64 {
     width_m * (1.0 + 2.0 * PARAPET_WIDTH)
 }

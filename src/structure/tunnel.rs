@@ -20,9 +20,9 @@ use crate::structure::bridge::{FOUNDED_M, GroundHeight, magnified};
 use crate::structure::faces::Faces;
 use crate::structure::pier::lowest;
 
-/// The height of a mouth six metres wide, in metres: 4.5 m for traffic and the curve of the arch.
+/// The height of a mouth six meters wide, in meters: 4.5 m for traffic and the curve of the arch.
 const MOUTH_M: f64 = 6.0;
-/// How much higher a mouth is for each metre that its road is wider.
+/// How much higher a mouth is for each meter that its road is wider.
 const MOUTH_PER_M: f64 = 0.25;
 /// How far the upright part of a mouth reaches, as a part of its height.
 const SPRINGING: f64 = 0.5;
@@ -42,18 +42,18 @@ const DARK: Srgba = Srgba::opaque(22, 21, 22);
 pub struct Portal {
     /// The middle of its mouth in world coordinates.
     pub at: DVec2,
-    /// The road's elevation there in metres.
+    /// The road's elevation there in meters.
     pub level_m: f64,
     /// The direction out of the tunnel, of length 1.
     pub outward: DVec2,
-    /// The carriageway's width in metres, above 0.
+    /// The carriageway's width in meters, above 0.
     pub width_m: f64,
     /// How many times elevations are stretched when drawn.
     pub exaggeration: f32,
 }
 
 impl Portal {
-    /// The height of its wall in metres.
+    /// The height of its wall in meters.
     pub fn height_m(&self) -> f64 {
         self.mouth_m() + 1.6 * magnified(self.width_m)
     }

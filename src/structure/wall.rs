@@ -9,10 +9,10 @@ use crate::structure::fence_track::Track;
 const STONE: Srgba = Srgba::opaque(172, 162, 148);
 const COPING: Srgba = Srgba::opaque(196, 188, 174);
 
-/// Stones vary in colour by as many steps of 255.
+/// Stones vary in color by as many steps of 255.
 const STONE_SHADE: f32 = 9.0;
 
-/// A wall along `points`; its colour changes every `every_m`.
+/// A wall along `points`; its color changes every `every_m`.
 pub fn wall(points: &[DVec2], (width_m, height_m): (f64, f64), every_m: f64) -> FenceBand {
     let corner = |share: f64, up_m: f64| SectionCorner { share, up_m };
     FenceBand {

@@ -1,14 +1,14 @@
-//! Hillshading: how brightly the ground's slope faces the sun, as a grey for each post.
+//! Hillshading: how brightly the ground's slope faces the sun, as a gray for each post.
 //!
-//! With the slopes `p` east and `q` north of [`Lattice::slopes`] (Horn 1981), exaggerated by `z`, the grey is
+//! With the slopes `p` east and `q` north of [`Lattice::slopes`] (Horn 1981), exaggerated by `z`, the gray is
 //! `1 + 254 · max(0, n · s)`, where `n` is the upward unit normal of the slopes and `s` the direction to the sun: what
-//! `gdaldem hillshade` draws, equal to it within one grey level. 0 stands for no data.
+//! `gdaldem hillshade` draws, equal to it within one gray level. 0 stands for no data.
 //!
-//! Where a neighbour is missing or lies off the border, the post's own height stands for it, so that there is a grey
+//! Where a neighbor is missing or lies off the border, the post's own height stands for it, so that there is a gray
 //! for every post with data; `gdaldem` leaves a frame of one post and the posts around holes empty unless told
 //! otherwise (`-compute_edges`, which then continues the slope instead).
 //!
-//! Inside a row, where all neighbours have data, slopes are sums along columns that two neighbouring posts share, and
+//! Inside a row, where all neighbors have data, slopes are sums along columns that two neighboring posts share, and
 //! the loop over a row is one that the compiler turns to vectors; the few other posts are asked one by one.
 
 use rayon::prelude::*;
@@ -33,20 +33,20 @@ impl Default for HillshadeOptions {
     }
 }
 
-/// The grey of posts without data.
+/// The gray of posts without data.
 pub const NO_DATA: u8 = 0;
 
-/// The grey of every post, row by row from the south-west as [`Lattice::heights`]: 1 facing away from the sun, 255
+/// The gray of every post, row by row from the south-west as [`Lattice::heights`]: 1 facing away from the sun, 255
 /// facing it, [`NO_DATA`] without data. Spread over all threads; the same for any number of them.
 pub fn hillshade(lattice: &Lattice, options: &HillshadeOptions) -> Vec<u8> {
     let sun = Sun::new(options);
     let columns = lattice.columns() as usize;
-    let mut greys = vec![NO_DATA; lattice.heights().len()];
-    greys.par_chunks_mut(columns).enumerate().for_each_init(
+    let mut grays = vec![NO_DATA; lattice.heights().len()];
+    grays.par_chunks_mut(columns).enumerate().for_each_init(
         || vec![f32::NAN; columns],
-        |light, (row, greys)| shade_row(lattice, &sun, row, light, greys),
+        |light, (row, grays)| shade_row(lattice, &sun, row, light, grays),
     );
-    greys
+    grays
 }
 
 /// The direction to the sun, and what heights are stretched by.
@@ -77,12 +77,12 @@ impl Sun {
 }
 
 /// 1..=255; NaN counts as facing away.
-fn grey(light: f32) -> u8 {
+fn gray(light: f32) -> u8 {
     (1.5 + light.max(0.0)) as u8
 }
 
-fn shade_row(lattice: &Lattice, sun: &Sun, row: usize, light: &mut [f32], greys: &mut [u8]) {
-    let columns = greys.len();
+fn shade_row(lattice: &Lattice, sun: &Sun, row: usize, light: &mut [f32], grays: &mut [u8]) {
+    let columns = grays.len();
     let heights = lattice.heights();
     let own = &heights[row * columns..][..columns];
     let has_inside = row > 0 && row + 1 < lattice.rows() as usize && columns > 2;
@@ -98,17 +98,17 @@ fn shade_row(lattice: &Lattice, sun: &Sun, row: usize, light: &mut [f32], greys:
             let up = (north[0] - south[0]) + 2.0 * (north[1] - south[1]) + (north[2] - south[2]);
             *light = sun.light(east * per_east, up * per_north);
         }
-        for (grey_out, light) in greys.iter_mut().zip(light.iter()) {
-            *grey_out = grey(*light);
+        for (gray_out, light) in grays.iter_mut().zip(light.iter()) {
+            *gray_out = gray(*light);
         }
     }
-    for (column, grey_out) in greys.iter_mut().enumerate() {
+    for (column, gray_out) in grays.iter_mut().enumerate() {
         if own[column].is_nan() {
-            *grey_out = NO_DATA;
+            *gray_out = NO_DATA;
         } else if !has_inside || column == 0 || column + 1 == columns || light[column].is_nan() {
             let post = Post { column: column as u32, row: row as u32 };
             let slopes = lattice.slopes(post) * sun.stretch;
-            *grey_out = grey(sun.light(slopes.x, slopes.y));
+            *gray_out = gray(sun.light(slopes.x, slopes.y));
         }
     }
 }
@@ -126,27 +126,27 @@ mod tests {
     }
 
     #[test]
-    fn a_plane_is_one_grey_up_to_its_border_and_brightest_where_it_faces_the_sun() {
+    fn a_plane_is_one_gray_up_to_its_border_and_brightest_where_it_faces_the_sun() {
         let options = HillshadeOptions::default();
-        let grey = |east, north| {
-            let greys = hillshade(&plane(east, north), &options);
-            assert!(greys.iter().all(|&grey| grey == greys[0]), "{greys:?}");
-            greys[0]
+        let gray = |east, north| {
+            let grays = hillshade(&plane(east, north), &options);
+            assert!(grays.iter().all(|&gray| gray == grays[0]), "{grays:?}");
+            grays[0]
         };
         // sin 45° of 254, and one
-        assert_eq!(grey(0.0, 0.0), 181);
+        assert_eq!(gray(0.0, 0.0), 181);
         let facing = 0.5f32.sqrt();
-        assert_eq!(grey(facing, -facing), 255, "rising south-east, it faces north-west");
-        assert_eq!(grey(-3.0, 3.0), 1, "its back is turned");
+        assert_eq!(gray(facing, -facing), 255, "rising south-east, it faces north-west");
+        assert_eq!(gray(-3.0, 3.0), 1, "its back is turned");
     }
 
     #[test]
-    fn only_posts_without_data_are_without_a_grey() {
+    fn only_posts_without_data_are_without_a_gray() {
         let mut heights = vec![5.0; 63];
         (heights[0], heights[31]) = (f32::NAN, f32::NAN);
         let holed = Lattice::new(DVec2::ZERO, DVec2::ONE, 9, heights).expect("sound");
-        let greys = hillshade(&holed, &HillshadeOptions::default());
-        let empty: Vec<usize> = (0..63).filter(|&index| greys[index] == NO_DATA).collect();
+        let grays = hillshade(&holed, &HillshadeOptions::default());
+        let empty: Vec<usize> = (0..63).filter(|&index| grays[index] == NO_DATA).collect();
         assert_eq!(empty, [0, 31]);
     }
 
@@ -155,11 +155,11 @@ mod tests {
         let heights = (0..400).map(|index: u32| ((index * 7919) % 101) as f32).collect();
         let rough = Lattice::new(DVec2::ZERO, DVec2::new(30.0, 20.0), 20, heights).expect("sound");
         let sun = Sun::new(&HillshadeOptions::default());
-        let greys = hillshade(&rough, &HillshadeOptions::default());
+        let grays = hillshade(&rough, &HillshadeOptions::default());
         for post in rough.posts() {
             let slopes = rough.slopes(post);
-            let alone = grey(sun.light(slopes.x, slopes.y));
-            assert!(alone.abs_diff(greys[rough.index(post)]) <= 1, "{post:?}");
+            let alone = gray(sun.light(slopes.x, slopes.y));
+            assert!(alone.abs_diff(grays[rough.index(post)]) <= 1, "{post:?}");
         }
     }
 }

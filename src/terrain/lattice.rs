@@ -1,6 +1,6 @@
 //! The ground as one lattice of posts.
 //!
-//! Posts stand at equal distances east and north of an f64 origin, the south-west post; heights are f32 metres,
+//! Posts stand at equal distances east and north of an f64 origin, the south-west post; heights are f32 meters,
 //! NaN where there is no data. Between posts the ground is the plane of the finest bintree triangles: the
 //! diagonal of the cell north-east of post (column, row) joins the two corners whose coordinates are both even
 //! or both odd, as longest-edge bisection leaves it:
@@ -34,8 +34,8 @@ pub struct Lattice {
     pinned: Vec<bool>,
 }
 
-/// No height may lie further from 0 than this many metres: as far as a scene file's elevations go, and little
-/// enough that an f32 still tells one metre from the next.
+/// No height may lie further from 0 than this many meters: as far as a scene file's elevations go, and little
+/// enough that an f32 still tells one meter from the next.
 pub const HIGHEST_M: f32 = 1e7;
 
 /// Why a raster cannot become the ground.
@@ -55,7 +55,7 @@ pub enum LatticeError {
         "the elevation model holds a height of {height:e} m, beyond ±{HIGHEST_M} m; if that stands for no data, the file must say so (its no-data value)"
     )]
     TooHigh {
-        /// In metres; may be infinite.
+        /// In meters; may be infinite.
         height: f32,
     },
 }
@@ -70,7 +70,7 @@ pub struct Post {
 }
 
 impl Lattice {
-    /// The lattice of a north-up raster in metres.
+    /// The lattice of a north-up raster in meters.
     ///
     /// # Errors
     /// See [`LatticeError`].
@@ -88,7 +88,7 @@ impl Lattice {
         Self::new(origin, cell, columns, heights)
     }
 
-    /// The origin and the cell of the lattice of a north-up raster in metres, whose samples are not looked at.
+    /// The origin and the cell of the lattice of a north-up raster in meters, whose samples are not looked at.
     ///
     /// # Errors
     /// [`LatticeError::TooSmall`] and [`LatticeError::NotNorthUp`].
@@ -148,7 +148,7 @@ impl Lattice {
         self.origin
     }
 
-    /// Metres between posts, eastward and northward.
+    /// Meters between posts, eastward and northward.
     pub fn cell(&self) -> DVec2 {
         self.cell
     }
@@ -202,7 +202,7 @@ impl Lattice {
         (DVec2::new(f64::from(column), f64::from(row)) * self.cell).as_vec2()
     }
 
-    /// The height of a post in metres, NaN where there is no data.
+    /// The height of a post in meters, NaN where there is no data.
     ///
     /// # Panics
     /// Where the post lies outside the lattice.
@@ -230,7 +230,7 @@ impl Lattice {
 
     /// The heights of the posts from `first` to column `last` of its row, to be set; whether they are pinned stays as
     /// it is.
-    pub(in crate::terrain) fn heights_mut(&mut self, first: Post, last: u32) -> &mut [f32] {
+    pub(crate) fn heights_mut(&mut self, first: Post, last: u32) -> &mut [f32] {
         let from = self.index(first);
         &mut self.heights[from..=from + (last - first.column) as usize]
     }
@@ -285,11 +285,11 @@ impl Lattice {
         ]
     }
 
-    /// The slopes at a post, rise per metre eastward and northward: Horn's weighting of the eight neighbours
-    /// (Horn 1981, as `gdaldem` and most hillshades use); missing neighbours take the post's own height.
+    /// The slopes at a post, rise per meter eastward and northward: Horn's weighting of the eight neighbors
+    /// (Horn 1981, as `gdaldem` and most hillshades use); missing neighbors take the post's own height.
     /// Zero where the post has no data.
     ///
-    /// Where posts were put in between those measured, the neighbours of a post that nothing was built on are as far away
+    /// Where posts were put in between those measured, the neighbors of a post that nothing was built on are as far away
     /// as measured ones are: nearer ones lie on the planes between, and would show the planes and not the land. What was
     /// built there does not count: the land is taken to go on as on the other side.
     pub fn slopes(&self, post: Post) -> Vec2 {

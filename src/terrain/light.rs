@@ -19,7 +19,7 @@ pub struct TerrainLight {
     pub sky: Vec<f32>,
 }
 
-/// Over how many metres of height above the shadow's edge the sun comes out, as a share of the cell size:
+/// Over how many meters of height above the shadow's edge the sun comes out, as a share of the cell size:
 /// smaller shows the lattice as stairs along the shadow's edge, larger washes shadows out.
 const PENUMBRA_CELLS: f32 = 0.35;
 
@@ -65,7 +65,7 @@ fn sun_visibility(lattice: &Lattice, z: &[f32], to_sun: Vec3) -> Vec<f32> {
     visible
 }
 
-/// The value at a fractional position, linear between neighbours; nothing beyond the ends casts a shadow.
+/// The value at a fractional position, linear between neighbors; nothing beyond the ends casts a shadow.
 fn between(values: &[f32], at: f32) -> f32 {
     let low = at.floor();
     let (Some(&from), part) = (values.get(low as isize as usize), at - low) else {

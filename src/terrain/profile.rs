@@ -14,7 +14,7 @@ use crate::terrain::sight::crossings::crossings;
 /// A place along a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProfileStation {
-    /// Metres along the line from its start.
+    /// Meters along the line from its start.
     pub station_m: f64,
     /// Map coordinates.
     pub at: DVec2,
@@ -27,7 +27,7 @@ pub struct ProfileStation {
 pub struct Sampling {
     /// How heights between posts are found. Only the planar ground is straight between stations.
     pub interpolation: Interpolation,
-    /// Also a station every so many metres from the line's start, above 0; none where `None`.
+    /// Also a station every so many meters from the line's start, above 0; none where `None`.
     pub step_m: Option<f64>,
 }
 
@@ -38,7 +38,7 @@ impl Default for Sampling {
     }
 }
 
-/// The ground along `line` (map coordinates in metres, at least one vertex): its vertices and every crossing with an
+/// The ground along `line` (map coordinates in meters, at least one vertex): its vertices and every crossing with an
 /// edge of the finest triangles, in order. Between two stations in a row the planar ground is straight.
 ///
 /// Costs three stations a cell. A vertex that is not finite has no ground, nor has the line to and from it.
@@ -129,26 +129,26 @@ impl Profiler<'_> {
 /// The lowest or the highest place of a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extreme {
-    /// Metres along the line from its start; the first such place.
+    /// Meters along the line from its start; the first such place.
     pub station_m: f64,
     /// Map coordinates.
     pub at: DVec2,
-    /// Metres.
+    /// Meters.
     pub height_m: f64,
 }
 
 /// What a profile comes to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProfileSummary {
-    /// The line's length in the plane, metres.
+    /// The line's length in the plane, meters.
     pub length_m: f64,
-    /// How much of it has ground under it, metres in the plane.
+    /// How much of it has ground under it, meters in the plane.
     pub covered_m: f64,
-    /// The way over the ground, up and down, where there is ground; metres.
+    /// The way over the ground, up and down, where there is ground; meters.
     pub ground_length_m: f64,
-    /// Metres climbed, added up.
+    /// Meters climbed, added up.
     pub ascent_m: f64,
-    /// Metres gone down, added up; not negative.
+    /// Meters gone down, added up; not negative.
     pub descent_m: f64,
     /// The lowest place; `None` where the line has no ground at all.
     pub lowest: Option<Extreme>,

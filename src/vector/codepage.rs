@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_is_said_utf_8_is_recognised() {
+    fn where_nothing_is_said_utf_8_is_recognized() {
         assert_eq!(Encoding::Guessed.decode("Straße".as_bytes()), "Straße");
         assert_eq!(Encoding::Guessed.decode(b"Stra\xdfe"), "Straße");
         assert_eq!(Encoding::of_language_driver(0x57).expect("ANSI").decode(b"\xe9"), "é");

@@ -1,4 +1,4 @@
-//! From positions as files hold them to a [`Layer`]: what every reader puts its shapes into.
+//! From positions as files hold them to a [`VectorLayer`]: what every reader puts its shapes into.
 //!
 //! Readers hand over positions of three numbers, the third NaN where the file gives no elevation. Here positions
 //! that are no numbers, lines of one vertex and rings of two are left out and counted, rings lose their closing

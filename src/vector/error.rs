@@ -109,7 +109,7 @@ pub enum VectorError {
         #[source]
         source: Option<CrsError>,
     },
-    /// Longitude and latitude out of range: most often metres in a file that names no system.
+    /// Longitude and latitude out of range: most often meters in a file that names no system.
     #[error(
         "feature {feature} has a vertex at ({x}, {y}), which cannot be longitude and latitude in {crs}; if the file is in another system, say which with the key 'crs'"
     )]

@@ -31,7 +31,7 @@ impl Filter {
         })
     }
 
-    /// The layer's features that match, in its order, each with its place in [`Layer::features`].
+    /// The layer's features that match, in its order, each with its place in [`VectorLayer::features`].
     pub fn select<'a>(&'a self, layer: &'a VectorLayer) -> impl Iterator<Item = (usize, &'a Feature)> + 'a {
         layer.features.iter().enumerate().filter(|(_, feature)| self.matches(feature))
     }

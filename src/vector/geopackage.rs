@@ -174,12 +174,12 @@ fn system(connection: &Connection, id: i64) -> Result<Crs, VectorError> {
             row.get::<_, Option<String>>(2)?,
         ))
     });
-    let (organisation, code, definition) = match row {
+    let (organization, code, definition) = match row {
         Ok(row) => row,
         Err(rusqlite::Error::QueryReturnedNoRows) => return Err(unknown),
         Err(error) => return Err(refusal("its table gpkg_spatial_ref_sys", &error)),
     };
-    let is_epsg = organisation.is_some_and(|name| name.eq_ignore_ascii_case("epsg"));
+    let is_epsg = organization.is_some_and(|name| name.eq_ignore_ascii_case("epsg"));
     let code = code.filter(|_| is_epsg).and_then(|code| u32::try_from(code).ok());
     match (code.map(Crs::from_epsg), definition) {
         (Some(Ok(crs)), _) => Ok(crs),

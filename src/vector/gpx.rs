@@ -6,7 +6,7 @@
 //!      └─ trk ── trkseg ── trkpt layer tracks, a line for each segment;  track_points
 //! ```
 //!
-//! `ele` is the elevation of a point in metres. Extensions are not read.
+//! `ele` is the elevation of a point in meters. Extensions are not read.
 
 use glam::DVec3;
 use serde_json::{Number, Value};

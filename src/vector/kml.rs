@@ -4,7 +4,7 @@
 //! document that it lies in, by which it can be asked for as a layer), `altitudeMode`, and all of its extended
 //! data as text. What is only there for looking at (overlays, styles, models, links) is not read.
 //!
-//! Altitudes are metres above the sea, but relative to the ground where `altitudeMode` says so, and then no
+//! Altitudes are meters above the sea, but relative to the ground where `altitudeMode` says so, and then no
 //! elevations. Programs that have none write 0: where all are 0 and the mode is not `absolute`, there are none.
 
 use glam::DVec3;

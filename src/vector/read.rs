@@ -103,8 +103,8 @@ fn stem(name: &str) -> &str {
 /// The file beside `name` with another extension, in small letters or in capitals.
 fn beside(name: &str, extension: &str, hints: &VectorHints) -> Option<Vec<u8>> {
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
-    let spelt = [extension.to_owned(), extension.to_ascii_uppercase()];
-    spelt.iter().find_map(|extension| (hints.companions)(&format!("{stem}.{extension}")))
+    let spelled = [extension.to_owned(), extension.to_ascii_uppercase()];
+    spelled.iter().find_map(|extension| (hints.companions)(&format!("{stem}.{extension}")))
 }
 
 /// An archive: a KMZ, a zipped shapefile, or one file of another format.

@@ -17,7 +17,7 @@ pub(crate) const MOST_STEPS: u64 = 1 << 31;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HoleRule {
     /// It runs counter-clockwise inside one that runs clockwise (ESRI shapefiles). Where no ring of a shape runs
-    /// clockwise, as [`Rule::Nesting`].
+    /// clockwise, as [`HoleRule::Nesting`].
     Direction,
     /// It lies directly inside an outer ring; a ring inside a hole is an outer ring again (OpenStreetMap).
     Nesting,

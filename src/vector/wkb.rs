@@ -150,7 +150,7 @@ mod tests {
         let mut parts = FeatureParts::default();
         read(bytes, &mut parts)?;
         let mut collector = Collector::new(Crs::local());
-        collector.add(parts, Properties::new()).expect("metres");
+        collector.add(parts, Properties::new()).expect("meters");
         Ok(collector.finish().features)
     }
 

@@ -2,7 +2,7 @@
 //!
 //! View space is right-handed with X right, Y up and −Z forward; clip space follows WebGPU: X and Y in
 //! −w..w with Y up, Z in 0..w with 0 at the near plane. Pixels count from the upper left corner, the
-//! centre of the first pixel at (0.5, 0.5).
+//! center of the first pixel at (0.5, 0.5).
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
@@ -22,12 +22,12 @@ pub struct Camera {
     far: f32,
 }
 
-/// A point on the picture: pixels from the upper left corner, and metres along the viewing direction.
+/// A point on the picture: pixels from the upper left corner, and meters along the viewing direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projected {
     /// Pixels from the upper left corner, X right and Y down; may lie outside the picture.
     pub pixel: Vec2,
-    /// Metres from the eye, measured along the viewing direction; at least the near distance.
+    /// Meters from the eye, measured along the viewing direction; at least the near distance.
     pub depth_m: f32,
 }
 
@@ -52,7 +52,7 @@ impl Camera {
     /// A camera at `eye` looking at `target`, upright (Z up; looking straight down, north is up).
     ///
     /// `fov_y_rad` is the vertical field of view; `width` and `height` are pixels; `near` and `far` are
-    /// metres along the viewing direction.
+    /// meters along the viewing direction.
     ///
     /// # Errors
     /// See [`CameraError`].
@@ -112,7 +112,7 @@ impl Camera {
         (self.width, self.height)
     }
 
-    /// The near and far distances in metres along the viewing direction.
+    /// The near and far distances in meters along the viewing direction.
     pub fn planes(&self) -> (f32, f32) {
         (self.near, self.far)
     }
@@ -123,8 +123,8 @@ impl Camera {
         Vec2::new(self.tan_half_fov * aspect, self.tan_half_fov)
     }
 
-    /// How many pixels one metre spans across the line of sight, `depth_m` metres along the viewing direction.
-    pub fn pixels_per_metre(&self, depth_m: f32) -> f32 {
+    /// How many pixels one meter spans across the line of sight, `depth_m` meters along the viewing direction.
+    pub fn pixels_per_meter(&self, depth_m: f32) -> f32 {
         self.height as f32 / (2.0 * self.tan_half_fov * depth_m)
     }
 
@@ -167,7 +167,7 @@ impl Camera {
         })
     }
 
-    /// The direction from the eye through a point of the picture, scaled so that it advances one metre
+    /// The direction from the eye through a point of the picture, scaled so that it advances one meter
     /// along the viewing direction.
     pub fn ray_through(&self, pixel: Vec2) -> Vec3 {
         let tan = self.tan_half_fov();

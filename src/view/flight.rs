@@ -14,7 +14,7 @@ pub const PICTURE: (u32, u32) = (1024, 768);
 /// Half the picture's width seen from one unit away: the tangent of 30°.
 const TAN_HALF_WIDTH: f32 = 0.577_350_26;
 
-/// What the eye falls on the way of one metre ahead: 8° down.
+/// What the eye falls on the way of one meter ahead: 8° down.
 const FALL: f32 = 0.14;
 
 /// Heights of the ground that the mean is taken of, on either side of the eye.
@@ -47,9 +47,9 @@ impl FlightStation {
 /// How a flight keeps to the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Keeping {
-    /// Metres of the eye above the smoothed ground.
+    /// Meters of the eye above the smoothed ground.
     pub above_m: f32,
-    /// Metres along the way between the 17 heights whose mean is the smoothed ground.
+    /// Meters along the way between the 17 heights whose mean is the smoothed ground.
     pub smoothing_m: f32,
 }
 
@@ -58,9 +58,9 @@ pub struct Keeping {
 pub struct CircularFlight {
     /// The middle, world X and Y.
     pub center: Vec2,
-    /// Its radius in metres, above 0.
+    /// Its radius in meters, above 0.
     pub radius_m: f32,
-    /// Metres from one frame to the next.
+    /// Meters from one frame to the next.
     pub step_m: f32,
     /// How it keeps to the ground.
     pub keeping: Keeping,
@@ -72,7 +72,7 @@ impl CircularFlight {
         (0..frames).map(|frame| self.station(frame as f32 * self.step_m, ground)).collect()
     }
 
-    /// The station after `way_m` metres of travel.
+    /// The station after `way_m` meters of travel.
     pub fn station(&self, way_m: f32, ground: &impl Fn(Vec2) -> f32) -> FlightStation {
         let place = |way_m: f32| {
             let angle = way_m / self.radius_m;

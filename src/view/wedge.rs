@@ -6,7 +6,7 @@
 //!
 //! ```text
 //!     far                 h: how far the ray through the picture's lower (or upper)
-//!  ╲──────────╱              corner gets along the heading, a metre along the
+//!  ╲──────────╱              corner gets along the heading, a meter along the
 //!   ╲        ╱               viewing direction
 //!    ╲      ╱ tan / h     tan: how far it gets sideways
 //!     ╲    ╱
@@ -35,7 +35,7 @@ pub struct GroundWedge {
 }
 
 impl GroundWedge {
-    /// As many planes as a wedge has lines, as bits for [`Wedge::crossed`].
+    /// As many planes as a wedge has lines, as bits for [`GroundWedge::crossed`].
     pub const ALL: u8 = 0b111;
 
     /// The wedge of `camera`.

@@ -15,8 +15,8 @@ use sandtable::app::arguments::{Access, Backend, PictureSize};
 use sandtable::app::load;
 use sandtable::app::picture::{Finished, picture_of, png};
 use sandtable::draw::list::{DepthLayer, DrawItem, FeatureId};
-use sandtable::scene::kind::{Scene, View};
 use sandtable::scene::picture::ViewDraw;
+use sandtable::scene::{Scene, View};
 
 use crate::steps::{Step, Steps};
 

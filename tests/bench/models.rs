@@ -19,11 +19,11 @@ use std::time::Instant;
 
 use sandtable::draw::list::DrawList;
 use sandtable::model::detail::ModelDetail;
-use sandtable::model::kind::{Companions, Model};
 use sandtable::model::read::read;
 use sandtable::model::simplify::levels;
+use sandtable::model::{Companions, Model};
 use sandtable::render::cpu::{Options, render};
-use sandtable::scene::kind::Scene;
+use sandtable::scene::Scene;
 use sandtable::scene::picture::{build_draw_list, display, draw_list};
 use sandtable::view::camera::Camera;
 
@@ -96,7 +96,7 @@ fn asset(name: &str) -> Model {
 
 fn print_simplify() {
     println!(
-        "{:<16}{:>11}{:>12}{:>14}   levels: triangles (error in metres)",
+        "{:<16}{:>11}{:>12}{:>14}   levels: triangles (error in meters)",
         "model", "triangles", "levels", "all forms"
     );
     for name in MODELS {

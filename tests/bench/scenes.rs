@@ -35,7 +35,7 @@ fn built(
     folder: &tests_common::scratch::Scratch,
     text: &str,
     allowed: &[std::path::PathBuf],
-) -> (sandtable::scene::kind::Scene, Vec<steps::Step>) {
+) -> (sandtable::scene::Scene, Vec<steps::Step>) {
     let path = folder.write("scene.toml", text);
     let access = sandtable::app::arguments::Access { allow: allowed.to_vec() };
     let steps = steps::Steps::default();

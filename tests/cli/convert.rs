@@ -3,11 +3,11 @@
 use crate::common::scratch::Scratch;
 use crate::run_in;
 
-/// Three rows of four samples ten metres apart, the second of the second row a hole.
+/// Three rows of four samples ten meters apart, the second of the second row a hole.
 const GRID: &str = "ncols 4\nnrows 3\nxllcorner 400000\nyllcorner 200000\ncellsize 10\nNODATA_value -9999\n\
                     10 20 30 40\n50 -9999 70 80\n90 100 110 120\n";
 
-/// A plane of whole metres in degrees, forty samples a side.
+/// A plane of whole meters in degrees, forty samples a side.
 fn degrees() -> String {
     let rows = (0..40).map(|row| {
         let row: Vec<String> = (0..40).map(|column| format!("{}", 100 + 2 * row + 3 * column)).collect();
@@ -51,7 +51,7 @@ fn there_and_back_the_heights_are_the_files() {
 }
 
 #[test]
-fn a_cell_in_metres_for_a_raster_in_degrees_is_refused_with_its_zone() {
+fn a_cell_in_meters_for_a_raster_in_degrees_is_refused_with_its_zone() {
     let scratch = grid();
     let refused = convert(&scratch, &["degrees.asc", "out.tif", "--cell", "30"]).failed(1);
     assert!(refused.contains("--crs EPSG:32632"), "{refused}");
@@ -116,6 +116,6 @@ fn a_picture_says_how_it_is_to_be_read() {
     assert!(out.contains("read it with --height-scale 1 --height-offset 9"), "{out}");
     convert(&scratch, &["out.png", "again.asc", "--height-scale", "1", "--height-offset", "9"]).ok();
     let again = std::fs::read_to_string(scratch.at("again.asc")).expect("it was written");
-    // Grey value 0 stood for no data, and no height is 0.
+    // Gray value 0 stood for no data, and no height is 0.
     assert!(again.ends_with("NODATA_value 0\n10 20 30 40\n50 0 70 80\n90 100 110 120\n"), "{again}");
 }

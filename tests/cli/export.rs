@@ -1,11 +1,11 @@
-//! `export`: a scene in, a file that modelling programs open out.
+//! `export`: a scene in, a file that modeling programs open out.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
 use glam::Vec3;
-use sandtable::model::kind::{Companions, Model};
 use sandtable::model::read;
+use sandtable::model::{Companions, Model};
 
 use crate::common::scratch::Scratch;
 use crate::common::validator::assert_valid;
@@ -84,7 +84,7 @@ fn ground_and_drapes_cover_every_place_once() {
     let size = (high - low).truncate();
     let area = |name: &dyn Fn(&str) -> bool| -> f32 {
         let parts = model.parts.iter().filter(|part| name(&model.materials[part.material.0 as usize].name));
-        let at = |part: &sandtable::model::kind::ModelPart, index: usize| {
+        let at = |part: &sandtable::model::ModelPart, index: usize| {
             Vec3::from(part.mesh.vertices[index].position).truncate()
         };
         parts

@@ -6,7 +6,7 @@ use crate::run_in;
 /// Four corners of a slope of 1 in 10 eastward and a point in its middle, one of them twice.
 const POINTS: &str = "x,y,z\n0,0,10\n100,0,20\n0,100,10\n100,100,20\n50,50,15\n50,50,15\n";
 
-/// A line along the slope's middle, ten metres above it.
+/// A line along the slope's middle, ten meters above it.
 const LINE: &str = r#"{"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"EPSG:32633"}},"features":[
  {"type":"Feature","properties":{},"geometry":{"type":"LineString","coordinates":[[50,0,25],[50,100,25]]}}]}"#;
 

@@ -13,7 +13,7 @@ use crate::common::data::{data, files_below};
 use crate::common::scratch::Scratch;
 use crate::{project, run, run_in, run_with_input};
 
-/// Three rows of four samples ten metres apart, the second of the second row a hole. Sample centres stand at
+/// Three rows of four samples ten meters apart, the second of the second row a hole. Sample centers stand at
 /// 5, 15, 25 and 35 east and 25, 15 and 5 north.
 const GRID: &str = "ncols 4\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 10\nNODATA_value -9999\n\
                     10 20 30 40\n50 -9999 70 80\n90 100 110 120\n";
@@ -184,7 +184,7 @@ fn a_scene_is_asked_for_its_ground_and_a_file_for_what_it_holds() {
     assert_eq!(found[0]["height"].as_f64(), library.height_m());
     run(&["height", &scene, "--at", &at, "--surface", "displayed"]).failed(2);
     let scratch = grid();
-    // Beyond the outer samples' centres the raster goes on, the ground does not.
+    // Beyond the outer samples' centers the raster goes on, the ground does not.
     let edge = |surface: &str| {
         run_in(scratch.folder(), &["height", "grid.asc", "--at", "38,12", "--surface", surface]).ok()
     };
@@ -276,7 +276,7 @@ fn check_with_oracle(name: &str, entry: &Value, ours: Option<f64>, raw: f64) {
     }
     let wanted = raw * number("scale").unwrap_or(1.0) + number("offset").unwrap_or(0.0);
     let ours = ours.unwrap_or(f64::NAN);
-    let in_feet = [0.3048, 1200.0 / 3937.0].iter().any(|metres| (ours - wanted * metres).abs() <= 1e-4);
+    let in_feet = [0.3048, 1200.0 / 3937.0].iter().any(|meters| (ours - wanted * meters).abs() <= 1e-4);
     assert!((ours - wanted).abs() <= 1e-4 || in_feet, "{name}: {ours} for {wanted}");
 }
 

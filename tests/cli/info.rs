@@ -146,7 +146,7 @@ fn dem_info_tells_type_datum_unit_and_voids() {
     let out = run_in(scratch.folder(), &["dem", "info", "a.asc", "--json"]).ok();
     let about: Value = serde_json::from_str(&out).expect("JSON");
     assert_eq!((&about["type"], &about["enclosed_voids"]), (&Value::from("Int32"), &Value::from(1)));
-    assert_eq!((&about["vertical_datum"], &about["metres_per_z"]), (&Value::Null, &Value::from(1.0)));
+    assert_eq!((&about["vertical_datum"], &about["meters_per_z"]), (&Value::Null, &Value::from(1.0)));
     let table = run_in(scratch.folder(), &["dem", "info", "a.asc"]).ok();
     for wanted in ["type     Int32", "1 samples, 1 of them enclosed", "datum    none stated", "unit     1 m"]
     {

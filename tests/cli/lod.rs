@@ -288,7 +288,7 @@ fn wrong_usage_and_wrong_files_are_told_apart() {
 }
 
 #[test]
-fn a_model_in_degrees_is_flown_over_in_metres() {
+fn a_model_in_degrees_is_flown_over_in_meters() {
     let out = run(&["lod", "assets/jacksboro/dem.tif", "--frames", "2"]).ok();
     assert!(out.contains("83.22 × 83.22 m apart"), "{out}");
 }

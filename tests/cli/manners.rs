@@ -50,7 +50,7 @@ fn every_command_has_help_to_read() {
         assert!(longest.is_some_and(|longest| longest < 130), "{command:?}: {longest:?}\n{help}");
     }
     assert!(run(&["--version"]).ok().starts_with("sandtable "));
-    assert!(!run(&["model", "info", "--help"]).ok().contains("height"), "a model has no grey values");
+    assert!(!run(&["model", "info", "--help"]).ok().contains("height"), "a model has no gray values");
 }
 
 #[test]
@@ -64,7 +64,7 @@ fn wrong_usage_ends_with_two() {
         &["render", &scene, "--size", "0x0"],
         &["render", &scene, "--threads", "0"],
         &["render", &scene, "--backend", "abacus"],
-        &["render", &scene, "--colour"],
+        &["render", &scene, "--color"],
         &["height", "a.tif"],
         &["height", "a.tif", "--points", "-", "--interpolation", "cubic"],
         &["dem", "info", "a.tif", "--height-scale", "tall"],

@@ -8,7 +8,7 @@ use sandtable::dem::warp::to_metric;
 use sandtable::mesh::check;
 use sandtable::mesh::sink::{MeshSink, VertexId};
 use sandtable::mesh::trimesh::TriMesh;
-use sandtable::model::kind::Companions;
+use sandtable::model::Companions;
 use sandtable::roam::bound::measure;
 use sandtable::terrain::lattice::Lattice;
 use serde_json::Value;
@@ -94,7 +94,7 @@ fn a_mesh_keeps_its_bound_at_every_post_and_says_so() {
         let found = measure(&lattice, &written).expect("on posts");
         assert!(found.max_m <= bound.parse().expect("a number"), "asked {bound}: {found:?}");
         let above = told(&out, "maximum") - found.max_m;
-        assert!((0.0..1.001e-4).contains(&above), "told a tenth of a millimetre rounded up: {out}");
+        assert!((0.0..1.001e-4).contains(&above), "told a tenth of a millimeter rounded up: {out}");
         assert_eq!(told(&out, "triangles") as usize, written.triangles.len());
         assert_eq!(told(&out, "vertices") as usize, written.positions.len());
         assert_eq!((told(&out, ", over") as usize, found.left_out), (40 * 30 - 6, 0));
@@ -119,14 +119,14 @@ fn all_four_formats_hold_the_same_mesh_and_name_its_origin() {
         assert_eq!(drawn, triangles, "{name}");
     }
     let text = String::from_utf8(bytes("a.obj")).expect("UTF-8");
-    let origin = "origin: X 0, Y 0 is easting 500000 northing 4000000 in local metres";
+    let origin = "origin: X 0, Y 0 is easting 500000 northing 4000000 in local meters";
     assert!(text.contains(&format!("\n# {origin}")), "{text}");
     let ply = bytes("a.ply");
     let header = String::from_utf8_lossy(&ply[..ply.len().min(1000)]).into_owned();
     assert!(header.contains(&format!("\ncomment {origin}")), "{header}");
     assert_eq!((told(&header, "vertex") as usize, told(&header, "face") as usize), (vertices, triangles));
     let stl = bytes("a.STL");
-    assert!(stl.starts_with(b"metres; origin E 500000 N 4000000"));
+    assert!(stl.starts_with(b"meters; origin E 500000 N 4000000"));
     assert_eq!(u32::from_le_bytes(stl[80..84].try_into().expect("four bytes")) as usize, triangles);
     assert_eq!(stl.len(), 84 + 50 * triangles);
     let glb = bytes("a.glb");

@@ -25,7 +25,7 @@ fn the_picture_takes_the_scene_s_name_and_lies_in_the_current_folder() {
     assert_eq!((picture.width(), picture.height()), (192, 108));
     assert_eq!(picture.color(), image::ColorType::Rgb8);
     let colors: std::collections::BTreeSet<_> = picture.into_rgb8().pixels().map(|pixel| pixel.0).collect();
-    assert!(colors.len() > 500, "{} colours", colors.len());
+    assert!(colors.len() > 500, "{} colors", colors.len());
 }
 
 #[test]

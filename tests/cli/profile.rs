@@ -3,7 +3,7 @@
 use crate::common::scratch::Scratch;
 use crate::{run_in, run_with_input};
 
-/// Three rows of four samples ten metres apart, a hole in the north-east. Posts stand at 5, 15, 25 and 35 east and at 5, 15
+/// Three rows of four samples ten meters apart, a hole in the north-east. Posts stand at 5, 15, 25 and 35 east and at 5, 15
 /// and 25 north.
 const GRID: &str = "ncols 4\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 10\nNODATA_value -9999\n\
                     10 20 30 -9999\n10 20 30 40\n10 20 30 40\n";

@@ -5,7 +5,7 @@ use std::fs;
 use crate::common::scratch::Scratch;
 use crate::run_in;
 
-/// A wall from north to south in the middle of level ground, posts ten metres apart from (5, 5) on.
+/// A wall from north to south in the middle of level ground, posts ten meters apart from (5, 5) on.
 fn walled() -> Scratch {
     let scratch = Scratch::new();
     let row = "0 0 0 0 9 0 0 0 0\n";

@@ -8,8 +8,8 @@ use sandtable::description::parse::parse_bytes;
 use sandtable::description::words::Clamp;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
-use sandtable::scene::kind::{GroundFit, Placement, Scene};
 use sandtable::scene::picture;
+use sandtable::scene::{GroundFit, Placement, Scene};
 use sandtable::view::camera::Camera;
 
 use super::scratch::Scratch;
@@ -17,7 +17,7 @@ use super::scratch::Scratch;
 /// Posts along the side of the ground, 10 m apart.
 const POSTS: u32 = 257;
 
-/// Metres along the side of the ground.
+/// Meters along the side of the ground.
 pub const SIDE_M: f32 = (POSTS - 1) as f32 * 10.0;
 
 /// The scene with `count` placements of `models`, in turn, files of the project's own.
@@ -84,6 +84,6 @@ pub fn overlook(scene: &Scene, size: (u32, u32)) -> Camera {
 
 /// A picture from anywhere.
 pub fn seen_from(scene: &Scene, eye: Vec3, target: Vec3, size: (u32, u32)) -> Camera {
-    let view = sandtable::scene::kind::View { name: String::new(), eye, target, fov_y_rad: 0.7 };
+    let view = sandtable::scene::View { name: String::new(), eye, target, fov_y_rad: 0.7 };
     picture::camera(scene, &view, size).expect("sound")
 }

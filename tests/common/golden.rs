@@ -91,12 +91,12 @@ fn distance(a: &image::Rgb<u8>, b: &image::Rgb<u8>) -> u8 {
     a.0.iter().zip(b.0).map(|(&a, b)| a.abs_diff(b)).max().unwrap_or(0)
 }
 
-/// The golden picture pale and grey, and what differs in red, even the least difference plain to see.
+/// The golden picture pale and gray, and what differs in red, even the least difference plain to see.
 fn difference(expected: &RgbImage, found: &RgbImage) -> RgbImage {
     RgbImage::from_fn(expected.width(), expected.height(), |x, y| {
         let (was, is) = (expected.get_pixel(x, y), found.get_pixel(x, y));
-        let grey = was.0.map(u16::from).iter().sum::<u16>() / 3;
-        let pale = (160 + grey / 3) as u8;
+        let gray = was.0.map(u16::from).iter().sum::<u16>() / 3;
+        let pale = (160 + gray / 3) as u8;
         match distance(was, is) {
             0 => image::Rgb([pale; 3]),
             far => image::Rgb([255, 120u8.saturating_sub(far), 120u8.saturating_sub(far)]),

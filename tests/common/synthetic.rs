@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!            north
-//!   ┌──────────┬──┬───────┐   hills coloured by height
+//!   ┌──────────┬──┬───────┐   hills colored by height
 //!   │  masked  │r │       │   a blended lake band under an opaque road, both draped
 //!   │══lake════│o │═══════│   a textured box, a masked fence and a blended pane, standing
 //!   │  box     │a │ pane  │
@@ -24,7 +24,7 @@ use sandtable::view::camera::Camera;
 
 /// Posts a side of the ground.
 const POSTS: u32 = 65;
-/// Metres between posts.
+/// Meters between posts.
 const CELL_M: f32 = 10.0;
 
 /// The lake's band, south to north.
@@ -53,7 +53,7 @@ pub const LAKE_COLOR: Srgba = Srgba([40, 90, 160, 153]);
 pub const PANE_COLOR: Srgba = Srgba([200, 40, 40, 102]);
 pub const FENCE_COLOR: Srgba = Srgba::opaque(90, 60, 30);
 
-/// Height of the hills in metres.
+/// Height of the hills in meters.
 pub fn height_at(at: Vec2) -> f32 {
     let wave = |t: f32, length: f32| libm::sinf(t * std::f32::consts::TAU / length);
     40.0 + 18.0 * wave(at.x, 410.0) + 14.0 * wave(at.y + 60.0, 330.0) + 4.0 * wave(at.x + at.y, 120.0)
@@ -174,7 +174,7 @@ pub fn ground_of(list: &mut DrawList) -> &mut GroundMap {
     Arc::make_mut(list.ground.as_mut().expect("the scene has a ground map"))
 }
 
-/// The whole scene with contour lines every five metres.
+/// The whole scene with contour lines every five meters.
 pub fn scene_with_contours() -> DrawList {
     let mut list = scene();
     ground_of(&mut list).contours = Some(contours());

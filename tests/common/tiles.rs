@@ -32,7 +32,7 @@ impl Image {
     }
 }
 
-/// The file of `images`, the first in full and the others its overviews, in tiles of `tile` samples a side; metres
+/// The file of `images`, the first in full and the others its overviews, in tiles of `tile` samples a side; meters
 /// in UTM zone 12, cells of 10 m, no-data value −9999.
 pub fn file(images: &[Image], tile: u32, packing: Packing) -> Vec<u8> {
     let mut out = b"II*\0\0\0\0\0".to_vec();

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DAffine2, DMat2, DVec2};
 use proptest::prelude::*;
-use sandtable::dem::fault::DemErrorKind;
+use sandtable::dem::error::DemErrorKind;
 use sandtable::dem::raster::{Raster, Samples};
 use sandtable::dem::windows::{RasterWindow, Windows};
 use sandtable::geom::crs::Crs;
@@ -13,9 +13,9 @@ use sandtable::roam::block::{BlockSource, PatchBlock, WholeGround};
 use sandtable::roam::culling::PatchHeights;
 use sandtable::roam::errors::exact::triangle_error;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::PatchedGround;
 use sandtable::roam::layout::PatchLayout;
 use sandtable::roam::paging::ground::{PagedGround, PagingError, PagingOptions, exact_spheres};
+use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::terrain::lattice::{Lattice, Post};
 
 use crate::windows::Seeded;
@@ -36,7 +36,7 @@ pub fn raster(width: u32, height: u32, seed: u64, holes: u32) -> Raster {
         width,
         height,
         samples: Samples::F32((0..width * height).map(sample).collect()),
-        metres_per_z: 1.0,
+        meters_per_z: 1.0,
         map_from_grid: DAffine2 { matrix2: axes, translation: DVec2::new(5e5, 4e6) },
         georeferenced: true,
         crs: None,
@@ -194,7 +194,7 @@ fn what_would_have_to_be_resampled_is_refused_with_the_words_for_whole_rasters()
     let rotated = refused(&|raster| raster.map_from_grid.matrix2.x_axis.y = 1.0);
     assert!(rotated.contains("rotated"), "{rotated}");
     let degrees = refused(&|raster| raster.crs = Some(Crs::wgs84()));
-    assert!(degrees.contains("metres") && degrees.contains("gdalwarp"), "{degrees}");
+    assert!(degrees.contains("meters") && degrees.contains("gdalwarp"), "{degrees}");
     let nowhere = refused(&|raster| raster.georeferenced = false);
     assert!(nowhere.contains("how far apart"), "{nowhere}");
     let empty = refused(&|raster| raster.samples = Samples::F32(vec![f32::NAN; 400]));

@@ -7,15 +7,15 @@ use std::io::Cursor;
 use glam::Vec3;
 use sandtable::dem::raster::Raster;
 use sandtable::dem::read::{DemHints, read};
-use sandtable::dem::tiff_windows::GeoTiffWindows;
+use sandtable::dem::tiff::windows::GeoTiffWindows;
 use sandtable::dem::windows::Windows;
 use sandtable::roam::active::ActiveSet;
 use sandtable::roam::bintree::Triangle;
 use sandtable::roam::block::{BlockSource, WholeGround};
 use sandtable::roam::criterion::spheres::Spheres;
-use sandtable::roam::ground::PatchedGround;
 use sandtable::roam::paging::ground::{PagedGround, PagingOptions, exact_spheres, finest_that_fits};
 use sandtable::roam::paging::walk::walk;
+use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::roam::spheres::SphereMap;
 

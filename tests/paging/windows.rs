@@ -6,7 +6,7 @@ use std::path::Path;
 
 use sandtable::dem::raster::Raster;
 use sandtable::dem::read::{DemHints, read};
-use sandtable::dem::tiff_windows::GeoTiffWindows;
+use sandtable::dem::tiff::windows::GeoTiffWindows;
 use sandtable::dem::windows::{RasterWindow, Windows};
 
 use crate::data::{data, files_below};

@@ -22,12 +22,12 @@ use sandtable::roam::graph::Vertex;
 use sandtable::roam::refine::deferred::Deferred;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::roam::spheres::{SphereMap, reach};
+use sandtable::scene::FeatureKind;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
-use sandtable::scene::kind::FeatureKind;
 use sandtable::scene::picture::{build_draw_list, camera as scene_camera};
-use sandtable::terrain::facets::TriangleSurface;
 use sandtable::terrain::query::{Interpolation, ground_height};
+use sandtable::terrain::triangle_surface::TriangleSurface;
 use sandtable::view::flight::{CircularFlight, Keeping};
 use sandtable::view::frustum::Frustum;
 
@@ -70,7 +70,7 @@ fn paper_004_features_get_their_elevation_from_the_ground_that_roam_built() {
         &StrokeOptions { width_m: 12.0, ..StrokeOptions::default() },
         &mut plan,
     );
-    assert!(!plan.triangles.is_empty(), "triangles from centreline and width");
+    assert!(!plan.triangles.is_empty(), "triangles from centerline and width");
     let mut draped = DrawMesh::default();
     drape(&plan, &displayed, &mut draped);
     assert!(draped.triangles.len() > plan.triangles.len(), "cut by the ground");
@@ -101,7 +101,7 @@ fn paper_004_the_distance_is_that_from_the_eye_to_the_hypotenuse_s_midpoint() {
         let [from, to] = vertex.hypotenuse().map(|end| world.ground().plan(end));
         let midpoint = ((from + to) / 2.0).extend(world.height(vertex));
         let pixels =
-            errors.at(&world.layout, vertex) * camera.pixels_per_metre(midpoint.distance(camera.eye()));
+            errors.at(&world.layout, vertex) * camera.pixels_per_meter(midpoint.distance(camera.eye()));
         assert!(same(criterion.excess(vertex), pixels / tolerance_px), "{vertex:?}: {pixels} px");
     }
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use glam::{DVec2, Vec3};
 use sandtable::dem::read::{DemHints, read};
 use sandtable::dem::warp::to_metric;
+use sandtable::earthworks::brush::{BrushChanges, Crater, TireTrack};
 use sandtable::roam::active::ActiveSet;
 use sandtable::roam::bintree::Triangle;
 use sandtable::roam::block::WholeGround;
@@ -14,15 +15,14 @@ use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Rad
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::errors::midpoint::midpoint_error_at;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::PatchedGround;
 use sandtable::roam::layout::PatchLayout;
 use sandtable::roam::measure::height_difference;
+use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::roam::refine::deferred::Deferred;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::roam::roughness::Roughness;
 use sandtable::roam::shown::PatchList;
 use sandtable::roam::spheres::{OwnRadius, SphereMap};
-use sandtable::terrain::brush::{BrushChanges, Crater, TyreTrack};
 use sandtable::terrain::lattice::{Lattice, Post};
 
 use crate::common::data::data;
@@ -32,7 +32,7 @@ const TOLERANCE_PX: f32 = 3.0;
 
 /// r = λ · d · δ / τ.
 fn own_radii(world: &World) -> Vec<f32> {
-    let reach = camera(Vec3::ZERO, Vec3::Y).pixels_per_metre(1.0) / TOLERANCE_PX;
+    let reach = camera(Vec3::ZERO, Vec3::Y).pixels_per_meter(1.0) / TOLERANCE_PX;
     world.errors.values().iter().map(|error_m| error_m * reach).collect()
 }
 
@@ -109,8 +109,8 @@ fn paper_003_the_object_space_error_is_the_midpoint_s_height_less_the_mean_of_th
 fn paper_003_the_sphere_s_radius_is_the_screen_error_solved_for_the_distance() {
     let world = World::hills(65, 49, 16);
     let errors = ErrorMap::midpoint(&world.lattice, &world.layout);
-    // λ · d: pixels that a metre spans at a distance of one metre.
-    let lambda_d = camera(Vec3::ZERO, Vec3::Y).pixels_per_metre(1.0);
+    // λ · d: pixels that a meter spans at a distance of one meter.
+    let lambda_d = camera(Vec3::ZERO, Vec3::Y).pixels_per_meter(1.0);
     let own = OwnRadius::Plain { errors: &errors, reach: lambda_d / TOLERANCE_PX };
     for vertex in world.vertices().into_iter().filter(|&vertex| errors.at(&world.layout, vertex) > 0.0) {
         let (radius, delta) = (own.of(world.ground(), vertex), errors.at(&world.layout, vertex));
@@ -252,15 +252,15 @@ fn crater(lattice: &mut Lattice) -> BrushChanges {
     Crater { center: DVec2::new(523.0, 617.0), radius_m: 45.0, depth_m: 9.0, rim_m: 2.0 }.apply(lattice)
 }
 
-fn tyre_track(lattice: &mut Lattice) -> BrushChanges {
+fn tire_track(lattice: &mut Lattice) -> BrushChanges {
     let line = vec![DVec2::new(690.0, 40.0), DVec2::new(880.0, 95.0), DVec2::new(940.0, 410.0)];
-    TyreTrack { line, gauge_m: 20.0, rut_m: 14.0, depth_m: 0.3 }.apply(lattice)
+    TireTrack { line, gauge_m: 20.0, rut_m: 14.0, depth_m: 0.3 }.apply(lattice)
 }
 
 #[test]
-fn paper_003_after_a_crater_and_a_tyre_track_errors_and_spheres_are_those_computed_anew() {
+fn paper_003_after_a_crater_and_a_tire_track_errors_and_spheres_are_those_computed_anew() {
     let mut terrain = dynamic();
-    for brush in [crater as fn(&mut Lattice) -> BrushChanges, tyre_track, crater] {
+    for brush in [crater as fn(&mut Lattice) -> BrushChanges, tire_track, crater] {
         terrain.edit(brush).expect("it digs");
         let anew = DynamicTerrain::new((**terrain.lattice()).clone(), OPTIONS).expect("sound");
         assert!(terrain.errors() == anew.errors() && terrain.spheres() == anew.spheres());
@@ -271,7 +271,7 @@ fn paper_003_after_a_crater_and_a_tyre_track_errors_and_spheres_are_those_comput
 #[test]
 fn paper_003_recomputation_goes_from_the_deformed_vertices_up_and_stops_where_no_sphere_changes() {
     let mut terrain = dynamic();
-    for brush in [crater as fn(&mut Lattice) -> BrushChanges, tyre_track] {
+    for brush in [crater as fn(&mut Lattice) -> BrushChanges, tire_track] {
         let before = terrain.clone();
         let edit = terrain.edit(brush).expect("it digs");
         let layout = *terrain.layout();
@@ -303,7 +303,7 @@ fn paper_003_the_constraint_saves_triangles_on_deformed_ground_too() {
         let plain = World::new((129, 129), 32, |x, y| 0.25 * libm::sinf(x * 0.8) * libm::cosf(y * 0.7));
         let options = DynamicOptions { radius, reach: 600.0, ..OPTIONS };
         let mut terrain = DynamicTerrain::new(plain.lattice, options).expect("sound");
-        terrain.edit(|lattice| crater(lattice).and(tyre_track(lattice))).expect("it digs");
+        terrain.edit(|lattice| crater(lattice).and(tire_track(lattice))).expect("it digs");
         let criterion = Spheres::new(terrain.ground(), terrain.spheres(), eye);
         let layout = terrain.layout();
         let active = rebuild(layout, &criterion, layout.patches());
@@ -350,7 +350,7 @@ fn paper_003_no_vertex_is_looked_at_before_the_eye_can_have_reached_its_sphere_s
     for step_m in [0.01, 0.3, 2.0, 9.0] {
         let mut walk = Walk::new(world.ground(), &spheres);
         walk.go(start);
-        // The wheel hands out up to a sixteenth of the way early, and counts in ticks of less than a metre.
+        // The wheel hands out up to a sixteenth of the way early, and counts in ticks of less than a meter.
         let reached_m = step_m * 16.0 / 15.0 + 1.5;
         let reached = |vertex: &Vertex| {
             let radius = spheres.at(&world.layout, *vertex);

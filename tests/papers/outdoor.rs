@@ -24,8 +24,8 @@ use sandtable::roam::emit::{bintree, quadtree, world};
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::errors::exact::triangles_split_at;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::PatchedGround;
 use sandtable::roam::layout::PatchLayout;
+use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::roam::refine::queues::{Goal, Queues};
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::terrain::lattice::{Lattice, Post};
@@ -91,12 +91,12 @@ fn paper_002_the_detail_of_every_triangle_is_under_control_by_one_tolerance() {
     assert!(counts.windows(2).all(|pair| pair[0] > pair[1]), "{counts:?}");
 }
 
-/// The posts of a grey picture taken for a height map, from the south.
-fn read_grey(picture: DynamicImage, metres_per_value: f64) -> Vec<f32> {
+/// The posts of a gray picture taken for a height map, from the south.
+fn read_gray(picture: DynamicImage, meters_per_value: f64) -> Vec<f32> {
     let mut file = Cursor::new(Vec::new());
     picture.write_to(&mut file, ImageFormat::Png).expect("it can be written");
     let hints =
-        DemHints { png_height_scale: Some(metres_per_value), cell: Some(30.0), ..DemHints::default() };
+        DemHints { png_height_scale: Some(meters_per_value), cell: Some(30.0), ..DemHints::default() };
     let raster = read("map.png", file.get_ref(), &hints).expect("a height map");
     let lattice = Lattice::from_raster(&raster).expect("it holds ground");
     assert_eq!(lattice.cell(), DVec2::splat(30.0), "the horizontal scale");
@@ -106,10 +106,10 @@ fn read_grey(picture: DynamicImage, metres_per_value: f64) -> Vec<f32> {
 #[test]
 fn paper_002_a_height_map_has_8_bits_a_value_or_more() {
     let coarse = ImageBuffer::from_fn(3, 2, |x, y| image::Luma([(100 * x + 50 * y) as u8]));
-    let from_south = read_grey(DynamicImage::ImageLuma8(coarse), 2.0);
+    let from_south = read_gray(DynamicImage::ImageLuma8(coarse), 2.0);
     assert_eq!(from_south, [100.0, 300.0, 500.0, 0.0, 200.0, 400.0]);
     let fine = ImageBuffer::from_fn(3, 2, |x, y| image::Luma([(30_000 * x + 1000 * y + 7) as u16]));
-    let from_south = read_grey(DynamicImage::ImageLuma16(fine), 0.1);
+    let from_south = read_gray(DynamicImage::ImageLuma16(fine), 0.1);
     let expected = [100.7f32, 3100.7, 6100.7, 0.7, 3000.7, 6000.7];
     assert!(
         from_south.iter().zip(expected).all(|(&found, expected)| same(found, expected)),

@@ -53,7 +53,7 @@ fn paper_000_patches_share_their_border_samples_and_hold_two_bintree_roots() {
 }
 
 #[test]
-fn paper_000_neighbours_are_as_fine_or_one_level_apart_the_base_neighbour_never_finer_by_more() {
+fn paper_000_neighbors_are_as_fine_or_one_level_apart_the_base_neighbor_never_finer_by_more() {
     let world = World::hills(130, 97, 32);
     let mut active = ActiveSet::new(world.layout);
     for (x, y) in [(33, 41), (64, 31), (97, 5), (1, 90), (120, 90)] {
@@ -68,28 +68,24 @@ fn paper_000_neighbours_are_as_fine_or_one_level_apart_the_base_neighbour_never_
     }
     for (edge, sharing) in beside.iter().filter(|(_, sharing)| sharing.len() == 2) {
         let [one, other] = [&leaves[sharing[0]], &leaves[sharing[1]]];
-        for (leaf, neighbour) in [(one, other), (other, one)] {
+        for (leaf, neighbor) in [(one, other), (other, one)] {
             let base = BTreeSet::from([leaf.left, leaf.right]) == BTreeSet::from(*edge);
-            let ratio = size(neighbour) as f32 / size(leaf) as f32;
+            let ratio = size(neighbor) as f32 / size(leaf) as f32;
             let allowed: &[f32] = if base { &[1.0, 2.0] } else { &[1.0, 0.5] };
-            assert!(allowed.contains(&ratio), "{leaf:?} beside {neighbour:?}");
+            assert!(allowed.contains(&ratio), "{leaf:?} beside {neighbor:?}");
         }
     }
 }
 
 #[test]
-fn paper_000_a_split_forces_coarser_base_neighbours_first_and_splits_alone_at_the_border() {
+fn paper_000_a_split_forces_coarser_base_neighbors_first_and_splits_alone_at_the_border() {
     let layout = PatchLayout::new(65, 65, 64).expect("sound");
     let mut active = ActiveSet::new(layout);
     let border = Vertex::new(32, 0);
     active.activate(border);
     let parents = border.parents().map(|parent| layout.contains(parent));
-    assert_eq!(
-        parents.iter().filter(|&&inside| inside).count(),
-        1,
-        "there is no neighbour beyond the border"
-    );
-    assert_eq!(active.count(), 2, "the border vertex and the centre that is its parent");
+    assert_eq!(parents.iter().filter(|&&inside| inside).count(), 1, "there is no neighbor beyond the border");
+    assert_eq!(active.count(), 2, "the border vertex and the center that is its parent");
     active.activate(Vertex::new(1, 1));
     active.check().expect("forced splits leave no parent out");
     assert!(active.count() > 6, "a deep split forces many: {}", active.count());
@@ -107,14 +103,14 @@ fn paper_000_culled_patches_are_not_refined() {
     let active = rebuild(&world.layout, &finest, seen.iter().copied());
     let inner = |corner: &Vertex| {
         let middle = corner.moved(15, 17);
-        layout_neighbours(*corner).iter().all(|near| !seen.contains(near)) && active.is_active(middle)
+        layout_neighbors(*corner).iter().all(|near| !seen.contains(near)) && active.is_active(middle)
     };
     let away: Vec<Vertex> = world.layout.patches().filter(|corner| !seen.contains(corner)).collect();
     assert!(!away.iter().any(inner), "patches away from what is seen stay coarse");
     assert!(seen.iter().all(|corner| active.is_active(corner.moved(15, 17))), "those in view are fine");
 }
 
-fn layout_neighbours(corner: Vertex) -> [Vertex; 8] {
+fn layout_neighbors(corner: Vertex) -> [Vertex; 8] {
     let steps = [(-32, -32), (0, -32), (32, -32), (-32, 0), (32, 0), (-32, 32), (0, 32), (32, 32)];
     steps.map(|(dx, dy)| corner.moved(dx, dy))
 }
@@ -139,7 +135,7 @@ fn paper_000_a_forced_merge_takes_everything_below_and_the_dependants_beside_it(
         };
         beside += gone.iter().filter(outside).count();
     }
-    assert!(beside > 0, "neighbours are merged too");
+    assert!(beside > 0, "neighbors are merged too");
 }
 
 /// A vertex and the active ones that depend on it, by way of others too.
@@ -330,7 +326,7 @@ fn raster(world: &World) -> Raster {
         width: columns,
         height: rows,
         samples: Samples::F32(from_north.collect()),
-        metres_per_z: 1.0,
+        meters_per_z: 1.0,
         map_from_grid: DAffine2 {
             matrix2: axes,
             translation: DVec2::new(-5.0, f64::from(rows) * 10.0 - 5.0),

@@ -41,7 +41,7 @@ fn paper_001_blocks_of_32_cells_cover_a_terrain_that_is_not_square() {
 }
 
 #[test]
-fn paper_001_an_edge_vertex_depends_on_the_centres_at_its_sides_a_centre_on_two_corners_of_its_diagonal() {
+fn paper_001_an_edge_vertex_depends_on_the_centers_at_its_sides_a_center_on_two_corners_of_its_diagonal() {
     for (x, y) in (1..64).flat_map(|x| (1..64).map(move |y| (x, y))) {
         let vertex = Vertex::new(x, y);
         let (step, [one, other]) = (vertex.step(), vertex.parents());
@@ -54,11 +54,11 @@ fn paper_001_an_edge_vertex_depends_on_the_centres_at_its_sides_a_centre_on_two_
                 assert_eq!(one.middle(other), vertex, "two corners of one diagonal");
                 let (across, along) = ((other.x - one.x, other.y - one.y), (to.x - from.x, to.y - from.y));
                 assert_eq!(across.0 * along.0 + across.1 * along.1, 0, "perpendicular to the other");
-                // The parent square's centre is the one end of the hypotenuse that is a centre itself.
+                // The parent square's center is the one end of the hypotenuse that is a center itself.
                 let side = 4 * step;
                 let parent = Vertex::new(x / side * side + side / 2, y / side * side + side / 2);
                 let (dx, dy) = (parent.x - x, parent.y - y);
-                assert_eq!(across.0 * dx + across.1 * dy, 0, "{vertex:?}: the line to the parent's centre");
+                assert_eq!(across.0 * dx + across.1 * dy, 0, "{vertex:?}: the line to the parent's center");
             }
             _ => {
                 let centers = [one, other].map(|parent| (parent.kind(), parent.step()));
@@ -93,12 +93,12 @@ fn paper_001_a_node_stores_five_vertices_and_each_has_an_error_of_its_own() {
         {
             assert!(same(own(vertex), off(vertex, along)), "{node}: edge vertex {vertex:?}");
         }
-        // 001 takes the larger of both diagonals. On the vertex graph a centre is the middle of one of them, the
+        // 001 takes the larger of both diagonals. On the vertex graph a center is the middle of one of them, the
         // hypotenuse of the triangles it splits; no triangle ever has the other, and its error is not counted.
         let diagonals = [off(center, (half, half)), off(center, (half, -half))];
         let rises = center.hypotenuse().contains(&square.corner);
-        assert!(same(own(center), diagonals[usize::from(!rises)]), "{node}: centre");
-        assert!(own(center) <= diagonals[0].max(diagonals[1]) * 1.0001 + 1e-5, "{node}: centre");
+        assert!(same(own(center), diagonals[usize::from(!rises)]), "{node}: center");
+        assert!(own(center) <= diagonals[0].max(diagonals[1]) * 1.0001 + 1e-5, "{node}: center");
         larger += usize::from(own(center) < diagonals[0].max(diagonals[1]) * 0.99);
         nodes_seen += 1;
     }
@@ -107,7 +107,7 @@ fn paper_001_a_node_stores_five_vertices_and_each_has_an_error_of_its_own() {
 }
 
 #[test]
-fn paper_001_addresses_in_base_4_tell_the_parent_the_children_and_the_neighbours() {
+fn paper_001_addresses_in_base_4_tell_the_parent_the_children_and_the_neighbors() {
     let patch = 32;
     let all: BTreeMap<String, NodeSquare> =
         nodes((0, 0), patch).into_iter().map(|(node, square)| (node.address.to_string(), square)).collect();
@@ -145,8 +145,8 @@ fn paper_001_the_screen_space_error_knows_the_viewing_direction() {
     for eye in [Vec3::new(-60.0, 40.0, 90.0), Vec3::new(150.0, 170.0, 55.0), Vec3::new(400.0, 10.0, 700.0)] {
         let camera = Camera::new(eye, Vec3::new(160.0, 160.0, 0.0), 0.8, (1024, 768), (near_m, 9000.0));
         let camera = camera.expect("sound");
-        // λ: pixels a metre spans on the near plane, which is n away.
-        let lambda_n = camera.pixels_per_metre(near_m) * near_m;
+        // λ: pixels a meter spans on the near plane, which is n away.
+        let lambda_n = camera.pixels_per_meter(near_m) * near_m;
         let criterion = Anisotropic::new(world.ground(), &errors, &camera, tolerance_px);
         for vertex in world.vertices() {
             let (delta, v) = (errors.at(&world.layout, vertex), world.ground().position(vertex));

@@ -16,7 +16,7 @@ pub struct Sample {
     pub vertex: DVec2,
     /// The same in the elevation model's.
     pub on_dem: DVec2,
-    /// The bilinear height; `None` where all four neighbours hold no data.
+    /// The bilinear height; `None` where all four neighbors hold no data.
     pub height: Option<f64>,
 }
 
@@ -46,7 +46,7 @@ pub fn samples(folder: &Path) -> Vec<Sample> {
 /// How far answers were off.
 #[derive(Clone, Debug, Default)]
 pub struct Deviation {
-    /// Absolute differences in metres, sorted.
+    /// Absolute differences in meters, sorted.
     pub sorted: Vec<f64>,
 }
 

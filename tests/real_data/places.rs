@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use sandtable::geom::crs::Crs;
-use sandtable::scene::kind::{FeatureKind, Scene};
+use sandtable::scene::{FeatureKind, Scene};
 use sandtable::terrain::query::Surface;
 
 use crate::common::data::data;
@@ -15,7 +15,7 @@ use crate::{Pictured, clearance_of_draped, picture};
 
 const SIZE: (u32, u32) = (480, 270);
 
-/// Metres of height; see the same in `swellendam`.
+/// Meters of height; see the same in `swellendam`.
 const SOURCE_M: f64 = 1e-4;
 
 /// The folder of a place, and a scratch folder for what is made of it.
@@ -90,7 +90,7 @@ look_at = [432000, 4514700]
     );
     assert_eq!((count(&scene, FeatureKind::Road), count(&scene, FeatureKind::Lake)), (1, 1));
     assert_eq!(scene.crs, Crs::from_epsg(26912).expect("known"));
-    // Far from the reservoir, which is levelled, the ground is the source.
+    // Far from the reservoir, which is leveled, the ground is the source.
     let boundary: Vec<Sample> =
         samples(&place).into_iter().filter(|it| it.file == "red_butte_rna.geojson").collect();
     let at = |sample: &Sample| (scene.crs.clone(), sample.on_dem);
@@ -172,7 +172,7 @@ look_at = [321850, 129900]
     assert!(trees.pixels.iter().all(|&(_, pixels)| pixels > 30), "{:?}", trees.pixels);
     let crs = Crs::from_epsg(27700).expect("known");
     source_agrees(&scene, &place, &crs, 180);
-    // Nothing is resampled and nothing levelled here: the ground is the source, but for its outer half cell.
+    // Nothing is resampled and nothing leveled here: the ground is the source, but for its outer half cell.
     let ground = compare((&scene.heights, &crs), Surface::Ground, &samples(&place), |sample| {
         (crs.clone(), sample.on_dem)
     });
@@ -243,20 +243,20 @@ surface = "track"
 [[lake]]
 file = 'PLACE/derived/water.geojson'
 [[camera]]
-name = "centre"
+name = "center"
 eye = [-51.222, -30.085]
 eye_elevation = 2500
 look_at = [-51.222, -30.043]
 "#,
     );
     assert_eq!(count(&scene, FeatureKind::Road), 103 + 282 + 167 + 250 + 118 + 23 + 389 + 311);
-    let centre = pictured(&scene, "centre", "porto_alegre");
+    let center = pictured(&scene, "center", "porto_alegre");
     // Underpasses and tunnels show nothing where no hill rises over them.
-    let shown = centre.pixels.iter().filter(|(kind, _)| *kind != FeatureKind::Tunnel);
+    let shown = center.pixels.iter().filter(|(kind, _)| *kind != FeatureKind::Tunnel);
     assert!(
         shown.clone().count() >= 2 && shown.clone().all(|&(_, pixels)| pixels > 0),
         "{:?}",
-        centre.pixels
+        center.pixels
     );
     source_agrees(&scene, &place, &Crs::wgs84(), 150);
 }

@@ -1,8 +1,8 @@
-//! Swellendam below the Langeberg: a geographic elevation model, roads in another zone's metres, rivers that
-//! leave the model, and reservoirs to be levelled.
+//! Swellendam below the Langeberg: a geographic elevation model, roads in another zone's meters, rivers that
+//! leave the model, and reservoirs to be leveled.
 
 use sandtable::geom::crs::Crs;
-use sandtable::scene::kind::FeatureKind;
+use sandtable::scene::FeatureKind;
 use sandtable::terrain::query::Surface;
 
 use crate::common::data::data;
@@ -159,6 +159,6 @@ fn heights_under_every_sampled_vertex_are_what_gdal_finds() {
     assert!(ground.quantile(0.95) < 4.0 && ground.rms() < 2.0 && ground.max() < 20.0);
 }
 
-/// Metres of height: a tenth of a millimetre. Bringing a position to UTM and back moves it by less than a
-/// micrometre, which on the steepest slope of the model is less than a micrometre of height.
+/// Meters of height: a tenth of a millimeter. Bringing a position to UTM and back moves it by less than a
+/// micrometer, which on the steepest slope of the model is less than a micrometer of height.
 const SOURCE_M: f64 = 1e-4;

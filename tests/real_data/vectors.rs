@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use sandtable::scene::kind::{FeatureKind, Scene};
+use sandtable::scene::{FeatureKind, Scene};
 
 use crate::common::data::data;
 use crate::common::scratch::Scratch;

@@ -1,8 +1,8 @@
 //! Five places whole: every road, bridge, building, stream, tree and patch of land that their files hold.
 
 use sandtable::ribbon::partition::overlap_m2;
-use sandtable::scene::kind::{FeatureKind, Scene};
-use sandtable::scene::roads::centreline::Support;
+use sandtable::scene::roads::centerline::Support;
+use sandtable::scene::{FeatureKind, Scene};
 
 use crate::common::places::text_of;
 use crate::common::scratch::Scratch;

@@ -20,7 +20,7 @@ fn bump() -> Terrain {
 
 const MIDDLE: Vertex = Vertex::new(8, 8);
 
-/// From `offset` metres off the drawn bump, looking at it.
+/// From `offset` meters off the drawn bump, looking at it.
 fn looking_from(offset: Vec3) -> Camera {
     let at = Vec3::new(24.0, 32.0, 3.0);
     Camera::new(at + offset, at, 0.8, (640, 480), (0.1, 9000.0)).expect("sound")
@@ -38,7 +38,7 @@ fn variance_is_k_times_variance_times_land_width_over_distance() {
     // The terrain is 16 cells of 3 × 4 m: 64 m wide; 50 m away; exaggerated 1.5 times.
     close(published.excess(MIDDLE), 0.7 * (2.0 * 1.5) * 64.0 / 50.0);
     let in_pixels = Variance::new(terrain.ground(), &terrain.midpoint, &camera, 2.0);
-    close(in_pixels.excess(MIDDLE), 3.0 * camera.pixels_per_metre(50.0) / 2.0);
+    close(in_pixels.excess(MIDDLE), 3.0 * camera.pixels_per_meter(50.0) / 2.0);
 }
 
 #[test]
@@ -46,7 +46,7 @@ fn roughness_is_projected_from_the_hypotenuse_s_midpoint() {
     let terrain = bump();
     let camera = looking_from(Vec3::new(0.0, 30.0, 40.0));
     let criterion = Midpoint::new(terrain.ground(), &terrain.midpoint, &camera, 2.0);
-    close(criterion.excess(MIDDLE), 3.0 * camera.pixels_per_metre(50.0) / 2.0);
+    close(criterion.excess(MIDDLE), 3.0 * camera.pixels_per_meter(50.0) / 2.0);
     let far = Midpoint::new(terrain.ground(), &terrain.midpoint, &looking_from(Vec3::Y * 100.0), 2.0);
     close(far.excess(MIDDLE), criterion.excess(MIDDLE) / 2.0);
 }

@@ -13,8 +13,8 @@ use sandtable::roam::criterion::variance::Variance;
 use sandtable::roam::culling::{PatchHeights, patches_in_view};
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::PatchedGround;
 use sandtable::roam::layout::PatchLayout;
+use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::roam::spheres::SphereMap;
 use sandtable::terrain::lattice::Lattice;
 use sandtable::view::camera::Camera;
@@ -32,7 +32,7 @@ pub struct Terrain {
     pub heights: PatchHeights,
 }
 
-/// Metres between posts.
+/// Meters between posts.
 pub const CELL: DVec2 = DVec2::new(3.0, 4.0);
 
 impl Terrain {

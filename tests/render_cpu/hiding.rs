@@ -74,7 +74,7 @@ fn a_drape_wins_over_its_slope_from_every_side_and_distance() {
 }
 
 #[test]
-fn a_drape_wins_over_its_slope_ten_kilometres_away() {
+fn a_drape_wins_over_its_slope_ten_kilometers_away() {
     let hills = |x: f32, y: f32| 300.0 * libm::sinf(x / 1900.0) * libm::cosf(y / 1300.0);
     let list = draped_all_over(4_000.0, hills);
     for eye in [Vec3::new(0.0, -10_000.0, 600.0), Vec3::new(9_000.0, 5_000.0, 2_500.0)] {

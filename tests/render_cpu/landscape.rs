@@ -9,7 +9,7 @@ use sandtable::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use sandtable::draw::pixels::Pixels;
 use sandtable::mesh::sink::{MeshSink, VertexId};
 
-/// Half the side of the landscape in metres.
+/// Half the side of the landscape in meters.
 pub const HALF_M: f32 = 9_000.0;
 /// The road's feature.
 pub const ROAD: FeatureId = FeatureId(2);
@@ -18,7 +18,7 @@ pub const BOX: FeatureId = FeatureId(3);
 /// The forest's feature.
 pub const FOREST: FeatureId = FeatureId(4);
 
-/// The height of the hills in metres.
+/// The height of the hills in meters.
 pub fn height(x: f32, y: f32) -> f32 {
     let wave = |length: f32, phase: f32| libm::sinf((x * phase + y * (1.0 - phase)) / length);
     let ridges = 1.0 - libm::fabsf(libm::sinf(x / 2100.0 + 0.4 * libm::sinf(y / 1700.0)));
@@ -116,13 +116,13 @@ pub fn draped_material(base_color: Srgba) -> Material {
     Material { base_color, normals: NormalSource::Ground, ..Material::default() }
 }
 
-/// The strip of `half_width` metres around the line through `centre`, cut to the triangles of `ground`.
+/// The strip of `half_width` meters around the line through `center`, cut to the triangles of `ground`.
 ///
 /// V runs along the strip in units of four half widths, U across it.
-pub fn draped_strip(ground: &DrawMesh, centre: &[DVec2], half_width: f64) -> DrawMesh {
+pub fn draped_strip(ground: &DrawMesh, center: &[DVec2], half_width: f64) -> DrawMesh {
     let mut mesh = DrawMesh::default();
     let mut station = 0.0;
-    for pair in centre.windows(2) {
+    for pair in center.windows(2) {
         let along = (pair[1] - pair[0]).normalize();
         let side = along.perp() * half_width;
         let quad = [pair[0] - side, pair[1] - side, pair[1] + side, pair[0] + side];

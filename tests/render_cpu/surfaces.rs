@@ -17,7 +17,7 @@ fn floor() -> sandtable::draw::list::DrawMesh {
     quad([corner(-20.0, 0.0), corner(20.0, 0.0), corner(20.0, 80.0), corner(-20.0, 80.0)], Srgba::WHITE)
 }
 
-/// Where the ray of a pixel's centre meets the floor.
+/// Where the ray of a pixel's center meets the floor.
 fn on_floor(camera: &Camera, x: u32, y: u32) -> Option<Vec3> {
     let ray = camera.ray_through(Vec2::new(x as f32 + 0.5, y as f32 + 0.5));
     let reach = -2.0 / ray.z;
@@ -94,7 +94,7 @@ fn a_border_pixel_shows_the_share_that_is_covered() {
     plain_light(&mut list);
     list.lighting.haze.color = Vec3::ZERO;
     list.lighting.zenith = Vec3::ZERO;
-    // 100 px a metre at 10 m: the wall's right border lies at pixel 50 + 3/8 in every row.
+    // 100 px a meter at 10 m: the wall's right border lies at pixel 50 + 3/8 in every row.
     let tan = 50.0 / 100.0 / 10.0;
     let camera =
         Camera::new(Vec3::ZERO, Vec3::Y, 2.0 * libm::atanf(tan), (100, 100), (1.0, 100.0)).expect("sound");
@@ -179,7 +179,7 @@ fn a_lake_at_the_height_of_a_line_is_not_all_line() {
 }
 
 #[test]
-fn depths_and_features_are_those_at_the_pixel_s_centre() {
+fn depths_and_features_are_those_at_the_pixel_s_center() {
     let mut list = DrawList::default();
     let tilted = quad(
         [

@@ -14,7 +14,7 @@ use sandtable::ribbon::stroke::{Continuations, StrokeOptions, stroke};
 fn buffer_m2(points: &[DVec2], width_m: f64, join: Join) -> f64 {
     let line: LineString = points.iter().map(|at| (at.x, at.y)).collect();
     let join = match join {
-        Join::Mitre => LineJoin::Miter(0.1),
+        Join::Miter => LineJoin::Miter(0.1),
         Join::Bevel => LineJoin::Bevel,
         Join::Round => LineJoin::Round(std::f64::consts::PI / 12.0),
     };
@@ -46,8 +46,8 @@ fn walk() -> impl Strategy<Value = Vec<DVec2>> {
 proptest! {
     #[test]
     fn a_ribbon_s_area_is_its_buffer_s_whatever_the_join(points in walk(), width_m in 1.0..12.0) {
-        for join in [Join::Bevel, Join::Round, Join::Mitre] {
-            let options = StrokeOptions { width_m, join, mitre_limit: 10.0, ..StrokeOptions::default() };
+        for join in [Join::Bevel, Join::Round, Join::Miter] {
+            let options = StrokeOptions { width_m, join, miter_limit: 10.0, ..StrokeOptions::default() };
             let plan = laid(&points, &options);
             let parts = apart([&plan]);
             let (found, expected) = (parts[0].area_m2(), buffer_m2(&points, width_m, join));

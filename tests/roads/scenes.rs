@@ -2,7 +2,7 @@
 
 use sandtable::mesh::sink::VertexId;
 use sandtable::ribbon::texture::RibbonSurface;
-use sandtable::scene::kind::Scene;
+use sandtable::scene::Scene;
 
 use crate::common::scratch::Scratch;
 use crate::{area_m2, built, check_laid, scene};
@@ -41,7 +41,7 @@ fn a_crossing_without_a_vertex_is_joined_and_both_roads_end_at_it() {
 }
 
 #[test]
-fn a_track_ends_at_the_kerb_of_the_asphalt_that_goes_through() {
+fn a_track_ends_at_the_curb_of_the_asphalt_that_goes_through() {
     let scene = laid(
         "[[road]]\nwidth = 10\npoints = [[100, 500], [500, 500], [900, 500]]\n\
          [[road]]\nwidth = 4\nsurface = 'track'\npoints = [[500, 500], [500, 900]]\n",

@@ -13,7 +13,7 @@ use sandtable::terrain::query::{Answer, Interpolation, Surface};
 use crate::client::{Server, numbers, strings};
 use crate::common::data::data;
 
-/// Elevation models in degrees and in metres, with and without a system, with no-data.
+/// Elevation models in degrees and in meters, with and without a system, with no-data.
 const FILES: [&str; 6] = [
     "dem/zion_srtm_u16_deflate.tif",
     "dem/bigtujunga_utm11_i16_tiled.tif",
@@ -176,6 +176,6 @@ fn a_scene_is_asked_for_its_ground_and_its_source_in_its_own_coordinates() {
 }
 
 fn open(file: &Path) -> Dataset {
-    let grey = StatedHeights::default();
-    Dataset::open(file, grey, &Access { allow: Vec::new() }).expect("sound")
+    let gray = StatedHeights::default();
+    Dataset::open(file, gray, &Access { allow: Vec::new() }).expect("sound")
 }

@@ -1,4 +1,4 @@
-//! `/v1/los`, `/v1/profile`, `/v1/viewshed`: questions about the ground in metres.
+//! `/v1/los`, `/v1/profile`, `/v1/viewshed`: questions about the ground in meters.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -16,7 +16,7 @@ use crate::client::{Server, numbers};
 use crate::common::data::data;
 use crate::common::scratch::Scratch;
 
-/// 41 × 41 posts ten metres apart, level, with a wall 20 m high from south to north through the middle column.
+/// 41 × 41 posts ten meters apart, level, with a wall 20 m high from south to north through the middle column.
 fn walled() -> Scratch {
     let row =
         (0..41).map(|column| if column == 20 { "20" } else { "0" }).collect::<Vec<_>>().join(" ") + "\n";
@@ -108,9 +108,9 @@ fn a_viewshed_too_large_is_refused_with_the_range_that_is_not() {
 #[test]
 fn on_a_real_model_profile_and_viewshed_are_the_librarys() {
     let Some(file) = data("dem/bigtujunga_utm11_i16_tiled.tif") else { return };
-    let grey = StatedHeights::default();
-    let dataset = Dataset::open(&file, grey, &Access { allow: Vec::new() }).expect("sound");
-    let epoch = dataset.service().expect("in metres").snapshot();
+    let gray = StatedHeights::default();
+    let dataset = Dataset::open(&file, gray, &Access { allow: Vec::new() }).expect("sound");
+    let epoch = dataset.service().expect("in meters").snapshot();
     let lattice = epoch.lattice();
     let server = Server::start(Path::new("."), &[&format!("dem={}", file.display())]);
 

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::client::{Server, encoded};
 use crate::common::scratch::Scratch;
 
-/// Three rows of four samples a hundredth of a degree apart, the second of the second row a hole. Sample centres stand
+/// Three rows of four samples a hundredth of a degree apart, the second of the second row a hole. Sample centers stand
 /// at 10.005, 10.015, 10.025 and 10.035 east and 50.025, 50.015 and 50.005 north.
 pub const GRID: &str = "ncols 4\nnrows 3\nxllcorner 10\nyllcorner 50\ncellsize 0.01\nNODATA_value -9999\n\
                         10 20 30 40\n50 -9999 70 80\n90 100 110 120\n";
@@ -178,8 +178,8 @@ fn other_coordinates_are_x_then_y() {
     let utm = Crs::from_epsg(32632).expect("a zone");
     let at = Crs::wgs84().transform(&utm, DVec2::new(10.005, 50.005)).expect("inside");
     let path = format!("/v1/grid?locations={},{}&crs=EPSG:32632&interpolation=nearest", at.x, at.y);
-    let metres = server.get(&path).ok();
-    assert_eq!(elevations(&metres), [Value::from(90.0)]);
+    let meters = server.get(&path).ok();
+    assert_eq!(elevations(&meters), [Value::from(90.0)]);
     let own = server.get("/v1/plain?locations=5,15&crs=native&interpolation=nearest").ok();
     assert_eq!(elevations(&own), [Value::from(1.0)]);
 }

@@ -1,7 +1,7 @@
 //! Which methods there are.
 //!
 //! A method is what emits triangles, the criterion that tells when an error shows, and what refines. Not all go
-//! together: a [`Method`] holds only what does, and `choice` tells a user why the rest does not.
+//! together: a [`LodMethod`] holds only what does, and `choice` tells a user why the rest does not.
 
 use std::fmt::{self, Display};
 

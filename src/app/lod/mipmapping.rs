@@ -1,4 +1,4 @@
-//! GeoMipMap: choose a level for each patch, write the lists of those whose own or neighbours' levels changed.
+//! GeoMipMap: choose a level for each patch, write the lists of those whose own or neighbors' levels changed.
 
 use crate::app::lod::follow::Follow;
 use crate::app::lod::kept::{PatchLists, Stale};
@@ -41,13 +41,13 @@ impl<'a> Mipmapping<'a> {
         let is_same = |corner| last.is_some_and(|last| last.of(layout, corner) == levels.of(layout, corner));
         self.stale.clear();
         for corner in layout.patches().filter(|&corner| !is_same(corner)) {
-            self.stale.extend(with_neighbours(layout, corner));
+            self.stale.extend(with_neighbors(layout, corner));
         }
     }
 }
 
 /// The places of a patch and of those around it.
-fn with_neighbours(layout: &PatchLayout, corner: Vertex) -> impl Iterator<Item = usize> {
+fn with_neighbors(layout: &PatchLayout, corner: Vertex) -> impl Iterator<Item = usize> {
     let (layout, at) = (*layout, (corner.x / layout.patch(), corner.y / layout.patch()));
     let around = layout.patches_within((at.0 - 1, at.1 - 1), (at.0 + 1, at.1 + 1));
     around.map(move |corner| layout.patch_index(corner))

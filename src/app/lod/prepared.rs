@@ -13,8 +13,8 @@ use crate::roam::criterion::variance::Variance;
 use crate::roam::culling::PatchHeights;
 use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
 use crate::roam::layout::{DEFAULT_PATCH, PatchLayout};
+use crate::roam::patched_ground::PatchedGround;
 use crate::roam::roughness::Roughness;
 use crate::roam::spheres::{SphereMap, reach};
 use crate::terrain::lattice::Lattice;
@@ -131,7 +131,7 @@ impl PreparedGround {
     /// picture's corners.
     pub fn spheres(&self, which: SphereRule, camera: &Camera) -> &SphereMap {
         let ground = self.ground();
-        let middle = camera.pixels_per_metre(1.0) / self.tolerance_px;
+        let middle = camera.pixels_per_meter(1.0) / self.tolerance_px;
         match which {
             SphereRule::Plain => self.plain.get_or_init(|| SphereMap::plain(ground, self.midpoint(), middle)),
             SphereRule::Constrained => self.constrained.get_or_init(|| {

@@ -85,8 +85,8 @@ pub fn table(
             "{} × {} posts, {} × {} m apart; {way}, {frames} frames after the first, {goal}",
             lattice.columns(),
             lattice.rows(),
-            metres(Some(cell.x)),
-            metres(Some(cell.y)),
+            meters(Some(cell.x)),
+            meters(Some(cell.y)),
         ),
         String::new(),
     ];
@@ -98,7 +98,7 @@ pub fn table(
         "changed: triangles not shown in the frame before; upload: bytes of index lists sent a frame".into(),
     );
     lines.push(format!(
-        "mean, rms, max: metres, and pixels, off the elevation model at every post in the picture, in {} frames",
+        "mean, rms, max: meters, and pixels, off the elevation model at every post in the picture, in {} frames",
         MEASURED.min(frames + 1)
     ));
     lines.extend(budget.and_then(|most| exceeded(reports, most as usize)));
@@ -140,15 +140,15 @@ fn row(report: &FlightReport) -> [String; 11] {
         format!("{:.3}", report.update_ms_median),
         format!("{:.3}", report.update_ms_p99),
         report.upload_bytes_median.to_string(),
-        metres(difference.mean_m()),
-        metres(difference.rms_m()),
-        metres(difference.max_m()),
+        meters(difference.mean_m()),
+        meters(difference.rms_m()),
+        meters(difference.max_m()),
         difference.max_px().map_or("-".into(), |pixels| format!("{pixels:.2}")),
     ]
 }
 
 /// About four digits; a dash for nothing.
-fn metres(value: Option<f64>) -> String {
+fn meters(value: Option<f64>) -> String {
     match value {
         None => "-".into(),
         Some(value) if value >= 1000.0 => format!("{value:.0}"),
@@ -177,11 +177,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn columns_are_aligned_and_metres_have_about_four_digits() {
+    fn columns_are_aligned_and_meters_have_about_four_digits() {
         let rows = [["a".to_owned(), "long".to_owned()], ["method".to_owned(), "7".to_owned()]];
         assert_eq!(aligned(&rows), ["a       long", "method     7"]);
-        let written = [0.12345, 12.345, 123.45, 12345.6].map(|value| metres(Some(value)));
+        let written = [0.12345, 12.345, 123.45, 12345.6].map(|value| meters(Some(value)));
         assert_eq!(written, ["0.123", "12.35", "123.5", "12346"]);
-        assert_eq!(metres(None), "-");
+        assert_eq!(meters(None), "-");
     }
 }

@@ -1,6 +1,6 @@
 //! A flight file: the stations that the eye passes.
 //!
-//! One station a line, six numbers: the eye's x, y, z and the target's. Metres from the south-west post, x east,
+//! One station a line, six numbers: the eye's x, y, z and the target's. Meters from the south-west post, x east,
 //! y north, z the elevation: the coordinates of the meshes that are written. Separated by commas, semicolons or
 //! blanks; a first line without a number is a heading; empty lines and those that start with # are passed over.
 
@@ -12,7 +12,7 @@ use crate::view::flight::FlightStation;
 /// Stations that are read: more than any flight has frames.
 const MOST: usize = 100_000;
 
-/// No coordinate may be farther from the south-west post, metres: a quarter of the way round the world.
+/// No coordinate may be farther from the south-west post, meters: a quarter of the way round the world.
 const FARTHEST_M: f32 = 1e7;
 
 /// The stations of the text of the file called `name`, at least two.
@@ -50,7 +50,7 @@ fn parse_station(line: &str) -> Result<FlightStation, String> {
     let (eye, target) = (Vec3::new(*x, *y, *z), Vec3::new(*tx, *ty, *tz));
     let within = |point: Vec3| point.is_finite() && point.abs().max_element() <= FARTHEST_M;
     if !within(eye) || !within(target) {
-        return Err(format!("coordinates are metres from the south-west post, at most {FARTHEST_M}"));
+        return Err(format!("coordinates are meters from the south-west post, at most {FARTHEST_M}"));
     }
     if eye == target {
         return Err("the eye is its own target; let it look somewhere".into());

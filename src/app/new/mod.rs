@@ -28,9 +28,9 @@ use crate::app::new::text::{CameraDraft, GroundDraft, Vectors};
 use crate::app::progress::StepTimer;
 use crate::app::{files, load, output};
 use crate::description::parse::parse;
+use crate::scene::Scene;
 use crate::scene::assets::Assets;
 use crate::scene::build::build;
-use crate::scene::kind::Scene;
 use crate::terrain::query::{Interpolation, ground_height};
 
 /// What the scene file is called in its folder.

@@ -1,6 +1,6 @@
 //! What vector files hold, in the words of a scene file.
 //!
-//! Each [`Rule`] is a table that could be written, with the expression that chooses its features. The very expression is
+//! Each [`TableRule`] is a table that could be written, with the expression that chooses its features. The very expression is
 //! asked of every feature, so that what is counted here is what the scene will hold, and no table is written that would
 //! choose nothing. A layer in which no rule finds anything may still say by its name what it is.
 
@@ -52,7 +52,7 @@ pub(super) struct TableRule {
     pub shape: &'static str,
     /// The expression that holds for them.
     pub condition: &'static str,
-    /// The width, in metres or as an expression, for things drawn to scale.
+    /// The width, in meters or as an expression, for things drawn to scale.
     pub width: Option<&'static str>,
     /// Further keys as they are written.
     pub keys: &'static [&'static str],

@@ -46,7 +46,7 @@ pub(super) struct Vectors {
 }
 
 /// The extent up to which things are drawn as wide as they are: on a picture a thousand pixels wide a pixel is then
-/// four metres, and a street of five just shows.
+/// four meters, and a street of five just shows.
 const TRUE_TO_SCALE_M: f64 = 4000.0;
 
 /// The text of the scene file.
@@ -82,7 +82,7 @@ pub(super) fn scene(ground: &GroundDraft, vectors: &[Vectors]) -> String {
 fn head(ground: &GroundDraft) -> String {
     let (title, crs) = (quoted(&ground.title), &ground.crs_name);
     format!(
-        "# Lengths and heights are metres, angles degrees, file names relative to this file.\n\
+        "# Lengths and heights are meters, angles degrees, file names relative to this file.\n\
          # Every key: `sandtable schema > schema.json`, which editors use once the first line here says\n\
          # `#:schema schema.json`. Inline points are in the scene's coordinate system, {crs},\n\
          # unless `points_crs` or a table's `crs` says otherwise.\n\n\
@@ -109,7 +109,7 @@ pub(super) fn terrain(ground: &GroundDraft) -> String {
 }
 
 fn style(ground: &GroundDraft) -> String {
-    let mut out = "\n[style]\n# Or \"desert\", \"grey\", or stops of your own: [[0, \"#7f9f6b\"], [400, \"#c9cf97\"]].\n\
+    let mut out = "\n[style]\n# Or \"desert\", \"gray\", or stops of your own: [[0, \"#7f9f6b\"], [400, \"#c9cf97\"]].\n\
                    ramp = \"atlas\"\n"
         .to_owned();
     if let Some(interval) = ground.contours_m {

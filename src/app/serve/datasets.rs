@@ -1,7 +1,7 @@
 //! The datasets that are served, by name.
 //!
 //! They are opened when the program starts, and never again: nothing that a request says reaches the disk. Their ground
-//! in metres, which an elevation file in degrees must be warped for, is made in the background then; who asks for it
+//! in meters, which an elevation file in degrees must be warped for, is made in the background then; who asks for it
 //! before it is there waits for it.
 
 use std::path::{Path, PathBuf};
@@ -29,7 +29,7 @@ pub struct Served {
     ground: OnceLock<Result<(), String>>,
 }
 
-/// Whether a dataset's ground in metres can be asked.
+/// Whether a dataset's ground in meters can be asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GroundState<'a> {
     /// It is there.
@@ -54,7 +54,7 @@ impl Served {
         Ok(Self { name, name_json, data, ground: OnceLock::new() })
     }
 
-    /// Makes the ground in metres, where it is not there yet.
+    /// Makes the ground in meters, where it is not there yet.
     pub fn prepare(&self) {
         self.ground.get_or_init(|| match self.data.service() {
             Ok(_) => Ok(()),
@@ -80,7 +80,7 @@ impl Served {
         match self.data.service() {
             Ok(service) => Ok(service.snapshot()),
             Err(CliError::Input(reason) | CliError::Usage(reason)) => Err(HttpError::wrong(format!(
-                "dataset {} has no ground in metres: {reason}",
+                "dataset {} has no ground in meters: {reason}",
                 quoted(&self.name)
             ))),
         }

@@ -49,7 +49,7 @@ impl Grounded {
     }
 }
 
-/// Metres above the ground: the parameter `name`, or `default`.
+/// Meters above the ground: the parameter `name`, or `default`.
 ///
 /// # Errors
 /// It is no number, or below the ground.

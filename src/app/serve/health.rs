@@ -6,7 +6,7 @@ use crate::app::serve::question::Service;
 use crate::app::serve::reply::{BodyFormat, Reply};
 
 /// The page: status, version, and every dataset with its system, its extent (of the raster as read, out to its outer
-/// edges, in that system) and whether its ground in metres is `ready`, `awaited`, or why it has none.
+/// edges, in that system) and whether its ground in meters is `ready`, `awaited`, or why it has none.
 pub fn page(service: &Service) -> Reply {
     let mut body = Vec::with_capacity(1024);
     json::raw(&mut body, "{\"status\":\"OK\",\"version\":");

@@ -7,7 +7,7 @@
 //! | | |
 //! |---|---|
 //! | `status` per result | `Ok`, `NoData` or `Outside`: a hole is not the edge of the model |
-//! | `surface` | `source` (as read), `ground` (after earthworks, in metres), `scene` (decks on top); without it, of a file the source and of a scene the ground |
+//! | `surface` | `source` (as read), `ground` (after earthworks, in meters), `scene` (decks on top); without it, of a file the source and of a scene the ground |
 //! | `interpolation` | also `planar` and `distance-weighted`; `cubic` is refused |
 //! | `crs` | coordinates in another system; see [`places`](crate::app::serve::places) |
 //!

@@ -72,7 +72,7 @@ pub struct ServeOptions {
     /// What may be asked.
     #[command(flatten)]
     pub limits: ServeLimits,
-    /// What grey values mean.
+    /// What gray values mean.
     #[command(flatten)]
     pub heights: StatedHeights,
     /// What may be read.

@@ -97,7 +97,7 @@ impl<'a> Params<'a> {
         })
     }
 
-    /// Refuses parameters that are not in `known`: a misspelt one would be answered as if it were not there.
+    /// Refuses parameters that are not in `known`: a misspelled one would be answered as if it were not there.
     ///
     /// # Errors
     /// There is one.

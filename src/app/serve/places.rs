@@ -194,7 +194,7 @@ mod tests {
             Coordinates::read(&params, &Crs::local(), &wgs84)
         };
         assert!(read("").expect_err("no way").reason().contains("crs=native"));
-        assert_eq!(read("crs=native").expect("sound").crs.name(), "local metres");
+        assert_eq!(read("crs=native").expect("sound").crs.name(), "local meters");
         for wrong in ["crs=EPSG:0", "crs=4326", "crs=%2Bproj=longlat", "crs=EPSG:99999999999"] {
             assert!(read(wrong).is_err_and(|refusal| refusal.status() == 400), "{wrong}");
         }

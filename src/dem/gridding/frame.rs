@@ -2,7 +2,7 @@
 
 use glam::{DAffine2, DVec2};
 
-use crate::dem::fault::MOST_SAMPLES;
+use crate::dem::error::MOST_SAMPLES;
 use crate::dem::raster::north_up;
 use crate::geom::rect::Rect;
 
@@ -43,11 +43,11 @@ pub enum CellGridError {
 }
 
 impl CellGrid {
-    /// The cells that cover `extent`, their edges on multiples of `cell`: grids of neighbouring surveys with the same
+    /// The cells that cover `extent`, their edges on multiples of `cell`: grids of neighboring surveys with the same
     /// cell size then fit each other.
     ///
     /// # Errors
-    /// [`FrameError`]; an extent without width or height still has one column or row.
+    /// [`CellGridError`]; an extent without width or height still has one column or row.
     pub fn around(extent: Rect, cell: f64) -> Result<Self, CellGridError> {
         check(extent, cell)?;
         let low = (extent.min / cell).floor();
@@ -59,7 +59,7 @@ impl CellGrid {
     /// high, the last column or row reaches beyond it.
     ///
     /// # Errors
-    /// [`FrameError`].
+    /// [`CellGridError`].
     pub fn within(extent: Rect, cell: f64) -> Result<Self, CellGridError> {
         check(extent, cell)?;
         let size = ((extent.max - extent.min) / cell - SLACK_CELLS).ceil().max(DVec2::ONE);
@@ -97,7 +97,7 @@ impl CellGrid {
         self.corner
     }
 
-    /// The map position of the centre of a cell.
+    /// The map position of the center of a cell.
     pub fn center(&self, column: u32, row: u32) -> DVec2 {
         self.corner + DVec2::new(f64::from(column) + 0.5, -(f64::from(row) + 0.5)) * self.cell
     }

@@ -25,7 +25,7 @@ impl Hull {
         self.corners.len() < 3
     }
 
-    /// For each row of cells, the columns whose centres lie inside or on the border; empty for rows that pass by.
+    /// For each row of cells, the columns whose centers lie inside or on the border; empty for rows that pass by.
     pub fn columns(&self, cells: &CellCenters) -> Vec<std::ops::Range<usize>> {
         let mut spans = vec![(f64::INFINITY, f64::NEG_INFINITY); cells.y.len()];
         for (index, &from) in self.corners.iter().enumerate() {
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn centres_on_the_border_lie_inside() {
+    fn centers_on_the_border_lie_inside() {
         let (hull, sites) = hull(&[(0.5, 0.5), (4.5, 0.5), (0.5, 4.5)]);
         let extent = Rect { min: DVec2::ZERO, max: DVec2::splat(5.0) };
         let cells = CellCenters::new(&CellGrid::around(extent, 1.0).expect("a frame"), sites.origin);

@@ -1,16 +1,16 @@
-//! Triangles to heights of cells, row by row: where a row of cell centres enters and leaves a triangle, x and z are
+//! Triangles to heights of cells, row by row: where a row of cell centers enters and leaves a triangle, x and z are
 //! taken along its edges, and between the two z runs straight.
 //!
 //! ```text
 //!            c             at row y:  x and z on edge ac (left), x and z on edge bc (right)
 //!           ╱ ╲
-//!   row ───L───R───        every centre from L to R:  z = zL + (x − xL) · (zR − zL) / (xR − xL)
+//!   row ───L───R───        every center from L to R:  z = zL + (x − xL) · (zR − zL) / (xR − xL)
 //!         ╱     ╲
 //!        a ───── b
 //! ```
 //!
 //! An edge is always taken from its lower end to its upper one, so that both its triangles get the very same crossing:
-//! no centre falls between them. Heights are means of the corners at every step and stay in their range, however thin
+//! no center falls between them. Heights are means of the corners at every step and stay in their range, however thin
 //! the triangle is; a plane's gradient, the usual way, is boundless there.
 
 use std::ops::Range;
@@ -24,7 +24,7 @@ use crate::dem::gridding::tin::Tin;
 /// Rows a task: enough that few triangles lie in two, few enough that all cores stay busy to the end.
 const BAND_ROWS: usize = 16;
 
-/// Where cells' centres lie, from the sites' origin.
+/// Where cells' centers lie, from the sites' origin.
 pub(super) struct CellCenters {
     /// Of columns, rising.
     pub x: Vec<f64>,
@@ -34,7 +34,7 @@ pub(super) struct CellCenters {
 }
 
 impl CellCenters {
-    /// The centres of a frame's cells.
+    /// The centers of a frame's cells.
     pub fn new(frame: &CellGrid, origin: DVec2) -> Self {
         let corner = frame.corner() - origin;
         let cell = frame.cell();
@@ -48,9 +48,9 @@ impl CellCenters {
         self.x.len() * self.y.len()
     }
 
-    /// The columns whose centres lie from `low` to `high`, both included.
+    /// The columns whose centers lie from `low` to `high`, both included.
     pub fn columns_between(&self, low: f64, high: f64) -> Range<usize> {
-        // The division only guesses; the comparison with the centres themselves decides.
+        // The division only guesses; the comparison with the centers themselves decides.
         let mut first = (((low - self.x[0]) * self.per_cell) as usize).min(self.x.len());
         while first > 0 && self.x[first - 1] >= low {
             first -= 1;
@@ -69,7 +69,7 @@ impl CellCenters {
         first..end
     }
 
-    /// The rows whose centres lie from `low` to `high`, both included.
+    /// The rows whose centers lie from `low` to `high`, both included.
     pub fn rows_between(&self, low: f64, high: f64) -> Range<usize> {
         let mut first = (((self.y[0] - high) * self.per_cell) as usize).min(self.y.len());
         while first > 0 && self.y[first - 1] <= high {
@@ -109,9 +109,9 @@ fn cut(low: DVec3, high: DVec3, y: f64) -> (f64, f64) {
     (low.x + part * (high.x - low.x), low.z + part * (high.z - low.z))
 }
 
-/// Gives every cell whose centre lies in a triangle the triangle's height there; other cells are left as they are.
+/// Gives every cell whose center lies in a triangle the triangle's height there; other cells are left as they are.
 ///
-/// A centre on an edge takes the height of the later of its triangles, which is the same but for rounding.
+/// A center on an edge takes the height of the later of its triangles, which is the same but for rounding.
 pub(super) fn fill(tin: &Tin, cells: &CellCenters, out: &mut [f64]) {
     let width = cells.x.len();
     let bands = bands(tin, cells);
@@ -156,7 +156,7 @@ fn fill_triangle(corners: [DVec3; 3], cells: &CellCenters, band: &Range<usize>, 
     for row in rows.start.max(band.start)..rows.end.min(band.end) {
         let y = cells.y[row];
         let (long, short) = if low.y == high.y {
-            // No area, but its row must not be left out: it is some neighbour's border.
+            // No area, but its row must not be left out: it is some neighbor's border.
             ((low.x, low.z), (high.x, high.z))
         } else if y < middle.y || middle.y == high.y {
             (cut(low, high, y), if low.y == middle.y { (middle.x, middle.z) } else { cut(low, middle, y) })

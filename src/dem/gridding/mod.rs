@@ -1,15 +1,15 @@
-//! Grids of scattered points: the ground between points that were measured, at the centre of every cell.
+//! Grids of scattered points: the ground between points that were measured, at the center of every cell.
 //!
 //! ```text
 //!   PointCloud ──► sites ──────────────┬──► hull ──► which cells lie between the points
 //!   (any order,    (sorted, one per    │
 //!    doubles)       position)          ├──► tin ──► linear   planes between three sites (breaklines hold)
-//!                                      │      └───► natural  Sibson's natural neighbours
+//!                                      │      └───► natural  Sibson's natural neighbors
 //!                                      └──► kd ───► weighted inverse distance, quadrants, nearest
 //! ```
 //!
 //! Everything is computed from the sites in sorted order and cell by cell from a fixed start, so that the same points
-//! in any order and on any number of threads give the same bits. Cells whose centre lies outside the convex hull of
+//! in any order and on any number of threads give the same bits. Cells whose center lies outside the convex hull of
 //! the points hold no data unless it is asked for: there, every method guesses.
 
 pub mod breaklines;
@@ -37,13 +37,13 @@ use crate::dem::gridding::weighted::WeightedSites;
 use crate::dem::points::PointCloud;
 use crate::dem::raster::{Raster, Samples};
 
-/// How the height at a cell's centre comes from the points.
+/// How the height at a cell's center comes from the points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GriddingMethod {
     /// On the plane through the corners of the Delaunay triangle around it, breaklines kept as edges of triangles.
     /// Continuous, with creases at the edges; reproduces planes.
     Tin,
-    /// Sibson's natural neighbours (Sibson 1981): each neighbour weighs as the share of the cell's Voronoi region that
+    /// Sibson's natural neighbors (Sibson 1981): each neighbor weighs as the share of the cell's Voronoi region that
     /// it would lose to a site there. Continuous, and smooth except at the points; reproduces planes.
     Natural,
     /// The mean of the nearest points, each weighing as its distance to the power of −`power` (Shepard 1968).
@@ -139,7 +139,7 @@ pub enum GridError {
 /// Makes a grid of a cloud.
 ///
 /// The heights of a [`Raster`] of the same size and place as `frame`, NaN where there is no data; the cloud's system,
-/// unit and datum go with it. Breaklines are edges of triangles for [`Method::Tin`]; the other methods know no edges
+/// unit and datum go with it. Breaklines are edges of triangles for [`GriddingMethod::Tin`]; the other methods know no edges
 /// and take points along them, at most half a cell apart.
 ///
 /// # Errors
@@ -159,7 +159,7 @@ pub fn grid(
         width: frame.width(),
         height: frame.height(),
         samples: Samples::F64(heights),
-        metres_per_z: cloud.metres_per_z,
+        meters_per_z: cloud.meters_per_z,
         map_from_grid: frame.map_from_grid(),
         georeferenced: true,
         crs: cloud.crs.clone(),

@@ -1,18 +1,18 @@
-//! Natural neighbour interpolation (Sibson 1981) without inserting anything.
+//! Natural neighbor interpolation (Sibson 1981) without inserting anything.
 //!
-//! A site at the cell's centre q would take from each neighbour part of its Voronoi region; the height is the mean of
-//! the neighbours' by the areas taken. The triangles that would vanish, those whose circumcircle holds q (Bowyer and
+//! A site at the cell's center q would take from each neighbor part of its Voronoi region; the height is the mean of
+//! the neighbors' by the areas taken. The triangles that would vanish, those whose circumcircle holds q (Bowyer and
 //! Watson 1981), are found by walking outward from the triangle around q. Their sides to the outside form the ring of
-//! natural neighbours:
+//! natural neighbors:
 //!
 //! ```text
-//!        v2───────v1          C: circumcentre of a triangle that would vanish (stored)
-//!       ╱ ╲   C  ╱  ╲         G: circumcentre of q and a side of the ring (new)
+//!        v2───────v1          C: circumcenter of a triangle that would vanish (stored)
+//!       ╱ ╲   C  ╱  ╲         G: circumcenter of q and a side of the ring (new)
 //!      ╱  C╲ ·q ╱ C  ╲        q's region is the polygon of the Gs; what it takes from v lies between the Gs of v's
 //!    v3─────╲──╱──────v0      two sides and the Cs of the vanishing triangles at v
 //! ```
 //!
-//! The areas need no list of neighbours. By the shoelace formula the area taken from v is half the sum, over the sides
+//! The areas need no list of neighbors. By the shoelace formula the area taken from v is half the sum, over the sides
 //! p→p′ of its polygon, of p × p′. A side C→C′ across the edge ab bounds what is taken from a and, the other way
 //! round, from b. So it adds (C × C′)(z_b − z_a) to the weighted sum of heights, each side C→G of the ring does the
 //! same, and G→G′ at v adds (G × G′) z_v. The sum of the latter products alone is the sum of all weights. Each product
@@ -25,26 +25,26 @@ use crate::dem::gridding::GridError;
 use crate::dem::gridding::hull::Hull;
 use crate::dem::gridding::linear::CellCenters;
 use crate::dem::gridding::sites::Sites;
-use crate::dem::gridding::tin::{OUTSIDE, Tin, delaunay, neighbours};
+use crate::dem::gridding::tin::{OUTSIDE, Tin, delaunay, neighbors};
 
-/// Rows a task. A task starts its walk from the first triangle, whatever thread it runs on: where a centre lies on an
+/// Rows a task. A task starts its walk from the first triangle, whatever thread it runs on: where a center lies on an
 /// edge, the way it was reached by decides on which side it is taken.
 const BAND_ROWS: usize = 16;
 
-/// A centre nearer to a site than this part of the extent takes its height: closer by, circles through the site can
-/// no longer be told from circles through the centre.
+/// A center nearer to a site than this part of the extent takes its height: closer by, circles through the site can
+/// no longer be told from circles through the center.
 const SNAP: f64 = 1e-11;
 
-/// A centre nearer to a side of the hull than this part of the side's length lies on it.
+/// A center nearer to a side of the hull than this part of the side's length lies on it.
 const ON_SIDE: f64 = 1e-12;
 
 /// A triangle with what a search asks of it.
 struct SearchTriangle {
-    circumcentre: DVec2,
+    circumcenter: DVec2,
     radius2: f64,
     corners: [u32; 3],
     /// Beyond the side from corner i to corner i + 1.
-    neighbours: [u32; 3],
+    neighbors: [u32; 3],
 }
 
 /// Sites with their triangulation.
@@ -55,7 +55,7 @@ pub(super) struct Naturals {
     snap2: f64,
 }
 
-/// What a search fills again for every centre.
+/// What a search fills again for every center.
 #[derive(Default)]
 struct NeighborScratch {
     /// Sides yet to be looked across: the triangle and the side, the next in counter-clockwise order on top.
@@ -66,11 +66,11 @@ impl Naturals {
     /// Triangulates the sites.
     pub fn new(sites: &Sites) -> Result<Self, GridError> {
         let web = delaunay(sites)?;
-        let (tin, neighbours) = rayon::join(|| Tin::of(&web), || neighbours(&web));
-        let cells = tin.triangles.iter().zip(neighbours).map(|(&corners, neighbours)| {
+        let (tin, neighbors) = rayon::join(|| Tin::of(&web), || neighbors(&web));
+        let cells = tin.triangles.iter().zip(neighbors).map(|(&corners, neighbors)| {
             let [a, b, c] = corners.map(|corner| tin.vertices[corner as usize].truncate());
-            let from_a = circumcentre(b - a, c - a);
-            SearchTriangle { circumcentre: a + from_a, radius2: from_a.length_squared(), corners, neighbours }
+            let from_a = circumcenter(b - a, c - a);
+            SearchTriangle { circumcenter: a + from_a, radius2: from_a.length_squared(), corners, neighbors }
         });
         let high = sites.at.iter().fold(DVec2::ZERO, |high, at| high.max(*at));
         let snap = high.length() * SNAP;
@@ -104,7 +104,7 @@ impl Naturals {
         });
     }
 
-    /// The triangle around `q`, walking from another towards it; where rounding puts `q` outside of all, the one at
+    /// The triangle around `q`, walking from another toward it; where rounding puts `q` outside of all, the one at
     /// the border that the walk ended in.
     fn locate(&self, q: DVec2, from: u32) -> u32 {
         let mut at = from;
@@ -113,11 +113,11 @@ impl Naturals {
             let cell = &self.cells[at as usize];
             let [a, b, c] = cell.corners.map(|corner| self.at[corner as usize] - q);
             let beyond =
-                [(a, b), (b, c), (c, a)].iter().zip(cell.neighbours).find_map(|((from, to), neighbour)| {
-                    (neighbour != OUTSIDE && from.perp_dot(*to) < 0.0).then_some(neighbour)
+                [(a, b), (b, c), (c, a)].iter().zip(cell.neighbors).find_map(|((from, to), neighbor)| {
+                    (neighbor != OUTSIDE && from.perp_dot(*to) < 0.0).then_some(neighbor)
                 });
             match beyond {
-                Some(neighbour) => at = neighbour,
+                Some(neighbor) => at = neighbor,
                 None => break,
             }
         }
@@ -150,16 +150,16 @@ impl Naturals {
         let mut vanishing = 1;
         while let Some((index, side)) = sides.pop() {
             let cell = &self.cells[index as usize];
-            let centre = cell.circumcentre - q;
+            let center = cell.circumcenter - q;
             let a = cell.corners[usize::from(side)] as usize;
             let b = cell.corners[NEXT[usize::from(side)]] as usize;
-            let neighbour = cell.neighbours[usize::from(side)];
-            let beyond = self.cells.get(neighbour as usize).filter(|beyond| beyond.holds(q));
+            let neighbor = cell.neighbors[usize::from(side)];
+            let beyond = self.cells.get(neighbor as usize).filter(|beyond| beyond.holds(q));
             if let Some(beyond) = beyond {
-                sums.across(centre, beyond.circumcentre - q, self.z[b] - self.z[a]);
-                let back = beyond.neighbours.iter().position(|&back| back == index).unwrap_or(0);
+                sums.across(center, beyond.circumcenter - q, self.z[b] - self.z[a]);
+                let back = beyond.neighbors.iter().position(|&back| back == index).unwrap_or(0);
                 let [first, second] = [NEXT[back], NEXT[NEXT[back]]];
-                sides.extend([(neighbour, second as u8), (neighbour, first as u8)]);
+                sides.extend([(neighbor, second as u8), (neighbor, first as u8)]);
                 vanishing += 1;
                 if vanishing > self.cells.len() {
                     // Only rounding goes in circles.
@@ -169,12 +169,12 @@ impl Naturals {
             } else {
                 let (from, to) = (self.at[a] - q, self.at[b] - q);
                 let along = to - from;
-                if neighbour == OUTSIDE && from.perp_dot(to) <= ON_SIDE * along.length_squared() {
+                if neighbor == OUTSIDE && from.perp_dot(to) <= ON_SIDE * along.length_squared() {
                     let part = (-from.dot(along) / along.length_squared()).clamp(0.0, 1.0);
                     sums.on_side = Some(self.z[a] + part * (self.z[b] - self.z[a]));
                     break;
                 }
-                sums.ring(centre, circumcentre(from, to), self.z[a], self.z[b]);
+                sums.ring(center, circumcenter(from, to), self.z[a], self.z[b]);
             }
         }
         sums.close();
@@ -201,12 +201,12 @@ const NEXT: [usize; 3] = [1, 2, 0];
 
 impl SearchTriangle {
     fn holds(&self, q: DVec2) -> bool {
-        self.circumcentre.distance_squared(q) < self.radius2
+        self.circumcenter.distance_squared(q) < self.radius2
     }
 }
 
 /// The point as far from zero as from `a` and `b`; not finite where the three are on one line.
-fn circumcentre(a: DVec2, b: DVec2) -> DVec2 {
+fn circumcenter(a: DVec2, b: DVec2) -> DVec2 {
     let scale = 0.5 / a.perp_dot(b);
     let (a2, b2) = (a.length_squared(), b.length_squared());
     DVec2::new(b.y * a2 - a.y * b2, a.x * b2 - b.x * a2) * scale
@@ -224,7 +224,7 @@ struct AreaSums {
     last: DVec2,
     lowest: f64,
     highest: f64,
-    /// The height, where the centre lies on a side of the hull: there all areas are without bound.
+    /// The height, where the center lies on a side of the hull: there all areas are without bound.
     on_side: Option<f64>,
 }
 
@@ -248,10 +248,10 @@ impl AreaSums {
     }
 
     /// The next side of the ring, from a to b.
-    fn ring(&mut self, centre: DVec2, corner: DVec2, z_a: f64, z_b: f64) {
-        self.across(centre, corner, z_b - z_a);
+    fn ring(&mut self, center: DVec2, corner: DVec2, z_a: f64, z_b: f64) {
+        self.across(center, corner, z_b - z_a);
         match self.first {
-            Some(_) => self.at_neighbour(corner, z_a),
+            Some(_) => self.at_neighbor(corner, z_a),
             None => self.first = Some((corner, z_a)),
         }
         self.last = corner;
@@ -259,8 +259,8 @@ impl AreaSums {
         self.highest = self.highest.max(z_a);
     }
 
-    /// The side of q's own region towards a neighbour.
-    fn at_neighbour(&mut self, corner: DVec2, z: f64) {
+    /// The side of q's own region toward a neighbor.
+    fn at_neighbor(&mut self, corner: DVec2, z: f64) {
         let product = self.last.perp_dot(corner);
         self.area += product;
         self.heights += product * (z - self.zero);
@@ -268,7 +268,7 @@ impl AreaSums {
 
     fn close(&mut self) {
         if let Some((corner, z)) = self.first {
-            self.at_neighbour(corner, z);
+            self.at_neighbor(corner, z);
         }
     }
 }

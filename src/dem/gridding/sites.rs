@@ -2,7 +2,7 @@
 //!
 //! Points come in any order and some twice (overlapping flight lines, a breakline through a surveyed point). Sorting
 //! by x, y and z makes all that follows independent of the order. Coordinates become offsets from a whole-numbered
-//! corner: subtracting it is exact, and circumcentres keep the digits that eastings of half a million would cost.
+//! corner: subtracting it is exact, and circumcenters keep the digits that eastings of half a million would cost.
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;

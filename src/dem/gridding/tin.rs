@@ -1,8 +1,8 @@
 //! The Delaunay triangulation of the sites (`spade`), as flat lists.
 //!
-//! `spade` triangulates with exact predicates, which no grid of survey points (all on circles with their neighbours)
+//! `spade` triangulates with exact predicates, which no grid of survey points (all on circles with their neighbors)
 //! confuses. What it makes is a web of half-edges; the methods read triangles by the hundred thousand, so corners and
-//! neighbours are copied into lists once.
+//! neighbors are copied into lists once.
 
 use glam::{DVec2, DVec3};
 use spade::handles::FixedVertexHandle;
@@ -12,7 +12,7 @@ use crate::dem::gridding::GridError;
 use crate::dem::gridding::breaklines::{self, Crossings};
 use crate::dem::gridding::sites::Sites;
 
-/// In place of a triangle's neighbour: beyond the hull.
+/// In place of a triangle's neighbor: beyond the hull.
 pub(super) const OUTSIDE: u32 = u32::MAX;
 
 /// A site as `spade` holds it.
@@ -70,9 +70,9 @@ impl Tin {
     }
 }
 
-/// The neighbours of every triangle, in the order of [`Tin::of`]: for each side from corner i to corner i + 1 the
+/// The neighbors of every triangle, in the order of [`Tin::of`]: for each side from corner i to corner i + 1 the
 /// triangle beyond, or [`OUTSIDE`].
-pub(super) fn neighbours(web: &DelaunayTriangulation<TinVertex>) -> Vec<[u32; 3]> {
+pub(super) fn neighbors(web: &DelaunayTriangulation<TinVertex>) -> Vec<[u32; 3]> {
     // Face 0 is what lies beyond the hull; the inner faces follow.
     let beyond = |index: usize| index.checked_sub(1).map_or(OUTSIDE, |index| index as u32);
     web.inner_faces()

@@ -1,7 +1,7 @@
 //! Heights by distance: k nearest sites, one of each quadrant, or the nearest alone.
 //!
 //! Weights are taken relative to the nearest site's, (d₀/d)^power, which is the same mean and never overflows next to
-//! a site; a centre on a site takes its height.
+//! a site; a center on a site takes its height.
 
 use std::ops::Range;
 
@@ -43,12 +43,12 @@ impl Tile<'_> {
         columns.start.max(self.left)..columns.end.min(self.left + self.x.len())
     }
 
-    /// The middle of its cells' centres, and how far the farthest is from it.
+    /// The middle of its cells' centers, and how far the farthest is from it.
     fn circle(&self) -> (DVec2, f64) {
         let corner = DVec2::new(self.x[0], self.y[0]);
         let opposite = DVec2::new(self.x[self.x.len() - 1], self.y[self.y.len() - 1]);
-        let centre = (corner + opposite) * 0.5;
-        (centre, centre.distance(corner).max(centre.distance(opposite)))
+        let center = (corner + opposite) * 0.5;
+        (center, center.distance(corner).max(center.distance(opposite)))
     }
 }
 
@@ -116,17 +116,17 @@ impl<'a> WeightedSites<'a> {
         }
         let SearchScratch { found, candidates } = scratch;
         let wanted = self.wanted();
-        let (centre, half) = tile.circle();
-        self.tree.nearest_k(centre, f64::INFINITY, found);
+        let (center, half) = tile.circle();
+        self.tree.nearest_k(center, f64::INFINITY, found);
         let enough = found.near().get(wanted - 1).map_or(f64::INFINITY, |near| near.distance2.sqrt());
-        // So many sites lie within `enough` of the centre, so within `enough + half` of any cell; those that a cell
-        // needs lie half a tile farther from the centre at most.
+        // So many sites lie within `enough` of the center, so within `enough + half` of any cell; those that a cell
+        // needs lie half a tile farther from the center at most.
         let reach = (enough + 2.0 * half) * SLACK;
         let most = CROWD.max(CROWD_PER_SITE * wanted);
         let expected = wanted as f64 * (reach / enough).powi(2);
         let shared = expected <= most as f64 || self.sites.len() <= most;
         if shared {
-            self.tree.gather(centre, reach * reach, 2 * most, candidates);
+            self.tree.gather(center, reach * reach, 2 * most, candidates);
         }
         let shared = shared && candidates.len() <= 2 * most;
         for (row, (&y, columns)) in tile.y.iter().zip(tile.columns).enumerate() {

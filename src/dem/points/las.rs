@@ -18,7 +18,7 @@ use crate::dem::points::{PointCloud, PointHints, PointsError, laz};
 pub const GROUND: u8 = 2;
 
 /// Whether the content is that of a LAS or LAZ file.
-pub fn recognises(bytes: &[u8]) -> bool {
+pub fn recognizes(bytes: &[u8]) -> bool {
     bytes.starts_with(b"LASF")
 }
 
@@ -45,7 +45,7 @@ pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError>
         points,
         breaklines: Vec::new(),
         crs: system.crs,
-        metres_per_z: system.metres_per_z,
+        meters_per_z: system.meters_per_z,
         vertical_datum: system.vertical_datum,
         notes,
     })

@@ -3,9 +3,9 @@
 //! Heights are in the vertical unit that is stated, else in the unit of x and y, as ASPRS LAS 1.4 R15 has it of a
 //! system that states one unit only; that heights were taken for feet is told, because so much hangs on it.
 
-use crate::dem::geokeys::GeoKeys;
 use crate::dem::points::PointsError;
 use crate::dem::points::las_header::{LasHeader, Record};
+use crate::dem::tiff::geokeys::GeoKeys;
 use crate::geom::crs::Crs;
 
 /// Who defined the records of coordinate systems.
@@ -21,7 +21,7 @@ pub(super) struct LasCrs {
     /// Of x and y.
     pub crs: Option<Crs>,
     /// Of z.
-    pub metres_per_z: f64,
+    pub meters_per_z: f64,
     /// What heights are counted from.
     pub vertical_datum: Option<String>,
     /// What was taken for granted.
@@ -46,17 +46,17 @@ pub(super) fn read(
     let (crs, unit) = match (by_wkt, &keys, stated) {
         (Some(text), _, None) => (Some(crs_of(text)?), vertical_unit(text)),
         (Some(text), _, Some(crs)) => (Some(crs.clone()), vertical_unit(text)),
-        (None, Some(keys), None) => (keys.crs()?, keys.metres_per_z()?),
-        (None, Some(keys), Some(crs)) => (Some(crs.clone()), keys.metres_per_z().ok().flatten()),
+        (None, Some(keys), None) => (keys.crs()?, keys.meters_per_z()?),
+        (None, Some(keys), Some(crs)) => (Some(crs.clone()), keys.meters_per_z().ok().flatten()),
         (None, None, stated) => (stated.cloned(), None),
     };
     let mut notes = Vec::new();
-    let of_plane = crs.as_ref().filter(|crs| !crs.is_geographic()).map_or(1.0, Crs::metres_per_unit);
+    let of_plane = crs.as_ref().filter(|crs| !crs.is_geographic()).map_or(1.0, Crs::meters_per_unit);
     if unit.is_none() && of_plane != 1.0 {
         notes.push(format!("heights were taken to be in the unit of x and y, {of_plane} m"));
     }
     let vertical_datum = by_wkt.and_then(|text| quoted(vertical(text)?));
-    Ok(LasCrs { crs, metres_per_z: unit.unwrap_or(of_plane), vertical_datum, notes })
+    Ok(LasCrs { crs, meters_per_z: unit.unwrap_or(of_plane), vertical_datum, notes })
 }
 
 /// A text up to its first zero.
@@ -83,7 +83,7 @@ fn vertical(wkt: &str) -> Option<&str> {
     wkt.get(at..)
 }
 
-/// Metres in the unit of the vertical part.
+/// Meters in the unit of the vertical part.
 fn vertical_unit(wkt: &str) -> Option<f64> {
     let part = vertical(wkt)?;
     let unit = &part[part.find("UNIT[")?..];

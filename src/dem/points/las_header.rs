@@ -8,7 +8,7 @@
 
 use glam::DVec3;
 
-use crate::dem::fault::bytes_at;
+use crate::dem::error::bytes_at;
 use crate::dem::points::{MOST_POINTS, PointsError};
 
 /// Bytes of the header of each version from 1.0 on.

@@ -3,7 +3,7 @@
 //! The crate allocates what a file states: a forged number of chunks asks for 68 GB and ends the process, where no
 //! error can be caught. So before it sees a file:
 //!
-//! - it gets a header made here, with the counts of [`Header`] and no record but LASzip's own;
+//! - it gets a header made here, with the counts of [`LasHeader`] and no record but LASzip's own;
 //! - the items of LASzip's record must be those of the point format, in their order and of its lengths;
 //! - the table of chunks must lie in the file and state no more chunks than the points before it have room for;
 //! - of layered chunks (formats 6 to 10), each layer's length must lie in the file.
@@ -13,7 +13,7 @@
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::dem::fault::bytes_at;
+use crate::dem::error::bytes_at;
 use crate::dem::points::PointsError;
 use crate::dem::points::las::check_not_empty;
 use crate::dem::points::las_header::{LasHeader, Record};

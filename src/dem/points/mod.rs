@@ -11,7 +11,7 @@ pub mod table;
 
 use glam::DVec3;
 
-use crate::dem::fault::DemErrorKind;
+use crate::dem::error::DemErrorKind;
 use crate::geom::crs::Crs;
 
 /// Points that are taken of one file; more than any flight line holds, and 1.5 GiB of memory.
@@ -27,8 +27,8 @@ pub struct PointCloud {
     pub breaklines: Vec<Vec<DVec3>>,
     /// The system of x and y; `None` where the file names none.
     pub crs: Option<Crs>,
-    /// Metres in one unit of the heights.
-    pub metres_per_z: f64,
+    /// Meters in one unit of the heights.
+    pub meters_per_z: f64,
     /// What heights are counted from, in the file's words; `None` where it does not say.
     pub vertical_datum: Option<String>,
     /// What the user should know of what was read: what was left out, what was taken for granted.
@@ -120,10 +120,10 @@ impl From<DemErrorKind> for PointsError {
 }
 
 /// Whether a file is one of points: LAS and LAZ by content, text by its name's extension.
-pub fn recognises(name: &str, bytes: &[u8]) -> bool {
+pub fn recognizes(name: &str, bytes: &[u8]) -> bool {
     const TEXT: [&str; 6] = ["xyz", "csv", "txt", "tsv", "dat", "pts"];
     let extension = name.rsplit_once('.').map(|(_, extension)| extension.to_ascii_lowercase());
-    las::recognises(bytes) || extension.is_some_and(|extension| TEXT.contains(&extension.as_str()))
+    las::recognizes(bytes) || extension.is_some_and(|extension| TEXT.contains(&extension.as_str()))
 }
 
 /// Reads a file of points: LAS or LAZ by its first bytes, anything else as text.
@@ -131,5 +131,5 @@ pub fn recognises(name: &str, bytes: &[u8]) -> bool {
 /// # Errors
 /// [`PointsError`]; the caller names the file.
 pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError> {
-    if las::recognises(bytes) { las::read(bytes, hints) } else { table::read(bytes, hints) }
+    if las::recognizes(bytes) { las::read(bytes, hints) } else { table::read(bytes, hints) }
 }

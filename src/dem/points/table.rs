@@ -57,7 +57,7 @@ pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError>
         points,
         breaklines: Vec::new(),
         crs: hints.crs.cloned(),
-        metres_per_z: 1.0,
+        meters_per_z: 1.0,
         vertical_datum: None,
         notes: if without_height > 0 { vec![left_out] } else { Vec::new() },
     })

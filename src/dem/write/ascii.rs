@@ -1,6 +1,6 @@
 //! ESRI ASCII grid: a header of keys, then the heights as text, north row first; the system in a `.prj` beside it.
 //!
-//! A height is written with as many digits as tell it from its neighbours in its own precision, so that it comes back
+//! A height is written with as many digits as tell it from its neighbors in its own precision, so that it comes back
 //! to the last bit. Cells that are not square get `dx` and `dy` in place of `cellsize`, as GDAL reads and writes them.
 
 use std::fmt::Write;
@@ -13,7 +13,7 @@ const FORMAT: &str = "ESRI ASCII grid";
 /// What stands for no data, in the order of preference; the raster's own comes before.
 const HOLES: [f64; 3] = [-9999.0, -32768.0, -99999.0];
 
-/// Writes a raster in metres.
+/// Writes a raster in meters.
 ///
 /// # Errors
 /// It has no place, or rows that do not run east and south.

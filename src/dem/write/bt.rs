@@ -1,4 +1,4 @@
-//! Binary Terrain of the Virtual Terrain Project, version 1.3; [`crate::dem::bt`] draws its layout.
+//! Binary Terrain of the Virtual Terrain Project, version 1.3; [`crate::dem::formats::bt`] draws its layout.
 //!
 //! The extents are the coordinates of the outermost nodes, as VTP has them and our reader takes them. The system stands
 //! in the header where that can name it (UTM and degrees on a few datums), and always in a `.prj` beside it too.
@@ -38,9 +38,9 @@ pub(crate) fn write(raster: &Raster) -> Result<WrittenDem, WriteError> {
         }
     };
     // f32 holds the unit: feet are told from it, all others are kept to seven digits.
-    let unit = raster.metres_per_z as f32;
-    if f64::from(unit) != raster.metres_per_z && ![0.3048, 1200.0 / 3937.0].contains(&raster.metres_per_z) {
-        notes.push(format!("the unit of heights, {} m, is rounded", raster.metres_per_z));
+    let unit = raster.meters_per_z as f32;
+    if f64::from(unit) != raster.meters_per_z && ![0.3048, 1200.0 / 3937.0].contains(&raster.meters_per_z) {
+        notes.push(format!("the unit of heights, {} m, is rounded", raster.meters_per_z));
     }
     let mut bytes = header(raster, value_type, unit);
     bytes.extend(values(raster, value_type));
@@ -53,7 +53,7 @@ pub(crate) fn write(raster: &Raster) -> Result<WrittenDem, WriteError> {
     })
 }
 
-fn header(raster: &Raster, value_type: ValueType, metres_per_z: f32) -> Vec<u8> {
+fn header(raster: &Raster, value_type: ValueType, meters_per_z: f32) -> Vec<u8> {
     let half = raster.spacing() * 0.5;
     let (min, max) = (raster.extent().min + half, raster.extent().max - half);
     let system = BtCrs::of(raster.crs.as_ref());
@@ -69,7 +69,7 @@ fn header(raster: &Raster, value_type: ValueType, metres_per_z: f32) -> Vec<u8> 
         bytes.extend(edge.to_le_bytes());
     }
     bytes.extend(i16::from(raster.crs.as_ref().is_some_and(|crs| !crs.proj_text().is_empty())).to_le_bytes());
-    bytes.extend(metres_per_z.to_le_bytes());
+    bytes.extend(meters_per_z.to_le_bytes());
     bytes.resize(HEADER, 0);
     bytes
 }
@@ -93,7 +93,7 @@ fn values(raster: &Raster, value_type: ValueType) -> Vec<u8> {
 
 /// What the header says of the system.
 struct BtCrs {
-    /// 0 degrees, 1 metres, 2 feet, 3 US survey feet.
+    /// 0 degrees, 1 meters, 2 feet, 3 US survey feet.
     unit: i16,
     /// UTM zone, negative in the south; 0 for none.
     zone: i16,
@@ -117,7 +117,7 @@ impl BtCrs {
             Some(4258) => (0, 6258),
             _ => (0, WGS84),
         };
-        let unit = match crs.metres_per_unit() {
+        let unit = match crs.meters_per_unit() {
             _ if crs.is_geographic() => 0,
             0.3048 => 2,
             feet if (feet - 1200.0 / 3937.0).abs() < 1e-9 => 3,

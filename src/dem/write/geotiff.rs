@@ -24,8 +24,8 @@ const TILE: u32 = 256;
 
 /// Writes a raster; every raster can be.
 pub(crate) fn write(raster: &Raster) -> WrittenDem {
-    // A unit of heights without a name is brought to metres.
-    let named = unit_name(raster.metres_per_z).is_some();
+    // A unit of heights without a name is brought to meters.
+    let named = unit_name(raster.meters_per_z).is_some();
     let metric = (!named).then(|| super::metric(raster));
     let raster = metric.as_ref().unwrap_or(raster);
     let stored = stored(raster);
@@ -34,14 +34,14 @@ pub(crate) fn write(raster: &Raster) -> WrittenDem {
         .into_par_iter()
         .map(|index| tile(raster, stored, (index % across) * TILE, (index / across) * TILE))
         .collect();
-    let notes = if named { vec![] } else { vec!["heights are brought to metres".to_owned()] };
+    let notes = if named { vec![] } else { vec!["heights are brought to meters".to_owned()] };
     let bytes = file(tags(raster, stored), &tiles);
     WrittenDem { bytes, companions: Vec::new(), stored: stored.value_type.name().into(), notes }
 }
 
 /// GDAL's name of a vertical unit.
-fn unit_name(metres: f64) -> Option<&'static str> {
-    match keys::length_code(metres)? {
+fn unit_name(meters: f64) -> Option<&'static str> {
+    match keys::length_code(meters)? {
         9001 => Some("m"),
         9002 => Some("ft"),
         9003 => Some("US survey foot"),
@@ -158,7 +158,7 @@ fn tags(raster: &Raster, stored: Stored) -> Vec<(u16, TiffField)> {
     if !keys.text.is_empty() {
         tags.push((34737, TiffField::Text(keys.text)));
     }
-    if let Some(unit) = unit_name(raster.metres_per_z).filter(|unit| *unit != "m") {
+    if let Some(unit) = unit_name(raster.meters_per_z).filter(|unit| *unit != "m") {
         let xml = format!(
             "<GDALMetadata>\n  <Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">{unit}</Item>\n</GDALMetadata>\n"
         );

@@ -1,8 +1,8 @@
-//! SRTM tile: big-endian whole metres of a one-degree square, nodes on its borders; the name is its place.
+//! SRTM tile: big-endian whole meters of a one-degree square, nodes on its borders; the name is its place.
 
 use glam::DVec2;
 
-use crate::dem::hgt::{SIZES, VOID};
+use crate::dem::formats::hgt::{SIZES, VOID};
 use crate::dem::raster::Raster;
 use crate::dem::write::{WriteError, WrittenDem, check_place};
 
@@ -11,7 +11,7 @@ const FORMAT: &str = "SRTM tile";
 /// How far, in samples, nodes may lie from those of the degree.
 const OFF_SAMPLES: f64 = 1e-3;
 
-/// Writes a raster in metres that fills a degree; `stem` is the name that the file will have, without its extension.
+/// Writes a raster in meters that fills a degree; `stem` is the name that the file will have, without its extension.
 ///
 /// # Errors
 /// It is no degree on WGS 84 in one of the sizes that tiles have, heights are out of range, or the name is that of
@@ -40,15 +40,15 @@ pub(crate) fn write(raster: &Raster, stem: &str) -> Result<WrittenDem, WriteErro
     let mut bytes = Vec::with_capacity(raster.samples.len() * 2);
     let mut rounded: f64 = 0.0;
     for value in raster.samples.iter() {
-        let metres = value.round();
-        rounded = rounded.max((value - metres).abs());
+        let meters = value.round();
+        rounded = rounded.max((value - meters).abs());
         let (least, most) = (-32767.0, 32767.0);
-        if metres < least || metres > most {
+        if meters < least || meters > most {
             return Err(WriteError::OutOfRange { format: FORMAT, least, most, found: value });
         }
-        bytes.extend(if value.is_nan() { VOID } else { metres as i16 }.to_be_bytes());
+        bytes.extend(if value.is_nan() { VOID } else { meters as i16 }.to_be_bytes());
     }
-    let notes = if rounded > 0.0 { vec!["heights are rounded to whole metres".to_owned()] } else { vec![] };
+    let notes = if rounded > 0.0 { vec!["heights are rounded to whole meters".to_owned()] } else { vec![] };
     Ok(WrittenDem { bytes, companions: Vec::new(), stored: "int16".into(), notes })
 }
 

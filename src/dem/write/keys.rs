@@ -1,7 +1,7 @@
 //! GeoTIFF keys (OGC 19-008r4) for a coordinate system, a vertical datum and the unit of heights.
 //!
 //! A system with an EPSG code is that code. Any other is written twice: by the parameters of its projection, where
-//! there are keys for them, for other programs; and as a proj string in the citation, which [`crate::dem::geokeys`]
+//! there are keys for them, for other programs; and as a proj string in the citation, which [`crate::dem::tiff::geokeys`]
 //! takes before the parameters, so that it comes back as the very system that it was.
 
 use crate::dem::raster::Raster;
@@ -41,7 +41,7 @@ pub(crate) fn of(raster: &Raster) -> KeyTags {
                 keys.words(4097, words);
             }
         }
-        if let Some(unit) = length_code(raster.metres_per_z) {
+        if let Some(unit) = length_code(raster.meters_per_z) {
             keys.code(4099, unit);
         }
     }
@@ -49,8 +49,8 @@ pub(crate) fn of(raster: &Raster) -> KeyTags {
 }
 
 /// EPSG's number of a unit of length.
-pub(crate) fn length_code(metres: f64) -> Option<u16> {
-    match metres {
+pub(crate) fn length_code(meters: f64) -> Option<u16> {
+    match meters {
         1.0 => Some(9001),
         0.3048 => Some(9002),
         feet if (feet - 1200.0 / 3937.0).abs() < 1e-12 => Some(9003),
@@ -88,8 +88,8 @@ impl Keys {
         self.code(1024, model);
         if let Some((code, unit)) = epsg(crs) {
             self.code(type_key, code);
-            if let Some(metres) = unit {
-                self.linear_unit(metres);
+            if let Some(meters) = unit {
+                self.linear_unit(meters);
             }
             return;
         }
@@ -108,7 +108,7 @@ impl Keys {
         self.code(3072, USER_DEFINED);
         self.code(3074, USER_DEFINED);
         self.code(3075, method);
-        self.linear_unit(definition.metres_per_unit);
+        self.linear_unit(definition.meters_per_unit);
         let polar = definition.method == MapProjection::PolarStereographic;
         let true_scale = definition.parallel_1_deg.filter(|_| polar);
         self.number(latitude, true_scale.unwrap_or(definition.latitude_deg));
@@ -119,8 +119,8 @@ impl Keys {
             }
         }
         self.number(3092, definition.scale);
-        self.number(easting, definition.false_easting_m / definition.metres_per_unit);
-        self.number(northing, definition.false_northing_m / definition.metres_per_unit);
+        self.number(easting, definition.false_easting_m / definition.meters_per_unit);
+        self.number(northing, definition.false_northing_m / definition.meters_per_unit);
     }
 
     /// The geographic system that a projection starts from.
@@ -145,12 +145,12 @@ impl Keys {
         }
     }
 
-    fn linear_unit(&mut self, metres: f64) {
-        match length_code(metres) {
+    fn linear_unit(&mut self, meters: f64) {
+        match length_code(meters) {
             Some(code) => self.code(3076, code),
             None => {
                 self.code(3076, USER_DEFINED);
-                self.number(3077, metres);
+                self.number(3077, meters);
             }
         }
     }

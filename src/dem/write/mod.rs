@@ -1,7 +1,7 @@
 //! A raster to the bytes of a file: GeoTIFF, ESRI ASCII grid, VTP terrain, SRTM tile, 16-bit PNG.
 //!
 //! What a format cannot hold is refused with what can be done, except where rounding is the format's nature (an SRTM
-//! tile has whole metres): then it is done and told. What [`crate::dem::read::read`] makes of the bytes is the raster
+//! tile has whole meters): then it is done and told. What [`crate::dem::read::read`] makes of the bytes is the raster
 //! again, bit for bit where nothing was rounded.
 
 pub mod ascii;
@@ -25,9 +25,9 @@ pub enum DemFormat {
     Ascii,
     /// Terrain of the Virtual Terrain Project, version 1.3.
     Bt,
-    /// An SRTM tile: whole metres of a whole degree.
+    /// An SRTM tile: whole meters of a whole degree.
     Hgt,
-    /// Grey PNG of 16 bits, with a world file beside it.
+    /// Gray PNG of 16 bits, with a world file beside it.
     Png,
 }
 
@@ -139,7 +139,7 @@ pub enum WriteError {
 /// Writes `raster` in a format. `stem` is the name that the file will have, without its extension: an SRTM tile's place
 /// is its name.
 ///
-/// Heights stay in the raster's vertical unit where the format can name it, and are brought to metres where it cannot.
+/// Heights stay in the raster's vertical unit where the format can name it, and are brought to meters where it cannot.
 ///
 /// # Errors
 /// [`WriteError`].
@@ -164,11 +164,11 @@ pub fn write(raster: &Raster, format: DemFormat, stem: &str) -> Result<WrittenDe
     }
 }
 
-/// The raster with its heights in metres.
+/// The raster with its heights in meters.
 fn metric(raster: &Raster) -> Raster {
     let mut metric = raster.clone();
-    metric.samples = metric.samples.scaled(raster.metres_per_z, 0.0);
-    metric.metres_per_z = 1.0;
+    metric.samples = metric.samples.scaled(raster.meters_per_z, 0.0);
+    metric.meters_per_z = 1.0;
     metric
 }
 

@@ -1,6 +1,6 @@
-//! Grey PNG of 16 bits (W3C, 2003), metres by a scale and an offset that the user is told, with a world file beside it.
+//! Gray PNG of 16 bits (W3C, 2003), meters by a scale and an offset that the user is told, with a world file beside it.
 //!
-//! Grey value 0 is no data, and said so in the picture (tRNS); heights take 1 to 65535. Whole metres that fit are kept
+//! Gray value 0 is no data, and said so in the picture (tRNS); heights take 1 to 65535. Whole meters that fit are kept
 //! as they are; any others are spread over all values, and rounded to half a step.
 
 use std::io::Write;
@@ -11,11 +11,11 @@ use flate2::{Compression, Crc};
 use crate::dem::raster::Raster;
 use crate::dem::write::{Companion, WriteError, WrittenDem, projection_file};
 
-/// Steps from the lowest height to the highest: the 65,534 between the grey values for heights, less one for an offset
+/// Steps from the lowest height to the highest: the 65,534 between the gray values for heights, less one for an offset
 /// on a multiple of the step.
 const STEPS: f64 = 65533.0;
 
-/// Writes a raster in metres.
+/// Writes a raster in meters.
 ///
 /// # Errors
 /// All samples are no data.
@@ -30,14 +30,14 @@ pub(crate) fn write(raster: &Raster) -> Result<WrittenDem, WriteError> {
     let whole = valid().all(|value| value.fract() == 0.0) && most - least <= STEPS;
     let scale = if whole { 1.0 } else { readable(((most - least) / STEPS).max(f64::MIN_POSITIVE)) };
     let offset = (least / scale).floor() * scale - scale;
-    let grey = |value: f64| if value.is_nan() { 0 } else { ((value - offset) / scale).round() as u16 };
+    let gray = |value: f64| if value.is_nan() { 0 } else { ((value - offset) / scale).round() as u16 };
     let mut notes = vec![format!("read it with --height-scale {scale} --height-offset {offset}")];
     if !whole {
         notes.push(format!("heights are rounded to multiples of {scale} m"));
     }
     let companions = world_file(raster).into_iter().chain(projection_file(raster.crs.as_ref()));
     Ok(WrittenDem {
-        bytes: picture(raster, grey),
+        bytes: picture(raster, gray),
         companions: companions.collect(),
         stored: "uint16".into(),
         notes,
@@ -52,24 +52,24 @@ fn readable(scale: f64) -> f64 {
     format!("{digits}e{power}").parse().unwrap_or(scale)
 }
 
-fn picture(raster: &Raster, grey: impl Fn(f64) -> u16) -> Vec<u8> {
+fn picture(raster: &Raster, gray: impl Fn(f64) -> u16) -> Vec<u8> {
     let mut bytes = b"\x89PNG\r\n\x1a\n".to_vec();
     let mut header = [raster.width.to_be_bytes(), raster.height.to_be_bytes()].concat();
     header.extend([16, 0, 0, 0, 0]);
     chunk(&mut bytes, b"IHDR", &header);
     chunk(&mut bytes, b"tRNS", &[0, 0]);
-    chunk(&mut bytes, b"IDAT", &rows(raster, grey));
+    chunk(&mut bytes, b"IDAT", &rows(raster, gray));
     chunk(&mut bytes, b"IEND", &[]);
     bytes
 }
 
 /// The packed rows, each less the one above it: filter 2.
-fn rows(raster: &Raster, grey: impl Fn(f64) -> u16) -> Vec<u8> {
+fn rows(raster: &Raster, gray: impl Fn(f64) -> u16) -> Vec<u8> {
     let mut packer = ZlibEncoder::new(Vec::new(), Compression::default());
     let mut above = vec![0u8; raster.width as usize * 2];
     for row in 0..raster.height {
         let line: Vec<u8> =
-            (0..raster.width).flat_map(|column| grey(raster.at(column, row)).to_be_bytes()).collect();
+            (0..raster.width).flat_map(|column| gray(raster.at(column, row)).to_be_bytes()).collect();
         let filtered: Vec<u8> =
             line.iter().zip(&above).map(|(byte, above)| byte.wrapping_sub(*above)).collect();
         packer

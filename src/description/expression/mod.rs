@@ -47,7 +47,7 @@
 //! without the property, and `lanes < 2` holds for no road of which the lanes are unknown.
 //!
 //! **Texts as numbers.** Many files write numbers as texts. Where a number is needed, or the other side of a comparison
-//! is one, a text that is a number is that number, metres (`"4.5 m"`) or feet (`"12 ft"`, `"12'6\""`) where it says so.
+//! is one, a text that is a number is that number, meters (`"4.5 m"`) or feet (`"12 ft"`, `"12'6\""`) where it says so.
 //! Two texts are equal letter by letter, and ordered as numbers where both are numbers, else letter by letter. `true`
 //! equals what holds, `false` what does not.
 //!
@@ -116,7 +116,7 @@ impl Expression {
     }
 
     /// Whether `text` can only be meant as an expression, not as a word: it holds more than letters, digits, `_` and
-    /// `-`. A word that a key does not know is thus told as one misspelt, and not taken for a property.
+    /// `-`. A word that a key does not know is thus told as one misspelled, and not taken for a property.
     pub fn computes(text: &str) -> bool {
         !text.chars().all(|letter| letter.is_alphanumeric() || "_-".contains(letter))
     }
@@ -192,7 +192,7 @@ impl Quantity {
     }
 
     /// The number for a feature; `None` where its properties give none within the key's bounds. A text that is a number,
-    /// or a number of metres (`"4.5 m"`) or feet (`"12 ft"`), is that number.
+    /// or a number of meters (`"4.5 m"`) or feet (`"12 ft"`), is that number.
     pub fn number(&self, properties: PropertyLookup<'_>) -> Option<f64> {
         match &self.0 {
             FixedOrComputed::Fixed(number) => Some(*number),
@@ -234,7 +234,7 @@ impl<W: Word> ComputedWord<W> {
     }
 }
 
-/// The number that a value is: a text that is one too, in metres where it ends in `m`, and made metres of where it is in
+/// The number that a value is: a text that is one too, in meters where it ends in `m`, and made meters of where it is in
 /// feet (`ft`, `'`) and inches (`"`). Never NaN or infinite.
 pub fn as_number(value: &Scalar) -> Option<f64> {
     match value {
@@ -244,14 +244,14 @@ pub fn as_number(value: &Scalar) -> Option<f64> {
     }
 }
 
-/// Metres in a foot: the international one, exactly.
-const METRES_PER_FOOT: f64 = 0.3048;
+/// Meters in a foot: the international one, exactly.
+const METERS_PER_FOOT: f64 = 0.3048;
 
 fn text_as_number(text: &str) -> Option<f64> {
     let plain = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-    let feet = |text: &str| plain(text).map(|feet| feet * METRES_PER_FOOT);
-    if let Some(metres) = text.strip_suffix('m') {
-        return plain(metres);
+    let feet = |text: &str| plain(text).map(|feet| feet * METERS_PER_FOOT);
+    if let Some(meters) = text.strip_suffix('m') {
+        return plain(meters);
     }
     if let Some(number) = text.strip_suffix("ft") {
         return feet(number);
@@ -260,7 +260,7 @@ fn text_as_number(text: &str) -> Option<f64> {
         Some((whole, "")) => feet(whole),
         Some((whole, inches)) => {
             let inches = plain(inches.strip_suffix('"')?).filter(|inches| (0.0..12.0).contains(inches))?;
-            plain(whole).map(|whole| (whole + inches / 12.0) * METRES_PER_FOOT)
+            plain(whole).map(|whole| (whole + inches / 12.0) * METERS_PER_FOOT)
         }
         None => plain(text),
     }

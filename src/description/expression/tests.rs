@@ -156,7 +156,7 @@ fn comparisons_compare_numbers_as_numbers_and_texts_as_texts() {
 }
 
 #[test]
-fn a_text_is_a_number_plain_in_metres_or_in_feet() {
+fn a_text_is_a_number_plain_in_meters_or_in_feet() {
     let number = |text: &str| as_number(&Scalar::Text(text.into()));
     for (text, wanted) in
         [("4.5", 4.5), (" 4.5 m ", 4.5), ("4m", 4.0), ("10 ft", 3.048), ("10'", 3.048), ("10'6\"", 3.2004)]

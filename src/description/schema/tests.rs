@@ -89,7 +89,7 @@ fn documented_defaults_are_those_that_are_taken() {
         ("label", "height", defaults::LABEL_HEIGHT_M),
         ("road", "width", defaults::ROAD_WIDTH_M),
         ("road", "shoulder", defaults::ROAD_SHOULDER_M),
-        ("road", "mitre_limit", defaults::MITRE_LIMIT),
+        ("road", "miter_limit", defaults::MITER_LIMIT),
         ("road", "max_grade", defaults::MAX_GRADE_PERCENT),
         ("road", "crown", defaults::CROWN_PERCENT),
         ("road", "fill_slope", defaults::FILL_SLOPE),
@@ -117,7 +117,7 @@ fn documented_defaults_are_those_that_are_taken() {
         scatter["slope"]["default"].as_array().expect("a list").iter().filter_map(Value::as_f64).collect();
     assert_eq!(slope, defaults::SCATTER_SLOPE_DEG);
     for (table, key, word) in
-        [("road", "surface", "asphalt"), ("road", "join", "mitre"), ("lake", "level_rule", "lowest")]
+        [("road", "surface", "asphalt"), ("road", "join", "miter"), ("lake", "level_rule", "lowest")]
     {
         assert_eq!(schema["$defs"][table]["properties"][key]["default"], word, "{table} {key}");
     }

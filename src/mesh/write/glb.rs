@@ -3,7 +3,7 @@
 //! glTF has Y up, and programs that read it turn it to what they have. The accessors hold the coordinates as the
 //! mesh has them, Z up, and the node that shows the mesh carries the turn: `(x, y, z)` becomes `(x, z, −y)`, so
 //! that east stays X, up becomes Y and north is −Z, away from the viewer. Who looks at the accessors finds the
-//! metres; who looks at the scene finds it upright.
+//! meters; who looks at the scene finds it upright.
 
 use std::io::{self, Write};
 

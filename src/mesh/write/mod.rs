@@ -1,7 +1,7 @@
 //! Meshes as files that other programs read: OBJ, PLY, STL and binary glTF.
 //!
 //! All say where the mesh stands in remarks, since none of the formats has a place for it. Coordinates are written
-//! as the mesh has them (metres, X east, Y north, Z up), every one so that an f32 read back is the very same.
+//! as the mesh has them (meters, X east, Y north, Z up), every one so that an f32 read back is the very same.
 
 pub mod glb;
 pub mod obj;

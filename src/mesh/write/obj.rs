@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use crate::mesh::trimesh::TriMesh;
 use crate::mesh::write::Remarks;
 
-/// Writes `mesh`; coordinates in the fewest digits that tell them from their neighbours.
+/// Writes `mesh`; coordinates in the fewest digits that tell them from their neighbors.
 ///
 /// # Errors
 /// `out` cannot be written.

@@ -47,7 +47,7 @@ impl UnitSphere {
         ball
     }
 
-    /// Adds it with smooth normals: `shape` gives a direction's position and colour.
+    /// Adds it with smooth normals: `shape` gives a direction's position and color.
     pub(super) fn add_round(&self, mesh: &mut DrawMesh, shape: impl Fn(Vec3) -> (Vec3, Srgba)) {
         let ids: Vec<VertexId> = self
             .directions
@@ -60,7 +60,7 @@ impl UnitSphere {
         self.triangles.iter().for_each(|corners| mesh.triangle(corners.map(|corner| ids[corner])));
     }
 
-    /// Adds it with sharp edges: `shape` gives a direction's position, `color` a facet's colour by its normal.
+    /// Adds it with sharp edges: `shape` gives a direction's position, `color` a facet's color by its normal.
     pub(super) fn add_sharp(
         &self,
         mesh: &mut DrawMesh,
@@ -80,7 +80,7 @@ fn vertex(position: Vec3, normal: Vec3, color: Srgba) -> DrawVertex {
     DrawVertex { position: position.to_array(), normal: normal.to_array(), uv: [0.0; 2], color }
 }
 
-/// The triples of an icosahedron's corners that are each other's neighbours, turned outward.
+/// The triples of an icosahedron's corners that are each other's neighbors, turned outward.
 fn triangles_of(corners: &[Vec3]) -> Vec<[usize; 3]> {
     let near = |a: usize, b: usize| corners[a].dot(corners[b]) > 0.4;
     let count = corners.len();
@@ -104,7 +104,7 @@ pub(super) fn waves(at: Vec3, phase: f32) -> f32 {
         / 2.2
 }
 
-/// The colour between two, in 0..=1 of the way, channel by channel.
+/// The color between two, in 0..=1 of the way, channel by channel.
 pub(super) fn between(from: Srgba, to: Srgba, part: f32) -> Srgba {
     let part = part.clamp(0.0, 1.0);
     Srgba(std::array::from_fn(|channel| {

@@ -11,7 +11,7 @@ use crate::model::built_in::trunk;
 const LIGHT: Srgba = Srgba::opaque(154, 168, 90);
 const SHADE: Srgba = Srgba::opaque(72, 96, 56);
 
-/// A lump of the crown: its middle and half its size, in metres.
+/// A lump of the crown: its middle and half its size, in meters.
 struct Lump {
     middle: Vec3,
     half: Vec3,
@@ -26,7 +26,7 @@ const BOUGHS: [Lump; 4] = [
     Lump { middle: Vec3::new(1.2, -2.6, 8.3), half: Vec3::new(2.1, 2.1, 2.3) },
 ];
 
-/// Fourteen metres of oak.
+/// Fourteen meters of oak.
 pub(super) fn mesh() -> DrawMesh {
     let mut mesh = DrawMesh::default();
     let bark = (Srgba::opaque(104, 86, 66), Srgba::opaque(62, 54, 44));
@@ -39,7 +39,7 @@ pub(super) fn mesh() -> DrawMesh {
     mesh
 }
 
-/// A place on a lump's outside and its colour: what looks down lies in the shade, and so do the hollows.
+/// A place on a lump's outside and its color: what looks down lies in the shade, and so do the hollows.
 fn leaves(lump: &Lump, direction: Vec3, phase: f32) -> (Vec3, Srgba) {
     let uneven = waves(direction, phase);
     let at = lump.middle + lump.half * direction * (1.0 + 0.11 * uneven);

@@ -15,7 +15,7 @@ use crate::model::built_in::trunk;
 /// Boughs of a skirt.
 const BOUGHS: usize = 5;
 
-/// A skirt: where its rim hangs, where its tip is and how far its boughs reach, in metres.
+/// A skirt: where its rim hangs, where its tip is and how far its boughs reach, in meters.
 struct Skirt {
     rim_z: f32,
     tip_z: f32,
@@ -37,7 +37,7 @@ const GAP: Srgba = Srgba::opaque(58, 90, 58);
 const CORE: Srgba = Srgba::opaque(70, 104, 62);
 const UNDER: Srgba = Srgba::opaque(34, 54, 38);
 
-/// Eighteen metres of spruce.
+/// Eighteen meters of spruce.
 pub(super) fn mesh() -> DrawMesh {
     let mut mesh = DrawMesh::default();
     let bark = (Srgba::opaque(84, 66, 50), Srgba::opaque(58, 46, 38));

@@ -1,7 +1,7 @@
-//! Models that need no file: trees, a shrub and a rock, made by formula, life-size in metres.
+//! Models that need no file: trees, a shrub and a rock, made by formula, life-size in meters.
 //!
 //! A sand table needs woods more often than anything else, and a wood is seen from far away by the thousand: so each is
-//! some hundred triangles of vertex colours, with light and shade between the boughs painted in, and no texture. The
+//! some hundred triangles of vertex colors, with light and shade between the boughs painted in, and no texture. The
 //! origin is at the ground under the middle; a little of each reaches below it, so that nothing floats on a slope.
 //!
 //! ```text
@@ -23,7 +23,7 @@ mod trunk;
 
 use crate::draw::list::{DrawMesh, MaterialId};
 use crate::draw::material::Material;
-use crate::model::kind::{Census, Model, ModelPart};
+use crate::model::{Census, Model, ModelPart};
 
 /// The names of all built-in models.
 pub const NAMES: [&str; 4] = ["conifer", "broadleaf", "shrub", "rock"];
@@ -40,7 +40,7 @@ pub fn by_name(name: &str) -> Option<Model> {
     Some(model(name, mesh))
 }
 
-/// A model of one mesh that shows the colours of its vertices.
+/// A model of one mesh that shows the colors of its vertices.
 fn model(name: &str, mesh: DrawMesh) -> Model {
     let census =
         Census { meshes: 1, vertices: mesh.vertices.len(), faces: mesh.triangles.len(), materials: 1 };

@@ -10,10 +10,10 @@ use crate::model::built_in::blob::{UnitSphere, between, waves};
 const TOP: Srgba = Srgba::opaque(176, 168, 154);
 const SIDE: Srgba = Srgba::opaque(116, 108, 100);
 
-/// Half its size, in metres.
+/// Half its size, in meters.
 const HALF: Vec3 = Vec3::new(1.35, 1.1, 1.0);
 
-/// A metre and a half of boulder.
+/// A meter and a half of boulder.
 pub(super) fn mesh() -> DrawMesh {
     let mut mesh = DrawMesh::default();
     let shape = |direction: Vec3| {

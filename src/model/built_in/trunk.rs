@@ -6,12 +6,12 @@ use crate::draw::color::Srgba;
 use crate::draw::list::{DrawMesh, DrawVertex};
 use crate::mesh::sink::{MeshSink, VertexId};
 
-/// How deep a trunk reaches below the ground, in metres.
+/// How deep a trunk reaches below the ground, in meters.
 pub(super) const ROOT_M: f32 = 0.6;
 /// Sides of a trunk: round at the distance from which trees are looked at.
 const SIDES: usize = 6;
 
-/// Adds a trunk from below the ground up to `height`, its radius falling from `radii.0` to `radii.1` metres.
+/// Adds a trunk from below the ground up to `height`, its radius falling from `radii.0` to `radii.1` meters.
 pub(super) fn add(mesh: &mut DrawMesh, height: f32, radii: (f32, f32), (foot, top): (Srgba, Srgba)) {
     let mut ring = |z: f32, radius: f32, color: Srgba| -> Vec<VertexId> {
         let vertex = |side: usize| {

@@ -212,7 +212,7 @@ mod tests {
 
     struct Nothing;
 
-    impl crate::model::kind::Companions for Nothing {
+    impl crate::model::Companions for Nothing {
         fn load(&self, name: &str) -> Result<Vec<u8>, String> {
             Err(format!("no {name}"))
         }

@@ -5,8 +5,8 @@ use std::rc::Rc;
 
 use ::gltf::json::Root;
 
+use crate::model::Companions;
 use crate::model::error::ModelError;
-use crate::model::kind::Companions;
 
 /// The buffers of a document, or why one cannot be had: a buffer that nothing reads may be missing.
 pub(super) struct GltfBuffers {

@@ -1,4 +1,4 @@
-//! Materials: base colour and its texture, alpha, sides; how texture coordinates are changed before use.
+//! Materials: base color and its texture, alpha, sides; how texture coordinates are changed before use.
 
 use ::gltf::json::Root;
 use ::gltf::json::material;

@@ -23,8 +23,8 @@ use ::gltf::json::Root;
 use glam::{Mat4, Vec3};
 
 use crate::model::error::ModelError;
-use crate::model::kind::{Census, Companions, Model};
 use crate::model::part::PartBuilder;
+use crate::model::{Census, Companions, Model};
 
 use data::GltfBuffers;
 use shape::Painter;
@@ -104,7 +104,7 @@ mod tests {
         }
     }
 
-    /// A triangle with texture coordinates and colours, its material, and the nodes that place it.
+    /// A triangle with texture coordinates and colors, its material, and the nodes that place it.
     fn triangle(material: &str, nodes: &str, more: &str) -> Result<Model, ModelError> {
         let floats = [0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0];
         let bytes: Vec<String> =
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn vertices_have_colours_and_materials_their_alpha() {
+    fn vertices_have_colors_and_materials_their_alpha() {
         use crate::draw::material::AlphaMode;
         let cut = r#"{"alphaMode":"MASK","alphaCutoff":0.3,"doubleSided":true}"#;
         let model = triangle(cut, r#"{"mesh":0}"#, "").expect("sound");

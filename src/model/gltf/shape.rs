@@ -10,10 +10,10 @@ use crate::draw::list::MaterialId;
 use crate::draw::material::Material;
 use crate::draw::pixels::Pixels;
 use crate::model::error::ModelError;
-use crate::model::kind::{Census, Companions};
 use crate::model::normals::{Smoothing, corner_normals};
 use crate::model::part::{Budget, ModelCorner, PartBuilder};
 use crate::model::texture::Textures;
+use crate::model::{Census, Companions};
 
 use super::accessor::Accessors;
 use super::data::GltfBuffers;
@@ -165,7 +165,7 @@ impl<'a> Painter<'a> {
         }))
     }
 
-    /// Linear colours with or without alpha.
+    /// Linear colors with or without alpha.
     fn colors(&self, index: usize) -> Result<Vec<Srgba>, ModelError> {
         let translate = |[red, green, blue, alpha]: [f32; 4]| {
             let [red, green, blue] = [red, green, blue].map(srgb_from_linear);

@@ -8,11 +8,11 @@ use crate::draw::color::Srgba;
 use crate::draw::list::MaterialId;
 use crate::draw::material::{AlphaMode, Material};
 use crate::model::error::ModelError;
-use crate::model::kind::{Census, Companions, Model};
 use crate::model::normals::{CREASE_COS, Smoothing, corner_normals};
 use crate::model::part::{Budget, ModelCorner, PartBuilder};
 use crate::model::texture::{Textures, load_any};
 use crate::model::triangulate::triangulate;
+use crate::model::{Census, Companions, Model};
 
 use super::mtl::{self, Stated};
 use super::plain::{ObjFace, Plain};
@@ -98,14 +98,14 @@ fn materials(
     model.notes.extend(notes);
     let by_name: BTreeMap<&str, usize> =
         stated.iter().enumerate().map(|(index, material)| (material.name.as_str(), index)).collect();
-    let plain_grey = |name: &str| Material {
+    let plain_gray = |name: &str| Material {
         name: name.into(),
         base_color: Srgba::opaque(190, 190, 190),
         two_sided: true,
         ..Material::default()
     };
     let mut add = |name: &str| {
-        model.materials.push(plain_grey(name));
+        model.materials.push(plain_gray(name));
         model.materials.len() - 1
     };
     let mut used = Vec::new();
@@ -136,7 +136,7 @@ fn translate(stated: &Stated, textures: &mut Textures<'_>) -> Material {
         Some(id) if textures.is_cut_out(id) => AlphaMode::Mask(0.5),
         _ => AlphaMode::Opaque,
     };
-    // The format knows no sides, and its files are modelled for viewers that draw both.
+    // The format knows no sides, and its files are modeled for viewers that draw both.
     Material { name: stated.name.clone(), base_color, texture, alpha, two_sided: true, ..Material::default() }
 }
 

@@ -15,7 +15,7 @@ mod plain;
 mod text;
 
 use crate::model::error::ModelError;
-use crate::model::kind::{Companions, Model};
+use crate::model::{Companions, Model};
 
 /// The model in the bytes of an OBJ file. Y up becomes Z up: (x, y, z) to (x, −z, y).
 ///

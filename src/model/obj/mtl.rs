@@ -1,4 +1,4 @@
-//! Material libraries: what is read is the name, the diffuse colour, the opacity and the maps of both.
+//! Material libraries: what is read is the name, the diffuse color, the opacity and the maps of both.
 
 use super::plain::number;
 use super::text::logical_lines;
@@ -7,7 +7,7 @@ use super::text::logical_lines;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Stated {
     pub name: String,
-    /// Diffuse colour, in 0..=1 as authored (sRGB).
+    /// Diffuse color, in 0..=1 as authored (sRGB).
     pub diffuse: [f32; 3],
     /// 1 is opaque.
     pub opacity: f32,
@@ -51,13 +51,13 @@ fn state(material: &mut Stated, keyword: &str, rest: &str) {
     }
 }
 
-/// Three values, or one for all; `None` for `spectral` and `xyz` colours.
+/// Three values, or one for all; `None` for `spectral` and `xyz` colors.
 fn color(rest: &str) -> Option<[f32; 3]> {
     let values: Vec<f32> =
         rest.split_whitespace().map(number).take_while(|value| value.is_finite()).take(3).collect();
     match values[..] {
         [red, green, blue] => Some([red, green, blue]),
-        [grey, ..] => Some([grey; 3]),
+        [gray, ..] => Some([gray; 3]),
         [] => None,
     }
 }

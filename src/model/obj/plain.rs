@@ -2,7 +2,7 @@
 //!
 //! All indices are made absolute and tested against what the file has defined so far; points, lines,
 //! curves and comments are left out. What `tobj` has no place for — materials, smoothing, which corners
-//! have what — is kept beside it, one [`Face`] for each face in order.
+//! have what — is kept beside it, one [`ObjFace`] for each face in order.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;

@@ -12,10 +12,10 @@ use crate::draw::color::Srgba;
 use crate::draw::list::MaterialId;
 use crate::draw::material::{AlphaMode, Material};
 use crate::model::error::ModelError;
-use crate::model::kind::{Census, Companions, Model};
 use crate::model::normals::{Smoothing, corner_normals};
 use crate::model::part::{Budget, ModelCorner, PartBuilder};
 use crate::model::texture::Textures;
+use crate::model::{Census, Companions, Model};
 
 use super::ThreeDsFile;
 use super::keyframer::world_from_nodes;
@@ -95,7 +95,7 @@ fn census(file: &ThreeDsFile) -> Census {
 fn translate(described: &MaterialChunk, textures: &mut Textures<'_>) -> (Material, MapUvTransform) {
     let [painted, mask] = [&described.map, &described.opacity_map]
         .map(|map| map.as_ref().and_then(|map| textures.by_name(&map.file)));
-    // 3D Studio paints the map over the diffuse colour.
+    // 3D Studio paints the map over the diffuse color.
     let mut base_color = if painted.is_some() { Srgba::WHITE } else { described.diffuse };
     let texture = mask.map_or(painted, |mask| textures.masked(painted, mask));
     base_color.0[3] = 255 - (described.transparency * 255.0 + 0.5) as u8;
@@ -214,7 +214,7 @@ fn materials_of(object: &TriObject, palette: &Palette<'_>, model: &mut Model) ->
     ids.into_iter().map(|id| id.or(default).unwrap_or(MaterialId(0))).collect()
 }
 
-/// What is drawn where a file names no material: light grey, both sides.
+/// What is drawn where a file names no material: light gray, both sides.
 fn default_material(model: &mut Model) -> MaterialId {
     let name = "(no material)";
     let index = model.materials.iter().position(|material| material.name == name).unwrap_or_else(|| {

@@ -1,4 +1,4 @@
-//! Materials: colours, transparency, sides and the diffuse map.
+//! Materials: colors, transparency, sides and the diffuse map.
 
 use glam::Vec2;
 
@@ -38,11 +38,11 @@ pub(super) fn parse(chunk: &Chunk<'_>) -> Result<MaterialChunk, ModelError> {
     const TWO_SIDED: u16 = 0xA081;
     const TEXTURE_MAP: u16 = 0xA200;
     const OPACITY_MAP: u16 = 0xA210;
-    /// 3D Studio's own grey.
-    const GREY: Srgba = Srgba::opaque(150, 150, 150);
+    /// 3D Studio's own gray.
+    const GRAY: Srgba = Srgba::opaque(150, 150, 150);
     let mut material = MaterialChunk {
         name: String::new(),
-        diffuse: GREY,
+        diffuse: GRAY,
         transparency: 0.0,
         two_sided: false,
         map: None,
@@ -52,7 +52,7 @@ pub(super) fn parse(chunk: &Chunk<'_>) -> Result<MaterialChunk, ModelError> {
         let part = part?;
         match part.id {
             NAME => material.name = part.read().text()?,
-            DIFFUSE => material.diffuse = color(&part)?.unwrap_or(GREY),
+            DIFFUSE => material.diffuse = color(&part)?.unwrap_or(GRAY),
             TRANSPARENCY => material.transparency = percentage(&part)?.unwrap_or(0.0),
             TWO_SIDED => material.two_sided = true,
             TEXTURE_MAP => material.map = map(&part)?,
@@ -63,7 +63,7 @@ pub(super) fn parse(chunk: &Chunk<'_>) -> Result<MaterialChunk, ModelError> {
     Ok(material)
 }
 
-/// The first colour in a chunk: bytes or shares of one, plain or gamma-corrected, which are the same here.
+/// The first color in a chunk: bytes or shares of one, plain or gamma-corrected, which are the same here.
 fn color(chunk: &Chunk<'_>) -> Result<Option<Srgba>, ModelError> {
     const SHARES: [u16; 2] = [0x0010, 0x0013];
     const BYTES: [u16; 2] = [0x0011, 0x0012];
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn a_material_has_its_colour_transparency_sides_and_maps() {
+    fn a_material_has_its_color_transparency_sides_and_maps() {
         let map = |file: &str, more: Vec<u8>| [chunk(0xA300, format!("{file}\0").as_bytes()), more].concat();
         let number = |id: u16, value: f32| chunk(id, &value.to_le_bytes());
         let turned = [number(0xA354, 2.0), number(0xA358, 0.25), number(0xA35C, 90.0)].concat();

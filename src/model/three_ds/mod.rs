@@ -20,7 +20,7 @@ mod material;
 mod mesh;
 
 use crate::model::error::ModelError;
-use crate::model::kind::{Companions, Model};
+use crate::model::{Companions, Model};
 
 use chunk::Chunk;
 use keyframer::KeyframeNode;

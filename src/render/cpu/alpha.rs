@@ -1,9 +1,9 @@
 //! The alpha of a texture by itself, read for masks.
 //!
-//! Whether a sample sees a leaf or a hole is asked far more often than what colour a leaf has: at every sample, and of
+//! Whether a sample sees a leaf or a hole is asked far more often than what color a leaf has: at every sample, and of
 //! every leaf behind another. So alpha has bytes of its own, a quarter of what a texture takes, and a reading is one
 //! bilinear tap of the level whose texels come nearest to a sample's share of the pixel; only where that share is at
-//! least half as long again as wide are there more. Blending two levels, as colours need it, would show nowhere: what
+//! least half as long again as wide are there more. Blending two levels, as colors need it, would show nowhere: what
 //! comes of a reading is yes or no, and the samples of a pixel are averaged after it.
 
 use glam::Vec2;
@@ -91,7 +91,7 @@ impl AlphaLevel {
             let columns = (left as usize, left as usize + 1, x - left as f32);
             return self.blend(columns, (top as usize, top as usize + 1, y - top as f32));
         }
-        self.blend(neighbours(uv.x, width), neighbours(uv.y, height))
+        self.blend(neighbors(uv.x, width), neighbors(uv.y, height))
     }
 
     fn blend(&self, (left, right, x): (usize, usize, f32), (top, bottom, y): (usize, usize, f32)) -> f32 {
@@ -102,11 +102,11 @@ impl AlphaLevel {
     }
 }
 
-/// The two texels around a repeated coordinate and how far it lies towards the second. `size` must not be 0.
+/// The two texels around a repeated coordinate and how far it lies toward the second. `size` must not be 0.
 ///
 /// Rounds by casting, which is much cheaper than `floor` and `rem_euclid`. Casts saturate and turn NaN to 0, so
 /// that coordinates which are not finite give some texel, too.
-pub fn neighbours(coordinate: f32, size: u32) -> (usize, usize, f32) {
+pub fn neighbors(coordinate: f32, size: u32) -> (usize, usize, f32) {
     let part = coordinate - coordinate as i64 as f32;
     let repeated = if part < 0.0 { part + 1.0 } else { part }.clamp(0.0, 1.0);
     let position = repeated * size as f32 - 0.5;

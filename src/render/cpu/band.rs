@@ -17,7 +17,7 @@ use crate::render::cpu::visibility::TILE;
 /// The rows of a picture that a band writes.
 #[derive(Debug)]
 pub struct BandRows<'a> {
-    /// Colours.
+    /// Colors.
     pub colors: &'a mut [Srgba],
     /// Depths.
     pub depths_m: &'a mut [f32],

@@ -2,7 +2,7 @@
 //!
 //! Fragments are collected after everything opaque of a tile is known, so none is kept that cannot be seen.
 //! They are kept in order from the nearest to the farthest while they come in, drapes by the rule of
-//! layers; colours are then laid over each other exactly, with no dithering and no limit on overlap but
+//! layers; colors are then laid over each other exactly, with no dithering and no limit on overlap but
 //! [`MOST_LAYERS`].
 
 use glam::Vec3;

@@ -1,6 +1,6 @@
-//! Triangles of a draw list to faces and pieces: what may be seen, ready to be rasterised.
+//! Triangles of a draw list to faces and pieces: what may be seen, ready to be rasterized.
 //!
-//! A [`Face`] is one triangle with all that shading needs; a [`Piece`] is a part of its outline on the
+//! A [`ScreenFace`] is one triangle with all that shading needs; a [`FacePiece`] is a part of its outline on the
 //! picture, most often the only one. Triangles are taken in chunks of [`CHUNK`], in parallel, each from its
 //! three vertices on: projecting a vertex anew for each of its triangles costs less than storing it. Chunks
 //! keep the list's order, which is what makes the picture independent of threads.

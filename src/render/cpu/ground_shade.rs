@@ -14,7 +14,7 @@ use crate::render::ground_levels::{GroundLevel, PostCount, add, smaller_levels};
 #[derive(Debug)]
 pub struct GroundShader<'a> {
     map: &'a GroundMap,
-    posts_per_metre: Vec2,
+    posts_per_meter: Vec2,
     smaller: Vec<GroundLevel>,
     stops: Vec<(f32, Vec3)>,
 }
@@ -23,7 +23,7 @@ pub struct GroundShader<'a> {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GroundPoint {
     post: GroundPost,
-    /// The rise of `height_m` eastward and northward, metres per metre.
+    /// The rise of `height_m` eastward and northward, meters per meter.
     gradient: Vec2,
 }
 
@@ -32,13 +32,13 @@ impl<'a> GroundShader<'a> {
     pub fn new(map: &'a GroundMap) -> Self {
         let smaller = smaller_levels(map).collect();
         let stops = map.ramp.stops().iter().map(|&(height, color)| (height, color.linear())).collect();
-        Self { map, posts_per_metre: map.cell.recip(), smaller, stops }
+        Self { map, posts_per_meter: map.cell.recip(), smaller, stops }
     }
 
     /// The ground beneath a hit, over the pixel's footprint.
     pub fn at(&self, hit: &FacePoint, most_taps: u32) -> GroundPoint {
         let [right, down] = [hit.right.truncate(), hit.down.truncate()];
-        let footprint = TexelFootprint::new(right, down, self.posts_per_metre, most_taps);
+        let footprint = TexelFootprint::new(right, down, self.posts_per_meter, most_taps);
         let level = footprint.level.min(self.smaller.len() as f32);
         let (lower, part) = (level as usize, level - (level as usize) as f32);
         let share = 1.0 / footprint.taps as f32;
@@ -53,7 +53,7 @@ impl<'a> GroundShader<'a> {
         point
     }
 
-    /// The map's colour at a point: the ramp with contours on it, in linear light.
+    /// The map's color at a point: the ramp with contours on it, in linear light.
     pub fn albedo(&self, point: &GroundPoint, hit: &FacePoint) -> Vec3 {
         let height = point.post.height_m;
         let color = self.ramp_at(height);
@@ -80,7 +80,7 @@ impl<'a> GroundShader<'a> {
         let (columns, rows) = (size.columns as usize, size.rows as usize);
         let scale = 1.0 / (1u64 << level) as f32;
         let last = Vec2::new((self.map.columns - 1) as f32, (self.map.rows - 1) as f32);
-        let grid = ((at - self.map.origin) * self.posts_per_metre).clamp(Vec2::ZERO, last) * scale;
+        let grid = ((at - self.map.origin) * self.posts_per_meter).clamp(Vec2::ZERO, last) * scale;
         let (column, x) = split(grid.x, columns);
         let (row, y) = split(grid.y, rows);
         let east = usize::from(columns > 1);
@@ -93,7 +93,7 @@ impl<'a> GroundShader<'a> {
         }
         let [sw, se, nw, ne] = corners.map(|post| post.height_m);
         let rise = Vec2::new((se - sw) * (1.0 - y) + (ne - nw) * y, (nw - sw) * (1.0 - x) + (ne - se) * x);
-        sum.gradient += rise * self.posts_per_metre * (scale * weight);
+        sum.gradient += rise * self.posts_per_meter * (scale * weight);
     }
 }
 

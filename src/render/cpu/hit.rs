@@ -10,7 +10,7 @@ use crate::render::cpu::screen::Screen;
 pub struct FacePoint {
     /// In world space.
     pub world: Vec3,
-    /// Metres from the eye.
+    /// Meters from the eye.
     pub distance_m: f32,
     /// The change of `world` over one pixel to the right.
     pub right: Vec3,

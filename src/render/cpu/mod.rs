@@ -17,7 +17,7 @@
 //! not show, and what is hidden as a whole is passed over.
 //!
 //! # Surfaces
-//! Ground and solids hide what is behind them; draped faces follow [`crate::draw::list::Layer`], with the
+//! Ground and solids hide what is behind them; draped faces follow [`crate::draw::list::DepthLayer`], with the
 //! tolerance widened where f32 corners far from the origin round by more than it (see
 //! `geometry::drape_tolerance`). Masked surfaces are tested at each sample that
 //! nothing nearer covers, by one reading of their alpha as a rule. Blended surfaces are sorted per pixel, up to
@@ -83,7 +83,7 @@ pub struct Options {
 /// In how many places each pixel is tested for what it sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SampleCount {
-    /// Once, at the centre: jagged, for drafts.
+    /// Once, at the center: jagged, for drafts.
     One,
     /// Four times.
     Four,
@@ -97,9 +97,9 @@ pub enum RenderError {
     /// [`DrawList::check`] found something out of place.
     #[error("the draw list is not sound: {0}; its maker must be mended")]
     List(String),
-    /// A material takes colour or normals from a ground map that is not there.
+    /// A material takes color or normals from a ground map that is not there.
     #[error(
-        "item {item} takes its colour or normals from the ground map, but the draw list has none; add one"
+        "item {item} takes its color or normals from the ground map, but the draw list has none; add one"
     )]
     NoGroundMap {
         /// The item's index in the list.

@@ -9,14 +9,14 @@ pub type Mask = u8;
 
 /// `N` sample positions, at most 8.
 ///
-/// The first sample is the one nearest to the pixel's centre; the mean of all is the centre.
+/// The first sample is the one nearest to the pixel's center; the mean of all is the center.
 #[derive(Debug)]
 pub struct SamplePattern<const N: usize> {
-    /// Offsets from the pixel's centre in sixteenths of a pixel, X right and Y down.
+    /// Offsets from the pixel's center in sixteenths of a pixel, X right and Y down.
     pub sixteenths: [[i32; 2]; N],
 }
 
-/// The centre alone.
+/// The center alone.
 pub const ONE: SamplePattern<1> = SamplePattern { sixteenths: [[0, 0]] };
 
 /// The rotated grid of four.
@@ -30,12 +30,12 @@ impl<const N: usize> SamplePattern<N> {
     /// Every sample.
     pub const FULL: Mask = ((1u16 << N) - 1) as Mask;
 
-    /// The offset of `sample` from the pixel's centre, in pixels.
+    /// The offset of `sample` from the pixel's center, in pixels.
     pub fn offset(&self, sample: usize) -> [f32; 2] {
         self.sixteenths[sample].map(|sixteenths| sixteenths as f32 / 16.0)
     }
 
-    /// The mean offset of the samples in `mask` from the pixel's centre, in pixels; zero for none.
+    /// The mean offset of the samples in `mask` from the pixel's center, in pixels; zero for none.
     ///
     /// A triangle is convex, so the mean of the samples it covers lies inside it: attributes taken there
     /// never reach beyond its border.
@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn patterns_are_centred_spread_out_and_start_at_the_centre() {
+    fn patterns_are_centered_spread_out_and_start_at_the_center() {
         assert_sound(&ONE);
         assert_sound(&FOUR);
         assert_sound(&EIGHT);

@@ -33,7 +33,7 @@ impl ScreenPlane {
 /// What the homogeneous corners of a triangle say about every point of it on the picture.
 #[derive(Clone, Copy, Debug)]
 pub struct TrianglePlanes {
-    /// `1 / w`, `w` being metres along the viewing direction.
+    /// `1 / w`, `w` being meters along the viewing direction.
     pub inverse_depth: ScreenPlane,
     /// The share of the second corner, divided by `w`.
     pub second: ScreenPlane,

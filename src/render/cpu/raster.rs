@@ -75,11 +75,11 @@ pub fn doubled_area([a, b, c]: &[SubpixelPoint; 3]) -> i64 {
 /// One edge: not negative at the samples on its inner side.
 #[derive(Clone, Copy)]
 struct EdgeFunction<const N: usize> {
-    /// At the centre of the window's first pixel.
+    /// At the center of the window's first pixel.
     origin: i64,
     /// The change over one pixel to the right and one down.
     step: [i64; 2],
-    /// From a pixel's centre to its samples.
+    /// From a pixel's center to its samples.
     samples: [i64; N],
     /// The extremes of `samples`.
     least: i64,
@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fan_through_pixel_centres_is_covered_exactly_once() {
+    fn a_fan_through_pixel_centers_is_covered_exactly_once() {
         let at = |x: i32, y: i32| [x * ONE_PIXEL as i32 / 2, y * ONE_PIXEL as i32 / 2];
         let (hub, side) = (at(21, 33), SIDE as i32 * 2);
         let rim = [(0, 0), (41, 0), (side, 0), (side, 33), (side, side), (21, side), (0, side), (0, 33)];

@@ -1,7 +1,7 @@
-//! The camera as the rasteriser uses it: pixels in homogeneous form, and rays back.
+//! The camera as the rasterizer uses it: pixels in homogeneous form, and rays back.
 //!
 //! A world point becomes `(x·w, y·w, w)` with `x`, `y` in pixels from the picture's upper left corner and
-//! `w` in metres along the viewing direction. The form is a linear image of eye-centred world space, so a
+//! `w` in meters along the viewing direction. The form is a linear image of eye-centered world space, so a
 //! triangle's attributes divided by `w` are linear over the picture even where a corner lies behind the eye
 //! (Olano and Greer, "Triangle Scan Conversion using 2D Homogeneous Coordinates", 1997); nothing but the
 //! outline needs clipping. All in f64: the f32 corners are then exact, and what lies in one plane in the
@@ -16,9 +16,9 @@ use crate::view::camera::Camera;
 pub struct Screen {
     /// Columns and rows of pixels.
     pub size: [u32; 2],
-    /// The near distance in metres.
+    /// The near distance in meters.
     pub near: f64,
-    /// The far distance in metres.
+    /// The far distance in meters.
     pub far: f64,
     eye: DVec3,
     rows: [DVec3; 3],
@@ -65,7 +65,7 @@ impl Screen {
         self.eye
     }
 
-    /// The direction from the eye through the pixel position, one metre long along the viewing direction.
+    /// The direction from the eye through the pixel position, one meter long along the viewing direction.
     pub fn ray_at(&self, at: [f32; 2]) -> Vec3 {
         self.ray_corner + self.ray_right * at[0] + self.ray_down * at[1]
     }
@@ -82,13 +82,13 @@ impl Screen {
 }
 
 impl Projection {
-    /// `position` of a mesh, in metres from the eye along the world's axes.
+    /// `position` of a mesh, in meters from the eye along the world's axes.
     pub fn eye_from_mesh(&self, position: [f32; 3]) -> DVec3 {
         let position = DVec3::from(position.map(f64::from));
         self.world_from_mesh.transform_point3(position) - self.eye
     }
 
-    /// An eye-centred position as homogeneous pixels `(x·w, y·w, w)`.
+    /// An eye-centered position as homogeneous pixels `(x·w, y·w, w)`.
     pub fn pixels_from_eye(&self, offset: DVec3) -> DVec3 {
         DVec3::from(self.rows.map(|row| row.dot(offset)))
     }

@@ -51,7 +51,7 @@ impl<'a> Shader<'a> {
         &self.list.items[face.item as usize]
     }
 
-    /// Whether a face looks the same as any other at its place: coloured and lit by the ground map alone.
+    /// Whether a face looks the same as any other at its place: colored and lit by the ground map alone.
     pub fn is_mapped(&self, face: &ScreenFace) -> bool {
         let material = self.material(self.item(face));
         material.albedo == Albedo::GroundMap && material.normals == NormalSource::Ground
@@ -77,7 +77,7 @@ impl<'a> Shader<'a> {
         let seen =
             if lighting.haze.distance_m.is_finite() { lighting.hazed(lit, hit.distance_m) } else { lit };
         // Clamped before samples are averaged, as a picture with 8-bit samples would be: an overexposed
-        // surface would otherwise eat away the smooth border of its neighbour.
+        // surface would otherwise eat away the smooth border of its neighbor.
         Shaded { color: seen.max(Vec3::ZERO).min(Vec3::ONE), alpha }
     }
 
@@ -115,7 +115,7 @@ impl<'a> Shader<'a> {
         self.ground.as_ref().filter(|_| wanted).map(|ground| (ground, ground.at(hit, self.most_taps)))
     }
 
-    /// Base colour × vertex colour × texture, in linear light, and alpha.
+    /// Base color × vertex color × texture, in linear light, and alpha.
     fn surface_color(&self, material: &Material, (corners, shares): FaceCorners) -> (Vec3, f32) {
         let texel = self.texel(material, &corners, &shares);
         let vertex = shares.blend(corners.map(|corner| corner.color.linear()));

@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 
 use crate::draw::color::{Srgba, linear_from_srgb};
 use crate::draw::pixels::Pixels;
-use crate::render::cpu::alpha::{AlphaMask, neighbours};
+use crate::render::cpu::alpha::{AlphaMask, neighbors};
 use crate::render::mip_levels::smaller_levels;
 
 /// A texture with its mip levels.
@@ -20,16 +20,16 @@ pub struct Texture<'a> {
     linear: [f32; 256],
 }
 
-/// How the colours of transparent texels count.
+/// How the colors of transparent texels count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weighting {
     /// Like all others, for opaque surfaces.
     Even,
-    /// By their alpha, so that the unseen colour of holes does not bleed into borders.
+    /// By their alpha, so that the unseen color of holes does not bleed into borders.
     ByAlpha,
 }
 
-/// A filtered colour.
+/// A filtered color.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Texel {
     /// In linear light.
@@ -94,7 +94,7 @@ impl<'a> Texture<'a> {
         &self.alpha
     }
 
-    /// The colour over a footprint around `uv`, trilinear.
+    /// The color over a footprint around `uv`, trilinear.
     ///
     /// (0, 0) is the upper left corner, (1, 1) the lower right; the picture repeats in both directions.
     pub fn sample(&self, uv: Vec2, footprint: &TexelFootprint, weighting: Weighting) -> Texel {
@@ -116,8 +116,8 @@ impl<'a> Texture<'a> {
 
     fn add_bilinear(&self, sum: &mut Sum, uv: Vec2, level: usize, weight: f32, weighting: Weighting) {
         let pixels = level.checked_sub(1).map_or(self.base, |index| &self.smaller[index]);
-        let (left, right, x) = neighbours(uv.x, pixels.width());
-        let (top, bottom, y) = neighbours(uv.y, pixels.height());
+        let (left, right, x) = neighbors(uv.x, pixels.width());
+        let (top, bottom, y) = neighbors(uv.y, pixels.height());
         let data = pixels.data();
         let mut add = |row: usize, column: usize, weight: f32| {
             let Srgba([red, green, blue, alpha]) = data[row * pixels.width() as usize + column];
@@ -132,7 +132,7 @@ impl<'a> Texture<'a> {
     }
 }
 
-/// A weighted sum of colours.
+/// A weighted sum of colors.
 #[derive(Default)]
 struct Sum {
     color: Vec3,
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hole_s_colour_does_not_bleed_when_weighted_by_alpha() {
+    fn a_hole_s_color_does_not_bleed_when_weighted_by_alpha() {
         let pixels = Pixels::from_fn(2, 1, |x, _| if x == 0 { Srgba::WHITE } else { Srgba([0, 0, 0, 0]) });
         let texture = Texture::new(&pixels);
         let texel = texture.sample(Vec2::new(0.5, 0.5), &sharp(), Weighting::ByAlpha);

@@ -33,11 +33,11 @@ pub struct TileContext<'a> {
 /// One pixel of the picture.
 #[derive(Clone, Copy, Debug)]
 pub struct PixelOut {
-    /// Its colour.
+    /// Its color.
     pub color: Srgba,
-    /// Metres along the viewing direction.
+    /// Meters along the viewing direction.
     pub depth_m: f32,
-    /// The feature at its centre.
+    /// The feature at its center.
     pub feature: FeatureId,
 }
 
@@ -155,7 +155,7 @@ fn resolve<const N: usize>(
 }
 
 /// The samples of a pixel that look like sample `first` and need no shading of their own: those of its face
-/// and, on ground that takes its looks from the map, those of its neighbours on the same slope.
+/// and, on ground that takes its looks from the map, those of its neighbors on the same slope.
 ///
 /// Ground triangles are often no larger than a few pixels; this spares about a sixth of a frame's time.
 fn alike<const N: usize>(
@@ -181,7 +181,7 @@ fn alike<const N: usize>(
     mask
 }
 
-/// The depth and feature of a face at a pixel's centre.
+/// The depth and feature of a face at a pixel's center.
 fn seen_at(frame: &TileContext, id: FaceId, center: [f32; 2]) -> (f32, FeatureId) {
     if id == FaceId::NONE {
         return (f32::INFINITY, FeatureId::NONE);

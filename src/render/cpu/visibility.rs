@@ -1,7 +1,7 @@
 //! Which face each sample of a tile sees: the outcome of the opaque and masked surfaces.
 //!
 //! A depth is kept as its inverse, which is linear over the picture; larger is nearer. Ground and drapes
-//! must come in the list's order, layers rising, which makes the rules of [`crate::draw::list::Layer`] local: whatever
+//! must come in the list's order, layers rising, which makes the rules of [`crate::draw::list::DepthLayer`] local: whatever
 //! a draped face meets is ground or a drape that it lies over. Solids come last, in any order: the nearest wins, and of
 //! two at the same depth the first of the list.
 
@@ -147,7 +147,7 @@ impl<const N: usize> Visibility<N> {
     }
 }
 
-/// How a face's inverse depth differs between a pixel's centre and its samples.
+/// How a face's inverse depth differs between a pixel's center and its samples.
 #[derive(Clone, Copy, Debug)]
 pub struct SampleDepths<const N: usize> {
     offsets: [f32; N],

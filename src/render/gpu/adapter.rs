@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::render::gpu::error::GpuError;
 
-/// How many samples a pixel's colour is averaged from, where the adapter can; every WebGPU adapter offers
+/// How many samples a pixel's color is averaged from, where the adapter can; every WebGPU adapter offers
 /// one and four, nothing else is common.
 const SAMPLES: u32 = 4;
 

@@ -14,7 +14,7 @@ pub(in crate::render::gpu) fn levels(texture: &Pixels, limit: u32) -> Vec<Pixels
     whole.into_iter().chain(smaller_levels(texture).into_iter().filter(fits)).collect()
 }
 
-/// The same picture with colours multiplied by alpha, in linear light.
+/// The same picture with colors multiplied by alpha, in linear light.
 pub(in crate::render::gpu) fn premultiplied(level: &Pixels) -> Pixels {
     Pixels::from_fn(level.width(), level.height(), |x, y| {
         let texel = level.at(x, y);

@@ -42,7 +42,7 @@ pub fn render(list: &DrawList, camera: &Camera) -> Result<Picture, GpuError> {
     render_on(&Gpu::open(&[Api::Vulkan, Api::Gl])?, list, camera)
 }
 
-/// The picture of `list` seen by `camera`, drawn by `gpu`; nothing stays on the device afterwards.
+/// The picture of `list` seen by `camera`, drawn by `gpu`; nothing stays on the device afterward.
 ///
 /// # Errors
 /// As [`render`], except that there is an adapter.
@@ -80,7 +80,7 @@ fn check(list: &DrawList) -> Result<(), GpuError> {
     });
     match needs_ground {
         Some(item) if list.ground.is_none() => Err(GpuError::List(format!(
-            "item {item} takes its colour or normals from the ground map, but there is none"
+            "item {item} takes its color or normals from the ground map, but there is none"
         ))),
         _ => Ok(()),
     }

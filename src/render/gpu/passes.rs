@@ -1,6 +1,6 @@
 //! Recording the two passes of a picture.
 //!
-//! Colours and features are separate passes because a pixel's colour is an average of samples and its
+//! Colors and features are separate passes because a pixel's color is an average of samples and its
 //! feature must not be: an average of two feature numbers is a third feature.
 
 use crate::draw::list::DrawList;

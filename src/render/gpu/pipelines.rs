@@ -7,11 +7,11 @@ use crate::render::gpu::adapter::{Api, Gpu};
 use crate::render::gpu::plan::{DepthRule, DrawCall, PipelineKey, Plan};
 use crate::render::gpu::uniforms::{FrameUniforms, Instance, SurfaceConstants};
 
-/// What colours are drawn to and read back as.
+/// What colors are drawn to and read back as.
 pub(in crate::render::gpu) const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// Reversed depth needs floats: their resolution near zero is what makes it worth reversing.
 pub(in crate::render::gpu) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-/// Feature numbers and the bits of depths in metres: integers, because OpenGL ES need not draw to floats.
+/// Feature numbers and the bits of depths in meters: integers, because OpenGL ES need not draw to floats.
 pub(in crate::render::gpu) const FEATURE: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 
 /// By how much a drape counts as nearer than it is: the one part in 50,000 of the draw list's contract.
@@ -31,16 +31,16 @@ pub(in crate::render::gpu) struct Layouts {
     pub frame: wgpu::BindGroupLayout,
     /// Group 1: a material's constants, at a dynamic offset.
     pub surface: wgpu::BindGroupLayout,
-    /// Group 2: the base colour texture and its sampler.
+    /// Group 2: the base color texture and its sampler.
     pub texture: wgpu::BindGroupLayout,
 }
 
 /// The two passes of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::render::gpu) enum GpuPass {
-    /// Colours, several samples a pixel.
+    /// Colors, several samples a pixel.
     Color,
-    /// Features and depths at pixels' centres.
+    /// Features and depths at pixels' centers.
     Feature,
 }
 

@@ -7,7 +7,7 @@
 //! A drape lies in the ground's triangles, so its depth differs from the ground's by rounding only. Drawing
 //! it as if it were nearer by a hair and writing *that* depth would stack up from drape to drape, and bury
 //! what stands on the road; so a drape is tested a hair nearer but leaves its true depth behind, by a second,
-//! colourless draw. A blended drape keeps its place among the drapes: a lake under a road stays under it.
+//! colorless draw. A blended drape keeps its place among the drapes: a lake under a road stays under it.
 
 use std::ops::Range;
 
@@ -55,7 +55,7 @@ pub(in crate::render::gpu) struct PipelineKey {
 /// The draw calls of both passes.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(in crate::render::gpu) struct Plan {
-    /// What makes the colours.
+    /// What makes the colors.
     pub color: Vec<DrawCall>,
     /// What makes the feature and depth buffers: the same items, blended ones like solid ones.
     pub features: Vec<DrawCall>,
@@ -117,7 +117,7 @@ fn middle_of(list: &DrawList, item: &DrawItem) -> Vec3 {
     (min + max) * 0.5
 }
 
-/// Metres along the viewing direction to `middle` of the mesh of `item`.
+/// Meters along the viewing direction to `middle` of the mesh of `item`.
 fn depth_of(middle: Vec3, item: &DrawItem, camera: &Camera) -> f32 {
     (item.world_from_mesh.transform_point3(middle) - camera.eye()).dot(camera.forward())
 }

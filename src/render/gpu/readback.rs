@@ -25,9 +25,9 @@ pub(in crate::render::gpu) struct Targets {
     pub samples: wgpu::Texture,
     /// The depth of those samples.
     pub sample_depth: wgpu::Texture,
-    /// One colour a pixel.
+    /// One color a pixel.
     pub color: wgpu::Texture,
-    /// One feature a pixel and the bits of its depth in metres; both zero where there is nothing.
+    /// One feature a pixel and the bits of its depth in meters; both zero where there is nothing.
     pub feature: wgpu::Texture,
     /// The depth buffer of features.
     pub depth: wgpu::Texture,

@@ -1,7 +1,7 @@
 // Draws the items of a draw list that are alike, by the formulas of src/draw/lighting.rs and src/draw/ground.rs.
 //
 // Two families of entry points share everything but their outputs: `color` writes the lit surface,
-// `feature` writes the feature's number and the depth in metres. Depth is reversed: with the clip planes
+// `feature` writes the feature's number and the depth in meters. Depth is reversed: with the clip planes
 // folded into A and B, the buffer holds A / d − B, which is 1 at the near plane and 0 at the far plane, so
 // that a float buffer resolves equal ratios of depth equally well everywhere.
 
@@ -20,14 +20,14 @@ struct Frame {
     ground: vec4f,        // x and y of the south-west post, cell's width and height
     ground_size: vec4u,   // ramp stops, stops in a row of the ramp's texture, levels of the ground
     contour: vec4f,       // rgb, strength
-    contour_shape: vec4f, // interval in metres (0: none), width in pixels, every how many is heavier
+    contour_shape: vec4f, // interval in meters (0: none), width in pixels, every how many is heavier
     ground_levels: array<vec4u, 24>, // columns, rows, first column in `ground_coarse` (level 0: in `ground_posts`)
 }
 
 struct Surface {
     base_color: vec4f, // linear rgb, straight alpha
     flags: vec4u,      // x: bits of the constants below
-    cutoff: vec4f,     // x: alpha below it is a hole, for the colour where MASK is set, for the feature too where BLEND is
+    cutoff: vec4f,     // x: alpha below it is a hole, for the color where MASK is set, for the feature too where BLEND is
 }
 
 const FROM_GROUND_NORMAL = 1u;
@@ -37,7 +37,7 @@ const BLEND = 8u;
 
 // The most readings of the ground along the longer side of a pixel seen at a grazing angle.
 const MOST_TAPS = 8.0;
-// Masks are read this many mip levels finer than colours, since each of a pixel's samples reads its own.
+// Masks are read this many mip levels finer than colors, since each of a pixel's samples reads its own.
 const MASK_LEVEL_BIAS = -1.0;
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -48,7 +48,7 @@ const MASK_LEVEL_BIAS = -1.0;
 // One texel a stop of the ramp: linear rgb, height.
 @group(0) @binding(3) var ramp_stops: texture_2d<f32>;
 @group(1) @binding(0) var<uniform> material: Surface;
-// Colours multiplied by alpha where the item is not opaque, so that unseen colours count for nothing.
+// Colors multiplied by alpha where the item is not opaque, so that unseen colors count for nothing.
 @group(2) @binding(0) var base_texture: texture_2d<f32>;
 @group(2) @binding(1) var base_sampler: sampler;
 
@@ -115,7 +115,7 @@ struct Post {
     height: f32,
     slope: vec2f,
     visibility: vec2f, // of the sun, of the sky
-    gradient: vec2f,   // rise of the height itself, metres per metre
+    gradient: vec2f,   // rise of the height itself, meters per meter
 }
 
 fn post_at(at: vec2u, level: u32) -> Post {
@@ -208,7 +208,7 @@ fn ramp_at(height: f32) -> vec3f {
     return mix(before.rgb, after.rgb, part);
 }
 
-// Lines `spacing` metres apart vanish before they run together.
+// Lines `spacing` meters apart vanish before they run together.
 fn contour_fade(spacing: f32, per_pixel: f32) -> f32 {
     return clamp((spacing / per_pixel - 4.0) / 6.0, 0.0, 1.0);
 }
@@ -237,9 +237,9 @@ fn lit(albedo: vec3f, normal: vec3f, sun_visibility: f32, sky_visibility: f32) -
 // The normal on the side that is seen; the triangle's own where its corners have none.
 fn vertex_normal(in: Varying, front: bool) -> vec3f {
     let own = cross(dpdx(in.world), dpdy(in.world));
-    let towards_eye = own * select(1.0, -1.0, dot(own, in.world - frame.eye.xyz) > 0.0);
+    let toward_eye = own * select(1.0, -1.0, dot(own, in.world - frame.eye.xyz) > 0.0);
     let given = in.normal * select(-1.0, 1.0, front);
-    let normal = select(towards_eye, given, dot(given, given) > 0.0);
+    let normal = select(toward_eye, given, dot(given, given) > 0.0);
     return normal * inverseSqrt(max(dot(normal, normal), 1e-30));
 }
 
@@ -279,7 +279,7 @@ fn shade(in: Varying, front: bool) -> vec4f {
     return vec4f(mix(frame.haze.rgb, light, clear), select(1.0, color.a, (flags & BLEND) != 0u));
 }
 
-// The depth buffer's value from what the rasteriser knows exactly at a pixel's centre, 1 / d.
+// The depth buffer's value from what the rasterizer knows exactly at a pixel's center, 1 / d.
 fn reversed_depth(in: Varying) -> f32 {
     let change = max(abs(dpdx(in.clip.w)), abs(dpdy(in.clip.w)));
     return frame.depth.x * (nearer * in.clip.w + nearer_px * change) - frame.depth.y;
@@ -337,7 +337,7 @@ fn color_and_depth(in: Varying, @builtin(front_facing) front: bool) -> ColorAndD
 }
 
 struct FeatureAndDepth {
-    @location(0) seen: vec2u, // feature, bits of the depth in metres
+    @location(0) seen: vec2u, // feature, bits of the depth in meters
     @builtin(frag_depth) depth: f32,
 }
 

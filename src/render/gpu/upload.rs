@@ -46,7 +46,7 @@ pub(in crate::render::gpu) struct Resources {
 struct TextureForms {
     /// As it is, for opaque materials.
     straight: Option<wgpu::BindGroup>,
-    /// Colours multiplied by alpha, for all others: filtering must not mix in what is not seen.
+    /// Colors multiplied by alpha, for all others: filtering must not mix in what is not seen.
     premultiplied: Option<wgpu::BindGroup>,
 }
 

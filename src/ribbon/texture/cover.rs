@@ -1,13 +1,13 @@
 //! What covers areas: quiet patterns in the manner of a topographic atlas, that tile and let the ground through.
 //!
 //! Every texture holds a whole number of its figures (crowns, rows, houses) to a side, and looks for figures across its
-//! edges, so no seam shows. Colours stay near their mean: from afar, where a texture is a pixel, an area is an even tint.
+//! edges, so no seam shows. Colors stay near their mean: from afar, where a texture is a pixel, an area is an even tint.
 
 use crate::description::words::Cover;
 use crate::draw::color::Srgba;
 use crate::ribbon::texture::{grain, shade};
 
-/// Metres in one repeat of a cover's texture. Figures have the size of what they stand for: crowns of five metres, rows
+/// Meters in one repeat of a cover's texture. Figures have the size of what they stand for: crowns of five meters, rows
 /// of two and a half, houses of twelve.
 pub fn cover_length_m(cover: Cover) -> f64 {
     match cover {
@@ -21,7 +21,7 @@ pub fn cover_length_m(cover: Cover) -> f64 {
     }
 }
 
-/// The line along an area that is to have one: its colour.
+/// The line along an area that is to have one: its color.
 pub fn border_color(cover: Cover) -> Srgba {
     let [red, green, blue] = match cover {
         Cover::Forest => [52, 88, 50],

@@ -13,9 +13,9 @@ use crate::ribbon::texture::road::{Center, RoadMarkings};
 /// What a ribbon is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum RibbonSurface {
-    /// A paved road: dark carriageway, light edge lines and a dashed centre line.
+    /// A paved road: dark carriageway, light edge lines and a dashed center line.
     Asphalt,
-    /// A paved road with a solid centre line.
+    /// A paved road with a solid center line.
     AsphaltSolid,
     /// A paved road with edge lines only.
     AsphaltEdges,
@@ -97,7 +97,7 @@ pub fn texture(surface: RibbonSurface) -> Pixels {
     })
 }
 
-/// Metres along a ribbon of `width_m` in one repeat of its texture.
+/// Meters along a ribbon of `width_m` in one repeat of its texture.
 ///
 /// A line of a road is a twentieth of the road's width, and a dash with its gap two and a half widths: what is painted
 /// keeps its proportion to the road, as on a sand table, where roads are drawn wider than they are to be seen at all. A

@@ -24,7 +24,7 @@ pub(super) enum RoadMarkings {
     Edges { center: Option<Center> },
 }
 
-/// A centre line.
+/// A center line.
 #[derive(Clone, Copy)]
 pub(super) enum Center {
     /// Unbroken.

@@ -2,7 +2,7 @@
 //!
 //! `δ_s² = λ² n² δ² [(Vx−Ex)² + (Vy−Ey)²] / [(Vx−Ex)² + (Vy−Ey)² + (Vz−Ez)²]²`: a vertical error δ at the vertex V
 //! seen from the eye E, foreshortened. Seen level it spans λδ/d as everywhere; seen from straight above, nothing.
-//! Here n is 1 and λ the pixels of a metre at a distance of one metre, so that δ_s is pixels.
+//! Here n is 1 and λ the pixels of a meter at a distance of one meter, so that δ_s is pixels.
 //!
 //! δ is the error of the vertex and all below it (a raised [`ErrorMap`], the midpoint error in 001), so that of
 //! two vertices seen alike the one with more below it is refined first.
@@ -14,7 +14,7 @@ use crate::roam::criterion::Criterion;
 use crate::roam::criterion::lens::Lens;
 use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
+use crate::roam::patched_ground::PatchedGround;
 use crate::view::camera::Camera;
 
 /// The length of a vertical error on the picture, over the tolerance.

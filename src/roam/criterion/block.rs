@@ -2,7 +2,7 @@
 //!
 //! Refined while `err · r / d − k > 0`: err is the highest less the lowest post of a block (the
 //! [relief](ErrorMap::relief)), r half its side, d the distance from the eye to its middle, k a constant in
-//! metres. On the vertex graph a block is the square or diamond that a vertex is the middle of, and r its step.
+//! meters. On the vertex graph a block is the square or diamond that a vertex is the middle of, and r its step.
 //!
 //! It promises no bound, and none is meant: relief is no error, so that a plane that slopes is refined like a
 //! ridge, and d is not the distance of the block's nearest point. It errs on the fine side, most of all for large
@@ -13,7 +13,7 @@ use glam::Vec3;
 use crate::roam::criterion::Criterion;
 use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
+use crate::roam::patched_ground::PatchedGround;
 use crate::view::camera::Camera;
 
 /// err · r / d over k.
@@ -28,14 +28,14 @@ pub struct BlockRelief<'a> {
 
 impl<'a> BlockRelief<'a> {
     /// The criterion for one camera, k such that the relief of the finest blocks spans `tolerance_px` pixels,
-    /// above 0, where they are just refined: with a post's spacing c and λ the pixels of a metre at a distance of
-    /// one metre, k = τ · c / λ.
+    /// above 0, where they are just refined: with a post's spacing c and λ the pixels of a meter at a distance of
+    /// one meter, k = τ · c / λ.
     pub fn new(ground: PatchedGround<'a>, relief: &'a ErrorMap, camera: &Camera, tolerance_px: f32) -> Self {
         let cell_m = ground.lattice.cell().max_element() as f32;
-        Self::with_k(ground, relief, camera.eye(), tolerance_px * cell_m / camera.pixels_per_metre(1.0))
+        Self::with_k(ground, relief, camera.eye(), tolerance_px * cell_m / camera.pixels_per_meter(1.0))
     }
 
-    /// The criterion as published, for an eye in drawn world space; `k_m`, metres, is above 0.
+    /// The criterion as published, for an eye in drawn world space; `k_m`, meters, is above 0.
     pub fn with_k(ground: PatchedGround<'a>, relief: &'a ErrorMap, eye: Vec3, k_m: f32) -> Self {
         let cell_m = ground.lattice.cell().max_element() as f32;
         Self { ground, relief, eye, cell_m, over_k: ground.exaggeration / k_m }

@@ -5,7 +5,7 @@ use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
 
-/// The object-space error over a tolerance in metres: what a mesh without a camera is made by.
+/// The object-space error over a tolerance in meters: what a mesh without a camera is made by.
 #[derive(Clone, Copy, Debug)]
 pub struct Flat<'a> {
     layout: &'a PatchLayout,

@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
-use crate::roam::ground::PatchedGround;
+use crate::roam::patched_ground::PatchedGround;
 use crate::view::camera::Camera;
 
-/// The eye, and how many tolerances a metre of error spans at a distance of one metre.
+/// The eye, and how many tolerances a meter of error spans at a distance of one meter.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lens {
     pub(super) eye: Vec3,
@@ -13,13 +13,13 @@ pub(super) struct Lens {
 }
 
 impl Lens {
-    /// Errors are metres without exaggeration; `tolerance_px`, above 0, is pixels in the middle of the picture.
+    /// Errors are meters without exaggeration; `tolerance_px`, above 0, is pixels in the middle of the picture.
     pub(super) fn new(ground: PatchedGround<'_>, camera: &Camera, tolerance_px: f32) -> Self {
-        let scale = camera.pixels_per_metre(1.0) * ground.exaggeration / tolerance_px;
+        let scale = camera.pixels_per_meter(1.0) * ground.exaggeration / tolerance_px;
         Self { eye: camera.eye(), scale }
     }
 
-    /// A lens of given strength: tolerances spanned by a drawn metre at a distance of one metre.
+    /// A lens of given strength: tolerances spanned by a drawn meter at a distance of one meter.
     pub(super) fn of_strength(ground: PatchedGround<'_>, eye: Vec3, strength: f32) -> Self {
         Self { eye, scale: strength * ground.exaggeration }
     }

@@ -2,7 +2,7 @@
 //!
 //! `λ · T / d > τ`: T is the largest distance between a midpoint and the mean of its hypotenuse's ends, of the
 //! vertex and all below it (a midpoint [`ErrorMap`]); d is the distance from the eye to the hypotenuse's midpoint,
-//! λ the pixels of a metre at a distance of one metre.
+//! λ the pixels of a meter at a distance of one meter.
 //!
 //! It promises no bound, for two reasons: a midpoint says nothing of the other posts that a triangle covers, and
 //! the nearest of these can be much nearer to the eye than the midpoint is. Nor is it monotone, since a child can
@@ -12,7 +12,7 @@ use crate::roam::criterion::Criterion;
 use crate::roam::criterion::lens::Lens;
 use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
+use crate::roam::patched_ground::PatchedGround;
 use crate::view::camera::Camera;
 
 /// The error of a vertex on the picture, over the tolerance, as if all of it stood at the vertex.

@@ -6,7 +6,7 @@ use crate::roam::criterion::Criterion;
 use crate::roam::culling::PatchHeights;
 use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
+use crate::roam::patched_ground::PatchedGround;
 use crate::view::camera::Camera;
 use crate::view::frustum::Frustum;
 
@@ -29,7 +29,7 @@ pub struct ScreenError<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct ErrorReach {
     eye: Vec3,
-    metres_per_metre: f32,
+    meters_per_meter: f32,
 }
 
 impl ErrorReach {
@@ -37,16 +37,16 @@ impl ErrorReach {
         // A length δ at distance d from the eye, θ off the viewing direction, spans at most δ / (d · cos² θ) on the
         // picture's plane: cos θ since depth is shorter than distance, and once more since the plane is met at a slant.
         let corner = 1.0 + camera.tan_half_fov().length_squared();
-        let pixels = camera.pixels_per_metre(1.0) * corner;
-        Self { eye: camera.eye(), metres_per_metre: pixels * exaggeration / tolerance_px }
+        let pixels = camera.pixels_per_meter(1.0) * corner;
+        Self { eye: camera.eye(), meters_per_meter: pixels * exaggeration / tolerance_px }
     }
 
-    /// The distance in metres within which an error of `error_m` must be refined.
+    /// The distance in meters within which an error of `error_m` must be refined.
     fn reach_m(&self, error_m: f32) -> f32 {
-        error_m * self.metres_per_metre
+        error_m * self.meters_per_meter
     }
 
-    /// How many times the tolerance an error of `error_m` metres inside the box `min..=max` can span.
+    /// How many times the tolerance an error of `error_m` meters inside the box `min..=max` can span.
     fn excess(&self, error_m: f32, min: Vec3, max: Vec3) -> f32 {
         let nearest = self.eye.clamp(min, max);
         self.reach_m(error_m) / nearest.distance(self.eye)
@@ -89,7 +89,7 @@ mod tests {
         let camera = Camera::new(Vec3::ZERO, Vec3::Y, 0.8, (640, 480), (1.0, 9000.0)).expect("sound");
         let criterion = ErrorReach::new(&camera, 2.0, 1.0);
         let at = |distance: f32| criterion.excess(3.0, Vec3::Y * distance, Vec3::Y * distance) > 1.0;
-        let seen_px = |distance: f32| 3.0 * camera.pixels_per_metre(distance);
+        let seen_px = |distance: f32| 3.0 * camera.pixels_per_meter(distance);
         assert!(at(500.0) && seen_px(500.0) > 2.0);
         let reach = criterion.reach_m(3.0);
         assert!(at(reach * 0.999) && !at(reach * 1.001));

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::roam::criterion::Criterion;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
+use crate::roam::patched_ground::PatchedGround;
 use crate::roam::spheres::SphereMap;
 
 /// A vertex is wanted while the eye is inside its sphere.
@@ -39,7 +39,7 @@ impl Criterion for Spheres<'_> {
     }
 }
 
-/// In f64, so that neighbours agree about a vertex to the last bit and nested spheres stay nested.
+/// In f64, so that neighbors agree about a vertex to the last bit and nested spheres stay nested.
 #[inline]
 pub fn distance(eye: Vec3, position: Vec3) -> f64 {
     (eye.as_dvec3() - position.as_dvec3()).length()

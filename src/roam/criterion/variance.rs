@@ -6,7 +6,7 @@
 //! same on a large and a small terrain seen from the same number of widths away.
 //!
 //! k is a measure of quality without a unit of its own. Where it is to mean pixels it must be
-//! `λ / (LandWidth · τ)`, with λ the pixels of a metre at a distance of one metre and τ the tolerance; the width
+//! `λ / (LandWidth · τ)`, with λ the pixels of a meter at a distance of one meter and τ the tolerance; the width
 //! then cancels, and the criterion is [`Midpoint`](crate::roam::criterion::midpoint::Midpoint)'s.
 //!
 //! Like that one it promises no bound and is not monotone.
@@ -17,7 +17,7 @@ use crate::roam::criterion::Criterion;
 use crate::roam::criterion::lens::Lens;
 use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
+use crate::roam::patched_ground::PatchedGround;
 use crate::view::camera::Camera;
 
 /// k · Variance · LandWidth / Distance.
@@ -31,7 +31,7 @@ pub struct Variance<'a> {
 impl<'a> Variance<'a> {
     /// The criterion for one camera, k such that it stands for a tolerance of `tolerance_px` pixels, above 0.
     pub fn new(ground: PatchedGround<'a>, errors: &'a ErrorMap, camera: &Camera, tolerance_px: f32) -> Self {
-        let k = camera.pixels_per_metre(1.0) / (land_width_m(ground) * tolerance_px);
+        let k = camera.pixels_per_meter(1.0) / (land_width_m(ground) * tolerance_px);
         Self::with_k(ground, errors, camera.eye(), k)
     }
 
@@ -41,7 +41,7 @@ impl<'a> Variance<'a> {
     }
 }
 
-/// The longer side of the terrain, metres.
+/// The longer side of the terrain, meters.
 fn land_width_m(ground: PatchedGround<'_>) -> f32 {
     ground.lattice.extent().size().max_element() as f32
 }

@@ -7,8 +7,8 @@ use crate::mesh::trimesh::TriMesh;
 use crate::roam::active::ActiveSet;
 use crate::roam::emit::{full, world};
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
 use crate::roam::layout::PatchLayout;
+use crate::roam::patched_ground::PatchedGround;
 use crate::terrain::lattice::Lattice;
 
 /// Columns, rows and vertices to activate, some of them beyond the borders.
@@ -47,7 +47,7 @@ pub fn mesh_of(
     mesh
 }
 
-/// The plan area of the full mesh, square metres.
+/// The plan area of the full mesh, square meters.
 pub fn full_area_m2(lattice: &Lattice, layout: &PatchLayout) -> f64 {
     let mesh = mesh_of(lattice, layout, |place| full::triangles(layout, layout.patches(), place));
     crate::mesh::check::check(&mesh).expect("the full mesh is conforming").plan_area_m2

@@ -2,7 +2,7 @@
 //!
 //! Level l of a patch joins every 2ˡ-th post by right triangles whose diagonals alternate as the lattice's do, so
 //! level 0 is the ground itself. What a level is off the ground is measured once; a view then chooses a level a
-//! patch, nothing finer-grained, and each patch's triangles follow from its own level and its neighbours'.
+//! patch, nothing finer-grained, and each patch's triangles follow from its own level and its neighbors'.
 //!
 //! Two patches of different levels meet at the posts of the coarser: the finer drops the posts between along
 //! that side. Only the outermost row of its cells changes; corners are cut along their diagonals, so the sides
@@ -21,7 +21,7 @@
 //! A level that covers data and no data alike is never chosen, and neither are coarse levels beside it: holes
 //! are those of the full mesh. Not an [`ActiveSet`](crate::roam::active::ActiveSet): stitched triangles are none
 //! of the bintree's. The error that is measured is that of whole levels; stitched triangles are within the
-//! coarser neighbour's on the border, and no bound is promised inside their row.
+//! coarser neighbor's on the border, and no bound is promised inside their row.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -30,8 +30,8 @@ use crate::roam::bintree::Triangle;
 use crate::roam::culling::PatchHeights;
 use crate::roam::errors::exact::triangle_error;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
 use crate::roam::layout::PatchLayout;
+use crate::roam::patched_ground::PatchedGround;
 use crate::roam::quadtree::{NodeSide, SIDES};
 use crate::terrain::lattice::Lattice;
 use crate::view::camera::Camera;
@@ -60,7 +60,7 @@ impl Pyramids {
         self.layout.patch().trailing_zeros() + 1
     }
 
-    /// The largest vertical distance in metres between the ground and the patch at `level`, without
+    /// The largest vertical distance in meters between the ground and the patch at `level`, without
     /// exaggeration: 0 at level 0, infinite where the level would cover a hole. Never less than a finer level's.
     pub fn error_m(&self, corner: Vertex, level: u32) -> f32 {
         self.errors[self.layout.patch_index(corner)][level as usize]
@@ -77,9 +77,9 @@ impl Pyramids {
     ) -> PatchLevels {
         // Twice longer than its share at the picture's middle where seen aslant, as in the screen-space criterion.
         let aslant = 1.0 + camera.tan_half_fov().length_squared();
-        let metres_at_one = tolerance_px / (camera.pixels_per_metre(1.0) * aslant * ground.exaggeration);
+        let meters_at_one = tolerance_px / (camera.pixels_per_meter(1.0) * aslant * ground.exaggeration);
         self.chosen(|corner| match heights.bounds(ground, corner) {
-            Some((min, max)) => nearest_m(camera.eye(), min, max) * metres_at_one,
+            Some((min, max)) => nearest_m(camera.eye(), min, max) * meters_at_one,
             None => f32::INFINITY,
         })
     }
@@ -231,7 +231,7 @@ fn beside(layout: &PatchLayout, corner: Vertex, side: NodeSide) -> Option<Vertex
     layout.patches_within(place, place).next()
 }
 
-/// Metres from the eye to the nearest point of a box; 0 inside.
+/// Meters from the eye to the nearest point of a box; 0 inside.
 fn nearest_m(eye: Vec3, min: Vec3, max: Vec3) -> f32 {
     eye.distance(eye.clamp(min, max))
 }
@@ -270,7 +270,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn stitched_borders_leave_no_t_junction_whatever_the_neighbours_levels(
+        fn stitched_borders_leave_no_t_junction_whatever_the_neighbors_levels(
             columns in 2u32..60, rows in 2u32..60, levels in proptest::collection::vec(0u32..=4, 16),
         ) {
             let (layout, lattice) = (layout(columns, rows), lattice(columns, rows, &[]));
@@ -327,8 +327,8 @@ mod tests {
                 let at = lattice.position(post).as_dvec2();
                 let facet = (0..mesh.triangles.len())
                     .map(|index| mesh.corners(index))
-                    .find(|facet| crate::terrain::facets::facet_contains(facet, at));
-                let z = crate::terrain::facets::plane_z(&facet.expect("covered"), at);
+                    .find(|facet| crate::terrain::triangle_surface::facet_contains(facet, at));
+                let z = crate::terrain::triangle_surface::plane_z(&facet.expect("covered"), at);
                 worst = worst.max((z - f64::from(lattice.height(post))).abs() as f32);
             }
             assert!((pyramids.error_m(corner, level) - worst).abs() < 1e-4, "level {level}: {worst}");
@@ -350,7 +350,7 @@ mod tests {
             let (min, max) = heights.bounds(ground, corner).expect("data");
             let nearest = nearest_m(eye, min, max);
             let error = pyramids.error_m(corner, levels.of(&layout, corner));
-            assert!(error == 0.0 || error * camera.pixels_per_metre(nearest) <= 12.0, "{corner:?}");
+            assert!(error == 0.0 || error * camera.pixels_per_meter(nearest) <= 12.0, "{corner:?}");
         }
     }
 }

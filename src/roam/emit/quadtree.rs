@@ -1,6 +1,6 @@
 //! The restricted quadtree's triangles, top-down from five-vertex nodes.
 //!
-//! A node is a square whose centre is active. Its triangles are a fan round the centre, over the corners and the
+//! A node is a square whose center is active. Its triangles are a fan round the center, over the corners and the
 //! active edge vertices; which edge vertices are active, four bits, says all. Up to quarter turns that makes six
 //! patterns, here with the ring's numbers at their places:
 //!
@@ -13,10 +13,10 @@
 //!   0───────2         0───────2         0───1───2         0───────2         0───1───2         0───1───2
 //! ```
 //!
-//! A quarter between two active edge vertices is a child's square. Where the child's centre is inactive, its two
-//! triangles along the diagonal to the centre are those of the fan; where it is active, the child draws its own
-//! fan instead. The centre of a child has just those two edge vertices as parents, so there is no other case. Only
-//! a patch whose own centre is inactive is no fan: two triangles, along the diagonal that alternates from patch
+//! A quarter between two active edge vertices is a child's square. Where the child's center is inactive, its two
+//! triangles along the diagonal to the center are those of the fan; where it is active, the child draws its own
+//! fan instead. The center of a child has just those two edge vertices as parents, so there is no other case. Only
+//! a patch whose own center is inactive is no fan: two triangles, along the diagonal that alternates from patch
 //! to patch.
 //!
 //! Source: the restricted quadtree with five-vertex nodes, six patterns and quarter turns, after Lindstrom et al.
@@ -105,7 +105,7 @@ const fn quarter(from: u8, to: u8) -> u8 {
     }
 }
 
-/// A node on its way down: its centre and how far below the patch it is.
+/// A node on its way down: its center and how far below the patch it is.
 #[derive(Clone, Copy)]
 struct Visit {
     center: WalkKey,
@@ -132,7 +132,7 @@ impl<'a> Descent<'a> {
         Self { active, origin, finest: active.layout().patch().trailing_zeros() - 1 }
     }
 
-    /// Calls `visit` with every node of a patch whose centre is active.
+    /// Calls `visit` with every node of a patch whose center is active.
     fn nodes(&self, corner: Vertex, mut visit: impl FnMut(WalkKey, &NodeRing)) {
         let half = self.active.layout().patch() / 2;
         let center = key(self.active.layout(), corner.moved(half, half));
@@ -169,7 +169,7 @@ impl<'a> Descent<'a> {
         NodeRing { ring: [sw, s, se, e, ne, n, nw, w], state, children }
     }
 
-    /// The two triangles of a patch whose centre is inactive.
+    /// The two triangles of a patch whose center is inactive.
     fn undivided(&self, corner: Vertex) -> Option<[Triangle; 2]> {
         let roots = Triangle::roots(corner, self.active.layout().patch());
         (!self.active.is_active(roots[0].split_vertex())).then_some(roots)
@@ -177,7 +177,7 @@ impl<'a> Descent<'a> {
 }
 
 /// Calls `emit` with the triangles of the patches whose south-west corners are listed, counter-clockwise; those
-/// of a fan from its centre.
+/// of a fan from its center.
 pub fn triangles(
     active: &ActiveSet,
     patches: impl IntoIterator<Item = Vertex>,

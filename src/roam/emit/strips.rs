@@ -174,8 +174,8 @@ mod tests {
     use crate::mesh::check;
     use crate::roam::emit::examples::{activations, active_set, full_area_m2, lattice, mesh_of, sorted};
     use crate::roam::emit::{quadtree, world};
-    use crate::roam::ground::PatchedGround;
     use crate::roam::layout::PatchLayout;
+    use crate::roam::patched_ground::PatchedGround;
     use proptest::prelude::*;
 
     fn unstripped(strips: &Strips, emit: &mut dyn FnMut([Vertex; 3])) {

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
+use crate::roam::patched_ground::PatchedGround;
 use crate::terrain::lattice::Post;
 
 /// The posts of a triangle of vertices of the layout; `None` where it lies beyond the border, so that it has no
@@ -21,7 +21,7 @@ fn doubled_area(posts: [Post; 3]) -> i64 {
     (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0)
 }
 
-/// Where a post with data is drawn, metres.
+/// Where a post with data is drawn, meters.
 pub fn position(ground: PatchedGround<'_>, post: Post) -> Vec3 {
     ground.lattice.position(post).extend(ground.lattice.height(post) * ground.exaggeration)
 }

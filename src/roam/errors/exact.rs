@@ -28,7 +28,7 @@ use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
 use crate::terrain::lattice::{Lattice, Post};
 
-/// Pinned ground may be off by this many metres: rounding of f32 heights, nothing a picture shows.
+/// Pinned ground may be off by this many meters: rounding of f32 heights, nothing a picture shows.
 const PINNED_SLACK_M: f32 = 1e-3;
 
 /// Vertices up to this step are measured block by block while the block's posts are in the cache; beyond it they
@@ -49,7 +49,7 @@ impl ErrorMap {
     }
 }
 
-/// Every vertex's [`own_error`], in the order of [`Layout::index`]; 0 at patch corners, which split nothing.
+/// Every vertex's [`own_error`], in the order of [`PatchLayout::index`]; 0 at patch corners, which split nothing.
 pub fn own_errors(lattice: &Lattice, layout: &PatchLayout) -> Vec<f32> {
     let measured = MeasuredLattice { lattice, layout, survey: TileSurvey::of(lattice) };
     let mut errors = vec![0f32; layout.vertex_count()];
@@ -62,7 +62,7 @@ pub fn own_errors(lattice: &Lattice, layout: &PatchLayout) -> Vec<f32> {
     errors
 }
 
-/// The largest vertical distance in metres between the ground and the one or two triangles that `vertex` splits;
+/// The largest vertical distance in meters between the ground and the one or two triangles that `vertex` splits;
 /// not raised to that of its children. Infinite and 0 as for [`triangle_error`]; 0 at patch corners.
 ///
 /// The same bits that [`own_errors`] holds.
@@ -300,7 +300,7 @@ enum ErrorStrip<'a> {
     Plain(PostTriangle<'a>, Hypotenuse, Range<i32>),
 }
 
-/// The largest vertical distance in metres between a triangle's plane and the posts it covers.
+/// The largest vertical distance in meters between a triangle's plane and the posts it covers.
 ///
 /// Infinite where it covers both data and no data, or where it is off a pinned post; 0 where it covers no
 /// data at all or has no area.
@@ -455,7 +455,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_never_shrink_towards_the_roots() {
+    fn errors_never_shrink_toward_the_roots() {
         let lattice = hilly(50, 37);
         let layout = PatchLayout::new(50, 37, 16).expect("sound");
         ErrorMap::exact(&lattice, &layout).check(&layout).expect("monotone");

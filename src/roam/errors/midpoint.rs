@@ -57,7 +57,7 @@ fn heights<'a>(lattice: &'a Lattice, layout: &PatchLayout) -> Cow<'a, [f32]> {
     Cow::Owned(padded)
 }
 
-/// The midpoint error of a vertex of the layout alone, metres, the very bits that a map is raised from: see
+/// The midpoint error of a vertex of the layout alone, meters, the very bits that a map is raised from: see
 /// [`ErrorMap::midpoint`] for holes; 0 at patch corners.
 pub fn midpoint_error_at(lattice: &Lattice, layout: &PatchLayout, vertex: Vertex) -> f32 {
     if layout.is_corner(vertex) {
@@ -68,7 +68,7 @@ pub fn midpoint_error_at(lattice: &Lattice, layout: &PatchLayout, vertex: Vertex
     torn_off(from, to, height(vertex))
 }
 
-/// How far a height is off the middle of two others, metres.
+/// How far a height is off the middle of two others, meters.
 ///
 /// In f64, where the middle of two f32 heights is not rounded.
 #[inline]
@@ -76,7 +76,7 @@ fn off(from: f32, to: f32, at: f32) -> f32 {
     ((f64::from(from) + f64::from(to)) * 0.5 - f64::from(at)).abs() as f32
 }
 
-/// How far the height `at` a vertex is off the middle of those at the ends of its hypotenuse, metres: infinite where
+/// How far the height `at` a vertex is off the middle of those at the ends of its hypotenuse, meters: infinite where
 /// some of the three are NaN, 0 where all are.
 #[inline]
 pub(in crate::roam) fn torn_off(from: f32, to: f32, at: f32) -> f32 {

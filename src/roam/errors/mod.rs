@@ -1,7 +1,7 @@
 //! How far the triangles at each vertex are off the ground: object-space errors, computed once, from the finest
 //! level up.
 //!
-//! An error map holds one number a vertex, in metres without exaggeration, and never grows from a vertex to its
+//! An error map holds one number a vertex, in meters without exaggeration, and never grows from a vertex to its
 //! children: a decision "error above a threshold" is then closed under parents by itself. What the number
 //! measures differs; one file per measure:
 //!
@@ -27,14 +27,14 @@ use crate::roam::graph::{Vertex, VertexKind};
 use crate::roam::layout::PatchLayout;
 use crate::roam::levels::{ChildRows, PassRow, both_sides};
 
-/// The object-space error of every vertex, in metres without exaggeration.
+/// The object-space error of every vertex, in meters without exaggeration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ErrorMap {
     errors: Vec<f32>,
 }
 
 impl ErrorMap {
-    /// The map of the vertices' own errors, in the order of [`Layout::index`], each raised to those of its
+    /// The map of the vertices' own errors, in the order of [`PatchLayout::index`], each raised to those of its
     /// children.
     ///
     /// # Panics
@@ -46,7 +46,7 @@ impl ErrorMap {
         map
     }
 
-    /// All errors, in the order of [`Layout::index`].
+    /// All errors, in the order of [`PatchLayout::index`].
     pub fn values(&self) -> &[f32] {
         &self.errors
     }
@@ -57,7 +57,7 @@ impl ErrorMap {
         &self.errors[y * layout.columns()..][..layout.columns()]
     }
 
-    /// The error at a vertex of the layout it was measured with: metres, or infinite.
+    /// The error at a vertex of the layout it was measured with: meters, or infinite.
     #[inline]
     pub fn at(&self, layout: &PatchLayout, vertex: Vertex) -> f32 {
         self.errors[layout.index(vertex)]

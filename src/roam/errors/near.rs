@@ -2,7 +2,7 @@
 //!
 //! Nearly all vertices of a terrain split triangles of a few posts: as rows and spans they would cost more than
 //! their posts. So the same post of several triangles is measured at once. Vertices [`PERIOD`] columns apart have
-//! triangles of the same shape; [`Gathered`] lays a block's posts out so that those of such vertices lie
+//! triangles of the same shape; [`BlockPosts`] lays a block's posts out so that those of such vertices lie
 //! together:
 //!
 //! ```text

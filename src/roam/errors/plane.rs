@@ -1,4 +1,4 @@
-//! The plane of a triangle of posts, in posts and metres.
+//! The plane of a triangle of posts, in posts and meters.
 //!
 //! It is told from the triangle's first corner: so its rounding does not depend on where the lattice begins, and a
 //! part of a terrain has the errors of the whole.
@@ -11,7 +11,7 @@ pub struct PostPlane {
     column: f64,
     row: f64,
     height: f64,
-    /// Metres up per column eastward.
+    /// Meters up per column eastward.
     pub per_column: f64,
     per_row: f64,
 }
@@ -43,7 +43,7 @@ impl PostPlane {
         RowLine { column: self.column, start, per_column: self.per_column }
     }
 
-    /// Its height at a post, metres.
+    /// Its height at a post, meters.
     #[inline]
     pub fn height(&self, post: Post) -> f64 {
         self.along(post.row).height(post.column)
@@ -59,7 +59,7 @@ pub struct RowLine {
 }
 
 impl RowLine {
-    /// Its height at a column, metres.
+    /// Its height at a column, meters.
     #[inline]
     pub fn height(&self, column: u32) -> f64 {
         self.start + self.per_column * (f64::from(column) - self.column)

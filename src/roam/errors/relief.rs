@@ -13,7 +13,7 @@ use crate::roam::layout::PatchLayout;
 use crate::terrain::lattice::Lattice;
 
 impl ErrorMap {
-    /// The relief of `lattice` around every vertex in metres, raised to that of the children: infinite over data
+    /// The relief of `lattice` around every vertex in meters, raised to that of the children: infinite over data
     /// and no data at once, 0 over no data at all. In parallel over patches, the same for any number of threads.
     pub fn relief(lattice: &Lattice, layout: &PatchLayout) -> Self {
         let patches: Vec<Vertex> = layout.patches().collect();

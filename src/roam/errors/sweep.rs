@@ -8,7 +8,7 @@
 //! high  e───E───e───E───e    e  evens: the posts of the next coarser level
 //!       │       │       │    E  east edges:  own, raised to the cells around
 //! mid   N   C   N   C   N    N  north edges: own, raised to the cells around
-//!       │       │       │    C  centres:     own, raised to the four edges around;
+//!       │       │       │    C  centers:     own, raised to the four edges around;
 //! low   e───E───e───E───e       the cells of the next coarser level
 //! ```
 //!
@@ -137,7 +137,7 @@ struct SweepBand<'a> {
     first: usize,
     rows: usize,
     out: &'a mut [f32],
-    /// The errors of the coarsest centres, one for every square between the band's rows.
+    /// The errors of the coarsest centers, one for every square between the band's rows.
     cells: &'a mut [f32],
 }
 
@@ -370,7 +370,7 @@ fn own_north<M: OwnError>(low: &[f32], mid: &[f32], high: &[f32], out: &mut [f32
     }
 }
 
-/// The hypotenuse of an even centre joins the near row's value before it to the far row's after it, that of an odd
+/// The hypotenuse of an even center joins the near row's value before it to the far row's after it, that of an odd
 /// one the near row's after it to the far row's before it. Chosen by masks: a condition would keep the loop scalar.
 fn own_center<M: OwnError>(near: &[f32], odds: &[f32], far: &[f32], out: &mut [f32]) {
     let count = out.len();

@@ -2,7 +2,7 @@
 
 use crate::roam::layout::PatchLayout;
 
-/// Columns and rows of the blocks that are passed over where their centre is not active: sixteen errors are one
+/// Columns and rows of the blocks that are passed over where their center is not active: sixteen errors are one
 /// line of the cache, and a quarter of a word of bits.
 const BLOCK: usize = 16;
 
@@ -44,7 +44,7 @@ impl ActiveBits {
         }
     }
 
-    /// Inside a block, all vertices descend from its centre; on its sides, from that of the block beyond as well;
+    /// Inside a block, all vertices descend from its center; on its sides, from that of the block beyond as well;
     /// its corners, of other vertices, are always looked at.
     fn set_by_blocks(&mut self, errors: &[f32], tolerance_m: f32) {
         let (columns, width) = (self.columns, self.width);

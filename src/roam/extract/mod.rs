@@ -1,6 +1,6 @@
 //! Triangles for a tolerance without a view: the mesh of a terrain as a file or a tile wants it.
 //!
-//! An error map never grows towards the children, so the vertices whose error is above a tolerance are already
+//! An error map never grows toward the children, so the vertices whose error is above a tolerance are already
 //! closed under parents, and nothing need be walked from the roots. Three passes in storage order do it:
 //!
 //! 1. One bit a vertex: error above the tolerance, or patch corner.
@@ -10,7 +10,7 @@
 //!
 //! ```text
 //! o───────q───────o        m an edge middle, q the corners around it (its hypotenuse's ends and its parents),
-//! │     ╱ │ ╲     │        c its children: the triangle m, q, q stands where c is not active. A centre is the
+//! │     ╱ │ ╲     │        c its children: the triangle m, q, q stands where c is not active. A center is the
 //! │   c   │   c   │        same, turned by 45°.
 //! │ ╱     │     ╲ │
 //! q───────m───────q
@@ -129,7 +129,7 @@ fn clamp_to_border(layout: &PatchLayout, out: &mut Extract) {
 }
 
 /// Where a vertex's corners and children are, as distances in storage that wrap around: counter-clockwise, every
-/// child between its corner and the next. Whether a vertex is a centre then chooses numbers and not ways, for
+/// child between its corner and the next. Whether a vertex is a center then chooses numbers and not ways, for
 /// which one it is next can hardly be guessed.
 #[derive(Clone, Copy, Default)]
 struct Star {
@@ -142,7 +142,7 @@ struct Star {
 }
 
 impl Star {
-    /// Of edges' middles and centres by turns, from the finest step.
+    /// Of edges' middles and centers by turns, from the finest step.
     fn all(bits: &ActiveBits) -> Vec<Self> {
         let steps = (0..bits.patch.ilog2()).map(|level| 1isize << level);
         let first = |step: isize| [((step, 0), (step / 2, step / 2)), ((-step, -step), (0, -step))];
@@ -209,7 +209,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// Finest north edges at even columns, finest centres between them.
+    /// Finest north edges at even columns, finest centers between them.
     fn odd_row(&mut self, y: usize) {
         let ActiveBits { words, before, width, columns, .. } = self.bits;
         let row = |y: usize| (&words[y * width..][..*width], &before[y * width..][..*width]);

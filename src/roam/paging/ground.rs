@@ -5,18 +5,18 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec2, Vec3};
 
-use crate::dem::fault::DemError;
+use crate::dem::error::DemError;
 use crate::dem::recent::Recent;
-use crate::dem::tiff_windows::GeoTiffWindows;
+use crate::dem::tiff::windows::GeoTiffWindows;
 use crate::dem::warp::{self, WarpError};
 use crate::dem::windows::Windows;
 use crate::roam::block::{BlockError, BlockSource, PatchBlock, RootSphere};
 use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
 use crate::roam::layout::{DEFAULT_PATCH, MOST_PATCHES, PatchLayout};
 use crate::roam::paging::region::{PagedFrame, PagedRegion, Patches};
 use crate::roam::paging::summary::{self, PatchSummary};
+use crate::roam::patched_ground::PatchedGround;
 use crate::roam::spheres::SphereMap;
 use crate::terrain::lattice::{Lattice, LatticeError};
 
@@ -105,7 +105,7 @@ pub struct PagedGround<W, S> {
     buffer: Vec<f32>,
 }
 
-/// Measures plain nested spheres: the own radius is the exact error as drawn, times `reach` metres of distance a metre
+/// Measures plain nested spheres: the own radius is the exact error as drawn, times `reach` meters of distance a meter
 /// of error.
 pub fn exact_spheres(reach: f32) -> impl Fn(PatchedGround<'_>) -> SphereMap {
     move |ground| {
@@ -139,7 +139,7 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> PagedGround<W, S> {
     /// Reads the whole terrain once, piece by piece, for the summaries of its patches.
     ///
     /// # Errors
-    /// [`PagingError`]: the raster is not north-up or not in metres, has too many patches or no data at all, or a
+    /// [`PagingError`]: the raster is not north-up or not in meters, has too many patches or no data at all, or a
     /// piece of it cannot be read.
     pub fn open(mut windows: W, spheres: S, options: &PagingOptions) -> Result<Self, PagingError> {
         warp::check_metric(windows.bare()).map_err(PagingError::NotMetric)?;
@@ -177,7 +177,7 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> PagedGround<W, S> {
         self.summary(corner).is_far(self.plan(corner.moved(half, half)), eye)
     }
 
-    /// World X and Y of a vertex, metres.
+    /// World X and Y of a vertex, meters.
     pub fn plan(&self, vertex: Vertex) -> Vec2 {
         let post = self.frame.layout.post(vertex);
         (DVec2::new(f64::from(post.column), f64::from(post.row)) * self.frame.cell).as_vec2()
@@ -248,7 +248,7 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> PagedGround<W, S> {
                 // Patch corners split nothing: their radii mean nothing.
                 let same = block.z[own].to_bits() == other.z[others].to_bits();
                 if !same || (along % side != 0 && bits(block, own) != bits(other, others)) {
-                    return Err(format!("the patch at {corner:?} and its neighbour differ at {along}"));
+                    return Err(format!("the patch at {corner:?} and its neighbor differ at {along}"));
                 }
             }
         }

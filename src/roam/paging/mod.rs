@@ -4,7 +4,7 @@
 //! of its descendants, and these lie less than one patch beyond its own.
 //!
 //! ```text
-//! ┌───┬───┬───┐   the patch P, and the region that is read for it: its neighbours all round, clipped
+//! ┌───┬───┬───┐   the patch P, and the region that is read for it: its neighbors all round, clipped
 //! │   │   │   │   at the terrain's border, and one more column or row of patches to the west or south
 //! ├───┼───┼───┤   where the region would else begin at a patch whose diagonal runs the other way
 //! │   │ P │   │
@@ -14,7 +14,7 @@
 //! ```
 //!
 //! So the region is measured like any terrain, by the same functions, and its patch P is bit for bit the one of the
-//! whole terrain in memory: neighbours agree about the vertices they share without talking to each other.
+//! whole terrain in memory: neighbors agree about the vertices they share without talking to each other.
 //!
 //! What is kept of every patch is a summary: enough to cull it, to tell that it is seen from so far that none of its
 //! vertices is active, and to draw it then.

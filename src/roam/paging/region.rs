@@ -6,8 +6,8 @@ use glam::DVec2;
 
 use crate::dem::windows::{RasterWindow, Windows};
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
 use crate::roam::layout::PatchLayout;
+use crate::roam::patched_ground::PatchedGround;
 use crate::terrain::lattice::{Lattice, Post};
 
 /// The whole terrain, without its heights.
@@ -17,7 +17,7 @@ pub struct PagedFrame {
     pub layout: PatchLayout,
     /// Map coordinates of its south-west post.
     pub origin: DVec2,
-    /// Metres between posts, eastward and northward.
+    /// Meters between posts, eastward and northward.
     pub cell: DVec2,
     /// Vertical exaggeration.
     pub exaggeration: f32,

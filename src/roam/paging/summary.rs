@@ -9,8 +9,8 @@ use crate::dem::windows::Windows;
 use crate::roam::block::BlockError;
 use crate::roam::culling::PatchHeights;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
 use crate::roam::paging::region::{PagedFrame, PagedRegion, Patches};
+use crate::roam::patched_ground::PatchedGround;
 use crate::roam::spheres::SphereMap;
 
 /// Patches along a square of the pass. With the surroundings 10 or 11 are measured for 8, 1.6 times the work of none,
@@ -20,16 +20,16 @@ const SQUARE: i32 = 8;
 /// One patch from afar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PatchSummary {
-    /// Drawn Z of the corners, metres: south-west, south-east, north-west, north-east; NaN without data.
+    /// Drawn Z of the corners, meters: south-west, south-east, north-west, north-east; NaN without data.
     pub corners: [f32; 4],
-    /// Drawn Z of the middle, metres; 0 without data.
+    /// Drawn Z of the middle, meters; 0 without data.
     pub middle: f32,
-    /// Radius of the middle's nested sphere, metres. It holds the spheres of all vertices of the patch, those on its
+    /// Radius of the middle's nested sphere, meters. It holds the spheres of all vertices of the patch, those on its
     /// border included: they all descend from the middle.
     pub radius: f32,
-    /// Lowest drawn Z, metres; above `high` where the patch holds no data.
+    /// Lowest drawn Z, meters; above `high` where the patch holds no data.
     pub low: f32,
-    /// Highest drawn Z, metres.
+    /// Highest drawn Z, meters.
     pub high: f32,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! A vertex is active exactly while the eye is inside its sphere. Spheres are nested, so the active vertices of a
 //! patch are closed under parents by themselves; and a vertex on a border has the same sphere in both patches, so each
-//! patch is a function of the eye alone and still fits its neighbours.
+//! patch is a function of the eye alone and still fits its neighbors.
 
 use glam::{Vec2, Vec3};
 
@@ -11,8 +11,8 @@ use crate::roam::bintree::Triangle;
 use crate::roam::block::{BlockError, BlockSource, PatchBlock};
 use crate::roam::criterion::spheres::distance;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
 use crate::roam::paging::ground::PagedGround;
+use crate::roam::patched_ground::PatchedGround;
 use crate::roam::spheres::SphereMap;
 
 /// Gives `visit` the triangles of a patch for an eye in drawn world space. `corner` is the patch's south-west corner,

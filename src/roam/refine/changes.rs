@@ -10,7 +10,7 @@ pub struct RefinementChanges {
     pub splits: usize,
     /// Vertices that became inactive.
     pub merges: usize,
-    /// The patches that hold a triangle of such a vertex, as places in [`Layout::patches`], rising: what else
+    /// The patches that hold a triangle of such a vertex, as places in [`PatchLayout::patches`], rising: what else
     /// was drawn from the bits is still right.
     pub dirty: Vec<usize>,
 }

@@ -30,12 +30,12 @@ use crate::roam::refine::listed::ListedPatches;
 /// What becomes of a patch that is no longer listed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Hidden {
-    /// It is merged as far as its neighbours allow: the mesh is that of a rebuild, and a patch costs nothing once
+    /// It is merged as far as its neighbors allow: the mesh is that of a rebuild, and a patch costs nothing once
     /// it is out of view.
     #[default]
     Forget,
     /// It stays as it was last seen and is adjusted when it is listed again, as 000 has it: turning back and
-    /// forth costs no splits. The mesh is finer than a rebuild's where unlisted patches force their neighbours.
+    /// forth costs no splits. The mesh is finer than a rebuild's where unlisted patches force their neighbors.
     Keep,
 }
 

@@ -7,8 +7,8 @@
 use crate::roam::bintree::Triangle;
 use crate::roam::emit::world::drawn_posts;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
 use crate::roam::layout::PatchLayout;
+use crate::roam::patched_ground::PatchedGround;
 use crate::roam::refine::listed::ListedPatches;
 
 /// Triangles: those that are drawn, and all.

@@ -25,8 +25,8 @@ use crate::roam::active::ActiveSet;
 use crate::roam::bintree::Triangle;
 use crate::roam::criterion::Criterion;
 use crate::roam::graph::Vertex;
-use crate::roam::ground::PatchedGround;
 use crate::roam::layout::PatchLayout;
+use crate::roam::patched_ground::PatchedGround;
 use crate::roam::refine::changes::{ChangeTally, RefinementChanges};
 use crate::roam::refine::drawn::{Count, Drawn};
 use crate::roam::refine::listed::ListedPatches;
@@ -40,7 +40,7 @@ const MOST_REFUSALS: usize = 32;
 /// patches not counted: the edges of holes may not take all the time, however long they are.
 pub const MOST_LEAVES: usize = 8;
 
-/// What the queues work towards.
+/// What the queues work toward.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Goal {
     /// Every vertex that the criterion wants, however many triangles that takes. Where no vertex's excess is above

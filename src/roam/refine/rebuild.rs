@@ -1,7 +1,7 @@
 //! From the roots down: a mesh for one view, built anew by splits alone.
 //!
 //! A triangle whose split vertex is wanted is split, with whatever that forces, and its halves are looked at in
-//! turn. Halves that only a neighbour forced are not looked at, so the result does not depend on the order: it
+//! turn. Halves that only a neighbor forced are not looked at, so the result does not depend on the order: it
 //! is the closure under parents of the vertices that are wanted and have a parent that is.
 //!
 //! Cost: one question a triangle of the resulting tree, whatever the size of the terrain.
@@ -14,7 +14,7 @@ use crate::roam::layout::PatchLayout;
 
 /// Sets the bits for one view, from the roots of the patches whose south-west corners are listed.
 ///
-/// The other patches are left as coarse as their neighbours allow.
+/// The other patches are left as coarse as their neighbors allow.
 pub fn rebuild(
     layout: &PatchLayout,
     criterion: &impl Criterion,

@@ -1,4 +1,4 @@
-//! Pads: the ground levelled under the models that ask for it, and the bounds on what footprints may cost.
+//! Pads: the ground leveled under the models that ask for it, and the bounds on what footprints may cost.
 
 use std::collections::BTreeMap;
 
@@ -8,17 +8,18 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::ModelPlacement;
 use crate::description::words::{Clamp, Footing};
+use crate::earthworks::pad;
+use crate::earthworks::pad::Batters;
 use crate::geom::polygon;
 use crate::scene::footprint::ModelFootprint;
-use crate::scene::kind::{GroundFit, Placement};
 use crate::scene::models::Group;
 use crate::scene::models::library::Library;
-use crate::scene::place::WorldFrame;
-use crate::scene::stand::{Grounds, outline, stand};
-use crate::terrain::earthwork::Volumes;
-use crate::terrain::finest::FullResolution;
+use crate::scene::placement::{Grounds, outline, stand};
+use crate::scene::world_frame::WorldFrame;
+use crate::scene::{GroundFit, Placement};
+use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::{HIGHEST_M, Lattice};
-use crate::terrain::pad::{self, Batters};
+use crate::terrain::volumes::Volumes;
 
 /// How far a pad reaches out beyond the footprint, as a part of the longer side: room to walk round.
 const PAD_REACH: f32 = 0.1;
@@ -88,7 +89,7 @@ fn level(
 
 fn too_many(document: &Document, table: &ModelPlacement) -> Diagnostic {
     let place = table.footing.as_ref().map_or(table.file.span(), Spanned::span);
-    let message = format!("more than {MAX_PADS} models have the ground levelled for them");
+    let message = format!("more than {MAX_PADS} models have the ground leveled for them");
     document.error_at(place, message).with_help("use footing = \"plinth\", which moves no earth")
 }
 
@@ -97,5 +98,5 @@ fn too_large(document: &Document, table: &ModelPlacement) -> Diagnostic {
     let message = format!("up to this model, the footprints cover more than {MAX_CELLS} cells of ground");
     document
         .error_at(place, message)
-        .with_help("check `scale`, the metres per unit of the model file: 0.001 for one in millimetres")
+        .with_help("check `scale`, the meters per unit of the model file: 0.001 for one in millimeters")
 }

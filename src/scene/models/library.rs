@@ -9,10 +9,10 @@ use std::ops::Range;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::words::Clamp;
-use crate::model::kind::Model;
+use crate::model::Model;
 use crate::model::{built_in, read};
 use crate::scene::assets::Assets;
-use crate::scene::collected::SceneBuilder;
+use crate::scene::builder::SceneBuilder;
 use crate::scene::footprint::ModelFootprint;
 
 /// Where a model comes from.

@@ -6,11 +6,11 @@
 //! ```
 //!
 //! A placement names a model, a place in plan and how it meets the ground; how high it stands is worked out when it is
-//! drawn ([`crate::scene::stand`]).
+//! drawn ([`crate::scene::placement`]).
 
 pub mod footings;
 pub mod library;
-pub mod told;
+pub mod model_report;
 
 use std::ops::Range;
 
@@ -21,18 +21,18 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::expression::Quantity;
 use crate::description::features::{FeatureSource, ModelPlacement, Scalar};
-use crate::model::kind::Model;
+use crate::model::Model;
 use crate::scene::assets::Assets;
 use crate::scene::attributes::Attributes;
-use crate::scene::collected::SceneBuilder;
-use crate::scene::kind::{FeatureKind, GroundFit, Placement};
+use crate::scene::builder::SceneBuilder;
 use crate::scene::models::library::Library;
-use crate::scene::place::WorldFrame;
 use crate::scene::scatter;
 use crate::scene::sources::{Sourced, Sources};
-use crate::terrain::facets::TriangleSurface;
-use crate::terrain::finest::FullResolution;
+use crate::scene::world_frame::WorldFrame;
+use crate::scene::{FeatureKind, GroundFit, Placement};
+use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::Lattice;
+use crate::terrain::triangle_surface::TriangleSurface;
 
 /// The most models that stand in a scene, however they came there: some fifty megabytes of placements, and more than
 /// a picture has room to show.
@@ -97,7 +97,7 @@ pub fn place(
         groups.push(Group { table, placements: first..placements.len(), off, unknown });
     }
     let volumes = footings::lay(document, &groups, &placements, (&library, places), lattice)?;
-    told::tell(&groups, &placements, (&library, &volumes, places), lattice, collected);
+    model_report::tell(&groups, &placements, (&library, &volumes, places), lattice, collected);
     scatter::strew(document, (places, sources), lattice, (&mut library, &mut placements), collected)?;
     Ok((library.into_models(), placements))
 }

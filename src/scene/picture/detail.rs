@@ -2,7 +2,7 @@
 //! in runs.
 //!
 //! A picture whose models come to no more than [`FULL_TRIANGLES`] shows all of them as their files have them: there is
-//! nothing to gain. Past that, each is drawn in the form that [`Detail::form`] chooses for the size at which it is seen.
+//! nothing to gain. Past that, each is drawn in the form that [`ModelDetail::form`] chooses for the size at which it is seen.
 //! Items are listed model by model, form by form and part by part, so that they make the runs of
 //! [`DrawList::runs`].
 
@@ -15,8 +15,8 @@ use crate::draw::list::{DepthLayer, DrawItem, DrawList, FeatureId, MaterialId, M
 use crate::draw::material::{Material, TextureId};
 use crate::model::detail::{ApparentSize, DetailForm, ModelDetail};
 use crate::model::impostor::Impostor;
-use crate::model::kind::{Model, ModelPart};
-use crate::scene::kind::Scene;
+use crate::model::{Model, ModelPart};
+use crate::scene::Scene;
 use crate::view::camera::Camera;
 use crate::view::frustum::Frustum;
 
@@ -151,11 +151,11 @@ impl BoundingSphere {
         let scale = if self.radius > 0.0 { world.radius / self.radius } else { 1.0 };
         let offset = camera.eye() - world.center;
         let near = (-offset.dot(camera.forward()) - world.radius).max(camera.planes().0);
-        let px_per_unit = camera.pixels_per_metre(near) * scale;
+        let px_per_unit = camera.pixels_per_meter(near) * scale;
         let along = |axis: glam::Vec4| axis.truncate().dot(offset);
         let axes = &stand.world_from_model;
-        let towards_eye = Vec3::new(along(axes.x_axis), along(axes.y_axis), along(axes.z_axis));
-        ApparentSize { px_per_unit, across_px: 2.0 * self.radius * px_per_unit, towards_eye }
+        let toward_eye = Vec3::new(along(axes.x_axis), along(axes.y_axis), along(axes.z_axis));
+        ApparentSize { px_per_unit, across_px: 2.0 * self.radius * px_per_unit, toward_eye }
     }
 }
 

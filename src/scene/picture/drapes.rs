@@ -9,9 +9,9 @@ use crate::draw::list::{DepthLayer, DrawList, DrawMesh, MaterialId};
 use crate::draw::material::{AlphaMode, Material, NormalSource};
 use crate::ribbon::drape::drape;
 use crate::ribbon::texture::{RibbonSurface, texture};
-use crate::scene::kind::Scene;
+use crate::scene::Scene;
 use crate::scene::picture::add_mesh;
-use crate::terrain::facets::TriangleSurface;
+use crate::terrain::triangle_surface::TriangleSurface;
 
 /// Adds all ribbons, lower layers first.
 pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn TriangleSurface) {

@@ -7,7 +7,7 @@ use crate::draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureId};
 use crate::draw::material::{Albedo, Material, NormalSource};
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::roam::displayed::DisplayedTerrain;
-use crate::scene::kind::Terrain;
+use crate::scene::Terrain;
 use crate::scene::picture::add_mesh;
 use crate::scene::plinth::plinth;
 

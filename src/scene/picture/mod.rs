@@ -17,8 +17,8 @@ use crate::roam::criterion::screen::ScreenError;
 use crate::roam::culling::patches_in_view;
 use crate::roam::displayed::DisplayedTerrain;
 use crate::roam::refine::rebuild::rebuild;
-use crate::scene::kind::{Scene, Terrain, View};
 use crate::scene::picture::detail::Viewer;
+use crate::scene::{Scene, Terrain, View};
 use crate::view::camera::{Camera, CameraError};
 use crate::view::frustum::Frustum;
 

@@ -5,12 +5,12 @@ use rayon::prelude::*;
 use crate::draw::list::{DepthLayer, DrawList, DrawMesh};
 use crate::draw::material::Material;
 use crate::scene::footprint::ModelFootprint;
-use crate::scene::kind::{Placement, Scene};
 use crate::scene::picture::add_mesh;
 use crate::scene::picture::detail::{self, PlacedModel, Viewer};
-use crate::scene::stand::{Grounds, stand};
-use crate::terrain::facets::TriangleSurface;
-use crate::terrain::finest::FullResolution;
+use crate::scene::placement::{Grounds, stand};
+use crate::scene::{Placement, Scene};
+use crate::terrain::full_resolution::FullResolution;
+use crate::terrain::triangle_surface::TriangleSurface;
 
 /// Adds every placement that has ground under it and may be seen, and the plinths.
 pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn TriangleSurface, viewer: Viewer<'_>) {

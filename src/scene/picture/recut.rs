@@ -2,9 +2,9 @@
 
 use crate::ribbon::patches::{Borders, Drapes};
 use crate::roam::graph::Vertex;
-use crate::scene::kind::{Scene, Terrain};
+use crate::scene::{Scene, Terrain};
 
-/// The scene's ribbons divided along its patches, numbered as [`crate::roam::layout::Layout::patches`] lists them;
+/// The scene's ribbons divided along its patches, numbered as [`crate::roam::layout::PatchLayout::patches`] lists them;
 /// the places of ribbons are those in [`Scene::ribbons`].
 pub fn drapes(scene: &Scene) -> Drapes {
     Drapes::new(&borders(&scene.terrain), scene.ribbons.iter().map(|ribbon| &ribbon.plan))

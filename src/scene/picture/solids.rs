@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use crate::draw::list::{DepthLayer, DrawList};
 use crate::draw::material::Material;
 use crate::ribbon::texture::texture;
-use crate::scene::kind::{Coat, Scene};
 use crate::scene::picture::add_mesh;
+use crate::scene::{Coat, Scene};
 
 /// Adds all solids.
 pub(super) fn add(list: &mut DrawList, scene: &Scene) {

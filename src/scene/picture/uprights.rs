@@ -4,11 +4,11 @@ use rayon::prelude::*;
 
 use crate::draw::list::{DepthLayer, DrawList, DrawMesh};
 use crate::draw::material::Material;
-use crate::scene::kind::Scene;
+use crate::scene::Scene;
 use crate::scene::picture::add_mesh;
-use crate::terrain::facets::TriangleSurface;
-use crate::terrain::finest::FullResolution;
-use crate::terrain::underfoot::SupportSurface;
+use crate::terrain::full_resolution::FullResolution;
+use crate::terrain::support_surface::SupportSurface;
+use crate::terrain::triangle_surface::TriangleSurface;
 
 /// Adds all uprights that have ground under them.
 pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn TriangleSurface) {

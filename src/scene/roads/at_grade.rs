@@ -1,4 +1,4 @@
-//! Where centrelines of one level cross, whether or not they have a vertex there.
+//! Where centerlines of one level cross, whether or not they have a vertex there.
 //!
 //! Legs are sorted into the squares of a grid that they pass through, and only legs of one square are compared. Squares
 //! are about as wide as a leg is long, so that a city's legs meet a few others each.
@@ -8,9 +8,9 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 
 use crate::geom::rect::Rect;
-use crate::scene::roads::centreline::Centreline;
+use crate::scene::roads::centerline::Centerline;
 
-/// No square is smaller, in metres: a file of very short legs would fill more squares than it has legs.
+/// No square is smaller, in meters: a file of very short legs would fill more squares than it has legs.
 const SMALLEST_SQUARE_M: f64 = 20.0;
 
 /// No more pairs of legs are compared. A city of 100 000 legs has some hundred thousand pairs; only lines drawn all over
@@ -35,8 +35,8 @@ struct RoadLeg {
 /// The crossings of those roads for which `counts` holds: the same place on both roads, each pair of places once, in
 /// order of the roads. `None` where the lines are too tangled to compare all that may cross.
 pub fn crossings(
-    roads: &[Centreline],
-    counts: impl Fn(&Centreline) -> bool,
+    roads: &[Centerline],
+    counts: impl Fn(&Centerline) -> bool,
 ) -> Option<Vec<[RoadStation; 2]>> {
     let chosen = roads.iter().enumerate().filter(|(_, road)| counts(road));
     let legs: Vec<RoadLeg> = chosen.flat_map(|(index, road)| legs(index, road)).collect();
@@ -66,13 +66,13 @@ fn compare<'a>(legs: &[RoadLeg], squares: impl Iterator<Item = &'a Vec<usize>>) 
     found.into_iter().map(|(_, places)| places).collect()
 }
 
-fn legs(road: usize, centreline: &Centreline) -> impl Iterator<Item = RoadLeg> + '_ {
-    let (points, stations) = (centreline.line.points(), centreline.line.stations());
+fn legs(road: usize, centerline: &Centerline) -> impl Iterator<Item = RoadLeg> + '_ {
+    let (points, stations) = (centerline.line.points(), centerline.line.stations());
     let leg = move |(ends, &start_m): (&[DVec2], &f64)| RoadLeg {
         road,
         start_m,
         ends: [ends[0], ends[1]],
-        level: centreline.level,
+        level: centerline.level,
     };
     points.windows(2).zip(stations).map(leg)
 }
@@ -115,7 +115,7 @@ fn crossing(one: &RoadLeg, other: &RoadLeg) -> Option<[RoadStation; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::roads::centreline::{Support, tests::road};
+    use crate::scene::roads::centerline::{Support, tests::road};
 
     #[test]
     fn every_pair_of_a_dense_web_is_found_once() {
@@ -128,7 +128,7 @@ mod tests {
             let north = |index| {
                 road(&[(ends(index), -5.0), (ends(index) + 2.0, 200.0)].map(turned), Support::Ground, 0)
             };
-            let roads: Vec<Centreline> = (0..15).map(east).chain((0..15).map(north)).collect();
+            let roads: Vec<Centerline> = (0..15).map(east).chain((0..15).map(north)).collect();
             let found = crossings(&roads, |_| true).expect("not too tangled");
             assert_eq!(found.len(), 15 * 15);
             for [(one, at), (other, there)] in found {

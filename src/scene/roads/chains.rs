@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec2;
 
-use crate::scene::roads::centreline::{Centreline, Support};
+use crate::scene::roads::centerline::{Centerline, Support};
 use crate::scene::roads::spans::{PointKey, RoadSpan, place};
 
 /// Spans in a row, each from where the one before ends.
@@ -21,7 +21,7 @@ use crate::scene::roads::spans::{PointKey, RoadSpan, place};
 pub struct SpanChain {
     /// Its spans.
     pub links: Vec<SpanLink>,
-    /// Its length in metres.
+    /// Its length in meters.
     pub length_m: f64,
     /// What it meets at its start and end.
     pub ends: [ChainEnd; 2],
@@ -32,7 +32,7 @@ pub struct SpanChain {
 pub struct SpanLink {
     /// Which span.
     pub span: usize,
-    /// Where the span's own start and end lie along the chain, in metres; the second lower where it runs backwards.
+    /// Where the span's own start and end lie along the chain, in meters; the second lower where it runs backwards.
     pub reach_m: [f64; 2],
 }
 
@@ -48,7 +48,7 @@ pub enum ChainEnd {
 }
 
 impl SpanChain {
-    /// The point at a station in metres.
+    /// The point at a station in meters.
     pub fn at(&self, spans: &[RoadSpan], station_m: f64) -> DVec2 {
         let within = |link: &&SpanLink| station_m <= link.reach_m[0].max(link.reach_m[1]);
         let link = self.links.iter().find(within).unwrap_or(&self.links[self.links.len() - 1]);
@@ -64,7 +64,7 @@ impl SpanChain {
 
 /// Joins spans whose levels are open to chains; a span whose levels are settled is a chain alone. In order of their first
 /// spans.
-pub fn join(spans: &[RoadSpan], roads: &[Centreline]) -> Vec<SpanChain> {
+pub fn join(spans: &[RoadSpan], roads: &[Centerline]) -> Vec<SpanChain> {
     let meetings = SpanMeetings::new(spans, roads);
     let mut is_taken = vec![false; spans.len()];
     let mut chains = Vec::new();
@@ -121,7 +121,7 @@ struct SpanMeetings {
 }
 
 impl SpanMeetings {
-    fn new(spans: &[RoadSpan], roads: &[Centreline]) -> Self {
+    fn new(spans: &[RoadSpan], roads: &[Centerline]) -> Self {
         let kind = |span: &RoadSpan| span.carried == Support::Tunnel;
         let places: Vec<[PointKey; 2]> =
             spans.iter().map(|span| [0, 1].map(|end| place(span.end(end)))).collect();

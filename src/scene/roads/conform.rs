@@ -9,24 +9,24 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
+use crate::earthworks::alignment::design::design;
+use crate::earthworks::alignment::network::NodeId;
+use crate::earthworks::grading::grade;
+use crate::earthworks::grading::strip::{GradingStrip, StripEnd};
 use crate::geom::polyline::Polyline;
-use crate::scene::collected::SceneBuilder;
+use crate::scene::builder::SceneBuilder;
 use crate::scene::report::{ReportCell, ReportColumn};
-use crate::scene::roads::centreline::{Centreline, Support};
+use crate::scene::roads::centerline::{Centerline, Support};
 use crate::scene::roads::meetings::{RoadMeetings, meetings};
+use crate::scene::roads::network_survey::{NetworkSurvey, Rules, conforms};
 use crate::scene::roads::profiles::RoadProfile;
 use crate::scene::roads::route::{Route, RouteStretch, points_between};
 use crate::scene::roads::stretches;
-use crate::scene::roads::survey::{NetworkSurvey, Rules, conforms};
-use crate::terrain::alignment::design::design;
-use crate::terrain::alignment::network::NodeId;
 use crate::terrain::densify;
-use crate::terrain::earthwork::Volumes;
-use crate::terrain::grading::grade;
-use crate::terrain::grading::strip::{GradingStrip, StripEnd};
 use crate::terrain::lattice::Lattice;
+use crate::terrain::volumes::Volumes;
 
-/// The length of a vertical curve in metres: for a crest between grades of 4 % up and down at 50 km/h.
+/// The length of a vertical curve in meters: for a crest between grades of 4 % up and down at 50 km/h.
 const CURVE_M: f64 = 50.0;
 
 /// A vertical curve is at least so many cells long: the kinks of the ground's own planes are no kinks of the land.
@@ -58,7 +58,7 @@ const COLUMNS: [ReportColumn; 9] = [
 pub fn conform(
     document: &Document,
     lattice: &mut Lattice,
-    roads: &mut Vec<Centreline>,
+    roads: &mut Vec<Centerline>,
     collected: &mut SceneBuilder,
 ) -> Result<(), Diagnostic> {
     let rules: Vec<Option<Rules>> =
@@ -66,7 +66,7 @@ pub fn conform(
     if rules.iter().all(Option::is_none) {
         return Ok(());
     }
-    let is_carried = |road: &Centreline| road.carried == Support::Ground;
+    let is_carried = |road: &Centerline| road.carried == Support::Ground;
     let meetings = meetings(roads, |road| is_carried(road) && conforms(&document.roads[road.table]));
     if meetings.is_tangled {
         let note = "conforming roads cross each other too often to find every place: they meet at their vertices only";
@@ -89,7 +89,7 @@ pub fn conform(
 
 /// The ground to be graded for roads.
 struct Earthworks<'a> {
-    roads: &'a [Centreline],
+    roads: &'a [Centerline],
     rules: &'a [Option<Rules>],
     /// The nodes where bridges and tunnels begin.
     walls: BTreeSet<NodeId>,
@@ -143,7 +143,7 @@ impl Earthworks<'_> {
 }
 
 /// The nodes where a bridge or a tunnel of one road ends that may go on as another on the ground.
-fn walls(roads: &[Centreline], routes: &[Route], meetings: &RoadMeetings) -> BTreeSet<NodeId> {
+fn walls(roads: &[Centerline], routes: &[Route], meetings: &RoadMeetings) -> BTreeSet<NodeId> {
     let mut nodes = BTreeSet::new();
     for (road, stops) in roads.iter().zip(&meetings.stops) {
         if road.carried != Support::Ground {
@@ -190,7 +190,7 @@ fn make_denser(lattice: &mut Lattice, strips: &[GradingStrip], collected: &mut S
 }
 
 /// Reports a road and keeps its profile.
-fn tell(road: &Centreline, route: &Route, volumes: &Volumes, collected: &mut SceneBuilder) {
+fn tell(road: &Centerline, route: &Route, volumes: &Volumes, collected: &mut SceneBuilder) {
     let name = collected.name(road.feature).to_owned();
     let all = route.stretches();
     let carried_at =
@@ -233,7 +233,7 @@ fn tell(road: &Centreline, route: &Route, volumes: &Volumes, collected: &mut Sce
 /// Notes what the roads of each table come to.
 fn total(
     document: &Document,
-    roads: &[Centreline],
+    roads: &[Centerline],
     (routes, volumes): (&[Route], &[Volumes]),
     collected: &mut SceneBuilder,
 ) {
@@ -261,8 +261,8 @@ fn total(
 }
 
 /// Puts the stretches of every route in the place of its road.
-fn replace(roads: &mut Vec<Centreline>, routes: &[Route]) {
-    let mut cut: BTreeMap<usize, Vec<Centreline>> =
+fn replace(roads: &mut Vec<Centerline>, routes: &[Route]) {
+    let mut cut: BTreeMap<usize, Vec<Centerline>> =
         routes.iter().map(|route| (route.road, stretches::cut(&roads[route.road], route))).collect();
     let parts = std::mem::take(roads).into_iter().enumerate();
     *roads = parts.flat_map(|(index, road)| cut.remove(&index).unwrap_or_else(|| vec![road])).collect();

@@ -1,4 +1,4 @@
-//! What passes below bridges: where other ways' centrelines cross theirs.
+//! What passes below bridges: where other ways' centerlines cross theirs.
 //!
 //! Lines are cut into pieces of a few segments with a box round each, the pieces below sorted by their western edge; a
 //! piece of a bridge is compared only with those whose boxes it may meet, so that the work grows with what is near each
@@ -20,9 +20,9 @@ const LEAST_SINE: f64 = 0.25;
 /// A way that others may pass over.
 #[derive(Clone, Copy, Debug)]
 pub struct PassedLine<'a> {
-    /// Its centreline in world coordinates.
+    /// Its centerline in world coordinates.
     pub line: &'a Polyline,
-    /// Its width in metres.
+    /// Its width in meters.
     pub width_m: f64,
     /// What passes over what.
     pub level: i32,
@@ -37,11 +37,11 @@ pub struct Overpass {
     pub lower: usize,
     /// The place.
     pub at: DVec2,
-    /// The station on the upper way, in metres.
+    /// The station on the upper way, in meters.
     pub upper_m: f64,
-    /// The station on the lower way, in metres.
+    /// The station on the lower way, in meters.
     pub lower_m: f64,
-    /// Half of the length of the upper way that lies over the lower one's width, in metres.
+    /// Half of the length of the upper way that lies over the lower one's width, in meters.
     pub half_m: f64,
 }
 

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use crate::scene::roads::centreline::{Centreline, Support};
+use crate::scene::roads::centerline::{Centerline, Support};
 use crate::scene::roads::chains::{ChainEnd, SpanChain};
 use crate::scene::roads::crossings::{self, Overpass, PassedLine};
 use crate::scene::roads::spans::{PointKey, RoadSpan, place};
@@ -18,20 +18,20 @@ use crate::terrain::lattice::Lattice;
 use crate::terrain::query::deck::Deck;
 use crate::terrain::query::{Interpolation, ground_height};
 
-/// The room over roads and water that a bridge gives where it can be climbed to, in metres: 4.5 m for traffic and some
+/// The room over roads and water that a bridge gives where it can be climbed to, in meters: 4.5 m for traffic and some
 /// to spare.
 pub const CLEARANCE_M: f64 = 5.0;
 
 /// The steepest way up to that, rise over run.
 pub const STEEPEST: f64 = 0.10;
 
-/// The widest span between piers of a low bridge where nothing is stated, in metres.
+/// The widest span between piers of a low bridge where nothing is stated, in meters.
 pub const PIER_SPACING_M: f64 = 25.0;
 
 /// A high bridge's spans grow with its height, as its piers cost more: this part of it.
 const SPACING_PER_HEIGHT: f64 = 0.6;
 
-/// They grow up to this, in metres, the longest that a girder without haunches carries.
+/// They grow up to this, in meters, the longest that a girder without haunches carries.
 const WIDEST_SPACING_M: f64 = 70.0;
 
 /// The most places at which the ground under a chain is looked at.
@@ -51,7 +51,7 @@ pub struct Site<'a> {
 }
 
 impl Site<'_> {
-    /// The ground's elevation at a world position in metres, on the finest triangles.
+    /// The ground's elevation at a world position in meters, on the finest triangles.
     pub fn ground_m(&self, at: DVec2) -> Option<f64> {
         ground_height(self.lattice, Interpolation::Planar, at + self.lattice.origin()).height_m()
     }
@@ -60,9 +60,9 @@ impl Site<'_> {
 /// What passes below a chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passage {
-    /// From where to where along the chain, in metres.
+    /// From where to where along the chain, in meters.
     pub reach_m: [f64; 2],
-    /// Its elevation in metres.
+    /// Its elevation in meters.
     pub level_m: f64,
 }
 
@@ -75,9 +75,9 @@ pub struct ChainRun {
     pub ground: Vec<ClearancePoint>,
     /// What passes below; none below a tunnel.
     pub passages: Vec<Passage>,
-    /// The widest span between piers, in metres.
+    /// The widest span between piers, in meters.
     pub spacing_m: f64,
-    /// How deep its deck is, in metres.
+    /// How deep its deck is, in meters.
     pub depth_m: f64,
 }
 
@@ -85,7 +85,7 @@ pub struct ChainRun {
 pub fn settle(
     spans: &[RoadSpan],
     chains: &[SpanChain],
-    roads: &[Centreline],
+    roads: &[Centerline],
     site: &Site<'_>,
 ) -> Vec<Option<ChainRun>> {
     let below = Below::new(spans, chains, roads);
@@ -144,7 +144,7 @@ struct Below {
 }
 
 impl Below {
-    fn new(spans: &[RoadSpan], chains: &[SpanChain], all_roads: &[Centreline]) -> Self {
+    fn new(spans: &[RoadSpan], chains: &[SpanChain], all_roads: &[Centerline]) -> Self {
         let bridges: Vec<usize> =
             (0..spans.len()).filter(|&span| spans[span].carried == Support::Bridge).collect();
         let roads: Vec<usize> =

@@ -1,4 +1,4 @@
-//! Where roads end and meet, along their centrelines.
+//! Where roads end and meet, along their centerlines.
 //!
 //! Lines meet where they share a vertex. An end meets whatever is there: a bridge meets the road that leads to it though
 //! they have different levels. Lines that both go on meet only where their level is the same, and such lines of one level
@@ -8,17 +8,17 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
+use crate::earthworks::alignment::network::NodeId;
 use crate::scene::roads::at_grade::crossings;
-use crate::scene::roads::centreline::Centreline;
-use crate::terrain::alignment::network::NodeId;
+use crate::scene::roads::centerline::Centerline;
 
-/// Vertices nearer to each other than this are one, in metres; as for [`crate::ribbon::junction`].
+/// Vertices nearer to each other than this are one, in meters; as for [`crate::ribbon::junction`].
 const SAME_M: f64 = 0.01;
 
-/// A node on a centreline.
+/// A node on a centerline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoadStop {
-    /// Metres along the centreline.
+    /// Meters along the centerline.
     pub station_m: f64,
     /// The node.
     pub node: NodeId,
@@ -44,10 +44,10 @@ struct RoadVertex {
 }
 
 /// Finds where the roads end and meet. Only roads for which `crosses` holds meet where they cross without a vertex.
-pub fn meetings(roads: &[Centreline], crosses: impl Fn(&Centreline) -> bool) -> RoadMeetings {
+pub fn meetings(roads: &[Centerline], crosses: impl Fn(&Centerline) -> bool) -> RoadMeetings {
     let mut places: BTreeMap<(i64, i64), Vec<RoadVertex>> = BTreeMap::new();
-    for (road, centreline) in roads.iter().enumerate() {
-        let points = centreline.line.points();
+    for (road, centerline) in roads.iter().enumerate() {
+        let points = centerline.line.points();
         for (index, at) in points.iter().enumerate() {
             let is_end = index == 0 || index + 1 == points.len();
             places.entry(key(*at)).or_default().push(RoadVertex { road, index, is_end });
@@ -82,7 +82,7 @@ impl RoadMeetings {
         NodeId(self.nodes as u32 - 1)
     }
 
-    fn join(&mut self, roads: &[Centreline], vertices: &[RoadVertex]) {
+    fn join(&mut self, roads: &[Centerline], vertices: &[RoadVertex]) {
         let node = self.node();
         for vertex in vertices {
             let station_m = roads[vertex.road].line.stations()[vertex.index];
@@ -91,7 +91,7 @@ impl RoadMeetings {
     }
 
     /// Adds the crossings that have no vertex on both roads.
-    fn cross(&mut self, roads: &[Centreline], crosses: impl Fn(&Centreline) -> bool) {
+    fn cross(&mut self, roads: &[Centerline], crosses: impl Fn(&Centerline) -> bool) {
         let Some(crossings) = crossings(roads, crosses) else {
             self.is_tangled = true;
             return;
@@ -124,7 +124,7 @@ impl RoadMeetings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::roads::centreline::{Support, tests::road};
+    use crate::scene::roads::centerline::{Support, tests::road};
 
     #[test]
     fn ends_meet_whatever_is_there_and_through_roads_only_their_own_level() {

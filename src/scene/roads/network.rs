@@ -18,14 +18,14 @@ use crate::ribbon::junction::{self, Street, StreetNetwork, StreetSupport};
 use crate::ribbon::plan::{PlanMesh, PlanVertex};
 use crate::ribbon::stroke::{StrokeOptions, StrokePath, Widths, stroke_course};
 use crate::ribbon::texture::RibbonSurface;
-use crate::scene::collected::SceneBuilder;
+use crate::scene::builder::SceneBuilder;
 use crate::scene::near::Clipped;
-use crate::scene::roads::centreline::{Centreline, Support};
+use crate::scene::roads::centerline::{Centerline, Support};
 
-/// Metres in one repeat of a junction's surface.
+/// Meters in one repeat of a junction's surface.
 const JUNCTION_TEXTURE_M: f64 = 15.0;
 
-/// Triangles of a junction smaller than this are what clipping left at a corner, in square metres.
+/// Triangles of a junction smaller than this are what clipping left at a corner, in square meters.
 const NOTHING_M2: f64 = 1e-6;
 
 /// Joints by the rank of their pavement, from the least: where a lesser road meets a better one, the better one goes
@@ -34,7 +34,7 @@ const JOINTS: [RibbonSurface; 3] =
     [RibbonSurface::TrackJunction, RibbonSurface::GravelJunction, RibbonSurface::AsphaltJunction];
 
 /// Lays the roads that the ground carries on it.
-pub fn lay(all: &[Centreline], extent: &Rect, collected: &mut SceneBuilder) {
+pub fn lay(all: &[Centerline], extent: &Rect, collected: &mut SceneBuilder) {
     let shouldered: Vec<RoadStrip<'_>> =
         all.iter().filter(|road| road.shoulder_m > 0.0).map(RoadStrip::with_shoulders).collect();
     lay_strips(&shouldered, extent, collected);
@@ -44,7 +44,7 @@ pub fn lay(all: &[Centreline], extent: &Rect, collected: &mut SceneBuilder) {
 
 /// What meets among `all`, whatever carries it: for each its continuations, so that a bridge can begin on the edge where
 /// its road ends.
-pub fn connect(all: &[Centreline]) -> StreetNetwork {
+pub fn connect(all: &[Centerline]) -> StreetNetwork {
     let strips: Vec<RoadStrip<'_>> = all.iter().map(RoadStrip::carriageway).collect();
     junction::connect(&strips.iter().map(RoadStrip::street).collect::<Vec<_>>())
 }
@@ -60,7 +60,7 @@ pub fn rank_of(surface: RibbonSurface) -> u8 {
 
 /// A strip of one surface along a road.
 struct RoadStrip<'a> {
-    road: &'a Centreline,
+    road: &'a Centerline,
     /// The width at each vertex, where it changes.
     widths_m: Option<Vec<f64>>,
     options: StrokeOptions,
@@ -76,13 +76,13 @@ struct Class {
 }
 
 impl<'a> RoadStrip<'a> {
-    fn carriageway(road: &'a Centreline) -> Self {
+    fn carriageway(road: &'a Centerline) -> Self {
         let rank = rank_of(road.surface);
         Self { road, widths_m: widths_m(road, 0.0), options: road.options, surface: road.surface, rank }
     }
 
     /// The carriageway and what lies beside it.
-    fn with_shoulders(road: &'a Centreline) -> Self {
+    fn with_shoulders(road: &'a Centerline) -> Self {
         let more_m = 2.0 * road.shoulder_m;
         Self {
             road,
@@ -121,7 +121,7 @@ impl<'a> RoadStrip<'a> {
 }
 
 /// The widths of a road at its vertices where they change, each `more_m` wider.
-fn widths_m(road: &Centreline, more_m: f64) -> Option<Vec<f64>> {
+fn widths_m(road: &Centerline, more_m: f64) -> Option<Vec<f64>> {
     match road.widths() {
         Widths::Constant(_) => None,
         Widths::PerVertex(widths_m) => Some(widths_m.iter().map(|width_m| width_m + more_m).collect()),

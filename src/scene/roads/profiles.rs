@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::draw::list::FeatureId;
-use crate::scene::roads::centreline::Support;
+use crate::scene::roads::centerline::Support;
 
 /// A road's longitudinal profile.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,19 +12,19 @@ pub struct RoadProfile {
     pub feature: FeatureId,
     /// Its name; may be empty.
     pub name: String,
-    /// Metres along the road from its start, rising.
+    /// Meters along the road from its start, rising.
     pub stations_m: Vec<f64>,
-    /// The ground on the centreline before the road was built, in metres; NaN where there is none. Straight between
+    /// The ground on the centerline before the road was built, in meters; NaN where there is none. Straight between
     /// stations.
     pub ground_m: Vec<f64>,
-    /// The road's level on the centreline in metres.
+    /// The road's level on the centerline in meters.
     pub design_m: Vec<f64>,
     /// What carries the road at each station; where that changes, what carries it from there on.
     pub carried: Vec<Support>,
 }
 
 impl RoadProfile {
-    /// The profile as a table of comma-separated values, one line a station in metres to the millimetre, under a line
+    /// The profile as a table of comma-separated values, one line a station in meters to the millimeter, under a line
     /// of names. Nothing stands where there is no ground.
     pub fn csv(&self) -> String {
         let mut text = String::from("station_m,ground_m,design_m,carried\n");

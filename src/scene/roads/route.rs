@@ -2,11 +2,11 @@
 
 use glam::DVec2;
 
+use crate::earthworks::alignment::spans::{DesignSpan, SpanKind};
 use crate::geom::polyline::Polyline;
-use crate::scene::roads::centreline::Support;
-use crate::terrain::alignment::spans::{DesignSpan, SpanKind};
+use crate::scene::roads::centerline::Support;
 
-/// Stretches shorter than this are not told apart from their neighbours, in metres.
+/// Stretches shorter than this are not told apart from their neighbors, in meters.
 const SHORTEST_M: f64 = 0.05;
 
 /// A road that the ground follows, designed.
@@ -14,7 +14,7 @@ const SHORTEST_M: f64 = 0.05;
 pub struct Route {
     /// Which of the roads.
     pub road: usize,
-    /// Metres along its centreline, from 0, never falling, to its length.
+    /// Meters along its centerline, from 0, never falling, to its length.
     pub stations_m: Vec<f64>,
     /// The ground there; NaN where there is none.
     pub ground_m: Vec<f64>,
@@ -29,7 +29,7 @@ pub struct Route {
 pub struct RouteStretch {
     /// What carries it.
     pub carried: Support,
-    /// The station where it begins, in metres.
+    /// The station where it begins, in meters.
     pub from_m: f64,
     /// The station where it ends.
     pub to_m: f64,

@@ -14,14 +14,14 @@ use crate::geom::rect::Rect;
 use crate::ribbon::junction::{self, Street, StreetSupport};
 use crate::ribbon::stroke::{StrokeOptions, Widths};
 use crate::ribbon::texture::{RibbonSurface, texture_length_m};
-use crate::scene::collected::SceneBuilder;
-use crate::scene::kind::FeatureKind;
+use crate::scene::FeatureKind;
+use crate::scene::builder::SceneBuilder;
 use crate::scene::near;
-use crate::scene::roads::centreline::{self, Centreline, Support};
+use crate::scene::roads::centerline::{self, Centerline, Support};
 use crate::scene::roads::network::rank_of;
 use crate::scene::sources::Sources;
 
-/// How far from the ground a bridge may run that still reaches it, in metres.
+/// How far from the ground a bridge may run that still reaches it, in meters.
 const REACH_M: f64 = 1000.0;
 
 /// Who says that something is a bridge or a tunnel.
@@ -49,13 +49,13 @@ impl SpanOrigin {
 /// A bridge or a tunnel, from one end of its line to the other.
 #[derive(Clone, Debug)]
 pub struct RoadSpan {
-    /// The centreline in world coordinates, within the elevation model.
+    /// The centerline in world coordinates, within the elevation model.
     pub line: Polyline,
     /// What carries it; never the ground.
     pub carried: Support,
     /// Which of the roads it is; `None` where a table states it.
     pub road: Option<usize>,
-    /// Its elevation in metres at each vertex, where that is settled.
+    /// Its elevation in meters at each vertex, where that is settled.
     pub levels_m: Option<Vec<f64>>,
     /// The vertices beyond both ends, of the roads that go on there.
     pub beyond: [Option<DVec2>; 2],
@@ -65,7 +65,7 @@ pub struct RoadSpan {
     pub surface: RibbonSurface,
     /// What passes over what.
     pub level: i32,
-    /// The widest span between piers that is stated, in metres, at least 1.
+    /// The widest span between piers that is stated, in meters, at least 1.
     pub pier_spacing_m: Option<f64>,
     /// The road's name, or the one given; may be empty.
     pub name: String,
@@ -83,7 +83,7 @@ impl RoadSpan {
     }
 }
 
-/// Where a vertex is, so that vertices that mean one point have one place: to the centimetre, which is what a change of
+/// Where a vertex is, so that vertices that mean one point have one place: to the centimeter, which is what a change of
 /// system may round.
 pub type PointKey = (i64, i64);
 
@@ -100,7 +100,7 @@ pub fn place(at: DVec2) -> PointKey {
 pub fn collect(
     document: &Document,
     sources: &Sources<'_>,
-    roads: &[Centreline],
+    roads: &[Centerline],
     extent: &Rect,
     collected: &mut SceneBuilder,
 ) -> Result<Vec<RoadSpan>, Diagnostic> {
@@ -113,7 +113,7 @@ pub fn collect(
 
 fn of_road(
     document: &Document,
-    (index, road): (usize, &Centreline),
+    (index, road): (usize, &Centerline),
     extent: &Rect,
     collected: &SceneBuilder,
 ) -> Option<RoadSpan> {
@@ -122,7 +122,7 @@ fn of_road(
     }
     let (line, levels_m) = within(&road.line, road.levels_m.as_deref(), extent)?;
     let table = document.roads.get(road.table)?;
-    let is_tagged = centreline::carried(table, &road.attributes) == road.carried;
+    let is_tagged = centerline::carried(table, &road.attributes) == road.carried;
     // Ids of features count from 2.
     let feature = collected.features.get((road.feature.0 as usize).checked_sub(2)?);
     Some(RoadSpan {
@@ -220,10 +220,10 @@ fn within(line: &Polyline, levels_m: Option<&[f64]>, extent: &Rect) -> Option<(P
 }
 
 /// Finds what goes on at the spans' ends, so that their edges are those of the ribbons there.
-fn go_on(spans: &mut [RoadSpan], roads: &[Centreline]) {
+fn go_on(spans: &mut [RoadSpan], roads: &[Centerline]) {
     let ends: BTreeSet<PointKey> =
         spans.iter().flat_map(|span| [place(span.end(0)), place(span.end(1))]).collect();
-    let meets = |road: &&Centreline| {
+    let meets = |road: &&Centerline| {
         road.carried == Support::Ground && road.line.points().iter().any(|&at| ends.contains(&place(at)))
     };
     let of_spans = spans.iter().map(|span| Street {

@@ -1,26 +1,26 @@
 //! Roads cut where the ground gives way to a bridge or a tunnel.
 
 use crate::geom::polyline::Polyline;
-use crate::scene::roads::centreline::{Centreline, Support};
+use crate::scene::roads::centerline::{Centerline, Support};
 use crate::scene::roads::route::{Route, RouteStretch, points_between};
 
-/// How far a deck may be off the design level between its vertices, in metres: less than anyone sees, and than a
+/// How far a deck may be off the design level between its vertices, in meters: less than anyone sees, and than a
 /// carriageway's own evenness.
 const DECK_SLACK_M: f64 = 0.02;
 
-/// Vertices nearer to each other than this are one, in metres.
+/// Vertices nearer to each other than this are one, in meters.
 const SAME_M: f64 = 0.001;
 
 /// The stretches of a road in order, each with its levels.
 ///
 /// On the ground a stretch has the road's own vertices. On bridges and in tunnels it has more, so that it is straight
-/// between them to two centimetres. A stretch that becomes a bridge or a tunnel passes over or under what the road was
+/// between them to two centimeters. A stretch that becomes a bridge or a tunnel passes over or under what the road was
 /// level with.
-pub fn cut(road: &Centreline, route: &Route) -> Vec<Centreline> {
+pub fn cut(road: &Centerline, route: &Route) -> Vec<Centerline> {
     route.stretches().iter().filter_map(|stretch| part(road, route, stretch)).collect()
 }
 
-fn part(road: &Centreline, route: &Route, stretch: &RouteStretch) -> Option<Centreline> {
+fn part(road: &Centerline, route: &Route, stretch: &RouteStretch) -> Option<Centerline> {
     let is_whole = stretch.from_m <= 0.0 && stretch.to_m >= road.line.length();
     let line = match stretch.carried {
         Support::Ground if is_whole => road.line.clone(),
@@ -36,7 +36,7 @@ fn part(road: &Centreline, route: &Route, stretch: &RouteStretch) -> Option<Cent
             _ => 0,
         };
     let widths_m = road.widths_along(&line, stretch.from_m);
-    Some(Centreline { line, levels_m, widths_m, carried: stretch.carried, level, ..road.clone() })
+    Some(Centerline { line, levels_m, widths_m, carried: stretch.carried, level, ..road.clone() })
 }
 
 /// The line along a stretch, with vertices wherever its level bends.
@@ -45,7 +45,7 @@ fn deck(line: &Polyline, route: &Route, stretch: &RouteStretch) -> Option<Polyli
     let bends = bends(&stations, &levels).into_iter().map(|at| stretch.from_m + at);
     let inside = |at: &f64| *at > stretch.from_m && *at < stretch.to_m;
     let mut all: Vec<f64> = bends.chain(line.stations().iter().copied()).filter(inside).collect();
-    // The ends as they were stated: the neighbours end there to the last bit.
+    // The ends as they were stated: the neighbors end there to the last bit.
     all.extend([stretch.from_m, stretch.to_m]);
     all.sort_by(f64::total_cmp);
     Polyline::new(all.into_iter().map(|station| line.at(station)), SAME_M)
@@ -76,8 +76,8 @@ fn bends(stations: &[f64], levels: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::roads::centreline::tests::road;
-    use crate::terrain::alignment::spans::{DesignSpan, SpanKind};
+    use crate::earthworks::alignment::spans::{DesignSpan, SpanKind};
+    use crate::scene::roads::centerline::tests::road;
 
     #[test]
     fn a_road_is_cut_into_stretches_that_end_on_each_other() {
@@ -101,7 +101,7 @@ mod tests {
             for pair in parts.windows(2) {
                 let (end, start) = (pair[0].line.points().last(), pair[1].line.points().first());
                 assert_eq!(end, start);
-                let levels = |part: &Centreline| part.levels_m.clone().expect("levels");
+                let levels = |part: &Centerline| part.levels_m.clone().expect("levels");
                 let step = levels(&pair[0])[levels(&pair[0]).len() - 1] - levels(&pair[1])[0];
                 assert!(step.abs() < 1e-9, "{step}");
             }

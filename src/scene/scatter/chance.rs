@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn neighbouring_squares_have_nothing_in_common() {
+    fn neighboring_squares_have_nothing_in_common() {
         let mut sums = [0.0; 3];
         let count = 10_000_u32;
         for index in 0..count {

@@ -6,7 +6,7 @@
 //! nearer than the spacing and on nothing else: the same tree stands in the same place when the area around it, the
 //! elevation model or the order of the tables changes.
 //!
-//! Of λ candidates a square metre at random, `(1 − exp(−λπs²)) / πs²` stand at a spacing of s; λ is chosen so that this
+//! Of λ candidates a square meter at random, `(1 − exp(−λπs²)) / πs²` stand at a spacing of s; λ is chosen so that this
 //! is the density asked for. The formula has an upper bound, 1 / πs²: where the spacing leaves no room for the density,
 //! fewer stand.
 
@@ -43,7 +43,7 @@ pub struct PatternPoint {
 }
 
 impl PointPattern {
-    /// A pattern of `density` places to the square metre, no two nearer than `spacing_m`; as many as that leaves room
+    /// A pattern of `density` places to the square meter, no two nearer than `spacing_m`; as many as that leaves room
     /// for.
     pub fn new(seed: u64, density: f64, spacing_m: f64) -> Self {
         let disc = PI * spacing_m * spacing_m;
@@ -53,7 +53,7 @@ impl PointPattern {
         Self { seed, spacing_m, side_m: 1.0 / candidates.sqrt(), density, is_crowded: density < asked }
     }
 
-    /// How many places there are to the square metre.
+    /// How many places there are to the square meter.
     pub fn density(&self) -> f64 {
         self.density
     }
@@ -63,7 +63,7 @@ impl PointPattern {
         self.is_crowded
     }
 
-    /// The side of a square in metres; never less than the spacing.
+    /// The side of a square in meters; never less than the spacing.
     pub fn side_m(&self) -> f64 {
         self.side_m
     }
@@ -122,7 +122,7 @@ mod tests {
             assert!((there / pattern.density() - 1.0).abs() < 0.03, "{there} of {density} at {spacing_m}");
             assert!(spacing_m == 9.0 || pattern.density() == density);
             assert!(pattern.side_m() >= spacing_m);
-            // Neighbours come in the order of their squares, so a window of two rows holds them all.
+            // Neighbors come in the order of their squares, so a window of two rows holds them all.
             for (index, a) in found.iter().enumerate() {
                 let next = &found[index + 1..(index + 3 * side as usize).min(found.len())];
                 assert!(next.iter().all(|b| a.distance(*b) >= spacing_m));

@@ -1,6 +1,6 @@
 //! Ground that is taken: roads, water, buildings and what stands already, as triangles in plan.
 //!
-//! Triangles of a metre and of a lake's length lie in one scene. Each is kept in squares about its own size, a grid for
+//! Triangles of a meter and of a lake's length lie in one scene. Each is kept in squares about its own size, a grid for
 //! each power of two, so that it lies in few of them and a place looks at few triangles, however they are mixed.
 
 use std::collections::{BTreeSet, HashMap};
@@ -10,12 +10,12 @@ use glam::DVec2;
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
 
-/// A grid's squares have sides of two to this power, in metres.
+/// A grid's squares have sides of two to this power, in meters.
 type Power = i32;
 
 /// The power of the widest grid; a triangle that is wider still lies in several of its squares.
 const HIGHEST: Power = 40;
-/// Ground lies no farther from the origin than this, in metres, and what lies beyond takes none: some twenty squares of
+/// Ground lies no farther from the origin than this, in meters, and what lies beyond takes none: some twenty squares of
 /// the widest grid.
 const FARTHEST_M: f64 = 1e13;
 

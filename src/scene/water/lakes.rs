@@ -1,4 +1,4 @@
-//! Lakes: level water, the ground under it levelled and the shore blended.
+//! Lakes: level water, the ground under it leveled and the shore blended.
 
 use glam::DVec2;
 
@@ -7,23 +7,23 @@ use crate::description::document::Document;
 use crate::description::features::LakeTable;
 use crate::description::words::{LevelRule, Word};
 use crate::draw::list::FeatureId;
+use crate::earthworks::shore;
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::ribbon::area;
 use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
+use crate::scene::FeatureKind;
 use crate::scene::attributes::Attributes;
-use crate::scene::collected::SceneBuilder;
-use crate::scene::kind::FeatureKind;
+use crate::scene::builder::SceneBuilder;
 use crate::scene::near::Clipped;
 use crate::scene::report::{ReportCell, ReportColumn};
 use crate::scene::sources::{Sourced, Sources};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
-use crate::terrain::shore;
 use crate::vector::feature::Polygon;
 
-/// Metres in one repeat of the water's texture: fine enough not to be seen as a pattern.
+/// Meters in one repeat of the water's texture: fine enough not to be seen as a pattern.
 const LAKE_TEXTURE_M: f64 = 400.0;
 
 /// What the report says of each lake.
@@ -138,13 +138,13 @@ fn level_of(
     let name = LevelRule::ALL.iter().find(|(_, word)| *word == rule).map_or("", |(name, _)| *name);
     shore.level_m(rule).map(|level_m| LakeLevel { level_m, rule: name }).ok_or_else(|| {
         let message = "no ground lies along this lake's shore to take its level from";
-        document.error_at(lake.source.span(), message).with_help("state it: level = <metres>")
+        document.error_at(lake.source.span(), message).with_help("state it: level = <meters>")
     })
 }
 
 /// The ground along a lake's outer shore.
 struct Shore {
-    /// Heights in metres, rising, each with the metres of shore that it stands for.
+    /// Heights in meters, rising, each with the meters of shore that it stands for.
     heights: Vec<(f64, f64)>,
 }
 
@@ -205,7 +205,7 @@ impl Shore {
     }
 }
 
-/// The water's area in square metres, islands taken out, on the model or off.
+/// The water's area in square meters, islands taken out, on the model or off.
 fn area_m2(shape: &Polygon) -> f64 {
     let area = |ring: &[DVec2]| polygon::doubled_area(ring).abs() / 2.0;
     area(&shape.exterior) - shape.holes.iter().map(|hole| area(hole)).sum::<f64>()

@@ -7,37 +7,38 @@ use crate::description::document::Document;
 use crate::description::features::RiverTable;
 use crate::description::words::Water;
 use crate::draw::list::FeatureId;
+use crate::earthworks::channel::flow;
+use crate::earthworks::channel::flow::Flow;
 use crate::geom::polyline::Polyline;
 use crate::ribbon::junction::{Street, StreetSupport};
 use crate::ribbon::stroke::{StrokeOptions, Widths};
 use crate::ribbon::texture::{RibbonSurface, texture_length_m};
+use crate::scene::FeatureKind;
 use crate::scene::attributes::Attributes;
-use crate::scene::collected::SceneBuilder;
-use crate::scene::kind::FeatureKind;
+use crate::scene::builder::SceneBuilder;
 use crate::scene::near;
 use crate::scene::sources::Sources;
-use crate::terrain::channel::flow::{self, Flow};
 use crate::terrain::lattice::Lattice;
 
-/// How far from the ground a centreline may run whose water still reaches it, in metres.
+/// How far from the ground a centerline may run whose water still reaches it, in meters.
 const REACH_M: f64 = 1000.0;
 
-/// How deep a river may be cut where its table does not say, in metres: the relative error that the makers of global
+/// How deep a river may be cut where its table does not say, in meters: the relative error that the makers of global
 /// elevation models promise (Farr et al. 2007). Ground that rises by less may be level; ground that rises by more does rise,
 /// and a river that is drawn over it is not where the model has its valley.
 const MAX_CUT_M: f64 = 10.0;
 
 /// A river, downstream.
 pub struct Stream {
-    /// The centreline in world coordinates.
+    /// The centerline in world coordinates.
     pub line: Polyline,
-    /// The water's width at each vertex in metres.
+    /// The water's width at each vertex in meters.
     pub widths_m: Vec<f64>,
-    /// The width of the bank on either side in metres.
+    /// The width of the bank on either side in meters.
     pub bank_m: f64,
     /// Whether the ground is cut to it.
     pub water: Water,
-    /// How deep the ground may be cut, in metres.
+    /// How deep the ground may be cut, in meters.
     pub max_cut_m: f64,
     /// The feature it is.
     pub feature: FeatureId,
@@ -46,7 +47,7 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// The widest that its water is, in metres.
+    /// The widest that its water is, in meters.
     pub fn widest_m(&self) -> f64 {
         self.widths_m.iter().copied().fold(0.0, f64::max)
     }

@@ -14,6 +14,8 @@ use glam::DVec2;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::words::Water;
+use crate::earthworks::channel;
+use crate::earthworks::channel::{Channel, Climb, Cut, Cuts};
 use crate::geom::polyline::Polyline;
 use crate::geom::rect::Rect;
 use crate::mesh::sink::MeshSink;
@@ -21,12 +23,11 @@ use crate::ribbon::junction::{self, Street};
 use crate::ribbon::plan::{PlanMesh, PlanVertex};
 use crate::ribbon::stroke::{Continuations, Stations, StrokeOptions, StrokePath, Widths, stroke_course};
 use crate::ribbon::texture::RibbonSurface;
-use crate::scene::collected::SceneBuilder;
+use crate::scene::builder::SceneBuilder;
 use crate::scene::near::Clipped;
 use crate::scene::report::{ReportCell, ReportColumn};
 use crate::scene::sources::Sources;
 use crate::scene::water::network::{self, Stream};
-use crate::terrain::channel::{self, Channel, Climb, Cut, Cuts};
 use crate::terrain::lattice::Lattice;
 
 /// What the report says of each river.
@@ -213,7 +214,7 @@ fn confluences(
     }
 }
 
-/// A vertex's place in centimetres, as lines share it.
+/// A vertex's place in centimeters, as lines share it.
 fn place(at: DVec2) -> (i64, i64) {
     let place = (at * 100.0).round();
     (place.x as i64, place.y as i64)

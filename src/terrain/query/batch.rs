@@ -14,7 +14,7 @@
 //! rule decides every special case, and the passes need only be right where all goes well.
 //!
 //! **Layout.** Row by row, the four corners of a cell lie in two cache lines and two pages. Positions near each other share
-//! them; scattered over a large ground, each costs two misses. Scattered chunks therefore read [`Tiles`], once it is
+//! them; scattered over a large ground, each costs two misses. Scattered chunks therefore read [`HeightTiles`], once it is
 //! made, where a cell lies in one line.
 //!
 //! Only the instructions that every x86-64 has are used (SSE2): choosing wider ones while running needs `unsafe` calls,
@@ -26,7 +26,7 @@ use glam::{DMat2, DVec2};
 use rayon::prelude::*;
 
 use crate::dem::raster::{Raster, Samples};
-use crate::dem::sample::ON_CENTRE;
+use crate::dem::sample::ON_CENTER;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::source::raster_height;
 use crate::terrain::query::tiles::{HeightTiles, TileSlot};
@@ -138,7 +138,7 @@ pub fn bilinear_ground(
     scattered
 }
 
-/// The bilinear heights of a raster at positions in its own coordinates, in metres: [`raster_height`] of each, NaN where
+/// The bilinear heights of a raster at positions in its own coordinates, in meters: [`raster_height`] of each, NaN where
 /// it answers none, and the statuses beside them.
 ///
 /// # Panics
@@ -168,7 +168,7 @@ fn bilinear_samples<S: Copy + Default + Into<f64>>(
             (Ok(at), Ok(heights_m)) if has_cells => {
                 place_between_samples(raster, grid_from_map, at, &mut places);
                 gather(samples, raster.width, &places, &mut corners);
-                mix_by_weights(&places, &corners, raster.metres_per_z, heights_m);
+                mix_by_weights(&places, &corners, raster.meters_per_z, heights_m);
             }
             _ => heights_m.fill(f64::NAN),
         }
@@ -225,7 +225,7 @@ impl LatticeAxis {
 }
 
 /// The samples west and north of each position and the part of the way to the next, by the steps of
-/// [`crate::dem::sample`]; NaN for positions on or beyond the outer samples' centres or on lines of centres.
+/// [`crate::dem::sample`]; NaN for positions on or beyond the outer samples' centers or on lines of centers.
 fn place_between_samples(
     raster: &Raster,
     grid_from_map: DMat2,
@@ -239,7 +239,7 @@ fn place_between_samples(
         let floor = rounded_down(from_first);
         let first = if floor < last - 1.0 { floor } else { last - 1.0 };
         let part = from_first - first;
-        (first, if part > ON_CENTRE && part < 1.0 - ON_CENTRE { part } else { f64::NAN })
+        (first, if part > ON_CENTER && part < 1.0 - ON_CENTER { part } else { f64::NAN })
     };
     for (index, &at) in at.iter().enumerate() {
         let grid = grid_from_map * (at - translation);
@@ -312,7 +312,7 @@ fn mix(places: &CellPositions, corners: &CellCorners<f32>, heights_m: &mut [f64;
 fn mix_by_weights<S: Copy + Into<f64>>(
     places: &CellPositions,
     corners: &CellCorners<S>,
-    metres_per_z: f64,
+    meters_per_z: f64,
     heights_m: &mut [f64; CHUNK],
 ) {
     for (index, height_m) in heights_m.iter_mut().enumerate() {
@@ -322,7 +322,7 @@ fn mix_by_weights<S: Copy + Into<f64>>(
         let [[a, b], [c, d]] = [corners.first[index].map(S::into), corners.next[index].map(S::into)];
         let sum = 0.0 + weights[0] * a + weights[1] * b + weights[2] * c + weights[3] * d;
         let total = 0.0 + weights[0] + weights[1] + weights[2] + weights[3];
-        *height_m = sum / total * metres_per_z;
+        *height_m = sum / total * meters_per_z;
     }
 }
 

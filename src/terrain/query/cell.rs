@@ -8,7 +8,7 @@ use crate::terrain::query::{Answer, Diagonal, Interpolation};
 
 /// The height at `part` of a cell, 0..=1 east and north from its south-west corner, or [`Answer::NoData`].
 ///
-/// `cell` is the cell's size in metres, `diagonal` its own.
+/// `cell` is the cell's size in meters, `diagonal` its own.
 pub fn interpolate(
     interpolation: Interpolation,
     corners: [f64; 4],

@@ -3,17 +3,17 @@
 //! Both epochs have the same posts and so the same finest triangles; over each the difference is one plane, whose parts
 //! above and below zero are counted apart. A post that rose beside one that sank therefore counts for both.
 
-use crate::terrain::earthwork::Volumes;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::pieces::{GridRegion, TrianglePiece};
-use crate::terrain::query::zone::{Known, add_rises, in_cubic_metres};
+use crate::terrain::query::zone::{Known, add_rises, in_cubic_meters};
+use crate::terrain::volumes::Volumes;
 
 /// The difference between two epochs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moved {
     /// The earth moved.
     pub volumes: Volumes,
-    /// Square metres of plan that could not be compared, because one of the epochs has no data there.
+    /// Square meters of plan that could not be compared, because one of the epochs has no data there.
     pub no_data_m2: f64,
 }
 
@@ -47,7 +47,7 @@ pub fn moved(before: &Lattice, after: &Lattice, region: &GridRegion) -> Result<M
     });
     let cell = before.cell();
     let no_data_cells: f64 = bands.iter().map(|band| band.1).sum();
-    let volumes = in_cubic_metres(before, bands.into_iter().map(|band| band.0).collect());
+    let volumes = in_cubic_meters(before, bands.into_iter().map(|band| band.0).collect());
     Ok(Moved { volumes, no_data_m2: no_data_cells.max(0.0) * cell.x * cell.y })
 }
 
@@ -60,8 +60,9 @@ fn add((volumes, no_data_cells): &mut (Volumes, f64), piece: TrianglePiece<'_>, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::brush::{PostRect, set_heights};
+    use crate::earthworks::brush::set_heights;
     use crate::terrain::lattice::Post;
+    use crate::terrain::post_rect::PostRect;
     use glam::DVec2;
 
     fn ground() -> Lattice {

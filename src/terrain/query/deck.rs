@@ -14,7 +14,7 @@
 use glam::DVec2;
 
 use crate::geom::rect::Rect;
-use crate::terrain::facets::{SurfaceTriangle, facet_contains, plane_z};
+use crate::terrain::triangle_surface::{SurfaceTriangle, facet_contains, plane_z};
 
 /// Buckets per triangle: about one triangle a bucket where they lie side by side.
 const BUCKETS_PER_TRIANGLE: f64 = 1.0;
@@ -26,7 +26,7 @@ const MOST_NAMED: usize = 16;
 /// The most buckets along a side, whatever the number of triangles.
 const MOST_BUCKETS: f64 = 1024.0;
 
-/// Triangles over the ground; Z is the height in metres, without exaggeration.
+/// Triangles over the ground; Z is the height in meters, without exaggeration.
 #[derive(Clone, Debug)]
 pub struct Deck {
     facets: Vec<SurfaceTriangle>,
@@ -72,7 +72,7 @@ impl Deck {
         Ok(deck)
     }
 
-    /// The height of the highest triangle over a world position, in metres; `None` where there is none.
+    /// The height of the highest triangle over a world position, in meters; `None` where there is none.
     pub fn height_m(&self, at: DVec2) -> Option<f64> {
         if !self.bounds.contains(at) {
             return None;

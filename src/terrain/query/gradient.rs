@@ -20,7 +20,7 @@ pub enum GradientSurface {
     Bilinear,
 }
 
-/// Metres of rise per metre, eastward and northward.
+/// Meters of rise per meter, eastward and northward.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gradient(pub DVec2);
 
@@ -35,7 +35,7 @@ impl Gradient {
         libm::atan(self.0.length()).to_degrees()
     }
 
-    /// Metres of rise per hundred metres along the steepest way, from 0 on: 100 at 45°.
+    /// Meters of rise per hundred meters along the steepest way, from 0 on: 100 at 45°.
     pub fn slope_percent(self) -> f64 {
         self.0.length() * 100.0
     }

@@ -1,6 +1,6 @@
 //! The height contract: what a question about heights means, for the library, the command line and the service alike.
 //!
-//! A question names a [`Surface`], an [`Interpolation`] and a map position; the answer is a height **in metres**,
+//! A question names a [`Surface`], an [`Interpolation`] and a map position; the answer is a height **in meters**,
 //! without vertical exaggeration, or the reason why there is none ([`Answer`], or a number and a [`Status`] side by
 //! side). A hole is never answered by a bare number.
 //!
@@ -8,8 +8,8 @@
 //!
 //! | surface | what it is | its grid |
 //! |---|---|---|
-//! | source | the raster as read; vertical units other than metres are converted in the answer | the raster's own, rotated ones too |
-//! | ground | the lattice in metres after earthworks: what is measured, built on and exported | posts, north up |
+//! | source | the raster as read; vertical units other than meters are converted in the answer | the raster's own, rotated ones too |
+//! | ground | the lattice in meters after earthworks: what is measured, built on and exported | posts, north up |
 //! | displayed | the triangles drawn now, whichever the camera and the level of detail | the drawn triangles |
 //! | scene | the higher of the ground and the decks over it ([`deck::Deck`]): what one stands on | the ground's, and the decks' triangles |
 //!
@@ -28,9 +28,9 @@
 //! | interpolation | formula | continuity | no-data corners |
 //! |---|---|---|---|
 //! | planar | rising diagonal, `x ≥ y`: `(1−x)·sw + (x−y)·se + y·ne`, and likewise on the other three triangles | continuous, bends at edges and diagonals | no answer where the triangle has one that counts |
-//! | bilinear | `s + (n − s)·y` with `s = sw + (se − sw)·x`, `n = nw + (ne − nw)·x`; the source's as GDAL, [`crate::dem::sample`] | continuous, bends at cell edges | left out, weights renormalised |
+//! | bilinear | `s + (n − s)·y` with `s = sw + (se − sw)·x`, `n = nw + (ne − nw)·x`; the source's as GDAL, [`crate::dem::sample`] | continuous, bends at cell edges | left out, weights renormalized |
 //! | nearest | the post nearest to the point: a constant cell round each post | steps halfway between posts | no answer |
-//! | distance-weighted | `Σ hᵢ/dᵢ ÷ Σ 1/dᵢ` over the four corners, `d` in metres; at a corner, its height | continuous within a cell, steps across its edges | left out, weights renormalised |
+//! | distance-weighted | `Σ hᵢ/dᵢ ÷ Σ 1/dᵢ` over the four corners, `d` in meters; at a corner, its height | continuous within a cell, steps across its edges | left out, weights renormalized |
 //!
 //! All four answer a post's own height at the post, and none overshoots: an answer lies between the lowest and the
 //! highest corner that counts, but for rounding.
@@ -93,7 +93,7 @@ pub enum Interpolation {
 /// A height, or why there is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Answer {
-    /// Metres, without vertical exaggeration.
+    /// Meters, without vertical exaggeration.
     Height(f64),
     /// The position lies on the model, where it holds no data.
     NoData,
@@ -135,7 +135,7 @@ impl Status {
 }
 
 impl Answer {
-    /// The height in metres, where there is one.
+    /// The height in meters, where there is one.
     pub fn height_m(self) -> Option<f64> {
         match self {
             Self::Height(height) => Some(height),
@@ -157,7 +157,7 @@ impl Answer {
         }
     }
 
-    /// The height in metres, NaN where there is none, and the status beside it.
+    /// The height in meters, NaN where there is none, and the status beside it.
     pub fn parts(self) -> (f64, Status) {
         (self.height_m().unwrap_or(f64::NAN), self.kind())
     }

@@ -83,7 +83,7 @@ pub struct TrianglePiece<'a> {
     /// Which of its triangles.
     pub half: Half,
     /// A ring within the triangle, from the cell's south-west corner in cells; its signed fan is what counts, see
-    /// [`Piece::fan`].
+    /// [`TrianglePiece::fan`].
     pub ring: &'a [DVec2],
     /// Whether it is the whole triangle.
     pub extent: PieceExtent,

@@ -1,6 +1,6 @@
 //! The service that answers: whole epochs of the ground, one at a time.
 //!
-//! [`HeightService`] is a handle that every clone shares; what it answers from is an [`Epoch`], which never changes.
+//! [`HeightService`] is a handle that every clone shares; what it answers from is an [`Snapshot`], which never changes.
 //! An edit makes the next epoch beside the one in use and puts it in place at once, so that a reader sees all of an
 //! edit or nothing of it. Whoever asks several things that must agree takes [`HeightService::now`] once.
 
@@ -11,13 +11,13 @@ use rayon::prelude::*;
 
 use crate::dem::raster::Raster;
 use crate::geom::crs::Crs;
-use crate::terrain::facets::TriangleSurface;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::batch::{self, TASK};
 use crate::terrain::query::deck::Deck;
 use crate::terrain::query::source::{source_height, source_task};
 use crate::terrain::query::tiles::LazyTiles;
 use crate::terrain::query::{Answer, Interpolation, Status, Surface, ground_height};
+use crate::terrain::triangle_surface::TriangleSurface;
 
 /// Positions between two looks at whether tiles should be made, so that a single long batch gets them too.
 const STRETCH: usize = 1 << 20;
@@ -96,17 +96,17 @@ impl HeightService {
         Self::at(Snapshot { displayed, ..Snapshot::clone(&self.snapshot()) })
     }
 
-    /// [`Epoch::height`] of the epoch in use.
+    /// [`Snapshot::height`] of the epoch in use.
     pub fn height(&self, surface: Surface, interpolation: Interpolation, at: DVec2) -> Answer {
         self.snapshot().height(surface, interpolation, at)
     }
 
-    /// [`Epoch::heights`] of the epoch in use: one epoch for the whole batch.
+    /// [`Snapshot::heights`] of the epoch in use: one epoch for the whole batch.
     pub fn heights(&self, surface: Surface, interpolation: Interpolation, at: &[DVec2], out: &mut [Answer]) {
         self.snapshot().heights(surface, interpolation, at, out);
     }
 
-    /// [`Epoch::heights_apart`] of the epoch in use: one epoch for the whole batch.
+    /// [`Snapshot::heights_apart`] of the epoch in use: one epoch for the whole batch.
     pub fn heights_apart(
         &self,
         surface: Surface,
@@ -156,7 +156,7 @@ impl Snapshot {
         }
     }
 
-    /// The heights at many positions, in order, spread over all threads: to the last bit [`Epoch::height`] of each.
+    /// The heights at many positions, in order, spread over all threads: to the last bit [`Snapshot::height`] of each.
     ///
     /// # Panics
     /// Where `out` is not as long as `at`.
@@ -168,7 +168,7 @@ impl Snapshot {
         }
     }
 
-    /// [`Epoch::heights`] as heights in metres, NaN where there is none, and statuses in slices of their own: the fastest
+    /// [`Snapshot::heights`] as heights in meters, NaN where there is none, and statuses in slices of their own: the fastest
     /// way to ask, since less is written.
     ///
     /// # Panics
@@ -239,7 +239,7 @@ impl Snapshot {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::facets::SurfaceTriangle;
+    use crate::terrain::triangle_surface::SurfaceTriangle;
     use glam::Vec3;
 
     fn service(height: impl Fn(u32, u32) -> f32) -> HeightService {

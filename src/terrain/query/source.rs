@@ -1,8 +1,8 @@
 //! Heights of the raster as read, in its own grid.
 //!
 //! Nearest and bilinear are GDAL's ([`crate::dem::sample`]): they reach half a sample beyond the outer samples. Planar
-//! and distance-weighted stand on the grid of sample centres and end at the outer ones. Where the file's heights are
-//! not metres, they are made metres here: an answer is always in metres.
+//! and distance-weighted stand on the grid of sample centers and end at the outer ones. Where the file's heights are
+//! not meters, they are made meters here: an answer is always in meters.
 
 use glam::DVec2;
 
@@ -16,7 +16,7 @@ use crate::terrain::query::{Answer, Diagonal, Interpolation, Status};
 /// Positions that are brought to the raster's system at a time, on the stack.
 const BROUGHT: usize = 512;
 
-/// The height of a raster at a position in its own coordinates, in metres.
+/// The height of a raster at a position in its own coordinates, in meters.
 pub fn raster_height(raster: &Raster, interpolation: Interpolation, at: DVec2) -> Answer {
     let answer = match interpolation {
         Interpolation::Nearest => answer(sample::nearest(raster, at)),
@@ -26,12 +26,12 @@ pub fn raster_height(raster: &Raster, interpolation: Interpolation, at: DVec2) -
         }
     };
     match answer {
-        Answer::Height(height) => Answer::Height(height * raster.metres_per_z),
+        Answer::Height(height) => Answer::Height(height * raster.meters_per_z),
         none => none,
     }
 }
 
-/// The height of a raster as read at a position in coordinates of `from`, in metres.
+/// The height of a raster as read at a position in coordinates of `from`, in meters.
 ///
 /// A raster that names no system lies in `from`. A position that cannot be brought to the raster's system lies
 /// [`Answer::Outside`].
@@ -53,7 +53,7 @@ pub fn source_heights(
     batch::answers(at, out, |at, parts| source_task(source, from, interpolation, at, parts));
 }
 
-/// [`source_height`] at many positions, on this thread: heights in metres, NaN where there is none, and statuses.
+/// [`source_height`] at many positions, on this thread: heights in meters, NaN where there is none, and statuses.
 pub(in crate::terrain::query) fn source_task(
     source: &Raster,
     from: &Crs,
@@ -133,7 +133,7 @@ fn answer(sampled: Sampled) -> Answer {
     }
 }
 
-/// Planar and distance-weighted heights of a raster, on the grid of its sample centres, in its vertical unit.
+/// Planar and distance-weighted heights of a raster, on the grid of its sample centers, in its vertical unit.
 fn between_samples(raster: &Raster, interpolation: Interpolation, at: DVec2) -> Answer {
     let grid = raster.grid_from_map(at) - 0.5;
     let last = DVec2::new(f64::from(raster.width) - 1.0, f64::from(raster.height) - 1.0);
@@ -172,10 +172,10 @@ mod tests {
     }
 
     #[test]
-    fn heights_in_feet_are_answered_in_metres() {
+    fn heights_in_feet_are_answered_in_meters() {
         let text = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n100 100\n100 100\n";
         let mut source = read_grid(text, None);
-        source.metres_per_z = 0.3048;
+        source.meters_per_z = 0.3048;
         for interpolation in [
             Interpolation::Planar,
             Interpolation::Bilinear,

@@ -6,24 +6,24 @@
 
 use glam::DVec2;
 
-use crate::terrain::earthwork::Volumes;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::pieces::{GridRegion, Half, PieceExtent, TrianglePiece};
+use crate::terrain::volumes::Volumes;
 
 /// What lies within a polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Zone {
-    /// Square metres of plan with data.
+    /// Square meters of plan with data.
     pub area_m2: f64,
-    /// Square metres of plan on the model without data.
+    /// Square meters of plan on the model without data.
     pub no_data_m2: f64,
-    /// Square metres of plan beyond the model.
+    /// Square meters of plan beyond the model.
     pub outside_m2: f64,
     /// The heights over the area with data; `None` where there is none.
     pub heights: Option<ZoneHeights>,
 }
 
-/// Heights over an area, metres, every square metre of plan counting the same.
+/// Heights over an area, meters, every square meter of plan counting the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ZoneHeights {
     /// The lowest, inside or on the border.
@@ -96,11 +96,11 @@ pub fn volumes_to_level(lattice: &Lattice, region: &GridRegion, level_m: f64) ->
         let corners = lattice.corner_heights(piece.cell).map(|height| level_m - f64::from(height));
         add_rises(volumes, piece, corners);
     });
-    in_cubic_metres(lattice, bands)
+    in_cubic_meters(lattice, bands)
 }
 
 /// The sum of volumes counted in cells.
-pub(in crate::terrain::query) fn in_cubic_metres(lattice: &Lattice, bands: Vec<Volumes>) -> Volumes {
+pub(in crate::terrain::query) fn in_cubic_meters(lattice: &Lattice, bands: Vec<Volumes>) -> Volumes {
     let cell = lattice.cell();
     let cell_m2 = cell.x * cell.y;
     bands.into_iter().fold(Volumes::default(), |sum, band| Volumes {

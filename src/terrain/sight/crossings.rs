@@ -36,7 +36,7 @@ pub struct LineCrossing {
     pub part: f64,
     /// Grid position: columns and rows of posts from the lattice's first.
     pub grid: DVec2,
-    /// The height of the ground there in metres, on the edge that is crossed; NaN where that edge has no data.
+    /// The height of the ground there in meters, on the edge that is crossed; NaN where that edge has no data.
     pub height_m: f64,
 }
 

@@ -14,12 +14,13 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use crate::terrain::lattice::Lattice;
+use crate::terrain::post_rect::PostRect;
 use crate::terrain::query::Answer;
 use crate::terrain::sight::Curvature;
 use crate::terrain::sight::crossings::{LineCrossing, LinePart, POSITION_ERROR};
 use crate::terrain::sight::descent::{Probe, descend};
 use crate::terrain::sight::line::{GroundedSight, Sight, SightEnd};
-use crate::terrain::sight::pyramid::{Pyramid, PyramidRect};
+use crate::terrain::sight::pyramid::Pyramid;
 use crate::terrain::sight::rise::{Raised, Rise, Seeker};
 
 /// Lines of sight per task of a batch: some hundred microseconds' work.
@@ -30,7 +31,7 @@ const CHUNK: usize = 512;
 pub struct SightGround {
     lattice: Arc<Lattice>,
     pyramid: Arc<Pyramid>,
-    /// How far a crossing's height may lie above the highest post of its block, in metres.
+    /// How far a crossing's height may lie above the highest post of its block, in meters.
     slack_m: f64,
 }
 
@@ -57,7 +58,7 @@ impl SightGround {
     ///
     /// # Panics
     /// Where `lattice` is of another size, or `edited` leaves it.
-    pub fn edited(&self, lattice: Arc<Lattice>, edited: PyramidRect) -> Self {
+    pub fn edited(&self, lattice: Arc<Lattice>, edited: PostRect) -> Self {
         let mut pyramid = Pyramid::clone(&self.pyramid);
         pyramid.mend(&lattice, edited);
         Self::with(lattice, pyramid)
@@ -119,7 +120,7 @@ impl SightGround {
         }
     }
 
-    /// How far a crossing's height may lie outside its block's extremes, in metres.
+    /// How far a crossing's height may lie outside its block's extremes, in meters.
     pub(in crate::terrain) fn slack_m(&self) -> f64 {
         self.slack_m
     }

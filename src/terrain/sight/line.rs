@@ -12,9 +12,9 @@ use crate::terrain::sight::crossings::{LineCrossing, crossings};
 /// One end of a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SightEnd {
-    /// Map coordinates in the lattice's system, metres.
+    /// Map coordinates in the lattice's system, meters.
     pub at: DVec2,
-    /// Metres above the ground there.
+    /// Meters above the ground there.
     pub above_m: f64,
 }
 
@@ -34,9 +34,9 @@ pub enum Sight {
 pub struct Blocker {
     /// Map coordinates.
     pub at: DVec2,
-    /// Metres from the observer, along the ground.
+    /// Meters from the observer, along the ground.
     pub distance_m: f64,
-    /// The height of the ground there in metres.
+    /// The height of the ground there in meters.
     pub height_m: f64,
 }
 
@@ -129,7 +129,7 @@ pub struct SightLine {
 }
 
 impl SightLine {
-    /// The line from height `from` to height `to`, both in metres, over `length` metres of ground.
+    /// The line from height `from` to height `to`, both in meters, over `length` meters of ground.
     pub fn new(from: f64, to: f64, length: f64, curvature: Curvature) -> Self {
         Self { from, rise: to - from, sag: curvature.drop_per_square_m() * length * length }
     }
@@ -159,7 +159,7 @@ impl SightLine {
         self.height_m(first).min(self.height_m(last)) - hang
     }
 
-    /// How far rounding may mistake the line's height, in metres, and more than that.
+    /// How far rounding may mistake the line's height, in meters, and more than that.
     pub(in crate::terrain) fn rounding_m(&self) -> f64 {
         // Four operations, each off by half an epsilon of what is no larger than the sum of all three.
         8.0 * f64::EPSILON * (self.from.abs() + self.rise.abs() + self.sag.abs())

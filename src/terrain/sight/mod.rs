@@ -29,7 +29,7 @@ pub mod viewshed;
 /// How the Earth's shape and its air bend a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Curvature {
-    /// The Earth's radius in metres; infinite for a flat one.
+    /// The Earth's radius in meters; infinite for a flat one.
     pub radius_m: f64,
     /// The refraction coefficient k, the share of the curvature that the bending of light takes back: 0 for none.
     pub refraction: f64,
@@ -46,7 +46,7 @@ impl Curvature {
     /// A flat Earth without air.
     pub const FLAT: Self = Self { radius_m: f64::INFINITY, refraction: 0.0 };
 
-    /// By how many metres the Earth sinks below the observer's horizontal, per square metre of distance.
+    /// By how many meters the Earth sinks below the observer's horizontal, per square meter of distance.
     pub fn drop_per_square_m(self) -> f64 {
         (1.0 - self.refraction) / (2.0 * self.radius_m)
     }

@@ -10,7 +10,7 @@ use crate::terrain::sight::Curvature;
 /// A stretch of a line in sight of its start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VisibleStretch {
-    /// Where it begins, metres along the line.
+    /// Where it begins, meters along the line.
     pub from_m: f64,
     /// Where it ends.
     pub to_m: f64,

@@ -3,7 +3,7 @@
 //! A line that stays above a block's highest post cannot meet the ground in it, and the block is passed in one step.
 //! Blocks of the lowest level are [`FINEST`] cells wide, those of each level above twice as wide; the last
 //! level is a single block. A block's extremes are those of its posts *with its border*, so that all edges that a line
-//! crosses within the block lie between them, and neighbours share the posts between them:
+//! crosses within the block lie between them, and neighbors share the posts between them:
 //!
 //! ```text
 //! level 0   o───┬───┬───┬───o       o post that both blocks count
@@ -21,6 +21,7 @@
 use rayon::prelude::*;
 
 use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::post_rect::PostRect;
 
 /// Cells along a side of a block of level 0, as a power of two.
 pub(in crate::terrain) const FINEST_BITS: u32 = 2;
@@ -45,15 +46,6 @@ struct PyramidLevel {
     columns: u32,
     highest: Vec<f32>,
     lowest: Vec<f32>,
-}
-
-/// A rectangle of posts, both corners included.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PyramidRect {
-    /// The south-west corner.
-    pub first: Post,
-    /// The north-east corner.
-    pub last: Post,
 }
 
 /// What is wrong with a pyramid.
@@ -88,7 +80,7 @@ impl Pyramid {
         }
         let mut pyramid = Self { columns, rows, levels };
         let last = Post { column: columns - 1, row: rows - 1 };
-        pyramid.mend(lattice, PyramidRect { first: Post { column: 0, row: 0 }, last });
+        pyramid.mend(lattice, PostRect { first: Post { column: 0, row: 0 }, last });
         pyramid
     }
 
@@ -97,9 +89,9 @@ impl Pyramid {
     ///
     /// # Panics
     /// Where the lattice is not of the size that the pyramid was made for, or `edited` leaves it.
-    pub fn mend(&mut self, lattice: &Lattice, edited: PyramidRect) {
+    pub fn mend(&mut self, lattice: &Lattice, edited: PostRect) {
         assert_eq!((self.columns, self.rows), (lattice.columns(), lattice.rows()), "one pyramid a lattice");
-        let PyramidRect { first, last } = edited;
+        let PostRect { first, last } = edited;
         assert!(last.column < self.columns && last.row < self.rows, "{last:?} is outside the lattice");
         // A post counts for the cells on both its sides.
         let cell = |post: Post, back: u32| {
@@ -310,7 +302,7 @@ mod tests {
                     lattice.pin(post((column, row)), -500.0 + (column * 31 + row) as f32 * 10.0);
                 }
             }
-            pyramid.mend(&lattice, PyramidRect { first: post(first), last: post(last) });
+            pyramid.mend(&lattice, PostRect { first: post(first), last: post(last) });
             assert_eq!(pyramid.check(&lattice), Ok(()), "after {first:?} to {last:?}");
         }
     }

@@ -21,7 +21,7 @@ use crate::terrain::sight::ground::SightGround;
 /// Rays per task of a batch: some ten microseconds' work at the least.
 const CHUNK: usize = 1024;
 
-/// A half-line in world space, metres from the lattice's origin.
+/// A half-line in world space, meters from the lattice's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     /// Where it begins.
@@ -33,9 +33,9 @@ pub struct Ray {
 /// Where a ray meets the ground first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayHit {
-    /// Metres along the ray.
+    /// Meters along the ray.
     pub distance_m: f64,
-    /// World space, metres; its Z is the ground's height.
+    /// World space, meters; its Z is the ground's height.
     pub at: DVec3,
     /// That of the triangle, of length 1 and upward whichever side was met.
     pub normal: DVec3,
@@ -76,13 +76,13 @@ impl SightGround {
 
 /// What of a ray can meet the ground.
 struct RaySpan {
-    /// Metres along the ray, where it begins and ends.
-    metres: (f64, f64),
+    /// Meters along the ray, where it begins and ends.
+    meters: (f64, f64),
     /// Both ends' grid positions, on the lattice.
     grid: (DVec2, DVec2),
     /// Both ends' heights.
     z: (f64, f64),
-    /// How far the ray and the ground under it may be mistaken, in metres.
+    /// How far the ray and the ground under it may be mistaken, in meters.
     margin_m: f64,
 }
 
@@ -105,7 +105,7 @@ impl RaySpan {
         // Room for rounding, so that what lies in the highest post's plane is not cut away.
         let room = 1e-3 + 1e-9 * (low.abs().max(high.abs()) + ray.origin.z.abs());
         let (min, max) = (extent.min.extend(low - room), extent.max.extend(high + room));
-        let mut metres = (0.0, farthest_m);
+        let mut meters = (0.0, farthest_m);
         for axis in 0..3 {
             let (at, along) = (ray.origin[axis], direction[axis]);
             if along == 0.0 {
@@ -115,19 +115,19 @@ impl RaySpan {
                 continue;
             }
             let (near, far) = if along > 0.0 { (min[axis], max[axis]) } else { (max[axis], min[axis]) };
-            metres = (f64::max(metres.0, (near - at) / along), f64::min(metres.1, (far - at) / along));
+            meters = (f64::max(meters.0, (near - at) / along), f64::min(meters.1, (far - at) / along));
         }
-        if metres.0 > metres.1 {
+        if meters.0 > meters.1 {
             return None;
         }
         let last = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
-        let at = |metres: f64| ray.origin + direction * metres;
-        let (first, end) = (at(metres.0), at(metres.1));
+        let at = |meters: f64| ray.origin + direction * meters;
+        let (first, end) = (at(meters.0), at(meters.1));
         // Rounding may leave an end on the border just beside it.
         let grid = |at: DVec3| lattice.grid_at(at.truncate()).clamp(DVec2::ZERO, last);
         let z = (first.z, end.z);
         let margin_m = ground.slack_m() + 8.0 * f64::EPSILON * (z.0.abs() + z.1.abs());
-        Some(Self { metres, grid: (grid(first), grid(end)), z, margin_m })
+        Some(Self { meters, grid: (grid(first), grid(end)), z, margin_m })
     }
 
     /// The ray's height at a part of the span.
@@ -158,7 +158,7 @@ impl RaySpan {
         let grid = self.grid(met.part);
         let skipped = DVec2::new(f64::from(lattice.first().column), f64::from(lattice.first().row));
         RayHit {
-            distance_m: self.metres.0 + (self.metres.1 - self.metres.0) * met.part,
+            distance_m: self.meters.0 + (self.meters.1 - self.meters.0) * met.part,
             at: ((grid + skipped) * lattice.cell()).extend(met.facet.height_m(grid)),
             normal: met.facet.normal(lattice),
         }
@@ -240,7 +240,7 @@ impl Probe for Picking<'_> {
 struct TrianglePlane {
     corner: DVec2,
     south_west_m: f64,
-    /// Metres of rise per cell, eastward and northward.
+    /// Meters of rise per cell, eastward and northward.
     slope: DVec2,
 }
 

@@ -35,7 +35,7 @@ pub enum Raised {
 /// A rise, and the place that asks for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rise {
-    /// Metres; negative where so much is to spare.
+    /// Meters; negative where so much is to spare.
     pub rise_m: f64,
     /// Where the line, risen so, touches the ground: the first such place from the observer.
     pub grazing: Blocker,
@@ -80,7 +80,7 @@ pub fn required_rise(
 pub(in crate::terrain) struct Seeker {
     look: GroundedSight,
     raised: Raised,
-    /// How far the line and the ground under it may be mistaken, in metres.
+    /// How far the line and the ground under it may be mistaken, in meters.
     margin_m: f64,
     most_m: f64,
     at: Option<LineCrossing>,

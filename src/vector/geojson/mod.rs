@@ -1,6 +1,6 @@
 //! GeoJSON (RFC 7946), and the `crs` member of its predecessor (GeoJSON 2008).
 //!
-//! Parsing is the `geojson` crate's; here its values become [`Layer`]s. A geometry collection becomes up to
+//! Parsing is the `geojson` crate's; here its values become [`VectorLayer`]s. A geometry collection becomes up to
 //! three features with the same properties, one each for its points, lines and polygons, however deep they
 //! lie. A third coordinate is the elevation, any further ones are ignored. Coordinates are taken as (longitude,
 //! latitude) or (easting, northing) whatever axis order the named system prescribes, which is what all
@@ -26,7 +26,7 @@ pub const MAX_BYTES: usize = 64 << 20;
 ///
 /// # Errors
 /// [`VectorError`]; features without a geometry, lines of one vertex and rings of two are no errors but
-/// left out, which [`Layer::notes`] says.
+/// left out, which [`VectorLayer::notes`] says.
 pub fn read(bytes: &[u8]) -> Result<VectorLayer, VectorError> {
     read_as(bytes, None)
 }
@@ -322,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn metres_taken_for_degrees_are_refused_with_the_feature() {
+    fn meters_taken_for_degrees_are_refused_with_the_feature() {
         let text = r#"{"type":"Point","coordinates":[421184,4515000]}"#;
         let error = read(text.as_bytes()).expect_err("no longitude").to_string();
         assert!(error.contains("feature 1 has a vertex at (421184, 4515000)"), "{error}");

@@ -13,7 +13,7 @@
 //! | `buildings` | of `multipolygons` those tagged `building` |
 //!
 //! All tags become properties, as text, beside `osm_id` (of areas made of one way: `osm_way_id`). A node's tag `ele`
-//! is its elevation. Coordinates are kept to 10⁻⁷ degrees, about a centimetre, as OpenStreetMap itself keeps them.
+//! is its elevation. Coordinates are kept to 10⁻⁷ degrees, about a centimeter, as OpenStreetMap itself keeps them.
 //!
 //! ```text
 //! pbf ◄─ protobuf ─┐

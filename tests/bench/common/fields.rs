@@ -1,10 +1,10 @@
 //! Fields of heights for benchmarks: made from nothing, the same on every machine.
 
-/// Heights of an `n` × `n` fractal, metres, row by row from the south-west, for posts 10 m apart.
+/// Heights of an `n` × `n` fractal, meters, row by row from the south-west, for posts 10 m apart.
 ///
 /// Fractional noise with a Hurst exponent of about 0.9: smooth noise summed over octaves, each of half the length
 /// and 2⁻⁰·⁹ the height. Smaller sizes are corners of larger ones, so that a post is as rough at every size; over
-/// 4097² posts the relief is some thousand metres.
+/// 4097² posts the relief is some thousand meters.
 pub fn fractal(n: usize) -> Vec<f32> {
     let mut heights = vec![0f64; n * n];
     let mut spacing = 2048usize;

@@ -50,7 +50,7 @@ pub fn run(program: &str, arguments: &[&str]) {
 }
 
 /// Writes square heights, row by row from the south-west, as a raw file that GDAL reads (ENVI: rows from the north, a
-/// header beside). Posts `cell_m` apart are pixel centres, the south-west one at `origin`.
+/// header beside). Posts `cell_m` apart are pixel centers, the south-west one at `origin`.
 pub fn write_envi(path: &Path, heights: &[f32], size: usize, origin: glam::DVec2, cell_m: f64) {
     let bytes: Vec<u8> =
         heights.chunks_exact(size).rev().flatten().flat_map(|height| height.to_le_bytes()).collect();

@@ -1,7 +1,7 @@
 //! 100,000 random points to 1025 × 1025 cells: ours, `spade` as it comes, GDAL and SciPy.
 //!
 //! Points lie at random on a fractal of posts one apart, heights between the posts bilinear; the same bilinear heights
-//! at the cells' centres, which are the posts, are the truth that errors are told against. Our times are all in: from a
+//! at the cells' centers, which are the posts, are the truth that errors are told against. Our times are all in: from a
 //! cloud to a raster. GDAL's are those of its whole process, which reads the points as text; SciPy's and startin's
 //! are of the calls alone.
 
@@ -32,7 +32,7 @@ pub fn print() {
         points: points.clone(),
         breaklines: Vec::new(),
         crs: None,
-        metres_per_z: 1.0,
+        meters_per_z: 1.0,
         vertical_datum: None,
         notes: Vec::new(),
     };
@@ -62,8 +62,8 @@ pub fn print() {
     let rows = [
         ("TIN-linear", heights(GriddingMethod::Tin)),
         ("  spade barycentric", north_up(&spade_linear(&points))),
-        ("natural neighbour", heights(GriddingMethod::Natural)),
-        ("  spade natural neighbour", north_up(&spade_natural(&points))),
+        ("natural neighbor", heights(GriddingMethod::Natural)),
+        ("  spade natural neighbor", north_up(&spade_natural(&points))),
         ("12 nearest, inverse square", heights(by_distance)),
         ("nearest by quadrant", heights(GriddingMethod::Quadrant { power: 1.0 })),
         ("nearest", heights(GriddingMethod::Nearest)),
@@ -111,7 +111,7 @@ fn beside_python(points: &[DVec3], ours: &dyn Fn(GriddingMethod) -> gridding::Gr
         ],
     );
     row("scipy griddata linear", &scipy, &values[1]);
-    row("startin natural neighbour", &startin, &values[2]);
+    row("startin natural neighbor", &startin, &values[2]);
 }
 
 fn beside_gdal(

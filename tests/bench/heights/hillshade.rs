@@ -1,7 +1,7 @@
 //! Hillshading 4,097² posts, beside `gdaldem`.
 //!
 //! `gdaldem` is timed as a whole process that reads a raw file and writes another; ours in memory, and beside it the
-//! same with the same file read first and the greys written after, which is the fair pair.
+//! same with the same file read first and the grays written after, which is the fair pair.
 
 use std::fs;
 
@@ -34,8 +34,8 @@ pub fn print() {
             let bytes = fs::read(&raster).expect("written above");
             let heights =
                 bytes.chunks_exact(4).map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]]));
-            let greys = pools[1].install(|| hillshade(&lattice(heights.collect()), &options));
-            fs::write(&ours, greys).expect("the target directory can be written");
+            let grays = pools[1].install(|| hillshade(&lattice(heights.collect()), &options));
+            fs::write(&ours, grays).expect("the target directory can be written");
         })
     };
     let (from, to) = (raster.to_string_lossy(), peers::folder().join("hillshade-gdal.bin"));
@@ -64,7 +64,7 @@ pub fn print() {
     }
 }
 
-/// How far our greys are from GDAL's, but for its empty frame.
+/// How far our grays are from GDAL's, but for its empty frame.
 fn difference(ours: &[u8], gdal: &[u8]) {
     let inside = |index: &usize| {
         let inner = 1..SIZE - 1;
@@ -74,7 +74,7 @@ fn difference(ours: &[u8], gdal: &[u8]) {
     let equal = (0..ours.len()).filter(inside).filter(|&index| ours[index] == gdal[index]).count();
     let all = (SIZE - 2) * (SIZE - 2);
     println!(
-        "greys differ by at most {}; {:.3} % are equal",
+        "grays differ by at most {}; {:.3} % are equal",
         most.unwrap_or(0),
         equal as f64 / all as f64 * 100.0
     );

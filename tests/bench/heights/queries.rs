@@ -194,7 +194,7 @@ impl Field {
             width: n,
             height: n,
             samples: Samples::F32(southward),
-            metres_per_z: 1.0,
+            meters_per_z: 1.0,
             map_from_grid: glam::DAffine2::from_scale_angle_translation(
                 DVec2::new(CELL_M, -CELL_M),
                 0.0,

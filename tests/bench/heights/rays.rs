@@ -21,7 +21,7 @@ use crate::fields::fractal;
 use crate::peers;
 use crate::rounds::{ROUNDS, interleaved, median, quantile, ratio, time_ms};
 
-/// Metres between posts.
+/// Meters between posts.
 const CELL_M: f64 = 10.0;
 /// How high above the ground both ends of a line stand: eyes.
 const ABOVE_M: f64 = 1.8;

@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 
 use sandtable::dem::read::{DemHints, read};
-use sandtable::dem::tiff_windows::GeoTiffWindows;
+use sandtable::dem::tiff::windows::GeoTiffWindows;
 use sandtable::dem::windows::{RasterWindow, Windows};
 
 use crate::fields;

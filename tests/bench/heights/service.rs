@@ -35,8 +35,8 @@ pub fn print() {
     let folder = peers::folder();
     // One in degrees, which needs no projection, and one in UTM, where every point is projected.
     let degrees = terrain(&heights, (0, 0), [10.0, 11.0, 50.0, 51.0]);
-    let metres = terrain(&heights, (1, 32), [5e5, 5.7e5, 5.54e6, 5.64e6]);
-    for (name, bytes) in [("degrees.bt", degrees), ("utm.bt", metres)] {
+    let meters = terrain(&heights, (1, 32), [5e5, 5.7e5, 5.54e6, 5.64e6]);
+    for (name, bytes) in [("degrees.bt", degrees), ("utm.bt", meters)] {
         std::fs::write(folder.join(name), bytes).expect("the target directory can be written");
     }
     let server = Server::start(&["degrees.bt", "utm.bt"]);

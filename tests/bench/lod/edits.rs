@@ -8,6 +8,7 @@ use std::time::Instant;
 use glam::{DVec2, Vec3};
 use sandtable::dem::read::{DemHints, read};
 use sandtable::dem::warp::to_metric;
+use sandtable::earthworks::brush::{BrushChanges, set_heights};
 use sandtable::mesh::trimesh::TriMesh;
 use sandtable::roam::criterion::spheres::Spheres;
 use sandtable::roam::culling::patches_in_view;
@@ -16,14 +17,14 @@ use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Rad
 use sandtable::roam::edit::{mend_exact, mend_midpoint, mend_spheres};
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::errors::exact::own_errors;
-use sandtable::roam::ground::PatchedGround;
 use sandtable::roam::layout::PatchLayout;
+use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::roam::refine::deferred::Deferred;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::roam::roughness::Roughness;
 use sandtable::roam::spheres::{OwnRadius, SphereMap};
-use sandtable::terrain::brush::{BrushChanges, PostRect, set_heights};
 use sandtable::terrain::lattice::{Lattice, Post};
+use sandtable::terrain::post_rect::PostRect;
 use sandtable::view::frustum::Frustum;
 
 use crate::fields::fractal;
@@ -35,7 +36,7 @@ const EDITS: u32 = 200;
 /// Posts along the side of an edit.
 const SIDE: u32 = 33;
 
-/// Metres of distance per metre of error: about 1.5 pixels at 768 rows and 47°.
+/// Meters of distance per meter of error: about 1.5 pixels at 768 rows and 47°.
 const REACH: f32 = 600.0;
 
 /// Rebuilds whose least counts.
@@ -343,7 +344,7 @@ fn see_from(lattice: &Arc<Lattice>, ground: PatchedGround<'_>, spheres: &SphereM
     Sight { triangles: mesh.triangles.len() as f64, mean_m: mean_difference(lattice, &mesh) }
 }
 
-/// The mean of |mesh − ground| over all posts that the mesh covers, metres.
+/// The mean of |mesh − ground| over all posts that the mesh covers, meters.
 fn mean_difference(lattice: &Lattice, mesh: &TriMesh) -> f64 {
     let mut seen = vec![false; lattice.heights().len()];
     let (mut sum, mut count) = (0.0, 0u64);

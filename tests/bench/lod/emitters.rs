@@ -14,8 +14,8 @@ use sandtable::roam::emit::strips::{StripStats, Strips};
 use sandtable::roam::emit::{bintree, full, quadtree, world};
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::PatchedGround;
 use sandtable::roam::layout::PatchLayout;
+use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::terrain::lattice::Lattice;
 
@@ -196,7 +196,7 @@ fn levels(layout: &PatchLayout, pyramids: &Pyramids, wanted: usize) -> PatchLeve
     pyramids.within(tolerance_for(wanted, |tolerance_m| count(&pyramids.within(tolerance_m))))
 }
 
-/// The tolerance in metres that halving finds for about `wanted` triangles.
+/// The tolerance in meters that halving finds for about `wanted` triangles.
 fn tolerance_for(wanted: usize, triangles: impl Fn(f32) -> usize) -> f32 {
     let (mut fine, mut coarse) = (0f32, 1000f32);
     for _ in 0..20 {

@@ -7,10 +7,10 @@ use sandtable::terrain::lattice::Lattice;
 use sandtable::view::camera::Camera;
 use sandtable::view::flight::{CircularFlight, Keeping};
 
-/// Metres between posts.
+/// Meters between posts.
 pub const CELL_M: f32 = 10.0;
 
-/// The first `frames` cameras of the flight over a square ground of heights in metres, row by row.
+/// The first `frames` cameras of the flight over a square ground of heights in meters, row by row.
 pub fn cameras(heights: &[f32], speed: f32, frames: usize) -> Vec<Camera> {
     let n = side(heights);
     let block = (n.min(513) - 1) as f32;

@@ -1,19 +1,19 @@
 //! Terrain out of memory's reach: what a walk reads and holds where only 64 of 16,384 patches are kept.
 //!
-//! The terrain, 8193² posts ten metres apart, is a formula: no file, and no memory but what paging takes.
+//! The terrain, 8193² posts ten meters apart, is a formula: no file, and no memory but what paging takes.
 
 use std::fs;
 use std::time::Instant;
 
 use glam::{DAffine2, DMat2, DVec2, Vec3};
-use sandtable::dem::fault::DemErrorKind;
+use sandtable::dem::error::DemErrorKind;
 use sandtable::dem::raster::{Raster, Samples};
 use sandtable::dem::windows::{RasterWindow, Windows};
 use sandtable::roam::block::BlockSource;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::PatchedGround;
 use sandtable::roam::paging::ground::{PagedGround, PagingOptions, exact_spheres};
 use sandtable::roam::paging::walk::walk;
+use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::roam::spheres::SphereMap;
 use sandtable::view::camera::Camera;
 use sandtable::view::frustum::Frustum;
@@ -21,7 +21,7 @@ use sandtable::view::frustum::Frustum;
 /// Posts a side.
 const POSTS: u32 = 8193;
 
-/// Metres between posts.
+/// Meters between posts.
 const CELL_M: f64 = 10.0;
 
 /// Patches that are kept.
@@ -30,7 +30,7 @@ const CAPACITY: usize = 64;
 /// Frames of each walk.
 const FRAMES: u16 = 240;
 
-/// Metres of distance a metre of error: two pixels of a picture 1920 pixels wide, opened 60°.
+/// Meters of distance a meter of error: two pixels of a picture 1920 pixels wide, opened 60°.
 const REACH: f32 = 830.0;
 
 /// Rolling ground: three waves across the diagonals, and a little roughness of its own at every post.
@@ -48,7 +48,7 @@ impl Rolling {
             width: POSTS,
             height: POSTS,
             samples: Samples::F32(Vec::new()),
-            metres_per_z: 1.0,
+            meters_per_z: 1.0,
             map_from_grid: DAffine2 { matrix2: axes, translation: DVec2::new(5e5, 4e6) },
             georeferenced: true,
             crs: None,
@@ -97,7 +97,7 @@ fn forget_peak() -> Option<f64> {
 pub fn print() {
     println!("\n## Terrain out of memory's reach\n");
     println!(
-        "{POSTS}² posts by a formula, {CELL_M} m apart, patches of 64 cells, {CAPACITY} of {} kept, error reach {REACH} m a metre.\n",
+        "{POSTS}² posts by a formula, {CELL_M} m apart, patches of 64 cells, {CAPACITY} of {} kept, error reach {REACH} m a meter.\n",
         128 * 128
     );
     let before = forget_peak();
@@ -114,21 +114,21 @@ pub fn print() {
         posts * 4.0 / f64::from(1 << 20),
     );
     println!(
-        "| metres a frame | patches in view | read to be shown | loads a frame | worst frame | ms a load | triangles | peak kept | peak MiB |"
+        "| meters a frame | patches in view | read to be shown | loads a frame | worst frame | ms a load | triangles | peak kept | peak MiB |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
-    for (metres, elsewhere) in [(10.0, 100), (2.0, 110)] {
-        row(&mut ground, metres, elsewhere);
+    for (meters, elsewhere) in [(10.0, 100), (2.0, 110)] {
+        row(&mut ground, meters, elsewhere);
     }
 }
 
 fn row<S: Fn(PatchedGround<'_>) -> SphereMap>(
     ground: &mut PagedGround<Rolling, S>,
-    metres: f32,
+    meters: f32,
     elsewhere: i32,
 ) {
     forget_peak();
-    let eye_at = |frame: u16| Vec3::new(20_000.0, 15_000.0 + metres * f32::from(frame), 150.0);
+    let eye_at = |frame: u16| Vec3::new(20_000.0, 15_000.0 + meters * f32::from(frame), 150.0);
     let (mut seen, mut near, mut triangles, mut worst) = (0, 0, 0u64, 0);
     // The first frame reads all it shows; what follows is the walk.
     let mut count_frame = |ground: &mut PagedGround<Rolling, S>, frame: u16| {
@@ -149,7 +149,7 @@ fn row<S: Fn(PatchedGround<'_>) -> SphereMap>(
     let loads = ground.counts().loads - before;
     let frames = f64::from(FRAMES);
     println!(
-        "| {metres} | {:.0} | {:.1} | {:.3} (first frame {first}) | {worst} | {:.1} | {:.0} | {} | {} |",
+        "| {meters} | {:.0} | {:.1} | {:.3} (first frame {first}) | {worst} | {:.1} | {:.0} | {} | {} |",
         seen as f64 / frames,
         near as f64 / frames,
         loads as f64 / (frames - 1.0),

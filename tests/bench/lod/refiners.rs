@@ -20,8 +20,8 @@ use sandtable::roam::criterion::variance::Variance;
 use sandtable::roam::culling::{Culling, PatchHeights, cull};
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::PatchedGround;
 use sandtable::roam::layout::{DEFAULT_PATCH, PatchLayout};
+use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::roam::refine::changes::RefinementChanges;
 use sandtable::roam::refine::coherent::Coherent;
 use sandtable::roam::refine::queues::{Goal, Queues};
@@ -94,8 +94,8 @@ impl World {
         PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
     }
 
-    fn spheres(&self, metres_per_metre: f32) -> SphereMap {
-        let own = self.errors.values().iter().map(|error| error * metres_per_metre).collect();
+    fn spheres(&self, meters_per_meter: f32) -> SphereMap {
+        let own = self.errors.values().iter().map(|error| error * meters_per_meter).collect();
         SphereMap::nested(self.ground(), own)
     }
 
@@ -247,7 +247,7 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
     sorted[sorted.len() / 2]
 }
 
-/// 000's k that reaches as far as spheres of `scale` metres a metre of error.
+/// 000's k that reaches as far as spheres of `scale` meters a meter of error.
 fn k_of(scale: f32) -> f32 {
     scale / ((POSTS - 1) as f32 * SPACING_M)
 }

@@ -46,7 +46,7 @@ pub fn print() {
     println!("\nExtraction, one thread, median ns a triangle");
     println!(
         "{:>5}{:>8}{:>12}{:>8}{:>14}{:>10}{:>8}",
-        "n", "metres", "triangles", "ours", "martini_rtin", "martini", "×"
+        "n", "meters", "triangles", "ours", "martini_rtin", "martini", "×"
     );
     for ground in &grounds {
         print_meshes(ground);

@@ -39,7 +39,7 @@ struct Node {
 }
 
 impl Stateless {
-    /// Prepares a square ground of heights in metres.
+    /// Prepares a square ground of heights in meters.
     pub fn new(heights_m: &[f32]) -> Self {
         let n = side(heights_m);
         let heights: Vec<f32> = heights_m.iter().map(|height| height / CELL_M).collect();
@@ -160,7 +160,7 @@ fn midpoint_errors(heights: &[f32], n: usize) -> Vec<f32> {
     let mut step = 1;
     while 2 * step < n {
         for (i, ends) in edge_middles(n, step) {
-            let below = diagonal_neighbours(n, i, step / 2).map(|j| errors[j]).fold(0f32, f32::max);
+            let below = diagonal_neighbors(n, i, step / 2).map(|j| errors[j]).fold(0f32, f32::max);
             errors[i] = off_middle(heights, i, ends).max(below);
         }
         for (i, ends) in centers(n, step) {
@@ -183,7 +183,7 @@ fn nested_radii(heights: &[f32], n: usize) -> Vec<f32> {
     while 2 * step < n {
         let half = step / 2;
         for (i, _) in edge_middles(n, step) {
-            let below = diagonal_neighbours(n, i, half).map(|j| {
+            let below = diagonal_neighbors(n, i, half).map(|j| {
                 let rise = heights[i] - heights[j];
                 radii[j] + ((2 * half * half) as f32 + rise * rise).sqrt()
             });
@@ -210,7 +210,7 @@ fn edge_middles(n: usize, step: usize) -> impl Iterator<Item = (usize, [usize; 2
     })
 }
 
-/// The centres of squares of side 2 · `step` with the ends of their diagonals.
+/// The centers of squares of side 2 · `step` with the ends of their diagonals.
 fn centers(n: usize, step: usize) -> impl Iterator<Item = (usize, [usize; 2])> {
     let side = 2 * step;
     (step..n).step_by(side).flat_map(move |y| {
@@ -224,7 +224,7 @@ fn centers(n: usize, step: usize) -> impl Iterator<Item = (usize, [usize; 2])> {
 }
 
 /// The vertices `half` away along both axes; none for a half of 0.
-fn diagonal_neighbours(n: usize, i: usize, half: usize) -> impl Iterator<Item = usize> {
+fn diagonal_neighbors(n: usize, i: usize, half: usize) -> impl Iterator<Item = usize> {
     let (x, y) = (i % n, i / n);
     let corners = [(-1, -1), (1, -1), (-1, 1), (1, 1)];
     corners.into_iter().take(if half > 0 { 4 } else { 0 }).filter_map(move |(dx, dy): (isize, isize)| {

@@ -6,8 +6,8 @@ use sandtable::roam::culling::{Culling, InView, PatchHeights};
 use sandtable::roam::emit::bintree::VertexBlock;
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::ground::PatchedGround;
 use sandtable::roam::layout::{DEFAULT_PATCH, PatchLayout};
+use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::roam::refine::deferred::Deferred;
 use sandtable::roam::refine::queues::{Goal, Queues};
 use sandtable::roam::refine::rebuild::rebuild;
@@ -26,7 +26,7 @@ pub struct World {
 }
 
 impl World {
-    /// The ground of heights in metres.
+    /// The ground of heights in meters.
     pub fn new(heights: &[f32]) -> Self {
         let lattice = flight::lattice(heights);
         let layout =
@@ -42,7 +42,7 @@ impl World {
         PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
     }
 
-    /// The spheres in which errors show: `reach` metres of distance a metre of error.
+    /// The spheres in which errors show: `reach` meters of distance a meter of error.
     pub fn spheres(&self, reach: f32) -> SphereMap {
         SphereMap::plain(self.ground(), &self.errors, reach)
     }

@@ -1,4 +1,4 @@
-"""Times gridding of x,y,z text in place: scipy's linear griddata, then startin's natural neighbours (NaN without it).
+"""Times gridding of x,y,z text in place: scipy's linear griddata, then startin's natural neighbors (NaN without it).
 
 usage: gridding.py POINTS.csv SIDE    prints milliseconds, one number a line
 """

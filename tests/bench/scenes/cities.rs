@@ -2,7 +2,7 @@
 
 use sandtable::app::arguments::{Backend, PictureSize};
 use sandtable::app::picture::picture_of;
-use sandtable::scene::kind::FeatureKind;
+use sandtable::scene::FeatureKind;
 
 use crate::tests_common::places::{PLACES, text_of};
 use crate::tests_common::scratch::Scratch;

@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
-use sandtable::scene::kind::FeatureKind;
+use sandtable::scene::FeatureKind;
 
 use crate::tests_common::scratch::Scratch;
 use crate::{built, peak_mib, seconds};
 
-/// Metres between streets.
+/// Meters between streets.
 const BLOCK_M: usize = 80;
 
 /// An elevation model of 2 km a side for every time the town doubles its side; 513 posts a side always, so that what

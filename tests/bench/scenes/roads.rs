@@ -8,9 +8,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use sandtable::description::parse::parse_bytes;
+use sandtable::scene::Scene;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
-use sandtable::scene::kind::Scene;
 
 use crate::rounds::{interleaved, median, ratio, time_ms};
 
@@ -63,7 +63,7 @@ fn print_city(folder: &Path) {
     );
 }
 
-/// Features, and the kilometres of 7 m wide carriageway that were laid for them.
+/// Features, and the kilometers of 7 m wide carriageway that were laid for them.
 fn size(path: &Path, allowed: &[PathBuf]) -> (usize, f64) {
     let scene = built(path, allowed);
     let area_m2: f64 = scene.ribbons.iter().map(|ribbon| ribbon.plan.area_m2()).sum();

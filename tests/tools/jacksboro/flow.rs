@@ -2,7 +2,7 @@
 //!
 //! Barnes, Lehman & Mulla (2014) flood the raster inward from its edge, always from the lowest post reached
 //! so far; a post's filled elevation is the higher of its own and that of the post it was reached from.
-//! O'Callaghan & Mark (1984) let every post drain to its steepest lower neighbour. In a filled depression
+//! O'Callaghan & Mark (1984) let every post drain to its steepest lower neighbor. In a filled depression
 //! there is none: there a post drains to the one it was reached from. Posts of equal filled elevation are
 //! taken in the order of their raw elevation, so that in a depression the flow keeps to its lowest line
 //! rather than crossing it straight. Each step goes to a lower filled elevation or to an earlier post, so
@@ -15,7 +15,7 @@ use super::ground::Ground;
 
 /// A post with no way down.
 pub const NONE: usize = usize::MAX;
-/// Where a river enters that gathers its water outside the tile: longitude, latitude, square kilometres.
+/// Where a river enters that gathers its water outside the tile: longitude, latitude, square kilometers.
 ///
 /// The Clinch appears below Norris Dam, leaves the tile for a bend, and comes back. The Tennessee Valley
 /// Authority gives the catchment at the dam as 2,912 square miles.
@@ -29,13 +29,13 @@ pub struct Flow {
     pub filled: Vec<f64>,
     /// The post that each post drains to; [`NONE`] at outlets.
     pub down: Vec<usize>,
-    /// Area drained through each post, its own included, in square kilometres.
+    /// Area drained through each post, its own included, in square kilometers.
     pub area_km2: Vec<f64>,
     /// All posts, outlets first: every post comes after the one it drains to.
     pub order: Vec<usize>,
 }
 
-/// What waits in the flood's queue, lowest first; elevations in millimetres so that they have a total order.
+/// What waits in the flood's queue, lowest first; elevations in millimeters so that they have a total order.
 type Waiting = Reverse<(i64, i64, usize)>;
 
 impl Flow {
@@ -62,11 +62,11 @@ impl Flow {
             queue.push(waiting(ground.z[post], ground.z[post], post));
         }
         while let Some(Reverse((_, _, post))) = queue.pop() {
-            for (neighbour, _) in ground.neighbours(post) {
-                if !std::mem::replace(&mut reached[neighbour], true) {
-                    self.down[neighbour] = post;
-                    self.filled[neighbour] = ground.z[neighbour].max(self.filled[post]);
-                    queue.push(waiting(self.filled[neighbour], ground.z[neighbour], neighbour));
+            for (neighbor, _) in ground.neighbors(post) {
+                if !std::mem::replace(&mut reached[neighbor], true) {
+                    self.down[neighbor] = post;
+                    self.filled[neighbor] = ground.z[neighbor].max(self.filled[post]);
+                    queue.push(waiting(self.filled[neighbor], ground.z[neighbor], neighbor));
                 }
             }
         }
@@ -78,8 +78,8 @@ impl Flow {
             if self.down[post] == NONE {
                 continue;
             }
-            let slope = |&(neighbour, far): &(usize, f64)| (self.filled[post] - self.filled[neighbour]) / far;
-            let steepest = ground.neighbours(post).max_by(|a, b| slope(a).total_cmp(&slope(b)));
+            let slope = |&(neighbor, far): &(usize, f64)| (self.filled[post] - self.filled[neighbor]) / far;
+            let steepest = ground.neighbors(post).max_by(|a, b| slope(a).total_cmp(&slope(b)));
             if let Some(lower) = steepest.filter(|lower| slope(lower) > 0.0) {
                 self.down[post] = lower.0;
             }
@@ -131,6 +131,6 @@ fn donors(down: &[usize]) -> (Vec<usize>, Vec<usize>) {
 }
 
 fn waiting(filled: f64, raw: f64, post: usize) -> Waiting {
-    let millimetres = |elevation: f64| (elevation * 1e3).round() as i64;
-    Reverse((millimetres(filled), millimetres(raw), post))
+    let millimeters = |elevation: f64| (elevation * 1e3).round() as i64;
+    Reverse((millimeters(filled), millimeters(raw), post))
 }

@@ -1,7 +1,7 @@
 //! The elevation model as a lattice of posts, and a flat metric frame over it.
 //!
 //! Posts are numbered row by row from the north-west. The frame is a plate carrée true to scale at the
-//! tile's middle latitude: x east and y north of the south-west corner, in metres. Over a tile of a third of
+//! tile's middle latitude: x east and y north of the south-west corner, in meters. Over a tile of a third of
 //! a degree its scale is off by less than 0.3 %, which is nothing to a road; no projection library is
 //! needed, so the result is the same everywhere.
 
@@ -11,7 +11,7 @@ use glam::DVec2;
 use tiff::decoder::{Decoder, DecodingResult};
 use tiff::tags::Tag;
 
-/// WGS 84 semi-major axis in metres.
+/// WGS 84 semi-major axis in meters.
 const SEMI_MAJOR_M: f64 = 6_378_137.0;
 /// WGS 84 first eccentricity squared.
 const ECCENTRICITY_2: f64 = 0.006_694_379_990_14;
@@ -22,7 +22,7 @@ pub struct Ground {
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// Elevation in metres, row by row from the north.
+    /// Elevation in meters, row by row from the north.
     pub z: Vec<f64>,
     /// Longitude of the western edge of the raster.
     pub west: f64,
@@ -30,7 +30,7 @@ pub struct Ground {
     pub north: f64,
     /// Degrees between posts.
     pub step: f64,
-    /// Metres between posts, eastward and northward.
+    /// Meters between posts, eastward and northward.
     pub post_m: DVec2,
 }
 
@@ -104,9 +104,9 @@ impl Ground {
         DVec2::new(self.west, south) + at / self.post_m * self.step
     }
 
-    /// The eight neighbours of a post that lie in the raster, with their distance in metres, in the fixed
+    /// The eight neighbors of a post that lie in the raster, with their distance in meters, in the fixed
     /// order N, NE, E, SE, S, SW, W, NW.
-    pub fn neighbours(&self, index: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+    pub fn neighbors(&self, index: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         const AROUND: [(isize, isize); 8] =
             [(-1, 0), (-1, 1), (0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1)];
         let (row, column) = (index / self.width, index % self.width);

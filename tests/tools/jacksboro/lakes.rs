@@ -1,6 +1,6 @@
 //! The lakes that the elevation model holds: its perfectly flat patches, and the shore round each.
 //!
-//! SRTM's editors set standing water to one whole number of metres. So a lake begins as the connected patch
+//! SRTM's editors set standing water to one whole number of meters. So a lake begins as the connected patch
 //! of posts with exactly that number, grown from a post that is known to be water. It is then filled to the
 //! level at which it is drawn: posts up to that level that hang together with the patch are flooded too. The
 //! shore is the contour at the level, by marching squares with linear interpolation (Lorensen & Cline 1987,
@@ -14,21 +14,21 @@ use glam::DVec2;
 use super::ground::Ground;
 use super::line;
 
-/// A known lake: longitude and latitude of a post that is surely water, the level in metres, the name.
+/// A known lake: longitude and latitude of a post that is surely water, the level in meters, the name.
 ///
 /// Norris Lake is drawn at its full summer pool, 1,020 feet; the radar saw it in February 2000, at its winter
-/// pool, six metres lower. It enters the tile in two arms, whose confluence lies just outside. Cove Lake is
+/// pool, six meters lower. It enters the tile in two arms, whose confluence lies just outside. Cove Lake is
 /// drawn as the radar saw it, a little fuller.
 const KNOWN: [(f64, f64, f64, &str); 3] = [
     (-84.0889, 36.2285, 310.9, "Norris Lake"),
     (-84.0785, 36.2592, 310.9, "Norris Lake"),
     (-84.2140, 36.3030, 312.5, "Cove Lake"),
 ];
-/// How much of the shore's detail is dropped, in metres: a tenth of the distance between posts.
+/// How much of the shore's detail is dropped, in meters: a tenth of the distance between posts.
 const SHORE_DETAIL_M: f64 = 8.0;
-/// The least area of an island in square metres; smaller ones are noise of single posts.
+/// The least area of an island in square meters; smaller ones are noise of single posts.
 const ISLAND_M2: f64 = 20_000.0;
-/// Elevation given to posts that stand for "not this water", in metres above the level.
+/// Elevation given to posts that stand for "not this water", in meters above the level.
 const WALL_M: f64 = 4.0;
 
 /// The lakes and which posts are theirs.
@@ -43,11 +43,11 @@ pub struct Lakes {
 pub struct Lake {
     /// Its name.
     pub name: &'static str,
-    /// The level at which it is drawn, in metres.
+    /// The level at which it is drawn, in meters.
     pub level: f64,
     /// The outer shore, counter-clockwise, then islands, clockwise; rings are not closed.
     pub rings: Vec<Vec<DVec2>>,
-    /// Area in square metres.
+    /// Area in square meters.
     pub area: f64,
 }
 
@@ -77,10 +77,10 @@ fn flood(ground: &Ground, seed: usize, flat: f64, level: f64) -> Vec<usize> {
     while next < patch.len() {
         let post = patch[next];
         next += 1;
-        for (neighbour, _) in ground.neighbours(post) {
-            if !seen[neighbour] && (flat..=level).contains(&ground.z[neighbour]) {
-                seen[neighbour] = true;
-                patch.push(neighbour);
+        for (neighbor, _) in ground.neighbors(post) {
+            if !seen[neighbor] && (flat..=level).contains(&ground.z[neighbor]) {
+                seen[neighbor] = true;
+                patch.push(neighbor);
             }
         }
     }
@@ -121,7 +121,7 @@ impl Field {
         let mut near = vec![false; ground.z.len()];
         for &post in patch {
             near[post] = true;
-            ground.neighbours(post).for_each(|(neighbour, _)| near[neighbour] = true);
+            ground.neighbors(post).for_each(|(neighbor, _)| near[neighbor] = true);
         }
         for (post, _) in near.iter().enumerate().filter(|(_, near)| **near) {
             let inside = (post / ground.width + 1) * width + post % ground.width + 1;
@@ -133,7 +133,7 @@ impl Field {
     }
 
     /// Closed contours at `level`, the low side on the left, so that the shore of water runs
-    /// counter-clockwise. No post stands at the level itself: elevations are whole metres, levels are not.
+    /// counter-clockwise. No post stands at the level itself: elevations are whole meters, levels are not.
     fn rings(&self, level: f64) -> Vec<Vec<DVec2>> {
         // One contour leaves through every crossed lattice edge; edges are numbered 2·post (east) + 1 (south).
         let mut next = vec![usize::MAX; 2 * self.z.len()];

@@ -1,13 +1,13 @@
 //! One road between two places: the cheapest way over the ground, then bent to follow the slope.
 //!
-//! The way is searched by Dijkstra's algorithm (1959) from post to post, with moves to sixteen neighbours so
-//! that it can take gentle diagonals. A metre costs more the steeper it is, with the square of the grade,
+//! The way is searched by Dijkstra's algorithm (1959) from post to post, with moves to sixteen neighbors so
+//! that it can take gentle diagonals. A meter costs more the steeper it is, with the square of the grade,
 //! and far more above the road's limit; crossing a stream costs a bridge, and standing water cannot be
 //! crossed. Turning costs too, so what is searched is not the post but the post and the direction it is
 //! reached in: without that a steep slope is climbed in zigzags as narrow as the posts, with it in a few
 //! long legs.
 //!
-//! Then the line is resampled and relaxed: each vertex is drawn towards the middle of its neighbours, which
+//! Then the line is resampled and relaxed: each vertex is drawn toward the middle of its neighbors, which
 //! rounds the bends, and along the slope to where the ground has the height of a smoothed profile, which
 //! takes out humps and dips as a surveyor's grade line does.
 
@@ -25,9 +25,9 @@ use super::line;
 pub struct Design {
     /// The grade the way is planned for, rise over run.
     pub grade: f64,
-    /// Extra cost of a metre at that grade, in metres: high values wind more and climb less steeply.
+    /// Extra cost of a meter at that grade, in meters: high values wind more and climb less steeply.
     pub climb_cost: f64,
-    /// Extra cost of a metre on a slope of one, in metres: high values keep to gentle ground.
+    /// Extra cost of a meter on a slope of one, in meters: high values keep to gentle ground.
     pub slope_cost: f64,
     /// How often the line is relaxed: more rounds give wider bends.
     pub rounds: usize,
@@ -35,25 +35,25 @@ pub struct Design {
     pub grading: f64,
 }
 
-/// Cost of a metre that is steeper than planned: steep enough to wind instead, not so much as to have no way.
+/// Cost of a meter that is steeper than planned: steep enough to wind instead, not so much as to have no way.
 const TOO_STEEP: f64 = 40.0;
-/// Cost of a right angle, in metres of way; it grows with the square of 1 − cos, so that half a turn costs
+/// Cost of a right angle, in meters of way; it grows with the square of 1 − cos, so that half a turn costs
 /// four times as much and the least turn next to nothing.
 const TURN_M: f64 = 120.0;
-/// Cost of stepping into a stream, in metres of way.
+/// Cost of stepping into a stream, in meters of way.
 const BRIDGE_M: f64 = 500.0;
-/// Extra cost of a metre along a stream's posts, and on those beside it, in metres: a road keeps to one bank.
+/// Extra cost of a meter along a stream's posts, and on those beside it, in meters: a road keeps to one bank.
 const IN_STREAM: f64 = 4.0;
 const BESIDE_STREAM: f64 = 0.8;
-/// Ground that a stream must drain for the road to mind it, in square kilometres.
+/// Ground that a stream must drain for the road to mind it, in square kilometers.
 const MINDED_KM2: f64 = 3.0;
 /// How many posts round two stops are searched for a way between them.
 const MARGIN: usize = 30;
-/// Distance between vertices while the line is relaxed, in metres.
+/// Distance between vertices while the line is relaxed, in meters.
 const SPACING_M: f64 = 45.0;
-/// How much of the line's detail is dropped, in metres.
+/// How much of the line's detail is dropped, in meters.
 const DETAIL_M: f64 = 2.0;
-/// Moves to the eight neighbours and the eight knight's moves.
+/// Moves to the eight neighbors and the eight knight's moves.
 const MOVES: [(isize, isize); 16] = [
     (-1, 0),
     (1, 0),
@@ -106,7 +106,7 @@ impl<'a> Planner<'a> {
     /// A planner over a ground.
     pub fn over(ground: &'a Ground, flow: &Flow, water: &'a [bool]) -> Self {
         let stream: Vec<bool> = flow.area_km2.iter().map(|&area| area >= MINDED_KM2).collect();
-        let near = |post| ground.neighbours(post).any(|(neighbour, _)| stream[neighbour]);
+        let near = |post| ground.neighbors(post).any(|(neighbor, _)| stream[neighbor]);
         let beside = (0..stream.len()).map(near).collect();
         let reach = ground.post_m.x;
         let slope = |post| ground.gradient(ground.place(post), reach).length();
@@ -166,7 +166,7 @@ impl<'a> Planner<'a> {
         way
     }
 
-    /// The posts in the window that one move leads to, with the move's number and length in metres.
+    /// The posts in the window that one move leads to, with the move's number and length in meters.
     fn moves(&self, window: &Window, post: usize) -> impl Iterator<Item = (usize, usize, f64)> {
         let (row, column) = (post / self.ground.width, post % self.ground.width);
         let (rows, columns) =
@@ -178,13 +178,13 @@ impl<'a> Planner<'a> {
         })
     }
 
-    /// A move in metres.
+    /// A move in meters.
     fn step(&self, heading: usize) -> DVec2 {
         let (down, right) = MOVES[heading];
         DVec2::new(right as f64, -(down as f64)) * self.ground.post_m
     }
 
-    /// What a move costs, in millimetres of level way: whole numbers, so that sums do not depend on order.
+    /// What a move costs, in millimeters of level way: whole numbers, so that sums do not depend on order.
     fn price(&self, from: usize, to: usize, run: f64, design: Design) -> u64 {
         let part = (self.ground.z[to] - self.ground.z[from]).abs() / run / design.grade;
         let climb = if part <= 1.0 { design.climb_cost * part * part } else { TOO_STEEP * part * part };
@@ -198,7 +198,7 @@ impl<'a> Planner<'a> {
         ((run * (1.0 + climb + slope + bank) + bridge) * 1e3) as u64
     }
 
-    /// What turning from one heading to another costs, in millimetres of way.
+    /// What turning from one heading to another costs, in millimeters of way.
     fn turn(&self, from: usize, to: usize) -> u64 {
         let (from, to) = (self.step(from), self.step(to));
         let bend = 1.0 - from.dot(to) / (from.length() * to.length());
@@ -216,7 +216,7 @@ impl<'a> Planner<'a> {
     }
 
     fn relax_once(&self, road: &[DVec2], grading: f64) -> Vec<DVec2> {
-        /// How far one round may move a vertex along the slope, in metres.
+        /// How far one round may move a vertex along the slope, in meters.
         const STRIDE_M: f64 = 9.0;
         /// Squared slope below which there is no height to be gained by moving.
         const FLAT: f64 = 0.004;
@@ -238,7 +238,7 @@ impl<'a> Planner<'a> {
     }
 }
 
-/// A profile averaged over about four hundred metres, its ends kept.
+/// A profile averaged over about four hundred meters, its ends kept.
 fn smooth_profile(mut z: Vec<f64>) -> Vec<f64> {
     for _ in 0..8 {
         let before = z.clone();

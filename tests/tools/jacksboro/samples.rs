@@ -1,6 +1,6 @@
 //! Two small elevation models for the scenes that show one thing each.
 //!
-//! `valley.asc` is the country round Caryville, resampled to whole metres of UTM zone 16 north. `hills.png`
+//! `valley.asc` is the country round Caryville, resampled to whole meters of UTM zone 16 north. `hills.png`
 //! is made by formula: round hills and a hollow on a gentle slope, an elevation model without any georeference.
 
 use glam::DVec2;
@@ -10,14 +10,14 @@ use super::ground::Ground;
 
 /// Posts per side of `valley.asc`.
 const VALLEY_POSTS: u32 = 112;
-/// Distance between its posts in metres, near that of the source.
+/// Distance between its posts in meters, near that of the source.
 const VALLEY_CELL_M: f64 = 80.0;
 /// Its south-west corner in EPSG:32616.
 const VALLEY_CORNER: DVec2 = DVec2::new(746_000.0, 4_015_000.0);
 /// Samples per side of `hills.png`: a power of two and one.
 pub const HILLS_SIDE: u32 = 129;
 
-/// `valley.asc`: an ESRI ASCII grid in metres, one decimal, bilinear between the source's posts.
+/// `valley.asc`: an ESRI ASCII grid in meters, one decimal, bilinear between the source's posts.
 pub fn valley(ground: &Ground) -> String {
     let (utm, geographic) = (Crs::from_epsg(32616), Crs::wgs84());
     let utm = utm.expect("EPSG:32616 is in the table");
@@ -37,9 +37,9 @@ pub fn valley(ground: &Ground) -> String {
     text
 }
 
-/// `hills.png`, sample values row by row from the north: decimetres above the lowest ground.
+/// `hills.png`, sample values row by row from the north: decimeters above the lowest ground.
 pub fn hills() -> Vec<u16> {
-    /// Each hill: centre east and south, as parts of the side, radius likewise, height in decimetres. The
+    /// Each hill: center east and south, as parts of the side, radius likewise, height in decimeters. The
     /// last is a hollow, for a pond.
     const HILLS: [(f64, f64, f64, f64); 7] = [
         (0.30, 0.32, 0.16, 1_900.0),

@@ -10,20 +10,20 @@ use super::flow::{Flow, NONE};
 use super::ground::Ground;
 use super::line;
 
-/// Ground that a stream must drain, in square kilometres: about two hours' walk round its catchment.
+/// Ground that a stream must drain, in square kilometers: about two hours' walk round its catchment.
 const THRESHOLD_KM2: f64 = 3.0;
-/// A river that drains this much, in square kilometres, comes from outside the tile with its order: that of
+/// A river that drains this much, in square kilometers, comes from outside the tile with its order: that of
 /// the Clinch on a map of this scale.
 const RIVER_KM2: f64 = 5_000.0;
 /// Its order.
 const RIVER_ORDER: u32 = 5;
-/// Springs shorter than this are left out, in metres: they read as thorns on the stream.
+/// Springs shorter than this are left out, in meters: they read as thorns on the stream.
 const SHORTEST_SPRING_M: f64 = 700.0;
-/// How far smoothing may move a vertex, in metres: less than the distance between posts.
+/// How far smoothing may move a vertex, in meters: less than the distance between posts.
 const LEASH_M: f64 = 55.0;
 /// How often the line is averaged.
 const PASSES: usize = 6;
-/// How much detail is dropped, in metres.
+/// How much detail is dropped, in meters.
 const DETAIL_M: f64 = 6.0;
 /// Streams that are known by name: longitude and latitude of a place on them, and the name, which holds from
 /// there down to the next larger stream. Upstream it is not carried: the drained area, as far as it lies in
@@ -44,7 +44,7 @@ pub struct Stream {
     pub points: Vec<DVec2>,
     /// Strahler order.
     pub order: u32,
-    /// Area drained at its lower end, in square kilometres, as far as it lies in the tile.
+    /// Area drained at its lower end, in square kilometers, as far as it lies in the tile.
     pub area_km2: f64,
     /// Its name where it is known.
     pub name: Option<&'static str>,
@@ -179,7 +179,7 @@ fn names(ground: &Ground, flow: &Flow, channel: &[bool]) -> Vec<Option<&'static 
     names
 }
 
-/// The channel post that drains most within six hundred metres of a place.
+/// The channel post that drains most within six hundred meters of a place.
 fn nearest_channel(ground: &Ground, flow: &Flow, channel: &[bool], at: DVec2) -> Option<usize> {
     let near = (0..channel.len()).filter(|&post| channel[post] && ground.place(post).distance(at) < 600.0);
     near.max_by(|&a, &b| flow.area_km2[a].total_cmp(&flow.area_km2[b]))

@@ -1,5 +1,5 @@
 //! The derived features as GeoJSON text (RFC 7946): one feature a line, six decimals of a degree, which is
-//! a tenth of a metre.
+//! a tenth of a meter.
 
 use glam::DVec2;
 

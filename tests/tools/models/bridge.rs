@@ -43,7 +43,7 @@ fn road(y: f32) -> f32 {
     3.2 * (1.0 - part * part)
 }
 
-/// A point of an arch's underside, `turn` in 0..=1 from its southern foot, `out` metres outside it.
+/// A point of an arch's underside, `turn` in 0..=1 from its southern foot, `out` meters outside it.
 fn arch_at([middle, half, crown]: [f32; 3], turn: f32, out: f32) -> (f32, f32) {
     let (sin, cos) = libm::sincosf(turn * std::f32::consts::PI);
     (middle - cos * (half + out), SPRING_M + sin * (crown - SPRING_M + out))

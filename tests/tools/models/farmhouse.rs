@@ -18,7 +18,7 @@ const HALF_WIDTH_M: f32 = 4.0;
 const EAVES_M: f32 = 3.2;
 const RIDGE_M: f32 = 7.0;
 
-/// Bricks, 16 courses of four to two metres.
+/// Bricks, 16 courses of four to two meters.
 pub fn walls() -> RgbImage {
     RgbImage::from_fn(64, 64, |x, y| {
         let course = y / 8;

@@ -1,6 +1,6 @@
 //! The project's own models, built from boxes, beams and polygons, and written as real files.
 //!
-//! Metres, Z up, the ground at z = 0, the origin at the middle of the footprint, the front towards −Y.
+//! Meters, Z up, the ground at z = 0, the origin at the middle of the footprint, the front toward −Y.
 
 mod bridge;
 mod farmhouse;

@@ -9,9 +9,9 @@ use image::RgbImage;
 #[derive(Clone)]
 pub struct Paint {
     pub name: &'static str,
-    /// Colour as seen (sRGB).
+    /// Color as seen (sRGB).
     pub color: [u8; 3],
-    /// A texture that is multiplied with the colour: its file name and picture.
+    /// A texture that is multiplied with the color: its file name and picture.
     pub texture: Option<(&'static str, RgbImage)>,
     pub two_sided: bool,
 }
@@ -42,7 +42,7 @@ pub struct Object {
 pub struct Shape {
     pub paints: Vec<Paint>,
     pub objects: Vec<Object>,
-    /// Metres that one repetition of a texture covers.
+    /// Meters that one repetition of a texture covers.
     pub texture_m: f32,
 }
 
@@ -97,7 +97,7 @@ impl Shape {
         }
     }
 
-    /// A square beam from `from` to `to`, `thick` metres a side.
+    /// A square beam from `from` to `to`, `thick` meters a side.
     pub fn beam(&mut self, paint: usize, from: [f32; 3], to: [f32; 3], thick: f32) {
         let (from, to) = (Vec3::from(from), Vec3::from(to));
         let along = (to - from) * 0.5;

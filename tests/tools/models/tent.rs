@@ -15,7 +15,7 @@ const HALF_LENGTH_M: f32 = 3.0;
 const WALL_M: f32 = 1.1;
 const RIDGE_M: f32 = 2.9;
 
-/// Canvas: a weave, a seam each metre, and stains.
+/// Canvas: a weave, a seam each meter, and stains.
 fn canvas() -> RgbImage {
     RgbImage::from_fn(64, 64, |x, y| {
         let weave = if (x + y) % 2 == 0 { 1.03 } else { 0.97 };

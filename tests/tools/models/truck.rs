@@ -7,7 +7,7 @@ use super::shape::{Axis, Object, Paint, Shape};
 const BODY: usize = 0;
 const CANVAS: usize = 1;
 const GLASS: usize = 2;
-const TYRE: usize = 3;
+const TIRE: usize = 3;
 const STEEL: usize = 4;
 const LAMP: usize = 5;
 
@@ -24,7 +24,7 @@ pub fn build() -> Shape {
         Paint::plain("olive", [88, 94, 62]),
         Paint::plain("tarpaulin", [122, 120, 88]),
         Paint::plain("glass", [70, 86, 96]),
-        Paint::plain("tyre", [38, 38, 38]),
+        Paint::plain("tire", [38, 38, 38]),
         Paint::plain("steel", [72, 74, 70]),
         Paint::plain("lamp", [236, 228, 190]),
     ]);
@@ -111,7 +111,7 @@ fn bed(truck: &mut Shape) {
     let mut outline = half.to_vec();
     outline.extend(half.iter().rev().map(|&[x, z]| [-x, z]));
     truck.prism(CANVAS, Axis::Y, &outline, -0.35, 3.45);
-    truck.block(TYRE, [-0.9, 3.44, 1.75], [0.9, 3.47, 2.7]);
+    truck.block(TIRE, [-0.9, 3.44, 1.75], [0.9, 3.47, 2.7]);
 }
 
 /// A wheel about the origin, its axle along X.
@@ -127,7 +127,7 @@ fn wheel() -> Object {
             })
             .collect()
     };
-    shape.prism(TYRE, Axis::X, &rim(0.5), -0.17, 0.17);
+    shape.prism(TIRE, Axis::X, &rim(0.5), -0.17, 0.17);
     shape.prism(STEEL, Axis::X, &rim(0.26), -0.19, 0.19);
     shape.objects.remove(0)
 }

@@ -7,7 +7,7 @@ use super::shape::Shape;
 
 /// The OBJ file of `shape`, which names the library `library`.
 pub fn objects(shape: &Shape, library: &str) -> Vec<u8> {
-    let mut text = format!("# metres, Y up, front towards +Z\nmtllib {library}\n");
+    let mut text = format!("# meters, Y up, front toward +Z\nmtllib {library}\n");
     let (mut places, mut uvs) = (BTreeMap::new(), BTreeMap::new());
     let mut put = |arguments: std::fmt::Arguments<'_>| text.write_fmt(arguments).expect("memory takes all");
     for object in &shape.objects {
@@ -26,7 +26,7 @@ pub fn objects(shape: &Shape, library: &str) -> Vec<u8> {
             let textured = shape.paints[paint].texture.is_some();
             let mut corners = String::new();
             for &(at, uv) in &face.corners {
-                // Tenths of millimetres; adding zero makes one of the two zeros.
+                // Tenths of millimeters; adding zero makes one of the two zeros.
                 let place =
                     [at.x, at.z, -at.y].map(|value| format!("{:.4}", (value * 1e4).round() / 1e4 + 0.0));
                 let next = places.len() + 1;

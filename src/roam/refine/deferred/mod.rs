@@ -1,8 +1,8 @@
 //! Deferred re-examination: a frame costs what changed and what fell due, not what is shown.
 //!
-//! A vertex that is s metres from the surface of its sphere cannot change before the eye has travelled s metres:
+//! A vertex that is s meters from the surface of its sphere cannot change before the eye has traveled s meters:
 //! the delay factor of the constrained nested error criterion, made exact by counting distance instead of frames.
-//! So every vertex that could change next waits in a wheel keyed by distance travelled, and is looked at when it
+//! So every vertex that could change next waits in a wheel keyed by distance traveled, and is looked at when it
 //! falls due.
 //!
 //! Patches out of view wait: nothing is looked at in them, and what fell due meanwhile is made up for when they come
@@ -103,7 +103,7 @@ pub struct Deferred<S> {
 }
 
 impl<S: BlockSource> Deferred<S> {
-    /// A walk that starts anywhere. `cell_m` is the smaller distance between posts, metres, and more than 0.
+    /// A walk that starts anywhere. `cell_m` is the smaller distance between posts, meters, and more than 0.
     ///
     /// `None` where patches have more than [`LARGEST_PATCH`] cells a side.
     pub fn new(source: S, cell_m: f64) -> Option<Self> {
@@ -123,7 +123,7 @@ impl<S: BlockSource> Deferred<S> {
             spare: Vec::new(),
             wheel: Wheel::new(0),
             visible: Vec::new(),
-            station: EyeStation { eye: Vec3::NAN, travelled: 0.0, ticks_per_m: TICKS_PER_POST / cell_m },
+            station: EyeStation { eye: Vec3::NAN, traveled: 0.0, ticks_per_m: TICKS_PER_POST / cell_m },
             settled: false,
             frame: 0,
             changes: RefinementChanges::default(),
@@ -306,7 +306,7 @@ impl<S: BlockSource> Deferred<S> {
         let moved_m = (eye.as_dvec3() - self.station.eye.as_dvec3()).length();
         let ticks = moved_m * self.station.ticks_per_m;
         let farthest = FARTHEST as f64;
-        self.station.travelled += if ticks < farthest { ticks } else { farthest };
+        self.station.traveled += if ticks < farthest { ticks } else { farthest };
         self.station.eye = eye;
     }
 

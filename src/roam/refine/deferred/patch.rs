@@ -41,29 +41,29 @@ const ONE_CHILD: u8 = 32;
 pub struct EyeStation {
     /// The eye, drawn world space.
     pub eye: Vec3,
-    /// Ticks travelled, with their fraction.
-    pub travelled: f64,
-    /// Ticks in a metre.
+    /// Ticks traveled, with their fraction.
+    pub traveled: f64,
+    /// Ticks in a meter.
     pub ticks_per_m: f64,
 }
 
 impl EyeStation {
     /// The last full tick.
     pub fn tick(&self) -> u64 {
-        self.travelled as u64
+        self.traveled as u64
     }
 
-    /// The tick in which a vertex can change first that is `slack_m` metres from its sphere's surface; no more than
+    /// The tick in which a vertex can change first that is `slack_m` meters from its sphere's surface; no more than
     /// [`FARTHEST`] ahead.
     pub fn due(&self, slack_m: f64) -> u64 {
         let ahead = (slack_m * self.ticks_per_m * SAFETY).min(FARTHEST as f64);
-        (self.travelled + ahead) as u64
+        (self.traveled + ahead) as u64
     }
 
-    /// How far the eye is inside the sphere about (`x`, `y`, `z`), metres; negative outside. A sphere of no radius
+    /// How far the eye is inside the sphere about (`x`, `y`, `z`), meters; negative outside. A sphere of no radius
     /// holds nothing.
     ///
-    /// In f64: neighbours agree to the last bit, and spheres that are nested by a hair stay nested.
+    /// In f64: neighbors agree to the last bit, and spheres that are nested by a hair stay nested.
     pub fn inside_m(&self, [x, y, z, radius]: [f32; 4]) -> f64 {
         let (dx, dy, dz) = (
             f64::from(x) - f64::from(self.eye.x),
@@ -77,7 +77,7 @@ impl EyeStation {
 }
 
 /// One vertex: where its sphere is and where it waits. Sixteen bytes, so that a line of the cache holds four; what
-/// changes with the neighbours is kept apart, a byte each, so that a line holds sixty-four.
+/// changes with the neighbors is kept apart, a byte each, so that a line holds sixty-four.
 #[derive(Clone, Copy, Debug)]
 struct VertexCell {
     z: f32,
@@ -249,7 +249,7 @@ impl PatchMesh {
         [self.block.plan[0][column as usize], self.block.plan[1][row as usize], cell.z, cell.radius]
     }
 
-    /// Decides about a vertex whose sphere the eye is `inside` by that many metres, and about what follows from it.
+    /// Decides about a vertex whose sphere the eye is `inside` by that many meters, and about what follows from it.
     pub fn decide(&mut self, with: &mut Decider<'_>, vertex: u16, inside: f64) {
         self.decide_one(with, vertex, inside);
         self.decide_all(with);

@@ -149,7 +149,7 @@ impl VertexNumbering {
     fn new(side: i32, corner: Vertex) -> Self {
         let mut vertices: Vec<Vertex> =
             (0..=side).flat_map(|y| (0..=side).map(move |x| corner.moved(x, y))).collect();
-        // On each level squares' centres come before edges' middles.
+        // On each level squares' centers come before edges' middles.
         vertices.sort_by_key(|at| {
             let is_corner = (at.x | at.y) & (side - 1) == 0;
             if is_corner { (i32::MIN, false) } else { (-at.step(), at.kind() != VertexKind::Center) }

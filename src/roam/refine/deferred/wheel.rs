@@ -1,4 +1,4 @@
-//! A wheel of buckets keyed by distance travelled.
+//! A wheel of buckets keyed by distance traveled.
 //!
 //! Distances are counted in ticks from the start of the walk. Level 0 has one slot a tick for the next 63; each
 //! further level has slots four times as wide, so any distance ahead finds a slot that begins at most a sixteenth

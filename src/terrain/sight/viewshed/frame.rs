@@ -108,7 +108,7 @@ impl OctantFrame {
         (self.ring_start + self.ring_sign * ring as i64 + self.cross_start).rem_euclid(2)
     }
 
-    /// The directions of the rays `from` and `to` on the map, metres east and north.
+    /// The directions of the rays `from` and `to` on the map, meters east and north.
     pub fn directions(&self, (from, to): (f64, f64)) -> [DVec2; 2] {
         [from, to].map(|u| {
             let ring = self.ring_sign as f64 * self.ring_cell_m;

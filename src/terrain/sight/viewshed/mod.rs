@@ -34,9 +34,9 @@ use crate::terrain::sight::viewshed::sweep::{Margins, SightLines, SweepScene, sw
 pub struct ViewshedOptions {
     /// Who looks.
     pub observer: SightEnd,
-    /// Metres above the ground of what is looked for, at every post.
+    /// Meters above the ground of what is looked for, at every post.
     pub target_above_m: f64,
-    /// How far is looked, in metres along the ground; without limit where infinite.
+    /// How far is looked, in meters along the ground; without limit where infinite.
     pub range_m: f64,
     /// The directions looked into.
     pub sector: Sector,
@@ -106,7 +106,7 @@ impl Viewshed {
     }
 }
 
-/// Looks from the observer to every post: [`Seen::Visible`] exactly where the line of sight to a target on that post
+/// Looks from the observer to every post: [`PostVisibility::Visible`] exactly where the line of sight to a target on that post
 /// is clear, as [`line_of_sight`](crate::terrain::sight::line::line_of_sight) has it. Targets stand on the posts
 /// themselves: their columns and rows are whole numbers, whatever rounding their map coordinates suffer.
 ///
@@ -165,7 +165,7 @@ struct Looking<'a> {
     options: &'a ViewshedOptions,
     /// Grid position of the observer.
     eye: DVec2,
-    /// Height of the eye in metres.
+    /// Height of the eye in meters.
     eye_m: f64,
 }
 
@@ -263,7 +263,7 @@ impl<'a> Looking<'a> {
     /// A line's crossings lie off the true ray by a few roundings of grid coordinates, and where an edge is met under
     /// the flattest angle that is trusted, 64 times as far along it, which is so much of the highest step that the
     /// lattice may hold; heights themselves suffer a few roundings of the largest number about. Both are taken
-    /// generously: a millionth of a metre more makes nothing slower.
+    /// generously: a millionth of a meter more makes nothing slower.
     fn margins(&self, drop_per_square_m: f64) -> Margins {
         const ROUNDINGS: f64 = 16.0;
         const ALONG_EDGES: f64 = 128.0;

@@ -28,11 +28,11 @@ use crate::terrain::sight::viewshed::horizon::{Doubt, Horizon, HorizonEdge};
 /// How far off the numbers here may be from those of a line of sight.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Margins {
-    /// Metres of height, at a crossing.
+    /// Meters of height, at a crossing.
     pub height_m: f64,
     /// Posts, across a ray.
     pub across: f64,
-    /// Metres that curvature bends the ground between two crossings a cell apart, at most, at a distance of one cell.
+    /// Meters that curvature bends the ground between two crossings a cell apart, at most, at a distance of one cell.
     pub bend_m: f64,
 }
 
@@ -57,11 +57,11 @@ const CHUNK: usize = 16;
 /// What a sweep looks through.
 pub(super) struct SweepScene<'a> {
     pub lattice: &'a Lattice,
-    /// Height of the eye, metres.
+    /// Height of the eye, meters.
     pub eye_m: f64,
-    /// Metres of a target above the ground.
+    /// Meters of a target above the ground.
     pub target_m: f64,
-    /// What curvature takes from heights, per square metre of distance.
+    /// What curvature takes from heights, per square meter of distance.
     pub drop_per_square_m: f64,
     pub range_m: f64,
     pub margins: Margins,
@@ -142,7 +142,7 @@ pub(super) struct PostRing {
     number: usize,
     pub(super) x: f64,
     pub(super) first: i64,
-    /// Metres.
+    /// Meters.
     pub(super) heights: Vec<f64>,
     /// Which ray each post stands on.
     u: Vec<f64>,

@@ -1,0 +1,299 @@
+//! DTED, levels 0, 1 and 2 (`.dt0`, `.dt1`, `.dt2`): MIL-PRF-89020B, *Digital Terrain Elevation Data*, 2000.
+//!
+//! ```text
+//!    0  UHL1  user header label      80 bytes   origin, intervals, numbers of columns and rows
+//!   80  DSI   data set identification 648       datums
+//!  728  ACC   accuracy               2700
+//! 3428  one record a column, from the west, each from the south:
+//!       0xAA, block count u24, longitude count u16, latitude count u16, heights, checksum u32
+//! ```
+//!
+//! A tape's `VOL1` and `HDR1` labels of 80 bytes may stand before. Heights are big-endian sign and magnitude,
+//! −32767 where there is none; some makers wrote two's complement, which shows in depths below −16000 m. Columns
+//! may be missing: a record says by its longitude count which it is. Checksums are not looked at, as GDAL does by
+//! default: many files in use have wrong ones over right heights.
+
+use glam::DVec2;
+
+use crate::dem::error::{DemErrorKind, MOST_SAMPLES, check_size_within};
+use crate::dem::raster::{Raster, Samples, north_up};
+use crate::dem::read::DemFile;
+use crate::geom::crs::Crs;
+
+const FORMAT: &str = "DTED";
+
+/// What stands for no data.
+const VOID: i16 = -32767;
+
+/// Bytes of each label before the records.
+const LABELS: [usize; 3] = [80, 648, 2700];
+
+/// Bytes of a record besides its heights: eight before and four behind.
+const AROUND: usize = 12;
+
+/// What every record starts with.
+const SENTINEL: u8 = 0xaa;
+
+/// No magnitude of a depth in sign and magnitude is greater; beyond it, it is two's complement.
+const DEEPEST: i16 = -16_000;
+
+/// Whether the content starts as DTED or the labels of its tape do.
+pub(crate) fn recognizes(bytes: &[u8]) -> bool {
+    label_at(bytes).is_some()
+}
+
+/// Where the user header label starts: behind the tape's labels, of which there are at most two.
+fn label_at(bytes: &[u8]) -> Option<usize> {
+    let at = |index: usize| bytes.get(80 * index..);
+    let tape =
+        |index: usize| at(index).is_some_and(|rest| rest.starts_with(b"VOL") || rest.starts_with(b"HDR"));
+    let before = (0..2).take_while(|&index| tape(index)).count();
+    at(before)?.starts_with(b"UHL1").then_some(80 * before)
+}
+
+/// Reads a cell.
+pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
+    let labels = source.bytes.get(label_at(source.bytes).unwrap_or(0)..).unwrap_or_default();
+    let data = labels
+        .get(LABELS.iter().sum()..)
+        .ok_or_else(|| DemErrorKind::broken(FORMAT, "it ends before its first column"))?;
+    let header = DtedHeader::read(labels)?;
+    let identification = &labels[LABELS[0]..];
+    let samples = columns(data, &header)?;
+    let cell = header.cell_deg;
+    let north = header.south_west.y + cell.y * f64::from(header.rows - 1);
+    let first = DVec2::new(header.south_west.x, north);
+    let crs = match &source.hints.crs {
+        Some(crs) => crs.clone(),
+        None => system(&text(identification, 144, 5))?,
+    };
+    Ok(Raster {
+        driver: "DTED",
+        data_type: "Int16",
+        width: header.columns,
+        height: header.rows,
+        samples,
+        meters_per_z: 1.0,
+        map_from_grid: north_up(first + DVec2::new(-0.5, 0.5) * cell, cell),
+        georeferenced: true,
+        crs: Some(crs),
+        nodata: Some(f64::from(VOID)),
+        vertical_datum: vertical_datum(&text(identification, 141, 3)),
+    })
+}
+
+/// The heights by rows from the north.
+fn columns(data: &[u8], header: &DtedHeader) -> Result<Samples, DemErrorKind> {
+    let (columns, rows) = (header.columns as usize, header.rows as usize);
+    let record = AROUND + 2 * rows;
+    let records = data.len() / record;
+    // Missing columns take no bytes, but a cell without a single record is cut off.
+    let size = (u64::from(header.columns), u64::from(header.rows));
+    check_size_within(MOST_SAMPLES, size, 0, (data.len(), 1))?;
+    if records == 0 || records > columns || !data.len().is_multiple_of(record) && records < columns {
+        let reason = format!("{} bytes are not those of up to {columns} columns of {record}", data.len());
+        return Err(DemErrorKind::broken(FORMAT, reason));
+    }
+    let mut values = vec![f32::NAN; columns * rows];
+    let counted = counts_are_columns(data, record, records, columns);
+    for (index, record) in data.chunks_exact(record).take(columns).enumerate() {
+        if record[0] != SENTINEL {
+            let reason =
+                format!("column {} starts with {:#04x}, not with {SENTINEL:#04x}", index + 1, record[0]);
+            return Err(DemErrorKind::broken(FORMAT, reason));
+        }
+        let column = if counted { longitude_count(record) } else { index };
+        for (up, pair) in record[8..8 + 2 * rows].chunks_exact(2).enumerate() {
+            values[(rows - 1 - up) * columns + column] = height([pair[0], pair[1]]);
+        }
+    }
+    Ok(Samples::F32(values))
+}
+
+/// Whether the records' longitude counts name columns, each at most once. A few writers leave them 0.
+fn counts_are_columns(data: &[u8], record: usize, records: usize, columns: usize) -> bool {
+    let mut seen = vec![false; columns];
+    data.chunks_exact(record)
+        .take(records)
+        .map(longitude_count)
+        .all(|column| seen.get_mut(column).is_some_and(|seen| !std::mem::replace(seen, true)))
+}
+
+fn longitude_count(record: &[u8]) -> usize {
+    usize::from(u16::from_be_bytes([record[4], record[5]]))
+}
+
+fn height(pair: [u8; 2]) -> f32 {
+    let word = u16::from_be_bytes(pair);
+    let magnitude = (word & 0x7fff) as i16;
+    let signed = if word & 0x8000 == 0 { magnitude } else { -magnitude };
+    match signed {
+        VOID => f32::NAN,
+        signed if signed < DEEPEST => f32::from(i16::from_be_bytes(pair)),
+        signed => f32::from(signed),
+    }
+}
+
+struct DtedHeader {
+    south_west: DVec2,
+    cell_deg: DVec2,
+    columns: u32,
+    rows: u32,
+}
+
+impl DtedHeader {
+    fn read(label: &[u8]) -> Result<Self, DemErrorKind> {
+        let whole = |at: usize, what: &str| -> Result<u32, DemErrorKind> {
+            let digits = text(label, at, 4);
+            digits.trim().parse().map_err(|_| {
+                DemErrorKind::broken(
+                    FORMAT,
+                    format!("{what} at byte {at} of its header is '{digits}', not a number"),
+                )
+            })
+        };
+        let columns = whole(47, "the number of columns")?;
+        let rows = whole(51, "the number of rows")?;
+        if columns == 0 || rows == 0 {
+            return Err(DemErrorKind::broken(FORMAT, format!("it has {columns} columns and {rows} rows")));
+        }
+        // Tenths of seconds.
+        let step = |at: usize, what: &str| Ok(f64::from(whole(at, what)?) / 36_000.0);
+        let cell_deg = DVec2::new(step(20, "the longitude interval")?, step(24, "the latitude interval")?);
+        if cell_deg.min_element() <= 0.0 {
+            return Err(DemErrorKind::Georeference {
+                reason: "its header states no interval between heights".into(),
+                remedy: "fetch the cell again",
+            });
+        }
+        let south_west = DVec2::new(angle(label, 4, b"EW", 180.0)?, angle(label, 12, b"NS", 90.0)?);
+        Ok(Self { south_west, cell_deg, columns, rows })
+    }
+}
+
+/// `DDDMMSSH`, the hemisphere one of `letters`, in degrees.
+fn angle(label: &[u8], at: usize, letters: &[u8; 2], most: f64) -> Result<f64, DemErrorKind> {
+    let field = text(label, at, 8);
+    let wrong = || DemErrorKind::Georeference {
+        reason: format!("its origin at byte {at} is '{field}', not as 0800000W"),
+        remedy: "fetch the cell again",
+    };
+    let letter = field.bytes().last().filter(|letter| letters.contains(letter)).ok_or_else(wrong)?;
+    // Some write a latitude with two digits for degrees and a blank behind.
+    let digits: String = field.chars().filter(char::is_ascii_digit).collect();
+    if digits.len() < 6 || digits.len() > 7 {
+        return Err(wrong());
+    }
+    let number: u32 = digits.parse().map_err(|_| wrong())?;
+    let degrees =
+        f64::from(number / 10_000) + f64::from(number / 100 % 100) / 60.0 + f64::from(number % 100) / 3600.0;
+    let signed = if letter == letters[0] { degrees } else { -degrees };
+    if degrees <= most { Ok(signed) } else { Err(wrong()) }
+}
+
+fn system(name: &str) -> Result<Crs, DemErrorKind> {
+    match name {
+        "WGS72" => Crs::from_epsg(4322).map_err(DemErrorKind::Crs),
+        // The standard knows but the two; what is left blank is WGS 84, as GDAL takes it.
+        _ => Ok(Crs::wgs84()),
+    }
+}
+
+fn vertical_datum(name: &str) -> Option<String> {
+    match name.trim() {
+        "" => None,
+        "E96" => Some("EGM96 geoid".into()),
+        "E08" => Some("EGM2008 geoid".into()),
+        "MSL" => Some("mean sea level".into()),
+        other => Some(other.into()),
+    }
+}
+
+/// Text of a fixed length, NULs as blanks.
+fn text(bytes: &[u8], at: usize, length: usize) -> String {
+    let field = bytes.get(at..at + length).unwrap_or_default();
+    String::from_utf8_lossy(field).replace('\0', " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dem::read::{DemHints, read};
+
+    /// A cell of two columns and three rows at 7° W, 43° N, ten minutes apart.
+    fn cell(records: &[(u16, [i32; 3])]) -> Vec<u8> {
+        let mut bytes =
+            format!("{:<80}", "UHL10070000W0430000N6000600000  U              00020003").into_bytes();
+        bytes.extend(format!("{:<141}E96WGS84", "DSIU").into_bytes());
+        bytes.resize(LABELS.iter().sum(), b' ');
+        for (count, heights) in records {
+            bytes.extend([SENTINEL, 0, 0, 0]);
+            bytes.extend(count.to_be_bytes());
+            bytes.extend([0, 0]);
+            for height in heights {
+                let sign = if *height < 0 { 0x8000 } else { 0 };
+                bytes.extend((height.unsigned_abs() as u16 | sign).to_be_bytes());
+            }
+            bytes.extend([0; 4]);
+        }
+        bytes
+    }
+
+    fn raster(bytes: &[u8]) -> Result<Raster, String> {
+        read("n43.dt0", bytes, &DemHints::default()).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn columns_from_the_south_become_rows_from_the_north() {
+        let raster = raster(&cell(&[(0, [1, -2, 3]), (1, [4, -32767, 6])])).expect("a cell");
+        assert_eq!(
+            [raster.at(0, 0), raster.at(1, 0), raster.at(0, 1), raster.at(0, 2)],
+            [3.0, 6.0, -2.0, 1.0]
+        );
+        assert!(raster.at(1, 1).is_nan());
+        let first = raster.map_from_grid.transform_point2(DVec2::splat(0.5));
+        assert!(first.distance(DVec2::new(-7.0, 43.0 + 2.0 / 6.0)) < 1e-12, "{first}");
+        assert_eq!(raster.vertical_datum.as_deref(), Some("EGM96 geoid"));
+    }
+
+    #[test]
+    fn a_missing_column_is_no_data_and_a_tape_label_is_passed_over() {
+        let sparse = cell(&[(1, [4, 5, 6])]);
+        let taped = [format!("{:<80}", "HDR1").into_bytes(), sparse.clone()].concat();
+        for bytes in [sparse, taped] {
+            let raster = raster(&bytes).expect("a cell");
+            assert!(raster.at(0, 0).is_nan() && raster.at(1, 0) == 6.0);
+        }
+    }
+
+    #[test]
+    fn two_s_complement_shows_in_depths_that_there_are_not() {
+        assert_eq!(height((-200i16).to_be_bytes()), -200.0);
+        assert_eq!(height([0x80, 200]), -200.0);
+        assert!(height([0xff, 0xff]).is_nan());
+    }
+
+    #[test]
+    fn a_cell_cut_anywhere_is_refused() {
+        let whole = cell(&[(0, [1, 2, 3]), (1, [4, 5, 6])]);
+        let one_column = whole.len() - 18;
+        for end in (0..whole.len()).filter(|&end| end != one_column) {
+            assert!(raster(&whole[..end]).is_err(), "{end}");
+        }
+        assert!(raster(&whole[..one_column]).expect("a column is missing").at(1, 0).is_nan());
+    }
+
+    #[test]
+    fn every_byte_changed_in_turn_is_an_error_or_a_raster() {
+        let whole = cell(&[(0, [1, 2, 3]), (1, [4, 5, 6])]);
+        for at in (0..300).chain(LABELS.iter().sum()..whole.len()) {
+            for value in [0, b'9', 0x7f, 0x80, 0xff] {
+                let mut broken = whole.clone();
+                broken[at] = value;
+                if let Ok(raster) = raster(&broken) {
+                    assert_eq!(raster.samples.len(), raster.width as usize * raster.height as usize);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,370 @@
+//! USGS ASCII elevation models (`.dem`), and the Canadian CDED written alike: USGS, *Standards for Digital Elevation
+//! Models*, part 2, 1998.
+//!
+//! ```text
+//! A  1024 bytes (864 in old files): name, system, units, corners, resolution, number of profiles, datums
+//! B  one a profile, from the west: row column, points 1, x y, datum, low high, then the heights northward
+//! C  accuracy; not read
+//! ```
+//!
+//! Everything is text of fixed widths: whole numbers of 6, Fortran doubles of 24 (`0.5578D+06`). Profiles of a quad
+//! cut from UTM start and end where the quad does: they are set into the smallest raster around all, the rest is no
+//! data. Each profile starts at a multiple of 1024 bytes where record A took as many. Where the record says less
+//! than is needed, this follows GDAL's reader.
+
+use glam::DVec2;
+
+use crate::dem::error::{DemErrorKind, check_size};
+use crate::dem::raster::{Raster, Samples, north_up};
+use crate::dem::read::DemFile;
+use crate::geom::crs::Crs;
+
+const FORMAT: &str = "USGS elevation model";
+
+/// What stands for no data.
+const VOID: i64 = -32767;
+
+/// Bytes of record A, and the unit that profiles are padded to.
+const RECORD: usize = 1024;
+
+/// At least so many of a raster's heights, one in `SPARSEST`, must be in the file: quads lie askew in their raster,
+/// but fill most of it.
+const SPARSEST: u64 = 4;
+
+/// Whether the content is a record A: by its level code and its coordinate system, as GDAL tells it.
+pub(crate) fn recognizes(bytes: &[u8]) -> bool {
+    let field = |at: usize| bytes.get(at..at + 6);
+    let one_of = |at: usize, known: &[&[u8; 6]]| known.iter().any(|known| field(at) == Some(&known[..]));
+    one_of(156, &[b"     0", b"     1", b"     2", b"     3", b" -9999"])
+        && one_of(150, &[b"     1", b"     4"])
+}
+
+/// Reads a model.
+pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
+    let text = FixedText(source.bytes);
+    let header = UsgsHeader::read(&text)?;
+    let samples = profiles(&text, &header)?;
+    let crs = match &source.hints.crs {
+        Some(crs) => Some(crs.clone()),
+        None => header.system()?,
+    };
+    let cell = header.cell;
+    Ok(Raster {
+        driver: "USGSDEM",
+        data_type: if header.is_float() { "Float32" } else { "Int16" },
+        width: header.columns,
+        height: header.rows,
+        samples,
+        meters_per_z: if header.in_feet { 0.3048 } else { 1.0 },
+        map_from_grid: north_up(header.first + DVec2::new(-0.5, 0.5) * cell, cell),
+        georeferenced: true,
+        crs,
+        nodata: Some(VOID as f64),
+        vertical_datum: header.vertical_datum,
+    })
+}
+
+/// The heights by rows from the north.
+fn profiles(text: &FixedText, header: &UsgsHeader) -> Result<Samples, DemErrorKind> {
+    let (columns, rows) = (header.columns as usize, header.rows as usize);
+    let mut values = vec![f32::NAN; columns * rows];
+    let south = header.first.y - header.cell.y * f64::from(header.rows - 1);
+    let mut at = header.profiles_at;
+    for column in 0..columns {
+        let cut = || DemErrorKind::broken(FORMAT, format!("it ends in profile {} of {columns}", column + 1));
+        let mut whole = || text.whole(&mut at).ok_or_else(cut);
+        let (_row, _column, points, of) = (whole()?, whole()?, whole()?, whole()?);
+        if of != 1 {
+            let reason = format!("profile {} is {of} wide; such models are not in use", column + 1);
+            return Err(DemErrorKind::broken(FORMAT, reason));
+        }
+        let mut real = || text.real(&mut at, 24).ok_or_else(cut);
+        let (_x, y, base, _low, _high) = (real()?, real()?, real()?, real()?, real()?);
+        let first = ((y * header.degrees - south) / header.cell.y + 0.5).floor();
+        for index in 0..points.max(0) {
+            let height = text.whole(&mut at).ok_or_else(cut)?;
+            let up = first + index as f64;
+            if height != VOID && up >= 0.0 && up < rows as f64 {
+                let meters = (height as f64 * header.resolution + base) as f32;
+                values[(rows - 1 - up as usize) * columns + column] =
+                    if meters.is_finite() { meters } else { f32::NAN };
+            }
+        }
+        if header.profiles_at == RECORD {
+            at = at.next_multiple_of(RECORD);
+        }
+    }
+    Ok(Samples::F32(values))
+}
+
+struct UsgsHeader {
+    columns: u32,
+    rows: u32,
+    /// The north-west height's position, in degrees or ground units.
+    first: DVec2,
+    cell: DVec2,
+    /// What positions in the file are multiplied by: a 3600th for seconds, 1 otherwise.
+    degrees: f64,
+    resolution: f64,
+    in_feet: bool,
+    /// Coordinate system (0 geographic, 1 UTM, 2 state plane), its zone and its ground unit.
+    system: (i64, i64, i64),
+    datum: i64,
+    vertical_datum: Option<String>,
+    profiles_at: usize,
+}
+
+impl UsgsHeader {
+    fn read(text: &FixedText) -> Result<Self, DemErrorKind> {
+        let whole = |at: usize| text.whole(&mut { at }).unwrap_or(0);
+        let real = |at: usize, width: usize, what: &str| {
+            let wrong =
+                || DemErrorKind::broken(FORMAT, format!("{what} at byte {at} of record A is no number"));
+            text.real(&mut { at }, width).ok_or_else(wrong)
+        };
+        let profiles_at = text.profiles_at()?;
+        let is_old = profiles_at == 864;
+        let system = (whole(156), text.field(162, 6).unwrap_or(0), text.field(528, 6).unwrap_or(0));
+        let cell = DVec2::new(real(816, 12, "the x resolution")?, real(828, 12, "the y resolution")?);
+        let resolution = real(840, 12, "the z resolution")?;
+        if !(cell.min_element() > 0.0 && resolution > 0.0) {
+            let reason = format!("its resolution is {} by {} by {resolution}", cell.x, cell.y);
+            return Err(DemErrorKind::broken(FORMAT, reason));
+        }
+        let corner = |index: usize| -> Result<DVec2, DemErrorKind> {
+            let at = 546 + 48 * index;
+            Ok(DVec2::new(real(at, 24, "a corner")?, real(at + 24, 24, "a corner")?))
+        };
+        let corners = [corner(0)?, corner(1)?, corner(2)?, corner(3)?];
+        let in_map_units = matches!(system.0, 1 | 2 | -9999);
+        let first_x = text.first_profile_x(profiles_at).unwrap_or(f64::NAN);
+        let (size, first) =
+            frame(text.field(858, 6).unwrap_or(0), cell, corners, in_map_units.then_some(first_x));
+        let samples = check_size(size, 6, (text.0.len(), SPARSEST));
+        samples?;
+        let degrees = if in_map_units { 1.0 } else { 1.0 / 3600.0 };
+        let first = first * degrees;
+        if !first.is_finite() {
+            return Err(DemErrorKind::broken(FORMAT, "its corners are not finite"));
+        }
+        Ok(Self {
+            columns: size.0 as u32,
+            rows: size.1 as u32,
+            first,
+            cell: cell * degrees,
+            degrees,
+            resolution,
+            in_feet: text.field(534, 6) == Some(1),
+            system,
+            datum: if is_old { 1 } else { text.field(890, 2).unwrap_or(0) },
+            vertical_datum: if is_old { None } else { vertical_datum(text.field(888, 2)) },
+            profiles_at,
+        })
+    }
+
+    /// As GDAL has it: whole meters of a resolution of a meter or more are integers.
+    fn is_float(&self) -> bool {
+        self.in_feet || self.resolution < 1.0
+    }
+
+    fn system(&self) -> Result<Option<Crs>, DemErrorKind> {
+        let (system, zone, unit) = self.system;
+        let number = zone.unsigned_abs() as u32;
+        let meters = if unit == 1 { 1200.0 / 3937.0 } else { 1.0 };
+        let code = match (system, self.datum, zone < 0) {
+            (-9999, ..) => return Ok(None),
+            (0, 2, _) => 4322,
+            (0, 3, _) => 4326,
+            (0, 4, _) => 4269,
+            (0, ..) => 4267,
+            (1, ..) if !(1..=60).contains(&number) => 0,
+            (1, 2, false) => 32200 + number,
+            (1, 2, true) => 32300 + number,
+            (1, 3, false) => 32600 + number,
+            (1, 3, true) => 32700 + number,
+            (1, 4, false) => 26900 + number,
+            (1, _, false) => 26700 + number,
+            _ => 0,
+        };
+        match (system, code) {
+            (0, code) => Crs::from_epsg(code).map(Some).map_err(DemErrorKind::Crs),
+            (_, 0) => Err(DemErrorKind::Georeference {
+                reason: match system {
+                    2 => format!("it is in state plane zone {zone}"),
+                    _ => format!(
+                        "coordinate system {system}, zone {zone} on datum {} is not known",
+                        self.datum
+                    ),
+                },
+                remedy: "state crs under [terrain]",
+            }),
+            (_, code) => Crs::from_epsg_in(code, meters).map(Some).map_err(DemErrorKind::Crs),
+        }
+    }
+}
+
+/// Columns and rows, and the position of the north-west height, in the file's units.
+///
+/// Corners stand in the order south-west, north-west, north-east, south-east. In map units (`first_x` is given) the
+/// quad lies askew: y runs over whole multiples of the resolution, x from the first profile on.
+fn frame(columns: i64, cell: DVec2, corners: [DVec2; 4], first_x: Option<f64>) -> ((u64, u64), DVec2) {
+    let mut south = corners[0].y.min(corners[3].y);
+    let mut north = corners[1].y.max(corners[2].y);
+    if first_x.is_some() {
+        south = (south / cell.y).floor() * cell.y;
+        north = (north / cell.y).ceil() * cell.y;
+    }
+    let west = first_x.unwrap_or(corners[0].x.min(corners[1].x));
+    let rows = ((north - south) / cell.y + 1.5) as u64;
+    ((u64::try_from(columns).unwrap_or(0), rows), DVec2::new(west, north))
+}
+
+fn vertical_datum(code: Option<i64>) -> Option<String> {
+    match code? {
+        1 => Some("local mean sea level".into()),
+        2 => Some("NGVD29".into()),
+        3 => Some("NAVD88".into()),
+        _ => None,
+    }
+}
+
+/// Text of fixed widths.
+struct FixedText<'a>(&'a [u8]);
+
+impl FixedText<'_> {
+    /// The next whole number from `at` on, of up to six characters, and `at` behind it.
+    fn whole(&self, at: &mut usize) -> Option<i64> {
+        let rest = self.0.get(*at..)?;
+        let start = rest.iter().position(|byte| !byte.is_ascii_whitespace())?;
+        let word = &rest[start..rest.len().min(start + 6)];
+        let is_part =
+            |(index, byte): (usize, &u8)| byte.is_ascii_digit() || (index == 0 && b"+-".contains(byte));
+        let length = word.iter().enumerate().take_while(|&part| is_part(part)).count();
+        *at += start + length;
+        std::str::from_utf8(&word[..length]).ok()?.parse().ok()
+    }
+
+    /// The number in `width` characters at `at`, a Fortran exponent of `D` among them, and `at` behind it.
+    fn real(&self, at: &mut usize, width: usize) -> Option<f64> {
+        let field = std::str::from_utf8(self.0.get(*at..*at + width)?).ok()?;
+        *at += width;
+        let value: f64 = field.trim().replace(['D', 'd'], "E").parse().ok()?;
+        value.is_finite().then_some(value)
+    }
+
+    /// The whole number in `width` characters at `at`; `None` where the field is blank.
+    fn field(&self, at: usize, width: usize) -> Option<i64> {
+        std::str::from_utf8(self.0.get(at..at + width)?).ok()?.trim().parse().ok()
+    }
+
+    /// Where the first profile starts: the first place known that says row 1, column 1.
+    fn profiles_at(&self) -> Result<usize, DemErrorKind> {
+        let pair = |mut at: usize| (self.whole(&mut at), self.whole(&mut at), at);
+        if let (Some(1), Some(1), ..RECORD) = pair(864) {
+            return Ok(864);
+        }
+        if let (Some(1), Some(0 | 1), _) = pair(RECORD) {
+            // Some end every record with a line feed.
+            let ends = |record: usize| self.0.get(record * (RECORD + 1) - 1) == Some(&b'\n');
+            return Ok(if ends(1) && ends(2) { RECORD + 1 } else { RECORD });
+        }
+        let found = [893, 918].into_iter().find(|&at| matches!(pair(at), (Some(1), Some(1), _)));
+        found.ok_or_else(|| DemErrorKind::broken(FORMAT, "no profile says that it is row 1, column 1"))
+    }
+
+    /// The x that the first profile states.
+    fn first_profile_x(&self, mut at: usize) -> Option<f64> {
+        for _ in 0..4 {
+            self.whole(&mut at)?;
+        }
+        self.real(&mut at, 24)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dem::read::{DemHints, read};
+
+    /// Two profiles of three and two heights, 30 m apart, in UTM zone 10; the second starts a row further north.
+    fn model(unit: u32, datums: &str) -> Vec<u8> {
+        let mut a = format!("{:<150}     1     1    10", "TEST");
+        a = format!("{a:<528}     2{unit:6}     4");
+        for corner in
+            [600_000.0, 5_000_013.0, 600_000.0, 5_000_069.0, 600_030.0, 5_000_069.0, 600_030.0, 5_000_020.0]
+        {
+            a.push_str(&format!("{corner:24.6}"));
+        }
+        a = format!("{a:<816}0.300000D+020.300000E+020.100000E+01     1     2");
+        a = format!("{a:<888}{datums}");
+        let mut bytes = format!("{a:<1024}").into_bytes();
+        for (column, y, heights) in
+            [(1, "0.500001D+07", "   100  -200   300"), (2, "0.500004D+07", "-32767 10000")]
+        {
+            let points = heights.len() / 6;
+            let mut b = format!("     1{column:6}{points:6}     1{:>24}{y:>24}", 600_000 + 30 * (column - 1));
+            b.push_str(&format!("{:>24}{:>24}{:>24}{heights}", "0.5D+01", "0.0", "0.0"));
+            bytes.extend(format!("{b:<1024}").into_bytes());
+        }
+        bytes
+    }
+
+    fn raster(bytes: &[u8]) -> Result<Raster, String> {
+        read("a.dem", bytes, &DemHints::default()).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn ragged_profiles_are_set_into_one_raster() {
+        let raster = raster(&model(2, " 3 4")).expect("a model");
+        assert_eq!((raster.width, raster.height), (2, 3));
+        assert_eq!(raster.geotransform(), [599_985.0, 30.0, 0.0, 5_000_085.0, 0.0, -30.0]);
+        assert_eq!([raster.at(0, 2), raster.at(0, 1), raster.at(0, 0)], [105.0, -195.0, 305.0]);
+        assert!(raster.at(1, 2).is_nan() && raster.at(1, 1).is_nan());
+        assert_eq!(raster.at(1, 0), 10_005.0);
+        assert_eq!(raster.crs.as_ref().and_then(Crs::epsg), Some(26910));
+        assert_eq!(raster.vertical_datum.as_deref(), Some("NAVD88"));
+        assert_eq!(raster.data_type, "Int16");
+    }
+
+    #[test]
+    fn feet_and_an_old_datum_are_told() {
+        let raster = raster(&model(1, " 2 1")).expect("a model");
+        assert_eq!((raster.meters_per_z, raster.data_type), (0.3048, "Float32"));
+        assert_eq!(raster.vertical_datum.as_deref(), Some("NGVD29"));
+        assert_eq!(raster.crs.as_ref().and_then(Crs::epsg), Some(26710));
+    }
+
+    #[test]
+    fn numbers_may_touch_and_are_six_wide() {
+        let text = FixedText(b"-32767-32767123456  -12");
+        let mut at = 0;
+        let numbers: Vec<_> = std::iter::from_fn(|| text.whole(&mut at)).collect();
+        assert_eq!(numbers, [-32767, -32767, 123_456, -12]);
+    }
+
+    #[test]
+    fn a_model_cut_anywhere_before_its_last_height_is_refused() {
+        let whole = model(2, " 3 4");
+        let last = 2 * 1024 + 24 + 120 + 12;
+        for end in 0..last {
+            let refused = raster(&whole[..end]);
+            // What is left of the last height is a number as well.
+            assert!(refused.is_err() || end > last - 5, "{end}");
+        }
+        assert!(raster(&whole[..last]).is_ok());
+    }
+
+    #[test]
+    fn every_byte_changed_in_turn_is_an_error_or_a_raster() {
+        let whole = model(2, " 3 4");
+        for at in 0..whole.len() {
+            for value in [0, b'-', b'9', 0xff] {
+                let mut broken = whole.clone();
+                broken[at] = value;
+                if let Ok(raster) = raster(&broken) {
+                    assert_eq!(raster.samples.len(), raster.width as usize * raster.height as usize);
+                }
+            }
+        }
+    }
+}

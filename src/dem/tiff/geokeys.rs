@@ -1,0 +1,343 @@
+//! GeoTIFF keys (OGC 19-008r4): the coordinate system, the vertical unit, and what a sample's position means.
+
+use crate::dem::error::DemErrorKind;
+use crate::dem::tiff::gdal_metadata::US_FOOT;
+use crate::dem::vertical;
+use crate::geom::crs::Crs;
+use crate::geom::projection::{Datum, Definition, Ellipsoid, MapProjection};
+
+/// "The parameters are in other keys", in place of a code.
+const USER_DEFINED: u16 = 32767;
+
+const MODEL_TYPE: u16 = 1024;
+const RASTER_TYPE: u16 = 1025;
+const CITATION: u16 = 1026;
+const GEOGRAPHIC_TYPE: u16 = 2048;
+const GEODETIC_DATUM: u16 = 2050;
+const ANGULAR_UNITS: u16 = 2054;
+const ANGULAR_UNIT_SIZE: u16 = 2055;
+const SEMI_MAJOR: u16 = 2057;
+const SEMI_MINOR: u16 = 2058;
+const INVERSE_FLATTENING: u16 = 2059;
+const PRIME_MERIDIAN: u16 = 2061;
+const TO_WGS84: u16 = 2062;
+const PROJECTED_TYPE: u16 = 3072;
+const PROJECTION: u16 = 3074;
+const TRANSFORMATION: u16 = 3075;
+const LINEAR_UNITS: u16 = 3076;
+const LINEAR_UNIT_SIZE: u16 = 3077;
+const VERTICAL_TYPE: u16 = 4096;
+const VERTICAL_CITATION: u16 = 4097;
+const VERTICAL_DATUM: u16 = 4098;
+const VERTICAL_UNITS: u16 = 4099;
+
+// A parameter may stand under any of several keys; the writers of GeoTIFF never agreed on one.
+const LATITUDES: [u16; 4] = [3081, 3085, 3089, 3094];
+const LONGITUDES: [u16; 5] = [3080, 3084, 3088, 3095, 3096];
+const SCALES: [u16; 2] = [3092, 3093];
+const EASTINGS: [u16; 3] = [3082, 3086, 3090];
+const NORTHINGS: [u16; 3] = [3083, 3087, 3091];
+const PARALLEL_1: u16 = 3078;
+const PARALLEL_2: u16 = 3079;
+
+/// The keys of a file.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct GeoKeys {
+    codes: Vec<(u16, u16)>,
+    numbers: Vec<(u16, Vec<f64>)>,
+    texts: Vec<(u16, String)>,
+}
+
+impl GeoKeys {
+    /// Takes the directory and the doubles and the text it points into; keys that point outside are left out.
+    pub fn new(directory: &[u16], doubles: &[f64], text: &str) -> Self {
+        let mut keys = Self::default();
+        let entries = directory.get(4..).unwrap_or_default().chunks_exact(4);
+        for entry in entries.take(directory.get(3).copied().unwrap_or(0).into()) {
+            let (key, place, count, value) = (entry[0], entry[1], usize::from(entry[2]), entry[3]);
+            match place {
+                0 => keys.codes.push((key, value)),
+                34736 => {
+                    let at = usize::from(value);
+                    if let Some(values) = doubles.get(at..at + count) {
+                        keys.numbers.push((key, values.to_vec()));
+                    }
+                }
+                34737 => {
+                    let at = usize::from(value);
+                    if let Some(words) = text.get(at..at + count) {
+                        keys.texts.push((key, words.trim_end_matches(['|', '\0', ' ']).to_owned()));
+                    }
+                }
+                _ => {}
+            }
+        }
+        keys
+    }
+
+    /// Whether stated positions are those of samples' centers.
+    pub fn is_point(&self) -> bool {
+        self.code(RASTER_TYPE) == Some(2)
+    }
+
+    /// Meters in the unit of the elevations; `None` where not stated.
+    pub fn meters_per_z(&self) -> Result<Option<f64>, DemErrorKind> {
+        match (self.code(VERTICAL_UNITS), self.code(VERTICAL_TYPE)) {
+            (Some(unit), _) if unit != USER_DEFINED && unit != 0 => length(unit).map(Some),
+            // NAVD88 in US survey feet and in feet.
+            (_, Some(6360)) => Ok(Some(US_FOOT)),
+            (_, Some(8228)) => Ok(Some(0.3048)),
+            _ => Ok(None),
+        }
+    }
+
+    /// What heights are counted from: by the code of the vertical system or of its datum, else as the citation has
+    /// it; `None` where not stated.
+    pub fn vertical_datum(&self) -> Option<String> {
+        let real = |key: u16| self.code(key).filter(|&code| code != USER_DEFINED && code != 0);
+        let cited = || self.text(VERTICAL_CITATION).filter(|words| !words.is_empty()).map(str::to_owned);
+        let system = real(VERTICAL_TYPE).map(vertical::words);
+        system.or_else(|| real(VERTICAL_DATUM).map(vertical::words)).or_else(cited)
+    }
+
+    /// The coordinate system; `None` where the keys state none.
+    pub fn crs(&self) -> Result<Option<Crs>, DemErrorKind> {
+        let projected = self.code(PROJECTED_TYPE).is_some() || self.code(TRANSFORMATION).is_some();
+        match self.code(MODEL_TYPE) {
+            Some(1) => self.projected().map(Some),
+            Some(2) => self.geographic().map(Some),
+            None | Some(0 | USER_DEFINED) if projected => self.projected().map(Some),
+            None | Some(0 | USER_DEFINED) if self.code(GEOGRAPHIC_TYPE).is_some() => {
+                self.geographic().map(Some)
+            }
+            None | Some(0 | USER_DEFINED) => Ok(None),
+            Some(3) => Err(unusable("geocentric coordinates do not lie on a map")),
+            Some(other) => Err(unusable(&format!("model type {other} does not exist"))),
+        }
+    }
+
+    /// The system whose proj string stands in the citation, as this program writes those without a code.
+    fn cited(&self) -> Option<Crs> {
+        Crs::parse(self.text(CITATION).filter(|words| words.starts_with("+proj="))?).ok()
+    }
+
+    fn geographic(&self) -> Result<Crs, DemErrorKind> {
+        self.check_degrees()?;
+        match self.code(GEOGRAPHIC_TYPE) {
+            Some(code) if code != USER_DEFINED && code != 0 => {
+                Crs::from_epsg(code.into()).map_err(DemErrorKind::Crs)
+            }
+            _ => match self.cited() {
+                Some(crs) => Ok(crs),
+                None => Crs::from_definition(&self.base()).map_err(DemErrorKind::Crs),
+            },
+        }
+    }
+
+    fn projected(&self) -> Result<Crs, DemErrorKind> {
+        let unit = self.linear_unit()?;
+        if let Some(code) = self.code(PROJECTED_TYPE).filter(|&code| code != USER_DEFINED && code != 0) {
+            let found = match unit {
+                Some(meters) => Crs::from_epsg_in(code.into(), meters),
+                None => Crs::from_epsg(code.into()),
+            };
+            return found.map_err(DemErrorKind::Crs);
+        }
+        if let Some(crs) = self.cited() {
+            return Ok(crs);
+        }
+        self.check_degrees()?;
+        let definition = match self.code(PROJECTION) {
+            Some(code @ (16001..=16060 | 16101..=16160)) => self.utm(code, unit.unwrap_or(1.0)),
+            _ => self.by_parameters(unit.unwrap_or(1.0))?,
+        };
+        Crs::from_definition(&definition).map_err(DemErrorKind::Crs)
+    }
+
+    /// EPSG's conversions 16001 to 16060 are the UTM zones north, 16101 to 16160 those south.
+    fn utm(&self, code: u16, meters_per_unit: f64) -> Definition {
+        let south = code > 16100;
+        Definition {
+            method: MapProjection::TransverseMercator,
+            longitude_deg: f64::from(code % 100) * 6.0 - 183.0,
+            scale: 0.9996,
+            false_easting_m: 5e5,
+            false_northing_m: if south { 1e7 } else { 0.0 },
+            meters_per_unit,
+            ..self.base()
+        }
+    }
+
+    fn by_parameters(&self, meters_per_unit: f64) -> Result<Definition, DemErrorKind> {
+        let method = match self.code(TRANSFORMATION) {
+            Some(1) => MapProjection::TransverseMercator,
+            Some(7) => MapProjection::Mercator,
+            Some(8) => MapProjection::LambertConic2,
+            Some(9) => MapProjection::LambertConic1,
+            Some(10) => MapProjection::LambertAzimuthal,
+            Some(11) => MapProjection::Albers,
+            Some(15) => MapProjection::PolarStereographic,
+            Some(other) => return Err(unusable(&format!("coordinate transformation {other} is not read"))),
+            None => return Err(unusable("it is user-defined without a coordinate transformation")),
+        };
+        let at = |keys: &[u16]| keys.iter().find_map(|&key| self.number(key));
+        let latitude = at(&LATITUDES);
+        let pole = method == MapProjection::PolarStereographic;
+        Ok(Definition {
+            method,
+            latitude_deg: latitude.unwrap_or(0.0),
+            longitude_deg: at(&LONGITUDES).unwrap_or(0.0),
+            // A pole's "origin" away from the pole is its parallel of true scale.
+            parallel_1_deg: self.number(PARALLEL_1).or(latitude.filter(|lat| pole && lat.abs() < 90.0)),
+            parallel_2_deg: self.number(PARALLEL_2),
+            scale: at(&SCALES).unwrap_or(1.0),
+            false_easting_m: at(&EASTINGS).unwrap_or(0.0) * meters_per_unit,
+            false_northing_m: at(&NORTHINGS).unwrap_or(0.0) * meters_per_unit,
+            meters_per_unit,
+            ..self.base()
+        })
+    }
+
+    /// The figure of the Earth and its place.
+    fn base(&self) -> Definition {
+        let real = |code: Option<u16>| code.filter(|&code| code != USER_DEFINED && code != 0);
+        let by_datum = real(self.code(GEODETIC_DATUM)).and_then(|code| code.checked_sub(2000));
+        let major = self.number(SEMI_MAJOR);
+        let inverse = self.number(INVERSE_FLATTENING).or_else(|| {
+            let (major, minor) = (major?, self.number(SEMI_MINOR)?);
+            Some(if major == minor { 0.0 } else { major / (major - minor) })
+        });
+        let ellipsoid =
+            major.zip(inverse).map(|(major_m, inverse_flattening)| Ellipsoid { major_m, inverse_flattening });
+        let shift = self.numbers.iter().find(|(key, _)| *key == TO_WGS84).map(|(_, values)| values.clone());
+        let datum = match (real(self.code(GEOGRAPHIC_TYPE)).or(by_datum), shift) {
+            (Some(code), _) => Datum::OfEpsg(code.into()),
+            (None, Some(values)) => Datum::ToWgs84(values),
+            (None, None) => Datum::Unstated,
+        };
+        let prime_meridian_deg = self.number(PRIME_MERIDIAN).unwrap_or(0.0);
+        Definition {
+            prime_meridian_deg,
+            ..Definition::geographic("a user-defined system".into(), ellipsoid, datum)
+        }
+    }
+
+    fn check_degrees(&self) -> Result<(), DemErrorKind> {
+        match self.code(ANGULAR_UNITS) {
+            None | Some(0 | 9102) => Ok(()),
+            Some(USER_DEFINED)
+                if self
+                    .number(ANGULAR_UNIT_SIZE)
+                    .is_some_and(|size| (size - 1f64.to_radians()).abs() < 1e-9) =>
+            {
+                Ok(())
+            }
+            Some(other) => Err(unusable(&format!("angular unit {other} is not the degree"))),
+        }
+    }
+
+    fn linear_unit(&self) -> Result<Option<f64>, DemErrorKind> {
+        match self.code(LINEAR_UNITS) {
+            None | Some(0) => Ok(None),
+            Some(USER_DEFINED) => Ok(self.number(LINEAR_UNIT_SIZE)),
+            Some(code) => length(code).map(Some),
+        }
+    }
+
+    fn code(&self, key: u16) -> Option<u16> {
+        self.codes.iter().find(|(known, _)| *known == key).map(|(_, value)| *value)
+    }
+
+    fn text(&self, key: u16) -> Option<&str> {
+        self.texts.iter().find(|(known, _)| *known == key).map(|(_, words)| words.as_str())
+    }
+
+    fn number(&self, key: u16) -> Option<f64> {
+        self.numbers.iter().find(|(known, _)| *known == key)?.1.first().copied()
+    }
+}
+
+/// Meters in EPSG's unit of length.
+fn length(code: u16) -> Result<f64, DemErrorKind> {
+    match code {
+        9001 => Ok(1.0),
+        9002 => Ok(0.3048),
+        9003 => Ok(US_FOOT),
+        9036 => Ok(1000.0),
+        other => Err(unusable(&format!("unit of length {other} is not read"))),
+    }
+}
+
+fn unusable(reason: &str) -> DemErrorKind {
+    DemErrorKind::Georeference {
+        reason: reason.into(),
+        remedy: "state the right system as crs under [terrain]",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn keys(entries: &[[u16; 4]], doubles: &[f64]) -> GeoKeys {
+        let mut directory = vec![1, 1, 0, entries.len() as u16];
+        directory.extend(entries.iter().flatten());
+        GeoKeys::new(&directory, doubles, "")
+    }
+
+    #[test]
+    fn a_code_is_taken_and_its_unit_replaced() {
+        let crs = keys(&[[1024, 0, 1, 1], [3072, 0, 1, 2853], [3076, 0, 1, 9003]], &[]).crs();
+        assert_eq!(crs.expect("known").expect("stated").meters_per_unit(), US_FOOT);
+        let crs = keys(&[[1024, 0, 1, 2], [2048, 0, 1, 4326]], &[]).crs();
+        assert_eq!(crs.expect("known").expect("stated").epsg(), Some(4326));
+        assert_eq!(keys(&[], &[]).crs().expect("nothing stated"), None);
+    }
+
+    #[test]
+    fn parameters_of_a_conic_become_a_proj_string() {
+        let entries = [
+            [1024, 0, 1, 1],
+            [2048, 0, 1, 4269],
+            [3072, 0, 1, 32767],
+            [3075, 0, 1, 8],
+            [3076, 0, 1, 9001],
+            [3078, 34736, 1, 2],
+            [3079, 34736, 1, 3],
+            [3084, 34736, 1, 1],
+            [3085, 34736, 1, 0],
+            [3086, 34736, 1, 4],
+        ];
+        let crs =
+            keys(&entries, &[33.75, -79.0, 36.5, 34.25, 609_601.22]).crs().expect("read").expect("stated");
+        assert_eq!(
+            crs.name(),
+            "+proj=lcc +lat_1=36.5 +lat_2=34.25 +lat_0=33.75 +k_0=1 +lon_0=-79 +x_0=609601.22 +y_0=0 +datum=NAD83 +to_meter=1"
+        );
+    }
+
+    #[test]
+    fn methods_and_units_that_are_not_read_are_refused_by_number() {
+        let refused = keys(&[[1024, 0, 1, 1], [3072, 0, 1, 32767], [3075, 0, 1, 24]], &[]).crs();
+        assert!(refused.expect_err("no such").to_string().contains("24"));
+        assert!(keys(&[[4099, 0, 1, 9001]], &[]).meters_per_z().is_ok_and(|unit| unit == Some(1.0)));
+        assert!(keys(&[[4099, 0, 1, 9099]], &[]).meters_per_z().is_err());
+        assert!(keys(&[[3086, 34736, 9, 65535]], &[1.0]).crs().is_ok_and(|crs| crs.is_none()));
+    }
+
+    #[test]
+    fn what_heights_are_counted_from_is_told_by_code_or_by_citation() {
+        let told = |entries: &[[u16; 4]]| {
+            let mut directory = vec![1, 1, 0, entries.len() as u16];
+            directory.extend(entries.iter().flatten());
+            GeoKeys::new(&directory, &[], "old name|the harbour's gauge|").vertical_datum()
+        };
+        assert_eq!(told(&[[4096, 0, 1, 5703]]).as_deref(), Some("NAVD88"));
+        assert_eq!(told(&[[4098, 0, 1, 5103]]).as_deref(), Some("NAVD88"));
+        assert_eq!(
+            told(&[[4096, 0, 1, 32767], [4097, 34737, 20, 9]]).as_deref(),
+            Some("the harbour's gauge")
+        );
+        assert_eq!(told(&[[4097, 34737, 99, 9]]), None);
+    }
+}

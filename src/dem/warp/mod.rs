@@ -1,0 +1,359 @@
+//! A raster in whatever system its file used, to one in meters with north up.
+
+pub mod grid;
+pub mod line;
+pub mod target;
+
+use glam::DVec2;
+
+use crate::dem::raster::{Raster, Samples, north_up};
+use crate::dem::valid::{outline, valid_grid};
+use crate::dem::warp::grid::{CrsTransform, WarpGrid};
+use crate::geom::crs::{Crs, CrsError};
+use crate::geom::rect::Rect;
+
+/// How far from its central meridian a UTM zone is used when nobody chose it. At 9° lengths are off by up
+/// to 1.2 %.
+const UTM_REACH_DEG: f64 = 9.0;
+
+/// UTM ends at 84° north and 80° south.
+const UTM_LATITUDES_DEG: (f64, f64) = (-80.0, 84.0);
+
+/// Why a raster cannot be brought to meters.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum WarpError {
+    /// No system is named, and the coordinates look like degrees.
+    #[error(
+        "the elevation file names no coordinate system and its coordinates, {min_x} to {max_x} and {min_y} to {max_y}, look like degrees; state its system under [terrain], for example crs = \"EPSG:4326\""
+    )]
+    LooksLikeDegrees {
+        /// West.
+        min_x: f64,
+        /// East.
+        max_x: f64,
+        /// South.
+        min_y: f64,
+        /// North.
+        max_y: f64,
+    },
+    /// Nothing says how far apart the samples are.
+    #[error(
+        "the elevation file does not say where it lies or how far apart its samples are; state cell (meters between samples) under [terrain]"
+    )]
+    NoPlace,
+    /// There is nothing to lay out a raster around.
+    #[error("the elevation file holds no valid sample: all of them are no data; check its no-data value")]
+    Empty,
+    /// The wanted system is not one in meters.
+    #[error(
+        "a scene needs a projected system in meters, and {name} is not one; choose a UTM zone, for example EPSG:32616"
+    )]
+    TargetNotMetric {
+        /// The wanted system.
+        name: String,
+    },
+    /// No UTM zone suits the raster.
+    #[error(
+        "the elevation file reaches from longitude {west} to {east} and from latitude {south} to {north}, which no UTM zone covers well; cut it, or state a projected system in meters as crs of the scene"
+    )]
+    NoZone {
+        /// In degrees.
+        west: f64,
+        /// In degrees.
+        east: f64,
+        /// In degrees.
+        south: f64,
+        /// In degrees.
+        north: f64,
+    },
+    /// The result would be too large.
+    #[error(
+        "in {system} the elevation file would need {width} x {height} samples; choose a system that suits its place, or larger cells"
+    )]
+    TooLarge {
+        /// The wanted system.
+        system: String,
+        /// Samples per row.
+        width: u64,
+        /// Rows.
+        height: u64,
+    },
+    /// Around a pole there is no east and west border to lay a raster in degrees out by.
+    #[error(
+        "the elevation file covers a pole, which a raster in degrees ({system}) cannot; cut it, or choose a polar system, for example EPSG:3413 or EPSG:3031"
+    )]
+    Pole {
+        /// The wanted system.
+        system: String,
+    },
+    /// A coordinate cannot be brought from one system to the other.
+    #[error(transparent)]
+    Crs(#[from] CrsError),
+}
+
+/// The raster in meters, north up, elevations in meters too.
+///
+/// One that is so already, and in `target` where that is given, comes back as it is (its cells need not be
+/// square). One that only runs the other way along an axis is turned round, sample by sample. Any other is
+/// resampled bilinearly to square cells in `target`, or by default in the UTM zone (WGS 84) of its center;
+/// a cell's area is that of the source's cells at the center, the grid lies on multiples of the cell size,
+/// its extent covers the valid samples, and cells outside them are NaN.
+///
+/// A raster without a system is taken to be in `target`, or in plain meters.
+///
+/// The same bits for every number of threads.
+///
+/// # Errors
+/// [`WarpError`]: a raster that names no system but looks like degrees, one without a place, a target that is
+/// not metric, a raster too large for UTM, and points that one of the systems does not cover.
+///
+/// ```
+/// use sandtable::dem::{read::{Hints, read}, warp::to_metric};
+/// let grid = b"ncols 2\nnrows 2\nxllcorner 500000\nyllcorner 4000000\ncellsize 30\n1 2 3 4";
+/// let raster = read("a.asc", grid, &Hints::default()).unwrap();
+/// assert_eq!(to_metric(&raster, None).unwrap().at(1, 0), 2.0);
+/// ```
+pub fn to_metric(raster: &Raster, target: Option<&Crs>) -> Result<Raster, WarpError> {
+    check_source(raster)?;
+    if let Some(target) = target.filter(|target| !target.is_metric()) {
+        return Err(WarpError::TargetNotMetric { name: target.name().into() });
+    }
+    let system = match (&raster.crs, target) {
+        (_, Some(target)) => Some(target.clone()),
+        (Some(own), None) if own.is_metric() => Some(own.clone()),
+        (Some(own), None) => Some(zone(raster, own)?),
+        (None, None) => None,
+    };
+    let own = raster.crs.as_ref().or(system.as_ref());
+    let mut metric = if own == system.as_ref() && is_axis_aligned(raster) {
+        turned_north_up(raster)
+    } else {
+        let way = CrsTransform::new(raster, own, system.as_ref());
+        let frame = WarpGrid::around(raster, &way, None)?;
+        frame.bilinear(raster, &way)
+    };
+    metric.samples = metric.samples.scaled(raster.meters_per_z, 0.0);
+    metric.meters_per_z = 1.0;
+    metric.crs = system;
+    Ok(metric)
+}
+
+/// Whether the raster lies in a system in meters already, so that nothing has to be resampled; its samples are not
+/// looked at.
+///
+/// # Errors
+/// [`WarpError`]: it has no place, it looks like degrees, or its system is not metric.
+pub fn check_metric(raster: &Raster) -> Result<(), WarpError> {
+    check_source(raster)?;
+    match &raster.crs {
+        Some(crs) if !crs.is_metric() => Err(WarpError::TargetNotMetric { name: crs.name().into() }),
+        _ => Ok(()),
+    }
+}
+
+/// That a raster says where it lies, and in what.
+pub(crate) fn check_source(raster: &Raster) -> Result<(), WarpError> {
+    if !raster.georeferenced {
+        return Err(WarpError::NoPlace);
+    }
+    let (Rect { min, max }, cell) = (raster.extent(), raster.spacing());
+    let degrees = min.x >= -360.0 && max.x <= 360.0 && min.y >= -90.5 && max.y <= 90.5;
+    if raster.crs.is_none() && degrees && cell.max_element() < 0.1 {
+        return Err(WarpError::LooksLikeDegrees { min_x: min.x, max_x: max.x, min_y: min.y, max_y: max.y });
+    }
+    Ok(())
+}
+
+/// The UTM zone of the raster's center, if its valid samples lie near enough.
+fn zone(raster: &Raster, own: &Crs) -> Result<Crs, WarpError> {
+    let valid = valid_grid(raster).ok_or(WarpError::Empty)?;
+    let degrees = Crs::wgs84();
+    let at = |grid: DVec2| own.transform(&degrees, raster.map_from_grid.transform_point2(grid));
+    let center = at(valid.center())?;
+    let border = outline(valid).map(at).collect::<Result<Vec<_>, _>>()?;
+    // Measured from the center, so that a raster across the date line stays in one piece.
+    let east_of_center = |point: &DVec2| (point.x - center.x + 540.0).rem_euclid(360.0) - 180.0;
+    let around =
+        Rect::around(border.iter().map(|point| DVec2::new(center.x + east_of_center(point), point.y)));
+    let utm = Crs::utm_at(center.x, center.y);
+    let meridian = ((center.x + 180.0) / 6.0).floor() * 6.0 - 177.0;
+    let reach = (around.max.x - meridian).max(meridian - around.min.x);
+    // All around the globe both borders are the same meridian: the samples' own span tells.
+    let span =
+        if own.is_geographic() { valid.size().x * raster.map_from_grid.matrix2.x_axis.x.abs() } else { 0.0 };
+    let (south, north) = UTM_LATITUDES_DEG;
+    if reach > UTM_REACH_DEG || span > 2.0 * UTM_REACH_DEG || around.min.y < south || around.max.y > north {
+        let (west, east) = (around.min.x, around.max.x.max(around.min.x + span));
+        return Err(WarpError::NoZone { west, east, south: around.min.y, north: around.max.y });
+    }
+    Ok(utm)
+}
+
+/// Whether rows and columns run along the axes of the map.
+pub(crate) fn is_axis_aligned(raster: &Raster) -> bool {
+    let axes = raster.map_from_grid.matrix2;
+    axes.x_axis.y == 0.0 && axes.y_axis.x == 0.0
+}
+
+/// The raster with columns and rows in the order that puts north up.
+pub(crate) fn turned_north_up(raster: &Raster) -> Raster {
+    let mut turned = raster.clone();
+    if raster.is_north_up() {
+        return turned;
+    }
+    let Rect { min, max } = raster.extent();
+    let axes = raster.map_from_grid.matrix2;
+    let (mirror_x, mirror_y) = (axes.x_axis.x < 0.0, axes.y_axis.y > 0.0);
+    turned.map_from_grid = north_up(DVec2::new(min.x, max.y), raster.spacing());
+    turned.samples = match &raster.samples {
+        Samples::F32(values) => Samples::F32(mirrored(values, raster.width, mirror_x, mirror_y)),
+        Samples::F64(values) => Samples::F64(mirrored(values, raster.width, mirror_x, mirror_y)),
+    };
+    turned
+}
+
+fn mirrored<T: Copy>(values: &[T], width: u32, mirror_x: bool, mirror_y: bool) -> Vec<T> {
+    let width = width as usize;
+    let height = values.len() / width;
+    let at = |index: usize| {
+        let (row, column) = (index / width, index % width);
+        let row = if mirror_y { height - 1 - row } else { row };
+        let column = if mirror_x { width - 1 - column } else { column };
+        values[row * width + column]
+    };
+    (0..values.len()).map(at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dem::raster::tests::small;
+    use glam::{DAffine2, DMat2};
+
+    /// A raster whose value at each center is `value` of its map position.
+    fn painted(size: (u32, u32), place: DAffine2, crs: Option<Crs>, value: impl Fn(DVec2) -> f64) -> Raster {
+        let centers = (0..size.0 * size.1)
+            .map(|i| DVec2::new(f64::from(i % size.0) + 0.5, f64::from(i / size.0) + 0.5));
+        let samples = Samples::F64(centers.map(|at| value(place.transform_point2(at))).collect());
+        Raster {
+            samples,
+            map_from_grid: place,
+            crs,
+            ..small(size.0, size.1, vec![0.0; (size.0 * size.1) as usize])
+        }
+    }
+
+    fn utm_12() -> Crs {
+        Crs::from_epsg(32612).expect("known")
+    }
+
+    #[test]
+    fn what_is_metric_and_north_up_stays_as_it_is() {
+        let raster = Raster { crs: Some(utm_12()), ..small(2, 2, vec![1.0, 2.0, 3.0, f32::NAN]) };
+        let metric = to_metric(&raster, None).expect("metric");
+        assert_eq!(metric.map_from_grid, raster.map_from_grid);
+        assert_eq!([metric.at(0, 0), metric.at(1, 0), metric.at(0, 1)], [1.0, 2.0, 3.0]);
+    }
+
+    #[test]
+    fn south_up_is_turned_without_a_change_of_values() {
+        let mut raster = small(2, 2, vec![1.0, 2.0, 3.0, 4.0]);
+        raster.map_from_grid = DAffine2 {
+            matrix2: DMat2::from_diagonal(DVec2::splat(10.0)),
+            translation: DVec2::new(1000.0, 2000.0),
+        };
+        let metric = to_metric(&raster, None).expect("metric");
+        assert_eq!(metric.samples, Samples::F32(vec![3.0, 4.0, 1.0, 2.0]));
+        assert_eq!(metric.geotransform(), [1000.0, 10.0, 0.0, 2020.0, 0.0, -10.0]);
+    }
+
+    #[test]
+    fn degrees_become_the_utm_zone_and_heights_stay_in_place() {
+        // Easting as elevation shows every shift.
+        let easting = |at: DVec2| Crs::wgs84().transform(&utm_12(), at).expect("inside").x;
+        let place = north_up(DVec2::new(-111.3, 37.2), DVec2::splat(1.0 / 1200.0));
+        let metric =
+            to_metric(&painted((200, 150), place, Some(Crs::wgs84()), easting), None).expect("metric");
+        assert_eq!(metric.crs.as_ref().and_then(Crs::epsg), Some(32612));
+        let mut valid = 0;
+        for row in 1..metric.height - 1 {
+            for column in 1..metric.width - 1 {
+                let wanted = metric
+                    .map_from_grid
+                    .transform_point2(DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5))
+                    .x;
+                let found = metric.at(column, row);
+                // The outer half sample is held, so that the border reads up to half a cell inward.
+                assert!(found.is_nan() || (found - wanted).abs() < 45.0, "{found} for {wanted}");
+                valid += u32::from((found - wanted).abs() < 0.01);
+            }
+        }
+        assert!((29_000..=31_500).contains(&valid), "{valid} cells for 30000 samples");
+        assert!((metric.spacing().x / 82.7 - 1.0).abs() < 0.01, "{}", metric.spacing().x);
+    }
+
+    #[test]
+    fn a_turned_raster_keeps_a_plane() {
+        let place =
+            DAffine2::from_scale_angle_translation(DVec2::new(20.0, -20.0), 0.3, DVec2::new(5e5, 4e6));
+        let plane = |at: DVec2| 0.25 * (at.x - 5e5) - 0.5 * (at.y - 4e6);
+        let raster = painted((60, 40), place, Some(utm_12()), plane);
+        let metric = to_metric(&raster, None).expect("metric");
+        assert!(metric.is_north_up() && (metric.spacing().x - 20.0).abs() < 1e-9);
+        let mut met = 0;
+        for row in 0..metric.height {
+            for column in 0..metric.width {
+                let at = metric
+                    .map_from_grid
+                    .transform_point2(DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5));
+                met += u32::from((metric.at(column, row) - plane(at)).abs() < 1e-6);
+            }
+        }
+        assert!(met > 2200, "{met} of 2400");
+    }
+
+    #[test]
+    fn the_number_of_threads_does_not_matter() {
+        let place = north_up(DVec2::new(179.9, -16.0), DVec2::splat(0.001));
+        let raster = painted((300, 90), place, Some(Crs::wgs84()), |at| at.x * at.y);
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            let metric = pool.install(|| to_metric(&raster, None)).expect("across the date line");
+            metric.samples.iter().map(f64::to_bits).collect::<Vec<_>>()
+        };
+        assert_eq!(with(1), with(3));
+        assert!(with(2).iter().filter(|bits| !f64::from_bits(**bits).is_nan()).count() > 25_000);
+    }
+
+    #[test]
+    fn feet_become_meters_up_and_along() {
+        let crs = Crs::from_epsg_in(2853, 1200.0 / 3937.0).expect("known");
+        let place = north_up(DVec2::new(11_882_500.0, 7_011_250.0), DVec2::splat(10.0));
+        let mut raster = painted((20, 20), place, Some(crs), |_| 1000.0);
+        raster.meters_per_z = 0.3048;
+        let metric = to_metric(&raster, None).expect("metric");
+        assert!((metric.spacing().x / 3.048 - 1.0).abs() < 1e-3, "{}", metric.spacing().x);
+        assert!((metric.at(10, 10) - 304.8).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_cannot_be_done_is_refused_with_the_way_out() {
+        let refused = |raster: &Raster, target: Option<&Crs>| {
+            to_metric(raster, target).expect_err("refused").to_string()
+        };
+        let mut degrees = small(2, 2, vec![1.0; 4]);
+        degrees.map_from_grid = north_up(DVec2::new(7.0, 44.0), DVec2::splat(0.01));
+        assert!(refused(&degrees, None).contains("EPSG:4326"));
+        assert!(refused(&Raster { georeferenced: false, ..small(1, 1, vec![1.0]) }, None).contains("cell"));
+        assert!(refused(&small(1, 1, vec![1.0]), Some(&Crs::wgs84())).contains("not one"));
+        degrees.crs = Some(Crs::wgs84());
+        degrees.samples = Samples::F32(vec![f32::NAN; 4]);
+        assert!(refused(&degrees, None).contains("no valid sample"));
+        let globe = Raster {
+            crs: Some(Crs::wgs84()),
+            map_from_grid: north_up(DVec2::new(-180.0, 90.0), DVec2::splat(90.0)),
+            ..small(4, 2, vec![1.0; 8])
+        };
+        assert!(refused(&globe, None).contains("no UTM zone"));
+    }
+}

@@ -1,0 +1,252 @@
+//! The design levels of a network and what must leave the ground, settled together.
+//!
+//! Which ground counts depends on where the bridges are, and where the bridges are on the levels. So the network is
+//! fitted to all ground first; ground that a bridge then passes over, or a tunnel under, no longer pulls at the road,
+//! and the network is fitted again. What was let go of once stays so, which makes the rounds end.
+
+use crate::earthworks::alignment::chain::{Direction, SectionChain, SectionLink, chains};
+use crate::earthworks::alignment::ease::eased;
+use crate::earthworks::alignment::fit;
+use crate::earthworks::alignment::network::{SectionNetwork, StationLevels};
+use crate::earthworks::alignment::spans::{DesignSpan, EarthworkLimits, SpanKind, spans};
+
+/// How often at most the network is fitted. The second time moves roads by meters, the third by decimeters; the spans
+/// always are those of the last levels.
+const ROUNDS: usize = 4;
+
+/// What is known of a section beforehand.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SectionGround {
+    /// The ground at its stations in meters; NaN where there is none.
+    pub ground_m: Vec<f64>,
+    /// What it is stated to be carried by, from end to end; `None` where the ground carries it unless it cannot.
+    pub stated: Option<SpanKind>,
+    /// What an embankment and a cutting may be.
+    pub limits: EarthworkLimits,
+}
+
+/// A network's levels and spans.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Design {
+    /// The road's level at each station in meters; NaN in a part of the network without any ground.
+    pub levels_m: StationLevels,
+    /// For each section the spans along it in order, in its own stations.
+    pub spans: Vec<Vec<DesignSpan>>,
+}
+
+/// Designs a network: a course a section, a level a node that roads should pass through or NaN, and the length of
+/// vertical curves in meters.
+pub fn design(network: &SectionNetwork, courses: &[SectionGround], pins: &[f64], curve_m: f64) -> Design {
+    let chains = chains(network);
+    let mut targets: StationLevels = courses.iter().map(|course| course.ground_m.clone()).collect();
+    for (course, targets) in courses.iter().zip(&mut targets) {
+        if course.stated.is_some() {
+            targets.fill(f64::NAN);
+        }
+    }
+    let mut round = 1;
+    loop {
+        let mut levels_m = fit::through(network, &targets, pins);
+        let mut found = vec![Vec::new(); network.sections.len()];
+        for chain in &chains {
+            shape(network, chain, &targets, curve_m, &mut levels_m);
+            find(network, chain, courses, &levels_m, &mut found);
+        }
+        let released = release(network, courses, &found, &mut targets);
+        if released == 0 || round == ROUNDS {
+            state(network, courses, &mut found);
+            return Design { levels_m, spans: found };
+        }
+        round += 1;
+    }
+}
+
+/// Draws a chain straight where no ground counts, and rounds its kinks.
+fn shape(
+    network: &SectionNetwork,
+    chain: &SectionChain,
+    targets: &StationLevels,
+    curve_m: f64,
+    levels: &mut StationLevels,
+) {
+    let mut along = chain.gather(levels);
+    if along.iter().any(|level| level.is_nan()) {
+        return;
+    }
+    let stations = chain.stations(network);
+    straighten(&stations, &chain.gather(targets), &mut along);
+    chain.scatter(&eased(&stations, &along, curve_m), levels);
+}
+
+/// Straightens every run of stations without a target between its neighbors with one, or the chain's ends.
+fn straighten(stations: &[f64], targets: &[f64], levels: &mut [f64]) {
+    let last = levels.len() - 1;
+    let mut from = 0;
+    for to in 1..=last {
+        if targets[to].is_nan() && to < last {
+            continue;
+        }
+        let (run, rise) = (stations[to] - stations[from], levels[to] - levels[from]);
+        let grade = if run > 0.0 { rise / run } else { 0.0 };
+        for between in from + 1..to {
+            levels[between] = levels[from] + grade * (stations[between] - stations[from]);
+        }
+        from = to;
+    }
+}
+
+/// Finds the spans along a chain and tells them to its sections. Stated bridges and tunnels part a chain: what is found
+/// must not reach over them.
+fn find(
+    network: &SectionNetwork,
+    chain: &SectionChain,
+    courses: &[SectionGround],
+    levels: &StationLevels,
+    found: &mut [Vec<DesignSpan>],
+) {
+    for links in chain.links.split(|link| courses[link.section].stated.is_some()) {
+        let part = SectionChain { links: links.to_vec() };
+        let needs: StationLevels =
+            part.links.iter().map(|link| needs(&courses[link.section], &levels[link.section])).collect();
+        // The part's own sections in the order of its links.
+        let own = |index: usize| SectionLink { section: index, ..part.links[index] };
+        let local = SectionChain { links: (0..part.links.len()).map(own).collect() };
+        let spans = spans(&part.stations(network), &local.gather(&needs));
+        for link in &part.links {
+            let length_m = network.sections[link.section].length_m();
+            let within = spans.iter().filter_map(|span| {
+                let from = (span.from_m - link.start_m).max(0.0);
+                let to = (span.to_m - link.start_m).min(length_m);
+                let (from_m, to_m) = match link.direction {
+                    Direction::Forward => (from, to),
+                    Direction::Backward => (length_m - to, length_m - from),
+                };
+                (to > from).then_some(DesignSpan { kind: span.kind, from_m, to_m })
+            });
+            found[link.section] = within.collect();
+            if link.direction == Direction::Backward {
+                found[link.section].reverse();
+            }
+        }
+    }
+}
+
+fn needs(course: &SectionGround, levels: &[f64]) -> Vec<f64> {
+    let rises = levels.iter().zip(&course.ground_m).map(|(level, ground)| level - ground);
+    rises.map(|rise_m| course.limits.need(rise_m)).collect()
+}
+
+/// Lets go of the ground along spans; how many stations' ground was let go of that counted before.
+fn release(
+    network: &SectionNetwork,
+    courses: &[SectionGround],
+    found: &[Vec<DesignSpan>],
+    targets: &mut StationLevels,
+) -> usize {
+    let mut released = 0;
+    for (index, section) in network.sections.iter().enumerate() {
+        if courses[index].stated.is_some() {
+            continue;
+        }
+        for span in &found[index] {
+            let first = section.stations_m.partition_point(|&at| at <= span.from_m);
+            let last = section.stations_m.partition_point(|&at| at < span.to_m);
+            for target in targets[index].get_mut(first..last).into_iter().flatten() {
+                released += usize::from(!target.is_nan());
+                *target = f64::NAN;
+            }
+        }
+    }
+    released
+}
+
+/// Adds what is stated from end to end.
+fn state(network: &SectionNetwork, courses: &[SectionGround], found: &mut [Vec<DesignSpan>]) {
+    for (index, course) in courses.iter().enumerate() {
+        if let Some(kind) = course.stated {
+            found[index] = vec![DesignSpan { kind, from_m: 0.0, to_m: network.sections[index].length_m() }];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::earthworks::alignment::network::{NodeId, RoadSection};
+
+    const ANY: EarthworkLimits = EarthworkLimits { max_fill_m: f64::INFINITY, max_cut_m: f64::INFINITY };
+
+    /// A straight road of sections with 10 m between stations; every section begins where the last one ended.
+    fn road(
+        grounds: &[Vec<f64>],
+        max_grade: f64,
+        limits: EarthworkLimits,
+    ) -> (SectionNetwork, Vec<SectionGround>) {
+        let section = |(index, ground): (u32, &Vec<f64>)| RoadSection {
+            ends: [NodeId(index), NodeId(index + 1)],
+            stations_m: (0..ground.len()).map(|at| at as f64 * 10.0).collect(),
+            max_grade,
+        };
+        let course = |ground: &Vec<f64>| SectionGround { ground_m: ground.clone(), stated: None, limits };
+        let sections = (0..).zip(grounds).map(section).collect();
+        (SectionNetwork { nodes: grounds.len() + 1, sections }, grounds.iter().map(course).collect())
+    }
+
+    fn valley(width: usize, depth_m: f64) -> Vec<f64> {
+        let bottom = |index: usize| (30..30 + width).contains(&index);
+        (0..60 + width).map(|index| if bottom(index) { 100.0 - depth_m } else { 100.0 }).collect()
+    }
+
+    #[test]
+    fn a_deep_valley_is_bridged_and_no_longer_pulls_the_road_down() {
+        let limits = EarthworkLimits { max_fill_m: 6.0, max_cut_m: f64::INFINITY };
+        let (network, courses) = road(&[valley(20, 40.0)], 0.06, limits);
+        let design = design(&network, &courses, &[100.0, 100.0], 50.0);
+        assert_eq!(network.check(&design.levels_m, 1e-9), Ok(()));
+        assert_eq!(design.spans[0].len(), 1);
+        let DesignSpan { kind, from_m, to_m } = design.spans[0][0];
+        assert_eq!(kind, SpanKind::Bridge);
+        assert!(from_m > 285.0 && to_m < 505.0, "{from_m}..{to_m}");
+        assert!(design.levels_m[0].iter().all(|level| (level - 100.0).abs() < 1e-6), "{:?}", design.levels_m);
+    }
+
+    #[test]
+    fn a_bridge_goes_on_from_one_section_into_the_next() {
+        let limits = EarthworkLimits { max_fill_m: 6.0, max_cut_m: f64::INFINITY };
+        let ground = valley(20, 40.0);
+        let (network, courses) = road(&[ground[..=40].to_vec(), ground[40..].to_vec()], 0.06, limits);
+        let design = design(&network, &courses, &[f64::NAN; 3], 50.0);
+        assert_eq!(design.spans[0].len(), 1);
+        assert_eq!(design.spans[0][0].to_m, 400.0);
+        assert_eq!(design.spans[1][0].from_m, 0.0);
+    }
+
+    #[test]
+    fn a_ridge_too_high_to_cut_is_tunneled() {
+        let ridge: Vec<f64> = (0..81).map(|index| 160.0 - 2.0 * f64::abs(f64::from(index) - 40.0)).collect();
+        let limits = EarthworkLimits { max_fill_m: f64::INFINITY, max_cut_m: 12.0 };
+        let (network, courses) = road(std::slice::from_ref(&ridge), 0.05, limits);
+        let design = design(&network, &courses, &[80.0, 80.0], 50.0);
+        assert_eq!(design.spans[0].len(), 1);
+        assert_eq!(design.spans[0][0].kind, SpanKind::Tunnel);
+        for ((&station, &level), ground) in
+            network.sections[0].stations_m.iter().zip(&design.levels_m[0]).zip(ridge)
+        {
+            let span = design.spans[0][0];
+            let inside = (span.from_m..=span.to_m).contains(&station);
+            assert!(inside || ground - level <= 12.0 + 1e-9, "cut {} at {station}", ground - level);
+        }
+    }
+
+    #[test]
+    fn a_stated_bridge_runs_straight_whatever_lies_under_it() {
+        let grounds = [vec![10.0; 11], vec![10.0, 2.0, 30.0, 2.0, 14.0], vec![14.0; 11]];
+        let (network, mut courses) = road(&grounds, 0.2, ANY);
+        courses[1].stated = Some(SpanKind::Bridge);
+        let design = design(&network, &courses, &[10.0, f64::NAN, f64::NAN, 14.0], 0.0);
+        assert_eq!(design.spans[1], [DesignSpan { kind: SpanKind::Bridge, from_m: 0.0, to_m: 40.0 }]);
+        for (level, straight) in design.levels_m[1].iter().zip([10.0, 11.0, 12.0, 13.0, 14.0]) {
+            assert!((level - straight).abs() < 1e-9, "{:?}", design.levels_m[1]);
+        }
+    }
+}

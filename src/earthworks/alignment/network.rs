@@ -1,0 +1,86 @@
+//! Roads as a graph: sections between the nodes where roads end or meet.
+
+/// A place where roads end or meet, counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct NodeId(pub u32);
+
+impl NodeId {
+    /// Its place in a list of one entry a node.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A stretch of road between two nodes and none between.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoadSection {
+    /// Where it begins and ends; may be one node.
+    pub ends: [NodeId; 2],
+    /// Distances from its beginning in meters, from 0, never falling; at least two.
+    pub stations_m: Vec<f64>,
+    /// The steepest rise along it, meters per meter, above 0.
+    pub max_grade: f64,
+}
+
+impl RoadSection {
+    /// Its length in meters.
+    pub fn length_m(&self) -> f64 {
+        self.stations_m[self.stations_m.len() - 1]
+    }
+}
+
+/// One number a station of every section, such as heights in meters; NaN where there is none.
+pub type StationLevels = Vec<Vec<f64>>;
+
+/// A network of sections.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SectionNetwork {
+    /// How many nodes there are.
+    pub nodes: usize,
+    /// Their ends are all among the nodes.
+    pub sections: Vec<RoadSection>,
+}
+
+impl SectionNetwork {
+    /// Where sections end at each node: section and end, 0 or 1, in order.
+    pub fn arms(&self) -> Vec<Vec<(usize, usize)>> {
+        let mut arms = vec![Vec::new(); self.nodes];
+        for (index, section) in self.sections.iter().enumerate() {
+            for (end, node) in section.ends.into_iter().enumerate() {
+                arms[node.index()].push((index, end));
+            }
+        }
+        arms
+    }
+
+    /// Levels that are NaN everywhere.
+    pub fn nowhere(&self) -> StationLevels {
+        self.sections.iter().map(|section| vec![f64::NAN; section.stations_m.len()]).collect()
+    }
+
+    /// Whether no section rises or falls faster than it may, but for `slack` meters per meter, and all sections agree
+    /// where they meet, to a millimeter. Stations without a level are passed over.
+    ///
+    /// # Errors
+    /// A sentence that names the first place that does not.
+    pub fn check(&self, levels: &StationLevels, slack: f64) -> Result<(), String> {
+        let mut at_node = vec![f64::NAN; self.nodes];
+        for (index, (section, levels)) in self.sections.iter().zip(levels).enumerate() {
+            for (stations, pair) in section.stations_m.windows(2).zip(levels.windows(2)) {
+                let (run, rise) = (stations[1] - stations[0], (pair[1] - pair[0]).abs());
+                // A millimeter for stations that rounding has put beside each other.
+                if rise > run * (section.max_grade + slack) + 1e-3 {
+                    let station = stations[0];
+                    return Err(format!("section {index} rises {rise} m in {run} m at station {station} m"));
+                }
+            }
+            for (node, level) in section.ends.into_iter().zip([levels[0], levels[levels.len() - 1]]) {
+                let before = std::mem::replace(&mut at_node[node.index()], level);
+                if (before - level).abs() > 1e-3 {
+                    return Err(format!("{node:?} lies at {before} m, and at {level} m for section {index}"));
+                }
+            }
+        }
+        Ok(())
+    }
+}

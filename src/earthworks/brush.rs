@@ -1,0 +1,485 @@
+//! Brushes: shapes that change heights while the terrain is in use (craters, trenches, tire tracks, embankments).
+//!
+//! A brush gives every post a new height from its old one. What it changed comes back as rectangles of posts with
+//! the heights from before, so that whatever was computed from the heights can be mended instead of made anew. A
+//! brush neither fills nor makes holes: posts without data keep none, and a height that is not finite is not written.
+//!
+//! A long stroke changes few of the posts of its bounding rectangle; it is cut into tiles, and a tile's rectangle is
+//! that of the posts that changed.
+
+use glam::{DVec2, DVec3};
+
+use crate::geom::rect::Rect;
+use crate::terrain::lattice::{HIGHEST_M, Lattice, Post};
+use crate::terrain::post_rect::PostRect;
+use crate::terrain::volumes::Volumes;
+
+/// Posts along a tile's side: a brush up to this size is one rectangle. Smaller tiles follow a stroke more closely,
+/// and each costs a walk up the graph.
+const TILE: u32 = 64;
+
+/// One rectangle in which heights changed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Change {
+    /// The smallest rectangle around the posts that changed.
+    pub posts: PostRect,
+    /// The heights before, row by row of the rectangle; NaN where there is no data, then as now.
+    pub before: Vec<f32>,
+}
+
+impl Change {
+    /// The height before of a post of the rectangle.
+    #[inline]
+    pub fn height_before(&self, post: Post) -> f32 {
+        let first = self.posts.first;
+        self.before
+            [(post.row - first.row) as usize * self.posts.width() + (post.column - first.column) as usize]
+    }
+
+    /// The posts of one row of the rectangle from column `first` to column `last`: their heights before, and now.
+    pub fn row<'a>(&'a self, lattice: &'a Lattice, row: u32, (first, last): (u32, u32)) -> [&'a [f32]; 2] {
+        let count = (last - first + 1) as usize;
+        let from = (row - self.posts.first.row) as usize * self.posts.width();
+        let now = lattice.index(Post { column: first, row });
+        let before = &self.before[from + (first - self.posts.first.column) as usize..][..count];
+        [before, &lattice.heights()[now..][..count]]
+    }
+
+    /// The posts that changed, with their heights before.
+    pub fn changed<'a>(&'a self, lattice: &'a Lattice) -> impl Iterator<Item = (Post, f32)> {
+        let posts = self.posts.posts().zip(self.before.iter().copied());
+        posts.filter(|&(post, before)| lattice.height(post).to_bits() != before.to_bits())
+    }
+}
+
+/// What a brush did.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BrushChanges {
+    /// The rectangles that changed; those of one brush do not overlap.
+    pub pieces: Vec<Change>,
+    /// The earth moved.
+    pub volumes: Volumes,
+}
+
+impl BrushChanges {
+    /// These changes, then those.
+    pub fn and(mut self, then: Self) -> Self {
+        self.pieces.extend(then.pieces);
+        self.volumes.cut_m3 += then.volumes.cut_m3;
+        self.volumes.fill_m3 += then.volumes.fill_m3;
+        self
+    }
+}
+
+/// Sets the heights of a rectangle of posts, row by row from the south-west, in meters.
+///
+/// Posts beyond the lattice are left out, as are values that are missing, not finite or beyond ±[`HIGHEST_M`].
+pub fn set_heights(lattice: &mut Lattice, posts: PostRect, heights: &[f32]) -> BrushChanges {
+    let width = (i64::from(posts.last.column) - i64::from(posts.first.column) + 1).max(0) as usize;
+    let inside = PostRect { first: posts.first, last: posts.last }.clipped(lattice);
+    let mut changes = BrushChanges::default();
+    if let Some(inside) = inside {
+        let new = |post: Post, _: f32| {
+            let (row, column) = (post.row - posts.first.row, post.column - posts.first.column);
+            heights.get(row as usize * width + column as usize).copied().unwrap_or(f32::NAN)
+        };
+        changes.write(lattice, inside, new);
+    }
+    changes
+}
+
+/// A rectangle cut into tiles.
+fn tiles(posts: PostRect) -> impl Iterator<Item = PostRect> {
+    let steps = |from: u32, to: u32| {
+        (from..=to).step_by(TILE as usize).map(move |first| (first, (first + (TILE - 1)).min(to)))
+    };
+    steps(posts.first.row, posts.last.row).flat_map(move |(south, north)| {
+        steps(posts.first.column, posts.last.column).map(move |(west, east)| PostRect {
+            first: Post { column: west, row: south },
+            last: Post { column: east, row: north },
+        })
+    })
+}
+
+impl BrushChanges {
+    /// Gives every post of `posts` that has data its new height, in meters, from its old one.
+    fn write(&mut self, lattice: &mut Lattice, posts: PostRect, new: impl Fn(Post, f32) -> f32) {
+        let (first, last) = (posts.first, posts.last);
+        let area = lattice.cell().x * lattice.cell().y;
+        let mut bounds: Option<PostRect> = None;
+        let mut before = Vec::with_capacity(posts.width() * (last.row - first.row + 1) as usize);
+        for row in first.row..=last.row {
+            let heights = lattice.heights_mut(Post { column: first.column, row }, last.column);
+            before.extend_from_slice(heights);
+            let mut changed: Option<(u32, u32)> = None;
+            for (column, height) in (first.column..).zip(heights) {
+                let after = new(Post { column, row }, *height);
+                if !height.is_nan() && after.abs() <= HIGHEST_M && after != *height {
+                    let rise = f64::from(after) - f64::from(*height);
+                    self.volumes.fill_m3 += rise.max(0.0) * area;
+                    self.volumes.cut_m3 += (-rise).max(0.0) * area;
+                    changed = Some((changed.map_or(column, |(west, _)| west), column));
+                    *height = after;
+                }
+            }
+            if let Some((west, east)) = changed {
+                let [west, east] = [west, east].map(|column| Post { column, row });
+                let of_row = PostRect { first: west, last: east };
+                bounds = Some(bounds.map_or(of_row, |bounds| bounds.with(west).with(east)));
+            }
+        }
+        let Some(bounds) = bounds else { return };
+        let mut all = Change { posts, before };
+        if bounds != posts {
+            all = Change {
+                posts: bounds,
+                before: bounds.posts().map(|post| all.height_before(post)).collect(),
+            };
+        }
+        self.pieces.push(all);
+    }
+}
+
+/// A crater with a raised rim (003's bomb crater).
+///
+/// With ρ the distance from the center over the radius, the ground rises by
+///
+/// ```text
+/// −depth + (depth + rim)·ρ²   within the crest, ρ ≤ 1
+/// rim·(2 − ρ)²                of the ejecta, 1 ≤ ρ ≤ 2
+/// ```
+///
+/// so that it cuts π·radius²·depth²/(2·(depth + rim)) below the old ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crater {
+    /// World X and Y, meters.
+    pub center: DVec2,
+    /// From the center to the crest of the rim, meters, above 0.
+    pub radius_m: f64,
+    /// From the old ground down to the bottom, meters.
+    pub depth_m: f64,
+    /// From the old ground up to the crest, meters; 0 for none.
+    pub rim_m: f64,
+}
+
+impl Crater {
+    /// How far the ground rises at a distance from the center, meters; negative where it sinks.
+    pub fn rise_m(&self, distance_m: f64) -> f64 {
+        let part = distance_m / self.radius_m;
+        if part <= 1.0 {
+            (self.depth_m + self.rim_m) * part * part - self.depth_m
+        } else {
+            let left = (2.0 - part).max(0.0);
+            self.rim_m * left * left
+        }
+    }
+
+    /// Changes the lattice.
+    pub fn apply(&self, lattice: &mut Lattice) -> BrushChanges {
+        let bounds = Rect { min: self.center, max: self.center }.grown(2.0 * self.radius_m);
+        paint(lattice, bounds, |_| Some(()), |(), at, height| height + self.rise_m(at.distance(self.center)))
+    }
+}
+
+/// A trench along a line: flat at the bottom, straight sides, rounded ends.
+///
+/// At the distance d from the line the ground sinks by `depth · clamp((top/2 − d) / (top/2 − bottom/2), 0, 1)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trench {
+    /// World X and Y of its middle line, meters.
+    pub line: Vec<DVec2>,
+    /// Width at the bottom, meters.
+    pub bottom_m: f64,
+    /// Width at the old ground, meters, more than at the bottom.
+    pub top_m: f64,
+    /// Meters below the old ground.
+    pub depth_m: f64,
+}
+
+impl Trench {
+    /// Changes the lattice.
+    pub fn apply(&self, lattice: &mut Lattice) -> BrushChanges {
+        let sink = |near: LegOffset| {
+            let side = (self.top_m / 2.0 - near.distance()) / ((self.top_m - self.bottom_m) / 2.0);
+            self.depth_m * side.clamp(0.0, 1.0)
+        };
+        along(lattice, &flat(&self.line), self.top_m / 2.0, |line, at, height| {
+            nearest(line, at).map_or(height, |near| height - sink(near))
+        })
+    }
+}
+
+/// The two ruts that a vehicle leaves.
+///
+/// Each runs at half the gauge from the line; at the distance u from its middle the ground sinks by
+/// `depth · max(0, 1 − (2u / rut)²)`. Beyond the line's ends, at the distance o, it sinks by `max(0, 1 − 2o / rut)`
+/// of that.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TireTrack {
+    /// World X and Y of the vehicle's middle, meters.
+    pub line: Vec<DVec2>,
+    /// From the middle of one rut to that of the other, meters.
+    pub gauge_m: f64,
+    /// Width of a rut, meters, above 0.
+    pub rut_m: f64,
+    /// Meters below the old ground.
+    pub depth_m: f64,
+}
+
+impl TireTrack {
+    /// Changes the lattice.
+    pub fn apply(&self, lattice: &mut Lattice) -> BrushChanges {
+        let sink = |near: LegOffset| {
+            let across = 2.0 * (near.aside_m - self.gauge_m / 2.0) / self.rut_m;
+            let rest = 1.0 - 2.0 * near.beyond_m / self.rut_m;
+            self.depth_m * (1.0 - across * across).max(0.0) * rest.max(0.0)
+        };
+        along(lattice, &flat(&self.line), (self.gauge_m + self.rut_m) / 2.0, |line, at, height| {
+            nearest(line, at).map_or(height, |near| height - sink(near))
+        })
+    }
+}
+
+/// An embankment: a crown at the heights of its line, with side slopes down to the ground. It only fills.
+///
+/// At the distance d from the line's nearest point, whose height is c, the ground is at least
+/// `c − max(0, d − crown/2) / run`; where several legs of the line are near, the highest counts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Embankment {
+    /// World X and Y of its middle line and the crown's height there, meters; heights run straight in between.
+    pub line: Vec<DVec3>,
+    /// Width of the crown, meters.
+    pub crown_m: f64,
+    /// Meters outward for each meter down, above 0; 1.5 is common.
+    pub run: f64,
+    /// The side slopes end here, meters from the line, reached or not.
+    pub reach_m: f64,
+}
+
+impl Embankment {
+    /// Changes the lattice.
+    pub fn apply(&self, lattice: &mut Lattice) -> BrushChanges {
+        let crown =
+            |near: LegOffset| near.height_m - (near.distance() - self.crown_m / 2.0).max(0.0) / self.run;
+        let outside = |near: &LegOffset| near.distance() <= self.reach_m;
+        along(lattice, &self.line, self.reach_m, |line, at, height| {
+            line.iter().map(|leg| leg.beside(at)).filter(outside).map(crown).fold(height, f64::max)
+        })
+    }
+}
+
+/// A straight piece of a stroke's line.
+#[derive(Clone, Copy, Debug)]
+struct StrokeLeg {
+    from: DVec3,
+    to: DVec3,
+    /// Whether the line starts here.
+    starts: bool,
+    /// Whether the line ends here.
+    ends: bool,
+}
+
+/// Where a point lies beside a leg.
+#[derive(Clone, Copy, Debug)]
+struct LegOffset {
+    /// Meters from the leg's straight line; from its end where that is a bend and the point lies beyond it.
+    aside_m: f64,
+    /// Meters beyond the whole line's end; 0 elsewhere.
+    beyond_m: f64,
+    /// Height of the leg's nearest point.
+    height_m: f64,
+}
+
+impl StrokeLeg {
+    fn beside(&self, at: DVec2) -> LegOffset {
+        let (way, off) = (self.to.truncate() - self.from.truncate(), at - self.from.truncate());
+        let length = way.length();
+        let along = if length > 0.0 { off.dot(way) / length } else { 0.0 };
+        let nearest = along.clamp(0.0, length);
+        let aside_m = if length > 0.0 { off.perp_dot(way).abs() / length } else { off.length() };
+        let part = if length > 0.0 { nearest / length } else { 0.0 };
+        let height_m = self.from.z + (self.to.z - self.from.z) * part;
+        let beyond_m = (along - nearest).abs();
+        if (along < 0.0 && !self.starts) || (along > length && !self.ends) {
+            return LegOffset { aside_m: DVec2::new(aside_m, beyond_m).length(), beyond_m: 0.0, height_m };
+        }
+        LegOffset { aside_m, beyond_m, height_m }
+    }
+
+    fn bounds(&self) -> Rect {
+        Rect::around([self.from.truncate(), self.to.truncate()])
+    }
+}
+
+impl LegOffset {
+    fn distance(&self) -> f64 {
+        DVec2::new(self.aside_m, self.beyond_m).length()
+    }
+}
+
+/// Where a point lies beside the leg nearest to it.
+fn nearest(line: &[StrokeLeg], at: DVec2) -> Option<LegOffset> {
+    line.iter().map(|leg| leg.beside(at)).min_by(|a, b| a.distance().total_cmp(&b.distance()))
+}
+
+fn flat(line: &[DVec2]) -> Vec<DVec3> {
+    line.iter().map(|at| at.extend(0.0)).collect()
+}
+
+/// Gives the posts within `reach_m` of a line new heights, from the line's legs near each tile.
+fn along(
+    lattice: &mut Lattice,
+    line: &[DVec3],
+    reach_m: f64,
+    height: impl Fn(&Vec<StrokeLeg>, DVec2, f64) -> f64,
+) -> BrushChanges {
+    let last = line.len().saturating_sub(2);
+    let leg = |(index, ends): (usize, &[DVec3])| StrokeLeg {
+        from: ends[0],
+        to: ends[1],
+        starts: index == 0,
+        ends: index == last,
+    };
+    let legs: Vec<StrokeLeg> = line.windows(2).enumerate().map(leg).collect();
+    let bounds = Rect::around(line.iter().map(|at| at.truncate())).grown(reach_m);
+    let near = |tile: &Rect| {
+        let near = legs.iter().filter(|leg| leg.bounds().grown(reach_m).meets(tile)).copied();
+        Some(near.collect::<Vec<StrokeLeg>>()).filter(|near| !near.is_empty())
+    };
+    paint(lattice, bounds, near, height)
+}
+
+/// Gives the posts within `bounds` new heights, tile by tile: `near` finds what counts in a tile, if anything.
+fn paint<Near>(
+    lattice: &mut Lattice,
+    bounds: Rect,
+    near: impl Fn(&Rect) -> Option<Near>,
+    height: impl Fn(&Near, DVec2, f64) -> f64,
+) -> BrushChanges {
+    let mut changes = BrushChanges::default();
+    let cell = lattice.cell();
+    let world = |post: Post| DVec2::new(f64::from(post.column), f64::from(post.row)) * cell;
+    for tile in PostRect::within(lattice, &bounds).into_iter().flat_map(tiles) {
+        if let Some(near) = near(&Rect { min: world(tile.first), max: world(tile.last) }) {
+            let new = |post: Post, before: f32| height(&near, world(post), f64::from(before)) as f32;
+            changes.write(lattice, tile, new);
+        }
+    }
+    changes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    const SIDE: u32 = 161;
+    const CELL_M: f64 = 0.5;
+
+    fn level() -> Lattice {
+        let heights = vec![100.0; (SIDE * SIDE) as usize];
+        Lattice::new(DVec2::ZERO, DVec2::splat(CELL_M), SIDE, heights).expect("sound")
+    }
+
+    fn middle() -> DVec2 {
+        DVec2::splat(f64::from(SIDE / 2) * CELL_M)
+    }
+
+    fn near(found: f64, expected: f64, part: f64) {
+        assert!((found / expected - 1.0).abs() < part, "{found} against {expected}");
+    }
+
+    #[test]
+    fn a_crater_moves_what_its_formula_says_and_is_the_same_from_all_sides() {
+        let (mut lattice, crater) =
+            (level(), Crater { center: middle(), radius_m: 12.0, depth_m: 4.0, rim_m: 1.0 });
+        let changes = crater.apply(&mut lattice);
+        near(changes.volumes.cut_m3, PI * 144.0 * 16.0 / (2.0 * 5.0), 2e-3);
+        let net = PI * 144.0 * (1.0 - 4.0) / 2.0 + 5.0 / 6.0 * PI * 144.0;
+        near(changes.volumes.fill_m3 - changes.volumes.cut_m3, net, 2e-2);
+        let at = |column: u32, row: u32| lattice.height(Post { column, row });
+        for (column, row) in (0..SIDE).flat_map(|column| (0..SIDE).map(move |row| (column, row))) {
+            let turned = [(row, column), (SIDE - 1 - column, row), (column, SIDE - 1 - row)];
+            assert!(turned.iter().all(|&(x, y)| at(x, y) == at(column, row)), "{column}, {row}");
+        }
+        assert_eq!((at(80, 80), at(104, 80), at(130, 80)), (96.0, 101.0, 100.0));
+    }
+
+    #[test]
+    fn profiles_have_no_jumps() {
+        let crater = Crater { center: middle(), radius_m: 12.0, depth_m: 4.0, rim_m: 1.5 };
+        let rises = (0..3000).map(|step| crater.rise_m(f64::from(step) * 0.01)).collect::<Vec<f64>>();
+        assert!(rises.windows(2).all(|pair| (pair[0] - pair[1]).abs() < 0.02));
+        let bent = vec![DVec2::new(20.0, 20.0), DVec2::new(55.0, 30.0), DVec2::new(40.0, 62.0)];
+        let (mut trench, mut track, mut bank) = (level(), level(), level());
+        Trench { line: bent.clone(), bottom_m: 4.0, top_m: 12.0, depth_m: 2.0 }.apply(&mut trench);
+        TireTrack { line: bent.clone(), gauge_m: 14.0, rut_m: 8.0, depth_m: 2.0 }.apply(&mut track);
+        let line = bent.iter().map(|at| at.extend(103.0)).collect();
+        Embankment { line, crown_m: 6.0, run: 2.0, reach_m: 12.0 }.apply(&mut bank);
+        for (lattice, steepest) in [(trench, 0.5), (track, 1.0), (bank, 0.5)] {
+            for post in lattice.posts().filter(|post| post.column + 1 < SIDE && post.row + 1 < SIDE) {
+                let [here, east, north, _] = lattice.corner_heights(post);
+                let step = (here - east).abs().max((here - north).abs());
+                assert!(f64::from(step) <= steepest * CELL_M + 1e-3, "a step of {step} m at {post:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn strokes_move_what_their_profiles_say() {
+        let line = vec![DVec2::new(20.0, 40.0), DVec2::new(35.0, 40.0), DVec2::new(60.0, 40.0)];
+        let mut lattice = level();
+        let trench = Trench { line: line.clone(), bottom_m: 2.0, top_m: 6.0, depth_m: 3.0 };
+        let moved = trench.apply(&mut lattice).volumes;
+        let cone = PI * 3.0 / 3.0 * (9.0 + 3.0 + 1.0);
+        assert_eq!(moved.fill_m3, 0.0);
+        near(moved.cut_m3, 40.0 * 3.0 * 4.0 + cone, 2e-2);
+
+        let mut lattice = level();
+        let track = TireTrack { line: line.clone(), gauge_m: 12.0, rut_m: 5.0, depth_m: 0.6 };
+        let moved = track.apply(&mut lattice).volumes;
+        near(moved.cut_m3, 2.0 * (2.0 / 3.0 * 5.0 * 0.6) * (40.0 + 2.5), 2e-2);
+        assert_eq!(moved.fill_m3, 0.0);
+
+        let mut lattice = level();
+        let line = line.iter().map(|at| at.extend(102.0)).collect();
+        let moved = Embankment { line, crown_m: 4.0, run: 1.5, reach_m: 6.0 }.apply(&mut lattice).volumes;
+        let cone = PI * 2.0 / 3.0 * (25.0 + 10.0 + 4.0);
+        near(moved.fill_m3, 40.0 * (4.0 + 3.0) * 2.0 + cone, 2e-2);
+        assert_eq!(moved.cut_m3, 0.0);
+    }
+
+    #[test]
+    fn holes_stay_holes_and_the_pieces_hold_what_was_there() {
+        let heights =
+            (0..SIDE * SIDE).map(|index| if index % 7 == 0 { f32::NAN } else { index as f32 }).collect();
+        let mut lattice = Lattice::new(DVec2::ZERO, DVec2::splat(CELL_M), SIDE, heights).expect("sound");
+        let before = lattice.clone();
+        let line = vec![DVec2::new(-20.0, -3.0), DVec2::new(95.0, 90.0)];
+        let changes = Trench { line, bottom_m: 2.0, top_m: 5.0, depth_m: 9.0 }.apply(&mut lattice);
+        assert!(changes.pieces.len() > 2, "a long stroke comes in pieces");
+        let mut told = vec![false; before.heights().len()];
+        for piece in &changes.pieces {
+            for (post, height) in piece.posts.posts().zip(&piece.before) {
+                assert_eq!(before.height(post).to_bits(), height.to_bits());
+            }
+            piece.changed(&lattice).for_each(|(post, _)| told[lattice.index(post)] = true);
+        }
+        for (post, told) in lattice.posts().zip(told) {
+            let (old, new) = (before.height(post), lattice.height(post));
+            assert_eq!(old.is_nan(), new.is_nan());
+            assert_eq!(told, !old.is_nan() && old != new, "{post:?}");
+        }
+    }
+
+    #[test]
+    fn a_rectangle_takes_the_heights_given_as_far_as_it_lies_on_the_lattice() {
+        let mut lattice = level();
+        let posts = PostRect { first: Post { column: 159, row: 160 }, last: Post { column: 162, row: 162 } };
+        let changes = set_heights(&mut lattice, posts, &[1.0, f32::NAN, 3.0]);
+        assert_eq!(lattice.height(Post { column: 159, row: 160 }), 1.0);
+        assert_eq!(lattice.height(Post { column: 160, row: 160 }), 100.0);
+        assert_eq!(changes.pieces.len(), 1);
+        assert_eq!(changes.volumes, Volumes { cut_m3: 99.0 * CELL_M * CELL_M, fill_m3: 0.0 });
+    }
+}

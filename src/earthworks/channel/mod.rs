@@ -1,0 +1,151 @@
+//! Channels: the ground cut so that water falls along every river of a network, as far as the ground lets it.
+//!
+//! ```text
+//!  flow ──► which end of each line is the lower one
+//!  course ► stations where the line crosses the finest triangles, with the ground across the water there
+//!  reaches► the pieces of each line on which water can fall without too deep a cut; between them it climbs
+//!  levels ► the level at every station: it never rises along a reach, through the whole network, and no bank drowns
+//!  bed ───► the posts under the water and its banks, set to the level beside them
+//!  carve ─► posts lowered until the ground along no reach rises from one triangle to the next: exact on any cells
+//! ```
+//!
+//! The first five make a bed as a river has one. The last makes sure: cells may be ten times as wide as the stream, and
+//! then no level at a post says what the ground between the posts does. What it lowers it lowers as little as it can.
+//!
+//! Posts that are pinned already, under a lake, stay: a river that runs through a lake takes its level.
+//!
+//! What is promised: no post is cut deeper than its channels allow, the ground never rises along a line but where a
+//! [`Climb`] says so, and climbs are few: there the line does not follow the model's valley. To cut through them all, as
+//! tools that condition models for hydrology do, draws canyons where there are none.
+
+mod bed;
+mod carve;
+mod course;
+pub mod flow;
+mod levels;
+mod reaches;
+
+use crate::earthworks::channel::bed::ChannelBed;
+use crate::earthworks::channel::carve::CenterlinePiece;
+use crate::earthworks::channel::course::ChannelCourse;
+use crate::geom::polyline::Polyline;
+use crate::terrain::lattice::Lattice;
+use crate::terrain::volumes::Volumes;
+
+/// A river to cut.
+#[derive(Clone, Debug)]
+pub struct Channel {
+    /// The centerline in world coordinates, downstream.
+    pub line: Polyline,
+    /// The water's width at each vertex in meters, above 0.
+    pub widths_m: Vec<f64>,
+    /// How far beyond the bed the ground is blended, in meters, at least 0.
+    pub bank_m: f64,
+    /// How deep the ground may be cut, and how high it may be filled before a lake, in meters, above 0; infinite for any
+    /// depth. A post that several channels touch may be cut as deep as the deepest of them.
+    pub max_cut_m: f64,
+}
+
+/// What cutting one channel came to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cut {
+    /// The water's level in meters where the line first has ground, and where it last has; `None` where it has none.
+    pub levels_m: Option<(f64, f64)>,
+    /// How deep the ground was cut at most, in meters.
+    pub deepest_m: f64,
+    /// Earth moved. What two channels share counts for one of them.
+    pub volumes: Volumes,
+    /// Where the ground rises downstream all the same, in order; no two meet.
+    pub climbs: Vec<Climb>,
+}
+
+/// A stretch of a channel along which the ground rises downstream because no cut as deep as allowed lets water fall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Climb {
+    /// Where it starts, in meters from the line's start.
+    pub from_m: f64,
+    /// Where it ends.
+    pub to_m: f64,
+    /// How far the ground rises along it, in meters; what it falls on the way is taken off.
+    pub rise_m: f64,
+}
+
+/// What cutting a network came to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cuts {
+    /// One for each channel.
+    pub cuts: Vec<Cut>,
+}
+
+/// Why a network cannot be cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ChannelError {
+    /// Beds of hundreds of millions of posts.
+    #[error(
+        "the beds of these rivers would cover more than {MOST_VISITS} posts, each counted once a cell along the river"
+    )]
+    TooWide,
+}
+
+/// The most posts that beds may cover, counted once for each triangle that a centerline crosses beside them: some
+/// seconds' work.
+pub const MOST_VISITS: usize = 200_000_000;
+
+/// Cuts the ground so that it never rises along any of `channels` but where their cuts tell of a climb.
+///
+/// # Errors
+/// See [`ChannelError`]; the ground is then as it was.
+pub fn cut(lattice: &mut Lattice, channels: &[Channel]) -> Result<Cuts, ChannelError> {
+    let mut courses: Vec<ChannelCourse> =
+        channels.iter().map(|channel| ChannelCourse::of(lattice, channel)).collect();
+    levels::settle(&mut courses, channels);
+    let pieces = carve::pieces(lattice, &courses);
+    let mut bed = ChannelBed::shaped(lattice, &courses, &pieces)?;
+    let climbing = carve::carve(&mut bed, &pieces);
+    let mut cuts: Vec<Cut> = courses.iter().map(levels::ends).collect();
+    for (index, rise_m) in climbing {
+        let CenterlinePiece { channel, stations_m: [from_m, to_m], .. } = pieces[index];
+        cuts[channel as usize].climbs.push(Climb { from_m, to_m, rise_m });
+    }
+    cuts.iter_mut().for_each(|cut| joined(&mut cut.climbs));
+    bed.dig(lattice, &mut cuts);
+    Ok(Cuts { cuts })
+}
+
+/// Sorts climbs, and makes one of those that meet.
+fn joined(climbs: &mut Vec<Climb>) {
+    climbs.sort_by(|a, b| a.from_m.total_cmp(&b.from_m).then(a.to_m.total_cmp(&b.to_m)));
+    climbs.dedup_by(|next, climb| {
+        let meet = next.from_m <= climb.to_m;
+        if meet {
+            climb.to_m = climb.to_m.max(next.to_m);
+            climb.rise_m += next.rise_m;
+        }
+        meet
+    });
+}
+
+/// How far apart two stations may be that mean one place, in meters: rounding of world coordinates to map coordinates.
+const SAME_STATION_M: f64 = 1e-6;
+
+/// The most by which the ground rises along `line`, world coordinates downstream, above where it was lower before; 0
+/// where it never rises. What this room promises of every channel, on the finest triangles; where a line leaves the ground
+/// and comes back, and at each of `climbs`, it begins anew.
+pub fn check_rise(lattice: &Lattice, line: &Polyline, climbs: &[Climb]) -> f64 {
+    let map: Vec<_> = line.points().iter().map(|&at| at + lattice.origin()).collect();
+    let stations = crate::terrain::profile::profile(lattice, &map);
+    let (mut lowest_m, mut rise_m, mut passed) = (f64::INFINITY, 0.0, 0);
+    for station in stations {
+        let at_m = station.station_m;
+        passed += climbs[passed..].iter().take_while(|climb| climb.to_m + SAME_STATION_M < at_m).count();
+        let climbing = climbs.get(passed).is_some_and(|climb| climb.from_m + SAME_STATION_M < at_m);
+        match station.ground.height_m() {
+            Some(height_m) => {
+                lowest_m = if climbing { height_m } else { height_m.min(lowest_m) };
+                rise_m = (height_m - lowest_m).max(rise_m);
+            }
+            None => lowest_m = f64::INFINITY,
+        }
+    }
+    rise_m
+}

@@ -1,0 +1,230 @@
+//! A stretch of road on the ground, as grading sees it: where a place lies beside it, and how high the road is there.
+//!
+//! Beside a straight leg a place has the station of its foot on the centerline, so that the road is flat across. Beside a
+//! bend that would leap: on the inner side the nearest point goes from one leg straight to the other. So legs are parted
+//! by the line that halves their angle, as mitered ribbons are, and near it stations are squeezed, or stretched, until the
+//! bend's own station lies on that line for both legs:
+//!
+//! ```text
+//!   station 0 │        20 ┊    ╱ 40         both legs have station 40 on the line between them;
+//!             │───────────┊───╱             up to the ease, here 20 m before, the road is flat across
+//!             │───────────┊──╱ ╲
+//!             │───────────┊─╱   ╲
+//! ```
+
+use glam::DVec2;
+
+use crate::geom::polyline::Polyline;
+
+/// The steepest line between two legs, meters along for each meter aside: that of a square turn. Further, legs are
+/// nearly opposite, and hardly any of the ground beside them belongs to both.
+const STEEPEST_LEAN: f64 = 1.0;
+
+/// How far from a bend stations are squeezed, in the meters by which they must be at the formation's edge. There the
+/// road is then steeper by a third than along its centerline; with less it would be steeper yet, with more the road would
+/// lie aslant for longer.
+const EASE: f64 = 4.0;
+
+/// What a road's cross section looks like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CrossSection {
+    /// Half the carriageway's width in meters.
+    pub half_width_m: f64,
+    /// Each shoulder's width in meters.
+    pub shoulder_m: f64,
+    /// How far the carriageway falls from its middle to either side, meters per meter.
+    pub crown: f64,
+    /// Meters out for each meter down on an embankment; 0 for a wall.
+    pub fill_slope: f64,
+    /// Meters out for each meter up in a cutting; 0 for a wall.
+    pub cut_slope: f64,
+}
+
+/// What stands where a strip ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StripEnd {
+    /// Nothing, or more road: batters go round it.
+    Open,
+    /// A wall: an abutment, that an embankment would else run past into the valley, or the portal in the hill over a
+    /// tunnel.
+    Wall,
+}
+
+/// A stretch of road on the ground.
+#[derive(Clone, Debug)]
+pub struct GradingStrip {
+    /// Its centerline in world coordinates.
+    pub line: Polyline,
+    /// Stations along `line` in meters, from 0, rising, at least two.
+    pub stations_m: Vec<f64>,
+    /// The road's level on the centerline at each of them, in meters.
+    pub levels_m: Vec<f64>,
+    /// Across.
+    pub section: CrossSection,
+    /// What stands at its ends.
+    pub ends: [StripEnd; 2],
+}
+
+/// A place beside a leg of a strip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StripOffset {
+    /// How far from the edge of the formation, shoulders included, in meters; below 0 within.
+    pub out_m: f64,
+    /// The station of the leg that the place is beside.
+    pub station_m: f64,
+    /// How far from the centerline.
+    pub aside_m: f64,
+    /// How far beyond the strip's end; 0 beside it.
+    pub beyond_m: f64,
+}
+
+impl GradingStrip {
+    /// How many legs it has.
+    pub fn legs(&self) -> usize {
+        self.line.points().len() - 1
+    }
+
+    /// Where a world position lies beside a leg.
+    pub fn beside(&self, leg: usize, at: DVec2) -> StripOffset {
+        let points = self.line.points();
+        let (from, to) = (points[leg], points[leg + 1]);
+        let (length, way) = (from.distance(to), (to - from).normalize_or_zero());
+        let (along, left) = (way.dot(at - from), way.perp_dot(at - from));
+        let reach = self.section.half_width_m + self.section.shoulder_m;
+        let (before, after) = (-along, along - length);
+        let beyond_m = match (leg == 0 && before > 0.0, leg + 1 == self.legs() && after > 0.0) {
+            (true, _) => before,
+            (false, true) => after,
+            (false, false) => 0.0,
+        };
+        let out_m = if beyond_m > 0.0 {
+            libm::hypot((left.abs() - reach).max(0.0), beyond_m)
+        } else {
+            libm::hypot(left, before.max(after).max(0.0)) - reach
+        };
+        let from_start = along + self.squeezed(leg, leg, left, along);
+        let to_end = length - along + self.squeezed(leg + 1, leg, -left, length - along);
+        // Each end's ease reaches to the middle at most, so that one of the two is no more than the distance itself.
+        let within = if along < length / 2.0 { from_start } else { length - to_end };
+        let station_m = self.line.stations()[leg] + within.clamp(0.0, length);
+        StripOffset { out_m, station_m, aside_m: left.abs(), beyond_m }
+    }
+
+    /// What the station of a place `distance` meters along a leg from one of its vertices differs by from that, where the
+    /// place lies `aside` meters to the side, to the left seen from the leg's start and to the right seen from its end.
+    fn squeezed(&self, vertex: usize, leg: usize, aside: f64, distance: f64) -> f64 {
+        let lean = self.lean(vertex, leg);
+        let points = self.line.points();
+        let half = points[leg].distance(points[leg + 1]) / 2.0;
+        let reach = self.section.half_width_m + self.section.shoulder_m;
+        let ease = (EASE * reach * lean.abs()).min(half);
+        if distance >= ease || ease <= 0.0 {
+            return 0.0;
+        }
+        let border = (lean * aside).clamp(-ease / 2.0, ease / 2.0);
+        ease * (distance - border) / (ease - border) - distance
+    }
+
+    /// How far along a leg the line between it and its neighbor at a vertex goes for each meter to the left.
+    fn lean(&self, vertex: usize, leg: usize) -> f64 {
+        let points = self.line.points();
+        if vertex == 0 || vertex + 1 == points.len() {
+            return 0.0;
+        }
+        let way = |leg: usize| (points[leg + 1] - points[leg]).normalize_or_zero();
+        let (own, between) = (way(leg), way(vertex - 1).perp() + way(vertex).perp());
+        let (along, left) = (own.dot(between), own.perp_dot(between));
+        if left > 1e-9 { (along / left).clamp(-STEEPEST_LEAN, STEEPEST_LEAN) } else { 0.0 }
+    }
+
+    /// The road's level on the centerline.
+    pub fn level(&self, station_m: f64) -> f64 {
+        let after = self.stations_m.partition_point(|&at| at < station_m).clamp(1, self.stations_m.len() - 1);
+        let (from, to) = (self.stations_m[after - 1], self.stations_m[after]);
+        let part = if to > from { ((station_m - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
+        self.levels_m[after - 1] + (self.levels_m[after] - self.levels_m[after - 1]) * part
+    }
+
+    /// The level of the formation at a place beside the strip.
+    pub fn formation(&self, beside: &StripOffset) -> f64 {
+        self.level(beside.station_m) - self.section.crown * beside.aside_m.min(self.section.half_width_m)
+    }
+
+    /// Where the batters at a place would lie: the fill's, below which there may be no ground, and the cut's, above
+    /// which there may be none.
+    pub fn batters(&self, beside: &StripOffset) -> (f64, f64) {
+        let edge = self.formation(beside);
+        let CrossSection { fill_slope, cut_slope, .. } = self.section;
+        let out = beside.out_m.max(0.0);
+        let steps = |slope: f64| if slope > 0.0 { out / slope } else { f64::INFINITY };
+        (edge - steps(fill_slope), edge + steps(cut_slope))
+    }
+
+    /// Whether a place lies behind a wall, where no batter goes.
+    pub fn is_behind_wall(&self, leg: usize, beside: &StripOffset) -> bool {
+        let end = if leg == 0 && beside.station_m <= 0.0 { self.ends[0] } else { self.ends[1] };
+        beside.beyond_m > 0.0 && end == StripEnd::Wall
+    }
+}
+
+#[cfg(test)]
+pub(in crate::earthworks::grading) mod tests {
+    use super::*;
+
+    pub const FLAT: CrossSection =
+        CrossSection { half_width_m: 5.0, shoulder_m: 1.0, crown: 0.0, fill_slope: 1.5, cut_slope: 1.0 };
+
+    /// A strip along these points, its level rising evenly from the first to the second.
+    pub fn strip(points: &[DVec2], [first, last]: [f64; 2], section: CrossSection) -> GradingStrip {
+        let line = Polyline::new(points.iter().copied(), 0.0).expect("a line");
+        let stations_m = line.stations().to_vec();
+        let level = |station: &f64| first + (last - first) * station / line.length();
+        let levels_m = stations_m.iter().map(level).collect();
+        GradingStrip { line, stations_m, levels_m, section, ends: [StripEnd::Open; 2] }
+    }
+
+    #[test]
+    fn a_place_beside_a_straight_strip_has_its_foot_s_station() {
+        let strip = strip(&[DVec2::ZERO, DVec2::new(100.0, 0.0)], [0.0, 10.0], FLAT);
+        let beside = strip.beside(0, DVec2::new(30.0, 8.0));
+        assert_eq!(beside, StripOffset { out_m: 2.0, station_m: 30.0, aside_m: 8.0, beyond_m: 0.0 });
+        assert_eq!(strip.formation(&beside), 3.0);
+        assert_eq!(strip.batters(&beside), (3.0 - 2.0 / 1.5, 5.0));
+        assert_eq!(strip.beside(0, DVec2::new(104.0, 9.0)).out_m, 5.0, "ends are square");
+    }
+
+    #[test]
+    fn levels_are_continuous_across_the_line_between_two_legs() {
+        for quarter in 0..4 {
+            let turned = |at: DVec2| (0..quarter).fold(at, |at, _| at.perp());
+            let points = [DVec2::ZERO, DVec2::new(60.0, 0.0), DVec2::new(100.0, 30.0)].map(turned);
+            let strip = strip(&points, [0.0, 11.0], FLAT);
+            let between = ((points[1] - points[0]).normalize().perp()
+                + (points[2] - points[1]).normalize().perp())
+            .normalize();
+            for aside in [-6.0, -2.0, 3.0, 6.0] {
+                let at = points[1] + between * aside;
+                let levels = [0, 1].map(|leg| strip.level(strip.beside(leg, at).station_m));
+                assert!((levels[0] - levels[1]).abs() < 1e-9, "{levels:?} at {aside} m aside");
+            }
+        }
+    }
+
+    #[test]
+    fn a_road_is_flat_across_away_from_its_bends() {
+        let points = [DVec2::ZERO, DVec2::new(100.0, 0.0), DVec2::new(150.0, 50.0)];
+        let strip = strip(&points, [0.0, 17.0], FLAT);
+        for left in [-6.0, -3.0, 0.0, 3.0, 6.0] {
+            let beside = strip.beside(0, DVec2::new(80.0, left));
+            assert!((beside.station_m - 80.0).abs() < 1e-9, "{beside:?}");
+        }
+    }
+
+    #[test]
+    fn a_crown_falls_to_the_curbs_and_no_further() {
+        let strip =
+            strip(&[DVec2::ZERO, DVec2::new(0.0, 50.0)], [7.0, 7.0], CrossSection { crown: 0.02, ..FLAT });
+        let levels = [0.0, 2.5, 5.0, 5.5].map(|x| strip.formation(&strip.beside(0, DVec2::new(x, 20.0))));
+        assert_eq!(levels, [7.0, 6.95, 6.9, 6.9]);
+    }
+}

@@ -1,0 +1,10 @@
+//! What people do to the ground: the alignment of roads and rivers, and the earthworks that follow from it.
+
+pub mod alignment;
+pub mod brush;
+pub mod channel;
+pub mod falling_levels;
+pub mod grading;
+pub mod leveling;
+pub mod pad;
+pub mod shore;

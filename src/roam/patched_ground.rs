@@ -1,0 +1,57 @@
+//! The ground as the vertex graph sees it: every vertex with its place in drawn world space.
+
+use glam::{Vec2, Vec3};
+
+use crate::roam::graph::Vertex;
+use crate::roam::layout::PatchLayout;
+use crate::terrain::lattice::{Lattice, Post};
+
+/// What refinement reads: heights, the patches over them, and how many times heights are stretched when drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct PatchedGround<'a> {
+    /// The heights.
+    pub lattice: &'a Lattice,
+    /// The patches over them.
+    pub layout: &'a PatchLayout,
+    /// Vertical exaggeration; 1 draws heights as they are.
+    pub exaggeration: f32,
+}
+
+impl PatchedGround<'_> {
+    /// World X and Y of a vertex of the layout, meters.
+    #[inline]
+    pub fn plan(&self, vertex: Vertex) -> Vec2 {
+        self.lattice.position(self.layout.post(vertex))
+    }
+
+    /// Where a vertex of the layout is drawn, meters; at Z 0 where it has no data.
+    #[inline]
+    pub fn position(&self, vertex: Vertex) -> Vec3 {
+        let height = self.lattice.height(self.layout.post(vertex));
+        let z = if height.is_nan() { 0.0 } else { height * self.exaggeration };
+        self.plan(vertex).extend(z)
+    }
+
+    /// Whether the patch with south-west corner `corner` lies within the borders and has data at every post, so that
+    /// all its triangles are drawn.
+    pub fn is_whole(&self, corner: Vertex) -> bool {
+        let (lattice, side) = (self.lattice, self.layout.patch());
+        let far = corner.moved(side, side);
+        let within = far.x < lattice.columns() as i32 && far.y < lattice.rows() as i32;
+        let row = |y: i32| {
+            let start = lattice.index(Post { column: corner.x as u32, row: y as u32 });
+            &lattice.heights()[start..=start + side as usize]
+        };
+        within && (corner.y..=far.y).all(|y| row(y).iter().all(|height| !height.is_nan()))
+    }
+
+    /// The rectangle of the two triangles that `vertex` splits, south-west and north-east corner in meters; of
+    /// one of them where the other lies outside the terrain.
+    pub fn diamond(&self, vertex: Vertex) -> (Vec2, Vec2) {
+        let ends = vertex.hypotenuse().into_iter();
+        let apexes = vertex.parents().into_iter().filter(|&parent| self.layout.contains(parent));
+        ends.chain(apexes)
+            .map(|corner| self.plan(corner))
+            .fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(min, max), at| (min.min(at), max.max(at)))
+    }
+}

@@ -1,0 +1,171 @@
+//! What is told of the models: single ones corner by corner, many of one table by their extremes.
+//!
+//! A gap is the drawn height of a corner of the model's foot above the ground under it: above 0 it floats, below 0 it is
+//! buried. Gaps are those over the finest ground; in a picture they differ by what the displayed ground is off.
+
+use std::collections::BTreeMap;
+
+use crate::description::words::Clamp;
+use crate::scene::Placement;
+use crate::scene::builder::SceneBuilder;
+use crate::scene::footprint::ModelFootprint;
+use crate::scene::models::Group;
+use crate::scene::models::library::Library;
+use crate::scene::placement::{Grounds, ModelPose, stand};
+use crate::scene::report::{ReportCell, ReportColumn, SceneReport};
+use crate::scene::world_frame::WorldFrame;
+use crate::terrain::full_resolution::FullResolution;
+use crate::terrain::lattice::Lattice;
+use crate::terrain::triangle_surface::TriangleSurface;
+use crate::terrain::volumes::Volumes;
+
+const fn column(name: &'static str, unit: &'static str) -> ReportColumn {
+    ReportColumn { name, unit }
+}
+
+/// One row for a model that stands `at` a place.
+const MODELS: (&str, &[ReportColumn]) = (
+    "models",
+    &[
+        column("name", ""),
+        column("anchor", "m"),
+        column("gap front left", "m"),
+        column("gap front right", "m"),
+        column("gap back right", "m"),
+        column("gap back left", "m"),
+        column("tilt", "deg"),
+        column("plinth", "m"),
+        column("cut", "m3"),
+        column("fill", "m3"),
+    ],
+);
+
+/// One row for a table with instances.
+const INSTANCES: (&str, &[ReportColumn]) = (
+    "instances",
+    &[
+        column("name", ""),
+        column("models", ""),
+        column("off the ground", ""),
+        column("of no variant", ""),
+        column("least gap", "m"),
+        column("greatest gap", "m"),
+        column("greatest tilt", "deg"),
+        column("highest plinth", "m"),
+        column("cut", "m3"),
+        column("fill", "m3"),
+    ],
+);
+
+/// Adds what there is to tell of the document's models.
+pub fn tell(
+    groups: &[Group<'_>],
+    placements: &[Placement],
+    (library, volumes, places): (&Library<'_>, &BTreeMap<usize, Volumes>, &WorldFrame<'_>),
+    lattice: &Lattice,
+    collected: &mut SceneBuilder,
+) {
+    let finest = FullResolution { lattice, exaggeration: places.exaggeration };
+    for group in groups {
+        let all: Vec<Told> = group
+            .placements
+            .clone()
+            .filter_map(|index| {
+                let placement = &placements[index];
+                Told::of(placement, library.footprint(placement.model), &finest, volumes.get(&index).copied())
+            })
+            .collect();
+        let name = group.table.name.clone().unwrap_or_else(|| group.table.file.get_ref().clone());
+        if group.table.instances.is_some() {
+            note(group, &name, &mut collected.notes);
+            collected.report.add(INSTANCES, instances(group, name, &all));
+        } else {
+            let report: &mut SceneReport = &mut collected.report;
+            all.iter().for_each(|told| report.add(MODELS, told.row(name.clone())));
+        }
+    }
+}
+
+/// What is told of one model.
+struct Told {
+    anchor_m: Option<f64>,
+    gaps_m: [Option<f64>; 4],
+    tilt_deg: f64,
+    plinth_m: Option<f64>,
+    moved: Option<Volumes>,
+}
+
+impl Told {
+    fn of(
+        placement: &Placement,
+        footprint: &ModelFootprint,
+        finest: &FullResolution<'_>,
+        moved: Option<Volumes>,
+    ) -> Option<Self> {
+        let grounds = Grounds { displayed: finest, finest: *finest };
+        let found: ModelPose = stand(placement, footprint, &grounds)?;
+        let gap = |corner: glam::Vec3| {
+            Some(f64::from(corner.z) - finest.displayed_z(corner.truncate().as_dvec2())?)
+        };
+        Some(Self {
+            anchor_m: (placement.clamp != Clamp::Absolute)
+                .then_some(found.anchor_z / f64::from(finest.exaggeration)),
+            gaps_m: found.base(footprint).map(gap),
+            tilt_deg: found.tilt_rad.to_degrees(),
+            plinth_m: found.plinth_height_m(placement, footprint, &grounds),
+            moved,
+        })
+    }
+
+    fn row(&self, name: String) -> Vec<ReportCell> {
+        let [front_left, front_right, back_right, back_left] = self.gaps_m.map(number);
+        vec![
+            ReportCell::Text(name),
+            number(self.anchor_m),
+            front_left,
+            front_right,
+            back_right,
+            back_left,
+            ReportCell::Number(self.tilt_deg),
+            number(self.plinth_m),
+            number(self.moved.map(|moved| moved.cut_m3)),
+            number(self.moved.map(|moved| moved.fill_m3)),
+        ]
+    }
+}
+
+fn instances(group: &Group<'_>, name: String, all: &[Told]) -> Vec<ReportCell> {
+    let gaps = || all.iter().flat_map(|told| told.gaps_m).flatten();
+    let total = |of: fn(&Volumes) -> f64| {
+        let moved: Vec<f64> = all.iter().filter_map(|told| told.moved.as_ref()).map(of).collect();
+        (!moved.is_empty()).then(|| moved.iter().sum())
+    };
+    vec![
+        ReportCell::Text(name),
+        ReportCell::Count(group.placements.len()),
+        ReportCell::Count(group.off),
+        ReportCell::Count(group.unknown),
+        number(gaps().min_by(f64::total_cmp)),
+        number(gaps().max_by(f64::total_cmp)),
+        number(all.iter().map(|told| told.tilt_deg).max_by(f64::total_cmp)),
+        number(all.iter().filter_map(|told| told.plinth_m).max_by(f64::total_cmp)),
+        number(total(|moved| moved.cut_m3)),
+        number(total(|moved| moved.fill_m3)),
+    ]
+}
+
+fn number(value: Option<f64>) -> ReportCell {
+    value.map_or(ReportCell::Empty, ReportCell::Number)
+}
+
+fn note(group: &Group<'_>, name: &str, notes: &mut Vec<String>) {
+    let models = |count: usize| if count == 1 { "1 model".into() } else { format!("{count} models") };
+    if group.off > 0 {
+        notes.push(format!("{} of '{name}' left out: off the elevation model", models(group.off)));
+    }
+    if group.unknown > 0 {
+        let file = group.table.file.get_ref();
+        let (what, name_s) = (models(group.unknown), if group.unknown == 1 { "names" } else { "name" });
+        notes.push(format!("{what} of '{name}' {name_s} none of its variants; '{file}' was taken"));
+    }
+}

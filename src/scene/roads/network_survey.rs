@@ -1,0 +1,213 @@
+//! The roads that the ground follows as a network to be designed: what is stated for each, and the ground under them.
+
+use std::ops::Range;
+
+use toml::Spanned;
+
+use crate::description::defaults;
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::Document;
+use crate::description::features::RoadTable;
+use crate::description::words;
+use crate::earthworks::alignment::design::{Design, SectionGround};
+use crate::earthworks::alignment::network::{RoadSection, SectionNetwork};
+use crate::earthworks::alignment::spans::{DesignSpan, EarthworkLimits, SpanKind};
+use crate::earthworks::grading::strip;
+use crate::scene::attributes::Defaulted;
+use crate::scene::roads::centerline::{Centerline, Support};
+use crate::scene::roads::meetings::RoadMeetings;
+use crate::scene::roads::route::{Route, points_between};
+use crate::terrain::lattice::Lattice;
+use crate::terrain::profile::profile;
+
+/// No more stations than this: as many as 100 000 km of road have over cells of 15 m, and some 2 GB.
+const MOST_STATIONS: f64 = 2e7;
+
+/// What is stated for a road that the ground follows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rules {
+    /// The steepest rise, meters per meter.
+    pub max_grade: f64,
+    /// What embankments and cuttings may be.
+    pub limits: EarthworkLimits,
+    /// Its cross section.
+    pub section: strip::CrossSection,
+}
+
+impl Rules {
+    /// The rules of a road; `None` where it follows the ground.
+    pub fn of(document: &Document, road: &Centerline, defaulted: &mut Defaulted) -> Option<Self> {
+        let table = &document.roads[road.table];
+        if !conforms(table) {
+            return None;
+        }
+        let stated = ("[[road]] max_grade", table.max_grade.as_ref());
+        let value = |key: &Option<Spanned<f64>>| key.as_ref().map(|value| *value.get_ref());
+        Some(Self {
+            max_grade: road.attributes.number_or(stated, defaults::MAX_GRADE_PERCENT, defaulted) / 100.0,
+            limits: EarthworkLimits {
+                max_fill_m: value(&table.max_fill).unwrap_or(f64::INFINITY),
+                max_cut_m: value(&table.max_cut).unwrap_or(f64::INFINITY),
+            },
+            section: strip::CrossSection {
+                half_width_m: road.options.width_m / 2.0,
+                shoulder_m: road
+                    .attributes
+                    .number(table.shoulder.as_ref())
+                    .unwrap_or(defaults::ROAD_SHOULDER_M),
+                crown: value(&table.crown).unwrap_or(defaults::CROWN_PERCENT) / 100.0,
+                fill_slope: value(&table.fill_slope).unwrap_or(defaults::FILL_SLOPE),
+                cut_slope: value(&table.cut_slope).unwrap_or(defaults::CUT_SLOPE),
+            },
+        })
+    }
+}
+
+/// Whether the ground follows the roads of a table.
+pub fn conforms(table: &RoadTable) -> bool {
+    table.profile.as_ref().is_some_and(|profile| *profile.get_ref() == words::ProfileMode::Conform)
+}
+
+/// A network of roads with what is known of it.
+pub struct NetworkSurvey {
+    /// The sections between nodes.
+    pub network: SectionNetwork,
+    /// One a section.
+    pub courses: Vec<SectionGround>,
+    /// One a node: the ground where a single road ends, NaN elsewhere.
+    pub pins: Vec<f64>,
+    /// One a road of the network.
+    surveyed: Vec<SurveyedRoad>,
+}
+
+/// A road with its sections.
+struct SurveyedRoad {
+    road: usize,
+    sections: Range<usize>,
+    /// Where its sections begin along it.
+    starts_m: Vec<f64>,
+}
+
+impl NetworkSurvey {
+    /// Surveys the roads that have rules.
+    ///
+    /// # Errors
+    /// They have more stations than can be held.
+    pub fn of(
+        document: &Document,
+        lattice: &Lattice,
+        roads: &[Centerline],
+        rules: &[Option<Rules>],
+        meetings: &RoadMeetings,
+    ) -> Result<Self, Diagnostic> {
+        let network = SectionNetwork { nodes: meetings.nodes, sections: Vec::new() };
+        let mut survey = Self { network, courses: Vec::new(), pins: Vec::new(), surveyed: Vec::new() };
+        let mut stations = 0.0;
+        for (index, (road, rules)) in roads.iter().zip(rules).enumerate() {
+            let Some(rules) = rules else { continue };
+            stations += stations_of(lattice, road);
+            if stations > MOST_STATIONS {
+                return Err(too_many(document, road));
+            }
+            survey.add(lattice, (index, road), rules, meetings);
+        }
+        survey.pin();
+        Ok(survey)
+    }
+
+    fn add(
+        &mut self,
+        lattice: &Lattice,
+        (index, road): (usize, &Centerline),
+        rules: &Rules,
+        meetings: &RoadMeetings,
+    ) {
+        let (first, stops) = (self.network.sections.len(), &meetings.stops[index]);
+        for pair in stops.windows(2) {
+            let origin = lattice.origin();
+            let points = points_between(&road.line, pair[0].station_m, pair[1].station_m);
+            let points: Vec<_> = points.into_iter().map(|point| point + origin).collect();
+            let stations = profile(lattice, &points);
+            self.network.sections.push(RoadSection {
+                ends: [pair[0].node, pair[1].node],
+                stations_m: stations.iter().map(|at| at.station_m).collect(),
+                max_grade: rules.max_grade,
+            });
+            self.courses.push(SectionGround {
+                ground_m: stations.iter().map(|at| at.ground.height_m().unwrap_or(f64::NAN)).collect(),
+                stated: stated(road.carried),
+                limits: rules.limits,
+            });
+        }
+        let starts_m = stops.iter().map(|stop| stop.station_m).collect();
+        self.surveyed.push(SurveyedRoad {
+            road: index,
+            sections: first..self.network.sections.len(),
+            starts_m,
+        });
+    }
+
+    /// A road that ends where no other of the network does ends on the ground.
+    fn pin(&mut self) {
+        let pin = |arms: Vec<(usize, usize)>| match arms[..] {
+            [(section, end)] => {
+                let ground = &self.courses[section].ground_m;
+                ground[end * (ground.len() - 1)]
+            }
+            _ => f64::NAN,
+        };
+        self.pins = self.network.arms().into_iter().map(pin).collect();
+    }
+
+    /// The roads with their design, section by section on end; without those that no ground gave a level.
+    pub fn routes(&self, design: &Design) -> Vec<Route> {
+        let routes = self.surveyed.iter().map(|surveyed| self.route(surveyed, design));
+        routes.filter(|route| route.design_m.iter().all(|level| level.is_finite())).collect()
+    }
+
+    fn route(&self, surveyed: &SurveyedRoad, design: &Design) -> Route {
+        let mut route = Route {
+            road: surveyed.road,
+            stations_m: Vec::new(),
+            ground_m: Vec::new(),
+            design_m: Vec::new(),
+            spans: Vec::new(),
+        };
+        for (section, &start_m) in surveyed.sections.clone().zip(&surveyed.starts_m) {
+            // The node between two sections is the last station of one and the first of the next.
+            let skipped = usize::from(!route.stations_m.is_empty());
+            let stations = self.network.sections[section].stations_m.iter().skip(skipped);
+            route.stations_m.extend(stations.map(|at| start_m + at));
+            route.ground_m.extend(self.courses[section].ground_m.iter().skip(skipped));
+            route.design_m.extend(design.levels_m[section].iter().skip(skipped));
+            route.spans.extend(design.spans[section].iter().map(|span| DesignSpan {
+                kind: span.kind,
+                from_m: start_m + span.from_m,
+                to_m: start_m + span.to_m,
+            }));
+        }
+        route
+    }
+}
+
+fn stated(carried: Support) -> Option<SpanKind> {
+    match carried {
+        Support::Ground => None,
+        Support::Bridge => Some(SpanKind::Bridge),
+        Support::Tunnel => Some(SpanKind::Tunnel),
+    }
+}
+
+/// About how many stations a road will have.
+fn stations_of(lattice: &Lattice, road: &Centerline) -> f64 {
+    let (extent, cell) = (lattice.extent(), lattice.cell());
+    let on_ground = road.line.points().windows(2).filter_map(|ends| extent.clip_line(ends[0], ends[1]));
+    let crossed = on_ground.map(|(from, to)| 2.0 * ((to - from).abs() / cell).element_sum());
+    crossed.sum::<f64>() + road.line.points().len() as f64
+}
+
+fn too_many(document: &Document, road: &Centerline) -> Diagnostic {
+    let message = format!("these roads have more than {MOST_STATIONS:e} stations on the elevation model");
+    let help = "let fewer of them conform, by a `where` or in a scene of a smaller area";
+    document.error_at(document.roads[road.table].source.span(), message).with_help(help)
+}

@@ -1,0 +1,40 @@
+//! What stands on the ground and must be set anew wherever the ground is displayed otherwise.
+
+use crate::draw::list::DrawMesh;
+use crate::structure::building_footing::WallFooting;
+use crate::structure::faces::Faces;
+use crate::structure::fence::Posts;
+use crate::structure::fence_band::FenceBand;
+use crate::structure::obstacle::Obstacles;
+use crate::structure::power::PowerLine;
+use crate::terrain::support_surface::SupportSurface;
+
+/// Something upright.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DrapedSolid {
+    /// A wall, a hedge, a bank of earth or a rail.
+    Band(FenceBand),
+    /// The posts of a fence.
+    Posts(Posts),
+    /// A belt of obstacles.
+    Obstacles(Obstacles),
+    /// Pylons and wires.
+    PowerLine(PowerLine),
+    /// What keeps a building from floating.
+    Footing(WallFooting),
+}
+
+impl DrapedSolid {
+    /// Its triangles on the ground in world space; empty where there is none under it.
+    pub fn mesh(&self, under: SupportSurface<'_>) -> DrawMesh {
+        let mut faces = Faces::default();
+        match self {
+            Self::Band(band) => band.build(under.displayed, &mut faces),
+            Self::Posts(posts) => posts.build(under, &mut faces),
+            Self::Obstacles(obstacles) => obstacles.build(under, &mut faces),
+            Self::PowerLine(line) => line.build(under, &mut faces),
+            Self::Footing(footing) => footing.build(under.displayed, &mut faces),
+        }
+        faces.into_mesh()
+    }
+}

@@ -1,0 +1,75 @@
+//! Rectangles of posts.
+
+use glam::DVec2;
+
+use crate::geom::rect::Rect;
+use crate::terrain::lattice::{Lattice, Post};
+
+/// A rectangle of posts, ends included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PostRect {
+    /// South-west.
+    pub first: Post,
+    /// North-east.
+    pub last: Post,
+}
+
+impl PostRect {
+    /// Grown by posts east and west, north and south, as far as the lattice reaches.
+    pub fn grown(self, by: (u32, u32), lattice: &Lattice) -> Self {
+        let (column, row) = (self.first.column.saturating_sub(by.0), self.first.row.saturating_sub(by.1));
+        Self {
+            first: Post { column, row },
+            last: Post {
+                column: self.last.column.saturating_add(by.0).min(lattice.columns() - 1),
+                row: self.last.row.saturating_add(by.1).min(lattice.rows() - 1),
+            },
+        }
+    }
+
+    /// All posts, row by row from the south-west.
+    pub fn posts(self) -> impl Iterator<Item = Post> {
+        (self.first.row..=self.last.row).flat_map(move |row| {
+            (self.first.column..=self.last.column).map(move |column| Post { column, row })
+        })
+    }
+
+    /// Posts along a row.
+    pub fn width(&self) -> usize {
+        (self.last.column - self.first.column + 1) as usize
+    }
+
+    /// Whether the post lies inside.
+    pub fn contains(&self, post: Post) -> bool {
+        (self.first.column..=self.last.column).contains(&post.column)
+            && (self.first.row..=self.last.row).contains(&post.row)
+    }
+
+    /// Grown as far as the post.
+    pub fn with(self, post: Post) -> Self {
+        let (first, last) = (self.first, self.last);
+        Self {
+            first: Post { column: first.column.min(post.column), row: first.row.min(post.row) },
+            last: Post { column: last.column.max(post.column), row: last.row.max(post.row) },
+        }
+    }
+
+    /// The part on the lattice; `None` where nothing is left.
+    pub fn clipped(self, lattice: &Lattice) -> Option<Self> {
+        let last = Post {
+            column: self.last.column.min(lattice.columns() - 1),
+            row: self.last.row.min(lattice.rows() - 1),
+        };
+        (self.first.column <= last.column && self.first.row <= last.row)
+            .then_some(Self { first: self.first, last })
+    }
+
+    /// The posts within a rectangle in world space; `None` for none.
+    pub fn within(lattice: &Lattice, rect: &Rect) -> Option<Self> {
+        let (low, high) = ((rect.min / lattice.cell()).ceil(), (rect.max / lattice.cell()).floor());
+        let last = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
+        let (low, high) = (low.max(DVec2::ZERO), high.min(last));
+        let post = |at: DVec2| Post { column: at.x as u32, row: at.y as u32 };
+        (low.x <= high.x && low.y <= high.y).then(|| Self { first: post(low), last: post(high) })
+    }
+}

@@ -1,0 +1,202 @@
+//! The ground under what stands: straight lines laid on a ground's triangles, and the height at a point.
+//!
+//! A line is cut where it passes from one triangle to the next; between two cuts the ground under it is straight, so
+//! whatever is built from cut to cut lies on the ground exactly, neither in it nor above it:
+//!
+//! ```text
+//!  from ●──────┬───────┬────● to       seen from above: three triangles, two cuts
+//!             ╱ ╲       ╲
+//! ```
+
+use glam::DVec2;
+
+use crate::geom::rect::Rect;
+use crate::terrain::full_resolution::FullResolution;
+use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface, plane_z};
+
+/// What counts as lying in a triangle, in meters beside it: more than rounding, so that no line falls between two
+/// triangles, and less than anybody sees.
+const BESIDE_M: f64 = 1e-7;
+
+/// The most pieces in which the triangles near a long line are looked up: its own rectangle would hold many that it
+/// does not meet.
+const MOST_PIECES: f64 = 64.0;
+
+/// Lines up to this long, in meters, are looked up at once.
+const PIECE_M: f64 = 100.0;
+
+/// A place on a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineStation {
+    /// How far along the line, 0 at its start and 1 at its end.
+    pub part: f64,
+    /// World Z of the ground there.
+    pub z: f64,
+}
+
+/// A stretch of a line with ground under it: stations in rising order, at least two; straight in between.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroundRun {
+    stations: Vec<LineStation>,
+}
+
+impl GroundRun {
+    /// The stations.
+    pub fn stations(&self) -> &[LineStation] {
+        &self.stations
+    }
+
+    /// From where to where it goes, in parts of the line.
+    pub fn span(&self) -> (f64, f64) {
+        (self.stations[0].part, self.stations[self.stations.len() - 1].part)
+    }
+
+    /// World Z of the ground at a part of the line; that at the nearer end beyond the run.
+    pub fn z_at(&self, part: f64) -> f64 {
+        let after = self.stations.partition_point(|station| station.part < part);
+        let to = self.stations[after.min(self.stations.len() - 1)];
+        let from = self.stations[after.max(1).min(self.stations.len() - 1) - 1];
+        let way = to.part - from.part;
+        let along = if way > 0.0 { ((part - from.part) / way).clamp(0.0, 1.0) } else { 1.0 };
+        from.z + (to.z - from.z) * along
+    }
+}
+
+/// The line `from`..`to` laid on `ground`, cut at the edges of its triangles; in several runs where the ground has gaps,
+/// in none where there is no ground or the line is a point.
+pub fn runs(ground: &dyn TriangleSurface, from: DVec2, to: DVec2) -> Vec<GroundRun> {
+    let length = from.distance(to);
+    if !(length.is_finite() && length > BESIDE_M) {
+        return Vec::new();
+    }
+    let pieces = (length / PIECE_M).ceil().clamp(1.0, MOST_PIECES) as u32;
+    let mut over = Vec::new();
+    for piece in 0..pieces {
+        let [low, high] = [piece, piece + 1].map(|at| f64::from(at) / f64::from(pieces));
+        let rect = Rect::around([from.lerp(to, low), from.lerp(to, high)]).grown(BESIDE_M);
+        ground.visit_facets(&rect, &mut |facet| {
+            if let Some((enter, leave)) = parts_over(facet, from, to) {
+                let z = |part: f64| plane_z(facet, from.lerp(to, part));
+                over.push([enter.max(low), leave.min(high)].map(|part| LineStation { part, z: z(part) }));
+            }
+        });
+    }
+    over.retain(|[enter, leave]| enter.part < leave.part);
+    over.sort_by(|a, b| a[0].part.total_cmp(&b[0].part).then(a[1].part.total_cmp(&b[1].part)));
+    joined(&over, 4.0 * BESIDE_M / length)
+}
+
+/// Runs from the stretches over single triangles, in rising order; gaps up to `gap` are rounding.
+fn joined(over: &[[LineStation; 2]], gap: f64) -> Vec<GroundRun> {
+    let mut found: Vec<GroundRun> = Vec::new();
+    for &[enter, leave] in over {
+        if let Some(run) = found.last_mut().filter(|run| enter.part <= run.span().1 + gap) {
+            if leave.part > run.span().1 + gap {
+                run.stations.push(leave);
+            }
+        } else if leave.part - enter.part > gap {
+            found.push(GroundRun { stations: vec![enter, leave] });
+        }
+    }
+    found
+}
+
+/// The parts of a line between which it lies over a triangle (Cyrus and Beck 1978).
+fn parts_over(facet: &SurfaceTriangle, from: DVec2, to: DVec2) -> Option<(f64, f64)> {
+    let corners = facet.map(|corner| corner.truncate().as_dvec2());
+    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    for side in 0..3 {
+        let (start, way) = (corners[side], corners[(side + 1) % 3] - corners[side]);
+        let beside = BESIDE_M * way.length();
+        let (first, last) = (way.perp_dot(from - start) + beside, way.perp_dot(to - start) + beside);
+        if first < 0.0 && last < 0.0 {
+            return None;
+        }
+        if first < 0.0 {
+            enter = enter.max(first / (first - last));
+        } else if last < 0.0 {
+            leave = leave.min(first / (first - last));
+        }
+    }
+    (enter < leave).then_some((enter, leave))
+}
+
+/// The ground that a picture's uprights stand on: as displayed, or as it is where the ground there is out of view, since
+/// what stands on it may be in view all the same.
+#[derive(Clone, Copy)]
+pub struct SupportSurface<'a> {
+    /// The displayed ground.
+    pub displayed: &'a dyn TriangleSurface,
+    /// The ground itself.
+    pub ground: FullResolution<'a>,
+}
+
+impl SupportSurface<'_> {
+    /// World Z of the ground at a world position; `None` where there is no data.
+    pub fn z(&self, at: DVec2) -> Option<f64> {
+        self.displayed.displayed_z(at).or_else(|| self.ground.displayed_z(at))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::terrain::lattice::Lattice;
+    use proptest::prelude::*;
+
+    fn rough(holes: &[usize]) -> Lattice {
+        let mut heights: Vec<f32> = (0..400).map(|index| libm::sinf(index as f32 * 2.3) * 5.0).collect();
+        for &hole in holes {
+            heights[hole] = f32::NAN;
+        }
+        Lattice::new(DVec2::ZERO, DVec2::new(10.0, 7.0), 20, heights).expect("sound")
+    }
+
+    proptest! {
+        #[test]
+        fn a_line_lies_on_the_ground_all_along(
+            from in (-20.0..210.0f64, -20.0..150.0f64), to in (-20.0..210.0f64, -20.0..150.0f64),
+            snapped in proptest::bool::ANY,
+        ) {
+            let lattice = rough(&[]);
+            let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
+            let onto = |at: (f64, f64)| {
+                let at = DVec2::from(at);
+                if snapped { (at / DVec2::new(10.0, 7.0)).round() * DVec2::new(10.0, 7.0) } else { at }
+            };
+            let (from, to) = (onto(from), onto(to));
+            let found = runs(&ground, from, to);
+            for step in 0..=200 {
+                let part = f64::from(step) / 200.0;
+                // A line that only touches the border has no ground under it.
+                let near = [part - 1e-3, part + 1e-3].map(|part| ground.displayed_z(from.lerp(to, part)));
+                let (Some(z), [Some(_), Some(_)]) = (ground.displayed_z(from.lerp(to, part)), near) else {
+                    continue;
+                };
+                if from == to || part == 0.0 || part == 1.0 { continue }
+                let run = found.iter().find(|run| (run.span().0 - 1e-6..=run.span().1 + 1e-6).contains(&part));
+                prop_assert!(run.is_some(), "nothing at {part} of {found:?}");
+                let off = (run.expect("checked").z_at(part) - z).abs();
+                prop_assert!(off < 1e-4, "{off} m at {part}");
+            }
+            prop_assert!(found.len() <= 1);
+        }
+    }
+
+    #[test]
+    fn a_hole_parts_a_line() {
+        let lattice = rough(&[10 * 20 + 10]);
+        let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
+        let found = runs(&ground, DVec2::new(0.0, 71.0), DVec2::new(190.0, 71.0));
+        assert_eq!(found.len(), 2);
+        assert!(found[0].span().1 < 0.55 && found[1].span().0 > 0.5);
+    }
+
+    #[test]
+    fn a_point_and_what_is_not_finite_have_no_runs() {
+        let lattice = rough(&[]);
+        let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
+        assert!(runs(&ground, DVec2::ONE, DVec2::ONE).is_empty());
+        assert!(runs(&ground, DVec2::ONE, DVec2::NAN).is_empty());
+    }
+}
