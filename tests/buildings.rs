@@ -144,7 +144,7 @@ proptest! {
         let camera = Camera::new(Vec3::new(eye.0, eye.1, eye.2), Vec3::new(210.0, 550.0, 50.0), 0.8, (800, 600), (0.5, 9000.0));
         prop_assume!(camera.is_ok());
         let displayed = display(&scene.terrain, &camera.expect("checked"));
-        let ground = FullResolution { lattice: &scene.terrain.lattice, exaggeration: scene.terrain.exaggeration };
+        let ground = FullResolution { lattice: scene.terrain.displayed() };
         for standing in &scene.uprights {
             let DrapedSolid::Footing(footing) = &standing.upright else { continue };
             let mesh = standing.upright.mesh(SupportSurface { displayed: &displayed, ground });

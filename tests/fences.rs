@@ -47,7 +47,7 @@ fn seen(scene: &Scene, eye: (f32, f32, f32), target: (f32, f32)) -> Option<Displ
 }
 
 fn under<'a>(scene: &'a Scene, displayed: &'a dyn TriangleSurface) -> SupportSurface<'a> {
-    let ground = FullResolution { lattice: &scene.terrain.lattice, exaggeration: scene.terrain.exaggeration };
+    let ground = FullResolution { lattice: scene.terrain.displayed() };
     SupportSurface { displayed, ground }
 }
 

@@ -99,7 +99,7 @@ fn every_scene_opens_with_a_comment_that_says_what_it_shows() {
 #[test]
 fn every_scene_s_errors_never_shrink_from_a_vertex_to_its_parents() {
     for Exhibit { name, scene } in exhibits() {
-        assert_eq!(scene.terrain.errors.check(&scene.terrain.layout), Ok(()), "{name}");
+        assert_eq!(scene.terrain.errors().check(&scene.terrain.layout), Ok(()), "{name}");
     }
 }
 

@@ -224,13 +224,8 @@ fn a_large_batch_that_makes_tiles_on_its_way_answers_as_before() {
 #[test]
 fn readers_see_whole_epochs_while_the_ground_is_edited() {
     let flat = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 257, vec![0.0; 257 * 257]).expect("sound");
-    let options = DynamicOptions {
-        patch: 32,
-        exaggeration: 1.0,
-        measure: ErrorMeasure::Midpoint,
-        radius: Radius::Plain,
-        reach: 100.0,
-    };
+    let options =
+        DynamicOptions { patch: 32, measure: ErrorMeasure::Midpoint, radius: Radius::Plain, reach: 100.0 };
     let mut terrain = DynamicTerrain::new(flat, options).expect("large enough");
     let service = service_on(terrain.lattice());
     let at: Vec<DVec2> = (0..20_000)
@@ -281,6 +276,7 @@ fn readers_see_whole_epochs_while_the_ground_is_edited() {
 /// A small world that can be seen at any level of detail.
 struct World {
     lattice: Arc<Lattice>,
+    displayed: Arc<Lattice>,
     layout: PatchLayout,
     errors: ErrorMap,
     heights: PatchHeights,
@@ -304,27 +300,23 @@ impl World {
         let lattice = Lattice::new(DVec2::new(5e5, 4e6), DVec2::splat(30.0), columns, heights);
         let lattice = Arc::new(lattice.expect("sound"));
         let layout = PatchLayout::new(columns, rows, 16).expect("sound");
-        let errors = ErrorMap::exact(&lattice, &layout);
-        let heights = PatchHeights::new(PatchedGround {
-            lattice: &lattice,
-            layout: &layout,
-            exaggeration: EXAGGERATION,
-        });
+        let displayed = Arc::new(lattice.exaggerated(EXAGGERATION));
+        let errors = ErrorMap::exact(&displayed, &layout);
+        let heights = PatchHeights::new(PatchedGround { lattice: &displayed, layout: &layout });
         let service = service_on(&lattice);
         let at = positions(&lattice, 160, 3);
         let epoch = service.snapshot();
         let ground = together(&epoch, Surface::Ground, Interpolation::Planar, &at);
         let source = together(&epoch, Surface::Source, Interpolation::Bilinear, &at);
-        Self { lattice, layout, errors, heights, service, at, ground, source }
+        Self { lattice, displayed, layout, errors, heights, service, at, ground, source }
     }
 
     fn seen_by(&self, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
-        let ground =
-            PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: EXAGGERATION };
+        let ground = PatchedGround { lattice: &self.displayed, layout: &self.layout };
         let patches = patches_in_view(ground, &self.heights, &Frustum::of(camera));
         let criterion = ScreenError::new(ground, &self.errors, &self.heights, camera, tolerance_px);
         let active = rebuild(&self.layout, &criterion, patches.iter().copied());
-        DisplayedTerrain::new(Arc::clone(&self.lattice), active, EXAGGERATION, patches)
+        DisplayedTerrain::new(Arc::clone(&self.displayed), active, patches)
     }
 }
 

@@ -37,9 +37,9 @@ impl Walk<'_> {
     /// One frame; returns what is displayed and how many patches were cut again.
     fn frame(&mut self, camera: &Camera) -> (DisplayedTerrain, usize) {
         let terrain = &self.scene.terrain;
-        let visible = patches_in_view(terrain.ground(), &terrain.patch_heights, &Frustum::of(camera));
+        let visible = patches_in_view(terrain.ground(), terrain.patch_heights(), &Frustum::of(camera));
         let criterion =
-            ScreenError::new(terrain.ground(), &terrain.errors, &terrain.patch_heights, camera, 2.0);
+            ScreenError::new(terrain.ground(), terrain.errors(), terrain.patch_heights(), camera, 2.0);
         let changes = self.coherent.update(&criterion, &visible);
         let seen: BTreeSet<usize> =
             visible.iter().map(|&corner: &Vertex| terrain.layout.patch_index(corner)).collect();
@@ -47,8 +47,7 @@ impl Walk<'_> {
         let stale: BTreeSet<usize> = changes.dirty.iter().copied().chain(came_or_went).collect();
         let stale: Vec<usize> = stale.into_iter().collect();
         let active = self.coherent.active().clone();
-        let displayed =
-            DisplayedTerrain::new(Arc::clone(&terrain.lattice), active, terrain.exaggeration, visible);
+        let displayed = DisplayedTerrain::new(Arc::clone(terrain.displayed()), active, visible);
         self.drapes.recut(&stale, &displayed);
         self.seen = seen;
         (displayed, stale.len())

@@ -7,19 +7,13 @@ use crate::app::{load, output};
 use crate::scene::views::whole_meters;
 use crate::scene::{FeatureKind, Scene};
 
-/// Loads the scene, checks its invariants and prints what is in it.
+/// Loads the scene and prints what is in it.
 ///
 /// # Errors
 /// Whatever is wrong with the scene.
 pub fn run(options: &CheckOptions) -> Result<(), CliError> {
     let steps = StepTimer::default();
     let scene = load::scene(&options.scene, &options.access, &|step| steps.begin(step))?;
-    steps.begin("checking invariants");
-    let terrain = &scene.terrain;
-    terrain
-        .errors
-        .check(&terrain.layout)
-        .map_err(|flaw| CliError::input(format!("internal check: {flaw}")))?;
     steps.finish();
     let mut lines = vec![format!("{} is sound", options.scene.display())];
     lines.extend(contents(&scene));

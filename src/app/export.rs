@@ -93,9 +93,9 @@ fn format_of(path: &Path) -> Result<ExportFormat, CliError> {
 /// The terrain with object-space errors up to `max_error_m`.
 fn display(terrain: &Terrain, max_error_m: f32) -> DisplayedTerrain {
     let patches: Vec<_> = terrain.layout.patches().collect();
-    let criterion = Flat::new(&terrain.layout, &terrain.errors, max_error_m);
+    let criterion = Flat::new(&terrain.layout, terrain.errors(), max_error_m);
     let active = rebuild(&terrain.layout, &criterion, patches.iter().copied());
-    DisplayedTerrain::new(Arc::clone(&terrain.lattice), active, terrain.exaggeration, patches)
+    DisplayedTerrain::new(Arc::clone(terrain.displayed()), active, patches)
 }
 
 /// Writes all files, what others need first; returns their places, the asked one first.

@@ -21,7 +21,7 @@ const LARGEST_PX: DVec2 = DVec2::new(1560.0, 1560.0);
 /// No side is shorter, however long and thin the ground is.
 const LEAST_PX: f64 = 48.0;
 /// Heights are stretched by this for the shading alone: true heights leave most ground too flat to read.
-const RELIEF: f64 = 2.0;
+const RELIEF: f32 = 2.0;
 /// The share of light that shade leaves.
 const AMBIENT: f32 = 0.32;
 /// The gray of level ground in the standard light, whose tint is shown as it is.
@@ -104,7 +104,7 @@ fn colors(lattice: &Lattice, viewshed: &Viewshed, ramp: &ColorRamp) -> Vec<Vec3>
     const STEPS: usize = 512;
     let table = ramp.table(STEPS);
     let (low, high) = ramp.range();
-    let grays = hillshade(lattice, &HillshadeOptions { exaggeration: RELIEF, ..HillshadeOptions::default() });
+    let grays = hillshade(&lattice.exaggerated(RELIEF), &HillshadeOptions::default());
     let color = |((&height, &gray), &seen): ((&f32, &u8), &PostVisibility)| {
         if height.is_nan() || gray == NO_DATA {
             return EMPTY.linear();

@@ -151,7 +151,7 @@ fn build(lattice: &Arc<Lattice>, max_error_m: f64) -> Result<BuiltMesh, String> 
     for tolerance_m in [less(slack), less(16.0 * slack), KEEP_EVERYTHING] {
         let active = least_closure(lattice, &layout, tolerance_m.min(f64::from(f32::MAX)) as f32);
         let mut mesh = TriMesh::default();
-        DisplayedTerrain::new(Arc::clone(lattice), active, 1.0, layout.patches().collect()).emit(&mut mesh);
+        DisplayedTerrain::new(Arc::clone(lattice), active, layout.patches().collect()).emit(&mut mesh);
         let deviation = bound::measure(lattice, &mesh).map_err(|error| error.to_string())?;
         let kept = deviation.max_m <= max_error_m;
         built = Some(BuiltMesh { mesh, deviation });

@@ -171,19 +171,18 @@ fn range(ground: PatchedGround<'_>, corner: Vertex) -> (f32, f32) {
         .map(|row| {
             let start = row as usize * lattice.columns() as usize;
             let posts = &lattice.heights()[start + first.column as usize..=start + last.column as usize];
-            drawn_range(posts, ground.exaggeration)
+            drawn_range(posts)
         })
         .fold(NO_DATA, joined)
 }
 
 /// The lowest and highest drawn Z of some posts, those without data left out. Several at a time: the smaller of two
 /// numbers must be known before that of three.
-pub(in crate::roam) fn drawn_range(heights: &[f32], exaggeration: f32) -> (f32, f32) {
+pub(in crate::roam) fn drawn_range(heights: &[f32]) -> (f32, f32) {
     const LANES: usize = 8;
     let (mut low, mut high) = ([NO_DATA.0; LANES], [NO_DATA.1; LANES]);
     let (groups, rest) = heights.as_chunks::<LANES>();
-    let mut add = |lane: usize, height: f32| {
-        let z = height * exaggeration;
+    let mut add = |lane: usize, z: f32| {
         // Written so that NaN is never taken, and each is one instruction.
         low[lane] = if z < low[lane] { z } else { low[lane] };
         high[lane] = if z > high[lane] { z } else { high[lane] };
@@ -318,7 +317,7 @@ mod tests {
         ) {
             let lattice = hilly(columns, rows, hole);
             let layout = PatchLayout::new(columns, rows, 4).expect("sound");
-            let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.5 };
+            let ground = PatchedGround { lattice: &lattice, layout: &layout };
             let heights = PatchHeights::new(ground);
             let (eye, target) = (Vec3::from(eye), Vec2::from(target).extend(0.0));
             prop_assume!(eye.distance(target) > 1.0);
@@ -341,10 +340,10 @@ mod tests {
         fn heights_measured_again_equal_those_measured_anew(column in 0u32..40, row in 0u32..50) {
             let mut lattice = hilly(40, 50, 7);
             let layout = PatchLayout::new(40, 50, 8).expect("sound");
-            let before = PatchedGround { lattice: &lattice.clone(), layout: &layout, exaggeration: 2.0 };
+            let before = PatchedGround { lattice: &lattice.clone(), layout: &layout };
             let mut heights = PatchHeights::new(before);
             lattice.pin(Post { column, row }, 500.0);
-            let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 2.0 };
+            let ground = PatchedGround { lattice: &lattice, layout: &layout };
             for corner in layout.patches() {
                 heights.renew(ground, corner);
             }

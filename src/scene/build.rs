@@ -5,16 +5,14 @@ use std::sync::{Arc, OnceLock};
 use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
-use crate::roam::culling::PatchHeights;
-use crate::roam::errors::ErrorMap;
 use crate::roam::layout::{DEFAULT_PATCH, PatchLayout};
-use crate::roam::patched_ground::PatchedGround;
 use crate::scene::areas;
 use crate::scene::assets::Assets;
 use crate::scene::attributes;
 use crate::scene::bridges;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::buildings;
+use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::fences;
 use crate::scene::ground;
 use crate::scene::models;
@@ -25,7 +23,6 @@ use crate::scene::views;
 use crate::scene::water::{lakes, rivers};
 use crate::scene::world_frame::{WorldFrame, parse_crs};
 use crate::scene::{Scene, Terrain};
-use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::deck::Deck;
 use crate::terrain::query::service::HeightService;
@@ -53,7 +50,7 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     let lines = fences::lay_out(document, &sources, &mut lattice, &mut collected)?;
     bridges::build(document, &sources, (&lattice, places.exaggeration), &mut roads, &mut collected)?;
     network::lay(&roads, &extent, &mut collected);
-    let finest = FullResolution { lattice: &lattice, exaggeration: places.exaggeration };
+    let finest = DrawnGround { lattice: &lattice, exaggeration: places.exaggeration };
     fences::set(&lines, finest, &mut collected);
     buildings::raise(document, &plots, finest, &mut collected);
     collected.resolve_overlaps();
@@ -65,7 +62,7 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     let defaulted: Vec<String> = attributes::notes(&collected.defaulted).collect();
     collected.notes.extend(defaulted);
 
-    step("measuring terrain");
+    step("placing labels and cameras");
     let terrain = terrain(document, lattice)?;
     let labels = views::labels(document, &places, &terrain)?;
     let cameras = views::cameras(document, &places, &terrain)?;
@@ -75,13 +72,7 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     let (low, high) = terrain.bounds();
     let lighting = style::lighting(document, (high - low).max_element());
     let ramp = style::ramp(document, &terrain.lattice)?;
-    let map = style::ground_map(
-        &terrain.lattice,
-        terrain.exaggeration,
-        lighting.to_sun,
-        ramp,
-        style::contours(document),
-    );
+    let map = style::ground_map(&terrain, lighting.to_sun, ramp, style::contours(document));
 
     let heights = HeightService::new(loaded.source, crs.clone(), Arc::clone(&terrain.lattice));
     let decks = Deck::new(&collected.decks).map_err(|error| document.error_at(0..0, error.to_string()))?;
@@ -138,17 +129,7 @@ fn terrain(document: &Document, lattice: Lattice) -> Result<Terrain, Diagnostic>
         let size = format!("{}×{} posts", lattice.columns(), lattice.rows());
         document.error(&document.terrain.dem, format!("an elevation model of {size} is too large"))
     })?;
-    let exaggeration = exaggeration(document);
-    Ok(Terrain {
-        errors: ErrorMap::exact(&lattice, &layout),
-        patch_heights: PatchHeights::new(PatchedGround { lattice: &lattice, layout: &layout, exaggeration }),
-        lattice: Arc::new(lattice),
-        layout,
-        exaggeration,
-        tolerance_px: document
-            .terrain
-            .tolerance_px
-            .as_ref()
-            .map_or(defaults::TOLERANCE_PX, |value| *value.get_ref()) as f32,
-    })
+    let stated = document.terrain.tolerance_px.as_ref();
+    let tolerance_px = stated.map_or(defaults::TOLERANCE_PX, |value| *value.get_ref()) as f32;
+    Ok(Terrain::new(Arc::new(lattice), layout, exaggeration(document), tolerance_px))
 }

@@ -22,6 +22,7 @@ use crate::geom::rect::Rect;
 use crate::scene::attributes::Attributes;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::building_colors::color_named;
+use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::report::{ReportCell, ReportColumn};
 use crate::scene::sources::{Sourced, Sources};
 use crate::scene::{Coat, FeatureKind, FeatureSolid, Solid};
@@ -30,7 +31,6 @@ use crate::structure::building_footing::WallFooting;
 use crate::structure::building_footprint::BuildingFootprint;
 use crate::structure::draped_solid::DrapedSolid;
 use crate::structure::roof::{UnitRoof, roof};
-use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::query::pieces::GridRegion;
 use crate::terrain::query::zone::zone;
@@ -197,7 +197,7 @@ impl GroundUnder {
 const NO_DATA_SHARE: f64 = 1e-6;
 
 /// Raises the buildings on the ground as it is now.
-pub fn raise(document: &Document, plots: &[Plot], ground: FullResolution<'_>, collected: &mut SceneBuilder) {
+pub fn raise(document: &Document, plots: &[Plot], ground: DrawnGround<'_>, collected: &mut SceneBuilder) {
     let mut tally = BuildingTally::default();
     for plot in plots {
         let building = &document.buildings[plot.table];

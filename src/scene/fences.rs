@@ -20,6 +20,7 @@ use crate::ribbon::stroke::{Continuations, StrokeOptions, stroke};
 use crate::ribbon::texture::{RibbonSurface, texture_length_m};
 use crate::scene::attributes::Attributes;
 use crate::scene::builder::SceneBuilder;
+use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::near::{self, Clipped};
 use crate::scene::report::{ReportCell, ReportColumn};
 use crate::scene::sources::Sources;
@@ -31,7 +32,6 @@ use crate::structure::obstacle::{self, Obstacles};
 use crate::structure::power::{PowerLine, clear};
 use crate::structure::trench::{bare_m, parapets};
 use crate::structure::wall::wall;
-use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::triangle_surface::TriangleSurface;
 use crate::terrain::volumes::Volumes;
@@ -253,7 +253,7 @@ fn dig(line: &FenceLine, name: &str, lattice: &mut Lattice, collected: &mut Scen
 }
 
 /// Sets the lines on the ground as it is now: boundaries and the floors of trenches as ribbons, the rest upright.
-pub fn set(lines: &[FenceLine], ground: FullResolution<'_>, collected: &mut SceneBuilder) {
+pub fn set(lines: &[FenceLine], ground: DrawnGround<'_>, collected: &mut SceneBuilder) {
     let mut added = 0;
     let extent = ground.lattice.extent();
     for line in lines {

@@ -11,6 +11,7 @@ use crate::description::words;
 use crate::draw::color::Srgba;
 use crate::draw::ground::{ColorRamp, Contours, GroundMap, GroundPost};
 use crate::draw::lighting::{Haze, Lighting};
+use crate::scene::Terrain;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::light;
 
@@ -109,21 +110,16 @@ pub fn lighting(document: &Document, extent_m: f32) -> Lighting {
 }
 
 /// What the ground shows at every post.
-pub fn ground_map(
-    lattice: &Lattice,
-    exaggeration: f32,
-    to_sun: Vec3,
-    ramp: ColorRamp,
-    contours: Option<Contours>,
-) -> GroundMap {
-    let light = light::light(lattice, exaggeration, to_sun);
+pub fn ground_map(terrain: &Terrain, to_sun: Vec3, ramp: ColorRamp, contours: Option<Contours>) -> GroundMap {
+    let lattice = &terrain.lattice;
+    let light = light::light(terrain.displayed(), to_sun);
     let filled = filled_heights(lattice);
     let posts = lattice
         .posts()
         .zip(filled)
         .zip(light.sun.into_iter().zip(light.sky))
         .map(|((post, height_m), (sun_visibility, sky_visibility))| {
-            let slopes = lattice.slopes(post) * exaggeration;
+            let slopes = lattice.slopes(post) * terrain.exaggeration;
             GroundPost {
                 height_m,
                 slope_east: slopes.x,

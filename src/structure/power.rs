@@ -298,7 +298,7 @@ mod tests {
     #[test]
     fn a_wire_hangs_less_deep_over_a_ridge_and_keeps_its_clearance() {
         let lattice = ridge(10.0);
-        let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
+        let ground = FullResolution { lattice: &lattice };
         let under = SupportSurface { displayed: &ground, ground };
         let found = runs(&ground, DVec2::new(350.0, 50.0), DVec2::new(650.0, 50.0));
         let ends = (DVec3::new(350.0, 50.0, 20.4), DVec3::new(650.0, 50.0, 20.4));
@@ -310,7 +310,7 @@ mod tests {
     #[test]
     fn a_pylon_more_stands_on_a_ridge_that_no_wire_would_clear() {
         let lattice = ridge(25.0);
-        let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
+        let ground = FullResolution { lattice: &lattice };
         let (pylons, added) = clear(&[stand(350.0), stand(650.0)], 30.0, &ground);
         assert_eq!(added, 1);
         assert!(pylons[1].at.distance(DVec2::new(500.0, 50.0)) < 1e-3, "{pylons:?}");
@@ -320,7 +320,7 @@ mod tests {
     #[test]
     fn a_pylon_s_feet_reach_the_ground_and_its_top_is_as_high_as_it_is_said_to_be() {
         let lattice = ridge(0.0);
-        let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
+        let ground = FullResolution { lattice: &lattice };
         for height_m in [12.0, 40.0] {
             let mut faces = Faces::default();
             let line = PowerLine { height_m, ..line(vec![stand(300.0)]) };

@@ -15,8 +15,6 @@ use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 pub struct FullResolution<'a> {
     /// The heights.
     pub lattice: &'a Lattice,
-    /// How many times heights are stretched.
-    pub exaggeration: f32,
 }
 
 impl FullResolution<'_> {
@@ -44,7 +42,7 @@ impl FullResolution<'_> {
     fn triangles(&self, cell: Post) -> [SurfaceTriangle; 2] {
         let corner = |east: u32, north: u32| -> Vec3 {
             let post = Post { column: cell.column + east, row: cell.row + north };
-            self.lattice.position(post).extend(self.lattice.height(post) * self.exaggeration)
+            self.lattice.position(post).extend(self.lattice.height(post))
         };
         let [sw, se, nw, ne] = [corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)];
         match Diagonal::of_cell(u64::from(cell.column), u64::from(cell.row)) {
@@ -66,8 +64,7 @@ impl TriangleSurface for FullResolution<'_> {
     }
 
     fn displayed_z(&self, at: DVec2) -> Option<f64> {
-        let answer = ground_height(self.lattice, Interpolation::Planar, at + self.lattice.origin());
-        answer.height_m().map(|height_m| height_m * f64::from(self.exaggeration))
+        ground_height(self.lattice, Interpolation::Planar, at + self.lattice.origin()).height_m()
     }
 }
 
@@ -86,7 +83,7 @@ mod tests {
     #[test]
     fn the_facets_are_the_planar_ground() {
         let lattice = lattice(None);
-        let finest = FullResolution { lattice: &lattice, exaggeration: 2.0 };
+        let finest = FullResolution { lattice: &lattice };
         for step in 0..500 {
             let at = DVec2::new(f64::from(step * 37 % 799) / 10.0, f64::from(step * 53 % 239) / 10.0);
             let mut found = Vec::new();
@@ -104,7 +101,7 @@ mod tests {
     fn the_facets_cover_the_ground_once_but_for_holes() {
         for (hole, triangles) in [(None, 96), (Some(20), 96 - 8), (Some(0), 94)] {
             let lattice = lattice(hole);
-            let finest = FullResolution { lattice: &lattice, exaggeration: 1.0 };
+            let finest = FullResolution { lattice: &lattice };
             let mut count = 0;
             finest.visit_facets(&lattice.extent().grown(50.0), &mut |facet| {
                 let plan = facet.map(|corner| corner.truncate().as_dvec2());
@@ -116,6 +113,6 @@ mod tests {
         }
         let lattice = lattice(None);
         let beside = Rect { min: DVec2::splat(-9.0), max: DVec2::splat(-1.0) };
-        assert_eq!(FullResolution { lattice: &lattice, exaggeration: 1.0 }.cell_count(&beside), 0);
+        assert_eq!(FullResolution { lattice: &lattice }.cell_count(&beside), 0);
     }
 }

@@ -143,6 +143,12 @@ impl Lattice {
         Ok(Self { origin, cell, columns, rows, first, doublings: 0, heights, pinned })
     }
 
+    /// The lattice that a vertical exaggeration displays: every height times `factor`, which is above 0.
+    pub fn exaggerated(&self, factor: f32) -> Self {
+        let heights = self.heights.iter().map(|height| height * factor).collect();
+        Self { heights, pinned: self.pinned.clone(), ..*self }
+    }
+
     /// Map coordinates of the south-west post: the origin of world space.
     pub fn origin(&self) -> DVec2 {
         self.origin
@@ -349,6 +355,18 @@ mod tests {
         let lattice = plane();
         for post in lattice.posts() {
             assert!((lattice.slopes(post) - Vec2::new(0.2, -0.2)).length() < 1e-6, "{post:?}");
+        }
+    }
+
+    #[test]
+    fn an_exaggerated_lattice_has_the_same_posts_and_higher_heights() {
+        let mut plain = plane();
+        plain.pin(Post { column: 1, row: 2 }, 7.0);
+        let steep = plain.exaggerated(3.0);
+        for post in plain.posts() {
+            assert_eq!(steep.height(post), plain.height(post) * 3.0);
+            assert_eq!(steep.position(post), plain.position(post));
+            assert_eq!(steep.is_pinned(post), plain.is_pinned(post));
         }
     }
 

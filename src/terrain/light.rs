@@ -23,15 +23,15 @@ pub struct TerrainLight {
 /// smaller shows the lattice as stairs along the shadow's edge, larger washes shadows out.
 const PENUMBRA_CELLS: f32 = 0.35;
 
-/// The light on `lattice`, its heights times `exaggeration`, for a sun in direction `to_sun` (unit vector).
-pub fn light(lattice: &Lattice, exaggeration: f32, to_sun: Vec3) -> TerrainLight {
-    let z: Vec<f32> = lattice.heights().iter().map(|height| height * exaggeration).collect();
-    let (sun, sky) = rayon::join(|| sun_visibility(lattice, &z, to_sun), || sky_visibility(lattice, &z));
+/// The light on a displayed lattice for a sun in direction `to_sun` (unit vector).
+pub fn light(lattice: &Lattice, to_sun: Vec3) -> TerrainLight {
+    let (sun, sky) = rayon::join(|| sun_visibility(lattice, to_sun), || sky_visibility(lattice));
     TerrainLight { sun, sky }
 }
 
 /// Sweeps the shadow sheet row by row along the sun's main direction.
-fn sun_visibility(lattice: &Lattice, z: &[f32], to_sun: Vec3) -> Vec<f32> {
+fn sun_visibility(lattice: &Lattice, to_sun: Vec3) -> Vec<f32> {
+    let z = lattice.heights();
     let cell = lattice.cell().as_vec2();
     let steps = (to_sun.truncate() / cell).abs();
     let longest = steps.max_element();
@@ -82,17 +82,18 @@ const DIRECTIONS: [(i64, i64); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (
 
 /// The mean over eight directions of cos² of the horizon's angle: the share of a uniform sky's light that a
 /// level surface receives.
-fn sky_visibility(lattice: &Lattice, z: &[f32]) -> Vec<f32> {
+fn sky_visibility(lattice: &Lattice) -> Vec<f32> {
     let by_direction: Vec<Vec<f32>> =
-        DIRECTIONS.par_iter().map(|&direction| open_sky(lattice, z, direction)).collect();
-    (0..z.len())
+        DIRECTIONS.par_iter().map(|&direction| open_sky(lattice, direction)).collect();
+    (0..lattice.heights().len())
         .into_par_iter()
         .map(|post| by_direction.iter().map(|open| open[post]).sum::<f32>() / DIRECTIONS.len() as f32)
         .collect()
 }
 
 /// cos² of the horizon's angle at every post, looking back against `direction`.
-fn open_sky(lattice: &Lattice, z: &[f32], direction: (i64, i64)) -> Vec<f32> {
+fn open_sky(lattice: &Lattice, direction: (i64, i64)) -> Vec<f32> {
+    let z = lattice.heights();
     let mut open = vec![1.0; z.len()];
     let step =
         libm::hypot(lattice.cell().x * direction.0 as f64, lattice.cell().y * direction.1 as f64) as f32;
@@ -151,7 +152,7 @@ mod tests {
     #[test]
     fn a_wall_casts_a_shadow_as_long_as_it_is_high_at_45_degrees() {
         let sun = Vec3::new(-1.0, 0.0, 1.0).normalize();
-        let light = light(&wall(), 1.0, sun);
+        let light = light(&wall(), sun);
         let row = 20 * 41;
         assert!(light.sun[row + 25] < 0.01, "50 m behind the wall");
         assert!(light.sun[row + 32] > 0.99, "120 m behind the wall");
@@ -162,13 +163,13 @@ mod tests {
     fn posts_without_data_cast_no_shadow_and_lie_in_full_light() {
         let heights = (0..41 * 41).map(|index| if index % 41 == 20 { f32::NAN } else { 3.0 }).collect();
         let holed = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 41, heights).expect("sound");
-        let light = light(&holed, 1.0, Vec3::new(-0.6, 0.1, 0.5).normalize());
+        let light = light(&holed, Vec3::new(-0.6, 0.1, 0.5).normalize());
         assert!(light.sun.iter().chain(&light.sky).all(|&share| share == 1.0));
     }
 
     #[test]
     fn the_foot_of_a_wall_sees_less_sky_than_the_open() {
-        let light = light(&wall(), 1.0, Vec3::Z);
+        let light = light(&wall(), Vec3::Z);
         let row = 20 * 41;
         assert!(light.sky[row + 21] < 0.7);
         assert!(light.sky[row + 20] > 0.99, "the top sees all of it");

@@ -159,7 +159,7 @@ mod tests {
             snapped in proptest::bool::ANY,
         ) {
             let lattice = rough(&[]);
-            let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
+            let ground = FullResolution { lattice: &lattice };
             let onto = |at: (f64, f64)| {
                 let at = DVec2::from(at);
                 if snapped { (at / DVec2::new(10.0, 7.0)).round() * DVec2::new(10.0, 7.0) } else { at }
@@ -186,7 +186,7 @@ mod tests {
     #[test]
     fn a_hole_parts_a_line() {
         let lattice = rough(&[10 * 20 + 10]);
-        let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
+        let ground = FullResolution { lattice: &lattice };
         let found = runs(&ground, DVec2::new(0.0, 71.0), DVec2::new(190.0, 71.0));
         assert_eq!(found.len(), 2);
         assert!(found[0].span().1 < 0.55 && found[1].span().0 > 0.5);
@@ -195,7 +195,7 @@ mod tests {
     #[test]
     fn a_point_and_what_is_not_finite_have_no_runs() {
         let lattice = rough(&[]);
-        let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
+        let ground = FullResolution { lattice: &lattice };
         assert!(runs(&ground, DVec2::ONE, DVec2::ONE).is_empty());
         assert!(runs(&ground, DVec2::ONE, DVec2::NAN).is_empty());
     }

@@ -58,7 +58,7 @@ fn paper_004_features_get_their_elevation_from_the_ground_that_roam_built() {
     let criterion = ScreenError::new(world.ground(), &world.errors, &world.heights, &camera, 4.0);
     let active = rebuild(&world.layout, &criterion, world.layout.patches());
     let patches = world.layout.patches().collect();
-    let displayed = DisplayedTerrain::new(Arc::new(world.lattice.clone()), active, 1.0, patches);
+    let displayed = DisplayedTerrain::new(Arc::new(world.lattice.clone()), active, patches);
 
     let line =
         Polyline::new(vec![DVec2::new(50.0, 80.0), DVec2::new(400.0, 300.0), DVec2::new(900.0, 820.0)], 0.01)

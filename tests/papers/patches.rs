@@ -297,7 +297,7 @@ fn paper_000_a_patch_never_refined_is_built_by_splits_and_one_that_was_is_adjust
 #[test]
 fn paper_000_terrain_larger_than_the_memory_shows_what_it_shows_in_memory() {
     let world = World::hills(161, 129, 16);
-    let options = PagingOptions { patch: 16, capacity: 6, exaggeration: 1.0 };
+    let options = PagingOptions { patch: 16, capacity: 6 };
     let mut paged = PagedGround::open(raster(&world), exact_spheres(8.0), &options).expect("sound");
     let spheres = exact_spheres(8.0)(world.ground());
     for step in 0..9u8 {

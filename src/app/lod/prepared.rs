@@ -70,7 +70,7 @@ impl PreparedGround {
         let layout = PatchLayout::new(columns, rows, DEFAULT_PATCH).ok_or_else(|| {
             format!("patches of {DEFAULT_PATCH} cells cannot be laid over {columns} × {rows} posts: too many vertices")
         })?;
-        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout };
         Ok(Self {
             heights: PatchHeights::new(ground),
             whole: layout.patches().map(|corner| ground.is_whole(corner)).collect(),
@@ -88,7 +88,7 @@ impl PreparedGround {
 
     /// What refinement reads; heights are drawn as they are.
     pub fn ground(&self) -> PatchedGround<'_> {
-        PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
+        PatchedGround { lattice: &self.lattice, layout: &self.layout }
     }
 
     /// Whether the patch with south-west corner `corner` lies within the borders and has data at every post, so that

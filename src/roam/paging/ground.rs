@@ -28,13 +28,11 @@ pub struct PagingOptions {
     /// The most patches that are kept; at least 1. A walk reads hardly anything twice where all patches hold whose
     /// spheres the eye is inside. Default 256, 8 MiB in patches of 64.
     pub capacity: usize,
-    /// Vertical exaggeration; 1 draws heights as they are. Default 1.
-    pub exaggeration: f32,
 }
 
 impl Default for PagingOptions {
     fn default() -> Self {
-        Self { patch: DEFAULT_PATCH, capacity: 256, exaggeration: 1.0 }
+        Self { patch: DEFAULT_PATCH, capacity: 256 }
     }
 }
 
@@ -110,7 +108,7 @@ pub struct PagedGround<W, S> {
 pub fn exact_spheres(reach: f32) -> impl Fn(PatchedGround<'_>) -> SphereMap {
     move |ground| {
         let errors = ErrorMap::exact(ground.lattice, ground.layout);
-        let own = errors.values().iter().map(|error| error * ground.exaggeration * reach).collect();
+        let own = errors.values().iter().map(|error| error * reach).collect();
         SphereMap::nested(ground, own)
     }
 }
@@ -147,7 +145,7 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> PagedGround<W, S> {
         let ((columns, rows), patch) = (windows.size(), options.patch);
         let layout = PatchLayout::paged(columns, rows, patch).filter(|_| patch <= LARGEST_PATCH);
         let layout = layout.ok_or(PagingError::Patches { columns, rows, patch })?;
-        let frame = PagedFrame { layout, origin, cell, exaggeration: options.exaggeration };
+        let frame = PagedFrame { layout, origin, cell };
         let summaries = summary::of_all(&mut windows, &frame, &spheres)?;
         if summaries.iter().all(|summary| summary.low > summary.high) {
             return Err(LatticeError::Empty.into());

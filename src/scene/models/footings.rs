@@ -11,6 +11,7 @@ use crate::description::words::{Clamp, Footing};
 use crate::earthworks::pad;
 use crate::earthworks::pad::Batters;
 use crate::geom::polygon;
+use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::footprint::ModelFootprint;
 use crate::scene::models::Group;
 use crate::scene::models::library::Library;
@@ -51,7 +52,7 @@ pub fn lay(
                 continue;
             }
             let reach = polygon::bounds(&outline(placement, &footprint.grown(PAD_REACH)));
-            cells += FullResolution { lattice, exaggeration: places.exaggeration }.cell_count(&reach);
+            cells += FullResolution { lattice }.cell_count(&reach);
             if cells > MAX_CELLS {
                 return Err(too_large(document, group.table));
             }
@@ -75,7 +76,7 @@ fn level(
     lattice: &mut Lattice,
 ) -> Option<Volumes> {
     let upright = Placement { standing: GroundFit { tilt_rad: 0.0, ..placement.standing }, ..*placement };
-    let finest = FullResolution { lattice, exaggeration };
+    let finest = DrawnGround { lattice, exaggeration };
     let found = stand(&upright, footprint, &Grounds { displayed: &finest, finest })?;
     let level_z = match placement.clamp {
         Clamp::Absolute => f64::from(found.base(footprint)[0].z),

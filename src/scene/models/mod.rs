@@ -83,7 +83,7 @@ pub fn place(
             within(document, source, placements.len() + points.len())?;
             let mut choice = ModelChoice::new(table, &mut library, collected)?;
             for Sourced { attributes, shape } in points {
-                let ground = FullResolution { lattice, exaggeration: places.exaggeration };
+                let ground = FullResolution { lattice };
                 if ground.displayed_z(shape).is_none() {
                     off += 1;
                     continue;

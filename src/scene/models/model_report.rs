@@ -8,13 +8,13 @@ use std::collections::BTreeMap;
 use crate::description::words::Clamp;
 use crate::scene::Placement;
 use crate::scene::builder::SceneBuilder;
+use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::footprint::ModelFootprint;
 use crate::scene::models::Group;
 use crate::scene::models::library::Library;
 use crate::scene::placement::{Grounds, ModelPose, stand};
 use crate::scene::report::{ReportCell, ReportColumn, SceneReport};
 use crate::scene::world_frame::WorldFrame;
-use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::triangle_surface::TriangleSurface;
 use crate::terrain::volumes::Volumes;
@@ -65,7 +65,7 @@ pub fn tell(
     lattice: &Lattice,
     collected: &mut SceneBuilder,
 ) {
-    let finest = FullResolution { lattice, exaggeration: places.exaggeration };
+    let finest = DrawnGround { lattice, exaggeration: places.exaggeration };
     for group in groups {
         let all: Vec<Told> = group
             .placements
@@ -99,7 +99,7 @@ impl Told {
     fn of(
         placement: &Placement,
         footprint: &ModelFootprint,
-        finest: &FullResolution<'_>,
+        finest: &DrawnGround<'_>,
         moved: Option<Volumes>,
     ) -> Option<Self> {
         let grounds = Grounds { displayed: finest, finest: *finest };
