@@ -32,11 +32,15 @@ pub struct Lattice {
     doublings: u32,
     heights: Vec<f32>,
     pinned: Vec<bool>,
+    pin_slack_m: f32,
 }
 
 /// No height may lie further from 0 than this many meters: as far as a scene file's elevations go, and little
 /// enough that an f32 still tells one meter from the next.
 pub const HIGHEST_M: f32 = 1e7;
+
+/// Ground may be drawn this many meters off a pinned post: rounding of f32 heights, invisible in a picture.
+const PIN_SLACK_M: f32 = 1e-3;
 
 /// Why a raster cannot become the ground.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -140,13 +144,23 @@ impl Lattice {
             return Err(LatticeError::TooHigh { height });
         }
         let pinned = vec![false; heights.len()];
-        Ok(Self { origin, cell, columns, rows, first, doublings: 0, heights, pinned })
+        Ok(Self {
+            origin,
+            cell,
+            columns,
+            rows,
+            first,
+            doublings: 0,
+            heights,
+            pinned,
+            pin_slack_m: PIN_SLACK_M,
+        })
     }
 
     /// The lattice that a vertical exaggeration displays: every height times `factor`, which is above 0.
     pub fn exaggerated(&self, factor: f32) -> Self {
         let heights = self.heights.iter().map(|height| height * factor).collect();
-        Self { heights, pinned: self.pinned.clone(), ..*self }
+        Self { heights, pinned: self.pinned.clone(), pin_slack_m: self.pin_slack_m * factor, ..*self }
     }
 
     /// Map coordinates of the south-west post: the origin of world space.
@@ -225,6 +239,11 @@ impl Lattice {
     /// Which posts are pinned, in the order of [`Lattice::heights`].
     pub fn pinned(&self) -> &[bool] {
         &self.pinned
+    }
+
+    /// How far drawn ground may be off a pinned post, meters: rounding of heights, which an exaggeration multiplies.
+    pub fn pin_slack_m(&self) -> f32 {
+        self.pin_slack_m
     }
 
     /// Sets a post's height and pins it: any drawn triangle that covers it must then be exact.
@@ -368,6 +387,7 @@ mod tests {
             assert_eq!(steep.position(post), plain.position(post));
             assert_eq!(steep.is_pinned(post), plain.is_pinned(post));
         }
+        assert_eq!(steep.pin_slack_m(), plain.pin_slack_m() * 3.0);
     }
 
     #[test]
