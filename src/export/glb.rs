@@ -1,13 +1,14 @@
 //! A draw list as binary glTF: a node for each thing, meshes shared by all nodes that show them.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 
 use crate::draw::color::{Srgba, linear_from_srgb};
-use crate::draw::list::{DrawItem, MaterialId, MeshId};
+use crate::draw::list::{DrawItem, DrawVertex, MaterialId, MeshId};
 use crate::draw::material::{AlphaMode, Material, TextureId};
 use crate::export::{SceneExport, png};
 use crate::mesh::numbering::Numbering;
@@ -39,7 +40,7 @@ type PrimitiveKey = (MeshId, [u32; 2], MaterialId);
 struct GlbSceneBuilder {
     scene: GlbScene<'static>,
     /// Meshes by what they are made of; `None` for those without a triangle.
-    meshes: std::collections::BTreeMap<Vec<PrimitiveKey>, Option<usize>>,
+    meshes: BTreeMap<Vec<PrimitiveKey>, Option<usize>>,
     /// Vertices of a mesh, with or without texture coordinates.
     vertices: Numbering<(MeshId, bool)>,
     materials: Numbering<MaterialId>,
@@ -47,30 +48,20 @@ struct GlbSceneBuilder {
 }
 
 impl GlbSceneBuilder {
-    /// Adds items that are one thing; nothing where no triangle of theirs has an area.
+    /// Adds items that are one thing; nothing where none of their triangles has an area.
     fn add_node(&mut self, export: &SceneExport<'_>, items: &[DrawItem]) {
         let part = |item: &DrawItem| (item.mesh, [item.triangles.start, item.triangles.end], item.material);
         let key: Vec<PrimitiveKey> = items.iter().map(part).collect();
-        let mesh = match self.meshes.get(&key) {
-            Some(&known) => known,
-            None => {
-                let mesh = self.add_mesh(export, items);
-                self.meshes.insert(key, mesh);
-                mesh
-            }
-        };
-        if let Some(mesh) = mesh {
+        if !self.meshes.contains_key(&key) {
+            let primitives: Vec<_> = items.iter().filter_map(|item| self.primitive(export, item)).collect();
+            let mesh = (!primitives.is_empty()).then_some(self.scene.meshes.len());
+            self.scene.meshes.extend(mesh.map(|_| primitives));
+            self.meshes.insert(key.clone(), mesh);
+        }
+        if let Some(mesh) = self.meshes[&key] {
             let (name, world_from_mesh) = ((export.name_of)(items[0].feature), items[0].world_from_mesh);
             self.scene.nodes.push(GlbNode { name, mesh, world_from_mesh });
         }
-    }
-
-    fn add_mesh(&mut self, export: &SceneExport<'_>, items: &[DrawItem]) -> Option<usize> {
-        let primitives: Vec<_> = items.iter().filter_map(|item| self.primitive(export, item)).collect();
-        (!primitives.is_empty()).then(|| {
-            self.scene.meshes.push(primitives);
-            self.scene.meshes.len() - 1
-        })
     }
 
     fn primitive(&mut self, export: &SceneExport<'_>, item: &DrawItem) -> Option<GlbPrimitive<'static>> {
@@ -92,16 +83,16 @@ impl GlbSceneBuilder {
         let is_textured = export.material(item).texture.is_some();
         let number = self.vertices.number((item.mesh, is_textured));
         if number.is_new {
-            let vertices = &export.mesh(item).vertices;
-            let is_colored = vertices.iter().any(|vertex| vertex.color != Srgba::WHITE);
-            let normal = |normal: [f32; 3]| Vec3::from(normal).normalize_or(Vec3::Z);
-            let uvs = is_textured.then(|| vertices.iter().map(|vertex| Vec2::from(vertex.uv)).collect());
-            let colors = is_colored.then(|| vertices.iter().map(|vertex| linear(vertex.color)).collect());
+            let all = &export.mesh(item).vertices;
+            let is_colored = all.iter().any(|vertex| vertex.color != Srgba::WHITE);
+            let normal = |vertex: &DrawVertex| Vec3::from(vertex.normal).normalize_or(Vec3::Z);
+            let uv = |vertex: &DrawVertex| is_textured.then(|| Vec2::from(vertex.uv));
+            let color = |vertex: &DrawVertex| is_colored.then(|| linear(vertex.color));
             self.scene.vertices.push(GlbVertices {
-                positions: vertices.iter().map(|vertex| Vec3::from(vertex.position)).collect(),
-                normals: vertices.iter().map(|vertex| normal(vertex.normal)).collect(),
-                uvs: uvs.unwrap_or_default(),
-                colors: colors.unwrap_or_default(),
+                positions: all.iter().map(|vertex| Vec3::from(vertex.position)).collect(),
+                normals: all.iter().map(normal).collect(),
+                uvs: all.iter().filter_map(uv).collect(),
+                colors: all.iter().filter_map(color).collect(),
             });
         }
         number.index as usize
@@ -142,13 +133,12 @@ fn linear(color: Srgba) -> [u16; 4] {
 fn object_of(material: &Material, image: Option<usize>) -> Value {
     let [red, green, blue] = material.base_color.linear().to_array();
     let alpha = if material.alpha == AlphaMode::Opaque { 1.0 } else { material.base_color.alpha() };
-    let mut surface = json!({
+    let mut object = json!({"pbrMetallicRoughness": {
         "baseColorFactor": [red, green, blue, alpha], "metallicFactor": 0.0, "roughnessFactor": 1.0,
-    });
+    }});
     if let Some(image) = image {
-        surface["baseColorTexture"] = json!({"index": image});
+        object["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": image});
     }
-    let mut object = json!({"pbrMetallicRoughness": surface});
     if !material.name.is_empty() {
         object["name"] = json!(material.name);
     }

@@ -4,14 +4,13 @@
 //! the ground loses, in plan, the drape triangles in it; the rest keeps its plane. Ground and drapes then cover every
 //! place once, and no program shows one through the other.
 
-use std::collections::BTreeMap;
-
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
 use crate::draw::list::{DrawMesh, DrawVertex};
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
+use crate::geom::rect_tree::RectTree;
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::terrain::triangle_surface::{SurfaceTriangle, facet_contains, plane_z};
 
@@ -56,56 +55,32 @@ fn drapes_by_facet<'a>(
     facets: &[SurfaceTriangle],
     drapes: impl IntoIterator<Item = &'a DrawMesh>,
 ) -> Vec<Vec<[DVec2; 3]>> {
-    let grid = FacetGrid::new(facets);
+    let rects: Vec<Rect> = facets.iter().map(|facet| polygon::bounds(&plan(facet))).collect();
+    let tree = RectTree::new(&rects);
     let mut by_facet = vec![Vec::new(); facets.len()];
     for triangle in drapes.into_iter().flat_map(self::facets) {
-        let plan = triangle.map(|corner| corner.truncate().as_dvec2());
-        if let Some(facet) = grid.facet_at(facets, (plan[0] + plan[1] + plan[2]) / 3.0) {
-            by_facet[facet].push(plan);
+        let [a, b, c] = plan(&triangle);
+        let center = (a + b + c) / 3.0;
+        let around = Rect { min: center, max: center };
+        let facets = tree.found(&around, |index| facet_contains(&facets[index], center));
+        if let Some(&facet) = facets.first() {
+            by_facet[facet].push([a, b, c]);
         }
     }
     by_facet
 }
 
-/// A grid of square cells with the facets whose boxes meet each.
-struct FacetGrid {
-    side: f64,
-    members: BTreeMap<(i64, i64), Vec<u32>>,
-}
-
-impl FacetGrid {
-    fn new(facets: &[SurfaceTriangle]) -> Self {
-        let bounds = |facet: &SurfaceTriangle| Rect::around(facet.map(|corner| corner.truncate().as_dvec2()));
-        let sum: f64 = facets.iter().map(|facet| bounds(facet).size().max_element()).sum();
-        let side = (sum / facets.len().max(1) as f64).max(1e-3);
-        let mut members: BTreeMap<(i64, i64), Vec<u32>> = BTreeMap::new();
-        for (index, facet) in facets.iter().enumerate() {
-            let Rect { min, max } = bounds(facet);
-            let (low, high) = ((min / side).floor(), (max / side).floor());
-            for row in low.y as i64..=high.y as i64 {
-                for column in low.x as i64..=high.x as i64 {
-                    members.entry((row, column)).or_default().push(index as u32);
-                }
-            }
-        }
-        Self { side, members }
-    }
-
-    fn facet_at(&self, facets: &[SurfaceTriangle], at: DVec2) -> Option<usize> {
-        let square = (at / self.side).floor();
-        let members = self.members.get(&(square.y as i64, square.x as i64))?;
-        members.iter().map(|&index| index as usize).find(|&index| facet_contains(&facets[index], at))
-    }
+fn plan(triangle: &SurfaceTriangle) -> [DVec2; 3] {
+    triangle.map(|corner| corner.truncate().as_dvec2())
 }
 
 /// The parts of a facet, in plan, that none of `drapes` covers.
 fn uncovered(facet: &SurfaceTriangle, drapes: &[[DVec2; 3]]) -> Vec<Vec<DVec2>> {
-    let mut pieces = vec![facet.map(|corner| corner.truncate().as_dvec2()).to_vec()];
+    let mut pieces = vec![plan(facet).to_vec()];
     for drape in drapes {
-        let bounds = polygon::bounds(drape);
         let mut rest = Vec::with_capacity(pieces.len() + 2);
         for piece in pieces {
-            if polygon::bounds(&piece).meets(&bounds) && overlaps(&piece, drape) {
+            if overlaps(&piece, drape) {
                 polygon::cut_away(piece, drape, &mut rest);
             } else {
                 rest.push(piece);
@@ -125,16 +100,15 @@ fn overlaps(piece: &[DVec2], drape: &[DVec2]) -> bool {
 
 /// Adds a convex piece of `facet` as a fan of triangles; its vertices are like `template` but for the position.
 fn add_piece(mesh: &mut DrawMesh, piece: &[DVec2], facet: &SurfaceTriangle, template: DrawVertex) {
-    let corners: Vec<Vec3> = piece.iter().map(|&at| at.as_vec2().extend(plane_z(facet, at) as f32)).collect();
-    let ids: Vec<VertexId> = corners
-        .iter()
-        .map(|corner| mesh.vertex(DrawVertex { position: corner.to_array(), ..template }))
-        .collect();
-    for (pair, ids_of_pair) in corners[1..].windows(2).zip(ids[1..].windows(2)) {
+    let corner = |&at: &DVec2| at.as_vec2().extend(plane_z(facet, at) as f32);
+    let corners: Vec<Vec3> = piece.iter().map(corner).collect();
+    let vertex = |corner: &Vec3| mesh.vertex(DrawVertex { position: corner.to_array(), ..template });
+    let ids: Vec<VertexId> = corners.iter().map(vertex).collect();
+    for next in 2..corners.len() {
+        let [a, b, c] = [0, next - 1, next].map(|index| corners[index].truncate());
         // Cuts leave corners on one line; rounding may turn such a triangle over.
-        let area = (pair[0] - corners[0]).truncate().perp_dot((pair[1] - corners[0]).truncate());
-        if area > 0.0 {
-            mesh.triangle([ids[0], ids_of_pair[0], ids_of_pair[1]]);
+        if (b - a).perp_dot(c - a) > 0.0 {
+            mesh.triangle([ids[0], ids[next - 1], ids[next]]);
         }
     }
 }

@@ -99,25 +99,23 @@ fn object(export: &SceneExport<'_>, item: &DrawItem) -> ObjObject<'static> {
     let mesh = export.mesh(item);
     let mut ids: Vec<Option<VertexId>> = vec![None; mesh.vertices.len()];
     export.triangles(item).iter().flatten().for_each(|id| ids[id.index()] = Some(VertexId(0)));
-    let used = mesh.vertices.iter().zip(&ids).filter(|(_, id)| id.is_some());
-    let used: Vec<&DrawVertex> = used.map(|(vertex, _)| vertex).collect();
-    for (place, id) in ids.iter_mut().flatten().enumerate() {
-        *id = VertexId::new(place);
-    }
+    ids.iter_mut().flatten().enumerate().for_each(|(place, id)| *id = VertexId::new(place));
+    let used = mesh.vertices.iter().zip(&ids).filter_map(|(vertex, id)| id.map(|_| vertex));
     let new_id = |id: VertexId| ids[id.index()].expect("every corner is used");
     let turn = Mat3::from_mat4(item.world_from_mesh);
-    let position = |vertex: &&DrawVertex| item.world_from_mesh.transform_point3(vertex.position.into());
-    let normal = |vertex: &&DrawVertex| (turn * Vec3::from(vertex.normal)).normalize_or(Vec3::Z);
-    let uv = |vertex: &&DrawVertex| Vec2::new(vertex.uv[0], 1.0 - vertex.uv[1]);
-    let is_colored = used.iter().any(|vertex| vertex.color != Srgba::WHITE);
+    let is_colored = used.clone().any(|vertex| vertex.color != Srgba::WHITE);
     let is_textured = export.material(item).texture.is_some();
+    let position = |vertex: &DrawVertex| item.world_from_mesh.transform_point3(vertex.position.into());
+    let normal = |vertex: &DrawVertex| (turn * Vec3::from(vertex.normal)).normalize_or(Vec3::Z);
+    let color = |vertex: &DrawVertex| is_colored.then(|| srgb(vertex.color));
+    let uv = |vertex: &DrawVertex| is_textured.then(|| Vec2::new(vertex.uv[0], 1.0 - vertex.uv[1]));
     ObjObject {
         name: (export.name_of)(item.feature),
         material: Some(material_name(export.list, item.material)),
-        positions: used.iter().map(position).collect(),
-        colors: if is_colored { used.iter().map(|vertex| srgb(vertex.color)).collect() } else { Vec::new() },
-        normals: used.iter().map(normal).collect(),
-        uvs: if is_textured { used.iter().map(uv).collect() } else { Vec::new() },
+        positions: used.clone().map(position).collect(),
+        colors: used.clone().filter_map(color).collect(),
+        normals: used.clone().map(normal).collect(),
+        uvs: used.filter_map(uv).collect(),
         triangles: export.triangles(item).iter().map(|corners| corners.map(new_id)).collect(),
     }
 }

@@ -4,7 +4,6 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::draw::color::Srgba;
-use crate::draw::ground::GroundMap;
 use crate::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh};
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use crate::export::bake::{BakedGround, bake};
@@ -72,24 +71,20 @@ fn prepared_mesh(
         DepthLayer::Draped(_) => mesh.clone(),
         DepthLayer::Solid => return None,
     };
-    if let (Albedo::GroundMap, Some(baked)) = (material.albedo, baked) {
-        for vertex in &mut prepared.vertices {
-            vertex.uv = baked.uv(Vec3::from(vertex.position).truncate()).to_array();
+    let is_lifted = matches!(item.layer, DepthLayer::Draped(_)) && is_translucent(list, item);
+    for vertex in &mut prepared.vertices {
+        let at = Vec3::from(vertex.position).truncate();
+        if let (Albedo::GroundMap, Some(baked)) = (material.albedo, baked) {
+            vertex.uv = baked.uv(at).to_array();
+        }
+        if let (NormalSource::Ground, Some(map)) = (material.normals, list.ground.as_deref()) {
+            vertex.normal = map.sample(at).normal().to_array();
+        }
+        if is_lifted {
+            vertex.position[2] += LIFT_M;
         }
     }
-    if let (NormalSource::Ground, Some(map)) = (material.normals, list.ground.as_deref()) {
-        take_normals(&mut prepared, map);
-    }
-    if matches!(item.layer, DepthLayer::Draped(_)) && is_translucent(list, item) {
-        prepared.vertices.iter_mut().for_each(|vertex| vertex.position[2] += LIFT_M);
-    }
     Some(prepared)
-}
-
-fn take_normals(mesh: &mut DrawMesh, map: &GroundMap) {
-    for vertex in &mut mesh.vertices {
-        vertex.normal = map.sample(Vec3::from(vertex.position).truncate()).normal().to_array();
-    }
 }
 
 #[cfg(test)]
@@ -97,7 +92,7 @@ mod tests {
     use super::*;
     use std::sync::Arc;
 
-    use crate::draw::ground::{ColorRamp, GroundPost};
+    use crate::draw::ground::{ColorRamp, GroundMap, GroundPost};
     use crate::draw::list::{DrawVertex, FeatureId};
     use crate::mesh::sink::MeshSink;
     use glam::{Mat4, Vec2};

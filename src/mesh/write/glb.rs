@@ -13,6 +13,7 @@
 use std::borrow::Cow;
 use std::io::{self, Write};
 
+use bytemuck::Pod;
 use glam::{Mat4, Vec2, Vec3};
 use serde_json::{Map, Value, json};
 
@@ -84,12 +85,10 @@ pub struct GlbNode {
 impl<'a> GlbScene<'a> {
     /// A scene of one mesh with at least one triangle.
     pub fn from_mesh(mesh: &'a TriMesh) -> Self {
+        let vertices = GlbVertices { positions: Cow::Borrowed(&mesh.positions), ..GlbVertices::default() };
         let triangles = Cow::Borrowed(mesh.triangles.as_slice());
         Self {
-            vertices: vec![GlbVertices {
-                positions: Cow::Borrowed(&mesh.positions),
-                ..GlbVertices::default()
-            }],
+            vertices: vec![vertices],
             meshes: vec![vec![GlbPrimitive { vertices: 0, triangles, material: None }]],
             nodes: vec![GlbNode { name: "terrain".into(), mesh: 0, world_from_mesh: Mat4::IDENTITY }],
             ..Self::default()
@@ -102,34 +101,31 @@ impl<'a> GlbScene<'a> {
     /// `out` cannot be written, or the file would exceed 4 GiB.
     pub fn write(&self, remarks: &Remarks, out: &mut impl Write) -> io::Result<()> {
         let mut data = GlbData::default();
-        let document = self.document(remarks, &mut data);
-        let mut text = document.to_string().into_bytes();
+        let mut text = self.document(remarks, &mut data).to_string().into_bytes();
         text.resize(text.len().next_multiple_of(4), b' ');
-        let binary_chunk = if data.length > 0 { 8 + data.length } else { 0 };
+        let data_chunk = if data.length > 0 { 8 + data.length } else { 0 };
         out.write_all(b"glTF")?;
         out.write_all(&2u32.to_le_bytes())?;
-        out.write_all(&count_u32(12 + 8 + text.len() + binary_chunk, "bytes")?.to_le_bytes())?;
+        out.write_all(&count_u32(20 + text.len() + data_chunk, "bytes")?.to_le_bytes())?;
         out.write_all(&count_u32(text.len(), "bytes")?.to_le_bytes())?;
         out.write_all(b"JSON")?;
         out.write_all(&text)?;
-        if data.length == 0 {
-            return Ok(());
+        if data.length > 0 {
+            out.write_all(&count_u32(data.length, "bytes")?.to_le_bytes())?;
+            out.write_all(b"BIN\0")?;
         }
-        out.write_all(&count_u32(data.length, "bytes")?.to_le_bytes())?;
-        out.write_all(b"BIN\0")?;
         data.chunks.iter().try_for_each(|chunk| out.write_all(chunk))
     }
 
     /// The JSON chunk; fills `data` with the binary chunk.
     fn document<'s>(&'s self, remarks: &Remarks, data: &mut GlbData<'s>) -> Value {
-        let attributes = self.add_attributes(data);
+        let attributes = self.add_vertices(data);
         let meshes = self.add_meshes(&attributes, data);
         let images: Vec<Value> = self.images.iter().map(|png| data.add_image(png)).collect();
         let texture = |image: usize| json!({"source": image, "sampler": 0});
-        let sampler = || json!({"magFilter": 9729, "minFilter": 9987});
-        let buffer = || json!({"byteLength": data.length});
+        let sampler = json!({"magFilter": 9729, "minFilter": 9987});
         let mut document = json!({
-            "asset": {"version": "2.0", "generator": "sandtable", "extras": {"remarks": remarks.lines()}},
+            "asset": {"version": "2.0", "generator": "sandtable", "extras": {"remarks": remarks.lines}},
             "scene": 0,
             "scenes": [{"nodes": [0]}],
             "nodes": self.nodes(),
@@ -137,10 +133,10 @@ impl<'a> GlbScene<'a> {
         let lists = [
             ("meshes", meshes),
             ("materials", self.materials.clone()),
-            ("textures", (0..self.images.len()).map(texture).collect()),
-            ("samplers", self.images.first().map(|_| sampler()).into_iter().collect()),
+            ("textures", (0..images.len()).map(texture).collect()),
+            ("samplers", if images.is_empty() { Vec::new() } else { vec![sampler] }),
             ("images", images),
-            ("buffers", (data.length > 0).then(buffer).into_iter().collect()),
+            ("buffers", if data.length > 0 { vec![json!({"byteLength": data.length})] } else { Vec::new() }),
             ("accessors", std::mem::take(&mut data.accessors)),
             ("bufferViews", std::mem::take(&mut data.views)),
         ];
@@ -151,40 +147,31 @@ impl<'a> GlbScene<'a> {
     }
 
     /// The accessors of each element of `vertices`, by attribute.
-    fn add_attributes<'s>(&'s self, data: &mut GlbData<'s>) -> Vec<Map<String, Value>> {
-        let mut attributes = vec![Map::new(); self.vertices.len()];
-        for layout in &ATTRIBUTES {
-            data.begin_view(json!({"byteStride": layout.stride, "target": ARRAY_BUFFER}));
-            for (vertices, attributes) in self.vertices.iter().zip(&mut attributes) {
-                let bytes = (layout.bytes)(vertices);
-                if bytes.is_empty() {
-                    continue;
-                }
-                let mut accessor = json!({
-                    "componentType": layout.component,
-                    "count": bytes.len() / layout.stride,
-                    "type": layout.kind,
-                });
-                if layout.component == UNSIGNED_SHORT {
-                    accessor["normalized"] = json!(true);
-                }
-                if layout.name == "POSITION" {
-                    let bounds = Aabb::around(vertices.positions.iter().copied()).unwrap_or_default();
-                    accessor["min"] = json!(bounds.min.to_array());
-                    accessor["max"] = json!(bounds.max.to_array());
-                }
-                attributes.insert(layout.name.into(), json!(data.add(bytes, accessor)));
-            }
+    fn add_vertices<'s>(&'s self, data: &mut GlbData<'s>) -> Vec<Map<String, Value>> {
+        data.next_view = Some(json!({"byteStride": 12, "target": ARRAY_BUFFER}));
+        let mut attributes = Vec::new();
+        for vertices in &self.vertices {
+            let Aabb { min, max } = Aabb::around(vertices.positions.iter().copied()).unwrap_or_default();
+            let (min, max) = (min.to_array(), max.to_array());
+            let accessor = json!({"componentType": FLOAT, "type": "VEC3", "min": min, "max": max});
+            let position = data.add(&vertices.positions, accessor);
+            attributes.push(Map::from_iter([("POSITION".to_owned(), json!(position))]));
         }
+        let all = self.vertices.iter();
+        let normal = json!({"componentType": FLOAT, "type": "VEC3"});
+        data.add_attribute("NORMAL", &normal, all.clone().map(|each| &*each.normals), &mut attributes);
+        let uv = json!({"componentType": FLOAT, "type": "VEC2"});
+        data.add_attribute("TEXCOORD_0", &uv, all.clone().map(|each| &*each.uvs), &mut attributes);
+        let color = json!({"componentType": UNSIGNED_SHORT, "type": "VEC4", "normalized": true});
+        data.add_attribute("COLOR_0", &color, all.map(|each| &*each.colors), &mut attributes);
         attributes
     }
 
     fn add_meshes<'s>(&'s self, attributes: &[Map<String, Value>], data: &mut GlbData<'s>) -> Vec<Value> {
-        data.begin_view(json!({"target": ELEMENT_ARRAY_BUFFER}));
+        data.next_view = Some(json!({"target": ELEMENT_ARRAY_BUFFER}));
         let mut primitive = |primitive: &'s GlbPrimitive<'_>| {
-            let bytes = little_endian::<u32, _>(&primitive.triangles);
-            let accessor = json!({"componentType": UNSIGNED_INT, "count": bytes.len() / 4, "type": "SCALAR"});
-            let indices = data.add(bytes, accessor);
+            let accessor = json!({"componentType": UNSIGNED_INT, "type": "SCALAR"});
+            let indices = data.add(primitive.triangles.as_flattened(), accessor);
             let mut object = json!({"attributes": attributes[primitive.vertices], "indices": indices});
             if let Some(material) = primitive.material {
                 object["material"] = json!(material);
@@ -218,47 +205,6 @@ impl<'a> GlbScene<'a> {
     }
 }
 
-/// How a vertex attribute is stored.
-struct AttributeLayout {
-    name: &'static str,
-    kind: &'static str,
-    component: u32,
-    /// Bytes a vertex.
-    stride: usize,
-    bytes: for<'s> fn(&'s GlbVertices<'_>) -> Cow<'s, [u8]>,
-}
-
-const ATTRIBUTES: [AttributeLayout; 4] = [
-    AttributeLayout {
-        name: "POSITION",
-        kind: "VEC3",
-        component: FLOAT,
-        stride: 12,
-        bytes: |vertices| little_endian::<f32, _>(&vertices.positions),
-    },
-    AttributeLayout {
-        name: "NORMAL",
-        kind: "VEC3",
-        component: FLOAT,
-        stride: 12,
-        bytes: |vertices| little_endian::<f32, _>(&vertices.normals),
-    },
-    AttributeLayout {
-        name: "TEXCOORD_0",
-        kind: "VEC2",
-        component: FLOAT,
-        stride: 8,
-        bytes: |vertices| little_endian::<f32, _>(&vertices.uvs),
-    },
-    AttributeLayout {
-        name: "COLOR_0",
-        kind: "VEC4",
-        component: UNSIGNED_SHORT,
-        stride: 8,
-        bytes: |vertices| little_endian::<u16, _>(&vertices.colors),
-    },
-];
-
 /// The binary chunk, and the views and accessors into it.
 #[derive(Default)]
 struct GlbData<'s> {
@@ -267,27 +213,38 @@ struct GlbData<'s> {
     length: usize,
     views: Vec<Value>,
     accessors: Vec<Value>,
-    /// The view to open with the next bytes: a kind of data that no vertex has gets no view.
+    /// The view that the next bytes open: an attribute that no vertex has gets no view.
     next_view: Option<Value>,
 }
 
 impl<'s> GlbData<'s> {
-    fn begin_view(&mut self, view: Value) {
-        self.next_view = Some(view);
+    /// Adds a view of an attribute, and an accessor for each list that is not empty.
+    fn add_attribute<T: Pod>(
+        &mut self,
+        name: &str,
+        accessor: &Value,
+        lists: impl Iterator<Item = &'s [T]>,
+        attributes: &mut [Map<String, Value>],
+    ) {
+        self.next_view = Some(json!({"byteStride": size_of::<T>(), "target": ARRAY_BUFFER}));
+        for (values, attributes) in lists.zip(attributes).filter(|(values, _)| !values.is_empty()) {
+            attributes.insert(name.to_owned(), json!(self.add(values, accessor.clone())));
+        }
     }
 
-    /// Adds bytes to the current view and returns the index of `accessor`, which reads them.
-    fn add(&mut self, bytes: Cow<'s, [u8]>, mut accessor: Value) -> usize {
-        let offset = self.append(bytes);
+    /// Adds values to the current view; returns the index of `accessor`, which reads them.
+    fn add<T: Pod>(&mut self, values: &'s [T], mut accessor: Value) -> usize {
+        let offset = self.append(little_endian(values));
         accessor["bufferView"] = json!(self.views.len() - 1);
         accessor["byteOffset"] = json!(offset);
+        accessor["count"] = json!(values.len());
         self.accessors.push(accessor);
         self.accessors.len() - 1
     }
 
-    /// Adds a view of its own for a PNG file; returns the image object.
+    /// Adds a view of a PNG file; returns the image object.
     fn add_image(&mut self, png: &'s [u8]) -> Value {
-        self.begin_view(json!({}));
+        self.next_view = Some(json!({}));
         self.append(png.into());
         let padding = self.length.next_multiple_of(4) - self.length;
         self.chunks.push(Cow::Borrowed(&[0; 3][..padding]));
@@ -303,9 +260,9 @@ impl<'s> GlbData<'s> {
             view["byteLength"] = json!(0);
             self.views.push(view);
         }
-        let view = self.views.last_mut().expect("a view was begun");
-        let offset = view["byteLength"].as_u64().expect("a length") as usize;
-        view["byteLength"] = json!(offset + bytes.len());
+        let length = &mut self.views.last_mut().expect("next_view was set")["byteLength"];
+        let offset = length.as_u64().expect("a length") as usize;
+        *length = json!(offset + bytes.len());
         self.length += bytes.len();
         self.chunks.push(bytes);
         offset

@@ -62,7 +62,7 @@ impl From<MeshWriteError> for io::Error {
     }
 }
 
-/// What a file states about its content. Control characters are replaced, so that no line can end a comment.
+/// What a file states about its content.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Remarks {
     lines: Vec<String>,
@@ -70,20 +70,11 @@ pub struct Remarks {
 }
 
 impl Remarks {
-    /// Full sentences, and a short form for the 80 bytes of an STL header.
+    /// Full sentences, and a short form for the 80 bytes of an STL header. Control characters become `?`, so that no line
+    /// can end a comment.
     pub fn new(lines: &[String], short: &str) -> Self {
         let printable = |line: &str| line.replace(char::is_control, "?");
         Self { lines: lines.iter().map(|line| printable(line)).collect(), short: printable(short) }
-    }
-
-    /// All lines.
-    pub fn lines(&self) -> &[String] {
-        &self.lines
-    }
-
-    /// The short form.
-    pub fn short(&self) -> &str {
-        &self.short
     }
 }
 
@@ -109,13 +100,13 @@ fn count_u32(count: usize, what: &'static str) -> Result<u32, MeshWriteError> {
     u32::try_from(count).map_err(|_| MeshWriteError::TooLarge { count, what })
 }
 
-/// Values made of words of `W` as little-endian bytes; copied only where the processor is big-endian.
-fn little_endian<W, T: bytemuck::Pod>(values: &[T]) -> Cow<'_, [u8]> {
+/// `values` as little-endian bytes; copied only on big-endian processors. All words of `T` must have its alignment.
+fn little_endian<T: bytemuck::Pod>(values: &[T]) -> Cow<'_, [u8]> {
     let bytes: &[u8] = bytemuck::cast_slice(values);
     if cfg!(target_endian = "little") {
         return bytes.into();
     }
-    bytes.chunks_exact(size_of::<W>()).flat_map(|word| word.iter().rev()).copied().collect()
+    bytes.chunks_exact(align_of::<T>()).flat_map(|word| word.iter().rev()).copied().collect()
 }
 
 #[cfg(test)]
@@ -153,7 +144,7 @@ mod tests {
 
     #[test]
     fn remarks_are_single_lines() {
-        assert_eq!(samples::remarks().lines(), ["a?v 9 9 9", "zwölf"]);
+        assert_eq!(samples::remarks().lines, ["a?v 9 9 9", "zwölf"]);
     }
 
     #[test]

@@ -59,7 +59,7 @@ impl<'w, W: Write> ObjWriter<'w, W> {
     /// # Errors
     /// `out` cannot be written.
     pub fn new(out: &'w mut W, remarks: &Remarks, library: Option<&str>) -> io::Result<Self> {
-        for line in remarks.lines() {
+        for line in &remarks.lines {
             writeln!(out, "# {line}")?;
         }
         if let Some(library) = library {

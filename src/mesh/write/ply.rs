@@ -11,7 +11,7 @@ use crate::mesh::write::{Remarks, little_endian};
 /// `out` cannot be written.
 pub fn write(mesh: &TriMesh, remarks: &Remarks, out: &mut impl Write) -> io::Result<()> {
     out.write_all(b"ply\nformat binary_little_endian 1.0\n")?;
-    for line in remarks.lines() {
+    for line in &remarks.lines {
         writeln!(out, "comment {line}")?;
     }
     writeln!(out, "element vertex {}", mesh.positions.len())?;
@@ -20,10 +20,10 @@ pub fn write(mesh: &TriMesh, remarks: &Remarks, out: &mut impl Write) -> io::Res
     }
     writeln!(out, "element face {}", mesh.triangles.len())?;
     out.write_all(b"property list uchar uint vertex_indices\nend_header\n")?;
-    out.write_all(&little_endian::<f32, _>(&mesh.positions))?;
+    out.write_all(&little_endian(&mesh.positions))?;
     for corners in &mesh.triangles {
         out.write_all(&[3])?;
-        out.write_all(&little_endian::<u32, _>(corners))?;
+        out.write_all(&little_endian(corners))?;
     }
     Ok(())
 }

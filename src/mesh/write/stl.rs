@@ -16,12 +16,12 @@ const HEADER: usize = 80;
 /// # Errors
 /// `out` cannot be written, or there are 2³² triangles or more.
 pub fn write(mesh: &TriMesh, remarks: &Remarks, out: &mut impl Write) -> io::Result<()> {
-    out.write_all(&header(remarks.short()))?;
+    out.write_all(&header(&remarks.short))?;
     out.write_all(&count_u32(mesh.triangles.len(), "triangles")?.to_le_bytes())?;
     for triangle in 0..mesh.triangles.len() {
         let [a, b, c] = mesh.corners(triangle);
         let normal: DVec3 = normal([a, b, c].map(Vec3::as_dvec3)).normalize_or_zero();
-        out.write_all(&little_endian::<f32, _>(&[normal.as_vec3(), a, b, c]))?;
+        out.write_all(&little_endian(&[normal.as_vec3(), a, b, c]))?;
         out.write_all(&[0, 0])?;
     }
     Ok(())
