@@ -9,8 +9,9 @@ use crate::app::arguments::{Access, meters_from_zero};
 use crate::app::failure::CliError;
 use crate::app::progress::StepTimer;
 use crate::app::{files, load, output};
-use crate::draw::list::{DrawList, FeatureId};
-use crate::export::{glb, obj, prepare};
+use crate::draw::list::FeatureId;
+use crate::export::{SceneExport, glb, obj, prepare};
+use crate::mesh::write::Remarks;
 use crate::roam::criterion::flat::Flat;
 use crate::roam::displayed::DisplayedTerrain;
 use crate::roam::refine::rebuild::rebuild;
@@ -65,8 +66,9 @@ pub fn run(options: &ExportOptions) -> Result<(), CliError> {
     step("taking out what is covered");
     let list = prepare::prepare(list);
     step("writing");
-    let remarks = remarks(options, &scene);
-    let written = write(&options.output, format, (&list, &scene), &remarks)?;
+    let name_of = |feature| name_of(&scene.features, feature);
+    let export = SceneExport { list: &list, name_of: &name_of, remarks: &remarks(options, &scene) };
+    let written = write(&options.output, format, &export, &scene.files)?;
     steps.finish();
     let count = |name: &str, count: usize| format!("  {name:<10} {count}");
     let mut lines: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
@@ -102,22 +104,21 @@ fn display(terrain: &Terrain, max_error_m: f32) -> DisplayedTerrain {
 fn write(
     path: &Path,
     format: ExportFormat,
-    (list, scene): (&DrawList, &Scene),
-    remarks: &[String],
+    export: &SceneExport<'_>,
+    inputs: &[PathBuf],
 ) -> Result<Vec<PathBuf>, CliError> {
-    let name = |feature| name_of(&scene.features, feature);
     let mut written = vec![path.to_owned()];
     match format {
-        ExportFormat::Glb => files::write_whole_with(path, |out| glb::write(list, &name, remarks, out))?,
+        ExportFormat::Glb => files::write_whole_with(path, |out| glb::write(export, out))?,
         ExportFormat::Obj => {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            for (name, bytes) in obj::companions(list, &stem) {
-                let place = path.with_file_name(name);
-                files::check_no_input(&place, &scene.files)?;
-                files::write_whole(&place, &bytes)?;
+            for companion in obj::companions(export.list, &stem) {
+                let place = path.with_file_name(companion.name);
+                files::check_no_input(&place, inputs)?;
+                files::write_whole(&place, &companion.bytes)?;
                 written.push(place);
             }
-            files::write_whole_with(path, |out| obj::write(list, (&stem, &name), remarks, out))?;
+            files::write_whole_with(path, |out| obj::write(export, &stem, out))?;
         }
     }
     Ok(written)
@@ -135,13 +136,14 @@ fn name_of(features: &[SceneFeature], FeatureId(id): FeatureId) -> String {
     })
 }
 
-fn remarks(options: &ExportOptions, scene: &Scene) -> Vec<String> {
+fn remarks(options: &ExportOptions, scene: &Scene) -> Remarks {
     let origin = scene.terrain.lattice.origin();
     let title = scene.title.clone().unwrap_or_else(|| "a scene".into());
-    vec![
+    let lines = [
         format!("{title}, written by sandtable"),
         "meters from the south-west post; heights are elevations".to_owned(),
         format!("origin: easting {} northing {} in {}", origin.x, origin.y, scene.crs.name()),
         format!("the ground is off by at most {} m at every post", options.max_error),
-    ]
+    ];
+    Remarks::new(&lines, "")
 }

@@ -67,7 +67,7 @@ fn about(file: &Path, reason: &str) -> CliError {
 
 fn format_of(path: &Path) -> Result<MeshFormat, CliError> {
     let extension = path.extension().unwrap_or_default().to_string_lossy();
-    MeshFormat::of_extension(&extension).ok_or_else(|| {
+    MeshFormat::from_extension(&extension).ok_or_else(|| {
         let place = path.display();
         CliError::Usage(format!(
             "{place}: meshes are written as .obj, .ply, .stl or .glb; name a file that ends so"

@@ -7,8 +7,9 @@ use serde_json::json;
 use crate::app::arguments::InfoOptions;
 use crate::app::failure::CliError;
 use crate::app::{files, output};
+use crate::geom::aabb::Aabb;
 use crate::model::Model;
-use crate::model::error::ModelError;
+use crate::model::error::{ModelError, error_chain};
 use crate::model::read;
 use crate::scene::assets::Assets;
 
@@ -25,7 +26,7 @@ pub fn info(options: &InfoOptions) -> Result<(), CliError> {
     let companions = assets.beside(&name).map_err(|error| wrong(error.to_string()))?;
     let model = read::read(&path.to_string_lossy(), &bytes, &companions).map_err(|error| match error {
         ModelError::Empty { .. } | ModelError::Unknown { .. } => CliError::input(error),
-        _ => wrong(error.to_string()),
+        _ => wrong(error_chain(&error)),
     })?;
     let text = if options.json { format!("{}\n", describe(&model)) } else { table(path, &model) };
     output::print(&text)
@@ -34,7 +35,7 @@ pub fn info(options: &InfoOptions) -> Result<(), CliError> {
 /// One JSON object.
 fn describe(model: &Model) -> serde_json::Value {
     let census = model.census;
-    let (min, max) = model.bounds().unwrap_or_default();
+    let Aabb { min, max } = model.bounds().unwrap_or_default();
     json!({
         "meshes": census.meshes,
         "vertices": census.vertices,
@@ -47,7 +48,7 @@ fn describe(model: &Model) -> serde_json::Value {
 
 fn table(path: &Path, model: &Model) -> String {
     let census = model.census;
-    let (min, max) = model.bounds().unwrap_or_default();
+    let Aabb { min, max } = model.bounds().unwrap_or_default();
     let mut lines = vec![
         format!("{}", path.display()),
         format!("  meshes     {}", census.meshes),

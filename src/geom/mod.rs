@@ -1,5 +1,6 @@
 //! Mathematics on `glam` and `geo`: no terrain, no files.
 
+pub mod aabb;
 pub mod convex;
 pub mod crs;
 pub mod datum_shift;
@@ -11,5 +12,6 @@ pub mod projection;
 pub mod rect;
 pub mod rect_tree;
 pub mod region;
+pub mod triangle;
 pub mod wkt;
 pub mod wkt_text;

@@ -9,6 +9,7 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
+use crate::geom::aabb::Aabb;
 use crate::geom::polygon;
 use crate::model::Model;
 use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
@@ -30,16 +31,14 @@ pub struct ModelFootprint {
 impl ModelFootprint {
     /// The footprint of a model; a point at its origin where it has no vertices.
     pub fn of(model: &Model) -> Self {
-        let bounds = model.bounds().unwrap_or((Vec3::ZERO, Vec3::ZERO));
-        let foot_z = bounds.0.z + (bounds.1.z - bounds.0.z) * FOOT_PART;
+        let bounds = model.bounds().unwrap_or_default();
+        let foot_z = bounds.min.z + (bounds.max.z - bounds.min.z) * FOOT_PART;
         let vertices = model.parts.iter().flat_map(|part| &part.mesh.vertices);
         let feet = vertices.map(|vertex| Vec3::from(vertex.position)).filter(|at| at.z <= foot_z);
-        let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        let (low, high) = feet.fold(none, |(low, high), at| (low.min(at), high.max(at)));
-        let (low, high) = if low.is_finite() { (low, high) } else { (Vec3::ZERO, Vec3::ZERO) };
-        let middle = (low + high) / 2.0;
-        let half = ((high - low) / 2.0).max(Vec3::splat(LEAST_HALF));
-        Self { min: (middle - half).with_z(bounds.0.z), max: (middle + half).with_z(bounds.0.z) }
+        let foot = Aabb::around(feet).unwrap_or_default();
+        let half = (foot.size() / 2.0).max(Vec3::splat(LEAST_HALF));
+        let (min, max) = (foot.center() - half, foot.center() + half);
+        Self { min: min.with_z(bounds.min.z), max: max.with_z(bounds.min.z) }
     }
 
     /// Its corners, counter-clockwise seen from above: front left, front right, back right and back left, as seen from

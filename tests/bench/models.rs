@@ -19,6 +19,7 @@ use std::time::Instant;
 
 use sandtable::draw::list::DrawList;
 use sandtable::model::detail::ModelDetail;
+use sandtable::model::error::CompanionError;
 use sandtable::model::read::read;
 use sandtable::model::simplify::levels;
 use sandtable::model::{Companions, Model};
@@ -84,9 +85,9 @@ fn row(name: &str, scene: &Scene, camera: &Camera, listed: impl Fn(&Scene, &Came
 struct Assets;
 
 impl Companions for Assets {
-    fn load(&self, name: &str) -> Result<Vec<u8>, String> {
+    fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/models");
-        fs::read(folder.join(name)).map_err(|error| error.to_string())
+        Ok(fs::read(folder.join(name))?)
     }
 }
 
@@ -105,7 +106,7 @@ fn print_simplify() {
         let levels = levels(&model);
         let simplified = start.elapsed().as_secs_f64() * 1e3;
         let start = Instant::now();
-        ModelDetail::of(&model);
+        ModelDetail::new(&model);
         let all = start.elapsed().as_secs_f64() * 1e3;
         let each: Vec<String> =
             levels.iter().map(|level| format!("{} ({:.3})", level.triangle_count(), level.error)).collect();

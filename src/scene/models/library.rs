@@ -10,6 +10,7 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::words::Clamp;
 use crate::model::Model;
+use crate::model::error::error_chain;
 use crate::model::{built_in, read};
 use crate::scene::assets::Assets;
 use crate::scene::builder::SceneBuilder;
@@ -73,7 +74,7 @@ impl<'a> Library<'a> {
         };
         let bytes = self.assets.read(name).map_err(|error| wrong(error.to_string()))?;
         let companions = self.assets.beside(name).map_err(|error| wrong(error.to_string()))?;
-        read::read(name, &bytes, &companions).map_err(|error| wrong(error.to_string()))
+        read::read(name, &bytes, &companions).map_err(|error| wrong(error_chain(&error)))
     }
 
     /// Where a model touches the ground.
@@ -93,7 +94,7 @@ impl<'a> Library<'a> {
     /// How far a model reaches from its origin in plan, in its own units.
     pub fn reach(&self, model: usize) -> f32 {
         let bounds = self.models[model].bounds();
-        bounds.map_or(0.0, |(min, max)| min.abs().max(max.abs()).truncate().max_element())
+        bounds.map_or(0.0, |bounds| bounds.min.abs().max(bounds.max.abs()).truncate().max_element())
     }
 
     /// All models, in the order of their places.
