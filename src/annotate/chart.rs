@@ -16,7 +16,7 @@ use glam::Vec2;
 
 use crate::annotate::canvas::Canvas;
 use crate::annotate::drawing::Drawing;
-use crate::annotate::nice::{number, short_number, ticks};
+use crate::annotate::nice::{format_number, format_trimmed, ticks};
 use crate::annotate::paragraph::fitted;
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 use crate::annotate::sheet::{INK, PAPER, SOFT_INK, Sheet};
@@ -38,7 +38,7 @@ const ROOM: (f64, f64) = (0.16, 0.16);
 
 /// What stands around the plot.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Surroundings {
+pub struct ChartText {
     /// Upper left, large.
     pub title: String,
     /// Below the title: a sentence about what is seen.
@@ -98,7 +98,7 @@ pub struct Chart {
 /// Begins a chart of `size` pixels for a line `length_m` long and heights from `low_m` to `high_m`.
 ///
 /// What is not finite, or a line without length, is charted as a meter.
-pub fn begin(size: (u32, u32), around: &Surroundings, length_m: f64, (low_m, high_m): (f64, f64)) -> Chart {
+pub fn begin(size: (u32, u32), around: &ChartText, length_m: f64, (low_m, high_m): (f64, f64)) -> Chart {
     let sheet = Sheet::new(size.0, size.1);
     let mut setter = Typesetter::new();
     let length_m = if length_m.is_finite() && length_m > 0.0 { length_m } else { 1.0 };
@@ -137,7 +137,7 @@ fn height_ticks(sheet: &Sheet, heights_m: (f64, f64), height_px: f32) -> (Vec<f6
 
 fn plot_box(
     sheet: &Sheet,
-    around: &Surroundings,
+    around: &ChartText,
     heights_m: (f64, f64),
     setter: &mut Typesetter,
 ) -> PixelBox {
@@ -152,7 +152,7 @@ fn plot_box(
     let (heights, decimals) = height_ticks(sheet, heights_m, bottom - top);
     let widest = heights
         .iter()
-        .map(|&height| setter.line(&number(height, decimals), figures(sheet)).advance)
+        .map(|&height| setter.line(&format_number(height, decimals), figures(sheet)).advance)
         .fold(0.0, f32::max);
     let left = (margin + widest + sheet.px(12.0)).round();
     let right = (sheet.size.x - margin - sheet.px(12.0)).round().max(left + 8.0);
@@ -160,11 +160,11 @@ fn plot_box(
 }
 
 impl Chart {
-    fn titles(&mut self, around: &Surroundings) {
+    fn titles(&mut self, around: &ChartText) {
         let (sheet, plot) = (self.sheet, self.frame.plot);
         let margin = sheet.whole_px(30.0);
         let title = TextStyle::upright(sheet.type_px(26.0), TextStyle::MEDIUM);
-        let stretched = format!("heights ×{}", short_number(self.frame.exaggeration(), 1));
+        let stretched = format!("heights ×{}", format_trimmed(self.frame.exaggeration(), 1));
         let note = self.setter.line(&stretched, figures(&sheet));
         let baseline = margin + title.size_px * CAP_HEIGHT;
         let room = plot.max.x - margin;
@@ -178,18 +178,18 @@ impl Chart {
                 write(&mut self.below, &[(&line, at)], SOFT_INK);
             }
         }
-        let at = Vec2::new(plot.max.x - note.advance, plot.min.y - note.face.size_px * 0.95);
+        let at = Vec2::new(plot.max.x - note.advance, plot.min.y - note.style.size_px * 0.95);
         write(&mut self.below, &[(&note, at.round())], SOFT_INK);
     }
 
-    fn height_axis(&mut self, around: &Surroundings) {
+    fn height_axis(&mut self, around: &ChartText) {
         let (sheet, frame) = (self.sheet, self.frame);
         let face = figures(&sheet);
         let (heights, decimals) = height_ticks(&sheet, frame.heights_m, frame.plot.size().y);
         for height_m in heights {
             let y = frame.at(0.0, height_m).y.round();
             self.rule(Vec2::new(frame.plot.min.x, y), Vec2::new(frame.plot.max.x, y));
-            let figure = self.setter.line(&number(height_m, decimals), face);
+            let figure = self.setter.line(&format_number(height_m, decimals), face);
             let x = frame.plot.min.x - sheet.px(8.0) - figure.advance;
             let at = Vec2::new(x, y + face.size_px * CAP_HEIGHT * 0.5);
             write(&mut self.below, &[(&figure, at)], INK);
@@ -201,7 +201,7 @@ impl Chart {
         }
     }
 
-    fn along_axis(&mut self, around: &Surroundings) {
+    fn along_axis(&mut self, around: &ChartText) {
         let (sheet, frame) = (self.sheet, self.frame);
         let face = figures(&sheet);
         let (unit_m, unit) = if frame.length_m >= KILOMETERS_FROM_M { (1000.0, "km") } else { (1.0, "m") };
@@ -211,7 +211,7 @@ impl Chart {
         for mark in marks {
             let x = frame.at(mark * unit_m, 0.0).x.round();
             self.rule(Vec2::new(x, frame.plot.min.y), Vec2::new(x, frame.plot.max.y + sheet.px(5.0)));
-            let figure = self.setter.line(&number(mark, decimals), face);
+            let figure = self.setter.line(&format_number(mark, decimals), face);
             let at = Vec2::new(x - figure.advance * 0.5, baseline);
             write(&mut self.below, &[(&figure, at)], INK);
         }
@@ -308,13 +308,13 @@ mod tests {
             along_m: index as f64 * 100.0,
             ground: if height.is_nan() { ChartGround::NoData } else { ChartGround::Height(height) },
         };
-        let around = Surroundings { title: "Profile".into(), ..Surroundings::default() };
-        ProfileChart { around, points: heights.iter().enumerate().map(point).collect(), bends_m: vec![] }
+        let around = ChartText { title: "Profile".into(), ..ChartText::default() };
+        ProfileChart { text: around, points: heights.iter().enumerate().map(point).collect(), bends_m: vec![] }
     }
 
     #[test]
     fn heights_rise_upward_and_distances_to_the_right_within_the_plot() {
-        let chart = begin((800, 400), &Surroundings::default(), 1000.0, (100.0, 300.0));
+        let chart = begin((800, 400), &ChartText::default(), 1000.0, (100.0, 300.0));
         let (low, high) = (chart.frame.at(0.0, 100.0), chart.frame.at(1000.0, 300.0));
         assert!(low.x == chart.frame.plot.min.x && high.x == chart.frame.plot.max.x);
         assert!(high.y < low.y && chart.frame.plot.contains(Vec2::new(low.x + 1.0, high.y)));
@@ -322,7 +322,7 @@ mod tests {
 
     #[test]
     fn the_stretch_of_heights_is_that_of_the_scales() {
-        let frame = begin((800, 400), &Surroundings::default(), 1000.0, (0.0, 100.0)).frame;
+        let frame = begin((800, 400), &ChartText::default(), 1000.0, (0.0, 100.0)).frame;
         let right = frame.at(1.0, 0.0).x - frame.at(0.0, 0.0).x;
         let up = frame.at(0.0, 0.0).y - frame.at(0.0, 1.0).y;
         assert!((frame.exaggeration() / f64::from(up / right) - 1.0).abs() < 1e-3);
@@ -330,7 +330,7 @@ mod tests {
 
     #[test]
     fn level_ground_is_not_stretched_into_mountains() {
-        let frame = begin((800, 400), &Surroundings::default(), 10_000.0, (50.0, 50.001)).frame;
+        let frame = begin((800, 400), &ChartText::default(), 10_000.0, (50.0, 50.001)).frame;
         assert!(frame.exaggeration() < 400.0);
     }
 
@@ -339,7 +339,7 @@ mod tests {
         let pixels = paint((800, 400), &chart(&[100.0, 100.0, f64::NAN, 100.0, 100.0]));
         let frame = begin(
             (800, 400),
-            &Surroundings { title: "Profile".into(), ..Surroundings::default() },
+            &ChartText { title: "Profile".into(), ..ChartText::default() },
             400.0,
             (100.0, 100.0),
         )

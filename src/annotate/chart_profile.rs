@@ -1,8 +1,8 @@
 //! The chart of a profile: the ground along a line, its lowest and highest place marked.
 
-use crate::annotate::chart::{self, LabelSide, Surroundings};
+use crate::annotate::chart::{self, LabelSide, ChartText};
 use crate::annotate::chart_ground::{ChartPoint, fill, hatch_gaps, height_range, rim};
-use crate::annotate::nice::number;
+use crate::annotate::nice::format_number;
 use crate::annotate::sheet::INK;
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
@@ -14,7 +14,7 @@ const EARTH: Srgba = Srgba::opaque(0xc8, 0xb8, 0x96);
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProfileChart {
     /// What stands around the plot.
-    pub around: Surroundings,
+    pub text: ChartText,
     /// The ground, in order along the line.
     pub points: Vec<ChartPoint>,
     /// Where the line has vertices between its ends, meters along it.
@@ -25,7 +25,7 @@ pub struct ProfileChart {
 pub fn paint(size: (u32, u32), profile: &ProfileChart) -> Pixels {
     let points = &profile.points;
     let length_m = points.last().map_or(0.0, |last| last.along_m);
-    let mut chart = chart::begin(size, &profile.around, length_m, height_range(points));
+    let mut chart = chart::begin(size, &profile.text, length_m, height_range(points));
     hatch_gaps(&mut chart, points);
     fill(&mut chart, points, EARTH);
     rim(&mut chart, points);
@@ -40,7 +40,7 @@ pub fn paint(size: (u32, u32), profile: &ProfileChart) -> Pixels {
         let Some((along_m, height_m)) = place else { continue };
         let at = chart.frame.at(along_m, height_m);
         chart.dot(at, INK);
-        chart.label(&format!("{} m", number(height_m, 1)), at, side, INK);
+        chart.label(&format!("{} m", format_number(height_m, 1)), at, side, INK);
     }
     chart.finish()
 }

@@ -3,7 +3,7 @@
 
 use glam::Vec2;
 
-use crate::annotate::chart::{self, Chart, LabelSide, Surroundings};
+use crate::annotate::chart::{self, Chart, LabelSide, ChartText};
 use crate::annotate::chart_ground::{ChartGround, ChartPoint, fill, hatch_gaps, height_range, rim};
 use crate::annotate::pixel_box::PixelSegment;
 use crate::annotate::sheet::{INK, WATER_INK};
@@ -28,11 +28,11 @@ const DASH: (f32, f32) = (10.0, 7.0);
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SightChart {
     /// What stands around the plot.
-    pub around: Surroundings,
+    pub text: ChartText,
     /// The ground, in order from the observer.
     pub points: Vec<ChartPoint>,
     /// What of it the observer sees: from and to, meters.
-    pub seen_m: Vec<(f64, f64)>,
+    pub visible_m: Vec<(f64, f64)>,
     /// The observer's eye, meters.
     pub eye_m: f64,
     /// The target's height, meters, at the last point.
@@ -40,9 +40,9 @@ pub struct SightChart {
     /// What blocks the line first, along and high, and what is said of it.
     pub blocker: Option<(f64, f64, String)>,
     /// What is said of the observer.
-    pub observer: String,
+    pub observer_label: String,
     /// What is said of the target.
-    pub target: String,
+    pub target_label: String,
 }
 
 /// A picture of the chart, `size` pixels wide and high. The same chart gives the same bytes on every machine.
@@ -50,10 +50,10 @@ pub fn paint(size: (u32, u32), sight: &SightChart) -> Pixels {
     let length_m = sight.points.last().map_or(0.0, |last| last.along_m);
     let (low, high) = height_range(&sight.points);
     let (low, high) = (low.min(sight.eye_m).min(sight.target_m), high.max(sight.eye_m).max(sight.target_m));
-    let mut chart = chart::begin(size, &sight.around, length_m, (low, high));
+    let mut chart = chart::begin(size, &sight.text, length_m, (low, high));
     hatch_gaps(&mut chart, &sight.points);
     fill(&mut chart, &sight.points, DARK);
-    for &(from_m, to_m) in &sight.seen_m {
+    for &(from_m, to_m) in &sight.visible_m {
         fill(&mut chart, &between(&sight.points, from_m, to_m), LIT);
     }
     rim(&mut chart, &sight.points);
@@ -101,7 +101,7 @@ fn line(chart: &mut Chart, sight: &SightChart, length_m: f64) {
         }
         None => chart.plotted.line(PixelSegment { from: eye, to: target }, width, LINE),
     }
-    for (along_m, at, said) in [(0.0, eye, &sight.observer), (length_m, target, &sight.target)] {
+    for (along_m, at, said) in [(0.0, eye, &sight.observer_label), (length_m, target, &sight.target_label)] {
         let ground = sight.points.iter().find(|point| point.along_m == along_m);
         if let Some(height_m) = ground.and_then(|point| point.ground.height_m()) {
             let foot = chart.frame.at(along_m, height_m);

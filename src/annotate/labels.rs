@@ -193,7 +193,7 @@ fn baselines(lines: &[TextLine], alignment: Alignment) -> Vec<(&TextLine, Vec2)>
     let mut y = 0.0;
     let place = |(number, line): (usize, &'_ TextLine)| {
         if number > 0 {
-            y += (line.face.size_px * LEADING).round();
+            y += (line.style.size_px * LEADING).round();
         }
         let share = match alignment {
             Alignment::Left => 0.0,

@@ -3,7 +3,7 @@
 use glam::Vec2;
 
 use crate::annotate::drawing::Drawing;
-use crate::annotate::nice::{number, short_number, ticks};
+use crate::annotate::nice::{format_number, format_trimmed, ticks};
 use crate::annotate::paragraph::{fitted, written_lines};
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::report::AnnotationReport;
@@ -67,7 +67,7 @@ fn marks(legend: &Legend, ramp_px: f32, face: TextStyle, setter: &mut Typesetter
     let (heights, decimals) = ticks(low, high, most);
     let mark = |height: f64| HeightMark {
         share: ((height - low) / (high - low)) as f32,
-        figure: setter.line(&number(height, decimals), face),
+        figure: setter.line(&format_number(height, decimals), face),
     };
     heights.into_iter().map(mark).collect()
 }
@@ -83,10 +83,10 @@ fn notes(
     let mut texts = Vec::new();
     if let Some(interval) = legend.contour_interval.filter(|interval| interval.is_finite() && *interval > 0.0)
     {
-        texts.push(format!("Contours every {} m", short_number(f64::from(interval), 2)));
+        texts.push(format!("Contours every {} m", format_trimmed(f64::from(interval), 2)));
     }
     if legend.vertical_exaggeration.is_finite() && legend.vertical_exaggeration != 1.0 {
-        texts.push(format!("Heights ×{}", short_number(f64::from(legend.vertical_exaggeration), 2)));
+        texts.push(format!("Heights ×{}", format_trimmed(f64::from(legend.vertical_exaggeration), 2)));
     }
     if let Some(datum) = &legend.vertical_datum {
         texts.extend(written_lines(datum, 1).0);
@@ -109,8 +109,8 @@ fn lay_out(
     sheet: &Sheet,
 ) -> Drawing {
     let padding = sheet.padding();
-    let head_at = Vec2::new(padding, padding + (head.face.size_px * CAP_HEIGHT).round());
-    let top = head_at.y + (head.face.size_px * 0.72).round();
+    let head_at = Vec2::new(padding, padding + (head.style.size_px * CAP_HEIGHT).round());
+    let top = head_at.y + (head.style.size_px * 0.72).round();
     let ramp = PixelBox::at(Vec2::new(padding, top), Vec2::new(sheet.whole_px(20.0), height));
     let mut content = Drawing::default();
     draw_ramp(&mut content, legend, ramp, sheet);
@@ -119,7 +119,7 @@ fn lay_out(
     let mut placed = vec![];
     for (number, note) in notes.iter().enumerate() {
         let leading = if number == 0 { CAP_HEIGHT + 0.85 } else { 1.3 };
-        bottom = (bottom + note.face.size_px * leading).round();
+        bottom = (bottom + note.style.size_px * leading).round();
         placed.push((note, Vec2::new(padding, bottom)));
     }
     write(&mut content, &[(head, head_at)], INK);
@@ -157,7 +157,7 @@ fn draw_marks(drawing: &mut Drawing, marks: &[HeightMark], ramp: PixelBox, sheet
             .clamp(ramp.min.y, ramp.max.y - line);
         let tick = PixelBox::at(Vec2::new(ramp.max.x, y), Vec2::new(sheet.whole_px(5.0), line));
         drawing.rect(tick, INK);
-        let baseline = (y + line * 0.5 + mark.figure.face.size_px * CAP_HEIGHT * 0.5).round();
+        let baseline = (y + line * 0.5 + mark.figure.style.size_px * CAP_HEIGHT * 0.5).round();
         // Figures stand flush right, so that digits of the same worth stand under each other.
         let at = Vec2::new(figures_left + widest - mark.figure.advance, baseline);
         write(drawing, &[(&mark.figure, at)], INK);

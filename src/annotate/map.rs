@@ -48,16 +48,16 @@ pub struct MapFurniture {
     /// The line below it.
     pub subtitle: String,
     /// What the map's colors mean beside heights, from the top.
-    pub key: Vec<(Srgba, String)>,
+    pub tints: Vec<(Srgba, String)>,
     /// What the ground's colors mean.
-    pub heights: Legend,
+    pub legend: Legend,
     /// Pixels that one meter spans on the map.
     pub pixels_per_meter: f32,
 }
 
 /// Where somebody looks from, and how far; all lengths in pixels of the map, Y down.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outlook {
+pub struct ObserverOverlay {
     /// The place on the map.
     pub at_px: Vec2,
     /// How far is looked; `None` without limit.
@@ -67,7 +67,7 @@ pub struct Outlook {
 }
 
 /// Draws the observer, the range and the sector on a map; what lies off it is not drawn.
-pub fn draw_outlook(map: &mut Pixels, outlook: &Outlook, sheet_px: (u32, u32)) {
+pub fn draw_observer(map: &mut Pixels, outlook: &ObserverOverlay, sheet_px: (u32, u32)) {
     let sheet = Sheet::new(sheet_px.0, sheet_px.1);
     let far = Vec2::new(map.width() as f32, map.height() as f32).length() * 2.0;
     let reach = outlook.range_px.unwrap_or(far).min(far);
@@ -190,8 +190,8 @@ fn beside(
     let arrow = NorthArrow { direction: Vec2::new(0.0, -1.0), foreshortening: 1.0 };
     let pieces = [
         north::compose(&arrow, sheet, setter),
-        Some(key(&furniture.key, column.size().x, sheet, (setter, report))),
-        legend::compose(&furniture.heights, sheet, setter, report),
+        Some(key(&furniture.tints, column.size().x, sheet, (setter, report))),
+        legend::compose(&furniture.legend, sheet, setter, report),
         scale_bar::compose_on_map(furniture.pixels_per_meter, column.size().x * 0.72, sheet, setter),
     ];
     let mut top = column.min.y;
@@ -247,8 +247,8 @@ mod tests {
         MapFurniture {
             title: "What can be seen".into(),
             subtitle: "from 2 m above the ground".into(),
-            key: vec![(SIGNAL, "In sight".into()), (INK, "Hidden".into())],
-            heights: Legend {
+            tints: vec![(SIGNAL, "In sight".into()), (INK, "Hidden".into())],
+            legend: Legend {
                 ramp: ColorRamp::new(vec![(0.0, INK), (100.0, PAPER)]).expect("rising"),
                 low_m: 0.0,
                 high_m: 100.0,
@@ -275,10 +275,10 @@ mod tests {
     #[test]
     fn an_outlook_far_off_the_map_leaves_it_as_it_is() {
         let mut map = Pixels::filled(60, 40, INK);
-        let far = Outlook { at_px: Vec2::splat(1e5), range_px: Some(50.0), sector_deg: Some((10.0, 90.0)) };
-        draw_outlook(&mut map, &far, (300, 300));
+        let far = ObserverOverlay { at_px: Vec2::splat(1e5), range_px: Some(50.0), sector_deg: Some((10.0, 90.0)) };
+        draw_observer(&mut map, &far, (300, 300));
         assert_eq!(map, Pixels::filled(60, 40, INK));
-        draw_outlook(&mut map, &Outlook { at_px: Vec2::new(30.0, 20.0), ..far }, (300, 300));
+        draw_observer(&mut map, &ObserverOverlay { at_px: Vec2::new(30.0, 20.0), ..far }, (300, 300));
         assert_ne!(map, Pixels::filled(60, 40, INK));
     }
 }

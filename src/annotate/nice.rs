@@ -5,7 +5,7 @@
 
 /// A digit 1, 2 or 5 times ten to a power.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Nice {
+pub struct NiceNumber {
     digit: i64,
     exponent: i32,
 }
@@ -13,7 +13,7 @@ pub struct Nice {
 /// Exponents beyond this are no distance or height anybody draws; they are refused.
 const MOST_EXPONENT: i32 = 12;
 
-impl Nice {
+impl NiceNumber {
     /// The largest round number not above `value`.
     ///
     /// `None` where `value` is not positive, not finite, or beyond 10^±12.
@@ -66,7 +66,7 @@ pub fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, usize) {
     /// More marks than this on one ramp could not be told apart.
     const ENOUGH: usize = 100;
     let most = most.min(ENOUGH);
-    let Some(mut step) = Nice::at_least((high - low) / most.max(1) as f64) else { return (vec![], 0) };
+    let Some(mut step) = NiceNumber::at_least((high - low) / most.max(1) as f64) else { return (vec![], 0) };
     if most == 0 || !(low.abs() / step.value()).is_finite() || low.abs().max(high.abs()) > 1e12 {
         return (vec![], 0);
     }
@@ -76,7 +76,7 @@ pub fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, usize) {
         if last - first < most as i64 {
             return ((first..=last).map(|count| step.times(count)).collect(), step.decimals());
         }
-        match Nice::at_least(step.value() * 1.5) {
+        match NiceNumber::at_least(step.value() * 1.5) {
             Some(coarser) => step = coarser,
             None => return (vec![], 0),
         }
@@ -84,15 +84,15 @@ pub fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, usize) {
 }
 
 /// `value` with `decimals` digits after the point and a true minus sign.
-pub fn number(value: f64, decimals: usize) -> String {
+pub fn format_number(value: f64, decimals: usize) -> String {
     let digits = format!("{:.decimals$}", value.abs());
     let zero = digits.chars().all(|digit| matches!(digit, '0' | '.'));
     if value < 0.0 && !zero { format!("−{digits}") } else { digits }
 }
 
 /// `value` with up to `decimals` digits after the point, without trailing zeros.
-pub fn short_number(value: f64, decimals: usize) -> String {
-    let text = number(value, decimals);
+pub fn format_trimmed(value: f64, decimals: usize) -> String {
+    let text = format_number(value, decimals);
     if !text.contains('.') {
         return text;
     }
@@ -100,15 +100,15 @@ pub fn short_number(value: f64, decimals: usize) -> String {
 }
 
 /// A distance as a reader says it: `340 m`, `12.4 km`, `152 km`.
-pub fn distance(meters: f64) -> String {
+pub fn format_distance(meters: f64) -> String {
     if meters < 10.0 {
-        format!("{} m", short_number(meters, 2))
+        format!("{} m", format_trimmed(meters, 2))
     } else if meters < 999.5 {
-        format!("{} m", number(meters, 0))
+        format!("{} m", format_number(meters, 0))
     } else if meters < 99_950.0 {
-        format!("{} km", number(meters / 1000.0, 1))
+        format!("{} km", format_number(meters / 1000.0, 1))
     } else {
-        format!("{} km", number(meters / 1000.0, 0))
+        format!("{} km", format_number(meters / 1000.0, 0))
     }
 }
 
@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     fn at_most(value: f64) -> f64 {
-        Nice::at_most(value).expect("a positive number").value()
+        NiceNumber::at_most(value).expect("a positive number").value()
     }
 
     #[test]
@@ -130,15 +130,15 @@ mod tests {
         assert_eq!(at_most(2000.0), 2000.0);
         assert_eq!(at_most(999_999.9), 500_000.0);
         assert_eq!(at_most(0.03), 0.02);
-        assert_eq!(Nice::at_least(0.03).map(|nice| nice.value()), Some(0.05));
-        assert_eq!(Nice::at_least(1000.0).map(|nice| nice.value()), Some(1000.0));
+        assert_eq!(NiceNumber::at_least(0.03).map(|nice| nice.value()), Some(0.05));
+        assert_eq!(NiceNumber::at_least(1000.0).map(|nice| nice.value()), Some(1000.0));
     }
 
     #[test]
     fn what_is_not_a_positive_finite_number_has_no_round_one() {
         for value in [0.0, -3.0, f64::NAN, f64::INFINITY, 1e300, 1e-300] {
-            assert_eq!(Nice::at_most(value), None, "{value}");
-            assert_eq!(Nice::at_least(value), None, "{value}");
+            assert_eq!(NiceNumber::at_most(value), None, "{value}");
+            assert_eq!(NiceNumber::at_least(value), None, "{value}");
         }
     }
 
@@ -153,18 +153,18 @@ mod tests {
 
     #[test]
     fn numbers_carry_a_true_minus_sign_and_never_a_minus_zero() {
-        assert_eq!(number(-12.0, 0), "−12");
-        assert_eq!(number(-0.01, 1), "0.0");
-        assert_eq!(short_number(1.5, 2), "1.5");
-        assert_eq!(short_number(20.0, 2), "20");
+        assert_eq!(format_number(-12.0, 0), "−12");
+        assert_eq!(format_number(-0.01, 1), "0.0");
+        assert_eq!(format_trimmed(1.5, 2), "1.5");
+        assert_eq!(format_trimmed(20.0, 2), "20");
     }
 
     #[test]
     fn distances_read_as_people_say_them() {
-        assert_eq!(distance(2.5), "2.5 m");
-        assert_eq!(distance(340.2), "340 m");
-        assert_eq!(distance(12_400.0), "12.4 km");
-        assert_eq!(distance(152_300.0), "152 km");
+        assert_eq!(format_distance(2.5), "2.5 m");
+        assert_eq!(format_distance(340.2), "340 m");
+        assert_eq!(format_distance(12_400.0), "12.4 km");
+        assert_eq!(format_distance(152_300.0), "152 km");
     }
 
     proptest! {

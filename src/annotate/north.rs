@@ -33,7 +33,7 @@ pub struct NorthArrow {
 
 impl NorthArrow {
     /// North as `camera` sees it on the ground at the middle of its picture.
-    pub fn seen_by(camera: &Camera) -> Self {
+    pub fn from_camera(camera: &Camera) -> Self {
         let foreshortening = camera.forward().z.abs().max(HARDLY_TILTED);
         // The right of the picture is level, so its east and north parts are the cosine and the negative
         // sine of the heading. A level view, whose horizon would hide whether north is ahead, is tilted.
@@ -104,7 +104,7 @@ fn draw_needle(plane: &ArrowPlane, sheet: &Sheet, drawing: &mut Drawing) -> Opti
 /// The letter stands beyond the tip on the ring's outward normal, so that it clears the ring however flat.
 fn draw_letter(plane: &ArrowPlane, sheet: &Sheet, setter: &mut Typesetter, drawing: &mut Drawing) {
     let letter = setter.line("N", TextStyle::upright(letter_px(sheet), TextStyle::BOLD));
-    let half = Vec2::new(letter.advance, letter.face.size_px * CAP_HEIGHT) * 0.5;
+    let half = Vec2::new(letter.advance, letter.style.size_px * CAP_HEIGHT) * 0.5;
     let tip = plane.on_picture(Vec2::Y);
     let outward = (tip / (plane.radius * plane.radius)).normalize_or(Vec2::NEG_Y);
     // As far as the letter's own box reaches back along the normal, and a gap.
@@ -177,7 +177,7 @@ mod tests {
             let camera = Camera::new(eye, target, 0.7, (800, 600), (1.0, 9000.0)).expect("a sound camera");
             let pixel = |at: Vec3| camera.project(at).expect("in front of the eye").pixel;
             let seen = pixel(target + Vec3::Y * 0.5) - pixel(target - Vec3::Y * 0.5);
-            let off = NorthArrow::seen_by(&camera).direction.angle_to(seen);
+            let off = NorthArrow::from_camera(&camera).direction.angle_to(seen);
             assert!(off.abs() < 0.01, "{off} looking at {target}");
         }
     }
@@ -187,7 +187,7 @@ mod tests {
         for (target, up) in [(Vec3::Y, true), (Vec3::NEG_Y, false)] {
             let camera =
                 Camera::new(Vec3::ZERO, target, 0.7, (800, 600), (1.0, 9.0)).expect("a sound camera");
-            assert_eq!(NorthArrow::seen_by(&camera).direction.y < 0.0, up);
+            assert_eq!(NorthArrow::from_camera(&camera).direction.y < 0.0, up);
         }
     }
 

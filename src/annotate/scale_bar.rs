@@ -12,7 +12,7 @@
 use glam::Vec2;
 
 use crate::annotate::drawing::Drawing;
-use crate::annotate::nice::{Nice, distance, number};
+use crate::annotate::nice::{NiceNumber, format_distance, format_number};
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::sheet::{INK, PAPER, SOFT_INK, Sheet};
 use crate::annotate::text::{CAP_HEIGHT, DESCENT, TextLine, TextStyle, Typesetter, write};
@@ -34,7 +34,7 @@ pub struct ScaleBar {
 
 impl ScaleBar {
     /// How large `camera` shows things `distance_m` meters along its viewing direction.
-    pub fn seen_by(camera: &Camera, distance_m: f32) -> Self {
+    pub fn at_distance(camera: &Camera, distance_m: f32) -> Self {
         Self { pixels_per_meter: camera.pixels_per_meter(distance_m), distance_m }
     }
 }
@@ -43,7 +43,7 @@ impl ScaleBar {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoundBar {
     /// The length it stands for.
-    pub length: Nice,
+    pub length: NiceNumber,
     /// How long it is drawn, in whole pixels.
     pub length_px: f32,
 }
@@ -53,7 +53,7 @@ pub struct RoundBar {
 pub fn measure(bar: &ScaleBar, longest_px: f32) -> Option<RoundBar> {
     let scale = f64::from(bar.pixels_per_meter);
     let sound = scale > 0.0 && bar.distance_m.is_finite() && bar.distance_m > 0.0;
-    let length = Nice::at_most(f64::from(longest_px) / scale).filter(|_| sound)?;
+    let length = NiceNumber::at_most(f64::from(longest_px) / scale).filter(|_| sound)?;
     let sensible = (1e-3..=1e8).contains(&length.value());
     let length_px = libm::round(length.value() * scale) as f32;
     (sensible && length_px > 0.0).then_some(RoundBar { length, length_px })
@@ -63,7 +63,7 @@ pub fn measure(bar: &ScaleBar, longest_px: f32) -> Option<RoundBar> {
 pub fn compose(bar: &ScaleBar, sheet: &Sheet, setter: &mut Typesetter) -> Option<Drawing> {
     let measure = measure(bar, sheet.px(LONGEST))?;
     let note = TextStyle::upright(sheet.type_px(14.0), TextStyle::REGULAR);
-    let where_true = setter.line(&format!("at {} from the eye", distance(f64::from(bar.distance_m))), note);
+    let where_true = setter.line(&format!("at {} from the eye", format_distance(f64::from(bar.distance_m))), note);
     Some(labeled(&measure, Some(&where_true), sheet, setter))
 }
 
@@ -94,17 +94,17 @@ fn lay_out(
     sheet: &Sheet,
 ) -> Drawing {
     let padding = sheet.padding();
-    let size = figures[0].face.size_px;
+    let size = figures[0].style.size_px;
     let left = padding.max((padding * 0.6 + figures[0].advance * 0.5).round());
     let baseline = padding + (size * CAP_HEIGHT).round();
     let top = baseline + (size * 0.42).round();
     let bar = PixelBox::at(Vec2::new(left, top), Vec2::new(measure.length_px, sheet.whole_px(8.0)));
     let note = note
-        .map(|note| (note, Vec2::new(left, (bar.max.y + note.face.size_px * (CAP_HEIGHT + 0.55)).round())));
+        .map(|note| (note, Vec2::new(left, (bar.max.y + note.style.size_px * (CAP_HEIGHT + 0.55)).round())));
     let figures_right = bar.max.x + figures[2].advance * 0.5 + unit.advance;
     let right = note.map_or(figures_right, |(line, at)| figures_right.max(at.x + line.advance));
     let bottom = note.map_or(bar.max.y + padding, |(line, at)| {
-        at.y + padding - (line.face.size_px * DESCENT * 0.3).round()
+        at.y + padding - (line.style.size_px * DESCENT * 0.3).round()
     });
     let mut drawing = Drawing::default();
     drawing.panel(
@@ -141,19 +141,19 @@ fn draw_bar(drawing: &mut Drawing, bar: PixelBox, sheet: &Sheet) {
 }
 
 /// The figures at the start, the middle and the end.
-fn figures(length: &Nice) -> [String; 3] {
+fn figures(length: &NiceNumber) -> [String; 3] {
     let (_, meters_per_unit) = unit(length);
     let full = length.value() / meters_per_unit;
     let half = full * 0.5;
     let decimals = |value: f64| (0..=4).find(|&n| is_whole(value * [1.0, 10.0, 1e2, 1e3, 1e4][n]));
-    ["0".to_owned(), number(half, decimals(half).unwrap_or(4)), number(full, decimals(full).unwrap_or(4))]
+    ["0".to_owned(), format_number(half, decimals(half).unwrap_or(4)), format_number(full, decimals(full).unwrap_or(4))]
 }
 
 fn is_whole(value: f64) -> bool {
     (value - libm::round(value)).abs() < 1e-6
 }
 
-fn unit(length: &Nice) -> (&'static str, f64) {
+fn unit(length: &NiceNumber) -> (&'static str, f64) {
     if length.value() >= 1000.0 { ("km", 1000.0) } else { ("m", 1.0) }
 }
 
@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn figures_are_exact_in_meters_and_kilometers() {
         let said = |meters: f64| {
-            let length = Nice::at_most(meters).expect("positive");
+            let length = NiceNumber::at_most(meters).expect("positive");
             (figures(&length)[1].clone(), figures(&length)[2].clone(), unit(&length).0)
         };
         assert_eq!(said(1000.0), ("0.5".to_owned(), "1".to_owned(), "km"));

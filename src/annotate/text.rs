@@ -91,7 +91,7 @@ pub struct TextLine {
     /// Whether the end was cut off.
     pub shortened: bool,
     /// The type it is set in.
-    pub face: TextStyle,
+    pub style: TextStyle,
 }
 
 /// Sets text in the embedded fonts; holds their tables and scratch space between lines.
@@ -134,7 +134,7 @@ impl Typesetter {
                 }
             }
         }
-        TextLine { outline: ink.path.finish(), advance, missing, shortened, face }
+        TextLine { outline: ink.path.finish(), advance, missing, shortened, style: face }
     }
 
     fn shape(&mut self, text: &str, face: TextStyle) -> Layout<()> {
@@ -153,7 +153,7 @@ impl TextLine {
     /// The smallest box around the letters with a halo of `halo` pixels, baseline from the origin;
     /// [`PixelBox::EMPTY`] where nothing shows.
     pub fn ink(&self, halo: f32) -> PixelBox {
-        let around = halo.max(self.face.stroke_px() * 0.5);
+        let around = halo.max(self.style.stroke_px() * 0.5);
         self.outline.as_ref().map_or(PixelBox::EMPTY, |path| box_of(path).grown(around))
     }
 }
@@ -182,7 +182,7 @@ pub fn halos(drawing: &mut Drawing, lines: &[(&TextLine, Vec2)], reach: f32) {
 
 fn placed(line: &TextLine, at: Vec2) -> Option<(Path, f32)> {
     let path = line.outline.clone()?.transform(tiny_skia::Transform::from_translate(at.x, at.y))?;
-    Some((path, line.face.stroke_px()))
+    Some((path, line.style.stroke_px()))
 }
 
 fn register(collection: &mut Collection, font: &'static [u8], name: &str) {

@@ -63,19 +63,19 @@ fn lay_out(title: &Paragraph, subtitle: &Paragraph, sheet: &Sheet) -> Option<Dra
     let all: Vec<&TextLine> = title.lines.iter().chain(&subtitle.lines).collect();
     let (first, last) = (all.first()?, all.last()?);
     let padding = sheet.padding();
-    let mut baseline = padding + (first.face.size_px * CAP_HEIGHT).round();
+    let mut baseline = padding + (first.style.size_px * CAP_HEIGHT).round();
     let mut baselines = vec![baseline];
     for pair in all.windows(2) {
         // Within a paragraph lines are set solid; the subtitle keeps a little more distance.
-        let leading = if pair[0].face == pair[1].face { 1.18 } else { 1.5 };
-        baseline += (pair[1].face.size_px * leading).round();
+        let leading = if pair[0].style == pair[1].style { 1.18 } else { 1.5 };
+        baseline += (pair[1].style.size_px * leading).round();
         baselines.push(baseline);
     }
     let placed: Vec<(&TextLine, Vec2)> =
         all.iter().zip(&baselines).map(|(line, y)| (*line, Vec2::new(padding, *y))).collect();
     let width = title.width().max(subtitle.width());
     // Panels end a padding below the baseline, not below the descenders: the eye reads the baseline as edge.
-    let height = baseline + padding + (last.face.size_px * 0.06).round();
+    let height = baseline + padding + (last.style.size_px * 0.06).round();
     let mut drawing = Drawing::default();
     let area = PixelBox::at(Vec2::ZERO, Vec2::new((width + padding * 2.0).ceil(), height));
     drawing.panel(area, sheet.hairline());

@@ -18,7 +18,7 @@ pub fn annotations(scene: &Scene, camera: &Camera, picture: &Picture) -> Annotat
         labels: scene.labels.iter().filter_map(|label| place(label, camera, picture)).collect(),
         title: scene.title.clone().filter(|_| furniture.title),
         subtitle: scene.subtitle.clone().filter(|_| furniture.title),
-        north: furniture.north_arrow.then(|| NorthArrow::seen_by(camera)),
+        north: furniture.north_arrow.then(|| NorthArrow::from_camera(camera)),
         scale_bar: if furniture.scale_bar { scale_bar(camera, picture) } else { None },
         legend: furniture.legend.then(|| legend(scene)),
         ..Annotations::default()
@@ -64,7 +64,7 @@ fn scale_bar(camera: &Camera, picture: &Picture) -> Option<ScaleBar> {
     let (width, height) = (picture.pixels.width() as usize, picture.pixels.height() as usize);
     let middle = (height / 2..height).map(|row| picture.depth_m[row * width + width / 2]);
     let distance_m = middle.into_iter().find(|depth| depth.is_finite())?;
-    Some(ScaleBar::seen_by(camera, distance_m))
+    Some(ScaleBar::at_distance(camera, distance_m))
 }
 
 fn legend(scene: &Scene) -> Legend {

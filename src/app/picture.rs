@@ -52,7 +52,7 @@ pub fn picture_of(
 
 fn draw(list: &DrawList, camera: &Camera, backend: Backend) -> Result<Picture, CliError> {
     match backend {
-        Backend::Cpu => cpu::render(list, camera, &cpu::Options::default()).map_err(CliError::input),
+        Backend::Cpu => cpu::render(list, camera, &cpu::RenderQuality::default()).map_err(CliError::input),
         Backend::Gpu => gpu::render(list, camera).map_err(CliError::input),
     }
 }

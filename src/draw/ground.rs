@@ -65,14 +65,14 @@ impl ColorRamp {
 
     /// The ramp as `steps` colors in linear light, evenly spaced from the lowest to the highest stop.
     pub fn table(&self, steps: usize) -> Vec<glam::Vec3> {
-        let (low, high) = self.range();
+        let (low, high) = self.height_range();
         (0..steps)
             .map(|step| self.linear_at(low + (high - low) * step as f32 / (steps - 1).max(1) as f32))
             .collect()
     }
 
     /// The lowest and the highest stop's heights.
-    pub fn range(&self) -> (f32, f32) {
+    pub fn height_range(&self) -> (f32, f32) {
         (self.stops[0].0, self.stops[self.stops.len() - 1].0)
     }
 

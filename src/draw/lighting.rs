@@ -50,20 +50,20 @@ impl Default for Lighting {
 
 impl Lighting {
     /// The light a surface point returns to the eye before haze; see the module's formula.
-    pub fn lit(&self, albedo: Vec3, normal: Vec3, sun_visibility: f32, sky_visibility: f32) -> Vec3 {
+    pub fn shade(&self, albedo: Vec3, normal: Vec3, sun_visibility: f32, sky_visibility: f32) -> Vec3 {
         let direct = self.sun * (normal.dot(self.to_sun).max(0.0) * sun_visibility);
         let ambient = self.bounce.lerp(self.sky, normal.z * 0.5 + 0.5) * sky_visibility;
         albedo * (direct + ambient)
     }
 
     /// `color` as seen through `distance_m` meters of air.
-    pub fn hazed(&self, color: Vec3, distance_m: f32) -> Vec3 {
+    pub fn add_haze(&self, color: Vec3, distance_m: f32) -> Vec3 {
         let clear = libm::expf(-distance_m / self.haze.distance_m);
         self.haze.color.lerp(color, clear)
     }
 
     /// The sky in direction `ray`, which need not be of unit length.
-    pub fn sky_at(&self, ray: Vec3) -> Vec3 {
+    pub fn sky_color(&self, ray: Vec3) -> Vec3 {
         let rise = ray.normalize_or_zero().z.max(0.0).sqrt();
         self.haze.color.lerp(self.zenith, rise)
     }

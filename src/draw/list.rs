@@ -108,7 +108,7 @@ pub struct DrawItem {
 
 impl DrawItem {
     /// Whether another item differs in nothing but its place and its feature.
-    pub fn is_like(&self, other: &Self) -> bool {
+    pub fn batches_with(&self, other: &Self) -> bool {
         self.mesh == other.mesh
             && self.triangles == other.triangles
             && self.material == other.material
@@ -155,7 +155,7 @@ impl DrawList {
     /// The runs of items: each as long as it can be, in order, all items covered.
     pub fn runs(&self) -> impl Iterator<Item = Range<usize>> + '_ {
         let mut start = 0;
-        self.items.chunk_by(DrawItem::is_like).map(move |run| {
+        self.items.chunk_by(DrawItem::batches_with).map(move |run| {
             let range = start..start + run.len();
             start = range.end;
             range

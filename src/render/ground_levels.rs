@@ -35,7 +35,7 @@ pub(in crate::render) struct GroundLevel {
 
 impl PostCount {
     /// The posts of `map` itself.
-    pub fn of(map: &GroundMap) -> Self {
+    pub fn from_map(map: &GroundMap) -> Self {
         Self { columns: map.columns, rows: map.rows }
     }
 
@@ -50,7 +50,7 @@ impl PostCount {
 ///
 /// Each is made when the one before is handed out, and no earlier one is kept.
 pub(in crate::render) fn smaller_levels(map: &GroundMap) -> impl Iterator<Item = GroundLevel> {
-    let first = halved(PostCount::of(map), &map.posts);
+    let first = halved(PostCount::from_map(map), &map.posts);
     successors(first, |level| halved(level.size, &level.posts))
 }
 

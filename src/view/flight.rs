@@ -9,7 +9,7 @@ use glam::{Vec2, Vec3};
 use crate::view::camera::{Camera, CameraError};
 
 /// The papers' window in pixels.
-pub const PICTURE: (u32, u32) = (1024, 768);
+pub const PICTURE_SIZE: (u32, u32) = (1024, 768);
 
 /// Half the picture's width seen from one unit away: the tangent of 30°.
 const TAN_HALF_WIDTH: f32 = 0.577_350_26;
@@ -38,17 +38,17 @@ impl FlightStation {
     /// # Errors
     /// See [`CameraError`]; the eye is its own target, or the planes are out of order.
     pub fn camera(&self, near_m: f32, far_m: f32) -> Result<Camera, CameraError> {
-        let (width, height) = PICTURE;
+        let (width, height) = PICTURE_SIZE;
         let fov_y = 2.0 * libm::atanf(TAN_HALF_WIDTH * height as f32 / width as f32);
-        Camera::new(self.eye, self.target, fov_y, PICTURE, (near_m, far_m))
+        Camera::new(self.eye, self.target, fov_y, PICTURE_SIZE, (near_m, far_m))
     }
 }
 
 /// How a flight keeps to the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Keeping {
+pub struct GroundClearance {
     /// Meters of the eye above the smoothed ground.
-    pub above_m: f32,
+    pub height_m: f32,
     /// Meters along the way between the 17 heights whose mean is the smoothed ground.
     pub smoothing_m: f32,
 }
@@ -63,7 +63,7 @@ pub struct CircularFlight {
     /// Meters from one frame to the next.
     pub step_m: f32,
     /// How it keeps to the ground.
-    pub keeping: Keeping,
+    pub clearance: GroundClearance,
 }
 
 impl CircularFlight {
@@ -80,7 +80,7 @@ impl CircularFlight {
         };
         let angle = way_m / self.radius_m;
         let ahead = Vec2::new(-libm::sinf(angle), libm::cosf(angle));
-        over(place, way_m, ahead, self.keeping, ground)
+        over(place, way_m, ahead, self.clearance, ground)
     }
 }
 
@@ -92,7 +92,7 @@ pub struct StraightFlight {
     /// Where it ends; not where it starts.
     pub to: Vec2,
     /// How it keeps to the ground.
-    pub keeping: Keeping,
+    pub clearance: GroundClearance,
 }
 
 impl StraightFlight {
@@ -101,7 +101,7 @@ impl StraightFlight {
         let (length, ahead) = (self.from.distance(self.to), (self.to - self.from).normalize_or(Vec2::X));
         let place = |way_m: f32| self.from + ahead * way_m;
         let step_m = length / frames.saturating_sub(1).max(1) as f32;
-        (0..frames).map(|frame| over(place, frame as f32 * step_m, ahead, self.keeping, ground)).collect()
+        (0..frames).map(|frame| over(place, frame as f32 * step_m, ahead, self.clearance, ground)).collect()
     }
 }
 
@@ -110,12 +110,12 @@ fn over(
     place: impl Fn(f32) -> Vec2,
     way_m: f32,
     ahead: Vec2,
-    keeping: Keeping,
+    keeping: GroundClearance,
     ground: &impl Fn(Vec2) -> f32,
 ) -> FlightStation {
     let heights = (-SMOOTHED..=SMOOTHED).map(|at| ground(place(way_m + f32::from(at) * keeping.smoothing_m)));
     let mean = heights.sum::<f32>() / f32::from(2 * SMOOTHED + 1);
-    let eye = place(way_m).extend(mean + keeping.above_m);
+    let eye = place(way_m).extend(mean + keeping.height_m);
     FlightStation { eye, target: eye + ahead.extend(-FALL) * AHEAD }
 }
 
@@ -123,7 +123,7 @@ fn over(
 ///
 /// The eye's distance counts; on a leg where the eye stays in its place, the target's. Where nothing moves, or one
 /// station is given, all frames are the first station; where none is given, there are no frames.
-pub fn along(stations: &[FlightStation], frames: usize) -> Vec<FlightStation> {
+pub fn evenly_spaced(stations: &[FlightStation], frames: usize) -> Vec<FlightStation> {
     let Some(first) = stations.first() else {
         return Vec::new();
     };
@@ -161,7 +161,7 @@ fn between(from: &FlightStation, to: &FlightStation, part: f32) -> FlightStation
 mod tests {
     use super::*;
 
-    const KEEPING: Keeping = Keeping { above_m: 30.0, smoothing_m: 2.0 };
+    const KEEPING: GroundClearance = GroundClearance { height_m: 30.0, smoothing_m: 2.0 };
 
     #[test]
     fn a_circle_keeps_its_distance_its_pace_and_its_height_over_level_ground() {
@@ -169,7 +169,7 @@ mod tests {
             center: Vec2::new(500.0, 400.0),
             radius_m: 150.0,
             step_m: 3.0,
-            keeping: KEEPING,
+            clearance: KEEPING,
         };
         let stations = circle.stations(400, &|_| 70.0);
         assert_eq!(stations[0].eye, Vec3::new(650.0, 400.0, 100.0));
@@ -185,7 +185,7 @@ mod tests {
 
     #[test]
     fn a_line_goes_from_end_to_end_above_the_smoothed_slope() {
-        let line = StraightFlight { from: Vec2::ZERO, to: Vec2::new(300.0, 400.0), keeping: KEEPING };
+        let line = StraightFlight { from: Vec2::ZERO, to: Vec2::new(300.0, 400.0), clearance: KEEPING };
         let stations = line.stations(11, &|at| at.x);
         assert_eq!(stations.len(), 11);
         assert!(stations[10].eye.truncate().distance(line.to) < 1e-2);
@@ -195,7 +195,7 @@ mod tests {
     #[test]
     fn stations_along_legs_are_equally_far_apart() {
         let at = |x: f32, y: f32| FlightStation { eye: Vec3::new(x, y, 5.0), target: Vec3::new(x, y, 0.0) };
-        let stations = along(&[at(0.0, 0.0), at(10.0, 0.0), at(10.0, 0.0), at(10.0, 30.0)], 9);
+        let stations = evenly_spaced(&[at(0.0, 0.0), at(10.0, 0.0), at(10.0, 0.0), at(10.0, 30.0)], 9);
         let eyes: Vec<Vec2> = stations.iter().map(|station| station.eye.truncate()).collect();
         assert_eq!((eyes[0], eyes[2], eyes[8]), (Vec2::ZERO, Vec2::X * 10.0, Vec2::new(10.0, 30.0)));
         assert!(eyes.windows(2).all(|pair| (pair[0].distance(pair[1]) - 5.0).abs() < 1e-4), "{eyes:?}");
@@ -204,11 +204,11 @@ mod tests {
     #[test]
     fn an_eye_that_stays_turns_by_its_target_and_one_station_is_enough() {
         let at = |x: f32| FlightStation { eye: Vec3::Z, target: Vec3::new(x, 7.0, 0.0) };
-        let turned: Vec<f32> = along(&[at(0.0), at(4.0)], 5).iter().map(|s| s.target.x).collect();
+        let turned: Vec<f32> = evenly_spaced(&[at(0.0), at(4.0)], 5).iter().map(|s| s.target.x).collect();
         assert_eq!(turned, [0.0, 1.0, 2.0, 3.0, 4.0]);
-        assert_eq!(along(&[at(2.0)], 3), vec![at(2.0); 3]);
-        assert_eq!(along(&[at(2.0), at(2.0)], 2), vec![at(2.0); 2]);
-        assert!(along(&[], 3).is_empty());
+        assert_eq!(evenly_spaced(&[at(2.0)], 3), vec![at(2.0); 3]);
+        assert_eq!(evenly_spaced(&[at(2.0), at(2.0)], 2), vec![at(2.0); 2]);
+        assert!(evenly_spaced(&[], 3).is_empty());
     }
 
     #[test]

@@ -18,7 +18,7 @@ impl Frustum {
     pub const ALL: u8 = 0b1_1111;
 
     /// The frustum of `camera`.
-    pub fn of(camera: &Camera) -> Self {
+    pub fn new(camera: &Camera) -> Self {
         let (eye, forward) = (camera.eye(), camera.forward());
         let tan = camera.tan_half_fov();
         let through_eye = |normal: Vec3| (normal, -normal.dot(eye));
@@ -37,13 +37,13 @@ impl Frustum {
     /// Whether some of the box `min..=max` may be seen. Never false for a box that is in view; may be
     /// true for one that is just outside a corner.
     pub fn may_see(&self, min: Vec3, max: Vec3) -> bool {
-        self.crossed(min, max, Self::ALL).is_some()
+        self.crossed_planes(min, max, Self::ALL).is_some()
     }
 
     /// The planes of `among`, a bit each, that the box crosses; `None` where it lies outside one of them. Boxes
     /// within this one need be asked about these only.
-    pub fn crossed(&self, min: Vec3, max: Vec3, among: u8) -> Option<u8> {
-        planes::crossed(&self.planes, min, max, among)
+    pub fn crossed_planes(&self, min: Vec3, max: Vec3, among: u8) -> Option<u8> {
+        planes::crossed_planes(&self.planes, min, max, among)
     }
 }
 
@@ -54,7 +54,7 @@ mod tests {
     #[test]
     fn a_box_is_culled_beside_and_behind_but_not_before_the_eye() {
         let camera = Camera::new(Vec3::ZERO, Vec3::Y, 1.0, (100, 100), (1.0, 1000.0)).expect("sound");
-        let frustum = Frustum::of(&camera);
+        let frustum = Frustum::new(&camera);
         let unit_box_at = |center: Vec3| frustum.may_see(center - 1.0, center + 1.0);
         assert!(unit_box_at(Vec3::Y * 50.0));
         assert!(!unit_box_at(Vec3::Y * -50.0));

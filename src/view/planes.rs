@@ -4,7 +4,7 @@ use glam::Vec3;
 
 /// The planes of `among`, a bit each, that the box `min..=max` crosses; `None` where it lies outside one of them.
 /// Boxes within this one need be asked about these only.
-pub fn crossed(planes: &[(Vec3, f32)], min: Vec3, max: Vec3, among: u8) -> Option<u8> {
+pub fn crossed_planes(planes: &[(Vec3, f32)], min: Vec3, max: Vec3, among: u8) -> Option<u8> {
     let mut crossed = 0;
     for (place, &(normal, offset)) in planes.iter().enumerate() {
         let bit = 1 << place;

@@ -39,7 +39,7 @@ impl GroundWedge {
     pub const ALL: u8 = 0b111;
 
     /// The wedge of `camera`.
-    pub fn of(camera: &Camera) -> Self {
+    pub fn new(camera: &Camera) -> Self {
         let (eye, right) = (camera.eye().truncate(), camera.right().truncate());
         // The camera's right is level, whatever its pitch.
         let heading = right.perp();
@@ -61,13 +61,13 @@ impl GroundWedge {
 
     /// Whether some of what stands on the rectangle `min..=max` may be seen. Never false for what is in view.
     pub fn may_see(&self, min: Vec2, max: Vec2) -> bool {
-        self.crossed(min, max, Self::ALL).is_some()
+        self.crossed_lines(min, max, Self::ALL).is_some()
     }
 
     /// The lines of `among`, a bit each, that the rectangle crosses; `None` where it lies outside one of them.
     /// What lies in the rectangle need be asked about these only.
-    pub fn crossed(&self, min: Vec2, max: Vec2, among: u8) -> Option<u8> {
-        planes::crossed(&self.lines, min.extend(0.0), max.extend(0.0), among)
+    pub fn crossed_lines(&self, min: Vec2, max: Vec2, among: u8) -> Option<u8> {
+        planes::crossed_planes(&self.lines, min.extend(0.0), max.extend(0.0), among)
     }
 }
 
@@ -82,7 +82,7 @@ mod tests {
 
     #[test]
     fn a_level_wedge_culls_beside_behind_and_beyond_whatever_the_height() {
-        let wedge = GroundWedge::of(&camera(Vec3::Z * 900.0, Vec3::Y));
+        let wedge = GroundWedge::new(&camera(Vec3::Z * 900.0, Vec3::Y));
         let unit_at = |x: f32, y: f32| wedge.may_see(Vec2::new(x, y) - 1.0, Vec2::new(x, y) + 1.0);
         assert!(unit_at(0.0, 50.0) && unit_at(27.0, 50.0));
         assert!(!unit_at(31.0, 50.0) && !unit_at(-31.0, 50.0));
@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn looking_straight_down_leaves_a_strip() {
-        let wedge = GroundWedge::of(&camera(Vec3::Z * 900.0, -Vec3::Z));
+        let wedge = GroundWedge::new(&camera(Vec3::Z * 900.0, -Vec3::Z));
         let unit_at = |x: f32, y: f32| wedge.may_see(Vec2::new(x, y) - 1.0, Vec2::new(x, y) + 1.0);
         assert!(unit_at(0.0, -300.0) && unit_at(0.0, 300.0) && unit_at(5000.0, 0.0));
         assert!(!unit_at(0.0, -500.0) && !unit_at(0.0, 500.0));
@@ -110,7 +110,7 @@ mod tests {
             let seen = camera.eye() + camera.ray_through(Vec2::new(x, y)) * depth_m;
             let slack = Vec2::splat(2e-3);
             let at = seen.truncate();
-            prop_assert!(GroundWedge::of(&camera).may_see(at - slack, at + slack), "{seen} of {camera:?}");
+            prop_assert!(GroundWedge::new(&camera).may_see(at - slack, at + slack), "{seen} of {camera:?}");
         }
     }
 }

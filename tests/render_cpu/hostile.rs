@@ -7,7 +7,7 @@ use sandtable::draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureI
 use sandtable::draw::material::{AlphaMode, Material};
 use sandtable::draw::pixels::Pixels;
 use sandtable::mesh::sink::{MeshSink, VertexId};
-use sandtable::render::cpu::{Options, RenderError, SampleCount, render};
+use sandtable::render::cpu::{RenderQuality, RenderError, SampleCount, render};
 
 use crate::landscape::{BOX, draped_material, ground_map, ground_material, ground_mesh, item};
 use crate::{count, northward, shot, wall};
@@ -80,7 +80,7 @@ fn textures_without_pixels_and_triangles_without_area_do_no_harm() {
 #[test]
 fn lists_that_are_not_sound_are_refused_with_a_reason() {
     let camera = northward((40, 30));
-    let refused = |list: &DrawList| render(list, &camera, &Options::default()).expect_err("not sound");
+    let refused = |list: &DrawList| render(list, &camera, &RenderQuality::default()).expect_err("not sound");
     let mut list = DrawList::default();
     item(
         &mut list,
@@ -147,7 +147,7 @@ proptest! {
         }
         let camera = crate::looking(Vec3::new(0.0, -15.0, 1.0), Vec3::ZERO, (67, 41));
         for samples in [SampleCount::One, SampleCount::Eight] {
-            let options = Options { samples, anisotropy: u32::MAX };
+            let options = RenderQuality { samples, anisotropy: u32::MAX };
             let picture = render(&list, &camera, &options).expect("indices are sound");
             prop_assert!(picture.depth_m.iter().all(|&depth| depth >= 0.5 * 0.999));
         }

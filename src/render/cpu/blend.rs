@@ -9,7 +9,7 @@ use glam::Vec3;
 
 use crate::draw::list::DepthLayer;
 use crate::render::cpu::geometry::{FaceId, FacePiece, ScreenFace, ScreenGeometry};
-use crate::render::cpu::pattern::{Mask, SamplePattern};
+use crate::render::cpu::pattern::{SampleMask, SamplePattern};
 use crate::render::cpu::raster::{PixelWindow, cover};
 use crate::render::cpu::shade::Shader;
 use crate::render::cpu::visibility::{SampleDepths, TILE, Visibility};
@@ -29,7 +29,7 @@ struct Fragment {
     face: FaceId,
     next: u32,
     inverse_depth: f32,
-    mask: Mask,
+    mask: SampleMask,
 }
 
 /// The transparent fragments of one tile.
@@ -83,7 +83,7 @@ impl Blend {
             for sample in (0..N).filter(|sample| mask & (1 << sample) != 0) {
                 let id = faces[sample];
                 let there = (id != FaceId::NONE).then(|| geometry.face(id));
-                seen |= Mask::from(shows_before(face, new[sample], there, depths[sample], shader)) << sample;
+                seen |= SampleMask::from(shows_before(face, new[sample], there, depths[sample], shader)) << sample;
             }
             if seen != 0 {
                 let [right, down] = pattern.centroid(seen);

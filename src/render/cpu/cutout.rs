@@ -8,8 +8,8 @@
 use glam::Vec2;
 
 use crate::render::cpu::geometry::ScreenFace;
-use crate::render::cpu::hit::Shares;
-use crate::render::cpu::pattern::{Mask, SamplePattern};
+use crate::render::cpu::hit::Barycentric;
+use crate::render::cpu::pattern::{SampleMask, SamplePattern};
 use crate::render::cpu::texture::Texture;
 
 /// The part of a pixel's side that a sample reads the mask over: the square root of an eighth, as there are eight
@@ -36,11 +36,11 @@ impl Cutout<'_> {
     pub fn solid<const N: usize>(
         &self,
         (x, y): (u32, u32),
-        samples: Mask,
+        samples: SampleMask,
         pattern: &SamplePattern<N>,
-    ) -> Mask {
+    ) -> SampleMask {
         let [right, down] = pattern.centroid(samples);
-        let shares = Shares::of(self.face, [x as f32 + 0.5 + right, y as f32 + 0.5 + down]);
+        let shares = Barycentric::of(self.face, [x as f32 + 0.5 + right, y as f32 + 0.5 + down]);
         let [a, b, c] = self.alphas;
         let alpha = shares.blend_number([a, b, c]);
         let Some((texture, corners)) = self.texture else {
@@ -54,7 +54,7 @@ impl Cutout<'_> {
             let offset = Vec2::from(pattern.offset(sample)) - Vec2::new(right, down);
             let at = uv + across * offset.x + along * offset.y;
             let hole = alpha * mask.at(at, &reading) < self.cutoff;
-            solid |= Mask::from(!hole) << sample;
+            solid |= SampleMask::from(!hole) << sample;
         }
         solid
     }

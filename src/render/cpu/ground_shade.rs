@@ -75,7 +75,7 @@ impl<'a> GroundShader<'a> {
     fn add_bilinear(&self, sum: &mut GroundPoint, at: Vec2, level: usize, weight: f32) {
         let (size, posts) = match level.checked_sub(1) {
             Some(index) => (self.smaller[index].size, self.smaller[index].posts.as_slice()),
-            None => (PostCount::of(self.map), self.map.posts.as_slice()),
+            None => (PostCount::from_map(self.map), self.map.posts.as_slice()),
         };
         let (columns, rows) = (size.columns as usize, size.rows as usize);
         let scale = 1.0 / (1u64 << level) as f32;

@@ -20,7 +20,7 @@ pub struct FacePoint {
 
 /// The shares of a face's second and third corner at a point, and how they change from pixel to pixel.
 #[derive(Clone, Copy, Debug)]
-pub struct Shares {
+pub struct Barycentric {
     at: Vec2,
     right: Vec2,
     down: Vec2,
@@ -44,7 +44,7 @@ impl FacePoint {
     }
 }
 
-impl Shares {
+impl Barycentric {
     /// The shares at pixel position `at`, kept inside the triangle.
     pub fn of(face: &ScreenFace, at: [f32; 2]) -> Self {
         let planes = &face.planes;

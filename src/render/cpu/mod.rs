@@ -72,7 +72,7 @@ use crate::view::camera::Camera;
 
 /// How carefully to render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Options {
+pub struct RenderQuality {
     /// Samples a pixel. Default: eight.
     pub samples: SampleCount,
     /// The most readings of a texture or of the ground map along a pixel seen at a grazing angle, 1..=16.
@@ -110,7 +110,7 @@ pub enum RenderError {
     TooManyTriangles(usize),
 }
 
-impl Default for Options {
+impl Default for RenderQuality {
     fn default() -> Self {
         Self { samples: SampleCount::Eight, anisotropy: 8 }
     }
@@ -122,7 +122,7 @@ impl Default for Options {
 ///
 /// # Errors
 /// See [`RenderError`].
-pub fn render(list: &DrawList, camera: &Camera, options: &Options) -> Result<Picture, RenderError> {
+pub fn render(list: &DrawList, camera: &Camera, options: &RenderQuality) -> Result<Picture, RenderError> {
     check(list)?;
     let screen = Screen::of(camera);
     let geometry = ScreenGeometry::of(list, &screen)

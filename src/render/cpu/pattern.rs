@@ -5,7 +5,7 @@
 //! or a column, so that near-horizontal and near-vertical edges get as many steps as there are samples.
 
 /// Which of a pixel's samples are meant: bit `s` is sample `s`.
-pub type Mask = u8;
+pub type SampleMask = u8;
 
 /// `N` sample positions, at most 8.
 ///
@@ -28,7 +28,7 @@ pub const EIGHT: SamplePattern<8> =
 
 impl<const N: usize> SamplePattern<N> {
     /// Every sample.
-    pub const FULL: Mask = ((1u16 << N) - 1) as Mask;
+    pub const FULL: SampleMask = ((1u16 << N) - 1) as SampleMask;
 
     /// The offset of `sample` from the pixel's center, in pixels.
     pub fn offset(&self, sample: usize) -> [f32; 2] {
@@ -39,7 +39,7 @@ impl<const N: usize> SamplePattern<N> {
     ///
     /// A triangle is convex, so the mean of the samples it covers lies inside it: attributes taken there
     /// never reach beyond its border.
-    pub fn centroid(&self, mask: Mask) -> [f32; 2] {
+    pub fn centroid(&self, mask: SampleMask) -> [f32; 2] {
         if mask == Self::FULL || mask == 0 {
             return [0.0; 2];
         }

@@ -7,7 +7,7 @@
 //!
 //! Blocks of 8×8 pixels are passed over or taken whole where the edge functions' extremes allow it.
 
-use crate::render::cpu::pattern::{Mask, SamplePattern};
+use crate::render::cpu::pattern::{SampleMask, SamplePattern};
 
 /// Corners are snapped to `2^-SUBPIXEL_BITS` pixels.
 ///
@@ -123,7 +123,7 @@ pub fn cover<const N: usize>(
     corners: &[SubpixelPoint; 3],
     pattern: &SamplePattern<N>,
     window: PixelWindow,
-    mut visit: impl FnMut(u32, u32, Mask),
+    mut visit: impl FnMut(u32, u32, SampleMask),
 ) {
     if window.is_empty() {
         return;
@@ -153,7 +153,7 @@ pub fn cover<const N: usize>(
 }
 
 /// The samples of one pixel on the inner side of all edges.
-fn covered<const N: usize>(edges: &[EdgeFunction<N>; 3], column: u32, row: u32) -> Mask {
+fn covered<const N: usize>(edges: &[EdgeFunction<N>; 3], column: u32, row: u32) -> SampleMask {
     let mut mask = SamplePattern::<N>::FULL;
     for edge in edges {
         let center = edge.at(column, row);
@@ -162,7 +162,7 @@ fn covered<const N: usize>(edges: &[EdgeFunction<N>; 3], column: u32, row: u32) 
         }
         if center + edge.least < 0 {
             for (sample, offset) in edge.samples.iter().enumerate() {
-                mask &= !(Mask::from(center + offset < 0) << sample);
+                mask &= !(SampleMask::from(center + offset < 0) << sample);
             }
         }
     }

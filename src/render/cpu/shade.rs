@@ -8,7 +8,7 @@ use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use crate::render::cpu::cutout::Cutout;
 use crate::render::cpu::geometry::ScreenFace;
 use crate::render::cpu::ground_shade::{GroundPoint, GroundShader};
-use crate::render::cpu::hit::{FacePoint, Shares};
+use crate::render::cpu::hit::{FacePoint, Barycentric};
 use crate::render::cpu::screen::Screen;
 use crate::render::cpu::texture::{Texel, TexelFootprint, Texture, Weighting};
 
@@ -23,7 +23,7 @@ pub struct Shader<'a> {
 }
 
 /// A face's vertices and their shares at a point.
-type FaceCorners<'a> = ([&'a DrawVertex; 3], Shares);
+type FaceCorners<'a> = ([&'a DrawVertex; 3], Barycentric);
 
 /// What a surface sends to the eye.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +63,7 @@ impl<'a> Shader<'a> {
         let material = self.material(item);
         let hit = FacePoint::of(face, self.screen, at);
         let ground = self.ground_beneath(material, &hit);
-        let corners = || (self.corners(item, face), Shares::of(face, at));
+        let corners = || (self.corners(item, face), Barycentric::of(face, at));
         let (albedo, alpha) = match (material.albedo, &ground) {
             (Albedo::GroundMap, Some((ground, point))) => (ground.albedo(point, &hit), 1.0),
             _ => self.surface_color(material, corners()),
@@ -73,9 +73,9 @@ impl<'a> Shader<'a> {
             _ => (vertex_normal(item, face, corners()), [1.0, 1.0]),
         };
         let lighting = &self.list.lighting;
-        let lit = lighting.lit(albedo, normal, sun, sky);
+        let lit = lighting.shade(albedo, normal, sun, sky);
         let seen =
-            if lighting.haze.distance_m.is_finite() { lighting.hazed(lit, hit.distance_m) } else { lit };
+            if lighting.haze.distance_m.is_finite() { lighting.add_haze(lit, hit.distance_m) } else { lit };
         // Clamped before samples are averaged, as a picture with 8-bit samples would be: an overexposed
         // surface would otherwise eat away the smooth border of its neighbor.
         Shaded { color: seen.max(Vec3::ZERO).min(Vec3::ONE), alpha }
@@ -126,7 +126,7 @@ impl<'a> Shader<'a> {
         (material.base_color.linear() * vertex * texel.color, alpha)
     }
 
-    fn texel(&self, material: &Material, corners: &[&DrawVertex; 3], shares: &Shares) -> Texel {
+    fn texel(&self, material: &Material, corners: &[&DrawVertex; 3], shares: &Barycentric) -> Texel {
         let Some(id) = material.texture else { return Texel { color: Vec3::ONE, alpha: 1.0 } };
         let texture = &self.textures[id.0 as usize];
         let [uv, right, down] = shares.blend_uv(corners.map(|corner| corner.uv));
@@ -138,7 +138,7 @@ impl<'a> Shader<'a> {
 }
 
 /// Base alpha × vertex alpha × texture alpha, 0..=1.
-fn alpha(material: &Material, corners: &[&DrawVertex; 3], shares: &Shares, texel: &Texel) -> f32 {
+fn alpha(material: &Material, corners: &[&DrawVertex; 3], shares: &Barycentric, texel: &Texel) -> f32 {
     let vertex = shares.blend_number(corners.map(|corner| corner.color.alpha()));
     material.base_color.alpha() * vertex * texel.alpha
 }

@@ -7,7 +7,7 @@ use crate::draw::lighting::Lighting;
 use crate::draw::list::{DepthLayer, FeatureId};
 use crate::render::cpu::blend::Blend;
 use crate::render::cpu::geometry::{FaceId, FacePiece, RasterPass, ScreenFace, ScreenGeometry};
-use crate::render::cpu::pattern::{Mask, SamplePattern};
+use crate::render::cpu::pattern::{SampleMask, SamplePattern};
 use crate::render::cpu::raster::PixelWindow;
 use crate::render::cpu::screen::Screen;
 use crate::render::cpu::shade::Shader;
@@ -32,7 +32,7 @@ pub struct TileContext<'a> {
 
 /// One pixel of the picture.
 #[derive(Clone, Copy, Debug)]
-pub struct PixelOut {
+pub struct ResolvedPixel {
     /// Its color.
     pub color: Srgba,
     /// Meters along the viewing direction.
@@ -62,7 +62,7 @@ pub fn draw_tile<const N: usize>(
     pieces: &[FacePiece],
     window: PixelWindow,
     scratch: &mut TileScratch<N>,
-) -> Vec<PixelOut> {
+) -> Vec<ResolvedPixel> {
     let TileScratch { visibility, blend } = scratch;
     visibility.clear(window, frame.screen.far);
     blend.clear(window);
@@ -126,7 +126,7 @@ fn resolve<const N: usize>(
     visibility: &Visibility<N>,
     blend: &Blend,
     (x, y): (u32, u32),
-) -> PixelOut {
+) -> ResolvedPixel {
     let faces = visibility.faces(x, y);
     let center = [x as f32 + 0.5, y as f32 + 0.5];
     let mut colors = [Vec3::ZERO; N];
@@ -136,7 +136,7 @@ fn resolve<const N: usize>(
         let mask = left & alike(frame, visibility, (x, y), left.trailing_zeros() as usize);
         let [right, down] = pattern.centroid(mask);
         let color = match id {
-            FaceId::NONE => frame.lighting.sky_at(frame.screen.ray_at(center)),
+            FaceId::NONE => frame.lighting.sky_color(frame.screen.ray_at(center)),
             id => frame.shader.shade(frame.geometry.face(id), [center[0] + right, center[1] + down]).color,
         };
         for (sample, place) in colors.iter_mut().enumerate() {
@@ -151,7 +151,7 @@ fn resolve<const N: usize>(
     };
     let (depth_m, feature) = seen_at(frame, transparent.unwrap_or(faces[0]), center);
     let mean = colors.iter().sum::<Vec3>() / N as f32;
-    PixelOut { color: Srgba::from_linear(mean), depth_m, feature }
+    ResolvedPixel { color: Srgba::from_linear(mean), depth_m, feature }
 }
 
 /// The samples of a pixel that look like sample `first` and need no shading of their own: those of its face
@@ -163,7 +163,7 @@ fn alike<const N: usize>(
     visibility: &Visibility<N>,
     (x, y): (u32, u32),
     first: usize,
-) -> Mask {
+) -> SampleMask {
     let (faces, depths) = (visibility.faces(x, y), visibility.depths(x, y));
     let mut mask = samples_of(faces, faces[first]);
     if mask == SamplePattern::<N>::FULL || faces[first] == FaceId::NONE {
@@ -176,7 +176,7 @@ fn alike<const N: usize>(
     for (sample, &id) in faces.iter().enumerate() {
         let near = (depths[sample] - depths[first]).abs() < SAME_SLOPE * depths[first];
         let same = near && id != FaceId::NONE && frame.geometry.face(id).item == face.item;
-        mask |= Mask::from(same) << sample;
+        mask |= SampleMask::from(same) << sample;
     }
     mask
 }

@@ -7,7 +7,7 @@
 
 use crate::render::cpu::geometry::{FaceId, FacePiece, ScreenFace};
 use crate::render::cpu::occlusion::Occlusion;
-use crate::render::cpu::pattern::{Mask, SamplePattern};
+use crate::render::cpu::pattern::{SampleMask, SamplePattern};
 use crate::render::cpu::raster::{PixelWindow, cover};
 
 /// Pixels along the side of a tile: 8 bytes a sample keep a tile of 8 samples within 256 KiB, the second
@@ -117,7 +117,7 @@ impl<const N: usize> Visibility<N> {
         piece: &FacePiece,
         face: &ScreenFace,
         pattern: &SamplePattern<N>,
-        solid: impl Fn((u32, u32), Mask) -> Mask,
+        solid: impl Fn((u32, u32), SampleMask) -> SampleMask,
     ) {
         let slope = SampleDepths::of(face, pattern);
         cover(&piece.corners, pattern, piece.window.and(self.window), |x, y, mask| {
@@ -132,7 +132,7 @@ impl<const N: usize> Visibility<N> {
                 } else {
                     new[sample] > there || (new[sample] == there && piece.face.0 < faces[sample].0)
                 };
-                in_front |= Mask::from(seen) << sample;
+                in_front |= SampleMask::from(seen) << sample;
             }
             let seen = mask & in_front;
             if seen == 0 {
@@ -170,7 +170,7 @@ impl<const N: usize> SampleDepths<N> {
 }
 
 /// The samples of `faces` that see `face`.
-pub fn samples_of<const N: usize>(faces: &[FaceId; N], face: FaceId) -> Mask {
-    let bits = faces.iter().enumerate().map(|(sample, &seen)| Mask::from(seen == face) << sample);
+pub fn samples_of<const N: usize>(faces: &[FaceId; N], face: FaceId) -> SampleMask {
+    let bits = faces.iter().enumerate().map(|(sample, &seen)| SampleMask::from(seen == face) << sample);
     bits.fold(0, |mask, bit| mask | bit)
 }

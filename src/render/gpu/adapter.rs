@@ -15,7 +15,7 @@ const SAMPLES: u32 = 4;
 
 /// The interface to a GPU's driver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Api {
+pub enum GpuApi {
     /// Vulkan: the full feature set.
     Vulkan,
     /// OpenGL or OpenGL ES through EGL: older drivers and machines without a display.
@@ -30,7 +30,7 @@ pub struct Gpu {
     pub(in crate::render::gpu) limits: wgpu::Limits,
     pub(in crate::render::gpu) samples: u32,
     pub(in crate::render::gpu) anisotropy: u16,
-    api: Api,
+    api: GpuApi,
     name: String,
     lost: Arc<Mutex<Option<String>>>,
 }
@@ -40,7 +40,7 @@ impl Gpu {
     ///
     /// # Errors
     /// [`GpuError::NoAdapter`] where none does.
-    pub fn open(apis: &[Api]) -> Result<Self, GpuError> {
+    pub fn open(apis: &[GpuApi]) -> Result<Self, GpuError> {
         let mut tried = Vec::new();
         for &api in apis {
             match catch_unwind(|| pollster::block_on(open(api))) {
@@ -58,7 +58,7 @@ impl Gpu {
     }
 
     /// The interface it is reached by.
-    pub fn api(&self) -> Api {
+    pub fn api(&self) -> GpuApi {
         self.api
     }
 
@@ -106,11 +106,11 @@ impl Gpu {
     }
 }
 
-async fn open(api: Api) -> Result<Gpu, String> {
+async fn open(api: GpuApi) -> Result<Gpu, String> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: match api {
-            Api::Vulkan => wgpu::Backends::VULKAN,
-            Api::Gl => wgpu::Backends::GL,
+            GpuApi::Vulkan => wgpu::Backends::VULKAN,
+            GpuApi::Gl => wgpu::Backends::GL,
         },
         flags: wgpu::InstanceFlags::empty(),
         ..wgpu::InstanceDescriptor::new_without_display_handle()

@@ -63,7 +63,7 @@ impl GroundTextures {
     /// # Errors
     /// [`GpuError::GroundSize`].
     pub fn upload(gpu: &Gpu, map: Option<&GroundMap>) -> Result<Self, GpuError> {
-        let levels = map.map_or_else(Vec::new, |map| levels(PostCount::of(map)));
+        let levels = map.map_or_else(Vec::new, |map| levels(PostCount::from_map(map)));
         let one = PostCount { columns: 1, rows: 1 };
         let posts_size = levels.first().map_or(one, |level| level.size);
         let coarse_size = match (levels.get(1), levels.last()) {

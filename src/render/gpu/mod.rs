@@ -12,7 +12,7 @@
 
 use crate::draw::list::DrawList;
 use crate::draw::material::{Albedo, NormalSource};
-use crate::render::gpu::adapter::{Api, Gpu};
+use crate::render::gpu::adapter::{GpuApi, Gpu};
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::passes::Recording;
 use crate::render::gpu::pipelines::{Layouts, Pipelines};
@@ -39,7 +39,7 @@ mod upload;
 /// [`GpuError`]: no adapter, a list that contradicts itself, a scene or picture the adapter cannot hold, or
 /// a driver that fails. Every message names the CPU renderer as the way out.
 pub fn render(list: &DrawList, camera: &Camera) -> Result<Picture, GpuError> {
-    render_on(&Gpu::open(&[Api::Vulkan, Api::Gl])?, list, camera)
+    render_on(&Gpu::open(&[GpuApi::Vulkan, GpuApi::Gl])?, list, camera)
 }
 
 /// The picture of `list` seen by `camera`, drawn by `gpu`; nothing stays on the device afterward.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::draw::list::DrawVertex;
-use crate::render::gpu::adapter::{Api, Gpu};
+use crate::render::gpu::adapter::{GpuApi, Gpu};
 use crate::render::gpu::plan::{DepthRule, DrawCall, PipelineKey, Plan};
 use crate::render::gpu::uniforms::{FrameUniforms, Instance, SurfaceConstants};
 
@@ -141,9 +141,9 @@ fn pipeline(
     let fragment_constants = [("nearer", nearer), ("nearer_px", nearer_px)];
     let entry_point = match (pass, gpu.api()) {
         (GpuPass::Feature, _) => "feature",
-        (GpuPass::Color, Api::Gl) => "color_and_depth",
-        (GpuPass::Color, Api::Vulkan) if way.masked && gpu.samples == 4 => "masked_color",
-        (GpuPass::Color, Api::Vulkan) => "color",
+        (GpuPass::Color, GpuApi::Gl) => "color_and_depth",
+        (GpuPass::Color, GpuApi::Vulkan) if way.masked && gpu.samples == 4 => "masked_color",
+        (GpuPass::Color, GpuApi::Vulkan) => "color",
     };
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(entry_point),
@@ -274,6 +274,8 @@ fn sky(gpu: &Gpu, layout: &wgpu::PipelineLayout, shader: &wgpu::ShaderModule) ->
 
 #[cfg(test)]
 mod tests {
+    use wgpu::naga;
+
     use super::*;
 
     #[test]

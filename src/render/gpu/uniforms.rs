@@ -91,7 +91,7 @@ impl FrameUniforms {
     fn of_ground(list: &DrawList) -> Self {
         let mut frame = Self::zeroed();
         let Some(map) = &list.ground else { return frame };
-        let levels = levels(PostCount::of(map));
+        let levels = levels(PostCount::from_map(map));
         for (place, level) in frame.ground_levels.iter_mut().zip(&levels) {
             *place = [level.size.columns, level.size.rows, level.first, 0];
         }
