@@ -21,7 +21,8 @@ fn leaving_out_what_is_beside_the_picture_changes_no_pixel() {
             seen.items.len(),
             all.items.len()
         );
-        let [seen, all] = [seen, all].map(|list| render(&list, &camera, &RenderQuality::default()).expect("sound"));
+        let [seen, all] =
+            [seen, all].map(|list| render(&list, &camera, &RenderQuality::default()).expect("sound"));
         assert!(seen.pixels == all.pixels && seen.features == all.features, "{turn}");
     }
 }

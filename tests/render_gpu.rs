@@ -187,8 +187,9 @@ fn a_mask_leaves_holes_and_a_pane_lets_light_through() {
         let pane = on_board(PANE, 0.1);
         let behind = seen(&picture, &camera, pane);
         assert_eq!(behind.feature, FeatureId::GROUND, "a clear pane shows what lies behind it");
-        let below =
-            list.lighting.add_haze(ground_light(&list, behind.world, None), behind.world.distance(camera.eye()));
+        let below = list
+            .lighting
+            .add_haze(ground_light(&list, behind.world, None), behind.world.distance(camera.eye()));
         let lit = list.lighting.shade(PANE_COLOR.linear(), Vec3::NEG_Y, 1.0, 1.0);
         let own = list.lighting.add_haze(lit, pane.distance(camera.eye()));
         assert_color(&behind, below.lerp(own, PANE_COLOR.alpha()), "pane", gpu);
@@ -196,7 +197,7 @@ fn a_mask_leaves_holes_and_a_pane_lets_light_through() {
 }
 
 #[test]
-fn a_one_sided_board_is_not_seen_from_behind_and_a_two_sided_one_turns_its_normal() {
+fn a_one_sided_board_has_no_back_and_a_two_sided_one_turns_its_normal() {
     let mut list = scene();
     let eye = on_board(FENCE, 0.0) + Vec3::new(0.0, 150.0, 60.0);
     let camera = Camera::new(eye, on_board(FENCE, 0.0), 0.8, (320, 240), (1.0, 5000.0)).expect("sound");
@@ -270,7 +271,7 @@ fn what_does_not_fit_is_refused_in_a_sentence() {
     for gpu in gpus() {
         match render_on(gpu, &DrawList::default(), &wide) {
             Ok(picture) => assert_eq!(picture.pixels.width(), 16384),
-            Err(GpuError::PictureSize { limit, .. }) => assert!(limit < 16384),
+            Err(GpuError::TooLarge { limit, .. }) => assert!(limit < 16384),
             Err(other) => panic!("{other}"),
         }
         let mut unsound = list.clone();

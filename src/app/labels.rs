@@ -2,11 +2,10 @@
 
 use glam::Vec2;
 
-use crate::annotate::annotation::{Annotations, LabelClass, PictureLabel};
+use crate::annotate::annotation::{Annotations, PictureLabel};
 use crate::annotate::legend::Legend;
 use crate::annotate::north::NorthArrow;
 use crate::annotate::scale_bar::ScaleBar;
-use crate::description::words;
 use crate::render::picture::Picture;
 use crate::scene::{Scene, SceneLabel};
 use crate::view::camera::Camera;
@@ -35,12 +34,7 @@ fn place(label: &SceneLabel, camera: &Camera, picture: &Picture) -> Option<Pictu
         depth_m: ground.depth_m,
         visible: is_visible(picture, ground.pixel, ground.depth_m)
             || is_visible(picture, top.pixel, top.depth_m),
-        kind: match label.kind {
-            words::LabelKind::Summit => LabelClass::Summit,
-            words::LabelKind::Place => LabelClass::Place,
-            words::LabelKind::Water => LabelClass::Water,
-            words::LabelKind::Point => LabelClass::Point,
-        },
+        kind: label.kind,
     })
 }
 

@@ -7,7 +7,7 @@ use glam::DVec2;
 use serde_json::{Value, json};
 
 use crate::annotate::chart::ChartText;
-use crate::annotate::chart_sight::{SightChart, paint};
+use crate::annotate::chart_sight::{SightBlocker, SightChart, paint};
 use crate::annotate::nice;
 use crate::app::arguments::{Access, PictureSize, StatedHeights};
 use crate::app::dataset::Dataset;
@@ -267,13 +267,14 @@ impl<'a> SightOutcome<'a> {
             visible_m: seen.iter().map(|stretch| (stretch.from_m, stretch.to_m)).collect(),
             eye_m,
             target_m: self.feet_m[1] + target.above_m - drop_m(length_m),
-            blocker: self.blocker.map(|blocker| {
-                let said = format!(
+            blocker: self.blocker.map(|blocker| SightBlocker {
+                along_m: blocker.distance_m,
+                height_m: blocker.height_m - drop_m(blocker.distance_m),
+                label: format!(
                     "blocked at {}, {} m high",
                     nice::format_distance(blocker.distance_m),
                     nice::format_number(blocker.height_m, 0)
-                );
-                (blocker.distance_m, blocker.height_m - drop_m(blocker.distance_m), said)
+                ),
             }),
             observer_label: format!("{} m", nice::format_number(eye_m, 0)),
             target_label: format!("{} m", nice::format_number(self.feet_m[1] + target.above_m, 0)),
@@ -283,7 +284,9 @@ impl<'a> SightOutcome<'a> {
     fn subtitle(&self, length_m: f64) -> String {
         let far = nice::format_distance(length_m);
         let came = match (&self.blocker, self.target_rise, self.both_rise) {
-            (Some(_), Some(rise), _) => format!("hidden; seen if {} m higher", nice::format_number(rise.rise_m, 1)),
+            (Some(_), Some(rise), _) => {
+                format!("hidden; seen if {} m higher", nice::format_number(rise.rise_m, 1))
+            }
             (None, _, Some(rise)) => {
                 format!("visible, {} m clear of the ground", nice::format_number(-rise.rise_m, 1))
             }

@@ -1,20 +1,20 @@
-//! The five planes a camera sees within, for culling boxes.
+//! The five planes that bound a camera's view, for culling boxes.
 
 use glam::Vec3;
 
 use crate::view::camera::Camera;
 use crate::view::planes;
 
-/// The left, right, top, bottom and far planes of a camera, normals inward.
+/// The left, right, bottom, top and far planes of a camera, normals inward.
 ///
-/// The near plane is left out: what it would cull is a sliver before the eye.
+/// The near plane is left out: it would cull only a sliver before the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frustum {
     planes: [(Vec3, f32); 5],
 }
 
 impl Frustum {
-    /// All planes, as bits for [`Frustum::crossed`].
+    /// All planes, as bits for [`Frustum::crossed_planes`].
     pub const ALL: u8 = 0b1_1111;
 
     /// The frustum of `camera`.
@@ -34,16 +34,16 @@ impl Frustum {
         }
     }
 
-    /// Whether some of the box `min..=max` may be seen. Never false for a box that is in view; may be
-    /// true for one that is just outside a corner.
+    /// Whether part of the box `min..=max` may be in view. Never false for a box in view; may be true for one
+    /// just outside a corner.
     pub fn may_see(&self, min: Vec3, max: Vec3) -> bool {
         self.crossed_planes(min, max, Self::ALL).is_some()
     }
 
-    /// The planes of `among`, a bit each, that the box crosses; `None` where it lies outside one of them. Boxes
-    /// within this one need be asked about these only.
-    pub fn crossed_planes(&self, min: Vec3, max: Vec3, among: u8) -> Option<u8> {
-        planes::crossed_planes(&self.planes, min, max, among)
+    /// The planes of the bit set `planes` that the box crosses, or `None` where it lies outside one of them. A
+    /// box inside this one needs to be tested against the returned planes only.
+    pub fn crossed_planes(&self, min: Vec3, max: Vec3, planes: u8) -> Option<u8> {
+        planes::crossed_planes(&self.planes, min, max, planes)
     }
 }
 

@@ -3,11 +3,13 @@
 use glam::{Mat4, Vec3};
 use proptest::prelude::*;
 use sandtable::draw::color::Srgba;
-use sandtable::draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureId, MaterialId};
+use sandtable::draw::list::{
+    DepthLayer, DrawList, DrawListError, DrawMesh, DrawVertex, FeatureId, MaterialId,
+};
 use sandtable::draw::material::{AlphaMode, Material};
 use sandtable::draw::pixels::Pixels;
 use sandtable::mesh::sink::{MeshSink, VertexId};
-use sandtable::render::cpu::{RenderQuality, RenderError, SampleCount, render};
+use sandtable::render::cpu::{CpuRenderError, RenderQuality, SampleCount, render};
 
 use crate::landscape::{BOX, draped_material, ground_map, ground_material, ground_mesh, item};
 use crate::{count, northward, shot, wall};
@@ -89,21 +91,21 @@ fn lists_that_are_not_sound_are_refused_with_a_reason() {
         DepthLayer::Solid,
         BOX,
     );
-    assert_eq!(refused(&list), RenderError::NoGroundMap { item: 0 });
+    assert_eq!(refused(&list), CpuRenderError::List(DrawListError::MissingGroundMap(0)));
 
     let mut bare = list.clone();
     let mut map = ground_map(5, 10.0, false, |_, _| 0.0);
     map.columns = u32::MAX;
     bare.ground = Some(map.into());
-    assert!(matches!(refused(&bare), RenderError::List(_)));
+    assert!(matches!(refused(&bare), CpuRenderError::List(_)));
 
     let mut dangling = list.clone();
     dangling.items[0].material = MaterialId(9);
-    assert!(matches!(refused(&dangling), RenderError::List(_)));
+    assert!(matches!(refused(&dangling), CpuRenderError::List(_)));
 
     let mut pointing = list;
     pointing.meshes[0].triangles[0][1] = VertexId(99);
-    assert!(matches!(refused(&pointing), RenderError::List(_)));
+    assert!(matches!(refused(&pointing), CpuRenderError::List(_)));
 }
 
 #[test]

@@ -96,7 +96,8 @@ fn stations(
         }
         FlightPath::Line => {
             let far = lattice.extent().max.as_vec2();
-            StraightFlight { from: far * MARGIN, to: far * (1.0 - MARGIN), clearance: keeping }.stations(frames, &ground)
+            StraightFlight { from: far * MARGIN, to: far * (1.0 - MARGIN), clearance: keeping }
+                .stations(frames, &ground)
         }
         FlightPath::File(path) => {
             let text = files::read_text(path)?;

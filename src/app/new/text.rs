@@ -54,7 +54,8 @@ pub(super) fn scene(ground: &GroundDraft, vectors: &[Vectors]) -> String {
     let mut out = head(ground);
     out.push_str(&terrain(ground));
     out.push_str(&style(ground));
-    let factor = NiceNumber::at_most(ground.size_m / TRUE_TO_SCALE_M).map_or(1.0, |nice| nice.value().max(1.0));
+    let factor =
+        NiceNumber::at_most(ground.size_m / TRUE_TO_SCALE_M).map_or(1.0, |nice| nice.value().max(1.0));
     if factor > 1.0 && vectors.iter().any(|file| !file.layers.is_empty()) {
         let _ = writeln!(
             out,
