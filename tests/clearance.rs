@@ -56,7 +56,7 @@ impl World {
     }
 
     fn seen_by(&self, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
-        let patches = patches_in_view(self.ground(), &self.heights, &Frustum::of(camera));
+        let patches = patches_in_view(self.ground(), &self.heights, &Frustum::new(camera));
         let criterion = ScreenError::new(self.ground(), &self.errors, &self.heights, camera, tolerance_px);
         let active = rebuild(&self.layout, &criterion, patches.iter().copied());
         active.check().expect("parents active");

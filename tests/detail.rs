@@ -13,7 +13,7 @@ use sandtable::model::error::CompanionError;
 use sandtable::model::read::read;
 use sandtable::model::simplify::levels;
 use sandtable::model::{Companions, Model, ModelPart};
-use sandtable::render::cpu::{Options, render};
+use sandtable::render::cpu::{RenderQuality, render};
 use sandtable::render::picture::Picture;
 use sandtable::scene::Scene;
 use sandtable::scene::picture::{build_draw_list, display, draw_list};
@@ -36,7 +36,7 @@ fn asset(name: &str) -> Model {
 fn pictures(scene: &Scene, camera: &Camera) -> ([DrawList; 2], [Picture; 2]) {
     let seen = build_draw_list(scene, camera, &|_| ()).list;
     let (full, _) = draw_list(scene, &display(&scene.terrain, camera), &|_| ());
-    let drawn = |list: &DrawList| render(list, camera, &Options::default()).expect("sound");
+    let drawn = |list: &DrawList| render(list, camera, &RenderQuality::default()).expect("sound");
     let pictures = [drawn(&seen), drawn(&full)];
     ([seen, full], pictures)
 }

@@ -313,7 +313,7 @@ impl World {
 
     fn seen_by(&self, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
         let ground = PatchedGround { lattice: &self.displayed, layout: &self.layout };
-        let patches = patches_in_view(ground, &self.heights, &Frustum::of(camera));
+        let patches = patches_in_view(ground, &self.heights, &Frustum::new(camera));
         let criterion = ScreenError::new(ground, &self.errors, &self.heights, camera, tolerance_px);
         let active = rebuild(&self.layout, &criterion, patches.iter().copied());
         DisplayedTerrain::new(Arc::clone(&self.displayed), active, patches)

@@ -37,7 +37,7 @@ impl Walk<'_> {
     /// One frame; returns what is displayed and how many patches were cut again.
     fn frame(&mut self, camera: &Camera) -> (DisplayedTerrain, usize) {
         let terrain = &self.scene.terrain;
-        let visible = patches_in_view(terrain.ground(), terrain.patch_heights(), &Frustum::of(camera));
+        let visible = patches_in_view(terrain.ground(), terrain.patch_heights(), &Frustum::new(camera));
         let criterion =
             ScreenError::new(terrain.ground(), terrain.errors(), terrain.patch_heights(), camera, 2.0);
         let changes = self.coherent.update(&criterion, &visible);

@@ -6,8 +6,8 @@ use clap::Args;
 use glam::DVec2;
 use serde_json::{Value, json};
 
-use crate::annotate::chart::Surroundings;
-use crate::annotate::chart_sight::{SightChart, paint};
+use crate::annotate::chart::ChartText;
+use crate::annotate::chart_sight::{SightBlocker, SightChart, paint};
 use crate::annotate::nice;
 use crate::app::arguments::{Access, PictureSize, StatedHeights};
 use crate::app::dataset::Dataset;
@@ -241,8 +241,8 @@ impl<'a> SightOutcome<'a> {
             return "flat".into();
         }
         let (radius_km, k) =
-            (self.curvature.radius_m / 1000.0, nice::short_number(self.curvature.refraction, 3));
-        format!("curved, radius {} km, refraction {k}", nice::number(radius_km, 0))
+            (self.curvature.radius_m / 1000.0, nice::format_trimmed(self.curvature.refraction, 3));
+        format!("curved, radius {} km, refraction {k}", nice::format_number(radius_km, 0))
     }
 
     fn chart(&self, options: &LosOptions, lattice: &Lattice, datum: Option<&str>) -> SightChart {
@@ -255,7 +255,7 @@ impl<'a> SightOutcome<'a> {
         let datum = datum.map_or(String::new(), |datum| format!(", {datum}"));
         let sunk = if self.curvature == Curvature::FLAT { "" } else { ", less the Earth’s curvature" };
         SightChart {
-            around: Surroundings {
+            text: ChartText {
                 title: file_title("Line of sight", &options.file),
                 subtitle: self.subtitle(length_m),
                 height_axis: format!("Height (m{datum}{sunk})"),
@@ -264,35 +264,38 @@ impl<'a> SightOutcome<'a> {
                 end: format!("{}  Target", spoken(self.crs, options.to.at)),
             },
             points: points(&stations, |along_m, height_m| height_m - drop_m(along_m)),
-            seen_m: seen.iter().map(|stretch| (stretch.from_m, stretch.to_m)).collect(),
+            visible_m: seen.iter().map(|stretch| (stretch.from_m, stretch.to_m)).collect(),
             eye_m,
             target_m: self.feet_m[1] + target.above_m - drop_m(length_m),
-            blocker: self.blocker.map(|blocker| {
-                let said = format!(
+            blocker: self.blocker.map(|blocker| SightBlocker {
+                along_m: blocker.distance_m,
+                height_m: blocker.height_m - drop_m(blocker.distance_m),
+                label: format!(
                     "blocked at {}, {} m high",
-                    nice::distance(blocker.distance_m),
-                    nice::number(blocker.height_m, 0)
-                );
-                (blocker.distance_m, blocker.height_m - drop_m(blocker.distance_m), said)
+                    nice::format_distance(blocker.distance_m),
+                    nice::format_number(blocker.height_m, 0)
+                ),
             }),
-            observer: format!("{} m", nice::number(eye_m, 0)),
-            target: format!("{} m", nice::number(self.feet_m[1] + target.above_m, 0)),
+            observer_label: format!("{} m", nice::format_number(eye_m, 0)),
+            target_label: format!("{} m", nice::format_number(self.feet_m[1] + target.above_m, 0)),
         }
     }
 
     fn subtitle(&self, length_m: f64) -> String {
-        let far = nice::distance(length_m);
+        let far = nice::format_distance(length_m);
         let came = match (&self.blocker, self.target_rise, self.both_rise) {
-            (Some(_), Some(rise), _) => format!("hidden; seen if {} m higher", nice::number(rise.rise_m, 1)),
+            (Some(_), Some(rise), _) => {
+                format!("hidden; seen if {} m higher", nice::format_number(rise.rise_m, 1))
+            }
             (None, _, Some(rise)) => {
-                format!("visible, {} m clear of the ground", nice::number(-rise.rise_m, 1))
+                format!("visible, {} m clear of the ground", nice::format_number(-rise.rise_m, 1))
             }
             (Some(_), None, _) => "hidden".into(),
             (None, _, None) => "visible".into(),
         };
         let earth = match self.curvature == Curvature::FLAT {
             true => "flat Earth".to_owned(),
-            false => format!("refraction {}", nice::short_number(self.curvature.refraction, 3)),
+            false => format!("refraction {}", nice::format_trimmed(self.curvature.refraction, 3)),
         };
         format!("Target {far} away is {came} · {earth} · light ground is in sight of the observer")
     }

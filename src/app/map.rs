@@ -7,7 +7,7 @@ use glam::{DVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
 use crate::annotate::legend::Legend;
-use crate::annotate::map::{MapFurniture, Outlook, compose, draw_outlook, sheet_size};
+use crate::annotate::map::{MapFurniture, ObserverOverlay, compose, draw_observer, sheet_size};
 use crate::draw::color::Srgba;
 use crate::draw::ground::ColorRamp;
 use crate::draw::pixels::Pixels;
@@ -57,13 +57,13 @@ pub fn viewshed_map(
     let frame = MapFrame::fitted(lattice);
     let mut map = frame.resampled(&colors);
     let outlook = outlook(lattice, options, &frame);
-    draw_outlook(&mut map, &outlook, sheet_size((frame.width, frame.height)));
+    draw_observer(&mut map, &outlook, sheet_size((frame.width, frame.height)));
     let (low_m, high_m) = lattice.height_range();
     let furniture = MapFurniture {
         title: words.title,
         subtitle: words.subtitle,
-        key: key(viewshed, ramp.linear_at(low_m + 0.3 * (high_m - low_m))),
-        heights: Legend {
+        tints: key(viewshed, ramp.linear_at(low_m + 0.3 * (high_m - low_m))),
+        legend: Legend {
             ramp,
             low_m,
             high_m,
@@ -103,7 +103,7 @@ fn shown(seen: PostVisibility, tint: Vec3) -> Vec3 {
 fn colors(lattice: &Lattice, viewshed: &Viewshed, ramp: &ColorRamp) -> Vec<Vec3> {
     const STEPS: usize = 512;
     let table = ramp.table(STEPS);
-    let (low, high) = ramp.range();
+    let (low, high) = ramp.height_range();
     let grays = hillshade(&lattice.exaggerated(RELIEF), &HillshadeOptions::default());
     let color = |((&height, &gray), &seen): ((&f32, &u8), &PostVisibility)| {
         if height.is_nan() || gray == NO_DATA {
@@ -185,10 +185,10 @@ impl MapFrame {
     }
 }
 
-fn outlook(lattice: &Lattice, options: &ViewshedOptions, frame: &MapFrame) -> Outlook {
+fn outlook(lattice: &Lattice, options: &ViewshedOptions, frame: &MapFrame) -> ObserverOverlay {
     let grid = lattice.grid_at(options.observer.at - lattice.map_position(Post { column: 0, row: 0 }));
     let sector = options.sector;
-    Outlook {
+    ObserverOverlay {
         at_px: frame.pixel_at(grid),
         range_px: options.range_m.is_finite().then_some((options.range_m * frame.pixels_per_m) as f32),
         sector_deg: (sector.width_deg < 360.0).then_some((sector.from_deg as f32, sector.width_deg as f32)),

@@ -1,4 +1,4 @@
-//! A view of a scene to a finished picture, in memory: shoot, draw, annotate.
+//! A view of a scene to a finished picture, in memory: build the draw list, render, annotate.
 //!
 //! Nothing is read, written, printed or timed here, so that the program, its tests and its benchmark make their
 //! pictures the same way. What is done next is told to the caller, who may show it or time it.
@@ -10,13 +10,10 @@ use crate::annotate::report::AnnotationReport;
 use crate::app::arguments::{Backend, PictureSize};
 use crate::app::failure::CliError;
 use crate::app::labels;
-use crate::draw::list::DrawList;
 use crate::draw::pixels::Pixels;
-use crate::render::picture::Picture;
-use crate::render::{cpu, gpu};
+use crate::render::{RenderBackend, render};
 use crate::scene::picture::{ViewDraw, build_draw_list, camera};
 use crate::scene::{Scene, View};
-use crate::view::camera::Camera;
 
 /// An annotated picture with what it was made from.
 pub struct Finished {
@@ -43,18 +40,15 @@ pub fn picture_of(
     let camera = camera(scene, view, (size.width, size.height)).map_err(CliError::input)?;
     let shot = build_draw_list(scene, &camera, step);
     step("drawing");
-    let mut picture = draw(&shot.list, &camera, backend)?;
+    let backend = match backend {
+        Backend::Cpu => RenderBackend::Cpu,
+        Backend::Gpu => RenderBackend::Gpu,
+    };
+    let mut picture = render(&shot.list, &camera, backend).map_err(CliError::input)?;
     step("annotating");
     let annotations = labels::annotations(scene, &camera, &picture);
     let report = annotate(&mut picture.pixels, &annotations);
     Ok(Finished { pixels: picture.pixels, shot, report })
-}
-
-fn draw(list: &DrawList, camera: &Camera, backend: Backend) -> Result<Picture, CliError> {
-    match backend {
-        Backend::Cpu => cpu::render(list, camera, &cpu::Options::default()).map_err(CliError::input),
-        Backend::Gpu => gpu::render(list, camera).map_err(CliError::input),
-    }
 }
 
 /// The bytes of `pixels` as a PNG file without alpha.

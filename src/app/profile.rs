@@ -10,7 +10,7 @@ use clap::Args;
 use glam::DVec2;
 use serde_json::{Value, json};
 
-use crate::annotate::chart::Surroundings;
+use crate::annotate::chart::ChartText;
 use crate::annotate::chart_ground::{ChartGround, ChartPoint};
 use crate::annotate::chart_profile::{ProfileChart, paint};
 use crate::annotate::nice;
@@ -224,18 +224,18 @@ fn chart(
     let [first, last] = [way.vertices.first(), way.vertices.last()].map(|at| at.copied().unwrap_or_default());
     let climbs = format!(
         "{} long, climbs {} m and falls {} m",
-        nice::distance(summary.length_m),
-        nice::number(summary.ascent_m, 0),
-        nice::number(summary.descent_m, 0)
+        nice::format_distance(summary.length_m),
+        nice::format_number(summary.ascent_m, 0),
+        nice::format_number(summary.descent_m, 0)
     );
     let missing_m = summary.length_m - summary.covered_m;
     let bare = if missing_m > 0.5 {
-        format!("; {} without ground", nice::distance(missing_m))
+        format!("; {} without ground", nice::format_distance(missing_m))
     } else {
         String::new()
     };
     ProfileChart {
-        around: Surroundings {
+        text: ChartText {
             title: file_title("Profile", &options.file),
             subtitle: climbs + &bare,
             height_axis: datum.map_or("Height (m)".into(), |datum| format!("Height (m, {datum})")),

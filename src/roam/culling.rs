@@ -30,12 +30,12 @@ pub enum Culling {
 impl Culling {
     /// The wedge of a camera.
     pub fn wedge(camera: &Camera) -> Self {
-        Self::Wedge(GroundWedge::of(camera))
+        Self::Wedge(GroundWedge::new(camera))
     }
 
     /// The frustum of a camera.
     pub fn frustum(camera: &Camera) -> Self {
-        Self::Frustum(Frustum::of(camera))
+        Self::Frustum(Frustum::new(camera))
     }
 
     fn all(&self) -> u8 {
@@ -50,8 +50,8 @@ impl Culling {
     fn crossed(&self, min: Vec3, max: Vec3, among: u8) -> Option<u8> {
         match self {
             Self::Nothing => Some(0),
-            Self::Wedge(wedge) => wedge.crossed(min.truncate(), max.truncate(), among),
-            Self::Frustum(frustum) => frustum.crossed(min, max, among),
+            Self::Wedge(wedge) => wedge.crossed_lines(min.truncate(), max.truncate(), among),
+            Self::Frustum(frustum) => frustum.crossed_planes(min, max, among),
         }
     }
 }
@@ -322,13 +322,13 @@ mod tests {
             let (eye, target) = (Vec3::from(eye), Vec2::from(target).extend(0.0));
             prop_assume!(eye.distance(target) > 1.0);
             let camera = Camera::new(eye, target, 0.7, (640, 480), (1.0, far)).expect("sound");
-            let by_frustum = patches_in_view(ground, &heights, &Frustum::of(&camera));
-            prop_assert_eq!(&by_frustum, &plain(ground, &heights, &Frustum::of(&camera)));
+            let by_frustum = patches_in_view(ground, &heights, &Frustum::new(&camera));
+            prop_assert_eq!(&by_frustum, &plain(ground, &heights, &Frustum::new(&camera)));
             let (mut by_wedge, mut all) = (Vec::new(), Vec::new());
             cull(ground, &heights, &Culling::Nothing, &mut all);
             prop_assert_eq!(all.len(), layout.patches().filter(|&at| heights.bounds(ground, at).is_some()).count());
             cull(ground, &heights, &Culling::wedge(&camera), &mut by_wedge);
-            let wedge = GroundWedge::of(&camera);
+            let wedge = GroundWedge::new(&camera);
             let plain_wedge: Vec<Vertex> = all.into_iter().filter(|&corner| {
                 let far = ground.plan(corner.moved(layout.patch(), layout.patch()));
                 wedge.may_see(ground.plan(corner), far)

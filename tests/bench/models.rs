@@ -23,7 +23,7 @@ use sandtable::model::error::CompanionError;
 use sandtable::model::read::read;
 use sandtable::model::simplify::levels;
 use sandtable::model::{Companions, Model};
-use sandtable::render::cpu::{Options, render};
+use sandtable::render::cpu::{RenderQuality, render};
 use sandtable::scene::Scene;
 use sandtable::scene::picture::{build_draw_list, display, draw_list};
 use sandtable::view::camera::Camera;
@@ -68,7 +68,7 @@ fn row(name: &str, scene: &Scene, camera: &Camera, listed: impl Fn(&Scene, &Came
     steps.begin("listing");
     let list = listed(scene, camera);
     steps.begin("drawing");
-    render(&list, camera, &Options::default()).expect("sound");
+    render(&list, camera, &RenderQuality::default()).expect("sound");
     let steps: Vec<Step> = steps.finish();
     let peak = steps.iter().filter_map(|step| step.peak_mib).reduce(f64::max);
     let peak = peak.map_or("not measured".into(), |peak| format!("{peak:.0} MiB"));

@@ -58,7 +58,7 @@ impl Terrain {
     }
 
     pub fn in_view(&self, camera: &Camera) -> Vec<Vertex> {
-        patches_in_view(self.ground(), &self.heights, &Frustum::of(camera))
+        patches_in_view(self.ground(), &self.heights, &Frustum::new(camera))
     }
 
     pub fn vertices(&self) -> impl Iterator<Item = Vertex> + use<> {

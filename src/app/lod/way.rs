@@ -14,7 +14,7 @@ use crate::geom::rect::Rect;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 use crate::view::camera::Camera;
-use crate::view::flight::{self, CircularFlight, FlightStation, Keeping, StraightFlight};
+use crate::view::flight::{self, CircularFlight, FlightStation, GroundClearance, StraightFlight};
 
 /// Posts along a side of the block about whose middle the circle is flown.
 const BLOCK: u32 = 513;
@@ -86,21 +86,22 @@ fn stations(
 ) -> Result<Vec<FlightStation>, CliError> {
     let cell = lattice.cell().as_vec2();
     let size_m = (cell.x * cell.y).sqrt();
-    let keeping = Keeping { above_m: ABOVE * size_m, smoothing_m: 2.0 * size_m };
+    let keeping = GroundClearance { height_m: ABOVE * size_m, smoothing_m: 2.0 * size_m };
     let ground = |at: Vec2| drawn_z(lattice, at, missing_m);
     Ok(match way {
         FlightPath::Circle => {
             let side = (lattice.columns().min(lattice.rows()).min(BLOCK) - 1) as f32;
             let (center, radius_m) = (cell * side * 0.5, RADIUS * side * size_m);
-            CircularFlight { center, radius_m, step_m: size_m, keeping }.stations(frames, &ground)
+            CircularFlight { center, radius_m, step_m: size_m, clearance: keeping }.stations(frames, &ground)
         }
         FlightPath::Line => {
             let far = lattice.extent().max.as_vec2();
-            StraightFlight { from: far * MARGIN, to: far * (1.0 - MARGIN), keeping }.stations(frames, &ground)
+            StraightFlight { from: far * MARGIN, to: far * (1.0 - MARGIN), clearance: keeping }
+                .stations(frames, &ground)
         }
         FlightPath::File(path) => {
             let text = files::read_text(path)?;
-            flight::along(&stations::parse(&files::text_name(path), &text)?, frames)
+            flight::evenly_spaced(&stations::parse(&files::text_name(path), &text)?, frames)
         }
     })
 }

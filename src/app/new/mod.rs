@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::annotate::nice::Nice;
+use crate::annotate::nice::NiceNumber;
 use crate::app::arguments::Access;
 use crate::app::check::contents;
 use crate::app::failure::CliError;
@@ -142,7 +142,7 @@ fn ground(scene_file: &Path, mut ground: GroundDraft, allow: &[PathBuf]) -> Resu
     ground.relief_m = f64::from(high - low);
     ground.crs_name = plain.crs.name().to_owned();
     ground.exaggeration = exaggeration(ground.relief_m / ground.size_m);
-    ground.contours_m = Nice::at_most(ground.relief_m / CONTOURS).map(|nice| nice.value());
+    ground.contours_m = NiceNumber::at_most(ground.relief_m / CONTOURS).map(|nice| nice.value());
     let scene = if ground.exaggeration == 1.0 { plain } else { built(&ground)? };
     ground.camera = camera(&scene);
     Ok(ground)

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use glam::DVec2;
 use serde_json::Value;
 
-use crate::annotate::nice::Nice;
+use crate::annotate::nice::NiceNumber;
 use crate::app::new::survey::{Chosen, RULES, SurveyedLayer, TableMatch};
 
 /// What is known of the ground; zero and nothing where it is not yet.
@@ -54,7 +54,8 @@ pub(super) fn scene(ground: &GroundDraft, vectors: &[Vectors]) -> String {
     let mut out = head(ground);
     out.push_str(&terrain(ground));
     out.push_str(&style(ground));
-    let factor = Nice::at_most(ground.size_m / TRUE_TO_SCALE_M).map_or(1.0, |nice| nice.value().max(1.0));
+    let factor =
+        NiceNumber::at_most(ground.size_m / TRUE_TO_SCALE_M).map_or(1.0, |nice| nice.value().max(1.0));
     if factor > 1.0 && vectors.iter().any(|file| !file.layers.is_empty()) {
         let _ = writeln!(
             out,

@@ -63,7 +63,7 @@ impl<'a> ScreenError<'a> {
         tolerance_px: f32,
     ) -> Self {
         let reach = ErrorReach::new(camera, tolerance_px);
-        Self { ground, errors, heights, frustum: Frustum::of(camera), reach }
+        Self { ground, errors, heights, frustum: Frustum::new(camera), reach }
     }
 }
 

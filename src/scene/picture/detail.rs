@@ -56,7 +56,7 @@ pub(super) fn add(list: &mut DrawList, scene: &Scene, placed: &[PlacedModel], vi
     let groups = match viewer {
         Viewer::Anyone => grouped(placed.iter().map(|stand| (stand, DetailForm::Full))),
         Viewer::Camera(camera) => {
-            let frustum = Frustum::of(camera);
+            let frustum = Frustum::new(camera);
             let in_view: Vec<&PlacedModel> = placed
                 .par_iter()
                 .filter(|stand| balls[stand.model].in_world(stand).is_in(&frustum))

@@ -143,7 +143,7 @@ fn print_walked() {
         DynamicOptions { patch: 64, measure: ErrorMeasure::Midpoint, radius: Radius::Plain, reach: REACH };
     let terrain = DynamicTerrain::new(flight::lattice(&heights), options).expect("sound");
     let mut walk = Deferred::new(terrain, f64::from(flight::CELL_M)).expect("small patches");
-    let patches = patches_in_view(walk.source().ground(), walk.source().heights(), &Frustum::of(&camera));
+    let patches = patches_in_view(walk.source().ground(), walk.source().heights(), &Frustum::new(&camera));
     walk.update(camera.eye(), &patches).expect("in memory");
     let ahead = (camera.eye() + camera.forward() * 100.0 * flight::CELL_M) / flight::CELL_M;
     let [mut edit_us, mut mesh_us] = [Vec::new(), Vec::new()];
