@@ -10,6 +10,7 @@ use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
 use crate::draw::list::{DrawMesh, DrawVertex};
+use crate::geom::convex;
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::mesh::sink::{MeshSink, VertexId};
@@ -105,7 +106,8 @@ fn uncovered(facet: &SurfaceTriangle, over: &[[DVec2; 3]]) -> Vec<Vec<DVec2>> {
         let reach = polygon::bounds(window);
         let mut left = Vec::with_capacity(pieces.len() + 2);
         for piece in pieces {
-            if polygon::bounds(&piece).meets(&reach) && overlaps(&piece, window) {
+            let overlaps = || convex::intersection(&piece, window, SLIVER_M2).is_some();
+            if polygon::bounds(&piece).meets(&reach) && overlaps() {
                 polygon::cut_away(piece, window, &mut left);
             } else {
                 left.push(piece);
@@ -115,12 +117,6 @@ fn uncovered(facet: &SurfaceTriangle, over: &[[DVec2; 3]]) -> Vec<Vec<DVec2>> {
         pieces = left;
     }
     pieces
-}
-
-fn overlaps(piece: &[DVec2], window: &[DVec2]) -> bool {
-    let (mut shared, mut scratch) = (piece.to_vec(), Vec::new());
-    polygon::clip_convex(&mut shared, &mut scratch, window);
-    shared.len() > 2 && polygon::doubled_area(&shared) > 2.0 * SLIVER_M2
 }
 
 fn add(left: &mut DrawMesh, piece: &[DVec2], facet: &SurfaceTriangle, like: DrawVertex) {

@@ -2,14 +2,16 @@
 
 pub mod convex;
 pub mod crs;
+pub mod crs_fault;
 pub mod datum_shift;
 pub mod geodesic;
 pub mod polygon;
 pub mod polyline;
-pub mod proj_words;
+pub(crate) mod proj_string;
 pub mod projection;
 pub mod rect;
 pub mod rect_tree;
 pub mod region;
+pub mod segment;
 pub mod wkt;
-pub mod wkt_text;
+pub mod wkt_writer;
