@@ -21,7 +21,7 @@ use crate::terrain::profile::profile;
 use crate::terrain::query::{Answer, Interpolation, ground_height};
 use crate::terrain::sight::Curvature;
 use crate::terrain::sight::line::{Blocker, Sight, SightEnd, line_of_sight};
-use crate::terrain::sight::outlook::seen_along;
+use crate::terrain::sight::outlook::visible_stretches;
 use crate::terrain::sight::rise::{Raised, Rise, required_rise};
 
 /// `los`.
@@ -250,7 +250,7 @@ impl<'a> SightOutcome<'a> {
         let drop_m = |along_m: f64| self.curvature.drop_per_square_m() * along_m * along_m;
         let stations = profile(lattice, &[observer.at, target.at]);
         let eye_m = self.feet_m[0] + observer.above_m;
-        let seen = seen_along(&stations, eye_m, self.curvature);
+        let seen = visible_stretches(&stations, eye_m, self.curvature);
         let length_m = self.length_m();
         let datum = datum.map_or(String::new(), |datum| format!(", {datum}"));
         let sunk = if self.curvature == Curvature::FLAT { "" } else { ", less the Earth’s curvature" };

@@ -90,7 +90,7 @@ pub fn run(options: &ProfileOptions) -> Result<(), CliError> {
         .collect::<Result<Vec<_>, _>>()?;
     let sampling = Sampling { interpolation: options.interpolation.into(), step_m: step_m(options, &line)? };
     let stations = sampled_profile(epoch.lattice(), &line, sampling);
-    let summary = ProfileSummary::of(&stations);
+    let summary = ProfileSummary::from_stations(&stations);
     let asked = ProfileQuery { crs: &way.crs, ground: epoch.crs() };
     if let Some(path) = &options.output {
         let datum = epoch.source().vertical_datum.as_deref();

@@ -8,6 +8,7 @@ use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
 use crate::draw::list::{DrawMesh, DrawVertex};
+use crate::geom::convex;
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::geom::rect_tree::RectTree;
@@ -62,8 +63,8 @@ fn drapes_by_facet<'a>(
         let [a, b, c] = plan(&triangle);
         let center = (a + b + c) / 3.0;
         let around = Rect { min: center, max: center };
-        let facets = tree.found(&around, |index| facet_contains(&facets[index], center));
-        if let Some(&facet) = facets.first() {
+        let containing = tree.meeting(&around).filter(|&index| facet_contains(&facets[index], center));
+        if let Some(facet) = containing.min() {
             by_facet[facet].push([a, b, c]);
         }
     }
@@ -80,7 +81,7 @@ fn uncovered(facet: &SurfaceTriangle, drapes: &[[DVec2; 3]]) -> Vec<Vec<DVec2>> 
     for drape in drapes {
         let mut rest = Vec::with_capacity(pieces.len() + 2);
         for piece in pieces {
-            if overlaps(&piece, drape) {
+            if convex::intersection(&piece, drape, SLIVER_M2).is_some() {
                 polygon::cut_away(piece, drape, &mut rest);
             } else {
                 rest.push(piece);
@@ -90,12 +91,6 @@ fn uncovered(facet: &SurfaceTriangle, drapes: &[[DVec2; 3]]) -> Vec<Vec<DVec2>> 
         pieces = rest;
     }
     pieces
-}
-
-fn overlaps(piece: &[DVec2], drape: &[DVec2]) -> bool {
-    let (mut shared, mut scratch) = (piece.to_vec(), Vec::new());
-    polygon::clip_convex(&mut shared, &mut scratch, drape);
-    shared.len() > 2 && polygon::doubled_area(&shared) > 2.0 * SLIVER_M2
 }
 
 /// Adds a convex piece of `facet` as a fan of triangles; its vertices are like `template` but for the position.

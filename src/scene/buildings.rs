@@ -140,9 +140,7 @@ fn pad(
     }
     let mut volumes = Volumes::default();
     for part in parts {
-        let moved = leveling::level(lattice, part.rings(), mean_m as f32);
-        volumes.cut_m3 += moved.cut_m3;
-        volumes.fill_m3 += moved.fill_m3;
+        volumes += leveling::level(lattice, part.rings(), mean_m as f32);
     }
     let numbers = [mean_m, volumes.cut_m3, volumes.fill_m3].map(ReportCell::Number);
     collected.report.add(PADS, std::iter::once(ReportCell::Text(name.to_owned())).chain(numbers).collect());

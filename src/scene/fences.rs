@@ -222,7 +222,7 @@ fn dig(line: &FenceLine, name: &str, lattice: &mut Lattice, collected: &mut Scen
         return false;
     }
     let mut volumes = Volumes::default();
-    let area_m2 = lattice.cell().x * lattice.cell().y;
+    let area_m2 = lattice.cell_m2();
     for part in &line.parts {
         let trench = Trench {
             line: part.clone(),

@@ -92,9 +92,8 @@ impl Under {
         let normal = (b - a).cross(c - a);
         let gradient = -normal.truncate() / normal.z;
         let z = |p: DVec2| a.z + gradient.dot(p + at - a.truncate());
-        for pair in piece[1..].windows(2) {
-            let corners = [piece[0], pair[0], pair[1]];
-            let area = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]) / 2.0;
+        for corners in polygon::fan(piece) {
+            let area = polygon::doubled_area(&corners) / 2.0;
             let middle = corners.iter().sum::<DVec2>() / 3.0;
             self.area_m2 += area;
             self.moment += middle.extend(z(middle)) * area;

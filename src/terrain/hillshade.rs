@@ -1,21 +1,21 @@
-//! Hillshading: how brightly the ground's slope faces the sun, as a gray for each post.
+//! Hillshading: how directly the ground faces the sun, as a gray for each post.
 //!
 //! With the slopes `p` east and `q` north of [`Lattice::slopes`] (Horn 1981), the gray is
 //! `1 + 254 · max(0, n · s)`, where `n` is the upward unit normal of the slopes and `s` the direction to the sun: what
-//! `gdaldem hillshade` draws, equal to it within one gray level. 0 stands for no data.
+//! `gdaldem hillshade` draws, equal to it within one gray level. 0 means no data.
 //!
-//! Where a neighbor is missing or lies off the border, the post's own height stands for it, so that there is a gray
-//! for every post with data; `gdaldem` leaves a frame of one post and the posts around holes empty unless told
-//! otherwise (`-compute_edges`, which then continues the slope instead).
+//! A neighbor without data or beyond the border takes the post's own height, so that every post with data has a gray;
+//! `gdaldem` leaves a frame of one post and the posts around holes empty by default, and continues the slope with
+//! `-compute_edges`.
 //!
-//! Inside a row, where all neighbors have data, slopes are sums along columns that two neighboring posts share, and
-//! the loop over a row is one that the compiler turns to vectors; the few other posts are asked one by one.
+//! The loop over the inner posts of a row is written for the compiler to vectorize; posts beside the border or a hole are
+//! computed one by one.
 
 use rayon::prelude::*;
 
 use crate::terrain::lattice::{Lattice, Post};
 
-/// Where the sun stands.
+/// The direction of the sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HillshadeOptions {
     /// The sun's azimuth, degrees clockwise from north.
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plane_is_one_gray_up_to_its_border_and_brightest_where_it_faces_the_sun() {
+    fn a_plane_is_one_gray_and_brightest_where_it_faces_the_sun() {
         let options = HillshadeOptions::default();
         let gray = |east, north| {
             let grays = hillshade(&plane(east, north), &options);
@@ -132,7 +132,7 @@ mod tests {
         assert_eq!(gray(0.0, 0.0), 181);
         let facing = 0.5f32.sqrt();
         assert_eq!(gray(facing, -facing), 255, "rising south-east, it faces north-west");
-        assert_eq!(gray(-3.0, 3.0), 1, "its back is turned");
+        assert_eq!(gray(-3.0, 3.0), 1, "it faces away");
     }
 
     #[test]
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_s_own_arithmetic_and_that_of_single_posts_agree() {
+    fn a_row_and_its_single_posts_agree() {
         let heights = (0..400).map(|index: u32| ((index * 7919) % 101) as f32).collect();
         let rough = Lattice::new(DVec2::ZERO, DVec2::new(30.0, 20.0), 20, heights).expect("sound");
         let sun = Sun::new(&HillshadeOptions::default());

@@ -14,7 +14,7 @@ pub mod values;
 
 use crate::dem::raster::Raster;
 use crate::geom::crs::Crs;
-use crate::geom::wkt_text;
+use crate::geom::wkt_writer;
 
 /// A format that is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -176,7 +176,7 @@ fn metric(raster: &Raster) -> Raster {
 /// program reads. Nothing for a raster without a system.
 fn projection_file(crs: Option<&Crs>) -> Option<Companion> {
     let crs = crs.filter(|crs| !crs.proj_text().is_empty())?;
-    let text = wkt_text::of(crs).unwrap_or_else(|| crs.name().to_owned());
+    let text = wkt_writer::write(crs).unwrap_or_else(|| crs.name().to_owned());
     Some(Companion { extension: "prj", bytes: format!("{text}\n").into_bytes() })
 }
 

@@ -85,7 +85,7 @@ fn level(
     let highest = f64::from(HIGHEST_M);
     let level_m = (level_z / f64::from(exaggeration)).clamp(-highest, highest);
     let ring = outline(placement, &footprint.grown(PAD_REACH));
-    Some(pad::pad(lattice, &ring, level_m, Batters::default()))
+    Some(pad::build_pad(lattice, &ring, level_m, Batters::default()))
 }
 
 fn too_many(document: &Document, table: &ModelPlacement) -> Diagnostic {

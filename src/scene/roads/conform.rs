@@ -109,8 +109,7 @@ impl Earthworks<'_> {
         let mut volumes = vec![Volumes::default(); routes.len()];
         if !strips.is_empty() {
             for (owner, moved) in owners.into_iter().zip(grade(lattice, &strips)) {
-                volumes[owner].cut_m3 += moved.cut_m3;
-                volumes[owner].fill_m3 += moved.fill_m3;
+                volumes[owner] += moved;
             }
         }
         volumes
@@ -164,9 +163,9 @@ fn make_denser(lattice: &mut Lattice, strips: &[GradingStrip], collected: &mut S
     let widths = strips.iter().map(|strip| 2.0 * strip.section.half_width_m);
     let narrowest_m = widths.fold(f64::INFINITY, f64::min);
     let wanted = densify::doublings_for(lattice, narrowest_m / POSTS_ACROSS);
-    let times = densify::affordable(lattice, wanted);
+    let times = densify::affordable_doublings(lattice, wanted);
     if times > 0
-        && let Ok(dense) = densify::densified(lattice, times)
+        && let Ok(dense) = densify::densify(lattice, times)
     {
         *lattice = dense;
     }
@@ -241,8 +240,7 @@ fn total(
     for (route, moved) in routes.iter().zip(volumes) {
         let (count, sum, spans) = tables.entry(roads[route.road].table).or_default();
         *count += 1;
-        sum.cut_m3 += moved.cut_m3;
-        sum.fill_m3 += moved.fill_m3;
+        *sum += *moved;
         for stretch in route.stretches() {
             spans[0] += usize::from(stretch.carried == Support::Bridge);
             spans[1] += usize::from(stretch.carried == Support::Tunnel);
