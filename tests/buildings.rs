@@ -11,7 +11,7 @@ use sandtable::app::arguments::Access;
 use sandtable::app::load;
 use sandtable::draw::list::{DrawMesh, FeatureId};
 use sandtable::scene::picture::display;
-use sandtable::scene::report::ReportCell;
+use sandtable::scene::report::BuildingPadRow;
 use sandtable::scene::{FeatureKind, Scene};
 use sandtable::structure::building::{self, Measures};
 use sandtable::structure::draped_solid::DrapedSolid;
@@ -90,16 +90,7 @@ fn a_pad_is_level_under_the_whole_footprint_and_its_earth_is_told() {
     let scene = scene(
         "[[building]]\nname = \"hall\"\npoints = [[200, 500], [230, 500], [230, 520], [200, 520]]\nbase = \"pad\"\n",
     );
-    let table = scene.report.table("building pads").expect("told");
-    let [
-        ReportCell::Text(name),
-        ReportCell::Number(level),
-        ReportCell::Number(cut),
-        ReportCell::Number(fill),
-    ] = &table.rows[0][..]
-    else {
-        panic!("{table:?}");
-    };
+    let BuildingPadRow { name, level, cut, fill } = &scene.report.building_pads[0];
     assert_eq!(name, "hall");
     assert!(*cut > 100.0 && *fill > 100.0, "{cut} {fill}");
     let lattice = &scene.terrain.lattice;
