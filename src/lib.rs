@@ -9,6 +9,7 @@ pub mod earthworks;
 pub mod export;
 pub mod geom;
 pub mod mesh;
+pub mod message;
 pub mod model;
 pub mod render;
 pub mod ribbon;

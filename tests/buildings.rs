@@ -11,13 +11,13 @@ use sandtable::app::arguments::Access;
 use sandtable::app::load;
 use sandtable::draw::list::{DrawMesh, FeatureId};
 use sandtable::scene::picture::display;
-use sandtable::scene::report::ReportCell;
+use sandtable::scene::report::BuildingPadRow;
 use sandtable::scene::{FeatureKind, Scene};
 use sandtable::structure::building::{self, Measures};
 use sandtable::structure::draped_solid::DrapedSolid;
 use sandtable::terrain::full_resolution::FullResolution;
 use sandtable::terrain::query::{Interpolation, ground_height};
-use sandtable::terrain::support_surface::{SupportSurface, runs};
+use sandtable::terrain::support_surface::{SupportSurface, ground_runs};
 use sandtable::terrain::triangle_surface::TriangleSurface;
 use sandtable::view::camera::Camera;
 
@@ -90,16 +90,7 @@ fn a_pad_is_level_under_the_whole_footprint_and_its_earth_is_told() {
     let scene = scene(
         "[[building]]\nname = \"hall\"\npoints = [[200, 500], [230, 500], [230, 520], [200, 520]]\nbase = \"pad\"\n",
     );
-    let table = scene.report.table("building pads").expect("told");
-    let [
-        ReportCell::Text(name),
-        ReportCell::Number(level),
-        ReportCell::Number(cut),
-        ReportCell::Number(fill),
-    ] = &table.rows[0][..]
-    else {
-        panic!("{table:?}");
-    };
+    let BuildingPadRow { name, level, cut, fill } = &scene.report.building_pads[0];
     assert_eq!(name, "hall");
     assert!(*cut > 100.0 && *fill > 100.0, "{cut} {fill}");
     let lattice = &scene.terrain.lattice;
@@ -157,7 +148,7 @@ proptest! {
 
 fn lowest_along(ring: &[DVec2], ground: &dyn TriangleSurface) -> f64 {
     let edges = ring.iter().zip(ring.iter().cycle().skip(1));
-    let stations = edges.flat_map(|(from, to)| runs(ground, *from, *to));
+    let stations = edges.flat_map(|(from, to)| ground_runs(ground, *from, *to));
     stations.flat_map(|run| run.stations().to_vec()).map(|station| station.z).fold(f64::INFINITY, f64::min)
 }
 

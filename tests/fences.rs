@@ -184,10 +184,9 @@ fn a_trench_is_dug_where_the_cells_are_fine_enough_and_tells_its_volume() {
     let line = "points = [[200, 500], [320, 520]]\nkind = \"trench\"\nheight = 3\n";
     let coarse = built(&format!("[[fence]]\n{line}width = 4\n")).expect("sound");
     assert!(coarse.notes.iter().any(|note| note.contains("not dug")), "{:?}", coarse.notes);
-    assert!(coarse.report.table("trenches").is_none());
+    assert!(coarse.report.trenches.is_empty());
     let fine = built(&format!("[[fence]]\n{line}width = 40\n")).expect("sound");
-    let table = fine.report.table("trenches").expect("told");
-    let sandtable::scene::report::ReportCell::Number(cut) = table.rows[0][2] else { panic!("{table:?}") };
+    let cut = fine.report.trenches[0].cut;
     // Depth times the mean of top and bottom width times length, and rounded ends.
     assert!((3.0 * 31.0 * 121.0..3.0 * 31.0 * 175.0).contains(&cut), "{cut}");
 }

@@ -20,6 +20,7 @@ use sandtable::roam::layout::PatchLayout;
 use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::terrain::lattice::{Lattice, Post};
+use sandtable::terrain::query::batch::HeightSlices;
 use sandtable::terrain::query::batch::bilinear_ground;
 use sandtable::terrain::query::service::{HeightService, Snapshot};
 use sandtable::terrain::query::source::{raster_height, source_heights};
@@ -140,7 +141,7 @@ proptest! {
             at.iter().map(|&at| bits(ground_height(&lattice, Interpolation::Bilinear, at))).collect();
         let (mut heights, mut statuses) = (vec![0.0; at.len()], vec![Status::Ok; at.len()]);
         let tiles = HeightTiles::new(&lattice);
-        bilinear_ground(&lattice, Some(&tiles), &at, (&mut heights, &mut statuses));
+        bilinear_ground(&lattice, Some(&tiles), &at, HeightSlices { heights_m: &mut heights, statuses: &mut statuses });
         let tiled: Vec<_> =
             heights.iter().zip(&statuses).map(|(&height, &status)| bits(status.with_height(height))).collect();
         prop_assert!(tiled == single, "read from tiles");
@@ -199,7 +200,12 @@ fn together(
     let mut answers = vec![Answer::NoData; at.len()];
     epoch.heights(surface, interpolation, at, &mut answers);
     let (mut heights, mut statuses) = (vec![0.0; at.len()], vec![Status::NoData; at.len()]);
-    epoch.heights_apart(surface, interpolation, at, (&mut heights, &mut statuses));
+    epoch.heights_apart(
+        surface,
+        interpolation,
+        at,
+        HeightSlices { heights_m: &mut heights, statuses: &mut statuses },
+    );
     for ((&height, &status), answer) in heights.iter().zip(&statuses).zip(&answers) {
         assert_eq!(bits(status.with_height(height)), bits(*answer));
         assert_eq!(height.is_nan(), status != Status::Ok, "no number without a status");
@@ -242,7 +248,7 @@ fn readers_see_whole_epochs_while_the_ground_is_edited() {
                     Surface::Ground,
                     Interpolation::Bilinear,
                     &at,
-                    (&mut heights, &mut statuses),
+                    HeightSlices { heights_m: &mut heights, statuses: &mut statuses },
                 );
                 // What the batch should have been, post by post, of the epoch that was held.
                 let whole = at.iter().zip(&heights).all(|(&at, height)| {

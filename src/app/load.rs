@@ -28,14 +28,14 @@ pub fn scene(path: &Path, access: &Access, step: &dyn Fn(&'static str)) -> Resul
 pub fn unstretched(path: &Path, access: &Access, step: &dyn Fn(&'static str)) -> Result<Scene, CliError> {
     step("reading the scene file");
     let (mut document, assets) = document(path, access)?;
-    document.terrain.vertical_exaggeration = None;
+    document.terrain.vertical_exaggeration = 1.0;
     build(&document, &assets, step).map_err(CliError::input)
 }
 
 fn document(path: &Path, access: &Access) -> Result<(Document, Assets), CliError> {
     let bytes = files::read(path)?;
     let assets = Assets::new(path, &access.allow).map_err(CliError::input)?;
-    let load = |name: &str| assets.read(name).map_err(|error| error.to_string());
+    let load = |name: &str| assets.read(name).map_err(Into::into);
     let document = parse_bytes_including(&path.to_string_lossy(), &bytes, &load).map_err(CliError::input)?;
     Ok((document, assets))
 }

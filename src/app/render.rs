@@ -8,7 +8,7 @@ use crate::app::failure::CliError;
 use crate::app::picture::{Finished, picture_of, png};
 use crate::app::progress::StepTimer;
 use crate::app::{files, load, output};
-use crate::description::suggest::{nearest, quoted};
+use crate::message::suggest::{nearest, quoted};
 use crate::scene::{Scene, View};
 
 /// Renders the scene and prints where the picture is, what is in it, and how long each step took.

@@ -51,8 +51,9 @@ pub fn run(options: &ReportOptions) -> Result<(), CliError> {
         return output::print(&output::text_of(&written));
     }
     let mut lines = vec![format!("{}", options.scene.display())];
-    report.tables.iter().for_each(|table| lines.extend(printed(table)));
-    if report.tables.is_empty() {
+    let tables = report.tables();
+    tables.iter().for_each(|table| lines.extend(printed(table)));
+    if tables.is_empty() {
         lines.push("  nothing to report of single features".into());
     }
     lines.extend(scene.notes.iter().map(|note| format!("  note  {note}")));
@@ -61,22 +62,16 @@ pub fn run(options: &ReportOptions) -> Result<(), CliError> {
 
 fn as_json(report: &SceneReport, notes: &[String]) -> Value {
     let tables: Map<String, Value> =
-        report.tables.iter().map(|table| (table.name.replace(' ', "_"), rows_as_json(table))).collect();
+        report.tables().iter().map(|table| (table.name.replace(' ', "_"), rows_as_json(table))).collect();
     json!({"tables": tables, "notes": notes})
 }
 
 fn rows_as_json(table: &ReportTable) -> Value {
     let row = |row: &Vec<ReportCell>| -> Value {
-        let cells = table.columns.iter().zip(row).map(|(column, cell)| (key(column), value(cell)));
+        let cells = table.columns.iter().zip(row).map(|(column, cell)| (column.key(), value(cell)));
         Value::Object(cells.collect())
     };
     table.rows.iter().map(row).collect()
-}
-
-/// A column's name with its unit, as a word.
-fn key(column: &ReportColumn) -> String {
-    let unit = if column.unit.is_empty() { String::new() } else { format!("_{}", column.unit) };
-    format!("{}{unit}", column.name.replace(' ', "_")).replace('%', "percent")
 }
 
 fn value(cell: &ReportCell) -> Value {
@@ -91,7 +86,7 @@ fn value(cell: &ReportCell) -> Value {
 /// Writes a file a table, `NAME.csv` with underscores for spaces; returns their places.
 fn write_tables(report: &SceneReport, folder: &Path, inputs: &[PathBuf]) -> Result<Vec<String>, CliError> {
     report
-        .tables
+        .tables()
         .iter()
         .map(|table| {
             let path = folder.join(format!("{}.csv", table.name.replace(' ', "_")));
@@ -126,34 +121,32 @@ fn write_profiles(scene: &Scene, folder: &Path) -> Result<Vec<String>, CliError>
 
 /// RFC 4180 with a header.
 fn as_csv(table: &ReportTable) -> String {
-    let header = table.columns.iter().map(key).collect::<Vec<_>>().join(",");
+    let header = table.columns.iter().map(|column| quoted(&column.key())).collect::<Vec<_>>().join(",");
     let rows = table.rows.iter().map(|row| row.iter().map(csv_cell).collect::<Vec<_>>().join(","));
     std::iter::once(header).chain(rows).map(|line| line + "\r\n").collect()
 }
 
 fn csv_cell(cell: &ReportCell) -> String {
     match cell {
-        ReportCell::Text(text) if text.contains([',', '"', '\n', '\r']) => {
-            format!("\"{}\"", text.replace('"', "\"\""))
-        }
-        ReportCell::Text(text) => text.clone(),
+        ReportCell::Text(text) => quoted(text),
         ReportCell::Number(number) => number.to_string(),
         ReportCell::Count(count) => count.to_string(),
         ReportCell::Empty => String::new(),
     }
 }
 
+/// A text, in quotes where it needs them.
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
 /// A table with its columns aligned, names to the left and numbers to the right.
 fn printed(table: &ReportTable) -> Vec<String> {
-    let header: Vec<String> = table
-        .columns
-        .iter()
-        .map(
-            |ReportColumn { name, unit }| {
-                if unit.is_empty() { (*name).to_owned() } else { format!("{name} [{unit}]") }
-            },
-        )
-        .collect();
+    let header: Vec<String> = table.columns.iter().map(ReportColumn::heading).collect();
     let rows: Vec<Vec<String>> =
         table.rows.iter().take(SHOWN).map(|row| row.iter().map(shown).collect()).collect();
     let width = |column: usize| {
@@ -192,36 +185,30 @@ fn shown(cell: &ReportCell) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const COLUMNS: &[ReportColumn] =
-        &[ReportColumn { name: "name", unit: "" }, ReportColumn { name: "cut", unit: "m3" }];
+    use crate::scene::report::TrenchRow;
 
     fn report(rows: usize) -> SceneReport {
-        let mut report = SceneReport::default();
-        for row in 0..rows {
-            let name =
-                ReportCell::Text(if row == 0 { "the \"long\", winding one".into() } else { String::new() });
-            report.add(("conformed roads", COLUMNS), vec![name, ReportCell::Number(row as f64 * 1234.5)]);
-        }
-        report
+        let name = |row| if row == 0 { "the \"long\", winding one".into() } else { String::new() };
+        let row = |row| TrenchRow { name: name(row), length: 2.0, cut: row as f64 * 1234.5 };
+        SceneReport { trenches: (0..rows).map(row).collect(), ..SceneReport::default() }
     }
 
     #[test]
     fn a_table_is_csv_with_a_header_and_quotes_where_they_are_needed() {
-        let text = as_csv(&report(2).tables[0]);
-        assert_eq!(text, "name,cut_m3\r\n\"the \"\"long\"\", winding one\",0\r\n,1234.5\r\n");
+        let text = as_csv(&report(2).tables()[0]);
+        assert_eq!(text, "name,length_m,cut_m3\r\n\"the \"\"long\"\", winding one\",2,0\r\n,2,1234.5\r\n");
     }
 
     #[test]
     fn json_holds_every_row_and_print_the_first_of_them() {
         let report = report(30);
         let json = as_json(&report, &["a note".into()]);
-        assert_eq!(json["tables"]["conformed_roads"].as_array().map(Vec::len), Some(30));
-        assert_eq!(json["tables"]["conformed_roads"][2]["cut_m3"], json!(2469.0));
-        let lines = printed(&report.tables[0]);
+        assert_eq!(json["tables"]["trenches"].as_array().map(Vec::len), Some(30));
+        assert_eq!(json["tables"]["trenches"][2]["cut_m3"], json!(2469.0));
+        let lines = printed(&report.tables()[0]);
         assert_eq!(lines.len(), 2 + SHOWN + 1);
-        assert_eq!(lines[1], "  name                     cut [m3]");
-        assert_eq!(lines[2], "  the \"long\", winding one      0.00");
+        assert_eq!(lines[1], "  name                     length [m]  cut [m3]");
+        assert_eq!(lines[2], "  the \"long\", winding one        2.00      0.00");
         assert!(lines[22].ends_with("10 more; --csv or --json give all"), "{}", lines[22]);
     }
 }

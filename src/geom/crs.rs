@@ -163,8 +163,8 @@ impl Crs {
             return Err(unknown(&name, CrsFault::NotAscii));
         }
         let (settled, datum) = settle_datum(text);
-        let proj =
-            proj4rs::Proj::from_proj_string(&settled).map_err(|error| unknown(&name, CrsFault::from(error)))?;
+        let proj = proj4rs::Proj::from_proj_string(&settled)
+            .map_err(|error| unknown(&name, CrsFault::from(error)))?;
         if proj.is_geocent() {
             return Err(unknown(&name, CrsFault::Geocentric));
         }
@@ -300,11 +300,9 @@ impl Crs {
     fn check_datum(&self, to: &Self) -> Result<(), CrsError> {
         match (&self.inner.datum, &to.inner.datum) {
             (from, to) if from == to => Ok(()),
-            (DatumTie::Unknown(datum), _) | (_, DatumTie::Unknown(datum)) => Err(CrsError::Datum {
-                from: self.name().into(),
-                to: to.name().into(),
-                datum: datum.clone(),
-            }),
+            (DatumTie::Unknown(datum), _) | (_, DatumTie::Unknown(datum)) => {
+                Err(CrsError::Datum { from: self.name().into(), to: to.name().into(), datum: datum.clone() })
+            }
             (DatumTie::Known, DatumTie::Known) => Ok(()),
         }
     }

@@ -41,7 +41,8 @@ pub fn is_within(edges: impl Iterator<Item = (DVec2, DVec2)>, point: DVec2) -> b
 ///
 /// Rings that cross themselves give some triangulation of their vertices, never a panic.
 pub fn triangulate(exterior: &[DVec2], holes: &[Vec<DVec2>]) -> Vec<[DVec2; 3]> {
-    let polygon = geo::Polygon::new(line_string(exterior), holes.iter().map(|hole| line_string(hole)).collect());
+    let polygon =
+        geo::Polygon::new(line_string(exterior), holes.iter().map(|hole| line_string(hole)).collect());
     let corner = |at: geo::Coord| DVec2::new(at.x, at.y);
     polygon
         .earcut_triangles()

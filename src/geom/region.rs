@@ -21,7 +21,8 @@ pub fn union<'a>(rings: impl IntoIterator<Item = &'a [DVec2]>) -> Vec<PolygonRin
 }
 
 fn resolve<'a>(rings: impl IntoIterator<Item = &'a [DVec2]>, rule: FillRule) -> Vec<PolygonRings> {
-    let polygon = |ring: &[DVec2]| geo::Polygon::new(ring.iter().map(|at| (at.x, at.y)).collect(), Vec::new());
+    let polygon =
+        |ring: &[DVec2]| geo::Polygon::new(ring.iter().map(|at| (at.x, at.y)).collect(), Vec::new());
     let all = MultiPolygon(rings.into_iter().map(polygon).collect());
     let nothing = MultiPolygon::<f64>(Vec::new());
     let resolved = all.boolean_op_with_fill_rule(&nothing, OpType::Union, rule);

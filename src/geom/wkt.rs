@@ -218,7 +218,9 @@ impl WktNode {
     }
 
     fn nodes(&self) -> impl Iterator<Item = &Self> {
-        self.values.iter().filter_map(|value| if let WktValue::Node(node) = value { Some(node) } else { None })
+        self.values
+            .iter()
+            .filter_map(|value| if let WktValue::Node(node) = value { Some(node) } else { None })
     }
 
     fn child(&self, keyword: &str) -> Option<&Self> {

@@ -72,7 +72,8 @@ fn projection(definition: &Definition) -> Option<WktProjection> {
     let (latitude, meridian) = (("latitude_of_origin", latitude_deg), ("central_meridian", longitude_deg));
     let center = [("latitude_of_center", latitude_deg), ("longitude_of_center", longitude_deg)];
     let scale = ("scale_factor", scale);
-    let parallels = || Some([("standard_parallel_1", parallel_1_deg?), ("standard_parallel_2", parallel_2_deg?)]);
+    let parallels =
+        || Some([("standard_parallel_1", parallel_1_deg?), ("standard_parallel_2", parallel_2_deg?)]);
     Some(match (definition.method, parallel_1_deg) {
         (MapProjection::Geographic, _) => return None,
         (MapProjection::TransverseMercator, _) => ("Transverse_Mercator", vec![latitude, meridian, scale]),
@@ -80,9 +81,7 @@ fn projection(definition: &Definition) -> Option<WktProjection> {
             ("Mercator_2SP", vec![("standard_parallel_1", parallel), meridian])
         }
         (MapProjection::Mercator, None) => ("Mercator_1SP", vec![meridian, scale]),
-        (MapProjection::LambertConic1, _) => {
-            ("Lambert_Conformal_Conic_1SP", vec![latitude, meridian, scale])
-        }
+        (MapProjection::LambertConic1, _) => ("Lambert_Conformal_Conic_1SP", vec![latitude, meridian, scale]),
         (MapProjection::LambertConic2, _) => {
             ("Lambert_Conformal_Conic_2SP", [parallels()?, [latitude, meridian]].concat())
         }

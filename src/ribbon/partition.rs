@@ -53,7 +53,8 @@ pub fn within(plan: &PlanMesh, ground: &PlanMesh) -> PlanMesh {
     for triangle in plan.corners() {
         let (corners, texture) = (triangle.map(|corner| corner.at), TextureMap::of(triangle));
         for under in covering.tree.meeting_in_order(&Rect::around(corners)) {
-            let piece = convex::intersection(&corners, &covering.triangles[under], SLIVER_M2).unwrap_or_default();
+            let piece =
+                convex::intersection(&corners, &covering.triangles[under], SLIVER_M2).unwrap_or_default();
             for corners in fan(&piece) {
                 let ids = corners.map(|at| inside.vertex(PlanVertex { at, uv: texture.at(at) }));
                 inside.triangle(ids);

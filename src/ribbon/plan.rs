@@ -36,7 +36,9 @@ impl PlanMesh {
         while let [first, after @ ..] = rest {
             let at = |id: VertexId| self.vertices[id.index()].at;
             let quad = after.first().filter(|next| next[0] == first[0] && next[1] == first[2]);
-            let quad = quad.map(|next| [first[0], first[1], first[2], next[2]].map(at)).filter(|quad| convex::is_convex(quad));
+            let quad = quad
+                .map(|next| [first[0], first[1], first[2], next[2]].map(at))
+                .filter(|quad| convex::is_convex(quad));
             rest = if quad.is_some() { &after[1..] } else { after };
             parts.push(quad.map_or_else(|| first.map(at).to_vec(), |quad| quad.to_vec()));
         }

@@ -13,7 +13,7 @@ use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::description::suggest::{nearest, quoted};
+use crate::message::suggest::{nearest, quoted};
 use crate::model::Companions;
 use crate::model::error::CompanionError;
 

@@ -2,9 +2,9 @@
 
 use std::sync::{Arc, OnceLock};
 
-use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
+use crate::geom::crs::Crs;
 use crate::roam::layout::{DEFAULT_PATCH, PatchLayout};
 use crate::scene::areas;
 use crate::scene::assets::Assets;
@@ -21,7 +21,7 @@ use crate::scene::sources::Sources;
 use crate::scene::style;
 use crate::scene::views;
 use crate::scene::water::{lakes, rivers};
-use crate::scene::world_frame::{WorldFrame, parse_crs};
+use crate::scene::world_frame::WorldFrame;
 use crate::scene::{Scene, Terrain};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::deck::Deck;
@@ -35,7 +35,7 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     step("reading elevation");
     let loaded = ground::load(document, assets)?;
     let (crs, mut lattice) = (loaded.crs, loaded.lattice);
-    let places = places(document, &crs, &lattice)?;
+    let places = places(document, &crs, &lattice);
 
     step("laying features");
     let sources = Sources::new(&places, assets);
@@ -59,7 +59,7 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     let (models, placements) =
         models::place(document, (&places, &sources, assets), &mut lattice, &mut collected)?;
 
-    let defaulted: Vec<String> = attributes::notes(&collected.defaulted).collect();
+    let defaulted: Vec<String> = attributes::notes(&collected.default_counts).collect();
     collected.notes.extend(defaulted);
 
     step("placing labels and cameras");
@@ -75,7 +75,7 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     let map = style::ground_map(&terrain, lighting.to_sun, ramp, style::contours(document));
 
     let heights = HeightService::new(loaded.source, crs.clone(), Arc::clone(&terrain.lattice));
-    let decks = Deck::new(&collected.decks).map_err(|error| document.error_at(0..0, error.to_string()))?;
+    let decks = Deck::new(&collected.decks).map_err(|error| document.error_at(0..0, error))?;
     let heights = if decks.facets().is_empty() { heights } else { heights.with_decks(Arc::new(decks)) };
     Ok(Scene {
         title: document.title.clone(),
@@ -102,26 +102,14 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     })
 }
 
-fn places<'a>(
-    document: &'a Document,
-    crs: &'a crate::geom::crs::Crs,
-    lattice: &Lattice,
-) -> Result<WorldFrame<'a>, Diagnostic> {
-    Ok(WorldFrame {
+fn places<'a>(document: &'a Document, crs: &'a Crs, lattice: &Lattice) -> WorldFrame<'a> {
+    WorldFrame {
         document,
         crs,
-        points_crs: parse_crs(document, document.points_crs.as_ref())?.unwrap_or_else(|| crs.clone()),
+        points_crs: document.points_crs.as_ref().unwrap_or(crs).clone(),
         origin: lattice.origin(),
-        exaggeration: exaggeration(document),
-    })
-}
-
-fn exaggeration(document: &Document) -> f32 {
-    document
-        .terrain
-        .vertical_exaggeration
-        .as_ref()
-        .map_or(defaults::VERTICAL_EXAGGERATION, |value| *value.get_ref()) as f32
+        exaggeration: document.terrain.vertical_exaggeration as f32,
+    }
 }
 
 fn terrain(document: &Document, lattice: Lattice) -> Result<Terrain, Diagnostic> {
@@ -129,7 +117,6 @@ fn terrain(document: &Document, lattice: Lattice) -> Result<Terrain, Diagnostic>
         let size = format!("{}×{} posts", lattice.columns(), lattice.rows());
         document.error(&document.terrain.dem, format!("an elevation model of {size} is too large"))
     })?;
-    let stated = document.terrain.tolerance_px.as_ref();
-    let tolerance_px = stated.map_or(defaults::TOLERANCE_PX, |value| *value.get_ref()) as f32;
-    Ok(Terrain::new(Arc::new(lattice), layout, exaggeration(document), tolerance_px))
+    let tolerance_px = document.terrain.tolerance_px as f32;
+    Ok(Terrain::new(Arc::new(lattice), layout, document.terrain.vertical_exaggeration as f32, tolerance_px))
 }

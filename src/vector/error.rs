@@ -1,6 +1,7 @@
 //! Why a vector file cannot be read.
 
 use crate::geom::crs::CrsError;
+use crate::message::suggest::nearest;
 
 /// As many layers as a message lists.
 const LAYERS_SHOWN: usize = 20;
@@ -143,8 +144,7 @@ impl VectorError {
 
     /// A [`VectorError::NoSuchLayer`] among `names`; one that is most like it is proposed.
     pub(crate) fn no_such_layer(wanted: &str, names: &[&str]) -> Self {
-        let close = |name: &&&str| strsim::osa_distance(&name.to_lowercase(), &wanted.to_lowercase()) <= 2;
-        let meant = names.iter().find(close).map(|name| format!("; did you mean '{name}'?"));
+        let meant = nearest(wanted, names.iter().copied()).map(|name| format!("; did you mean '{name}'?"));
         let wanted = wanted.chars().take(60).collect();
         Self::NoSuchLayer { wanted, meant: meant.unwrap_or_default(), found: listed(names) }
     }

@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use toml::Spanned;
-
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::ModelPlacement;
@@ -89,13 +87,13 @@ fn level(
 }
 
 fn too_many(document: &Document, table: &ModelPlacement) -> Diagnostic {
-    let place = table.footing.as_ref().map_or(table.file.span(), Spanned::span);
+    let place = table.footing.span().or(table.file.span()).unwrap_or_default();
     let message = format!("more than {MAX_PADS} models have the ground leveled for them");
     document.error_at(place, message).with_help("use footing = \"plinth\", which moves no earth")
 }
 
 fn too_large(document: &Document, table: &ModelPlacement) -> Diagnostic {
-    let place = table.scale.as_ref().map_or(table.file.span(), Spanned::span);
+    let place = table.scale.span().or(table.file.span()).unwrap_or_default();
     let message = format!("up to this model, the footprints cover more than {MAX_CELLS} cells of ground");
     document
         .error_at(place, message)

@@ -99,7 +99,9 @@ fn cross(
     for above in piece.segments.clone() {
         for below in other.segments.clone() {
             let ends = |line: &Polyline, segment: usize| (line.points()[segment], line.points()[segment + 1]);
-            let Some(parts) = segment::crossing(ends(over.line, above), ends(under.line, below)) else { continue };
+            let Some(parts) = segment::crossing(ends(over.line, above), ends(under.line, below)) else {
+                continue;
+            };
             let station = |line: &Polyline, segment: usize, part: f64| {
                 let stations = line.stations();
                 stations[segment] + (stations[segment + 1] - stations[segment]) * part

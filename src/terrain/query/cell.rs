@@ -22,7 +22,11 @@ pub fn interpolate(
         Interpolation::Nearest => weighted_sum(bilinear_weights((part + 0.5).floor()), corners),
         Interpolation::Bilinear => {
             let height = bilinear(corners, part);
-            if height.is_nan() { weighted_mean(bilinear_weights(part), corners) } else { Answer::Height(height) }
+            if height.is_nan() {
+                weighted_mean(bilinear_weights(part), corners)
+            } else {
+                Answer::Height(height)
+            }
         }
         Interpolation::DistanceWeighted4 => weighted_mean(inverse_distance_weights(part, cell), corners),
     }

@@ -181,7 +181,8 @@ impl CellRange {
     /// Its south-west and its north-east corner.
     fn corners(&self) -> [DVec2; 2] {
         let (columns, rows) = (&self.columns, &self.rows);
-        [(columns.start, rows.start), (columns.end, rows.end)].map(|(column, row)| Post { column, row }.grid())
+        [(columns.start, rows.start), (columns.end, rows.end)]
+            .map(|(column, row)| Post { column, row }.grid())
     }
 
     /// Whether the rings leave nothing of it out.
@@ -307,10 +308,7 @@ mod tests {
     }
 
     fn area_of(region: &GridRegion) -> f64 {
-        region
-            .fold(|sum: &mut f64, piece| *sum += piece.area_cells())
-            .iter()
-            .sum()
+        region.fold(|sum: &mut f64, piece| *sum += piece.area_cells()).iter().sum()
     }
 
     fn star(center: DVec2, reach: f64, count: u32) -> Vec<DVec2> {

@@ -127,7 +127,9 @@ impl BlockWalk {
     #[inline]
     fn exit_edge(&self, exit: f64) -> CellEdge {
         match (self.x.exit == exit, self.y.exit == exit) {
-            (true, true) => CellEdge::Post(DVec2::new(self.x.far_line(self.bits), self.y.far_line(self.bits))),
+            (true, true) => {
+                CellEdge::Post(DVec2::new(self.x.far_line(self.bits), self.y.far_line(self.bits)))
+            }
             (true, false) => CellEdge::Column(self.x.far_line(self.bits)),
             _ => CellEdge::Row(self.y.far_line(self.bits)),
         }

@@ -168,10 +168,11 @@ impl Pyramid {
 fn extremes(lattice: &Lattice, bits: u32, block: Post) -> (f32, f32) {
     let first = Post { column: block.column << bits, row: block.row << bits };
     let posts = PostRect { first, last: first.offset(1 << bits, 1 << bits) }.clipped(lattice);
-    posts.into_iter().flat_map(PostRect::posts).map(|post| lattice.height(post)).fold(
-        (f32::INFINITY, f32::NEG_INFINITY),
-        |(low, high), height| (low.min(height), high.max(height)),
-    )
+    posts
+        .into_iter()
+        .flat_map(PostRect::posts)
+        .map(|post| lattice.height(post))
+        .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), height| (low.min(height), high.max(height)))
 }
 
 impl PyramidLevel {

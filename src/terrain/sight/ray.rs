@@ -254,7 +254,8 @@ impl TrianglePlane {
     /// The triangle at a grid position; on an edge or at a post any that has data.
     fn near(lattice: &Lattice, at: DVec2) -> Option<Self> {
         // Two directions in each quadrant, on both sides of a diagonal.
-        let aside = [DVec2::new(2.0, 1.0), DVec2::new(1.0, 2.0), DVec2::new(-1.0, 2.0), DVec2::new(-2.0, 1.0)];
+        let aside =
+            [DVec2::new(2.0, 1.0), DVec2::new(1.0, 2.0), DVec2::new(-1.0, 2.0), DVec2::new(-2.0, 1.0)];
         let around = aside.into_iter().chain(aside.map(|aside| -aside)).map(|aside| at + aside * BESIDE);
         std::iter::once(at).chain(around).find_map(|at| Self::at(lattice, at))
     }

@@ -81,8 +81,13 @@ impl OctantFrame {
 
     /// Post `j` of a ring.
     pub fn post(&self, ring: usize, j: i64) -> Post {
-        let (ring, cross) = (self.ring_position(ring) as u32, (self.cross_start + self.cross_sign * j) as u32);
-        if self.ring_axis == 0 { Post { column: ring, row: cross } } else { Post { column: cross, row: ring } }
+        let (ring, cross) =
+            (self.ring_position(ring) as u32, (self.cross_start + self.cross_sign * j) as u32);
+        if self.ring_axis == 0 {
+            Post { column: ring, row: cross }
+        } else {
+            Post { column: cross, row: ring }
+        }
     }
 
     /// 0 where diagonals join the even posts of a ring, 1 where they join the odd ones.

@@ -125,11 +125,13 @@ impl Horizon {
         self.count *= 2;
         for (index, bucket) in old.into_iter().enumerate() {
             let middle = self.border(2 * index + 1);
-            let (before, after): (Vec<_>, Vec<_>) = bucket.pieces.into_iter().partition(|piece| piece.u < middle);
+            let (before, after): (Vec<_>, Vec<_>) =
+                bucket.pieces.into_iter().partition(|piece| piece.u < middle);
             // The last piece before the middle continues after it, unless one begins there.
             let across = before.last().filter(|_| after.first().is_none_or(|first| first.u > middle));
             let after = across.map(|piece| piece.from(middle)).into_iter().chain(after).collect();
-            let doubts = |holds: &dyn Fn(&Doubt) -> bool| bucket.doubts.iter().copied().filter(holds).collect();
+            let doubts =
+                |holds: &dyn Fn(&Doubt) -> bool| bucket.doubts.iter().copied().filter(holds).collect();
             let first = Bucket { pieces: before, doubts: doubts(&|doubt| doubt.u0 < middle) };
             let second = Bucket { pieces: after, doubts: doubts(&|doubt| doubt.u1 >= middle) };
             self.buckets.extend([first, second]);

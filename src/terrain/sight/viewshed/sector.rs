@@ -64,8 +64,8 @@ mod tests {
                     DVec2::new(sin, cos)
                 };
                 let around = [-10.0, 10.0].map(|by| direction(f64::from(turn) + by));
-                let inside =
-                    (-20..=20).any(|half| sector.contains(direction(f64::from(turn) + f64::from(half) / 2.0)));
+                let inside = (-20..=20)
+                    .any(|half| sector.contains(direction(f64::from(turn) + f64::from(half) / 2.0)));
                 assert!(sector.may_touch(around) || !inside, "{sector:?} {turn}");
             }
         }

@@ -1,15 +1,15 @@
-//! What somebody meant who wrote something else.
+//! Names in messages: the valid name that a wrong one is nearest to, lists of names, quoted text.
 
 use std::fmt::Write;
 
 /// Longer words are not compared: nobody mistypes them, and the comparison is quadratic.
 const MAX_COMPARED: usize = 64;
 
-/// The word of `valid` that `word` is most likely meant to be, or `None` where none is near.
+/// The name among `valid` that `word` is nearest to, or `None` where none is near.
 ///
-/// Near is: the same but for case, `-` and `_`; or within one edit (insertion, deletion, replacement or swap
-/// of neighbors) for every three characters; or one word contains the other and is at least four
-/// characters long. The first of equals wins.
+/// A name is near where it is the same but for case, `-` and `_`; where one edit (insertion, deletion, replacement or swap
+/// of neighbors) for every three characters leads to it; or where one of the two contains the other and both have at least
+/// four characters. The first of equals wins.
 pub fn nearest<'a>(word: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word = folded(word);
     let length = word.chars().count();
@@ -19,14 +19,14 @@ pub fn nearest<'a>(word: &str, valid: impl IntoIterator<Item = &'a str>) -> Opti
     let mut best: Option<(usize, &str)> = None;
     for candidate in valid {
         let folded = folded(candidate);
-        let reach = length.max(folded.chars().count());
-        if reach > MAX_COMPARED {
+        let longer = length.max(folded.chars().count());
+        if longer > MAX_COMPARED {
             continue;
         }
         let edits = strsim::osa_distance(&word, &folded);
         let contained =
             word.len().min(folded.len()) >= 4 && (word.contains(&folded) || folded.contains(&word));
-        let near = edits <= (reach / 3).max(1) && edits < reach;
+        let near = edits <= (longer / 3).max(1) && edits < longer;
         if (near || contained) && best.is_none_or(|(least, _)| edits < least) {
             best = Some((edits, candidate));
         }
@@ -34,7 +34,7 @@ pub fn nearest<'a>(word: &str, valid: impl IntoIterator<Item = &'a str>) -> Opti
     best.map(|(_, candidate)| candidate)
 }
 
-/// ``did you mean `x`?`` where a valid word is near, else all of them, opened by `otherwise`.
+/// ``did you mean `x`?`` where a valid name is near, else `otherwise` and all valid names.
 pub fn remedy(word: &str, valid: &[&str], otherwise: &str) -> String {
     match nearest(word, valid.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
