@@ -2,6 +2,7 @@
 
 pub mod annotate;
 pub mod app;
+pub mod archive;
 pub mod dem;
 pub mod description;
 pub mod draw;

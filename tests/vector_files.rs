@@ -7,7 +7,8 @@ use glam::DVec2;
 use sandtable::geom::crs::Crs;
 use sandtable::vector::error::VectorError;
 use sandtable::vector::feature::{Geometry, VectorLayer};
-use sandtable::vector::read::{VectorHints, read};
+use sandtable::vector::hints::VectorHints;
+use sandtable::vector::read::read;
 use serde_json::Value;
 
 #[allow(dead_code, reason = "each test uses its own part")]

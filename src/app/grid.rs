@@ -16,6 +16,7 @@ use crate::dem::write::WrittenDem;
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::vector::feature::{Feature, Geometry, VectorLayer};
+use crate::vector::hints::VectorHints;
 use crate::vector::read as vector;
 
 /// `dem grid`.
@@ -237,7 +238,7 @@ fn read_breaklines(path: &Path, crs: Option<&Crs>) -> Result<PointCloud, CliErro
 
 fn read_layer(path: &Path, name: &str, bytes: &[u8], crs: Option<&Crs>) -> Result<VectorLayer, CliError> {
     let beside = files::beside(path);
-    let hints = vector::VectorHints { crs, companions: &beside, ..vector::VectorHints::default() };
+    let hints = VectorHints { crs, companions: &beside, ..VectorHints::default() };
     vector::read(name, bytes, &hints).map_err(|error| CliError::input(format!("{}: {error}", path.display())))
 }
 

@@ -10,7 +10,8 @@ use crate::app::failure::CliError;
 use crate::app::files;
 use crate::app::points::parse_points;
 use crate::geom::crs::Crs;
-use crate::vector::read::{self, VectorHints};
+use crate::vector::hints::VectorHints;
+use crate::vector::read;
 
 /// One or more `X,Y` with spaces between them, as written on the command line; all finite.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,7 @@
 //! What can be wrong with an elevation file, and the caps that a header must keep before anything is
 //! allocated for it.
 
+use crate::archive::ArchiveError;
 use crate::geom::crs::CrsError;
 
 /// The most samples a raster may have: 2²⁸, a gigabyte of 32-bit floats.
@@ -51,6 +52,9 @@ pub enum DemErrorKind {
         /// Where and what.
         reason: String,
     },
+    /// Packed content cannot be unpacked.
+    #[error(transparent)]
+    Archive(#[from] ArchiveError),
     /// More samples than are taken, or than the file can hold.
     #[error("{width} x {height} samples {reason}")]
     TooLarge {

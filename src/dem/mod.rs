@@ -1,7 +1,6 @@
 //! Elevation rasters: their georeference, one file per format, warping to a metric system; scattered points, and grids
 //! of them.
 
-pub mod archive;
 pub mod error;
 pub mod formats;
 pub mod georef;

@@ -1,6 +1,6 @@
 //! Bytes to a raster: the format is told by content, then by extension.
 
-use crate::dem::archive;
+use crate::archive::{self, MAX_RASTER_BYTES, ZipReader};
 use crate::dem::error::{DemError, DemErrorKind};
 use crate::dem::formats::raw;
 use crate::dem::formats::raw::RawLayout;
@@ -223,7 +223,7 @@ fn read_by_name(source: &DemFile) -> Result<Raster, DemErrorKind> {
 fn read_gzip(source: &DemFile) -> Result<Raster, DemErrorKind> {
     let (base, extension) = split_extension(source.name);
     let inner = if extension.eq_ignore_ascii_case("btz") { format!("{base}.bt") } else { base.to_owned() };
-    let content = archive::gunzip(source.bytes)?;
+    let content = archive::gunzip(source.bytes, MAX_RASTER_BYTES)?;
     if archive::is_gzip(&content) || archive::is_zip(&content) {
         return Err(DemErrorKind::UnknownFormat { found: "it is packed twice".into() });
     }
@@ -232,19 +232,19 @@ fn read_gzip(source: &DemFile) -> Result<Raster, DemErrorKind> {
 
 /// Reads the first elevation file in an archive, with its companions there.
 fn read_zip(source: &DemFile) -> Result<Raster, DemErrorKind> {
-    let Some((name, content)) = archive::unzip_first(source.bytes, is_tile_name)? else {
+    let zip = ZipReader::open(source.bytes, MAX_RASTER_BYTES)?;
+    let Some(name) = zip.names().find(|name| is_tile_name(name)) else {
         return Err(DemErrorKind::UnknownFormat {
             found: "it is a zip archive without an .hgt tile or another elevation file in it".into(),
         });
     };
+    let content = zip.read(name)?;
     if archive::is_gzip(&content) || archive::is_zip(&content) {
         return Err(DemErrorKind::UnknownFormat { found: "it is packed twice".into() });
     }
-    let beside = |wanted: &str| {
-        archive::unzip_first(source.bytes, |name| name == wanted).ok().flatten().map(|(_, content)| content)
-    };
+    let beside = |wanted: &str| zip.read(wanted).ok();
     let hints = DemHints { companions: &beside, ..source.hints.clone() };
-    read_source(&DemFile { name: &name, bytes: &content, hints: &hints })
+    read_source(&DemFile { name, bytes: &content, hints: &hints })
 }
 
 /// What an unknown file seems to be.

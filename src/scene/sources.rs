@@ -16,10 +16,11 @@ use crate::geom::crs::{Crs, CrsError};
 use crate::scene::assets::Assets;
 use crate::scene::attributes::Attributes;
 use crate::scene::world_frame::WorldFrame;
-use crate::vector::error::VectorError;
+use crate::vector::error::{VectorError, did_you_mean, list};
 use crate::vector::feature::{Geometry, Polygon, VectorLayer};
 use crate::vector::filter::{Condition, Filter};
-use crate::vector::read::{self, VectorHints};
+use crate::vector::hints::VectorHints;
+use crate::vector::read;
 
 /// A file's name, the layer asked for and the system stated for it.
 type LayerKey = (String, Option<String>, Option<String>);
@@ -142,12 +143,12 @@ impl<'a> Sources<'a> {
             && !(0..layer.features.len())
                 .any(|index| Attributes::new(Arc::clone(layer), index).holds(condition))
         {
-            return match values_of(condition).explain_none(layer) {
+            return match values_of(condition).explain_no_match(layer) {
                 Some(reason) => unmatched(selection).with_help(reason),
                 None => unmatched(selection),
             };
         }
-        match (filter.explain_none(layer), &source.selection) {
+        match (filter.explain_no_match(layer), &source.selection) {
             (Some(reason), Some(selection)) => unmatched(selection).with_help(reason),
             _ => {
                 let message = format!("no feature of '{name}' that matches has the shape needed here");
@@ -190,13 +191,15 @@ impl<'a> Sources<'a> {
     ) -> Diagnostic {
         let document = self.places.document;
         match (&error, wanted) {
-            (VectorError::NoSuchLayer { wanted, meant, found }, Some(key)) => {
-                let message = format!("'{}' has no layer '{wanted}'{meant}", file.as_str());
-                document.error(key, message).with_help(format!("its layers are {found}"))
+            (VectorError::NoSuchLayer { wanted, suggestion, names }, Some(key)) => {
+                let message =
+                    format!("'{}' has no layer '{wanted}'{}", file.as_str(), did_you_mean(suggestion));
+                document.error(key, message).with_help(format!("its layers are {}", list(names)))
             }
-            (VectorError::WhichLayer { count, found, .. }, _) => {
-                let message = format!("'{}' holds {count} layers", file.as_str());
-                document.error(file, message).with_help(format!("add `layer = \"...\"` with one of {found}"))
+            (VectorError::WhichLayer { names }, _) => {
+                let message = format!("'{}' holds {} layers", file.as_str(), names.len());
+                let help = format!("add `layer = \"...\"` with one of {}", list(names));
+                document.error(file, message).with_help(help)
             }
             _ => document.error(file, error),
         }

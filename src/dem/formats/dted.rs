@@ -158,7 +158,7 @@ impl DtedHeader {
             return Err(DemErrorKind::broken(FORMAT, format!("it has {columns} columns and {rows} rows")));
         }
         // Tenths of seconds.
-        let step = |at: usize, what: &str| Ok(f64::from(whole(at, what)?) / 36_000.0);
+        let step = |at: usize, what: &str| whole(at, what).map(|tenths| f64::from(tenths) / 36_000.0);
         let cell_deg = DVec2::new(step(20, "the longitude interval")?, step(24, "the latitude interval")?);
         if cell_deg.min_element() <= 0.0 {
             return Err(DemErrorKind::Georeference {
