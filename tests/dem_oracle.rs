@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use glam::DVec2;
 use sandtable::dem::error::DemError;
-use sandtable::dem::formats::rgb_png::HeightEncoding;
+use sandtable::dem::formats::height_encoding::HeightEncoding;
 use sandtable::dem::raster::Raster;
 use sandtable::dem::read::{DemHints, read};
 use sandtable::dem::sample::{Sampled, bilinear, nearest};
@@ -41,7 +41,7 @@ fn data() -> Option<PathBuf> {
 fn open(path: &Path) -> Result<Raster, DemError> {
     let bytes = fs::read(path).expect("a file of the test data");
     let companions = |name: &str| fs::read(name).ok();
-    let hints = DemHints { png_height_scale: Some(1.0), companions: &companions, ..DemHints::default() };
+    let hints = DemHints { height_scale: Some(1.0), companions: &companions, ..DemHints::default() };
     read(&path.to_string_lossy(), &bytes, &hints)
 }
 
@@ -401,7 +401,7 @@ fn mutants_of_real_files_are_errors_or_rasters() {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         ((state >> 33) as usize) % below
     };
-    let hints = DemHints { png_height_scale: Some(1.0), ..DemHints::default() };
+    let hints = DemHints { height_scale: Some(1.0), ..DemHints::default() };
     for name in [
         "i16_tiled_deflate_p2.tif",
         "cog_f32_overviews.tif",

@@ -5,7 +5,8 @@ use std::io::Read;
 
 use flate2::read::{DeflateDecoder, MultiGzDecoder};
 
-use crate::dem::error::{DemErrorKind, bytes_at};
+use crate::dem::bytes::bytes_at;
+use crate::dem::error::DemErrorKind;
 
 /// The most bytes that are unpacked: a file of the largest raster.
 const MOST_BYTES: u64 = 1 << 30;
@@ -28,13 +29,17 @@ pub(crate) fn gunzip(bytes: &[u8]) -> Result<Vec<u8>, DemErrorKind> {
     inflate(MultiGzDecoder::new(bytes), bytes.len(), "gzip file")
 }
 
+fn broken(format: &'static str, reason: impl Into<String>) -> DemErrorKind {
+    DemErrorKind::Broken { format, reason: reason.into() }
+}
+
 fn inflate(decoder: impl Read, packed: usize, format: &'static str) -> Result<Vec<u8>, DemErrorKind> {
     let limit = MOST_BYTES.min((packed as u64).saturating_mul(DEFLATE_EXPANSION) + 1);
     let mut unpacked = Vec::new();
     let read = decoder.take(limit + 1).read_to_end(&mut unpacked);
-    read.map_err(|error| DemErrorKind::broken(format, error.to_string()))?;
+    read.map_err(|error| broken(format, error.to_string()))?;
     if unpacked.len() as u64 > limit {
-        return Err(DemErrorKind::broken(format, format!("it unpacks to more than {limit} bytes")));
+        return Err(broken(format, format!("it unpacks to more than {limit} bytes")));
     }
     Ok(unpacked)
 }
@@ -48,7 +53,7 @@ pub(crate) fn unzip_first(
     wanted: impl Fn(&str) -> bool,
 ) -> Result<Option<(String, Vec<u8>)>, DemErrorKind> {
     const FORMAT: &str = "zip archive";
-    let cut = || DemErrorKind::broken(FORMAT, "it ends before its directory does");
+    let cut = || broken(FORMAT, "it ends before its directory does");
     let end = find_end(bytes).ok_or_else(cut)?;
     let members = u16::from_le_bytes(bytes_at(bytes, end + 10).ok_or_else(cut)?);
     let mut at = u32::from_le_bytes(bytes_at(bytes, end + 16).ok_or_else(cut)?) as usize;

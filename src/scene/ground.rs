@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::dem::formats::raw::RawLayout;
-use crate::dem::formats::rgb_png::HeightEncoding;
-use crate::dem::mosaic;
+use crate::dem::formats::height_encoding::HeightEncoding;
+use crate::dem::formats::raw::{RawLayout, RawLayoutError};
+use crate::dem::mosaic::Tiles;
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints};
 use crate::dem::voids;
@@ -44,7 +44,7 @@ pub fn load(document: &Document, assets: &Assets) -> Result<LoadedGround, Diagno
     let target = parse_crs(document, document.crs.as_ref())?;
     let metric = warp::to_metric(&source, target.as_ref()).map_err(|error| wrong(error.to_string()))?;
     let lattice = Lattice::from_raster(&metric).map_err(|error| wrong(error.to_string()))?;
-    let crs = metric.crs.or(target).unwrap_or_else(Crs::local);
+    let crs = metric.crs.clone().or(target).unwrap_or_else(Crs::local);
     Ok(LoadedGround { source: Arc::new(source), lattice, crs, notes })
 }
 
@@ -55,8 +55,8 @@ fn joined(document: &Document, assets: &Assets, notes: &mut Vec<String>) -> Resu
     let companions = |name: &str| assets.read(name).ok();
     let value = |stated: &Option<toml::Spanned<f64>>| stated.as_ref().map(|value| *value.get_ref());
     let hints = DemHints {
-        png_height_scale: value(&terrain.height_scale),
-        png_height_offset: value(&terrain.height_offset),
+        height_scale: value(&terrain.height_scale),
+        height_offset: value(&terrain.height_offset),
         height_encoding: terrain.height_encoding.as_ref().map(|encoding| match encoding.get_ref() {
             words::HeightEncodingWord::TerrainRgb => HeightEncoding::TerrainRgb,
             words::HeightEncodingWord::Terrarium => HeightEncoding::Terrarium,
@@ -68,13 +68,13 @@ fn joined(document: &Document, assets: &Assets, notes: &mut Vec<String>) -> Resu
         companions: &companions,
     };
     let names = terrain.dem.get_ref();
-    let mut tiles = Vec::new();
+    let mut tiles = Tiles::default();
     for name in names {
         let bytes = assets.read(name).map_err(|error| wrong(error.to_string()))?;
-        tiles.push(read::read(name, &bytes, &hints).map_err(|error| wrong(error.to_string()))?);
-        mosaic::check_total(&tiles).map_err(|error| wrong(error.named(names)))?;
+        let tile = read::read(name, &bytes, &hints).map_err(|error| wrong(error.to_string()))?;
+        tiles.push(name, tile).map_err(|error| wrong(error.to_string()))?;
     }
-    let mosaic = mosaic::mosaic(tiles).map_err(|error| wrong(error.named(names)))?;
+    let mosaic = tiles.join().map_err(|error| wrong(error.to_string()))?;
     if names.len() > 1 {
         notes.push(mosaic.note());
     }
@@ -83,7 +83,7 @@ fn joined(document: &Document, assets: &Assets, notes: &mut Vec<String>) -> Resu
 
 fn raw_layout(document: &Document) -> Result<Option<RawLayout>, Diagnostic> {
     let Some(stated) = &document.terrain.raw else { return Ok(None) };
-    stated.get_ref().parse().map(Some).map_err(|help: String| {
-        document.error(stated, "this does not say how a RAW file is laid out").with_help(help)
+    stated.get_ref().parse().map(Some).map_err(|help: RawLayoutError| {
+        document.error(stated, "this does not say how a RAW file is laid out").with_help(help.to_string())
     })
 }
