@@ -135,8 +135,8 @@ proptest! {
         let words: Vec<&str> = written.notes[0].split(' ').collect();
         let number = |at: usize| words[at].parse::<f64>().expect("a number");
         let hints = DemHints {
-            png_height_scale: Some(number(4)),
-            png_height_offset: Some(number(6)),
+            height_scale: Some(number(4)),
+            height_offset: Some(number(6)),
             ..DemHints::default()
         };
         let again = back("a.png", &written, hints);

@@ -271,7 +271,7 @@ fn read_all(path: &Path, bytes: &[u8]) -> Result<(), VectorError> {
         read(&path.to_string_lossy(), bytes, &hints).map(drop)
     };
     match read(None) {
-        Err(VectorError::WhichLayer { found, .. }) => found.split(", ").try_for_each(|name| read(Some(name))),
+        Err(VectorError::WhichLayer { names }) => names.iter().try_for_each(|name| read(Some(name))),
         other => other,
     }
 }

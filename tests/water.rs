@@ -360,7 +360,8 @@ fn thousands_of_real_streams_fall_all_the_way() {
     let mut lattice = Lattice::from_raster(&raster).expect("sound");
     let crs = raster.crs.expect("stated");
     let bytes = read("derived/streams_west.fgb");
-    let layer = vector::read("streams_west.fgb", &bytes, &vector::VectorHints::default()).expect("sound");
+    let layer = vector::read("streams_west.fgb", &bytes, &sandtable::vector::hints::VectorHints::default())
+        .expect("sound");
     let lines = layer.features.iter().flat_map(|feature| match &feature.geometry {
         Geometry::Lines(lines) => lines.clone(),
         _ => Vec::new(),

@@ -18,8 +18,8 @@ use crate::app::profile::ProfileOptions;
 use crate::app::report::ReportOptions;
 use crate::app::serve::ServeOptions;
 use crate::app::viewshed::ViewshedArguments;
+use crate::dem::formats::height_encoding::HeightEncoding;
 use crate::dem::formats::raw::RawLayout;
-use crate::dem::formats::rgb_png::HeightEncoding;
 use crate::terrain::query::Interpolation;
 
 /// Elevation models and what stands on them, made into scenes, and scenes into pictures.

@@ -3,6 +3,7 @@
 //! Without `--crs` and `--cell` the samples stay as they are, to the last bit where the format can hold them. What was
 //! done to them is told: the system, the shift between datums, how they were resampled, what was rounded.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -12,12 +13,12 @@ use crate::app::dem::{self, StatedPlace};
 use crate::app::failure::CliError;
 use crate::app::progress::StepTimer;
 use crate::app::{output, rasters};
+use crate::dem::formats::DemFormat;
 use crate::dem::raster::Raster;
 use crate::dem::voids;
 use crate::dem::warp::WarpError;
-use crate::dem::warp::target;
-use crate::dem::warp::target::{Resampling, Warped};
-use crate::dem::write::{DemFormat, WrittenDem};
+use crate::dem::warp::reproject::{Resampling, Warped, reproject};
+use crate::dem::write::WrittenDem;
 use crate::geom::crs::Crs;
 
 /// A cell of more degrees than this was meant in meters.
@@ -119,14 +120,14 @@ fn load(inputs: &[PathBuf], options: &ConvertOptions) -> Result<(Raster, Vec<Str
 }
 
 /// The raster in the system and with the cells that are wanted; as it is where none are.
-fn brought(
+fn brought<'a>(
     input: &Path,
-    source: &Raster,
+    source: &'a Raster,
     target: Option<&Crs>,
     cell: Option<f64>,
-) -> Result<Warped, CliError> {
+) -> Result<Warped<'a>, CliError> {
     if target.is_none() && cell.is_none() {
-        return Ok(Warped { raster: source.clone(), method: Resampling::Kept });
+        return Ok(Warped { raster: Cow::Borrowed(source), method: Resampling::Kept });
     }
     if let (Some(target), None, true) = (target, &source.crs, source.georeferenced) {
         let reason = format!(
@@ -139,7 +140,7 @@ fn brought(
     if let Some(cell) = cell.filter(|&cell| is_in_degrees && cell > LARGEST_CELL_DEG) {
         return Err(about(input, &degrees(source, cell)));
     }
-    target::to_system(source, target, cell).map_err(|error| about(input, &remedy(&error)))
+    reproject(source, target, cell).map_err(|error| about(input, &remedy(&error)))
 }
 
 /// A cell in meters for a raster in degrees, and what would take it.
@@ -179,7 +180,7 @@ fn shift(source: &Raster, raster: &Raster) -> Result<Option<String>, String> {
 
 fn summary(
     out: &Path,
-    format: DemFormat,
+    format: &DemFormat,
     raster: &Raster,
     (method, shift): (Resampling, Option<String>),
     written: &WrittenDem,
@@ -193,7 +194,7 @@ fn summary(
     };
     let mut lines = vec![
         format!("{}", out.display()),
-        format!("  format       {}, {}", format.name(), written.stored),
+        format!("  format       {}, {}", format.name, written.stored),
         format!("  size         {} columns, {} rows", raster.width, raster.height),
         format!("  crs          {}", raster.crs.as_ref().map_or("none stated", |crs| crs.name())),
         format!("  cell         {} x {}", cell.x, cell.y),

@@ -9,10 +9,10 @@ use serde_json::json;
 use crate::app::arguments::{DemInfoOptions, StatedHeights};
 use crate::app::failure::CliError;
 use crate::app::{files, output};
-use crate::dem::mosaic::{self, Mosaic, MosaicError};
+use crate::dem::mosaic::{Mosaic, MosaicError, Tiles};
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints};
-use crate::dem::stats::{self, Stats};
+use crate::dem::stats::Stats;
 use crate::dem::voids;
 use crate::geom::crs::Crs;
 
@@ -58,8 +58,8 @@ fn read_file(path: &Path, heights: StatedHeights, place: &StatedPlace) -> Result
     let bytes = files::read(path)?;
     let beside = files::beside(path);
     let hints = DemHints {
-        png_height_scale: heights.height_scale,
-        png_height_offset: heights.height_offset,
+        height_scale: heights.height_scale,
+        height_offset: heights.height_offset,
         height_encoding: heights.height_encoding,
         raw: heights.raw,
         cell: place.cell,
@@ -68,7 +68,7 @@ fn read_file(path: &Path, heights: StatedHeights, place: &StatedPlace) -> Result
         ..DemHints::default()
     };
     read::read(&name_of(path), &bytes, &hints)
-        .map_err(|error| CliError::input(format!("{}: {}", path.display(), error.fault)))
+        .map_err(|error| CliError::input(format!("{}: {}", path.display(), error.kind)))
 }
 
 fn read_folder(folder: &Path, heights: StatedHeights, place: &StatedPlace) -> Result<Mosaic, CliError> {
@@ -108,14 +108,13 @@ enum TileError {
 }
 
 fn read_tiles(paths: &[PathBuf], heights: StatedHeights, place: &StatedPlace) -> Result<Mosaic, TileError> {
-    let names: Vec<String> = paths.iter().map(|path| name_of(path).into_owned()).collect();
-    let wrong = |error: MosaicError| TileError::Mosaic(error.named(&names));
-    let mut tiles = Vec::new();
+    let wrong = |error: MosaicError| TileError::Mosaic(error.to_string());
+    let mut tiles = Tiles::default();
     for path in paths {
-        tiles.push(read_file(path, heights, place).map_err(TileError::Failure)?);
-        mosaic::check_total(&tiles).map_err(wrong)?;
+        let tile = read_file(path, heights, place).map_err(TileError::Failure)?;
+        tiles.push(name_of(path), tile).map_err(wrong)?;
     }
-    mosaic::mosaic(tiles).map_err(wrong)
+    tiles.join().map_err(wrong)
 }
 
 fn name_of(path: &Path) -> Cow<'_, str> {
@@ -154,7 +153,7 @@ struct About {
 impl About {
     fn of(raster: Raster, joined: Option<String>) -> Self {
         let notes = joined.into_iter().chain(reading(&raster).map(str::to_owned)).collect();
-        Self { stats: stats::of(&raster), enclosed: voids::count(&raster), notes, raster }
+        Self { stats: Stats::new(&raster), enclosed: voids::count(&raster), notes, raster }
     }
 
     /// One JSON object; numbers that there are not (no valid sample, no such tag) are null.

@@ -9,8 +9,8 @@ use glam::{DVec2, DVec3};
 use crate::app::failure::CliError;
 use crate::app::progress::StepTimer;
 use crate::app::{files, output, rasters};
-use crate::dem::gridding::frame::CellGrid;
-use crate::dem::gridding::{self, Beyond, Gridded, GriddingMethod};
+use crate::dem::cell_grid::CellGrid;
+use crate::dem::gridding::{self, BeyondHull, Gridded, GriddingMethod};
 use crate::dem::points::{self, PointCloud};
 use crate::dem::write::WrittenDem;
 use crate::geom::crs::Crs;
@@ -146,8 +146,8 @@ pub fn run(options: &GridOptions) -> Result<(), CliError> {
         None => CellGrid::around(Rect::around(extent), options.cell),
     };
     let beyond = match options.beyond_hull {
-        BeyondChoice::Nodata => Beyond::NoData,
-        BeyondChoice::Nearest => Beyond::Nearest,
+        BeyondChoice::Nodata => BeyondHull::NoData,
+        BeyondChoice::Nearest => BeyondHull::Nearest,
     };
     let gridded = frame
         .map_err(gridding::GridError::from)
@@ -243,14 +243,7 @@ fn read_layer(path: &Path, name: &str, bytes: &[u8], crs: Option<&Crs>) -> Resul
 }
 
 fn of_layer(layer: VectorLayer, points: Vec<DVec3>, breaklines: Vec<Vec<DVec3>>) -> PointCloud {
-    PointCloud {
-        points,
-        breaklines,
-        crs: Some(layer.crs),
-        meters_per_z: 1.0,
-        vertical_datum: None,
-        notes: layer.notes,
-    }
+    PointCloud { breaklines, crs: Some(layer.crs), notes: layer.notes, ..PointCloud::new(points) }
 }
 
 /// The vertices of a feature that have an elevation.

@@ -30,7 +30,7 @@ pub fn metric_lattice(path: &Path, heights: StatedHeights) -> Result<Lattice, Cl
 pub fn service(raster: &Arc<Raster>) -> Result<HeightService, String> {
     let metric = warp::to_metric(raster, None).map_err(|error| explain(&error))?;
     let lattice = Lattice::from_raster(&metric).map_err(|error| error.to_string())?;
-    let crs = metric.crs.unwrap_or_else(Crs::local);
+    let crs = metric.crs.clone().unwrap_or_else(Crs::local);
     Ok(HeightService::new(Arc::clone(raster), crs, Arc::new(lattice)))
 }
 

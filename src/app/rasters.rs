@@ -4,16 +4,17 @@ use std::path::{Path, PathBuf};
 
 use crate::app::failure::CliError;
 use crate::app::files;
+use crate::dem::formats::DemFormat;
 use crate::dem::raster::Raster;
-use crate::dem::write::{self, Companion, DemFormat, WrittenDem};
+use crate::dem::write::{self, Companion, WrittenDem};
 
 /// The format that a file's name asks for, where it may be written and is none of `inputs`.
 ///
 /// # Errors
 /// The extension is that of no format, or the file cannot be there.
-pub fn format_of(out: &Path, inputs: &[PathBuf]) -> Result<DemFormat, CliError> {
+pub fn format_of(out: &Path, inputs: &[PathBuf]) -> Result<&'static DemFormat, CliError> {
     let extension = out.extension().unwrap_or_default().to_string_lossy();
-    let format = DemFormat::of_extension(&extension).ok_or_else(|| {
+    let format = DemFormat::to_write(&extension).ok_or_else(|| {
         let place = out.display();
         CliError::Usage(format!(
             "{place}: rasters are written as .tif, .asc, .bt, .hgt or .png; name a file that ends so"
@@ -31,7 +32,7 @@ pub fn format_of(out: &Path, inputs: &[PathBuf]) -> Result<DemFormat, CliError> 
 /// The format cannot hold the raster, or a file cannot be written or would replace one of `inputs` or what belongs to it.
 pub fn write(
     raster: &Raster,
-    format: DemFormat,
+    format: &DemFormat,
     out: &Path,
     inputs: &[PathBuf],
 ) -> Result<WrittenDem, CliError> {

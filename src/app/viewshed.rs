@@ -14,8 +14,8 @@ use crate::app::map::{SheetText, viewshed_map};
 use crate::app::picture::png;
 use crate::app::progress::StepTimer;
 use crate::app::{files, output, rasters};
+use crate::dem::formats::DemFormat;
 use crate::dem::raster::{Raster, Samples};
-use crate::dem::write::DemFormat;
 use crate::geom::crs::Crs;
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::query::Answer;
@@ -105,7 +105,7 @@ fn below_one(text: &str) -> Result<f64, String> {
 #[derive(Clone, Copy)]
 enum ViewshedFormat {
     Map,
-    Raster(DemFormat),
+    Raster(&'static DemFormat),
 }
 
 /// Looks, writes the map or the raster, and prints how much can be seen.

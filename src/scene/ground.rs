@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::dem::formats::raw::RawLayout;
-use crate::dem::formats::rgb_png::HeightEncoding;
-use crate::dem::mosaic;
+use crate::dem::formats::height_encoding::HeightEncoding;
+use crate::dem::formats::raw::{RawLayout, RawLayoutError};
+use crate::dem::mosaic::Tiles;
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints};
 use crate::dem::voids;
@@ -43,7 +43,7 @@ pub fn load(document: &Document, assets: &Assets) -> Result<LoadedGround, Diagno
     let metric =
         warp::to_metric(&source, document.crs.as_ref()).map_err(|error| document.error(dem, error))?;
     let lattice = Lattice::from_raster(&metric).map_err(|error| document.error(dem, error))?;
-    let crs = metric.crs.or(document.crs.clone()).unwrap_or_else(Crs::local);
+    let crs = metric.crs.clone().or(document.crs.clone()).unwrap_or_else(Crs::local);
     Ok(LoadedGround { source: Arc::new(source), lattice, crs, notes })
 }
 
@@ -52,8 +52,8 @@ fn joined(document: &Document, assets: &Assets, notes: &mut Vec<String>) -> Resu
     let terrain = &document.terrain;
     let companions = |name: &str| assets.read(name).ok();
     let hints = DemHints {
-        png_height_scale: terrain.height_scale,
-        png_height_offset: Some(terrain.height_offset),
+        height_scale: terrain.height_scale,
+        height_offset: Some(terrain.height_offset),
         height_encoding: terrain.height_encoding.map(|encoding| match encoding {
             HeightEncodingWord::TerrainRgb => HeightEncoding::TerrainRgb,
             HeightEncodingWord::Terrarium => HeightEncoding::Terrarium,
@@ -64,13 +64,13 @@ fn joined(document: &Document, assets: &Assets, notes: &mut Vec<String>) -> Resu
         crs: terrain.crs.clone(),
         companions: &companions,
     };
-    let (dem, mut tiles) = (&terrain.dem, Vec::new());
+    let (dem, mut tiles) = (&terrain.dem, Tiles::default());
     for name in dem.iter() {
         let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
-        tiles.push(read::read(name, &bytes, &hints).map_err(|error| document.error(dem, error))?);
-        mosaic::check_total(&tiles).map_err(|error| document.error(dem, error.named(dem)))?;
+        let tile = read::read(name, &bytes, &hints).map_err(|error| document.error(dem, error))?;
+        tiles.push(name, tile).map_err(|error| document.error(dem, error))?;
     }
-    let mosaic = mosaic::mosaic(tiles).map_err(|error| document.error(dem, error.named(dem)))?;
+    let mosaic = tiles.join().map_err(|error| document.error(dem, error))?;
     if dem.len() > 1 {
         notes.push(mosaic.note());
     }
@@ -79,7 +79,7 @@ fn joined(document: &Document, assets: &Assets, notes: &mut Vec<String>) -> Resu
 
 fn raw_layout(document: &Document) -> Result<Option<RawLayout>, Diagnostic> {
     let Some(stated) = &document.terrain.raw else { return Ok(None) };
-    stated.parse().map(Some).map_err(|help: String| {
-        document.error(stated, "this does not say how a RAW file is laid out").with_help(help)
+    stated.parse().map(Some).map_err(|help: RawLayoutError| {
+        document.error(stated, "this does not say how a RAW file is laid out").with_help(help.to_string())
     })
 }

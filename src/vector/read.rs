@@ -275,8 +275,11 @@ mod tests {
         assert!(refusal("a.zip", &zipped(&[("readme.txt", b"")])).contains("without a .kml"));
         let mut shapes = 9994u32.to_be_bytes().to_vec();
         shapes.resize(100, 0);
-        let zipped =
-            zipped(&[("x/roads.shp", &shapes), ("x/roads.prj", &b"EPSG:32616"[..]), ("x/rivers.shp", &shapes)]);
+        let zipped = zipped(&[
+            ("x/roads.shp", &shapes),
+            ("x/roads.prj", &b"EPSG:32616"[..]),
+            ("x/rivers.shp", &shapes),
+        ]);
         assert!(refusal("a.zip", &zipped).contains("2 layers; choose one with 'layer': roads, rivers"));
         let hints = VectorHints { layer: Some("roads"), ..VectorHints::default() };
         assert_eq!(read("a.zip", &zipped, &hints).expect("zipped").crs.epsg(), Some(32616));

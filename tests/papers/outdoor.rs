@@ -96,8 +96,7 @@ fn paper_002_the_detail_of_every_triangle_is_under_control_by_one_tolerance() {
 fn read_gray(picture: DynamicImage, meters_per_value: f64) -> Vec<f32> {
     let mut file = Cursor::new(Vec::new());
     picture.write_to(&mut file, ImageFormat::Png).expect("it can be written");
-    let hints =
-        DemHints { png_height_scale: Some(meters_per_value), cell: Some(30.0), ..DemHints::default() };
+    let hints = DemHints { height_scale: Some(meters_per_value), cell: Some(30.0), ..DemHints::default() };
     let raster = read("map.png", file.get_ref(), &hints).expect("a height map");
     let lattice = Lattice::from_raster(&raster).expect("it holds ground");
     assert_eq!(lattice.cell(), DVec2::splat(30.0), "the horizontal scale");

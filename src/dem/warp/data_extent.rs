@@ -1,16 +1,16 @@
-//! Which part of a raster holds data, as a rectangle of its grid, and that rectangle's outline.
+//! The part of a raster that holds data, as a rectangle of its grid, and the outline of that rectangle.
 
 use glam::DVec2;
 
 use crate::dem::raster::Raster;
 use crate::geom::rect::Rect;
 
-/// Exact positions along one side of a raster when its extent is projected: the sides bend so little that a
-/// few hundred points leave less than a thousandth of a cell.
+/// Points along one side of a raster whose extent is projected: the sides bend so little that a few hundred miss less
+/// than a thousandth of a cell.
 const SIDE_POINTS: u32 = 400;
 
 /// The smallest grid rectangle around the valid samples, out to their edges; `None` where there is none.
-pub(crate) fn valid_grid(raster: &Raster) -> Option<Rect> {
+pub(super) fn data_extent(raster: &Raster) -> Option<Rect> {
     let width = raster.width as usize;
     let mut around = Rect::EMPTY;
     for row in 0..raster.height as usize {
@@ -24,7 +24,7 @@ pub(crate) fn valid_grid(raster: &Raster) -> Option<Rect> {
 }
 
 /// Points along the sides of a rectangle, corners included.
-pub(crate) fn outline(rect: Rect) -> impl Iterator<Item = DVec2> {
+pub(super) fn outline(rect: Rect) -> impl Iterator<Item = DVec2> {
     (0..=SIDE_POINTS).flat_map(move |step| {
         let at = rect.min.lerp(rect.max, f64::from(step) / f64::from(SIDE_POINTS));
         [
@@ -45,7 +45,7 @@ mod tests {
     fn the_rectangle_reaches_to_the_outer_edges_of_valid_samples() {
         let hole = f32::NAN;
         let raster = small(3, 3, vec![hole, hole, hole, hole, 1.0, 2.0, hole, hole, hole]);
-        assert_eq!(valid_grid(&raster), Some(Rect { min: DVec2::new(1.0, 1.0), max: DVec2::new(3.0, 2.0) }));
-        assert_eq!(valid_grid(&small(1, 1, vec![hole])), None);
+        assert_eq!(data_extent(&raster), Some(Rect { min: DVec2::new(1.0, 1.0), max: DVec2::new(3.0, 2.0) }));
+        assert_eq!(data_extent(&small(1, 1, vec![hole])), None);
     }
 }

@@ -1,13 +1,15 @@
-//! GeoTIFF (TIFF 6.0; OGC 19-008r4): one band in deflated tiles, with what it lies in and on.
+//! Writing GeoTIFF (TIFF 6.0; OGC 19-008r4): one band in deflated tiles, with its georeference.
 //!
 //! ```text
 //! header │ directory │ long values of tags │ tile 0 │ tile 1 │ …
 //! ```
 //!
-//! The directory comes first, so that a reader has all it needs to know with the first bytes. Tiles are packed side by
-//! side and laid down in their order: the same bytes for every number of threads. Floats go through the floating-point
-//! predictor, integers through differences: both pack terrain a third smaller than plain.
+//! The directory comes first, so that a reader has all it needs to know with the first bytes. Tiles are packed in
+//! parallel and written in their order: the same bytes for every number of threads. Floats go through the floating-point
+//! predictor, integers through differences: both pack terrain a third smaller than plain. (The `tiff` crate's encoder
+//! writes no tiles and no floating-point predictor.)
 
+use std::borrow::Cow;
 use std::io::Write;
 
 use flate2::Compression;
@@ -15,69 +17,49 @@ use flate2::write::ZlibEncoder;
 use rayon::prelude::*;
 
 use crate::dem::raster::Raster;
-use crate::dem::write::WrittenDem;
-use crate::dem::write::keys;
-use crate::dem::write::values::{Stored, ValueType, stored};
+use crate::dem::sample_type::NumberKind;
+use crate::dem::stored::StoredSamples;
+use crate::dem::tiff::gdal_metadata::GDAL_METADATA;
+use crate::dem::tiff::write_geokeys::GeoKeyTags;
+use crate::dem::units::name_of_length;
+use crate::dem::write::{WriteError, WrittenDem};
 
-/// Samples along a side of a tile: what GDAL writes, and readers of single heights are glad of.
+/// Samples along a side of a tile, as GDAL writes them.
 const TILE: u32 = 256;
 
 /// Writes a raster; every raster can be.
-pub(crate) fn write(raster: &Raster) -> WrittenDem {
-    // A unit of heights without a name is brought to meters.
-    let named = unit_name(raster.meters_per_z).is_some();
-    let metric = (!named).then(|| super::metric(raster));
-    let raster = metric.as_ref().unwrap_or(raster);
-    let stored = stored(raster);
+pub(crate) fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
+    let is_named = name_of_length(raster.meters_per_z).is_some();
+    let raster = if is_named { Cow::Borrowed(raster) } else { raster.in_meters() };
+    let stored = StoredSamples::of(&raster);
     let across = raster.width.div_ceil(TILE);
     let tiles: Vec<Vec<u8>> = (0..across * raster.height.div_ceil(TILE))
         .into_par_iter()
-        .map(|index| tile(raster, stored, (index % across) * TILE, (index / across) * TILE))
+        .map(|index| tile(&raster, stored, (index % across) * TILE, (index / across) * TILE))
         .collect();
-    let notes = if named { vec![] } else { vec!["heights are brought to meters".to_owned()] };
-    let bytes = file(tags(raster, stored), &tiles);
-    WrittenDem { bytes, companions: Vec::new(), stored: stored.value_type.name().into(), notes }
-}
-
-/// GDAL's name of a vertical unit.
-fn unit_name(meters: f64) -> Option<&'static str> {
-    match keys::length_code(meters)? {
-        9001 => Some("m"),
-        9002 => Some("ft"),
-        9003 => Some("US survey foot"),
-        _ => None,
-    }
+    let notes = if is_named { vec![] } else { vec!["heights are converted to meters".to_owned()] };
+    Ok(WrittenDem {
+        notes,
+        ..WrittenDem::new(file(tags(&raster, stored), &tiles), stored.sample.gdal_name())
+    })
 }
 
 /// One packed tile; beyond the raster its last samples are repeated, which packs to almost nothing.
-fn tile(raster: &Raster, Stored { value_type, nodata }: Stored, column: u32, row: u32) -> Vec<u8> {
-    let hole = nodata.unwrap_or(f64::NAN);
-    let size = value_type.bytes();
+fn tile(raster: &Raster, StoredSamples { sample, nodata }: StoredSamples, column: u32, row: u32) -> Vec<u8> {
+    let nodata = nodata.unwrap_or(f64::NAN);
+    let size = sample.bytes();
     let mut packer = ZlibEncoder::new(Vec::new(), Compression::default());
     let mut line = Vec::with_capacity(TILE as usize * size);
     for y in row..row + TILE {
         line.clear();
         for x in column..column + TILE {
             let value = raster.at(x.min(raster.width - 1), y.min(raster.height - 1));
-            push(&mut line, value_type, if value.is_nan() { hole } else { value });
+            sample.write(if value.is_nan() { nodata } else { value }, &mut line);
         }
-        let predicted =
-            if value_type.is_float() { float_bytes(&line, size) } else { differences(&line, size) };
+        let predicted = if sample.is_float() { float_bytes(&line, size) } else { differences(&line, size) };
         packer.write_all(&predicted).expect("memory takes what is written");
     }
     packer.finish().expect("memory takes what is written")
-}
-
-/// A value that the type keeps, little-endian.
-fn push(line: &mut Vec<u8>, value_type: ValueType, value: f64) {
-    match value_type {
-        ValueType::I16 => line.extend((value as i16).to_le_bytes()),
-        ValueType::U16 => line.extend((value as u16).to_le_bytes()),
-        ValueType::I32 => line.extend((value as i32).to_le_bytes()),
-        ValueType::U32 => line.extend((value as u32).to_le_bytes()),
-        ValueType::F32 => line.extend((value as f32).to_le_bytes()),
-        ValueType::F64 => line.extend(value.to_le_bytes()),
-    }
 }
 
 /// Predictor 2: each value less the one before, in the type's own arithmetic.
@@ -104,7 +86,7 @@ fn float_bytes(line: &[u8], size: usize) -> Vec<u8> {
     sorted.iter().zip(before).map(|(byte, before)| byte.wrapping_sub(before)).collect()
 }
 
-/// What a tag holds.
+/// The value of a tag.
 enum TiffField {
     Shorts(Vec<u16>),
     Longs(Vec<u32>),
@@ -113,44 +95,50 @@ enum TiffField {
 }
 
 impl TiffField {
-    /// TIFF's number of the type, how many values there are, and their bytes.
-    fn encoded(&self) -> (u16, u32, Vec<u8>) {
-        let (kind, count, bytes) = match self {
-            Self::Shorts(values) => (3, values.len(), values.iter().flat_map(|v| v.to_le_bytes()).collect()),
-            Self::Longs(values) => (4, values.len(), values.iter().flat_map(|v| v.to_le_bytes()).collect()),
-            Self::Doubles(values) => {
-                (12, values.len(), values.iter().flat_map(|v| v.to_le_bytes()).collect())
-            }
-            Self::Text(text) => (2, text.len() + 1, [text.as_bytes(), &[0]].concat()),
-        };
-        (kind, count as u32, bytes)
+    /// TIFF's number of the type, and the bytes of one value.
+    fn kind(&self) -> (u16, usize) {
+        match self {
+            Self::Text(_) => (2, 1),
+            Self::Shorts(_) => (3, 2),
+            Self::Longs(_) => (4, 4),
+            Self::Doubles(_) => (12, 8),
+        }
+    }
+
+    fn bytes(&self) -> Vec<u8> {
+        match self {
+            Self::Text(text) => [text.as_bytes(), &[0]].concat(),
+            Self::Shorts(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
+            Self::Longs(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
+            Self::Doubles(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
+        }
     }
 }
 
 /// All tags but those that list the tiles.
-fn tags(raster: &Raster, stored: Stored) -> Vec<(u16, TiffField)> {
-    let value_type = stored.value_type;
-    let format = match value_type {
-        ValueType::U16 | ValueType::U32 => 1,
-        ValueType::I16 | ValueType::I32 => 2,
-        ValueType::F32 | ValueType::F64 => 3,
+fn tags(raster: &Raster, stored: StoredSamples) -> Vec<(u16, TiffField)> {
+    let sample = stored.sample;
+    let format = match sample.kind() {
+        NumberKind::Unsigned => 1,
+        NumberKind::Signed => 2,
+        NumberKind::Float => 3,
     };
     let short = |value: u16| TiffField::Shorts(vec![value]);
     let mut tags = vec![
         (256, TiffField::Longs(vec![raster.width])),
         (257, TiffField::Longs(vec![raster.height])),
-        (258, short(value_type.bytes() as u16 * 8)),
+        (258, short(sample.bytes() as u16 * 8)),
         (259, short(8)),
         (262, short(1)),
         (277, short(1)),
         (284, short(1)),
-        (317, short(if value_type.is_float() { 3 } else { 2 })),
+        (317, short(if sample.is_float() { 3 } else { 2 })),
         (322, short(TILE as u16)),
         (323, short(TILE as u16)),
         (339, short(format)),
     ];
     tags.extend(place(raster));
-    let keys = keys::of(raster);
+    let keys = GeoKeyTags::new(raster);
     tags.push((34735, TiffField::Shorts(keys.directory)));
     if !keys.doubles.is_empty() {
         tags.push((34736, TiffField::Doubles(keys.doubles)));
@@ -158,11 +146,11 @@ fn tags(raster: &Raster, stored: Stored) -> Vec<(u16, TiffField)> {
     if !keys.text.is_empty() {
         tags.push((34737, TiffField::Text(keys.text)));
     }
-    if let Some(unit) = unit_name(raster.meters_per_z).filter(|unit| *unit != "m") {
+    if let Some(unit) = name_of_length(raster.meters_per_z).filter(|unit| *unit != "m") {
         let xml = format!(
             "<GDALMetadata>\n  <Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">{unit}</Item>\n</GDALMetadata>\n"
         );
-        tags.push((42112, TiffField::Text(xml)));
+        tags.push((GDAL_METADATA, TiffField::Text(xml)));
     }
     if let Some(nodata) = stored.nodata {
         tags.push((42113, TiffField::Text(if nodata.is_nan() { "nan".into() } else { nodata.to_string() })));
@@ -170,7 +158,7 @@ fn tags(raster: &Raster, stored: Stored) -> Vec<(u16, TiffField)> {
     tags
 }
 
-/// Where the raster lies: a tie point and a scale with north up, a matrix otherwise, nothing where nobody said.
+/// The georeference: a tie point and a scale with north up, a matrix otherwise, nothing where there is none.
 fn place(raster: &Raster) -> Vec<(u16, TiffField)> {
     let [x, x_per_column, x_per_row, y, y_per_column, y_per_row] = raster.geotransform();
     if !raster.georeferenced {
@@ -195,14 +183,11 @@ fn file(mut tags: Vec<(u16, TiffField)>, tiles: &[Vec<u8>]) -> Vec<u8> {
     tags.push((325, TiffField::Longs(lengths.clone())));
     tags.sort_by_key(|(tag, _)| *tag);
     let mut tile_start = 8 + directory(&tags, 8).len() as u32;
-    let starts = lengths.iter().map(|length| {
-        let start = tile_start;
-        tile_start += length;
-        start
-    });
-    let starts = TiffField::Longs(starts.collect());
-    if let Some((_, field)) = tags.iter_mut().find(|(tag, _)| *tag == 324) {
-        *field = starts;
+    if let Some((_, TiffField::Longs(starts))) = tags.iter_mut().find(|(tag, _)| *tag == 324) {
+        for (start, length) in starts.iter_mut().zip(lengths) {
+            *start = tile_start;
+            tile_start += length;
+        }
     }
     let mut bytes = b"II*\0\x08\0\0\0".to_vec();
     bytes.extend(directory(&tags, 8));
@@ -218,7 +203,8 @@ fn directory(tags: &[(u16, TiffField)], start: usize) -> Vec<u8> {
     let mut long = Vec::new();
     let long_start = start + 2 + tags.len() * 12 + 4;
     for (tag, field) in tags {
-        let (kind, count, mut value) = field.encoded();
+        let ((kind, size), mut value) = (field.kind(), field.bytes());
+        let count = (value.len() / size) as u32;
         if value.len() > 4 {
             let at = (long_start + long.len()) as u32;
             // Values start at even places.

@@ -1,17 +1,17 @@
-//! Heights in the colors of a PNG, as map tiles carry them.
+//! Encodings of heights in the colors of a PNG, as map tiles use them.
 //!
 //! | encoding | meters | specification |
 //! |---|---|---|
 //! | terrain-RGB | −10000 + (65536 R + 256 G + B) / 10 | Mapbox, *Terrain-RGB v1*; MapTiler uses it too |
 //! | Terrarium | 256 R + G + B / 256 − 32768 | Mapzen, *Terrain Tiles: Terrarium* |
 //!
-//! Nothing in the file says which: the same colors are heights in either, a few hundred meters or many thousand
-//! apart. So the caller must say.
+//! The file does not state its encoding: the same colors are heights in either, a few hundred meters or many thousand
+//! apart. So the caller must state it.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// What the colors of a PNG mean.
+/// An encoding of heights in colors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeightEncoding {
     /// Mapbox's, in tenths of a meter from −10000 m.
@@ -21,10 +21,10 @@ pub enum HeightEncoding {
 }
 
 impl HeightEncoding {
-    /// The names that [`FromStr`] knows.
+    /// The names that [`FromStr`] reads.
     pub const NAMES: [&str; 2] = ["terrain-rgb", "terrarium"];
 
-    /// The height in meters that a color stands for; exact but for the division by ten.
+    /// The height of a color in meters; exact but for the division by ten.
     pub fn meters(self, [red, green, blue]: [u8; 3]) -> f64 {
         let number = f64::from(u32::from_be_bytes([0, red, green, blue]));
         match self {
@@ -34,14 +34,19 @@ impl HeightEncoding {
     }
 }
 
-impl FromStr for HeightEncoding {
-    type Err = String;
+/// A text names no encoding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the encodings are {}", HeightEncoding::NAMES.join(" and "))]
+pub struct HeightEncodingError;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+impl FromStr for HeightEncoding {
+    type Err = HeightEncodingError;
+
+    fn from_str(text: &str) -> Result<Self, HeightEncodingError> {
         match text {
             "terrain-rgb" => Ok(Self::TerrainRgb),
             "terrarium" => Ok(Self::Terrarium),
-            _ => Err(format!("the encodings are {}", Self::NAMES.join(" and "))),
+            _ => Err(HeightEncodingError),
         }
     }
 }
@@ -72,6 +77,6 @@ mod tests {
         for name in HeightEncoding::NAMES {
             assert_eq!(name.parse::<HeightEncoding>().expect("known").to_string(), name);
         }
-        assert!("rgb".parse::<HeightEncoding>().expect_err("unknown").contains("terrarium"));
+        assert!("rgb".parse::<HeightEncoding>().expect_err("unknown").to_string().contains("terrarium"));
     }
 }

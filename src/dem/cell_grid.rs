@@ -1,8 +1,8 @@
-//! The lattice of cells that a grid is made on: square, north up, whole cells.
+//! Square cells in rows from the north-west: the lattices that rasters are gridded and resampled to.
 
 use glam::{DAffine2, DVec2};
 
-use crate::dem::error::MOST_SAMPLES;
+use crate::dem::limits::MOST_SAMPLES;
 use crate::dem::raster::north_up;
 use crate::geom::rect::Rect;
 
@@ -10,7 +10,7 @@ use crate::geom::rect::Rect;
 /// are not exact in binary.
 const SLACK_CELLS: f64 = 1e-6;
 
-/// Square cells in rows from the north-west.
+/// A lattice of square cells, north up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellGrid {
     corner: DVec2,
@@ -19,8 +19,8 @@ pub struct CellGrid {
     height: u32,
 }
 
-/// Why a lattice of cells cannot be had.
-#[derive(Debug, thiserror::Error, PartialEq)]
+/// Why there is no lattice of cells.
+#[derive(Clone, Debug, thiserror::Error, PartialEq)]
 pub enum CellGridError {
     /// The size of a cell is no size.
     #[error("the cell size is {0}; it must be a number above 0")]
@@ -28,16 +28,16 @@ pub enum CellGridError {
     /// The extent holds nothing.
     #[error("the extent from {}, {} to {}, {} holds nothing: give west, south, east, north", .0.min.x, .0.min.y, .0.max.x, .0.max.y)]
     Empty(Rect),
-    /// More cells than are made.
+    /// There would be more cells than a raster has.
     #[error(
-        "{columns} x {rows} cells are more than the {MOST_SAMPLES} that are made; a cell size of {enough:.3} is enough"
+        "{columns} x {rows} cells are more than the {MOST_SAMPLES} of a raster; a cell size of {enough:.3} is enough"
     )]
     TooMany {
         /// Cells a row.
         columns: f64,
         /// Rows.
         rows: f64,
-        /// The cell size with which it would do.
+        /// A cell size with fewer cells.
         enough: f64,
     },
 }
@@ -112,8 +112,8 @@ fn check(extent: Rect, cell: f64) -> Result<(), CellGridError> {
     if !(cell > 0.0 && cell.is_finite()) {
         return Err(CellGridError::Cell(cell));
     }
-    let sound = extent.min.is_finite() && extent.max.is_finite() && !extent.is_empty();
-    if sound { Ok(()) } else { Err(CellGridError::Empty(extent)) }
+    let is_sound = extent.min.is_finite() && extent.max.is_finite() && !extent.is_empty();
+    if is_sound { Ok(()) } else { Err(CellGridError::Empty(extent)) }
 }
 
 #[cfg(test)]
@@ -126,22 +126,22 @@ mod tests {
 
     #[test]
     fn edges_lie_on_multiples_of_the_cell_and_cover_the_points() {
-        let frame = CellGrid::around(rect(101.0, -3.0, 119.9, 10.0), 10.0).expect("a frame");
-        assert_eq!((frame.corner(), frame.width(), frame.height()), (DVec2::new(100.0, 10.0), 2, 2));
-        assert_eq!(frame.center(1, 0), DVec2::new(115.0, 5.0));
+        let grid = CellGrid::around(rect(101.0, -3.0, 119.9, 10.0), 10.0).expect("a grid");
+        assert_eq!((grid.corner(), grid.width(), grid.height()), (DVec2::new(100.0, 10.0), 2, 2));
+        assert_eq!(grid.center(1, 0), DVec2::new(115.0, 5.0));
         let point = CellGrid::around(rect(10.0, 10.0, 10.0, 10.0), 10.0).expect("one cell");
         assert_eq!((point.width(), point.height()), (1, 1));
     }
 
     #[test]
     fn a_stated_extent_keeps_its_north_west_corner() {
-        let frame = CellGrid::within(rect(0.5, 0.5, 1.0, 0.8), 0.1).expect("a frame");
-        assert_eq!((frame.corner(), frame.width(), frame.height()), (DVec2::new(0.5, 0.8), 5, 3));
-        assert_eq!(CellGrid::within(rect(0.0, 0.0, 25.0, 21.0), 10.0).map(|frame| frame.width()), Ok(3));
+        let grid = CellGrid::within(rect(0.5, 0.5, 1.0, 0.8), 0.1).expect("a grid");
+        assert_eq!((grid.corner(), grid.width(), grid.height()), (DVec2::new(0.5, 0.8), 5, 3));
+        assert_eq!(CellGrid::within(rect(0.0, 0.0, 25.0, 21.0), 10.0).map(|grid| grid.width()), Ok(3));
     }
 
     #[test]
-    fn what_is_no_lattice_is_refused() {
+    fn sizes_and_extents_that_make_no_cells_are_refused() {
         for cell in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(matches!(CellGrid::around(rect(0.0, 0.0, 1.0, 1.0), cell), Err(CellGridError::Cell(_))));
         }

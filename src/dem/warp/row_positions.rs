@@ -1,9 +1,9 @@
 //! Positions along a row of a warped raster: exact where it is cheap, interpolated where that is as good.
 //!
-//! Projecting every cell costs more than resampling it. Map projections are smooth, so the row is cut into
-//! pieces over which a parabola through three exact positions stands in for the projection; two more exact
-//! positions between them check it. A piece that fails is halved, down to a few cells that are then all
-//! exact. What a row yields depends on nothing but the row, so it is the same for every number of threads.
+//! Projecting every cell costs more than resampling it. Map projections are smooth, so the row is cut into pieces, and a
+//! parabola through three exact positions replaces the projection on each; two more exact positions between them check
+//! it. A piece that fails is halved, down to a few cells that are all exact. The positions depend on the row alone: they
+//! are the same for every number of threads.
 
 use glam::DVec2;
 
@@ -17,39 +17,40 @@ const LONGEST_PIECE: usize = 256;
 /// Pieces of fewer cells are not worth interpolating.
 const SHORTEST_PIECE: usize = 8;
 
-/// Fills `row` with the position of each index, NaN where `exact` has none.
-pub(crate) fn fill(row: &mut [DVec2], exact: &impl Fn(usize) -> Option<DVec2>) {
-    for first in (0..row.len()).step_by(LONGEST_PIECE) {
-        let last = (first + LONGEST_PIECE).min(row.len()) - 1;
-        fill_piece(row, first, last, exact);
+/// The positions of `count` indices, NaN where `exact` has none.
+pub(super) fn positions(count: usize, exact: &impl Fn(usize) -> Option<DVec2>) -> Vec<DVec2> {
+    let mut row = vec![DVec2::NAN; count];
+    for (piece, row) in row.chunks_mut(LONGEST_PIECE).enumerate() {
+        fill_piece(row, piece * LONGEST_PIECE, exact);
     }
+    row
 }
 
-fn fill_piece(row: &mut [DVec2], first: usize, last: usize, exact: &impl Fn(usize) -> Option<DVec2>) {
+/// Fills a piece whose first index is `first`.
+fn fill_piece(piece: &mut [DVec2], first: usize, exact: &impl Fn(usize) -> Option<DVec2>) {
+    let last = first + piece.len() - 1;
     if last - first < SHORTEST_PIECE {
-        for (index, position) in row.iter_mut().enumerate().take(last + 1).skip(first) {
+        for (position, index) in piece.iter_mut().zip(first..) {
             *position = exact(index).unwrap_or(DVec2::NAN);
         }
         return;
     }
     let middle = first + (last - first) / 2;
     let parabola = Parabola::through([first, middle, last].map(|index| (index, exact(index))));
-    let holds = |parabola: &Parabola| {
+    let is_close = |parabola: &Parabola| {
         [first + (middle - first) / 2, middle + (last - middle) / 2].into_iter().all(|index| {
             exact(index).is_some_and(|position| position.distance(parabola.at(index)) <= TOLERANCE)
         })
     };
-    match parabola.filter(holds) {
-        Some(parabola) => {
-            for (index, position) in row.iter_mut().enumerate().take(last + 1).skip(first) {
-                *position = parabola.at(index);
-            }
+    if let Some(parabola) = parabola.filter(is_close) {
+        for (position, index) in piece.iter_mut().zip(first..) {
+            *position = parabola.at(index);
         }
-        None => {
-            fill_piece(row, first, middle, exact);
-            fill_piece(row, middle + 1, last, exact);
-        }
+        return;
     }
+    let (left, right) = piece.split_at_mut(middle - first + 1);
+    fill_piece(left, first, exact);
+    fill_piece(right, middle + 1, exact);
 }
 
 /// A parabola by Newton's divided differences.
@@ -84,24 +85,21 @@ mod tests {
 
     #[test]
     fn a_smooth_row_is_met_with_few_exact_positions() {
-        let asked = Cell::new(0);
+        let calls = Cell::new(0);
         let curve = |index: usize| DVec2::new(index as f64, libm::sin(index as f64 * 1e-4) * 100.0);
         let exact = |index: usize| {
-            asked.set(asked.get() + 1);
+            calls.set(calls.get() + 1);
             Some(curve(index))
         };
-        let mut row = vec![DVec2::ZERO; 3000];
-        fill(&mut row, &exact);
-        for (index, position) in row.iter().enumerate() {
+        for (index, position) in positions(3000, &exact).iter().enumerate() {
             assert!(position.distance(curve(index)) <= 2.0 * TOLERANCE, "{index}");
         }
-        assert!(asked.get() < 600, "{} exact positions", asked.get());
+        assert!(calls.get() < 600, "{} exact positions", calls.get());
     }
 
     #[test]
     fn positions_that_do_not_exist_stay_nan() {
-        let mut row = vec![DVec2::ZERO; 100];
-        fill(&mut row, &|index| (index >= 37).then(|| DVec2::splat(index as f64)));
+        let row = positions(100, &|index| (index >= 37).then(|| DVec2::splat(index as f64)));
         assert!(row[..37].iter().all(|position| position.is_nan()));
         assert!(row[37..].iter().enumerate().all(|(i, p)| p.distance(DVec2::splat(i as f64 + 37.0)) < 1e-9));
     }
