@@ -141,7 +141,7 @@ struct Failing {
 }
 
 impl Windows for Failing {
-    fn bare(&self) -> &Raster {
+    fn metadata(&self) -> &Raster {
         &self.raster
     }
 

@@ -63,7 +63,7 @@ impl Rolling {
 }
 
 impl Windows for Rolling {
-    fn bare(&self) -> &Raster {
+    fn metadata(&self) -> &Raster {
         &self.bare
     }
 
