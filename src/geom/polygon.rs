@@ -67,7 +67,15 @@ pub fn triangulate_ring(ring: &[DVec2]) -> Vec<[usize; 3]> {
         .triangle_indices
         .chunks_exact(3)
         .map(|ids| [corner(ids[0]), corner(ids[1]), corner(ids[2])])
-        .map(|ids| if doubled_triangle_area(ids.map(|id| ring[id])) < 0.0 { [ids[0], ids[2], ids[1]] } else { ids })
+        .map(
+            |ids| {
+                if doubled_triangle_area(ids.map(|id| ring[id])) < 0.0 {
+                    [ids[0], ids[2], ids[1]]
+                } else {
+                    ids
+                }
+            },
+        )
         .collect()
 }
 

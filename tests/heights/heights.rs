@@ -330,7 +330,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    fn for_any_camera_and_level_ground_and_source_stay_and_displayed_is_the_drawn_triangle(
+    fn for_any_camera_ground_and_source_stay_and_displayed_is_the_drawn_triangle(
         eye in (-300f32..2100.0, -300f32..1700.0, 620f32..2500.0),
         target in (0f32..1770.0, 0f32..1320.0),
         tolerance_px in 0.3f32..40.0,

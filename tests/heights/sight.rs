@@ -187,7 +187,7 @@ fn a_batch_is_what_its_pairs_are_one_by_one() {
 }
 
 #[test]
-fn after_an_edit_lines_are_those_of_the_new_ground_and_the_old_ground_keeps_its_own() {
+fn after_an_edit_lines_see_the_new_ground_and_the_old_snapshot_its_own() {
     let (_, lattice) = grounds().swap_remove(1);
     let before = SightGround::new(Arc::new(lattice.clone()));
     let mut edited = lattice;

@@ -1,4 +1,4 @@
-//! Dynamic terrain (paper 003): after any sequence of edits everything equals what is made from scratch.
+//! Dynamic terrain (Yu and Zhang): after any sequence of edits everything equals what is made from scratch.
 
 use std::sync::Arc;
 

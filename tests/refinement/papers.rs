@@ -1,7 +1,6 @@
-//! What the papers claim, claim by claim, of the product: one test a claim, one file a paper.
-//!
-//! 000: patches with forced splits and merges. 001: the restricted quadtree. 002: outdoor terrain rendering.
-//! 003: the constrained nested error criterion. 004: the digital terrain model.
+//! Claims of five papers, one test a claim and one file a paper: patches with forced splits and merges (Lin, Wan, Zhou
+//! and Tan), the restricted quadtree, outdoor terrain rendering, the constrained nested error criterion (Yu and Zhang),
+//! the digital terrain model (Zhang, Wang and Wu).
 
 mod dtm;
 mod nested;

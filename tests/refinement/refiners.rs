@@ -129,7 +129,7 @@ proptest! {
     }
 
     #[test]
-    fn queues_without_a_budget_give_the_mesh_of_a_rebuild_where_the_criterion_is_monotone(
+    fn queues_without_a_budget_give_a_rebuild_s_mesh_for_monotone_criteria(
         terrain in terrains(), flight in flights(), which in 0..MONOTONE.len(), most in 0usize..2,
     ) {
         let goal = [Goal::Tolerance, Goal::ToleranceWithin(1 << 20)][most];
@@ -150,7 +150,7 @@ proptest! {
     }
 
     #[test]
-    fn the_budget_of_1997_is_one_of_drawn_triangles_and_never_exceeded_whatever_the_criterion_and_the_holes(
+    fn the_queues_never_draw_more_triangles_than_their_budget(
         terrain in terrains(), flight in flights(), which in 0..CRITERIA,
         budget in 0usize..900, capped in 0usize..2,
     ) {
@@ -243,7 +243,7 @@ fn turned() -> Terrain {
 }
 
 #[test]
-fn a_budget_below_what_the_ground_can_give_is_used_to_within_a_few_triangles_however_much_has_no_data() {
+fn a_small_budget_is_used_to_within_a_few_triangles_even_among_holes() {
     let terrain = turned();
     let patches: Vec<Vertex> = terrain.layout.patches().collect();
     for budget in [1000, 3000, 8000, 20_000] {

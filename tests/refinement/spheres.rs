@@ -1,4 +1,4 @@
-//! Nested spheres: closed under parents without forcing, and what they promise on the picture (paper 003).
+//! Nested spheres: closed under parents without forcing, and what they promise on the picture (Yu and Zhang).
 
 use std::sync::Arc;
 

@@ -175,7 +175,7 @@ fn a_lake_is_perfectly_level_however_coarse_the_ground_around_it() {
 }
 
 #[test]
-fn displayed_heights_are_those_of_the_drawn_triangles_and_ground_heights_never_change() {
+fn displayed_heights_lie_on_drawn_triangles_and_ground_heights_never_change() {
     let lattice = hills();
     let raster = Raster {
         driver: "AAIGrid",

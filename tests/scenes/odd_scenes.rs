@@ -86,7 +86,7 @@ fn an_eye_under_the_ground_is_told() {
 }
 
 #[test]
-fn a_lake_far_larger_than_the_ground_takes_its_level_from_the_shore_that_lies_on_it() {
+fn a_lake_larger_than_the_ground_takes_its_level_from_the_shore_on_it() {
     let text = "[[lake]]\nname = \"sea\"\n\
         points = [[-9e8, -9e8], [9e8, -9e8], [9e8, 305], [500, 305], [100, 305], [-9e8, 305]]\n";
     let scene = scene("sea", (60, 60), text).expect("sound");

@@ -86,7 +86,7 @@ fn the_selection_is_what_one_would_compare() {
 }
 
 #[test]
-fn refiners_show_the_same_triangles_by_the_same_spheres_and_quadtree_and_strips_those_of_the_bintree() {
+fn refiners_with_the_same_spheres_show_the_same_triangles_in_every_emitter() {
     for criterion in ["spheres", "constrained", "bounding"] {
         let refined = flown(&["--criterion", criterion]);
         assert_eq!(refined.len(), 4, "{criterion}");
