@@ -1,7 +1,8 @@
 #![doc = include_str!("ARCHITECTURE.md")]
 
 pub mod annotate;
-pub mod app;
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod dem;
 pub mod description;
 pub mod draw;
@@ -10,10 +11,13 @@ pub mod export;
 pub mod geom;
 pub mod mesh;
 pub mod model;
+pub mod pipeline;
 pub mod render;
 pub mod ribbon;
 pub mod roam;
 pub mod scene;
+#[cfg(feature = "serve")]
+pub mod serve;
 pub mod structure;
 pub mod terrain;
 pub mod vector;

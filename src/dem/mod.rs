@@ -1,6 +1,7 @@
 //! Elevation rasters: their georeference, one file per format, warping to a metric system; scattered points, and grids
 //! of them.
 
+pub mod answer;
 pub mod archive;
 pub mod error;
 pub mod formats;

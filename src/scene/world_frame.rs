@@ -3,11 +3,12 @@
 use glam::{DVec2, Vec3};
 use toml::Spanned;
 
+use crate::dem::answer::Answer;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::geom::crs::Crs;
 use crate::terrain::lattice::Lattice;
-use crate::terrain::query::{Answer, Interpolation, ground_height};
+use crate::terrain::query::{Interpolation, ground_height};
 
 /// Brings a document's points to the world.
 pub struct WorldFrame<'a> {

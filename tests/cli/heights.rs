@@ -5,8 +5,9 @@ use std::path::Path;
 use glam::DVec2;
 use sandtable::app::arguments::{Access, StatedHeights};
 use sandtable::app::dataset::Dataset;
+use sandtable::dem::answer::Answer;
 use sandtable::geom::crs::Crs;
-use sandtable::terrain::query::{Answer, Interpolation, Surface};
+use sandtable::terrain::query::{Interpolation, Surface};
 use serde_json::Value;
 
 use crate::common::data::{data, files_below};

@@ -7,8 +7,9 @@ use std::process::{Command, Stdio};
 use glam::DVec2;
 use sandtable::app::arguments::{Access, StatedHeights};
 use sandtable::app::dataset::Dataset;
+use sandtable::dem::answer::Answer;
 use sandtable::geom::crs::Crs;
-use sandtable::terrain::query::{Answer, Interpolation, Surface};
+use sandtable::terrain::query::{Interpolation, Surface};
 
 use crate::client::{Server, numbers, strings};
 use crate::common::data::data;

@@ -145,10 +145,7 @@ impl WarpGrid {
             let center = |column: usize| DVec2::new(self.corner.x + (column as f64 + 0.5) * self.cell, y);
             let mut positions = vec![DVec2::NAN; width];
             line::fill(&mut positions, &|column| way.back(center(column)).map(|at| raster.grid_from_map(at)));
-            positions
-                .into_iter()
-                .map(|at| narrow(bilinear_at_grid(raster, at).value().unwrap_or(f64::NAN)))
-                .collect::<Vec<T>>()
+            positions.into_iter().map(|at| narrow(bilinear_at_grid(raster, at).parts().0)).collect::<Vec<T>>()
         });
         rows.flatten_iter().collect()
     }

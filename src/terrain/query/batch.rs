@@ -25,12 +25,13 @@ use std::array::TryFromSliceError;
 use glam::{DMat2, DVec2};
 use rayon::prelude::*;
 
+use crate::dem::answer::{Answer, Status};
 use crate::dem::raster::{Raster, Samples};
 use crate::dem::sample::ON_CENTER;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::source::raster_height;
 use crate::terrain::query::tiles::{HeightTiles, TileSlot};
-use crate::terrain::query::{Answer, Interpolation, Status, ground_height};
+use crate::terrain::query::{Interpolation, ground_height};
 
 /// Positions per chunk: the arrays of one take 6 KiB and stay in the first cache. With fewer than 32 the passes cost
 /// more than what is in them, with more than 512 the arrays leave the cache.

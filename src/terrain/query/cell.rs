@@ -4,7 +4,8 @@
 
 use glam::DVec2;
 
-use crate::terrain::query::{Answer, Diagonal, Interpolation};
+use crate::dem::answer::Answer;
+use crate::terrain::query::{Diagonal, Interpolation};
 
 /// The height at `part` of a cell, 0..=1 east and north from its south-west corner, or [`Answer::NoData`].
 ///

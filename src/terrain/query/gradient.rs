@@ -7,8 +7,9 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::dem::answer::Status;
 use crate::terrain::lattice::Lattice;
-use crate::terrain::query::{Diagonal, Status};
+use crate::terrain::query::Diagonal;
 
 /// Which surface between the posts is asked for its gradient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -9,6 +9,7 @@ use std::sync::{Arc, PoisonError, RwLock};
 use glam::DVec2;
 use rayon::prelude::*;
 
+use crate::dem::answer::{Answer, Status};
 use crate::dem::raster::Raster;
 use crate::geom::crs::Crs;
 use crate::terrain::lattice::Lattice;
@@ -16,7 +17,7 @@ use crate::terrain::query::batch::{self, TASK};
 use crate::terrain::query::deck::Deck;
 use crate::terrain::query::source::{source_height, source_task};
 use crate::terrain::query::tiles::LazyTiles;
-use crate::terrain::query::{Answer, Interpolation, Status, Surface, ground_height};
+use crate::terrain::query::{Interpolation, Surface, ground_height};
 use crate::terrain::triangle_surface::TriangleSurface;
 
 /// Positions between two looks at whether tiles should be made, so that a single long batch gets them too.

@@ -6,12 +6,13 @@
 
 use glam::DVec2;
 
+use crate::dem::answer::{Answer, Status};
 use crate::dem::raster::Raster;
-use crate::dem::sample::{self, Sampled};
+use crate::dem::sample;
 use crate::geom::crs::Crs;
 use crate::terrain::query::batch;
 use crate::terrain::query::cell::interpolate;
-use crate::terrain::query::{Answer, Diagonal, Interpolation, Status};
+use crate::terrain::query::{Diagonal, Interpolation};
 
 /// Positions that are brought to the raster's system at a time, on the stack.
 const BROUGHT: usize = 512;
@@ -19,8 +20,8 @@ const BROUGHT: usize = 512;
 /// The height of a raster at a position in its own coordinates, in meters.
 pub fn raster_height(raster: &Raster, interpolation: Interpolation, at: DVec2) -> Answer {
     let answer = match interpolation {
-        Interpolation::Nearest => answer(sample::nearest(raster, at)),
-        Interpolation::Bilinear => answer(sample::bilinear(raster, at)),
+        Interpolation::Nearest => sample::nearest(raster, at),
+        Interpolation::Bilinear => sample::bilinear(raster, at),
         Interpolation::Planar | Interpolation::DistanceWeighted4 => {
             between_samples(raster, interpolation, at)
         }
@@ -123,14 +124,6 @@ impl<'a> SourceTransform<'a> {
 /// The whole turns, in degrees, nearest to `degrees`.
 fn whole_turns(degrees: f64) -> f64 {
     360.0 * (degrees / 360.0).round()
-}
-
-fn answer(sampled: Sampled) -> Answer {
-    match sampled {
-        Sampled::Ok(height) => Answer::Height(height),
-        Sampled::NoData => Answer::NoData,
-        Sampled::Outside => Answer::Outside,
-    }
 }
 
 /// Planar and distance-weighted heights of a raster, on the grid of its sample centers, in its vertical unit.
