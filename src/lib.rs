@@ -1,6 +1,7 @@
 #![doc = include_str!("ARCHITECTURE.md")]
 
 pub mod annotate;
+pub mod archive;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod dem;
@@ -10,6 +11,7 @@ pub mod earthworks;
 pub mod export;
 pub mod geom;
 pub mod mesh;
+pub mod message;
 pub mod model;
 pub mod pipeline;
 pub mod render;

@@ -5,12 +5,13 @@
 use glam::Vec2;
 use proptest::collection::vec;
 use proptest::prelude::{ProptestConfig, any, prop_assert_eq, proptest};
-use sandtable::annotate::annotation::{Annotations, LabelClass, PictureLabel};
+use sandtable::annotate::annotation::{Annotations, PictureLabel};
 use sandtable::annotate::legend::Legend;
 use sandtable::annotate::north::NorthArrow;
 use sandtable::annotate::paint::annotate;
 use sandtable::annotate::report::{AnnotationReport, FurnitureKind};
 use sandtable::annotate::scale_bar::ScaleBar;
+use sandtable::description::words::LabelKind;
 use sandtable::draw::color::Srgba;
 use sandtable::draw::ground::ColorRamp;
 use sandtable::draw::pixels::Pixels;
@@ -59,7 +60,7 @@ fn grain(width: u32, height: u32) -> Pixels {
     })
 }
 
-fn label(text: &str, kind: LabelClass, x: f32, y: f32, depth_m: f32) -> PictureLabel {
+fn label(text: &str, kind: LabelKind, x: f32, y: f32, depth_m: f32) -> PictureLabel {
     PictureLabel {
         text: text.to_owned(),
         anchor_px: Vec2::new(x, y),
@@ -72,7 +73,7 @@ fn label(text: &str, kind: LabelClass, x: f32, y: f32, depth_m: f32) -> PictureL
 
 /// Labels as a scene of the southern Appalachians would have them, on a sheet of the given size.
 fn labels(width: f32, height: f32) -> Vec<PictureLabel> {
-    use LabelClass::{Place, Point, Summit, Water};
+    use LabelKind::{Place, Point, Summit, Water};
     let all = [
         ("Cross Mountain\n1062 m", Summit, 0.21, 0.26, 14e3),
         ("Frozen Head\n1012 m", Summit, 0.44, 0.27, 15e3),
@@ -123,7 +124,7 @@ fn sheet(width: u32, height: u32) -> Annotations {
 /// A sheet of everything that goes wrong: crowds, scripts the fonts lack, slanted leaders, odd figures.
 fn trouble(width: u32, height: u32) -> Annotations {
     let (w, h) = (width as f32, height as f32);
-    let kinds = [LabelClass::Summit, LabelClass::Place, LabelClass::Water, LabelClass::Point];
+    let kinds = [LabelKind::Summit, LabelKind::Place, LabelKind::Water, LabelKind::Point];
     let mut labels: Vec<PictureLabel> = (0..90u32)
         .map(|n| {
             let spread = |salt: u32| {
@@ -142,8 +143,8 @@ fn trouble(width: u32, height: u32) -> Annotations {
             }
         })
         .collect();
-    labels.push(label("富士山\n3776 m", LabelClass::Summit, 0.5 * w, 0.3 * h, 1.0));
-    labels.push(label("Эльбрус · Ἐρύμανθος\nהר חרמון", LabelClass::Summit, 0.3 * w, 0.3 * h, 1.0));
+    labels.push(label("富士山\n3776 m", LabelKind::Summit, 0.5 * w, 0.3 * h, 1.0));
+    labels.push(label("Эльбрус · Ἐρύμανθος\nהר חרמון", LabelKind::Summit, 0.3 * w, 0.3 * h, 1.0));
     Annotations {
         labels,
         title: Some("Great Smoky Mountains ".repeat(9)),
@@ -213,7 +214,7 @@ fn a_good_sheet_is_drawn_whole() {
 
 #[test]
 fn glyphs_that_the_fonts_lack_are_counted_with_their_text() {
-    let fuji = label("富士山\n3776 m", LabelClass::Summit, 300.0, 200.0, 1.0);
+    let fuji = label("富士山\n3776 m", LabelKind::Summit, 300.0, 200.0, 1.0);
     let title = Some("Вид на 富士".to_owned());
     let with = Annotations { labels: vec![fuji.clone()], title, ..Annotations::default() };
     let (_, report) = annotated(640, 360, &with);
@@ -259,7 +260,7 @@ fn pictures_of_any_size_can_be_annotated() {
 fn thousands_of_labels_are_placed_in_reasonable_time() {
     let crowd = (0..6000u32).map(|n| {
         let (x, y) = ((n * 37 % 960) as f32, (n * 101 % 540) as f32);
-        label(&format!("No. {n}"), LabelClass::Point, x, y, n as f32)
+        label(&format!("No. {n}"), LabelKind::Point, x, y, n as f32)
     });
     let (_, report) = annotated(960, 540, &Annotations { labels: crowd.collect(), ..Annotations::default() });
     assert_eq!(report.placed.len() + report.crowded_out.len() + report.outside.len(), 6000);
@@ -281,7 +282,7 @@ proptest! {
             top_px: Some(Vec2::new(top.0, top.1)),
             depth_m: *depth_m,
             visible: *visible,
-            kind: [LabelClass::Summit, LabelClass::Place, LabelClass::Water, LabelClass::Point][text.len() % 4],
+            kind: [LabelKind::Summit, LabelKind::Place, LabelKind::Water, LabelKind::Point][text.len() % 4],
         }).collect();
         let all = Annotations { labels, title: Some(title), ..Annotations::default() };
         let (_, report) = annotated(400, 250, &all);

@@ -8,31 +8,18 @@ use std::path::{Path, PathBuf};
 use common::data::data;
 use common::scratch::Scratch;
 use glam::DVec2;
-use sandtable::app::arguments::Access;
-use sandtable::app::load;
 use sandtable::draw::list::{DrawMesh, FeatureId};
-use sandtable::scene::report::{ReportCell, ReportTable};
+use sandtable::pipeline::scene_file::open_scene;
 use sandtable::scene::{FeatureKind, Scene};
 use sandtable::structure::deck_check::closed;
 use sandtable::terrain::query::{Interpolation, Surface};
 
 fn scene(path: &Path, allow: Vec<PathBuf>) -> Scene {
-    load::scene(path, &Access { allow }, &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))
+    open_scene(path, &allow, &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))
 }
 
 fn crossing() -> Scene {
     scene(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/bridge.toml"), Vec::new())
-}
-
-fn table(scene: &Scene) -> &ReportTable {
-    scene.report.table("bridges and tunnels").expect("there are some")
-}
-
-fn number(cell: &ReportCell) -> f64 {
-    match cell {
-        ReportCell::Number(number) => *number,
-        other => panic!("{other:?} is no measure"),
-    }
 }
 
 /// Every bridge's solids, by feature.
@@ -74,16 +61,13 @@ fn a_valley_crossing_has_two_bridges_and_a_tunnel_with_two_portals() {
         .iter()
         .filter(|solid| scene.features[solid.feature.0 as usize - 2].kind == FeatureKind::Tunnel);
     assert_eq!(portals.count(), 2);
-    let viaduct =
-        table(&scene).rows.iter().find(|row| row[0] == ReportCell::Text("Cove Creek viaduct".into()));
-    let viaduct = viaduct.expect("it is told of");
-    assert_eq!(
-        (&viaduct[1], &viaduct[2]),
-        (&ReportCell::Text("bridge".into()), &ReportCell::Text("tag".into()))
-    );
-    assert!(number(&viaduct[4]) > 60.0 && number(&viaduct[5]) < 0.01, "{viaduct:?}");
-    assert!(number(&viaduct[9]) > 50.0, "the creek and the track are far below: {viaduct:?}");
-    assert!(matches!(viaduct[7], ReportCell::Count(5..20)), "{viaduct:?}");
+    let viaduct = scene.report.bridges_and_tunnels.iter().find(|row| row.name == "Cove Creek viaduct");
+    let viaduct = viaduct.expect("it is reported");
+    assert_eq!((viaduct.kind, viaduct.by), ("bridge", "tag"));
+    assert!(viaduct.greatest_height_above_ground > 60.0, "{viaduct:?}");
+    assert!(viaduct.greatest_depth_below_ground < 0.01, "{viaduct:?}");
+    assert!(viaduct.lowest_clearance > Some(50.0), "the creek and the track are far below: {viaduct:?}");
+    assert!(matches!(viaduct.piers, Some(5..20)), "{viaduct:?}");
 }
 
 #[test]
@@ -109,7 +93,7 @@ fn too_many_piers_are_refused_at_the_bridge_that_asks_for_most() {
         zigzag.join(", ")
     );
     let path = scratch.write("scene.toml", text);
-    let failure = load::scene(&path, &Access { allow: Vec::new() }, &|_| {}).err().expect("too many");
+    let failure = open_scene(&path, &[], &|_| {}).err().expect("too many");
     assert!(format!("{failure:?}").contains("piers"), "{failure:?}");
 }
 
@@ -129,24 +113,16 @@ fn holds(scene: &Scene) {
     for (feature, meshes) in bridges(scene) {
         assert_eq!(closed(&meshes), Ok(()), "{feature:?}");
     }
-    let rows = &table(scene).rows;
-    let of_kind = |kind: &str| {
-        let kind = ReportCell::Text(kind.into());
-        rows.iter().filter(move |row| row[1] == kind)
-    };
+    let rows = &scene.report.bridges_and_tunnels;
+    let of_kind = |kind: &'static str| rows.iter().filter(move |row| row.kind == kind);
     for row in of_kind("bridge") {
-        assert!(number(&row[5]) < 0.3, "a deck lies below the ground: {row:?}");
+        assert!(row.greatest_depth_below_ground < 0.3, "a deck lies below the ground: {row:?}");
     }
     for kind in ["bridge", "tunnel", "underpass"] {
-        let portals: usize = of_kind(kind)
-            .map(|row| match row[8] {
-                ReportCell::Count(count) => count,
-                _ => 0,
-            })
-            .sum();
+        let portals: usize = of_kind(kind).filter_map(|row| row.portals).sum();
         println!("{} of kind {kind}, {portals} portals", of_kind(kind).count());
     }
-    let steepest = of_kind("bridge").map(|row| number(&row[6])).fold(0.0, f64::max);
+    let steepest = of_kind("bridge").map(|row| row.steepest_grade).fold(0.0, f64::max);
     println!("the steepest bridge rises {steepest:.1} %");
 }
 
@@ -154,7 +130,7 @@ fn holds(scene: &Scene) {
 fn monaco_s_bridges_and_tunnels_are_built() {
     let roads = "scenes/monaco/derived/roads.geojson";
     let Some(scene) = city("scenes/monaco/N43E007.hgt.zip", roads) else { return };
-    assert_eq!(table(&scene).rows.len(), 83, "20 bridges and 63 tunnels");
+    assert_eq!(scene.report.bridges_and_tunnels.len(), 83, "20 bridges and 63 tunnels");
     holds(&scene);
 }
 

@@ -7,17 +7,16 @@ use std::path::{Path, PathBuf};
 
 use glam::{DVec2, Vec3};
 use proptest::prelude::*;
-use sandtable::app::arguments::Access;
-use sandtable::app::load;
 use sandtable::draw::list::{DrawMesh, FeatureId};
+use sandtable::pipeline::scene_file::open_scene;
 use sandtable::scene::picture::display;
-use sandtable::scene::report::ReportCell;
+use sandtable::scene::report::BuildingPadRow;
 use sandtable::scene::{FeatureKind, Scene};
 use sandtable::structure::building::{self, Measures};
 use sandtable::structure::draped_solid::DrapedSolid;
 use sandtable::terrain::full_resolution::FullResolution;
 use sandtable::terrain::query::{Interpolation, ground_height};
-use sandtable::terrain::support_surface::{SupportSurface, runs};
+use sandtable::terrain::support_surface::{SupportSurface, ground_runs};
 use sandtable::terrain::triangle_surface::TriangleSurface;
 use sandtable::view::camera::Camera;
 
@@ -35,8 +34,7 @@ fn scene(tables: &str) -> Scene {
 }
 
 fn load_scene(path: &Path, allow: &[PathBuf]) -> Scene {
-    let access = Access { allow: allow.to_vec() };
-    load::scene(path, &access, &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))
+    open_scene(path, allow, &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))
 }
 
 fn demo() -> Scene {
@@ -90,16 +88,7 @@ fn a_pad_is_level_under_the_whole_footprint_and_its_earth_is_told() {
     let scene = scene(
         "[[building]]\nname = \"hall\"\npoints = [[200, 500], [230, 500], [230, 520], [200, 520]]\nbase = \"pad\"\n",
     );
-    let table = scene.report.table("building pads").expect("told");
-    let [
-        ReportCell::Text(name),
-        ReportCell::Number(level),
-        ReportCell::Number(cut),
-        ReportCell::Number(fill),
-    ] = &table.rows[0][..]
-    else {
-        panic!("{table:?}");
-    };
+    let BuildingPadRow { name, level, cut, fill } = &scene.report.building_pads[0];
     assert_eq!(name, "hall");
     assert!(*cut > 100.0 && *fill > 100.0, "{cut} {fill}");
     let lattice = &scene.terrain.lattice;
@@ -144,7 +133,7 @@ proptest! {
         let camera = Camera::new(Vec3::new(eye.0, eye.1, eye.2), Vec3::new(210.0, 550.0, 50.0), 0.8, (800, 600), (0.5, 9000.0));
         prop_assume!(camera.is_ok());
         let displayed = display(&scene.terrain, &camera.expect("checked"));
-        let ground = FullResolution { lattice: &scene.terrain.lattice, exaggeration: scene.terrain.exaggeration };
+        let ground = FullResolution { lattice: scene.terrain.displayed() };
         for standing in &scene.uprights {
             let DrapedSolid::Footing(footing) = &standing.upright else { continue };
             let mesh = standing.upright.mesh(SupportSurface { displayed: &displayed, ground });
@@ -157,7 +146,7 @@ proptest! {
 
 fn lowest_along(ring: &[DVec2], ground: &dyn TriangleSurface) -> f64 {
     let edges = ring.iter().zip(ring.iter().cycle().skip(1));
-    let stations = edges.flat_map(|(from, to)| runs(ground, *from, *to));
+    let stations = edges.flat_map(|(from, to)| ground_runs(ground, *from, *to));
     stations.flat_map(|run| run.stations().to_vec()).map(|station| station.z).fold(f64::INFINITY, f64::min)
 }
 

@@ -36,7 +36,8 @@ const CELL_M: f64 = 30.0;
 
 /// What refinement needs of one lattice.
 struct World {
-    lattice: Arc<Lattice>,
+    lattice: Lattice,
+    displayed: Arc<Lattice>,
     layout: PatchLayout,
     errors: ErrorMap,
     heights: PatchHeights,
@@ -45,22 +46,22 @@ struct World {
 impl World {
     fn new(lattice: Lattice) -> Self {
         let layout = PatchLayout::new(lattice.columns(), lattice.rows(), 32).expect("sound");
-        let errors = ErrorMap::exact(&lattice, &layout);
-        let heights =
-            PatchHeights::new(PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.5 });
-        Self { lattice: Arc::new(lattice), layout, errors, heights }
+        let displayed = Arc::new(lattice.exaggerated(1.5));
+        let errors = ErrorMap::exact(&displayed, &layout);
+        let heights = PatchHeights::new(PatchedGround { lattice: &displayed, layout: &layout });
+        Self { lattice, displayed, layout, errors, heights }
     }
 
     fn ground(&self) -> PatchedGround<'_> {
-        PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.5 }
+        PatchedGround { lattice: &self.displayed, layout: &self.layout }
     }
 
     fn seen_by(&self, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
-        let patches = patches_in_view(self.ground(), &self.heights, &Frustum::of(camera));
+        let patches = patches_in_view(self.ground(), &self.heights, &Frustum::new(camera));
         let criterion = ScreenError::new(self.ground(), &self.errors, &self.heights, camera, tolerance_px);
         let active = rebuild(&self.layout, &criterion, patches.iter().copied());
         active.check().expect("parents active");
-        DisplayedTerrain::new(Arc::clone(&self.lattice), active, 1.5, patches)
+        DisplayedTerrain::new(Arc::clone(&self.displayed), active, patches)
     }
 }
 
@@ -191,7 +192,7 @@ fn displayed_heights_are_those_of_the_drawn_triangles_and_ground_heights_never_c
         georeferenced: false,
     };
     let world = World::new(lattice);
-    let service = HeightService::new(Arc::new(raster), Crs::local(), Arc::clone(&world.lattice));
+    let service = HeightService::new(Arc::new(raster), Crs::local(), Arc::new(world.lattice.clone()));
     let at: Vec<DVec2> = (0..4000)
         .map(|index| {
             world.lattice.origin() + DVec2::new(f64::from(index * 37 % 3570), f64::from(index * 53 % 2670))

@@ -10,7 +10,7 @@ use sandtable::description::parse::parse_bytes;
 use sandtable::scene::Scene;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
-use sandtable::scene::report::{ReportCell, ReportTable};
+use sandtable::scene::report::ConformedRoadRow;
 use sandtable::scene::roads::centerline::Support;
 use sandtable::scene::roads::profiles::RoadProfile;
 use sandtable::terrain::query::{Interpolation, ground_height};
@@ -45,17 +45,9 @@ fn hills(x: f64, y: f64) -> f64 {
     120.0 + 14.0 * libm::sin(x / 60.0) * libm::cos(y / 80.0) + 3.0 * libm::sin(x / 17.0 + y / 23.0)
 }
 
-fn table(scene: &Scene) -> &ReportTable {
-    scene.report.table("conformed roads").expect("roads conform")
-}
-
-fn number(table: &ReportTable, row: usize, column: &str) -> f64 {
-    let place = table.columns.iter().position(|held| held.name == column).expect("a column");
-    match &table.rows[row][place] {
-        ReportCell::Number(value) => *value,
-        ReportCell::Count(count) => *count as f64,
-        other => panic!("{column} is {other:?}"),
-    }
+/// What the report says of the first road that conforms.
+fn conformed(scene: &Scene) -> &ConformedRoadRow {
+    scene.report.conformed_roads.first().expect("a road conforms")
 }
 
 fn ground(scene: &Scene, at: DVec2) -> f64 {
@@ -78,7 +70,7 @@ fn the_ground_takes_the_road_s_level_and_its_profile_tells_it() {
     let [profile] = &scene.profiles[..] else { panic!("one road") };
     assert_eq!((profile.name.as_str(), profile.stations_m[0]), ("lane", 0.0));
     assert!(steepest(profile) <= 0.06 + 1e-6, "{}", steepest(profile));
-    let moved: f64 = ["cut", "fill"].iter().map(|column| number(table(&scene), 0, column)).sum();
+    let moved = conformed(&scene).cut + conformed(&scene).fill;
     assert!(moved > 10_000.0, "{moved} m³");
     for (station, (before, design)) in
         profile.stations_m.iter().zip(profile.ground_m.iter().zip(&profile.design_m))
@@ -140,9 +132,9 @@ fn a_ravine_is_bridged_and_a_ridge_tunneled_by_rule() {
     };
     let road = "[[road]]\nprofile = \"conform\"\nwidth = 8\nmax_fill = 8\nmax_cut = 10\npoints = [[30, 300], [760, 300]]";
     let scene = made_up(land, road).expect("sound");
-    let report = table(&scene);
-    assert_eq!((number(report, 0, "bridges"), number(report, 0, "tunnels")), (1.0, 1.0));
-    assert!(number(report, 0, "highest fill") <= 8.0 && number(report, 0, "deepest cut") <= 10.0);
+    let row = conformed(&scene);
+    assert_eq!((row.bridges, row.tunnels), (1, 1));
+    assert!(row.highest_fill <= 8.0 && row.deepest_cut <= 10.0);
     let carried: Vec<Support> = scene.profiles[0].carried.clone();
     let mut order = carried.clone();
     order.dedup();
@@ -187,9 +179,8 @@ fn a_real_town_s_roads_keep_their_grade_and_agree_where_they_meet() {
     for profile in &scene.profiles {
         assert!(steepest(profile) <= 0.12 + 1e-6, "{} climbs {}", profile.name, steepest(profile));
     }
-    let report = table(&scene);
-    for row in 0..report.rows.len() {
-        assert!(number(report, row, "highest fill") <= 12.0 + ROUNDED_M);
-        assert!(number(report, row, "deepest cut") <= 15.0 + ROUNDED_M);
+    assert!(!scene.report.conformed_roads.is_empty());
+    for row in &scene.report.conformed_roads {
+        assert!(row.highest_fill <= 12.0 + ROUNDED_M && row.deepest_cut <= 15.0 + ROUNDED_M, "{row:?}");
     }
 }

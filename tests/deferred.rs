@@ -89,7 +89,7 @@ proptest! {
     ) {
         let lattice = hills(columns, rows, &holes);
         let layout = PatchLayout::new(columns, rows, 16).expect("sound");
-        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let map = spheres(ground, reach);
         let mut walk = Deferred::new(WholeGround { ground, spheres: &map }, 8.0).expect("small patches");
         let all: Vec<Vertex> = layout.patches().collect();
@@ -140,7 +140,7 @@ proptest! {
         let lattices = edited(columns, rows, &edits);
         let layout = PatchLayout::new(columns, rows, 16).expect("sound");
         let grounds: Vec<PatchedGround<'_>> =
-            lattices.iter().map(|lattice| PatchedGround { lattice, layout: &layout, exaggeration: 1.5 }).collect();
+            lattices.iter().map(|lattice| PatchedGround { lattice, layout: &layout }).collect();
         let maps: Vec<SphereMap> = grounds.iter().map(|&ground| spheres(ground, reach)).collect();
         let all: Vec<Vertex> = layout.patches().collect();
         let mut walk = Deferred::new(WholeGround { ground: grounds[0], spheres: &maps[0] }, 8.0).expect("small");
@@ -162,13 +162,8 @@ proptest! {
 
 #[test]
 fn a_crater_in_view_is_walked_round_as_if_it_had_always_been_there() {
-    let options = DynamicOptions {
-        patch: 16,
-        exaggeration: 1.5,
-        measure: ErrorMeasure::Midpoint,
-        radius: Radius::Plain,
-        reach: 40.0,
-    };
+    let options =
+        DynamicOptions { patch: 16, measure: ErrorMeasure::Midpoint, radius: Radius::Plain, reach: 40.0 };
     let terrain = DynamicTerrain::new(hills(100, 90, &[]), options).expect("sound");
     let all: Vec<Vertex> = terrain.layout().patches().collect();
     let mut walk = Deferred::new(terrain, 8.0).expect("small patches");
@@ -193,10 +188,10 @@ fn a_crater_in_view_is_walked_round_as_if_it_had_always_been_there() {
 fn terrain_that_is_read_as_it_is_walked_shows_what_it_would_from_memory() {
     let lattice = hills(150, 110, &[]);
     let raster = raster_of(&lattice);
-    let options = PagingOptions { patch: 16, capacity: 4, exaggeration: 1.0 };
+    let options = PagingOptions { patch: 16, capacity: 4 };
     let paged = PagedGround::open(raster, exact_spheres(25.0), &options).expect("sound");
     let layout = PatchLayout::new(150, 110, 16).expect("sound");
-    let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+    let ground = PatchedGround { lattice: &lattice, layout: &layout };
     let map = exact_spheres(25.0)(ground);
     let all: Vec<Vertex> = layout.patches().collect();
     let mut from_file = Deferred::new(paged, 8.0).expect("small patches");
@@ -242,7 +237,7 @@ fn raster_of(lattice: &Lattice) -> Raster {
 fn an_eye_that_leaps_to_nowhere_and_back_sees_what_is_there() {
     let lattice = hills(90, 90, &[]);
     let layout = PatchLayout::new(90, 90, 16).expect("sound");
-    let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+    let ground = PatchedGround { lattice: &lattice, layout: &layout };
     let map = spheres(ground, 20.0);
     let all: Vec<Vertex> = layout.patches().collect();
     let mut walk = Deferred::new(WholeGround { ground, spheres: &map }, 8.0).expect("small patches");
@@ -260,7 +255,7 @@ fn an_eye_that_leaps_to_nowhere_and_back_sees_what_is_there() {
 fn an_eye_at_rest_changes_nothing_and_looks_at_nothing() {
     let lattice = hills(80, 80, &[]);
     let layout = PatchLayout::new(80, 80, 16).expect("sound");
-    let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+    let ground = PatchedGround { lattice: &lattice, layout: &layout };
     let map = spheres(ground, 30.0);
     let mut walk = Deferred::new(WholeGround { ground, spheres: &map }, 8.0).expect("small patches");
     let all: Vec<Vertex> = layout.patches().collect();
@@ -274,7 +269,7 @@ fn an_eye_at_rest_changes_nothing_and_looks_at_nothing() {
 fn patches_out_of_view_can_be_forgotten_and_come_back_the_same() {
     let lattice = hills(120, 120, &[]);
     let layout = PatchLayout::new(120, 120, 16).expect("sound");
-    let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+    let ground = PatchedGround { lattice: &lattice, layout: &layout };
     let map = spheres(ground, 60.0);
     let mut walk = Deferred::new(WholeGround { ground, spheres: &map }, 8.0).expect("small patches");
     let all: Vec<Vertex> = layout.patches().collect();
@@ -292,7 +287,7 @@ fn patches_out_of_view_can_be_forgotten_and_come_back_the_same() {
 fn patches_with_more_vertices_than_a_u16_counts_are_refused() {
     let lattice = hills(300, 300, &[]);
     let layout = PatchLayout::new(300, 300, 256).expect("sound");
-    let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+    let ground = PatchedGround { lattice: &lattice, layout: &layout };
     let map = SphereMap::nested(ground, vec![0.0; layout.vertex_count()]);
     assert!(Deferred::new(WholeGround { ground, spheres: &map }, 8.0).is_none());
 }

@@ -10,11 +10,11 @@ use std::time::{Duration, Instant};
 use glam::DVec2;
 use sandtable::dem::answer::Answer;
 use sandtable::dem::error::DemError;
-use sandtable::dem::formats::rgb_png::HeightEncoding;
+use sandtable::dem::formats::height_encoding::HeightEncoding;
 use sandtable::dem::raster::Raster;
 use sandtable::dem::read::{DemHints, read};
 use sandtable::dem::sample::{bilinear, nearest};
-use sandtable::dem::stats;
+use sandtable::dem::stats::Stats;
 use sandtable::dem::warp::to_metric;
 use sandtable::geom::crs::{Crs, CrsError};
 use serde_json::Value;
@@ -42,7 +42,7 @@ fn data() -> Option<PathBuf> {
 fn open(path: &Path) -> Result<Raster, DemError> {
     let bytes = fs::read(path).expect("a file of the test data");
     let companions = |name: &str| fs::read(name).ok();
-    let hints = DemHints { png_height_scale: Some(1.0), companions: &companions, ..DemHints::default() };
+    let hints = DemHints { height_scale: Some(1.0), companions: &companions, ..DemHints::default() };
     read(&path.to_string_lossy(), &bytes, &hints)
 }
 
@@ -150,7 +150,7 @@ fn check_raster(file: &str, raster: &Raster, entry: &Value) {
         assert!(same(ours, wanted, 1e-15 * wanted.abs()), "{file}: no data is {ours}, GDAL {wanted}");
     }
     let (scale, offset) = (number(entry, "scale").unwrap_or(1.0), number(entry, "offset").unwrap_or(0.0));
-    let stats = stats::of(raster);
+    let stats = Stats::new(raster);
     assert_eq!(Some(stats.valid as u64), entry["valid"].as_u64(), "{file}");
     for (key, ours, factor, shift) in [
         ("min", stats.min, scale, offset),
@@ -261,7 +261,7 @@ fn packed_terrain_is_the_terrain_unpacked() {
     let Some(folder) = data() else { return };
     let plain = open(&folder.join("dem_formats/bt_f32.bt")).expect("readable");
     let packed = open(&folder.join("dem_formats/bt_f32.bt.gz")).expect("readable");
-    assert_eq!(stats::of(&plain), stats::of(&packed));
+    assert_eq!(Stats::new(&plain), Stats::new(&packed));
     assert_eq!(packed.crs.and_then(|crs| crs.epsg()), Some(32612));
     assert_eq!(open(&folder.join("scenes/crater_lake_bt/crater_0513.btz")).expect("readable").width, 513);
 }
@@ -343,7 +343,7 @@ fn odd_files_are_read_as_gdal_reads_them_and_broken_ones_refused_for_a_reason() 
     let Some(folder) = data() else { return };
     for (file, valid, min, max, mean) in ODD {
         let stats =
-            stats::of(&open(&folder.join("broken").join(file)).unwrap_or_else(|error| panic!("{error}")));
+            Stats::new(&open(&folder.join("broken").join(file)).unwrap_or_else(|error| panic!("{error}")));
         assert_eq!(stats.valid, valid, "{file}");
         for (ours, wanted) in [(stats.min, min), (stats.max, max), (stats.mean, mean)] {
             assert!(
@@ -380,7 +380,7 @@ fn map_tiles_of_heights_are_the_model_that_they_were_made_of() {
     }
     let fuji = fs::read(folder.join("dem/fuji_terrain_rgb.png")).expect("a file of the test data");
     let hints = DemHints { height_encoding: Some(HeightEncoding::TerrainRgb), ..DemHints::default() };
-    let summit = stats::of(&read("fuji.png", &fuji, &hints).expect("a tile")).max;
+    let summit = Stats::new(&read("fuji.png", &fuji, &hints).expect("a tile")).max;
     assert!((3700.0..3800.0).contains(&summit), "Fuji is {summit} m high");
 }
 
@@ -402,7 +402,7 @@ fn mutants_of_real_files_are_errors_or_rasters() {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         ((state >> 33) as usize) % below
     };
-    let hints = DemHints { png_height_scale: Some(1.0), ..DemHints::default() };
+    let hints = DemHints { height_scale: Some(1.0), ..DemHints::default() };
     for name in [
         "i16_tiled_deflate_p2.tif",
         "cog_f32_overviews.tif",
@@ -456,7 +456,7 @@ fn every_raster_with_a_place_comes_to_meters_or_is_refused_for_a_reason() {
         let text = match to_metric(&raster, None) {
             Ok(metric) => {
                 assert!(metric.is_north_up() && metric.crs.as_ref().is_none_or(Crs::is_metric), "{file}");
-                let (before, after) = (stats::of(&raster), stats::of(&metric));
+                let (before, after) = (Stats::new(&raster), Stats::new(&metric));
                 let range = before.max - before.min;
                 assert!(after.min >= before.min - 1e-9 && after.max <= before.max + 1e-9, "{file}");
                 assert!((after.mean - before.mean).abs() <= 0.02 * range, "{file}: {before:?} {after:?}");

@@ -7,11 +7,13 @@ use std::path::PathBuf;
 use common::forest::{forest, overlook, seen_from};
 use glam::Vec3;
 use sandtable::draw::list::DrawList;
+use sandtable::geom::aabb::Aabb;
 use sandtable::mesh::sink::VertexId;
+use sandtable::model::error::CompanionError;
 use sandtable::model::read::read;
 use sandtable::model::simplify::levels;
 use sandtable::model::{Companions, Model, ModelPart};
-use sandtable::render::cpu::{Options, render};
+use sandtable::render::cpu::{RenderQuality, render};
 use sandtable::render::picture::Picture;
 use sandtable::scene::Scene;
 use sandtable::scene::picture::{build_draw_list, display, draw_list};
@@ -20,9 +22,9 @@ use sandtable::view::camera::Camera;
 struct Assets;
 
 impl Companions for Assets {
-    fn load(&self, name: &str) -> Result<Vec<u8>, String> {
+    fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError> {
         let folder: PathBuf = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models").into();
-        std::fs::read(folder.join(name)).map_err(|error| error.to_string())
+        Ok(std::fs::read(folder.join(name))?)
     }
 }
 
@@ -34,7 +36,7 @@ fn asset(name: &str) -> Model {
 fn pictures(scene: &Scene, camera: &Camera) -> ([DrawList; 2], [Picture; 2]) {
     let seen = build_draw_list(scene, camera, &|_| ()).list;
     let (full, _) = draw_list(scene, &display(&scene.terrain, camera), &|_| ());
-    let drawn = |list: &DrawList| render(list, camera, &Options::default()).expect("sound");
+    let drawn = |list: &DrawList| render(list, camera, &RenderQuality::default()).expect("sound");
     let pictures = [drawn(&seen), drawn(&full)];
     ([seen, full], pictures)
 }
@@ -126,7 +128,7 @@ fn area(parts: &[ModelPart]) -> f32 {
 fn levels_of_every_model_stay_within_its_bounds_and_keep_its_area() {
     for name in ["watchtower.3ds", "farmhouse.obj", "bridge.glb", "tent.glb", "truck.3ds", "firtree.obj"] {
         let model = asset(name);
-        let (min, max) = model.bounds().expect("it has vertices");
+        let Aabb { min, max } = model.bounds().expect("it has vertices");
         let levels = levels(&model);
         let counts: Vec<(usize, f32)> =
             levels.iter().map(|level| (level.triangle_count(), level.error)).collect();

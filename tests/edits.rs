@@ -134,7 +134,7 @@ proptest! {
         (columns, rows) in prop_oneof![(30u32..90, 20u32..80), Just((65, 33)), Just((65, 65))],
         (seed, holes) in (0u64..500, any::<bool>()),
         patch in prop_oneof![Just(8u32), Just(16), Just(64)],
-        exaggeration in prop_oneof![Just(1f32), Just(1.7)],
+        steepness in prop_oneof![Just(1f32), Just(1.7)],
         measure in prop_oneof![Just(ErrorMeasure::Midpoint), Just(ErrorMeasure::Exact)],
         radius in prop_oneof![
             Just(Radius::Plain), Just(Radius::Constrained((1, 1))), Just(Radius::Constrained((2, 1))), Just(Radius::Bounding)
@@ -142,8 +142,8 @@ proptest! {
         eye in (-100f32..900.0, -100f32..900.0, 60f32..400.0),
         brushes in proptest::collection::vec(brushes(), 1..5),
     ) {
-        let options = DynamicOptions { patch, exaggeration, measure, radius, reach: 25.0 };
-        let mut terrain = DynamicTerrain::new(ground(columns, rows, seed, holes), options).expect("sound");
+        let options = DynamicOptions { patch, measure, radius, reach: 25.0 };
+        let mut terrain = DynamicTerrain::new(ground(columns, rows, seed, holes).exaggerated(steepness), options).expect("sound");
         let mut active = all(&terrain, Vec3::from(eye));
         for brush in &brushes {
             let before = terrain.clone();
@@ -163,13 +163,8 @@ proptest! {
 
 #[test]
 fn who_holds_an_epoch_keeps_it_and_otherwise_nothing_is_copied() {
-    let options = DynamicOptions {
-        patch: 16,
-        exaggeration: 1.0,
-        measure: ErrorMeasure::Midpoint,
-        radius: Radius::Plain,
-        reach: 10.0,
-    };
+    let options =
+        DynamicOptions { patch: 16, measure: ErrorMeasure::Midpoint, radius: Radius::Plain, reach: 10.0 };
     let mut terrain = DynamicTerrain::new(ground(40, 40, 3, false), options).expect("sound");
     let crater = Crater { center: DVec2::splat(200.0), radius_m: 50.0, depth_m: 9.0, rim_m: 2.0 };
     let at = terrain.lattice().heights().as_ptr();
@@ -185,13 +180,8 @@ fn who_holds_an_epoch_keeps_it_and_otherwise_nothing_is_copied() {
 
 #[test]
 fn a_brush_beside_the_terrain_begins_no_epoch() {
-    let options = DynamicOptions {
-        patch: 16,
-        exaggeration: 1.0,
-        measure: ErrorMeasure::Exact,
-        radius: Radius::Bounding,
-        reach: 10.0,
-    };
+    let options =
+        DynamicOptions { patch: 16, measure: ErrorMeasure::Exact, radius: Radius::Bounding, reach: 10.0 };
     let mut terrain = DynamicTerrain::new(ground(40, 40, 3, true), options).expect("sound");
     let crater = Crater { center: DVec2::splat(-900.0), radius_m: 50.0, depth_m: 9.0, rim_m: 2.0 };
     assert_eq!(terrain.edit(|lattice| crater.apply(lattice)), None);

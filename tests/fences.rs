@@ -8,8 +8,7 @@ use std::sync::LazyLock;
 
 use glam::{DVec2, Vec3};
 use proptest::prelude::*;
-use sandtable::app::arguments::Access;
-use sandtable::app::load;
+use sandtable::pipeline::scene_file::open_scene;
 use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::scene::Scene;
 use sandtable::scene::picture::display;
@@ -33,7 +32,7 @@ const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 static SCENES: LazyLock<Vec<Scene>> = LazyLock::new(|| {
     let path = Path::new(ROOT).join("scenes/lines.toml");
     let load = |tolerance_px: f32| {
-        let mut scene = load::scene(&path, &Access { allow: Vec::new() }, &|_| {}).expect("sound");
+        let mut scene = open_scene(&path, &[], &|_| {}).expect("sound");
         scene.terrain.tolerance_px = tolerance_px;
         scene
     };
@@ -47,7 +46,7 @@ fn seen(scene: &Scene, eye: (f32, f32, f32), target: (f32, f32)) -> Option<Displ
 }
 
 fn under<'a>(scene: &'a Scene, displayed: &'a dyn TriangleSurface) -> SupportSurface<'a> {
-    let ground = FullResolution { lattice: &scene.terrain.lattice, exaggeration: scene.terrain.exaggeration };
+    let ground = FullResolution { lattice: scene.terrain.displayed() };
     SupportSurface { displayed, ground }
 }
 
@@ -158,7 +157,7 @@ fn built(tables: &str) -> Result<Scene, String> {
         .expect("copied");
     let ground = "[terrain]\ndem = \"hills.png\"\nheight_scale = 0.1\ncell = 10\n";
     let path = scratch.write("scene.toml", format!("{ground}{tables}"));
-    load::scene(&path, &Access { allow: Vec::new() }, &|_| {}).map_err(|failure| format!("{failure:?}"))
+    open_scene(&path, &[], &|_| {}).map_err(|failure| format!("{failure:?}"))
 }
 
 #[test]
@@ -184,10 +183,9 @@ fn a_trench_is_dug_where_the_cells_are_fine_enough_and_tells_its_volume() {
     let line = "points = [[200, 500], [320, 520]]\nkind = \"trench\"\nheight = 3\n";
     let coarse = built(&format!("[[fence]]\n{line}width = 4\n")).expect("sound");
     assert!(coarse.notes.iter().any(|note| note.contains("not dug")), "{:?}", coarse.notes);
-    assert!(coarse.report.table("trenches").is_none());
+    assert!(coarse.report.trenches.is_empty());
     let fine = built(&format!("[[fence]]\n{line}width = 40\n")).expect("sound");
-    let table = fine.report.table("trenches").expect("told");
-    let sandtable::scene::report::ReportCell::Number(cut) = table.rows[0][2] else { panic!("{table:?}") };
+    let cut = fine.report.trenches[0].cut;
     // Depth times the mean of top and bottom width times length, and rounded ends.
     assert!((3.0 * 31.0 * 121.0..3.0 * 31.0 * 175.0).contains(&cut), "{cut}");
 }

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
-use sandtable::dem::gridding::frame::CellGrid;
-use sandtable::dem::gridding::{Beyond, GridError, Gridded, GriddingMethod, grid};
+use sandtable::dem::cell_grid::CellGrid;
+use sandtable::dem::gridding::{BeyondHull, GridError, Gridded, GriddingMethod, grid};
 use sandtable::dem::points::{PointCloud, PointHints, PointsError, read};
 use sandtable::geom::rect::Rect;
 use spade::{DelaunayTriangulation, FloatTriangulation, HasPosition, Point2, Triangulation};
@@ -55,7 +55,7 @@ fn heights(gridded: &Gridded) -> Vec<f64> {
 }
 
 fn made(cloud: &PointCloud, frame: &CellGrid, method: GriddingMethod) -> Vec<f64> {
-    heights(&grid(cloud, frame, method, Beyond::NoData).expect("a grid"))
+    heights(&grid(cloud, frame, method, BeyondHull::NoData).expect("a grid"))
 }
 
 /// The centers of a frame's cells, in the order of a raster.
@@ -201,7 +201,7 @@ fn breaklines_that_cross_meet_at_the_mean_and_are_told() {
     cloud.breaklines = vec![line((1.0, 5.0), (9.0, 5.0), 4.0), line((5.0, 1.0), (5.0, 9.0), 8.0)];
     let frame =
         CellGrid::within(Rect { min: DVec2::splat(4.5), max: DVec2::splat(5.5) }, 1.0).expect("one cell");
-    let gridded = grid(&cloud, &frame, GriddingMethod::Tin, Beyond::NoData).expect("a grid");
+    let gridded = grid(&cloud, &frame, GriddingMethod::Tin, BeyondHull::NoData).expect("a grid");
     assert_eq!(heights(&gridded), [6.0]);
     assert_eq!((gridded.report.crossings.count, gridded.report.crossings.largest_gap), (1, 4.0));
     assert_eq!((gridded.report.points, gridded.report.breaklines), (4, 2));
@@ -241,7 +241,7 @@ fn a_regular_grid_comes_back_where_its_posts_are() {
     let extent = Rect { min: DVec2::splat(-0.05), max: DVec2::new(2.95, 3.95) };
     let frame = CellGrid::within(extent, 0.1).expect("a lattice");
     for method in ALL {
-        let gridded = grid(&cloud(points.clone()), &frame, method, Beyond::Nearest).expect("a grid");
+        let gridded = grid(&cloud(points.clone()), &frame, method, BeyondHull::Nearest).expect("a grid");
         for (row, heights) in heights(&gridded).chunks(30).rev().enumerate() {
             for (column, height) in heights.iter().enumerate() {
                 let wanted = points[row * 30 + column].z;
@@ -260,7 +260,7 @@ fn beyond_the_hull_is_no_data_or_the_nearest_point() {
     let frame = square(10.0, 1.0);
     for method in ALL {
         let holes = made(&cloud(points.clone()), &frame, method);
-        let filled = grid(&cloud(points.clone()), &frame, method, Beyond::Nearest).expect("a grid");
+        let filled = grid(&cloud(points.clone()), &frame, method, BeyondHull::Nearest).expect("a grid");
         assert_eq!((filled.report.filled, holes[0].is_nan(), heights(&filled)[0]), (100, true, 3.0));
         let kept = holes.iter().zip(heights(&filled)).filter(|(height, _)| !height.is_nan());
         assert!(
@@ -276,13 +276,13 @@ fn points_on_a_line_are_refused_or_taken_by_the_nearest() {
         (0..9).map(|at| DVec3::new(f64::from(at), f64::from(at) * 2.0, f64::from(at))).collect();
     let frame = square(10.0, 1.0);
     for method in ALL {
-        let refused = grid(&cloud(points.clone()), &frame, method, Beyond::NoData);
+        let refused = grid(&cloud(points.clone()), &frame, method, BeyondHull::NoData);
         assert!(matches!(refused, Err(GridError::Collinear { sites: 9 })), "{method:?}");
     }
-    assert!(grid(&cloud(points), &frame, GriddingMethod::Nearest, Beyond::Nearest).is_ok());
+    assert!(grid(&cloud(points), &frame, GriddingMethod::Nearest, BeyondHull::Nearest).is_ok());
     let wrong = GriddingMethod::InverseDistance { k: 3, power: f64::NAN };
     assert!(matches!(
-        grid(&cloud(Vec::new()), &frame, wrong, Beyond::NoData),
+        grid(&cloud(Vec::new()), &frame, wrong, BeyondHull::NoData),
         Err(GridError::Parameter { .. })
     ));
 }
@@ -312,7 +312,7 @@ proptest! {
         let low = points.iter().map(|point| point.z).fold(f64::INFINITY, f64::min) - 1e-9;
         let high = points.iter().map(|point| point.z).fold(f64::NEG_INFINITY, f64::max) + 1e-9;
         for method in ALL {
-            let gridded = grid(&cloud(points.clone()), &square(40.0, cell), method, Beyond::Nearest).expect("a grid");
+            let gridded = grid(&cloud(points.clone()), &square(40.0, cell), method, BeyondHull::Nearest).expect("a grid");
             prop_assert!(heights(&gridded).iter().all(|height| (low..=high).contains(height)), "{:?}", method);
         }
     }

@@ -21,6 +21,7 @@ use sandtable::roam::layout::PatchLayout;
 use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::terrain::lattice::{Lattice, Post};
+use sandtable::terrain::query::batch::HeightSlices;
 use sandtable::terrain::query::batch::bilinear_ground;
 use sandtable::terrain::query::service::{HeightService, Snapshot};
 use sandtable::terrain::query::source::{raster_height, source_heights};
@@ -141,7 +142,7 @@ proptest! {
             at.iter().map(|&at| bits(ground_height(&lattice, Interpolation::Bilinear, at))).collect();
         let (mut heights, mut statuses) = (vec![0.0; at.len()], vec![Status::Ok; at.len()]);
         let tiles = HeightTiles::new(&lattice);
-        bilinear_ground(&lattice, Some(&tiles), &at, (&mut heights, &mut statuses));
+        bilinear_ground(&lattice, Some(&tiles), &at, HeightSlices { heights_m: &mut heights, statuses: &mut statuses });
         let tiled: Vec<_> =
             heights.iter().zip(&statuses).map(|(&height, &status)| bits(status.with_height(height))).collect();
         prop_assert!(tiled == single, "read from tiles");
@@ -200,7 +201,12 @@ fn together(
     let mut answers = vec![Answer::NoData; at.len()];
     epoch.heights(surface, interpolation, at, &mut answers);
     let (mut heights, mut statuses) = (vec![0.0; at.len()], vec![Status::NoData; at.len()]);
-    epoch.heights_apart(surface, interpolation, at, (&mut heights, &mut statuses));
+    epoch.heights_apart(
+        surface,
+        interpolation,
+        at,
+        HeightSlices { heights_m: &mut heights, statuses: &mut statuses },
+    );
     for ((&height, &status), answer) in heights.iter().zip(&statuses).zip(&answers) {
         assert_eq!(bits(status.with_height(height)), bits(*answer));
         assert_eq!(height.is_nan(), status != Status::Ok, "no number without a status");
@@ -225,13 +231,8 @@ fn a_large_batch_that_makes_tiles_on_its_way_answers_as_before() {
 #[test]
 fn readers_see_whole_epochs_while_the_ground_is_edited() {
     let flat = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 257, vec![0.0; 257 * 257]).expect("sound");
-    let options = DynamicOptions {
-        patch: 32,
-        exaggeration: 1.0,
-        measure: ErrorMeasure::Midpoint,
-        radius: Radius::Plain,
-        reach: 100.0,
-    };
+    let options =
+        DynamicOptions { patch: 32, measure: ErrorMeasure::Midpoint, radius: Radius::Plain, reach: 100.0 };
     let mut terrain = DynamicTerrain::new(flat, options).expect("large enough");
     let service = service_on(terrain.lattice());
     let at: Vec<DVec2> = (0..20_000)
@@ -248,7 +249,7 @@ fn readers_see_whole_epochs_while_the_ground_is_edited() {
                     Surface::Ground,
                     Interpolation::Bilinear,
                     &at,
-                    (&mut heights, &mut statuses),
+                    HeightSlices { heights_m: &mut heights, statuses: &mut statuses },
                 );
                 // What the batch should have been, post by post, of the epoch that was held.
                 let whole = at.iter().zip(&heights).all(|(&at, height)| {
@@ -282,6 +283,7 @@ fn readers_see_whole_epochs_while_the_ground_is_edited() {
 /// A small world that can be seen at any level of detail.
 struct World {
     lattice: Arc<Lattice>,
+    displayed: Arc<Lattice>,
     layout: PatchLayout,
     errors: ErrorMap,
     heights: PatchHeights,
@@ -305,27 +307,23 @@ impl World {
         let lattice = Lattice::new(DVec2::new(5e5, 4e6), DVec2::splat(30.0), columns, heights);
         let lattice = Arc::new(lattice.expect("sound"));
         let layout = PatchLayout::new(columns, rows, 16).expect("sound");
-        let errors = ErrorMap::exact(&lattice, &layout);
-        let heights = PatchHeights::new(PatchedGround {
-            lattice: &lattice,
-            layout: &layout,
-            exaggeration: EXAGGERATION,
-        });
+        let displayed = Arc::new(lattice.exaggerated(EXAGGERATION));
+        let errors = ErrorMap::exact(&displayed, &layout);
+        let heights = PatchHeights::new(PatchedGround { lattice: &displayed, layout: &layout });
         let service = service_on(&lattice);
         let at = positions(&lattice, 160, 3);
         let epoch = service.snapshot();
         let ground = together(&epoch, Surface::Ground, Interpolation::Planar, &at);
         let source = together(&epoch, Surface::Source, Interpolation::Bilinear, &at);
-        Self { lattice, layout, errors, heights, service, at, ground, source }
+        Self { lattice, displayed, layout, errors, heights, service, at, ground, source }
     }
 
     fn seen_by(&self, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
-        let ground =
-            PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: EXAGGERATION };
-        let patches = patches_in_view(ground, &self.heights, &Frustum::of(camera));
+        let ground = PatchedGround { lattice: &self.displayed, layout: &self.layout };
+        let patches = patches_in_view(ground, &self.heights, &Frustum::new(camera));
         let criterion = ScreenError::new(ground, &self.errors, &self.heights, camera, tolerance_px);
         let active = rebuild(&self.layout, &criterion, patches.iter().copied());
-        DisplayedTerrain::new(Arc::clone(&self.lattice), active, EXAGGERATION, patches)
+        DisplayedTerrain::new(Arc::clone(&self.displayed), active, patches)
     }
 }
 

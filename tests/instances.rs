@@ -2,13 +2,9 @@
 
 mod common;
 
-use common::adapters::gpus;
 use common::forest::{forest, overlook, seen_from};
 use glam::Vec3;
-use sandtable::draw::list::DrawList;
-use sandtable::render::cpu::{Options, SampleCount, render};
-use sandtable::render::gpu::render_on;
-use sandtable::render::picture::Picture;
+use sandtable::render::cpu::{RenderQuality, render};
 use sandtable::scene::picture::{build_draw_list, display, draw_list};
 
 #[test]
@@ -25,7 +21,8 @@ fn leaving_out_what_is_beside_the_picture_changes_no_pixel() {
             seen.items.len(),
             all.items.len()
         );
-        let [seen, all] = [seen, all].map(|list| render(&list, &camera, &Options::default()).expect("sound"));
+        let [seen, all] =
+            [seen, all].map(|list| render(&list, &camera, &RenderQuality::default()).expect("sound"));
         assert!(seen.pixels == all.pixels && seen.features == all.features, "{turn}");
     }
 }
@@ -38,7 +35,7 @@ fn runs_cover_all_items_and_are_few() {
     assert_eq!(runs.iter().map(ExactSizeIterator::len).sum::<usize>(), list.items.len());
     assert!(runs.windows(2).all(|pair| pair[0].end == pair[1].start));
     for run in &runs {
-        assert!(list.items[run.clone()].iter().all(|item| item.is_like(&list.items[run.start])));
+        assert!(list.items[run.clone()].iter().all(|item| item.batches_with(&list.items[run.start])));
     }
     assert!(runs.len() < 200 && list.items.len() > 1500, "{} runs of {} items", runs.len(), list.items.len());
     list.check().expect("sound");
@@ -51,37 +48,10 @@ fn a_forest_is_the_same_bytes_for_one_thread_and_for_two() {
         pool.install(|| {
             let scene = forest(3000, &["firtree.obj", "farmhouse.obj"]);
             let camera = overlook(&scene, (480, 270));
-            render(&build_draw_list(&scene, &camera, &|_| ()).list, &camera, &Options::default())
+            render(&build_draw_list(&scene, &camera, &|_| ()).list, &camera, &RenderQuality::default())
                 .expect("sound")
         })
     };
     let [one, two] = [picture(1), picture(2)];
     assert!(one.pixels == two.pixels && one.features == two.features && one.depth_m == two.depth_m);
-}
-
-#[test]
-fn a_forest_is_nearly_the_same_picture_on_both_renderers() {
-    let scene = forest(3000, &["firtree.obj", "tent.glb"]);
-    let camera = overlook(&scene, (640, 360));
-    let list: DrawList = build_draw_list(&scene, &camera, &|_| ()).list;
-    let options = Options { samples: SampleCount::Four, ..Options::default() };
-    let cpu = render(&list, &camera, &options).expect("sound");
-    for gpu in gpus() {
-        let picture = render_on(gpu, &list, &camera).unwrap_or_else(|error| panic!("{error}"));
-        let count = cpu.pixels.data().len() as f64;
-        let mean = mean_difference(&cpu, &picture);
-        let others =
-            cpu.features.iter().zip(&picture.features).filter(|(a, b)| a != b).count() as f64 / count;
-        println!("{}: {mean:.3} steps, {others:.4} other features", gpu.name());
-        assert!(mean < 1.5, "{mean} steps on {}", gpu.name());
-        // The CPU tells features at its first sample, the GPU at a pixel's center; outlines of trees are many.
-        assert!(others < 0.15, "{others} on {}", gpu.name());
-    }
-}
-
-fn mean_difference(one: &Picture, other: &Picture) -> f64 {
-    let pixels = one.pixels.data().iter().zip(other.pixels.data());
-    let steps = pixels
-        .map(|(a, b)| (0..3).map(|channel| u64::from(a.0[channel].abs_diff(b.0[channel]))).sum::<u64>());
-    steps.sum::<u64>() as f64 / one.pixels.data().len() as f64 / 3.0
 }

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use glam::Vec3;
-use sandtable::model::error::ModelError;
+use sandtable::geom::aabb::Aabb;
+use sandtable::model::error::{CompanionError, ModelError};
 use sandtable::model::read::read;
 use sandtable::model::{Companions, Model};
 use serde_json::Value;
@@ -59,8 +60,8 @@ const MOVED_BY_NODES: [(&str, [f32; 3], [f32; 3]); 19] = [
 struct Folder(PathBuf);
 
 impl Companions for Folder {
-    fn load(&self, name: &str) -> Result<Vec<u8>, String> {
-        std::fs::read(self.0.join(name)).map_err(|error| error.to_string())
+    fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError> {
+        Ok(std::fs::read(self.0.join(name))?)
     }
 }
 
@@ -190,7 +191,7 @@ fn differences(name: &str, path: &Path, model: &Model, row: &Value) -> Vec<Strin
     if OTHER_BOUNDS.contains(&name) || low.x > high.x {
         return wrong;
     }
-    let Some((min, max)) = model.bounds() else { return wrong };
+    let Some(Aabb { min, max }) = model.bounds() else { return wrong };
     let (low, high) = match MOVED_BY_NODES.iter().find(|(file, ..)| *file == name) {
         Some(&(_, low, high)) => (low.into(), high.into()),
         None => (Vec3::new(low.x, -high.z, low.y), Vec3::new(high.x, -low.z, high.y)),
@@ -244,8 +245,8 @@ fn hostile_files_are_refused_or_read_without_harm() {
 struct Nothing;
 
 impl Companions for Nothing {
-    fn load(&self, name: &str) -> Result<Vec<u8>, String> {
-        Err(format!("there is no {name}"))
+    fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError> {
+        Err(format!("there is no {name}").into())
     }
 }
 

@@ -12,7 +12,7 @@ mod skip;
 use std::fs;
 
 use glam::{DAffine2, DVec2};
-use sandtable::dem::mosaic::mosaic;
+use sandtable::dem::mosaic::{Mosaic, MosaicError, Tiles};
 use sandtable::dem::raster::{Raster, Samples};
 use sandtable::dem::read::{DemHints, read};
 use sandtable::dem::voids;
@@ -48,6 +48,14 @@ fn quarters(whole: &Raster) -> Vec<Raster> {
     corners.map(|corner| part(whole, corner, (601, 601))).into()
 }
 
+fn join(rasters: Vec<Raster>) -> Result<Mosaic, MosaicError> {
+    let mut tiles = Tiles::default();
+    for (index, raster) in rasters.into_iter().enumerate() {
+        tiles.push(format!("tile {index}"), raster)?;
+    }
+    tiles.join()
+}
+
 fn same(one: &Raster, two: &Raster) -> bool {
     let alike = |(a, b): (f64, f64)| a == b || (a.is_nan() && b.is_nan());
     one.samples.len() == two.samples.len() && one.samples.iter().zip(two.samples.iter()).all(alike)
@@ -56,7 +64,7 @@ fn same(one: &Raster, two: &Raster) -> bool {
 #[test]
 fn a_tile_cut_up_is_itself_again_when_joined() {
     let Some(whole) = monaco() else { return };
-    let joined = mosaic(quarters(&whole)).expect("of one raster");
+    let joined = join(quarters(&whole)).expect("of one raster");
     assert!(same(&joined.raster, &whole));
     assert_eq!((joined.tiles, joined.differing, joined.gaps), (4, 0, 0));
     // Shared: the cross of a row and a column, its middle three times more than once; voids are not values.
@@ -77,7 +85,7 @@ fn a_seam_that_disagrees_is_told_and_the_first_tile_wins() {
     let (seam, inner) = (values[600], values[own]);
     values[600] += 7.0;
     values[own] += 7.0;
-    let joined = mosaic(tiles).expect("of one raster");
+    let joined = join(tiles).expect("of one raster");
     assert_eq!((joined.differing, joined.greatest_difference), (1, 7.0));
     assert_eq!(joined.raster.at(600, 600), f64::from(seam));
     assert_eq!(joined.raster.at(20, 900), f64::from(inner + 7.0));
@@ -87,7 +95,7 @@ fn a_seam_that_disagrees_is_told_and_the_first_tile_wins() {
 fn a_missing_quarter_is_a_gap() {
     let Some(whole) = monaco() else { return };
     let tiles = quarters(&whole)[..3].to_vec();
-    let joined = mosaic(tiles).expect("of one raster");
+    let joined = join(tiles).expect("of one raster");
     assert_eq!(joined.gaps, 600 * 600);
     assert!(joined.raster.at(0, 0).is_nan() && joined.raster.at(600, 0) == whole.at(600, 0));
 }
@@ -97,9 +105,8 @@ fn tiles_of_two_resolutions_are_refused() {
     let Some(whole) = monaco() else { return };
     let bytes = vec![0; 3601 * 3601 * 2];
     let fine = read("N43E008.hgt", &bytes, &DemHints::default()).expect("a tile");
-    let names = ["N43E007.hgt".to_owned(), "N43E008.hgt".to_owned()];
-    let refused = mosaic(vec![whole, fine]).expect_err("refused").named(&names);
-    assert!(refused.contains("N43E007.hgt and N43E008.hgt") && refused.contains("cells"), "{refused}");
+    let refused = join(vec![whole, fine]).expect_err("refused").to_string();
+    assert!(refused.contains("tile 0 and tile 1") && refused.contains("cells"), "{refused}");
 }
 
 #[test]

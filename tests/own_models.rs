@@ -6,6 +6,8 @@ mod models;
 use std::path::PathBuf;
 
 use glam::Vec3;
+use sandtable::geom::aabb::Aabb;
+use sandtable::model::error::CompanionError;
 use sandtable::model::read::read;
 use sandtable::model::{Census, Companions, Model};
 
@@ -16,8 +18,8 @@ fn folder() -> PathBuf {
 struct Assets;
 
 impl Companions for Assets {
-    fn load(&self, name: &str) -> Result<Vec<u8>, String> {
-        std::fs::read(folder().join(name)).map_err(|error| error.to_string())
+    fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError> {
+        Ok(std::fs::read(folder().join(name))?)
     }
 }
 
@@ -61,7 +63,7 @@ fn every_model_stands_on_the_ground_in_meters() {
         ("firtree.obj", Vec3::new(-2.2, -2.2, -0.5), Vec3::new(2.2, 2.2, 9.1)),
         ("truck.3ds", Vec3::new(-1.3, -3.6, 0.0), Vec3::new(1.3, 3.6, 3.1)),
     ] {
-        let (min, max) = asset(name).bounds().expect("it has vertices");
+        let Aabb { min, max } = asset(name).bounds().expect("it has vertices");
         assert!(min.cmpge(low).all() && max.cmple(high).all(), "{name}: {min} to {max}");
         assert!(
             (min - low).max_element() < 0.35 && (high - max).max_element() < 0.35,

@@ -42,8 +42,7 @@ impl World {
             Lattice::new(DVec2::ZERO, DVec2::splat(10.0), columns, heights.collect()).expect("sound");
         let layout = PatchLayout::new(columns, rows, patch).expect("sound");
         let errors = ErrorMap::exact(&lattice, &layout);
-        let heights =
-            PatchHeights::new(PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 });
+        let heights = PatchHeights::new(PatchedGround { lattice: &lattice, layout: &layout });
         Self { lattice, layout, errors, heights }
     }
 
@@ -55,7 +54,7 @@ impl World {
     }
 
     fn ground(&self) -> PatchedGround<'_> {
-        PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
+        PatchedGround { lattice: &self.lattice, layout: &self.layout }
     }
 
     fn height(&self, vertex: Vertex) -> f32 {

@@ -9,7 +9,7 @@ use sandtable::draw::list::{DrawItem, FeatureId};
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::picture::{ViewDraw, build_draw_list, camera};
-use sandtable::scene::report::ReportCell;
+use sandtable::scene::report::ModelRow;
 use sandtable::scene::{Scene, View};
 use sandtable::terrain::query::{Interpolation, ground_height};
 use sandtable::terrain::triangle_surface::TriangleSurface;
@@ -179,23 +179,19 @@ fn a_plinth_reaches_from_the_house_into_the_ground() {
     assert!(count > 30, "{count} plinths were looked at");
 }
 
-fn number(cell: &ReportCell) -> f64 {
-    match cell {
-        ReportCell::Number(number) => *number,
-        other => panic!("{other:?} is no number"),
-    }
+/// The gaps under the corners: front left, front right, back right and back left.
+fn gaps_of(row: &ModelRow) -> [f64; 4] {
+    [row.gap_front_left, row.gap_front_right, row.gap_back_right, row.gap_back_left]
+        .map(|gap| gap.expect("ground"))
 }
 
 #[test]
 fn a_pad_is_level_ground_and_what_it_cost_is_told() {
     let scene = houses("anchor = \"mean\"\nfooting = \"pad\"");
-    let table = scene.report.table("models").expect("told");
-    assert_eq!(table.rows.len(), 12);
-    for row in &table.rows {
-        for gap in &row[2..6] {
-            assert!(number(gap).abs() < ROUNDING_M, "{row:?}");
-        }
-        assert!(number(&row[8]) > 0.0 && number(&row[9]) > 0.0, "earth was moved: {row:?}");
+    assert_eq!(scene.report.models.len(), 12);
+    for row in &scene.report.models {
+        assert!(gaps_of(row).into_iter().all(|gap| gap.abs() < ROUNDING_M), "{row:?}");
+        assert!(row.cut > Some(0.0) && row.fill > Some(0.0), "earth was moved: {row:?}");
     }
     shots(scene, |_, shot| {
         for item in items(shot) {
@@ -209,20 +205,20 @@ fn a_pad_is_level_ground_and_what_it_cost_is_told() {
 #[test]
 fn the_report_tells_the_gap_under_each_corner() {
     let scene = houses("");
-    let table = scene.report.table("models").expect("told");
     let lattice = &scene.terrain.lattice;
-    for (row, placement) in table.rows.iter().zip(&scene.placements) {
+    assert_eq!(scene.report.models.len(), scene.placements.len());
+    for (row, placement) in scene.report.models.iter().zip(&scene.placements) {
         let at = placement.at.as_dvec2();
         let z = |at: DVec2| {
             ground_height(lattice, Interpolation::Planar, at + lattice.origin()).height_m().expect("ground")
         };
-        assert!((number(&row[1]) - z(at)).abs() < ROUNDING_M);
+        assert!((row.anchor.expect("ground") - z(at)).abs() < ROUNDING_M);
         // Seen from before it, the front is at −Y and its left at −X, turned by π − heading.
         let turn = DVec2::from_angle(std::f64::consts::PI - f64::from(placement.heading_rad));
         let corners = [(-15.0, -10.0), (15.0, -10.0), (15.0, 10.0), (-15.0, 10.0)];
-        for (cell, corner) in row[2..6].iter().zip(corners) {
+        for (reported, corner) in gaps_of(row).into_iter().zip(corners) {
             let gap = 1.5 * (z(at) - z(at + turn.rotate(DVec2::from(corner))));
-            assert!((number(cell) - gap).abs() < 5e-3, "{cell:?} for {gap}");
+            assert!((reported - gap).abs() < 5e-3, "{reported} for {gap}");
         }
     }
 }
@@ -244,8 +240,8 @@ fn instances_stand_at_their_points_as_their_properties_say() {
     let notes = scene.notes.join("\n");
     assert!(notes.contains("12 models of 'row' left out: off the elevation model"), "{notes}");
     assert!(notes.contains("16 models of 'row' name none of its variants; 'shrub' was taken"), "{notes}");
-    let row = &scene.report.table("instances").expect("told").rows[0];
-    assert_eq!(row[1..4], [ReportCell::Count(48), ReportCell::Count(12), ReportCell::Count(16)]);
+    let row = &scene.report.instances[0];
+    assert_eq!((row.models, row.off_the_ground, row.of_no_variant), (48, 12, 16));
 }
 
 #[test]
@@ -253,9 +249,9 @@ fn what_makes_no_sense_is_refused_at_its_place() {
     let model = |lines: &str| format!("[[model]]\nfile = \"house.obj\"\n{lines}\n");
     let instances = "[model.instances]\npoints = [[500, 500]]\n";
     for (lines, place, words) in [
-        ("at = [500, 500]\nvariant = \"kind\"".into(), "8:1", "many points"),
-        (format!("variants = {{ a = \"shrub\" }}\n{instances}"), "7:1", "which of the `variants`"),
-        (format!("variant = \"kind\"\n{instances}"), "7:1", "no `variants`"),
+        ("at = [500, 500]\nvariant = \"kind\"".into(), "8:1", "on a model at one place"),
+        (format!("variants = {{ a = \"shrub\" }}\n{instances}"), "7:1", "without a `variant`"),
+        (format!("variant = \"kind\"\n{instances}"), "7:1", "without `variants`"),
         ("at = [500, 500]\nclamp = \"absolute\"\nheight = 4\ntilt = 3".into(), "10:1", "stated elevation"),
     ] {
         let error = scene(&model(&lines)).err().expect("refused");

@@ -21,9 +21,9 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 use sandtable::annotate::paint::annotate;
-use sandtable::app::labels::annotations;
 use sandtable::description::parse::parse_bytes;
 use sandtable::draw::list::{DepthLayer, FeatureId};
+use sandtable::pipeline::labels::annotations;
 use sandtable::render::cpu;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
@@ -57,7 +57,8 @@ fn picture(scene: &Scene, view: &str, name: &str, size: (u32, u32)) -> Pictured 
     let camera = camera(scene, view, size).expect("a sound camera");
     let shot = build_draw_list(scene, &camera, &|_| ());
     shot.list.check().expect("a sound draw list");
-    let mut picture = cpu::render(&shot.list, &camera, &cpu::Options::default()).expect("a sound draw list");
+    let mut picture =
+        cpu::render(&shot.list, &camera, &cpu::RenderQuality::default()).expect("a sound draw list");
     let showing =
         |wanted: &dyn Fn(u32) -> bool| picture.features.iter().filter(|feature| wanted(feature.0)).count();
     let of_kind = |kind| {

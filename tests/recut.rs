@@ -7,9 +7,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::Vec3;
-use sandtable::app::arguments::Access;
-use sandtable::app::load;
 use sandtable::draw::list::DrawMesh;
+use sandtable::pipeline::scene_file::open_scene;
 use sandtable::ribbon::drape::drape;
 use sandtable::ribbon::patches::Drapes;
 use sandtable::roam::criterion::screen::ScreenError;
@@ -37,9 +36,9 @@ impl Walk<'_> {
     /// One frame; returns what is displayed and how many patches were cut again.
     fn frame(&mut self, camera: &Camera) -> (DisplayedTerrain, usize) {
         let terrain = &self.scene.terrain;
-        let visible = patches_in_view(terrain.ground(), &terrain.patch_heights, &Frustum::of(camera));
+        let visible = patches_in_view(terrain.ground(), terrain.patch_heights(), &Frustum::new(camera));
         let criterion =
-            ScreenError::new(terrain.ground(), &terrain.errors, &terrain.patch_heights, camera, 2.0);
+            ScreenError::new(terrain.ground(), terrain.errors(), terrain.patch_heights(), camera, 2.0);
         let changes = self.coherent.update(&criterion, &visible);
         let seen: BTreeSet<usize> =
             visible.iter().map(|&corner: &Vertex| terrain.layout.patch_index(corner)).collect();
@@ -47,8 +46,7 @@ impl Walk<'_> {
         let stale: BTreeSet<usize> = changes.dirty.iter().copied().chain(came_or_went).collect();
         let stale: Vec<usize> = stale.into_iter().collect();
         let active = self.coherent.active().clone();
-        let displayed =
-            DisplayedTerrain::new(Arc::clone(&terrain.lattice), active, terrain.exaggeration, visible);
+        let displayed = DisplayedTerrain::new(Arc::clone(terrain.displayed()), active, visible);
         self.drapes.recut(&stale, &displayed);
         self.seen = seen;
         (displayed, stale.len())
@@ -68,8 +66,7 @@ fn plan_area(mesh: &DrawMesh) -> f64 {
 #[test]
 fn after_every_frame_of_a_flight_the_drapes_are_what_cutting_all_anew_would_give() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/jacksboro.toml");
-    let scene =
-        load::scene(&path, &Access { allow: Vec::new() }, &|_| {}).expect("the demonstration is sound");
+    let scene = open_scene(&path, &[], &|_| {}).expect("the demonstration is sound");
     let mut walk = Walk {
         scene: &scene,
         coherent: Coherent::new(scene.terrain.layout),

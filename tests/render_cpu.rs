@@ -14,7 +14,7 @@ use sandtable::draw::color::Srgba;
 use sandtable::draw::list::{DrawList, DrawMesh, FeatureId};
 use sandtable::draw::pixels::Pixels;
 use sandtable::mesh::sink::MeshSink;
-use sandtable::render::cpu::{Options, SampleCount, render};
+use sandtable::render::cpu::{RenderQuality, SampleCount, render};
 use sandtable::render::picture::Picture;
 use sandtable::view::camera::Camera;
 
@@ -29,7 +29,7 @@ fn looking(eye: Vec3, target: Vec3, size: (u32, u32)) -> Camera {
 }
 
 fn shot(list: &DrawList, camera: &Camera) -> Picture {
-    render(list, camera, &Options::default()).expect("a sound list")
+    render(list, camera, &RenderQuality::default()).expect("a sound list")
 }
 
 /// The feature at a pixel.
@@ -89,7 +89,7 @@ fn an_empty_list_shows_the_sky() {
     assert_eq!(count(&picture, FeatureId::NONE), 40 * 30);
     assert!(picture.depth_m.iter().all(|&depth| depth == f32::INFINITY));
     let ray = camera.ray_through(glam::Vec2::new(7.5, 3.5));
-    assert_eq!(picture.pixels.at(7, 3), Srgba::from_linear(list.lighting.sky_at(ray)));
+    assert_eq!(picture.pixels.at(7, 3), Srgba::from_linear(list.lighting.sky_color(ray)));
 }
 
 #[test]
@@ -115,7 +115,7 @@ fn every_number_of_samples_sees_the_same_things() {
     let camera = looking(Vec3::new(300.0, -9_400.0, 700.0), Vec3::new(0.0, -3_000.0, 0.0), (330, 190));
     let eight = shot(&list, &camera);
     for samples in [SampleCount::One, SampleCount::Four] {
-        let options = Options { samples, ..Options::default() };
+        let options = RenderQuality { samples, ..RenderQuality::default() };
         let other = render(&list, &camera, &options).expect("a sound list");
         let differing = eight.features.iter().zip(&other.features).filter(|(a, b)| a != b).count();
         assert!(differing < 330 * 190 / 100, "{samples:?}: {differing} pixels");
@@ -135,7 +135,7 @@ fn the_landscape_for_the_eye() {
     ] {
         let camera = looking(eye, target, size);
         for samples in [SampleCount::One, SampleCount::Four, SampleCount::Eight] {
-            let options = Options { samples, ..Options::default() };
+            let options = RenderQuality { samples, ..RenderQuality::default() };
             let start = std::time::Instant::now();
             let picture = render(&list, &camera, &options).expect("a sound list");
             println!("{name} {samples:?}: {} triangles, {:?}", list.triangle_count(), start.elapsed());

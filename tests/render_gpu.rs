@@ -2,6 +2,8 @@
 //!
 //! Without one the tests say so; with `SANDTABLE_REQUIRE_GPU` set they fail instead.
 
+#![cfg(feature = "gpu")]
+
 mod common;
 
 use common::adapters::gpus;
@@ -69,7 +71,7 @@ fn ground_light(list: &DrawList, world: Vec3, albedo: Option<Vec3>) -> Vec3 {
     let map = list.ground.as_ref().expect("the scene has a ground map");
     let post = map.sample(world.truncate());
     let albedo = albedo.unwrap_or_else(|| map.ramp.linear_at(post.height_m));
-    list.lighting.lit(albedo, post.normal(), post.sun_visibility, post.sky_visibility)
+    list.lighting.shade(albedo, post.normal(), post.sun_visibility, post.sky_visibility)
 }
 
 #[test]
@@ -93,7 +95,7 @@ fn ground_drapes_and_sky_show_what_the_formulas_say() {
             assert_eq!(seen.feature, feature, "at {at} on {}", gpu.name());
             let true_depth = camera.project(at).expect("before the camera").depth_m;
             assert!((seen.depth_m - true_depth).abs() < 3.0, "{} m, not {true_depth} m", seen.depth_m);
-            let haze = |light: Vec3| list.lighting.hazed(light, seen.world.distance(camera.eye()));
+            let haze = |light: Vec3| list.lighting.add_haze(light, seen.world.distance(camera.eye()));
             let bare = haze(ground_light(&list, seen.world, None));
             let painted = |color: Srgba| haze(ground_light(&list, seen.world, Some(color.linear())));
             let expected = match feature {
@@ -110,7 +112,7 @@ fn ground_drapes_and_sky_show_what_the_formulas_say() {
 fn assert_sky(picture: &Picture, list: &DrawList, camera: &Camera, gpu: &Gpu) {
     assert_eq!(picture.features[5], FeatureId::NONE);
     assert_eq!(picture.depth_m[5], f32::INFINITY);
-    let expected = list.lighting.sky_at(camera.ray_through(Vec2::new(5.5, 0.5)));
+    let expected = list.lighting.sky_color(camera.ray_through(Vec2::new(5.5, 0.5)));
     let seen = Seen {
         color: picture.pixels.at(5, 0),
         feature: FeatureId::NONE,
@@ -155,8 +157,8 @@ fn a_textured_box_stands_before_the_ground() {
         assert_eq!(seen.feature, HOUSE);
         assert!((seen.world.z - top.z).abs() < 0.05, "{} m, not {} m", seen.world.z, top.z);
         let light = |texel: Srgba| {
-            let lit = list.lighting.lit(texel.linear(), Vec3::Z, 1.0, 1.0);
-            Srgba::from_linear(list.lighting.hazed(lit, seen.world.distance(camera.eye())))
+            let lit = list.lighting.shade(texel.linear(), Vec3::Z, 1.0, 1.0);
+            Srgba::from_linear(list.lighting.add_haze(lit, seen.world.distance(camera.eye())))
         };
         let (dark, bright) = (light(Srgba::opaque(190, 120, 90)), light(Srgba::opaque(210, 200, 180)));
         let blue = seen.color.0[2];
@@ -178,23 +180,24 @@ fn a_mask_leaves_holes_and_a_pane_lets_light_through() {
         assert_eq!(post.feature, MASKED);
         assert_ne!(hole.feature, MASKED);
         assert!(hole.depth_m > post.depth_m);
-        let lit = list.lighting.lit(FENCE_COLOR.linear(), Vec3::NEG_Y, 1.0, 1.0);
-        let expected = list.lighting.hazed(lit, post.world.distance(camera.eye()));
+        let lit = list.lighting.shade(FENCE_COLOR.linear(), Vec3::NEG_Y, 1.0, 1.0);
+        let expected = list.lighting.add_haze(lit, post.world.distance(camera.eye()));
         assert_color(&post, expected, "fence", gpu);
 
         let pane = on_board(PANE, 0.1);
         let behind = seen(&picture, &camera, pane);
         assert_eq!(behind.feature, FeatureId::GROUND, "a clear pane shows what lies behind it");
-        let below =
-            list.lighting.hazed(ground_light(&list, behind.world, None), behind.world.distance(camera.eye()));
-        let lit = list.lighting.lit(PANE_COLOR.linear(), Vec3::NEG_Y, 1.0, 1.0);
-        let own = list.lighting.hazed(lit, pane.distance(camera.eye()));
+        let below = list
+            .lighting
+            .add_haze(ground_light(&list, behind.world, None), behind.world.distance(camera.eye()));
+        let lit = list.lighting.shade(PANE_COLOR.linear(), Vec3::NEG_Y, 1.0, 1.0);
+        let own = list.lighting.add_haze(lit, pane.distance(camera.eye()));
         assert_color(&behind, below.lerp(own, PANE_COLOR.alpha()), "pane", gpu);
     }
 }
 
 #[test]
-fn a_one_sided_board_is_not_seen_from_behind_and_a_two_sided_one_turns_its_normal() {
+fn a_one_sided_board_has_no_back_and_a_two_sided_one_turns_its_normal() {
     let mut list = scene();
     let eye = on_board(FENCE, 0.0) + Vec3::new(0.0, 150.0, 60.0);
     let camera = Camera::new(eye, on_board(FENCE, 0.0), 0.8, (320, 240), (1.0, 5000.0)).expect("sound");
@@ -202,8 +205,8 @@ fn a_one_sided_board_is_not_seen_from_behind_and_a_two_sided_one_turns_its_norma
         material_of(&mut list, MASKED).two_sided = true;
         let post = seen(&drawn(gpu, &list, &camera), &camera, on_board(FENCE, -0.375));
         assert_eq!(post.feature, MASKED);
-        let lit = list.lighting.lit(FENCE_COLOR.linear(), Vec3::Y, 1.0, 1.0);
-        let expected = list.lighting.hazed(lit, post.world.distance(camera.eye()));
+        let lit = list.lighting.shade(FENCE_COLOR.linear(), Vec3::Y, 1.0, 1.0);
+        let expected = list.lighting.add_haze(lit, post.world.distance(camera.eye()));
         assert_color(&post, expected, "the fence's back", gpu);
         material_of(&mut list, MASKED).two_sided = false;
         let picture = drawn(gpu, &list, &camera);
@@ -268,7 +271,7 @@ fn what_does_not_fit_is_refused_in_a_sentence() {
     for gpu in gpus() {
         match render_on(gpu, &DrawList::default(), &wide) {
             Ok(picture) => assert_eq!(picture.pixels.width(), 16384),
-            Err(GpuError::PictureSize { limit, .. }) => assert!(limit < 16384),
+            Err(GpuError::TooLarge { limit, .. }) => assert!(limit < 16384),
             Err(other) => panic!("{other}"),
         }
         let mut unsound = list.clone();

@@ -5,15 +5,19 @@
 //! a pixel only where there is one; so features and depths are held against one sample, colors against the
 //! four that the GPU takes too.
 
+#![cfg(feature = "gpu")]
+
 mod common;
 
 use common::adapters::gpus;
+use common::forest::{forest, overlook};
 use common::synthetic::{camera, scene, scene_with_contours};
 use glam::Vec3;
 use sandtable::draw::list::DrawList;
-use sandtable::render::cpu::{Options, SampleCount, render};
+use sandtable::render::cpu::{RenderQuality, SampleCount, render};
 use sandtable::render::gpu::render_on;
 use sandtable::render::picture::Picture;
+use sandtable::scene::picture::build_draw_list;
 use sandtable::view::camera::Camera;
 
 /// How much two pictures differ.
@@ -62,7 +66,7 @@ impl Difference {
 
 fn compare(list: &DrawList, camera: &Camera, what: &str) {
     let on_cpu = |samples| {
-        let options = Options { samples, ..Options::default() };
+        let options = RenderQuality { samples, ..RenderQuality::default() };
         render(list, camera, &options).unwrap_or_else(|error| panic!("{error}"))
     };
     let (one, four) = (on_cpu(SampleCount::One), on_cpu(SampleCount::Four));
@@ -95,4 +99,31 @@ fn a_view_straight_down_is_the_same_on_both() {
     let (eye, target) = (Vec3::new(320.0, 320.0, 900.0), Vec3::new(320.0, 320.0, 0.0));
     let camera = Camera::new(eye, target, 0.8, (400, 400), (1.0, 5000.0)).expect("sound");
     compare(&scene(), &camera, "from above");
+}
+
+#[test]
+fn a_forest_is_nearly_the_same_picture_on_both_renderers() {
+    let scene = forest(3000, &["firtree.obj", "tent.glb"]);
+    let camera = overlook(&scene, (640, 360));
+    let list = build_draw_list(&scene, &camera, &|_| ()).list;
+    let options = RenderQuality { samples: SampleCount::Four, ..RenderQuality::default() };
+    let cpu = render(&list, &camera, &options).expect("sound");
+    for gpu in gpus() {
+        let picture = render_on(gpu, &list, &camera).unwrap_or_else(|error| panic!("{error}"));
+        let count = cpu.pixels.data().len() as f64;
+        let mean = mean_difference(&cpu, &picture);
+        let others =
+            cpu.features.iter().zip(&picture.features).filter(|(a, b)| a != b).count() as f64 / count;
+        println!("{}: {mean:.3} steps, {others:.4} other features", gpu.name());
+        assert!(mean < 1.5, "{mean} steps on {}", gpu.name());
+        // The CPU tells features at its first sample, the GPU at a pixel's center; outlines of trees are many.
+        assert!(others < 0.15, "{others} on {}", gpu.name());
+    }
+}
+
+fn mean_difference(one: &Picture, other: &Picture) -> f64 {
+    let pixels = one.pixels.data().iter().zip(other.pixels.data());
+    let steps = pixels
+        .map(|(a, b)| (0..3).map(|channel| u64::from(a.0[channel].abs_diff(b.0[channel]))).sum::<u64>());
+    steps.sum::<u64>() as f64 / one.pixels.data().len() as f64 / 3.0
 }

@@ -11,7 +11,6 @@ use sandtable::geom::polygon;
 use sandtable::scene::Scene;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
-use sandtable::scene::report::ReportCell;
 use sandtable::terrain::query::gradient::{GradientSurface, ground_gradient};
 use sandtable::terrain::query::{Interpolation, ground_height};
 
@@ -144,10 +143,9 @@ fn slope_and_elevation_limits_hold_and_what_they_cost_is_told() {
         assert!((119.99..=200.01).contains(&height), "{height}");
         assert!((9.9..=25.1).contains(&slope), "{slope}");
     }
-    let row = &scene.report.table("scattered").expect("told").rows[0];
-    assert_eq!(row[1], ReportCell::Count(scene.placements.len()));
-    assert!(matches!(row[3], ReportCell::Count(steep) if steep > 1000));
-    assert!(matches!(row[4], ReportCell::Count(low) if low > 1000), "{row:?}");
+    let row = &scene.report.scattered[0];
+    assert_eq!(row.models, scene.placements.len());
+    assert!(row.by_slope > 1000 && row.by_elevation > 1000, "{row:?}");
     assert!(scene.notes.iter().any(|note| note.contains("models stand in 1 area")), "{:?}", scene.notes);
 }
 

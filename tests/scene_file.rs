@@ -6,12 +6,15 @@ mod layers;
 mod schema;
 
 use proptest::prelude::{ProptestConfig, any};
+use sandtable::description::color::{Color, RampChoice};
 use sandtable::description::diagnostic::Diagnostics;
-use sandtable::description::document::{Color, Document, RampChoice};
-use sandtable::description::expression::{ComputedWord, Quantity};
-use sandtable::description::features::{Match, Scalar};
+use sandtable::description::document::Document;
+use sandtable::description::feature_value::FeatureValue;
 use sandtable::description::parse::{MAX_BYTES, parse, parse_bytes};
+use sandtable::description::scalar::Scalar;
+use sandtable::description::selection::Selection;
 use sandtable::description::words::{Clamp, LabelKind, RampName, RoadSurface};
+use sandtable::geom::crs::Crs;
 
 /// Every key that there is.
 const COMPLETE: &str = r##"title = "Tal 山谷"
@@ -216,8 +219,8 @@ fn a_scene_with_every_key_is_read_completely() {
     let document = read(COMPLETE).unwrap_or_else(|errors| panic!("{errors}"));
     assert_eq!(document.title.as_deref(), Some("Tal 山谷"));
     assert_eq!(document.subtitle.as_deref(), Some("from the south"));
-    assert_eq!(document.crs.as_ref().map(|crs| crs.get_ref().as_str()), Some("EPSG:32616"));
-    assert_eq!(document.points_crs.as_ref().map(|crs| crs.get_ref().as_str()), Some("epsg:4326"));
+    assert_eq!(document.crs.as_ref().and_then(Crs::epsg), Some(32616));
+    assert_eq!(document.points_crs.as_ref().and_then(Crs::epsg), Some(4326));
     assert_eq!((document.roads.len(), document.rivers.len(), document.lakes.len()), (2, 1, 1));
     assert_eq!((document.models.len(), document.labels.len(), document.cameras.len()), (1, 1, 2));
     let furniture = document.furniture;
@@ -231,26 +234,20 @@ fn a_scene_with_every_key_is_read_completely() {
 fn the_ground_and_its_look_are_read() {
     let document = read(COMPLETE).expect("a valid scene");
     let terrain = &document.terrain;
-    assert_eq!(*terrain.dem.get_ref(), ["data/hill.tif"]);
-    let number = |value: &Option<toml::Spanned<f64>>| value.as_ref().map(|value| *value.get_ref());
-    assert_eq!(number(&terrain.height_scale), Some(0.5));
-    assert_eq!(number(&terrain.height_offset), Some(-10.0));
-    assert_eq!(number(&terrain.cell), Some(30.0));
-    assert_eq!(number(&terrain.vertical_exaggeration), Some(1.5));
-    assert_eq!(number(&terrain.tolerance_px), Some(0.5));
+    assert_eq!(*terrain.dem, ["data/hill.tif"]);
+    assert_eq!((terrain.height_scale, terrain.height_offset, terrain.cell), (Some(0.5), -10.0, Some(30.0)));
+    assert_eq!((terrain.vertical_exaggeration, terrain.tolerance_px), (1.5, 0.5));
     let style = &document.style;
     let stops = vec![
         (0.0, Color([0x1b, 0x78, 0x37, 255])),
         (500.5, Color([255; 4])),
         (1000.0, Color([0x10, 0x20, 0x30, 0x40])),
     ];
-    assert_eq!(style.ramp.as_ref().map(|ramp| ramp.get_ref()), Some(&RampChoice::Stops(stops)));
-    assert_eq!(number(&style.haze), Some(0.0));
+    assert_eq!((&*style.ramp, style.haze), (&RampChoice::Stops(stops), Some(0.0)));
     let contours = style.contours.as_ref().expect("contours");
-    assert_eq!(*contours.interval.get_ref(), 20.0);
-    assert_eq!(contours.major_every.as_ref().map(|every| *every.get_ref()), Some(10));
-    assert_eq!(contours.color.as_ref().map(|color| *color.get_ref()), Some(Color([0x80, 0x55, 0x2a, 0x80])));
-    assert_eq!((number(&style.light.azimuth), number(&style.light.altitude)), (Some(225.0), Some(90.0)));
+    assert_eq!((contours.interval, contours.major_every), (20.0, 10));
+    assert_eq!(contours.color, Some(Color([0x80, 0x55, 0x2a, 0x80])));
+    assert_eq!((style.light.azimuth, style.light.altitude), (225.0, 90.0));
 }
 
 #[test]
@@ -259,30 +256,19 @@ fn features_are_read_with_their_sources() {
     let [first, second] = &document.roads[..] else { panic!("two roads") };
     assert_eq!(first.name.as_deref(), Some("B 17"));
     let points = first.source.points.as_ref().expect("points");
-    assert_eq!(points.get_ref(), &[[-87.0, 42.0], [-87.1, 42.1], [-87.2, 42.0]]);
-    assert_eq!(first.source.span(), points.span());
-    assert_eq!(
-        first.surface.as_ref().map(|surface| surface.get_ref().clone()),
-        Some(ComputedWord::Fixed(RoadSurface::Gravel))
-    );
-    assert_eq!(second.source.file.as_ref().map(|file| file.get_ref().as_str()), Some("roads.geojson"));
-    let filter = second.source.filter.as_ref().expect("a filter").get_ref();
-    assert_eq!(filter["lanes"], Match::Is(Scalar::Number(2.0)));
-    assert_eq!(filter["bridge"].values(), [Scalar::Bool(false)]);
-    let kinds = ["primary", "secondary"].map(|kind| Scalar::Text(kind.into()));
-    assert_eq!(filter["highway"], Match::AnyOf(kinds.to_vec()));
-    assert_eq!(
-        document.lakes[0].level.as_ref().map(|level| level.get_ref().clone()),
-        Some(Quantity::fixed(412.5))
-    );
+    assert_eq!(**points, [[-87.0, 42.0], [-87.1, 42.1], [-87.2, 42.0]]);
+    assert_eq!(Some(first.source.span()), points.span());
+    assert_eq!(first.surface.stated(), Some(&FeatureValue::Fixed(RoadSurface::Gravel)));
+    assert_eq!(second.source.file.as_ref().map(|file| file.as_str()), Some("roads.geojson"));
+    let Some(Selection::Matching(wanted)) = second.source.selection.as_deref() else { panic!("a filter") };
+    assert_eq!(wanted["lanes"], [Scalar::Number(2.0)]);
+    assert_eq!(wanted["bridge"], [Scalar::Bool(false)]);
+    assert_eq!(wanted["highway"], ["primary", "secondary"].map(|kind| Scalar::Text(kind.into())));
+    assert_eq!(document.lakes[0].level, Some(FeatureValue::Fixed(412.5)));
     let model = &document.models[0];
-    assert_eq!(
-        (model.file.get_ref().as_str(), *model.at.as_ref().expect("one place").get_ref()),
-        ("models/barn.3ds", [1.0, 2.0])
-    );
-    assert_eq!(model.clamp.as_ref().map(|clamp| *clamp.get_ref()), Some(Clamp::Relative));
-    assert_eq!(document.labels[0].kind.as_ref().map(|kind| *kind.get_ref()), Some(LabelKind::Summit));
-    assert_eq!(document.cameras[1].eye_elevation.as_ref().map(|eye| *eye.get_ref()), Some(3000.0));
+    assert_eq!((model.file.as_str(), model.at.as_deref()), ("models/barn.3ds", Some(&[1.0, 2.0])));
+    assert_eq!((model.clamp, document.labels[0].kind), (Clamp::Relative, LabelKind::Summit));
+    assert_eq!(document.cameras[1].eye_elevation, Some(3000.0));
 }
 
 #[test]
@@ -297,8 +283,8 @@ fn a_ramp_may_be_a_word_and_tables_may_be_inline() {
     let text =
         format!("{LEAST}[style]\nramp = \"desert\"\ncontours = {{ interval = 5 }}\nlight.azimuth = 3\n");
     let style = read(&text).unwrap_or_else(|errors| panic!("{errors}")).style;
-    assert_eq!(style.ramp.map(|ramp| ramp.into_inner()), Some(RampChoice::Named(RampName::Desert)));
-    assert!(style.contours.is_some() && style.light.azimuth.is_some());
+    assert_eq!(*style.ramp, RampChoice::Named(RampName::Desert));
+    assert!(style.contours.is_some() && style.light.azimuth == 3.0);
 }
 
 /// What stands after [`LEAST`] (whose two lines come first), and what the messages must contain.
@@ -434,11 +420,11 @@ const BROKEN: &[(&str, &[&str])] = &[
     ),
     (
         "[[road]]\npoints = [[0, 0], [1, 1]]\nwhere = { a = 1 }\n",
-        &["hill.toml:5:1:", "`where` chooses features of a file"],
+        &["hill.toml:5:1:", "`where` has no effect on inline `points`", "name a `file`"],
     ),
     (
         "[[road]]\npoints = [[0, 0], [1, 1]]\nlayer = \"a\"\n",
-        &["hill.toml:5:1:", "`layer` names a layer of a file"],
+        &["hill.toml:5:1:", "`layer` has no effect on inline `points`"],
     ),
     ("[[model]]\nfile = \"m\"\nat = [0, 0]\nheight = 3\n", &["hill.toml:6:1:", "`clamp = \"relative\"`"]),
     (
@@ -532,7 +518,9 @@ fn later_rooms_can_point_at_a_value() {
     let shown = error.to_string();
     assert!(shown.starts_with("hill.toml:7:7: error: no such file\n"), "{shown}");
     assert!(
-        shown.contains("7 | dem = \"data/hill.tif\"\n  |       ^^^^^^^^^^^^^^^\n  = help: check the name"),
+        shown.contains(
+            "7 | dem = \"data/hill.tif\"\n  |       ^^^^^^^^^^^^^^^\n  |\n  = help: check the name"
+        ),
         "{shown}"
     );
 }

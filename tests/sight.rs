@@ -445,7 +445,7 @@ fn a_profile_over_a_sinusoid_has_its_length_its_ascent_and_its_extremes() {
         (50.0 * (std::f64::consts::TAU * f64::from(column) * CELL.x / 640.0).sin()) as f32
     });
     let line = [ORIGIN + DVec2::new(0.0, 20.0), ORIGIN + DVec2::new(6400.0, 20.0)];
-    let summary = ProfileSummary::of(&profile(&wave, &line));
+    let summary = ProfileSummary::from_stations(&profile(&wave, &line));
     assert!(
         (summary.ascent_m - 1000.0).abs() < 1e-3 && (summary.descent_m - 1000.0).abs() < 1e-3,
         "{summary:?}"

@@ -19,8 +19,6 @@ use sandtable::terrain::lattice::Lattice;
 use sandtable::terrain::triangle_surface::TriangleSurface;
 use sandtable::view::camera::Camera;
 
-const EXAGGERATION: f32 = 1.5;
-
 /// Rough ground with hills, the same for the same seed; one post in `hole_every` has no data, 0 for none.
 fn terrain(columns: u32, rows: u32, seed: u64, hole_every: u64) -> Lattice {
     let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
@@ -92,7 +90,7 @@ proptest! {
     ) {
         let lattice = terrain(columns, rows, seed, hole_every);
         let layout = PatchLayout::new(columns, rows, 16).expect("sound");
-        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: EXAGGERATION };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let eye = Vec3::from(eye);
         for map in kinds(ground, reach) {
             prop_assert_eq!(map.check(ground), Ok(()));
@@ -119,7 +117,7 @@ proptest! {
     ) {
         let lattice = terrain(columns, rows, seed, 30);
         let layout = PatchLayout::new(columns, rows, 32).expect("sound");
-        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: EXAGGERATION };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let own: Vec<f32> = midpoint_errors(&lattice, &layout).into_iter().map(|error| error * 7.0).collect();
         let expected = nested_plainly(ground, &own);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be had");
@@ -131,10 +129,10 @@ proptest! {
     fn errors_of_a_vertex_alone_or_raised_give_the_same_plain_spheres(seed in 0u64..1000) {
         let lattice = terrain(65, 65, seed, 0);
         let layout = PatchLayout::new(65, 65, 64).expect("sound");
-        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: EXAGGERATION };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let own = midpoint_errors(&lattice, &layout);
         let raised = SphereMap::plain(ground, &ErrorMap::raised(own.clone(), &layout), 20.0);
-        let alone = own.into_iter().map(|error| (20.0 * f64::from(error) * f64::from(EXAGGERATION)) as f32);
+        let alone = own.into_iter().map(|error| (20.0 * f64::from(error)) as f32);
         let alone = SphereMap::nested(ground, alone.collect());
         prop_assert!(raised == alone);
     }
@@ -162,14 +160,14 @@ proptest! {
         let camera = Camera::new(Vec3::from(eye), target, 0.8, (800, 600), (0.5, 20_000.0));
         prop_assume!(camera.is_ok());
         let camera = camera.expect("checked");
-        let ground = PatchedGround { lattice, layout, exaggeration: EXAGGERATION };
+        let ground = PatchedGround { lattice, layout };
         let map = SphereMap::bounding(ground, errors, reach(&camera, tolerance_px));
         let active = rebuild(layout, &Spheres::new(ground, &map, camera.eye()), layout.patches());
-        let shown = DisplayedTerrain::new(Arc::clone(lattice), active, EXAGGERATION, layout.patches().collect());
+        let shown = DisplayedTerrain::new(Arc::clone(lattice), active, layout.patches().collect());
         for post in lattice.posts().step_by(5) {
             let plan = lattice.position(post);
             let Some(z) = shown.displayed_z(plan.as_dvec2()) else { continue };
-            let truth = plan.extend(lattice.height(post) * EXAGGERATION);
+            let truth = plan.extend(lattice.height(post));
             let (Some(true_px), Some(shown_px)) = (camera.project(truth), camera.project(plan.extend(z as f32)))
             else { continue };
             let (width, height) = camera.size();
@@ -187,13 +185,13 @@ fn level_ground_never_shows_and_a_hole_always_does() {
     let layout = PatchLayout::new(17, 17, 16).expect("sound");
     let make = |heights: &[f32]| Lattice::new(DVec2::ZERO, DVec2::ONE, 17, heights.to_vec()).expect("sound");
     let level = make(&heights);
-    let ground = PatchedGround { lattice: &level, layout: &layout, exaggeration: 1.0 };
+    let ground = PatchedGround { lattice: &level, layout: &layout };
     for map in kinds(ground, 50.0) {
         assert!(map.values().iter().all(|&radius| radius == 0.0));
     }
     heights[8 * 17 + 8] = f32::NAN;
     let holed = make(&heights);
-    let ground = PatchedGround { lattice: &holed, layout: &layout, exaggeration: 1.0 };
+    let ground = PatchedGround { lattice: &holed, layout: &layout };
     for map in kinds(ground, 0.0) {
         assert_eq!(map.at(&layout, Vertex::new(8, 8)), f32::INFINITY);
         assert_eq!(map.check(ground), Ok(()));
@@ -204,8 +202,9 @@ fn level_ground_never_shows_and_a_hole_always_does() {
 fn a_map_in_which_a_child_reaches_out_of_its_parent_is_found_out() {
     let lattice = terrain(17, 17, 1, 0);
     let layout = PatchLayout::new(17, 17, 16).expect("sound");
-    let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
-    let steep = PatchedGround { exaggeration: 3.0, ..ground };
+    let ground = PatchedGround { lattice: &lattice, layout: &layout };
+    let steep = lattice.exaggerated(3.0);
     let [map, ..] = kinds(ground, 5.0);
+    let steep = PatchedGround { lattice: &steep, ..ground };
     assert!(map.check(steep).is_err_and(|why| why.contains("its child")));
 }

@@ -7,7 +7,8 @@ use glam::DVec2;
 use sandtable::geom::crs::Crs;
 use sandtable::vector::error::VectorError;
 use sandtable::vector::feature::{Geometry, VectorLayer};
-use sandtable::vector::read::{VectorHints, read};
+use sandtable::vector::hints::VectorHints;
+use sandtable::vector::read::read;
 use serde_json::Value;
 
 #[allow(dead_code, reason = "each test uses its own part")]
@@ -270,7 +271,7 @@ fn read_all(path: &Path, bytes: &[u8]) -> Result<(), VectorError> {
         read(&path.to_string_lossy(), bytes, &hints).map(drop)
     };
     match read(None) {
-        Err(VectorError::WhichLayer { found, .. }) => found.split(", ").try_for_each(|name| read(Some(name))),
+        Err(VectorError::WhichLayer { names }) => names.iter().try_for_each(|name| read(Some(name))),
         other => other,
     }
 }

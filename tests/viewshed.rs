@@ -172,8 +172,8 @@ fn holds_on(name: &str, lattice: &Lattice) {
             ..options(ORIGIN)
         };
         let differences = differences(lattice, &options);
-        let looked_at = viewshed(lattice, &options).map_or(0, |viewshed| viewshed.looked_at);
-        println!("{name} from {grid}: {looked_at} of {} posts by line", lattice.heights().len());
+        let lines = viewshed(lattice, &options).map_or(0, |viewshed| viewshed.lines);
+        println!("{name} from {grid}: {lines} of {} posts by line", lattice.heights().len());
         assert!(differences.is_empty(), "{name} {grid}: {} of them", differences.len());
     }
 }

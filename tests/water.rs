@@ -4,8 +4,6 @@ mod common;
 
 use glam::{DVec2, Vec3};
 use proptest::prelude::*;
-use sandtable::app::arguments::Access;
-use sandtable::app::load;
 use sandtable::dem::read as dem;
 use sandtable::description::parse::parse_bytes;
 use sandtable::draw::list::DepthLayer;
@@ -15,10 +13,10 @@ use sandtable::earthworks::channel::flow::Flow;
 use sandtable::earthworks::channel::{Channel, check_rise};
 use sandtable::earthworks::shore;
 use sandtable::geom::polyline::Polyline;
+use sandtable::pipeline::scene_file::open_scene;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::picture::{build_draw_list, camera};
-use sandtable::scene::report::ReportCell;
 use sandtable::scene::{FeatureKind, Scene};
 use sandtable::terrain::lattice::{Lattice, Post};
 use sandtable::vector::feature::Geometry;
@@ -228,17 +226,7 @@ fn a_bed_of_more_posts_than_there_is_time_for_is_refused() {
 
 fn gallery(name: &str) -> Scene {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);
-    load::scene(&path, &Access { allow: Vec::new() }, &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))
-}
-
-fn numbers(scene: &Scene, table: &str, column: &str) -> Vec<f64> {
-    let table = scene.report.table(table).expect("told of");
-    let at = table.columns.iter().position(|named| named.name == column).expect("a column");
-    let number = |row: &Vec<ReportCell>| match row[at] {
-        ReportCell::Number(number) => number,
-        _ => f64::NAN,
-    };
-    table.rows.iter().map(number).collect()
+    open_scene(&path, &[], &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))
 }
 
 #[test]
@@ -267,19 +255,19 @@ fn a_lake_is_level_for_every_camera() {
 #[test]
 fn the_report_tells_of_every_river_and_lake() {
     let scene = gallery("river.toml");
-    let (from, to) = (numbers(&scene, "rivers", "from"), numbers(&scene, "rivers", "to"));
-    assert_eq!(from.len(), 3);
-    assert!(from.iter().zip(&to).all(|(from, to)| from > to), "{from:?} {to:?}");
-    let scene = gallery("lake.toml");
-    assert_eq!(numbers(&scene, "lakes", "level"), [312.5]);
-    assert!(numbers(&scene, "lakes", "area")[0] > 1e5);
+    let rivers = &scene.report.rivers;
+    assert_eq!(rivers.len(), 3);
+    assert!(rivers.iter().all(|river| river.to.is_some() && river.from > river.to), "{rivers:?}");
+    let lakes = gallery("lake.toml").report.lakes;
+    assert!(lakes.len() == 1 && lakes[0].level == 312.5 && lakes[0].area > 1e5, "{lakes:?}");
 }
 
 #[test]
 fn no_river_of_the_gallery_is_a_canyon() {
     for name in ["river.toml", "lake.toml", "jacksboro.toml"] {
         let scene = gallery(name);
-        let deepest = numbers(&scene, "rivers", "deepest cut").into_iter().fold(0.0, f64::max);
+        let deepest = scene.report.rivers.iter().map(|river| river.deepest_cut).reduce(f64::max);
+        let deepest = deepest.expect("a river");
         assert!(deepest < 10.0 + ROUNDING_M, "{name}: {deepest} m");
     }
 }
@@ -289,11 +277,11 @@ fn a_river_over_a_hill_is_told_of_and_a_deeper_cut_lets_it_through() {
     // The ground rises eastward, and of two ends that lie level with each other neither is the lower.
     let points = "points = [[60, 150], [250, 160], [60, 170]]\nwidth = 4\n";
     let scene = ramp(&format!("[[river]]\n{points}")).expect("sound");
-    assert_eq!(numbers(&scene, "rivers", "greatest climb").len(), 1);
-    assert!(numbers(&scene, "rivers", "greatest climb")[0] > 10.0);
+    assert_eq!(scene.report.rivers.len(), 1);
+    assert!(scene.report.rivers[0].greatest_climb > Some(10.0));
     assert!(scene.notes.iter().any(|note| note.contains("rises downstream at")), "{:?}", scene.notes);
     let scene = ramp(&format!("[[river]]\n{points}max_cut = 40\n")).expect("sound");
-    assert!(numbers(&scene, "rivers", "deepest cut")[0] > 10.0);
+    assert!(scene.report.rivers[0].deepest_cut > 10.0);
     assert!(!scene.notes.iter().any(|note| note.contains("rises downstream at")), "{:?}", scene.notes);
 }
 
@@ -322,9 +310,9 @@ fn a_lake_takes_its_level_by_its_rule() {
     let shore = "points = [[50, 100], [90, 100], [250, 50], [250, 250], [50, 250]]\n";
     for (rule, low, high) in [("lowest", 104.99, 105.01), ("median", 115.0, 121.0), ("mean", 113.0, 120.0)] {
         let scene = ramp(&format!("[[lake]]\n{shore}level_rule = \"{rule}\"\n")).expect("sound");
-        let level = numbers(&scene, "lakes", "level")[0];
+        let level = scene.report.lakes[0].level;
         assert!(level > low && level < high, "{rule}: {level}");
-        assert_eq!(numbers(&scene, "lakes", "lowest shore")[0], 105.0);
+        assert_eq!(scene.report.lakes[0].lowest_shore, Some(105.0));
     }
 }
 
@@ -357,7 +345,7 @@ fn widths_stay_with_their_points_when_a_river_is_turned_downstream() {
 fn draped_water_moves_no_earth() {
     let text = "[[river]]\npoints = [[50, 150], [250, 150]]\nwater = \"drape\"\n";
     let scene = ramp(text).expect("sound");
-    assert!(scene.report.table("rivers").is_none());
+    assert!(scene.report.rivers.is_empty());
     assert!(scene.terrain.lattice.pinned().iter().all(|pinned| !pinned));
 }
 
@@ -371,7 +359,8 @@ fn thousands_of_real_streams_fall_all_the_way() {
     let mut lattice = Lattice::from_raster(&raster).expect("sound");
     let crs = raster.crs.expect("stated");
     let bytes = read("derived/streams_west.fgb");
-    let layer = vector::read("streams_west.fgb", &bytes, &vector::VectorHints::default()).expect("sound");
+    let layer = vector::read("streams_west.fgb", &bytes, &sandtable::vector::hints::VectorHints::default())
+        .expect("sound");
     let lines = layer.features.iter().flat_map(|feature| match &feature.geometry {
         Geometry::Lines(lines) => lines.clone(),
         _ => Vec::new(),

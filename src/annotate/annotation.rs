@@ -1,13 +1,14 @@
-//! What to paint on a picture, in the picture's own coordinates.
+//! What to paint on a picture, in picture coordinates.
 //!
-//! Whoever fills these in has projected places to pixels and tested them against the depth buffer: nothing
-//! here knows a scene or its terrain.
+//! The caller has projected places to pixels and tested them against the depth buffer: annotations know neither scene
+//! nor terrain.
 
 use glam::Vec2;
 
 use crate::annotate::legend::Legend;
 use crate::annotate::north::NorthArrow;
 use crate::annotate::scale_bar::ScaleBar;
+use crate::description::words::LabelKind;
 
 /// Everything to paint on one picture.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -24,38 +25,23 @@ pub struct Annotations {
     pub scale_bar: Option<ScaleBar>,
     /// The elevation legend, lower right.
     pub legend: Option<Legend>,
-    /// Where the data come from, small along the lower border.
+    /// The source of the data, small along the lower border.
     pub credit: Option<String>,
 }
 
 /// A name at a place on the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureLabel {
-    /// What it says: a name, and smaller on further lines what is to be known about it.
+    /// The name; on further lines, in smaller type, notes on it.
     pub text: String,
     /// The place on the ground: pixels from the picture's upper left corner, Y down.
     pub anchor_px: Vec2,
-    /// The upper end of the leader line; `None`, or a point not above the anchor, leaves its length to
-    /// the placement.
+    /// The upper end of the leader line; `None`, or a point not above the anchor, leaves its length to the placement.
     pub top_px: Option<Vec2>,
     /// Meters from the eye to the place; among labels of a kind the nearer are placed first.
     pub depth_m: f32,
     /// Whether the place is seen, not hidden behind terrain.
     pub visible: bool,
-    /// What is named.
-    pub kind: LabelClass,
-}
-
-/// What a label names, by falling importance.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum LabelClass {
-    /// A summit: a triangle, name and height.
-    Summit,
-    /// A settlement, building or other place: a dot and a name.
-    #[default]
-    Place,
-    /// A lake, river or bay: blue and slanted, on the water itself where there is room.
-    Water,
-    /// A point of interest: a small dot and a small name.
-    Point,
+    /// What it names: decides importance, type and symbol.
+    pub kind: LabelKind,
 }

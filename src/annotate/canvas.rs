@@ -1,9 +1,9 @@
 //! Painting drawings on a picture: `tiny_skia` over [`Pixels`], in place.
 //!
-//! `tiny_skia` wants colors multiplied by alpha, pictures hold them straight. For opaque pixels the two
-//! are the same bytes, so a rendered picture is painted on without a copy. The few translucent pixels are
-//! multiplied first and remembered; when painting ends, those still untouched get their old bytes back and
-//! only the painted ones are divided again, so that annotating never changes a pixel it does not paint.
+//! `tiny_skia` needs colors multiplied by alpha; pictures hold straight colors. For opaque pixels the two are the same
+//! bytes, so that a rendered picture needs no copy. The few translucent pixels are multiplied first and recorded.
+//! Afterward the untouched ones get their old bytes back, and only painted ones are divided: annotating never changes a
+//! pixel that it does not paint.
 
 use tiny_skia::{ColorU8, FillRule, Paint, PixmapMut, PremultipliedColorU8, Transform};
 
@@ -11,50 +11,29 @@ use crate::annotate::drawing::{Drawing, PaintedPath};
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 
-/// A picture being painted on; [`Canvas::finish`] makes it a picture of straight colors again.
-pub struct Canvas<'a> {
-    pixels: &'a mut Pixels,
-    translucent: Vec<Translucent>,
-}
-
-/// A pixel that is not opaque: where, as it was, and as it was multiplied.
+/// A pixel that is not opaque: its index, its color, and its color multiplied by alpha.
 struct Translucent {
     index: usize,
     straight: Srgba,
     multiplied: Srgba,
 }
 
-impl<'a> Canvas<'a> {
-    /// Starts painting on `pixels`.
-    pub fn over(pixels: &'a mut Pixels) -> Self {
-        let translucent: Vec<_> = pixels
-            .data()
-            .iter()
-            .enumerate()
-            .filter(|(_, color)| color.0[3] < 255)
-            .map(|(index, &straight)| Translucent { index, straight, multiplied: multiply(straight) })
-            .collect();
-        for pixel in &translucent {
-            pixels.data_mut()[pixel.index] = pixel.multiplied;
-        }
-        Self { pixels, translucent }
+/// Paints `drawings` on `pixels`, in order; what lies outside the picture is cut off.
+pub fn paint<'a>(pixels: &mut Pixels, drawings: impl IntoIterator<Item = &'a Drawing>) {
+    let translucent: Vec<_> = (pixels.data().iter().enumerate())
+        .filter(|(_, color)| color.0[3] < 255)
+        .map(|(index, &straight)| Translucent { index, straight, multiplied: multiply(straight) })
+        .collect();
+    for pixel in &translucent {
+        pixels.data_mut()[pixel.index] = pixel.multiplied;
     }
-
-    /// Paints the marks of `drawing`; what lies outside the picture is cut off.
-    pub fn draw(&mut self, drawing: &Drawing) {
-        let (width, height) = (self.pixels.width(), self.pixels.height());
-        let bytes = bytemuck::cast_slice_mut(self.pixels.data_mut());
-        let Some(mut map) = PixmapMut::from_bytes(bytes, width, height) else { return };
-        drawing.marks().iter().for_each(|mark| fill(&mut map, mark));
+    let (width, height) = (pixels.width(), pixels.height());
+    if let Some(mut map) = PixmapMut::from_bytes(bytemuck::cast_slice_mut(pixels.data_mut()), width, height) {
+        drawings.into_iter().flat_map(Drawing::marks).for_each(|mark| fill(&mut map, mark));
     }
-
-    /// Ends painting: colors are straight again.
-    pub fn finish(self) {
-        let data = self.pixels.data_mut();
-        for pixel in self.translucent {
-            let painted = data[pixel.index];
-            data[pixel.index] = if painted == pixel.multiplied { pixel.straight } else { divide(painted) };
-        }
+    for pixel in translucent {
+        let painted = &mut pixels.data_mut()[pixel.index];
+        *painted = if *painted == pixel.multiplied { pixel.straight } else { divide(*painted) };
     }
 }
 
@@ -96,9 +75,7 @@ mod tests {
     fn pixels_that_are_not_painted_keep_every_byte_whatever_their_alpha() {
         let before = Pixels::from_fn(16, 16, |x, y| Srgba([x as u8 * 16, 7, y as u8, (x * y) as u8]));
         let mut after = before.clone();
-        let mut canvas = Canvas::over(&mut after);
-        canvas.draw(&square(Srgba::opaque(1, 2, 3)));
-        canvas.finish();
+        paint(&mut after, [&square(Srgba::opaque(1, 2, 3))]);
         for (x, y) in (0..16).flat_map(|y| (0..16).map(move |x| (x, y))) {
             let inside = (2..6).contains(&x) && (2..6).contains(&y);
             let expected = if inside { Srgba::opaque(1, 2, 3) } else { before.at(x, y) };
@@ -109,9 +86,7 @@ mod tests {
     #[test]
     fn paint_on_a_transparent_picture_keeps_its_own_straight_color() {
         let mut pixels = Pixels::filled(8, 8, Srgba([200, 200, 200, 0]));
-        let mut canvas = Canvas::over(&mut pixels);
-        canvas.draw(&square(Srgba([250, 120, 60, 128])));
-        canvas.finish();
+        paint(&mut pixels, [&square(Srgba([250, 120, 60, 128]))]);
         let painted = pixels.at(3, 3).0;
         assert_eq!(painted[3], 128);
         for (is, was) in painted.iter().zip([250, 120, 60]) {
@@ -123,9 +98,7 @@ mod tests {
     #[test]
     fn half_of_white_over_black_is_gray() {
         let mut pixels = Pixels::filled(8, 8, Srgba::opaque(0, 0, 0));
-        let mut canvas = Canvas::over(&mut pixels);
-        canvas.draw(&square(Srgba([255, 255, 255, 128])));
-        canvas.finish();
+        paint(&mut pixels, [&square(Srgba([255, 255, 255, 128]))]);
         assert!(pixels.at(3, 3).0[0].abs_diff(128) <= 1);
         assert_eq!(pixels.at(3, 3).0[3], 255);
     }
@@ -133,8 +106,6 @@ mod tests {
     #[test]
     fn an_empty_picture_is_no_error() {
         let mut pixels = Pixels::filled(0, 9, Srgba::WHITE);
-        let mut canvas = Canvas::over(&mut pixels);
-        canvas.draw(&square(Srgba::WHITE));
-        canvas.finish();
+        paint(&mut pixels, [&square(Srgba::WHITE)]);
     }
 }

@@ -1,4 +1,4 @@
-//! A chart's frame: title, axes with round ticks and units, and the scale between meters and pixels.
+//! A chart's frame: title, axes with nice ticks and units, and the scale between meters and pixels.
 //!
 //! ```text
 //!   title                                     note
@@ -9,51 +9,51 @@
 //!   start            axis label              end
 //! ```
 //!
-//! What is drawn in the plot is up to [`chart_profile`](crate::annotate::chart_profile) and
-//! [`chart_sight`](crate::annotate::chart_sight).
+//! [`chart_profile`](crate::annotate::chart_profile) and [`chart_sight`](crate::annotate::chart_sight) draw the plot.
 
 use glam::Vec2;
 
-use crate::annotate::canvas::Canvas;
+use crate::annotate::canvas::paint;
+use crate::annotate::composer::{Composer, widest};
 use crate::annotate::drawing::Drawing;
-use crate::annotate::nice::{number, short_number, ticks};
-use crate::annotate::paragraph::fitted;
+use crate::annotate::nice::{Ticks, format_trimmed};
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 use crate::annotate::sheet::{INK, PAPER, SOFT_INK, Sheet};
-use crate::annotate::text::{CAP_HEIGHT, TextLine, TextStyle, Typesetter, halos, write};
+use crate::annotate::text::{TextLine, TextStyle};
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 
-/// The plot's ground, where there is nothing: a pale sky.
+/// The plot's background: a pale sky.
 const SKY: Srgba = Srgba::opaque(0xee, 0xf2, 0xf3);
-/// Lines at round heights and distances.
+/// Lines at nice heights and distances.
 const GRID: Srgba = Srgba([0x1e, 0x23, 0x27, 0x1c]);
 /// Distances from this one on are counted in kilometers.
 const KILOMETERS_FROM_M: f64 = 5000.0;
-/// Ground this level, as a share of the line's length, is not stretched to the plot's full height: noise is no mountain.
+/// The least range of heights, as a share of the line's length: level ground must not be stretched into mountains.
 const LEAST_RELIEF: f64 = 1.0 / 400.0;
-/// Room below the lowest and above the highest height, as shares of the relief: for labels, and for the ground to stand
-/// on something.
-const ROOM: (f64, f64) = (0.16, 0.16);
+/// Space below the lowest and above the highest height, as a share of the relief: for labels and a strip of ground.
+const SPACE: f64 = 0.16;
+/// Height of the title and of the subtitle, in design pixels.
+const TITLE_SIZES: [f32; 2] = [26.0, 17.0];
 
-/// What stands around the plot.
+/// The texts around the plot.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Surroundings {
+pub struct ChartText {
     /// Upper left, large.
     pub title: String,
-    /// Below the title: a sentence about what is seen.
+    /// Below the title: a sentence about the chart.
     pub subtitle: String,
-    /// What the upward axis counts, with its unit.
+    /// The quantity of the upward axis, with its unit.
     pub height_axis: String,
-    /// What the axis along the line counts, without its unit.
+    /// The quantity of the axis along the line, without its unit.
     pub along_axis: String,
-    /// What the line starts at; below the axis.
+    /// The name of the line's start; below the axis.
     pub start: String,
-    /// What it ends at.
+    /// The name of its end.
     pub end: String,
 }
 
-/// Between meters and pixels.
+/// The scale between meters and pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChartFrame {
     /// Where things are plotted.
@@ -65,7 +65,7 @@ pub struct ChartFrame {
 }
 
 impl ChartFrame {
-    /// Where something `along_m` along the line and `height_m` high is.
+    /// The pixel position of a point `along_m` along the line and `height_m` high.
     pub fn at(&self, along_m: f64, height_m: f64) -> Vec2 {
         let size = self.plot.size();
         let right = along_m / self.length_m;
@@ -73,7 +73,7 @@ impl ChartFrame {
         Vec2::new(self.plot.min.x + right as f32 * size.x, self.plot.max.y - up as f32 * size.y)
     }
 
-    /// How many times heights are stretched against distances.
+    /// The factor by which heights are stretched against distances.
     pub fn exaggeration(&self) -> f64 {
         let size = self.plot.size();
         let up = f64::from(size.y) / (self.heights_m.1 - self.heights_m.0);
@@ -83,215 +83,200 @@ impl ChartFrame {
 
 /// A chart being painted.
 pub struct Chart {
-    /// Sizes.
-    pub sheet: Sheet,
-    /// Type.
-    pub setter: Typesetter,
-    /// Where things are.
+    /// Sizes and type.
+    pub composer: Composer,
+    /// The scale.
     pub frame: ChartFrame,
-    /// What lies under what is plotted.
-    pub below: Drawing,
+    /// What lies under the plotted things.
+    background: Drawing,
     /// What is plotted.
     pub plotted: Drawing,
 }
 
-/// Begins a chart of `size` pixels for a line `length_m` long and heights from `low_m` to `high_m`.
-///
-/// What is not finite, or a line without length, is charted as a meter.
-pub fn begin(size: (u32, u32), around: &Surroundings, length_m: f64, (low_m, high_m): (f64, f64)) -> Chart {
-    let sheet = Sheet::new(size.0, size.1);
-    let mut setter = Typesetter::new();
-    let length_m = if length_m.is_finite() && length_m > 0.0 { length_m } else { 1.0 };
-    let heights_m = range((low_m, high_m), length_m);
-    let plot = plot_box(&sheet, around, heights_m, &mut setter);
-    let frame = ChartFrame { plot, length_m, heights_m };
-    let mut below = Drawing::default();
-    below.rect(sheet.bounds(), PAPER);
-    below.rect(plot, SKY);
-    let mut chart = Chart { sheet, setter, frame, below, plotted: Drawing::default() };
-    chart.titles(around);
-    chart.height_axis(around);
-    chart.along_axis(around);
-    chart
+impl Chart {
+    /// Begins a chart of `size` pixels for a line `length_m` long and heights from `low_m` to `high_m`.
+    ///
+    /// A range that is not finite, and a line without length, are charted as one meter.
+    pub fn new(
+        (width, height): (u32, u32),
+        text: &ChartText,
+        length_m: f64,
+        (low_m, high_m): (f64, f64),
+    ) -> Self {
+        let mut composer = Composer::new(width, height);
+        let sheet = composer.sheet;
+        let length_m = if length_m.is_finite() && length_m > 0.0 { length_m } else { 1.0 };
+        let heights_m = height_range((low_m, high_m), length_m);
+        let (top, bottom) = plot_rows(&sheet, text);
+        let figures = height_figures(heights_m, bottom - top, &mut composer);
+        let left = (margin(&sheet) + widest(&figures) + sheet.px(12.0)).round();
+        let right = (sheet.size.x - margin(&sheet) - sheet.px(12.0)).round().max(left + 8.0);
+        let plot = PixelBox { min: Vec2::new(left, top), max: Vec2::new(right, bottom) };
+        let mut background = Drawing::default();
+        background.rect(sheet.bounds(), PAPER);
+        background.rect(plot, SKY);
+        let frame = ChartFrame { plot, length_m, heights_m };
+        let mut chart = Self { composer, frame, background, plotted: Drawing::default() };
+        chart.draw_titles(text);
+        chart.draw_height_axis(text, &figures);
+        chart.draw_along_axis(text);
+        chart
+    }
+
+    fn figure_style(&self) -> TextStyle {
+        figure_style(&self.composer)
+    }
+
+    /// Writes `text` with its baseline starting at `at`, cut to `most_px`.
+    fn write_fitted(&mut self, text: &str, style: TextStyle, at: Vec2, most_px: f32, color: Srgba) {
+        if let Some(line) = self.composer.fitted(text, style, most_px) {
+            self.background.write(&line, at, color);
+        }
+    }
+
+    fn draw_titles(&mut self, text: &ChartText) {
+        let (margin, plot) = (margin(&self.composer.sheet), self.frame.plot);
+        let [title_size, subtitle_size] = TITLE_SIZES;
+        let width = plot.max.x - margin;
+        let style = self.composer.style(title_size, TextStyle::MEDIUM);
+        let baseline = margin + style.cap_px();
+        self.write_fitted(&text.title, style, Vec2::new(margin, baseline), width, INK);
+        if !text.subtitle.is_empty() {
+            let style = self.composer.style(subtitle_size, TextStyle::REGULAR);
+            let at = Vec2::new(margin, baseline + (style.size_px * 1.6).round());
+            self.write_fitted(&text.subtitle, style, at, width, SOFT_INK);
+        }
+        let stretched = format!("heights ×{}", format_trimmed(self.frame.exaggeration(), 1));
+        let note = self.composer.line(&stretched, self.figure_style());
+        let at = Vec2::new(plot.max.x - note.advance, plot.min.y - note.style.size_px * 0.95);
+        self.background.write(&note, at.round(), SOFT_INK);
+    }
+
+    fn draw_height_axis(&mut self, text: &ChartText, figures: &[(f64, TextLine)]) {
+        let (sheet, frame, style) = (self.composer.sheet, self.frame, self.figure_style());
+        for (height_m, figure) in figures {
+            let y = frame.at(0.0, *height_m).y.round();
+            self.draw_grid_line(Vec2::new(frame.plot.min.x, y), Vec2::new(frame.plot.max.x, y));
+            let x = frame.plot.min.x - sheet.px(8.0) - figure.advance;
+            self.background.write(figure, Vec2::new(x, y + style.cap_px() * 0.5), INK);
+        }
+        let at = Vec2::new(margin(&sheet), frame.plot.min.y - style.size_px * 0.95).round();
+        self.write_fitted(&text.height_axis, style, at, frame.plot.size().x * 0.7, SOFT_INK);
+    }
+
+    fn draw_along_axis(&mut self, text: &ChartText) {
+        let (sheet, frame, style) = (self.composer.sheet, self.frame, self.figure_style());
+        let PixelBox { min, max } = frame.plot;
+        let (unit_m, unit) = if frame.length_m >= KILOMETERS_FROM_M { (1000.0, "km") } else { (1.0, "m") };
+        let most = (frame.plot.size().x / (style.size_px * 7.0)) as usize;
+        let ticks = Ticks::new(0.0, frame.length_m / unit_m, most.clamp(2, 12));
+        let baseline = max.y + sheet.px(8.0) + style.cap_px();
+        for (value, figure) in self.composer.figures(&ticks, style) {
+            let x = frame.at(value * unit_m, 0.0).x.round();
+            self.draw_grid_line(Vec2::new(x, min.y), Vec2::new(x, max.y + sheet.px(5.0)));
+            self.background.write(&figure, Vec2::new(x - figure.advance * 0.5, baseline), INK);
+        }
+        let below = (baseline + style.size_px * 1.9).round();
+        let label = self.composer.line(&format!("{} ({unit})", text.along_axis), style);
+        let label_at = Vec2::new(frame.plot.center().x - label.advance * 0.5, below);
+        self.background.write(&label, label_at, SOFT_INK);
+        let width = (frame.plot.size().x - label.advance) * 0.5 - style.size_px * 2.0;
+        self.write_fitted(&text.start, style, Vec2::new(min.x, below), width, INK);
+        if let Some(end) = self.composer.fitted(&text.end, style, width) {
+            self.background.write(&end, Vec2::new(max.x - end.advance, below), INK);
+        }
+    }
+
+    fn draw_grid_line(&mut self, from: Vec2, to: Vec2) {
+        // A line one pixel wide is crisp where its middle is a pixel's.
+        let line = PixelSegment { from: from + 0.5, to: to + 0.5 };
+        self.background.line(line, self.composer.sheet.hairline(), GRID);
+    }
+
+    /// Writes text beside a point, moved aside where it would leave the plot.
+    pub fn label(&mut self, text: &str, at: Vec2, side: LabelSide, color: Srgba) {
+        let style = self.composer.style(15.0, TextStyle::MEDIUM);
+        let line = self.composer.line(text, style);
+        let sheet = self.composer.sheet;
+        let away = sheet.px(11.0);
+        let plot = self.frame.plot.grown(-sheet.px(6.0));
+        let most = (plot.max.x - line.advance).max(plot.min.x);
+        let x = (at.x - line.advance * 0.5).clamp(plot.min.x, most);
+        let y = match side {
+            LabelSide::Above => at.y - away,
+            LabelSide::WellAbove => at.y - away - style.size_px * 2.4,
+            LabelSide::Below => at.y + away + style.cap_px(),
+        };
+        let least = plot.min.y + style.cap_px();
+        let at = Vec2::new(x, y.clamp(least, plot.max.y.max(least))).round();
+        self.plotted.write_haloed(&line, at, sheet.px(3.0), color);
+    }
+
+    /// Draws a tick across the plot's lower edge, where the line bends.
+    pub fn tick_below(&mut self, along_m: f64) {
+        let sheet = self.composer.sheet;
+        let at = Vec2::new(self.frame.at(along_m, 0.0).x.round(), self.frame.plot.max.y);
+        let down = Vec2::new(0.0, sheet.px(7.0));
+        self.plotted.line(PixelSegment { from: at - down, to: at + down }, sheet.px(1.5).max(1.0), INK);
+    }
+
+    /// Draws a dot in a ring of paper.
+    pub fn dot(&mut self, at: Vec2, color: Srgba) {
+        self.plotted.disc(at, self.composer.sheet.px(6.5), PAPER);
+        self.plotted.disc(at, self.composer.sheet.px(4.5), color);
+    }
+
+    /// Paints the chart.
+    pub fn finish(mut self) -> Pixels {
+        let sheet = self.composer.sheet;
+        self.plotted.frame(self.frame.plot.grown(sheet.hairline()), sheet.hairline().round(), SOFT_INK);
+        let mut pixels = Pixels::filled(sheet.size.x as u32, sheet.size.y as u32, PAPER);
+        paint(&mut pixels, [&self.background, &self.plotted]);
+        pixels
+    }
 }
 
 /// The heights at the plot's edges.
-fn range((low_m, high_m): (f64, f64), length_m: f64) -> (f64, f64) {
+fn height_range((low_m, high_m): (f64, f64), length_m: f64) -> (f64, f64) {
     let (low_m, high_m) =
         if low_m <= high_m && (high_m - low_m).is_finite() { (low_m, high_m) } else { (0.0, 1.0) };
     let least_m = (length_m * LEAST_RELIEF).max(1.0);
     let short_m = (least_m - (high_m - low_m)).max(0.0);
     let (low_m, high_m) = (low_m - short_m * 0.5, high_m + short_m * 0.5);
     let relief_m = high_m - low_m;
-    (low_m - ROOM.0 * relief_m, high_m + ROOM.1 * relief_m)
+    (low_m - SPACE * relief_m, high_m + SPACE * relief_m)
 }
 
-fn figures(sheet: &Sheet) -> TextStyle {
-    TextStyle::upright(sheet.type_px(15.0), TextStyle::REGULAR)
+fn margin(sheet: &Sheet) -> f32 {
+    sheet.whole_px(30.0)
 }
 
-fn height_ticks(sheet: &Sheet, heights_m: (f64, f64), height_px: f32) -> (Vec<f64>, usize) {
-    let most = (height_px / (figures(sheet).size_px * 3.2)) as usize;
-    ticks(heights_m.0, heights_m.1, most.clamp(2, 9))
+fn figure_style(composer: &Composer) -> TextStyle {
+    composer.style(15.0, TextStyle::REGULAR)
 }
 
-fn plot_box(
-    sheet: &Sheet,
-    around: &Surroundings,
-    heights_m: (f64, f64),
-    setter: &mut Typesetter,
-) -> PixelBox {
-    let figure_px = figures(sheet).size_px;
-    let margin = sheet.whole_px(30.0);
-    let titles = sheet.type_px(26.0) * 1.25
-        + if around.subtitle.is_empty() { 0.0 } else { sheet.type_px(17.0) * 1.5 }
-        + sheet.px(26.0);
-    // Above the plot its height's label; below it figures and the line of start, axis label and end.
-    let top = (margin + titles + figure_px * 1.5).round();
-    let bottom = (sheet.size.y - margin - figure_px * 3.6).round().max(top + 8.0);
-    let (heights, decimals) = height_ticks(sheet, heights_m, bottom - top);
-    let widest = heights
-        .iter()
-        .map(|&height| setter.line(&number(height, decimals), figures(sheet)).advance)
-        .fold(0.0, f32::max);
-    let left = (margin + widest + sheet.px(12.0)).round();
-    let right = (sheet.size.x - margin - sheet.px(12.0)).round().max(left + 8.0);
-    PixelBox { min: Vec2::new(left, top), max: Vec2::new(right, bottom) }
+fn height_figures(heights_m: (f64, f64), height_px: f32, composer: &mut Composer) -> Vec<(f64, TextLine)> {
+    let style = figure_style(composer);
+    let most = (height_px / (style.size_px * 3.2)) as usize;
+    composer.figures(&Ticks::new(heights_m.0, heights_m.1, most.clamp(2, 9)), style)
 }
 
-impl Chart {
-    fn titles(&mut self, around: &Surroundings) {
-        let (sheet, plot) = (self.sheet, self.frame.plot);
-        let margin = sheet.whole_px(30.0);
-        let title = TextStyle::upright(sheet.type_px(26.0), TextStyle::MEDIUM);
-        let stretched = format!("heights ×{}", short_number(self.frame.exaggeration(), 1));
-        let note = self.setter.line(&stretched, figures(&sheet));
-        let baseline = margin + title.size_px * CAP_HEIGHT;
-        let room = plot.max.x - margin;
-        if let Some(line) = fitted(&mut self.setter, &around.title, title, room) {
-            write(&mut self.below, &[(&line, Vec2::new(margin, baseline))], INK);
-        }
-        if !around.subtitle.is_empty() {
-            let face = TextStyle::upright(sheet.type_px(17.0), TextStyle::REGULAR);
-            let at = Vec2::new(margin, baseline + (face.size_px * 1.6).round());
-            if let Some(line) = fitted(&mut self.setter, &around.subtitle, face, room) {
-                write(&mut self.below, &[(&line, at)], SOFT_INK);
-            }
-        }
-        let at = Vec2::new(plot.max.x - note.advance, plot.min.y - note.face.size_px * 0.95);
-        write(&mut self.below, &[(&note, at.round())], SOFT_INK);
-    }
-
-    fn height_axis(&mut self, around: &Surroundings) {
-        let (sheet, frame) = (self.sheet, self.frame);
-        let face = figures(&sheet);
-        let (heights, decimals) = height_ticks(&sheet, frame.heights_m, frame.plot.size().y);
-        for height_m in heights {
-            let y = frame.at(0.0, height_m).y.round();
-            self.rule(Vec2::new(frame.plot.min.x, y), Vec2::new(frame.plot.max.x, y));
-            let figure = self.setter.line(&number(height_m, decimals), face);
-            let x = frame.plot.min.x - sheet.px(8.0) - figure.advance;
-            let at = Vec2::new(x, y + face.size_px * CAP_HEIGHT * 0.5);
-            write(&mut self.below, &[(&figure, at)], INK);
-        }
-        let room = frame.plot.size().x * 0.7;
-        if let Some(label) = fitted(&mut self.setter, &around.height_axis, face, room) {
-            let at = Vec2::new(sheet.whole_px(30.0), frame.plot.min.y - face.size_px * 0.95);
-            write(&mut self.below, &[(&label, at.round())], SOFT_INK);
-        }
-    }
-
-    fn along_axis(&mut self, around: &Surroundings) {
-        let (sheet, frame) = (self.sheet, self.frame);
-        let face = figures(&sheet);
-        let (unit_m, unit) = if frame.length_m >= KILOMETERS_FROM_M { (1000.0, "km") } else { (1.0, "m") };
-        let most = (frame.plot.size().x / (face.size_px * 7.0)) as usize;
-        let (marks, decimals) = ticks(0.0, frame.length_m / unit_m, most.clamp(2, 12));
-        let baseline = frame.plot.max.y + sheet.px(8.0) + face.size_px * CAP_HEIGHT;
-        for mark in marks {
-            let x = frame.at(mark * unit_m, 0.0).x.round();
-            self.rule(Vec2::new(x, frame.plot.min.y), Vec2::new(x, frame.plot.max.y + sheet.px(5.0)));
-            let figure = self.setter.line(&number(mark, decimals), face);
-            let at = Vec2::new(x - figure.advance * 0.5, baseline);
-            write(&mut self.below, &[(&figure, at)], INK);
-        }
-        let below = (baseline + face.size_px * 1.9).round();
-        let label = self.setter.line(&format!("{} ({unit})", around.along_axis), face);
-        let middle = frame.plot.center().x;
-        let label_at = Vec2::new(middle - label.advance * 0.5, below);
-        write(&mut self.below, &[(&label, label_at)], SOFT_INK);
-        let room = (frame.plot.size().x - label.advance) * 0.5 - face.size_px * 2.0;
-        let left = frame.plot.min.x;
-        if let Some(start) = fitted(&mut self.setter, &around.start, face, room) {
-            write(&mut self.below, &[(&start, Vec2::new(left, below))], INK);
-        }
-        if let Some(end) = fitted(&mut self.setter, &around.end, face, room) {
-            write(&mut self.below, &[(&end, Vec2::new(frame.plot.max.x - end.advance, below))], INK);
-        }
-    }
-
-    fn rule(&mut self, from: Vec2, to: Vec2) {
-        // A line one pixel wide is crisp where its middle is a pixel's.
-        let half = Vec2::splat(0.5);
-        self.below.line(PixelSegment { from: from + half, to: to + half }, self.sheet.hairline(), GRID);
-    }
-
-    /// Writes text beside a point, above it or below, moved aside where it would leave the plot.
-    pub fn label(&mut self, text: &str, at: Vec2, side: LabelSide, color: Srgba) {
-        let face = TextStyle::upright(self.sheet.type_px(15.0), TextStyle::MEDIUM);
-        let line = self.setter.line(text, face);
-        let away = self.sheet.px(11.0);
-        let plot = self.frame.plot.grown(-self.sheet.px(6.0));
-        let most = (plot.max.x - line.advance).max(plot.min.x);
-        let x = (at.x - line.advance * 0.5).clamp(plot.min.x, most);
-        let y = match side {
-            LabelSide::Above => at.y - away,
-            LabelSide::WellAbove => at.y - away - face.size_px * 2.4,
-            LabelSide::Below => at.y + away + face.size_px * CAP_HEIGHT,
-        };
-        let least = plot.min.y + face.size_px * CAP_HEIGHT;
-        let at = Vec2::new(x, y.clamp(least, plot.max.y.max(least))).round();
-        self.write_haloed(&line, at, color);
-    }
-
-    fn write_haloed(&mut self, line: &TextLine, at: Vec2, color: Srgba) {
-        let reach = self.sheet.px(3.0);
-        halos(&mut self.plotted, &[(line, at)], reach);
-        write(&mut self.plotted, &[(line, at)], color);
-    }
-
-    /// A mark below the plot's lower edge, where the line bends.
-    pub fn tick_below(&mut self, along_m: f64) {
-        let at = Vec2::new(self.frame.at(along_m, 0.0).x.round(), self.frame.plot.max.y);
-        let down = Vec2::new(0.0, self.sheet.px(7.0));
-        self.plotted.line(PixelSegment { from: at - down, to: at + down }, self.sheet.px(1.5).max(1.0), INK);
-    }
-
-    /// A dot in a ring of paper.
-    pub fn dot(&mut self, at: Vec2, color: Srgba) {
-        self.plotted.disc(at, self.sheet.px(6.5), PAPER);
-        self.plotted.disc(at, self.sheet.px(4.5), color);
-    }
-
-    /// Paints the chart.
-    pub fn finish(mut self) -> Pixels {
-        let sheet = self.sheet;
-        self.plotted.frame(self.frame.plot.grown(sheet.hairline()), sheet.hairline().round(), SOFT_INK);
-        let mut pixels = Pixels::filled(sheet.size.x as u32, sheet.size.y as u32, PAPER);
-        let mut canvas = Canvas::over(&mut pixels);
-        canvas.draw(&self.below);
-        canvas.draw(&self.plotted);
-        canvas.finish();
-        pixels
-    }
+/// The plot's upper and lower edge: above it titles and the height axis's label, below it figures and the line of start,
+/// axis label and end.
+fn plot_rows(sheet: &Sheet, text: &ChartText) -> (f32, f32) {
+    let [title, subtitle] = TITLE_SIZES.map(|size| sheet.type_px(size));
+    let figure = sheet.type_px(15.0);
+    let titles = title * 1.25 + if text.subtitle.is_empty() { 0.0 } else { subtitle * 1.5 } + sheet.px(26.0);
+    let top = (margin(sheet) + titles + figure * 1.5).round();
+    (top, (sheet.size.y - margin(sheet) - figure * 3.6).round().max(top + 8.0))
 }
 
-/// Where a label stands.
+/// The side of a point on which its label stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LabelSide {
     /// Above its point.
     Above,
-    /// Above what may stand above its point.
+    /// Above another label above its point.
     WellAbove,
     /// Below it.
     Below,
@@ -308,13 +293,13 @@ mod tests {
             along_m: index as f64 * 100.0,
             ground: if height.is_nan() { ChartGround::NoData } else { ChartGround::Height(height) },
         };
-        let around = Surroundings { title: "Profile".into(), ..Surroundings::default() };
-        ProfileChart { around, points: heights.iter().enumerate().map(point).collect(), bends_m: vec![] }
+        let text = ChartText { title: "Profile".into(), ..ChartText::default() };
+        ProfileChart { text, points: heights.iter().enumerate().map(point).collect(), bends_m: vec![] }
     }
 
     #[test]
     fn heights_rise_upward_and_distances_to_the_right_within_the_plot() {
-        let chart = begin((800, 400), &Surroundings::default(), 1000.0, (100.0, 300.0));
+        let chart = Chart::new((800, 400), &ChartText::default(), 1000.0, (100.0, 300.0));
         let (low, high) = (chart.frame.at(0.0, 100.0), chart.frame.at(1000.0, 300.0));
         assert!(low.x == chart.frame.plot.min.x && high.x == chart.frame.plot.max.x);
         assert!(high.y < low.y && chart.frame.plot.contains(Vec2::new(low.x + 1.0, high.y)));
@@ -322,7 +307,7 @@ mod tests {
 
     #[test]
     fn the_stretch_of_heights_is_that_of_the_scales() {
-        let frame = begin((800, 400), &Surroundings::default(), 1000.0, (0.0, 100.0)).frame;
+        let frame = Chart::new((800, 400), &ChartText::default(), 1000.0, (0.0, 100.0)).frame;
         let right = frame.at(1.0, 0.0).x - frame.at(0.0, 0.0).x;
         let up = frame.at(0.0, 0.0).y - frame.at(0.0, 1.0).y;
         assert!((frame.exaggeration() / f64::from(up / right) - 1.0).abs() < 1e-3);
@@ -330,20 +315,15 @@ mod tests {
 
     #[test]
     fn level_ground_is_not_stretched_into_mountains() {
-        let frame = begin((800, 400), &Surroundings::default(), 10_000.0, (50.0, 50.001)).frame;
+        let frame = Chart::new((800, 400), &ChartText::default(), 10_000.0, (50.0, 50.001)).frame;
         assert!(frame.exaggeration() < 400.0);
     }
 
     #[test]
     fn ground_is_filled_sky_is_not_and_a_gap_is_neither() {
         let pixels = paint((800, 400), &chart(&[100.0, 100.0, f64::NAN, 100.0, 100.0]));
-        let frame = begin(
-            (800, 400),
-            &Surroundings { title: "Profile".into(), ..Surroundings::default() },
-            400.0,
-            (100.0, 100.0),
-        )
-        .frame;
+        let text = ChartText { title: "Profile".into(), ..ChartText::default() };
+        let frame = Chart::new((800, 400), &text, 400.0, (100.0, 100.0)).frame;
         let color = |along_m: f64, up: f32| {
             let at = frame.at(along_m, 100.0) - Vec2::new(0.0, up);
             pixels.at(at.x as u32, at.y as u32)

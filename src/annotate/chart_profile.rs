@@ -1,8 +1,8 @@
-//! The chart of a profile: the ground along a line, its lowest and highest place marked.
+//! The chart of a profile: the ground along a line, with its lowest and highest point marked.
 
-use crate::annotate::chart::{self, LabelSide, Surroundings};
+use crate::annotate::chart::{Chart, ChartText, LabelSide};
 use crate::annotate::chart_ground::{ChartPoint, fill, hatch_gaps, height_range, rim};
-use crate::annotate::nice::number;
+use crate::annotate::nice::format_number;
 use crate::annotate::sheet::INK;
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
@@ -13,11 +13,11 @@ const EARTH: Srgba = Srgba::opaque(0xc8, 0xb8, 0x96);
 /// What is charted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProfileChart {
-    /// What stands around the plot.
-    pub around: Surroundings,
+    /// The texts around the plot.
+    pub text: ChartText,
     /// The ground, in order along the line.
     pub points: Vec<ChartPoint>,
-    /// Where the line has vertices between its ends, meters along it.
+    /// The line's vertices between its ends, meters along it.
     pub bends_m: Vec<f64>,
 }
 
@@ -25,22 +25,20 @@ pub struct ProfileChart {
 pub fn paint(size: (u32, u32), profile: &ProfileChart) -> Pixels {
     let points = &profile.points;
     let length_m = points.last().map_or(0.0, |last| last.along_m);
-    let mut chart = chart::begin(size, &profile.around, length_m, height_range(points));
+    let mut chart = Chart::new(size, &profile.text, length_m, height_range(points));
     hatch_gaps(&mut chart, points);
     fill(&mut chart, points, EARTH);
     rim(&mut chart, points);
-    for &along_m in &profile.bends_m {
-        chart.tick_below(along_m);
-    }
+    profile.bends_m.iter().for_each(|&along_m| chart.tick_below(along_m));
     let heights = || points.iter().filter_map(|point| Some((point.along_m, point.ground.height_m()?)));
-    // The first of several as low or as high.
+    // The first of several equally low or high.
     let lowest = heights().reduce(|best, next| if next.1 < best.1 { next } else { best });
     let highest = heights().reduce(|best, next| if next.1 > best.1 { next } else { best });
-    for (place, side) in [(lowest, LabelSide::Below), (highest, LabelSide::Above)] {
-        let Some((along_m, height_m)) = place else { continue };
+    for (extreme, side) in [(lowest, LabelSide::Below), (highest, LabelSide::Above)] {
+        let Some((along_m, height_m)) = extreme else { continue };
         let at = chart.frame.at(along_m, height_m);
         chart.dot(at, INK);
-        chart.label(&format!("{} m", number(height_m, 1)), at, side, INK);
+        chart.label(&format!("{} m", format_number(height_m, 1)), at, side, INK);
     }
     chart.finish()
 }

@@ -1,18 +1,18 @@
-//! The chart of a line of sight: the ground as the Earth's curvature lets it be seen, what of it is in sight, the line, and
-//! what blocks it.
+//! The chart of a line of sight: the ground lowered by the Earth's curvature, its visible parts, the line, and what
+//! blocks it.
 
 use glam::Vec2;
 
-use crate::annotate::chart::{self, Chart, LabelSide, Surroundings};
+use crate::annotate::chart::{Chart, ChartText, LabelSide};
 use crate::annotate::chart_ground::{ChartGround, ChartPoint, fill, hatch_gaps, height_range, rim};
 use crate::annotate::pixel_box::PixelSegment;
 use crate::annotate::sheet::{INK, WATER_INK};
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 
-/// Ground in sight.
+/// Visible ground.
 const LIT: Srgba = Srgba::opaque(0xe2, 0xd3, 0xa8);
-/// Ground out of sight.
+/// Hidden ground.
 const DARK: Srgba = Srgba::opaque(0x9c, 0x92, 0x82);
 /// The line up to its end, or to what blocks it.
 const LINE: Srgba = WATER_INK;
@@ -20,29 +20,40 @@ const LINE: Srgba = WATER_INK;
 const BLOCK: Srgba = Srgba::opaque(0xb0, 0x35, 0x22);
 /// Labels nearer to each other than this share of the plot's width are set one above the other.
 const CROWDED: f32 = 0.15;
-/// Pixels of a dash and of the gap after it, as designed.
+/// Design pixels of a dash and of the gap after it.
 const DASH: (f32, f32) = (10.0, 7.0);
 
-/// What is charted. All heights are less the drop that curvature and refraction make of the distance, so that the line of
-/// sight is straight.
+/// What is charted. All heights are lowered by the drop that curvature and refraction cause at their distance, so that
+/// the line of sight is straight.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SightChart {
-    /// What stands around the plot.
-    pub around: Surroundings,
+    /// The texts around the plot.
+    pub text: ChartText,
     /// The ground, in order from the observer.
     pub points: Vec<ChartPoint>,
-    /// What of it the observer sees: from and to, meters.
-    pub seen_m: Vec<(f64, f64)>,
-    /// The observer's eye, meters.
+    /// The parts of it that the observer sees: from and to, meters along the line.
+    pub visible_m: Vec<(f64, f64)>,
+    /// The height of the observer's eye, meters.
     pub eye_m: f64,
-    /// The target's height, meters, at the last point.
+    /// The height of the target at the last point, meters.
     pub target_m: f64,
-    /// What blocks the line first, along and high, and what is said of it.
-    pub blocker: Option<(f64, f64, String)>,
-    /// What is said of the observer.
-    pub observer: String,
-    /// What is said of the target.
-    pub target: String,
+    /// The first point that blocks the line.
+    pub blocker: Option<SightBlocker>,
+    /// The observer's label.
+    pub observer_label: String,
+    /// The target's label.
+    pub target_label: String,
+}
+
+/// A point of the ground that blocks a line of sight.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SightBlocker {
+    /// Meters along the line.
+    pub along_m: f64,
+    /// Its height, meters.
+    pub height_m: f64,
+    /// Its label.
+    pub label: String,
 }
 
 /// A picture of the chart, `size` pixels wide and high. The same chart gives the same bytes on every machine.
@@ -50,18 +61,18 @@ pub fn paint(size: (u32, u32), sight: &SightChart) -> Pixels {
     let length_m = sight.points.last().map_or(0.0, |last| last.along_m);
     let (low, high) = height_range(&sight.points);
     let (low, high) = (low.min(sight.eye_m).min(sight.target_m), high.max(sight.eye_m).max(sight.target_m));
-    let mut chart = chart::begin(size, &sight.around, length_m, (low, high));
+    let mut chart = Chart::new(size, &sight.text, length_m, (low, high));
     hatch_gaps(&mut chart, &sight.points);
     fill(&mut chart, &sight.points, DARK);
-    for &(from_m, to_m) in &sight.seen_m {
+    for &(from_m, to_m) in &sight.visible_m {
         fill(&mut chart, &between(&sight.points, from_m, to_m), LIT);
     }
     rim(&mut chart, &sight.points);
-    line(&mut chart, sight, length_m);
+    draw_line(&mut chart, sight, length_m);
     chart.finish()
 }
 
-/// The ground between two places, cut exactly there.
+/// The ground from `from_m` to `to_m`, cut exactly there.
 fn between(points: &[ChartPoint], from_m: f64, to_m: f64) -> Vec<ChartPoint> {
     let mut part = Vec::new();
     for pair in points.windows(2) {
@@ -74,47 +85,43 @@ fn between(points: &[ChartPoint], from_m: f64, to_m: f64) -> Vec<ChartPoint> {
             let share = (along_m - a.along_m) / (b.along_m - a.along_m);
             ChartPoint { along_m, ground: ChartGround::Height(low + (high - low) * share) }
         };
-        part.push(at(a.along_m.max(from_m)));
-        part.push(at(b.along_m.min(to_m)));
+        part.extend([at(a.along_m.max(from_m)), at(b.along_m.min(to_m))]);
     }
     part
 }
 
-fn line(chart: &mut Chart, sight: &SightChart, length_m: f64) {
+fn draw_line(chart: &mut Chart, sight: &SightChart, length_m: f64) {
     let eye = chart.frame.at(0.0, sight.eye_m);
     let target = chart.frame.at(length_m, sight.target_m);
-    let width = chart.sheet.px(2.4).max(1.2);
-    let blocked = sight.blocker.as_ref().map(|(along_m, height_m, said)| {
+    let width = chart.composer.sheet.px(2.4).max(1.2);
+    if let Some(SightBlocker { along_m, height_m, label }) = &sight.blocker {
         let line_m = sight.eye_m + (sight.target_m - sight.eye_m) * (along_m / length_m);
-        (chart.frame.at(*along_m, line_m), chart.frame.at(*along_m, *height_m), said)
-    });
-    match &blocked {
-        Some((on_line, top, said)) => {
-            chart.plotted.line(PixelSegment { from: eye, to: *on_line }, width, LINE);
-            dashed(chart, *on_line, target, width);
-            chart.dot(*top, BLOCK);
-            // Near an end its label would stand over the end's.
-            let near = chart.frame.plot.size().x * CROWDED;
-            let is_crowded = top.x - eye.x < near || target.x - top.x < near;
-            let side = if is_crowded { LabelSide::WellAbove } else { LabelSide::Above };
-            chart.label(said, *top, side, BLOCK);
-        }
-        None => chart.plotted.line(PixelSegment { from: eye, to: target }, width, LINE),
+        let (on_line, top) = (chart.frame.at(*along_m, line_m), chart.frame.at(*along_m, *height_m));
+        chart.plotted.line(PixelSegment { from: eye, to: on_line }, width, LINE);
+        draw_dashes(chart, on_line, target, width);
+        chart.dot(top, BLOCK);
+        // Near an end its label would overlap the end's.
+        let near = chart.frame.plot.size().x * CROWDED;
+        let is_crowded = top.x - eye.x < near || target.x - top.x < near;
+        let side = if is_crowded { LabelSide::WellAbove } else { LabelSide::Above };
+        chart.label(label, top, side, BLOCK);
+    } else {
+        chart.plotted.line(PixelSegment { from: eye, to: target }, width, LINE);
     }
-    for (along_m, at, said) in [(0.0, eye, &sight.observer), (length_m, target, &sight.target)] {
+    for (along_m, at, label) in [(0.0, eye, &sight.observer_label), (length_m, target, &sight.target_label)] {
         let ground = sight.points.iter().find(|point| point.along_m == along_m);
         if let Some(height_m) = ground.and_then(|point| point.ground.height_m()) {
             let foot = chart.frame.at(along_m, height_m);
             chart.plotted.line(PixelSegment { from: foot, to: at }, width, INK);
         }
         chart.dot(at, LINE);
-        chart.label(said, at, LabelSide::Above, LINE);
+        chart.label(label, at, LabelSide::Above, LINE);
     }
 }
 
-/// A dashed line, for where nothing is seen any more.
-fn dashed(chart: &mut Chart, from: Vec2, to: Vec2, width: f32) {
-    let (dash, gap) = (chart.sheet.px(DASH.0), chart.sheet.px(DASH.1));
+/// Draws a dashed line, for the part that is blocked.
+fn draw_dashes(chart: &mut Chart, from: Vec2, to: Vec2, width: f32) {
+    let (dash, gap) = (chart.composer.sheet.px(DASH.0), chart.composer.sheet.px(DASH.1));
     let length = from.distance(to);
     let along = (to - from).normalize_or_zero();
     let mut at = gap;

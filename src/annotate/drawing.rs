@@ -1,17 +1,17 @@
-//! Drawings: filled paths with colors, laid out before a pixel is touched.
+//! Drawings: filled paths with colors, laid out before a pixel is painted.
 //!
-//! Strokes and letters become filled outlines at once. One primitive keeps the canvas small, and makes the
-//! bounds of a drawing the bounds of what it will paint, halos included.
+//! Strokes and letters become filled outlines at once. With a single primitive the canvas stays small, and the bounds of
+//! a drawing are the bounds of what it paints, halos included.
 
 use glam::Vec2;
 use tiny_skia::{LineCap, LineJoin, Path, PathBuilder, Rect, Stroke, Transform};
 
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::sheet::{FRAME, HALO, PANEL};
+use crate::annotate::sheet::{FRAME, HALO, PANEL, Sheet};
 use crate::draw::color::Srgba;
 
-/// Outlines of strokes are approximated to a fraction of this many parts of a pixel; at 1 the round joins
-/// of small type are visibly polygons.
+/// Outlines of strokes are approximated to this fraction of a pixel: at 1 the round joins of small type are visible
+/// polygons.
 const STROKE_PRECISION: f32 = 4.0;
 
 /// A filled path.
@@ -23,16 +23,38 @@ pub struct PaintedPath {
     pub color: Srgba,
 }
 
+/// A text in a drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnText {
+    /// The text as given.
+    pub text: String,
+    /// Characters that the fonts lack.
+    pub missing: usize,
+    /// Whether it ends in an ellipsis.
+    pub shortened: bool,
+}
+
 /// Marks in the order in which they are painted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drawing {
     marks: Vec<PaintedPath>,
+    texts: Vec<DrawnText>,
 }
 
 impl Drawing {
     /// The marks, first painted first.
     pub fn marks(&self) -> &[PaintedPath] {
         &self.marks
+    }
+
+    /// The texts recorded for the report.
+    pub fn texts(&self) -> &[DrawnText] {
+        &self.texts
+    }
+
+    /// Records how a text was drawn.
+    pub fn record_text(&mut self, text: &str, missing: usize, shortened: bool) {
+        self.texts.push(DrawnText { text: text.to_owned(), missing, shortened });
     }
 
     /// The smallest box around all marks; [`PixelBox::EMPTY`] where there are none.
@@ -83,10 +105,14 @@ impl Drawing {
         self.marks.extend(path.finish().map(|path| PaintedPath { path, color }));
     }
 
-    /// Draws a panel: a light ground with a hairline around it.
-    pub fn panel(&mut self, area: PixelBox, hairline: f32) {
-        self.rect(area, PANEL);
-        self.frame(area, hairline.round().max(1.0), FRAME);
+    /// This drawing on a panel from the origin to `corner`: a light ground with a hairline around it.
+    pub fn on_panel(self, corner: Vec2, sheet: &Sheet) -> Self {
+        let area = PixelBox { min: Vec2::ZERO, max: corner };
+        let mut panel = Self::default();
+        panel.rect(area, PANEL);
+        panel.frame(area, sheet.hairline().round(), FRAME);
+        panel.marks.extend(self.marks);
+        Self { marks: panel.marks, texts: self.texts }
     }
 
     /// Fills a disc.
@@ -96,22 +122,22 @@ impl Drawing {
     }
 
     /// Fills `path` on a halo reaching `reach` pixels around it.
-    pub fn haloed(&mut self, path: Path, color: Srgba, reach: f32) {
+    pub fn fill_haloed(&mut self, path: Path, color: Srgba, reach: f32) {
         self.stroke(&path, reach * 2.0, HALO);
         self.fill(path, color);
     }
 
-    /// Appends another drawing's marks, moved by `by`.
-    pub fn append(&mut self, other: &Self, by: Vec2) {
-        self.marks.extend(other.moved(by).marks);
+    /// Appends another drawing.
+    pub fn append(&mut self, other: Self) {
+        self.marks.extend(other.marks);
+        self.texts.extend(other.texts);
     }
 
     /// The drawing moved by `by`.
-    pub fn moved(&self, by: Vec2) -> Self {
+    pub fn moved(self, by: Vec2) -> Self {
         let shift = Transform::from_translate(by.x, by.y);
-        let moved =
-            |mark: &PaintedPath| Some(PaintedPath { path: mark.path.clone().transform(shift)?, ..*mark });
-        Self { marks: self.marks.iter().filter_map(moved).collect() }
+        let moved = |mark: PaintedPath| Some(PaintedPath { path: mark.path.transform(shift)?, ..mark });
+        Self { marks: self.marks.into_iter().filter_map(moved).collect(), texts: self.texts }
     }
 }
 
@@ -162,7 +188,7 @@ mod tests {
     #[test]
     fn moving_moves_the_bounds() {
         let mut drawing = Drawing::default();
-        drawing.panel(PixelBox::at(Vec2::ZERO, Vec2::new(30.0, 20.0)), 1.0);
+        drawing.rect(PixelBox::at(Vec2::ZERO, Vec2::new(30.0, 20.0)), PANEL);
         let moved = drawing.moved(Vec2::new(5.0, 7.0)).bounds();
         assert_eq!(moved, PixelBox::at(Vec2::new(5.0, 7.0), Vec2::new(30.0, 20.0)));
     }

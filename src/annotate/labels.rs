@@ -2,22 +2,24 @@
 
 use glam::Vec2;
 
-use crate::annotate::annotation::{LabelClass, PictureLabel};
+use crate::annotate::annotation::PictureLabel;
+use crate::annotate::composer::Composer;
 use crate::annotate::drawing::{Drawing, polygon};
-use crate::annotate::paragraph::{Paragraph, fitted, written_lines};
+use crate::annotate::paragraph::{Paragraph, written_lines};
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::place::{LabelCandidate, LabelField, Request, check, place};
-use crate::annotate::positions::{Alignment, LabelMetrics, LabelPosition, Preference, positions, spot};
+use crate::annotate::place::{LabelCandidate, LabelField, LabelRequest, check, place};
+use crate::annotate::positions::{Alignment, LabelMetrics, LabelPosition, Preference};
 use crate::annotate::report::AnnotationReport;
 use crate::annotate::sheet::{HALO, INK, PAPER, SOFT_INK, Sheet, WATER_INK};
-use crate::annotate::text::{TextLine, TextStyle, Typesetter, halos, write};
+use crate::annotate::text::{TextLine, TextStyle};
+use crate::description::words::LabelKind;
 use crate::draw::color::Srgba;
 
-/// More labels than this are not even tried: no picture holds as many, and trying takes time by the square.
+/// More labels are not tried: no picture has room for them, and the time grows with the square.
 const MOST_LABELS: usize = 4096;
 /// Lines of a label that are drawn; more would hide what they name.
 const MOST_LINES: usize = 4;
-/// No line of a label is wider than this share of the picture.
+/// The greatest width of a label's line, as a share of the picture's.
 const WIDEST_SHARE: f32 = 0.33;
 /// The longest leader line, as a share of the picture's height.
 const LONGEST_LEADER_SHARE: f32 = 0.26;
@@ -26,180 +28,211 @@ const LEADING: f32 = 1.16;
 /// Tangent of the lean of water names, about 12 degrees.
 const WATER_SLANT: f32 = 0.21;
 
-/// Draws the labels that are visible and find room beside `furniture`; says in `report` what became of each.
+/// Draws the labels that are visible and find a free place beside `furniture`; reports the outcome of each.
 pub fn draw_labels(
     labels: &[PictureLabel],
     furniture: &[PixelBox],
-    sheet: &Sheet,
-    setter: &mut Typesetter,
+    composer: &mut Composer,
     report: &mut AnnotationReport,
 ) -> Drawing {
-    let mut fates = vec![Fate::CrowdedOut; labels.len()];
+    let sheet = composer.sheet;
+    let mut outcomes = vec![LabelOutcome::CrowdedOut; labels.len()];
     let mut prepared: Vec<PreparedLabel<'_>> = Vec::new();
     for (number, label) in by_importance(labels) {
         if !sheet.bounds().contains(label.anchor_px) {
-            fates[number] = Fate::Outside;
+            outcomes[number] = LabelOutcome::Outside;
         } else if !label.visible {
-            fates[number] = Fate::Hidden;
+            outcomes[number] = LabelOutcome::Hidden;
         } else if prepared.len() < MOST_LABELS {
-            match prepare(number, label, sheet, setter) {
+            match PreparedLabel::new(number, label, composer) {
                 Ok(label) => prepared.push(label),
-                Err(fate) => fates[number] = fate,
+                Err(outcome) => outcomes[number] = outcome,
             }
         }
     }
-    let requests: Vec<Request> = prepared.iter().map(|label| label.request.clone()).collect();
-    let field = field(furniture, sheet);
+    let requests: Vec<LabelRequest> = prepared.iter().map(PreparedLabel::request).collect();
+    let field = field(furniture, &sheet);
     let choices = place(&requests, &field);
     debug_assert_eq!(check(&requests, &choices, &field), Ok(()));
-    for (label, _) in prepared.iter().zip(&choices).filter(|(_, choice)| choice.is_some()) {
-        fates[label.number] =
-            Fate::Placed { missing: label.block.missing(), shortened: label.block.shortened };
+    let mut drawing = Drawing::default();
+    let chosen = prepared.iter().zip(choices);
+    let chosen: Vec<_> =
+        chosen.filter_map(|(label, choice)| Some((label, label.positions[choice?]))).collect();
+    // Symbols and leaders first, all texts over them.
+    for (label, position) in &chosen {
+        outcomes[label.number] = LabelOutcome::Placed;
+        label.draw_symbol(&position.candidate, &sheet, &mut drawing);
     }
-    tell(labels, &fates, report);
-    draw_chosen(&prepared, &choices, sheet)
+    chosen.iter().for_each(|(label, position)| label.draw_text(position, &mut drawing));
+    // In the order of the input.
+    let mut in_order: Vec<_> = chosen.iter().map(|(label, _)| *label).collect();
+    in_order.sort_by_key(|label| label.number);
+    for label in in_order {
+        drawing.record_text(&label.label.text, label.block.missing(), label.block.shortened);
+    }
+    report.add_texts(drawing.texts());
+    labels.iter().zip(outcomes).for_each(|(label, outcome)| outcome.report(&label.text, report));
+    drawing
 }
 
 /// What becomes of a label.
 #[derive(Clone, Copy, Debug)]
-enum Fate {
-    Placed { missing: usize, shortened: bool },
+enum LabelOutcome {
+    Placed,
     Hidden,
     Outside,
     CrowdedOut,
     Empty,
 }
 
-fn tell(labels: &[PictureLabel], fates: &[Fate], report: &mut AnnotationReport) {
-    for (label, fate) in labels.iter().zip(fates) {
-        let text = label.text.clone();
-        match *fate {
-            Fate::Placed { missing, shortened } => {
-                report.set(&text, missing, shortened);
-                report.placed.push(text);
-            }
-            Fate::Hidden => report.hidden.push(text),
-            Fate::Outside => report.outside.push(text),
-            Fate::CrowdedOut => report.crowded_out.push(text),
-            Fate::Empty => report.empty += 1,
+impl LabelOutcome {
+    fn report(self, text: &str, report: &mut AnnotationReport) {
+        match self {
+            Self::Placed => report.placed.push(text.to_owned()),
+            Self::Hidden => report.hidden.push(text.to_owned()),
+            Self::Outside => report.outside.push(text.to_owned()),
+            Self::CrowdedOut => report.crowded_out.push(text.to_owned()),
+            Self::Empty => report.empty += 1,
         }
     }
 }
 
-/// The field of labels: inside the margin's half, off the furniture.
+/// The field of labels: inside half of the margin, off the furniture.
 fn field(furniture: &[PixelBox], sheet: &Sheet) -> LabelField {
-    let air = sheet.px(6.0);
     LabelField {
         bounds: sheet.bounds().grown(-(sheet.margin() * 0.4).round()),
-        taken: furniture.iter().map(|taken| taken.grown(air)).collect(),
-        leader_room: sheet.px(5.0),
+        taken: furniture.iter().map(|taken| taken.grown(sheet.px(6.0))).collect(),
+        leader_gap: sheet.px(5.0),
     }
+}
+
+/// Kind first, then the nearer, then by text; equal labels keep the input's order.
+fn by_importance(labels: &[PictureLabel]) -> Vec<(usize, &PictureLabel)> {
+    let rank = |kind| match kind {
+        LabelKind::Summit => 0,
+        LabelKind::Place => 1,
+        LabelKind::Water => 2,
+        LabelKind::Point => 3,
+    };
+    let mut order: Vec<_> = labels.iter().enumerate().collect();
+    order.sort_by(|(_, a), (_, b)| {
+        let by_rank = rank(a.kind).cmp(&rank(b.kind));
+        by_rank.then(a.depth_m.total_cmp(&b.depth_m)).then_with(|| a.text.cmp(&b.text))
+    });
+    order
 }
 
 /// A label with its text set, ready to be placed.
 struct PreparedLabel<'a> {
     number: usize,
     label: &'a PictureLabel,
-    look: LabelStyle,
+    style: LabelStyle,
     block: Paragraph,
-    /// The stance's boxes of the text, one for each alignment.
-    texts: [PixelBox; 3],
+    metrics: LabelMetrics,
     positions: Vec<LabelPosition>,
-    request: Request,
 }
 
-/// Kind first, then the nearer, then by text; the input's order decides between equals.
-fn by_importance(labels: &[PictureLabel]) -> Vec<(usize, &PictureLabel)> {
-    let mut order: Vec<_> = labels.iter().enumerate().collect();
-    order.sort_by(|(_, a), (_, b)| {
-        a.kind.cmp(&b.kind).then(a.depth_m.total_cmp(&b.depth_m)).then_with(|| a.text.cmp(&b.text))
-    });
-    order
-}
-
-/// Sets the label's text and lists its positions.
-///
-/// # Errors
-/// Its fate, where nothing would show: it is empty, or the picture is too narrow for a few letters.
-fn prepare<'a>(
-    number: usize,
-    label: &'a PictureLabel,
-    sheet: &Sheet,
-    setter: &mut Typesetter,
-) -> Result<PreparedLabel<'a>, Fate> {
-    let look = LabelStyle::of(label.kind, sheet);
-    let block = set_lines(&label.text, &look, sheet, setter);
-    if block.lines.is_empty() {
-        return Err(if block.shortened { Fate::CrowdedOut } else { Fate::Empty });
+impl<'a> PreparedLabel<'a> {
+    /// Sets the label's text and lists its positions.
+    ///
+    /// # Errors
+    /// Its outcome, where nothing would show: it is empty, or the picture is too narrow for a few letters.
+    fn new(number: usize, label: &'a PictureLabel, composer: &mut Composer) -> Result<Self, LabelOutcome> {
+        let style = LabelStyle::new(label.kind, composer);
+        let block = set_lines(&label.text, &style, composer);
+        if block.lines.is_empty() {
+            return Err(if block.shortened { LabelOutcome::CrowdedOut } else { LabelOutcome::Empty });
+        }
+        // Space around the text, so that no two labels read as one.
+        let space = composer.sheet.px(2.0);
+        let texts = [Alignment::Left, Alignment::Center, Alignment::Right]
+            .map(|alignment| block_box(&block.lines, alignment, style.halo).grown(space));
+        if texts.iter().any(|text| text.size().cmple(Vec2::ZERO).any() || !text.size().is_finite()) {
+            return Err(LabelOutcome::Empty);
+        }
+        let metrics = metrics(label, texts, &style, &composer.sheet);
+        Ok(Self { number, label, style, block, metrics, positions: metrics.positions() })
     }
-    // Air around the text, so that no two labels read as one.
-    let air = sheet.px(2.0);
-    let texts = [Alignment::Left, Alignment::Center, Alignment::Right]
-        .map(|alignment| block_box(&block.lines, alignment, look.halo).grown(air));
-    if texts.iter().any(|text| text.size().cmple(Vec2::ZERO).any() || !text.size().is_finite()) {
-        return Err(Fate::Empty);
+
+    fn request(&self) -> LabelRequest {
+        let candidates = self.positions.iter().map(|position| position.candidate).collect();
+        LabelRequest { candidates, reserved: Some(self.metrics.symbol_box()) }
     }
-    let stance = stance(label, texts, &look, sheet);
-    let positions = positions(&stance);
-    let candidates = positions.iter().map(|position| position.candidate).collect();
-    let request = Request { candidates, spot: Some(spot(&stance)) };
-    Ok(PreparedLabel { number, label, look, block, texts, positions, request })
+
+    /// Draws the leader line and the symbol, where the candidate has them.
+    fn draw_symbol(&self, candidate: &LabelCandidate, sheet: &Sheet, drawing: &mut Drawing) {
+        if let Some(line) = candidate.leader {
+            let (line, width) = (uprighted(line), sheet.px(1.2).max(0.9));
+            drawing.line(line, width + sheet.px(2.4).max(1.6), HALO);
+            drawing.line(line, width, self.style.ink);
+        }
+        if candidate.symbol.is_some() {
+            self.style.draw_symbol(self.label, sheet, drawing);
+        }
+    }
+
+    /// Writes the text: all halos first, for the name's must not cover the height below it.
+    fn draw_text(&self, position: &LabelPosition, drawing: &mut Drawing) {
+        let text = self.metrics.texts[position.alignment as usize];
+        let by = (position.candidate.text.min - text.min).round();
+        let mut lines = baselines(&self.block.lines, position.alignment);
+        lines.iter_mut().for_each(|(_, at)| *at += by);
+        drawing.draw_halo(&lines, self.style.halo);
+        let inks = std::iter::once(self.style.ink).chain(std::iter::repeat(self.style.note_ink));
+        lines.iter().zip(inks).for_each(|((line, at), ink)| drawing.write(line, *at, ink));
+    }
 }
 
-fn stance(label: &PictureLabel, texts: [PixelBox; 3], look: &LabelStyle, sheet: &Sheet) -> LabelMetrics {
+fn metrics(label: &PictureLabel, texts: [PixelBox; 3], style: &LabelStyle, sheet: &Sheet) -> LabelMetrics {
     let longest = sheet.size.y * LONGEST_LEADER_SHARE;
-    let preference = match label.kind {
-        LabelClass::Water => Preference::OnPlace,
-        _ => Preference::Above,
-    };
     LabelMetrics {
         anchor: pixel_center(label.anchor_px),
-        reach: reach(label, look.leader, longest),
+        reach: reach(label, style.leader, longest),
         texts,
-        symbol: Vec2::splat(look.symbol + look.halo),
+        symbol: Vec2::splat(style.symbol + style.halo),
         gap: sheet.px(1.0),
         longest,
-        preference,
+        preference: if label.kind == LabelKind::Water { Preference::OnPlace } else { Preference::Above },
     }
 }
 
-/// The middle of the pixel that holds `point`: symbols and upright lines that stand there are crisp.
+/// The center of the pixel that holds `point`: makes symbols and upright lines crisp.
 fn pixel_center(point: Vec2) -> Vec2 {
     point.floor() + 0.5
 }
 
-/// From the anchor to the wished end of the leader: as given, but upward and of a sensible length.
+/// From the anchor to the preferred end of the leader: as given, but upward and of a sensible length.
 fn reach(label: &PictureLabel, usual: f32, longest: f32) -> Vec2 {
-    let wished = label.top_px.map(|top| top - label.anchor_px).filter(|reach| reach.is_finite());
-    match wished {
-        // Leaning more than 45° it would no longer be read as a line upward.
+    let given = label.top_px.map(|top| top - label.anchor_px).filter(|reach| reach.is_finite());
+    match given {
+        // Leaning more than 45° it would not read as a line upward.
         Some(reach) if reach.y < 0.0 && reach.x.abs() <= -reach.y => reach.clamp_length(usual, longest),
         _ => Vec2::new(0.0, -usual),
     }
 }
 
-fn set_lines(text: &str, look: &LabelStyle, sheet: &Sheet, setter: &mut Typesetter) -> Paragraph {
+fn set_lines(text: &str, style: &LabelStyle, composer: &mut Composer) -> Paragraph {
     let (written, dropped) = written_lines(text, MOST_LINES);
-    let widest = sheet.size.x * WIDEST_SHARE;
-    let faces = std::iter::once(look.name).chain(std::iter::repeat(look.note));
-    let set = |(text, face): (&String, TextStyle)| fitted(setter, text, face, widest);
-    let lines: Vec<TextLine> = written.iter().zip(faces).filter_map(set).collect();
+    let widest = composer.sheet.size.x * WIDEST_SHARE;
+    let styles = std::iter::once(style.name).chain(std::iter::repeat(style.note));
+    let set = |(text, style): (&String, TextStyle)| composer.fitted(text, style, widest);
+    let lines: Vec<TextLine> = written.iter().zip(styles).filter_map(set).collect();
     let shortened = dropped || lines.len() < written.len() || lines.iter().any(|line| line.shortened);
     Paragraph { lines, shortened }
 }
 
-/// Where the lines' baselines start: the first at y = 0, all aligned to x = 0.
+/// The lines with the starts of their baselines: the first at y = 0, all aligned to x = 0.
 fn baselines(lines: &[TextLine], alignment: Alignment) -> Vec<(&TextLine, Vec2)> {
+    let share = match alignment {
+        Alignment::Left => 0.0,
+        Alignment::Center => 0.5,
+        Alignment::Right => 1.0,
+    };
     let mut y = 0.0;
     let place = |(number, line): (usize, &'_ TextLine)| {
         if number > 0 {
-            y += (line.face.size_px * LEADING).round();
+            y += (line.style.size_px * LEADING).round();
         }
-        let share = match alignment {
-            Alignment::Left => 0.0,
-            Alignment::Center => 0.5,
-            Alignment::Right => 1.0,
-        };
         Vec2::new((-line.advance * share).round(), y)
     };
     let starts: Vec<Vec2> = lines.iter().enumerate().map(place).collect();
@@ -207,58 +240,19 @@ fn baselines(lines: &[TextLine], alignment: Alignment) -> Vec<(&TextLine, Vec2)>
 }
 
 fn block_box(lines: &[TextLine], alignment: Alignment, halo: f32) -> PixelBox {
-    baselines(lines, alignment)
-        .into_iter()
-        .map(|(line, at)| line.ink(halo).moved(at))
-        .fold(PixelBox::EMPTY, PixelBox::union)
+    let boxes = baselines(lines, alignment).into_iter().map(|(line, at)| line.bounds(halo).moved(at));
+    boxes.fold(PixelBox::EMPTY, PixelBox::union)
 }
 
-/// Writes the lines around the origin, moved by `by`: all halos first, for the name's must not eat into the
-/// height below it.
-fn draw_lines(label: &PreparedLabel<'_>, alignment: Alignment, by: Vec2, drawing: &mut Drawing) {
-    let mut lines = baselines(&label.block.lines, alignment);
-    lines.iter_mut().for_each(|(_, at)| *at += by);
-    halos(drawing, &lines, label.look.halo);
-    let (name, notes) = lines.split_at(1.min(lines.len()));
-    write(drawing, name, label.look.ink);
-    write(drawing, notes, label.look.note_ink);
-}
-
-/// Symbols and leaders first, all texts over them.
-fn draw_chosen(prepared: &[PreparedLabel<'_>], choices: &[Option<usize>], sheet: &Sheet) -> Drawing {
-    let (mut drawing, mut texts) = (Drawing::default(), Drawing::default());
-    for (label, choice) in prepared.iter().zip(choices) {
-        let Some(LabelPosition { candidate, alignment }) = choice.map(|which| label.positions[which]) else {
-            continue;
-        };
-        draw_leader(&candidate, &label.look, sheet, &mut drawing);
-        if candidate.symbol.is_some() {
-            label.look.draw_symbol(label.label, sheet, &mut drawing);
-        }
-        let by = candidate.text.min - label.texts[alignment as usize].min;
-        draw_lines(label, alignment, by.round(), &mut texts);
-    }
-    drawing.append(&texts, Vec2::ZERO);
-    drawing
-}
-
-fn draw_leader(candidate: &LabelCandidate, look: &LabelStyle, sheet: &Sheet, drawing: &mut Drawing) {
-    let Some(line) = candidate.leader else { return };
-    let width = sheet.px(1.2).max(0.9);
-    let crisp = crisp(line);
-    drawing.line(crisp, width + sheet.px(2.4).max(1.6), HALO);
-    drawing.line(crisp, width, look.ink);
-}
-
-/// A line that is all but upright, made upright.
-fn crisp(line: PixelSegment) -> PixelSegment {
+/// An almost upright line, made upright; other lines as they are.
+fn uprighted(line: PixelSegment) -> PixelSegment {
     if (line.to.x - line.from.x).abs() > 0.6 {
         return line;
     }
     PixelSegment { from: line.from, to: Vec2::new(line.from.x, line.to.y) }
 }
 
-/// How a kind of label looks.
+/// The look of a kind of label.
 struct LabelStyle {
     name: TextStyle,
     note: TextStyle,
@@ -272,26 +266,22 @@ struct LabelStyle {
 }
 
 impl LabelStyle {
-    fn of(kind: LabelClass, sheet: &Sheet) -> Self {
-        let (slant, tracking) = if kind == LabelClass::Water { (WATER_SLANT, 0.06) } else { (0.0, 0.0) };
-        let (name, weight, symbol, leader) = match kind {
-            LabelClass::Summit => (20.0, TextStyle::BOLD, 6.0, 44.0),
-            LabelClass::Place => (19.0, TextStyle::BOLD, 4.5, 34.0),
-            LabelClass::Water => (19.0, TextStyle::MEDIUM, 3.0, 34.0),
-            LabelClass::Point => (16.5, TextStyle::MEDIUM, 3.2, 26.0),
+    fn new(kind: LabelKind, composer: &Composer) -> Self {
+        let sheet = composer.sheet;
+        let (size, weight, symbol, leader) = match kind {
+            LabelKind::Summit => (20.0, TextStyle::BOLD, 6.0, 44.0),
+            LabelKind::Place => (19.0, TextStyle::BOLD, 4.5, 34.0),
+            LabelKind::Water => (19.0, TextStyle::MEDIUM, 3.0, 34.0),
+            LabelKind::Point => (16.5, TextStyle::MEDIUM, 3.2, 26.0),
         };
-        let (ink, note_ink) = match kind {
-            LabelClass::Water => (WATER_INK, WATER_INK),
-            _ => (INK, SOFT_INK),
+        let (slant, tracking, ink, note_ink) = match kind {
+            LabelKind::Water => (WATER_SLANT, 0.06, WATER_INK, WATER_INK),
+            _ => (0.0, 0.0, INK, SOFT_INK),
         };
+        let leaning = |style: TextStyle| TextStyle { slant, tracking, ..style };
         Self {
-            name: TextStyle { size_px: sheet.type_px(name), slant, weight, tracking },
-            note: TextStyle {
-                size_px: sheet.type_px(name * 0.8),
-                slant,
-                weight: TextStyle::MEDIUM,
-                tracking,
-            },
+            name: leaning(composer.style(size, weight)),
+            note: leaning(composer.style(size * 0.8, TextStyle::MEDIUM)),
             ink,
             note_ink,
             halo: sheet.px(2.2).max(1.5),
@@ -302,23 +292,17 @@ impl LabelStyle {
 
     fn draw_symbol(&self, label: &PictureLabel, sheet: &Sheet, drawing: &mut Drawing) {
         let (at, size, reach) = (pixel_center(label.anchor_px), self.symbol, self.halo * 0.8);
-        match label.kind {
-            LabelClass::Summit => {
-                let corners = [(0.0, -1.0), (0.95, 0.72), (-0.95, 0.72)];
-                let triangle = corners.map(|(x, y)| at + Vec2::new(x, y) * size);
-                if let Some(path) = polygon(&triangle) {
-                    drawing.haloed(path, self.ink, reach);
-                }
+        if label.kind == LabelKind::Summit {
+            let corners = [(0.0, -1.0), (0.95, 0.72), (-0.95, 0.72)];
+            if let Some(triangle) = polygon(&corners.map(|(x, y)| at + Vec2::new(x, y) * size)) {
+                drawing.fill_haloed(triangle, self.ink, reach);
             }
-            LabelClass::Place => {
-                drawing.disc(at, size + reach, HALO);
-                drawing.disc(at, size, self.ink);
-                drawing.disc(at, size - sheet.px(1.6).max(1.0), PAPER);
-            }
-            LabelClass::Water | LabelClass::Point => {
-                drawing.disc(at, size + reach, HALO);
-                drawing.disc(at, size, self.ink);
-            }
+            return;
+        }
+        drawing.disc(at, size + reach, HALO);
+        drawing.disc(at, size, self.ink);
+        if label.kind == LabelKind::Place {
+            drawing.disc(at, size - sheet.px(1.6).max(1.0), PAPER);
         }
     }
 }
@@ -327,24 +311,15 @@ impl LabelStyle {
 mod tests {
     use super::*;
 
-    const SHEET: Sheet = Sheet { size: Vec2::new(1920.0, 1080.0), scale: 1.0 };
-
     fn label(text: &str, x: f32, y: f32) -> PictureLabel {
         let anchor_px = Vec2::new(x, y);
         let text = text.to_owned();
-        PictureLabel {
-            text,
-            anchor_px,
-            top_px: None,
-            depth_m: 1000.0,
-            visible: true,
-            kind: LabelClass::Place,
-        }
+        PictureLabel { text, anchor_px, top_px: None, depth_m: 1000.0, visible: true, kind: LabelKind::Place }
     }
 
     fn draw(labels: &[PictureLabel]) -> (Drawing, AnnotationReport) {
         let mut report = AnnotationReport::default();
-        let drawing = draw_labels(labels, &[], &SHEET, &mut Typesetter::new(), &mut report);
+        let drawing = draw_labels(labels, &[], &mut Composer::new(1920, 1080), &mut report);
         (drawing, report)
     }
 
@@ -370,8 +345,7 @@ mod tests {
     fn summits_go_before_places_and_the_near_before_the_far() {
         let far = PictureLabel { depth_m: 9000.0, ..label("far", 400.0, 500.0) };
         let near = PictureLabel { depth_m: 900.0, ..label("near", 402.0, 500.0) };
-        let summit =
-            PictureLabel { kind: LabelClass::Summit, depth_m: 99e3, ..label("summit", 404.0, 500.0) };
+        let summit = PictureLabel { kind: LabelKind::Summit, depth_m: 99e3, ..label("summit", 404.0, 500.0) };
         assert_eq!(draw(&[far.clone(), near.clone()]).1.placed, ["near"]);
         assert_eq!(draw(&[far, near, summit]).1.placed, ["summit"]);
     }
@@ -400,7 +374,7 @@ mod tests {
         let labels: Vec<_> =
             (0..60).map(|n| label("At the border", 33.0 * n as f32, 18.5 * n as f32)).collect();
         let bounds = draw(&labels).0.bounds();
-        assert!(SHEET.bounds().holds(&bounds), "{bounds:?}");
+        assert!(Sheet::new(1920, 1080).bounds().holds(&bounds), "{bounds:?}");
     }
 
     #[test]

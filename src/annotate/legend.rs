@@ -1,25 +1,25 @@
-//! The elevation legend: the ramp with round heights beside it and what else a reader must know, lower right.
+//! The elevation legend: the ramp with nice heights beside it, and notes on heights and contours, lower right.
 
 use glam::Vec2;
 
+use crate::annotate::composer::{Composer, widest};
 use crate::annotate::drawing::Drawing;
-use crate::annotate::nice::{number, short_number, ticks};
-use crate::annotate::paragraph::{fitted, written_lines};
+use crate::annotate::nice::{Ticks, format_trimmed};
+use crate::annotate::paragraph::written_lines;
 use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::report::AnnotationReport;
 use crate::annotate::sheet::{FRAME, INK, SOFT_INK, Sheet};
-use crate::annotate::text::{CAP_HEIGHT, TextLine, TextStyle, Typesetter, write};
+use crate::annotate::text::{CAP_HEIGHT, TextLine, TextStyle};
 use crate::draw::color::Srgba;
 use crate::draw::ground::ColorRamp;
 
 /// Height of the ramp in design pixels.
 const RAMP_HEIGHT: f32 = 190.0;
-/// The ramp takes no more than this share of the picture's height: it shrinks before it is left out.
+/// The greatest height of the ramp as a share of the picture's: it shrinks before it is left out.
 const RAMP_SHARE: f32 = 0.24;
-/// Widest note, in ems: longer ones are cut.
+/// The widest note, in ems: longer ones are cut.
 const WIDEST_NOTE_EM: f32 = 16.0;
 
-/// What the colors of the ground mean.
+/// The meaning of the ground's colors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Legend {
     /// Color by height.
@@ -28,112 +28,75 @@ pub struct Legend {
     pub low_m: f32,
     /// Highest height shown, in meters; above `low_m`.
     pub high_m: f32,
-    /// How many times heights are stretched in the picture; said where it is not 1.
+    /// The factor by which the picture stretches heights; noted where it is not 1.
     pub vertical_exaggeration: f32,
     /// Height between contour lines in meters, where there are any.
     pub contour_interval: Option<f32>,
-    /// A line that says what heights count from, for instance `Heights: NAVD88`.
+    /// A line that names the vertical datum, for instance `Heights: NAVD88`.
     pub vertical_datum: Option<String>,
 }
 
-/// The legend on its panel with the upper left corner at the origin; `None` where the range of heights is
-/// empty or not finite.
-pub fn compose(
-    legend: &Legend,
-    sheet: &Sheet,
-    setter: &mut Typesetter,
-    report: &mut AnnotationReport,
-) -> Option<Drawing> {
+/// The legend on its panel with the upper left corner at the origin; `None` where the range of heights is empty or not
+/// finite.
+pub(in crate::annotate) fn compose(legend: &Legend, composer: &mut Composer) -> Option<Drawing> {
     if !(legend.low_m < legend.high_m && (legend.high_m - legend.low_m).is_finite()) {
         return None;
     }
-    let face = TextStyle::upright(sheet.type_px(15.0), TextStyle::REGULAR);
-    let head = setter.line("Elevation (m)", TextStyle::upright(sheet.type_px(16.0), TextStyle::MEDIUM));
+    let sheet = composer.sheet;
+    let padding = sheet.padding();
     let height = sheet.px(RAMP_HEIGHT).min(sheet.size.y * RAMP_SHARE).round().max(8.0);
-    let marks = marks(legend, height, face, setter);
-    let notes = notes(legend, face, sheet, setter, report);
-    Some(lay_out(legend, height, &head, &marks, &notes, sheet))
+    let head = composer.line("Elevation (m)", composer.style(16.0, TextStyle::MEDIUM));
+    let head_at = Vec2::new(padding, padding + head.style.cap_px().round());
+    let top = head_at.y + (head.style.size_px * 0.72).round();
+    let ramp = PixelBox::at(Vec2::new(padding, top), Vec2::new(sheet.whole_px(20.0), height));
+    let mut drawing = Drawing::default();
+    draw_ramp(&mut drawing, legend, ramp, &sheet);
+    let figures = figures(legend, height, composer);
+    let figures_right = draw_figures(&mut drawing, legend, &figures, ramp, &sheet);
+    drawing.write(&head, head_at, INK);
+    let (mut bottom, mut notes_width) = (ramp.max.y, head.advance);
+    for (number, (text, note)) in notes(legend, composer).into_iter().enumerate() {
+        let leading = if number == 0 { CAP_HEIGHT + 0.85 } else { 1.3 };
+        bottom = (bottom + note.style.size_px * leading).round();
+        notes_width = notes_width.max(note.advance);
+        drawing.write(&note, Vec2::new(padding, bottom), SOFT_INK);
+        drawing.record_text(&text, note.missing, note.shortened);
+    }
+    let right = (padding + notes_width).max(figures_right);
+    let corner = Vec2::new((right + padding).ceil(), (bottom + padding).ceil());
+    Some(drawing.on_panel(corner, &sheet))
 }
 
-/// A round height: where on the ramp, from 0 at its foot to 1 at its top, and its figure.
-struct HeightMark {
-    share: f32,
-    figure: TextLine,
+/// Nice heights with their figures.
+fn figures(legend: &Legend, ramp_px: f32, composer: &mut Composer) -> Vec<(f64, TextLine)> {
+    let style = composer.style(15.0, TextStyle::REGULAR);
+    let most = ((ramp_px / (style.size_px * 1.9)) as usize + 1).clamp(2, 7);
+    composer.figures(&Ticks::new(legend.low_m.into(), legend.high_m.into(), most), style)
 }
 
-fn marks(legend: &Legend, ramp_px: f32, face: TextStyle, setter: &mut Typesetter) -> Vec<HeightMark> {
-    let most = ((ramp_px / (face.size_px * 1.9)) as usize + 1).clamp(2, 7);
-    let (low, high) = (f64::from(legend.low_m), f64::from(legend.high_m));
-    let (heights, decimals) = ticks(low, high, most);
-    let mark = |height: f64| HeightMark {
-        share: ((height - low) / (high - low)) as f32,
-        figure: setter.line(&number(height, decimals), face),
-    };
-    heights.into_iter().map(mark).collect()
-}
-
-fn notes(
-    legend: &Legend,
-    face: TextStyle,
-    sheet: &Sheet,
-    setter: &mut Typesetter,
-    report: &mut AnnotationReport,
-) -> Vec<TextLine> {
-    let face = TextStyle { size_px: sheet.type_px(14.0), ..face };
+/// Notes below the ramp, each with its text as given.
+fn notes(legend: &Legend, composer: &mut Composer) -> Vec<(String, TextLine)> {
+    let style = composer.style(14.0, TextStyle::REGULAR);
     let mut texts = Vec::new();
     if let Some(interval) = legend.contour_interval.filter(|interval| interval.is_finite() && *interval > 0.0)
     {
-        texts.push(format!("Contours every {} m", short_number(f64::from(interval), 2)));
+        texts.push(format!("Contours every {} m", format_trimmed(interval.into(), 2)));
     }
-    if legend.vertical_exaggeration.is_finite() && legend.vertical_exaggeration != 1.0 {
-        texts.push(format!("Heights ×{}", short_number(f64::from(legend.vertical_exaggeration), 2)));
+    let exaggeration = legend.vertical_exaggeration;
+    if exaggeration.is_finite() && exaggeration != 1.0 {
+        texts.push(format!("Heights ×{}", format_trimmed(exaggeration.into(), 2)));
     }
     if let Some(datum) = &legend.vertical_datum {
         texts.extend(written_lines(datum, 1).0);
     }
-    let mut lines = Vec::new();
-    for text in texts {
-        let Some(line) = fitted(setter, &text, face, face.size_px * WIDEST_NOTE_EM) else { continue };
-        report.set(&text, line.missing, line.shortened);
-        lines.push(line);
-    }
-    lines
+    let mut fitted = |text: String| {
+        let line = composer.fitted(&text, style, style.size_px * WIDEST_NOTE_EM)?;
+        Some((text, line))
+    };
+    texts.into_iter().filter_map(&mut fitted).collect()
 }
 
-fn lay_out(
-    legend: &Legend,
-    height: f32,
-    head: &TextLine,
-    marks: &[HeightMark],
-    notes: &[TextLine],
-    sheet: &Sheet,
-) -> Drawing {
-    let padding = sheet.padding();
-    let head_at = Vec2::new(padding, padding + (head.face.size_px * CAP_HEIGHT).round());
-    let top = head_at.y + (head.face.size_px * 0.72).round();
-    let ramp = PixelBox::at(Vec2::new(padding, top), Vec2::new(sheet.whole_px(20.0), height));
-    let mut content = Drawing::default();
-    draw_ramp(&mut content, legend, ramp, sheet);
-    let figures_right = draw_marks(&mut content, marks, ramp, sheet);
-    let mut bottom = ramp.max.y;
-    let mut placed = vec![];
-    for (number, note) in notes.iter().enumerate() {
-        let leading = if number == 0 { CAP_HEIGHT + 0.85 } else { 1.3 };
-        bottom = (bottom + note.face.size_px * leading).round();
-        placed.push((note, Vec2::new(padding, bottom)));
-    }
-    write(&mut content, &[(head, head_at)], INK);
-    write(&mut content, &placed, SOFT_INK);
-    let widest = notes.iter().map(|note| note.advance).fold(head.advance, f32::max);
-    let right = (padding + widest).max(figures_right);
-    let mut drawing = Drawing::default();
-    let corner = Vec2::new((right + padding).ceil(), (bottom + padding).ceil());
-    drawing.panel(PixelBox { min: Vec2::ZERO, max: corner }, sheet.hairline());
-    drawing.append(&content, Vec2::ZERO);
-    drawing
-}
-
-/// The ramp row by row, highest on top, in a thin frame.
+/// Draws the ramp row by row, highest on top, in a thin frame.
 fn draw_ramp(drawing: &mut Drawing, legend: &Legend, ramp: PixelBox, sheet: &Sheet) {
     let rows = ramp.size().y as u32;
     for row in 0..rows {
@@ -146,23 +109,33 @@ fn draw_ramp(drawing: &mut Drawing, legend: &Legend, ramp: PixelBox, sheet: &She
     drawing.frame(ramp, sheet.hairline().round(), FRAME);
 }
 
-/// Ticks and figures to the right of the ramp; returns how far right they reach.
-fn draw_marks(drawing: &mut Drawing, marks: &[HeightMark], ramp: PixelBox, sheet: &Sheet) -> f32 {
+/// Draws ticks and figures to the right of the ramp; returns the figures' right edge.
+fn draw_figures(
+    drawing: &mut Drawing,
+    legend: &Legend,
+    figures: &[(f64, TextLine)],
+    ramp: PixelBox,
+    sheet: &Sheet,
+) -> f32 {
     let line = sheet.hairline().round();
-    let figures_left = ramp.max.x + sheet.whole_px(10.0);
-    let widest = marks.iter().map(|mark| mark.figure.advance).fold(0.0, f32::max);
-    for mark in marks {
-        let y = (ramp.max.y - ramp.size().y * mark.share - line * 0.5)
+    let right = ramp.max.x + sheet.whole_px(10.0) + widest(figures);
+    for (height, figure) in figures {
+        let y = (ramp.max.y - ramp.size().y * share(legend, *height) - line * 0.5)
             .round()
             .clamp(ramp.min.y, ramp.max.y - line);
         let tick = PixelBox::at(Vec2::new(ramp.max.x, y), Vec2::new(sheet.whole_px(5.0), line));
         drawing.rect(tick, INK);
-        let baseline = (y + line * 0.5 + mark.figure.face.size_px * CAP_HEIGHT * 0.5).round();
-        // Figures stand flush right, so that digits of the same worth stand under each other.
-        let at = Vec2::new(figures_left + widest - mark.figure.advance, baseline);
-        write(drawing, &[(&mark.figure, at)], INK);
+        let baseline = (y + line * 0.5 + figure.style.cap_px() * 0.5).round();
+        // Flush right, so that digits of the same place stand under each other.
+        drawing.write(figure, Vec2::new(right - figure.advance, baseline), INK);
     }
-    figures_left + widest
+    right
+}
+
+/// The position of a height on the ramp: 0 at its foot, 1 at its top.
+fn share(legend: &Legend, height: f64) -> f32 {
+    let (low, high) = (f64::from(legend.low_m), f64::from(legend.high_m));
+    ((height - low) / (high - low)) as f32
 }
 
 #[cfg(test)]
@@ -182,17 +155,15 @@ mod tests {
     }
 
     fn draw(legend: &Legend) -> Option<Drawing> {
-        compose(legend, &Sheet::new(1920, 1080), &mut Typesetter::new(), &mut AnnotationReport::default())
+        compose(legend, &mut Composer::new(1920, 1080))
     }
 
     #[test]
     fn marks_stand_at_their_heights_share_of_the_ramp() {
-        let face = TextStyle::upright(15.0, 0.0);
-        for mark in marks(&legend(), 190.0, face, &mut Typesetter::new()) {
-            assert!((0.0..=1.0).contains(&mark.share));
-        }
-        let first = &marks(&legend(), 190.0, face, &mut Typesetter::new())[0];
-        assert!((first.share - (400.0 - 321.0) / (1062.0 - 321.0)).abs() < 1e-5);
+        let figures = figures(&legend(), 190.0, &mut Composer::new(1920, 1080));
+        let shares: Vec<f32> = figures.iter().map(|(height, _)| share(&legend(), *height)).collect();
+        assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)));
+        assert!((shares[0] - (400.0 - 321.0) / (1062.0 - 321.0)).abs() < 1e-5);
     }
 
     #[test]
@@ -215,11 +186,7 @@ mod tests {
     fn true_heights_without_contours_or_datum_need_no_notes() {
         let plain =
             Legend { vertical_exaggeration: 1.0, contour_interval: None, vertical_datum: None, ..legend() };
-        let notes = |legend: &Legend| {
-            let (mut setter, mut report) = (Typesetter::new(), AnnotationReport::default());
-            notes(legend, TextStyle::upright(15.0, 0.0), &Sheet::new(1920, 1080), &mut setter, &mut report)
-                .len()
-        };
+        let notes = |legend: &Legend| notes(legend, &mut Composer::new(1920, 1080)).len();
         assert_eq!((notes(&plain), notes(&legend())), (0, 3));
     }
 }

@@ -1,35 +1,35 @@
-//! A map as a sheet: the map in its frame, and beside it, on paper, what a reader must know.
+//! A map as a sheet: the map in its frame, and beside it, on paper, title, legend and scale.
 //!
 //! ```text
 //! ┌──────────────────────────────────┐
-//! │ Title                            │   Furniture stands beside the map and not on it: on a map every place
-//! │ subtitle                         │   may be the one that is asked about.
+//! │ Title                            │   Furniture stands beside the map and not on it: every place of the map
+//! │ subtitle                         │   may be of interest.
 //! │ ┌─────────────────────┐   N      │
 //! │ │                     │   ▲      │
-//! │ │         map         │  key     │
-//! │ │                     │  heights │
+//! │ │         map         │  tints   │
+//! │ │                     │  legend  │
 //! │ └─────────────────────┘  ├──┼──┤ │
 //! └──────────────────────────────────┘
 //! ```
 
 use glam::Vec2;
 
-use crate::annotate::canvas::Canvas;
+use crate::annotate::canvas::paint;
+use crate::annotate::composer::Composer;
 use crate::annotate::drawing::{Drawing, polyline};
 use crate::annotate::legend::{self, Legend};
 use crate::annotate::north::{self, NorthArrow};
-use crate::annotate::paragraph::fitted;
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::report::AnnotationReport;
 use crate::annotate::scale_bar;
 use crate::annotate::sheet::{FRAME, HALO, INK, PAPER, SOFT_INK, Sheet};
-use crate::annotate::text::{CAP_HEIGHT, TextLine, TextStyle, Typesetter, write};
+use crate::annotate::text::TextStyle;
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 
 /// Width of the column beside the map, in design pixels.
 const COLUMN: f32 = 268.0;
-/// Least height of the column: what the furniture needs.
+/// Least height of the column, in design pixels: what the furniture needs.
 const COLUMN_HEIGHT: f32 = 560.0;
 /// Sizes of title and subtitle, in design pixels of type.
 const HEAD: [f32; 2] = [30.0, 17.0];
@@ -37,7 +37,7 @@ const HEAD: [f32; 2] = [30.0, 17.0];
 const LEADING: [f32; 3] = [0.95, 1.75, 0.6];
 /// The red of the observer: no ground and no water has it.
 const SIGNAL: Srgba = Srgba::opaque(0xc8, 0x1e, 0x2a);
-/// Straight lines that stand for a full circle: no corner shows on a sheet.
+/// Sides of the polygon that approximates a full circle: no corner shows on a sheet.
 const CIRCLE_SIDES: usize = 720;
 
 /// What stands on the sheet beside the map.
@@ -47,56 +47,51 @@ pub struct MapFurniture {
     pub title: String,
     /// The line below it.
     pub subtitle: String,
-    /// What the map's colors mean beside heights, from the top.
-    pub key: Vec<(Srgba, String)>,
-    /// What the ground's colors mean.
-    pub heights: Legend,
+    /// Colors of the map other than heights, with their meaning, from the top.
+    pub tints: Vec<(Srgba, String)>,
+    /// The meaning of the ground's colors.
+    pub legend: Legend,
     /// Pixels that one meter spans on the map.
     pub pixels_per_meter: f32,
 }
 
-/// Where somebody looks from, and how far; all lengths in pixels of the map, Y down.
+/// The observer with range and sector; all lengths in pixels of the map, Y down.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outlook {
+pub struct ObserverOverlay {
     /// The place on the map.
     pub at_px: Vec2,
-    /// How far is looked; `None` without limit.
+    /// The range; `None` without limit.
     pub range_px: Option<f32>,
-    /// The azimuth at which the sector begins and how far it turns clockwise, degrees; `None` all around.
+    /// The azimuth at which the sector begins and its clockwise width, degrees; `None` all around.
     pub sector_deg: Option<(f32, f32)>,
 }
 
 /// Draws the observer, the range and the sector on a map; what lies off it is not drawn.
-pub fn draw_outlook(map: &mut Pixels, outlook: &Outlook, sheet_px: (u32, u32)) {
+pub fn draw_observer(map: &mut Pixels, overlay: &ObserverOverlay, sheet_px: (u32, u32)) {
     let sheet = Sheet::new(sheet_px.0, sheet_px.1);
     let far = Vec2::new(map.width() as f32, map.height() as f32).length() * 2.0;
-    let reach = outlook.range_px.unwrap_or(far).min(far);
+    let reach = overlay.range_px.unwrap_or(far).min(far);
     let at = |degrees: f32| {
         let (sin, cos) = (libm::sinf(degrees.to_radians()), libm::cosf(degrees.to_radians()));
-        outlook.at_px + Vec2::new(sin, -cos) * reach
+        overlay.at_px + Vec2::new(sin, -cos) * reach
     };
-    let (start, width) = outlook.sector_deg.unwrap_or((0.0, 360.0));
+    let (start, width) = overlay.sector_deg.unwrap_or((0.0, 360.0));
     let sides = (CIRCLE_SIDES as f32 * width / 360.0).ceil().max(1.0) as usize;
     let arc = (0..=sides).map(|side| at(start + width * side as f32 / sides as f32));
-    let mut outline: Vec<Vec2> = arc.collect();
-    if outlook.sector_deg.is_some() {
-        outline.insert(0, outlook.at_px);
-        outline.push(outlook.at_px);
-    }
+    let apex = overlay.sector_deg.map(|_| overlay.at_px);
+    let outline: Vec<Vec2> = apex.into_iter().chain(arc).chain(apex).collect();
     let mut drawing = Drawing::default();
-    let is_limited = outlook.range_px.is_some() || outlook.sector_deg.is_some();
+    let is_limited = overlay.range_px.is_some() || overlay.sector_deg.is_some();
     if let Some(path) = polyline(&outline).filter(|_| is_limited) {
         drawing.stroke(&path, sheet.px(4.5), HALO);
         drawing.stroke(&path, sheet.px(2.0), SIGNAL);
     }
-    observer(&mut drawing, outlook.at_px, &sheet);
-    let mut canvas = Canvas::over(map);
-    canvas.draw(&drawing);
-    canvas.finish();
+    draw_observer_symbol(&mut drawing, overlay.at_px, &sheet);
+    paint(map, [&drawing]);
 }
 
-/// A dot in a ring: one sees the very place, and finds it from across a room.
-fn observer(drawing: &mut Drawing, at: Vec2, sheet: &Sheet) {
+/// A dot in a ring: exact in its middle, and visible from afar.
+fn draw_observer_symbol(drawing: &mut Drawing, at: Vec2, sheet: &Sheet) {
     for (radius, color) in [(10.0, PAPER), (8.0, SIGNAL), (4.4, PAPER), (2.6, INK)] {
         drawing.disc(at, sheet.px(radius), color);
     }
@@ -104,7 +99,7 @@ fn observer(drawing: &mut Drawing, at: Vec2, sheet: &Sheet) {
 
 /// The size of the sheet for a map of this size.
 pub fn sheet_size(map: (u32, u32)) -> (u32, u32) {
-    // a sheet's sizes depend on its own: taken from the map's, which is most of it
+    // The sheet's design sizes follow the map, which is most of it.
     let sheet = Sheet::new(map.0, map.1);
     let margin = sheet.margin();
     let column = sheet.px(COLUMN);
@@ -119,27 +114,30 @@ fn head_px(sheet: &Sheet) -> f32 {
     title * LEADING[0] + subtitle * (LEADING[1] + LEADING[2])
 }
 
-/// The sheet with the map on it; and what could not be written as it was given.
+/// The sheet with the map on it, and a report of texts that could not be written as given.
 pub fn compose(map: &Pixels, furniture: &MapFurniture) -> (Pixels, AnnotationReport) {
     let (width, height) = sheet_size((map.width(), map.height()));
-    let sheet = Sheet::new(map.width(), map.height());
-    let (mut setter, mut report) = (Typesetter::new(), AnnotationReport::default());
-    let margin = sheet.margin().round();
-    let corner = Vec2::new(margin, (margin * 1.5 + head_px(&sheet)).round());
+    let mut composer = Composer::new(map.width(), map.height());
+    let margin = composer.sheet.margin().round();
+    let corner = Vec2::new(margin, (margin * 1.5 + head_px(&composer.sheet)).round());
     let frame = PixelBox::at(corner, Vec2::new(map.width() as f32, map.height() as f32));
     let mut pixels = Pixels::filled(width, height, PAPER);
     paste(&mut pixels, map, (corner.x as usize, corner.y as usize));
     let mut drawing = Drawing::default();
     drawing.frame(frame.grown(1.0), 1.0, INK);
-    head(&mut drawing, furniture, (margin, width as f32 - 2.0 * margin), &sheet, (&mut setter, &mut report));
+    let head = PixelBox {
+        min: Vec2::new(margin, composer.sheet.margin()),
+        max: Vec2::new(width as f32 - margin, corner.y),
+    };
+    draw_head(&mut drawing, furniture, head, &mut composer);
     let column = PixelBox {
         min: Vec2::new(frame.max.x + margin, frame.min.y),
         max: Vec2::new(width as f32 - margin, height as f32 - margin),
     };
-    beside(&mut drawing, furniture, column, &sheet, (&mut setter, &mut report));
-    let mut canvas = Canvas::over(&mut pixels);
-    canvas.draw(&drawing);
-    canvas.finish();
+    draw_column(&mut drawing, furniture, column, &mut composer);
+    paint(&mut pixels, [&drawing]);
+    let mut report = AnnotationReport::default();
+    report.add_texts(drawing.texts());
     (pixels, report)
 }
 
@@ -151,67 +149,44 @@ fn paste(pixels: &mut Pixels, map: &Pixels, (x, y): (usize, usize)) {
     }
 }
 
-/// Title and subtitle.
-fn head(
-    drawing: &mut Drawing,
-    furniture: &MapFurniture,
-    (left, room): (f32, f32),
-    sheet: &Sheet,
-    (setter, report): (&mut Typesetter, &mut AnnotationReport),
-) {
-    let mut baseline = sheet.margin();
-    let lines = [
-        (&furniture.title, TextStyle::upright(sheet.type_px(HEAD[0]), TextStyle::MEDIUM), INK, LEADING[0]),
-        (
-            &furniture.subtitle,
-            TextStyle::upright(sheet.type_px(HEAD[1]), TextStyle::REGULAR),
-            SOFT_INK,
-            LEADING[1],
-        ),
-    ];
-    for (text, face, color, lead) in lines {
-        baseline = (baseline + face.size_px * lead).round();
-        if let Some(line) = fitted(setter, text, face, room) {
-            report.set(text, line.missing, line.shortened);
-            write(drawing, &[(&line, Vec2::new(left, baseline))], color);
+/// Writes title and subtitle into `area`.
+fn draw_head(drawing: &mut Drawing, furniture: &MapFurniture, area: PixelBox, composer: &mut Composer) {
+    let mut baseline = area.min.y;
+    for (text, style, color, lead) in [
+        (&furniture.title, composer.style(HEAD[0], TextStyle::MEDIUM), INK, LEADING[0]),
+        (&furniture.subtitle, composer.style(HEAD[1], TextStyle::REGULAR), SOFT_INK, LEADING[1]),
+    ] {
+        baseline = (baseline + style.size_px * lead).round();
+        if let Some(line) = composer.fitted(text, style, area.size().x) {
+            drawing.record_text(text, line.missing, line.shortened);
+            drawing.write(&line, Vec2::new(area.min.x, baseline), color);
         }
     }
 }
 
-/// The column beside the map: what fits, from the top; the scale bar at its foot.
-fn beside(
-    drawing: &mut Drawing,
-    furniture: &MapFurniture,
-    column: PixelBox,
-    sheet: &Sheet,
-    (setter, report): (&mut Typesetter, &mut AnnotationReport),
-) {
-    let gap = sheet.px(22.0);
+/// Draws the column beside the map: from the top what fits.
+fn draw_column(drawing: &mut Drawing, furniture: &MapFurniture, column: PixelBox, composer: &mut Composer) {
     let arrow = NorthArrow { direction: Vec2::new(0.0, -1.0), foreshortening: 1.0 };
-    let pieces = [
-        north::compose(&arrow, sheet, setter),
-        Some(key(&furniture.key, column.size().x, sheet, (setter, report))),
-        legend::compose(&furniture.heights, sheet, setter, report),
-        scale_bar::compose_on_map(furniture.pixels_per_meter, column.size().x * 0.72, sheet, setter),
+    let width = column.size().x;
+    let parts = [
+        north::compose(&arrow, composer),
+        Some(tints(&furniture.tints, width, composer)),
+        legend::compose(&furniture.legend, composer),
+        scale_bar::compose_on_map(furniture.pixels_per_meter, width * 0.72, composer),
     ];
     let mut top = column.min.y;
-    for piece in pieces.into_iter().flatten() {
-        let bounds = piece.bounds();
+    for part in parts.into_iter().flatten() {
+        let bounds = part.bounds();
         if top + bounds.size().y <= column.max.y {
-            drawing.append(&piece, (Vec2::new(column.min.x, top) - bounds.min).round());
-            top = (top + bounds.size().y + gap).round();
+            drawing.append(part.moved((Vec2::new(column.min.x, top) - bounds.min).round()));
+            top = (top + bounds.size().y + composer.sheet.px(22.0)).round();
         }
     }
 }
 
-/// Swatches with what they mean.
-fn key(
-    entries: &[(Srgba, String)],
-    room: f32,
-    sheet: &Sheet,
-    (setter, report): (&mut Typesetter, &mut AnnotationReport),
-) -> Drawing {
-    let face = TextStyle::upright(sheet.type_px(16.0), TextStyle::REGULAR);
+/// Swatches with their meaning, and the observer's symbol.
+fn tints(entries: &[(Srgba, String)], width: f32, composer: &mut Composer) -> Drawing {
+    let (sheet, style) = (composer.sheet, composer.style(16.0, TextStyle::REGULAR));
     let (swatch, lead) = (Vec2::new(sheet.whole_px(30.0), sheet.whole_px(20.0)), sheet.whole_px(32.0));
     let mut drawing = Drawing::default();
     let text_left = swatch.x + sheet.whole_px(12.0);
@@ -219,22 +194,17 @@ fn key(
         let top = lead * index as f32;
         let area = PixelBox::at(Vec2::new(0.0, top), swatch);
         drawing.rect(area, *color);
-        drawing.frame(area, sheet.hairline().round().max(1.0), FRAME);
-        let line: Option<TextLine> = fitted(setter, text, face, room - text_left);
-        if let Some(line) = line {
-            report.set(text, line.missing, line.shortened);
-            let baseline = (top + (swatch.y + face.size_px * CAP_HEIGHT) * 0.5).round();
-            write(&mut drawing, &[(&line, Vec2::new(text_left, baseline))], INK);
+        drawing.frame(area, sheet.hairline().round(), FRAME);
+        if let Some(line) = composer.fitted(text, style, width - text_left) {
+            drawing.record_text(text, line.missing, line.shortened);
+            let baseline = (top + (swatch.y + style.cap_px()) * 0.5).round();
+            drawing.write(&line, Vec2::new(text_left, baseline), INK);
         }
     }
     let symbol = Vec2::new(swatch.x * 0.5, lead * entries.len() as f32 + swatch.y * 0.5);
-    observer(&mut drawing, symbol, sheet);
-    let line = setter.line("Observer", face);
-    write(
-        &mut drawing,
-        &[(&line, Vec2::new(text_left, (symbol.y + face.size_px * CAP_HEIGHT * 0.5).round()))],
-        INK,
-    );
+    draw_observer_symbol(&mut drawing, symbol, &sheet);
+    let line = composer.line("Observer", style);
+    drawing.write(&line, Vec2::new(text_left, (symbol.y + style.cap_px() * 0.5).round()), INK);
     drawing
 }
 
@@ -247,8 +217,8 @@ mod tests {
         MapFurniture {
             title: "What can be seen".into(),
             subtitle: "from 2 m above the ground".into(),
-            key: vec![(SIGNAL, "In sight".into()), (INK, "Hidden".into())],
-            heights: Legend {
+            tints: vec![(SIGNAL, "In sight".into()), (INK, "Hidden".into())],
+            legend: Legend {
                 ramp: ColorRamp::new(vec![(0.0, INK), (100.0, PAPER)]).expect("rising"),
                 low_m: 0.0,
                 high_m: 100.0,
@@ -275,10 +245,11 @@ mod tests {
     #[test]
     fn an_outlook_far_off_the_map_leaves_it_as_it_is() {
         let mut map = Pixels::filled(60, 40, INK);
-        let far = Outlook { at_px: Vec2::splat(1e5), range_px: Some(50.0), sector_deg: Some((10.0, 90.0)) };
-        draw_outlook(&mut map, &far, (300, 300));
+        let far =
+            ObserverOverlay { at_px: Vec2::splat(1e5), range_px: Some(50.0), sector_deg: Some((10.0, 90.0)) };
+        draw_observer(&mut map, &far, (300, 300));
         assert_eq!(map, Pixels::filled(60, 40, INK));
-        draw_outlook(&mut map, &Outlook { at_px: Vec2::new(30.0, 20.0), ..far }, (300, 300));
+        draw_observer(&mut map, &ObserverOverlay { at_px: Vec2::new(30.0, 20.0), ..far }, (300, 300));
         assert_ne!(map, Pixels::filled(60, 40, INK));
     }
 }

@@ -1,69 +1,71 @@
-//! The north arrow: a needle lying on the ground, seen as the camera sees the ground, upper right.
+//! The north arrow: a compass needle on the ground plane, as the camera sees it, upper right.
 //!
-//! In an oblique view north is not a direction on the picture alone: the ground is foreshortened. The
-//! arrow is a compass drawn on the ground plane and projected with it, so that its ring shows the tilt and
-//! its needle points along the meridian; the letter stays upright.
+//! In an oblique view the ground is foreshortened, and a direction on the picture alone does not show north. The arrow
+//! is drawn on the ground plane and projected with it: its ring shows the tilt, and its needle points along the
+//! meridian. The letter stays upright.
 
 use glam::Vec2;
 use tiny_skia::{Path, PathBuilder, Rect};
 
+use crate::annotate::composer::Composer;
 use crate::annotate::drawing::{Drawing, polygon, polyline};
 use crate::annotate::sheet::{FRAME, HALO, INK, PANEL, PAPER, Sheet};
-use crate::annotate::text::{CAP_HEIGHT, TextStyle, Typesetter, halos, write};
+use crate::annotate::text::{CAP_HEIGHT, TextStyle};
 use crate::view::camera::Camera;
 
-/// Flatter than this the needle could not be read; views nearer the horizon are drawn with this tilt.
+/// The least tilt of a legible needle; views nearer the horizon are drawn with this tilt.
 const FLATTEST: f32 = 0.4;
-/// Below this the ground's direction cannot be told from its direction on the picture.
-const HARDLY_TILTED: f32 = 0.02;
+/// Below this tilt the ground's direction cannot be recovered from its direction on the picture.
+const LEAST_TILT: f32 = 0.02;
 /// Radius of the ring in design pixels.
 const RADIUS: f32 = 40.0;
-/// Between ring and letter, in ems of the letter.
+/// Space between ring and letter, in ems of the letter.
 const LETTER_GAP: f32 = 0.16;
 
-/// Which way north is, and how much the ground is foreshortened.
+/// The direction of north and the foreshortening of the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NorthArrow {
-    /// The direction of north on the picture, at its middle; X right and Y down. Any length but zero.
+    /// The direction of north at the picture's middle; X right and Y down. Any length but zero.
     pub direction: Vec2,
-    /// How long a length on the ground into the picture appears against the same length across it: the
-    /// sine of the angle at which the camera looks down. 1 looking straight down, 0 at the horizon.
+    /// The ratio of a length into the picture to the same length across it, as they appear: the sine of the angle at
+    /// which the camera looks down. 1 looking straight down, 0 at the horizon.
     pub foreshortening: f32,
 }
 
 impl NorthArrow {
     /// North as `camera` sees it on the ground at the middle of its picture.
-    pub fn seen_by(camera: &Camera) -> Self {
-        let foreshortening = camera.forward().z.abs().max(HARDLY_TILTED);
-        // The right of the picture is level, so its east and north parts are the cosine and the negative
-        // sine of the heading. A level view, whose horizon would hide whether north is ahead, is tilted.
+    pub fn from_camera(camera: &Camera) -> Self {
+        let foreshortening = camera.forward().z.abs().max(LEAST_TILT);
+        // The right of the picture is level: its east and north parts are the cosine and the negative sine of the
+        // heading. A level view, whose horizon would hide whether north is ahead, is tilted.
         let right = camera.right();
         Self { direction: Vec2::new(right.y, -right.x * foreshortening), foreshortening }
     }
 }
 
-/// The arrow around the origin; `None` where its direction is no direction.
-pub fn compose(arrow: &NorthArrow, sheet: &Sheet, setter: &mut Typesetter) -> Option<Drawing> {
+/// The arrow around the origin; `None` where its direction is zero or not finite.
+pub(in crate::annotate) fn compose(arrow: &NorthArrow, composer: &mut Composer) -> Option<Drawing> {
+    let sheet = composer.sheet;
     let plane = ArrowPlane::new(arrow, sheet.px(RADIUS))?;
     let mut drawing = Drawing::default();
-    drawing.fill(plane.ring(1.0)?, PANEL);
-    drawing.stroke(&plane.ring(1.0)?, sheet.hairline(), FRAME);
+    drawing.fill(plane.ring()?, PANEL);
+    drawing.stroke(&plane.ring()?, sheet.hairline(), FRAME);
     for quarter in [Vec2::X, Vec2::NEG_X, Vec2::NEG_Y] {
         let tick = polyline(&[plane.on_picture(quarter * 0.86), plane.on_picture(quarter)])?;
         drawing.stroke(&tick, sheet.hairline(), INK);
     }
-    draw_needle(&plane, sheet, &mut drawing)?;
-    draw_letter(&plane, sheet, setter, &mut drawing);
+    draw_needle(&plane, &sheet, &mut drawing)?;
+    draw_letter(&plane, composer, &mut drawing);
     Some(drawing)
 }
 
-/// How far the arrow may reach from its middle in any direction: it is set this far from the border.
-pub fn reach(sheet: &Sheet) -> f32 {
-    let letter = letter_px(sheet) * (CAP_HEIGHT + LETTER_GAP) + letter_halo(sheet);
+/// The farthest that the arrow reaches from its center in any direction: its distance from the border.
+pub(in crate::annotate) fn reach(sheet: &Sheet) -> f32 {
+    let letter = sheet.type_px(LETTER_SIZE) * (CAP_HEIGHT + LETTER_GAP) + letter_halo(sheet);
     (sheet.px(RADIUS) + letter).ceil()
 }
 
-/// The ground around the arrow's middle: north along Y, east along X, the ring at distance 1.
+/// The ground around the arrow's center: north along Y, east along X, the ring at distance 1.
 struct ArrowPlane {
     north: Vec2,
     radius: Vec2,
@@ -74,18 +76,17 @@ impl ArrowPlane {
         let tilt = if arrow.foreshortening.is_finite() { arrow.foreshortening.clamp(0.0, 1.0) } else { 1.0 };
         let direction = arrow.direction.try_normalize()?;
         // Seen from above, before foreshortening.
-        let north = Vec2::new(direction.x * tilt.max(HARDLY_TILTED), direction.y).try_normalize()?;
+        let north = Vec2::new(direction.x * tilt.max(LEAST_TILT), direction.y).try_normalize()?;
         Some(Self { north, radius: Vec2::new(1.0, tilt.max(FLATTEST)) * radius })
     }
 
     fn on_picture(&self, ground: Vec2) -> Vec2 {
-        let east = Vec2::new(-self.north.y, self.north.x);
-        (self.north * ground.y + east * ground.x) * self.radius
+        (self.north * ground.y + self.north.perp() * ground.x) * self.radius
     }
 
-    fn ring(&self, share: f32) -> Option<Path> {
-        let half = self.radius * share;
-        PathBuilder::from_oval(Rect::from_ltrb(-half.x, -half.y, half.x, half.y)?)
+    fn ring(&self) -> Option<Path> {
+        let Vec2 { x, y } = self.radius;
+        PathBuilder::from_oval(Rect::from_ltrb(-x, -y, x, y)?)
     }
 }
 
@@ -93,31 +94,28 @@ impl ArrowPlane {
 fn draw_needle(plane: &ArrowPlane, sheet: &Sheet, drawing: &mut Drawing) -> Option<()> {
     let [tip, foot] = [Vec2::new(0.0, 0.98), Vec2::new(0.0, -0.52)].map(|point| plane.on_picture(point));
     let [right, left] = [0.25, -0.25].map(|x| plane.on_picture(Vec2::new(x, -0.7)));
-    let whole = polygon(&[tip, right, foot, left])?;
-    drawing.stroke(&whole, sheet.px(3.0), HALO);
+    let outline = polygon(&[tip, right, foot, left])?;
+    drawing.stroke(&outline, sheet.px(3.0), HALO);
     drawing.fill(polygon(&[tip, left, foot])?, PAPER);
     drawing.fill(polygon(&[tip, right, foot])?, INK);
-    drawing.stroke(&whole, sheet.hairline(), INK);
+    drawing.stroke(&outline, sheet.hairline(), INK);
     Some(())
 }
 
-/// The letter stands beyond the tip on the ring's outward normal, so that it clears the ring however flat.
-fn draw_letter(plane: &ArrowPlane, sheet: &Sheet, setter: &mut Typesetter, drawing: &mut Drawing) {
-    let letter = setter.line("N", TextStyle::upright(letter_px(sheet), TextStyle::BOLD));
-    let half = Vec2::new(letter.advance, letter.face.size_px * CAP_HEIGHT) * 0.5;
+/// Draws the letter beyond the tip on the ring's outward normal, so that it clears the ring at any tilt.
+fn draw_letter(plane: &ArrowPlane, composer: &mut Composer, drawing: &mut Drawing) {
+    let letter = composer.line("N", composer.style(LETTER_SIZE, TextStyle::BOLD));
+    let half = Vec2::new(letter.advance, letter.style.cap_px()) * 0.5;
     let tip = plane.on_picture(Vec2::Y);
     let outward = (tip / (plane.radius * plane.radius)).normalize_or(Vec2::NEG_Y);
-    // As far as the letter's own box reaches back along the normal, and a gap.
-    let away = outward.abs().dot(half) + letter_px(sheet) * LETTER_GAP;
+    // The reach of the letter's box along the normal, and a gap.
+    let away = outward.abs().dot(half) + letter.style.size_px * LETTER_GAP;
     let start = tip + outward * away + Vec2::new(-half.x, half.y);
-    let lines = [(&letter, start.round())];
-    halos(drawing, &lines, letter_halo(sheet));
-    write(drawing, &lines, INK);
+    drawing.write_haloed(&letter, start.round(), letter_halo(&composer.sheet), INK);
 }
 
-fn letter_px(sheet: &Sheet) -> f32 {
-    sheet.type_px(20.0)
-}
+/// Size of the letter in design pixels.
+const LETTER_SIZE: f32 = 20.0;
 
 fn letter_halo(sheet: &Sheet) -> f32 {
     sheet.px(2.4).max(1.5)
@@ -144,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn looking_down_the_ring_is_a_circle_and_looking_flat_it_is_not_flatter_than_readable() {
+    fn the_ring_is_a_circle_from_above_and_never_flatter_than_legible() {
         assert_eq!(plane(0.6, -0.8, 1.0).on_picture(Vec2::Y).length(), 10.0);
         assert_eq!(plane(0.0, -1.0, 0.0).on_picture(Vec2::Y), Vec2::new(0.0, -10.0 * FLATTEST));
     }
@@ -162,7 +160,7 @@ mod tests {
             let angle = step as f32 * 0.2;
             let direction = Vec2::new(libm::cosf(angle), libm::sinf(angle));
             let arrow = NorthArrow { direction, foreshortening: 0.5 };
-            let drawing = compose(&arrow, &sheet, &mut Typesetter::new()).expect("a direction");
+            let drawing = compose(&arrow, &mut Composer::new(1920, 1080)).expect("a direction");
             let bounds = drawing.bounds();
             let reached = bounds.min.abs().max(bounds.max.abs()).max_element();
             assert!(reached <= reach(&sheet) + 3.0, "{reached} at {angle}");
@@ -177,7 +175,7 @@ mod tests {
             let camera = Camera::new(eye, target, 0.7, (800, 600), (1.0, 9000.0)).expect("a sound camera");
             let pixel = |at: Vec3| camera.project(at).expect("in front of the eye").pixel;
             let seen = pixel(target + Vec3::Y * 0.5) - pixel(target - Vec3::Y * 0.5);
-            let off = NorthArrow::seen_by(&camera).direction.angle_to(seen);
+            let off = NorthArrow::from_camera(&camera).direction.angle_to(seen);
             assert!(off.abs() < 0.01, "{off} looking at {target}");
         }
     }
@@ -187,7 +185,7 @@ mod tests {
         for (target, up) in [(Vec3::Y, true), (Vec3::NEG_Y, false)] {
             let camera =
                 Camera::new(Vec3::ZERO, target, 0.7, (800, 600), (1.0, 9.0)).expect("a sound camera");
-            assert_eq!(NorthArrow::seen_by(&camera).direction.y < 0.0, up);
+            assert_eq!(NorthArrow::from_camera(&camera).direction.y < 0.0, up);
         }
     }
 
@@ -195,7 +193,7 @@ mod tests {
     fn no_direction_no_arrow() {
         for direction in [Vec2::ZERO, Vec2::NAN] {
             let arrow = NorthArrow { direction, foreshortening: 0.5 };
-            assert!(compose(&arrow, &Sheet::new(100, 100), &mut Typesetter::new()).is_none());
+            assert!(compose(&arrow, &mut Composer::new(100, 100)).is_none());
         }
     }
 }

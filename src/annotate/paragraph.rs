@@ -2,7 +2,7 @@
 
 use crate::annotate::text::{TextLine, TextStyle, Typesetter};
 
-/// Lines of a text, none wider than asked for.
+/// Lines of a text within a given width.
 #[derive(Clone, Debug)]
 pub struct Paragraph {
     /// The lines, first on top.
@@ -12,102 +12,98 @@ pub struct Paragraph {
 }
 
 impl Paragraph {
-    /// Characters the fonts lack, in all lines.
+    /// Characters that the fonts lack, in all lines.
     pub fn missing(&self) -> usize {
         self.lines.iter().map(|line| line.missing).sum()
     }
 
-    /// How far the longest line reaches.
+    /// The width of the widest line.
     pub fn width(&self) -> f32 {
         self.lines.iter().map(|line| line.advance).fold(0.0, f32::max)
     }
 }
 
-/// The lines that an author wrote: parted at line ends, control characters gone, spaces single, none empty.
+/// The lines of a text as written: split at line ends, without control characters, spaces single, none empty.
 ///
-/// No more than `most` lines are returned, the rest is dropped; the second value says whether any was.
+/// At most `most` lines are returned; the second value tells whether any were dropped.
 pub fn written_lines(text: &str, most: usize) -> (Vec<String>, bool) {
     let is_end = |c: char| matches!(c, '\n' | '\r' | '\u{85}' | '\u{2028}' | '\u{2029}' | '\u{b}' | '\u{c}');
-    let mut lines = text.split(is_end).map(one_spaced).filter(|line| !line.is_empty());
+    let mut lines = text.split(is_end).map(single_spaced).filter(|line| !line.is_empty());
     let kept: Vec<_> = lines.by_ref().take(most).collect();
     (kept, lines.next().is_some())
 }
 
-/// `text` with control characters gone and every run of white space a single space.
-fn one_spaced(text: &str) -> String {
+/// `text` without control characters, every run of white space a single space.
+fn single_spaced(text: &str) -> String {
     let clean: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     clean.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// `text` as one line no wider than `most_px`, ending in an ellipsis where it had to be cut.
-///
-/// `None` where not even a few letters before the ellipsis fit.
-pub fn fitted(setter: &mut Typesetter, text: &str, face: TextStyle, most_px: f32) -> Option<TextLine> {
-    let whole = setter.line(text, face);
-    if whole.advance <= most_px && !whole.shortened {
-        return Some(whole);
-    }
-    let ends: Vec<usize> = text.char_indices().map(|(at, _)| at).take(400).collect();
-    let mut cut = |keep: usize| {
-        let kept = text[..ends.get(keep).copied().unwrap_or(text.len())].trim_end();
-        let line = setter.line(&format!("{kept}…"), face);
-        (line.advance <= most_px).then_some(TextLine { shortened: true, ..line })
-    };
-    /// Fewer letters than this before an ellipsis tell nothing.
-    const FEWEST: usize = 4;
-    // Advance grows with the letters kept (but for kerning), so halving finds the longest that fits.
-    let (mut fits, mut too_long) = (FEWEST, ends.len());
-    let mut best = cut(FEWEST)?;
-    while too_long - fits > 1 {
-        let middle = fits + (too_long - fits) / 2;
-        match cut(middle) {
-            Some(line) => (fits, best) = (middle, line),
-            None => too_long = middle,
+impl Typesetter {
+    /// `text` as one line no wider than `most_px`, ending in an ellipsis where it is cut.
+    ///
+    /// `None` where not even a few letters before the ellipsis fit.
+    pub fn fitted(&mut self, text: &str, style: TextStyle, most_px: f32) -> Option<TextLine> {
+        let full = self.line(text, style);
+        if full.advance <= most_px && !full.shortened {
+            return Some(full);
         }
-    }
-    Some(best)
-}
-
-/// `text` broken between words into at most `most_lines` lines of at most `most_px`.
-///
-/// The author's own line ends are kept; what does not fit is cut with an ellipsis. Empty where nothing fits.
-pub fn broken(
-    setter: &mut Typesetter,
-    text: &str,
-    face: TextStyle,
-    most_px: f32,
-    most_lines: usize,
-) -> Paragraph {
-    let (written, mut shortened) = written_lines(text, most_lines);
-    let mut lines = Vec::new();
-    for paragraph in &written {
-        let mut rest = paragraph.as_str();
-        while !rest.is_empty() && lines.len() < most_lines {
-            let last = lines.len() + 1 == most_lines;
-            let head = if last { rest } else { head_that_fits(setter, rest, face, most_px) };
-            lines.extend(fitted(setter, head, face, most_px));
-            rest = rest[head.len()..].trim_start();
-            if lines.is_empty() {
-                break;
+        let ends: Vec<usize> = text.char_indices().map(|(at, _)| at).take(400).collect();
+        let mut cut = |keep: usize| {
+            let kept = text[..ends.get(keep).copied().unwrap_or(text.len())].trim_end();
+            let line = self.line(&format!("{kept}…"), style);
+            (line.advance <= most_px).then_some(TextLine { shortened: true, ..line })
+        };
+        /// Fewer letters than this before an ellipsis are unreadable.
+        const FEWEST: usize = 4;
+        // The width grows with the letters kept (but for kerning): bisection finds the longest that fits.
+        let (mut fits, mut too_long) = (FEWEST, ends.len());
+        let mut best = cut(FEWEST)?;
+        while too_long - fits > 1 {
+            let middle = fits + (too_long - fits) / 2;
+            match cut(middle) {
+                Some(line) => (fits, best) = (middle, line),
+                None => too_long = middle,
             }
         }
-        shortened |= !rest.is_empty();
+        Some(best)
     }
-    shortened |= lines.iter().any(|line| line.shortened);
-    Paragraph { lines, shortened }
-}
 
-/// The most whole words from the start of `text` that fit; the first word alone where it does not.
-fn head_that_fits<'t>(setter: &mut Typesetter, text: &'t str, face: TextStyle, most_px: f32) -> &'t str {
-    let gaps = text.match_indices(' ').map(|(at, _)| at).chain([text.len()]).take(100);
-    let mut head = text.split(' ').next().unwrap_or(text);
-    for end in gaps {
-        if setter.line(&text[..end], face).advance > most_px {
-            break;
+    /// `text` broken between words into at most `most_lines` lines of at most `most_px`.
+    ///
+    /// Written line ends are kept; text that does not fit is cut with an ellipsis. Empty where nothing fits.
+    pub fn broken(&mut self, text: &str, style: TextStyle, most_px: f32, most_lines: usize) -> Paragraph {
+        let (written, mut shortened) = written_lines(text, most_lines);
+        let mut lines = Vec::new();
+        for paragraph in &written {
+            let mut rest = paragraph.as_str();
+            while !rest.is_empty() && lines.len() < most_lines {
+                let is_last = lines.len() + 1 == most_lines;
+                let head = if is_last { rest } else { self.head_that_fits(rest, style, most_px) };
+                lines.extend(self.fitted(head, style, most_px));
+                rest = rest[head.len()..].trim_start();
+                if lines.is_empty() {
+                    break;
+                }
+            }
+            shortened |= !rest.is_empty();
         }
-        head = &text[..end];
+        shortened |= lines.iter().any(|line| line.shortened);
+        Paragraph { lines, shortened }
     }
-    head
+
+    /// As many words from the start of `text` as fit; the first word alone where it does not.
+    fn head_that_fits<'t>(&mut self, text: &'t str, style: TextStyle, most_px: f32) -> &'t str {
+        let gaps = text.match_indices(' ').map(|(at, _)| at).chain([text.len()]).take(100);
+        let mut head = text.split(' ').next().unwrap_or(text);
+        for end in gaps {
+            if self.line(&text[..end], style).advance > most_px {
+                break;
+            }
+            head = &text[..end];
+        }
+        head
+    }
 }
 
 #[cfg(test)]
@@ -127,18 +123,18 @@ mod tests {
     #[test]
     fn a_line_that_fits_is_left_alone_and_a_long_one_gets_an_ellipsis() {
         let mut setter = Typesetter::new();
-        let whole = fitted(&mut setter, "Norris", FACE, 500.0).expect("fits");
+        let whole = setter.fitted("Norris", FACE, 500.0).expect("fits");
         assert!(!whole.shortened);
-        let cut = fitted(&mut setter, "Norris Geyser Basin", FACE, 100.0).expect("fits when cut");
+        let cut = setter.fitted("Norris Geyser Basin", FACE, 100.0).expect("fits when cut");
         assert!(cut.shortened && cut.advance <= 100.0 && cut.advance > 75.0, "{}", cut.advance);
-        assert!(fitted(&mut setter, "Norris", FACE, 30.0).is_none(), "N… is no name");
+        assert!(setter.fitted("Norris", FACE, 30.0).is_none(), "N… is no name");
     }
 
     #[test]
     fn cutting_never_parts_a_character() {
         let mut setter = Typesetter::new();
         for width in 0..200 {
-            fitted(&mut setter, "Źółć 富士山 👩‍👩‍👧 éé", FACE, width as f32);
+            setter.fitted("Źółć 富士山 👩‍👩‍👧 éé", FACE, width as f32);
         }
     }
 
@@ -146,22 +142,22 @@ mod tests {
     fn long_text_is_broken_between_words_and_the_last_line_cut() {
         let mut setter = Typesetter::new();
         let text = "The quick brown fox jumps over the lazy dog and runs away into the hills";
-        let two = broken(&mut setter, text, FACE, 200.0, 2);
+        let two = setter.broken(text, FACE, 200.0, 2);
         assert_eq!(two.lines.len(), 2);
         assert!(two.shortened && two.width() <= 200.0);
-        let many = broken(&mut setter, text, FACE, 200.0, 9);
+        let many = setter.broken(text, FACE, 200.0, 9);
         assert!(!many.shortened && many.lines.len() >= 4 && many.width() <= 200.0);
     }
 
     #[test]
     fn where_nothing_fits_there_are_no_lines() {
-        assert!(broken(&mut Typesetter::new(), "Norris Geyser", FACE, 2.0, 3).lines.is_empty());
-        assert!(broken(&mut Typesetter::new(), "", FACE, 200.0, 3).lines.is_empty());
+        assert!(Typesetter::new().broken("Norris Geyser", FACE, 2.0, 3).lines.is_empty());
+        assert!(Typesetter::new().broken("", FACE, 200.0, 3).lines.is_empty());
     }
 
     #[test]
     fn the_authors_line_ends_are_kept() {
-        let lines = broken(&mut Typesetter::new(), "one\ntwo", FACE, 400.0, 3).lines;
+        let lines = Typesetter::new().broken("one\ntwo", FACE, 400.0, 3).lines;
         assert_eq!(lines.len(), 2);
     }
 }

@@ -1,8 +1,11 @@
 //! Boxes and segments on the picture: pixels from the upper left corner, X right and Y down.
 //!
-//! Boxes are open: two that share only an edge do not overlap, so that things may stand side by side.
+//! In f32, as `tiny_skia` draws. Boxes are open: two that share only an edge do not overlap, so that things may stand
+//! side by side.
 
 use glam::Vec2;
+
+use crate::geom::rect::Rect;
 
 /// An upright rectangle on the picture; empty where `min` is not below `max` on both axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +29,7 @@ impl PixelBox {
     /// The box that holds nothing: the start of every union.
     pub const EMPTY: Self = Self { min: Vec2::INFINITY, max: Vec2::NEG_INFINITY };
 
-    /// The box with its upper left corner at `min` and extending `size` right and down.
+    /// The box with its upper left corner at `min`, extending `size` right and down.
     pub fn at(min: Vec2, size: Vec2) -> Self {
         Self { min, max: min + size }
     }
@@ -56,7 +59,7 @@ impl PixelBox {
         self.max - self.min
     }
 
-    /// The middle; NaN for [`PixelBox::EMPTY`].
+    /// The center; NaN for [`PixelBox::EMPTY`].
     pub fn center(&self) -> Vec2 {
         (self.min + self.max) * 0.5
     }
@@ -66,7 +69,7 @@ impl PixelBox {
         self.min.cmplt(other.max).all() && other.min.cmplt(self.max).all()
     }
 
-    /// Whether `other` lies inside, edges allowed to coincide. False where a coordinate is NaN.
+    /// Whether `other` lies inside; edges may coincide. False where a coordinate is NaN.
     pub fn holds(&self, other: &Self) -> bool {
         self.min.cmple(other.min).all() && other.max.cmple(self.max).all()
     }
@@ -76,25 +79,10 @@ impl PixelBox {
         self.min.cmple(point).all() && point.cmple(self.max).all()
     }
 
-    /// Whether a point of `segment` lies inside or on an edge (Liang and Barsky 1984: the segment is cut
-    /// by one pair of edges after the other).
+    /// Whether a point of `segment` lies inside or on an edge.
     pub fn meets(&self, segment: &PixelSegment) -> bool {
-        let way = segment.to - segment.from;
-        let (mut enter, mut leave) = (0.0f32, 1.0f32);
-        for axis in 0..2 {
-            let (start, way) = (segment.from[axis], way[axis]);
-            let (low, high) = (self.min[axis] - start, self.max[axis] - start);
-            if way == 0.0 {
-                if low > 0.0 || high < 0.0 {
-                    return false;
-                }
-                continue;
-            }
-            let (first, last) = if way > 0.0 { (low / way, high / way) } else { (high / way, low / way) };
-            enter = enter.max(first);
-            leave = leave.min(last);
-        }
-        enter <= leave
+        let rect = Rect { min: self.min.as_dvec2(), max: self.max.as_dvec2() };
+        rect.clip_line(segment.from.as_dvec2(), segment.to.as_dvec2()).is_some()
     }
 }
 

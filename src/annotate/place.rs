@@ -1,12 +1,12 @@
-//! Where labels go: a pure function from boxes to choices, and the check it must pass.
+//! Where labels go: a pure function from boxes to choices, and its check.
 //!
-//! Labels come in order of importance, each with candidate positions in order of preference. One after the
-//! other takes the first candidate that is free. Greedy placement by priority is what a reader expects (a
-//! minor label never displaces a major one), it is stable (removing an unplaced label changes nothing),
-//! and its cost is bounded; optimal placement is NP-hard (Marks and Shieber 1991) and gains a label or two.
+//! Labels come in order of importance, each with candidate positions in order of preference. One after the other takes
+//! the first candidate that is free. Greedy placement by priority is what a reader expects (a minor label never
+//! displaces a major one), it is stable (removing an unplaced label changes nothing), and its cost is bounded. Optimal
+//! placement is NP-hard (Marks and Shieber 1991) and gains a label or two.
 //!
-//! One look ahead is taken: a candidate that would cover the spot another label is about to stand on is
-//! taken only where no candidate avoids it.
+//! It looks one step ahead: a candidate that would cover the symbol of a later label is taken only where no other
+//! candidate is free.
 
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 
@@ -23,11 +23,11 @@ pub struct LabelCandidate {
 
 /// A label to be placed.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Request {
+pub struct LabelRequest {
     /// Ways to draw it, the best first.
     pub candidates: Vec<LabelCandidate>,
-    /// What others had better keep clear of even before this one is placed.
-    pub spot: Option<PixelBox>,
+    /// A box that labels placed before this one avoid where they can.
+    pub reserved: Option<PixelBox>,
 }
 
 /// The picture to place labels on.
@@ -37,20 +37,20 @@ pub struct LabelField {
     pub bounds: PixelBox,
     /// Nothing placed overlaps these.
     pub taken: Vec<PixelBox>,
-    /// Leader lines keep this many pixels from texts, symbols and `taken`.
-    pub leader_room: f32,
+    /// Pixels that leader lines keep from texts, symbols and `taken`.
+    pub leader_gap: f32,
 }
 
 /// What is wrong with a placement; numbers index the requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlacementFault {
-    /// There is not one choice a request, or a choice names no candidate.
+    /// There is not one choice per request, or a choice names no candidate.
     #[error("label {0} has no such candidate")]
     NoSuchCandidate(usize),
     /// A label leaves the bounds.
     #[error("label {0} leaves the picture")]
     Outside(usize),
-    /// A label overlaps what was taken beforehand.
+    /// A label overlaps a box that was taken beforehand.
     #[error("label {0} overlaps furniture {1}")]
     OnFurniture(usize, usize),
     /// Two labels overlap.
@@ -58,31 +58,35 @@ pub enum PlacementFault {
     Overlap(usize, usize),
 }
 
-/// For every request the number of the candidate chosen, or `None` where none is free.
-pub fn place(requests: &[Request], field: &LabelField) -> Vec<Option<usize>> {
+/// For every request the index of the candidate chosen, or `None` where none is free.
+pub fn place(requests: &[LabelRequest], field: &LabelField) -> Vec<Option<usize>> {
     let mut placed: Vec<LabelCandidate> = Vec::new();
     let mut choices = Vec::with_capacity(requests.len());
     for (number, request) in requests.iter().enumerate() {
         let is_free = |candidate: &LabelCandidate| {
-            field.admits(candidate) && !placed.iter().any(|other| field.conflict(candidate, other))
+            field.keeps_inside(candidate)
+                && !field.taken.iter().any(|taken| field.touches(candidate, taken))
+                && !placed.iter().any(|other| field.conflict(candidate, other))
         };
-        let free: Vec<usize> =
-            (0..request.candidates.len()).filter(|&which| is_free(&request.candidates[which])).collect();
-        let coming = &requests[number + 1..];
-        let polite = |&&which: &&usize| !covers_a_spot(&request.candidates[which], coming);
-        let choice = free.iter().find(polite).or(free.first()).copied();
-        placed.extend(choice.map(|which| request.candidates[which]));
-        choices.push(choice);
+        let later = &requests[number + 1..];
+        let covers_reserved = |candidate: &LabelCandidate| {
+            later.iter().filter_map(|request| request.reserved).any(|area| candidate.text.overlaps(&area))
+        };
+        let candidates = request.candidates.iter().enumerate();
+        let free: Vec<_> = candidates.filter(|(_, candidate)| is_free(candidate)).collect();
+        let choice = free.iter().find(|(_, candidate)| !covers_reserved(candidate)).or(free.first());
+        placed.extend(choice.map(|(_, candidate)| **candidate));
+        choices.push(choice.map(|(which, _)| *which));
     }
     choices
 }
 
-/// Whether `choices` for `requests` keep the promises of [`place`]: everything inside, nothing overlapping.
+/// Checks that `choices` for `requests` keep the promises of [`place`]: everything inside, nothing overlapping.
 ///
 /// # Errors
 /// The first [`PlacementFault`] found.
 pub fn check(
-    requests: &[Request],
+    requests: &[LabelRequest],
     choices: &[Option<usize>],
     field: &LabelField,
 ) -> Result<(), PlacementFault> {
@@ -107,41 +111,37 @@ pub fn check(
     Ok(())
 }
 
-impl LabelField {
-    fn admits(&self, candidate: &LabelCandidate) -> bool {
-        self.keeps_inside(candidate) && !self.taken.iter().any(|taken| self.touches(candidate, taken))
+impl LabelCandidate {
+    /// The boxes of text and symbol.
+    fn boxes(&self) -> impl Iterator<Item = &PixelBox> {
+        std::iter::once(&self.text).chain(&self.symbol)
     }
+}
 
+impl LabelField {
     fn keeps_inside(&self, candidate: &LabelCandidate) -> bool {
-        self.bounds.holds(&candidate.text)
-            && candidate.symbol.is_none_or(|symbol| self.bounds.holds(&symbol))
-            && candidate
-                .leader
-                .is_none_or(|leader| self.bounds.contains(leader.from) && self.bounds.contains(leader.to))
+        let contains = |line: PixelSegment| self.bounds.contains(line.from) && self.bounds.contains(line.to);
+        candidate.boxes().all(|area| self.bounds.holds(area)) && candidate.leader.is_none_or(contains)
     }
 
     /// Whether any part of `candidate` touches `area`.
     fn touches(&self, candidate: &LabelCandidate, area: &PixelBox) -> bool {
-        candidate.text.overlaps(area)
-            || candidate.symbol.is_some_and(|symbol| symbol.overlaps(area))
-            || candidate.leader.is_some_and(|leader| area.grown(self.leader_room).meets(&leader))
+        candidate.boxes().any(|own| own.overlaps(area))
+            || candidate.leader.is_some_and(|leader| self.passes_near(&leader, area))
     }
 
-    /// Whether two labels drawn so would touch.
+    fn passes_near(&self, leader: &PixelSegment, area: &PixelBox) -> bool {
+        area.grown(self.leader_gap).meets(leader)
+    }
+
+    /// Whether two labels would touch.
     fn conflict(&self, one: &LabelCandidate, other: &LabelCandidate) -> bool {
-        self.touches(one, &other.text)
-            || other.symbol.is_some_and(|symbol| self.touches(one, &symbol))
+        other.boxes().any(|area| self.touches(one, area))
             || other.leader.is_some_and(|leader| {
-                let near = |area: &PixelBox| area.grown(self.leader_room).meets(&leader);
-                near(&one.text)
-                    || one.symbol.as_ref().is_some_and(near)
+                one.boxes().any(|area| self.passes_near(&leader, area))
                     || one.leader.is_some_and(|own| own.crosses(&leader))
             })
     }
-}
-
-fn covers_a_spot(candidate: &LabelCandidate, coming: &[Request]) -> bool {
-    coming.iter().filter_map(|request| request.spot).any(|spot| candidate.text.overlaps(&spot))
 }
 
 #[cfg(test)]
@@ -154,7 +154,7 @@ mod tests {
 
     fn field() -> LabelField {
         let bounds = PixelBox::at(Vec2::ZERO, Vec2::new(200.0, 100.0));
-        LabelField { bounds, taken: vec![PixelBox::at(Vec2::ZERO, Vec2::new(60.0, 30.0))], leader_room: 2.0 }
+        LabelField { bounds, taken: vec![PixelBox::at(Vec2::ZERO, Vec2::new(60.0, 30.0))], leader_gap: 2.0 }
     }
 
     fn text(x: f32, y: f32) -> LabelCandidate {
@@ -162,8 +162,8 @@ mod tests {
         LabelCandidate { text, symbol: None, leader: None }
     }
 
-    fn request(candidates: &[LabelCandidate]) -> Request {
-        Request { candidates: candidates.to_vec(), spot: None }
+    fn request(candidates: &[LabelCandidate]) -> LabelRequest {
+        LabelRequest { candidates: candidates.to_vec(), reserved: None }
     }
 
     #[test]
@@ -183,13 +183,13 @@ mod tests {
     }
 
     #[test]
-    fn a_coming_labels_spot_is_left_free_where_that_is_possible() {
-        let spot = PixelBox::at(Vec2::new(105.0, 52.0), Vec2::splat(4.0));
-        let coming = Request { candidates: vec![text(0.0, 80.0)], spot: Some(spot) };
+    fn the_symbol_of_a_later_label_is_left_free_where_possible() {
+        let reserved = PixelBox::at(Vec2::new(105.0, 52.0), Vec2::splat(4.0));
+        let later = LabelRequest { candidates: vec![text(0.0, 80.0)], reserved: Some(reserved) };
         let choosy = request(&[text(100.0, 50.0), text(100.0, 70.0)]);
-        assert_eq!(place(&[choosy, coming.clone()], &field())[0], Some(1));
+        assert_eq!(place(&[choosy, later.clone()], &field())[0], Some(1));
         let stuck = request(&[text(100.0, 50.0)]);
-        assert_eq!(place(&[stuck, coming], &field())[0], Some(0));
+        assert_eq!(place(&[stuck, later], &field())[0], Some(0));
     }
 
     #[test]
@@ -237,10 +237,10 @@ mod tests {
         })
     }
 
-    fn any_request() -> impl Strategy<Value = Request> {
+    fn any_request() -> impl Strategy<Value = LabelRequest> {
         vec(any_candidate(), 0..6).prop_map(|candidates| {
-            let spot = candidates.first().and_then(|first| first.symbol);
-            Request { candidates, spot }
+            let reserved = candidates.first().and_then(|first| first.symbol);
+            LabelRequest { candidates, reserved }
         })
     }
 

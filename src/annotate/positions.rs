@@ -1,4 +1,4 @@
-//! Where one label may stand: candidates around its place, the best first.
+//! The candidate positions of one label around its place, the best first.
 //!
 //! ```text
 //!        Name              Name              Name
@@ -8,9 +8,9 @@
 //!       centered       to the right          to the left          beside it
 //! ```
 //!
-//! Readers look above a place first, so the text stands at the end of a leader line; where that is taken
-//! the leader is lengthened or shortened and the text shifted along it; beside the place comes last. Names
-//! of waters stand on the water itself first.
+//! Readers look above a place first, so that the text stands at the end of a leader line. Where that is taken, the
+//! leader is lengthened or shortened and the text shifted along it; beside the place comes last. Names of waters stand
+//! on the water itself first.
 
 use glam::Vec2;
 
@@ -22,42 +22,41 @@ use crate::annotate::place::LabelCandidate;
 pub struct LabelMetrics {
     /// The place.
     pub anchor: Vec2,
-    /// From the place to the wished end of its leader line; upward.
+    /// From the place to the preferred end of its leader line; upward.
     pub reach: Vec2,
-    /// The box of the text for each [`Alignment`], around any origin; candidates are moves of it by whole
-    /// pixels.
+    /// The box of the text for each [`Alignment`], around any origin; candidates move it by whole pixels.
     pub texts: [PixelBox; 3],
     /// Half the size of the symbol.
     pub symbol: Vec2,
-    /// Room between text and leader line, and text and symbol.
+    /// The gap between text and leader line, and text and symbol.
     pub gap: f32,
     /// The longest leader line.
     pub longest: f32,
-    /// What comes first.
+    /// The first choice.
     pub preference: Preference,
 }
 
-/// One way to draw a label, and how its lines are set then.
+/// One way to draw a label, and the alignment of its lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabelPosition {
     /// Where everything is.
     pub candidate: LabelCandidate,
-    /// How the lines of the text stand under each other.
+    /// The alignment of the text's lines.
     pub alignment: Alignment,
 }
 
-/// How lines of text stand under each other; the numbers index [`LabelMetrics::texts`].
+/// The alignment of lines of text; the numbers index [`LabelMetrics::texts`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Alignment {
-    /// Flush left: the text stands to the right of what it names.
+    /// Flush left: the text is to the right of what it names.
     Left = 0,
-    /// Centered: the text stands over what it names.
+    /// Centered: the text is over what it names.
     Center = 1,
-    /// Flush right: the text stands to the left of what it names.
+    /// Flush right: the text is to the left of what it names.
     Right = 2,
 }
 
-/// Where a label would rather stand.
+/// The preferred position of a label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Preference {
     /// Above its place, at the end of a leader line.
@@ -66,58 +65,63 @@ pub enum Preference {
     OnPlace,
 }
 
-/// Lengths of the leader tried, as multiples of the wished one.
+/// Lengths of the leader to try, as multiples of the preferred one.
 const LENGTHS: [f32; 7] = [1.0, 0.55, 1.5, 2.1, 2.8, 3.7, 5.0];
 /// Where along the text's lower edge the leader meets it.
 const MEETINGS: [(f32, Alignment); 3] =
     [(0.5, Alignment::Center), (0.14, Alignment::Left), (0.86, Alignment::Right)];
 
-/// All positions, the best first.
-pub fn positions(stance: &LabelMetrics) -> Vec<LabelPosition> {
-    let on_place = (stance.preference == Preference::OnPlace).then(|| centered_on_place(stance));
-    let above = LENGTHS
-        .iter()
-        .filter(|&&length| stance.reach.length() * length <= stance.longest)
-        .flat_map(|&length| MEETINGS.map(|meeting| above(stance, stance.reach * length, meeting)));
-    let beside = [(1.0, Alignment::Left), (-1.0, Alignment::Right)].map(|side| beside(stance, side));
-    on_place.into_iter().chain(above).chain(beside).collect()
-}
-
-/// The symbol's box at the place.
-pub fn spot(stance: &LabelMetrics) -> PixelBox {
-    PixelBox::around(stance.anchor, stance.symbol)
-}
-
-fn centered_on_place(stance: &LabelMetrics) -> LabelPosition {
-    let alignment = Alignment::Center;
-    let text = moved_center(stance.texts[alignment as usize], stance.anchor);
-    LabelPosition { candidate: LabelCandidate { text, symbol: None, leader: None }, alignment }
-}
-
-fn above(stance: &LabelMetrics, reach: Vec2, (meeting, alignment): (f32, Alignment)) -> LabelPosition {
-    let area = stance.texts[alignment as usize];
-    let end = stance.anchor + reach;
-    let foot = Vec2::new(area.min.x + area.size().x * meeting, area.max.y + stance.gap);
-    let text = area.moved((end - foot).round());
-    let from = stance.anchor + reach.normalize_or_zero() * stance.symbol.y;
-    // The text is moved by whole pixels, the line ends where the text then is.
-    let to = Vec2::new(end.x, text.max.y + stance.gap);
-    let leader = Some(PixelSegment { from, to });
-    LabelPosition { candidate: LabelCandidate { text, symbol: Some(spot(stance)), leader }, alignment }
-}
-
-fn beside(stance: &LabelMetrics, (side, alignment): (f32, Alignment)) -> LabelPosition {
-    let area = stance.texts[alignment as usize];
-    let away = stance.symbol.x + stance.gap + area.size().x * 0.5;
-    let mut text = moved_center(area, stance.anchor + Vec2::new(side * away, 0.0));
-    // Rounding to whole pixels must not bring the text over the symbol.
-    if text.overlaps(&spot(stance)) {
-        text = text.moved(Vec2::new(side, 0.0));
+impl LabelMetrics {
+    /// All positions, the best first.
+    pub fn positions(&self) -> Vec<LabelPosition> {
+        let on_place = (self.preference == Preference::OnPlace).then(|| self.on_place());
+        let above = LENGTHS
+            .iter()
+            .filter(|&&length| self.reach.length() * length <= self.longest)
+            .flat_map(|&length| MEETINGS.map(|meeting| self.above(self.reach * length, meeting)));
+        let beside = [(1.0, Alignment::Left), (-1.0, Alignment::Right)].map(|side| self.beside(side));
+        on_place.into_iter().chain(above).chain(beside).collect()
     }
-    LabelPosition { candidate: LabelCandidate { text, symbol: Some(spot(stance)), leader: None }, alignment }
+
+    /// The symbol's box at the place.
+    pub fn symbol_box(&self) -> PixelBox {
+        PixelBox::around(self.anchor, self.symbol)
+    }
+
+    fn on_place(&self) -> LabelPosition {
+        let alignment = Alignment::Center;
+        let text = moved_center(self.texts[alignment as usize], self.anchor);
+        LabelPosition { candidate: LabelCandidate { text, symbol: None, leader: None }, alignment }
+    }
+
+    fn above(&self, reach: Vec2, (meeting, alignment): (f32, Alignment)) -> LabelPosition {
+        let area = self.texts[alignment as usize];
+        let end = self.anchor + reach;
+        let foot = Vec2::new(area.min.x + area.size().x * meeting, area.max.y + self.gap);
+        let text = area.moved((end - foot).round());
+        let from = self.anchor + reach.normalize_or_zero() * self.symbol.y;
+        // The text is moved by whole pixels; the line ends where the text is then.
+        let to = Vec2::new(end.x, text.max.y + self.gap);
+        let leader = Some(PixelSegment { from, to });
+        LabelPosition {
+            candidate: LabelCandidate { text, symbol: Some(self.symbol_box()), leader },
+            alignment,
+        }
+    }
+
+    fn beside(&self, (side, alignment): (f32, Alignment)) -> LabelPosition {
+        let (area, symbol) = (self.texts[alignment as usize], self.symbol_box());
+        let away = self.symbol.x + self.gap + area.size().x * 0.5;
+        let mut text = moved_center(area, self.anchor + Vec2::new(side * away, 0.0));
+        // Rounding to whole pixels must not move the text over the symbol.
+        if text.overlaps(&symbol) {
+            text = text.moved(Vec2::new(side, 0.0));
+        }
+        LabelPosition { candidate: LabelCandidate { text, symbol: Some(symbol), leader: None }, alignment }
+    }
 }
 
-/// `area` moved by whole pixels so that its middle comes to `center`.
+/// `area` moved by whole pixels so that its center comes to `center`.
 fn moved_center(area: PixelBox, center: Vec2) -> PixelBox {
     area.moved((center - area.center()).round())
 }
@@ -126,7 +130,7 @@ fn moved_center(area: PixelBox, center: Vec2) -> PixelBox {
 mod tests {
     use super::*;
 
-    fn stance() -> LabelMetrics {
+    fn metrics() -> LabelMetrics {
         let text = PixelBox { min: Vec2::new(-1.5, -20.0), max: Vec2::new(80.5, 12.0) };
         LabelMetrics {
             anchor: Vec2::new(400.3, 300.7),
@@ -139,21 +143,21 @@ mod tests {
         }
     }
 
-    fn candidates(stance: &LabelMetrics) -> Vec<LabelCandidate> {
-        positions(stance).into_iter().map(|position| position.candidate).collect()
+    fn candidates(metrics: &LabelMetrics) -> Vec<LabelCandidate> {
+        metrics.positions().into_iter().map(|position| position.candidate).collect()
     }
 
     #[test]
     fn the_first_candidate_is_centered_over_the_leaders_wished_end() {
-        let first = candidates(&stance())[0];
-        let end = stance().anchor + stance().reach;
+        let first = candidates(&metrics())[0];
+        let end = metrics().anchor + metrics().reach;
         assert!((first.text.center().x - end.x).abs() <= 0.5);
         assert!((first.text.max.y + 3.0 - end.y).abs() <= 0.5);
     }
 
     #[test]
     fn no_candidate_covers_its_own_symbol_or_leader() {
-        for (number, candidate) in candidates(&stance()).iter().enumerate() {
+        for (number, candidate) in candidates(&metrics()).iter().enumerate() {
             let symbol = candidate.symbol.expect("drawn with a symbol");
             assert!(!candidate.text.overlaps(&symbol), "{number}: {candidate:?}");
             assert!(candidate.leader.is_none_or(|line| !candidate.text.meets(&line)), "{number}");
@@ -162,16 +166,16 @@ mod tests {
 
     #[test]
     fn texts_move_by_whole_pixels() {
-        for position in positions(&stance()) {
-            let by = position.candidate.text.min - stance().texts[position.alignment as usize].min;
+        for position in metrics().positions() {
+            let by = position.candidate.text.min - metrics().texts[position.alignment as usize].min;
             assert!((by - by.round()).length() < 1e-3, "{by}");
         }
     }
 
     #[test]
     fn lines_stand_flush_toward_what_they_name() {
-        for position in positions(&stance()) {
-            let off = position.candidate.text.center().x - stance().anchor.x - 4.0;
+        for position in metrics().positions() {
+            let off = position.candidate.text.center().x - metrics().anchor.x - 4.0;
             match position.alignment {
                 Alignment::Left => assert!(off > 10.0),
                 Alignment::Right => assert!(off < -10.0),
@@ -182,7 +186,7 @@ mod tests {
 
     #[test]
     fn leaders_are_no_longer_than_allowed() {
-        let longest = candidates(&stance())
+        let longest = candidates(&metrics())
             .iter()
             .filter_map(|candidate| candidate.leader)
             .map(|line| (line.to - line.from).length())
@@ -192,8 +196,8 @@ mod tests {
 
     #[test]
     fn a_water_name_stands_on_the_water_first() {
-        let first = candidates(&LabelMetrics { preference: Preference::OnPlace, ..stance() })[0];
-        assert!((first.text.center() - stance().anchor).abs().max_element() <= 0.5);
+        let first = candidates(&LabelMetrics { preference: Preference::OnPlace, ..metrics() })[0];
+        assert!((first.text.center() - metrics().anchor).abs().max_element() <= 0.5);
         assert_eq!((first.symbol, first.leader), (None, None));
     }
 }

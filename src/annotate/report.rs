@@ -1,4 +1,6 @@
-//! What annotating did, so that nothing is left out in silence.
+//! What annotating drew and what it left out.
+
+use crate::annotate::drawing::DrawnText;
 
 /// A piece of furniture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -20,50 +22,46 @@ pub enum FurnitureKind {
 pub struct AnnotationReport {
     /// Labels drawn.
     pub placed: Vec<String>,
-    /// Labels not drawn because terrain or something on it stands before their place.
+    /// Labels not drawn because terrain or something on it hides their place.
     pub hidden: Vec<String>,
     /// Labels not drawn because their place is outside the picture, or too close to its border.
     pub outside: Vec<String>,
     /// Labels not drawn because no position near their place was free.
     pub crowded_out: Vec<String>,
-    /// Labels with no text to draw; how many.
+    /// The number of labels without visible text.
     pub empty: usize,
     /// Texts drawn with an ellipsis because they were too long.
     pub shortened: Vec<String>,
-    /// Furniture asked for and not drawn: too large for the picture, or its figures make no sense.
+    /// Furniture not drawn: too large for the picture, or without sensible values.
     pub left_out: Vec<FurnitureKind>,
     /// Texts drawn with boxes in place of characters that the embedded fonts lack.
     pub missing_glyphs: Vec<MissingGlyphs>,
 }
 
-/// A drawn text that holds characters the embedded fonts lack.
+/// A drawn text with characters that the embedded fonts lack.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MissingGlyphs {
     /// The text as given.
     pub text: String,
-    /// How many boxes were drawn.
+    /// The number of boxes drawn.
     pub count: usize,
 }
 
 impl AnnotationReport {
-    /// How many boxes were drawn in place of characters, in all texts.
+    /// The number of boxes drawn in place of characters, in all texts.
     pub fn missing_glyph_count(&self) -> usize {
         self.missing_glyphs.iter().map(|missing| missing.count).sum()
     }
 
-    /// Records what setting `text` came to.
-    pub(super) fn set(&mut self, text: &str, missing: usize, shortened: bool) {
-        if missing > 0 {
-            self.missing_glyphs.push(MissingGlyphs { text: text.to_owned(), count: missing });
+    /// Adds the flaws of drawn texts.
+    pub(in crate::annotate) fn add_texts(&mut self, texts: &[DrawnText]) {
+        for DrawnText { text, missing, shortened } in texts {
+            if *missing > 0 {
+                self.missing_glyphs.push(MissingGlyphs { text: text.clone(), count: *missing });
+            }
+            if *shortened {
+                self.shortened.push(text.clone());
+            }
         }
-        if shortened {
-            self.shortened.push(text.to_owned());
-        }
-    }
-
-    /// Adds what `other` says about texts: of furniture that was drawn after all.
-    pub(super) fn take_texts(&mut self, other: Self) {
-        self.missing_glyphs.extend(other.missing_glyphs);
-        self.shortened.extend(other.shortened);
     }
 }

@@ -1,7 +1,7 @@
-//! The scale bar: a round length at the distance where it is true, lower left.
+//! The scale bar: a nice length, and the distance at which it is true, lower left.
 //!
-//! A perspective picture has no one scale. The bar says for which distance from the eye it was made, and is
-//! right to half a pixel there for lines across the view.
+//! A perspective picture has no single scale. The bar states its distance from the eye, and is correct to half a pixel
+//! there for lines across the view.
 //!
 //! ```text
 //!  0        2.5        5 km
@@ -11,120 +11,101 @@
 
 use glam::Vec2;
 
+use crate::annotate::composer::Composer;
 use crate::annotate::drawing::Drawing;
-use crate::annotate::nice::{Nice, distance, number};
+use crate::annotate::nice::{NiceNumber, format_distance, format_number};
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::sheet::{INK, PAPER, SOFT_INK, Sheet};
-use crate::annotate::text::{CAP_HEIGHT, DESCENT, TextLine, TextStyle, Typesetter, write};
+use crate::annotate::text::{CAP_HEIGHT, DESCENT, TextLine, TextStyle};
 use crate::view::camera::Camera;
 
-/// Longest bar, in design pixels. Round lengths are at most 2.5 times apart, so bars are at least 104.
+/// Longest bar, in design pixels. Nice lengths are at most 2.5 times apart, so that bars are at least 104 long.
 const LONGEST: f32 = 260.0;
-/// Parts of the bar, by turns black and white; even, so that the middle is an edge.
+/// Parts of the bar, alternating black and white; even, so that the middle is an edge.
 const PARTS: i64 = 4;
 
-/// How large things are at one distance.
+/// The scale of a picture at one distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScaleBar {
     /// Pixels that one meter across the view spans there.
     pub pixels_per_meter: f32,
-    /// The distance from the eye for which that holds, in meters; printed under the bar.
+    /// The distance from the eye, in meters; printed under the bar.
     pub distance_m: f32,
 }
 
 impl ScaleBar {
-    /// How large `camera` shows things `distance_m` meters along its viewing direction.
-    pub fn seen_by(camera: &Camera, distance_m: f32) -> Self {
+    /// The scale of `camera` at `distance_m` meters along its viewing direction.
+    pub fn at_distance(camera: &Camera, distance_m: f32) -> Self {
         Self { pixels_per_meter: camera.pixels_per_meter(distance_m), distance_m }
     }
 }
 
-/// A bar of round length.
+/// A bar of nice length.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RoundBar {
-    /// The length it stands for.
-    pub length: Nice,
-    /// How long it is drawn, in whole pixels.
-    pub length_px: f32,
+struct NiceBar {
+    /// Its length in meters.
+    length: NiceNumber,
+    /// Its drawn length, in whole pixels.
+    length_px: f32,
 }
 
-/// The longest round bar of at most `longest_px`; `None` where the scale is not a positive number or the
-/// bar would stand for less than a millimeter or more than a hundred thousand kilometers.
-pub fn measure(bar: &ScaleBar, longest_px: f32) -> Option<RoundBar> {
+/// The longest nice bar of at most `longest_px`; `None` where the scale is not a positive number or the bar would be
+/// shorter than a millimeter or longer than a hundred thousand kilometers.
+fn measure(bar: &ScaleBar, longest_px: f32) -> Option<NiceBar> {
     let scale = f64::from(bar.pixels_per_meter);
-    let sound = scale > 0.0 && bar.distance_m.is_finite() && bar.distance_m > 0.0;
-    let length = Nice::at_most(f64::from(longest_px) / scale).filter(|_| sound)?;
-    let sensible = (1e-3..=1e8).contains(&length.value());
+    let is_sound = scale > 0.0 && bar.distance_m.is_finite() && bar.distance_m > 0.0;
+    let length = NiceNumber::at_most(f64::from(longest_px) / scale).filter(|_| is_sound)?;
+    let is_sensible = (1e-3..=1e8).contains(&length.value());
     let length_px = libm::round(length.value() * scale) as f32;
-    (sensible && length_px > 0.0).then_some(RoundBar { length, length_px })
+    (is_sensible && length_px > 0.0).then_some(NiceBar { length, length_px })
 }
 
-/// The scale bar on its panel with the upper left corner at the origin; `None` where [`measure`] has none.
-pub fn compose(bar: &ScaleBar, sheet: &Sheet, setter: &mut Typesetter) -> Option<Drawing> {
-    let measure = measure(bar, sheet.px(LONGEST))?;
-    let note = TextStyle::upright(sheet.type_px(14.0), TextStyle::REGULAR);
-    let where_true = setter.line(&format!("at {} from the eye", distance(f64::from(bar.distance_m))), note);
-    Some(labeled(&measure, Some(&where_true), sheet, setter))
+/// The scale bar on its panel with the upper left corner at the origin; `None` where the scale is unusable.
+pub(in crate::annotate) fn compose(bar: &ScaleBar, composer: &mut Composer) -> Option<Drawing> {
+    let measure = measure(bar, composer.sheet.px(LONGEST))?;
+    let note = format!("at {} from the eye", format_distance(bar.distance_m.into()));
+    let note = composer.line(&note, composer.style(14.0, TextStyle::REGULAR));
+    Some(lay_out(&measure, Some(&note), composer))
 }
 
-/// The scale bar of a map, which has one scale all over; otherwise as [`compose`], no longer than `longest_px`.
-pub fn compose_on_map(
+/// The scale bar of a map, which has one scale everywhere; otherwise as [`compose`], no longer than `longest_px`.
+pub(in crate::annotate) fn compose_on_map(
     pixels_per_meter: f32,
     longest_px: f32,
-    sheet: &Sheet,
-    setter: &mut Typesetter,
+    composer: &mut Composer,
 ) -> Option<Drawing> {
-    // every distance will do
     let measure = measure(&ScaleBar { pixels_per_meter, distance_m: 1.0 }, longest_px)?;
-    Some(labeled(&measure, None, sheet, setter))
+    Some(lay_out(&measure, None, composer))
 }
 
-fn labeled(measure: &RoundBar, note: Option<&TextLine>, sheet: &Sheet, setter: &mut Typesetter) -> Drawing {
-    let face = TextStyle::upright(sheet.type_px(16.0), TextStyle::REGULAR);
-    let figures = figures(&measure.length).map(|text| setter.line(&text, face));
-    let unit = setter.line(&format!(" {}", unit(&measure.length).0), face);
-    lay_out(measure, &figures, &unit, note, sheet)
-}
-
-fn lay_out(
-    measure: &RoundBar,
-    figures: &[TextLine; 3],
-    unit: &TextLine,
-    note: Option<&TextLine>,
-    sheet: &Sheet,
-) -> Drawing {
+fn lay_out(measure: &NiceBar, note: Option<&TextLine>, composer: &mut Composer) -> Drawing {
+    let style = composer.style(16.0, TextStyle::REGULAR);
+    let figures = figures(&measure.length).map(|text| composer.line(&text, style));
+    let unit = composer.line(&format!(" {}", unit(&measure.length).0), style);
+    let sheet = composer.sheet;
     let padding = sheet.padding();
-    let size = figures[0].face.size_px;
     let left = padding.max((padding * 0.6 + figures[0].advance * 0.5).round());
-    let baseline = padding + (size * CAP_HEIGHT).round();
-    let top = baseline + (size * 0.42).round();
+    let baseline = padding + style.cap_px().round();
+    let top = baseline + (style.size_px * 0.42).round();
     let bar = PixelBox::at(Vec2::new(left, top), Vec2::new(measure.length_px, sheet.whole_px(8.0)));
-    let note = note
-        .map(|note| (note, Vec2::new(left, (bar.max.y + note.face.size_px * (CAP_HEIGHT + 0.55)).round())));
-    let figures_right = bar.max.x + figures[2].advance * 0.5 + unit.advance;
-    let right = note.map_or(figures_right, |(line, at)| figures_right.max(at.x + line.advance));
-    let bottom = note.map_or(bar.max.y + padding, |(line, at)| {
-        at.y + padding - (line.face.size_px * DESCENT * 0.3).round()
-    });
+    let mut corner = Vec2::new(bar.max.x + figures[2].advance * 0.5 + unit.advance, bar.max.y + padding);
     let mut drawing = Drawing::default();
-    drawing.panel(
-        PixelBox { min: Vec2::ZERO, max: Vec2::new((right + padding).ceil(), bottom) },
-        sheet.hairline(),
-    );
-    draw_bar(&mut drawing, bar, sheet);
-    let middle = |part: f32, line: &TextLine| bar.min.x + bar.size().x * part - line.advance * 0.5;
-    let at: Vec<(&TextLine, Vec2)> = [0.0, 0.5, 1.0]
-        .iter()
-        .zip(figures)
-        .map(|(&part, line)| (line, Vec2::new(middle(part, line).round(), baseline)))
-        .collect();
-    write(&mut drawing, &at, INK);
-    let unit_x = at[2].1.x + figures[2].advance;
-    write(&mut drawing, &[(unit, Vec2::new(unit_x, baseline))], INK);
-    if let Some(note) = note {
-        write(&mut drawing, &[note], SOFT_INK);
+    draw_bar(&mut drawing, bar, &sheet);
+    let mut figures_right = 0.0;
+    for (part, figure) in [0.0, 0.5, 1.0].into_iter().zip(&figures) {
+        let x = (bar.min.x + bar.size().x * part - figure.advance * 0.5).round();
+        drawing.write(figure, Vec2::new(x, baseline), INK);
+        figures_right = x + figure.advance;
     }
-    drawing
+    drawing.write(&unit, Vec2::new(figures_right, baseline), INK);
+    if let Some(note) = note {
+        let size_px = note.style.size_px;
+        let at = Vec2::new(left, (bar.max.y + size_px * (CAP_HEIGHT + 0.55)).round());
+        drawing.write(note, at, SOFT_INK);
+        let bottom = at.y + padding - (size_px * DESCENT * 0.3).round();
+        corner = Vec2::new(corner.x.max(at.x + note.advance), bottom);
+    }
+    drawing.on_panel(Vec2::new((corner.x + padding).ceil(), corner.y), &sheet)
 }
 
 /// Black and white parts inside a black frame; every edge on a whole pixel.
@@ -141,19 +122,18 @@ fn draw_bar(drawing: &mut Drawing, bar: PixelBox, sheet: &Sheet) {
 }
 
 /// The figures at the start, the middle and the end.
-fn figures(length: &Nice) -> [String; 3] {
-    let (_, meters_per_unit) = unit(length);
-    let full = length.value() / meters_per_unit;
-    let half = full * 0.5;
-    let decimals = |value: f64| (0..=4).find(|&n| is_whole(value * [1.0, 10.0, 1e2, 1e3, 1e4][n]));
-    ["0".to_owned(), number(half, decimals(half).unwrap_or(4)), number(full, decimals(full).unwrap_or(4))]
+fn figures(length: &NiceNumber) -> [String; 3] {
+    let full = length.value() / unit(length).1;
+    let is_integer = |value: f64| (value - libm::round(value)).abs() < 1e-6;
+    let figure = |value: f64| {
+        let decimals = (0..=4).find(|&n| is_integer(value * [1.0, 10.0, 1e2, 1e3, 1e4][n]));
+        format_number(value, decimals.unwrap_or(4))
+    };
+    ["0".to_owned(), figure(full * 0.5), figure(full)]
 }
 
-fn is_whole(value: f64) -> bool {
-    (value - libm::round(value)).abs() < 1e-6
-}
-
-fn unit(length: &Nice) -> (&'static str, f64) {
+/// The unit of a length, and its meters.
+fn unit(length: &NiceNumber) -> (&'static str, f64) {
     if length.value() >= 1000.0 { ("km", 1000.0) } else { ("m", 1.0) }
 }
 
@@ -177,7 +157,7 @@ mod tests {
     #[test]
     fn figures_are_exact_in_meters_and_kilometers() {
         let said = |meters: f64| {
-            let length = Nice::at_most(meters).expect("positive");
+            let length = NiceNumber::at_most(meters).expect("positive");
             (figures(&length)[1].clone(), figures(&length)[2].clone(), unit(&length).0)
         };
         assert_eq!(said(1000.0), ("0.5".to_owned(), "1".to_owned(), "km"));
@@ -199,8 +179,7 @@ mod tests {
 
     #[test]
     fn the_black_of_the_bar_is_drawn_as_long_as_measured() {
-        let sheet = Sheet::new(1920, 1080);
-        let drawing = compose(&bar(0.0437), &sheet, &mut Typesetter::new()).expect("a bar");
+        let drawing = compose(&bar(0.0437), &mut Composer::new(1920, 1080)).expect("a bar");
         let expected = measure(&bar(0.0437), 260.0).expect("a scale").length_px;
         let black = drawing.marks().iter().find(|mark| mark.color == INK).expect("the bar comes first");
         assert_eq!(black.path.bounds().width(), expected);

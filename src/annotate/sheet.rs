@@ -1,7 +1,7 @@
 //! The sheet: sizes and colors shared by everything painted, designed for a picture 1080 pixels high.
 //!
-//! Sizes grow in proportion above 1080 pixels. Below, they shrink more slowly than the picture, because
-//! type stops being legible long before a picture stops being useful.
+//! Sizes grow in proportion above 1080 pixels. Below, they shrink more slowly than the picture: type becomes illegible
+//! long before a picture becomes useless.
 
 use glam::Vec2;
 
@@ -16,20 +16,20 @@ pub const SOFT_INK: Srgba = Srgba::opaque(0x3c, 0x42, 0x47);
 pub const WATER_INK: Srgba = Srgba::opaque(0x14, 0x4f, 0x7e);
 /// White of bars and needles.
 pub const PAPER: Srgba = Srgba::opaque(0xfd, 0xfc, 0xf9);
-/// The halo around letters and lines that stand on the picture itself.
+/// The halo around letters and lines on the picture itself.
 pub const HALO: Srgba = Srgba([0xfd, 0xfc, 0xf9, 0xd8]);
-/// The ground of panels: light enough for text, open enough to feel the terrain behind.
+/// The ground of panels: light enough for text, transparent enough to show the terrain behind.
 pub const PANEL: Srgba = Srgba([0xfa, 0xf9, 0xf5, 0xd6]);
 /// Hairlines around panels.
 pub const FRAME: Srgba = Srgba([0x1e, 0x23, 0x27, 0x60]);
 
-/// Height of the picture the sizes were chosen for.
+/// Height of the picture for which the sizes are designed.
 const DESIGN_HEIGHT: f32 = 1080.0;
-/// Wide enough for furniture: pictures narrower than 3:4 are scaled by their width.
+/// Pictures narrower than 3:4 are scaled by their width, so that furniture fits.
 const DESIGN_ASPECT: f32 = 0.75;
 /// Share of the sizes that does not shrink with the picture below the design height.
 const STEADY_SHARE: f32 = 0.32;
-/// Type is never smaller: below this the embedded light face falls apart into gray.
+/// The smallest type: below this the embedded light font turns gray.
 const SMALLEST_TYPE_PX: f32 = 9.5;
 
 /// The picture as a sheet to lay things out on.
@@ -55,7 +55,7 @@ impl Sheet {
         design * self.scale
     }
 
-    /// A design length in whole pixels, at least one: what edges must stand on to be crisp.
+    /// A design length in whole pixels, at least one: makes edges crisp.
     pub fn whole_px(&self, design: f32) -> f32 {
         self.px(design).round().max(1.0)
     }

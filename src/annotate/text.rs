@@ -1,13 +1,12 @@
 //! Type: one line of text to one outline, in the fonts embedded in the program.
 //!
-//! `parley` orders and shapes the line (right-to-left scripts, ligatures, kerning), `skrifa` reads the
-//! outlines, and the result is a single path whose baseline starts at the origin. Ubuntu Light is the face,
-//! Hack lends it the signs it lacks (arrows, primes); both ship in `epaint_default_fonts`. The machine's own
-//! fonts are never looked up: a picture must not depend on who makes it. Characters that neither font has
-//! come out as boxes and are counted.
+//! `parley` orders and shapes the line (right-to-left scripts, ligatures, kerning), `skrifa` reads the outlines, and the
+//! result is one path whose baseline starts at the origin. The font is Ubuntu Light; Hack provides characters that it
+//! lacks (arrows, primes). Both are part of `epaint_default_fonts`. The machine's own fonts are never used: a picture
+//! must not depend on the machine. Characters that neither font has appear as boxes and are counted.
 //!
-//! A light face is too thin on a picture. Its outline is drawn a second time with a fine stroke of the same
-//! color, which gives the strength of a regular or medium face without a second font.
+//! A light font is too thin on a picture. Its outline is drawn a second time with a fine stroke of the same color, which
+//! gives the weight of a regular or medium font without a second font.
 
 use std::sync::Arc;
 
@@ -26,36 +25,36 @@ use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::sheet::HALO;
 use crate::draw::color::Srgba;
 
-/// Height of capitals and figures above the baseline, in ems of the embedded face.
+/// Height of capitals and figures above the baseline, in ems of the embedded font.
 pub const CAP_HEIGHT: f32 = 0.693;
-/// How far letters hang below the baseline, in ems of the embedded face.
+/// Depth of letters below the baseline, in ems of the embedded font.
 pub const DESCENT: f32 = 0.189;
 
-/// Longer lines are cut before they are shaped: none this long fits a picture, and shaping must end.
+/// Longer lines are cut before they are shaped, which bounds the time of shaping: no picture has room for more.
 const MOST_CHARACTERS: usize = 300;
 
-const FACE: &str = "sandtable sheet";
-const FALLBACK_FACE: &str = "sandtable signs";
+const FONT: &str = "sandtable sheet";
+const FALLBACK_FONT: &str = "sandtable signs";
 
-/// Size and posture of type.
+/// Size and shape of type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextStyle {
     /// Height of the em in pixels.
     pub size_px: f32,
-    /// How far the tops lean to the right: tangent of the angle. 0 is upright.
+    /// Lean to the right: the tangent of the angle. 0 is upright.
     pub slant: f32,
     /// Width of the stroke that strengthens the letters, in ems.
     pub weight: f32,
-    /// Room added between letters, in ems.
+    /// Space added between letters, in ems.
     pub tracking: f32,
 }
 
 impl TextStyle {
-    /// Strength of running text on a panel: a regular face.
+    /// The weight of running text on a panel.
     pub const REGULAR: f32 = 0.03;
-    /// Strength of titles, and of text on the picture itself, where halos eat at the letters' edges.
+    /// The weight of titles, and of text on the picture itself, where halos thin the letters.
     pub const MEDIUM: f32 = 0.055;
-    /// Strength of names on the picture.
+    /// The weight of names on the picture.
     pub const BOLD: f32 = 0.08;
 
     /// Upright type.
@@ -63,15 +62,20 @@ impl TextStyle {
         Self { size_px, slant: 0.0, weight, tracking: 0.0 }
     }
 
+    /// Height of capitals above the baseline, in pixels.
+    pub fn cap_px(&self) -> f32 {
+        self.size_px * CAP_HEIGHT
+    }
+
     /// Width of the strengthening stroke in pixels.
     fn stroke_px(&self) -> f32 {
         self.weight * self.size_px
     }
 
-    /// Room between letters in pixels: as asked for, and what the stroke takes away, and a little more for
-    /// small type, whose letters would otherwise run together.
+    /// Space between letters in pixels: the tracking, the space that the stroke takes, and a little more for small
+    /// type, whose letters would otherwise run together.
     fn tracking_px(&self) -> f32 {
-        /// Above this size type needs no help, in pixels.
+        /// Larger type needs no extra space, in pixels.
         const SMALL_PX: f32 = 13.0;
         let stroke = self.weight * 0.5;
         let small = (SMALL_PX - self.size_px).max(0.0) * 0.007;
@@ -84,14 +88,14 @@ impl TextStyle {
 pub struct TextLine {
     /// Outline of all letters, baseline from the origin to the right; `None` where nothing shows.
     pub outline: Option<Path>,
-    /// How far the line reaches along the baseline, in pixels.
+    /// Width along the baseline, in pixels.
     pub advance: f32,
-    /// Characters the fonts lack; each shows as a box.
+    /// Characters that the fonts lack; each shows as a box.
     pub missing: usize,
     /// Whether the end was cut off.
     pub shortened: bool,
-    /// The type it is set in.
-    pub face: TextStyle,
+    /// Its style.
+    pub style: TextStyle,
 }
 
 /// Sets text in the embedded fonts; holds their tables and scratch space between lines.
@@ -100,49 +104,40 @@ pub struct Typesetter {
     layouts: LayoutContext<()>,
 }
 
-impl Default for Typesetter {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl Typesetter {
     /// A typesetter with the embedded fonts and no others.
     pub fn new() -> Self {
         let options = CollectionOptions { shared: false, system_fonts: false };
         let mut collection = Collection::new(options);
-        register(&mut collection, epaint_default_fonts::UBUNTU_LIGHT, FACE);
-        register(&mut collection, epaint_default_fonts::HACK_REGULAR, FALLBACK_FACE);
+        register(&mut collection, epaint_default_fonts::UBUNTU_LIGHT, FONT);
+        register(&mut collection, epaint_default_fonts::HACK_REGULAR, FALLBACK_FONT);
         let fonts = FontContext { collection, source_cache: SourceCache::default() };
         Self { fonts, layouts: LayoutContext::new() }
     }
 
-    /// `text` as one line. Line ends and other control characters in it become spaces; beyond 300
-    /// characters it is cut.
-    pub fn line(&mut self, text: &str, face: TextStyle) -> TextLine {
+    /// `text` as one line. Line ends and other control characters become spaces; text is cut after 300 characters.
+    pub fn line(&mut self, text: &str, style: TextStyle) -> TextLine {
         let shortened = text.chars().nth(MOST_CHARACTERS).is_some();
         let text: String =
             text.chars().take(MOST_CHARACTERS).map(|c| if c.is_control() { ' ' } else { c }).collect();
-        let layout = self.shape(&text, face);
-        let mut ink = Outliner { path: PathBuilder::new(), at: Vec2::ZERO, slant: face.slant };
+        let layout = self.shape(&text, style);
+        let mut outliner = Outliner { path: PathBuilder::new(), at: Vec2::ZERO, slant: style.slant };
         let (mut missing, mut advance) = (0, 0.0f32);
-        if let Some(line) = layout.lines().next() {
-            for item in line.items() {
-                if let PositionedLayoutItem::GlyphRun(run) = item {
-                    missing += draw_run(&run, &mut ink);
-                    advance = advance.max(run.offset() + run.advance());
-                }
+        for item in layout.lines().next().into_iter().flat_map(|line| line.items()) {
+            if let PositionedLayoutItem::GlyphRun(run) = item {
+                missing += draw_run(&run, &mut outliner);
+                advance = advance.max(run.offset() + run.advance());
             }
         }
-        TextLine { outline: ink.path.finish(), advance, missing, shortened, face }
+        TextLine { outline: outliner.path.finish(), advance, missing, shortened, style }
     }
 
-    fn shape(&mut self, text: &str, face: TextStyle) -> Layout<()> {
-        let families = [FontFamilyName::named(FACE), FontFamilyName::named(FALLBACK_FACE)];
+    fn shape(&mut self, text: &str, style: TextStyle) -> Layout<()> {
+        let families = [FontFamilyName::named(FONT), FontFamilyName::named(FALLBACK_FONT)];
         let mut builder = self.layouts.ranged_builder(&mut self.fonts, text, 1.0, false);
         builder.push_default(StyleProperty::FontFamily(FontFamily::from(&families[..])));
-        builder.push_default(StyleProperty::FontSize(face.size_px));
-        builder.push_default(StyleProperty::LetterSpacing(face.tracking_px()));
+        builder.push_default(StyleProperty::FontSize(style.size_px));
+        builder.push_default(StyleProperty::LetterSpacing(style.tracking_px()));
         let mut layout = builder.build(text);
         layout.break_all_lines(None);
         layout
@@ -152,37 +147,44 @@ impl Typesetter {
 impl TextLine {
     /// The smallest box around the letters with a halo of `halo` pixels, baseline from the origin;
     /// [`PixelBox::EMPTY`] where nothing shows.
-    pub fn ink(&self, halo: f32) -> PixelBox {
-        let around = halo.max(self.face.stroke_px() * 0.5);
+    pub fn bounds(&self, halo: f32) -> PixelBox {
+        let around = halo.max(self.style.stroke_px() * 0.5);
         self.outline.as_ref().map_or(PixelBox::EMPTY, |path| box_of(path).grown(around))
     }
+
+    fn outline_at(&self, at: Vec2) -> Option<Path> {
+        self.outline.clone()?.transform(tiny_skia::Transform::from_translate(at.x, at.y))
+    }
 }
 
-/// Writes lines of text, each from the start of its baseline.
-pub fn write(drawing: &mut Drawing, lines: &[(&TextLine, Vec2)], color: Srgba) {
-    for (path, stroke) in lines.iter().filter_map(|(line, at)| placed(line, *at)) {
+impl Drawing {
+    /// Writes a line of text whose baseline starts at `at`.
+    pub fn write(&mut self, line: &TextLine, at: Vec2, color: Srgba) {
+        let Some(path) = line.outline_at(at) else { return };
+        let stroke = line.style.stroke_px();
         if stroke > 0.0 {
-            drawing.stroke(&path, stroke, color);
+            self.stroke(&path, stroke, color);
         }
-        drawing.fill(path, color);
+        self.fill(path, color);
     }
-}
 
-/// Draws one halo, reaching `reach` pixels around the letters, under all of `lines`: drawn before any is
-/// written, it covers no neighbor's letters, and where lines are close it stays one even tone.
-pub fn halos(drawing: &mut Drawing, lines: &[(&TextLine, Vec2)], reach: f32) {
-    let mut all = PathBuilder::new();
-    for (path, _) in lines.iter().filter_map(|(line, at)| placed(line, *at)) {
-        all.push_path(&path);
+    /// Writes a line on a halo reaching `reach` pixels around its letters.
+    pub fn write_haloed(&mut self, line: &TextLine, at: Vec2, reach: f32, color: Srgba) {
+        self.draw_halo(&[(line, at)], reach);
+        self.write(line, at, color);
     }
-    if let Some(all) = all.finish() {
-        drawing.stroke(&all, reach * 2.0, HALO);
-    }
-}
 
-fn placed(line: &TextLine, at: Vec2) -> Option<(Path, f32)> {
-    let path = line.outline.clone()?.transform(tiny_skia::Transform::from_translate(at.x, at.y))?;
-    Some((path, line.face.stroke_px()))
+    /// Draws one halo under all of `lines`, reaching `reach` pixels around their letters. Drawn before any line is
+    /// written, it covers no neighbor's letters, and has one even tone where lines are close.
+    pub fn draw_halo(&mut self, lines: &[(&TextLine, Vec2)], reach: f32) {
+        let mut all = PathBuilder::new();
+        for path in lines.iter().filter_map(|(line, at)| line.outline_at(*at)) {
+            all.push_path(&path);
+        }
+        if let Some(all) = all.finish() {
+            self.stroke(&all, reach * 2.0, HALO);
+        }
+    }
 }
 
 fn register(collection: &mut Collection, font: &'static [u8], name: &str) {
@@ -190,8 +192,8 @@ fn register(collection: &mut Collection, font: &'static [u8], name: &str) {
     collection.register_fonts(Blob::new(Arc::new(font)), Some(naming));
 }
 
-/// Adds the outlines of `run` to `ink`, relative to its baseline; returns how many glyphs the font lacks.
-fn draw_run(run: &GlyphRun<'_, ()>, ink: &mut Outliner) -> usize {
+/// Adds the outlines of `run`, relative to its baseline; returns the number of glyphs that the font lacks.
+fn draw_run(run: &GlyphRun<'_, ()>, outliner: &mut Outliner) -> usize {
     let font = run.run().font();
     let Ok(tables) = FontRef::from_index(font.data.data(), font.index) else { return 0 };
     let outlines = tables.outline_glyphs();
@@ -199,10 +201,10 @@ fn draw_run(run: &GlyphRun<'_, ()>, ink: &mut Outliner) -> usize {
     let mut missing = 0;
     for glyph in run.positioned_glyphs() {
         missing += usize::from(glyph.id == 0);
-        ink.at = Vec2::new(glyph.x, glyph.y - run.baseline());
+        outliner.at = Vec2::new(glyph.x, glyph.y - run.baseline());
         if let Some(outline) = outlines.get(GlyphId::new(glyph.id)) {
-            // A glyph whose outline is broken leaves a gap; the embedded fonts have none.
-            let _ = outline.draw(DrawSettings::unhinted(size, LocationRef::default()), ink);
+            // A glyph with a broken outline leaves a gap; the embedded fonts have none.
+            let _ = outline.draw(DrawSettings::unhinted(size, LocationRef::default()), outliner);
         }
     }
     missing
@@ -299,8 +301,8 @@ mod tests {
 
     #[test]
     fn slanted_type_leans_right() {
-        let face = TextStyle { slant: 0.2, ..TextStyle::upright(20.0, 0.0) };
-        let lean = box_of(&Typesetter::new().line("I", face).outline.expect("a letter"));
+        let style = TextStyle { slant: 0.2, ..TextStyle::upright(20.0, 0.0) };
+        let lean = box_of(&Typesetter::new().line("I", style).outline.expect("a letter"));
         let upright = box_of(&set("I").outline.expect("a letter"));
         assert!((lean.max.x - upright.max.x - 0.2 * 20.0 * CAP_HEIGHT).abs() < 0.01);
     }

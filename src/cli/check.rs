@@ -14,12 +14,6 @@ const MOST_NOTES: usize = 20;
 pub fn run(arguments: &SceneArguments) -> Result<(), CliError> {
     let steps = StepTimer::default();
     let scene = open_scene(&arguments.scene, &arguments.access.allow, &|step| steps.begin(step))?;
-    steps.begin("checking invariants");
-    let terrain = &scene.terrain;
-    terrain
-        .errors
-        .check(&terrain.layout)
-        .map_err(|flaw| CliError::input(format!("internal check: {flaw}")))?;
     steps.finish();
     let mut lines = vec![format!("{} is sound", arguments.scene.display())];
     lines.extend(contents(&scene));

@@ -11,9 +11,10 @@ use crate::cli::output::{print_lines, row};
 use crate::cli::progress::StepTimer;
 use crate::cli::rasters::format_for;
 use crate::cli::values::number;
+use crate::dem::formats::DemFormat;
 use crate::dem::warp::WarpError;
-use crate::dem::warp::target::Resampling;
-use crate::dem::write::{DemFormat, WrittenDem};
+use crate::dem::warp::reproject::Resampling;
+use crate::dem::write::WrittenDem;
 use crate::geom::crs::Crs;
 use crate::pipeline::convert::{ConvertError, ConvertOptions, Converted, VoidHandling, convert};
 use crate::pipeline::dem::{self, DemOptions};
@@ -113,7 +114,7 @@ pub fn place_error(file: &Path, error: &WarpError, crs_option: &str) -> CliError
     CliError::input(format!("{}: {reason}", file.display()))
 }
 
-fn summary(out: &Path, format: DemFormat, converted: &Converted, written: &WrittenDem) -> Vec<String> {
+fn summary(out: &Path, format: &DemFormat, converted: &Converted, written: &WrittenDem) -> Vec<String> {
     let Converted { raster, resampling, datum_shift, notes } = converted;
     let cell = raster.spacing();
     let valid = raster.samples.iter().filter(|value| !value.is_nan()).count();
@@ -125,7 +126,7 @@ fn summary(out: &Path, format: DemFormat, converted: &Converted, written: &Writt
     let row = |name: &str, value: &str| row(12, name, value);
     let mut lines = vec![
         out.display().to_string(),
-        row("format", &format!("{}, {}", format.name(), written.stored)),
+        row("format", &format!("{}, {}", format.name, written.stored)),
         row("size", &format!("{} columns, {} rows", raster.width, raster.height)),
         row("crs", raster.crs.as_ref().map_or("none stated", |crs| crs.name())),
         row("cell", &format!("{} x {}", cell.x, cell.y)),

@@ -9,7 +9,7 @@ use crate::cli::error::CliError;
 use crate::cli::options::HeightArguments;
 use crate::cli::output::{print, print_lines, row};
 use crate::dem::raster::Raster;
-use crate::dem::stats::{self, Stats};
+use crate::dem::stats::Stats;
 use crate::dem::voids;
 use crate::pipeline::dem;
 
@@ -35,7 +35,7 @@ pub fn run(arguments: &DemInfoArguments) -> Result<(), CliError> {
     let joined = arguments.file.is_dir().then(|| mosaic.note());
     let raster = mosaic.raster;
     let info = DemInfo {
-        stats: stats::of(&raster),
+        stats: Stats::new(&raster),
         enclosed_voids: voids::count(&raster),
         notes: joined.into_iter().chain(format_note(&raster).map(str::to_owned)).collect(),
         raster,

@@ -11,8 +11,8 @@ use crate::cli::output::print;
 use crate::cli::progress::StepTimer;
 use crate::cli::rasters::format_for;
 use crate::cli::values::{choice, numbers};
-use crate::dem::gridding::frame::CellGrid;
-use crate::dem::gridding::{self, Beyond, GridError, Gridded, GriddingMethod};
+use crate::dem::cell_grid::CellGrid;
+use crate::dem::gridding::{self, BeyondHull, GridError, Gridded, GriddingMethod};
 use crate::dem::points::PointCloud;
 use crate::dem::write::WrittenDem;
 use crate::geom::crs::Crs;
@@ -47,8 +47,8 @@ pub struct GridArguments {
     #[arg(long, value_name = "W,S,E,N", allow_hyphen_values = true)]
     pub extent: Option<GridExtent>,
     /// What cells outside the convex hull of the points hold
-    #[arg(long, default_value = "nodata", value_parser = choice::<Beyond>())]
-    pub beyond_hull: Beyond,
+    #[arg(long, default_value = "nodata", value_parser = choice::<BeyondHull>())]
+    pub beyond_hull: BeyondHull,
     /// The power of the distance by which weights fall; for idw and quadrant [default: 2 for idw, 1 for quadrant]
     #[arg(long, value_name = "P", allow_negative_numbers = true)]
     pub power: Option<f64>,

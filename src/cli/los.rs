@@ -137,6 +137,6 @@ fn earth(curvature: Curvature) -> String {
     if curvature == Curvature::FLAT {
         return "flat".into();
     }
-    let radius_km = nice::number(curvature.radius_m / 1000.0, 0);
-    format!("curved, radius {radius_km} km, refraction {}", nice::short_number(curvature.refraction, 3))
+    let radius_km = nice::format_number(curvature.radius_m / 1000.0, 0);
+    format!("curved, radius {radius_km} km, refraction {}", nice::format_trimmed(curvature.refraction, 3))
 }

@@ -51,7 +51,7 @@ pub struct MeshArguments {
 
 pub fn run(arguments: &MeshArguments) -> Result<(), CliError> {
     let out = &arguments.output;
-    let format = MeshFormat::of_extension(&extension(out)).ok_or_else(|| {
+    let format = MeshFormat::from_extension(&extension(out)).ok_or_else(|| {
         let out = out.display();
         CliError::usage(format!(
             "{out}: meshes are written as .obj, .ply, .stl or .glb; name a file that ends so"

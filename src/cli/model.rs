@@ -7,6 +7,7 @@ use serde_json::json;
 
 use crate::cli::error::CliError;
 use crate::cli::output::{print, print_lines, row};
+use crate::geom::aabb::Aabb;
 use crate::pipeline::model_file;
 
 /// `model info`.
@@ -22,7 +23,7 @@ pub struct ModelArguments {
 pub fn run(arguments: &ModelArguments) -> Result<(), CliError> {
     let model = model_file::open(&arguments.file)?;
     let census = model.census;
-    let (min, max) = model.bounds().unwrap_or_default();
+    let Aabb { min, max } = model.bounds().unwrap_or_default();
     if arguments.json {
         let object = json!({
             "meshes": census.meshes,

@@ -6,8 +6,8 @@ use clap::Args;
 
 use crate::cli::error::CliError;
 use crate::cli::output::warn;
+use crate::dem::formats::height_encoding::HeightEncoding;
 use crate::dem::formats::raw::RawLayout;
-use crate::dem::formats::rgb_png::HeightEncoding;
 use crate::geom::crs::Crs;
 use crate::pipeline::dataset::{Dataset, DatasetOptions};
 use crate::pipeline::dem::DemOptions;

@@ -11,10 +11,11 @@ use crate::cli::options::SceneArguments;
 use crate::cli::output::{print_lines, row, warn};
 use crate::cli::progress::StepTimer;
 use crate::cli::values::choice;
-use crate::description::suggest::{nearest, quoted};
+use crate::message::suggest::{nearest, quoted};
 use crate::pipeline::files;
-use crate::pipeline::picture::{Backend, PictureSize, RenderedView, render_view};
+use crate::pipeline::picture::{PictureSize, RenderedView, render_view};
 use crate::pipeline::scene_file::open_scene;
+use crate::render::RenderBackend;
 use crate::scene::{Scene, View};
 
 /// The longest text of a label in the summary, in characters.
@@ -36,8 +37,8 @@ pub struct RenderArguments {
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
     /// What draws: the processor, the same on every machine, or a graphics adapter
-    #[arg(long, default_value = "cpu", value_parser = choice::<Backend>())]
-    pub backend: Backend,
+    #[arg(long, default_value = "cpu", value_parser = choice::<RenderBackend>())]
+    pub backend: RenderBackend,
     /// How many threads to use [default: one per core]; the picture is the same for any number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,

@@ -48,8 +48,9 @@ pub fn run(arguments: &ReportArguments) -> Result<(), CliError> {
         return print_lines(&write_csv_files(&scene, folder)?);
     }
     let mut lines = vec![path.display().to_string()];
-    report.tables.iter().for_each(|table| lines.extend(printed(table)));
-    if report.tables.is_empty() {
+    let tables = report.tables();
+    tables.iter().for_each(|table| lines.extend(printed(table)));
+    if tables.is_empty() {
         lines.push("  nothing to report of single features".into());
     }
     lines.extend(scene.notes.iter().map(|note| format!("  note  {note}")));
@@ -58,22 +59,16 @@ pub fn run(arguments: &ReportArguments) -> Result<(), CliError> {
 
 fn as_json(report: &SceneReport, notes: &[String]) -> Value {
     let rows = |table: &ReportTable| (table.name.replace(' ', "_"), rows_as_json(table));
-    let tables: Map<String, Value> = report.tables.iter().map(rows).collect();
+    let tables: Map<String, Value> = report.tables().iter().map(rows).collect();
     json!({"tables": tables, "notes": notes})
 }
 
 fn rows_as_json(table: &ReportTable) -> Value {
     let row = |row: &Vec<ReportCell>| -> Value {
-        let cells = table.columns.iter().zip(row).map(|(column, cell)| (key(column), value(cell)));
+        let cells = table.columns.iter().zip(row).map(|(column, cell)| (column.key(), value(cell)));
         Value::Object(cells.collect())
     };
     table.rows.iter().map(row).collect()
-}
-
-/// A column's name with its unit, as a word.
-fn key(column: &ReportColumn) -> String {
-    let unit = if column.unit.is_empty() { String::new() } else { format!("_{}", column.unit) };
-    format!("{}{unit}", column.name.replace(' ', "_")).replace('%', "percent")
 }
 
 fn value(cell: &ReportCell) -> Value {
@@ -88,7 +83,8 @@ fn value(cell: &ReportCell) -> Value {
 /// Writes a file for each table, `NAME.csv`, and for each road profile, `profile_NUMBER_NAME.csv` with the number of the
 /// road among the scene's features. Returns their paths.
 fn write_csv_files(scene: &Scene, folder: &Path) -> Result<Vec<String>, WriteFileError> {
-    let tables = scene.report.tables.iter().map(|table| (table.name.replace(' ', "_"), as_csv(table)));
+    let tables = scene.report.tables();
+    let tables = tables.iter().map(|table| (table.name.replace(' ', "_"), as_csv(table)));
     let profiles = scene.profiles.iter().map(|profile| {
         let name = profile.name.chars().take(SHOWN_CHARACTERS);
         let name: String = name.map(|at| if at.is_alphanumeric() { at } else { '_' }).collect();
@@ -106,30 +102,31 @@ fn write_csv_files(scene: &Scene, folder: &Path) -> Result<Vec<String>, WriteFil
 
 /// A table as CSV (RFC 4180) with a header.
 fn as_csv(table: &ReportTable) -> String {
-    let header = table.columns.iter().map(key).collect::<Vec<_>>().join(",");
+    let header = table.columns.iter().map(|column| quoted(&column.key())).collect::<Vec<_>>().join(",");
     let rows = table.rows.iter().map(|row| row.iter().map(csv_cell).collect::<Vec<_>>().join(","));
     std::iter::once(header).chain(rows).map(|line| line + "\r\n").collect()
 }
 
 fn csv_cell(cell: &ReportCell) -> String {
     match cell {
-        ReportCell::Text(text) if text.contains([',', '"', '\n', '\r']) => {
-            format!("\"{}\"", text.replace('"', "\"\""))
-        }
-        ReportCell::Text(text) => text.clone(),
+        ReportCell::Text(text) => quoted(text),
         ReportCell::Number(number) => number.to_string(),
         ReportCell::Count(count) => count.to_string(),
         ReportCell::Empty => String::new(),
     }
 }
 
+/// A text, in quotes where it needs them.
+fn quoted(text: &str) -> String {
+    match text.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", text.replace('"', "\"\"")),
+        false => text.to_owned(),
+    }
+}
+
 /// A table for a terminal: texts to the left, numbers to the right.
 fn printed(table: &ReportTable) -> Vec<String> {
-    let heading = |column: &ReportColumn| match column.unit {
-        "" => column.name.to_owned(),
-        unit => format!("{} [{unit}]", column.name),
-    };
-    let mut cells = vec![table.columns.iter().map(heading).collect::<Vec<_>>()];
+    let mut cells = vec![table.columns.iter().map(ReportColumn::heading).collect::<Vec<_>>()];
     cells.extend(table.rows.iter().take(SHOWN_ROWS).map(|row| row.iter().map(printed_cell).collect()));
     let is_text = |column: usize| table.rows.iter().any(|row| matches!(row[column], ReportCell::Text(_)));
     let mut lines = vec![format!("{} ({})", table.name, table.rows.len())];
@@ -155,36 +152,30 @@ fn printed_cell(cell: &ReportCell) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const COLUMNS: &[ReportColumn] =
-        &[ReportColumn { name: "name", unit: "" }, ReportColumn { name: "cut", unit: "m3" }];
+    use crate::scene::report::TrenchRow;
 
     fn report(rows: usize) -> SceneReport {
-        let mut report = SceneReport::default();
-        for row in 0..rows {
-            let name =
-                ReportCell::Text(if row == 0 { "the \"long\", winding one".into() } else { String::new() });
-            report.add(("conformed roads", COLUMNS), vec![name, ReportCell::Number(row as f64 * 1234.5)]);
-        }
-        report
+        let name = |row| if row == 0 { "the \"long\", winding one".into() } else { String::new() };
+        let row = |row| TrenchRow { name: name(row), length: 2.0, cut: row as f64 * 1234.5 };
+        SceneReport { trenches: (0..rows).map(row).collect(), ..SceneReport::default() }
     }
 
     #[test]
     fn a_table_is_csv_with_a_header_and_quotes_where_they_are_needed() {
-        let text = as_csv(&report(2).tables[0]);
-        assert_eq!(text, "name,cut_m3\r\n\"the \"\"long\"\", winding one\",0\r\n,1234.5\r\n");
+        let text = as_csv(&report(2).tables()[0]);
+        assert_eq!(text, "name,length_m,cut_m3\r\n\"the \"\"long\"\", winding one\",2,0\r\n,2,1234.5\r\n");
     }
 
     #[test]
     fn json_holds_every_row_and_print_the_first_of_them() {
         let report = report(30);
         let json = as_json(&report, &["a note".into()]);
-        assert_eq!(json["tables"]["conformed_roads"].as_array().map(Vec::len), Some(30));
-        assert_eq!(json["tables"]["conformed_roads"][2]["cut_m3"], json!(2469.0));
-        let lines = printed(&report.tables[0]);
+        assert_eq!(json["tables"]["trenches"].as_array().map(Vec::len), Some(30));
+        assert_eq!(json["tables"]["trenches"][2]["cut_m3"], json!(2469.0));
+        let lines = printed(&report.tables()[0]);
         assert_eq!(lines.len(), 2 + SHOWN_ROWS + 1);
-        assert_eq!(lines[1], "  name                     cut [m3]");
-        assert_eq!(lines[2], "  the \"long\", winding one      0.00");
+        assert_eq!(lines[1], "  name                     length [m]  cut [m3]");
+        assert_eq!(lines[2], "  the \"long\", winding one        2.00      0.00");
         assert!(lines[22].ends_with("10 more; --csv or --json give all"), "{}", lines[22]);
     }
 }

@@ -16,7 +16,7 @@ use crate::cli::output::{print, print_lines, row};
 use crate::cli::progress::StepTimer;
 use crate::cli::rasters::format_for;
 use crate::cli::values::{NumberPair, number};
-use crate::dem::write::DemFormat;
+use crate::dem::formats::DemFormat;
 use crate::geom::crs::Crs;
 use crate::pipeline::dataset::{Dataset, QueryError, transform};
 use crate::pipeline::viewshed::{ViewshedSummary, raster};
@@ -67,7 +67,7 @@ pub struct ViewshedArguments {
 /// A file to write.
 enum ViewshedOutput<'a> {
     Map(&'a Path),
-    Raster(&'a Path, DemFormat),
+    Raster(&'a Path, &'static DemFormat),
 }
 
 pub fn run(arguments: &ViewshedArguments) -> Result<(), CliError> {
@@ -130,7 +130,7 @@ fn write(
     match output {
         ViewshedOutput::Raster(path, format) => {
             let raster = raster(lattice, viewshed, snapshot.crs());
-            raster_file::write(&raster, *format, path, slice::from_ref(&arguments.dataset.file))?;
+            raster_file::write(&raster, format, path, slice::from_ref(&arguments.dataset.file))?;
         }
         ViewshedOutput::Map(path) => {
             let text = SheetText {

@@ -1,22 +1,27 @@
-//! Elevation rasters: their georeference, one file per format, warping to a metric system; scattered points, and grids
-//! of them.
+//! Elevation rasters: their formats and georeference, mosaics, voids, other systems and cells; scattered points, and
+//! grids of them.
 
 pub mod answer;
-pub mod archive;
+mod bytes;
+pub mod cache;
+pub mod cell_grid;
 pub mod error;
 pub mod formats;
-pub mod georef;
+mod georef;
 pub mod gridding;
+pub mod limits;
 pub mod mosaic;
+mod point_text;
 pub mod points;
 pub mod raster;
 pub mod read;
-pub mod recent;
 pub mod sample;
+mod sample_type;
 pub mod stats;
+mod stored;
 pub mod tiff;
-pub mod valid;
-pub mod vertical;
+mod units;
+mod vertical;
 pub mod voids;
 pub mod warp;
 pub mod windows;

@@ -1,4 +1,7 @@
-//! An elevation raster as a file holds it.
+//! Elevation rasters in memory.
+
+use std::borrow::Cow;
+use std::fmt::Display;
 
 use glam::{DAffine2, DMat2, DVec2};
 
@@ -7,15 +10,14 @@ use crate::geom::rect::Rect;
 
 /// Elevations row by row from the raster's first sample, with their georeference.
 ///
-/// A value is the elevation at its sample's center: sample (column, row) stands at grid position
-/// (column + 0.5, row + 0.5), as GDAL counts. Formats whose values stand on grid nodes are shifted by half
-/// a sample to meet this.
+/// A value is the elevation at its sample's center: sample (column, row) has its center at grid position
+/// (column + 0.5, row + 0.5), as in GDAL. Formats whose values lie on grid nodes are shifted by half a sample.
 #[derive(Clone, Debug)]
 pub struct Raster {
     /// The format it was read from, as GDAL names its drivers: `GTiff`, `AAIGrid`, `PNG`, `BT`, `SRTMHGT`.
     pub driver: &'static str,
     /// The type of a stored sample, as GDAL names its types: `Byte`, `Int8`, `UInt16`, `Int16`, `UInt32`, `Int32`,
-    /// `UInt64`, `Int64`, `Float32`, `Float64`. What text holds is told by its values.
+    /// `UInt64`, `Int64`, `Float32`, `Float64`. The type of text follows from its values.
     pub data_type: &'static str,
     /// Samples per row; at least 1.
     pub width: u32,
@@ -27,15 +29,15 @@ pub struct Raster {
     pub meters_per_z: f64,
     /// Grid position (column, row) to map coordinates; can be inverted.
     pub map_from_grid: DAffine2,
-    /// Whether `map_from_grid` was stated by the file, a companion or the caller; where not, samples were set
-    /// 1 apart with the center of the south-west sample at (0, 0).
+    /// Whether the file, a companion or the caller stated `map_from_grid`; where not, samples are 1 apart and the
+    /// center of the south-west one is at (0, 0).
     pub georeferenced: bool,
     /// The coordinate reference system; `None` where the file names none.
     pub crs: Option<Crs>,
-    /// The value that stood for no data in the file, before it became NaN and before scale and offset.
+    /// The file's value for no data, before scale and offset.
     pub nodata: Option<f64>,
-    /// What heights are counted from, in the file's words (`NAVD88`, `EGM96 geoid`); `None` where it does not say.
-    /// Carried along and printed, never computed with.
+    /// The vertical datum in the file's words (`NAVD88`, `EGM96 geoid`); `None` where it is not stated. Carried along
+    /// and printed, never computed with.
     pub vertical_datum: Option<String>,
 }
 
@@ -44,12 +46,48 @@ pub struct Raster {
 pub enum Samples {
     /// From integers of up to 16 bits, 32-bit floats and text.
     F32(Vec<f32>),
-    /// From wider integers, 64-bit floats, and whatever a scale or an offset was applied to.
+    /// From wider integers, 64-bit floats, and values with a scale or an offset.
     F64(Vec<f64>),
 }
 
+/// A float type of [`Samples`].
+pub(crate) trait SampleFloat: Copy + Default + Display + Into<f64> + Send + Sync {
+    /// No data.
+    const NODATA: Self;
+
+    /// The nearest value of this type.
+    fn from_f64(value: f64) -> Self;
+
+    /// The samples with these values.
+    fn into_samples(values: Vec<Self>) -> Samples;
+}
+
+impl SampleFloat for f32 {
+    const NODATA: Self = Self::NAN;
+
+    fn from_f64(value: f64) -> Self {
+        value as Self
+    }
+
+    fn into_samples(values: Vec<Self>) -> Samples {
+        Samples::F32(values)
+    }
+}
+
+impl SampleFloat for f64 {
+    const NODATA: Self = Self::NAN;
+
+    fn from_f64(value: f64) -> Self {
+        value
+    }
+
+    fn into_samples(values: Vec<Self>) -> Samples {
+        Samples::F64(values)
+    }
+}
+
 impl Samples {
-    /// How many there are.
+    /// The number of samples.
     pub fn len(&self) -> usize {
         match self {
             Self::F32(values) => values.len(),
@@ -75,19 +113,16 @@ impl Samples {
         (0..self.len()).map(|index| self.get(index))
     }
 
-    /// Makes the value at `index` no data; nothing beyond the end.
-    pub(crate) fn clear(&mut self, index: usize) {
-        match self {
-            Self::F32(values) => values.get_mut(index).map_or((), |value| *value = f32::NAN),
-            Self::F64(values) => values.get_mut(index).map_or((), |value| *value = f64::NAN),
-        }
+    /// All values that are data, in order.
+    pub fn valid(&self) -> impl Iterator<Item = f64> + '_ {
+        self.iter().filter(|value| !value.is_nan())
     }
 
-    /// Puts `value`, NaN for no data, at `index`; nothing beyond the end.
+    /// Sets the value at `index`, NaN for no data. Panics out of range.
     pub(crate) fn set(&mut self, index: usize, value: f64) {
         match self {
-            Self::F32(values) => values.get_mut(index).map_or((), |old| *old = value as f32),
-            Self::F64(values) => values.get_mut(index).map_or((), |old| *old = value),
+            Self::F32(values) => values[index] = value as f32,
+            Self::F64(values) => values[index] = value,
         }
     }
 
@@ -106,10 +141,66 @@ pub(crate) fn scaled(value: f64, factor: f64, offset: f64) -> f64 {
 }
 
 impl Raster {
+    /// A raster in memory of rows of `width` samples, in meters, without a georeference.
+    ///
+    /// # Panics
+    /// `samples` are not a whole number of rows, or none.
+    ///
+    /// ```
+    /// use sandtable::dem::raster::{Raster, Samples};
+    /// let raster = Raster::new(2, Samples::F32(vec![1.0, 2.0, 3.0, 4.0]));
+    /// assert_eq!((raster.height, raster.at(1, 0)), (2, 2.0));
+    /// ```
+    pub fn new(width: u32, samples: Samples) -> Self {
+        let count = samples.len();
+        assert!(
+            width > 0 && count > 0 && count.is_multiple_of(width as usize),
+            "{count} samples, {width} a row"
+        );
+        let height = (count / width as usize) as u32;
+        Self {
+            driver: "MEM",
+            data_type: if matches!(samples, Samples::F32(_)) { "Float32" } else { "Float64" },
+            width,
+            height,
+            samples,
+            meters_per_z: 1.0,
+            map_from_grid: north_up_nodes(DVec2::new(0.0, f64::from(height - 1)), DVec2::ONE),
+            georeferenced: false,
+            crs: None,
+            nodata: None,
+            vertical_datum: None,
+        }
+    }
+
+    /// This raster with a georeference that somebody stated.
+    pub(crate) fn placed(self, map_from_grid: DAffine2) -> Self {
+        Self { map_from_grid, georeferenced: true, ..self }
+    }
+
     /// The value at `column`, `row`, NaN where there is no data. Panics outside the raster.
     pub fn at(&self, column: u32, row: u32) -> f64 {
         assert!(column < self.width && row < self.height, "sample ({column}, {row}) is outside the raster");
         self.samples.get(row as usize * self.width as usize + column as usize)
+    }
+
+    /// The raster with its heights in meters; borrowed where they are in meters already.
+    pub(crate) fn in_meters(&self) -> Cow<'_, Self> {
+        if self.meters_per_z == 1.0 {
+            return Cow::Borrowed(self);
+        }
+        Cow::Owned(self.clone().into_meters())
+    }
+
+    /// The raster with its heights in meters.
+    pub(crate) fn into_meters(self) -> Self {
+        Self { samples: self.samples.scaled(self.meters_per_z, 0.0), meters_per_z: 1.0, ..self }
+    }
+
+    /// All but the samples.
+    pub(crate) fn without_samples(&self) -> Self {
+        let (crs, vertical_datum) = (self.crs.clone(), self.vertical_datum.clone());
+        Self { samples: Samples::F32(Vec::new()), crs, vertical_datum, ..*self }
     }
 
     /// Grid position (column, row) of a point in the raster's own coordinates; NaN where the georeference
@@ -125,10 +216,16 @@ impl Raster {
         DVec2::new(axes.x_axis.length(), axes.y_axis.length())
     }
 
+    /// Whether rows and columns run along the axes of the map.
+    pub(crate) fn is_axis_aligned(&self) -> bool {
+        let axes = self.map_from_grid.matrix2;
+        axes.x_axis.y == 0.0 && axes.y_axis.x == 0.0
+    }
+
     /// Whether rows run east and columns run south, as maps are printed.
     pub fn is_north_up(&self) -> bool {
-        let DMat2 { x_axis, y_axis } = self.map_from_grid.matrix2;
-        x_axis.y == 0.0 && y_axis.x == 0.0 && x_axis.x > 0.0 && y_axis.y < 0.0
+        let axes = self.map_from_grid.matrix2;
+        self.is_axis_aligned() && axes.x_axis.x > 0.0 && axes.y_axis.y < 0.0
     }
 
     /// Map coordinates of the center of the raster.
@@ -143,6 +240,12 @@ impl Raster {
         Rect::around(corners.map(|corner| self.map_from_grid.transform_point2(corner)))
     }
 
+    /// The smallest map rectangle around the centers of all samples of an axis-aligned raster.
+    pub(crate) fn node_extent(&self) -> Rect {
+        let (Rect { min, max }, half) = (self.extent(), self.spacing() * 0.5);
+        Rect { min: min + half, max: max - half }
+    }
+
     /// The georeference in GDAL's order: x of the corner, x per column, x per row, y of the corner, y per
     /// column, y per row.
     pub fn geotransform(&self) -> [f64; 6] {
@@ -150,7 +253,8 @@ impl Raster {
         [translation.x, x_axis.x, y_axis.x, translation.y, x_axis.y, y_axis.y]
     }
 
-    fn grid_size(&self) -> DVec2 {
+    /// Columns and rows.
+    pub(crate) fn grid_size(&self) -> DVec2 {
         DVec2::new(f64::from(self.width), f64::from(self.height))
     }
 }
@@ -160,6 +264,11 @@ pub(crate) fn north_up(corner: DVec2, cell: DVec2) -> DAffine2 {
     DAffine2 { matrix2: DMat2::from_diagonal(DVec2::new(cell.x, -cell.y)), translation: corner }
 }
 
+/// The map position of a grid whose rows run east and columns south: `node` is the center of the north-west sample.
+pub(crate) fn north_up_nodes(node: DVec2, cell: DVec2) -> DAffine2 {
+    north_up(node + DVec2::new(-0.5, 0.5) * cell, cell)
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
@@ -167,22 +276,8 @@ pub(crate) mod tests {
     /// A raster in meters, ten apart, whose south-west outer corner is at (1000, 2000).
     pub(crate) fn small(width: u32, height: u32, values: Vec<f32>) -> Raster {
         assert_eq!(values.len(), (width * height) as usize);
-        Raster {
-            driver: "test",
-            data_type: "Float32",
-            width,
-            height,
-            samples: Samples::F32(values),
-            meters_per_z: 1.0,
-            map_from_grid: north_up(
-                DVec2::new(1000.0, 2000.0 + 10.0 * f64::from(height)),
-                DVec2::splat(10.0),
-            ),
-            georeferenced: true,
-            crs: None,
-            nodata: None,
-            vertical_datum: None,
-        }
+        let corner = DVec2::new(1000.0, 2000.0 + 10.0 * f64::from(height));
+        Raster::new(width, Samples::F32(values)).placed(north_up(corner, DVec2::splat(10.0)))
     }
 
     #[test]

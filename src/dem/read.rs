@@ -1,44 +1,42 @@
-//! Bytes to a raster: the format is told by content, then by extension.
+//! Bytes to a raster: the format by content, else by extension.
 
-use crate::dem::archive;
+use crate::archive::{self, MAX_RASTER_BYTES, ZipReader};
 use crate::dem::error::{DemError, DemErrorKind};
-use crate::dem::formats::raw;
+use crate::dem::formats::height_encoding::HeightEncoding;
 use crate::dem::formats::raw::RawLayout;
-use crate::dem::formats::rgb_png::HeightEncoding;
-use crate::dem::formats::{ascii, bt, dted, ehdr, envi, hgt, png, surfer, terragen, usgs, xyz};
+use crate::dem::formats::{DemFormat, FORMATS, Recognition, raw};
 use crate::dem::raster::Raster;
-use crate::dem::tiff::geotiff;
 use crate::geom::crs::Crs;
 
 /// What the caller knows of a file beyond its bytes.
 #[derive(Clone)]
 pub struct DemHints<'a> {
-    /// Meters per gray value of a PNG, which is refused without it, or per value of a RAW file. Default 1 there; other
-    /// formats do not look at it.
-    pub png_height_scale: Option<f64>,
+    /// Meters per gray value of a PNG, which is refused without it, or per value of a RAW file (default 1). Other
+    /// formats ignore it.
+    pub height_scale: Option<f64>,
     /// Elevation in meters of value 0. Default 0.
-    pub png_height_offset: Option<f64>,
-    /// What the colors of a PNG mean; a color PNG is refused without it.
+    pub height_offset: Option<f64>,
+    /// The encoding of heights in the colors of a PNG; a color PNG is refused without it.
     pub height_encoding: Option<HeightEncoding>,
-    /// That the file is RAW, and how it is laid out.
+    /// The layout of the file, which is RAW.
     pub raw: Option<RawLayout>,
-    /// What heights are counted from, in place of what the file says.
+    /// The vertical datum, in place of the file's.
     pub vertical_datum: Option<String>,
-    /// Distance in meters between samples of a file without georeference; its south-west sample then stands
-    /// at (0, 0). Files with a georeference keep theirs.
+    /// Distance in meters between samples of a file without georeference; its south-west sample is then at (0, 0).
+    /// Files with a georeference keep theirs.
     pub cell: Option<f64>,
-    /// The coordinate system, in place of what the file says or where it says nothing.
+    /// The coordinate system, in place of the file's.
     pub crs: Option<Crs>,
-    /// The bytes of a file that lies beside this one, by its name: the name given to [`read`] with another
-    /// extension. Asked for `.prj` and world files; `None` where there is none.
+    /// The bytes of a companion by its name: the name given to [`read`] with another extension, such as `.prj`; `None`
+    /// where there is none.
     pub companions: &'a dyn Fn(&str) -> Option<Vec<u8>>,
 }
 
 impl Default for DemHints<'_> {
     fn default() -> Self {
         Self {
-            png_height_scale: None,
-            png_height_offset: None,
+            height_scale: None,
+            height_offset: None,
             height_encoding: None,
             raw: None,
             vertical_datum: None,
@@ -49,20 +47,16 @@ impl Default for DemHints<'_> {
     }
 }
 
-/// The ends of names of files that are taken for elevation in a folder of tiles or an archive. Names that pictures and
-/// tables go by as well are not among them.
-const TILE_NAMES: [&str; 18] = [
-    ".tif", ".tiff", ".asc", ".hgt", ".hgt.zip", ".hgt.gz", ".bt", ".bt.gz", ".btz", ".dem", ".dt0", ".dt1",
-    ".dt2", ".flt", ".bil", ".ter", ".grd", ".xyz",
-];
-
-/// Whether a file of this name in a folder of tiles or an archive is one of them, as far as its name tells.
+/// Whether the name of a file in a folder or an archive is that of a tile of elevation. Extensions that pictures and
+/// tables have as well do not count.
 pub fn is_tile_name(name: &str) -> bool {
-    let lower = name.rsplit(['/', '\\']).next().unwrap_or(name).to_ascii_lowercase();
-    !lower.starts_with('.') && TILE_NAMES.iter().any(|end| lower.ends_with(end))
+    let file = file_name(name).to_ascii_lowercase();
+    let unpacked = unpacked_name(&file);
+    let extension = split_extension(&unpacked).1;
+    !file.starts_with('.') && FORMATS.iter().any(|format| format.extensions.contains(&extension))
 }
 
-/// A file while it is read: its name, bytes and hints.
+/// An elevation file while it is read: its name, bytes and hints.
 pub(crate) struct DemFile<'a> {
     /// The name as given, for the extension and the companions.
     pub name: &'a str,
@@ -80,24 +74,14 @@ impl DemFile<'_> {
 
     /// The file name without folders and extension.
     pub fn stem(&self) -> &str {
-        let file = self.name.rsplit(['/', '\\']).next().unwrap_or(self.name);
-        split_extension(file).0
+        split_extension(file_name(self.name)).0
     }
 
-    /// The bytes of the companion with another extension, asked for in lower and in upper case.
+    /// The bytes of the companion with another extension, in lower or in upper case.
     pub fn companion(&self, extension: &str) -> Option<Vec<u8>> {
         let base = split_extension(self.name).0;
-        let ask = |extension: &str| (self.hints.companions)(&format!("{base}.{extension}"));
-        ask(extension).or_else(|| ask(&extension.to_ascii_uppercase()))
-    }
-
-    /// The coordinate system of the hints, or of a `.prj` companion; `None` where there is neither.
-    pub fn crs_beside(&self) -> Result<Option<Crs>, DemErrorKind> {
-        if let Some(crs) = &self.hints.crs {
-            return Ok(Some(crs.clone()));
-        }
-        let Some(bytes) = self.companion("prj") else { return Ok(None) };
-        Crs::parse(&String::from_utf8_lossy(&bytes)).map(Some).map_err(DemErrorKind::Crs)
+        let read = |extension: &str| (self.hints.companions)(&format!("{base}.{extension}"));
+        read(extension).or_else(|| read(&extension.to_ascii_uppercase()))
     }
 
     /// The content of the `.hdr` beside the file: `a.hdr` for `a.bil`, or `a.img.hdr` for `a.img`.
@@ -105,149 +89,144 @@ impl DemFile<'_> {
         self.companion("hdr").or_else(|| (self.hints.companions)(&format!("{}.hdr", self.name)))
     }
 
+    /// The coordinate system of the hints, else of a `.prj` companion; `None` where there is neither.
+    pub fn crs(&self) -> Result<Option<Crs>, DemErrorKind> {
+        self.crs_or(|| Ok(None))
+    }
+
+    /// The coordinate system of the hints, else the one that the file states, else that of a `.prj` companion.
+    pub fn crs_or(
+        &self,
+        stated: impl FnOnce() -> Result<Option<Crs>, DemErrorKind>,
+    ) -> Result<Option<Crs>, DemErrorKind> {
+        if let Some(crs) = &self.hints.crs {
+            return Ok(Some(crs.clone()));
+        }
+        if let Some(crs) = stated()? {
+            return Ok(Some(crs));
+        }
+        let Some(bytes) = self.companion("prj") else { return Ok(None) };
+        Ok(Some(Crs::parse(&String::from_utf8_lossy(&bytes))?))
+    }
+
     /// The hinted meters per value, checked.
     pub fn height_scale(&self) -> Result<Option<f64>, DemErrorKind> {
-        match self.hints.png_height_scale {
-            Some(scale) if !(scale.is_finite() && scale != 0.0) => Err(DemErrorKind::Hint {
-                what: "height_scale",
-                value: scale,
-                wanted: "a finite number other than 0",
-            }),
-            scale => Ok(scale),
-        }
+        let is_sound = |scale: f64| scale.is_finite() && scale != 0.0;
+        checked("height_scale", self.hints.height_scale, is_sound, "a finite number other than 0")
     }
 
     /// The hinted height of value 0, checked; 0 where there is none.
     pub fn height_offset(&self) -> Result<f64, DemErrorKind> {
-        match self.hints.png_height_offset.unwrap_or(0.0) {
-            offset if offset.is_finite() => Ok(offset),
-            offset => {
-                Err(DemErrorKind::Hint { what: "height_offset", value: offset, wanted: "a finite number" })
-            }
-        }
+        let offset = checked("height_offset", self.hints.height_offset, f64::is_finite, "a finite number");
+        Ok(offset?.unwrap_or(0.0))
     }
 
     /// The hinted distance between samples, checked.
     pub fn cell(&self) -> Result<Option<f64>, DemErrorKind> {
-        match self.hints.cell {
-            Some(cell) if !(cell.is_finite() && cell > 0.0) => {
-                Err(DemErrorKind::Hint { what: "cell", value: cell, wanted: "a positive number of meters" })
-            }
-            cell => Ok(cell),
-        }
+        let is_sound = |cell: f64| cell.is_finite() && cell > 0.0;
+        checked("cell", self.hints.cell, is_sound, "a positive number of meters")
+    }
+}
+
+fn checked(
+    what: &'static str,
+    hint: Option<f64>,
+    is_sound: impl Fn(f64) -> bool,
+    wanted: &'static str,
+) -> Result<Option<f64>, DemErrorKind> {
+    match hint.filter(|&value| !is_sound(value)) {
+        Some(value) => Err(DemErrorKind::Hint { what, value, wanted }),
+        None => Ok(hint),
     }
 }
 
 /// Reads an elevation file.
 ///
-/// `name` serves the extension, the companions' names and messages; nothing is opened.
+/// `name` gives the extension, the companions' names and the name in messages; nothing is opened.
 ///
 /// # Errors
-/// [`DemError`] with the name and what was wrong; an unknown format lists what can be read.
+/// [`DemError`] with the name and what was wrong; for an unknown format it lists the known ones.
 pub fn read(name: &str, bytes: &[u8], hints: &DemHints) -> Result<Raster, DemError> {
-    let mut raster = read_source(&DemFile { name, bytes, hints })
-        .map_err(|fault| DemError { name: name.into(), fault })?;
+    let mut raster = read_packed(&DemFile { name, bytes, hints })
+        .map_err(|kind| DemError { name: name.to_owned(), kind })?;
     if hints.vertical_datum.is_some() {
         raster.vertical_datum.clone_from(&hints.vertical_datum);
     }
     Ok(raster)
 }
 
-fn read_source(source: &DemFile) -> Result<Raster, DemErrorKind> {
-    let bytes = source.bytes;
-    if archive::is_gzip(bytes) {
-        return read_gzip(source);
+/// Reads a file that may be packed.
+fn read_packed(file: &DemFile) -> Result<Raster, DemErrorKind> {
+    if archive::is_gzip(file.bytes) {
+        let (name, content) = (unpacked_name(file.name), archive::gunzip(file.bytes, MAX_RASTER_BYTES)?);
+        return read_unpacked(&DemFile { name: &name, bytes: &content, hints: file.hints });
     }
-    if archive::is_zip(bytes) {
-        return read_zip(source);
+    if archive::is_zip(file.bytes) {
+        return read_zip(file);
     }
-    if source.extension() == "hdr" {
-        return Err(DemErrorKind::UnknownFormat {
-            found: "it is the header of a file beside it: name that one".into(),
-        });
-    }
-    if let Some(layout) = &source.hints.raw {
-        return raw::read(source, layout);
-    }
-    match FORMATS.iter().find(|(recognizes, _)| recognizes(bytes)) {
-        Some((_, read)) => read(source),
-        None => read_by_name(source),
-    }
-}
-
-/// Whether content is that of a format.
-type Recognizes = fn(&[u8]) -> bool;
-
-/// Reads content of a format.
-type Reads = fn(&DemFile) -> Result<Raster, DemErrorKind>;
-
-/// The formats whose content says what they are.
-const FORMATS: [(Recognizes, Reads); 8] = [
-    (geotiff::recognizes, geotiff::read),
-    (png::recognizes, png::read),
-    (bt::recognizes, bt::read),
-    (ascii::recognizes, ascii::read),
-    (dted::recognizes, dted::read),
-    (terragen::recognizes, terragen::read),
-    (surfer::recognizes, surfer::read),
-    (usgs::recognizes, usgs::read),
-];
-
-/// Reads content that does not say what it is: by the header beside it, or else by its extension.
-fn read_by_name(source: &DemFile) -> Result<Raster, DemErrorKind> {
-    let extension = source.extension();
-    // Not for files that have a meaning without one: an .hgt beside a stray .hdr is still a tile.
-    let header = if extension == "hgt" { None } else { source.header() };
-    match &header {
-        Some(header) if envi::is_header(header) => return envi::read(source, header),
-        Some(header) if ehdr::is_header(header) => return ehdr::read(source, header),
-        _ => {}
-    }
-    match extension.as_str() {
-        "hgt" => hgt::read(source),
-        "tif" | "tiff" => Err(DemErrorKind::broken("GeoTIFF", "it does not start as a TIFF file does")),
-        "asc" => Err(DemErrorKind::broken("ESRI ASCII grid", "it does not start with ncols")),
-        "bt" => Err(DemErrorKind::broken("BT terrain", "it does not start with 'binterr1.' and a digit")),
-        "png" => Err(DemErrorKind::broken("PNG", "it does not start as a PNG file does")),
-        "ter" => Err(DemErrorKind::broken("Terragen terrain", "it does not start with TERRAGENTERRAIN")),
-        "dt0" | "dt1" | "dt2" => Err(DemErrorKind::broken("DTED", "it does not start with UHL1")),
-        "raw" | "r16" if header.is_none() => Err(DemErrorKind::NoRawLayout),
-        text if xyz::EXTENSIONS.contains(&text) => xyz::read(source),
-        grid if ehdr::EXTENSIONS.contains(&grid) => {
-            Err(DemErrorKind::NoHeader { format: "ESRI binary grid" })
-        }
-        extension => Err(DemErrorKind::UnknownFormat { found: describe(source.bytes, extension) }),
-    }
-}
-
-fn read_gzip(source: &DemFile) -> Result<Raster, DemErrorKind> {
-    let (base, extension) = split_extension(source.name);
-    let inner = if extension.eq_ignore_ascii_case("btz") { format!("{base}.bt") } else { base.to_owned() };
-    let content = archive::gunzip(source.bytes)?;
-    if archive::is_gzip(&content) || archive::is_zip(&content) {
-        return Err(DemErrorKind::UnknownFormat { found: "it is packed twice".into() });
-    }
-    read_source(&DemFile { name: &inner, bytes: &content, hints: source.hints })
+    read_unpacked(file)
 }
 
 /// Reads the first elevation file in an archive, with its companions there.
-fn read_zip(source: &DemFile) -> Result<Raster, DemErrorKind> {
-    let Some((name, content)) = archive::unzip_first(source.bytes, is_tile_name)? else {
-        return Err(DemErrorKind::UnknownFormat {
-            found: "it is a zip archive without an .hgt tile or another elevation file in it".into(),
-        });
-    };
-    if archive::is_gzip(&content) || archive::is_zip(&content) {
-        return Err(DemErrorKind::UnknownFormat { found: "it is packed twice".into() });
-    }
-    let beside = |wanted: &str| {
-        archive::unzip_first(source.bytes, |name| name == wanted).ok().flatten().map(|(_, content)| content)
-    };
-    let hints = DemHints { companions: &beside, ..source.hints.clone() };
-    read_source(&DemFile { name: &name, bytes: &content, hints: &hints })
+fn read_zip(file: &DemFile) -> Result<Raster, DemErrorKind> {
+    let zip = ZipReader::open(file.bytes, MAX_RASTER_BYTES)?;
+    let name = zip
+        .names()
+        .find(|name| is_tile_name(name))
+        .ok_or_else(|| unknown("it is a zip archive without an .hgt tile or another elevation file in it"))?;
+    let content = zip.read(name)?;
+    let companions = |wanted: &str| zip.read(wanted).ok();
+    let hints = DemHints { companions: &companions, ..file.hints.clone() };
+    read_unpacked(&DemFile { name, bytes: &content, hints: &hints })
 }
 
-/// What an unknown file seems to be.
+fn read_unpacked(file: &DemFile) -> Result<Raster, DemErrorKind> {
+    if archive::is_gzip(file.bytes) || archive::is_zip(file.bytes) {
+        return Err(unknown("it is packed twice"));
+    }
+    let extension = file.extension();
+    if extension == "hdr" {
+        return Err(unknown("it is the header of a file beside it: name that one"));
+    }
+    if file.hints.raw.is_some() {
+        return (raw::FORMAT.reader)(file);
+    }
+    let recognized = find(|format| format.recognizes_content(file.bytes))
+        .or_else(|| {
+            by_extension(&extension).filter(|format| matches!(format.recognition, Recognition::Extension))
+        })
+        .or_else(|| {
+            let header = file.header()?;
+            find(|format| format.recognizes_header(&header))
+        });
+    match recognized {
+        Some(format) => (format.reader)(file),
+        None => Err(not_recognized(file.bytes, &extension)),
+    }
+}
+
+fn find(is_wanted: impl Fn(&DemFormat) -> bool) -> Option<&'static DemFormat> {
+    FORMATS.into_iter().find(|format| is_wanted(format))
+}
+
+fn by_extension(extension: &str) -> Option<&'static DemFormat> {
+    find(|format| format.has_extension(extension))
+}
+
+fn not_recognized(bytes: &[u8], extension: &str) -> DemErrorKind {
+    let Some(format) = by_extension(extension) else { return unknown(describe(bytes, extension)) };
+    match format.recognition {
+        Recognition::Content { start, .. } => format.broken(format!("it does not start with {start}")),
+        Recognition::HeaderFile { .. } => DemErrorKind::NoHeader { format: format.name },
+        Recognition::Statement | Recognition::Extension => DemErrorKind::NoRawLayout,
+    }
+}
+
+fn unknown(found: impl Into<String>) -> DemErrorKind {
+    DemErrorKind::UnknownFormat { found: found.into() }
+}
+
+/// An unknown file in words.
 fn describe(bytes: &[u8], extension: &str) -> String {
     const KNOWN: [(&[u8], &str); 6] = [
         (b"SQLite format 3", "it is an SQLite database, perhaps a GeoPackage"),
@@ -257,12 +236,27 @@ fn describe(bytes: &[u8], extension: &str) -> String {
         (b"CDF", "it is a NetCDF file"),
         (b"LASF", "it is a point cloud, of which `sandtable dem grid` makes a grid"),
     ];
-    let found = KNOWN.iter().find(|(start, _)| bytes.starts_with(start));
-    match (found, bytes.is_empty(), extension) {
+    let known = KNOWN.iter().find(|(start, _)| bytes.starts_with(start));
+    match (known, bytes.is_empty(), extension) {
         (Some((_, what)), ..) => (*what).into(),
         (_, true, _) => "the file is empty".into(),
-        (.., "") => "neither its content nor its name says what it is".into(),
+        (.., "") => "neither its content nor its name is known".into(),
         (.., extension) => format!("its content is not known, and .{extension} is not read"),
+    }
+}
+
+/// A name without folders.
+fn file_name(path: &str) -> &str {
+    path.rsplit(['/', '\\']).next().unwrap_or(path)
+}
+
+/// The name of the file in a packed file of this name.
+fn unpacked_name(name: &str) -> String {
+    let (base, extension) = split_extension(name);
+    match extension.to_ascii_lowercase().as_str() {
+        "gz" | "zip" => base.to_owned(),
+        "btz" => format!("{base}.bt"),
+        _ => name.to_owned(),
     }
 }
 
@@ -279,18 +273,28 @@ mod tests {
     use super::*;
 
     #[test]
+    fn tiles_are_named_by_extensions_that_nothing_else_has() {
+        for name in ["a.tif", "d/B.TIFF", "n1.hgt.zip", "a.bt.gz", "a.btz", "a.dt0", "a.xyz"] {
+            assert!(is_tile_name(name), "{name}");
+        }
+        for name in ["a.png", "a.csv", "a.zip", "a.gz", ".a.tif", "a.tif.aux.xml", "a.hdr", "tif"] {
+            assert!(!is_tile_name(name), "{name}");
+        }
+    }
+
+    #[test]
     fn an_unknown_file_is_refused_with_what_it_is_and_what_is_read() {
-        let said = |name: &str, bytes: &[u8]| {
+        let message = |name: &str, bytes: &[u8]| {
             read(name, bytes, &DemHints::default()).expect_err("refused").to_string()
         };
-        assert!(said("a/b.las", b"LASF").contains("dem grid"));
+        assert!(message("a/b.las", b"LASF").contains("dem grid"));
         for wanted in ["x.adf", ".adf is not read", "GeoTIFF", ".asc", ".png", ".bt", ".hgt", ".dem", ".bil"]
         {
-            assert!(said("x.adf", b"1 2 3").contains(wanted), "{wanted}");
+            assert!(message("x.adf", b"1 2 3").contains(wanted), "{wanted}");
         }
-        assert!(said("x.hdr", b"NROWS 3\n").contains("name that one"));
-        assert!(said("x.raw", b"123").contains("--raw"));
-        assert!(said("x", b"").contains("empty"));
+        assert!(message("x.hdr", b"NROWS 3\n").contains("name that one"));
+        assert!(message("x.raw", b"123").contains("--raw"));
+        assert!(message("x", b"").contains("empty"));
     }
 
     /// An archive of stored members.

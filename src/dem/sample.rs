@@ -1,6 +1,6 @@
 //! The elevation at a point between samples.
 //!
-//! The convention is GDAL's: a value stands at its sample's center. In the outer half sample along the border
+//! The convention is GDAL's: a value is that of its sample's center. In the outer half sample along the border
 //! the nearest row or column is held. Neighbors without data drop out and the weights of the others grow to
 //! one; only where none is left is there no data.
 
@@ -9,18 +9,18 @@ use glam::DVec2;
 use crate::dem::answer::Answer;
 use crate::dem::raster::Raster;
 
-/// How far outside the border, in samples, still counts as on it: what is lost when a corner's map
-/// coordinates are written with a dozen digits.
+/// How far outside the border, in samples, a point still counts as on it: map coordinates of a corner written with a
+/// dozen digits lose this much.
 const BORDER: f64 = 1e-6;
 
-/// A position nearer than this, in samples, to a row or column of centers lies on it: rounding in map
-/// coordinates must not give a neighbor, or a hole beside it, a say in an exact value.
+/// A position nearer than this, in samples, to a row or column of centers lies on it: rounding in map coordinates must
+/// not mix a neighbor, or a hole, into an exact value.
 pub(crate) const ON_CENTER: f64 = 1e-7;
 
 /// The value of the sample that contains a point in the raster's own coordinates.
 pub fn nearest(raster: &Raster, at_map: DVec2) -> Answer {
     let at = raster.grid_from_map(at_map);
-    if !inside(raster, at) {
+    if !contains(raster, at) {
         return Answer::Outside;
     }
     let column = (at.x.max(0.0) as u32).min(raster.width - 1);
@@ -35,7 +35,7 @@ pub fn bilinear(raster: &Raster, at_map: DVec2) -> Answer {
 
 /// The bilinear value at a grid position (column, row), where (0.5, 0.5) is the first sample's center.
 pub fn bilinear_at_grid(raster: &Raster, at: DVec2) -> Answer {
-    if !inside(raster, at) {
+    if !contains(raster, at) {
         return Answer::Outside;
     }
     let (left, right, across) = neighbors(at.x, raster.width);
@@ -57,13 +57,12 @@ pub fn bilinear_at_grid(raster: &Raster, at: DVec2) -> Answer {
     if weights > 0.0 { Answer::from_sample(sum / weights) } else { Answer::NoData }
 }
 
-fn inside(raster: &Raster, at: DVec2) -> bool {
-    let (width, height) = (f64::from(raster.width), f64::from(raster.height));
-    (-BORDER..=width + BORDER).contains(&at.x) && (-BORDER..=height + BORDER).contains(&at.y)
+fn contains(raster: &Raster, at: DVec2) -> bool {
+    let size = raster.grid_size() + BORDER;
+    (-BORDER..=size.x).contains(&at.x) && (-BORDER..=size.y).contains(&at.y)
 }
 
-/// The two samples on either side of a position along one axis, and how far it lies from the first to the
-/// second.
+/// The two samples on either side of a position along one axis, and its part of the way from the first to the second.
 fn neighbors(at: f64, count: u32) -> (u32, u32, f64) {
     let from_first = (at - 0.5).clamp(0.0, f64::from(count - 1));
     let first = from_first as u32;
@@ -99,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hole_is_not_the_edge_of_the_world() {
+    fn a_hole_is_not_the_edge_of_the_raster() {
         let raster = small(1, 1, vec![f32::NAN]);
         assert_eq!(bilinear(&raster, DVec2::new(1005.0, 2005.0)), Answer::NoData);
         assert_eq!(bilinear(&raster, DVec2::new(1011.0, 2005.0)), Answer::Outside);

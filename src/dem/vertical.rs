@@ -1,6 +1,6 @@
-//! Vertical datums by EPSG's numbers: what heights of a raster are counted from.
+//! Vertical datums by EPSG's numbers.
 //!
-//! The words are carried along and printed, never computed with; that two of them differ is for the user to see.
+//! The names are carried along and printed, never computed with; that two of them differ is for the user to see.
 
 /// EPSG's vertical systems that elevation is met in, and the numbers of GeoTIFF 1.0 (5101 to 5106).
 ///
@@ -44,18 +44,18 @@ const NAMES: [(u16, &str); 36] = [
     (5104, "Yellow Sea"),
 ];
 
-/// The words for a number; `EPSG:n` where it has no name here.
-pub(crate) fn words(code: u16) -> String {
+/// The name of a number; `EPSG:n` where it has none here.
+pub(crate) fn name(code: u16) -> String {
     NAMES
         .iter()
         .find(|(known, _)| *known == code)
         .map_or_else(|| format!("EPSG:{code}"), |(_, name)| (*name).into())
 }
 
-/// The number that [`words`] gives these words for.
-pub(crate) fn code(words: &str) -> Option<u16> {
-    let named = NAMES.iter().find(|(_, name)| *name == words).map(|(code, _)| *code);
-    named.or_else(|| words.strip_prefix("EPSG:")?.parse().ok())
+/// The number with this [`name`].
+pub(crate) fn code(name: &str) -> Option<u16> {
+    let known = NAMES.iter().find(|(_, known)| *known == name).map(|(code, _)| *code);
+    known.or_else(|| name.strip_prefix("EPSG:")?.parse().ok())
 }
 
 #[cfg(test)]
@@ -63,11 +63,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_lead_back_to_a_number_that_has_them() {
+    fn names_lead_back_to_a_number_that_has_them() {
         for (number, _) in NAMES {
-            assert_eq!(words(code(&words(number)).expect("a name of the table")), words(number));
+            assert_eq!(name(code(&name(number)).expect("a name of the table")), name(number));
         }
-        assert_eq!((words(5703), words(9999)), ("NAVD88".into(), "EPSG:9999".into()));
+        assert_eq!((name(5703), name(9999)), ("NAVD88".into(), "EPSG:9999".into()));
         assert_eq!((code("EPSG:9999"), code("somewhere")), (Some(9999), None));
     }
 }

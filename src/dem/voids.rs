@@ -1,31 +1,31 @@
-//! Voids: samples without data, enclosed by samples with data, and the filling of them.
+//! Voids: samples without data that are enclosed by samples with data, and their filling.
 //!
 //! A void is a set of samples without data that are neighbors along rows and columns, none of them on the raster's
-//! border: what reaches the border is where the data ends, and is left.
+//! border: at the border the data ends, and nothing is filled.
 //!
 //! Filling stretches a **membrane** over each void from its rim: heights inside solve Laplace's equation, so that each
 //! is the mean of its four neighbors, weighted by nearness where cells are not square. It passes through the rim
-//! without a step, has no hill or hollow of its own, and reproduces a plane exactly; ridges and valleys across a wide
-//! void are lost, which is why voids above a size are left. Solved by successive over-relaxation (Young 1954) in the
-//! order of the samples, so that the same bits come out everywhere.
+//! without a step, has no hill or hollow inside, and reproduces a plane exactly. Ridges and valleys across a wide void
+//! are lost: voids above a size are left. Solved by successive over-relaxation (Young 1954) in the order of the samples:
+//! the same bits everywhere.
 
 use glam::DVec2;
 
 use crate::dem::raster::Raster;
 use crate::geom::crs::Crs;
 
-/// Voids of more samples than this are left: three hundred posts across, where a membrane is no guess at the ground
-/// any more. Also bounds the time, which grows with the power of one and a half.
+/// Voids of more samples than this are left: over three hundred posts a membrane says nothing of the ground. Also bounds
+/// the time, which grows with the power of one and a half.
 pub const MOST_CELLS: u64 = 100_000;
 
-/// The membrane is at rest when no height moves more than this in a sweep, in the vertical unit: far below what any
-/// survey resolves.
+/// The membrane is at rest when no height moves more than this in a sweep, in the vertical unit: far below the
+/// resolution of any survey.
 const AT_REST: f64 = 1e-6;
 
-/// Sweeps per sample of a void's longer side, after which it is taken as it is. Over-relaxation needs about two.
+/// The most sweeps per sample of a void's longer side. Over-relaxation needs about two.
 const SWEEPS_PER_SIDE: usize = 12;
 
-/// What filling did.
+/// The voids that were filled and left.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Filled {
     /// Voids filled.
@@ -39,7 +39,7 @@ pub struct Filled {
 }
 
 impl Filled {
-    /// What a user should know of it, in one line.
+    /// The counts in one line.
     pub fn note(&self) -> String {
         let mut note =
             format!("{} samples in {} voids filled by a membrane from their rims", self.cells, self.voids);
@@ -75,7 +75,7 @@ pub fn fill(raster: &mut Raster) -> Filled {
     filled
 }
 
-/// How many voids there are, and how many samples in all of them.
+/// The number of voids, and of the samples in all of them.
 pub fn count(raster: &Raster) -> (u64, u64) {
     let (mut voids, mut cells) = (0, 0);
     each(raster, |void| {
@@ -85,11 +85,10 @@ pub fn count(raster: &Raster) -> (u64, u64) {
     (voids, cells)
 }
 
-/// A void.
 struct Void {
     /// Its samples in order; cut off at [`MOST_CELLS`].
     cells: Vec<usize>,
-    /// How many there are.
+    /// The number of its samples.
     count: u64,
 }
 
@@ -112,14 +111,13 @@ fn each(raster: &Raster, mut visit: impl FnMut(Void)) {
                 void.cells.push(at);
             }
             let (column, row) = (at % width, at / width);
-            let inside = column > 0 && row > 0 && column + 1 < width && row + 1 < height;
-            on_border |= !inside;
             let around = [
                 (column > 0).then(|| at - 1),
                 (column + 1 < width).then_some(at + 1),
                 (row > 0).then(|| at - width),
                 (row + 1 < height).then_some(at + width),
             ];
+            on_border |= around.contains(&None);
             for next in around.into_iter().flatten() {
                 if !seen[next] && raster.samples.get(next).is_nan() {
                     seen[next] = true;
@@ -134,8 +132,8 @@ fn each(raster: &Raster, mut visit: impl FnMut(Void)) {
     }
 }
 
-/// How much a neighbor along a row and one along a column count: as the inverse squares of their distances, halved
-/// so that the four add up to 1.
+/// The weights of a neighbor along a row and of one along a column: the inverse squares of their distances, halved so
+/// that the four add up to 1.
 fn weights(raster: &Raster) -> DVec2 {
     let mut spacing = raster.spacing();
     if raster.crs.as_ref().is_some_and(Crs::is_geographic) {
@@ -146,25 +144,25 @@ fn weights(raster: &Raster) -> DVec2 {
     if weights.is_finite() { weights } else { DVec2::splat(0.25) }
 }
 
-/// The heights over one void, and of its rim.
+/// The heights over one void and of its rim.
 struct Membrane {
-    /// Those of the void's samples, then those of the rim, which stay.
+    /// Those of the void's samples, then those of the rim, which are fixed.
     heights: Vec<f64>,
-    /// Per sample of the void: where its west, east, north and south neighbors stand in `heights`.
+    /// Per sample of the void: the indices of its west, east, north and south neighbors in `heights`.
     around: Vec<[u32; 4]>,
     weights: DVec2,
-    /// The lowest and the highest of the rim: no height of a membrane lies beyond.
+    /// The lowest and the highest of the rim: no height of a membrane lies outside.
     range: (f64, f64),
     /// Samples along the longer side of the void's rectangle.
     side: usize,
 }
 
 impl Membrane {
-    /// At the rim's mean height. `cells` are in order, and none is on the raster's border.
+    /// A flat membrane at the rim's mean height. `cells` are in order, and none is on the raster's border.
     fn new(raster: &Raster, cells: &[usize], weights: DVec2) -> Self {
         let width = raster.width as usize;
         let mut rim: Vec<f64> = Vec::new();
-        let mut place = |index: usize| match cells.binary_search(&index) {
+        let mut index_of = |index: usize| match cells.binary_search(&index) {
             Ok(at) => at as u32,
             Err(_) => {
                 rim.push(raster.samples.get(index));
@@ -172,22 +170,22 @@ impl Membrane {
             }
         };
         let around: Vec<[u32; 4]> =
-            cells.iter().map(|&at| [at - 1, at + 1, at - width, at + width].map(&mut place)).collect();
+            cells.iter().map(|&at| [at - 1, at + 1, at - width, at + width].map(&mut index_of)).collect();
         let mean = rim.iter().sum::<f64>() / rim.len() as f64;
-        let range = rim.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), height| {
-            (low.min(*height), high.max(*height))
-        });
-        let span = |of: fn(usize, usize) -> usize| {
-            let all = cells.iter().map(|&at| of(at, width));
-            let (low, high) = all.fold((usize::MAX, 0), |(low, high), at| (low.min(at), high.max(at)));
-            high - low + 1
+        let lowest = rim.iter().copied().fold(f64::INFINITY, f64::min);
+        let highest = rim.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let columns = || cells.iter().map(|at| at % width);
+        let side = match (columns().min(), columns().max(), cells) {
+            (Some(west), Some(east), [first, .., last]) => {
+                (east - west + 1).max(last / width - first / width + 1)
+            }
+            _ => 1,
         };
-        let side = span(|at, width| at % width).max(span(|at, width| at / width));
         let heights = vec![mean; cells.len()].into_iter().chain(rim).collect();
-        Self { heights, around, weights, range, side }
+        Self { heights, around, weights, range: (lowest, highest), side }
     }
 
-    /// The heights of the void's samples, at rest.
+    /// Returns the heights of the void's samples, at rest.
     fn solve(mut self) -> Vec<f64> {
         // The factor that is best for a square void of this side.
         let factor = 2.0 / (1.0 + libm::sin(std::f64::consts::PI / (self.side + 1) as f64));
@@ -243,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn what_reaches_the_border_is_left() {
+    fn holes_at_the_border_are_left() {
         let mut raster = plane(8, |column, row| (column == 3 && row < 4) || (column == 6 && row == 6));
         assert_eq!(count(&raster), (1, 1));
         assert_eq!(fill(&mut raster), Filled { voids: 1, cells: 1, ..Filled::default() });

@@ -1,7 +1,7 @@
-//! Rectangles of a raster, read without reading it whole.
+//! Rectangles of a raster, read without the rest.
 //!
-//! What is larger than the memory is asked for piece by piece. A raster in memory answers the same questions, so
-//! whatever works on windows can be tested against one that works on the whole.
+//! A raster larger than the memory is read window by window. A raster in memory is read alike, so that code that works
+//! on windows can be tested against it.
 
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::{Raster, scaled};
@@ -20,7 +20,7 @@ pub struct RasterWindow {
 }
 
 impl RasterWindow {
-    /// How many samples it has.
+    /// The number of its samples.
     pub fn samples(&self) -> usize {
         self.width as usize * self.height as usize
     }
@@ -38,15 +38,14 @@ impl RasterWindow {
 
 /// A raster that is read in rectangles.
 pub trait Windows {
-    /// The raster without its samples: size, place, coordinate system. What its `samples` hold, if anything, is not
-    /// to be looked at.
-    fn bare(&self) -> &Raster;
+    /// The raster's size, place and coordinate system. Its `samples` mean nothing and may be empty.
+    fn metadata(&self) -> &Raster;
 
-    /// Fills `out` with the heights of `window` in meters, row by row from its first; NaN without data. They are
-    /// those that reading the whole raster and bringing it to meters would give, to the last bit.
+    /// Fills `out` with the heights of `window` in meters, row by row from its first; NaN without data. Reading the
+    /// whole raster and converting it to meters gives the same bits.
     ///
     /// # Errors
-    /// The samples cannot be had; another window may still be read.
+    /// The samples cannot be read; another window still may.
     ///
     /// # Panics
     /// Where the window reaches beyond the raster.
@@ -54,13 +53,13 @@ pub trait Windows {
 
     /// Samples per row, and rows.
     fn size(&self) -> (u32, u32) {
-        (self.bare().width, self.bare().height)
+        (self.metadata().width, self.metadata().height)
     }
 }
 
 /// A raster in memory.
 impl Windows for Raster {
-    fn bare(&self) -> &Raster {
+    fn metadata(&self) -> &Raster {
         self
     }
 
@@ -91,7 +90,7 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "reaches beyond")]
-    fn a_window_beyond_the_raster_is_our_own_mistake() {
+    fn a_window_beyond_the_raster_panics() {
         let window = RasterWindow { column: 2, row: 0, width: 2, height: 1 };
         let _ = small(3, 3, vec![0.0; 9]).read(window, &mut Vec::new());
     }

@@ -1,18 +1,23 @@
-//! The numbers a key allows.
+//! The range of numbers that a key allows.
 
 use std::fmt;
 
-/// The numbers a key allows; never NaN or infinite.
+/// A range of numbers; no range holds NaN or an infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bounds {
-    /// Greater than the first, up to the second.
+    /// Greater than the first number, at most the second.
     Above(f64, f64),
-    /// From the first to the second.
+    /// From the first number to the second.
     Within(f64, f64),
 }
 
 impl Bounds {
-    /// Whether it allows `number`; never NaN or an infinity.
+    /// Heights in meters: from below any sea to above the orbit of any camera.
+    pub const ELEVATION: Self = Self::Within(-1e7, 1e7);
+    /// Every finite number.
+    pub const FINITE: Self = Self::Within(f64::MIN, f64::MAX);
+
+    /// Whether `number` lies in the range.
     pub fn hold(self, number: f64) -> bool {
         match self {
             Self::Above(low, high) => number > low && number <= high,
@@ -25,17 +30,17 @@ impl fmt::Display for Bounds {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Above(low, high) => {
-                write!(out, "greater than {} and at most {}", Short(*low), Short(*high))
+                write!(out, "greater than {} and at most {}", ShortNumber(*low), ShortNumber(*high))
             }
-            Self::Within(low, high) => write!(out, "from {} to {}", Short(*low), Short(*high)),
+            Self::Within(low, high) => write!(out, "from {} to {}", ShortNumber(*low), ShortNumber(*high)),
         }
     }
 }
 
-/// A number as people write it: without a tail of zeros.
-pub(super) struct Short(pub(super) f64);
+/// Shows a number without trailing zeros, with an exponent where it is very large or very small.
+pub(super) struct ShortNumber(pub(super) f64);
 
-impl fmt::Display for Short {
+impl fmt::Display for ShortNumber {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let size = self.0.abs();
         if size.is_finite() && (size >= 1e7 || (size > 0.0 && size < 1e-6)) {
@@ -45,6 +50,3 @@ impl fmt::Display for Short {
         }
     }
 }
-
-/// Heights in meters: from below any sea to above any camera's orbit.
-pub const ELEVATION: Bounds = Bounds::Within(-1e7, 1e7);

@@ -1,36 +1,46 @@
 //! A message that points at a place in the scene file.
 //!
-//! Rendered as text without color, so that it reads the same on a terminal, in a log and in a test:
+//! Rendered by the crate `annotate-snippets` as text without color, so that it reads the same on a terminal, in a log and
+//! in a test:
 //!
 //! ```text
 //! hill.toml:12:1: error: unknown key `widht` in [[road]]
 //!    |
 //! 12 | widht = 4
 //!    | ^^^^^
+//!    |
 //!    = help: did you mean `width`?
 //! ```
+//!
+//! The crate expands tabs, counts wide characters and cuts long lines. It passes some control characters on, so that all
+//! text is made harmless before.
 
+use std::error::Error;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::description::snippet::{harmless, snippet};
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+
 use crate::description::source_text::{LineColumn, SourceText};
 
-/// One thing wrong with a scene file, where, and what to do about it.
-#[derive(Clone, Debug, PartialEq)]
+/// One error in a scene file: its cause, its place, and a remedy.
+#[derive(Clone, Debug)]
 pub struct Diagnostic {
-    source: Arc<SourceText>,
+    source_text: Arc<SourceText>,
     span: Range<usize>,
-    message: String,
-    label: Option<String>,
+    cause: Arc<dyn Error + Send + Sync>,
     help: Option<String>,
 }
 
 impl Diagnostic {
-    /// `message` about the bytes `span` of `source`.
-    pub fn new(source: &Arc<SourceText>, span: Range<usize>, message: impl Into<String>) -> Self {
-        Self { source: Arc::clone(source), span, message: message.into(), label: None, help: None }
+    /// `cause`, an error or a sentence, about the bytes `span` of `source`.
+    pub fn new(
+        source: &Arc<SourceText>,
+        span: Range<usize>,
+        cause: impl Into<Box<dyn Error + Send + Sync>>,
+    ) -> Self {
+        Self { source_text: Arc::clone(source), span, cause: cause.into().into(), help: None }
     }
 
     /// The same with a remedy.
@@ -39,93 +49,95 @@ impl Diagnostic {
         Self { help: Some(help.into()), ..self }
     }
 
-    /// The same with a few words beside the underlined text.
-    #[must_use]
-    pub fn with_label(self, label: impl Into<String>) -> Self {
-        Self { label: Some(label.into()), ..self }
+    /// What is wrong, in one sentence: the cause with its own causes, as far as it does not state them itself.
+    pub fn message(&self) -> String {
+        let mut message = self.cause.to_string();
+        let mut cause = self.cause.source();
+        while let Some(error) = cause {
+            let text = error.to_string();
+            if !message.contains(&text) {
+                message = format!("{message}: {text}");
+            }
+            cause = error.source();
+        }
+        message
     }
 
-    /// What is wrong, one sentence.
-    pub fn message(&self) -> &str {
-        &self.message
-    }
-
-    /// What to do about it.
+    /// The remedy.
     pub fn help(&self) -> Option<&str> {
         self.help.as_deref()
     }
 
-    /// The bytes it is about.
-    pub fn span(&self) -> Range<usize> {
-        self.span.clone()
-    }
-
-    /// Where it starts.
+    /// The line and column where the error starts.
     pub fn position(&self) -> LineColumn {
-        self.source.line_column(self.span.start)
+        self.source_text.line_column(self.span.start)
     }
 
-    /// The text it points into.
-    pub fn source_text(&self) -> &Arc<SourceText> {
-        &self.source
+    fn is_same(&self, other: &Self) -> bool {
+        self.span == other.span && self.message() == other.message()
     }
 }
+
+/// The cells of a terminal that a line and its number take at most.
+const WIDTH: usize = 120;
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let at = self.position();
-        let line = self.source.line_at(self.span.start);
-        let mark = self.span.start.saturating_sub(line.start)..self.span.end.saturating_sub(line.start);
-        let shown = snippet(&self.source.text()[line], mark);
-        let number = at.line.to_string();
-        let gutter = " ".repeat(number.len());
-        let (name, message) = (harmless(self.source.name_at(self.span.start)), harmless(&self.message));
-        writeln!(out, "{name}:{}:{}: error: {message}", at.line, at.column)?;
-        writeln!(out, "{gutter} |")?;
-        writeln!(out, "{}", format!("{number} | {}", shown.line).trim_end())?;
-        write!(out, "{gutter} | {}", shown.carets)?;
-        if let Some(label) = &self.label {
-            write!(out, " {}", harmless(label))?;
-        }
+        let (text, position) = (self.source_text.text(), self.position());
+        let line = self.source_text.line_at(self.span.start);
+        let boundary = |at: usize| text.floor_char_boundary(at.clamp(line.start, line.end));
+        let (start, end) = (boundary(self.span.start), boundary(self.span.end));
+        let parts = [line.start..start, start..end, end..line.end].map(|part| harmless(&text[part]));
+        let mark = parts[0].len()..parts[0].len() + parts[1].len();
+        let snippet = Snippet::source(parts.concat())
+            .line_start(position.line)
+            .fold(false)
+            .annotation(AnnotationKind::Primary.span(mark));
+        let mut group = Group::with_level(Level::ERROR).element(snippet);
         if let Some(help) = &self.help {
-            write!(out, "\n{gutter} = help: {}", harmless(help))?;
+            group = group.element(Level::HELP.message(harmless(help)));
         }
-        Ok(())
+        let name = harmless(self.source_text.name_at(self.span.start));
+        let (LineColumn { line, column }, message) = (position, harmless(&self.message()));
+        let shown = Renderer::plain().term_width(WIDTH).render(&[group]);
+        write!(out, "{name}:{line}:{column}: error: {message}\n{shown}")
     }
 }
 
-impl std::error::Error for Diagnostic {}
+impl Error for Diagnostic {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        Some(self.cause.as_ref())
+    }
+}
 
-/// Everything wrong with a scene file, in the order of the file; never empty.
-#[derive(Clone, Debug, PartialEq)]
+/// `text` with a visible character for every control and direction mark but the tab, which could steer a terminal.
+fn harmless(text: &str) -> String {
+    let visible = |character: char| match character {
+        '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => '\u{fffd}',
+        _ if character.is_control() && character != '\t' => '\u{fffd}',
+        _ => character,
+    };
+    text.chars().map(visible).collect()
+}
+
+/// All errors in a scene file, in the order of the file; never empty.
+#[derive(Clone, Debug)]
 pub struct Diagnostics {
     list: Vec<Diagnostic>,
     omitted: usize,
 }
 
-/// The most errors kept of one file: more than anybody mends before the next run, few enough to bound what
-/// a hostile file can make us print.
+/// The most errors kept of one scene: more than anybody mends before the next run, few enough to bound what a hostile file
+/// can make the program print.
 const MAX_ERRORS: usize = 50;
 
 impl Diagnostics {
-    /// `list` in the order of the file, shortened to what anybody reads; `None` where it is empty.
-    pub fn new(list: Vec<Diagnostic>) -> Option<Self> {
-        Self::with_omitted(list, 0)
-    }
-
-    fn with_omitted(mut list: Vec<Diagnostic>, omitted: usize) -> Option<Self> {
-        list.sort_by_key(|diagnostic| diagnostic.span.start);
-        let omitted = omitted + list.len().saturating_sub(MAX_ERRORS);
-        list.truncate(MAX_ERRORS);
-        (!list.is_empty()).then_some(Self { list, omitted })
-    }
-
-    /// All that are kept.
+    /// The errors that are kept.
     pub fn as_slice(&self) -> &[Diagnostic] {
         &self.list
     }
 
-    /// How many more there were.
+    /// How many more there are.
     pub fn omitted(&self) -> usize {
         self.omitted
     }
@@ -140,10 +152,7 @@ impl From<Diagnostic> for Diagnostics {
 impl fmt::Display for Diagnostics {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, diagnostic) in self.list.iter().enumerate() {
-            if index > 0 {
-                out.write_str("\n\n")?;
-            }
-            diagnostic.fmt(out)?;
+            write!(out, "{}{diagnostic}", if index > 0 { "\n\n" } else { "" })?;
         }
         match self.omitted {
             0 => Ok(()),
@@ -153,9 +162,9 @@ impl fmt::Display for Diagnostics {
     }
 }
 
-impl std::error::Error for Diagnostics {}
+impl Error for Diagnostics {}
 
-/// Collects what is wrong while reading goes on.
+/// Collects errors while reading goes on.
 #[derive(Debug)]
 pub(super) struct DiagnosticSink {
     source: Arc<SourceText>,
@@ -164,37 +173,44 @@ pub(super) struct DiagnosticSink {
 }
 
 impl DiagnosticSink {
-    /// Nothing wrong yet.
+    /// A sink without errors.
     pub fn new(source: Arc<SourceText>) -> Self {
         Self { source, list: Vec::new(), omitted: 0 }
     }
 
     /// The text that is read.
-    pub fn source(&self) -> &SourceText {
+    pub fn source(&self) -> &Arc<SourceText> {
         &self.source
     }
 
-    /// Whether more errors are only counted, so that no thought need be given to their wording.
+    /// Whether more errors are only counted.
     pub fn is_full(&self) -> bool {
         self.list.len() >= MAX_ERRORS
     }
 
-    /// Notes one error.
-    pub fn error(&mut self, span: Range<usize>, message: impl Into<String>, help: Option<String>) {
+    /// Notes an error.
+    pub fn error(
+        &mut self,
+        span: Range<usize>,
+        cause: impl Into<Box<dyn Error + Send + Sync>>,
+        help: impl Into<String>,
+    ) {
+        self.add(Diagnostic::new(&self.source, span, cause).with_help(help));
+    }
+
+    /// Adds an error, unless it is there already: a style is read once for each table that takes its keys.
+    pub fn add(&mut self, error: Diagnostic) {
         if self.is_full() {
             self.omitted += 1;
-            return;
-        }
-        let error = Diagnostic { help, ..Diagnostic::new(&self.source, span, message) };
-        // A style is read once for each table that takes its keys.
-        if !self.list.contains(&error) {
+        } else if !self.list.iter().any(|other| other.is_same(&error)) {
             self.list.push(error);
         }
     }
 
-    /// Everything noted, in the order of the file; `None` where there was nothing.
-    pub fn into_diagnostics(self) -> Option<Diagnostics> {
-        Diagnostics::with_omitted(self.list, self.omitted)
+    /// The errors in the order of the file; `None` where there are none.
+    pub fn into_diagnostics(mut self) -> Option<Diagnostics> {
+        self.list.sort_by_key(|diagnostic| diagnostic.span.start);
+        (!self.list.is_empty()).then_some(Diagnostics { list: self.list, omitted: self.omitted })
     }
 }
 
@@ -202,34 +218,75 @@ impl DiagnosticSink {
 mod tests {
     use super::*;
 
+    fn shown(text: &str, span: Range<usize>) -> String {
+        Diagnostic::new(&SourceText::new("a", text), span, "m").to_string()
+    }
+
     #[test]
     fn a_diagnostic_reads_as_place_line_carets_and_help() {
         let source = SourceText::new("hill.toml", "[[road]]\nwidht = 4\n");
-        let shown = Diagnostic::new(&source, 9..14, "unknown key `widht`")
-            .with_label("here")
-            .with_help("did you mean `width`?");
-        let expected = "hill.toml:2:1: error: unknown key `widht`\n  |\n2 | widht = 4\n  | ^^^^^ here\n  = help: did you mean `width`?";
+        let shown = Diagnostic::new(&source, 9..14, "unknown key `widht`").with_help("did you mean `width`?");
+        let expected = "hill.toml:2:1: error: unknown key `widht`\n  |\n2 | widht = 4\n  | ^^^^^\n  |\n  = help: did you mean `width`?";
         assert_eq!(shown.to_string(), expected);
     }
 
     #[test]
-    fn what_a_message_quotes_cannot_steer_the_terminal() {
-        let source = SourceText::new("a\u{1b}", "x\u{1b}[2J");
-        let shown = Diagnostic::new(&source, 0..1, "m\u{1b}").with_help("h\n\u{202e}").to_string();
-        assert!(!shown.contains(['\u{1b}', '\u{202e}']) && shown.lines().count() == 5, "{shown}");
+    fn a_diagnostic_keeps_its_cause_and_states_each_cause_once() {
+        #[derive(Debug, thiserror::Error)]
+        #[error("it cannot be read")]
+        struct Unreadable(#[source] std::fmt::Error);
+        let source = SourceText::new("a", "x");
+        let error = Diagnostic::new(&source, 0..1, Unreadable(std::fmt::Error));
+        assert!(error.source().is_some_and(|cause| cause.is::<Unreadable>()));
+        assert_eq!(error.message(), format!("it cannot be read: {}", std::fmt::Error));
     }
 
     #[test]
-    fn a_span_past_the_end_is_shown_at_the_end() {
-        let source = SourceText::new("a", "x = 1\n");
-        assert!(Diagnostic::new(&source, 90..99, "m").to_string().starts_with("a:2:1: error: m"));
+    fn what_a_message_quotes_cannot_steer_the_terminal() {
+        let source = SourceText::new("a\u{1b}", "x\u{1b}[2J\u{9b}\u{202e}");
+        let shown = Diagnostic::new(&source, 0..1, "m\u{1b}").with_help("h\n\u{202e}").to_string();
+        assert!(!shown.contains(['\u{1b}', '\u{9b}', '\u{202e}']), "{shown}");
+        assert_eq!(shown.lines().count(), 6, "{shown}");
+    }
+
+    #[test]
+    fn carets_stand_under_their_characters_whatever_their_width() {
+        let under = |line: &str, word: &str| {
+            let start = line.find(word).expect("the word is in the line");
+            shown(line, start..start + word.len()).lines().last().expect("carets").to_owned()
+        };
+        assert_eq!(under("width = 3", "3"), "  |         ^");
+        assert_eq!(under("\twidth = 3", "width"), "  |     ^^^^^");
+        assert_eq!(under("名前 = 坏", "坏"), "  |        ^^");
+    }
+
+    #[test]
+    fn an_empty_span_gets_one_caret_where_it_is() {
+        for (text, span, carets) in [
+            ("a =", 3..3, "  |    ^"),
+            ("[terrain]", 0..0, "  | ^"),
+            ("", 0..0, "  | ^"),
+            ("a = 1", 9..12, "  |      ^"),
+        ] {
+            assert_eq!(shown(text, span).lines().last(), Some(carets), "{text}");
+        }
+        assert!(shown("x = 1\n", 90..99).starts_with("a:2:1: error: m"));
+    }
+
+    #[test]
+    fn long_lines_are_cut_around_the_span() {
+        let line = format!("{}BAD{}", "x".repeat(500), "y".repeat(500));
+        let shown = shown(&line, 500..503);
+        let [.., line, carets] = shown.lines().collect::<Vec<_>>()[..] else { panic!("{shown}") };
+        assert!(line.chars().count() <= WIDTH && carets.chars().count() <= WIDTH, "{shown}");
+        assert_eq!(line.find("BAD"), carets.find("^^^"), "{shown}");
     }
 
     #[test]
     fn errors_beyond_the_limit_are_counted() {
         let mut report = DiagnosticSink::new(SourceText::new("a", "x"));
         for number in 0..MAX_ERRORS + 3 {
-            report.error(0..1, format!("m{number}"), None);
+            report.error(0..1, format!("m{number}"), "");
         }
         let all = report.into_diagnostics().expect("errors");
         assert_eq!((all.as_slice().len(), all.omitted()), (MAX_ERRORS, 3));

@@ -1,17 +1,8 @@
-//! The scene file's tables, one struct each: the reference of what a scene file may say. The tables of features stand in
-//! [`crate::description::features`].
+//! The scene file's tables, but for those of features ([`crate::description::features`]).
 //!
-//! A scene file is TOML in UTF-8. Lengths and heights are meters, angles degrees, compass directions
-//! clockwise from north, coordinates `[easting, northing]` or `[longitude, latitude]`, and file names
-//! relative to the file they stand in, unless a key says otherwise. Keys that are not listed here are errors. Every
-//! number is finite; the range of each is stated, with `(` where the end itself is not allowed.
-//!
-//! Three more keys say how a scene file is put together: `include`, at the top, names files whose tables come before
-//! its own ([`crate::description::include`]); `[styles.NAME]` holds keys that features share, and `style = "NAME"` in
-//! a feature's table takes them ([`crate::description::features`]).
-//!
-//! The documentation of each field begins with its key and ends with its default: editors are shown just that
-//! ([`crate::description::schema`]).
+//! A scene file is TOML in UTF-8. Lengths and heights are meters, angles degrees, compass directions clockwise from north,
+//! coordinates `[easting, northing]` or `[longitude, latitude]`, and file names relative to the file that they stand in,
+//! unless a key says otherwise. Unknown keys are errors. Every number is finite.
 //!
 //! ```toml
 //! title = "The hill"
@@ -36,247 +27,235 @@
 //! look_at = [500000, 4650000]
 //! ```
 //!
-//! The structs keep optional values optional: defaults are stated here and applied where the scene is built,
-//! so that what the user wrote and what was assumed can be told apart. Values that may turn out wrong only
-//! then (a file that is not there, a point off the terrain) are [`Spanned`]; [`Document::error`] makes a
-//! message that points at one.
+//! The page `scenes/README.md` lists all keys. Values carry their defaults. A value that may turn out wrong later (a file
+//! that is missing, a point off the terrain) is [`Stated`]; [`Document::error`] makes a message that points at it.
 
+use std::collections::BTreeMap;
+use std::error::Error;
 use std::ops::Range;
 use std::sync::Arc;
 
-use toml::Spanned;
-
+use crate::description::bounds::Bounds::{self, Above, Within};
+use crate::description::color::{Color, RampChoice};
+use crate::description::declaration::{KeyDeclaration, Presence};
 use crate::description::diagnostic::Diagnostic;
 use crate::description::features::{
     AreaTable, BridgeTable, BuildingTable, FenceTable, LakeTable, ModelPlacement, RiverTable, RoadTable,
     ScatterTable,
 };
+use crate::description::key;
+use crate::description::reader::TableReader;
 use crate::description::source_text::SourceText;
-use crate::description::words::{HeightEncodingWord, LabelKind, RampName};
+use crate::description::stated::Stated;
+use crate::description::table::Table;
+use crate::description::words::{HeightEncodingWord, LabelKind};
+use crate::geom::crs::Crs;
 
-/// A whole scene file.
-#[derive(Clone, Debug)]
-pub struct Document {
-    /// The text it was read from; what messages point into.
-    pub source: Arc<SourceText>,
-    /// `title`: the picture's title. Default: none.
-    pub title: Option<String>,
-    /// `subtitle`: a second line under the title. Default: none.
-    pub subtitle: Option<String>,
-    /// `crs`: the scene's coordinate system, `EPSG:n` or a proj string, in meters. Default: the DEM's own, or
-    /// the UTM zone of its center where it is in degrees.
-    pub crs: Option<Spanned<String>>,
-    /// `points_crs`: the coordinate system that inline points are written in, unless a feature says
-    /// otherwise. Default: the scene's.
-    pub points_crs: Option<Spanned<String>>,
-    /// `[terrain]`, needed: the ground.
-    pub terrain: TerrainTable,
-    /// `[style]`: how the ground looks.
-    pub style: StyleTable,
-    /// `[[road]]`: in drawing order; at most 10 000, as of every repeated table.
-    pub roads: Vec<RoadTable>,
-    /// `[[bridge]]`: bridges that belong to no road of the scene.
-    pub bridges: Vec<BridgeTable>,
-    /// `[[river]]`: in drawing order.
-    pub rivers: Vec<RiverTable>,
-    /// `[[lake]]`: still water, level and cut out of the ground or filled up to it.
-    pub lakes: Vec<LakeTable>,
-    /// `[[area]]`: what covers the ground, in drawing order.
-    pub areas: Vec<AreaTable>,
-    /// `[[building]]`: footprints raised to a height.
-    pub buildings: Vec<BuildingTable>,
-    /// `[[fence]]`: what stands or runs along a line.
-    pub fences: Vec<FenceTable>,
-    /// `[[model]]`: what stands on the ground.
-    pub models: Vec<ModelPlacement>,
-    /// `[[scatter]]`: models strewn over areas.
-    pub scatters: Vec<ScatterTable>,
-    /// `[[label]]`: names and heights on the picture.
-    pub labels: Vec<LabelTable>,
-    /// `[[camera]]`: views; the first is the default. Without any, one is made that sees the
-    /// whole ground in pictures of 4:3 and wider.
-    pub cameras: Vec<CameraTable>,
-    /// `[furniture]`: title, north arrow, scale bar and legend.
-    pub furniture: FurnitureTable,
+/// Compass directions in degrees.
+pub(super) const DIRECTION: Bounds = Within(-360.0, 360.0);
+
+table! {
+    /// A whole scene file.
+    Document {
+        with source: Arc<SourceText> = TableReader::source;
+
+        /// A scene file, or a list of them, whose tables come before this one's; what this one states counts.
+        include: Option<Vec<String>> = key::text_list(), otherwise "none";
+        /// Title of the picture.
+        title: Option<String> = key::text(), otherwise "none";
+        /// Second line under the title.
+        subtitle: Option<String> = key::text(), otherwise "none";
+        /// Coordinate system of the scene, `EPSG:n` or a proj string, in meters.
+        crs: Option<Crs> = key::metric_crs(), otherwise "the DEM's, or the UTM zone of its center where it is in degrees";
+        /// Coordinate system of inline points, unless a table has its own `crs`.
+        points_crs: Option<Crs> = key::crs(), otherwise "the scene's";
+        /// The ground.
+        terrain: TerrainTable = key::table::<TerrainTable>(), required;
+        /// How the ground looks.
+        style: StyleTable = key::table::<StyleTable>(), default {};
+        /// Named sets of keys: a table of features takes those of the style that its key `style` names.
+        styles: Vec<String> = key::styles(), default {};
+        /// Roads, in drawing order.
+        roads as "road": Vec<RoadTable> = key::styled_tables::<RoadTable>(), default [];
+        /// Bridges that belong to no road of the scene.
+        bridges as "bridge": Vec<BridgeTable> = key::styled_tables::<BridgeTable>(), default [];
+        /// Rivers, in drawing order.
+        rivers as "river": Vec<RiverTable> = key::styled_tables::<RiverTable>(), default [];
+        /// Still water: level, and cut out of the ground or filled up to it.
+        lakes as "lake": Vec<LakeTable> = key::styled_tables::<LakeTable>(), default [];
+        /// What covers the ground, in drawing order.
+        areas as "area": Vec<AreaTable> = key::styled_tables::<AreaTable>(), default [];
+        /// Footprints raised to a height.
+        buildings as "building": Vec<BuildingTable> = key::styled_tables::<BuildingTable>(), default [];
+        /// What stands or runs along a line.
+        fences as "fence": Vec<FenceTable> = key::styled_tables::<FenceTable>(), default [];
+        /// A model file, once or many times.
+        models as "model": Vec<ModelPlacement> = key::styled_tables::<ModelPlacement>(), default [];
+        /// Models strewn over areas.
+        scatters as "scatter": Vec<ScatterTable> = key::styled_tables::<ScatterTable>(), default [];
+        /// Names and heights on the picture.
+        labels as "label": Vec<LabelTable> = key::tables::<LabelTable>(), default [];
+        /// Views; the first is the default. Without any, one sees the whole ground in pictures of 4:3 and wider.
+        cameras as "camera": Vec<CameraTable> = key::tables::<CameraTable>(), default [];
+        /// What frames the picture.
+        furniture: FurnitureTable = key::table::<FurnitureTable>(), default {};
+    }
+    check(reader) {
+        check_names(reader, cameras.as_deref().unwrap_or_default());
+    }
 }
 
 impl Document {
-    /// `message` about a value, pointing at its place.
-    pub fn error<T>(&self, value: &Spanned<T>, message: impl Into<String>) -> Diagnostic {
-        self.error_at(value.span(), message)
+    /// The keys outside tables, and the tables with their keys.
+    pub const DECLARATIONS: &'static [KeyDeclaration] = <Self as Table>::KEYS;
+
+    /// `cause`, an error or a sentence, about a value.
+    pub fn error<T>(&self, value: &Stated<T>, cause: impl Into<Box<dyn Error + Send + Sync>>) -> Diagnostic {
+        self.error_at(value.span().unwrap_or_default(), cause)
     }
 
-    /// `message` about the bytes `span` of the scene file.
-    pub fn error_at(&self, span: Range<usize>, message: impl Into<String>) -> Diagnostic {
-        Diagnostic::new(&self.source, span, message)
+    /// `cause`, an error or a sentence, about the bytes `span` of the scene file.
+    pub fn error_at(&self, span: Range<usize>, cause: impl Into<Box<dyn Error + Send + Sync>>) -> Diagnostic {
+        Diagnostic::new(&self.source, span, cause)
     }
 }
 
-/// `[terrain]`: the elevation model.
-#[derive(Clone, Debug)]
-pub struct TerrainTable {
-    /// `dem`, needed: the elevation file, or a list of up to 256 that are tiles of one raster; the first tile with a
-    /// value wins.
-    pub dem: Spanned<Vec<String>>,
-    /// `crs`: the DEM's coordinate system where the file names none or a wrong one. Default: what it names.
-    pub crs: Option<Spanned<String>>,
-    /// `height_scale`: meters per unit of a sample's value, in (0, 10⁶]; needed for gray PNG, 1 by default for RAW,
-    /// not looked at for others.
-    pub height_scale: Option<Spanned<f64>>,
-    /// `height_offset`: height in meters of sample value 0 of a gray PNG or RAW, in [−10⁷, 10⁷]. Default 0.
-    pub height_offset: Option<Spanned<f64>>,
-    /// `height_encoding`: what the colors of a PNG mean, `"terrain-rgb"` or `"terrarium"`; needed for color PNG.
-    pub height_encoding: Option<Spanned<HeightEncodingWord>>,
-    /// `raw`: that the file is RAW and how it is laid out, such as `"1201x1201:i16be"`.
-    pub raw: Option<Spanned<String>>,
-    /// `vertical_datum`: what heights are counted from, such as `"NAVD88"`; printed, never computed with. Default:
-    /// what the file says, if anything.
-    pub vertical_datum: Option<Spanned<String>>,
-    /// `fill_voids`: whether samples without data that others enclose are filled by a membrane. Default: no.
-    pub fill_voids: Option<Spanned<bool>>,
-    /// `cell`: distance in meters between samples of a file without georeference, in (0, 10⁶]; its south-west
-    /// sample then stands at (0, 0).
-    pub cell: Option<Spanned<f64>>,
-    /// `vertical_exaggeration`: how many times heights are stretched when drawn, in (0, 1000]. Default 1.
-    pub vertical_exaggeration: Option<Spanned<f64>>,
-    /// `tolerance_px`: how many pixels the drawn ground may be off, in (0, 1000]. Default 1.
-    pub tolerance_px: Option<Spanned<f64>>,
+table! {
+    /// `[terrain]`: the elevation model.
+    TerrainTable {
+        /// The elevation file, or a list of up to 256 that are tiles of one raster; the first tile with a value wins.
+        dem: Stated<Vec<String>> = key::files(&[]), required;
+        /// Coordinate system of the DEM where the file names none or a wrong one.
+        crs: Option<Crs> = key::crs(), otherwise "what the file names";
+        /// Meters per unit of a sample's value, of gray PNG and RAW files.
+        height_scale: Option<f64> = key::number(Above(0.0, 1e6), "m"), otherwise "1 for RAW; gray PNG needs it";
+        /// Height of sample value 0 of a gray PNG or RAW file.
+        height_offset: f64 = key::number(Bounds::ELEVATION, "m"), default 0;
+        /// How the colors of a PNG encode heights.
+        height_encoding: Option<HeightEncodingWord> = key::word::<HeightEncodingWord>(), otherwise "none; color PNG needs it";
+        /// That the file is RAW, and its layout, such as `1201x1201:i16be`.
+        raw: Option<Stated<String>> = key::filled_text(), otherwise "the file is not RAW";
+        /// What heights are counted from, such as `NAVD88`; printed, never computed with.
+        vertical_datum: Option<String> = key::filled_text(), otherwise "what the file names, if anything";
+        /// Whether samples without data that others enclose are filled by a membrane.
+        fill_voids: bool = key::switch(), default false;
+        /// Distance between samples of a file without georeference; its south-west sample is at (0, 0).
+        cell: Option<f64> = key::number(Above(0.0, 1e6), "m"), otherwise "what the file states";
+        /// Factor by which heights are stretched when they are drawn.
+        vertical_exaggeration: f64 = key::number(Above(0.0, 1000.0), ""), default 1;
+        /// Greatest error of the drawn ground; one pixel is what an eye can just see.
+        tolerance_px: f64 = key::number(Above(0.0, 1000.0), "px"), default 1;
+    }
 }
 
-/// `[style]`: how the ground looks.
-#[derive(Clone, Debug, Default)]
-pub struct StyleTable {
-    /// `ramp`: `"atlas"`, `"desert"`, `"gray"`, or from 2 to 256 stops `[[height, "#rrggbb"], ...]`. Default
-    /// `"atlas"`.
-    pub ramp: Option<Spanned<RampChoice>>,
-    /// `[style.contours]`: contour lines. Default: none.
-    pub contours: Option<ContourTable>,
-    /// `[style.light]`: where the light comes from.
-    pub light: LightTable,
-    /// `haze`: distance in meters at which 63 % of what is seen is haze, in [0, 10⁹]; 0 for clear air.
-    /// Default: eight times the longest side of the terrain, its drawn height included.
-    pub haze: Option<Spanned<f64>>,
+table! {
+    /// `[style]`: how the ground looks.
+    StyleTable {
+        /// Colors by height: the name of a ramp, or from 2 to 256 stops `[[height, "#rrggbb"], ...]`.
+        ramp: Stated<RampChoice> = key::ramp(), default "atlas";
+        /// Contour lines.
+        contours: Option<ContourTable> = key::table::<ContourTable>(), otherwise "no contour lines";
+        /// Where the light comes from.
+        light: LightTable = key::table::<LightTable>(), default {};
+        /// Distance at which 63 % of what is seen is haze; 0 for clear air.
+        haze: Option<f64> = key::number(Within(0.0, 1e9), "m"),
+            otherwise "eight times the longest side of the terrain, its drawn height included";
+    }
 }
 
-/// A ramp by name or by its stops.
-#[derive(Clone, Debug, PartialEq)]
-pub enum RampChoice {
-    /// A built-in ramp, stretched from the lowest to the highest ground.
-    Named(RampName),
-    /// At least two heights in meters, growing, and their colors.
-    Stops(Vec<(f64, Color)>),
+table! {
+    /// `[style.contours]`.
+    ContourTable {
+        /// Height between lines.
+        interval: f64 = key::number(Within(0.01, 100_000.0), "m"), required;
+        /// One in this many lines is drawn heavier.
+        major_every: u32 = key::integer(1, 1000), default 5;
+        /// Color of the lines.
+        color: Option<Color> = key::color(), otherwise "a translucent brown";
+    }
 }
 
-/// A color as written: sRGB red, green, blue and straight alpha.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Color(pub [u8; 4]);
+table! {
+    /// `[style.light]`.
+    LightTable {
+        /// Direction of the sun: north-west by default, since hills lit from below right look like holes.
+        azimuth: f64 = key::number(DIRECTION, "°"), default 315;
+        /// Height of the sun above the horizon.
+        altitude: f64 = key::number(Above(0.0, 90.0), "°"), default 45;
+    }
+}
 
-impl Color {
-    /// The color that `#rgb`, `#rrggbb` or `#rrggbbaa` names; without alpha it is opaque.
-    pub fn parse(text: &str) -> Option<Self> {
-        let digits = text.strip_prefix('#')?.chars().map(|digit| digit.to_digit(16));
-        let digits: Vec<u8> =
-            digits.take(9).map(|digit| digit.map(|digit| digit as u8)).collect::<Option<_>>()?;
-        match digits[..] {
-            [r, g, b] => Some(Self([r * 17, g * 17, b * 17, 255])),
-            [_, _, _, _, _, _] | [_, _, _, _, _, _, _, _] => {
-                let mut channels = [255; 4];
-                for (channel, pair) in channels.iter_mut().zip(digits.chunks(2)) {
-                    *channel = pair[0] * 16 + pair[1];
-                }
-                Some(Self(channels))
-            }
-            _ => None,
+table! {
+    /// `[[label]]`.
+    LabelTable {
+        /// The text; `{height}` becomes the ground's elevation in whole meters.
+        text: String = key::filled_text(), required;
+        /// The place that it names.
+        at: Stated<[f64; 2]> = key::point(), required;
+        /// Coordinate system of `at`.
+        crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`";
+        /// Height above the ground at which the leader line starts.
+        height: f64 = key::number(Within(0.0, 1e7), "m"), default 0;
+        /// What the label names.
+        kind: LabelKind = key::word::<LabelKind>(), default "place";
+    }
+}
+
+table! {
+    /// `[[camera]]`.
+    CameraTable {
+        /// Name for `--camera`; no two cameras share one.
+        name: Stated<String> = key::filled_text(), required;
+        /// Place of the eye.
+        eye: Stated<[f64; 2]> = key::point(), required;
+        /// Height of the eye above the ground.
+        eye_height: f64 = key::number(Within(0.0, 1e7), "m"), default 2;
+        /// Elevation of the eye, instead of `eye_height`.
+        eye_elevation: Option<f64> = key::number(Bounds::ELEVATION, "m"), otherwise "by `eye_height`";
+        /// Place on the ground that the camera looks at.
+        look_at: Stated<[f64; 2]> = key::point(), required;
+        /// Height above that place that it looks at.
+        look_at_height: f64 = key::number(Bounds::ELEVATION, "m"), default 0;
+        /// Coordinate system of `eye` and `look_at`.
+        crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`";
+        /// Vertical field of view; 40 is about that of a normal lens held upright.
+        field_of_view: f64 = key::number(Within(1.0, 170.0), "°"), default 40;
+    }
+    check(reader) {
+        if let (Some(_), Some(span)) = (reader.key_span("eye_height"), reader.value_span("eye_elevation")) {
+            let help = "keep `eye_height` to measure from the ground, or `eye_elevation` to measure from the sea";
+            reader.error(span, "the eye has both a height and an elevation", help);
         }
     }
 }
 
-/// `[style.contours]`.
-#[derive(Clone, Debug)]
-pub struct ContourTable {
-    /// `interval`, needed: height in meters between lines, in [0.01, 10⁵].
-    pub interval: Spanned<f64>,
-    /// `major_every`: every how many lines one is drawn heavier, from 1 to 1000. Default 5.
-    pub major_every: Option<Spanned<u32>>,
-    /// `color`: `#rgb`, `#rrggbb` or `#rrggbbaa`. Default: a translucent brown.
-    pub color: Option<Spanned<Color>>,
-}
-
-/// `[style.light]`.
-#[derive(Clone, Debug, Default)]
-pub struct LightTable {
-    /// `azimuth`: where the sun stands, in [−360, 360]. Default 315 (north-west).
-    pub azimuth: Option<Spanned<f64>>,
-    /// `altitude`: how high it stands above the horizon, in (0, 90]. Default 45.
-    pub altitude: Option<Spanned<f64>>,
-}
-
-/// `[[label]]`.
-#[derive(Clone, Debug)]
-pub struct LabelTable {
-    /// `text`, needed: what it says; `{height}` becomes the ground's elevation in whole meters.
-    pub text: Spanned<String>,
-    /// `at`, needed: the place it names.
-    pub at: Spanned<[f64; 2]>,
-    /// `crs`: the coordinate system of `at`. Default: the scene's `points_crs`.
-    pub crs: Option<Spanned<String>>,
-    /// `height`: how far above the ground the leader line starts, in [0, 10⁷]. Default 0.
-    pub height: Option<Spanned<f64>>,
-    /// `kind`: `"summit"`, `"place"`, `"water"` or `"point"`. Default `"place"`.
-    pub kind: Option<Spanned<LabelKind>>,
-}
-
-/// `[[camera]]`.
-#[derive(Clone, Debug)]
-pub struct CameraTable {
-    /// `name`, needed: how `--camera` calls it; no two alike.
-    pub name: Spanned<String>,
-    /// `eye`, needed: where the eye is.
-    pub eye: Spanned<[f64; 2]>,
-    /// `eye_height`: how high the eye is above the ground, in [0, 10⁷]. Default 2.
-    pub eye_height: Option<Spanned<f64>>,
-    /// `eye_elevation`, instead of `eye_height`: the eye's elevation, in [−10⁷, 10⁷].
-    pub eye_elevation: Option<Spanned<f64>>,
-    /// `look_at`, needed: what it looks at, on the ground.
-    pub look_at: Spanned<[f64; 2]>,
-    /// `look_at_height`: how high above the ground it looks, in [−10⁷, 10⁷]. Default 0.
-    pub look_at_height: Option<Spanned<f64>>,
-    /// `crs`: the coordinate system of `eye` and `look_at`. Default: the scene's `points_crs`.
-    pub crs: Option<Spanned<String>>,
-    /// `field_of_view`: vertical, in [1, 170]. Default 40.
-    pub field_of_view: Option<Spanned<f64>>,
-}
-
-/// `[furniture]`: what frames the picture; `true` or `false`, all shown unless turned off.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FurnitureTable {
-    /// `title`: title and subtitle.
-    pub title: bool,
-    /// `north_arrow`: the north arrow.
-    pub north_arrow: bool,
-    /// `scale_bar`: the scale bar.
-    pub scale_bar: bool,
-    /// `legend`: the elevation legend.
-    pub legend: bool,
-}
-
-impl Default for FurnitureTable {
-    fn default() -> Self {
-        Self { title: true, north_arrow: true, scale_bar: true, legend: true }
+table! {
+    /// `[furniture]`: what frames the picture.
+    #[derive(Copy, PartialEq, Eq)]
+    FurnitureTable {
+        /// Whether the picture has its title and subtitle.
+        title: bool = key::switch(), default true;
+        /// Whether the picture has a north arrow.
+        north_arrow: bool = key::switch(), default true;
+        /// Whether the picture has a scale bar.
+        scale_bar: bool = key::switch(), default true;
+        /// Whether the picture has the elevation legend.
+        legend: bool = key::switch(), default true;
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn colors_have_three_six_or_eight_digits() {
-        assert_eq!(Color::parse("#fa0"), Some(Color([255, 170, 0, 255])));
-        assert_eq!(Color::parse("#102030"), Some(Color([16, 32, 48, 255])));
-        assert_eq!(Color::parse("#10203040"), Some(Color([16, 32, 48, 64])));
-        for bad in ["", "#", "102030", "#1020", "#12345", "#ggg", "#1020304050", "#１２３"] {
-            assert_eq!(Color::parse(bad), None, "{bad}");
+/// Notes cameras that have the name of one before them.
+fn check_names(reader: &mut TableReader<'_, '_>, cameras: &[CameraTable]) {
+    let (source, mut seen) = (reader.source(), BTreeMap::new());
+    for camera in cameras {
+        let span = camera.name.span().unwrap_or_default();
+        let first = *seen.entry(camera.name.as_str()).or_insert(span.start);
+        if first == span.start {
+            continue;
         }
+        let (line, file) = (source.line_column(first).line, source.name_at(first));
+        let other = if file == source.name_at(span.start) { String::new() } else { format!(" of {file}") };
+        let message = format!("the camera on line {line}{other} already has this name");
+        reader.error(span, message, "give each camera a name of its own");
     }
 }

@@ -1,317 +1,384 @@
-//! The tables of features: what lies and stands on the ground, one struct each.
+//! The scene file's tables of features: what lies and stands on the ground.
 //!
-//! A number that may differ from feature to feature is a [`Quantity`], a word that may a [`ComputedWord`]: written as such, or
-//! as an expression over the feature's properties ([`crate::description::expression`]). Where the properties give no
-//! value within its range the default is taken, and the scene's notes say how often.
+//! A number or word that may differ from feature to feature is stated as such or as an expression over the feature's
+//! properties ([`crate::description::expression`]). Where the properties give no value within its range the default is
+//! taken, and the scene's notes say how often.
 //!
-//! Every table of features may have the key `style`: the keys of that `[styles.NAME]` count as its own where it does not
-//! state them itself. A style is judged where it is used; of two keys that exclude each other the table's own counts.
+//! Every table of features may have the key `style` ([`crate::description::styles`]).
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use toml::Spanned;
-
-use crate::description::document::Color;
-use crate::description::expression::{ComputedWord, Expression, Quantity};
+use crate::description::bounds::Bounds::{self, Above, Within};
+use crate::description::color::Color;
+use crate::description::declaration::{KeyDeclaration, Presence};
+use crate::description::document::DIRECTION;
+use crate::description::expression::Expression;
+use crate::description::feature_value::{DefaultedValue, FeatureValue};
+use crate::description::key;
+use crate::description::reader::TableReader;
+use crate::description::selection::Selection;
+use crate::description::stated::Stated;
+use crate::description::table::Table;
 use crate::description::words::{
     Anchor, BaseRule, Border, Clamp, Cover, FenceKind, Footing, Join, LevelRule, Markings, ProfileMode,
     RoadSurface, RoofShape, Water,
 };
+use crate::geom::crs::Crs;
 
-/// Where a feature's coordinates come from: inline `points`, or `file` with an optional filter; exactly one
-/// of the two. These keys stand in the feature's own table.
-#[derive(Clone, Debug, Default)]
-pub struct FeatureSource {
-    /// `points`: inline coordinates, at least two for a line and three for a lake, at most 100 000, each in
-    /// ±10⁹. A lake's last point may repeat its first.
-    pub points: Option<Spanned<Vec<[f64; 2]>>>,
-    /// `file`: a vector file: GeoJSON, shapefile, GeoPackage, FlatGeobuf, GPX, KML or OpenStreetMap.
-    pub file: Option<Spanned<String>>,
-    /// `layer`, only with `file`: which layer of a file that holds several; needed there, unless it holds one.
-    pub layer: Option<Spanned<String>>,
-    /// `where`, only with `file`: only features whose properties match all of it, each by a value or by one
-    /// of a list of up to 256 values; or a text, an expression that must hold. Default: all features.
-    pub filter: Option<Spanned<BTreeMap<String, Match>>>,
-    /// `where`, if it is a text: only features for which it holds.
-    pub condition: Option<Spanned<Expression>>,
-    /// `crs`: the coordinate system of `points`, or of a file that names none or a wrong one. Default: the
-    /// scene's `points_crs`, or what the file names.
-    pub crs: Option<Spanned<String>>,
-}
+/// Widths of roads and rivers, and distances between things.
+const WIDTH: Bounds = Above(0.0, 10_000.0);
+/// Widths of strips beside something, and depths.
+const STRIP: Bounds = Within(0.0, 1000.0);
+/// Sizes of what stands on the ground.
+const SIZE: Bounds = Above(0.0, 1000.0);
+/// Meters out for each meter of height of a batter.
+const BATTER: Bounds = Within(0.0, 20.0);
+/// Angles from level to upright in degrees.
+const SLOPE: Bounds = Within(0.0, 90.0);
+/// Meters per unit of a model.
+const SCALE: Bounds = Above(0.0, 1e6);
+/// Least numbers of points of a source.
+const LINE: usize = 2;
+const RING: usize = 3;
 
-impl FeatureSource {
-    /// The place of the coordinates or of the file's name, for messages.
-    pub fn span(&self) -> Range<usize> {
-        let points = self.points.as_ref().map(Spanned::span);
-        points.or_else(|| self.file.as_ref().map(Spanned::span)).unwrap_or(0..0)
+/// Models that need no file.
+const BUILT_IN: [&str; 4] = ["conifer", "broadleaf", "shrub", "rock"];
+
+table! {
+    /// Where the coordinates of a feature come from: inline `points`, or a `file`. The keys stand in the feature's own table.
+    FeatureSource [const LEAST: usize] {
+        /// Inline coordinates, each in ±10⁹. The last point of a ring may repeat its first.
+        points: Option<Stated<Vec<[f64; 2]>>> = key::points(LEAST), otherwise "by `file`", unless ["file"];
+        /// A vector file: GeoJSON, shapefile, GeoPackage, FlatGeobuf, GPX, KML or OpenStreetMap.
+        file: Option<Stated<String>> = key::file(), otherwise "by `points`", unless ["points"];
+        /// With `file`: the layer of a file that holds several.
+        layer: Option<Stated<String>> = key::filled_text(), otherwise "the file's only layer", unless ["points"];
+        /// With `file`: the features that are taken, by the values of their properties,
+        /// such as `{ highway = ["primary", "trunk"] }`, or by an expression that holds for them.
+        selection as "where": Option<Stated<Selection>> = key::selection(), otherwise "all features", unless ["points"];
+        /// Coordinate system of `points`, or of a file that names none or a wrong one.
+        crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`, or what the file names";
     }
-}
-
-/// What a property must equal.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Match {
-    /// One of several values.
-    AnyOf(Vec<Scalar>),
-    /// One value.
-    Is(Scalar),
-}
-
-impl Match {
-    /// The values of which the property must equal one.
-    pub fn values(&self) -> &[Scalar] {
-        match self {
-            Self::AnyOf(values) => values,
-            Self::Is(value) => std::slice::from_ref(value),
+    check(reader) {
+        reader.exclude("file", "points");
+        reader.need_either("points", "file", "add `points = [[x, y], ...]` or `file = \"name.geojson\"`");
+        if reader.key_span("file").is_none() && reader.key_span("points").is_some() {
+            reader.without_effect(&["layer", "where"], "on inline `points`", "name a `file`, or remove it");
         }
     }
 }
 
-/// A property's value.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Scalar {
-    /// True or false.
-    Bool(bool),
-    /// A number, whole or not.
-    Number(f64),
-    /// Text.
-    Text(String),
+impl FeatureSource {
+    /// The bytes of the scene file that state the coordinates or the file's name, for messages.
+    pub fn span(&self) -> Range<usize> {
+        let points = self.points.as_ref().and_then(Stated::span);
+        points.or_else(|| self.file.as_ref().and_then(Stated::span)).unwrap_or_default()
+    }
 }
 
-/// `[[road]]`.
-#[derive(Clone, Debug, Default)]
-pub struct RoadTable {
-    /// `name`: for messages and the feature list. Default: none.
-    pub name: Option<String>,
-    /// `points`, `file`, `layer`, `where` and `crs`: the centerline.
-    pub source: FeatureSource,
-    /// `width`: of the carriageway, in (0, 10 000]. Default 6.
-    pub width: Option<Spanned<Quantity>>,
-    /// `widths`, only with `points` and instead of `width`: the carriageway's width at each point, in (0, 10 000].
-    pub widths: Option<Spanned<Vec<f64>>>,
-    /// `surface`: `"asphalt"`, `"gravel"` or `"track"`. Default `"asphalt"`.
-    pub surface: Option<Spanned<ComputedWord<RoadSurface>>>,
-    /// `shoulder`: width of the unpaved strip on either side, in [0, 1000]. Default 0.
-    pub shoulder: Option<Spanned<Quantity>>,
-    /// `markings`: the lines on asphalt, `"dashed"` (edge lines and a dashed center line), `"solid"` (a solid center
-    /// line), `"edges"` or `"none"`. Default `"dashed"`.
-    pub markings: Option<Spanned<ComputedWord<Markings>>>,
-    /// `join`: how segments meet, `"miter"`, `"bevel"` or `"round"`. Default `"miter"`.
-    pub join: Option<Spanned<Join>>,
-    /// `miter_limit`: how long a miter may be in half widths before it is cut off, in [1, 10]. Default 2.
-    pub miter_limit: Option<Spanned<f64>>,
-    /// `profile`: `"drape"`, the road follows the ground, or `"conform"`, the ground follows the road. Default
-    /// `"drape"`.
-    pub profile: Option<Spanned<ProfileMode>>,
-    /// `max_grade`, only where it conforms: the steepest rise along it in percent, in (0, 100]. Default 8.
-    pub max_grade: Option<Spanned<Quantity>>,
-    /// `crown`, only where it conforms: the fall across from the centerline to either side in percent, in [0, 20].
-    /// Default 0: flat across.
-    pub crown: Option<Spanned<f64>>,
-    /// `fill_slope`, only where it conforms: meters out for each meter down on an embankment's batter, in [0, 20].
-    /// Default 1.5.
-    pub fill_slope: Option<Spanned<f64>>,
-    /// `cut_slope`, only where it conforms: meters out for each meter up on a cutting's batter, in [0, 20]. Default 1.
-    pub cut_slope: Option<Spanned<f64>>,
-    /// `max_fill`, only where it conforms: the height in meters of the highest embankment, in (0, 10 000]; a bridge
-    /// stands where more is needed. Default: any.
-    pub max_fill: Option<Spanned<f64>>,
-    /// `max_cut`, only where it conforms: the depth in meters of the deepest cutting, in (0, 10 000]; a tunnel runs
-    /// where more is needed. Default: any.
-    pub max_cut: Option<Spanned<f64>>,
-    /// `bridge`: whether a line is a bridge. Default: whether its property `bridge` is there and not `no`.
-    pub bridge: Option<Spanned<Expression>>,
-    /// `tunnel`: whether a line is a tunnel. Default: whether its property `tunnel` is there and not `no`.
-    pub tunnel: Option<Spanned<Expression>>,
-    /// `level`: what passes over what, in [−20, 20]; roads of different levels do not meet. Default: the property
-    /// `layer`, else 1 for a bridge, −1 for a tunnel and 0 for the rest.
-    pub level: Option<Spanned<Quantity>>,
+table! {
+    /// `[[road]]`.
+    RoadTable {
+        /// Name for messages and the feature list.
+        name: Option<String> = key::text(), otherwise "the property `name`";
+        /// The centerline.
+        source: FeatureSource = key::source::<LINE>(), inline;
+        /// Width of the carriageway.
+        width: DefaultedValue<f64> = key::feature_number(WIDTH, "m"), default 6, unless ["widths"];
+        /// With `points`: the width of the carriageway at each point; counts before `width`.
+        widths: Option<Stated<Vec<f64>>> = key::numbers(WIDTH, "m"), otherwise "by `width`",
+            unless ["points", "file", "width"];
+        /// The paving.
+        surface: DefaultedValue<RoadSurface> = key::feature_word::<RoadSurface>(), default "asphalt";
+        /// Width of the unpaved strip on either side.
+        shoulder: DefaultedValue<f64> = key::feature_number(STRIP, "m"), default 0;
+        /// The lines on asphalt.
+        markings: DefaultedValue<Markings> = key::feature_word::<Markings>(), default "dashed";
+        /// How segments meet.
+        join: Join = key::word::<Join>(), default "miter";
+        /// Length of a miter in half widths above which it is cut off.
+        miter_limit: f64 = key::number(Within(1.0, 10.0), ""), default 2;
+        /// Which of road and ground follows the other.
+        profile: ProfileMode = key::word::<ProfileMode>(), default "drape";
+        /// Of a conforming road: the steepest rise along it; 8 is what country roads in hills are built to.
+        max_grade: DefaultedValue<f64> = key::feature_number(Above(0.0, 100.0), "%"), default 8;
+        /// Of a conforming road: the fall across from the centerline to either side.
+        crown: f64 = key::number(Within(0.0, 20.0), "%"), default 0;
+        /// Of a conforming road: meters out for each meter down on an embankment's batter; loose earth lies at 1 : 1.5.
+        fill_slope: f64 = key::number(BATTER, "m/m"), default 1.5;
+        /// Of a conforming road: meters out for each meter up on a cutting's batter; grown ground is steeper than filled.
+        cut_slope: f64 = key::number(BATTER, "m/m"), default 1;
+        /// Of a conforming road: the height of the highest embankment; a bridge stands where more is needed.
+        max_fill: Option<f64> = key::number(WIDTH, "m"), otherwise "any height";
+        /// Of a conforming road: the depth of the deepest cutting; a tunnel runs where more is needed.
+        max_cut: Option<f64> = key::number(WIDTH, "m"), otherwise "any depth";
+        /// Whether a line is a bridge.
+        bridge: Option<Expression> = key::expression(), otherwise "whether its property `bridge` is there and not `no`";
+        /// Whether a line is a tunnel.
+        tunnel: Option<Expression> = key::expression(), otherwise "whether its property `tunnel` is there and not `no`";
+        /// What passes over what; roads of different levels do not meet.
+        level: Option<FeatureValue<f64>> = key::feature_number(Within(-20.0, 20.0), ""),
+            otherwise "the property `layer`, else 1 for a bridge, -1 for a tunnel and 0 for the rest";
+    }
+    check(reader) {
+        check_widths(reader, source.as_ref(), widths.as_ref().and_then(Option::as_ref));
+        if profile == Some(ProfileMode::Drape) {
+            let keys = ["max_grade", "crown", "fill_slope", "cut_slope", "max_fill", "max_cut"];
+            reader.without_effect(&keys, "on a draped road", "set `profile = \"conform\"`, or remove it");
+        }
+    }
 }
 
-/// `[[bridge]]`: a bridge along a line.
-#[derive(Clone, Debug, Default)]
-pub struct BridgeTable {
-    /// `name`: for messages and the feature list. Default: none.
-    pub name: Option<String>,
-    /// `points`, `file`, `layer`, `where` and `crs`: the centerline, from abutment to abutment.
-    pub source: FeatureSource,
-    /// `width`: between the parapets, in (0, 10 000]. Default 8.
-    pub width: Option<Spanned<Quantity>>,
-    /// `surface`: of the deck. Default `"asphalt"`.
-    pub surface: Option<Spanned<ComputedWord<RoadSurface>>>,
-    /// `deck`: the deck's elevation, in [−10⁷, 10⁷]. Default: straight from the ground at one end to that at the other.
-    pub deck: Option<Spanned<Quantity>>,
-    /// `pier_spacing`: the widest span between piers, in [1, 10 000]. Default 25.
-    pub pier_spacing: Option<Spanned<f64>>,
+table! {
+    /// `[[bridge]]`: a bridge along a line.
+    BridgeTable {
+        /// Name for messages and the feature list.
+        name: Option<String> = key::text(), otherwise "the property `name`";
+        /// The centerline, from abutment to abutment.
+        source: FeatureSource = key::source::<LINE>(), inline;
+        /// Width between the parapets: a road with its footways.
+        width: DefaultedValue<f64> = key::feature_number(WIDTH, "m"), default 8;
+        /// The paving of the deck.
+        surface: DefaultedValue<RoadSurface> = key::feature_word::<RoadSurface>(), default "asphalt";
+        /// Elevation of the deck.
+        deck: Option<FeatureValue<f64>> = key::feature_number(Bounds::ELEVATION, "m"),
+            otherwise "straight from the ground at one end to that at the other";
+        /// Widest span between piers; 25 is what a beam of plain concrete spans. Without it high bridges have wider spans.
+        pier_spacing: Stated<f64> = key::number(Within(1.0, 10_000.0), "m"), default 25;
+    }
 }
 
-/// `[[river]]`.
-#[derive(Clone, Debug, Default)]
-pub struct RiverTable {
-    /// `name`: for messages and the feature list. Default: none.
-    pub name: Option<String>,
-    /// `points`, `file`, `layer`, `where` and `crs`: the centerline.
-    pub source: FeatureSource,
-    /// `width`: of the water, in (0, 10 000]. Default 8.
-    pub width: Option<Spanned<Quantity>>,
-    /// `mouth_width`: of the water at its lower end, in (0, 10 000]; between the ends the width grows evenly. Default:
-    /// as `width`.
-    pub mouth_width: Option<Spanned<Quantity>>,
-    /// `widths`, only with `points` and instead of `width`: the water's width at each point, in (0, 10 000].
-    pub widths: Option<Spanned<Vec<f64>>>,
-    /// `bank`: width of the bank on either side, in [0, 1000]: a strip beside the water, and the way over which the ground
-    /// comes back to its own height beyond the bed. Default 0.
-    pub bank: Option<Spanned<Quantity>>,
-    /// `water`: `"falls"`, its level never rises downstream and the ground is cut to it, or `"drape"`, it lies on the
-    /// ground as it is. Default `"falls"`.
-    pub water: Option<Spanned<Water>>,
-    /// `max_cut`, only where it falls: how deep in meters the ground may be cut, in (0, 10 000]. Where water that falls
-    /// would need more, the line does not follow the model's valley: the ground there stays as it is, and the report tells
-    /// of it. Default 10.
-    pub max_cut: Option<Spanned<f64>>,
+table! {
+    /// `[[river]]`.
+    RiverTable {
+        /// Name for messages and the feature list.
+        name: Option<String> = key::text(), otherwise "the property `name`";
+        /// The centerline.
+        source: FeatureSource = key::source::<LINE>(), inline;
+        /// Width of the water.
+        width: DefaultedValue<f64> = key::feature_number(WIDTH, "m"), default 8, unless ["widths"];
+        /// Width of the water at its lower end; between the ends the width grows evenly.
+        mouth_width: Option<FeatureValue<f64>> = key::feature_number(WIDTH, "m"), otherwise "as `width`";
+        /// With `points`: the width of the water at each point; counts before `width`.
+        widths: Option<Stated<Vec<f64>>> = key::numbers(WIDTH, "m"), otherwise "by `width`",
+            unless ["points", "file", "width"];
+        /// Width of the bank on either side: a strip beside the water, over which the ground comes back to its own height
+        /// beyond the bed.
+        bank: DefaultedValue<f64> = key::feature_number(STRIP, "m"), default 0;
+        /// Where the water lies.
+        water: Water = key::word::<Water>(), default "falls";
+        /// Of water that falls: the greatest depth that the ground is cut. Where more is needed, the line does not follow
+        /// the valley of the elevation model, the ground stays as it is, and the report lists the place. 10 is the relative
+        /// error that the makers of global elevation models promise (Farr et al. 2007).
+        max_cut: f64 = key::number(WIDTH, "m"), default 10;
+    }
+    check(reader) {
+        check_widths(reader, source.as_ref(), widths.as_ref().and_then(Option::as_ref));
+        reader.exclude("mouth_width", "widths");
+        if water == Some(Water::Drape) {
+            reader.without_effect(&["max_cut"], "on draped water", "set `water = \"falls\"`, or remove it");
+        }
+    }
 }
 
-/// `[[lake]]`.
-#[derive(Clone, Debug, Default)]
-pub struct LakeTable {
-    /// `name`: for messages and the feature list. Default: none.
-    pub name: Option<String>,
-    /// `points`, `file`, `where` and `crs`: the shore.
-    pub source: FeatureSource,
-    /// `level`: the water's elevation, in [−10⁷, 10⁷]. Default: by `level_rule`.
-    pub level: Option<Spanned<Quantity>>,
-    /// `level_rule`, instead of `level`: the level is the `"lowest"`, the `"median"` or the `"mean"` height of the
-    /// ground along the shore. Default `"lowest"`.
-    pub level_rule: Option<Spanned<LevelRule>>,
+/// Notes `widths` that are not one for each inline point.
+fn check_widths(
+    reader: &mut TableReader<'_, '_>,
+    source: Option<&FeatureSource>,
+    widths: Option<&Stated<Vec<f64>>>,
+) {
+    let Some(widths) = widths else { return };
+    let points = source.and_then(|source| source.points.as_ref()).map_or(0, |points| points.len());
+    if widths.len() != points {
+        let message = format!("there are {} `widths` for {points} inline points", widths.len());
+        reader.error(widths.span().unwrap_or_default(), message, "give each inline point one width");
+    }
 }
 
-/// `[[area]]`: what covers the ground.
-#[derive(Clone, Debug, Default)]
-pub struct AreaTable {
-    /// `name`: for messages and the feature list. Default: none.
-    pub name: Option<String>,
-    /// `points`, `file`, `layer`, `where` and `crs`: the outline.
-    pub source: FeatureSource,
-    /// `cover`, needed: what it is covered with, such as `"forest"`; see [`Cover`].
-    pub cover: Option<Spanned<ComputedWord<Cover>>>,
-    /// `color`: multiplied with the texture; its alpha lets the ground through. Default: the cover's own.
-    pub color: Option<Spanned<Color>>,
-    /// `border`: the line along its outline, `"none"`, `"solid"` or `"dashed"`. Default: `"solid"` where it is
-    /// restricted, else `"none"`.
-    pub border: Option<Spanned<Border>>,
-    /// `border_width`: of that line, in (0, 1000]; hatching grows with it. Default 4.
-    pub border_width: Option<Spanned<f64>>,
+table! {
+    /// `[[lake]]`.
+    LakeTable {
+        /// Name for messages and the feature list.
+        name: Option<String> = key::text(), otherwise "the property `name`";
+        /// The shore.
+        source: FeatureSource = key::source::<RING>(), inline;
+        /// Elevation of the water.
+        level: Option<FeatureValue<f64>> = key::feature_number(Bounds::ELEVATION, "m"), otherwise "by `level_rule`",
+            unless ["level_rule"];
+        /// Instead of `level`: which height of the ground along the shore is the level.
+        level_rule: LevelRule = key::word::<LevelRule>(), default "lowest", unless ["level"];
+    }
+    check(reader) {
+        if matches!(level, Some(Some(_))) {
+            reader.exclude("level_rule", "level");
+        }
+    }
 }
 
-/// `[[building]]`: footprints raised to a height.
-#[derive(Clone, Debug, Default)]
-pub struct BuildingTable {
-    /// `name`: for messages and the feature list. Default: none.
-    pub name: Option<String>,
-    /// `points`, `file`, `layer`, `where` and `crs`: the footprints.
-    pub source: FeatureSource,
-    /// `height`: from its base to the ridge, in (0, 1000]. Default: the property `height`, else three meters for each
-    /// of `building:levels` or `levels`, else 6.
-    pub height: Option<Spanned<Quantity>>,
-    /// `base`: which ground under the footprint it stands on, `"lowest"`, `"mean"`, `"highest"`, or `"pad"`: the ground
-    /// is leveled to its mean. Default `"lowest"`.
-    pub base: Option<Spanned<BaseRule>>,
-    /// `roof`: `"flat"`, `"gabled"`, `"hipped"` or `"pyramidal"`. Default: the property `roof:shape`, else `"flat"`.
-    pub roof: Option<Spanned<ComputedWord<RoofShape>>>,
-    /// `roof_height`: how much of the height is roof, in [0, 1000]. Default: the property `roof:height`, else by a pitch
-    /// of 30 degrees.
-    pub roof_height: Option<Spanned<Quantity>>,
-    /// `wall_color`. Default: the property `building:colour`, else one of a few plasters, chosen by where it stands.
-    pub wall_color: Option<Spanned<Color>>,
-    /// `roof_color`. Default: the property `roof:colour`, else one of a few, chosen by where it stands.
-    pub roof_color: Option<Spanned<Color>>,
+table! {
+    /// `[[area]]`: what covers the ground.
+    AreaTable {
+        /// Name for messages and the feature list.
+        name: Option<String> = key::text(), otherwise "the property `name`";
+        /// The outline.
+        source: FeatureSource = key::source::<RING>(), inline;
+        /// What covers the area.
+        cover: FeatureValue<Cover> = key::feature_word::<Cover>(), required;
+        /// Color that multiplies the texture; its alpha lets the ground through.
+        color: Option<Color> = key::color(), otherwise "the cover's own";
+        /// The line along the outline.
+        border: Option<Border> = key::word::<Border>(), otherwise "`solid` where the area is restricted, else `none`";
+        /// Width of that line; hatching grows with it.
+        border_width: f64 = key::number(SIZE, "m"), default 4;
+    }
 }
 
-/// `[[fence]]`: what stands or runs along a line.
-#[derive(Clone, Debug, Default)]
-pub struct FenceTable {
-    /// `name`: for messages and the feature list. Default: none.
-    pub name: Option<String>,
-    /// `points`, `file`, `layer`, `where` and `crs`: the line.
-    pub source: FeatureSource,
-    /// `kind`: `"fence"`, `"wall"`, `"hedge"`, `"power-line"`, `"trench"`, `"obstacles"` or `"boundary"`. Default:
-    /// by the properties `barrier`, `power` and `boundary` as OpenStreetMap has them, else `"fence"`.
-    pub kind: Option<Spanned<ComputedWord<FenceKind>>>,
-    /// `height`: above the ground, or a trench's depth, in (0, 1000]. Default: the property `height`, else 1.2 for a
-    /// fence, 2 for a wall, 1.8 for a hedge, 30 for a power line, 1.5 for a trench, 1.2 for obstacles.
-    pub height: Option<Spanned<Quantity>>,
-    /// `width`: of posts, across a wall, a hedge, a trench or a boundary's dashes, between the outermost wires, or of a
-    /// whole belt of obstacles, in (0, 1000]. Default: 0.12 for a fence, 0.4 for a wall, 1.2 for a hedge, 10 for a power
-    /// line, 1.5 for a trench, 9 for obstacles, 2 for a boundary.
-    pub width: Option<Spanned<Quantity>>,
-    /// `spacing`: between posts, pylons, obstacles or dashes, and between the bumps of a hedge, the shades of a wall and
-    /// the lumps of a parapet, in [0.1, 10 000]. Default: 3 for a fence, 4 for a wall, 1.2 for a hedge, 300 for a power
-    /// line, 1.5 for a trench, 3 for obstacles, 18 for a boundary.
-    pub spacing: Option<Spanned<Quantity>>,
-    /// `sag`, of a power line: how deep the wire hangs in a span, as a part of the span, in [0, 0.2]. Default 0.03.
-    pub sag: Option<Spanned<f64>>,
+table! {
+    /// `[[building]]`: footprints raised to a height.
+    BuildingTable {
+        /// Name for messages and the feature list.
+        name: Option<String> = key::text(), otherwise "the property `name`";
+        /// The footprints.
+        source: FeatureSource = key::source::<RING>(), inline;
+        /// Height from the base to the ridge.
+        height: Option<FeatureValue<f64>> = key::feature_number(SIZE, "m"),
+            otherwise "the property `height`, else 3 m for each of `building:levels` or `levels`, else 6 m";
+        /// The height of the ground under the footprint at which the building stands.
+        base: BaseRule = key::word::<BaseRule>(), default "lowest";
+        /// The shape of the roof.
+        roof: Option<FeatureValue<RoofShape>> = key::feature_word::<RoofShape>(), otherwise "the property `roof:shape`, else `flat`";
+        /// How much of the height is roof.
+        roof_height: Option<FeatureValue<f64>> = key::feature_number(STRIP, "m"),
+            otherwise "the property `roof:height`, else by a pitch of 30°";
+        /// Color of the walls.
+        wall_color: Option<Color> = key::color(),
+            otherwise "the property `building:colour`, else one of a few plasters, chosen by the place";
+        /// Color of the roof.
+        roof_color: Option<Color> = key::color(), otherwise "the property `roof:colour`, else one of a few, chosen by the place";
+    }
 }
 
-/// `[[model]]`: a model file, once or many times.
-#[derive(Clone, Debug)]
-pub struct ModelPlacement {
-    /// `name`: for messages and the feature list. Default: none.
-    pub name: Option<String>,
-    /// `file`, needed: the model file, or the bare name of a built-in model: `"conifer"`, `"broadleaf"`, `"shrub"` or
-    /// `"rock"`.
-    pub file: Spanned<String>,
-    /// `at`, or `instances`: where its origin stands.
-    pub at: Option<Spanned<[f64; 2]>>,
-    /// `crs`, only with `at`: the coordinate system of `at`. Default: the scene's `points_crs`.
-    pub crs: Option<Spanned<String>>,
-    /// `[model.instances]`: one at each point of a source; expressions see the point's properties.
-    pub instances: Option<FeatureSource>,
-    /// `variants`, only with `instances`: other models, named as in `file`, by the value of `variant`; up to 256.
-    pub variants: Option<Spanned<BTreeMap<String, String>>>,
-    /// `variant`, only with `variants`: which of them stands at a point; `file` where it is none.
-    pub variant: Option<Spanned<Expression>>,
-    /// `heading`: which way its front points, in [−360, 360]. Default 0 (north).
-    pub heading: Option<Spanned<Quantity>>,
-    /// `scale`: meters per unit of the model file, in (0, 10⁶]. Default 1.
-    pub scale: Option<Spanned<Quantity>>,
-    /// `clamp`: `"ground"`, its lowest point on the ground, or the origin of a built-in model; `"relative"`, `height` above
-    /// the ground;
-    /// `"absolute"`, at elevation `height`. Default `"ground"`.
-    pub clamp: Option<Spanned<Clamp>>,
-    /// `height`, in [−10⁷, 10⁷]: needed for `"relative"` and `"absolute"`, refused for `"ground"`.
-    pub height: Option<Spanned<Quantity>>,
-    /// `anchor`: which ground counts as the ground it stands on: under its `"origin"`, or the `"lowest"`, `"highest"` or
-    /// `"mean"` under its footprint. Default `"origin"`.
-    pub anchor: Option<Spanned<Anchor>>,
-    /// `tilt`: how far it may lean with the slope of the ground, in [0, 90]; 90 for always. Default 0: upright.
-    pub tilt: Option<Spanned<f64>>,
-    /// `sink`: how deep it stands in the ground, in [0, 1000]. Default 0.
-    pub sink: Option<Spanned<f64>>,
-    /// `footing`: what fills the gap to the ground, `"none"`, `"plinth"` (a block down to the ground) or `"pad"` (the
-    /// ground is leveled). Default `"none"`.
-    pub footing: Option<Spanned<Footing>>,
+table! {
+    /// `[[fence]]`: what stands or runs along a line.
+    FenceTable {
+        /// Name for messages and the feature list.
+        name: Option<String> = key::text(), otherwise "the property `name`";
+        /// The line.
+        source: FeatureSource = key::source::<LINE>(), inline;
+        /// What stands along the line.
+        kind: Option<FeatureValue<FenceKind>> = key::feature_word::<FenceKind>(),
+            otherwise "by the properties `barrier`, `power` and `boundary` as OpenStreetMap has them, else `fence`";
+        /// Height above the ground, or depth of a trench.
+        height: Option<FeatureValue<f64>> = key::feature_number(SIZE, "m"),
+            otherwise "the property `height`, else 1.2 for a fence, 2 for a wall, 1.8 for a hedge, 30 for a power line, \
+                       1.5 for a trench, 1.2 for obstacles";
+        /// Width of posts, across a wall, a hedge, a trench or a boundary's dashes, between the outermost wires, or of a
+        /// whole belt of obstacles.
+        width: Option<FeatureValue<f64>> = key::feature_number(SIZE, "m"),
+            otherwise "0.12 for a fence, 0.4 for a wall, 1.2 for a hedge, 10 for a power line, 1.5 for a trench, \
+                       9 for obstacles, 2 for a boundary";
+        /// Distance between posts, pylons, obstacles or dashes, and between the bumps of a hedge, the shades of a wall and
+        /// the lumps of a parapet.
+        spacing: Option<Stated<FeatureValue<f64>>> = key::feature_number(Within(0.1, 10_000.0), "m"),
+            otherwise "3 for a fence, 4 for a wall, 1.2 for a hedge, 300 for a power line, 1.5 for a trench, \
+                       3 for obstacles, 18 for a boundary";
+        /// Of a power line: how deep the wire hangs in a span, as a part of the span.
+        sag: f64 = key::number(Within(0.0, 0.2), ""), default 0.03;
+    }
 }
 
-/// `[[scatter]]`: models strewn over areas.
-#[derive(Clone, Debug, Default)]
-pub struct ScatterTable {
-    /// `name`: for messages and the feature list. Default: none.
-    pub name: Option<String>,
-    /// `points`, `file`, `layer`, `where` and `crs`: the areas.
-    pub source: FeatureSource,
-    /// `of`, needed: models, named as in `file` of `[[model]]`; one or up to 256, equally often.
-    pub of: Option<Spanned<Vec<String>>>,
-    /// `density`: how many to the hectare, in (0, 10⁵]. Default 100.
-    pub density: Option<Spanned<Quantity>>,
-    /// `spacing`: how near to each other they may stand, in [0, 10 000]; where it leaves no room for the density, fewer stand.
-    /// Default: half the side of the square that each has to itself.
-    pub spacing: Option<Spanned<Quantity>>,
-    /// `scale`: meters per unit of the model, from and to, each in (0, 10⁶]. Default `[0.8, 1.2]`.
-    pub scale: Option<Spanned<[f64; 2]>>,
-    /// `slope`: where the ground's slope in degrees lies from and to these, each in [0, 90]. Default `[0, 90]`.
-    pub slope: Option<Spanned<[f64; 2]>>,
-    /// `elevation`: where the ground's elevation lies from and to these, each in [−10⁷, 10⁷]. Default: anywhere.
-    pub elevation: Option<Spanned<[f64; 2]>>,
-    /// `seed`: another number strews otherwise, from 0 to 2³² − 1. Default 0.
-    pub seed: Option<Spanned<u32>>,
+table! {
+    /// `[[model]]`: a model file, once or many times.
+    ModelPlacement {
+        /// Name for messages and the feature list.
+        name: Option<String> = key::text(), otherwise "the property `name`";
+        /// The model file, or the bare name of a built-in model: `conifer`, `broadleaf`, `shrub` or `rock`.
+        file: Stated<String> = key::file(), required;
+        /// Place of its origin.
+        at: Option<Stated<[f64; 2]>> = key::point(), otherwise "by `instances`", unless ["instances"];
+        /// With `at`: its coordinate system.
+        crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`", unless ["instances"];
+        /// Instead of `at`: one model at each point of a source; expressions see the point's properties.
+        instances: Option<FeatureSource> = key::source_table::<1>(), otherwise "by `at`", unless ["at"];
+        /// With `instances`: other models, named as in `file`, by the value of `variant`.
+        variants: Option<Stated<BTreeMap<String, String>>> = key::named_files(), otherwise "none";
+        /// With `variants`: which of them stands at a point; `file` where it is none of them.
+        variant: Option<Expression> = key::expression(), otherwise "none";
+        /// Direction of its front.
+        heading: DefaultedValue<f64> = key::feature_number(DIRECTION, "°"), default 0;
+        /// Meters per unit of the model file.
+        scale: DefaultedValue<f64> = key::feature_number(SCALE, "m"), default 1;
+        /// How its height is found.
+        clamp: Clamp = key::word::<Clamp>(), default "ground";
+        /// With `clamp = "relative"` or `"absolute"`, which need it: height above the ground, or elevation.
+        height: Option<FeatureValue<f64>> = key::feature_number(Bounds::ELEVATION, "m"), otherwise "none";
+        /// The height of the ground that it stands on.
+        anchor: Anchor = key::word::<Anchor>(), default "origin";
+        /// How far it may lean with the slope of the ground; 90 for always.
+        tilt: f64 = key::number(SLOPE, "°"), default 0;
+        /// How deep it stands in the ground.
+        sink: f64 = key::number(STRIP, "m"), default 0;
+        /// What fills the gap to the ground.
+        footing: Stated<Footing> = key::word::<Footing>(), default "none";
+    }
+    check(reader) {
+        reader.exclude("instances", "at");
+        reader.need_either("at", "instances", "add a line `at = [x, y]`, or a table [model.instances]");
+        check_variants(reader);
+        match (clamp, reader.value_span("clamp")) {
+            (Some(Clamp::Ground), _) => {
+                let help = "add `clamp = \"relative\"` or `clamp = \"absolute\"`, or remove it";
+                reader.without_effect(&["height"], "on a model that stands on the ground", help);
+            }
+            (Some(_), Some(span)) if reader.key_span("height").is_none() => {
+                reader.error(span, "this needs a `height`", "add `height = ...` in meters");
+            }
+            _ => {}
+        }
+        if clamp == Some(Clamp::Absolute) {
+            let help = "remove it, or take another `clamp`";
+            reader.without_effect(&["anchor", "tilt", "sink"], "on a model at a stated elevation", help);
+        }
+    }
+}
+
+/// Notes `variants` and `variant` that have no effect.
+fn check_variants(reader: &mut TableReader<'_, '_>) {
+    let (variants, variant) = (reader.key_span("variants"), reader.key_span("variant"));
+    if reader.key_span("instances").is_none() {
+        let key = if variants.is_some() { "variants" } else { "variant" };
+        reader.without_effect(&[key], "on a model at one place", "use `[model.instances]`, or remove it");
+    } else if variant.is_none() {
+        let reason = "without a `variant`, which chooses among them at each point";
+        reader.without_effect(&["variants"], reason, "add `variant = \"property\"`");
+    } else if variants.is_none() {
+        let reason = "without `variants` to choose from";
+        reader.without_effect(&["variant"], reason, "add `variants = { value = \"file\", ... }`");
+    }
+}
+
+table! {
+    /// `[[scatter]]`: models strewn over areas.
+    ScatterTable {
+        /// Name for messages and the feature list.
+        name: Option<String> = key::text(), otherwise "none";
+        /// The areas.
+        source: FeatureSource = key::source::<RING>(), inline;
+        /// Models, named as in `file` of `[[model]]`; one or up to 256, equally often.
+        models as "of": Stated<Vec<String>> = key::files(&BUILT_IN), required;
+        /// How many stand on a hectare; 100 is an open wood.
+        density: DefaultedValue<f64> = key::feature_number(Above(0.0, 1e5), "per ha"), default 100;
+        /// How near to each other they may stand; where it leaves too little ground for the density, fewer stand.
+        spacing: Option<FeatureValue<f64>> = key::feature_number(Within(0.0, 10_000.0), "m"),
+            otherwise "half the side of the square that each has to itself";
+        /// Meters per unit of the model, from and to: nature grows unevenly.
+        scale: [f64; 2] = key::number_range(SCALE, "m"), default [0.8, 1.2];
+        /// The slopes of the ground on which they stand, from and to.
+        slope: [f64; 2] = key::number_range(SLOPE, "°"), default [0, 90];
+        /// The elevations of the ground at which they stand, from and to.
+        elevation: Option<[f64; 2]> = key::number_range(Bounds::ELEVATION, "m"), otherwise "anywhere";
+        /// Another number strews otherwise.
+        seed: u32 = key::integer(0, u32::MAX), default 0;
+    }
 }

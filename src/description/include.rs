@@ -1,138 +1,183 @@
-//! Files that a scene file includes: found, laid end to end, and their tables made one.
+//! Reads the files that a scene file includes and merges their tables.
 //!
 //! ```toml
 //! include = ["common/roads.toml", "common/trees.toml"]
 //! ```
 //!
-//! What an included file says comes before what the including file says:
-//!
-//! - repeated tables (`[[road]]` …) come before the including file's own;
-//! - of tables that there is one of (`[terrain]`, `[style.light]`, `[styles.lane]` …) each key is taken that the
-//!   including file does not state itself, and of keys outside tables too; of several included files the later wins.
+//! - Repeated tables (`[[road]]` …) of an included file come before those of the including file.
+//! - Keys of single tables (`[terrain]`, `[style.light]`, `[styles.lane]` …) and keys outside tables are taken where the
+//!   including file does not state them; of several included files the later wins.
 //!
 //! A file that is included more than once counts once, where it is first named. File names in an included file are
-//! relative to that file, as in every other: a folder of styles and models can be moved as a whole.
+//! relative to that file, so that a folder of styles and models can be moved as a whole.
 //!
-//! Reading goes twice over a file with an `include`: once to find what it names, while texts are still being gathered;
-//! and once to read it, when all texts lie where they stay and tables can borrow from them.
+//! A file with an `include` is parsed twice: once for the names of the files that it includes, and once when all texts are
+//! gathered, so that tables can borrow from them.
 
 use std::collections::BTreeSet;
+use std::error::Error;
 use std::ops::Range;
 
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::description::source_text::SourceText;
-use crate::description::suggest::quoted;
+use crate::message::suggest::quoted;
 
 /// How deep files may include files.
 const MAX_DEPTH: usize = 8;
 /// How many files may be included: more than anybody can keep in mind.
 const MAX_FILES: usize = 64;
 
-/// Gives the bytes of a file that is named relative to the scene file, or says why it cannot be had.
-pub type Load<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, String>;
+/// Gives the bytes of a file that is named relative to the scene file.
+pub type LoadFile<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, Box<dyn Error + Send + Sync>>;
 
-/// What is wrong with an include: where, what and what to do.
-pub(super) type Refused = (Range<usize>, String, String);
+/// Why a file cannot be included.
+#[derive(Debug, thiserror::Error)]
+pub enum IncludeError {
+    /// The file is the one that includes it, or includes that one.
+    #[error("'{0}' includes itself by this")]
+    Cycle(String),
+    /// More files than the limits allow.
+    #[error("files may include files {MAX_DEPTH} deep, {MAX_FILES} in all")]
+    TooMany,
+    /// The file cannot be read.
+    #[error("'{name}' cannot be included")]
+    Unreadable {
+        /// The file as the scene file names it.
+        name: String,
+        /// Why it cannot be read.
+        source: Box<dyn Error + Send + Sync>,
+    },
+    /// The scene would be larger than the limit.
+    #[error("'{name}' cannot be included: with it the scene has more than {max_bytes} bytes")]
+    TooLarge {
+        /// The file as the scene file names it.
+        name: String,
+        /// The limit.
+        max_bytes: usize,
+    },
+    /// The file is no text.
+    #[error("'{name}' cannot be included: its line {line} is not UTF-8 text")]
+    NotText {
+        /// The file as the scene file names it.
+        name: String,
+        /// The first line that is wrong.
+        line: usize,
+    },
+}
 
-/// Texts that belong together.
+impl IncludeError {
+    /// What to do about it.
+    pub fn help(&self) -> &'static str {
+        match self {
+            Self::Cycle(_) => "take what both need into a third file",
+            Self::TooMany => "name what is needed in the scene file itself",
+            _ => "name a file that is there, relative to the file that includes it",
+        }
+    }
+}
+
+/// The texts of a scene file and of all files that it includes.
 pub(super) struct IncludedTexts {
     /// All texts, that of the scene file first.
     pub source: SourceText,
-    /// What could not be included.
-    pub refused: Vec<Refused>,
-    /// For each file those that it includes, as places in the list of files.
+    /// The files that cannot be included, each at the bytes that name it.
+    pub errors: Vec<(Range<usize>, IncludeError)>,
+    /// For each file the places in the list of files of those that it includes.
     pub includes: Vec<Vec<usize>>,
 }
 
 /// The file `name` with `text`, and all that it includes.
-pub(super) fn gather(name: &str, text: &str, load: Load<'_>, max_bytes: usize) -> IncludedTexts {
+pub(super) fn gather(name: &str, text: &str, load: LoadFile<'_>, max_bytes: usize) -> IncludedTexts {
     let gathered = IncludedTexts {
         source: SourceText::alone(name, text),
-        refused: Vec::new(),
+        errors: Vec::new(),
         includes: vec![Vec::new()],
     };
-    let shown_folder = name.rfind('/').map_or("", |slash| &name[..=slash]).to_owned();
+    let shown_folder = folder_of(name).to_owned();
     let mut gathering =
-        Gathering { gathered, load, max_bytes, shown_folder, paths: Vec::new(), seen: BTreeSet::new() };
-    gathering.follow((0, 0, text));
+        Gathering { gathered, load, max_bytes, shown_folder, open: Vec::new(), seen: BTreeSet::new() };
+    gathering.follow(0, 0, text);
     gathering.gathered
 }
 
 struct Gathering<'a> {
     gathered: IncludedTexts,
-    load: Load<'a>,
+    load: LoadFile<'a>,
     max_bytes: usize,
     /// The scene file's folder as messages show it.
     shown_folder: String,
     /// The files that are being read, each included by the one before.
-    paths: Vec<String>,
+    open: Vec<String>,
     seen: BTreeSet<String>,
 }
 
 impl Gathering<'_> {
-    /// Appends what the file with this place in the list, whose text starts here, includes.
-    fn follow(&mut self, (file, start, text): (usize, usize, &str)) {
+    /// Appends what the text of a file, which begins at `start`, includes.
+    fn follow(&mut self, file: usize, start: usize, text: &str) {
         for named in includes_of(text) {
-            let span = named.span().start + start..named.span().end + start;
             match self.include(named.get_ref(), start) {
                 Ok(Some((path, text))) => {
-                    let included = self.append(&path, &text);
-                    self.gathered.includes[file].push(included.0);
-                    self.paths.push(path);
-                    self.follow((included.0, included.1, &text));
-                    self.paths.pop();
+                    let start = self.append(&path, &text);
+                    let included = self.gathered.includes.len() - 1;
+                    self.gathered.includes[file].push(included);
+                    self.open.push(path);
+                    self.follow(included, start, &text);
+                    self.open.pop();
                 }
                 Ok(None) => {}
-                Err((message, help)) => self.gathered.refused.push((span, message, help)),
+                Err(error) => {
+                    let span = named.span().start + start..named.span().end + start;
+                    self.gathered.errors.push((span, error));
+                }
             }
         }
     }
 
     /// The path and the text of a file to include; `None` where it is there already.
-    fn include(&mut self, named: &str, from: usize) -> Result<Option<(String, String)>, (String, String)> {
-        let path = joined(self.gathered.source.folder_at(from), named);
-        let known_name = self.gathered.source.name().rsplit(['/', '\\']).next().unwrap_or_default();
-        if path == known_name || self.paths.contains(&path) {
-            let message = format!("'{}' includes itself by this", quoted(&path));
-            return Err((message, "take what both need into a third file".into()));
+    fn include(&mut self, named: &str, from: usize) -> Result<Option<(String, String)>, IncludeError> {
+        let source = &self.gathered.source;
+        let path = joined(source.folder_at(from), named);
+        let own_name = source.name().rsplit(['/', '\\']).next().unwrap_or_default();
+        if path == own_name || self.open.contains(&path) {
+            return Err(IncludeError::Cycle(quoted(&path)));
         }
-        if self.paths.len() >= MAX_DEPTH || self.seen.len() >= MAX_FILES {
-            let message = format!("files may include files {MAX_DEPTH} deep, {MAX_FILES} in all");
-            return Err((message, "name what is needed in the scene file itself".into()));
+        if self.open.len() >= MAX_DEPTH || self.seen.len() >= MAX_FILES {
+            return Err(IncludeError::TooMany);
         }
         if !self.seen.insert(path.clone()) {
             return Ok(None);
         }
-        let wrong =
-            |reason: String| (format!("'{}' cannot be included: {reason}", quoted(named)), HELP.into());
-        let bytes = (self.load)(&path).map_err(wrong)?;
-        if self.gathered.source.text().len() + bytes.len() > self.max_bytes {
-            return Err(wrong(format!("with it the scene has more than {} bytes", self.max_bytes)));
+        let name = quoted(named);
+        let bytes = match (self.load)(&path) {
+            Ok(bytes) => bytes,
+            Err(source) => return Err(IncludeError::Unreadable { name, source }),
+        };
+        if source.text().len() + bytes.len() > self.max_bytes {
+            return Err(IncludeError::TooLarge { name, max_bytes: self.max_bytes });
         }
         let text = String::from_utf8(bytes).map_err(|error| {
             let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-            let line = before.iter().filter(|&&byte| byte == b'\n').count() + 1;
-            wrong(format!("its line {line} is not UTF-8 text"))
+            IncludeError::NotText { name, line: before.iter().filter(|&&byte| byte == b'\n').count() + 1 }
         })?;
         Ok(Some((path, text)))
     }
 
-    /// Lays a file behind the others; returns its place in the list and where its text starts.
-    fn append(&mut self, path: &str, text: &str) -> (usize, usize) {
-        let folder = path.rfind('/').map_or("", |slash| &path[..=slash]);
-        let shown =
-            if path.starts_with('/') { path.to_owned() } else { format!("{}{path}", self.shown_folder) };
-        let start = self.gathered.source.append(shown, folder.to_owned(), text);
+    /// Appends a file to the list and returns where its text starts.
+    fn append(&mut self, path: &str, text: &str) -> usize {
+        let shown = if path.starts_with('/') { "" } else { &self.shown_folder };
         self.gathered.includes.push(Vec::new());
-        (self.gathered.includes.len() - 1, start)
+        self.gathered.source.append(format!("{shown}{path}"), folder_of(path).to_owned(), text)
     }
 }
 
-const HELP: &str = "name a file that is there, relative to the file that includes it";
+/// The folder of a path, empty or with a `/` at its end.
+fn folder_of(path: &str) -> &str {
+    path.rfind('/').map_or("", |slash| &path[..=slash])
+}
 
-/// The file names that a text includes; what else is in it, and whether it can be read at all, is told later.
+/// The file names that a text includes; errors in the text are reported later.
 fn includes_of(text: &str) -> Vec<Spanned<String>> {
     if !text.contains("include") {
         return Vec::new();
@@ -144,11 +189,9 @@ fn includes_of(text: &str) -> Vec<Spanned<String>> {
         }
         _ => None,
     };
-    match table.get_ref().get("include") {
-        Some(one) => match one.get_ref() {
-            DeValue::Array(list) => list.iter().filter_map(name).collect(),
-            _ => name(one).into_iter().collect(),
-        },
+    match table.get_ref().get("include").map(|named| (named, named.get_ref())) {
+        Some((_, DeValue::Array(list))) => list.iter().filter_map(name).collect(),
+        Some((one, _)) => name(one).into_iter().collect(),
         None => Vec::new(),
     }
 }
@@ -182,54 +225,45 @@ fn merged_from<'i>(file: usize, tables: &mut [Option<DeTable<'i>>], includes: &[
     for &included in &includes[file] {
         let mut table = merged_from(included, tables, includes);
         table.remove("include");
-        lay_over(&mut before, table, ListMerge::Appended);
+        lay_over(&mut before, table, ListMerge::Append);
     }
-    lay_over(&mut before, tables[file].take().unwrap_or_default(), ListMerge::Appended);
+    lay_over(&mut before, tables[file].take().unwrap_or_default(), ListMerge::Append);
     before
 }
 
-/// What becomes of a list that both sides have.
+/// How two lists under one key are merged.
 #[derive(Clone, Copy)]
 enum ListMerge {
-    /// The upper one's entries come after the lower one's: repeated tables, which stand only at the top.
-    Appended,
-    /// The upper one is taken.
-    Replaced,
+    /// The upper list follows the lower one: repeated tables, which stand only at the top.
+    Append,
+    /// The upper list replaces the lower one.
+    Replace,
 }
 
 fn lay_over<'i>(lower: &mut DeTable<'i>, upper: DeTable<'i>, lists: ListMerge) {
     for (key, value) in upper {
-        let Some((lower_key, mut there)) = lower.remove_entry(key.get_ref().as_ref()) else {
+        let Some((lower_key, mut merged)) = lower.remove_entry(key.get_ref().as_ref()) else {
             lower.insert(key, value);
             continue;
         };
-        match (there.get_mut(), value.get_ref(), lists) {
-            (DeValue::Array(there), DeValue::Array(_), ListMerge::Appended) => {
-                if let DeValue::Array(more) = value.into_inner() {
-                    *there = std::mem::replace(there, DeArray::new()).into_iter().chain(more).collect();
-                }
+        let span = value.span();
+        match (merged.get_mut(), value.into_inner(), lists) {
+            (DeValue::Array(list), DeValue::Array(more), ListMerge::Append) => {
+                *list = std::mem::replace(list, DeArray::new()).into_iter().chain(more).collect();
             }
-            (DeValue::Table(there), DeValue::Table(_), _) => {
-                if let DeValue::Table(more) = value.into_inner() {
-                    lay_over(there, more, ListMerge::Replaced);
-                }
-            }
-            _ => there = value,
+            (DeValue::Table(table), DeValue::Table(more), _) => lay_over(table, more, ListMerge::Replace),
+            (_, value, _) => merged = Spanned::new(span, value),
         }
-        lower.insert(lower_key, there);
+        lower.insert(lower_key, merged);
     }
 }
 
 /// The table with every place moved by `by` bytes.
 pub(super) fn moved(table: DeTable<'_>, by: usize) -> DeTable<'_> {
-    let place = |span: Range<usize>| span.start + by..span.end + by;
-    table
-        .into_iter()
-        .map(|(key, value)| {
-            let span = place(key.span());
-            (Spanned::new(span, key.into_inner()), moved_value(value, by))
-        })
-        .collect()
+    let entry = |(key, value): (Spanned<_>, _)| {
+        (Spanned::new(key.span().start + by..key.span().end + by, key.into_inner()), moved_value(value, by))
+    };
+    table.into_iter().map(entry).collect()
 }
 
 fn moved_value(value: Spanned<DeValue<'_>>, by: usize) -> Spanned<DeValue<'_>> {

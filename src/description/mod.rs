@@ -1,23 +1,25 @@
-//! The scene file as plain data, with the place of every value that may turn out wrong later.
+//! The scene file as plain data: its keys are declared once, and decoder, schema and reference page follow from that.
+
+#[macro_use]
+mod table;
 
 pub mod bounds;
-mod decode;
-mod decode_features;
-pub mod defaults;
+pub mod color;
+pub mod declaration;
 pub mod diagnostic;
 pub mod document;
-mod documentation;
 pub mod expression;
+pub mod feature_value;
 pub mod features;
 pub mod include;
-mod item;
+mod key;
 pub mod parse;
 mod reader;
+pub mod scalar;
 pub mod schema;
-mod selection;
-mod sketch;
-mod snippet;
+pub mod selection;
 pub mod source_text;
-mod styles;
-pub mod suggest;
+pub mod stated;
+pub mod styles;
+mod value;
 pub mod words;

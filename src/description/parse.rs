@@ -6,47 +6,53 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::DeTable;
 
-use crate::description::decode::document;
 use crate::description::diagnostic::{Diagnostic, DiagnosticSink, Diagnostics};
 use crate::description::document::Document;
-use crate::description::include::{Load, gather, merged, moved};
-use crate::description::reader::TableReader;
+use crate::description::include::{LoadFile, gather, merged, moved};
+use crate::description::reader::{DecodeContext, TableReader};
 use crate::description::source_text::SourceText;
-use crate::description::suggest::quoted;
+use crate::description::styles::Styles;
+use crate::message::suggest::quoted;
 
-/// The largest scene file in bytes. Room for some hundred thousand points; reading costs up to a hundred
-/// bytes of memory for each byte of a hostile file, so this also bounds memory to a few hundred megabytes.
+/// The largest scene file in bytes: enough for some hundred thousand points. Reading costs up to a hundred bytes of memory
+/// for each byte of a hostile file, so this also bounds memory to a few hundred megabytes.
 pub const MAX_BYTES: usize = 4 << 20;
 
-/// The scene that `text` describes; `file_name` is what messages call the file.
+/// The scene that `text` describes; `file_name` is the file's name in messages.
 ///
 /// # Errors
-/// Everything wrong in the file as far as it can be told without another file. Where the text is not TOML,
-/// only that is reported, since what the rest means is then a guess.
+/// Everything wrong in the file as far as it shows without another file. Where the text is not TOML, only that is
+/// reported, since what the rest means is then a guess.
 pub fn parse(file_name: &str, text: &str) -> Result<Document, Diagnostics> {
-    parse_including(file_name, text, ALONE)
+    parse_including(file_name, text, NO_FILES)
 }
 
 /// As [`parse`], for a scene file that may include others, which `load` gives.
 ///
 /// # Errors
 /// As [`parse`], of all the files, and where one cannot be included.
-pub fn parse_including(file_name: &str, text: &str, load: Load<'_>) -> Result<Document, Diagnostics> {
+pub fn parse_including(file_name: &str, text: &str, load: LoadFile<'_>) -> Result<Document, Diagnostics> {
     if text.len() > MAX_BYTES {
         return Err(too_large(file_name, text.len()));
     }
     let gathered = gather(file_name, text, load, MAX_BYTES);
     let source = Arc::new(gathered.source);
     let mut report = DiagnosticSink::new(Arc::clone(&source));
-    for (span, message, help) in gathered.refused {
-        report.error(span, message, Some(help));
+    for (span, error) in gathered.errors {
+        let help = error.help();
+        report.error(span, error, help);
     }
-    let tables: Vec<_> = source.texts().map(|placed| toml_table(placed, &mut report)).collect();
-    let table = tables.into_iter().collect::<Option<Vec<_>>>();
-    let table = table.map(|tables| merged(tables, &gathered.includes));
-    let decode =
-        |table| TableReader::read_root(&mut report, table, |reader| document(reader, Arc::clone(&source)));
-    let parsed = table.and_then(decode);
+    let tables: Vec<_> = source.texts().map(|(start, text)| toml_table(start, text, &mut report)).collect();
+    let root =
+        tables.into_iter().collect::<Option<Vec<_>>>().map(|tables| merged(tables, &gathered.includes));
+    let (parsed, report) = match &root {
+        Some(root) => {
+            let styles = Styles::read(root, &mut report);
+            let mut context = DecodeContext { report, styles };
+            (TableReader::read_root(&mut context, root), context.report)
+        }
+        None => (None, report),
+    };
     match (report.into_diagnostics(), parsed) {
         (None, Some(document)) => Ok(document),
         (errors, _) => Err(errors.unwrap_or_else(|| unread(file_name))),
@@ -58,42 +64,44 @@ pub fn parse_including(file_name: &str, text: &str, load: Load<'_>) -> Result<Do
 /// # Errors
 /// As [`parse`], and where the bytes are not UTF-8.
 pub fn parse_bytes(file_name: &str, bytes: &[u8]) -> Result<Document, Diagnostics> {
-    parse_bytes_including(file_name, bytes, ALONE)
+    parse_bytes_including(file_name, bytes, NO_FILES)
 }
 
 /// As [`parse_including`], for bytes as they come from a disk.
 ///
 /// # Errors
 /// As [`parse_including`], and where the bytes are not UTF-8.
-pub fn parse_bytes_including(file_name: &str, bytes: &[u8], load: Load<'_>) -> Result<Document, Diagnostics> {
+pub fn parse_bytes_including(
+    file_name: &str,
+    bytes: &[u8],
+    load: LoadFile<'_>,
+) -> Result<Document, Diagnostics> {
     if bytes.len() > MAX_BYTES {
         return Err(too_large(file_name, bytes.len()));
     }
-    match std::str::from_utf8(bytes) {
-        Ok(text) => parse_including(file_name, text, load),
-        Err(error) => {
-            let source = SourceText::new(file_name, String::from_utf8_lossy(bytes));
-            let at = error.valid_up_to();
-            let wrong = Diagnostic::new(&source, at..at + '\u{fffd}'.len_utf8(), "this is not UTF-8 text");
-            Err(wrong.with_help("save the file as UTF-8").into())
-        }
-    }
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        let source = SourceText::new(file_name, String::from_utf8_lossy(bytes));
+        let at = error.valid_up_to();
+        let wrong = Diagnostic::new(&source, at..at + '\u{fffd}'.len_utf8(), "this is not UTF-8 text");
+        wrong.with_help("save the file as UTF-8")
+    })?;
+    parse_including(file_name, text, load)
 }
 
-/// For a scene file that stands alone.
-const ALONE: Load<'static> = &|_| Err("other files are not read here".into());
+/// For a scene file without includes.
+const NO_FILES: LoadFile<'static> = &|_| Err("other files are not read here".into());
 
-/// What the TOML parser says of a key that is there already.
+/// The TOML parser's message about a key that is there already.
 const DUPLICATE: &str = "duplicate key";
 
-/// Texts up to here have all their syntax errors told, larger ones only the first: collecting them costs
-/// hundreds of bytes for each.
+/// Larger texts have only their first syntax error reported: collecting them costs hundreds of bytes for each.
 const MAX_BYTES_RECOVERED: usize = 256 << 10;
 
-/// The text that starts at the first byte given as a table, where nothing is wrong with it but a key given twice. Reports one syntax error for
-/// each line, since what follows an error is often caused by it.
-fn toml_table<'i>((start, text): (usize, &'i str), report: &mut DiagnosticSink) -> Option<DeTable<'i>> {
-    let (table, mut errors) = if text.len() <= MAX_BYTES_RECOVERED {
+/// The table that `text` writes, its places counted from `start`; `None` where anything but duplicate keys is wrong. Notes
+/// one syntax error a line, since an error often causes what follows it.
+fn toml_table<'i>(start: usize, text: &'i str, report: &mut DiagnosticSink) -> Option<DeTable<'i>> {
+    let recovers = text.len() <= MAX_BYTES_RECOVERED;
+    let (table, mut errors) = if recovers {
         DeTable::parse_recoverable(text)
     } else {
         match DeTable::parse(text) {
@@ -102,59 +110,56 @@ fn toml_table<'i>((start, text): (usize, &'i str), report: &mut DiagnosticSink) 
         }
     };
     errors.sort_by_key(|error| error.span().map_or(0, |span| span.start));
-    let mut last_end = None;
+    let mut line_end = None;
     for error in &errors {
-        let span = error.span().unwrap_or(0..0);
-        let same_line = last_end.is_some_and(|end| span.start <= end);
-        if !same_line {
-            let (message, help) = syntax(error.message(), &text[clamped(&span, text)]);
-            report.error(span.start + start..span.end + start, message, help);
-            last_end = Some(report.source().line_at(span.start + start).end - start);
+        let span = error.span().unwrap_or_default();
+        if line_end.is_none_or(|end| span.start > end) {
+            let (message, help) = syntax_message(error.message(), &text[excerpt(&span, text)]);
+            let placed = span.start + start..span.end + start;
+            let error = Diagnostic::new(report.source(), placed, message);
+            line_end = Some(report.source().line_at(span.start + start).end - start);
+            report.add(if help.is_empty() { error } else { error.with_help(help) });
         }
     }
-    let recovered = text.len() <= MAX_BYTES_RECOVERED || errors.is_empty();
-    let readable = recovered && errors.iter().all(|error| error.message() == DUPLICATE);
-    readable.then(|| if start == 0 { table.into_inner() } else { moved(table.into_inner(), start) })
+    let is_readable =
+        errors.iter().all(|error| error.message() == DUPLICATE) && (recovers || errors.is_empty());
+    is_readable.then(|| if start == 0 { table.into_inner() } else { moved(table.into_inner(), start) })
 }
 
-/// A sentence and a remedy for the TOML parser's message about the text `found`.
-fn syntax(message: &str, found: &str) -> (String, Option<String>) {
-    match message {
+/// A sentence and a remedy, possibly empty, for the TOML parser's message about the text `found`.
+fn syntax_message(message: &str, found: &str) -> (String, String) {
+    let must_be_quoted = message.starts_with("string values must be quoted");
+    let (message, help) = match message {
         DUPLICATE => {
-            (format!("`{}` is already given above", quoted(found)), Some("remove one of the two".into()))
+            return (format!("`{}` is already given above", quoted(found)), "remove one of the two".into());
         }
-        _ if message.starts_with("string values must be quoted") && found.is_empty() => {
-            ("a value is missing here".into(), Some("write one after the `=`".into()))
-        }
-        _ if message.starts_with("string values must be quoted") => {
-            ("text must be in quotes".into(), Some(format!("write \"{}\"", quoted(found.trim()))))
+        _ if must_be_quoted && found.is_empty() => ("a value is missing here", "write one after the `=`"),
+        _ if must_be_quoted => {
+            return ("text must be in quotes".into(), format!("write \"{}\"", quoted(found.trim())));
         }
         _ if message.ends_with(" string, expected `\"`") || message.ends_with(" string, expected `'`") => {
-            ("this text has no closing quote".into(), Some("close it on the line where it starts".into()))
+            ("this text has no closing quote", "close it on the line where it starts")
         }
-        _ => (message.into(), None),
-    }
+        _ => (message, ""),
+    };
+    (message.into(), help.into())
 }
 
-/// `span` within `text`, on character boundaries, at most one line of 60 bytes.
-fn clamped(span: &Range<usize>, text: &str) -> Range<usize> {
+/// The part of `span` within `text`, on character boundaries, of at most one line and 60 bytes.
+fn excerpt(span: &Range<usize>, text: &str) -> Range<usize> {
     let start = text.floor_char_boundary(span.start);
     let end = text.floor_char_boundary(span.end.min(start + 60)).max(start);
     start..text[start..end].find('\n').map_or(end, |feed| start + feed)
 }
 
 fn too_large(file_name: &str, bytes: usize) -> Diagnostics {
-    let source = SourceText::new(file_name, "");
-    Diagnostic::new(
-        &source,
-        0..0,
-        format!("the scene file has {bytes} bytes, more than the {MAX_BYTES} allowed"),
-    )
-    .with_help("put long lists of points in GeoJSON files and name them with `file`")
-    .into()
+    let message = format!("the scene file has {bytes} bytes, more than the {MAX_BYTES} allowed");
+    Diagnostic::new(&SourceText::new(file_name, ""), 0..0, message)
+        .with_help("put long lists of points in GeoJSON files and name them with `file`")
+        .into()
 }
 
-/// For a table that could not be read though nothing was reported: our own bug, said politely.
+/// For a table that cannot be read though no error is noted, which is a bug.
 fn unread(file_name: &str) -> Diagnostics {
     Diagnostic::new(&SourceText::new(file_name, ""), 0..0, "the scene file cannot be understood").into()
 }

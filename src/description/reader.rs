@@ -1,52 +1,49 @@
-//! Takes the keys out of one TOML table, one by one; what is left over at the end was not known.
+//! Reads the keys of one table, and notes unknown and missing ones.
 //!
-//! Hand-written rather than derived: a derived deserializer stops at the first error, loses the place of a
-//! value inside flattened structs, and cannot say which key was meant. Here reading never stops, and every
-//! key that is asked for is thereby known, so that the list of valid keys cannot drift from the code.
+//! Hand-written on spanned TOML values: a derived deserializer stops at the first error, loses the place of a value inside
+//! a flattened struct, and cannot say which key was meant.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeString, DeTable, DeValue};
 
+use crate::description::declaration::{KeyDeclaration, Presence};
 use crate::description::diagnostic::DiagnosticSink;
-use crate::description::item::{KeyValue, kind_of};
-use crate::description::sketch::{KeyPart, KeyProbe, Needed, SchemaProbe};
+use crate::description::document::Document;
+use crate::description::key::{Group, Key, Styling};
 use crate::description::source_text::SourceText;
-use crate::description::suggest::{listed, nearest, quoted};
+use crate::description::stated::Stated;
+use crate::description::styles::{STYLE_KEY, STYLE_TYPE, Styles};
+use crate::description::table::{DefaultedField, Field, Table};
+use crate::description::value::{KeyValue, type_name};
+use crate::message::suggest::{listed, nearest, quoted};
 
 /// The most tables of one kind (`[[road]]`, `[[label]]` …) in a scene; far above what a picture can show.
 const MAX_TABLES: usize = 10_000;
-/// Keys that stand before the first table, and end up in the wrong one when written after it.
-const TOP_KEYS: [&str; 5] = ["include", "title", "subtitle", "crs", "points_crs"];
 
-/// One table while it is read.
-pub(super) struct TableReader<'r, 'i> {
-    report: &'r mut DiagnosticSink,
-    table: DeTable<'i>,
-    path: Path,
-    span: Range<usize>,
-    known: Vec<&'static str>,
-    missing: Vec<&'static str>,
-    /// What was asked for, where nothing is read.
-    sketch: Option<SchemaProbe>,
+/// What the readers of all tables share.
+pub(super) struct DecodeContext<'t> {
+    pub report: DiagnosticSink,
+    pub styles: Styles<'t>,
 }
 
-/// What a table is called.
+/// The name of a table.
 #[derive(Clone, Debug, Default, PartialEq)]
-struct Path {
+pub(super) struct TableName {
     dotted: String,
     repeated: bool,
 }
 
-impl Path {
-    fn inside(&self, key: &str, repeated: bool) -> Self {
+impl TableName {
+    fn inner(&self, key: &str, repeated: bool) -> Self {
         let dot = if self.dotted.is_empty() { "" } else { "." };
         Self { dotted: format!("{}{dot}{key}", self.dotted), repeated }
     }
 
     /// `[style.light]`, `[[road]]` or `the scene file`.
-    fn title(&self) -> String {
+    pub fn title(&self) -> String {
         match (self.dotted.as_str(), self.repeated) {
             ("", _) => "the scene file".into(),
             (dotted, true) => format!("[[{dotted}]]"),
@@ -55,316 +52,267 @@ impl Path {
     }
 }
 
-impl<'r, 'i> TableReader<'r, 'i> {
-    /// Reads the whole file's table with `decode`.
-    pub fn read_root<T>(
-        report: &'r mut DiagnosticSink,
-        table: DeTable<'i>,
-        decode: impl FnOnce(&mut TableReader<'_, 'i>) -> T,
-    ) -> T {
-        TableReader::read(report, table, Path::default(), 0..0, decode)
+type TableEntry<'r> = (&'r Spanned<DeString<'r>>, &'r Spanned<DeValue<'r>>);
+
+/// One table while it is read.
+pub(super) struct TableReader<'r, 't> {
+    context: &'r mut DecodeContext<'t>,
+    table: &'r DeTable<'r>,
+    keys: &'static [KeyDeclaration],
+    styling: Styling,
+    /// Keys that the table takes where it does not state them.
+    style: Option<&'r DeTable<'r>>,
+    name: TableName,
+    span: Range<usize>,
+    missing: Vec<&'static str>,
+}
+
+impl<'r, 't> TableReader<'r, 't> {
+    /// Reads the tables of a whole scene file.
+    pub fn read_root(context: &'r mut DecodeContext<'t>, table: &'r DeTable<'r>) -> Option<Document> {
+        TableReader::read(context, table, (TableName::default(), 0..0), Styling::Plain)
     }
 
-    fn read<T>(
-        report: &'r mut DiagnosticSink,
-        table: DeTable<'i>,
-        path: Path,
-        span: Range<usize>,
-        decode: impl FnOnce(&mut TableReader<'_, 'i>) -> T,
-    ) -> T {
-        let (known, missing) = (Vec::new(), Vec::new());
-        let mut reader = TableReader { report, table, path, span, known, missing, sketch: None };
-        let value = decode(&mut reader);
+    fn read<T: Table<N>, const N: usize>(
+        context: &'r mut DecodeContext<'t>,
+        table: &'r DeTable<'r>,
+        (name, span): (TableName, Range<usize>),
+        styling: Styling,
+    ) -> Option<T> {
+        let (keys, missing) = (T::KEYS, Vec::new());
+        let mut reader = TableReader { context, table, keys, styling, style: None, name, span, missing };
+        if styling == Styling::Styled {
+            reader.take_style();
+        }
+        let value = T::read(&mut reader);
         reader.finish();
         value
     }
 
-    /// What `decode` asks of the whole file's table. It is given nothing, and what it says is not listened to.
-    pub fn sketch_root<T>(decode: impl FnOnce(&mut TableReader<'_, 'i>) -> T) -> SchemaProbe {
-        let mut report = DiagnosticSink::new(SourceText::new("", ""));
-        TableReader::sketch(&mut report, Path::default(), decode)
-    }
-
-    fn sketch<T>(
-        report: &mut DiagnosticSink,
-        path: Path,
-        decode: impl FnOnce(&mut TableReader<'_, 'i>) -> T,
-    ) -> SchemaProbe {
-        let mut reader = TableReader {
-            report,
-            table: DeTable::new(),
-            path,
-            span: 0..0,
-            known: Vec::new(),
-            missing: Vec::new(),
-            sketch: Some(SchemaProbe::default()),
-        };
-        decode(&mut reader);
-        reader.sketch.unwrap_or_default()
-    }
-
-    /// Writes down a key.
-    fn note(&mut self, name: &'static str, needed: Needed, part: KeyPart) {
-        if let Some(sketch) = &mut self.sketch {
-            sketch.keys.push(KeyProbe { name, needed, part });
-        }
-    }
-
-    /// Writes down a key with a value, where nothing is read.
-    fn note_value<T>(
-        &mut self,
-        (key, needed): (&'static str, Needed),
-        decode: impl FnOnce(KeyValue<'_, 'i>) -> Option<T>,
-    ) {
-        let nothing = Spanned::new(0..0, DeValue::Boolean(false));
-        let mut shape = None;
-        decode(KeyValue { report: self.report, key, value: &nothing, asked: Some(&mut shape) });
-        let shape = shape.expect("every way to read a value begins by writing down what it asks for");
-        self.note(key, needed, KeyPart::Value(shape));
-    }
-
-    /// The table's header or, for an inline table, all of it.
-    pub fn span(&self) -> Range<usize> {
-        self.span.clone()
-    }
-
-    /// `[style.light]`, `[[road]]` or `the scene file`.
-    pub fn title(&self) -> String {
-        self.path.title()
+    /// The text that is read.
+    pub fn source(&mut self) -> Arc<SourceText> {
+        Arc::clone(self.context.report.source())
     }
 
     /// Notes an error.
     pub fn error(&mut self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) {
-        self.report.error(span, message, Some(help.into()));
+        self.context.report.error(span, message.into(), help);
     }
 
-    /// Where `key` stands, whatever its value; `None` where it is absent. To be asked before its value.
-    pub fn has(&self, key: &str) -> Option<Range<usize>> {
-        self.table.get_key_value(key).map(|(key, _)| key.span())
+    /// The place of a key, whatever its value; `None` where the key is absent.
+    pub fn key_span(&self, key: &str) -> Option<Range<usize>> {
+        Some(self.entry(key)?.0.span())
     }
 
-    /// Notes an error about the table, unless a key that is none looks like one of `keys` misspelled.
-    pub fn error_if_unexplained(&mut self, keys: &[&'static str], message: String, help: &str) {
-        let explains = |unknown: &str| nearest(unknown, keys.iter().copied()).is_some();
-        let asked_for = |key: &str| self.known.contains(&key);
-        if !self.table.keys().any(|key| !asked_for(key.get_ref()) && explains(key.get_ref())) {
-            self.error(self.span(), message, help);
+    /// The place of a key's value; `None` where the key is absent.
+    pub fn value_span(&self, key: &str) -> Option<Range<usize>> {
+        Some(self.entry(key)?.1.span())
+    }
+
+    /// Notes an error where `key` is stated although `other` is.
+    pub fn exclude(&mut self, key: &str, other: &str) {
+        if let (Some(span), Some(_)) = (self.key_span(key), self.key_span(other)) {
+            let message = format!("{} has both `{other}` and `{key}`", self.name.title());
+            self.error(span, message, "keep one of them");
         }
     }
 
-    /// The value of `key` as `decode` understands it; `None` where the key is absent or its value wrong.
-    pub fn get<T>(
-        &mut self,
-        key: &'static str,
-        decode: impl FnOnce(KeyValue<'_, 'i>) -> Option<T>,
-    ) -> Option<Spanned<T>> {
-        if self.sketch.is_some() {
-            self.note_value((key, Needed::No), decode);
-            return None;
+    /// Notes an error at each of `keys` that is stated. `reason` completes "has no effect".
+    pub fn without_effect(&mut self, keys: &[&str], reason: &str, help: &str) {
+        for key in keys {
+            if let Some(span) = self.key_span(key) {
+                self.error(span, format!("`{key}` has no effect {reason}"), help);
+            }
         }
-        let (_, value) = self.take(key)?;
-        self.decode(key, &value, decode)
     }
 
-    /// As [`Self::get`], but the key must be there.
-    pub fn require<T>(
-        &mut self,
-        key: &'static str,
-        decode: impl FnOnce(KeyValue<'_, 'i>) -> Option<T>,
-    ) -> Option<Spanned<T>> {
-        if self.sketch.is_some() {
-            self.note_value((key, Needed::Yes), decode);
-            return None;
+    /// Notes an error about the table where it has neither `key` nor `other`, unless an unknown key looks like one of them
+    /// misspelled.
+    pub fn need_either(&mut self, key: &str, other: &str, help: &str) {
+        let misspelled = |unknown: TableEntry<'_>| nearest(unknown.0.get_ref(), [key, other]).is_some();
+        let is_there = self.key_span(key).or(self.key_span(other)).is_some();
+        if !is_there && !self.unknown().into_iter().any(misspelled) {
+            let message = format!("{} has neither `{key}` nor `{other}`", self.name.title());
+            self.error(self.span.clone(), message, help);
         }
-        let Some((_, value)) = self.take(key) else {
-            self.missing.push(key);
-            return None;
-        };
-        self.decode(key, &value, decode)
     }
 
-    /// The table `key`, `None` where it is absent.
-    pub fn table<T>(
+    /// Reads a key that must be there; `None` where it is not, or its value is wrong.
+    pub fn required<V, A: Copy, F: Field<V>>(
         &mut self,
-        key: &'static str,
-        decode: impl FnOnce(&mut TableReader<'_, 'i>) -> T,
+        declared: &'static KeyDeclaration,
+        key: Key<V, A>,
+    ) -> Option<F> {
+        if self.entry(declared.name).is_none() {
+            self.missing.push(declared.name);
+        }
+        self.stated(declared, &key).map(F::from_stated)
+    }
+
+    /// Reads a key that may be absent; never `None`.
+    pub fn otherwise<V, A: Copy, F: Field<V>>(
+        &mut self,
+        declared: &'static KeyDeclaration,
+        key: Key<V, A>,
+    ) -> Option<Option<F>> {
+        Some(self.stated(declared, &key).map(F::from_stated))
+    }
+
+    /// Reads a key with a default; never `None`.
+    pub fn default<V, A: Copy, F: DefaultedField<V>>(
+        &mut self,
+        declared: &'static KeyDeclaration,
+        key: Key<V, A>,
+    ) -> Option<F> {
+        let Presence::Default(text) = declared.presence else { return None };
+        let stated = self.stated(declared, &key);
+        let value = DeValue::parse(text).expect("a declared default is a TOML value");
+        let default = self.decode(declared.name, (0..0, &value), &key);
+        Some(F::from_stated_or(stated, default.expect("a declared default has the type of its key")))
+    }
+
+    /// Reads the keys of a group.
+    pub fn inline<T: Table<N>, const N: usize>(
+        &mut self,
+        _: &'static KeyDeclaration,
+        _: Group<T, N>,
     ) -> Option<T> {
-        self.one_table((key, Needed::No), decode)
+        T::read(self)
     }
 
-    /// As [`Self::table`], but the table must be there.
-    pub fn require_table<T>(
+    fn stated<V, A: Copy>(&mut self, declared: &KeyDeclaration, key: &Key<V, A>) -> Option<Stated<V>> {
+        let (name, value) = self.entry(declared.name)?;
+        let read = self.decode(declared.name, (name.span(), value), key)?;
+        Some(Stated::new(read, value.span()))
+    }
+
+    fn decode<V, A: Copy>(
         &mut self,
-        key: &'static str,
-        decode: impl FnOnce(&mut TableReader<'_, 'i>) -> T,
-    ) -> Option<T> {
-        if !self.table.contains_key(key) {
-            self.missing.push(key);
-        }
-        self.one_table((key, Needed::Yes), decode)
+        name: &str,
+        (key_span, value): (Range<usize>, &Spanned<DeValue<'_>>),
+        key: &Key<V, A>,
+    ) -> Option<V> {
+        key.read(KeyValue { context: self.context, table: &self.name, key: name, key_span, value })
     }
 
-    fn one_table<T>(
-        &mut self,
-        (key, needed): (&'static str, Needed),
-        decode: impl FnOnce(&mut TableReader<'_, 'i>) -> T,
-    ) -> Option<T> {
-        let path = self.path.inside(key, false);
-        if self.sketch.is_some() {
-            let sketch = TableReader::sketch(self.report, path, decode);
-            self.note(key, needed, KeyPart::Table(sketch));
-            return None;
-        }
-        let (_, value) = self.take(key)?;
-        self.nested(value, path, decode)
+    /// A key of the table or of its style.
+    fn entry(&self, key: &str) -> Option<TableEntry<'r>> {
+        self.table.get_key_value(key).or_else(|| {
+            self.style.filter(|_| !self.is_rivaled(key)).and_then(|style| style.get_key_value(key))
+        })
     }
 
-    /// The tables of `key`, each under a name of the user's, with the place of their names; those that are none are left
-    /// out.
-    pub fn named_tables(&mut self, key: &'static str) -> Vec<(Spanned<String>, DeTable<'i>)> {
-        self.note(key, Needed::No, KeyPart::Named);
-        let path = self.path.inside(key, false);
-        let Some((_, value)) = self.take(key) else { return Vec::new() };
-        let wrong = format!("`{key}` must hold tables");
-        let DeValue::Table(tables) = value.get_ref() else {
-            self.error(value.span(), wrong, format!("start each with [{}.NAME]", path.dotted));
-            return Vec::new();
-        };
-        let mut named = Vec::new();
-        for (name, table) in tables {
-            match table.get_ref() {
-                DeValue::Table(table) => {
-                    named.push((Spanned::new(name.span(), name.get_ref().to_string()), table.clone()));
-                }
-                _ => self.error(name.span(), &wrong, format!("start each with [{}.NAME]", path.dotted)),
-            }
-        }
-        named
+    /// Whether the table states a key in place of `key`.
+    fn is_rivaled(&self, key: &str) -> bool {
+        let declared = KeyDeclaration::flattened(self.keys).find(|declared| declared.name == key);
+        declared.is_some_and(|key| key.rivals.iter().any(|rival| self.table.contains_key(*rival)))
     }
 
-    /// Adds keys, each unless it is there or `unless` says so.
-    pub fn add_keys(&mut self, keys: &DeTable<'i>, unless: impl Fn(&DeTable<'i>, &str) -> bool) {
-        let stated: DeTable<'i> = keys
-            .iter()
-            .filter(|(key, _)| {
-                !self.table.contains_key(key.get_ref().as_ref()) && !unless(&self.table, key.get_ref())
-            })
-            .map(|(key, value)| (key.clone(), value.clone()))
-            .collect();
-        self.table.extend(stated);
-    }
-
-    /// All tables `[[key]]`; those that are wrong are left out.
-    pub fn tables<T>(
-        &mut self,
-        key: &'static str,
-        decode: impl Fn(&mut TableReader<'_, 'i>) -> Option<T>,
-    ) -> Vec<T> {
-        let path = self.path.inside(key, true);
-        if self.sketch.is_some() {
-            let sketch = TableReader::sketch(self.report, path, &decode);
-            self.note(key, Needed::No, KeyPart::Tables(sketch));
-            return Vec::new();
-        }
-        let Some((name, value)) = self.take(key) else { return Vec::new() };
-        let span = value.span();
-        match value.into_inner() {
-            DeValue::Array(rows) if rows.len() > MAX_TABLES => {
-                let message =
-                    format!("{} {} tables are more than the {MAX_TABLES} allowed", rows.len(), path.title());
-                self.error(name.span(), message, "put them in a GeoJSON file and name it once with `file`");
-                Vec::new()
-            }
-            DeValue::Array(rows) => {
-                rows.into_iter().filter_map(|row| self.nested(row, path.clone(), &decode).flatten()).collect()
-            }
-            DeValue::Table(_) => {
-                let help = format!("write {} with double brackets: there may be several", path.title());
-                self.error(span, format!("`{key}` is a list of tables, not one table"), help);
-                Vec::new()
-            }
-            other => {
-                let message = format!("`{key}` must be a list of tables, but this is {}", kind_of(&other));
-                self.error(span, message, format!("start each with {}", path.title()));
-                Vec::new()
-            }
+    fn take_style(&mut self) {
+        if let Some(name) = self.stated(&STYLE_KEY, &STYLE_TYPE) {
+            self.style = self.context.take_style(&name);
         }
     }
 
-    fn take(
-        &mut self,
-        key: &'static str,
-    ) -> Option<(Spanned<std::borrow::Cow<'i, str>>, Spanned<DeValue<'i>>)> {
-        self.known.push(key);
-        self.table.remove_entry(key)
+    fn known(&self) -> Vec<&'static str> {
+        let style = (self.styling == Styling::Styled).then_some(STYLE_KEY.name);
+        style.into_iter().chain(KeyDeclaration::flattened(self.keys).map(|key| key.name)).collect()
     }
 
-    fn decode<T>(
-        &mut self,
-        key: &str,
-        value: &Spanned<DeValue<'i>>,
-        decode: impl FnOnce(KeyValue<'_, 'i>) -> Option<T>,
-    ) -> Option<Spanned<T>> {
-        decode(KeyValue { report: self.report, key, value, asked: None })
-            .map(|decoded| Spanned::new(value.span(), decoded))
+    /// The keys of the table and of its style that are not declared.
+    fn unknown(&self) -> Vec<TableEntry<'r>> {
+        let known = self.known();
+        let style = self.style.into_iter().flatten();
+        let style = style.filter(|(key, _)| !self.table.contains_key(key.get_ref().as_ref()));
+        let all = self.table.iter().chain(style);
+        all.filter(|(key, _)| !known.contains(&key.get_ref().as_ref())).collect()
     }
 
-    fn nested<T>(
-        &mut self,
-        value: Spanned<DeValue<'i>>,
-        path: Path,
-        decode: impl FnOnce(&mut TableReader<'_, 'i>) -> T,
-    ) -> Option<T> {
-        let span = value.span();
-        match value.into_inner() {
-            DeValue::Table(table) => Some(TableReader::read(self.report, table, path, span, decode)),
-            other => {
-                let message = format!("`{}` must be a table, but this is {}", path.dotted, kind_of(&other));
-                self.error(span, message, format!("start it with {}", path.title()));
-                None
-            }
-        }
-    }
-
-    /// Reports the keys that nobody asked for, and the keys that were needed and are not there unless a
-    /// misspelled one explains it.
+    /// Notes the unknown keys, and the missing ones unless an unknown one looks like one of them misspelled.
     fn finish(mut self) {
-        let mut explained = Vec::new();
-        for (key, _) in std::mem::take(&mut self.table) {
-            if self.report.is_full() {
+        let (known, mut misspelled) = (self.known(), Vec::new());
+        for (key, _) in self.unknown() {
+            if self.context.report.is_full() {
+                // Only counted: no thought is given to its wording.
                 self.error(key.span(), "", "");
                 continue;
             }
-            let meant = nearest(key.get_ref(), self.known.iter().copied());
-            explained.extend(meant);
-            let message = format!("unknown key `{}` in {}", quoted(key.get_ref()), self.title());
+            let meant = nearest(key.get_ref(), known.iter().copied());
+            misspelled.extend(meant);
+            let message = format!("unknown key `{}` in {}", quoted(key.get_ref()), self.name.title());
             let help = self.help_for_unknown(key.get_ref(), meant);
             self.error(key.span(), message, help);
         }
         for key in std::mem::take(&mut self.missing) {
-            if !explained.contains(&key) {
+            if !misspelled.contains(&key) {
                 self.report_missing(key);
             }
         }
     }
 
     fn help_for_unknown(&self, key: &str, meant: Option<&str>) -> String {
+        let at_the_top = Document::DECLARATIONS.iter().filter(|top| top.inner().is_empty());
         match meant {
             Some(meant) => format!("did you mean `{meant}`?"),
-            None if !self.path.dotted.is_empty() && TOP_KEYS.contains(&key) => {
+            None if !self.name.dotted.is_empty() && at_the_top.clone().any(|top| top.name == key) => {
                 format!("`{key}` belongs to the whole scene: write it at the top, before the first [table]")
             }
-            None => format!("{} knows {}", self.title(), listed(&self.known).replace(" or ", " and ")),
+            None => {
+                format!("{} knows {}", self.name.title(), listed(&self.known()).replace(" or ", " and "))
+            }
         }
     }
 
     fn report_missing(&mut self, key: &str) {
-        if self.path.dotted.is_empty() {
-            let message = format!("{} has no [{key}] table", self.title());
-            self.error(self.span(), message, format!("add a line [{key}] and the keys it needs below it"));
+        let title = self.name.title();
+        let (message, help) = if self.name.dotted.is_empty() {
+            (
+                format!("{title} has no [{key}] table"),
+                format!("add a line [{key}] and the keys it needs below it"),
+            )
         } else {
-            let message = format!("{} needs the key `{key}`", self.title());
-            self.error(self.span(), message, format!("add a line `{key} = ...` below it"));
+            (format!("{title} needs the key `{key}`"), format!("add a line `{key} = ...` below it"))
+        };
+        self.error(self.span.clone(), message, help);
+    }
+}
+
+impl KeyValue<'_, '_> {
+    /// A table.
+    pub fn table<T: Table<N>, const N: usize>(mut self) -> Option<T> {
+        let name = self.table.inner(self.key, false);
+        self.table_named(name, Styling::Plain)
+    }
+
+    /// A list of tables; those that are wrong are left out.
+    pub fn tables<T: Table>(mut self, styling: Styling) -> Option<Vec<T>> {
+        let name = self.table.inner(self.key, true);
+        let (key, title) = (self.key, name.title());
+        match self.value.get_ref() {
+            DeValue::Array(rows) if rows.len() > MAX_TABLES => {
+                let message = format!("{} {title} tables are more than the {MAX_TABLES} allowed", rows.len());
+                let help = "put them in a GeoJSON file and name it once with `file`";
+                self.context.report.error(self.key_span, message, help);
+                None
+            }
+            DeValue::Array(rows) => {
+                let row = |row| self.element(row).table_named(name.clone(), styling);
+                Some(rows.iter().filter_map(row).collect())
+            }
+            DeValue::Table(_) => {
+                let help = format!("write {title} with double brackets: there may be several");
+                self.wrong(format!("`{key}` is a list of tables, not one table"), help)
+            }
+            _ => self.wrong_type("a list of tables", format!("start each with {title}")),
         }
+    }
+
+    fn table_named<T: Table<N>, const N: usize>(&mut self, name: TableName, styling: Styling) -> Option<T> {
+        let DeValue::Table(table) = self.value.get_ref() else {
+            let found = type_name(self.value.get_ref());
+            let message = format!("`{}` must be a table, but this is {found}", name.dotted);
+            return self.wrong(message, format!("start it with {}", name.title()));
+        };
+        TableReader::read(self.context, table, (name, self.value.span()), styling)
     }
 }

@@ -8,100 +8,100 @@
 //! [[road]]
 //! style = "lane"
 //! file = "lanes.geojson"
-//! surface = "asphalt"      # what a table states itself counts
+//! surface = "asphalt"      # a key of the table counts before that of its style
 //! ```
 //!
-//! A style may hold any key of the tables that name it, and is judged where it is used: a key that the table does not
+//! A style may hold any key of the tables that name it, and is checked where it is used: a key that the table does not
 //! know is an error at the style's key. Of two keys that exclude each other, such as `width` and `widths`, the table's
-//! own counts, and the style's is passed over. A style names no other style.
+//! own counts ([`KeyDeclaration::rivals`]). A style names no other style.
 
-use std::cell::Cell;
 use std::collections::BTreeMap;
-use std::ops::Range;
 
-use toml::Spanned;
-use toml::de::DeTable;
+use toml::de::{DeTable, DeValue};
 
-use crate::description::reader::TableReader;
-use crate::description::suggest::{quoted, remedy};
+use crate::description::declaration::{KeyDeclaration, Presence};
+use crate::description::diagnostic::DiagnosticSink;
+use crate::description::key::{Key, filled_text};
+use crate::description::reader::DecodeContext;
+use crate::description::stated::Stated;
+use crate::description::value::KeyValue;
+use crate::message::suggest::{quoted, remedy};
 
-/// How many bytes of scene file all styles together may stand for, each counted as often as it is used: without a
-/// limit a long list in a style of ten thousand tables would fill the memory.
+/// The type of the key `style`.
+pub(super) const STYLE_TYPE: Key<String> = filled_text();
+
+/// The key `style` of every table that may name one.
+pub const STYLE_KEY: KeyDeclaration = KeyDeclaration {
+    name: "style",
+    doc: "Name of a style: the keys of `[styles.NAME]` that this table does not state count as its own.",
+    kind: STYLE_TYPE.kind,
+    unit: "",
+    presence: Presence::Otherwise("none"),
+    rivals: &[],
+};
+
+/// The most bytes of scene file that styles may add, each style counted as often as it is used: without a limit a long
+/// list in a style of ten thousand tables would fill the memory.
 const MAX_BYTES: usize = 16 << 20;
 
-/// Keys each of which makes the others say nothing.
-const RIVALS: [(&str, &[&str]); 8] = [
-    ("points", &["file", "layer", "where", "widths"]),
-    ("file", &["points", "widths"]),
-    ("width", &["widths"]),
-    ("widths", &["width"]),
-    ("level", &["level_rule"]),
-    ("level_rule", &["level"]),
-    ("at", &["instances"]),
-    ("instances", &["at", "crs"]),
-];
-
-/// A style's keys and how many bytes of scene file they take.
-struct NamedStyle<'i> {
-    keys: DeTable<'i>,
-    bytes: usize,
-}
-
 /// All styles of a scene, by name.
-pub(super) struct Styles<'i> {
-    styles: BTreeMap<String, NamedStyle<'i>>,
-    /// How many bytes may still be used.
-    left: Cell<usize>,
+pub(super) struct Styles<'t> {
+    styles: BTreeMap<&'t str, &'t DeTable<'t>>,
+    /// How many more bytes may be used.
+    bytes_left: usize,
 }
 
-impl<'i> Styles<'i> {
-    /// Those that the scene file holds.
-    pub fn read_all(reader: &mut TableReader<'_, 'i>) -> Self {
-        let mut styles = BTreeMap::new();
-        for (name, keys) in reader.named_tables("styles") {
-            if let Some((key, _)) = keys.get_key_value("style") {
-                let message = "a style cannot take keys of another one";
-                reader.error(key.span(), message, "state the keys themselves");
-                continue;
-            }
-            let bytes = keys.values().map(|value| value.span().len()).sum();
-            styles.insert(name.into_inner(), NamedStyle { keys, bytes });
+impl<'t> Styles<'t> {
+    /// The styles in the root table of a scene file; those that are wrong are noted and left out.
+    pub fn read(root: &'t DeTable<'t>, report: &mut DiagnosticSink) -> Self {
+        let (mut styles, help) = (BTreeMap::new(), "start each with [styles.NAME]");
+        let value = root.get("styles");
+        if let Some(value) = value.filter(|value| !value.get_ref().is_table()) {
+            report.error(value.span(), WRONG_STYLES, help);
         }
-        Self { styles, left: Cell::new(MAX_BYTES) }
-    }
-
-    /// All tables `[[key]]`, each with the keys of the style that it names.
-    pub fn read<T>(
-        &self,
-        reader: &mut TableReader<'_, 'i>,
-        key: &'static str,
-        decode: impl Fn(&mut TableReader<'_, 'i>) -> Option<T>,
-    ) -> Vec<T> {
-        reader.tables(key, |reader| {
-            if let Some(name) = reader.get("style", |item| item.filled_text()) {
-                self.put_on(reader, &name);
+        for (name, keys) in value.and_then(|value| value.get_ref().as_table()).into_iter().flatten() {
+            match keys.get_ref() {
+                DeValue::Table(keys) => match keys.get_key_value(STYLE_KEY.name) {
+                    Some((key, _)) => {
+                        let message = "a style cannot take keys of another one";
+                        report.error(key.span(), message, "state the keys themselves");
+                    }
+                    None => drop(styles.insert(name.get_ref().as_ref(), keys)),
+                },
+                _ => report.error(name.span(), WRONG_STYLES, help),
             }
-            decode(reader)
-        })
-    }
-
-    fn put_on(&self, reader: &mut TableReader<'_, 'i>, name: &Spanned<String>) {
-        let Some(style) = self.styles.get(name.get_ref()) else {
-            let (message, help) = self.unknown(name.get_ref());
-            return reader.error(name.span(), message, help);
-        };
-        match self.left.get().checked_sub(style.bytes) {
-            Some(left) => self.left.set(left),
-            None => return too_much(reader, name.span()),
         }
-        let excluded = |stated: &DeTable<'i>, key: &str| {
-            RIVALS.iter().any(|(own, others)| stated.contains_key(*own) && others.contains(&key))
-        };
-        reader.add_keys(&style.keys, excluded);
+        Self { styles, bytes_left: MAX_BYTES }
     }
+}
 
+const WRONG_STYLES: &str = "`styles` must hold tables";
+
+impl<'t> DecodeContext<'t> {
+    /// The keys of a style; `None` with an error noted where there is no such style, or styles add too much.
+    pub fn take_style(&mut self, name: &Stated<String>) -> Option<&'t DeTable<'t>> {
+        let span = name.span().unwrap_or_default();
+        let Some(&style) = self.styles.styles.get(name.as_str()) else {
+            let (message, help) = self.styles.unknown(name);
+            self.report.error(span, message, help);
+            return None;
+        };
+        let bytes: usize = style.values().map(|value| value.span().len()).sum();
+        match self.styles.bytes_left.checked_sub(bytes) {
+            Some(left) => self.styles.bytes_left = left,
+            None => {
+                let help = "put long lists of points in a vector file, and name it once with `file`";
+                self.report.error(span, format!("styles add more than {MAX_BYTES} bytes in all"), help);
+                return None;
+            }
+        }
+        Some(style)
+    }
+}
+
+impl Styles<'_> {
     fn unknown(&self, name: &str) -> (String, String) {
-        let names: Vec<&str> = self.styles.keys().map(String::as_str).take(20).collect();
+        let names: Vec<&str> = self.styles.keys().copied().take(20).collect();
         let help = match names[..] {
             [] => format!("add a table [styles.{}]", quoted(name)),
             _ => remedy(name, &names, "the styles are").replace(" or ", " and "),
@@ -110,7 +110,10 @@ impl<'i> Styles<'i> {
     }
 }
 
-fn too_much(reader: &mut TableReader<'_, '_>, place: Range<usize>) {
-    let message = format!("styles stand for more than {MAX_BYTES} bytes in all");
-    reader.error(place, message, "put long lists of points in a vector file, and name it once with `file`");
+impl KeyValue<'_, '_> {
+    /// The names of the styles; [`Styles::read`] checks them.
+    pub fn style_names(self) -> Option<Vec<String>> {
+        let styles = self.value.get_ref().as_table()?;
+        Some(styles.keys().map(|name| name.get_ref().to_string()).collect())
+    }
 }

@@ -1,345 +1,296 @@
-//! The words a scene file may choose from, as types.
+//! The words that a key may take, one enum a key.
+//!
+//! To add a word, add a variant with its documentation and its spelling: the decoder, the schema, the reference page and
+//! the messages read it from here.
+
+use std::fmt::Debug;
 
 /// A key's value that is one of a few words.
-pub trait Word: Copy + Sized + 'static {
-    /// Every word with what it means, in the order in which messages list them.
-    const ALL: &'static [(&'static str, Self)];
+pub trait Word: Copy + Debug + PartialEq + 'static {
+    /// Every value, in the order in which messages list them.
+    const ALL: &'static [Self];
+    /// What is declared of each value, in the same order.
+    const DECLARATIONS: &'static [WordDeclaration];
+
+    /// The value that a scene file writes as `word`.
+    fn from_word(word: &str) -> Option<Self> {
+        let place = Self::DECLARATIONS.iter().position(|declared| declared.word == word)?;
+        Self::ALL.get(place).copied()
+    }
+
+    /// The word that a scene file writes for it.
+    fn word(self) -> &'static str {
+        let place = Self::ALL.iter().position(|value| *value == self);
+        place.map_or("", |place| Self::DECLARATIONS[place].word)
+    }
 }
 
-/// What a road is made of.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum RoadSurface {
-    /// `asphalt`: paved.
-    #[default]
-    Asphalt,
-    /// `gravel`: a made road without a seal.
-    Gravel,
-    /// `track`: worn, not made.
-    Track,
+/// A word and its meaning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WordDeclaration {
+    /// The word as a scene file writes it.
+    pub word: &'static str,
+    /// What it means.
+    pub doc: &'static str,
 }
 
-impl Word for RoadSurface {
-    const ALL: &'static [(&'static str, Self)] =
-        &[("asphalt", Self::Asphalt), ("gravel", Self::Gravel), ("track", Self::Track)];
+/// Declares an enum of words: `/// Doc.`, `Variant = "word"`.
+macro_rules! words {
+    ($(#[$attribute:meta])* $name:ident {
+        $(#[doc = $doc:literal] $(#[$variant_attribute:meta])* $variant:ident = $word:literal,)+
+    }) => {
+        $(#[$attribute])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum $name {
+            $(#[doc = concat!("`", $word, "`:", $doc)] $(#[$variant_attribute])* $variant,)+
+        }
+
+        impl Word for $name {
+            const ALL: &'static [Self] = &[$(Self::$variant),+];
+            const DECLARATIONS: &'static [WordDeclaration] =
+                &[$(WordDeclaration { word: $word, doc: $doc.trim_ascii() }),+];
+        }
+    };
 }
 
-/// How a model's height is found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Clamp {
-    /// `ground`: its lowest point stands on the ground.
-    #[default]
-    Ground,
-    /// `relative`: its origin is `height` meters above the ground.
-    Relative,
-    /// `absolute`: its origin is at elevation `height`.
-    Absolute,
+words! {
+    /// The paving of a road.
+    RoadSurface {
+        /// paved
+        Asphalt = "asphalt",
+        /// a made road without a seal
+        Gravel = "gravel",
+        /// worn, not made
+        Track = "track",
+    }
 }
 
-impl Word for Clamp {
-    const ALL: &'static [(&'static str, Self)] =
-        &[("ground", Self::Ground), ("relative", Self::Relative), ("absolute", Self::Absolute)];
+words! {
+    /// How the height of a model is found.
+    #[derive(Default)]
+    Clamp {
+        /// its lowest point stands on the ground; of a built-in model, its origin
+        #[default]
+        Ground = "ground",
+        /// its origin is `height` above the ground
+        Relative = "relative",
+        /// its origin is at elevation `height`
+        Absolute = "absolute",
+    }
 }
 
-/// What a label names; decides its type and symbol.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum LabelKind {
-    /// `summit`.
-    Summit,
-    /// `place`: a town, a farm.
-    #[default]
-    Place,
-    /// `water`: a river or lake.
-    Water,
-    /// `point`: anything else.
-    Point,
+words! {
+    /// What a label names; decides its type and its symbol.
+    LabelKind {
+        /// a summit
+        Summit = "summit",
+        /// a town or a farm
+        Place = "place",
+        /// a river or a lake
+        Water = "water",
+        /// anything else
+        Point = "point",
+    }
 }
 
-impl Word for LabelKind {
-    const ALL: &'static [(&'static str, Self)] =
-        &[("summit", Self::Summit), ("place", Self::Place), ("water", Self::Water), ("point", Self::Point)];
+words! {
+    /// A built-in color ramp, stretched from the lowest to the highest ground.
+    RampName {
+        /// green lowland over yellow and brown to white
+        Atlas = "atlas",
+        /// sand over red rock
+        Desert = "desert",
+        /// dark to light
+        Gray = "gray",
+    }
 }
 
-/// A built-in color ramp.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum RampName {
-    /// `atlas`: green lowland over yellow and brown to white.
-    #[default]
-    Atlas,
-    /// `desert`: sand over red rock.
-    Desert,
-    /// `gray`: dark to light.
-    Gray,
+words! {
+    /// How the colors of a PNG encode heights.
+    HeightEncodingWord {
+        /// Mapbox Terrain-RGB
+        TerrainRgb = "terrain-rgb",
+        /// Mapzen Terrarium
+        Terrarium = "terrarium",
+    }
 }
 
-impl Word for RampName {
-    const ALL: &'static [(&'static str, Self)] =
-        &[("atlas", Self::Atlas), ("desert", Self::Desert), ("gray", Self::Gray)];
+words! {
+    /// How two segments of a road meet.
+    Join {
+        /// both edges run on until they meet
+        Miter = "miter",
+        /// the outer corner is cut off
+        Bevel = "bevel",
+        /// the outer corner is an arc
+        Round = "round",
+    }
 }
 
-/// What the colors of a PNG mean in meters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum HeightEncodingWord {
-    /// `terrain-rgb`: Mapbox's.
-    TerrainRgb,
-    /// `terrarium`: Mapzen's.
-    Terrarium,
+words! {
+    /// The lines on asphalt.
+    Markings {
+        /// edge lines and a dashed center line
+        Dashed = "dashed",
+        /// edge lines and a solid center line
+        Solid = "solid",
+        /// edge lines only
+        Edges = "edges",
+        /// no lines
+        None = "none",
+    }
 }
 
-impl Word for HeightEncodingWord {
-    const ALL: &'static [(&'static str, Self)] =
-        &[("terrain-rgb", Self::TerrainRgb), ("terrarium", Self::Terrarium)];
+words! {
+    /// Which of road and ground follows the other.
+    ProfileMode {
+        /// the road follows the ground
+        Drape = "drape",
+        /// the ground follows the road
+        Conform = "conform",
+    }
 }
 
-/// How two segments of a road meet.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Join {
-    /// `miter`: both edges go on until they meet.
-    #[default]
-    Miter,
-    /// `bevel`: the outer corner is cut off.
-    Bevel,
-    /// `round`: the outer corner is an arc.
-    Round,
+words! {
+    /// Where a river's water lies.
+    Water {
+        /// its level never rises downstream, and the ground is cut to it
+        Falls = "falls",
+        /// on the ground as it is
+        Drape = "drape",
+    }
 }
 
-impl Word for Join {
-    const ALL: &'static [(&'static str, Self)] =
-        &[("miter", Self::Miter), ("bevel", Self::Bevel), ("round", Self::Round)];
+words! {
+    /// Which height of the ground along its shore is a lake's level.
+    LevelRule {
+        /// the lowest
+        Lowest = "lowest",
+        /// the median
+        Median = "median",
+        /// the mean
+        Mean = "mean",
+    }
 }
 
-/// The lines on a paved road.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Markings {
-    /// `dashed`: edge lines and a dashed center line.
-    #[default]
-    Dashed,
-    /// `solid`: edge lines and a solid center line.
-    Solid,
-    /// `edges`: edge lines only.
-    Edges,
-    /// `none`: no lines.
-    None,
+words! {
+    /// What covers an area.
+    Cover {
+        /// trees
+        Forest = "forest",
+        /// bushes
+        Scrub = "scrub",
+        /// grass
+        Meadow = "meadow",
+        /// crops in rows
+        Field = "field",
+        /// fruit trees or vines in rows
+        Orchard = "orchard",
+        /// marsh
+        Wetland = "wetland",
+        /// sand or beach
+        Sand = "sand",
+        /// bare rock
+        Rock = "rock",
+        /// houses and yards
+        BuiltUp = "built-up",
+        /// halls and yards
+        Industry = "industry",
+        /// closed ground, hatched
+        Restricted = "restricted",
+    }
 }
 
-impl Word for Markings {
-    const ALL: &'static [(&'static str, Self)] =
-        &[("dashed", Self::Dashed), ("solid", Self::Solid), ("edges", Self::Edges), ("none", Self::None)];
+words! {
+    /// The line along an area's outline.
+    Border {
+        /// no line
+        None = "none",
+        /// an unbroken line
+        Solid = "solid",
+        /// dashes
+        Dashed = "dashed",
+    }
 }
 
-/// Which of road and ground follows the other.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum ProfileMode {
-    /// `drape`: the road follows the ground.
-    #[default]
-    Drape,
-    /// `conform`: the ground follows the road.
-    Conform,
+words! {
+    /// The height of the ground under its footprint at which a building stands.
+    BaseRule {
+        /// the lowest
+        Lowest = "lowest",
+        /// the mean
+        Mean = "mean",
+        /// the highest
+        Highest = "highest",
+        /// the mean, to which the ground is leveled
+        Pad = "pad",
+    }
 }
 
-impl Word for ProfileMode {
-    const ALL: &'static [(&'static str, Self)] = &[("drape", Self::Drape), ("conform", Self::Conform)];
+words! {
+    /// The shape of a roof.
+    #[derive(Default)]
+    RoofShape {
+        /// level
+        #[default]
+        Flat = "flat",
+        /// two slopes and two gables
+        Gabled = "gabled",
+        /// four slopes
+        Hipped = "hipped",
+        /// slopes that meet in one point
+        Pyramidal = "pyramidal",
+    }
 }
 
-/// Where a river's water lies.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Water {
-    /// `falls`: its level never rises downstream, and the ground is cut to it.
-    #[default]
-    Falls,
-    /// `drape`: it lies on the ground as it is.
-    Drape,
+words! {
+    /// What stands or runs along a line.
+    #[derive(Default)]
+    FenceKind {
+        /// posts and rails
+        #[default]
+        Fence = "fence",
+        /// masonry
+        Wall = "wall",
+        /// a row of bushes
+        Hedge = "hedge",
+        /// pylons and sagging wires
+        PowerLine = "power-line",
+        /// a trench with a parapet
+        Trench = "trench",
+        /// a belt of obstacles
+        Obstacles = "obstacles",
+        /// a dashed line on the ground
+        Boundary = "boundary",
+    }
 }
 
-impl Word for Water {
-    const ALL: &'static [(&'static str, Self)] = &[("falls", Self::Falls), ("drape", Self::Drape)];
+words! {
+    /// The height of the ground that a model stands on.
+    #[derive(Default)]
+    Anchor {
+        /// that under its origin
+        #[default]
+        Origin = "origin",
+        /// the lowest under its footprint
+        Lowest = "lowest",
+        /// the highest under its footprint
+        Highest = "highest",
+        /// the mean under its footprint
+        Mean = "mean",
+    }
 }
 
-/// Which height along its shore is a lake's level.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum LevelRule {
-    /// `lowest`: the lowest.
-    #[default]
-    Lowest,
-    /// `median`: the middle one.
-    Median,
-    /// `mean`: the mean.
-    Mean,
-}
-
-impl Word for LevelRule {
-    const ALL: &'static [(&'static str, Self)] =
-        &[("lowest", Self::Lowest), ("median", Self::Median), ("mean", Self::Mean)];
-}
-
-/// What an area is covered with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Cover {
-    /// `forest`: trees.
-    Forest,
-    /// `scrub`: bushes.
-    Scrub,
-    /// `meadow`: grass.
-    Meadow,
-    /// `field`: crops in rows.
-    Field,
-    /// `orchard`: fruit trees or vines in rows.
-    Orchard,
-    /// `wetland`: marsh.
-    Wetland,
-    /// `sand`: sand or beach.
-    Sand,
-    /// `rock`: bare rock.
-    Rock,
-    /// `built-up`: houses and yards.
-    BuiltUp,
-    /// `industry`: halls and yards.
-    Industry,
-    /// `restricted`: hatched: what may not be entered.
-    Restricted,
-}
-
-impl Word for Cover {
-    const ALL: &'static [(&'static str, Self)] = &[
-        ("forest", Self::Forest),
-        ("scrub", Self::Scrub),
-        ("meadow", Self::Meadow),
-        ("field", Self::Field),
-        ("orchard", Self::Orchard),
-        ("wetland", Self::Wetland),
-        ("sand", Self::Sand),
-        ("rock", Self::Rock),
-        ("built-up", Self::BuiltUp),
-        ("industry", Self::Industry),
-        ("restricted", Self::Restricted),
-    ];
-}
-
-/// The line along an area's outline.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Border {
-    /// `none`: no line.
-    None,
-    /// `solid`: an unbroken line.
-    Solid,
-    /// `dashed`: dashes.
-    Dashed,
-}
-
-impl Word for Border {
-    const ALL: &'static [(&'static str, Self)] =
-        &[("none", Self::None), ("solid", Self::Solid), ("dashed", Self::Dashed)];
-}
-
-/// Which ground a building stands on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum BaseRule {
-    /// `lowest`: the lowest under its footprint.
-    #[default]
-    Lowest,
-    /// `mean`: the mean under its footprint.
-    Mean,
-    /// `highest`: the highest under its footprint.
-    Highest,
-    /// `pad`: the ground is leveled to its mean.
-    Pad,
-}
-
-impl Word for BaseRule {
-    const ALL: &'static [(&'static str, Self)] =
-        &[("lowest", Self::Lowest), ("mean", Self::Mean), ("highest", Self::Highest), ("pad", Self::Pad)];
-}
-
-/// The shape of a roof.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum RoofShape {
-    /// `flat`: level.
-    #[default]
-    Flat,
-    /// `gabled`: two slopes and two gables.
-    Gabled,
-    /// `hipped`: four slopes.
-    Hipped,
-    /// `pyramidal`: slopes that meet in one point.
-    Pyramidal,
-}
-
-impl Word for RoofShape {
-    const ALL: &'static [(&'static str, Self)] = &[
-        ("flat", Self::Flat),
-        ("gabled", Self::Gabled),
-        ("hipped", Self::Hipped),
-        ("pyramidal", Self::Pyramidal),
-    ];
-}
-
-/// What stands or runs along a line.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum FenceKind {
-    /// `fence`: posts and rails.
-    #[default]
-    Fence,
-    /// `wall`: masonry.
-    Wall,
-    /// `hedge`: a row of bushes.
-    Hedge,
-    /// `power-line`: pylons and sagging wires.
-    PowerLine,
-    /// `trench`: a trench with a parapet.
-    Trench,
-    /// `obstacles`: a belt of obstacles.
-    Obstacles,
-    /// `boundary`: a dashed line on the ground.
-    Boundary,
-}
-
-impl Word for FenceKind {
-    const ALL: &'static [(&'static str, Self)] = &[
-        ("fence", Self::Fence),
-        ("wall", Self::Wall),
-        ("hedge", Self::Hedge),
-        ("power-line", Self::PowerLine),
-        ("trench", Self::Trench),
-        ("obstacles", Self::Obstacles),
-        ("boundary", Self::Boundary),
-    ];
-}
-
-/// Which ground counts as the ground a model stands on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Anchor {
-    /// `origin`: that under its origin.
-    #[default]
-    Origin,
-    /// `lowest`: the lowest under its footprint.
-    Lowest,
-    /// `highest`: the highest under its footprint.
-    Highest,
-    /// `mean`: the mean under its footprint.
-    Mean,
-}
-
-impl Word for Anchor {
-    const ALL: &'static [(&'static str, Self)] = &[
-        ("origin", Self::Origin),
-        ("lowest", Self::Lowest),
-        ("highest", Self::Highest),
-        ("mean", Self::Mean),
-    ];
-}
-
-/// What fills the gap between a model and the ground.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Footing {
-    /// `none`: nothing.
-    #[default]
-    None,
-    /// `plinth`: a block down to the ground.
-    Plinth,
-    /// `pad`: the ground is leveled.
-    Pad,
-}
-
-impl Word for Footing {
-    const ALL: &'static [(&'static str, Self)] =
-        &[("none", Self::None), ("plinth", Self::Plinth), ("pad", Self::Pad)];
+words! {
+    /// What fills the gap between a model and the ground.
+    #[derive(Default)]
+    Footing {
+        /// nothing
+        #[default]
+        None = "none",
+        /// a block down to the ground
+        Plinth = "plinth",
+        /// the ground is leveled
+        Pad = "pad",
+    }
 }

@@ -1,6 +1,8 @@
 //! Colors: 8-bit sRGB as authored, linear light for arithmetic.
 //!
-//! Both conversions go through tables or `libm`, so that a color is the same number on every platform.
+//! Both conversions use tables or `libm`, so that a color is the same number on every platform.
+
+use std::sync::LazyLock;
 
 use glam::Vec3;
 
@@ -31,13 +33,14 @@ impl Srgba {
 
     /// The opaque color nearest to `linear` light; values outside 0..=1 are clamped.
     pub fn from_linear(linear: Vec3) -> Self {
-        Self::opaque(srgb_from_linear(linear.x), srgb_from_linear(linear.y), srgb_from_linear(linear.z))
+        let [red, green, blue] = linear.to_array().map(srgb_from_linear);
+        Self::opaque(red, green, blue)
     }
 }
 
-/// One sRGB channel to linear light in 0..=1 (IEC 61966-2-1).
+/// One sRGB channel in linear light, 0..=1 (IEC 61966-2-1).
 pub fn linear_from_srgb(channel: u8) -> f32 {
-    static TABLE: std::sync::LazyLock<[f32; 256]> = std::sync::LazyLock::new(|| {
+    static TABLE: LazyLock<[f32; 256]> = LazyLock::new(|| {
         std::array::from_fn(|channel| {
             let value = channel as f32 / 255.0;
             if value <= 0.04045 { value / 12.92 } else { libm::powf((value + 0.055) / 1.055, 2.4) }
@@ -46,25 +49,24 @@ pub fn linear_from_srgb(channel: u8) -> f32 {
     TABLE[usize::from(channel)]
 }
 
-/// Linear light to the nearest sRGB channel value (IEC 61966-2-1); clamps to 0..=1, NaN gives 0.
+/// The sRGB channel value nearest to linear `light` (IEC 61966-2-1); clamps to 0..=1, NaN gives 0.
 ///
-/// Looks up a table of 4096 steps on the square root of the light, whose rounding stays within one step of
-/// the exact conversion.
+/// Looks up a table of 4096 steps on the square root of the light. Its rounding stays within one step of the exact
+/// conversion.
 pub fn srgb_from_linear(light: f32) -> u8 {
     const STEPS: f32 = 4095.0;
-    static TABLE: std::sync::LazyLock<Vec<u8>> = std::sync::LazyLock::new(|| {
-        (0..=STEPS as usize)
-            .map(|step| {
-                let root = step as f32 / STEPS;
-                let light = root * root;
-                let value = if light <= 0.003_130_8 {
-                    light * 12.92
-                } else {
-                    1.055 * libm::powf(light, 1.0 / 2.4) - 0.055
-                };
-                (value * 255.0 + 0.5) as u8
-            })
-            .collect()
+    static TABLE: LazyLock<Vec<u8>> = LazyLock::new(|| {
+        let channel = |step: usize| {
+            let root = step as f32 / STEPS;
+            let light = root * root;
+            let value = if light <= 0.003_130_8 {
+                light * 12.92
+            } else {
+                1.055 * libm::powf(light, 1.0 / 2.4) - 0.055
+            };
+            (value * 255.0 + 0.5) as u8
+        };
+        (0..=STEPS as usize).map(channel).collect()
     });
     let root = light.clamp(0.0, 1.0).sqrt();
     TABLE[(root * STEPS + 0.5) as usize]

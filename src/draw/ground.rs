@@ -1,13 +1,13 @@
-//! The ground as a map: heights, slopes and light per post, and how they are colored.
+//! The ground as a map: heights, slopes and light per post, and the colors they are drawn in.
 //!
-//! The mesh that is drawn may be coarse; color, contours and shading are taken from here at every pixel,
-//! so the picture shows the elevation model and not the triangles.
+//! The drawn mesh may be coarse. Color, contours and shading are read from this map at every pixel, so that the
+//! picture shows the elevation model and not the triangles.
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 use crate::draw::color::Srgba;
 
-/// What the ground looks like, sampled at the posts of a regular grid; row 0 is the southernmost.
+/// The look of the ground at the posts of a regular grid; row 0 is the southernmost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundMap {
     /// World X and Y of the south-west post, in meters.
@@ -18,7 +18,7 @@ pub struct GroundMap {
     pub columns: u32,
     /// Rows of posts.
     pub rows: u32,
-    /// One entry a post, row by row from the south-west.
+    /// One entry per post, row by row from the south-west.
     pub posts: Vec<GroundPost>,
     /// Color by height.
     pub ramp: ColorRamp,
@@ -42,10 +42,10 @@ pub struct GroundPost {
     pub sky_visibility: f32,
 }
 
-/// Colors at rising heights, blended linearly in linear light between them.
+/// Colors at rising heights, interpolated in linear light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorRamp {
-    stops: Vec<(f32, Srgba)>,
+    stops: Vec<(f32, Vec3)>,
 }
 
 impl ColorRamp {
@@ -55,64 +55,63 @@ impl ColorRamp {
     pub fn new(stops: Vec<(f32, Srgba)>) -> Option<Self> {
         let finite = stops.iter().all(|(height, _)| height.is_finite());
         let rising = stops.windows(2).all(|pair| pair[0].0 < pair[1].0);
-        (!stops.is_empty() && finite && rising).then_some(Self { stops })
+        let linear = stops.into_iter().map(|(height, color)| (height, color.linear()));
+        let ramp = Self { stops: linear.collect() };
+        (!ramp.stops.is_empty() && finite && rising).then_some(ramp)
     }
 
-    /// The stops, rising.
-    pub fn stops(&self) -> &[(f32, Srgba)] {
+    /// Rising heights in meters with their colors in linear light.
+    pub fn stops(&self) -> &[(f32, Vec3)] {
         &self.stops
     }
 
     /// The ramp as `steps` colors in linear light, evenly spaced from the lowest to the highest stop.
-    pub fn table(&self, steps: usize) -> Vec<glam::Vec3> {
-        let (low, high) = self.range();
-        (0..steps)
-            .map(|step| self.linear_at(low + (high - low) * step as f32 / (steps - 1).max(1) as f32))
-            .collect()
+    pub fn table(&self, steps: usize) -> Vec<Vec3> {
+        let (low, high) = self.height_range();
+        let height = |step: usize| low + (high - low) * step as f32 / (steps - 1).max(1) as f32;
+        (0..steps).map(|step| self.linear_at(height(step))).collect()
     }
 
-    /// The lowest and the highest stop's heights.
-    pub fn range(&self) -> (f32, f32) {
+    /// The heights of the lowest and the highest stop.
+    pub fn height_range(&self) -> (f32, f32) {
         (self.stops[0].0, self.stops[self.stops.len() - 1].0)
     }
 
-    /// The color at `height_m` in linear light; the end colors beyond the ends.
-    pub fn linear_at(&self, height_m: f32) -> glam::Vec3 {
+    /// The color at `height_m` in linear light; beyond the ends the color of the end.
+    pub fn linear_at(&self, height_m: f32) -> Vec3 {
         let above = self.stops.partition_point(|stop| stop.0 <= height_m);
-        match (above.checked_sub(1).map(|below| self.stops[below]), self.stops.get(above)) {
-            (Some((low, from)), Some(&(high, to))) => {
-                from.linear().lerp(to.linear(), (height_m - low) / (high - low))
-            }
-            (Some((_, last)), None) => last.linear(),
-            (None, _) => self.stops[0].1.linear(),
+        let (low, below) = self.stops[above.saturating_sub(1)];
+        match self.stops.get(above) {
+            Some(&(high, color)) if above > 0 => below.lerp(color, (height_m - low) / (high - low)),
+            _ => below,
         }
     }
 }
 
-/// Contour lines, drawn at a constant width on the picture.
+/// Contour lines of constant width on the picture.
 ///
 /// At a pixel, `w` is the change of height across one pixel, `sqrt((∂h/∂x)² + (∂h/∂y)²)` on the screen. A line
-/// covers `clamp(width / 2 + 0.5 − |h − nearest line| / w, 0, 1)` of it and is faded by `f(spacing)` with
-/// `f(s) = clamp((s / w − 4) / 6, 0, 1)`, so that lines vanish before they run together: `spacing` is the
-/// interval for ordinary lines and the interval × `major_every` for heavier ones, which outlast them. Ordinary
-/// lines are `width_px` wide, heavier ones `width_px · (1 + f(interval))`.
+/// covers `clamp(width / 2 + 0.5 − |h − nearest line| / w, 0, 1)` of the pixel and is faded by `f(spacing)` with
+/// `f(s) = clamp((s / w − 4) / 6, 0, 1)`, so that lines vanish before they run together. `spacing` is the interval
+/// for ordinary lines and the interval × `major_every` for heavy ones, which vanish later. Ordinary lines are
+/// `width_px` wide, heavy ones `width_px · (1 + f(interval))`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contours {
     /// Height between lines, in meters.
     pub interval_m: f32,
-    /// Every how many lines one is drawn heavier; 1 makes all heavy.
+    /// Every how many lines one is heavy; 1 makes all heavy.
     pub major_every: u32,
     /// The color, with alpha as strength.
     pub color: Srgba,
-    /// Width of an ordinary line in pixels; heavier ones are twice as wide where ordinary ones show.
+    /// Width of an ordinary line in pixels.
     pub width_px: f32,
 }
 
 impl Contours {
-    /// How much of a pixel a contour covers, 0..=1, faded: the formula above for ground at `height_m` that changes by
-    /// `change_m` across the pixel.
+    /// The share of a pixel that a contour covers, 0..=1, faded: the formula above for ground at `height_m` whose
+    /// height changes by `change_m` across the pixel.
     ///
-    /// Ground that is level over the pixel has none: a lake at the very height of a line is no line.
+    /// 0 where the ground is level over the pixel: a lake at the height of a line is no line.
     pub fn strength(&self, height_m: f32, change_m: f32) -> f32 {
         let interval = self.interval_m;
         if !(interval > 0.0 && change_m > interval * 1e-6) {
@@ -132,29 +131,36 @@ impl Contours {
     }
 }
 
+/// Why a ground map cannot be rendered.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum GroundMapError {
+    /// The number of posts is 0, or not columns × rows.
+    #[error("the ground map of {0}×{1} posts holds {2}")]
+    PostCount(u32, u32, usize),
+    /// The cell is not positive and finite, or the origin is not finite.
+    #[error("the ground map has cells of {0} m from {1}")]
+    Grid(Vec2, Vec2),
+}
+
 impl GroundMap {
-    /// Whether there is a post for every place and distances are those of a grid: what a renderer relies on.
+    /// Checks what a renderer relies on: one entry per post, positive finite cells, a finite origin.
     ///
     /// # Errors
-    /// A sentence that names the first thing out of place.
-    pub fn check(&self) -> Result<(), String> {
+    /// The first [`GroundMapError`] found.
+    pub fn check(&self) -> Result<(), GroundMapError> {
         let posts = u64::from(self.columns) * u64::from(self.rows);
         if posts == 0 || posts != self.posts.len() as u64 {
-            let (columns, rows, held) = (self.columns, self.rows, self.posts.len());
-            return Err(format!("the ground map of {columns}×{rows} posts holds {held}"));
+            return Err(GroundMapError::PostCount(self.columns, self.rows, self.posts.len()));
         }
-        // Renderers count in posts per meter.
-        let sound = self.cell.min_element() > 0.0
+        // Renderers divide by the cell.
+        let is_grid = self.cell.min_element() > 0.0
             && self.cell.recip().is_finite()
             && self.cell.is_finite()
             && self.origin.is_finite();
-        match sound {
-            true => Ok(()),
-            false => Err(format!("the ground map has cells of {} m from {}", self.cell, self.origin)),
-        }
+        if is_grid { Ok(()) } else { Err(GroundMapError::Grid(self.cell, self.origin)) }
     }
 
-    /// The map at world position `at`, bilinear between posts; positions outside take the border's value.
+    /// The map at world position `at`, bilinear between posts; outside the map, the value at its border.
     pub fn sample(&self, at: Vec2) -> GroundPost {
         let last = Vec2::new((self.columns - 1) as f32, (self.rows - 1) as f32);
         let grid = ((at - self.origin) / self.cell).clamp(Vec2::ZERO, last);
@@ -172,20 +178,19 @@ impl GroundMap {
 }
 
 impl GroundPost {
-    fn lerp(&self, other: &Self, t: f32) -> Self {
-        let mix = |a: f32, b: f32| a + (b - a) * t;
-        Self {
-            height_m: mix(self.height_m, other.height_m),
-            slope_east: mix(self.slope_east, other.slope_east),
-            slope_north: mix(self.slope_north, other.slope_north),
-            sun_visibility: mix(self.sun_visibility, other.sun_visibility),
-            sky_visibility: mix(self.sky_visibility, other.sky_visibility),
-        }
+    /// Combines each value with the same value of `other`.
+    pub fn zip_with(&self, other: &Self, combine: impl Fn(f32, f32) -> f32) -> Self {
+        let [own, other]: [[f32; 5]; 2] = [bytemuck::cast(*self), bytemuck::cast(*other)];
+        bytemuck::cast::<[f32; 5], _>(std::array::from_fn(|index| combine(own[index], other[index])))
+    }
+
+    fn lerp(&self, other: &Self, share: f32) -> Self {
+        self.zip_with(other, |a, b| a + (b - a) * share)
     }
 
     /// The upward unit normal.
-    pub fn normal(&self) -> glam::Vec3 {
-        glam::Vec3::new(-self.slope_east, -self.slope_north, 1.0).normalize()
+    pub fn normal(&self) -> Vec3 {
+        Vec3::new(-self.slope_east, -self.slope_north, 1.0).normalize()
     }
 }
 
@@ -194,7 +199,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn maps_that_cannot_be_read_are_named() {
+    fn unsound_maps_are_refused_with_the_reason() {
         let map = GroundMap {
             origin: Vec2::new(-30.0, 70.0),
             cell: Vec2::new(2.0, 5.0),
@@ -204,7 +209,7 @@ mod tests {
             ramp: ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
             contours: None,
         };
-        let fault = |map: GroundMap| map.check().expect_err("unsound");
+        let fault = |map: GroundMap| map.check().expect_err("unsound").to_string();
         assert_eq!(map.check(), Ok(()));
         assert_eq!(fault(GroundMap { columns: 9, ..map.clone() }), "the ground map of 9×2 posts holds 6");
         assert!(fault(GroundMap { columns: 0, posts: Vec::new(), ..map.clone() }).ends_with("holds 0"));

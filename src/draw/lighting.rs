@@ -1,7 +1,7 @@
 //! Light, haze and sky: one formula for both renderers.
 //!
-//! With albedo `a`, unit normal `n`, sun visibility `s` and sky visibility `v` (both 1 where nothing
-//! stands in the way), a surface point shows
+//! A surface point with albedo `a`, unit normal `n`, sun visibility `s` and sky visibility `v` (both 1 where nothing
+//! is in the way) shows
 //! `lit = a · (s · sun · max(n·to_sun, 0) + v · mix(bounce, sky, (n.z + 1) / 2))` and, `d` meters from the
 //! eye, `mix(lit, haze.color, 1 − exp(−d / haze.distance_m))`. Where nothing is drawn, a ray with unit
 //! direction `r` shows `mix(haze.color, zenith, sqrt(max(r.z, 0)))`.
@@ -30,12 +30,12 @@ pub struct Lighting {
 pub struct Haze {
     /// The color of the horizon, linear.
     pub color: Vec3,
-    /// The distance in meters at which 63 % of what is seen is haze; infinite for clear air.
+    /// The distance in meters at which 63 % of the color is haze; infinite for clear air.
     pub distance_m: f32,
 }
 
 impl Default for Lighting {
-    /// The cartographer's light: from the north-west, 45° high, on a clear day.
+    /// The cartographic convention: light from the north-west, 45° high, on a clear day.
     fn default() -> Self {
         Self {
             to_sun: Vec3::new(-0.5, 0.5, std::f32::consts::FRAC_1_SQRT_2),
@@ -49,21 +49,21 @@ impl Default for Lighting {
 }
 
 impl Lighting {
-    /// The light a surface point returns to the eye before haze; see the module's formula.
-    pub fn lit(&self, albedo: Vec3, normal: Vec3, sun_visibility: f32, sky_visibility: f32) -> Vec3 {
+    /// The light that a surface point returns, before haze; see the module's formula.
+    pub fn shade(&self, albedo: Vec3, normal: Vec3, sun_visibility: f32, sky_visibility: f32) -> Vec3 {
         let direct = self.sun * (normal.dot(self.to_sun).max(0.0) * sun_visibility);
         let ambient = self.bounce.lerp(self.sky, normal.z * 0.5 + 0.5) * sky_visibility;
         albedo * (direct + ambient)
     }
 
     /// `color` as seen through `distance_m` meters of air.
-    pub fn hazed(&self, color: Vec3, distance_m: f32) -> Vec3 {
+    pub fn add_haze(&self, color: Vec3, distance_m: f32) -> Vec3 {
         let clear = libm::expf(-distance_m / self.haze.distance_m);
         self.haze.color.lerp(color, clear)
     }
 
-    /// The sky in direction `ray`, which need not be of unit length.
-    pub fn sky_at(&self, ray: Vec3) -> Vec3 {
+    /// The color of the sky in direction `ray`, which need not be of unit length.
+    pub fn sky_color(&self, ray: Vec3) -> Vec3 {
         let rise = ray.normalize_or_zero().z.max(0.0).sqrt();
         self.haze.color.lerp(self.zenith, rise)
     }

@@ -1,11 +1,10 @@
 //! The draw list: everything a picture shows, in drawing order.
 //!
 //! # Instances
-//! One item stands for one thing in one place, however many there are alike: a hundred thousand trees are a hundred
-//! thousand items of some hundred bytes. What is alike is told by what items say, not by a table beside them: items
-//! that follow each other and differ in nothing but place and feature make a *run* ([`DrawList::runs`]). Whoever gains
-//! by it takes a run at once, as the GPU renderer draws it with one call and an exporter can write one mesh with many
-//! nodes; whoever does not takes item by item and gets the same.
+//! One item is one object at one place: a hundred thousand trees are a hundred thousand items of some hundred bytes.
+//! Consecutive items that differ only in placement and feature form a *run* ([`DrawList::runs`]). The GPU renderer
+//! draws a run with one call, and an exporter can write it as one mesh with many nodes. Drawing item by item gives the
+//! same picture.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -13,7 +12,7 @@ use std::sync::Arc;
 use glam::Mat4;
 
 use crate::draw::color::Srgba;
-use crate::draw::ground::GroundMap;
+use crate::draw::ground::{GroundMap, GroundMapError};
 use crate::draw::lighting::Lighting;
 use crate::draw::material::{Material, TextureId};
 use crate::draw::pixels::Pixels;
@@ -27,7 +26,7 @@ pub struct MeshId(pub u32);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct MaterialId(pub u32);
 
-/// Which feature of the scene something belongs to; what the feature buffer of a picture holds.
+/// The feature of the scene that something belongs to; the value in a picture's feature buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(transparent)]
 pub struct FeatureId(pub u32);
@@ -43,9 +42,9 @@ impl FeatureId {
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct DrawVertex {
-    /// Position in meters, in the mesh's own space.
+    /// Position in meters, in mesh space.
     pub position: [f32; 3],
-    /// Unit normal in the mesh's own space; not read where the material takes the ground's.
+    /// Unit normal in mesh space; not read where the material takes the ground's.
     pub normal: [f32; 3],
     /// Texture coordinates; V runs downward, (0, 0) is the texture's upper left corner.
     pub uv: [f32; 2],
@@ -74,41 +73,44 @@ impl MeshSink<DrawVertex> for DrawMesh {
     }
 }
 
-/// Who wins where two surfaces lie in the same plane.
+/// The share of a depth by which a draped surface may lie behind the surface it is draped on.
+pub const DRAPE_TOLERANCE: f64 = 1.0 / 50_000.0;
+
+/// The order of surfaces that lie in the same plane.
 ///
-/// Items come in rising layers in [`DrawList::items`]. A draped item lies exactly in the ground's triangles,
-/// so it is drawn where its depth exceeds what is there by no more than one part in 50,000, over ground and
-/// lower drapes; a solid is drawn where it is nearer.
+/// Items come in rising layers in [`DrawList::items`]. A draped item lies exactly in the ground's triangles. It is
+/// drawn over the ground and lower drapes where its depth exceeds theirs by no more than [`DRAPE_TOLERANCE`]. A solid
+/// is drawn where it is nearer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum DepthLayer {
-    /// The terrain itself.
+    /// The terrain.
     Ground,
-    /// Something cut to the ground's triangles; a higher number lies over a lower.
+    /// Cut to the ground's triangles; a higher number lies over a lower.
     Draped(u8),
-    /// Something with a shape of its own.
+    /// Has a shape of its own.
     Solid,
 }
 
-/// One range of a mesh's triangles, with a material, at a place.
+/// A range of a mesh's triangles with a material, placed in the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawItem {
     /// The mesh.
     pub mesh: MeshId,
-    /// Which of its triangles.
+    /// The range of its triangles.
     pub triangles: Range<u32>,
     /// The material.
     pub material: MaterialId,
     /// Mesh space to world space: a rotation, a uniform scale and a translation.
     pub world_from_mesh: Mat4,
-    /// Who wins in the same plane.
+    /// The order in the same plane.
     pub layer: DepthLayer,
     /// The feature it belongs to.
     pub feature: FeatureId,
 }
 
 impl DrawItem {
-    /// Whether another item differs in nothing but its place and its feature.
-    pub fn is_like(&self, other: &Self) -> bool {
+    /// Whether `other` differs in placement and feature only.
+    pub fn batches_with(&self, other: &Self) -> bool {
         self.mesh == other.mesh
             && self.triangles == other.triangles
             && self.material == other.material
@@ -125,12 +127,41 @@ pub struct DrawList {
     pub materials: Vec<Material>,
     /// Meshes, by [`MeshId`].
     pub meshes: Vec<DrawMesh>,
-    /// What to draw, layers rising.
+    /// The items, layers rising.
     pub items: Vec<DrawItem>,
     /// The map that ground materials read.
     pub ground: Option<Arc<GroundMap>>,
     /// Light, haze and sky.
     pub lighting: Lighting,
+}
+
+/// Why a draw list cannot be rendered; numbers are indices into the list.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum DrawListError {
+    /// A triangle names a vertex that its mesh lacks.
+    #[error("a triangle of mesh {0} names a vertex that the mesh does not hold")]
+    MissingVertex(usize),
+    /// A material names a texture that the list lacks.
+    #[error("material {0} names a texture that the list does not hold")]
+    MissingTexture(usize),
+    /// An item names a mesh that the list lacks.
+    #[error("item {0} names a mesh that the list does not hold")]
+    MissingMesh(usize),
+    /// An item names triangles that its mesh lacks.
+    #[error("item {0} draws triangles that its mesh does not hold")]
+    MissingTriangles(usize),
+    /// An item names a material that the list lacks.
+    #[error("item {0} names a material that the list does not hold")]
+    MissingMaterial(usize),
+    /// An item's material reads the ground map, and the list has none.
+    #[error("item {0} takes its color or normals from the ground map, but the draw list has none; add one")]
+    MissingGroundMap(usize),
+    /// An item lies in a lower layer than the item before it.
+    #[error("item {0} lies in a lower layer than the item before it")]
+    LayerOrder(usize),
+    /// The ground map is unsound.
+    #[error(transparent)]
+    GroundMap(#[from] GroundMapError),
 }
 
 impl DrawList {
@@ -152,58 +183,59 @@ impl DrawList {
         MeshId(self.meshes.len() as u32 - 1)
     }
 
-    /// The runs of items: each as long as it can be, in order, all items covered.
+    /// The runs of items, in order: each as long as possible, together all items.
     pub fn runs(&self) -> impl Iterator<Item = Range<usize>> + '_ {
         let mut start = 0;
-        self.items.chunk_by(DrawItem::is_like).map(move |run| {
+        self.items.chunk_by(DrawItem::batches_with).map(move |run| {
             let range = start..start + run.len();
             start = range.end;
             range
         })
     }
 
-    /// How many triangles all items draw together.
+    /// The number of triangles that all items draw together.
     pub fn triangle_count(&self) -> usize {
         self.items.iter().map(|item| item.triangles.len()).sum()
     }
 
-    /// Whether every index points at something, layers rise and the ground map is sound: what a renderer
-    /// relies on.
+    /// Checks what a renderer relies on: every index is in range, layers rise, and the ground map is there where it is
+    /// read, and sound.
     ///
     /// # Errors
-    /// A sentence that names the first thing out of place.
-    pub fn check(&self) -> Result<(), String> {
-        for (index, mesh) in self.meshes.iter().enumerate() {
+    /// The first [`DrawListError`] found.
+    pub fn check(&self) -> Result<(), DrawListError> {
+        let lacks_vertex = |mesh: &DrawMesh| {
             let count = mesh.vertices.len();
-            if let Some(corners) =
-                mesh.triangles.iter().find(|corners| corners.iter().any(|id| id.index() >= count))
-            {
-                return Err(format!("mesh {index} has {count} vertices but a triangle {corners:?}"));
-            }
+            mesh.triangles.iter().flatten().any(|id| id.index() >= count)
+        };
+        let lacks_texture =
+            |material: &Material| material.texture.is_some_and(|id| id.0 as usize >= self.textures.len());
+        if let Some(mesh) = self.meshes.iter().position(lacks_vertex) {
+            return Err(DrawListError::MissingVertex(mesh));
         }
-        for (index, material) in self.materials.iter().enumerate() {
-            if material.texture.is_some_and(|id| id.0 as usize >= self.textures.len()) {
-                return Err(format!("material {index} names a texture that is not there"));
-            }
+        if let Some(material) = self.materials.iter().position(lacks_texture) {
+            return Err(DrawListError::MissingTexture(material));
         }
         for (index, item) in self.items.iter().enumerate() {
-            let mesh = self.meshes.get(item.mesh.0 as usize).ok_or(format!("item {index} names no mesh"))?;
-            if item.triangles.end as usize > mesh.triangles.len() || item.triangles.start > item.triangles.end
-            {
-                return Err(format!(
-                    "item {index} draws triangles {:?} of {}",
-                    item.triangles,
-                    mesh.triangles.len()
-                ));
-            }
-            if item.material.0 as usize >= self.materials.len() {
-                return Err(format!("item {index} names no material"));
-            }
+            self.check_item(index, item)?;
         }
-        self.ground.as_deref().map_or(Ok(()), GroundMap::check)?;
-        match self.items.windows(2).position(|pair| pair[0].layer > pair[1].layer) {
-            Some(index) => Err(format!("item {} lies in a lower layer than the one before it", index + 1)),
-            None => Ok(()),
+        if let Some(index) = self.items.windows(2).position(|pair| pair[0].layer > pair[1].layer) {
+            return Err(DrawListError::LayerOrder(index + 1));
         }
+        Ok(self.ground.as_deref().map_or(Ok(()), GroundMap::check)?)
+    }
+
+    fn check_item(&self, index: usize, item: &DrawItem) -> Result<(), DrawListError> {
+        let mesh = self.meshes.get(item.mesh.0 as usize).ok_or(DrawListError::MissingMesh(index))?;
+        let Range { start, end } = item.triangles;
+        if start > end || end as usize > mesh.triangles.len() {
+            return Err(DrawListError::MissingTriangles(index));
+        }
+        let material = self.materials.get(item.material.0 as usize);
+        let material = material.ok_or(DrawListError::MissingMaterial(index))?;
+        if material.reads_ground_map() && self.ground.is_none() {
+            return Err(DrawListError::MissingGroundMap(index));
+        }
+        Ok(())
     }
 }

@@ -6,27 +6,27 @@ use crate::draw::color::Srgba;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TextureId(pub u32);
 
-/// What happens where a material is not opaque.
+/// The meaning of alpha.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AlphaMode {
     /// Alpha is ignored.
     Opaque,
-    /// Alpha below the cut-off is a hole, above it opaque.
+    /// The surface is a hole where alpha is below the cut-off, and opaque elsewhere.
     Mask(f32),
     /// Alpha is the share of light the surface stops.
     Blend,
 }
 
-/// Where the normal that takes the light comes from.
+/// The source of the normal that takes the light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NormalSource {
-    /// From the mesh's vertices.
+    /// The mesh's vertices.
     Vertex,
-    /// From the ground map beneath, so that what is draped is shaded like the ground it lies on.
+    /// The ground map beneath: draped surfaces are shaded like the ground they lie on.
     Ground,
 }
 
-/// Where the color that is lit comes from.
+/// The source of the color that is lit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Albedo {
     /// Base color × vertex color × texture.
@@ -44,14 +44,21 @@ pub struct Material {
     pub base_color: Srgba,
     /// The base color texture, repeated in both directions, filtered bilinearly with mip levels.
     pub texture: Option<TextureId>,
-    /// What alpha means.
+    /// The meaning of alpha.
     pub alpha: AlphaMode,
     /// Whether the back of a triangle is drawn too, with its normal turned round.
     pub two_sided: bool,
-    /// Where the normal comes from.
+    /// The source of the normal.
     pub normals: NormalSource,
-    /// Where the color comes from.
+    /// The source of the color.
     pub albedo: Albedo,
+}
+
+impl Material {
+    /// Whether color or normals come from the ground map.
+    pub fn reads_ground_map(&self) -> bool {
+        self.albedo == Albedo::GroundMap || self.normals == NormalSource::Ground
+    }
 }
 
 impl Default for Material {

@@ -23,8 +23,8 @@ impl Pixels {
 
     /// A picture whose pixel at column `x`, row `y` is `color(x, y)`.
     pub fn from_fn(width: u32, height: u32, color: impl Fn(u32, u32) -> Srgba) -> Self {
-        let data =
-            (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| color(x, y)).collect();
+        let color = &color;
+        let data = (0..height).flat_map(|y| (0..width).map(move |x| color(x, y))).collect();
         Self { width, height, data }
     }
 
@@ -43,24 +43,20 @@ impl Pixels {
         &self.data
     }
 
-    /// All pixels, row by row, to be painted on.
+    /// All pixels, row by row, for painting.
     pub fn data_mut(&mut self) -> &mut [Srgba] {
         &mut self.data
     }
 
-    /// The pixels as bytes, four a pixel: red, green, blue, alpha.
+    /// The pixels as bytes, four per pixel: red, green, blue, alpha.
     pub fn bytes(&self) -> &[u8] {
         bytemuck::cast_slice(&self.data)
     }
 
     /// The pixel at column `x`, row `y`. Panics outside the picture.
     pub fn at(&self, x: u32, y: u32) -> Srgba {
-        assert!(
-            x < self.width && y < self.height,
-            "pixel ({x}, {y}) is outside {}×{}",
-            self.width,
-            self.height
-        );
-        self.data[y as usize * self.width as usize + x as usize]
+        let (width, height) = (self.width, self.height);
+        assert!(x < width && y < height, "pixel ({x}, {y}) is outside {width}×{height}");
+        self.data[y as usize * width as usize + x as usize]
     }
 }

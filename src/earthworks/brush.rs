@@ -1,11 +1,11 @@
 //! Brushes: shapes that change heights while the terrain is in use (craters, trenches, tire tracks, embankments).
 //!
-//! A brush gives every post a new height from its old one. What it changed comes back as rectangles of posts with
-//! the heights from before, so that whatever was computed from the heights can be mended instead of made anew. A
-//! brush neither fills nor makes holes: posts without data keep none, and a height that is not finite is not written.
+//! A brush gives every post a new height from its old one. It returns the changed rectangles of posts with their former
+//! heights, so that data derived from heights can be updated instead of rebuilt. A brush neither fills nor makes holes:
+//! posts without data keep none, and a height that is not finite is not written.
 //!
-//! A long stroke changes few of the posts of its bounding rectangle; it is cut into tiles, and a tile's rectangle is
-//! that of the posts that changed.
+//! A long stroke changes few of the posts of its bounding rectangle; it is cut into tiles, and a tile's rectangle is that
+//! of the posts that changed.
 
 use glam::{DVec2, DVec3};
 
@@ -14,8 +14,8 @@ use crate::terrain::lattice::{HIGHEST_M, Lattice, Post};
 use crate::terrain::post_rect::PostRect;
 use crate::terrain::volumes::Volumes;
 
-/// Posts along a tile's side: a brush up to this size is one rectangle. Smaller tiles follow a stroke more closely,
-/// and each costs a walk up the graph.
+/// Posts along a tile's side: a brush up to this size is one rectangle. Smaller tiles follow a stroke more closely, and
+/// each costs a walk up the vertex graph.
 const TILE: u32 = 64;
 
 /// One rectangle in which heights changed.
@@ -23,36 +23,36 @@ const TILE: u32 = 64;
 pub struct Change {
     /// The smallest rectangle around the posts that changed.
     pub posts: PostRect,
-    /// The heights before, row by row of the rectangle; NaN where there is no data, then as now.
+    /// The former heights, row by row of the rectangle; NaN where there is no data, before and after.
     pub before: Vec<f32>,
 }
 
 impl Change {
-    /// The height before of a post of the rectangle.
+    /// The former height of a post of the rectangle.
     #[inline]
     pub fn height_before(&self, post: Post) -> f32 {
-        let first = self.posts.first;
-        self.before
-            [(post.row - first.row) as usize * self.posts.width() + (post.column - first.column) as usize]
+        self.before[self.index(post)]
     }
 
-    /// The posts of one row of the rectangle from column `first` to column `last`: their heights before, and now.
+    /// The former and the current heights of one row of the rectangle from column `first` to column `last`.
     pub fn row<'a>(&'a self, lattice: &'a Lattice, row: u32, (first, last): (u32, u32)) -> [&'a [f32]; 2] {
-        let count = (last - first + 1) as usize;
-        let from = (row - self.posts.first.row) as usize * self.posts.width();
-        let now = lattice.index(Post { column: first, row });
-        let before = &self.before[from + (first - self.posts.first.column) as usize..][..count];
-        [before, &lattice.heights()[now..][..count]]
+        let (count, post) = ((last - first + 1) as usize, Post { column: first, row });
+        [&self.before[self.index(post)..][..count], &lattice.heights()[lattice.index(post)..][..count]]
     }
 
-    /// The posts that changed, with their heights before.
+    /// The posts that changed, with their former heights.
     pub fn changed<'a>(&'a self, lattice: &'a Lattice) -> impl Iterator<Item = (Post, f32)> {
         let posts = self.posts.posts().zip(self.before.iter().copied());
         posts.filter(|&(post, before)| lattice.height(post).to_bits() != before.to_bits())
     }
+
+    fn index(&self, post: Post) -> usize {
+        let first = self.posts.first;
+        (post.row - first.row) as usize * self.posts.width() + (post.column - first.column) as usize
+    }
 }
 
-/// What a brush did.
+/// The changes that a brush made.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BrushChanges {
     /// The rectangles that changed; those of one brush do not overlap.
@@ -65,9 +65,39 @@ impl BrushChanges {
     /// These changes, then those.
     pub fn and(mut self, then: Self) -> Self {
         self.pieces.extend(then.pieces);
-        self.volumes.cut_m3 += then.volumes.cut_m3;
-        self.volumes.fill_m3 += then.volumes.fill_m3;
+        self.volumes += then.volumes;
         self
+    }
+
+    /// Gives every post of `posts` that has data its new height, in meters, from its old one.
+    fn write(&mut self, lattice: &mut Lattice, posts: PostRect, new: impl Fn(Post, f32) -> f32) {
+        let PostRect { first, last } = posts;
+        let area_m2 = lattice.cell_m2();
+        let mut bounds: Option<PostRect> = None;
+        let mut before = Vec::with_capacity(posts.width() * (last.row - first.row + 1) as usize);
+        for row in first.row..=last.row {
+            let heights = lattice.heights_mut(Post { column: first.column, row }, last.column);
+            before.extend_from_slice(heights);
+            let mut changed: Option<(u32, u32)> = None;
+            for (column, height) in (first.column..).zip(heights) {
+                let after = new(Post { column, row }, *height);
+                if !height.is_nan() && after.abs() <= HIGHEST_M && after != *height {
+                    self.volumes += Volumes::from_rise(f64::from(after) - f64::from(*height), area_m2);
+                    changed = Some((changed.map_or(column, |(west, _)| west), column));
+                    *height = after;
+                }
+            }
+            if let Some((west, east)) = changed {
+                let [west, east] = [west, east].map(|column| Post { column, row });
+                let of_row = PostRect { first: west, last: east };
+                bounds = Some(bounds.map_or(of_row, |bounds| bounds.with(west).with(east)));
+            }
+        }
+        if let Some(bounds) = bounds {
+            let all = Change { posts, before };
+            let before = bounds.posts().map(|post| all.height_before(post)).collect();
+            self.pieces.push(if bounds == posts { all } else { Change { posts: bounds, before } });
+        }
     }
 }
 
@@ -75,13 +105,11 @@ impl BrushChanges {
 ///
 /// Posts beyond the lattice are left out, as are values that are missing, not finite or beyond ±[`HIGHEST_M`].
 pub fn set_heights(lattice: &mut Lattice, posts: PostRect, heights: &[f32]) -> BrushChanges {
-    let width = (i64::from(posts.last.column) - i64::from(posts.first.column) + 1).max(0) as usize;
-    let inside = PostRect { first: posts.first, last: posts.last }.clipped(lattice);
     let mut changes = BrushChanges::default();
-    if let Some(inside) = inside {
+    if let Some(inside) = posts.clipped(lattice) {
         let new = |post: Post, _: f32| {
             let (row, column) = (post.row - posts.first.row, post.column - posts.first.column);
-            heights.get(row as usize * width + column as usize).copied().unwrap_or(f32::NAN)
+            heights.get(row as usize * posts.width() + column as usize).copied().unwrap_or(f32::NAN)
         };
         changes.write(lattice, inside, new);
     }
@@ -101,46 +129,7 @@ fn tiles(posts: PostRect) -> impl Iterator<Item = PostRect> {
     })
 }
 
-impl BrushChanges {
-    /// Gives every post of `posts` that has data its new height, in meters, from its old one.
-    fn write(&mut self, lattice: &mut Lattice, posts: PostRect, new: impl Fn(Post, f32) -> f32) {
-        let (first, last) = (posts.first, posts.last);
-        let area = lattice.cell().x * lattice.cell().y;
-        let mut bounds: Option<PostRect> = None;
-        let mut before = Vec::with_capacity(posts.width() * (last.row - first.row + 1) as usize);
-        for row in first.row..=last.row {
-            let heights = lattice.heights_mut(Post { column: first.column, row }, last.column);
-            before.extend_from_slice(heights);
-            let mut changed: Option<(u32, u32)> = None;
-            for (column, height) in (first.column..).zip(heights) {
-                let after = new(Post { column, row }, *height);
-                if !height.is_nan() && after.abs() <= HIGHEST_M && after != *height {
-                    let rise = f64::from(after) - f64::from(*height);
-                    self.volumes.fill_m3 += rise.max(0.0) * area;
-                    self.volumes.cut_m3 += (-rise).max(0.0) * area;
-                    changed = Some((changed.map_or(column, |(west, _)| west), column));
-                    *height = after;
-                }
-            }
-            if let Some((west, east)) = changed {
-                let [west, east] = [west, east].map(|column| Post { column, row });
-                let of_row = PostRect { first: west, last: east };
-                bounds = Some(bounds.map_or(of_row, |bounds| bounds.with(west).with(east)));
-            }
-        }
-        let Some(bounds) = bounds else { return };
-        let mut all = Change { posts, before };
-        if bounds != posts {
-            all = Change {
-                posts: bounds,
-                before: bounds.posts().map(|post| all.height_before(post)).collect(),
-            };
-        }
-        self.pieces.push(all);
-    }
-}
-
-/// A crater with a raised rim (003's bomb crater).
+/// A crater with a raised rim.
 ///
 /// With ρ the distance from the center over the radius, the ground rises by
 ///
@@ -163,7 +152,7 @@ pub struct Crater {
 }
 
 impl Crater {
-    /// How far the ground rises at a distance from the center, meters; negative where it sinks.
+    /// The rise of the ground at a distance from the center, meters; negative where it sinks.
     pub fn rise_m(&self, distance_m: f64) -> f64 {
         let part = distance_m / self.radius_m;
         if part <= 1.0 {
@@ -186,7 +175,7 @@ impl Crater {
 /// At the distance d from the line the ground sinks by `depth · clamp((top/2 − d) / (top/2 − bottom/2), 0, 1)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trench {
-    /// World X and Y of its middle line, meters.
+    /// World X and Y of its centerline, meters.
     pub line: Vec<DVec2>,
     /// Width at the bottom, meters.
     pub bottom_m: f64,
@@ -199,12 +188,9 @@ pub struct Trench {
 impl Trench {
     /// Changes the lattice.
     pub fn apply(&self, lattice: &mut Lattice) -> BrushChanges {
-        let sink = |near: LegOffset| {
+        sink_along(lattice, &self.line, self.top_m / 2.0, |near| {
             let side = (self.top_m / 2.0 - near.distance()) / ((self.top_m - self.bottom_m) / 2.0);
             self.depth_m * side.clamp(0.0, 1.0)
-        };
-        along(lattice, &flat(&self.line), self.top_m / 2.0, |line, at, height| {
-            nearest(line, at).map_or(height, |near| height - sink(near))
         })
     }
 }
@@ -212,8 +198,7 @@ impl Trench {
 /// The two ruts that a vehicle leaves.
 ///
 /// Each runs at half the gauge from the line; at the distance u from its middle the ground sinks by
-/// `depth · max(0, 1 − (2u / rut)²)`. Beyond the line's ends, at the distance o, it sinks by `max(0, 1 − 2o / rut)`
-/// of that.
+/// `depth · max(0, 1 − (2u / rut)²)`. Beyond the line's ends, at the distance o, it sinks by `max(0, 1 − 2o / rut)` of that.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TireTrack {
     /// World X and Y of the vehicle's middle, meters.
@@ -229,13 +214,10 @@ pub struct TireTrack {
 impl TireTrack {
     /// Changes the lattice.
     pub fn apply(&self, lattice: &mut Lattice) -> BrushChanges {
-        let sink = |near: LegOffset| {
+        sink_along(lattice, &self.line, (self.gauge_m + self.rut_m) / 2.0, |near| {
             let across = 2.0 * (near.aside_m - self.gauge_m / 2.0) / self.rut_m;
             let rest = 1.0 - 2.0 * near.beyond_m / self.rut_m;
             self.depth_m * (1.0 - across * across).max(0.0) * rest.max(0.0)
-        };
-        along(lattice, &flat(&self.line), (self.gauge_m + self.rut_m) / 2.0, |line, at, height| {
-            nearest(line, at).map_or(height, |near| height - sink(near))
         })
     }
 }
@@ -246,13 +228,13 @@ impl TireTrack {
 /// `c − max(0, d − crown/2) / run`; where several legs of the line are near, the highest counts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Embankment {
-    /// World X and Y of its middle line and the crown's height there, meters; heights run straight in between.
+    /// World X and Y of its centerline and the crown's height there, meters; heights are linear in between.
     pub line: Vec<DVec3>,
     /// Width of the crown, meters.
     pub crown_m: f64,
     /// Meters outward for each meter down, above 0; 1.5 is common.
     pub run: f64,
-    /// The side slopes end here, meters from the line, reached or not.
+    /// The side slopes end this many meters from the line, whether they reach the ground or not.
     pub reach_m: f64,
 }
 
@@ -261,14 +243,14 @@ impl Embankment {
     pub fn apply(&self, lattice: &mut Lattice) -> BrushChanges {
         let crown =
             |near: LegOffset| near.height_m - (near.distance() - self.crown_m / 2.0).max(0.0) / self.run;
-        let outside = |near: &LegOffset| near.distance() <= self.reach_m;
-        along(lattice, &self.line, self.reach_m, |line, at, height| {
-            line.iter().map(|leg| leg.beside(at)).filter(outside).map(crown).fold(height, f64::max)
+        let is_within = |near: &LegOffset| near.distance() <= self.reach_m;
+        paint_along(lattice, &self.line, self.reach_m, |legs, at, height| {
+            legs.iter().map(|leg| leg.offset(at)).filter(is_within).map(crown).fold(height, f64::max)
         })
     }
 }
 
-/// A straight piece of a stroke's line.
+/// A straight leg of a stroke's line.
 #[derive(Clone, Copy, Debug)]
 struct StrokeLeg {
     from: DVec3,
@@ -279,7 +261,7 @@ struct StrokeLeg {
     ends: bool,
 }
 
-/// Where a point lies beside a leg.
+/// The position of a point relative to a leg.
 #[derive(Clone, Copy, Debug)]
 struct LegOffset {
     /// Meters from the leg's straight line; from its end where that is a bend and the point lies beyond it.
@@ -291,12 +273,15 @@ struct LegOffset {
 }
 
 impl StrokeLeg {
-    fn beside(&self, at: DVec2) -> LegOffset {
-        let (way, off) = (self.to.truncate() - self.from.truncate(), at - self.from.truncate());
-        let length = way.length();
-        let along = if length > 0.0 { off.dot(way) / length } else { 0.0 };
+    fn offset(&self, at: DVec2) -> LegOffset {
+        let (leg, off) = (self.to.truncate() - self.from.truncate(), at - self.from.truncate());
+        let length = leg.length();
+        let (along, aside_m) = if length > 0.0 {
+            (off.dot(leg) / length, off.perp_dot(leg).abs() / length)
+        } else {
+            (0.0, off.length())
+        };
         let nearest = along.clamp(0.0, length);
-        let aside_m = if length > 0.0 { off.perp_dot(way).abs() / length } else { off.length() };
         let part = if length > 0.0 { nearest / length } else { 0.0 };
         let height_m = self.from.z + (self.to.z - self.from.z) * part;
         let beyond_m = (along - nearest).abs();
@@ -317,21 +302,27 @@ impl LegOffset {
     }
 }
 
-/// Where a point lies beside the leg nearest to it.
-fn nearest(line: &[StrokeLeg], at: DVec2) -> Option<LegOffset> {
-    line.iter().map(|leg| leg.beside(at)).min_by(|a, b| a.distance().total_cmp(&b.distance()))
-}
-
-fn flat(line: &[DVec2]) -> Vec<DVec3> {
-    line.iter().map(|at| at.extend(0.0)).collect()
+/// Lowers the posts within `reach_m` of a line, each by `sink` of its position relative to the nearest leg.
+fn sink_along(
+    lattice: &mut Lattice,
+    line: &[DVec2],
+    reach_m: f64,
+    sink: impl Fn(LegOffset) -> f64,
+) -> BrushChanges {
+    let line: Vec<DVec3> = line.iter().map(|at| at.extend(0.0)).collect();
+    paint_along(lattice, &line, reach_m, |legs, at, height| {
+        let offsets = legs.iter().map(|leg| leg.offset(at));
+        let nearest = offsets.min_by(|a, b| a.distance().total_cmp(&b.distance()));
+        nearest.map_or(height, |near| height - sink(near))
+    })
 }
 
 /// Gives the posts within `reach_m` of a line new heights, from the line's legs near each tile.
-fn along(
+fn paint_along(
     lattice: &mut Lattice,
     line: &[DVec3],
     reach_m: f64,
-    height: impl Fn(&Vec<StrokeLeg>, DVec2, f64) -> f64,
+    height: impl Fn(&[StrokeLeg], DVec2, f64) -> f64,
 ) -> BrushChanges {
     let last = line.len().saturating_sub(2);
     let leg = |(index, ends): (usize, &[DVec3])| StrokeLeg {
@@ -346,10 +337,10 @@ fn along(
         let near = legs.iter().filter(|leg| leg.bounds().grown(reach_m).meets(tile)).copied();
         Some(near.collect::<Vec<StrokeLeg>>()).filter(|near| !near.is_empty())
     };
-    paint(lattice, bounds, near, height)
+    paint(lattice, bounds, near, |legs, at, before| height(legs, at, before))
 }
 
-/// Gives the posts within `bounds` new heights, tile by tile: `near` finds what counts in a tile, if anything.
+/// Gives the posts within `bounds` new heights, tile by tile: `near` prepares a tile, `None` for one without effect.
 fn paint<Near>(
     lattice: &mut Lattice,
     bounds: Rect,
@@ -358,7 +349,7 @@ fn paint<Near>(
 ) -> BrushChanges {
     let mut changes = BrushChanges::default();
     let cell = lattice.cell();
-    let world = |post: Post| DVec2::new(f64::from(post.column), f64::from(post.row)) * cell;
+    let world = |post: Post| post.grid() * cell;
     for tile in PostRect::within(lattice, &bounds).into_iter().flat_map(tiles) {
         if let Some(near) = near(&Rect { min: world(tile.first), max: world(tile.last) }) {
             let new = |post: Post, before: f32| height(&near, world(post), f64::from(before)) as f32;
@@ -390,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn a_crater_moves_what_its_formula_says_and_is_the_same_from_all_sides() {
+    fn a_crater_moves_the_earth_of_its_formula_and_is_symmetric() {
         let (mut lattice, crater) =
             (level(), Crater { center: middle(), radius_m: 12.0, depth_m: 4.0, rim_m: 1.0 });
         let changes = crater.apply(&mut lattice);
@@ -426,7 +417,7 @@ mod tests {
     }
 
     #[test]
-    fn strokes_move_what_their_profiles_say() {
+    fn strokes_move_the_earth_of_their_profiles() {
         let line = vec![DVec2::new(20.0, 40.0), DVec2::new(35.0, 40.0), DVec2::new(60.0, 40.0)];
         let mut lattice = level();
         let trench = Trench { line: line.clone(), bottom_m: 2.0, top_m: 6.0, depth_m: 3.0 };
@@ -450,7 +441,7 @@ mod tests {
     }
 
     #[test]
-    fn holes_stay_holes_and_the_pieces_hold_what_was_there() {
+    fn holes_stay_holes_and_the_pieces_hold_the_former_heights() {
         let heights =
             (0..SIDE * SIDE).map(|index| if index % 7 == 0 { f32::NAN } else { index as f32 }).collect();
         let mut lattice = Lattice::new(DVec2::ZERO, DVec2::splat(CELL_M), SIDE, heights).expect("sound");
@@ -458,22 +449,22 @@ mod tests {
         let line = vec![DVec2::new(-20.0, -3.0), DVec2::new(95.0, 90.0)];
         let changes = Trench { line, bottom_m: 2.0, top_m: 5.0, depth_m: 9.0 }.apply(&mut lattice);
         assert!(changes.pieces.len() > 2, "a long stroke comes in pieces");
-        let mut told = vec![false; before.heights().len()];
+        let mut reported = vec![false; before.heights().len()];
         for piece in &changes.pieces {
             for (post, height) in piece.posts.posts().zip(&piece.before) {
                 assert_eq!(before.height(post).to_bits(), height.to_bits());
             }
-            piece.changed(&lattice).for_each(|(post, _)| told[lattice.index(post)] = true);
+            piece.changed(&lattice).for_each(|(post, _)| reported[lattice.index(post)] = true);
         }
-        for (post, told) in lattice.posts().zip(told) {
+        for (post, reported) in lattice.posts().zip(reported) {
             let (old, new) = (before.height(post), lattice.height(post));
             assert_eq!(old.is_nan(), new.is_nan());
-            assert_eq!(told, !old.is_nan() && old != new, "{post:?}");
+            assert_eq!(reported, !old.is_nan() && old != new, "{post:?}");
         }
     }
 
     #[test]
-    fn a_rectangle_takes_the_heights_given_as_far_as_it_lies_on_the_lattice() {
+    fn a_rectangle_of_heights_is_set_where_it_lies_on_the_lattice() {
         let mut lattice = level();
         let posts = PostRect { first: Post { column: 159, row: 160 }, last: Post { column: 162, row: 162 } };
         let changes = set_heights(&mut lattice, posts, &[1.0, f32::NAN, 3.0]);

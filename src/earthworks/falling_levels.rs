@@ -1,9 +1,8 @@
-//! The level of water that falls: the nearest series of levels that never rises.
+//! Falling water levels: the nearest series of levels that never rises.
 //!
-//! Ground along a river rises here and falls there by the error of its measurement alone. The nearest levels that never
-//! rise, by least squares, are found by pooling neighbors that rise until none does (isotonic regression; Ayer,
-//! Brunk, Ewing, Reid and Silverman 1955). What falls already is kept to the last bit, so a waterfall stays as steep as
-//! it is: nothing is smoothed that need not be.
+//! Ground along a river rises in places by measurement error alone. The nearest levels that never rise, by least squares,
+//! are found by pooling neighbors that rise until none does (isotonic regression; Ayer, Brunk, Ewing, Reid and Silverman
+//! 1955). Levels that already fall are kept to the last bit, so a waterfall stays as steep as it is.
 //!
 //! ```text
 //!   ground  ──╮    ╭─╮                 falling  ──╮
@@ -11,18 +10,18 @@
 //!                       ╰───                               ╰──  neither cut to the pit nor dammed by the bump
 //! ```
 //!
-//! The running minimum alone, which many tools take, digs the whole river below its bank as deep as its deepest pit.
+//! The running minimum alone, which many tools take, cuts the whole river below a pit as deep as that pit.
 
-/// A level with what it weighs.
+/// A level with its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeightedLevel {
     /// Meters.
     pub level_m: f64,
-    /// At least 0; the meters of river that it stands for.
+    /// Above 0; the meters of river that have this level.
     pub weight: f64,
 }
 
-/// Neighbors that share one level.
+/// Neighbors with one level.
 struct Pool {
     sum: f64,
     weight: f64,
@@ -35,10 +34,10 @@ impl Pool {
     }
 }
 
-/// The series nearest to `levels`, in downstream order, of those that never rise; one for each.
+/// The series nearest to `levels`, in downstream order, of those that never rise; one value for each.
 ///
 /// Levels must be finite and weights above 0. Costs a step a level.
-pub fn falling(levels: &[WeightedLevel]) -> Vec<f64> {
+pub fn fit_falling(levels: &[WeightedLevel]) -> Vec<f64> {
     let mut pools: Vec<Pool> = Vec::new();
     for level in levels {
         let mut pool = Pool { sum: level.level_m * level.weight, weight: level.weight, count: 1 };
@@ -53,16 +52,16 @@ pub fn falling(levels: &[WeightedLevel]) -> Vec<f64> {
     }
     let mut fitted = Vec::with_capacity(levels.len());
     for pool in &pools {
-        // A level that was pooled with no other is itself, not a product and a quotient of it.
+        // A level alone in its pool is kept, since a product and a quotient of it round.
         let level_m = if pool.count == 1 { levels[fitted.len()].level_m } else { pool.mean() };
         fitted.extend(std::iter::repeat_n(level_m, pool.count));
     }
-    never_rising(&mut fitted);
+    lower_to_minimum(&mut fitted);
     fitted
 }
 
 /// Lowers each of `levels` to the lowest before it.
-pub fn never_rising(levels: &mut [f64]) {
+fn lower_to_minimum(levels: &mut [f64]) {
     let mut lowest = f64::INFINITY;
     for level in levels {
         lowest = lowest.min(*level);
@@ -77,7 +76,7 @@ mod tests {
 
     fn fitted(levels: &[f64]) -> Vec<f64> {
         let weighted = |&level_m: &f64| WeightedLevel { level_m, weight: 1.0 };
-        falling(&levels.iter().map(weighted).collect::<Vec<_>>())
+        fit_falling(&levels.iter().map(weighted).collect::<Vec<_>>())
     }
 
     #[test]
@@ -90,18 +89,18 @@ mod tests {
     fn the_longer_stretch_decides() {
         let levels =
             [WeightedLevel { level_m: 4.0, weight: 3.0 }, WeightedLevel { level_m: 8.0, weight: 1.0 }];
-        assert_eq!(falling(&levels), [5.0, 5.0]);
+        assert_eq!(fit_falling(&levels), [5.0, 5.0]);
     }
 
     proptest! {
         #[test]
-        fn it_never_rises_and_no_lifted_or_lowered_pool_is_nearer(
+        fn the_fit_never_rises_and_no_shifted_series_is_nearer(
             levels in prop::collection::vec((-50.0..50.0f64, 0.1..9.0f64), 1..60),
             shift in -0.5..0.5f64,
         ) {
             let weighted: Vec<WeightedLevel> =
                 levels.iter().map(|&(level_m, weight)| WeightedLevel { level_m, weight }).collect();
-            let fitted = falling(&weighted);
+            let fitted = fit_falling(&weighted);
             prop_assert!(fitted.windows(2).all(|pair| pair[1] <= pair[0]));
             let distance = |series: &[f64]| -> f64 {
                 weighted.iter().zip(series).map(|(at, level)| at.weight * (at.level_m - level).powi(2)).sum()
@@ -109,7 +108,7 @@ mod tests {
             for from in 0..fitted.len() {
                 let mut other = fitted.clone();
                 other[from..].iter_mut().for_each(|level| *level += shift);
-                never_rising(&mut other);
+                lower_to_minimum(&mut other);
                 prop_assert!(distance(&other) >= distance(&fitted) - 1e-9);
             }
         }

@@ -1,4 +1,4 @@
-//! Earthworks: changes to the ground, with the volumes they move.
+//! Leveling: flat ground within a polygon, with the volumes moved.
 
 use std::ops::Range;
 
@@ -9,20 +9,15 @@ use crate::geom::rect::Rect;
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::volumes::Volumes;
 
-/// Levels the ground within a polygon to `level_m`, so that what lies there is perfectly flat.
+/// Levels the ground within a polygon to `level_m`, so that it is perfectly flat.
 ///
-/// Every corner of every cell that the polygon touches is set to the level and pinned; posts without data get
-/// it too. `rings` are the outer ring and its holes in world coordinates.
+/// Every corner of every cell that the polygon touches is set to the level and pinned; posts without data get it too.
+/// `rings` are the outer ring and its holes in world coordinates.
 pub fn level(lattice: &mut Lattice, rings: &[Vec<DVec2>], level_m: f32) -> Volumes {
     let mut volumes = Volumes::default();
-    let cell_area = lattice.cell().x * lattice.cell().y;
     for post in posts_touched(lattice, rings) {
-        let rise = f64::from(level_m) - f64::from(lattice.height(post));
-        if rise > 0.0 {
-            volumes.fill_m3 += rise * cell_area;
-        } else if rise < 0.0 {
-            volumes.cut_m3 -= rise * cell_area;
-        }
+        let rise_m = f64::from(level_m) - f64::from(lattice.height(post));
+        volumes += Volumes::from_rise(rise_m, lattice.cell_m2());
         lattice.pin(post, level_m);
     }
     volumes
@@ -30,13 +25,13 @@ pub fn level(lattice: &mut Lattice, rings: &[Vec<DVec2>], level_m: f32) -> Volum
 
 /// The corners of all cells that the polygon touches, in row order.
 ///
-/// Cost: one step for each row an edge crosses and each cell the polygon touches, whatever the lattice's size.
+/// Costs one step for each row an edge crosses and each cell the polygon touches, whatever the lattice's size.
 pub(in crate::earthworks) fn posts_touched(lattice: &Lattice, rings: &[Vec<DVec2>]) -> Vec<Post> {
     let to_grid = |point: DVec2| point / lattice.cell();
     let edges = || rings.iter().flat_map(|ring| polygon::edges(ring)).map(|(a, b)| (to_grid(a), to_grid(b)));
-    let mut touched = Touched::within(lattice, Rect::around(rings.iter().flatten().copied().map(to_grid)));
-    edges().for_each(|(from, to)| mark_line(&mut touched, from, to));
-    mark_inside(&mut touched, edges());
+    let mut touched = Touched::new(lattice, Rect::around(rings.iter().flatten().copied().map(to_grid)));
+    edges().for_each(|(from, to)| touched.mark_line(from, to));
+    touched.mark_inside(edges());
     touched.posts()
 }
 
@@ -44,25 +39,22 @@ pub(in crate::earthworks) fn posts_touched(lattice: &Lattice, rings: &[Vec<DVec2
 struct Touched {
     columns: Range<usize>,
     rows: Range<usize>,
-    /// One a corner of the window's cells, row by row.
+    /// One for each corner of the window's cells, row by row.
     marks: Vec<bool>,
 }
 
 impl Touched {
     /// No marks, in the cells of the lattice that `bounds`, in grid coordinates, meets.
-    fn within(lattice: &Lattice, bounds: Rect) -> Self {
-        let span = |low: f64, high: f64, posts: u32| {
-            let cell = |at: f64| at.clamp(0.0, f64::from(posts - 1)) as usize;
-            cell(low.floor())..cell(high.floor() + 1.0)
-        };
-        let columns = span(bounds.min.x, bounds.max.x, lattice.columns());
-        let rows = span(bounds.min.y, bounds.max.y, lattice.rows());
+    fn new(lattice: &Lattice, bounds: Rect) -> Self {
+        let last = lattice.last_grid();
+        let cell = |at: DVec2| at.clamp(DVec2::ZERO, last);
+        let (low, high) = (cell(bounds.min.floor()), cell(bounds.max.floor() + 1.0));
+        let (columns, rows) = (low.x as usize..high.x as usize, low.y as usize..high.y as usize);
         let marks = vec![false; (columns.len() + 1) * (rows.len() + 1)];
         Self { columns, rows, marks }
     }
 
-    /// Marks the corners of the cells `first` to `last`, ends included, of a row of cells; those beyond the
-    /// window are left out.
+    /// Marks the corners of the cells `first` to `last`, ends included, of a row of cells, as far as the window reaches.
     fn mark(&mut self, row: usize, first: f64, last: f64) {
         let first = first.max(self.columns.start as f64);
         let last = last.min(self.columns.end as f64 - 1.0);
@@ -73,6 +65,47 @@ impl Touched {
         let span = first as usize - self.columns.start..last as usize + 2 - self.columns.start;
         for line in [row - self.rows.start, row - self.rows.start + 1] {
             self.marks[line * stride + span.start..line * stride + span.end].fill(true);
+        }
+    }
+
+    /// Marks the cells that a line in grid coordinates passes through, row by row of cells.
+    fn mark_line(&mut self, from: DVec2, to: DVec2) {
+        let (low, high) = if from.y <= to.y { (from, to) } else { (to, from) };
+        let first_row = low.y.floor().max(self.rows.start as f64);
+        let last_row = high.y.floor().min(self.rows.end as f64 - 1.0);
+        if first_row > last_row {
+            return;
+        }
+        for row in first_row as usize..=last_row as usize {
+            let (enter, leave) = if high.y > low.y {
+                (x_at(low, high, row as f64), x_at(low, high, row as f64 + 1.0))
+            } else {
+                (low.x, high.x)
+            };
+            self.mark(row, enter.min(leave).floor(), enter.max(leave).floor());
+        }
+    }
+
+    /// Marks the cells whose middle lies inside by the even-odd rule over all edges: along the middle of each row of cells
+    /// the inside lies between the first and the second edge, the third and the fourth, and so on.
+    fn mark_inside(&mut self, edges: impl Iterator<Item = (DVec2, DVec2)>) {
+        let rising = edges.map(|(from, to)| if from.y <= to.y { (from, to) } else { (to, from) });
+        let mut waiting: Vec<(DVec2, DVec2)> = rising.collect();
+        waiting.sort_by(|a, b| a.0.y.total_cmp(&b.0.y));
+        let mut waiting = waiting.into_iter().peekable();
+        let (mut crossed, mut crossings) = (Vec::new(), Vec::new());
+        for row in self.rows.clone() {
+            let y = row as f64 + 0.5;
+            while let Some(edge) = waiting.next_if(|(low, _)| low.y <= y) {
+                crossed.push(edge);
+            }
+            crossed.retain(|(_, high)| high.y > y);
+            crossings.clear();
+            crossings.extend(crossed.iter().map(|&(low, high)| x_at(low, high, y)));
+            crossings.sort_by(f64::total_cmp);
+            for pair in crossings.chunks_exact(2) {
+                self.mark(row, (pair[0] - 0.5).ceil(), (pair[1] - 0.5).ceil() - 1.0);
+            }
         }
     }
 
@@ -88,50 +121,9 @@ impl Touched {
     }
 }
 
-/// Marks the cells that a line in grid coordinates passes through, row by row of cells.
-fn mark_line(touched: &mut Touched, from: DVec2, to: DVec2) {
-    let (low, high) = if from.y <= to.y { (from, to) } else { (to, from) };
-    let first_row = low.y.floor().max(touched.rows.start as f64);
-    let last_row = high.y.floor().min(touched.rows.end as f64 - 1.0);
-    if first_row > last_row {
-        return;
-    }
-    for row in first_row as usize..=last_row as usize {
-        let (enter, leave) = if high.y > low.y {
-            (x_at(low, high, row as f64), x_at(low, high, row as f64 + 1.0))
-        } else {
-            (low.x, high.x)
-        };
-        touched.mark(row, enter.min(leave).floor(), enter.max(leave).floor());
-    }
-}
-
-/// Where a line that rises from `low` to `high` is at height `y`, or at its end nearest to it.
+/// The x at which a line that rises from `low` to `high` reaches `y`, or of its nearest end.
 fn x_at(low: DVec2, high: DVec2, y: f64) -> f64 {
     low.x + (high.x - low.x) * ((y - low.y) / (high.y - low.y)).clamp(0.0, 1.0)
-}
-
-/// Marks the cells whose middle lies inside by the even-odd rule over all edges: along the middle of each row
-/// of cells the inside is what lies between the first and the second edge, the third and the fourth, and so on.
-fn mark_inside(touched: &mut Touched, edges: impl Iterator<Item = (DVec2, DVec2)>) {
-    let rising = edges.map(|(from, to)| if from.y <= to.y { (from, to) } else { (to, from) });
-    let mut waiting: Vec<(DVec2, DVec2)> = rising.collect();
-    waiting.sort_by(|a, b| a.0.y.total_cmp(&b.0.y));
-    let mut waiting = waiting.into_iter().peekable();
-    let (mut crossed, mut crossings) = (Vec::new(), Vec::new());
-    for row in touched.rows.clone() {
-        let y = row as f64 + 0.5;
-        while let Some(edge) = waiting.next_if(|(low, _)| low.y <= y) {
-            crossed.push(edge);
-        }
-        crossed.retain(|(_, high)| high.y > y);
-        crossings.clear();
-        crossings.extend(crossed.iter().map(|&(low, high)| x_at(low, high, y)));
-        crossings.sort_by(f64::total_cmp);
-        for pair in crossings.chunks_exact(2) {
-            touched.mark(row, (pair[0] - 0.5).ceil(), (pair[1] - 0.5).ceil() - 1.0);
-        }
-    }
 }
 
 #[cfg(test)]
@@ -144,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn the_whole_polygon_lies_on_level_cells() {
+    fn all_of_the_polygon_lies_on_level_cells() {
         let mut lattice = slope();
         let ring = vec![DVec2::new(32.0, 32.0), DVec2::new(58.0, 41.0), DVec2::new(44.0, 67.0)];
         level(&mut lattice, std::slice::from_ref(&ring), 5.0);
@@ -158,14 +150,14 @@ mod tests {
     }
 
     #[test]
-    fn volumes_count_what_was_moved() {
+    fn volumes_count_the_earth_moved() {
         let mut lattice = slope();
         let cell = vec![DVec2::new(31.0, 31.0), DVec2::new(39.0, 31.0), DVec2::new(35.0, 39.0)];
         let volumes = level(&mut lattice, &[cell], 3.0);
         assert_eq!(volumes, Volumes { cut_m3: 200.0, fill_m3: 0.0 });
     }
 
-    /// A ring with `count` vertices that winds in and out round `center`.
+    /// A ring with `count` vertices that winds in and out around `center`.
     fn wavy(center: DVec2, radius: f64, count: u32) -> Vec<DVec2> {
         let vertex = |index: u32| {
             let angle = f64::from(index) * std::f64::consts::TAU / f64::from(count);
@@ -176,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn the_posts_touched_are_those_of_cells_whose_middle_is_inside_or_that_the_shore_crosses() {
+    fn touched_are_the_posts_of_cells_that_lie_inside_or_on_the_shore() {
         let lattice =
             Lattice::new(DVec2::ZERO, DVec2::new(10.0, 7.0), 41, vec![0.0; 41 * 61]).expect("sound");
         for center in [DVec2::new(200.0, 210.0), DVec2::new(385.0, 20.0), DVec2::new(-30.0, 400.0)] {
@@ -204,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_long_shore_over_wide_ground_costs_its_length_and_not_their_product() {
+    fn a_long_shore_over_wide_ground_is_leveled() {
         let side = 1201;
         let heights = vec![1.0; (side * side) as usize];
         let mut lattice = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), side, heights).expect("sound");

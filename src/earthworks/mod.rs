@@ -1,4 +1,4 @@
-//! What people do to the ground: the alignment of roads and rivers, and the earthworks that follow from it.
+//! Changes to the ground: the alignment of roads and rivers, and the earthworks that follow from it.
 
 pub mod alignment;
 pub mod brush;

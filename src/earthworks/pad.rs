@@ -1,4 +1,4 @@
-//! A pad: ground leveled for something to stand on, with batters down and up to the ground around it.
+//! A pad: leveled ground under a structure, with batters down and up to the ground around it.
 //!
 //! ```text
 //!        ____ ground          level ± distance / slope: between the two the ground stays as it is,
@@ -11,102 +11,98 @@ use glam::DVec2;
 
 use crate::earthworks::leveling;
 use crate::geom::polygon;
+use crate::geom::segment;
 use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::post_rect::PostRect;
 use crate::terrain::volumes::Volumes;
 
-/// How steep the earth stands beside a pad.
+/// The slopes beside a pad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Batters {
     /// Meters out for each meter up, where the pad is cut into the ground; above 0.
     pub cut: f64,
-    /// Meters out for each meter down, where it stands above the ground; above 0.
+    /// Meters out for each meter down, where it is above the ground; above 0.
     pub fill: f64,
 }
 
 impl Default for Batters {
-    /// One to one in a cutting, one and a half to one on an embankment: what firm and what heaped soil hold.
+    /// One to one in a cutting, one and a half to one on an embankment: common for firm and for loose soil.
     fn default() -> Self {
         Self { cut: 1.0, fill: 1.5 }
     }
 }
 
-/// How many cells a batter reaches at most: a level far above or below the ground ends there in a step, and the cost of
-/// a pad has a bound.
+/// The most cells that a batter reaches: one from far above or below the ground ends there in a step, so that the cost of
+/// a pad is bounded.
 const MAX_REACH: u32 = 64;
 
-/// Levels the ground within a convex counter-clockwise `outline` to `level_m`, as [`leveling::level`] does, and brings
-/// the ground around it up or down to the batters; the volumes are those of both.
+/// A convex counter-clockwise outline and the level of the ground in it.
+struct PadShape<'a> {
+    outline: &'a [DVec2],
+    level_m: f64,
+    batters: Batters,
+}
+
+/// Levels the ground within a convex counter-clockwise `outline` to `level_m`, as [`leveling::level`] does, and brings the
+/// ground around it up or down to the batters; returns the volumes of both.
 ///
-/// All that changes is pinned. Posts that were pinned before, a road's or a lake's, are left as they are beside the pad.
-pub fn pad(lattice: &mut Lattice, outline: &[DVec2], level_m: f64, batters: Batters) -> Volumes {
+/// All changed posts are pinned. Posts that were pinned before, a road's or a lake's, stay as they are beside the pad.
+pub fn build_pad(lattice: &mut Lattice, outline: &[DVec2], level_m: f64, batters: Batters) -> Volumes {
+    let shape = PadShape { outline, level_m, batters };
     let mut volumes = leveling::level(lattice, &[outline.to_vec()], level_m as f32);
-    let bounds = polygon::bounds(outline);
-    let (low, high) = (lattice.grid_at(bounds.min).floor(), lattice.grid_at(bounds.max).ceil());
     for reach in 0..=MAX_REACH {
-        let mut changed = reach == 0;
-        for post in frame(lattice, (low, high), reach) {
-            let moved = batter(lattice, post, (outline, level_m), batters);
-            changed |= moved != Volumes::default();
-            volumes.cut_m3 += moved.cut_m3;
-            volumes.fill_m3 += moved.fill_m3;
+        let mut is_changed = reach == 0;
+        for post in posts_at(lattice, outline, reach) {
+            let moved = shape.batter(lattice, post);
+            is_changed |= moved != Volumes::default();
+            volumes += moved;
         }
-        if !changed {
+        if !is_changed {
             break;
         }
     }
     volumes
 }
 
-/// The posts on the border of a rectangle in grid coordinates grown by `reach`, all of them where that is 0; as far as the
-/// lattice has them.
-fn frame(lattice: &Lattice, (low, high): (DVec2, DVec2), reach: u32) -> Vec<Post> {
-    let (low, high) = (low - f64::from(reach), high + f64::from(reach));
-    let last = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
-    let (first, end) = (low.max(DVec2::ZERO), high.min(last));
-    let mut posts = Vec::new();
-    if !first.cmple(end).all() {
-        return posts;
-    }
-    let columns = first.x as u32..=end.x as u32;
-    for row in first.y as u32..=end.y as u32 {
-        let mut take = |column: u32| posts.push(Post { column, row });
-        if reach == 0 || f64::from(row) == low.y || f64::from(row) == high.y {
-            columns.clone().for_each(take);
-        } else {
-            let sides = [low.x, high.x].into_iter().filter(|&side| (0.0..=last.x).contains(&side));
-            sides.for_each(|side| take(side as u32));
+/// The posts on the border of the outline's rectangle of cells extended by `reach` cells; all posts in it where that is 0.
+fn posts_at(lattice: &Lattice, outline: &[DVec2], reach: u32) -> impl Iterator<Item = Post> + use<> {
+    let (bounds, reach_cells) = (polygon::bounds(outline), f64::from(reach));
+    let low = lattice.grid_at(bounds.min).floor() - reach_cells;
+    let high = lattice.grid_at(bounds.max).ceil() + reach_cells;
+    let is_border = move |at: f64, axis: usize| reach == 0 || at == low[axis] || at == high[axis];
+    PostRect::between(lattice, low, high).into_iter().flat_map(move |rect| {
+        (rect.first.row..=rect.last.row).flat_map(move |row| {
+            let is_whole = is_border(f64::from(row), 1);
+            let step = if is_whole { 1 } else { (rect.width() - 1).max(1) };
+            let columns = (rect.first.column..=rect.last.column).step_by(step);
+            let columns = columns.filter(move |&column| is_whole || is_border(f64::from(column), 0));
+            columns.map(move |column| Post { column, row })
+        })
+    })
+}
+
+impl PadShape<'_> {
+    /// Brings one post to the batters.
+    fn batter(&self, lattice: &mut Lattice, post: Post) -> Volumes {
+        let ground_m = f64::from(lattice.height(post));
+        if lattice.is_pinned(post) || ground_m.is_nan() {
+            return Volumes::default();
         }
+        let distance_m = distance_m(self.outline, lattice.position(post).as_dvec2());
+        let lowest_m = self.level_m - distance_m / self.batters.fill;
+        let batter_m = ground_m.clamp(lowest_m, self.level_m + distance_m / self.batters.cut);
+        if batter_m == ground_m {
+            return Volumes::default();
+        }
+        lattice.pin(post, batter_m as f32);
+        Volumes::from_rise(batter_m - ground_m, lattice.cell_m2())
     }
-    posts
 }
 
-/// Brings one post to the batters.
-fn batter(
-    lattice: &mut Lattice,
-    post: Post,
-    (outline, level_m): (&[DVec2], f64),
-    batters: Batters,
-) -> Volumes {
-    let ground = f64::from(lattice.height(post));
-    if lattice.is_pinned(post) || ground.is_nan() {
-        return Volumes::default();
-    }
-    let at = lattice.position(post).as_dvec2();
-    let distance = polygon::edges(outline).map(|edge| distance_to(edge, at)).fold(f64::INFINITY, f64::min);
-    let batter = ground.clamp(level_m - distance / batters.fill, level_m + distance / batters.cut);
-    if batter == ground {
-        return Volumes::default();
-    }
-    lattice.pin(post, batter as f32);
-    let cell_area = lattice.cell().x * lattice.cell().y;
-    let rise = batter - ground;
-    Volumes { cut_m3: (-rise).max(0.0) * cell_area, fill_m3: rise.max(0.0) * cell_area }
-}
-
-fn distance_to((from, to): (DVec2, DVec2), at: DVec2) -> f64 {
-    let way = to - from;
-    let part = (at - from).dot(way) / way.length_squared();
-    at.distance(from + way * part.clamp(0.0, 1.0))
+/// The distance from a point to the border of an outline.
+fn distance_m(outline: &[DVec2], at: DVec2) -> f64 {
+    let squares = polygon::edges(outline).map(|edge| segment::distance_squared(edge, at));
+    squares.fold(f64::INFINITY, f64::min).sqrt()
 }
 
 #[cfg(test)]
@@ -129,18 +125,17 @@ mod tests {
     }
 
     #[test]
-    fn within_the_outline_it_is_level_and_beside_it_no_batter_is_steeper_than_stated() {
+    fn a_pad_is_level_and_no_batter_is_steeper_than_stated() {
         for quarter in 0..4 {
             let mut lattice = slope(DVec2::new(0.2, 0.1));
             let outline = outline(f64::from(quarter) * 0.4);
             let level = 115.0;
-            let volumes = pad(&mut lattice, &outline, level, Batters::default());
+            let volumes = build_pad(&mut lattice, &outline, level, Batters::default());
             assert!(volumes.cut_m3 > 50.0 && volumes.fill_m3 > 50.0, "{volumes:?}");
             for post in lattice.posts() {
                 let at = lattice.position(post).as_dvec2();
                 let height = f64::from(lattice.height(post));
-                let distance =
-                    polygon::edges(&outline).map(|edge| distance_to(edge, at)).fold(f64::INFINITY, f64::min);
+                let distance = distance_m(&outline, at);
                 if polygon::contains([&outline[..]], at) {
                     assert_eq!(height, level, "at {at}");
                 } else {
@@ -151,10 +146,10 @@ mod tests {
     }
 
     #[test]
-    fn volumes_are_the_difference_of_the_heights() {
+    fn volumes_are_the_differences_of_the_heights() {
         let before = slope(DVec2::new(0.3, 0.0));
         let mut lattice = before.clone();
-        let volumes = pad(&mut lattice, &outline(0.3), 116.0, Batters::default());
+        let volumes = build_pad(&mut lattice, &outline(0.3), 116.0, Batters::default());
         let moved = |sign: f64| -> f64 {
             let rises = lattice.heights().iter().zip(before.heights());
             rises.map(|(now, then)| (f64::from(now - then) * sign).max(0.0)).sum()
@@ -163,11 +158,11 @@ mod tests {
     }
 
     #[test]
-    fn what_was_pinned_beside_it_stays() {
+    fn pinned_posts_beside_a_pad_stay() {
         let mut lattice = slope(DVec2::new(0.5, 0.0));
         let road = Post { column: 60, row: 50 };
         lattice.pin(road, 130.0);
-        pad(&mut lattice, &outline(0.0), 125.0, Batters::default());
+        build_pad(&mut lattice, &outline(0.0), 125.0, Batters::default());
         assert_eq!(lattice.height(road), 130.0);
     }
 
@@ -175,7 +170,7 @@ mod tests {
     fn a_pad_off_the_ground_or_far_above_it_ends() {
         let mut lattice = slope(DVec2::ZERO);
         let far: Vec<DVec2> = outline(0.0).iter().map(|corner| corner + 1e6).collect();
-        assert_eq!(pad(&mut lattice, &far, 5.0, Batters::default()), Volumes::default());
-        assert!(pad(&mut lattice, &outline(0.0), 1e6, Batters::default()).fill_m3 > 1e6);
+        assert_eq!(build_pad(&mut lattice, &far, 5.0, Batters::default()), Volumes::default());
+        assert!(build_pad(&mut lattice, &outline(0.0), 1e6, Batters::default()).fill_m3 > 1e6);
     }
 }

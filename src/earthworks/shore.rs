@@ -1,10 +1,10 @@
-//! A lake's bed and shore: earthwork that makes water level and neither floats it nor drowns its banks.
+//! A lake's bed and shore: earthworks that keep water level, so that it neither floats nor drowns its banks.
 //!
 //! ```text
 //!        islands stay, but none below the water
 //!   ╲        ╱╲                      ╱
-//!    ╲·     ·  ·          ·         ·     the first posts ashore go half of the way with the posts they
-//!     ────────────────────────────       stand beside, so that no cliff of one cell is left
+//!    ╲·     ·  ·          ·         ·     the first posts ashore are moved half as far as the posts
+//!     ────────────────────────────       beside them, so that no cliff of one cell is left
 //!     ▲ every corner of every cell that the water touches: level, and pinned so that it is always shown
 //! ```
 
@@ -14,18 +14,19 @@ use glam::DVec2;
 
 use crate::earthworks::leveling::posts_touched;
 use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::post_rect::PostRect;
 use crate::terrain::volumes::Volumes;
 
-/// The share of the move of the posts under water that the first posts ashore go along with: with half of it, a cut or
-/// dam of one cell becomes two steps of half the height.
+/// The move of the first posts ashore as a share of that of the posts under water: with a half, a cut or dam of one cell
+/// becomes two steps of half the height.
 const BLEND: f64 = 0.5;
 
-/// What flooding came to.
+/// The result of flooding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flooded {
     /// Earth moved for bed, islands and shore.
     pub volumes: Volumes,
-    /// The level of another lake that had some of the same posts, which now have this one's; `None` where no other had.
+    /// The level of another lake on some of the same posts, which now have this one's; `None` where there is none.
     pub other_level_m: Option<f32>,
 }
 
@@ -47,7 +48,7 @@ pub fn flood(lattice: &mut Lattice, exterior: &[DVec2], holes: &[Vec<DVec2>], le
     works.flooded
 }
 
-/// Earthworks under way.
+/// Earthworks in progress.
 struct ShoreWorks<'a> {
     lattice: &'a mut Lattice,
     flooded: Flooded,
@@ -74,22 +75,15 @@ impl ShoreWorks<'_> {
     }
 
     fn set(&mut self, post: Post, height_m: f32) {
-        let rise_m = self.rise_m(post, height_m);
+        let rise_m = f64::from(height_m) - f64::from(self.lattice.height(post));
+        let rise_m = if rise_m.is_nan() { 0.0 } else { rise_m };
         self.moves.insert((post.row, post.column), rise_m);
         self.count(rise_m);
         self.lattice.pin(post, height_m);
     }
 
-    /// How far a post would rise; 0 where it has no ground.
-    fn rise_m(&self, post: Post, height_m: f32) -> f64 {
-        let before = self.lattice.height(post);
-        if before.is_nan() { 0.0 } else { f64::from(height_m) - f64::from(before) }
-    }
-
     fn count(&mut self, rise_m: f64) {
-        let cell_m2 = self.lattice.cell().x * self.lattice.cell().y;
-        self.flooded.volumes.fill_m3 += rise_m.max(0.0) * cell_m2;
-        self.flooded.volumes.cut_m3 += (-rise_m).max(0.0) * cell_m2;
+        self.flooded.volumes += Volumes::from_rise(rise_m, self.lattice.cell_m2());
     }
 
     /// Moves every post next to the bed half as far as its neighbors there were moved on average, but not beyond the
@@ -98,7 +92,8 @@ impl ShoreWorks<'_> {
         let mut ashore: BTreeMap<(u32, u32), (f64, u32)> = BTreeMap::new();
         for &post in water {
             let moved_m = self.moves[&(post.row, post.column)];
-            for place in neighbors(self.lattice, post) {
+            let around = PostRect { first: post, last: post }.grown((1, 1), self.lattice);
+            for place in around.posts().map(|neighbor| (neighbor.row, neighbor.column)) {
                 if !self.moves.contains_key(&place) {
                     let (sum, count) = ashore.entry(place).or_default();
                     *sum += moved_m;
@@ -113,20 +108,11 @@ impl ShoreWorks<'_> {
             let rise_m = wanted_m.clamp(to_level_m.min(0.0), to_level_m.max(0.0));
             if rise_m != 0.0 && !before.is_nan() && !self.lattice.is_pinned(post) {
                 self.count(rise_m);
-                // Not pinned: what is pinned is water, and rivers leave it alone.
+                // Not pinned: pinned posts are water, which rivers leave alone.
                 self.lattice.heights_mut(post, column)[0] = (f64::from(before) + rise_m) as f32;
             }
         }
     }
-}
-
-/// The row and column of each of a post's up to eight neighbors.
-fn neighbors(lattice: &Lattice, post: Post) -> impl Iterator<Item = (u32, u32)> + use<> {
-    let (columns, rows) = (lattice.columns(), lattice.rows());
-    let span = |at: u32, count: u32| at.saturating_sub(1)..=(at + 1).min(count - 1);
-    span(post.row, rows)
-        .flat_map(move |row| span(post.column, columns).map(move |column| (row, column)))
-        .filter(move |&place| place != (post.row, post.column))
 }
 
 #[cfg(test)]
@@ -160,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn an_island_keeps_its_ground_but_none_of_it_lies_below_the_water() {
+    fn an_island_keeps_its_ground_above_the_water() {
         let mut lattice = slope();
         flood(&mut lattice, &square(12.0, 188.0), &[square(62.0, 138.0)], 20.0);
         let heights = along(&lattice, 10);
@@ -169,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn of_two_lakes_in_one_cell_the_later_holds_and_says_so() {
+    fn of_two_lakes_in_one_cell_the_later_holds_and_reports_the_other() {
         let mut lattice = slope();
         assert_eq!(flood(&mut lattice, &square(32.0, 67.0), &[], 9.0).other_level_m, None);
         assert_eq!(flood(&mut lattice, &square(63.0, 98.0), &[], 12.0).other_level_m, Some(9.0));
@@ -177,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_ashore_never_sinks_below_the_water_nor_rises_above_its_ground() {
+    fn posts_ashore_stay_between_the_water_and_their_ground() {
         let before = slope();
         for level_m in [0.0, 7.0, 23.5, 60.0] {
             let mut lattice = slope();

@@ -1,5 +1,4 @@
-//! The ground map as a texture: tints and contours as seen from straight above, without light and shadow, which the
-//! program that shows it casts itself.
+//! The ground map as a texture: tints and contours seen from straight above, without light and shadow.
 
 use glam::Vec2;
 use rayon::prelude::*;
@@ -8,33 +7,33 @@ use crate::draw::color::Srgba;
 use crate::draw::ground::GroundMap;
 use crate::draw::pixels::Pixels;
 
-/// The longest side in pixels: what every graphics adapter takes.
+/// The longest side in pixels: the most that every graphics adapter supports.
 const LONGEST_PX: u32 = 4096;
 
-/// Pixels a cell: contours between posts are smooth from two on.
+/// Pixels a cell: fewer make contours between posts jagged.
 const PIXELS_PER_CELL: f32 = 2.0;
 
-/// A ground map as pixels, with the place they cover.
-pub struct Baked {
+/// A ground map as pixels, and the rectangle that they cover.
+pub struct BakedGround {
     /// North up.
     pub pixels: Pixels,
     origin: Vec2,
     size: Vec2,
 }
 
-impl Baked {
-    /// Texture coordinates of a world position.
+impl BakedGround {
+    /// The texture coordinates of a world position; V runs downward.
     pub fn uv(&self, at: Vec2) -> Vec2 {
         let part = (at - self.origin) / self.size;
         Vec2::new(part.x, 1.0 - part.y)
     }
 }
 
-/// The whole of `map`, which has passed its check.
-pub fn bake(map: &GroundMap) -> Baked {
+/// All of `map`, which must be sound ([`GroundMap::check`]).
+pub fn bake(map: &GroundMap) -> BakedGround {
     let cells = Vec2::new((map.columns.max(2) - 1) as f32, (map.rows.max(2) - 1) as f32);
     let size = cells * map.cell;
-    // As many pixels east as north to the meter, as many to the cell as there is room for.
+    // Square pixels.
     let meters_per_px =
         (map.cell.min_element() / PIXELS_PER_CELL).max(size.max_element() / LONGEST_PX as f32);
     let pixels = (size / meters_per_px).round().max(Vec2::ONE);
@@ -51,7 +50,7 @@ pub fn bake(map: &GroundMap) -> Baked {
         .collect();
     let pixels =
         Pixels::from_data(width, height, rows.concat()).expect("a row of pixels for each of `height`");
-    Baked { pixels, origin: map.origin, size }
+    BakedGround { pixels, origin: map.origin, size }
 }
 
 fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {

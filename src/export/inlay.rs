@@ -1,49 +1,49 @@
-//! The ground without what lies on it.
+//! Cuts out of the ground what drapes cover.
 //!
-//! Everything draped was cut along the ground's triangles, so each of its triangles lies in one of them. Here each
-//! triangle of the ground loses, in plan, those that lie in it; what is left lies in the same plane. Ground and drapes
-//! together then cover every place once, and no program can draw one through the other.
-
-use std::collections::BTreeMap;
+//! Drapes were cut along the ground's triangles, so each of their triangles lies in one of the ground. Each triangle of
+//! the ground loses, in plan, the drape triangles in it; the rest keeps its plane. Ground and drapes then cover every
+//! place once, and no program shows one through the other.
 
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
 use crate::draw::list::{DrawMesh, DrawVertex};
+use crate::geom::convex;
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
+use crate::geom::rect_tree::RectTree;
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::terrain::triangle_surface::{SurfaceTriangle, facet_contains, plane_z};
 
-/// What is left is kept from this area on, in square meters: less is what rounding to f32 makes of nothing.
+/// The smallest piece that is kept, in square meters: rounding to f32 makes smaller ones out of nothing.
 const SLIVER_M2: f64 = 1e-4;
 
-/// `ground` without what the triangles of `drapes` cover. Both in world space.
-pub fn inlaid<'a>(ground: &DrawMesh, drapes: impl IntoIterator<Item = &'a DrawMesh>) -> DrawMesh {
+/// `ground` without the area that the triangles of `drapes` cover; both in world space.
+pub fn cut_out<'a>(ground: &DrawMesh, drapes: impl IntoIterator<Item = &'a DrawMesh>) -> DrawMesh {
     let facets: Vec<SurfaceTriangle> = facets(ground).collect();
-    let over = assigned(&facets, drapes);
+    let drapes = drapes_by_facet(&facets, drapes);
     let pieces: Vec<Option<Vec<Vec<DVec2>>>> = facets
         .par_iter()
-        .zip(&over)
-        .map(|(facet, over)| (!over.is_empty()).then(|| uncovered(facet, over)))
+        .zip(&drapes)
+        .map(|(facet, drapes)| (!drapes.is_empty()).then(|| uncovered(facet, drapes)))
         .collect();
-    let mut left = DrawMesh::default();
+    let mut rest = DrawMesh::default();
     let mut kept: Vec<Option<VertexId>> = vec![None; ground.vertices.len()];
     for ((ids, facet), pieces) in ground.triangles.iter().zip(&facets).zip(pieces) {
         match pieces {
             None => {
                 let ids = ids.map(|id| {
-                    *kept[id.index()].get_or_insert_with(|| left.vertex(ground.vertices[id.index()]))
+                    *kept[id.index()].get_or_insert_with(|| rest.vertex(ground.vertices[id.index()]))
                 });
-                left.triangle(ids);
+                rest.triangle(ids);
             }
             Some(pieces) => {
-                let like = ground.vertices[ids[0].index()];
-                pieces.iter().for_each(|piece| add(&mut left, piece, facet, like));
+                let template = ground.vertices[ids[0].index()];
+                pieces.iter().for_each(|piece| add_piece(&mut rest, piece, facet, template));
             }
         }
     }
-    left
+    rest
 }
 
 fn facets(mesh: &DrawMesh) -> impl Iterator<Item = SurfaceTriangle> + '_ {
@@ -51,89 +51,59 @@ fn facets(mesh: &DrawMesh) -> impl Iterator<Item = SurfaceTriangle> + '_ {
     mesh.triangles.iter().map(move |ids| ids.map(corner))
 }
 
-/// For each facet the drapes' triangles in it, in plan.
-fn assigned<'a>(
+/// For each facet the drape triangles in it, in plan.
+fn drapes_by_facet<'a>(
     facets: &[SurfaceTriangle],
     drapes: impl IntoIterator<Item = &'a DrawMesh>,
 ) -> Vec<Vec<[DVec2; 3]>> {
-    let squares = Squares::of(facets);
-    let mut over = vec![Vec::new(); facets.len()];
+    let rects: Vec<Rect> = facets.iter().map(|facet| polygon::bounds(&plan(facet))).collect();
+    let tree = RectTree::new(&rects);
+    let mut by_facet = vec![Vec::new(); facets.len()];
     for triangle in drapes.into_iter().flat_map(self::facets) {
-        let plan = triangle.map(|corner| corner.truncate().as_dvec2());
-        if let Some(facet) = squares.facet_at(facets, (plan[0] + plan[1] + plan[2]) / 3.0) {
-            over[facet].push(plan);
+        let [a, b, c] = plan(&triangle);
+        let center = (a + b + c) / 3.0;
+        let around = Rect { min: center, max: center };
+        let containing = tree.meeting(&around).filter(|&index| facet_contains(&facets[index], center));
+        if let Some(facet) = containing.min() {
+            by_facet[facet].push([a, b, c]);
         }
     }
-    over
+    by_facet
 }
 
-/// Which facets may lie over a place.
-struct Squares {
-    side: f64,
-    members: BTreeMap<(i64, i64), Vec<u32>>,
+fn plan(triangle: &SurfaceTriangle) -> [DVec2; 3] {
+    triangle.map(|corner| corner.truncate().as_dvec2())
 }
 
-impl Squares {
-    fn of(facets: &[SurfaceTriangle]) -> Self {
-        let bounds = |facet: &SurfaceTriangle| Rect::around(facet.map(|corner| corner.truncate().as_dvec2()));
-        let sum: f64 = facets.iter().map(|facet| bounds(facet).size().max_element()).sum();
-        let side = (sum / facets.len().max(1) as f64).max(1e-3);
-        let mut members: BTreeMap<(i64, i64), Vec<u32>> = BTreeMap::new();
-        for (index, facet) in facets.iter().enumerate() {
-            let Rect { min, max } = bounds(facet);
-            let (low, high) = ((min / side).floor(), (max / side).floor());
-            for row in low.y as i64..=high.y as i64 {
-                for column in low.x as i64..=high.x as i64 {
-                    members.entry((row, column)).or_default().push(index as u32);
-                }
-            }
-        }
-        Self { side, members }
-    }
-
-    fn facet_at(&self, facets: &[SurfaceTriangle], at: DVec2) -> Option<usize> {
-        let square = (at / self.side).floor();
-        let members = self.members.get(&(square.y as i64, square.x as i64))?;
-        members.iter().map(|&index| index as usize).find(|&index| facet_contains(&facets[index], at))
-    }
-}
-
-/// What of a facet, in plan, none of the triangles over it covers.
-fn uncovered(facet: &SurfaceTriangle, over: &[[DVec2; 3]]) -> Vec<Vec<DVec2>> {
-    let mut pieces = vec![facet.map(|corner| corner.truncate().as_dvec2()).to_vec()];
-    for window in over {
-        let reach = polygon::bounds(window);
-        let mut left = Vec::with_capacity(pieces.len() + 2);
+/// The parts of a facet, in plan, that none of `drapes` covers.
+fn uncovered(facet: &SurfaceTriangle, drapes: &[[DVec2; 3]]) -> Vec<Vec<DVec2>> {
+    let mut pieces = vec![plan(facet).to_vec()];
+    for drape in drapes {
+        let mut rest = Vec::with_capacity(pieces.len() + 2);
         for piece in pieces {
-            if polygon::bounds(&piece).meets(&reach) && overlaps(&piece, window) {
-                polygon::cut_away(piece, window, &mut left);
+            if convex::intersection(&piece, drape, SLIVER_M2).is_some() {
+                polygon::cut_away(piece, drape, &mut rest);
             } else {
-                left.push(piece);
+                rest.push(piece);
             }
         }
-        left.retain(|piece| polygon::doubled_area(piece) > 2.0 * SLIVER_M2);
-        pieces = left;
+        rest.retain(|piece| polygon::doubled_area(piece) > 2.0 * SLIVER_M2);
+        pieces = rest;
     }
     pieces
 }
 
-fn overlaps(piece: &[DVec2], window: &[DVec2]) -> bool {
-    let (mut shared, mut scratch) = (piece.to_vec(), Vec::new());
-    polygon::clip_convex(&mut shared, &mut scratch, window);
-    shared.len() > 2 && polygon::doubled_area(&shared) > 2.0 * SLIVER_M2
-}
-
-fn add(left: &mut DrawMesh, piece: &[DVec2], facet: &SurfaceTriangle, like: DrawVertex) {
-    let corners: Vec<Vec3> = piece.iter().map(|&at| at.as_vec2().extend(plane_z(facet, at) as f32)).collect();
-    let ids: Vec<VertexId> = corners
-        .iter()
-        .map(|corner| left.vertex(DrawVertex { position: corner.to_array(), ..like }))
-        .collect();
-    for (pair, ids_of_pair) in corners[1..].windows(2).zip(ids[1..].windows(2)) {
-        // Corners on one line, as a cut leaves them, make a triangle without area, which rounding may turn over.
-        let area = (pair[0] - corners[0]).truncate().perp_dot((pair[1] - corners[0]).truncate());
-        if area > 0.0 {
-            left.triangle([ids[0], ids_of_pair[0], ids_of_pair[1]]);
+/// Adds a convex piece of `facet` as a fan of triangles; its vertices are like `template` but for the position.
+fn add_piece(mesh: &mut DrawMesh, piece: &[DVec2], facet: &SurfaceTriangle, template: DrawVertex) {
+    let corner = |&at: &DVec2| at.as_vec2().extend(plane_z(facet, at) as f32);
+    let corners: Vec<Vec3> = piece.iter().map(corner).collect();
+    let vertex = |corner: &Vec3| mesh.vertex(DrawVertex { position: corner.to_array(), ..template });
+    let ids: Vec<VertexId> = corners.iter().map(vertex).collect();
+    for next in 2..corners.len() {
+        let [a, b, c] = [0, next - 1, next].map(|index| corners[index].truncate());
+        // Cuts leave corners on one line; rounding may turn such a triangle over.
+        if (b - a).perp_dot(c - a) > 0.0 {
+            mesh.triangle([ids[0], ids[next - 1], ids[next]]);
         }
     }
 }
@@ -166,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_and_what_lies_on_it_cover_the_ground_once() {
+    fn the_rest_and_the_drapes_cover_the_ground_once() {
         for quarter in 0..4 {
             let at = |x: f32, y: f32| {
                 let plan = (0..quarter).fold(Vec2::new(x, y), |at, _| at.perp());
@@ -182,7 +152,7 @@ mod tests {
                 [at(20.0, 5.0), at(80.0, 15.0), at(30.0, 15.0)],
                 [at(10.0, 60.0), at(30.0, 60.0), at(20.0, 80.0)],
             ]);
-            let left = inlaid(&ground, [&road]);
+            let left = cut_out(&ground, [&road]);
             let total = plan_area(&left) + plan_area(&road);
             assert!((total - plan_area(&ground)).abs() < 0.01, "{total}");
             for [a, b, c] in facets(&left) {
@@ -195,8 +165,8 @@ mod tests {
     }
 
     #[test]
-    fn ground_under_nothing_stays_as_it_is() {
+    fn ground_without_drapes_is_unchanged() {
         let ground = mesh(&[[Vec3::ZERO, Vec3::X, Vec3::Y]]);
-        assert_eq!(inlaid(&ground, []), ground);
+        assert_eq!(cut_out(&ground, []), ground);
     }
 }

@@ -1,18 +1,52 @@
-//! Draw lists as files that other programs open: binary glTF and OBJ.
+//! Draw lists as files for modeling programs: binary glTF and OBJ.
 //!
-//! What is drawn for a camera is not yet what a modeling program can show: the ground's color comes from a map that is
-//! read at every pixel, and what lies on the ground lies in its very triangles, where a program that draws both sees
-//! them flicker. So a list is prepared first:
+//! A draw list cannot be written as it is: the ground's color comes from a map that is read at every pixel, and what
+//! is draped on the ground shares its planes, so that other programs would show both flickering. So a list is prepared
+//! first:
 //!
 //! ```text
-//!  DrawList ─► bake   the ground map as a texture
-//!           ─► inlay  the ground without what lies on it
-//!           ─► prepare: normals, and nothing without area  ─► glb | obj
+//!  DrawList ─► bake     the ground map as a texture
+//!           ─► inlay    the ground without what the drapes cover
+//!           ─► prepare  normals at every vertex          ─► glb | obj
 //! ```
 
-pub mod bake;
+mod bake;
 pub mod glb;
-pub mod inlay;
+mod inlay;
 pub mod obj;
 pub mod png;
 pub mod prepare;
+
+use std::ops::Range;
+
+use crate::draw::list::{DrawItem, DrawList, DrawMesh, FeatureId};
+use crate::draw::material::Material;
+use crate::mesh::sink::VertexId;
+use crate::mesh::write::Remarks;
+
+/// A prepared draw list ([`prepare::prepare`]) and what its file states about it.
+#[derive(Clone, Copy)]
+pub struct SceneExport<'a> {
+    /// The list.
+    pub list: &'a DrawList,
+    /// Names features; an empty name is allowed.
+    pub name_of: &'a dyn Fn(FeatureId) -> String,
+    /// What the file states.
+    pub remarks: &'a Remarks,
+}
+
+impl SceneExport<'_> {
+    fn mesh(&self, item: &DrawItem) -> &DrawMesh {
+        &self.list.meshes[item.mesh.0 as usize]
+    }
+
+    fn material(&self, item: &DrawItem) -> &Material {
+        &self.list.materials[item.material.0 as usize]
+    }
+
+    /// The triangles that `item` draws.
+    fn triangles(&self, item: &DrawItem) -> &[[VertexId; 3]] {
+        let Range { start, end } = item.triangles;
+        &self.mesh(item).triangles[start as usize..end as usize]
+    }
+}

@@ -1,26 +1,37 @@
-//! Wavefront OBJ with its material library and textures: the files that every modeling program reads.
+//! A draw list as Wavefront OBJ with its material library and textures.
 //!
-//! Coordinates are meters, X east, Y north, Z up, as [`crate::mesh::write`] has them; a remark at the top says so. Every
-//! item is an object with vertices of its own, so that what the list shares is written as often as it is shown.
+//! Coordinates are meters, X east, Y north, Z up. Every item is an object with vertices of its own: the format has no
+//! instances.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::io::{self, Write};
 
-use glam::{Mat3, Vec3};
+use glam::{Mat3, Vec2, Vec3};
 
 use crate::draw::color::Srgba;
-use crate::draw::list::{DrawItem, DrawList, FeatureId, MaterialId};
+use crate::draw::list::{DrawItem, DrawList, DrawVertex, MaterialId};
 use crate::draw::material::{AlphaMode, TextureId};
-use crate::export::png;
+use crate::export::{SceneExport, png};
+use crate::mesh::sink::VertexId;
+use crate::mesh::write::obj::{ObjObject, ObjWriter, word};
 
-/// The files that belong to an OBJ, by name, in the order in which they are to be written.
-pub fn companions(list: &DrawList, stem: &str) -> Vec<(String, Vec<u8>)> {
-    let mut files: Vec<(String, Vec<u8>)> = textures(list)
-        .into_iter()
-        .filter_map(|id| Some((texture_name(stem, id), png::encode(&list.textures[id.0 as usize])?)))
-        .collect();
-    files.push((library_name(stem), library(list, stem).into_bytes()));
-    files
+/// A file that an OBJ file needs beside it.
+#[derive(Clone, Debug)]
+pub struct ObjCompanion {
+    /// Its name, without a folder.
+    pub name: String,
+    /// Its content.
+    pub bytes: Vec<u8>,
+}
+
+/// The textures and the material library of the OBJ file called `stem`, in the order in which they are to be written.
+pub fn companions(list: &DrawList, stem: &str) -> Vec<ObjCompanion> {
+    let texture = |id: TextureId| ObjCompanion {
+        name: texture_name(stem, id),
+        bytes: png::encode(&list.textures[id.0 as usize]),
+    };
+    let library = ObjCompanion { name: library_name(stem), bytes: library(list, stem).into_bytes() };
+    textures(list).into_iter().map(texture).chain([library]).collect()
 }
 
 fn library_name(stem: &str) -> String {
@@ -31,29 +42,32 @@ fn texture_name(stem: &str, id: TextureId) -> String {
     format!("{stem}_{}.png", id.0)
 }
 
+/// Distinct names for distinct materials.
+fn material_name(list: &DrawList, MaterialId(id): MaterialId) -> String {
+    format!("{}_{id}", word(&list.materials[id as usize].name))
+}
+
 fn materials(list: &DrawList) -> BTreeSet<MaterialId> {
     list.items.iter().map(|item| item.material).collect()
 }
 
 fn textures(list: &DrawList) -> BTreeSet<TextureId> {
     let texture = |id: MaterialId| list.materials[id.0 as usize].texture;
-    let is_picture = |id: &TextureId| !list.textures[id.0 as usize].data().is_empty();
-    materials(list).into_iter().filter_map(texture).filter(is_picture).collect()
+    let has_pixels = |id: &TextureId| !list.textures[id.0 as usize].data().is_empty();
+    materials(list).into_iter().filter_map(texture).filter(has_pixels).collect()
 }
 
 fn library(list: &DrawList, stem: &str) -> String {
-    let pictures = textures(list);
+    let textures = textures(list);
     let mut text = String::new();
     for id in materials(list) {
         let material = &list.materials[id.0 as usize];
-        let [red, green, blue] = material.base_color.0.map(|channel| f32::from(channel) / 255.0)[..3] else {
-            continue;
-        };
+        let Vec3 { x: red, y: green, z: blue } = srgb(material.base_color);
         text += &format!("newmtl {}\nKa 0 0 0\nKd {red} {green} {blue}\nKs 0 0 0\n", material_name(list, id));
         if material.alpha != AlphaMode::Opaque {
             text += &format!("d {}\n", material.base_color.alpha());
         }
-        if let Some(texture) = material.texture.filter(|texture| pictures.contains(texture)) {
+        if let Some(texture) = material.texture.filter(|texture| textures.contains(texture)) {
             let name = texture_name(stem, texture);
             text += &format!("map_Kd {name}\n");
             if material.alpha != AlphaMode::Opaque {
@@ -65,100 +79,43 @@ fn library(list: &DrawList, stem: &str) -> String {
     text
 }
 
-/// Unlike names for unlike materials, without what would end a word.
-fn material_name(list: &DrawList, MaterialId(id): MaterialId) -> String {
-    format!("{}_{id}", word(&list.materials[id as usize].name))
+/// The channels in 0..=1.
+fn srgb(color: Srgba) -> Vec3 {
+    let [red, green, blue, _] = color.0.map(|channel| f32::from(channel) / 255.0);
+    Vec3::new(red, green, blue)
 }
 
-fn word(name: &str) -> String {
-    name.chars().map(|at| if at.is_alphanumeric() || "-.".contains(at) { at } else { '_' }).collect()
-}
-
-/// Writes a prepared list ([`crate::export::prepare`]) that uses the companions called after `stem`.
+/// Writes the OBJ file called `stem`.
 ///
 /// # Errors
 /// `out` cannot be written.
-pub fn write(
-    list: &DrawList,
-    (stem, name): (&str, &dyn Fn(FeatureId) -> String),
-    remarks: &[String],
-    out: &mut impl Write,
-) -> io::Result<()> {
-    for line in remarks {
-        writeln!(out, "# {}", line.replace(char::is_control, "?"))?;
-    }
-    writeln!(out, "mtllib {}", library_name(stem))?;
-    let mut written = ObjCounts::default();
-    for item in &list.items {
-        written.item(list, item, &name(item.feature), out)?;
-    }
-    Ok(())
+pub fn write(export: &SceneExport<'_>, stem: &str, out: &mut impl Write) -> io::Result<()> {
+    let mut writer = ObjWriter::new(out, export.remarks, Some(&library_name(stem)))?;
+    export.list.items.iter().try_for_each(|item| writer.object(&object(export, item)))
 }
 
-/// How many lines of each kind there are.
-#[derive(Default)]
-struct ObjCounts {
-    vertices: usize,
-    textured: usize,
-    named: BTreeMap<String, usize>,
-}
-
-impl ObjCounts {
-    fn item(&mut self, list: &DrawList, item: &DrawItem, name: &str, out: &mut impl Write) -> io::Result<()> {
-        let mesh = &list.meshes[item.mesh.0 as usize];
-        let triangles = &mesh.triangles[item.triangles.start as usize..item.triangles.end as usize];
-        let used: BTreeSet<usize> = triangles.iter().flatten().map(|id| id.index()).collect();
-        let place: BTreeMap<usize, usize> =
-            used.iter().enumerate().map(|(place, &index)| (index, place + 1)).collect();
-        let is_textured = list.materials[item.material.0 as usize].texture.is_some();
-        let is_colored = used.iter().any(|&index| mesh.vertices[index].color != Srgba::WHITE);
-        let turn = Mat3::from_mat4(item.world_from_mesh);
-        writeln!(out, "o {}", self.object(name))?;
-        for &index in &used {
-            let vertex = &mesh.vertices[index];
-            let at = item.world_from_mesh.transform_point3(Vec3::from(vertex.position));
-            write!(out, "v {} {} {}", at.x, at.y, at.z)?;
-            if is_colored {
-                let [red, green, blue, _] = vertex.color.0.map(|channel| f32::from(channel) / 255.0);
-                write!(out, " {red} {green} {blue}")?;
-            }
-            writeln!(out)?;
-        }
-        for &index in &used {
-            let normal = (turn * Vec3::from(mesh.vertices[index].normal)).normalize_or(Vec3::Z);
-            writeln!(out, "vn {} {} {}", normal.x, normal.y, normal.z)?;
-        }
-        if is_textured {
-            for &index in &used {
-                // V runs upward in OBJ.
-                let [u, v] = mesh.vertices[index].uv;
-                writeln!(out, "vt {u} {}", 1.0 - v)?;
-            }
-        }
-        writeln!(out, "usemtl {}", material_name(list, item.material))?;
-        for corners in triangles {
-            let [a, b, c] = corners.map(|id| self.corner(place[&id.index()], is_textured));
-            writeln!(out, "f {a} {b} {c}")?;
-        }
-        self.vertices += used.len();
-        self.textured += if is_textured { used.len() } else { 0 };
-        Ok(())
-    }
-
-    fn corner(&self, place: usize, is_textured: bool) -> String {
-        let vertex = self.vertices + place;
-        if is_textured {
-            format!("{vertex}/{}/{vertex}", self.textured + place)
-        } else {
-            format!("{vertex}//{vertex}")
-        }
-    }
-
-    /// A name that no object had before.
-    fn object(&mut self, name: &str) -> String {
-        let name = if name.is_empty() { "unnamed".to_owned() } else { word(name) };
-        let count = self.named.entry(name.clone()).or_default();
-        *count += 1;
-        if *count == 1 { name } else { format!("{name}.{count}") }
+/// The vertices that `item` uses, in world space, and its triangles.
+fn object(export: &SceneExport<'_>, item: &DrawItem) -> ObjObject<'static> {
+    let mesh = export.mesh(item);
+    let mut ids: Vec<Option<VertexId>> = vec![None; mesh.vertices.len()];
+    export.triangles(item).iter().flatten().for_each(|id| ids[id.index()] = Some(VertexId(0)));
+    ids.iter_mut().flatten().enumerate().for_each(|(place, id)| *id = VertexId::new(place));
+    let used = mesh.vertices.iter().zip(&ids).filter_map(|(vertex, id)| id.map(|_| vertex));
+    let new_id = |id: VertexId| ids[id.index()].expect("every corner is used");
+    let turn = Mat3::from_mat4(item.world_from_mesh);
+    let is_colored = used.clone().any(|vertex| vertex.color != Srgba::WHITE);
+    let is_textured = export.material(item).texture.is_some();
+    let position = |vertex: &DrawVertex| item.world_from_mesh.transform_point3(vertex.position.into());
+    let normal = |vertex: &DrawVertex| (turn * Vec3::from(vertex.normal)).normalize_or(Vec3::Z);
+    let color = |vertex: &DrawVertex| is_colored.then(|| srgb(vertex.color));
+    let uv = |vertex: &DrawVertex| is_textured.then(|| Vec2::new(vertex.uv[0], 1.0 - vertex.uv[1]));
+    ObjObject {
+        name: (export.name_of)(item.feature),
+        material: Some(material_name(export.list, item.material)),
+        positions: used.clone().map(position).collect(),
+        colors: used.clone().filter_map(color).collect(),
+        normals: used.clone().map(normal).collect(),
+        uvs: used.filter_map(uv).collect(),
+        triangles: export.triangles(item).iter().map(|corners| corners.map(new_id)).collect(),
     }
 }

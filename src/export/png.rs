@@ -4,8 +4,8 @@ use image::{ExtendedColorType, ImageEncoder};
 
 use crate::draw::pixels::Pixels;
 
-/// The bytes of a PNG file, without alpha where all pixels are opaque; `None` for a picture without pixels.
-pub fn encode(pixels: &Pixels) -> Option<Vec<u8>> {
+/// The bytes of a PNG file, without alpha where all pixels are opaque. `pixels` must not be empty.
+pub fn encode(pixels: &Pixels) -> Vec<u8> {
     let mut png = Vec::new();
     let encoder = image::codecs::png::PngEncoder::new(&mut png);
     let (width, height) = (pixels.width(), pixels.height());
@@ -16,5 +16,6 @@ pub fn encode(pixels: &Pixels) -> Option<Vec<u8>> {
     } else {
         encoder.write_image(pixels.bytes(), width, height, ExtendedColorType::Rgba8)
     };
-    written.ok().map(|()| png)
+    written.expect("memory takes all bytes, and there are as many as the size says");
+    png
 }

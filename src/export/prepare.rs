@@ -1,26 +1,25 @@
-//! A draw list made ready for programs that know neither ground maps nor layers.
+//! Makes a draw list ready for programs that have neither ground maps nor depth layers.
 
 use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::draw::color::Srgba;
-use crate::draw::ground::GroundMap;
 use crate::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh};
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
-use crate::export::bake::{Baked, bake};
-use crate::export::inlay::inlaid;
+use crate::export::bake::{BakedGround, bake};
+use crate::export::inlay::cut_out;
 
-/// How far above the ground, in meters, lies what lets the ground through: it cannot take the ground's place, and in
-/// the same plane the two would flicker.
+/// The height above the ground, in meters, of translucent drapes: they cannot replace the ground, and in its plane they
+/// would flicker. Arbitrary, but too small to see.
 const LIFT_M: f32 = 0.05;
 
-/// The same picture with a texture in place of the ground map, a ground that ends where something lies on it, and
-/// normals at every vertex. What holds no triangle then is left out.
+/// The same picture with a texture in place of the ground map, a ground that is cut out under opaque drapes, and
+/// normals at every vertex. Items without triangles are dropped.
 pub fn prepare(mut list: DrawList) -> DrawList {
     let baked = list.ground.as_deref().map(bake);
     let meshes: Vec<Option<DrawMesh>> = {
-        let draped = draped(&list);
-        list.items.par_iter().map(|item| own_mesh(&list, item, baked.as_ref(), &draped)).collect()
+        let drapes = opaque_drapes(&list);
+        list.items.par_iter().map(|item| prepared_mesh(&list, item, baked.as_ref(), &drapes)).collect()
     };
     if let Some(baked) = baked {
         let texture = Some(list.add_texture(baked.pixels));
@@ -30,13 +29,13 @@ pub fn prepare(mut list: DrawList) -> DrawList {
         }
     }
     let items = std::mem::take(&mut list.items);
-    for (item, own) in items.into_iter().zip(meshes) {
-        match own {
-            Some(own) => {
-                // Whatever the list held for this item alone is not written, and need not be kept.
+    for (item, mesh) in items.into_iter().zip(meshes) {
+        match mesh {
+            Some(mesh) => {
+                // The mesh it replaces is not written; freeing it bounds the memory.
                 list.meshes[item.mesh.0 as usize] = DrawMesh::default();
-                let triangles = 0..own.triangles.len() as u32;
-                let mesh = list.add_mesh(own);
+                let triangles = 0..mesh.triangles.len() as u32;
+                let mesh = list.add_mesh(mesh);
                 list.items.push(DrawItem { mesh, triangles, ..item });
             }
             None => list.items.push(item),
@@ -47,48 +46,45 @@ pub fn prepare(mut list: DrawList) -> DrawList {
     list
 }
 
-/// What lies on the ground and hides it.
-fn draped(list: &DrawList) -> Vec<&DrawMesh> {
-    let hides = |item: &&DrawItem| matches!(item.layer, DepthLayer::Draped(_)) && !is_translucent(list, item);
-    list.items.iter().filter(hides).map(|item| &list.meshes[item.mesh.0 as usize]).collect()
+/// The drapes that hide the ground.
+fn opaque_drapes(list: &DrawList) -> Vec<&DrawMesh> {
+    let is_opaque =
+        |item: &&DrawItem| matches!(item.layer, DepthLayer::Draped(_)) && !is_translucent(list, item);
+    list.items.iter().filter(is_opaque).map(|item| &list.meshes[item.mesh.0 as usize]).collect()
 }
 
 fn is_translucent(list: &DrawList, item: &DrawItem) -> bool {
     list.materials[item.material.0 as usize].alpha == AlphaMode::Blend
 }
 
-/// The item's mesh where it needs one of its own; `None` where the list's will do.
-fn own_mesh(
+/// The item's mesh where it differs from the list's.
+fn prepared_mesh(
     list: &DrawList,
     item: &DrawItem,
-    baked: Option<&Baked>,
-    draped: &[&DrawMesh],
+    baked: Option<&BakedGround>,
+    drapes: &[&DrawMesh],
 ) -> Option<DrawMesh> {
     let mesh = &list.meshes[item.mesh.0 as usize];
     let material = &list.materials[item.material.0 as usize];
-    let mut own = match item.layer {
-        DepthLayer::Ground => inlaid(mesh, draped.iter().copied()),
+    let mut prepared = match item.layer {
+        DepthLayer::Ground => cut_out(mesh, drapes.iter().copied()),
         DepthLayer::Draped(_) => mesh.clone(),
         DepthLayer::Solid => return None,
     };
-    if let (Albedo::GroundMap, Some(baked)) = (material.albedo, baked) {
-        for vertex in &mut own.vertices {
-            vertex.uv = baked.uv(Vec3::from(vertex.position).truncate()).to_array();
+    let is_lifted = matches!(item.layer, DepthLayer::Draped(_)) && is_translucent(list, item);
+    for vertex in &mut prepared.vertices {
+        let at = Vec3::from(vertex.position).truncate();
+        if let (Albedo::GroundMap, Some(baked)) = (material.albedo, baked) {
+            vertex.uv = baked.uv(at).to_array();
+        }
+        if let (NormalSource::Ground, Some(map)) = (material.normals, list.ground.as_deref()) {
+            vertex.normal = map.sample(at).normal().to_array();
+        }
+        if is_lifted {
+            vertex.position[2] += LIFT_M;
         }
     }
-    if let (NormalSource::Ground, Some(map)) = (material.normals, list.ground.as_deref()) {
-        take_normals(&mut own, map);
-    }
-    if matches!(item.layer, DepthLayer::Draped(_)) && is_translucent(list, item) {
-        own.vertices.iter_mut().for_each(|vertex| vertex.position[2] += LIFT_M);
-    }
-    Some(own)
-}
-
-fn take_normals(mesh: &mut DrawMesh, map: &GroundMap) {
-    for vertex in &mut mesh.vertices {
-        vertex.normal = map.sample(Vec3::from(vertex.position).truncate()).normal().to_array();
-    }
+    Some(prepared)
 }
 
 #[cfg(test)]
@@ -96,7 +92,7 @@ mod tests {
     use super::*;
     use std::sync::Arc;
 
-    use crate::draw::ground::{ColorRamp, GroundPost};
+    use crate::draw::ground::{ColorRamp, GroundMap, GroundPost};
     use crate::draw::list::{DrawVertex, FeatureId};
     use crate::mesh::sink::MeshSink;
     use glam::{Mat4, Vec2};
@@ -150,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ground_ends_where_a_road_lies_and_shows_its_map_and_its_slope() {
+    fn the_ground_is_cut_out_under_a_road_and_keeps_its_map_and_its_slope() {
         let ready = prepare(list(AlphaMode::Opaque));
         assert!((area(&ready, 0) - 384.0).abs() < 1e-2, "{}", area(&ready, 0));
         assert_eq!(ready.materials[0].albedo, Albedo::Surface);
@@ -164,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lets_the_ground_through_lies_a_little_above_it() {
+    fn translucent_drapes_lie_a_little_above_the_ground() {
         let ready = prepare(list(AlphaMode::Blend));
         assert!((area(&ready, 0) - 400.0).abs() < 1e-2);
         let road = &ready.meshes[ready.items[1].mesh.0 as usize];

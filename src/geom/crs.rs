@@ -1,82 +1,82 @@
-//! Coordinate reference systems and transforms between them: the one door to `proj4rs`.
+//! Coordinate reference systems and transforms between them; the only user of `proj4rs`.
 //!
-//! A system is made from an EPSG code, a proj string, WKT 1 text (a `.prj` file) or the parameters of a
-//! projection. What is not understood is refused, never approximated; that holds for datums too: a system on
-//! a datum whose shift to WGS 84 is unknown, or needs a grid file (NAD27), can be named and measured in, and
-//! transforms to systems on the same datum, but not to others.
+//! A system is made from an EPSG code, a proj string, WKT 1 (a `.prj` file) or the parameters of a projection. Anything
+//! else is refused, never approximated. A system on a datum whose shift to WGS 84 is unknown or needs a grid file
+//! (NAD27) can be named and measured in; it transforms to systems on the same datum only.
 //!
-//! Exactness, held against PROJ by `tests/dem_oracle.rs`: UTM, Lambert, Albers and azimuthal systems agree to
-//! better than 0.1 mm. A seven-parameter datum shift is only as good as its parameters: EPSG:27700 agrees
-//! with PROJ's own seven-parameter shift to about 3 mm, which itself is good to some meters (the grid
+//! Accuracy, checked against PROJ by `tests/dem_oracle.rs`: UTM, Lambert, Albers and azimuthal systems agree within
+//! 0.1 mm. EPSG:27700 agrees within 3 mm with PROJ's own seven-parameter shift, which is good to some meters (the grid
 //! OSTN15 is not used).
 
 use std::sync::Arc;
 
 use glam::DVec2;
 
+use crate::geom::crs_fault::CrsFault;
 use crate::geom::datum_shift::DatumShift;
-use crate::geom::proj_words;
-use crate::geom::projection::{Definition, Ellipsoid};
-use crate::geom::wkt;
+use crate::geom::proj_string::ProjString;
+use crate::geom::projection::{Datum, Definition, Ellipsoid};
+use crate::geom::wkt::{self, WktSystem};
 
-/// The longest text that is looked at: real WKT is a tenth of it.
+/// The longest text that is parsed, in bytes; real WKT has a tenth of it.
 const LONGEST_TEXT: usize = 65_536;
 
 /// A horizontal coordinate reference system; cheap to clone.
 ///
-/// Coordinates are (easting, northing) in the system's own linear unit, or (longitude, latitude) in degrees
-/// for a geographic one, whatever axis order its registry entry states.
+/// Coordinates are (easting, northing) in the system's own linear unit, or (longitude, latitude) in degrees for a
+/// geographic one, whatever axis order its registry entry states.
 #[derive(Clone, Debug)]
 pub struct Crs {
-    inner: Arc<Inner>,
+    inner: Arc<CrsInner>,
 }
 
 #[derive(Debug)]
-struct Inner {
+struct CrsInner {
     name: String,
     epsg: Option<u32>,
-    /// The proj string that it was made from; empty where it has no place on Earth.
+    /// The proj string that it was made from; empty for [`Crs::local`].
     text: String,
     proj: proj4rs::Proj,
     datum: DatumTie,
 }
 
-/// What is known of the way from a system's datum to WGS 84.
+/// How a system's datum relates to WGS 84.
 #[derive(Clone, Debug, PartialEq)]
 enum DatumTie {
     /// A shift is stated, or none is needed.
-    Tied,
-    /// No shift can be had; the words that name the datum.
-    Adrift(String),
+    Known,
+    /// No shift is known; the words that name the datum.
+    Unknown(String),
 }
 
-/// Why a coordinate reference system or a transform cannot be had.
+/// Why there is no coordinate reference system or transform.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CrsError {
-    /// The text is neither `EPSG:n` nor a proj string that is understood.
+    /// The text names no system that is read.
     #[error(
         "'{text}' is not a coordinate reference system that is understood ({reason}); write EPSG:n, for example EPSG:32616, or a proj string"
     )]
     Unknown {
-        /// What was given.
+        /// The text, shortened.
         text: String,
-        /// What was wrong with it.
-        reason: String,
+        /// What is wrong with it.
+        #[source]
+        reason: CrsFault,
     },
-    /// The two systems stand on different datums and the shift between them is not known.
+    /// The two systems have different datums and the shift between them is not known.
     #[error(
-        "{from} cannot be brought to {to}: the shift from the datum '{datum}' to WGS 84 needs a grid file or was not stated; convert the data with another program first, or give the system as a proj string with +towgs84"
+        "{from} cannot be transformed to {to}: the shift from the datum '{datum}' to WGS 84 needs a grid file or was not stated; convert the data with another program first, or give the system as a proj string with +towgs84"
     )]
     Datum {
         /// Source system.
         from: String,
         /// Target system.
         to: String,
-        /// The datum that is not tied to WGS 84.
+        /// The datum without a known shift.
         datum: String,
     },
-    /// A coordinate cannot be brought from one system to the other.
-    #[error("({x}, {y}) cannot be brought from {from} to {to}: {reason}")]
+    /// A coordinate lies outside what one of the projections covers.
+    #[error("({x}, {y}) cannot be transformed from {from} to {to}: {reason}")]
     Transform {
         /// Source system.
         from: String,
@@ -86,8 +86,9 @@ pub enum CrsError {
         x: f64,
         /// Northing or latitude.
         y: f64,
-        /// What the projection said.
-        reason: String,
+        /// The projection's error.
+        #[source]
+        reason: CrsFault,
     },
 }
 
@@ -98,8 +99,8 @@ impl Crs {
     /// [`CrsError::Unknown`] where the code is not in the table.
     pub fn from_epsg(code: u32) -> Result<Self, CrsError> {
         let name = format!("EPSG:{code}");
-        let text = epsg_text(code).ok_or_else(|| unknown(&name, "no such code in the EPSG table"))?;
-        Self::build(name.clone(), Some(code), text)
+        let text = epsg_text(code).ok_or_else(|| unknown(&name, CrsFault::NoSuchCode))?;
+        Self::build(name, Some(code), text)
     }
 
     /// The system with an EPSG code, but with coordinates in another linear unit, as some files state it.
@@ -115,32 +116,27 @@ impl Crs {
         }
         let name = format!("EPSG:{code} +to_meter={meters_per_unit}");
         if !(meters_per_unit.is_finite() && meters_per_unit > 0.0) {
-            return Err(unknown(&name, "the unit is not a positive length"));
+            return Err(unknown(&name, CrsFault::Unit));
         }
-        let table = epsg_text(code).unwrap_or_default();
-        let kept = table.split_whitespace().filter(|word| {
-            !word.starts_with("+units=") && !word.starts_with("+to_meter=") && *word != "+no_defs"
-        });
-        let text = kept.collect::<Vec<_>>().join(" ") + &format!(" +to_meter={meters_per_unit}");
-        Self::build(name, None, &text)
+        let table = epsg_text(code).ok_or_else(|| unknown(&name, CrsFault::NoSuchCode))?;
+        let text = table.without(&["units", "to_meter", "no_defs"]);
+        Self::build(name, None, ProjString(&format!("{text} +to_meter={meters_per_unit}")))
     }
 
-    /// The system with given parameters; where these are those of a well-known EPSG code, that one.
+    /// The system with given parameters; where these are those of a common EPSG code, that one.
     ///
     /// # Errors
     /// [`CrsError::Unknown`] where the parameters are out of range.
     pub fn from_definition(definition: &Definition) -> Result<Self, CrsError> {
-        match definition.epsg_twin() {
-            Some(code) => Self::from_epsg(code),
-            None => {
-                let text = definition.proj_text().map_err(|reason| unknown(&definition.name, &reason))?;
-                Self::build(text.clone(), None, &text)
-            }
+        if let Some(code) = definition.epsg() {
+            return Self::from_epsg(code);
         }
+        let text = definition.proj_text().map_err(|error| unknown(&definition.name, error))?;
+        Self::build(text.clone(), None, ProjString(&text))
     }
 
-    /// The system that `text` names: `EPSG:n` in any case, a proj string such as `+proj=utm +zone=16`, or
-    /// WKT 1 as `.prj` files hold it. Both [`Crs::name`]s of this module can be read back.
+    /// The system that `text` names: `EPSG:n` in any case, a proj string such as `+proj=utm +zone=16`, or WKT 1 as
+    /// `.prj` files hold it. It reads back every [`Crs::name`] but that of [`Crs::local`].
     ///
     /// # Errors
     /// [`CrsError::Unknown`].
@@ -148,43 +144,38 @@ impl Crs {
         let trimmed =
             text.trim_start_matches('\u{feff}').trim_matches(|c: char| c.is_whitespace() || c == '\0');
         if trimmed.len() > LONGEST_TEXT {
-            return Err(unknown(&shortened(trimmed), "longer than any description of a system"));
+            return Err(unknown(trimmed, CrsFault::TooLong));
         }
         match trimmed.split_once(':') {
             Some((authority, rest)) if authority.eq_ignore_ascii_case("epsg") => parse_epsg(trimmed, rest),
-            _ if wkt::looks_like_wkt(trimmed) => {
-                match wkt::read(trimmed).map_err(|reason| unknown(&shortened(trimmed), &reason))? {
-                    wkt::Wkt::Epsg(code) => Self::from_epsg(code),
-                    wkt::Wkt::Parameters(definition) => Self::from_definition(&definition),
-                }
-            }
-            _ if trimmed.contains("+proj") => Self::build(trimmed.into(), None, trimmed),
-            _ => Err(unknown(&shortened(trimmed), "no authority, no +proj and no WKT in it")),
+            _ if wkt::is_wkt(trimmed) => match wkt::read(trimmed).map_err(|error| unknown(trimmed, error))? {
+                WktSystem::Epsg(code) => Self::from_epsg(code),
+                WktSystem::Parameters(definition) => Self::from_definition(&definition),
+            },
+            _ if trimmed.contains("+proj") => Self::build(trimmed.into(), None, ProjString(trimmed)),
+            _ => Err(unknown(trimmed, CrsFault::Notation)),
         }
     }
 
-    /// Makes the system that a proj string describes.
-    fn build(name: String, epsg: Option<u32>, text: &str) -> Result<Self, CrsError> {
-        let refused = |reason: &str| unknown(&shortened(&name), reason);
-        if !text.is_ascii() {
-            return Err(refused("a proj string is plain ASCII"));
+    /// The system of a proj string.
+    fn build(name: String, epsg: Option<u32>, text: ProjString<'_>) -> Result<Self, CrsError> {
+        if !text.0.is_ascii() {
+            return Err(unknown(&name, CrsFault::NotAscii));
         }
-        let stated = text.to_owned();
-        let (text, datum) = settle_datum(text);
-        let proj = proj4rs::Proj::from_proj_string(&text).map_err(|error| refused(&error.to_string()))?;
+        let (settled, datum) = settle_datum(text);
+        let proj = proj4rs::Proj::from_proj_string(&settled)
+            .map_err(|error| unknown(&name, CrsFault::from(error)))?;
         if proj.is_geocent() {
-            return Err(refused("geocentric coordinates are not horizontal ones"));
+            return Err(unknown(&name, CrsFault::Geocentric));
         }
         let scale = proj.to_meter();
         if !(scale.is_finite() && scale > 0.0 && proj.ellipse_parameters().0.is_finite()) {
-            return Err(refused("its unit or its ellipsoid is not a positive length"));
+            return Err(unknown(&name, CrsFault::NotALength));
         }
-        let datum = match datum {
-            DatumTie::Adrift(words) if !is_like_wgs84(proj.ellipse_parameters()) => DatumTie::Adrift(words),
-            DatumTie::Adrift(_) => return Self::build(name, epsg, &format!("{text} +towgs84=0,0,0")),
-            DatumTie::Tied => DatumTie::Tied,
-        };
-        Ok(Self { inner: Arc::new(Inner { name, epsg, text: stated, proj, datum }) })
+        if datum != DatumTie::Known && is_like_wgs84(proj.ellipse_parameters()) {
+            return Self::build(name, epsg, ProjString(&format!("{settled} +towgs84=0,0,0")));
+        }
+        Ok(Self { inner: Arc::new(CrsInner { name, epsg, text: text.0.into(), proj, datum }) })
     }
 
     /// WGS 84 longitude and latitude, EPSG:4326.
@@ -192,23 +183,16 @@ impl Crs {
         Self::from_epsg(4326).expect("EPSG:4326 is in the table")
     }
 
-    /// A plane in meters with no known place on Earth: what a raster without a system lies in. Nothing can be
-    /// transformed to or from it.
+    /// A plane in meters with no known place on Earth, for a raster without a system. Nothing can be transformed to or
+    /// from it.
     pub fn local() -> Self {
         let proj = Self::utm_at(0.0, 0.0).inner.proj.clone();
-        let datum = DatumTie::Adrift("no place on Earth".into());
-        Self {
-            inner: Arc::new(Inner {
-                name: "local meters".into(),
-                epsg: None,
-                text: String::new(),
-                proj,
-                datum,
-            }),
-        }
+        let datum = DatumTie::Unknown("no place on Earth".into());
+        let name = "local meters".into();
+        Self { inner: Arc::new(CrsInner { name, epsg: None, text: String::new(), proj, datum }) }
     }
 
-    /// The UTM zone on WGS 84 that holds a longitude and latitude in degrees (the plain six-degree zones).
+    /// The UTM zone on WGS 84 of a longitude and latitude in degrees (the plain six-degree zones).
     pub fn utm_at(longitude: f64, latitude: f64) -> Self {
         let zone = (((longitude + 180.0).rem_euclid(360.0)) / 6.0).floor().min(59.0) as u32 + 1;
         let base = if latitude < 0.0 { 32700 } else { 32600 };
@@ -245,28 +229,29 @@ impl Crs {
         self.inner.proj.ellipse_parameters()
     }
 
-    /// Its parameters; `None` where it has no place on Earth, or where its projection is none that
-    /// [`Definition`] can express.
+    /// Its parameters; `None` for [`Crs::local`] and for a projection that [`Definition`] cannot express.
     pub fn definition(&self) -> Option<Definition> {
         let (major_m, minor_m) = self.ellipsoid();
-        // The nine decimals that ellipsoids are defined with come out of the axes with noise behind them.
+        // Ellipsoids are defined with nine decimals; those computed from the axes have noise behind them.
         let rounded = |value: f64| (value * 1e9).round() / 1e9;
         let inverse_flattening =
             if major_m == minor_m { 0.0 } else { rounded(major_m / (major_m - minor_m)) };
         let ellipsoid = Ellipsoid { major_m, inverse_flattening };
-        let meridian_deg = self.inner.proj.from_greenwich().to_degrees();
-        let mut definition = proj_words::definition(&self.inner.text, ellipsoid, meridian_deg)?;
-        definition.name = self.name().into();
-        definition.meters_per_unit = self.meters_per_unit();
-        Some(definition)
+        let text = ProjString(&self.inner.text);
+        let base = Definition {
+            prime_meridian_deg: self.inner.proj.from_greenwich().to_degrees(),
+            meters_per_unit: self.meters_per_unit(),
+            ..Definition::geographic(self.name().into(), Some(ellipsoid), Datum::from_proj(text))
+        };
+        Definition::from_proj(text, base)
     }
 
-    /// The proj string that says the same; empty for [`Crs::local`].
+    /// The proj string of the system; empty for [`Crs::local`].
     pub fn proj_text(&self) -> &str {
         &self.inner.text
     }
 
-    /// What [`Crs::transform`] to `to` does to move positions from one datum to the other.
+    /// The datum shift that [`Crs::transform`] to `to` applies.
     ///
     /// # Errors
     /// [`CrsError::Datum`] where the shift is not known.
@@ -279,23 +264,23 @@ impl Crs {
     /// ```
     pub fn datum_shift_to(&self, to: &Self) -> Result<DatumShift, CrsError> {
         self.check_datum(to)?;
-        if self == to || (self.inner.datum == to.inner.datum && self.inner.datum != DatumTie::Tied) {
+        if self == to || (self.inner.datum == to.inner.datum && self.inner.datum != DatumTie::Known) {
             return Ok(DatumShift::NotNeeded);
         }
-        Ok(DatumShift::between(&self.inner.text, &to.inner.text))
+        Ok(DatumShift::between(ProjString(&self.inner.text), ProjString(&to.inner.text)))
     }
 
-    /// Brings `at` from this system to `to`.
+    /// Transforms `at` from this system to `to`.
     ///
     /// # Errors
-    /// [`CrsError::Datum`] where the shift between the two datums is not known, [`CrsError::Transform`] where
-    /// the point lies outside what either projection covers.
+    /// [`CrsError::Datum`] where the shift between the two datums is not known, [`CrsError::Transform`] where the point
+    /// lies outside what either projection covers.
     pub fn transform(&self, to: &Self, at: DVec2) -> Result<DVec2, CrsError> {
         if self == to {
             return Ok(at);
         }
         self.check_datum(to)?;
-        let failed = |reason: String| CrsError::Transform {
+        let failed = |reason: CrsFault| CrsError::Transform {
             from: self.name().into(),
             to: to.name().into(),
             x: at.x,
@@ -305,20 +290,21 @@ impl Crs {
         let scale_in = if self.is_geographic() { 1f64.to_radians() } else { 1.0 };
         let mut point = (at.x * scale_in, at.y * scale_in, 0.0);
         proj4rs::transform::transform(&self.inner.proj, &to.inner.proj, &mut point)
-            .map_err(|error| failed(error.to_string()))?;
+            .map_err(|error| failed(error.into()))?;
         let scale_out = if to.is_geographic() { 1f64.to_degrees() } else { 1.0 };
         let moved = DVec2::new(point.0 * scale_out, point.1 * scale_out);
-        if moved.is_finite() { Ok(moved) } else { Err(failed("the result is not finite".into())) }
+        if moved.is_finite() { Ok(moved) } else { Err(failed(CrsFault::NotFinite)) }
     }
 
-    /// Whether the datums of the two can be brought together: both tied to WGS 84, or one and the same.
+    /// Checks that a shift between the two datums is known, or that they are the same.
     fn check_datum(&self, to: &Self) -> Result<(), CrsError> {
-        let datum = match (&self.inner.datum, &to.inner.datum) {
-            (ours, theirs) if ours == theirs => return Ok(()),
-            (DatumTie::Adrift(words), _) | (_, DatumTie::Adrift(words)) => words.clone(),
-            (DatumTie::Tied, DatumTie::Tied) => return Ok(()),
-        };
-        Err(CrsError::Datum { from: self.name().into(), to: to.name().into(), datum })
+        match (&self.inner.datum, &to.inner.datum) {
+            (from, to) if from == to => Ok(()),
+            (DatumTie::Unknown(datum), _) | (_, DatumTie::Unknown(datum)) => {
+                Err(CrsError::Datum { from: self.name().into(), to: to.name().into(), datum: datum.clone() })
+            }
+            (DatumTie::Known, DatumTie::Known) => Ok(()),
+        }
     }
 }
 
@@ -329,73 +315,52 @@ impl PartialEq for Crs {
 }
 
 /// The proj string of an EPSG code.
-pub(crate) fn epsg_text(code: u32) -> Option<&'static str> {
+pub(crate) fn epsg_text(code: u32) -> Option<ProjString<'static>> {
     let definition = crs_definitions::from_code(u16::try_from(code).ok()?)?;
-    (!definition.proj4.is_empty()).then_some(definition.proj4)
+    (!definition.proj4.is_empty()).then_some(ProjString(definition.proj4))
 }
 
-/// `n` or `n +to_meter=x`, what follows `EPSG:`.
+/// Parses `n` or `n +to_meter=x`, what follows `EPSG:`.
 fn parse_epsg(text: &str, rest: &str) -> Result<Crs, CrsError> {
     let (code, unit) = rest.trim().split_once(char::is_whitespace).unwrap_or((rest.trim(), ""));
-    let code = code.parse().map_err(|_| unknown(&shortened(text), "the code is not a number"))?;
+    let code = code.parse().map_err(|_| unknown(text, CrsFault::CodeNotANumber))?;
     match unit.trim().strip_prefix("+to_meter=").map(str::parse) {
         Some(Ok(meters)) => Crs::from_epsg_in(code, meters),
         None if unit.trim().is_empty() => Crs::from_epsg(code),
-        _ => Err(unknown(&shortened(text), "only +to_meter=number may follow the code")),
+        _ => Err(unknown(text, CrsFault::AfterCode)),
     }
 }
 
-/// The proj string to build from, and what its words say of the datum. A datum that needs grids is replaced
-/// by its ellipsoid, so that the system itself can still be had.
-fn settle_datum(text: &str) -> (String, DatumTie) {
-    let mut words: Vec<&str> = text.split_whitespace().collect();
-    let value = |key: &str, words: &[&str]| -> Option<String> {
-        words.iter().find_map(|word| word.strip_prefix(key)).map(str::to_owned)
-    };
-    if let Some(grids) = value("+nadgrids=", &words) {
-        if grids == "@null" {
-            return (text.into(), DatumTie::Tied);
+/// The proj string to build from, and how its datum relates to WGS 84. A datum that needs grids is replaced by its
+/// ellipsoid, so that the system itself can be built.
+fn settle_datum(text: ProjString<'_>) -> (String, DatumTie) {
+    let unchanged = text.0.to_owned();
+    match (text.value("nadgrids"), text.value("towgs84"), text.value("datum")) {
+        (Some("@null"), ..) => (unchanged, DatumTie::Known),
+        (Some(grids), ..) => (text.without(&["nadgrids"]), DatumTie::Unknown(grids.into())),
+        (None, Some(_), _) => (unchanged, DatumTie::Known),
+        (None, None, Some(name)) if name.eq_ignore_ascii_case("nad27") => {
+            (text.without(&["datum"]) + " +ellps=clrk66", DatumTie::Unknown("NAD27".into()))
         }
-        words.retain(|word| !word.starts_with("+nadgrids="));
-        return (words.join(" "), DatumTie::Adrift(grids));
-    }
-    let datum = value("+datum=", &words);
-    if value("+towgs84=", &words).is_some() {
-        return (text.into(), DatumTie::Tied);
-    }
-    match datum {
-        Some(name) if name.eq_ignore_ascii_case("nad27") => {
-            words.retain(|word| !word.starts_with("+datum="));
-            words.push("+ellps=clrk66");
-            (words.join(" "), DatumTie::Adrift("NAD27".into()))
-        }
-        Some(_) => (text.into(), DatumTie::Tied),
-        None => {
-            let shape =
-                |word: &&&str| ["+ellps=", "+a=", "+b=", "+rf=", "+R="].iter().any(|k| word.starts_with(k));
-            let named = words.iter().filter(shape).copied().collect::<Vec<_>>().join(" ");
-            (text.into(), DatumTie::Adrift(named))
-        }
+        (None, None, Some(_)) => (unchanged, DatumTie::Known),
+        (None, None, None) => (unchanged, DatumTie::Unknown(text.only(&["ellps", "a", "b", "rf", "R"]))),
     }
 }
 
-/// Whether an ellipsoid is WGS 84's or GRS 80's, on which modern datums stand within a meter or two of
-/// WGS 84, as PROJ too takes them. The two differ by 0.1 mm at the pole.
+/// Whether an ellipsoid is WGS 84's or GRS 80's, which differ by 0.1 mm at the pole. Modern datums on them lie within a
+/// meter or two of WGS 84, and PROJ too takes them to coincide.
 fn is_like_wgs84((major, minor): (f64, f64)) -> bool {
     (major - 6_378_137.0).abs() < 1e-3 && (minor - 6_356_752.314_2).abs() < 1e-3
 }
 
-fn unknown(text: &str, reason: &str) -> CrsError {
-    CrsError::Unknown { text: text.into(), reason: reason.into() }
-}
-
-/// The first characters of a long text, for a message.
-fn shortened(text: &str) -> String {
+fn unknown(text: &str, reason: impl Into<CrsFault>) -> CrsError {
+    /// The characters of a long text that a message shows.
     const SHOWN: usize = 60;
-    match text.char_indices().nth(SHOWN) {
+    let text = match text.char_indices().nth(SHOWN) {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text.into(),
-    }
+    };
+    CrsError::Unknown { text, reason: reason.into() }
 }
 
 #[cfg(test)]
@@ -452,7 +417,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_is_refused_with_the_way_to_write_it() {
+    fn nonsense_is_refused_with_an_example() {
         for text in [
             "",
             "EPSG:",

@@ -1,13 +1,14 @@
-//! The shift between two systems' datums, in words: what a transform does to positions beyond the projection.
+//! The datum shift between two systems in words, for reports.
 //!
-//! A shift goes by way of WGS 84 and by the numbers that the systems' definitions state (PROJ's `+towgs84`, position
-//! vector): three translations in meters, or those with three rotations in arc seconds and a scale in parts per
-//! million. It is only as good as those: some meters for old national datums. Grids of shifts are not used; a datum
-//! that needs one is refused before there is a shift to put into words.
+//! A shift passes through WGS 84 by the parameters that the systems' definitions state (PROJ's `+towgs84`, position
+//! vector): three translations in meters, or seven parameters with three rotations in arc seconds and a scale in parts
+//! per million. Such a shift is good to some meters for old national datums. Shift grids are not read.
 
 use std::fmt;
 
-/// What `+datum=` stands for in PROJ, where that is not WGS 84 itself.
+use crate::geom::proj_string::ProjString;
+
+/// The parameters of PROJ's named datums other than WGS 84; `proj4rs` keeps its own table private.
 const NAMED: [(&str, &str); 15] = [
     ("ggrs87", "-199.87,74.79,246.62"),
     ("potsdam", "598.1,73.7,418.2,0.202,0.045,-2.455,6.7"),
@@ -26,18 +27,18 @@ const NAMED: [(&str, &str); 15] = [
     ("nad83", "0,0,0"),
 ];
 
-/// How positions move from one datum to another.
+/// How a transform moves positions from one datum to another.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DatumShift {
-    /// Both systems stand on one datum.
+    /// Both systems have the same datum.
     NotNeeded,
-    /// Both datums are taken to coincide with WGS 84, as PROJ takes them; they do to within two meters or so.
+    /// Both datums are taken to coincide with WGS 84, as PROJ takes them; they do within about two meters.
     Coincident,
-    /// By these numbers to WGS 84 and from it; `None` for a side that coincides with it.
+    /// By parameters to WGS 84 and from it; `None` for a datum that coincides with it.
     ByWgs84 {
         /// From the source's datum to WGS 84.
         to_wgs84: Option<String>,
-        /// From the target's datum to WGS 84, applied the other way round.
+        /// From the target's datum to WGS 84, applied in reverse.
         from_wgs84: Option<String>,
     },
 }
@@ -48,47 +49,46 @@ impl fmt::Display for DatumShift {
             Self::NotNeeded => f.write_str("none needed"),
             Self::Coincident => f.write_str("none; both datums are taken to coincide with WGS 84"),
             Self::ByWgs84 { to_wgs84, from_wgs84 } => {
-                let there = to_wgs84.as_ref().map(|numbers| format!("towgs84 {numbers}"));
-                let back = from_wgs84.as_ref().map(|numbers| format!("towgs84 {numbers} reversed"));
-                f.write_str(&[there, back].into_iter().flatten().collect::<Vec<_>>().join(", then "))
+                let to = to_wgs84.as_ref().map(|numbers| format!("towgs84 {numbers}"));
+                let from = from_wgs84.as_ref().map(|numbers| format!("towgs84 {numbers} reversed"));
+                f.write_str(&[to, from].into_iter().flatten().collect::<Vec<_>>().join(", then "))
             }
         }
     }
 }
 
 impl DatumShift {
-    /// Between the datums of two proj strings, both tied to WGS 84.
-    pub(crate) fn between(from: &str, to: &str) -> Self {
-        let (ours, theirs) = (numbers(from), numbers(to));
-        let is_wgs84 = ours.as_deref() == Some("");
-        match (ours.filter(|numbers| !is_zero(numbers)), theirs.clone().filter(|numbers| !is_zero(numbers))) {
-            (None, None) if is_wgs84 && theirs.as_deref() == Some("") => Self::NotNeeded,
+    /// Between the datums of two proj strings, both of which state their relation to WGS 84.
+    pub(crate) fn between(from: ProjString<'_>, to: ProjString<'_>) -> Self {
+        let (source, target) = (parameters(from), parameters(to));
+        let both_wgs84 = [&source, &target].iter().all(|numbers| numbers.as_deref() == Some(""));
+        let shifting = |numbers: Option<String>| numbers.filter(|numbers| !is_zero(numbers));
+        match (shifting(source), shifting(target)) {
+            (None, None) if both_wgs84 => Self::NotNeeded,
             (None, None) => Self::Coincident,
-            (there, back) if there == back => Self::NotNeeded,
+            (to_wgs84, from_wgs84) if to_wgs84 == from_wgs84 => Self::NotNeeded,
             (to_wgs84, from_wgs84) => Self::ByWgs84 { to_wgs84, from_wgs84 },
         }
     }
 }
 
-/// The numbers of a proj string's shift; empty for WGS 84 itself, `None` where none are stated.
-fn numbers(text: &str) -> Option<String> {
-    let value = |key: &str| text.split_whitespace().find_map(|word| word.strip_prefix(key));
-    if let Some(stated) = value("+towgs84=") {
-        return Some(trimmed(stated));
+/// The shift parameters of a proj string; empty for WGS 84 itself, `None` where it states none.
+fn parameters(text: ProjString<'_>) -> Option<String> {
+    if let Some(stated) = text.value("towgs84") {
+        return Some(shortest(stated));
     }
-    let name = value("+datum=")?.to_ascii_lowercase();
+    let name = text.value("datum")?.to_ascii_lowercase();
     if name == "wgs84" {
         return Some(String::new());
     }
     NAMED.iter().find(|(known, _)| *known == name).map(|(_, numbers)| (*numbers).to_owned())
 }
 
-/// Seven numbers of which the last four are 0 are three.
-fn trimmed(stated: &str) -> String {
+/// Three of seven parameters where the other four are 0.
+fn shortest(stated: &str) -> String {
     let words: Vec<&str> = stated.split(',').collect();
-    let zero = |word: &&str| word.trim().parse() == Ok(0.0);
-    let kept = if words.len() == 7 && words[3..].iter().all(zero) { &words[..3] } else { &words[..] };
-    kept.join(",")
+    let is_short = words.len() == 7 && words[3..].iter().all(|word| is_zero(word));
+    if is_short { words[..3].join(",") } else { stated.to_owned() }
 }
 
 fn is_zero(numbers: &str) -> bool {
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_told_in_the_direction_that_they_are_used() {
+    fn parameters_are_stated_in_the_direction_of_use() {
         let old = "+proj=utm +zone=31 +ellps=intl +towgs84=-87,-98,-121,0,0,0,0";
         assert_eq!(shift(old, "EPSG:4326"), "towgs84 -87,-98,-121");
         assert_eq!(shift("EPSG:4326", old), "towgs84 -87,-98,-121 reversed");

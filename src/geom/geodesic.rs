@@ -1,12 +1,10 @@
-//! The shortest way between two places on the WGS 84 ellipsoid.
-//!
-//! After Karney, *Algorithms for geodesics*, 2013, as `geo` brings it: right to some nanometers over any distance, at
-//! about a microsecond a call. On a sphere (the haversine) the same way would be up to half a per cent off.
+//! Geodesics on the WGS 84 ellipsoid (Karney 2013, by `geo`): accurate to nanometers over any distance, at about a
+//! microsecond a call. On a sphere distances would be up to half a per cent off.
 
 use geo::{Bearing, Destination, Distance, Geodesic, Point};
 use glam::DVec2;
 
-/// The shortest way from one place to another; degrees of longitude (x) and latitude (y).
+/// The shortest line from one position to another; degrees of longitude (x) and latitude (y).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Geodesic {
     start: DVec2,
@@ -15,7 +13,7 @@ pub struct Geodesic {
 }
 
 impl Geodesic {
-    /// The way from `start` to `end`. Between antipodes there are several; this is one of them.
+    /// The line from `start` to `end`; between antipodes one of several.
     pub fn between(start: DVec2, end: DVec2) -> Self {
         let (from, to) = (Point::new(start.x, start.y), Point::new(end.x, end.y));
         Self { start, bearing_deg: Geodesic.bearing(from, to), length_m: Geodesic.distance(from, to) }
@@ -26,7 +24,7 @@ impl Geodesic {
         self.length_m
     }
 
-    /// The place `distance_m` meters from its start; longitude within ±180°.
+    /// The position `distance_m` meters from its start; longitude within ±180°.
     pub fn at(&self, distance_m: f64) -> DVec2 {
         if distance_m == 0.0 {
             return self.start;
@@ -42,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_quarter_of_a_meridian_and_a_degree_of_the_equator_have_their_lengths() {
+    fn a_quarter_meridian_and_a_degree_of_the_equator_have_their_lengths() {
         let quarter = Geodesic::between(DVec2::ZERO, DVec2::new(0.0, 90.0)).length_m();
         assert!((quarter - 10_001_965.729_3).abs() < 1e-3, "{quarter}");
         let degree = Geodesic::between(DVec2::ZERO, DVec2::X).length_m();
@@ -50,12 +48,12 @@ mod tests {
     }
 
     #[test]
-    fn a_way_ends_where_it_was_meant_to_and_crosses_the_date_line() {
+    fn a_geodesic_ends_at_its_end_and_crosses_the_date_line() {
         let (start, end) = (DVec2::new(179.5, -16.0), DVec2::new(-179.5, -17.0));
-        let way = Geodesic::between(start, end);
-        assert!((way.at(way.length_m()) - end).length() < 1e-12);
-        assert_eq!(way.at(0.0), start);
-        let middle = way.at(0.5 * way.length_m());
+        let line = Geodesic::between(start, end);
+        assert!((line.at(line.length_m()) - end).length() < 1e-12);
+        assert_eq!(line.at(0.0), start);
+        let middle = line.at(0.5 * line.length_m());
         assert!(middle.x.abs() > 179.9, "{middle}");
     }
 }

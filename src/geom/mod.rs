@@ -1,15 +1,19 @@
 //! Mathematics on `glam` and `geo`: no terrain, no files.
 
+pub mod aabb;
 pub mod convex;
 pub mod crs;
+pub mod crs_fault;
 pub mod datum_shift;
 pub mod geodesic;
 pub mod polygon;
 pub mod polyline;
-pub mod proj_words;
+pub(crate) mod proj_string;
 pub mod projection;
 pub mod rect;
 pub mod rect_tree;
 pub mod region;
+pub mod segment;
+pub mod triangle;
 pub mod wkt;
-pub mod wkt_text;
+pub mod wkt_writer;

@@ -1,4 +1,4 @@
-//! Polygons with holes: the one door to `geo`.
+//! Rings and polygons of the plane: area, containment, clipping and triangulation (by `geo`).
 
 use geo::TriangulateEarcut;
 use glam::DVec2;
@@ -7,7 +7,9 @@ use crate::geom::rect::Rect;
 
 /// Twice the signed area of the ring; positive where it runs counter-clockwise.
 pub fn doubled_area(ring: &[DVec2]) -> f64 {
-    edges(ring).map(|(from, to)| from.perp_dot(to)).sum()
+    // Measured from a vertex, since products of coordinates far from the origin would cancel.
+    let origin = ring.first().copied().unwrap_or_default();
+    ring.windows(2).map(|pair| (pair[0] - origin).perp_dot(pair[1] - origin)).sum()
 }
 
 /// The ring's edges, the closing one last.
@@ -16,21 +18,31 @@ pub fn edges(ring: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
     ring.iter().copied().zip(next.copied())
 }
 
+/// The triangles of a convex ring's first vertex with each edge that does not end at it.
+pub fn fan<T: Copy>(ring: &[T]) -> impl Iterator<Item = [T; 3]> + '_ {
+    ring.get(1..).unwrap_or_default().windows(2).map(|pair| [ring[0], pair[0], pair[1]])
+}
+
 /// Whether `point` lies inside by the even-odd rule over all rings: inside the outer ring and in no hole.
 pub fn contains<'a>(rings: impl IntoIterator<Item = &'a [DVec2]>, point: DVec2) -> bool {
-    let crossings = rings.into_iter().flat_map(edges).filter(|&(from, to)| {
+    is_within(rings.into_iter().flat_map(edges), point)
+}
+
+/// [`contains`] for the edges of all rings.
+pub fn is_within(edges: impl Iterator<Item = (DVec2, DVec2)>, point: DVec2) -> bool {
+    let crossed = edges.filter(|&(from, to)| {
         (from.y > point.y) != (to.y > point.y)
             && point.x < from.x + (to.x - from.x) * (point.y - from.y) / (to.y - from.y)
     });
-    crossings.count() % 2 == 1
+    crossed.count() % 2 == 1
 }
 
 /// Cuts the polygon with `exterior` and `holes` into counter-clockwise triangles (ear clipping).
 ///
-/// Self-intersecting rings give some triangulation of their points, never a panic.
+/// Rings that cross themselves give some triangulation of their vertices, never a panic.
 pub fn triangulate(exterior: &[DVec2], holes: &[Vec<DVec2>]) -> Vec<[DVec2; 3]> {
-    let ring = |points: &[DVec2]| geo::LineString::from_iter(points.iter().map(|p| (p.x, p.y)));
-    let polygon = geo::Polygon::new(ring(exterior), holes.iter().map(|hole| ring(hole)).collect());
+    let polygon =
+        geo::Polygon::new(line_string(exterior), holes.iter().map(|hole| line_string(hole)).collect());
     let corner = |at: geo::Coord| DVec2::new(at.x, at.y);
     polygon
         .earcut_triangles()
@@ -42,10 +54,9 @@ pub fn triangulate(exterior: &[DVec2], holes: &[Vec<DVec2>]) -> Vec<[DVec2; 3]> 
 
 /// Cuts a polygon without holes into counter-clockwise triples of positions in `ring` (ear clipping).
 ///
-/// Triangles without area are kept, so that every vertex of a folded ring may be used. Empty where no ear is
-/// found.
+/// Triangles without area are kept, so that every vertex of a folded ring may be used. Empty where no ear is found.
 pub fn triangulate_ring(ring: &[DVec2]) -> Vec<[usize; 3]> {
-    let polygon = geo::Polygon::new(geo::LineString::from_iter(ring.iter().map(|p| (p.x, p.y))), Vec::new());
+    let polygon = geo::Polygon::new(line_string(ring), Vec::new());
     // The ring is closed by `geo`, so its last vertex is the first again.
     let corner = |index: usize| index % ring.len();
     polygon
@@ -53,15 +64,16 @@ pub fn triangulate_ring(ring: &[DVec2]) -> Vec<[usize; 3]> {
         .triangle_indices
         .chunks_exact(3)
         .map(|ids| [corner(ids[0]), corner(ids[1]), corner(ids[2])])
-        .map(|[a, b, c]| {
-            let area = (ring[b] - ring[a]).perp_dot(ring[c] - ring[a]);
-            if area < 0.0 { [a, c, b] } else { [a, b, c] }
-        })
+        .map(|ids| if doubled_area(&ids.map(|id| ring[id])) < 0.0 { [ids[0], ids[2], ids[1]] } else { ids })
         .collect()
 }
 
+fn line_string(ring: &[DVec2]) -> geo::LineString {
+    ring.iter().map(|at| (at.x, at.y)).collect()
+}
+
 fn counter_clockwise([a, b, c]: [DVec2; 3]) -> Option<[DVec2; 3]> {
-    let area = (b - a).perp_dot(c - a);
+    let area = doubled_area(&[a, b, c]);
     if area > 0.0 { Some([a, b, c]) } else { (area < 0.0).then_some([a, c, b]) }
 }
 
@@ -77,25 +89,40 @@ pub fn clip_convex(polygon: &mut Vec<DVec2>, scratch: &mut Vec<DVec2>, window: &
 
 /// Leaves in a convex `polygon` what lies to the left of the line `from`..`to` or on it. `scratch` is working space.
 pub fn clip_half_plane(polygon: &mut Vec<DVec2>, scratch: &mut Vec<DVec2>, (from, to): (DVec2, DVec2)) {
-    let side = |point: DVec2| (to - from).perp_dot(point - from);
     scratch.clear();
-    for (index, &here) in polygon.iter().enumerate() {
-        let before = polygon[(index + polygon.len() - 1) % polygon.len()];
-        let (side_before, side_here) = (side(before), side(here));
-        if (side_before < 0.0) != (side_here < 0.0) {
-            scratch.push(before.lerp(here, side_before / (side_before - side_here)));
-        }
-        if side_here >= 0.0 {
-            scratch.push(here);
-        }
-    }
+    let side = |point: DVec2| (to - from).perp_dot(point - from);
+    clip(polygon, side, |before, here, part| before.lerp(here, part), scratch);
     std::mem::swap(polygon, scratch);
 }
 
-/// Adds the parts of a convex counter-clockwise `polygon` that lie outside a convex counter-clockwise `window` to
-/// `outside`, as convex polygons that do not overlap; what lies inside is gone.
+/// Appends to `kept` the part of a ring where `side` is not negative (Sutherland and Hodgman 1974). Where an edge crosses
+/// to the other side, `cut` gives the vertex at a part of it, 0..=1.
 ///
-/// The lines through the window's sides cut the parts off one after the other, so there are at most as many as it has
+/// What is left of a concave ring may run back along the border by which it was cut.
+pub fn clip(
+    ring: &[DVec2],
+    side: impl Fn(DVec2) -> f64,
+    cut: impl Fn(DVec2, DVec2, f64) -> DVec2,
+    kept: &mut Vec<DVec2>,
+) {
+    let Some(&last) = ring.last() else { return };
+    let (mut before, mut side_before) = (last, side(last));
+    for &here in ring {
+        let side_here = side(here);
+        if (side_before < 0.0) != (side_here < 0.0) {
+            kept.push(cut(before, here, side_before / (side_before - side_here)));
+        }
+        if side_here >= 0.0 {
+            kept.push(here);
+        }
+        (before, side_before) = (here, side_here);
+    }
+}
+
+/// Adds the parts of a convex counter-clockwise `polygon` that lie outside a convex counter-clockwise `window` to
+/// `outside`, as convex polygons that do not overlap.
+///
+/// The lines through the window's sides cut the parts off one after the other, so there are at most as many parts as
 /// sides.
 pub fn cut_away(mut polygon: Vec<DVec2>, window: &[DVec2], outside: &mut Vec<Vec<DVec2>>) {
     let mut scratch = Vec::new();
@@ -143,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_cut_away_and_what_is_clipped_make_up_the_whole() {
+    fn the_parts_cut_away_and_the_part_inside_add_up_to_the_polygon() {
         let window = [DVec2::new(1.0, 1.0), DVec2::new(6.0, 2.0), DVec2::new(2.0, 3.5)];
         let mut inside = square(0.0, 4.0);
         clip_convex(&mut inside, &mut Vec::new(), &window);

@@ -12,7 +12,7 @@ pub struct Rect {
 }
 
 impl Rect {
-    /// The rectangle that holds nothing: the start of every union.
+    /// The empty rectangle, neutral in unions.
     pub const EMPTY: Self = Self { min: DVec2::INFINITY, max: DVec2::NEG_INFINITY };
 
     /// The smallest rectangle around `points`; [`Rect::EMPTY`] for none.
@@ -20,17 +20,17 @@ impl Rect {
         points.into_iter().fold(Self::EMPTY, |rect, point| rect.with(point))
     }
 
-    /// This rectangle grown to hold `point`.
+    /// The smallest rectangle that holds this one and `point`.
     pub fn with(self, point: DVec2) -> Self {
         Self { min: self.min.min(point), max: self.max.max(point) }
     }
 
-    /// This rectangle grown by `margin` on all four sides.
+    /// This rectangle extended by `margin` on all four sides.
     pub fn grown(self, margin: f64) -> Self {
         Self { min: self.min - margin, max: self.max + margin }
     }
 
-    /// Whether nothing lies inside.
+    /// Whether it holds no point.
     pub fn is_empty(&self) -> bool {
         self.min.x > self.max.x || self.min.y > self.max.y
     }
@@ -40,29 +40,29 @@ impl Rect {
         self.min.cmple(point).all() && point.cmple(self.max).all()
     }
 
-    /// Whether the two share at least a border point.
+    /// Whether the two have at least a border point in common.
     pub fn meets(&self, other: &Self) -> bool {
         self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
     }
 
-    /// The part of the line from `from` to `to` that lies inside; `None` where it passes by (Liang and Barsky
-    /// 1984). An end that lies inside comes back as it is.
+    /// The part of the line from `from` to `to` that lies inside; `None` where there is none (Liang and Barsky 1984). An
+    /// end that lies inside comes back as it is.
     pub fn clip_line(&self, from: DVec2, to: DVec2) -> Option<(DVec2, DVec2)> {
         let (mut enter, mut leave) = (0.0, 1.0);
-        let way = to - from;
+        let along = to - from;
         for axis in 0..2 {
             let (low, high) = (self.min[axis] - from[axis], self.max[axis] - from[axis]);
-            if way[axis] == 0.0 {
+            if along[axis] == 0.0 {
                 if low > 0.0 || high < 0.0 {
                     return None;
                 }
                 continue;
             }
-            let (first, last) = (low / way[axis], high / way[axis]);
+            let (first, last) = (low / along[axis], high / along[axis]);
             enter = first.min(last).max(enter);
             leave = first.max(last).min(leave);
         }
-        let at = |part: f64| if part == 1.0 { to } else { from + way * part };
+        let at = |part: f64| if part == 1.0 { to } else { from + along * part };
         (enter <= leave).then(|| (at(enter), at(leave)))
     }
 
@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_is_cut_to_its_part_inside() {
+    fn a_line_is_clipped_to_its_part_inside() {
         let rect = Rect { min: DVec2::ZERO, max: DVec2::new(10.0, 20.0) };
         let inside = (DVec2::new(1.0, 2.0), DVec2::new(9.0, 19.0));
         assert_eq!(rect.clip_line(inside.0, inside.1), Some(inside));

@@ -1,8 +1,8 @@
-//! The checks every terrain mesh must pass: sound indices, upward triangles, no edge used twice the same way,
-//! no T-junction, and the area it promises.
+//! The checks that a terrain mesh must pass: indices in range, upward triangles, no edge used twice in one direction,
+//! no T-junction, and the expected area.
 //!
-//! A T-junction shows as a border edge (one that only a single triangle has) with another border vertex in
-//! its inside, so only the border needs to be searched.
+//! At a T-junction a border edge, which belongs to a single triangle, has another border vertex inside it; so only the
+//! border needs to be searched.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ use glam::DVec2;
 use crate::mesh::sink::VertexId;
 use crate::mesh::trimesh::TriMesh;
 
-/// What a sound mesh measures.
+/// The measures of a sound mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshSummary {
     /// Sum of the triangles' areas seen from above, in square meters.
@@ -20,15 +20,15 @@ pub struct MeshSummary {
     pub border_edges: usize,
 }
 
-/// The first thing found wrong with a mesh.
+/// The first flaw of a mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Flaw {
-    /// A triangle names a vertex that is not there.
-    #[error("triangle {triangle} names vertex {vertex} of {count}")]
+    /// A triangle has an index past the last vertex.
+    #[error("triangle {triangle} uses vertex {vertex}, but there are only {count} vertices")]
     Index {
         /// The triangle.
         triangle: usize,
-        /// The index it holds.
+        /// The index.
         vertex: usize,
         /// How many vertices there are.
         count: usize,
@@ -36,8 +36,8 @@ pub enum Flaw {
     /// A vertex position is NaN or infinite.
     #[error("vertex {0} is not finite")]
     NotFinite(usize),
-    /// A triangle is empty or faces down.
-    #[error("triangle {triangle} has plan area {area_m2} m², it must be positive")]
+    /// A triangle has no area or faces down.
+    #[error("triangle {triangle} has a plan area of {area_m2} m²; it must be positive")]
     Orientation {
         /// The triangle.
         triangle: usize,
@@ -47,27 +47,27 @@ pub enum Flaw {
     /// Two triangles lie on the same side of an edge.
     #[error("the edge from vertex {0} to vertex {1} belongs to two triangles on the same side")]
     Overlap(usize, usize),
-    /// A vertex lies within the edge of a triangle that does not have it as a corner.
-    #[error("vertex {vertex} lies within the edge from vertex {from} to vertex {to}: a T-junction")]
+    /// A vertex lies inside an edge that it does not end.
+    #[error("vertex {vertex} lies inside the edge from vertex {from} to vertex {to}: a T-junction")]
     TJunction {
-        /// The vertex in between.
+        /// The vertex.
         vertex: usize,
         /// The edge's start.
         from: usize,
         /// The edge's end.
         to: usize,
     },
-    /// The areas do not add up.
-    #[error("the triangles cover {found_m2} m², they should cover {expected_m2} m²")]
+    /// The triangles do not cover the expected area.
+    #[error("the triangles cover {found_m2} m² instead of {expected_m2} m²")]
     Area {
-        /// What the triangles cover.
+        /// The sum of their areas.
         found_m2: f64,
-        /// What was promised.
+        /// The area they should cover.
         expected_m2: f64,
     },
 }
 
-/// Checks that `mesh` is conforming and upright, seen from above.
+/// Checks that `mesh` is conforming and faces up.
 ///
 /// # Errors
 /// The first [`Flaw`] found.
@@ -79,7 +79,7 @@ pub fn check(mesh: &TriMesh) -> Result<MeshSummary, Flaw> {
     Ok(MeshSummary { plan_area_m2, border_edges: border.len() })
 }
 
-/// [`check`], and that the plan area is `expected_m2` within one part in a million.
+/// [`check`]; besides, the plan area must be `expected_m2` within one part in a million.
 ///
 /// # Errors
 /// The first [`Flaw`] found.

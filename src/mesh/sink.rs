@@ -1,12 +1,12 @@
-//! Where generators put what they make, so that none of them knows how a mesh is stored.
+//! The sink that mesh generators write to: no generator knows how a mesh is stored.
 
 /// The index of a vertex in one mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(transparent)]
 pub struct VertexId(pub u32);
 
 impl VertexId {
-    /// The id of the vertex at `index`. Panics past `u32::MAX` vertices, which no mesh here reaches.
+    /// The id of the vertex at `index`. Panics past `u32::MAX` vertices.
     pub fn new(index: usize) -> Self {
         Self(u32::try_from(index).expect("meshes hold fewer than 2^32 vertices"))
     }
@@ -17,7 +17,7 @@ impl VertexId {
     }
 }
 
-/// Receives the vertices and triangles of a mesh under construction.
+/// Receives the vertices and triangles of a mesh.
 pub trait MeshSink<V> {
     /// Adds a vertex and returns its id.
     fn vertex(&mut self, vertex: V) -> VertexId;

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::mesh::sink::{MeshSink, VertexId};
 
-/// Positions in meters (X east, Y north, Z up) and counter-clockwise triangles, seen from above.
+/// Positions in meters (X east, Y north, Z up) and triangles, counter-clockwise seen from above.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriMesh {
     /// Vertex positions.

@@ -1,9 +1,9 @@
-//! Which form of a model to draw, by how large it is seen.
+//! Which form of a model is drawn, by the size at which it is seen.
 //!
 //! ```text
-//! seen as            form
+//! size               form
 //! ≤ 32 px across     impostor: a picture on a quad
-//! larger             the coarsest level whose error is seen as at most half a pixel
+//! larger             the coarsest level whose error is at most half a pixel
 //! large              the model itself
 //! ```
 
@@ -13,33 +13,33 @@ use crate::model::Model;
 use crate::model::impostor::{Impostor, ImpostorDirection};
 use crate::model::simplify::{DetailLevel, levels};
 
-/// How far a level's surface may be off on the picture, in pixels.
+/// The greatest error of a level's surface in the picture, in pixels.
 const TOLERANCE_PX: f32 = 0.5;
 
-/// The largest a model may be seen as an impostor, in pixels. Where one gives way to the other the eye is near enough
-/// for views 17° apart to differ by five pixels at the model's rim; twice as large they would jump.
+/// The largest size at which an impostor is drawn, in pixels. Where one impostor replaces the next, views 17° apart differ
+/// by five pixels at the model's rim; at twice the size they would visibly jump.
 const IMPOSTOR_PX: f32 = 32.0;
 
-/// An impostor is made of a level whose error is at most this part of the model's size: a quarter of its pixels.
-const IMPOSTOR_SHARE: f32 = 1.0 / 256.0;
+/// The greatest error of the level from which an impostor is made, relative to the model's size: a quarter of its pixels.
+const IMPOSTOR_ERROR: f32 = 1.0 / 256.0;
 
 /// The simpler forms of a model.
 #[derive(Clone, Debug)]
 pub struct ModelDetail {
-    /// Simpler meshes, finest first.
+    /// Coarser meshes, finest first.
     pub levels: Vec<DetailLevel>,
-    /// Pictures from all sides, where they pay.
+    /// Pictures from all sides; `None` where they would not pay.
     pub impostor: Option<Impostor>,
 }
 
 /// How a placed model is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ApparentSize {
-    /// Pixels across a unit of the model at the model's nearest point.
+    /// Pixels per unit of the model at its nearest point.
     pub px_per_unit: f32,
-    /// Pixels across the ball around the model.
+    /// The diameter of the model's bounding sphere in pixels.
     pub across_px: f32,
-    /// Where the eye is seen from the model's middle, in the model's space; any length but 0.
+    /// The direction from the model's center to the eye, in the model's space; of any length but 0.
     pub toward_eye: Vec3,
 }
 
@@ -55,21 +55,21 @@ pub enum DetailForm {
 }
 
 impl ModelDetail {
-    /// The simpler forms of `model`. Takes some microseconds a triangle; the same model gives the same forms.
-    pub fn of(model: &Model) -> Self {
+    /// The simpler forms of `model`; takes some microseconds a triangle.
+    pub fn new(model: &Model) -> Self {
         let levels = levels(model);
-        let size = model.bounds().map_or(0.0, |(min, max)| (max - min).length());
-        let simple = levels.iter().rfind(|level| level.error <= size * IMPOSTOR_SHARE);
+        let size = model.bounds().map_or(0.0, |bounds| bounds.size().length());
+        let simple = levels.iter().rfind(|level| level.error <= size * IMPOSTOR_ERROR);
         let parts = simple.map_or(&model.parts, |level| &level.parts);
-        Self { impostor: Impostor::of(model, parts), levels }
+        Self { impostor: Impostor::new(model, parts), levels }
     }
 
-    /// The simplest form that looks right.
-    pub fn form(&self, seen: &ApparentSize) -> DetailForm {
-        if self.impostor.is_some() && seen.across_px <= IMPOSTOR_PX {
-            return DetailForm::Impostor(ImpostorDirection::nearest(seen.toward_eye));
+    /// The simplest form within the tolerance.
+    pub fn form(&self, size: &ApparentSize) -> DetailForm {
+        if self.impostor.is_some() && size.across_px <= IMPOSTOR_PX {
+            return DetailForm::Impostor(ImpostorDirection::nearest(size.toward_eye));
         }
-        let fits = |level: &DetailLevel| level.error * seen.px_per_unit <= TOLERANCE_PX;
+        let fits = |level: &DetailLevel| level.error * size.px_per_unit <= TOLERANCE_PX;
         self.levels.iter().rposition(fits).map_or(DetailForm::Full, |level| DetailForm::Level(level as u8))
     }
 }

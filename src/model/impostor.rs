@@ -1,4 +1,4 @@
-//! Impostors: pictures of a model from all sides, one of which stands in for it where it is small.
+//! Impostors: pictures of a model from all sides, one of which replaces it where it is small.
 //!
 //! # How
 //! ```text
@@ -9,17 +9,17 @@
 //!   texture: 8 × 8 tiles, a view each                 │  ┃  │  color: without light
 //!                                                     └──╨──┘
 //! ```
-//! The quad of the view nearest to the eye's is drawn like any other mesh: two triangles, a masked texture, normals
-//! at its corners. So both renderers and the exporter draw impostors without knowing of them, light falls on
-//! them at drawing time, and a model turned about its own axis shows another side.
+//! The quad of the view nearest to the eye is drawn like any other mesh: two triangles, a masked texture, normals at its
+//! corners. So both renderers and the exporter draw impostors without knowing of them, light is computed when they are
+//! drawn, and a model turned about its axis shows another side.
 //!
-//! The normals are the affine function of the place on the quad that fits those of the model best, which both
-//! triangles of the quad reproduce: a round crown is lit as a round crown. The cut-off is chosen so that as much is
-//! covered from afar as the model covers; with a cut-off of one half, fine twigs would vanish with distance.
+//! The normals are the affine function on the quad that fits the model's best; both triangles reproduce it, so a round
+//! crown is lit as one. The alpha cutoff keeps the area that the model covers from afar; with a cutoff of one half, fine
+//! twigs would vanish with distance.
 //!
 //! # Why not the obvious way
-//! Two crossed quads show each other's edges, are lit as two boards and have no top. Views blended into each other
-//! (octahedral impostors) need a shader of their own in each renderer to gain what nobody sees at thirty pixels.
+//! Two crossed quads show each other's edges, are lit as two boards and have no top. Blended views (octahedral impostors)
+//! need a shader in each renderer for a difference that is invisible at thirty pixels.
 
 use glam::{DMat3, DVec3, Vec2, Vec3};
 use rayon::prelude::*;
@@ -32,13 +32,13 @@ use crate::mesh::sink::MeshSink;
 use crate::model::impostor_raster::{ImpostorRaster, ImpostorSource, SAMPLES};
 use crate::model::{Model, ModelPart};
 
-/// Pixels along the side of a tile: twice what an impostor is drawn with, so that masks stay crisp.
+/// Pixels along the side of a tile: twice the size at which an impostor is drawn, so that masks stay crisp.
 pub(super) const TILE: u32 = 64;
 
 /// Empty pixels along the border of a tile: two mip levels keep neighbors apart.
 const GUTTER: u32 = 4;
 
-/// Pixels of a tile that hold the view, along its side.
+/// Pixels along the side of the view in a tile.
 pub(super) const INNER: u32 = TILE - 2 * GUTTER;
 
 /// Tiles along the side of the texture.
@@ -50,11 +50,11 @@ const AROUND: usize = 21;
 /// The elevations of the rings in degrees: eyes over a landscape look a little down, maps straight down.
 const RINGS_DEG: [f32; 4] = [5.0, 32.0, 60.0, 90.0];
 
-/// How many views there are.
+/// The number of views.
 const VIEWS: usize = AROUND * (RINGS_DEG.len() - 1) + 1;
 
-/// Models of fewer triangles have no impostor: they cost about as little as the quad.
-const FEWEST_TRIANGLES: usize = 16;
+/// Models of fewer triangles have no impostor: the quad would cost about as much.
+const MIN_TRIANGLES: usize = 16;
 
 /// One of the views of every impostor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -67,20 +67,20 @@ pub struct Impostor {
     pub mesh: DrawMesh,
     /// The pictures.
     pub texture: Pixels,
-    /// How the quads are drawn; the texture has yet to be named.
+    /// How the quads are drawn; without the texture's id.
     pub material: Material,
 }
 
 impl ImpostorDirection {
-    /// The view nearest to that of an eye in direction `toward_eye` of the model's space; not zero.
+    /// The view nearest to the direction `toward_eye` in the model's space, which must not be zero.
     pub fn nearest(toward_eye: Vec3) -> Self {
         let elevation = libm::atan2f(toward_eye.z, toward_eye.truncate().length()).to_degrees();
         let ring = RINGS_DEG.windows(2).filter(|pair| elevation > (pair[0] + pair[1]) * 0.5).count();
         if ring == RINGS_DEG.len() - 1 {
             return Self(VIEWS as u8 - 1);
         }
-        let turn = libm::atan2f(toward_eye.y, toward_eye.x) / std::f32::consts::TAU;
-        let step = (turn * AROUND as f32).round().rem_euclid(AROUND as f32) as usize % AROUND;
+        let turns = libm::atan2f(toward_eye.y, toward_eye.x) / std::f32::consts::TAU;
+        let step = (turns * AROUND as f32).round().rem_euclid(AROUND as f32) as usize % AROUND;
         Self((ring * AROUND + step) as u8)
     }
 
@@ -100,7 +100,7 @@ impl ImpostorDirection {
     }
 }
 
-/// The directions of a view in the model's space, of unit length and at right angles.
+/// The orthonormal axes of a view in the model's space.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ViewAxes {
     pub right: Vec3,
@@ -108,42 +108,41 @@ pub(super) struct ViewAxes {
     pub toward_eye: Vec3,
 }
 
-/// One view as rasterized.
+/// One view as drawn.
 struct ImpostorView {
     pixels: Vec<Srgba>,
     corners: [DrawVertex; 4],
 }
 
 impl Impostor {
-    /// The impostor of `model`, made of `parts`: its own or those of a simpler form.
+    /// The impostor of `model`, drawn from `parts`: its own or those of a coarser level.
     ///
-    /// `None` where a picture would not do or not pay: few triangles, blended materials, nothing to see, or
-    /// triangles that lie hundreds deep over each other.
-    pub fn of(model: &Model, parts: &[ModelPart]) -> Option<Self> {
+    /// `None` where a picture would fail or not pay: few triangles, blended materials, nothing to see, or hundreds of
+    /// triangles on top of each other.
+    pub fn new(model: &Model, parts: &[ModelPart]) -> Option<Self> {
         let is_blended =
             |part: &ModelPart| model.materials[part.material.0 as usize].alpha == AlphaMode::Blend;
-        if model.triangle_count() < FEWEST_TRIANGLES || model.parts.iter().any(is_blended) {
+        if model.triangle_count() < MIN_TRIANGLES || model.parts.iter().any(is_blended) {
             return None;
         }
         let source = ImpostorSource::new(model, parts)?;
-        let shots: Vec<ImpostorView> = (0..VIEWS as u8)
+        let views: Vec<ImpostorView> = (0..VIEWS as u8)
             .into_par_iter()
-            .map(|view| shoot(&source, ImpostorDirection(view)))
+            .map(|view| ImpostorView::draw(&source, ImpostorDirection(view)))
             .collect::<Option<_>>()?;
         let mut mesh = DrawMesh::default();
-        for shot in &shots {
-            let [a, b, c, d] = shot.corners.map(|corner| mesh.vertex(corner));
+        for view in &views {
+            let [a, b, c, d] = view.corners.map(|corner| mesh.vertex(corner));
             mesh.triangle([a, b, c]);
             mesh.triangle([a, c, d]);
         }
-        let cutoff = covering_cutoff(&shots);
         let texture = Pixels::from_fn(TILE * TILES, TILE * TILES, |x, y| {
-            let shot = &shots[(y / TILE * TILES + x / TILE) as usize];
-            shot.pixels[(y % TILE * TILE + x % TILE) as usize]
+            let view = &views[(y / TILE * TILES + x / TILE) as usize];
+            view.pixels[(y % TILE * TILE + x % TILE) as usize]
         });
         let material = Material {
             name: "impostor".into(),
-            alpha: AlphaMode::Mask(cutoff),
+            alpha: AlphaMode::Mask(area_keeping_cutoff(&views)),
             two_sided: true,
             ..Material::default()
         };
@@ -151,30 +150,34 @@ impl Impostor {
     }
 }
 
-fn shoot(source: &ImpostorSource<'_>, view: ImpostorDirection) -> Option<ImpostorView> {
-    let axes = view.axes();
-    let raster = ImpostorRaster::of(source, &axes)?;
-    let normals = QuadNormals::fitted(&raster);
-    // The mean of normals is shorter than they are, and sunlight on them that much weaker than on one normal. Renderers
-    // make it long again; half of what that adds is taken back here, as about half of all light is the sun's.
-    let color = Srgba::from_linear(Vec3::splat((1.0 + normals.mean_length(&raster)) * 0.5));
-    let corner = |across: f32, down: f32| {
-        let at = raster.low + (raster.high - raster.low) * Vec2::new(across, 1.0 - down);
-        let [left, top] =
-            [u32::from(view.0) % TILES, u32::from(view.0) / TILES].map(|tile| (tile * TILE + GUTTER) as f32);
-        let uv = Vec2::new(left + across * INNER as f32, top + down * INNER as f32) / (TILE * TILES) as f32;
-        DrawVertex {
-            position: (axes.right * at.x + axes.up * at.y + axes.toward_eye * source.depth(&axes)).to_array(),
-            normal: normals.at(Vec2::new(across, down), axes.toward_eye).to_array(),
-            uv: uv.to_array(),
-            color,
-        }
-    };
-    let corners = [corner(0.0, 1.0), corner(1.0, 1.0), corner(1.0, 0.0), corner(0.0, 0.0)];
-    Some(ImpostorView { pixels: tile(&raster), corners })
+impl ImpostorView {
+    fn draw(source: &ImpostorSource<'_>, view: ImpostorDirection) -> Option<Self> {
+        let axes = view.axes();
+        let raster = ImpostorRaster::new(source, &axes)?;
+        let normals = QuadNormals::fit(&raster);
+        // The mean of normals is shorter than they are, and so is the sunlight on them. Renderers normalize it; half of
+        // what that adds is taken back here, as about half of all light is the sun's.
+        let color = Srgba::from_linear(Vec3::splat((1.0 + normals.mean_length(&raster)) * 0.5));
+        let corner = |across: f32, down: f32| {
+            let at = raster.low + (raster.high - raster.low) * Vec2::new(across, 1.0 - down);
+            let [left, top] = [u32::from(view.0) % TILES, u32::from(view.0) / TILES]
+                .map(|tile| (tile * TILE + GUTTER) as f32);
+            let uv =
+                Vec2::new(left + across * INNER as f32, top + down * INNER as f32) / (TILE * TILES) as f32;
+            let position = axes.right * at.x + axes.up * at.y + axes.toward_eye * source.depth(&axes);
+            DrawVertex {
+                position: position.to_array(),
+                normal: normals.at(Vec2::new(across, down), axes.toward_eye).to_array(),
+                uv: uv.to_array(),
+                color,
+            }
+        };
+        let corners = [corner(0.0, 1.0), corner(1.0, 1.0), corner(1.0, 0.0), corner(0.0, 0.0)];
+        Some(Self { pixels: tile(&raster), corners })
+    }
 }
 
-/// The raster's samples as a tile with its gutter: colors of what is covered, alpha the share covered.
+/// The raster's samples as a tile with its gutter: color, and in alpha the share of each pixel that is covered.
 fn tile(raster: &ImpostorRaster) -> Vec<Srgba> {
     let mut pixels = vec![Srgba([0; 4]); (TILE * TILE) as usize];
     for row in 0..INNER {
@@ -193,30 +196,28 @@ fn tile(raster: &ImpostorRaster) -> Vec<Srgba> {
     pixels
 }
 
-/// The alpha above which, seen from so far that four pixels of a tile are one, as much counts as covered as is.
-fn covering_cutoff(shots: &[ImpostorView]) -> f32 {
-    /// Where thin things cover so little that any cut-off that keeps them would show noise, and where a solid's
-    /// border would be eaten away.
+/// The alpha cutoff that keeps the covered area where four pixels of a tile are seen as one.
+fn area_keeping_cutoff(views: &[ImpostorView]) -> f32 {
+    /// A smaller cutoff would turn thin things to noise, a larger one erode the borders of solids.
     const RANGE: [f32; 2] = [0.15, 0.6];
     const CELL: usize = 4;
-    let mut means = Vec::new();
-    for shot in shots {
+    let mut sums = Vec::new();
+    for view in views {
         for row in (0..TILE as usize).step_by(CELL) {
             for column in (0..TILE as usize).step_by(CELL) {
                 let cell = (0..CELL * CELL).map(|at| (row + at / CELL) * TILE as usize + column + at % CELL);
-                let sum: u32 = cell.map(|at| u32::from(shot.pixels[at].0[3])).sum();
-                means.push(sum);
+                sums.push(cell.map(|at| u32::from(view.pixels[at].0[3])).sum::<u32>());
             }
         }
     }
-    means.sort_unstable_by(|a, b| b.cmp(a));
+    sums.sort_unstable_by(|a, b| b.cmp(a));
     let full = (255 * CELL * CELL) as u64;
-    let covered = means.iter().map(|&sum| u64::from(sum)).sum::<u64>() / full;
-    let at = means.get(covered as usize).copied().unwrap_or(0);
-    (at as f32 / full as f32).clamp(RANGE[0], RANGE[1])
+    let covered = sums.iter().map(|&sum| u64::from(sum)).sum::<u64>() / full;
+    let cutoff = sums.get(covered as usize).copied().unwrap_or(0);
+    (cutoff as f32 / full as f32).clamp(RANGE[0], RANGE[1])
 }
 
-/// Normals as an affine function of the place on a quad.
+/// Normals as an affine function on a quad.
 struct QuadNormals {
     mean: Vec3,
     across: Vec3,
@@ -224,8 +225,8 @@ struct QuadNormals {
 }
 
 impl QuadNormals {
-    /// The least-squares fit to the raster's normals; their mean where they lie on a line.
-    fn fitted(raster: &ImpostorRaster) -> Self {
+    /// The least-squares fit to the raster's normals; their mean where the samples are on a line.
+    fn fit(raster: &ImpostorRaster) -> Self {
         let (mut moments, mut sums) = ([0.0f64; 6], [DVec3::ZERO; 3]);
         for (place, normal) in raster.normals() {
             let (x, y) = (f64::from(place.x), f64::from(place.y));
@@ -250,7 +251,7 @@ impl QuadNormals {
         Self { mean: row(0), across: row(1), down: row(2) }
     }
 
-    /// How long the fitted normals are where the raster sees anything; 1 where it sees nothing.
+    /// The mean length of the fitted normals over the covered samples; 1 where nothing is covered.
     fn mean_length(&self, raster: &ImpostorRaster) -> f32 {
         let lengths =
             raster.normals().map(|(at, _)| (self.mean + self.across * at.x + self.down * at.y).length());
@@ -259,7 +260,7 @@ impl QuadNormals {
         if count > 0.0 { ((sum / count) as f32).min(1.0) } else { 1.0 }
     }
 
-    /// The normal at a place of the quad, of unit length at most; `fallback` where nothing is left of it.
+    /// The normal at a place of the quad, not longer than 1; `fallback` where its length is nearly 0.
     fn at(&self, place: Vec2, fallback: Vec3) -> Vec3 {
         let normal = self.mean + self.across * place.x + self.down * place.y;
         if normal.length_squared() > 1e-6 { normal } else { fallback }
@@ -301,11 +302,11 @@ mod tests {
 
     fn impostor() -> Impostor {
         let model = ball();
-        Impostor::of(&model, &model.parts).expect("a ball can be pictured")
+        Impostor::new(&model, &model.parts).expect("a ball can be pictured")
     }
 
     #[test]
-    fn every_view_s_quad_stands_across_its_direction_around_the_model() {
+    fn the_quad_of_every_view_is_across_its_direction_around_the_model() {
         let impostor = impostor();
         assert_eq!(impostor.mesh.triangles.len(), VIEWS * 2);
         for view in (0..VIEWS as u8).map(ImpostorDirection) {
@@ -323,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_covers_a_disc_and_shows_its_colors_where_they_are() {
+    fn a_ball_covers_a_disc_and_shows_its_colors_in_place() {
         let impostor = impostor();
         let level = (0..TILE * TILE).map(|at| impostor.texture.at(at % TILE, at / TILE));
         let covered: f32 = level.map(Srgba::alpha).sum();
@@ -349,10 +350,10 @@ mod tests {
     }
 
     #[test]
-    fn what_a_picture_would_not_do_for_has_no_impostor() {
+    fn blended_and_empty_models_have_no_impostor() {
         let mut glass = ball();
         glass.materials[0].alpha = AlphaMode::Blend;
-        assert!(Impostor::of(&glass, &glass.parts).is_none());
-        assert!(Impostor::of(&Model::default(), &[]).is_none());
+        assert!(Impostor::new(&glass, &glass.parts).is_none());
+        assert!(Impostor::new(&Model::default(), &[]).is_none());
     }
 }

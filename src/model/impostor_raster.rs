@@ -1,7 +1,7 @@
-//! A model seen from infinitely far in one direction: colors and normals of what is in front, on a grid of samples.
+//! An orthographic view of a model: colors and normals of the front surface on a grid of samples.
 //!
-//! No light, no perspective, no filtering but several samples a pixel: what an impostor needs and nothing more. The
-//! renderers stand above this room and do not lend themselves.
+//! There is no light, no perspective and no filtering but several samples a pixel. The renderers cannot serve: they are on
+//! a higher layer.
 
 use glam::{Vec2, Vec3};
 
@@ -18,55 +18,54 @@ pub(super) const SAMPLES: u32 = 3;
 /// Samples along the side of the grid.
 const SIDE: usize = (INNER * SAMPLES) as usize;
 
-/// How many times over the triangles' boxes may cover the grid: bounds the time that a hostile model can take to
-/// about a second for all views.
-pub(super) const MOST_LAYERS: usize = 256;
+/// How often the triangles' boxes may cover the grid: bounds the time of all views of a hostile model to about a second.
+const MAX_LAYERS: usize = 256;
 
-/// Textures are halved until no side is longer: two of their pixels for each pixel of a tile.
-const MOST_TEXTURE_SIDE: u32 = 128;
+/// Textures are reduced until no side is longer: two of their pixels for each pixel of a tile.
+const MAX_TEXTURE_SIDE: u32 = 128;
 
-/// A model made ready for being seen from many sides.
+/// A model prepared for views from many sides.
 pub(super) struct ImpostorSource<'a> {
     parts: &'a [ModelPart],
     materials: &'a [Material],
     textures: Vec<Pixels>,
-    middle: Vec3,
+    center: Vec3,
 }
 
-/// What a sample sees.
+/// The front surface at one sample.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sample {
-    /// Toward the eye; greater is nearer.
+pub(super) struct SurfaceSample {
+    /// Position along the view; greater is nearer to the eye.
     depth: f32,
     /// In linear light.
     pub color: Vec3,
     normal: Vec3,
 }
 
-/// A model seen along one direction.
+/// A view of a model.
 pub(super) struct ImpostorRaster {
-    /// The lower left corner of what is seen, along the axes to the right and up.
+    /// The lower left corner of the model, along the axes to the right and up.
     pub low: Vec2,
     /// The upper right corner.
     pub high: Vec2,
-    samples: Vec<Option<Sample>>,
+    samples: Vec<Option<SurfaceSample>>,
 }
 
 impl<'a> ImpostorSource<'a> {
-    /// The model whose shape is `parts`; `None` where there is nothing to see.
+    /// `model` with the shape of `parts`; `None` where there is nothing to see.
     pub(super) fn new(model: &'a Model, parts: &'a [ModelPart]) -> Option<Self> {
-        let (min, max) = model.bounds()?;
+        let center = model.bounds()?.center();
         parts.iter().any(|part| !part.mesh.triangles.is_empty()).then(|| Self {
             parts,
             materials: &model.materials,
             textures: model.textures.iter().map(reduced).collect(),
-            middle: (min + max) * 0.5,
+            center,
         })
     }
 
-    /// How far along the view its quad stands: through the model's middle.
+    /// The position of the view's quad along the view: through the model's center.
     pub(super) fn depth(&self, axes: &ViewAxes) -> f32 {
-        self.middle.dot(axes.toward_eye)
+        self.center.dot(axes.toward_eye)
     }
 
     fn triangles(&self) -> impl Iterator<Item = (&'a DrawMesh, &'a Material, [&'a DrawVertex; 3])> {
@@ -80,8 +79,8 @@ impl<'a> ImpostorSource<'a> {
 }
 
 impl ImpostorRaster {
-    /// The model seen along `axes`; `None` where its triangles lie more than [`MOST_LAYERS`] deep.
-    pub(super) fn of(source: &ImpostorSource<'_>, axes: &ViewAxes) -> Option<Self> {
+    /// The view along `axes`; `None` where more than [`MAX_LAYERS`] triangles are on top of each other.
+    pub(super) fn new(source: &ImpostorSource<'_>, axes: &ViewAxes) -> Option<Self> {
         let plan = |vertex: &DrawVertex| {
             let at = Vec3::from(vertex.position);
             Vec2::new(at.dot(axes.right), at.dot(axes.up))
@@ -89,12 +88,12 @@ impl ImpostorRaster {
         let all = source.triangles().flat_map(|(_, _, corners)| corners.map(plan));
         let (low, high) =
             all.fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
-        // A board seen from its edge has no width of its own.
+        // A board seen from its edge has no width.
         let least = Vec2::splat(((high - low).max_element() * 1e-3).max(f32::MIN_POSITIVE));
         let size = (high - low).max(least);
         let (low, high) = ((low + high - size) * 0.5, (low + high + size) * 0.5);
         let mut raster = Self { low, high, samples: vec![None; SIDE * SIDE] };
-        let mut left = MOST_LAYERS * SIDE * SIDE;
+        let mut left = MAX_LAYERS * SIDE * SIDE;
         for (_, material, corners) in source.triangles() {
             let at = corners.map(|corner| {
                 let share = (plan(corner) - low) / size;
@@ -116,7 +115,7 @@ impl ImpostorRaster {
         [a, b, c]: [Vec2; 3],
     ) {
         let area = (b - a).perp_dot(c - a);
-        // Rows run down, so what turns counter-clockwise in the world has a negative area here.
+        // Rows run downward: triangles that are counter-clockwise in the world have a negative area here.
         let is_back = area > 0.0;
         if area == 0.0 || !area.is_finite() || (is_back && !material.two_sided) {
             return;
@@ -126,31 +125,32 @@ impl ImpostorRaster {
         for row in from[1]..to[1] {
             for column in from[0]..to[0] {
                 let at = Vec2::new(column as f32 + 0.5, row as f32 + 0.5);
-                let shares = [(c - b).perp_dot(at - b), (a - c).perp_dot(at - c), (b - a).perp_dot(at - a)]
+                let weights = [(c - b).perp_dot(at - b), (a - c).perp_dot(at - c), (b - a).perp_dot(at - a)]
                     .map(|doubled| doubled / area);
-                if shares.iter().any(|&share| share < 0.0) {
+                if weights.iter().any(|&weight| weight < 0.0) {
                     continue;
                 }
-                let depth = depths.iter().zip(shares).map(|(depth, share)| depth * share).sum();
+                let depth = depths.iter().zip(weights).map(|(depth, weight)| depth * weight).sum();
                 let place = &mut self.samples[row * SIDE + column];
                 if place.is_none_or(|there| depth > there.depth)
-                    && let Some((color, normal)) = looks(source, material, corners, shares)
+                    && let Some((color, normal)) = shade(source, material, corners, weights)
                 {
-                    *place = Some(Sample { depth, color, normal: if is_back { -normal } else { normal } });
+                    *place =
+                        Some(SurfaceSample { depth, color, normal: if is_back { -normal } else { normal } });
                 }
             }
         }
     }
 
-    /// What the samples of a pixel see, those that see anything.
-    pub(super) fn samples_of(&self, column: u32, row: u32) -> impl Iterator<Item = &Sample> {
+    /// The covered samples of a pixel.
+    pub(super) fn samples_of(&self, column: u32, row: u32) -> impl Iterator<Item = &SurfaceSample> {
         let first = [column, row].map(|pixel| (pixel * SAMPLES) as usize);
         let all = (0..(SAMPLES * SAMPLES) as usize)
             .map(move |at| [first[0] + at % SAMPLES as usize, first[1] + at / SAMPLES as usize]);
         all.filter_map(|[x, y]| self.samples[y * SIDE + x].as_ref())
     }
 
-    /// The normals of all samples that see anything, with their places across and down, 0..=1.
+    /// The places of all covered samples, across and down in 0..=1, with their normals.
     pub(super) fn normals(&self) -> impl Iterator<Item = (Vec2, Vec3)> {
         self.samples.iter().enumerate().filter_map(|(index, sample)| {
             let at = Vec2::new((index % SIDE) as f32 + 0.5, (index / SIDE) as f32 + 0.5) / SIDE as f32;
@@ -159,7 +159,7 @@ impl ImpostorRaster {
     }
 }
 
-/// The samples whose centers a triangle may cover: first, and past the last.
+/// The samples whose centers a triangle may cover, column and row: the first, and past the last.
 fn window(corners: &[Vec2; 3]) -> ([usize; 2], [usize; 2]) {
     let [a, b, c] = *corners;
     let low = a.min(b).min(c).max(Vec2::ZERO);
@@ -168,15 +168,15 @@ fn window(corners: &[Vec2; 3]) -> ([usize; 2], [usize; 2]) {
     (from, [(high.x.ceil() as usize).clamp(from[0], SIDE), (high.y.ceil() as usize).clamp(from[1], SIDE)])
 }
 
-/// Color in linear light and unit normal; `None` where the surface has a hole.
-fn looks(
+/// The color in linear light and the unit normal; `None` where the surface has a hole.
+fn shade(
     source: &ImpostorSource<'_>,
     material: &Material,
     corners: [&DrawVertex; 3],
-    shares: [f32; 3],
+    weights: [f32; 3],
 ) -> Option<(Vec3, Vec3)> {
     let mean = |value: &dyn Fn(&DrawVertex) -> Vec3| {
-        corners.iter().zip(shares).fold(Vec3::ZERO, |sum, (corner, share)| sum + value(corner) * share)
+        corners.iter().zip(weights).fold(Vec3::ZERO, |sum, (corner, weight)| sum + value(corner) * weight)
     };
     let texel = material.texture.and_then(|id| {
         texel(
@@ -203,13 +203,13 @@ fn texel(texture: &Pixels, uv: Vec2) -> Option<Srgba> {
     if size.contains(&0) {
         return None;
     }
-    let place = |share: f32, side: u32| (((share - share.floor()) * side as f32) as u32).min(side - 1);
+    let place = |uv: f32, side: u32| (((uv - uv.floor()) * side as f32) as u32).min(side - 1);
     Some(texture.at(place(uv.x, size[0]), place(uv.y, size[1])))
 }
 
-/// A texture halved until no side is longer than [`MOST_TEXTURE_SIDE`].
+/// The texture with blocks of pixels averaged until no side is longer than [`MAX_TEXTURE_SIDE`].
 fn reduced(texture: &Pixels) -> Pixels {
-    let step = texture.width().max(texture.height()).div_ceil(MOST_TEXTURE_SIDE);
+    let step = texture.width().max(texture.height()).div_ceil(MAX_TEXTURE_SIDE);
     if step <= 1 {
         return texture.clone();
     }

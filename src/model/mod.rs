@@ -1,25 +1,25 @@
-//! Model files — 3DS, OBJ with MTL, glTF and GLB — to one [`Model`], Z up, no file system.
+//! Model files (3DS, OBJ with MTL, glTF and GLB) to one [`Model`], Z up; no file system.
 //!
 //! ```text
 //! bytes ── read ──┬─ three_ds ─┐
-//!                 ├─ obj ──────┼─ normals, triangulate, part, texture ──► Model
+//!                 ├─ obj ──────┼─ normals, triangulate, part, material, texture ──► Model
 //!                 └─ gltf ─────┘
 //! ```
 //!
-//! How a model is drawn where it is small is its own matter too: `detail` chooses between the model, its coarser levels
-//! (`simplify`, by collapsing edges of a `soup` of all parts) and pictures of it (`impostor`).
+//! `detail` chooses how a small model is drawn: as it is, as a coarser level (`simplify` collapses edges of a `soup` of
+//! all parts) or as a picture (`impostor`).
 //!
-//! Trees, a shrub and a rock are [`built_in`]. What a model file names — buffers, textures, material libraries — comes
-//! through [`Companions`]. A file that cannot be trusted is an error; a picture that cannot be had is a note on a
-//! model without it.
+//! Trees, a shrub and a rock are [`built_in`]. The files that a model names (buffers, textures, material libraries) come
+//! through [`Companions`]. A broken model file is an error; a texture that cannot be loaded is a note.
 
+mod appearance;
 pub mod built_in;
 pub mod detail;
 pub mod error;
 pub mod gltf;
 pub mod impostor;
 mod impostor_raster;
-mod nearest;
+mod material;
 mod normals;
 pub mod obj;
 mod part;
@@ -27,6 +27,7 @@ mod quadric;
 pub mod read;
 pub mod simplify;
 mod soup;
+mod surface_edges;
 mod texture;
 pub mod three_ds;
 mod triangulate;
@@ -36,6 +37,8 @@ use glam::Vec3;
 use crate::draw::list::{DrawMesh, MaterialId};
 use crate::draw::material::Material;
 use crate::draw::pixels::Pixels;
+use crate::geom::aabb::Aabb;
+use crate::model::error::CompanionError;
 
 /// A model: X right, Y to its back, Z up, front toward −Y; in the file's units.
 #[derive(Clone, Debug, Default)]
@@ -46,9 +49,9 @@ pub struct Model {
     pub materials: Vec<Material>,
     /// Textures, by [`crate::draw::material::TextureId`].
     pub textures: Vec<Pixels>,
-    /// What the file holds, counted as its format counts.
+    /// The numbers of elements in the file, counted as its format counts.
     pub census: Census,
-    /// What the file asked for and did not get: a missing texture, a feature that is not drawn.
+    /// What the file asks for and is not drawn: missing textures, unsupported features.
     pub notes: Vec<String>,
 }
 
@@ -63,38 +66,36 @@ pub struct ModelPart {
     pub material: MaterialId,
 }
 
-/// What a model file holds.
+/// The numbers of elements in a model file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Census {
-    /// Meshes: 3DS triangle meshes, OBJ objects or groups with faces, glTF primitives as placed by nodes.
+    /// Meshes: 3DS triangle meshes, OBJ objects and groups with faces, glTF primitives as placed by nodes.
     pub meshes: usize,
     /// Vertices as stored in the file; of glTF, those of drawn meshes, each mesh once.
     pub vertices: usize,
-    /// Faces as stored in the file: a polygon counts once, and so does a mesh that stands in several places.
+    /// Faces as stored in the file: a polygon counts once, and so does a mesh that is placed several times.
     pub faces: usize,
     /// Materials defined.
     pub materials: usize,
 }
 
-/// Gives a loader the files its model names: buffers, textures, material libraries.
+/// Loads the files that a model names: buffers, textures, material libraries.
 pub trait Companions {
-    /// The bytes of the file that the model calls `name`, looked up beside the model.
+    /// The bytes of the file that the model calls `name`.
     ///
     /// # Errors
-    /// A sentence that says why it cannot be had.
-    fn load(&self, name: &str) -> Result<Vec<u8>, String>;
+    /// Whatever prevents loading it.
+    fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError>;
 }
 
 impl Model {
-    /// The smallest box around all vertices as `(min, max)`; `None` where there are none.
-    pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
-        let mut positions =
-            self.parts.iter().flat_map(|part| &part.mesh.vertices).map(|vertex| Vec3::from(vertex.position));
-        let first = positions.next()?;
-        Some(positions.fold((first, first), |(min, max), at| (min.min(at), max.max(at))))
+    /// The smallest box around all vertices; `None` where there are none.
+    pub fn bounds(&self) -> Option<Aabb> {
+        let vertices = self.parts.iter().flat_map(|part| &part.mesh.vertices);
+        Aabb::around(vertices.map(|vertex| Vec3::from(vertex.position)))
     }
 
-    /// How many triangles are drawn, all places of a mesh counted.
+    /// The number of triangles of all parts.
     pub fn triangle_count(&self) -> usize {
         self.parts.iter().map(|part| part.mesh.triangles.len()).sum()
     }

@@ -1,79 +1,65 @@
-//! Corner normals where a file brings none: flat, by smoothing group, or smooth up to a crease.
+//! Corner normals for files without them: flat, by smoothing group, or smooth up to a crease.
 //!
-//! Vertices are welded where their positions are equal in every bit, because exporters split them along
-//! texture seams. A corner's normal is the mean of the normals of the triangles around its vertex that it is
-//! smooth with, each weighted with its angle there (Thürmer and Wüthrich, "Computing vertex normals from
-//! polygonal facets", 1998), so that the way a polygon is cut into triangles does not show.
-
-use std::collections::HashMap;
+//! Vertices are welded where their positions are equal in every bit: exporters split them along texture seams. A corner's
+//! normal is the mean of the normals of the triangles around its vertex that it is smooth with, weighted by their angles
+//! there (Thürmer and Wüthrich, "Computing vertex normals from polygonal facets", 1998), so that the way a polygon is cut
+//! into triangles does not show.
 
 use glam::Vec3;
 
-/// The most triangles around a vertex that are compared pair by pair; around a wider fan, such as the tip of
-/// a finely cut cone, all are smooth. Bounds the time that a hostile file can take.
+use crate::geom::triangle;
+use crate::mesh::numbering::{Numbering, weld_key};
+
+/// The most triangles around a vertex that are compared pair by pair. Around a wider fan, such as the tip of a finely cut
+/// cone, all are smooth. Bounds the time that a hostile file can take.
 const MAX_FAN: usize = 256;
 
-/// Cosine of the sharpest angle between neighbors that still looks round where a file does not say: 40°
-/// keeps an octagonal column angular and rounds a sphere of ten segments.
+/// Cosine of the sharpest angle between neighbors that looks round where a file does not say: 40° keeps an octagonal
+/// column angular and rounds a sphere of ten segments.
 pub(super) const CREASE_COS: f32 = 0.766;
 
-/// Which triangles that meet in a vertex share its normal.
+/// Which triangles around a vertex share its normal.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Smoothing<'a> {
     /// None.
     Flat,
-    /// Those whose masks have a bit in common; one mask a triangle, 0 is flat.
+    /// Those whose masks share a bit; one mask a triangle, 0 is flat.
     Groups(&'a [u32]),
-    /// Those whose numbers are the same; one number a triangle, 0 is flat.
+    /// Those with equal numbers; one number a triangle, 0 is flat.
     Numbers(&'a [u32]),
     /// Those whose normals' angle has at least this cosine.
     Crease(f32),
 }
 
-/// Unit normals of the corners of `triangles`; +Z for a triangle without area that has no neighbor.
-/// Indices must lie within `positions`, and masks must be as many as triangles.
+/// Unit normals of the corners of `triangles`; +Z for a triangle without area that has no neighbor. Indices must be in
+/// range, and there must be a mask or number for each triangle.
 pub(super) fn corner_normals(
     positions: &[Vec3],
     triangles: &[[u32; 3]],
     smoothing: Smoothing<'_>,
 ) -> Vec<[Vec3; 3]> {
     let faces: Vec<Vec3> = triangles.iter().map(|&triangle| face_normal(positions, triangle)).collect();
-    let flat = || faces.iter().map(|&normal| [upright(normal); 3]).collect();
-    match smoothing {
-        Smoothing::Flat => flat(),
-        Smoothing::Groups(masks) => {
-            shared(positions, triangles, &faces, |a, b| a == b || masks[a] & masks[b] != 0)
-        }
-        Smoothing::Numbers(numbers) => shared(positions, triangles, &faces, |a, b| {
-            a == b || (numbers[a] == numbers[b] && numbers[a] != 0)
-        }),
-        Smoothing::Crease(cos) => {
-            shared(positions, triangles, &faces, |a, b| a == b || faces[a].dot(faces[b]) >= cos)
-        }
-    }
-}
-
-/// A corner of a triangle, with the triangle's angle there.
-#[derive(Clone, Copy)]
-struct CornerAngle {
-    triangle: usize,
-    corner: usize,
-    angle: f32,
-}
-
-fn shared(
-    positions: &[Vec3],
-    triangles: &[[u32; 3]],
-    faces: &[Vec3],
-    smooth: impl Fn(usize, usize) -> bool,
-) -> Vec<[Vec3; 3]> {
+    let is_smooth = |a: usize, b: usize| {
+        a == b
+            || match smoothing {
+                Smoothing::Flat => false,
+                Smoothing::Groups(masks) => masks[a] & masks[b] != 0,
+                Smoothing::Numbers(numbers) => numbers[a] == numbers[b] && numbers[a] != 0,
+                Smoothing::Crease(cos) => faces[a].dot(faces[b]) >= cos,
+            }
+    };
+    let upright = |normal: Vec3| if normal == Vec3::ZERO { Vec3::Z } else { normal };
     let mut normals: Vec<[Vec3; 3]> = faces.iter().map(|&normal| [upright(normal); 3]).collect();
+    if matches!(smoothing, Smoothing::Flat) {
+        return normals;
+    }
     for fan in fans(positions, triangles) {
+        let is_wide = fan.len() > MAX_FAN;
         for &spoke in &fan {
             let sum: Vec3 = fan
                 .iter()
-                .filter(|other| fan.len() > MAX_FAN || smooth(spoke.triangle, other.triangle))
-                .take(if fan.len() > MAX_FAN { MAX_FAN } else { fan.len() })
+                .filter(|other| is_wide || is_smooth(spoke.triangle, other.triangle))
+                .take(if is_wide { MAX_FAN } else { fan.len() })
                 .map(|other| faces[other.triangle] * other.angle)
                 .sum();
             if let Some(normal) = sum.try_normalize() {
@@ -84,27 +70,30 @@ fn shared(
     normals
 }
 
+/// A corner of a triangle, with the triangle's angle there.
+#[derive(Clone, Copy)]
+struct CornerAngle {
+    triangle: usize,
+    corner: usize,
+    angle: f32,
+}
+
 /// The corners around every welded vertex, in the order of the vertices' first use.
 fn fans(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec<CornerAngle>> {
-    let mut of_position: HashMap<[u32; 3], usize> = HashMap::with_capacity(positions.len());
+    let mut vertices = Numbering::default();
     let mut fans: Vec<Vec<CornerAngle>> = Vec::new();
     for (triangle, &ids) in triangles.iter().enumerate() {
         let corners = ids.map(|id| positions[id as usize]);
         for (corner, &at) in corners.iter().enumerate() {
             let angle = angle_at(at, corners[(corner + 1) % 3], corners[(corner + 2) % 3]);
-            let fan = *of_position.entry(weld_key(at)).or_insert_with(|| {
+            let vertex = vertices.number(weld_key(at));
+            if vertex.is_new {
                 fans.push(Vec::new());
-                fans.len() - 1
-            });
-            fans[fan].push(CornerAngle { triangle, corner, angle });
+            }
+            fans[vertex.index as usize].push(CornerAngle { triangle, corner, angle });
         }
     }
     fans
-}
-
-/// Adding zero makes one of the two zeros.
-fn weld_key(position: Vec3) -> [u32; 3] {
-    (position + Vec3::ZERO).to_array().map(f32::to_bits)
 }
 
 fn angle_at(at: Vec3, next: Vec3, last: Vec3) -> f32 {
@@ -112,13 +101,8 @@ fn angle_at(at: Vec3, next: Vec3, last: Vec3) -> f32 {
     libm::acosf(cos.clamp(-1.0, 1.0))
 }
 
-fn face_normal(positions: &[Vec3], triangle: [u32; 3]) -> Vec3 {
-    let [a, b, c] = triangle.map(|id| positions[id as usize].as_dvec3());
-    (b - a).cross(c - a).normalize_or_zero().as_vec3()
-}
-
-fn upright(normal: Vec3) -> Vec3 {
-    if normal == Vec3::ZERO { Vec3::Z } else { normal }
+fn face_normal(positions: &[Vec3], ids: [u32; 3]) -> Vec3 {
+    triangle::normal(ids.map(|id| positions[id as usize].as_dvec3())).normalize_or_zero().as_vec3()
 }
 
 #[cfg(test)]
@@ -154,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn the_cut_of_a_polygon_does_not_weigh() {
+    fn the_cut_of_a_polygon_has_no_weight() {
         let normals = corner_normals(&RIDGE, &SLOPES, Smoothing::Crease(-1.0));
         assert!(normals[0][1].abs_diff_eq(Vec3::Z, 1e-6) && normals[1][1].abs_diff_eq(Vec3::Z, 1e-6));
     }

@@ -1,29 +1,28 @@
 //! Triangles with corners of their own to parts with shared vertices, one part a material.
 //!
-//! Readers of formats that index positions, normals and texture coordinates apart hand in whole corners;
-//! corners equal in every bit become one vertex.
-
-use std::collections::{BTreeMap, HashMap};
+//! Some formats index positions, normals and texture coordinates separately. Their readers pass whole corners; corners
+//! that are equal in every bit become one vertex.
 
 use glam::{Vec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::draw::list::{DrawMesh, DrawVertex, MaterialId};
+use crate::mesh::numbering::Numbering;
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::model::ModelPart;
 use crate::model::error::ModelError;
 
-/// The most triangles a model may have once all its instances are placed; bounds the memory that a small
-/// file with many instances can ask for to some hundred megabytes. Arbitrary, but above what a scene can use.
+/// The most triangles of a model with all its instances: bounds the memory for a small file with many instances to some
+/// hundred megabytes. Arbitrary, but more than a scene can use.
 pub(super) const MAX_TRIANGLES: usize = 1 << 22;
 
 /// Counts the triangles of a model against [`MAX_TRIANGLES`].
 #[derive(Debug, Default)]
-pub(super) struct Budget {
+pub(super) struct TriangleBudget {
     used: usize,
 }
 
-impl Budget {
+impl TriangleBudget {
     /// Takes `triangles` from the budget.
     ///
     /// # Errors
@@ -46,22 +45,19 @@ pub(super) struct ModelCorner {
     pub color: Srgba,
 }
 
-/// The parts of one object, a material each, in the order in which materials first appear.
+/// The parts of one object, one a material, in the order in which materials first appear.
 #[derive(Debug, Default)]
 pub(super) struct PartBuilder {
     name: String,
-    parts: Vec<Growing>,
-    of_material: BTreeMap<MaterialId, usize>,
+    numbers: Numbering<MaterialId>,
+    parts: Vec<WeldedPart>,
 }
 
 #[derive(Debug)]
-struct Growing {
-    material: MaterialId,
-    mesh: DrawMesh,
-    known: HashMap<DrawVertexBits, VertexId>,
+struct WeldedPart {
+    part: ModelPart,
+    vertices: Numbering<[u32; 9]>,
 }
-
-type DrawVertexBits = [u32; 9];
 
 impl PartBuilder {
     /// Parts of an object called `name`.
@@ -71,38 +67,28 @@ impl PartBuilder {
 
     /// Adds a triangle, counter-clockwise seen from its outside.
     pub(super) fn triangle(&mut self, material: MaterialId, corners: [ModelCorner; 3]) {
-        let parts = &mut self.parts;
-        let index = *self.of_material.entry(material).or_insert_with(|| {
-            parts.push(Growing { material, mesh: DrawMesh::default(), known: HashMap::new() });
-            parts.len() - 1
+        let number = self.numbers.number(material);
+        if number.is_new {
+            let part = ModelPart { name: self.name.clone(), mesh: DrawMesh::default(), material };
+            self.parts.push(WeldedPart { part, vertices: Numbering::default() });
+        }
+        let WeldedPart { part, vertices } = &mut self.parts[number.index as usize];
+        let ids = corners.map(|corner| {
+            let vertex = DrawVertex {
+                position: corner.position.into(),
+                normal: corner.normal.into(),
+                uv: corner.uv.into(),
+                color: corner.color,
+            };
+            let number = vertices.number(bytemuck::cast(vertex));
+            if number.is_new { part.mesh.vertex(vertex) } else { VertexId(number.index) }
         });
-        let part = &mut parts[index];
-        let ids = corners.map(|corner| part.vertex(corner));
         part.mesh.triangle(ids);
     }
 
-    /// The parts that got triangles.
+    /// The parts, each with at least one triangle.
     pub(super) fn finish(self) -> impl Iterator<Item = ModelPart> {
-        let name = self.name;
-        self.parts.into_iter().map(move |part| ModelPart {
-            name: name.clone(),
-            mesh: part.mesh,
-            material: part.material,
-        })
-    }
-}
-
-impl Growing {
-    fn vertex(&mut self, corner: ModelCorner) -> VertexId {
-        let vertex = DrawVertex {
-            position: corner.position.into(),
-            normal: corner.normal.into(),
-            uv: corner.uv.into(),
-            color: corner.color,
-        };
-        let bits: DrawVertexBits = bytemuck::cast(vertex);
-        let mesh = &mut self.mesh;
-        *self.known.entry(bits).or_insert_with(|| mesh.vertex(vertex))
+        self.parts.into_iter().map(|welded| welded.part)
     }
 }
 
@@ -138,7 +124,7 @@ mod tests {
 
     #[test]
     fn more_triangles_than_the_budget_are_refused() {
-        let mut budget = Budget::default();
+        let mut budget = TriangleBudget::default();
         assert!(budget.take(MAX_TRIANGLES).is_ok());
         assert!(budget.take(1).is_err());
     }

@@ -1,12 +1,12 @@
-//! Quadrics: the squared distances of a point from many planes at once (Garland and Heckbert, "Surface
-//! Simplification Using Quadric Error Metrics", 1997).
+//! Quadrics: the squared distances of a point from many planes at once (Garland and Heckbert, "Surface Simplification
+//! Using Quadric Error Metrics", 1997).
 //!
-//! Every plane counts once and the distances are summed, so that the sum is never below the square of the greatest: a
-//! mean would let a long thin strip go for its small area.
+//! Squared distances are summed without weights, so that the sum is never below the greatest: weights by area would
+//! remove long thin strips.
 
 use glam::DVec3;
 
-/// The planes of a surface around a point, as a quadratic function of position.
+/// The sum of squared distances from a set of planes, as a quadratic function of position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Quadric {
     /// Upper triangle of Σ n nᵀ: xx, xy, xz, yy, yz, zz.
@@ -29,7 +29,7 @@ impl Quadric {
         }
     }
 
-    /// Both surfaces' planes together.
+    /// The planes of both.
     pub(super) fn plus(&self, other: &Self) -> Self {
         Self {
             squares: std::array::from_fn(|index| self.squares[index] + other.squares[index]),
@@ -53,7 +53,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_distances_from_all_planes_are_squared_and_summed() {
+    fn distances_from_all_planes_are_squared_and_summed() {
         let floor = Quadric::plane(DVec3::Z, DVec3::new(7.0, 3.0, 2.0));
         assert!((floor.squared_distances(DVec3::new(-4.0, 9.0, 5.0)) - 9.0).abs() < 1e-12);
         let wall = Quadric::plane(DVec3::X, DVec3::ZERO);
@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn without_planes_every_point_is_good() {
+    fn without_planes_the_distance_is_zero() {
         assert_eq!(Quadric::default().squared_distances(DVec3::ONE), 0.0);
     }
 }

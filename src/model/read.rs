@@ -1,4 +1,6 @@
-//! Any model file to a [`Model`]: by content first, by extension where the content says nothing.
+//! Any model file to a [`Model`]: the format is known by its content, else by its extension.
+
+use std::collections::BTreeSet;
 
 use crate::model::error::ModelError;
 use crate::model::{Companions, Model};
@@ -12,11 +14,11 @@ enum ModelFormat {
     Gltf,
 }
 
-/// The model in `bytes`. `name` is the file's name, used for its extension and in messages; the files the
-/// model names are asked of `companions`.
+/// The model in `bytes`. `name` is the file's name, for its extension and for messages; `companions` loads the files
+/// that the model names.
 ///
 /// # Errors
-/// [`ModelError`]. A missing or broken texture is no error but one of [`Model::notes`].
+/// [`ModelError`]. A missing or broken texture is not an error but one of [`Model::notes`].
 pub fn read(name: &str, bytes: &[u8], companions: &dyn Companions) -> Result<Model, ModelError> {
     if bytes.is_empty() {
         return Err(ModelError::Empty { name: name.into() });
@@ -28,21 +30,21 @@ pub fn read(name: &str, bytes: &[u8], companions: &dyn Companions) -> Result<Mod
         None => Err(ModelError::Unknown { name: name.into(), start: start_of(bytes) }),
     }?;
     if model.parts.is_empty() {
-        model.notes.push("there is nothing to draw in it".into());
+        model.notes.push("the model has nothing to draw".into());
     }
     shorten(&mut model.notes);
     Ok(model)
 }
 
-/// Drops repeated notes, and all past the first few.
+/// Drops repeated notes, and all after the first few.
 fn shorten(notes: &mut Vec<String>) {
-    /// As many as someone reads; arbitrary.
-    const MOST: usize = 40;
-    let mut known = std::collections::BTreeSet::new();
+    /// As many as a user reads. Arbitrary.
+    const MAX_NOTES: usize = 40;
+    let mut known = BTreeSet::new();
     notes.retain(|note| known.insert(note.clone()));
-    if notes.len() > MOST {
-        let more = notes.len() - MOST;
-        notes.truncate(MOST);
+    if notes.len() > MAX_NOTES {
+        let more = notes.len() - MAX_NOTES;
+        notes.truncate(MAX_NOTES);
         notes.push(format!("and {more} more"));
     }
 }
@@ -52,7 +54,7 @@ fn format_of(name: &str, bytes: &[u8]) -> Option<ModelFormat> {
 }
 
 fn by_content(bytes: &[u8]) -> Option<ModelFormat> {
-    /// The chunk that holds a whole 3DS file, `0x4D4D`, little-endian.
+    /// The id of the outermost chunk of a 3DS file, `0x4D4D`.
     const MAIN_CHUNK: &[u8] = b"MM";
     if bytes.starts_with(b"glTF") {
         return Some(ModelFormat::Gltf);
@@ -82,25 +84,26 @@ fn start_of(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::error::CompanionError;
 
-    struct Nothing;
+    struct NoCompanions;
 
-    impl Companions for Nothing {
-        fn load(&self, name: &str) -> Result<Vec<u8>, String> {
-            Err(format!("there is no {name}"))
+    impl Companions for NoCompanions {
+        fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError> {
+            Err(format!("there is no {name}").into())
         }
     }
 
     #[test]
-    fn content_counts_for_more_than_the_extension() {
+    fn the_content_outweighs_the_extension() {
         assert_eq!(format_of("house.obj", b"MM\x06\0\0\0"), Some(ModelFormat::ThreeDs));
         assert_eq!(format_of("house.3ds", b"\xEF\xBB\xBF \n{}"), Some(ModelFormat::Gltf));
         assert_eq!(format_of("HOUSE.OBJ", b"v 0 0 0"), Some(ModelFormat::Obj));
     }
 
     #[test]
-    fn what_cannot_be_read_is_told_what_can() {
-        let error = read("house.fbx", b"Kaydara", &Nothing).map(|_| ()).expect_err("not a model");
+    fn an_unknown_format_is_refused_with_the_formats_that_are_read() {
+        let error = read("house.fbx", b"Kaydara", &NoCompanions).map(|_| ()).expect_err("not a model");
         let text = error.to_string();
         assert!(
             text.contains("house.fbx") && text.contains("4B 61 79 64") && text.contains(".glb"),
@@ -110,6 +113,6 @@ mod tests {
 
     #[test]
     fn an_empty_file_is_refused() {
-        assert!(matches!(read("a.obj", b"", &Nothing), Err(ModelError::Empty { .. })));
+        assert!(matches!(read("a.obj", b"", &NoCompanions), Err(ModelError::Empty { .. })));
     }
 }

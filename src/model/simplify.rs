@@ -1,25 +1,25 @@
-//! Simpler forms of a model: points drawn into their neighbors one by one, cheapest first.
+//! Coarser levels of a model: points are collapsed into their neighbors one by one, cheapest first.
 //!
 //! # How
 //! ```text
 //!     p ── q          Every step moves a point p into a neighbor q (a half-edge collapse): the triangles
-//!    ╱ ╲  ╱           between them go, the others around p now reach q. No place is ever made up, and normals,
-//!   ·────·            texture coordinates and colors are those of the file.
+//!    ╱ ╲  ╱           between them vanish, the others around p now reach q. Positions, normals, texture
+//!   ·────·            coordinates and colors are always those of the file.
 //! ```
-//! What a step costs is the sum of squared distances of q from all the planes that p and q stand for (`quadric`), and
-//! what it changes of the looks there (`nearest::difference`). Borders and seams have planes of their own, upright
-//! on the surface, that keep their line. A vertex at p becomes the one at q that it shares a vanishing triangle with;
-//! one that has no such counterpart, such as that of the third face at a box's corner, moves to q with the looks it
-//! has. A step is refused where a triangle would turn over, and where the surface would close on itself (the link
-//! condition: Dey and others, "Topology preserving edge contraction", 1999).
+//! The cost of a step is the sum of squared distances of q from all planes of p and q (`quadric`) plus the squared change
+//! in appearance (`appearance`). Borders and seams have planes of their own, upright on the surface, that keep their
+//! line. A vertex at p becomes the one at q with which it shares a vanishing triangle; a vertex without such a
+//! counterpart, such as that of the third face at a box's corner, keeps its attributes. A step is refused where a
+//! triangle would flip or the surface would close on itself (the link condition: Dey et al., "Topology preserving edge
+//! contraction", 1999).
 //!
-//! The error of a level is measured, not summed up: the greatest distance of a point of the file from the simpler
-//! surface near the point it went into.
+//! The error of a level is measured, not summed up: the greatest distance of a point of the file from the coarser surface
+//! near the point into which it was collapsed.
 //!
 //! # Why our own
-//! `meshopt` needs a C++ compiler; its port `meshopt-rs` (0.1.2) knows positions only and simplifies one index
-//! buffer, so that parts of a model come apart where materials meet; the geometry libraries that have quadrics
-//! (`baby_shark`, `threecrate-simplification`) drop texture coordinates. None measures what it did.
+//! `meshopt` needs a C++ compiler; its port `meshopt-rs` (0.1.2) reads positions only and simplifies one index buffer, so
+//! that parts of a model come apart where materials meet; the geometry libraries with quadrics (`baby_shark`,
+//! `threecrate-simplification`) drop texture coordinates. None measures its error.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -27,94 +27,95 @@ use std::collections::BinaryHeap;
 use glam::{DVec3, Vec3};
 
 use crate::draw::list::DrawVertex;
-use crate::model::nearest::{blend, difference, nearest_shares};
+use crate::geom::triangle;
+use crate::model::appearance::difference;
 use crate::model::quadric::Quadric;
 use crate::model::soup::{PointId, Soup, SoupWedge, WedgeId};
+use crate::model::surface_edges::{edges, quadrics};
 use crate::model::{Model, ModelPart};
 
 /// Models of fewer triangles have no levels: they cost no more than the items that draw them.
-pub const FEWEST_TRIANGLES: usize = 64;
+pub const MIN_TRIANGLES: usize = 64;
 
-/// Models of more triangles have no levels: simplifying takes some microseconds a triangle, and half a kilobyte.
-pub const MOST_TRIANGLES: usize = 1 << 20;
+/// Models of more triangles have no levels: simplification takes some microseconds and half a kilobyte a triangle.
+pub const MAX_TRIANGLES: usize = 1 << 20;
 
-/// The shares of the model's triangles that its levels aim for.
-const SHARES: [f64; 3] = [0.5, 0.25, 0.0625];
+/// The parts of the model's triangles at which its levels aim.
+const TARGETS: [f64; 3] = [0.5, 0.25, 0.0625];
 
-/// A level is kept where it has at most this part of the triangles of the one before: less would not pay for the
-/// memory.
-const WORTH_KEEPING: f64 = 0.75;
+/// A level is kept where it has at most this part of the previous one's triangles: less would not be worth the memory.
+const MAX_REMAINDER: f64 = 0.75;
 
-/// Simplification ends where a step would cost as much as being off by this part of the model's radius: a form so coarse
-/// could only stand in for a model that is a few pixels tall, and an impostor does that better.
-const LARGEST_STEP: f64 = 0.1;
+/// Simplification ends where a step costs as much as an error of this part of the model's radius: so coarse a level could
+/// only be drawn a few pixels tall, where an impostor is better.
+const MAX_STEP: f64 = 0.1;
 
-/// A level has at least this part of the model's area. Twigs and lattices, which vanish piece by piece and not by
-/// getting coarser, would look thinner and thinner; their far form is the impostor, which keeps what they cover.
-const LEAST_AREA: f64 = 0.85;
+/// A level has at least this part of the model's area. Twigs and lattices vanish piece by piece and would look thinner
+/// and thinner; their far form is the impostor, which keeps the area that they cover.
+const MIN_AREA: f64 = 0.85;
 
-/// The cosine of the most that a triangle may turn in one step: 75°.
-const LEAST_TURN_COS: f64 = 0.25;
+/// The cosine of the greatest rotation of a triangle in one step: 75°.
+const MIN_FLIP_COS: f64 = 0.25;
 
-/// A point with more triangles around it stays where it is; bounds the time that a hostile fan can take.
-const WIDEST_RING: usize = 64;
+/// A point with more triangles around it is not collapsed: bounds the time that a hostile fan can take.
+const MAX_RING: usize = 64;
 
-/// A simpler form of a model.
+/// A coarser level of a model.
 #[derive(Clone, Debug)]
 pub struct DetailLevel {
-    /// Meshes with one material each, materials as in the model.
+    /// Meshes of one material each, with the model's materials.
     pub parts: Vec<ModelPart>,
-    /// How far its surface is off the model's, in the model's units.
+    /// The greatest distance of its surface from the model's, in the model's units.
     pub error: f32,
 }
 
 impl DetailLevel {
-    /// How many triangles it has.
+    /// The number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.parts.iter().map(|part| part.mesh.triangles.len()).sum()
     }
 }
 
-/// The simpler forms of a model, finest first, each with fewer triangles and no smaller an error than the one before.
+/// The coarser levels of a model, finest first: triangles fall and errors do not.
 ///
-/// None for models of fewer than [`FEWEST_TRIANGLES`] or more than [`MOST_TRIANGLES`], and for those that do not let
-/// themselves be simplified.
+/// None for models of fewer than [`MIN_TRIANGLES`] or more than [`MAX_TRIANGLES`], and for those that cannot be
+/// simplified.
 pub fn levels(model: &Model) -> Vec<DetailLevel> {
     let count = model.triangle_count();
-    if !(FEWEST_TRIANGLES..=MOST_TRIANGLES).contains(&count) {
+    if !(MIN_TRIANGLES..=MAX_TRIANGLES).contains(&count) {
         return Vec::new();
     }
     let mut simplifier = Simplifier::new(model);
     let mut levels: Vec<DetailLevel> = Vec::new();
-    let (mut before, least_area) = (count, simplifier.soup.area() * LEAST_AREA);
-    for share in SHARES {
-        let done = simplifier.simplify_to((count as f64 * share) as usize);
-        if simplifier.soup.area() < least_area {
+    let (mut previous, min_area) = (count, simplifier.soup.area() * MIN_AREA);
+    for target in TARGETS {
+        let stop = simplifier.simplify_to((count as f64 * target) as usize);
+        if simplifier.soup.area() < min_area {
             break;
         }
-        if simplifier.soup.left as f64 <= before as f64 * WORTH_KEEPING {
-            before = simplifier.soup.left;
+        if simplifier.soup.triangle_count as f64 <= previous as f64 * MAX_REMAINDER {
+            previous = simplifier.soup.triangle_count;
             let finer = levels.last().map_or(0.0, |level| level.error);
             let error = finer.max(simplifier.error() as f32);
             levels.push(DetailLevel { parts: simplifier.soup.parts(model), error });
         }
-        if done == StopReason::NothingLeft {
+        if stop == StopReason::NoCandidates {
             break;
         }
     }
     levels
 }
 
-/// Why simplifying ended.
+/// Why simplification stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum StopReason {
-    /// There are no more triangles than wanted.
+    /// The target is reached.
     Reached,
-    /// No step is left that may be done.
-    NothingLeft,
+    /// No allowed step is left.
+    NoCandidates,
 }
 
-/// A step that may be worth doing; its cost is never above the true one.
+/// A step that may be allowed; its cost is never above the true one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct CollapseCandidate {
     /// The bits of a cost that is not negative, which rise as it does.
@@ -123,64 +124,73 @@ struct CollapseCandidate {
     to: PointId,
 }
 
-/// A step that can be done.
+/// An allowed step.
 struct CollapseStep {
     cost: f64,
-    looks: f64,
-    wedges: Vec<(WedgeId, DrawVertex)>,
+    /// The change in appearance, in the model's units.
+    change: f64,
+    moves: Vec<WedgeMove>,
+}
+
+/// A wedge at the collapsed point and the vertex that replaces it.
+#[derive(Clone, Copy)]
+struct WedgeMove {
+    wedge: WedgeId,
+    vertex: DrawVertex,
 }
 
 struct Simplifier {
     soup: Soup,
     quadrics: Vec<Quadric>,
-    /// Where each point went; itself where it still stands.
-    into: Vec<PointId>,
-    heap: BinaryHeap<Reverse<CollapseCandidate>>,
-    /// The greatest change of looks so far, in the model's units.
-    looks: f64,
-    largest_cost: f64,
+    /// The point into which each was collapsed; itself where it was not.
+    collapsed_into: Vec<PointId>,
+    candidates: BinaryHeap<Reverse<CollapseCandidate>>,
+    /// The greatest change in appearance so far, in the model's units.
+    change: f64,
+    max_cost: f64,
 }
 
 impl Simplifier {
     fn new(model: &Model) -> Self {
-        let soup = Soup::of(model);
-        let radius = model.bounds().map_or(0.0, |(min, max)| f64::from((max - min).length()) * 0.5);
+        let soup = Soup::new(model);
+        let radius = model.bounds().map_or(0.0, |bounds| f64::from(bounds.size().length()) * 0.5);
         let edges = edges(&soup);
         let mut simplifier = Self {
             quadrics: quadrics(&soup, &edges),
-            into: (0..soup.points.len() as u32).map(PointId).collect(),
-            heap: BinaryHeap::with_capacity(edges.len() * 2),
-            looks: 0.0,
-            largest_cost: (LARGEST_STEP * radius) * (LARGEST_STEP * radius),
+            collapsed_into: (0..soup.points.len() as u32).map(PointId).collect(),
+            candidates: BinaryHeap::with_capacity(edges.len() * 2),
+            change: 0.0,
+            max_cost: (MAX_STEP * radius) * (MAX_STEP * radius),
             soup,
         };
         for edge in edges {
-            simplifier.push(edge.a, edge.b);
-            simplifier.push(edge.b, edge.a);
+            simplifier.push_both(edge.a, edge.b);
         }
         simplifier
     }
 
-    /// Adds a step with the cost of its shape alone; its looks are counted when its turn comes.
-    fn push(&mut self, from: PointId, to: PointId) {
-        let cost = self.shape_cost(from, to).to_bits();
-        self.heap.push(Reverse(CollapseCandidate { cost, from, to }));
+    /// Adds the steps between two points with the cost of their shape alone: appearance is added when they are popped.
+    fn push_both(&mut self, a: PointId, b: PointId) {
+        for (from, to) in [(a, b), (b, a)] {
+            let cost = self.shape_cost(from, to).to_bits();
+            self.candidates.push(Reverse(CollapseCandidate { cost, from, to }));
+        }
     }
 
     fn shape_cost(&self, from: PointId, to: PointId) -> f64 {
         let both = self.quadrics[from.0 as usize].plus(&self.quadrics[to.0 as usize]);
-        both.squared_distances(self.soup.at(to))
+        both.squared_distances(self.soup.position(to))
     }
 
     fn simplify_to(&mut self, triangles: usize) -> StopReason {
-        while self.soup.left > triangles {
-            let Some(Reverse(candidate)) = self.heap.pop() else { return StopReason::NothingLeft };
+        while self.soup.triangle_count > triangles {
+            let Some(Reverse(candidate)) = self.candidates.pop() else { return StopReason::NoCandidates };
             let Some(step) = self.step(candidate.from, candidate.to) else { continue };
             let cost = step.cost.to_bits();
             if cost > candidate.cost {
-                self.heap.push(Reverse(CollapseCandidate { cost, ..candidate }));
-            } else if step.cost > self.largest_cost {
-                return StopReason::NothingLeft;
+                self.candidates.push(Reverse(CollapseCandidate { cost, ..candidate }));
+            } else if step.cost > self.max_cost {
+                return StopReason::NoCandidates;
             } else {
                 self.apply(candidate.from, candidate.to, &step);
             }
@@ -188,171 +198,150 @@ impl Simplifier {
         StopReason::Reached
     }
 
-    /// The step from one point into another; `None` where they are no neighbors or it may not be done.
+    /// The step from one point into another; `None` where they are not neighbors or the step is not allowed.
     fn step(&self, from: PointId, to: PointId) -> Option<CollapseStep> {
-        let ring = self.soup.triangles_at(from);
-        if ring.len() > WIDEST_RING || self.soup.triangles_at(to).len() > WIDEST_RING {
+        let ring = self.soup.ring(from);
+        if ring.len() > MAX_RING || self.soup.ring(to).len() > MAX_RING {
             return None;
         }
-        let (going, staying): (Vec<u32>, Vec<u32>) =
+        let (removed, moved): (Vec<u32>, Vec<u32>) =
             ring.iter().partition(|&&triangle| self.soup.corners(triangle).contains(&to));
-        let closes = || !self.keeps_links(&going, from, to);
-        if going.is_empty() || staying.iter().any(|&triangle| self.turns_over(triangle, from, to)) || closes()
+        if removed.is_empty()
+            || moved.iter().any(|&triangle| self.flips(triangle, from, to))
+            || !self.keeps_link_condition(&removed, from, to)
         {
             return None;
         }
-        let wedges = self.counterparts(&going, &staying, from, to);
-        let looks = self.looks_after(&staying, from, &wedges);
-        Some(CollapseStep { cost: self.shape_cost(from, to) + looks * looks, looks, wedges })
+        let moves = self.wedge_moves(&removed, &moved, from, to);
+        let change = self.appearance_change(&moved, from, &moves);
+        Some(CollapseStep { cost: self.shape_cost(from, to) + change * change, change, moves })
     }
 
-    /// What each wedge at `from` looks like at `to`.
-    fn counterparts(
-        &self,
-        going: &[u32],
-        staying: &[u32],
-        from: PointId,
-        to: PointId,
-    ) -> Vec<(WedgeId, DrawVertex)> {
-        let at = |triangle: u32, point: PointId| {
+    /// The wedges at `from` with their vertices at `to`.
+    fn wedge_moves(&self, removed: &[u32], moved: &[u32], from: PointId, to: PointId) -> Vec<WedgeMove> {
+        let wedge_at = |triangle: u32, point: PointId| {
             let wedges = self.soup.triangles[triangle as usize];
             wedges.into_iter().find(|&id| self.soup.wedge(id).point == point)
         };
-        let position = self.soup.at(to).as_vec3().to_array();
-        let mut pairs: Vec<(WedgeId, DrawVertex)> = Vec::with_capacity(4);
-        for &triangle in going.iter().chain(staying) {
-            let Some(source) = at(triangle, from) else { continue };
-            if pairs.iter().all(|(known, _)| *known != source) {
-                let target = at(triangle, to).unwrap_or(source);
-                pairs.push((source, DrawVertex { position, ..self.soup.wedge(target).vertex }));
+        let position = self.soup.position(to).as_vec3().to_array();
+        let mut moves: Vec<WedgeMove> = Vec::with_capacity(4);
+        for &triangle in removed.iter().chain(moved) {
+            let Some(wedge) = wedge_at(triangle, from) else { continue };
+            if moves.iter().all(|known| known.wedge != wedge) {
+                let template = wedge_at(triangle, to).unwrap_or(wedge);
+                let vertex = DrawVertex { position, ..self.soup.wedge(template).vertex };
+                moves.push(WedgeMove { wedge, vertex });
             }
         }
-        pairs
+        moves
     }
 
-    /// Whether the points next to both ends are just the third corners of the triangles that go.
-    fn keeps_links(&self, going: &[u32], from: PointId, to: PointId) -> bool {
-        let mut third: Vec<PointId> = going
-            .iter()
-            .flat_map(|&triangle| self.soup.corners(triangle))
-            .filter(|&point| point != from && point != to)
-            .collect();
+    /// Whether the common neighbors of both points are just the third corners of the removed triangles.
+    fn keeps_link_condition(&self, removed: &[u32], from: PointId, to: PointId) -> bool {
+        let corners = removed.iter().flat_map(|&triangle| self.soup.corners(triangle));
+        let mut third: Vec<PointId> = corners.filter(|&point| point != from && point != to).collect();
         third.sort_unstable();
         third.dedup();
-        let beside_to = self.soup.neighbors(to);
+        let neighbors = self.soup.neighbors(to);
         let common =
-            self.soup.neighbors(from).into_iter().filter(|point| beside_to.binary_search(point).is_ok());
+            self.soup.neighbors(from).into_iter().filter(|point| neighbors.binary_search(point).is_ok());
         common.eq(third)
     }
 
-    fn turns_over(&self, triangle: u32, from: PointId, to: PointId) -> bool {
+    /// Whether a triangle rotates too far where `from` moves to `to`.
+    fn flips(&self, triangle: u32, from: PointId, to: PointId) -> bool {
         let corners = self.soup.corners(triangle);
-        let before = normal(corners.map(|point| self.soup.at(point)));
-        let after = normal(corners.map(|point| self.soup.at(if point == from { to } else { point })));
+        let before = triangle::normal(self.soup.corner_positions(triangle));
+        let moved = |point: PointId| self.soup.position(if point == from { to } else { point });
+        let after = triangle::normal(corners.map(moved));
         let lengths = before.length() * after.length();
-        before != DVec3::ZERO && before.dot(after) <= LEAST_TURN_COS * lengths
+        before != DVec3::ZERO && before.dot(after) <= MIN_FLIP_COS * lengths
     }
 
-    /// How much the looks at `from` change, in the model's units.
-    fn looks_after(&self, staying: &[u32], from: PointId, pairs: &[(WedgeId, DrawVertex)]) -> f64 {
-        let place = self.soup.at(from);
-        let mut least: Vec<Option<(f64, f64)>> = vec![None; pairs.len()];
-        for &triangle in staying {
+    /// The change in appearance at `from`, in the model's units: for each wedge that at the nearest point of its moved
+    /// triangles, of all wedges the greatest.
+    fn appearance_change(&self, moved: &[u32], from: PointId, moves: &[WedgeMove]) -> f64 {
+        let position = self.soup.position(from);
+        let mut nearest: Vec<Option<(f64, f64)>> = vec![None; moves.len()];
+        for &triangle in moved {
             let wedges = self.soup.triangles[triangle as usize];
-            let moved = |id: WedgeId| pairs.iter().position(|&(source, _)| source == id);
-            let Some(pair) = wedges.into_iter().find_map(moved) else { continue };
-            let corners = wedges.map(|id| moved(id).map_or(self.soup.wedge(id).vertex, |pair| pairs[pair].1));
+            let move_of = |id: WedgeId| moves.iter().position(|each| each.wedge == id);
+            let Some(index) = wedges.into_iter().find_map(move_of) else { continue };
+            let corners =
+                wedges.map(|id| move_of(id).map_or(self.soup.wedge(id).vertex, |index| moves[index].vertex));
             let points = corners.map(|corner| Vec3::from(corner.position).as_dvec3());
-            let shares = nearest_shares(place, points);
-            let distance = blend(points, shares).distance_squared(place);
-            if least[pair].is_none_or(|(known, _)| distance < known) {
-                let (source, target) = &pairs[pair];
-                let reach = place.distance(Vec3::from(target.position).as_dvec3());
-                let wanted = &self.soup.wedge(*source).vertex;
-                least[pair] = Some((distance, difference(wanted, corners.each_ref(), shares, reach)));
+            let weights = triangle::nearest_weights(position, points);
+            let distance = triangle::point_at(points, weights).distance_squared(position);
+            if nearest[index].is_none_or(|(known, _)| distance < known) {
+                let WedgeMove { wedge, vertex } = &moves[index];
+                let reach = position.distance(Vec3::from(vertex.position).as_dvec3());
+                let expected = &self.soup.wedge(*wedge).vertex;
+                let change = difference(expected, corners.each_ref(), weights, reach);
+                nearest[index] = Some((distance, change));
             }
         }
-        least.into_iter().flatten().map(|(_, off)| off).fold(0.0, f64::max)
+        nearest.into_iter().flatten().map(|(_, change)| change).fold(0.0, f64::max)
     }
 
     fn apply(&mut self, from: PointId, to: PointId, step: &CollapseStep) {
-        let targets: Vec<(WedgeId, WedgeId)> = step
-            .wedges
-            .iter()
-            .map(|(source, vertex)| {
-                let part = self.soup.wedge(*source).part;
-                (*source, self.soup.wedge_like(vertex, to, part))
-            })
-            .collect();
-        let ring = std::mem::take(&mut self.soup.around[from.0 as usize]);
-        let mut touched = vec![to];
-        for &triangle in &ring {
-            let corners = self.soup.corners(triangle);
-            let wedges = &mut self.soup.triangles[triangle as usize];
-            if corners.contains(&to) {
-                *wedges = [wedges[0]; 3];
-                self.soup.left -= 1;
-                touched.extend(corners.into_iter().filter(|&point| point != from && point != to));
-            } else {
-                for (source, target) in &targets {
-                    *wedges = wedges.map(|id| if id == *source { *target } else { id });
-                }
+        let mut targets = Vec::with_capacity(step.moves.len());
+        for &WedgeMove { wedge, vertex } in &step.moves {
+            let part = self.soup.wedge(wedge).part;
+            targets.push((wedge, self.soup.find_or_add_wedge(SoupWedge { point: to, part, vertex })));
+        }
+        let third = self.soup.collapse(from, to, &targets);
+        for point in std::iter::once(to).chain(third) {
+            // The hub of a fan keeps removed triangles: compacting it at every step takes the square of its width.
+            if self.soup.ring(point).len() <= 2 * MAX_RING {
+                self.soup.compact_ring(point);
             }
         }
-        self.soup.around[to.0 as usize].extend(ring);
-        // The hub of a fan keeps what is gone: looking it through at every step would take the square of its width.
-        touched.retain(|&point| self.soup.triangles_at(point).len() <= 2 * WIDEST_RING);
-        touched.iter().for_each(|&point| self.soup.tidy(point));
         self.quadrics[to.0 as usize] = self.quadrics[to.0 as usize].plus(&self.quadrics[from.0 as usize]);
-        self.into[from.0 as usize] = to;
-        self.looks = self.looks.max(step.looks);
+        self.collapsed_into[from.0 as usize] = to;
+        self.change = self.change.max(step.change);
         for neighbor in self.soup.neighbors(to) {
-            self.push(to, neighbor);
-            self.push(neighbor, to);
+            self.push_both(to, neighbor);
         }
     }
 
-    /// How far the surface is off the model's by now, in the model's units.
+    /// The greatest distance of the model's points from the surface, or the greatest change in appearance if that is
+    /// more; in the model's units.
     fn error(&mut self) -> f64 {
-        let mut farthest = self.looks;
-        for point in (0..self.into.len() as u32).map(PointId) {
+        let mut error = self.change;
+        for point in (0..self.collapsed_into.len() as u32).map(PointId) {
             let target = self.target(point);
-            farthest = farthest.max(self.distance(point, target));
+            error = error.max(self.distance(point, target));
         }
-        farthest
+        error
     }
 
-    /// The point that still stands where `point` went. All on the way there are told, so that the next way is short.
+    /// The point of the surface into which `point` was collapsed in the end; shortens the path to it.
     fn target(&mut self, point: PointId) -> PointId {
         let mut target = point;
-        while self.into[target.0 as usize] != target {
-            target = self.into[target.0 as usize];
+        while self.collapsed_into[target.0 as usize] != target {
+            target = self.collapsed_into[target.0 as usize];
         }
         let mut next = point;
         while next != target {
-            next = std::mem::replace(&mut self.into[next.0 as usize], target);
+            next = std::mem::replace(&mut self.collapsed_into[next.0 as usize], target);
         }
         target
     }
 
-    /// How far a point lies from the surface near the point it went into: from the triangles there on to nearer ones
-    /// for as long as there are any.
+    /// The distance of a point from the surface near `target`: walks from the triangles there to nearer ones.
     fn distance(&self, point: PointId, target: PointId) -> f64 {
         if point == target {
             return 0.0;
         }
-        let place = self.soup.at(point);
-        let distance = |triangle: u32| {
-            let corners = self.soup.corners(triangle).map(|corner| self.soup.at(corner));
-            blend(corners, nearest_shares(place, corners)).distance(place)
-        };
+        let position = self.soup.position(point);
+        let distance = |triangle: u32| triangle::distance(position, self.soup.corner_positions(triangle));
         let nearest_around = |points: &[PointId]| {
-            let rings = points.iter().map(|&corner| self.soup.triangles_at(corner));
-            let around = rings.filter(|ring| ring.len() <= 2 * WIDEST_RING).flatten();
-            around.map(|&triangle| (distance(triangle), triangle)).min_by(|a, b| a.0.total_cmp(&b.0))
+            let rings = points.iter().map(|&corner| self.soup.ring(corner));
+            let triangles = rings.filter(|ring| ring.len() <= 2 * MAX_RING).flatten();
+            triangles.map(|&triangle| (distance(triangle), triangle)).min_by(|a, b| a.0.total_cmp(&b.0))
         };
         let Some((mut best, mut triangle)) = nearest_around(&[target]) else {
-            return place.distance(self.soup.at(target));
+            return position.distance(self.soup.position(target));
         };
         while let Some((nearer, next)) = nearest_around(&self.soup.corners(triangle))
             && nearer < best
@@ -361,72 +350,6 @@ impl Simplifier {
         }
         best
     }
-}
-
-fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
-    (b - a).cross(c - a)
-}
-
-/// An edge of the surface, `a` below `b`.
-struct SurfaceEdge {
-    a: PointId,
-    b: PointId,
-    kind: EdgeKind,
-    /// One of its triangles.
-    triangle: u32,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum EdgeKind {
-    /// Two triangles meet in the same two wedges.
-    Smooth,
-    /// Something ends here: the surface, a material, a texture, a smooth patch.
-    Seam,
-}
-
-/// Every edge once, in a fixed order.
-fn edges(soup: &Soup) -> Vec<SurfaceEdge> {
-    let mut uses: Vec<([PointId; 2], [WedgeId; 2], u32)> = Vec::with_capacity(soup.triangles.len() * 3);
-    for (triangle, &[a, b, c]) in (0..).zip(&soup.triangles) {
-        for (from, to) in [(a, b), (b, c), (c, a)] {
-            let SoupWedge { point: start, .. } = *soup.wedge(from);
-            let SoupWedge { point: end, .. } = *soup.wedge(to);
-            let (points, wedges) =
-                if start < end { ([start, end], [from, to]) } else { ([end, start], [to, from]) };
-            uses.push((points, wedges, triangle));
-        }
-    }
-    uses.sort_unstable();
-    let kind = |uses: &[([PointId; 2], [WedgeId; 2], u32)]| match uses {
-        [one, other] if one.1 == other.1 => EdgeKind::Smooth,
-        _ => EdgeKind::Seam,
-    };
-    uses.chunk_by(|one, other| one.0 == other.0)
-        .map(|uses| SurfaceEdge { a: uses[0].0[0], b: uses[0].0[1], kind: kind(uses), triangle: uses[0].2 })
-        .collect()
-}
-
-/// The planes that each point of the model stands for.
-fn quadrics(soup: &Soup, edges: &[SurfaceEdge]) -> Vec<Quadric> {
-    let mut quadrics = vec![Quadric::default(); soup.points.len()];
-    let mut add = |point: PointId, plane: &Quadric| {
-        quadrics[point.0 as usize] = quadrics[point.0 as usize].plus(plane);
-    };
-    let face_normal = |triangle: u32| normal(soup.corners(triangle).map(|point| soup.at(point)));
-    for triangle in 0..soup.triangles.len() as u32 {
-        let corners = soup.corners(triangle);
-        let Some(unit) = face_normal(triangle).try_normalize() else { continue };
-        let plane = Quadric::plane(unit, soup.at(corners[0]));
-        corners.iter().for_each(|&point| add(point, &plane));
-    }
-    for edge in edges.iter().filter(|edge| edge.kind == EdgeKind::Seam) {
-        let along = soup.at(edge.b) - soup.at(edge.a);
-        let Some(upright) = along.cross(face_normal(edge.triangle)).try_normalize() else { continue };
-        let plane = Quadric::plane(upright, soup.at(edge.a));
-        add(edge.a, &plane);
-        add(edge.b, &plane);
-    }
-    quadrics
 }
 
 #[cfg(test)]
@@ -484,7 +407,7 @@ mod tests {
     }
 
     #[test]
-    fn a_flat_sheet_loses_triangles_but_no_area_and_nothing_of_its_looks() {
+    fn a_flat_sheet_loses_triangles_but_no_area_and_keeps_its_appearance() {
         for turn in turns() {
             let model = sheet(12, turn, &|_| 0.0, &|_| Srgba::WHITE);
             let levels = levels(&model);
@@ -507,8 +430,7 @@ mod tests {
                 let surface: Vec<[DVec3; 3]> = triangles_of(&level.parts);
                 for vertex in &model.parts[0].mesh.vertices {
                     let at = Vec3::from(vertex.position).as_dvec3();
-                    let distance =
-                        |&corners: &[DVec3; 3]| blend(corners, nearest_shares(at, corners)).distance(at);
+                    let distance = |&corners: &[DVec3; 3]| triangle::distance(at, corners);
                     let off = surface.iter().map(distance).fold(f64::INFINITY, f64::min);
                     assert!(off <= f64::from(level.error) + 1e-6, "{off} where {} is stated", level.error);
                 }

@@ -1,4 +1,4 @@
-//! The pictures a model names, decoded within limits; what cannot be had is a note.
+//! The textures of a model, decoded within limits. A texture that cannot be loaded is a note.
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -8,46 +8,55 @@ use image::{ImageFormat, ImageReader, Limits};
 use crate::draw::color::Srgba;
 use crate::draw::material::TextureId;
 use crate::draw::pixels::Pixels;
-use crate::model::Companions;
+use crate::model::error::{CompanionError, error_chain};
+use crate::model::{Companions, Model};
 
-/// The longest side of a texture in pixels: what every graphics adapter takes.
+/// The longest side of a texture in pixels: the most that every graphics adapter supports.
 const MAX_SIDE: u32 = 8192;
-/// The most pixels of all textures of one model: 64 million take 256 MiB.
+/// The most pixels of all textures of a model: 64 million take 256 MiB.
 const MAX_PIXELS: u64 = 64 << 20;
 
 /// Collects the textures of a model, each file once.
 pub(super) struct Textures<'a> {
     companions: &'a dyn Companions,
     by_name: BTreeMap<String, Option<TextureId>>,
-    /// Textures made of two: the colors of the one, the holes of the other.
+    /// Textures made of a color map and an opacity map.
     masked: BTreeMap<(Option<TextureId>, TextureId), Option<TextureId>>,
     pixels: Vec<Pixels>,
-    used: u64,
+    /// How many more pixels there may be.
+    pixels_left: u64,
     notes: Vec<String>,
+}
+
+/// Why bytes do not become a texture.
+#[derive(Debug, thiserror::Error)]
+enum TextureError {
+    #[error("it is not PNG, JPEG, BMP or TGA")]
+    UnknownFormat,
+    #[error("it cannot be decoded")]
+    Decode(#[from] image::ImageError),
+    #[error("it has {width} × {height} pixels; 1 to {MAX_SIDE} a side are supported")]
+    Size { width: u32, height: u32 },
+    #[error("the model's textures would have more than {MAX_PIXELS} pixels")]
+    TooManyPixels,
 }
 
 impl<'a> Textures<'a> {
     /// No textures yet.
     pub(super) fn new(companions: &'a dyn Companions) -> Self {
-        Self {
-            companions,
-            by_name: BTreeMap::new(),
-            masked: BTreeMap::new(),
-            pixels: Vec::new(),
-            used: 0,
-            notes: Vec::new(),
-        }
+        let (by_name, masked) = (BTreeMap::new(), BTreeMap::new());
+        Self { companions, by_name, masked, pixels: Vec::new(), pixels_left: MAX_PIXELS, notes: Vec::new() }
     }
 
-    /// The texture in the file that the model calls `name`; `None`, with a note, where it cannot be had.
-    pub(super) fn by_name(&mut self, name: &str) -> Option<TextureId> {
+    /// The texture in the file that the model calls `name`; `None`, with a note, where it cannot be loaded.
+    pub(super) fn load(&mut self, name: &str) -> Option<TextureId> {
         if let Some(&known) = self.by_name.get(name) {
             return known;
         }
         let id = match load_any(self.companions, name) {
             Ok(bytes) => self.decode(name, &bytes),
-            Err(reason) => {
-                self.notes.push(format!("texture '{name}' is missing: {reason}"));
+            Err(error) => {
+                self.notes.push(format!("texture '{name}' is missing: {}", error_chain(&*error)));
                 None
             }
         };
@@ -55,21 +64,33 @@ impl<'a> Textures<'a> {
         id
     }
 
-    /// The texture in `bytes`, called `name` in notes; `None`, with a note, where they are no picture.
+    /// The texture in `bytes`, called `name` in notes; `None`, with a note, where it cannot be decoded.
     pub(super) fn decode(&mut self, name: &str, bytes: &[u8]) -> Option<TextureId> {
-        match decode(name, bytes, MAX_PIXELS - self.used) {
-            Ok(pixels) => {
-                self.used += pixels.data().len() as u64;
-                self.pixels.push(pixels);
-                Some(TextureId(self.pixels.len() as u32 - 1))
-            }
-            Err(reason) => self.miss(name, &reason),
+        match decode(name, bytes, self.pixels_left) {
+            Ok(pixels) => Some(self.add(pixels)),
+            Err(error) => self.unusable(name, &error),
         }
     }
 
+    /// Notes that the texture `name` cannot be used; `None`.
+    pub(super) fn unusable(
+        &mut self,
+        name: &str,
+        error: &(dyn std::error::Error + 'static),
+    ) -> Option<TextureId> {
+        self.notes.push(format!("texture '{name}' cannot be used: {}", error_chain(error)));
+        None
+    }
+
+    fn add(&mut self, pixels: Pixels) -> TextureId {
+        self.pixels_left -= pixels.data().len() as u64;
+        self.pixels.push(pixels);
+        TextureId(self.pixels.len() as u32 - 1)
+    }
+
     /// The texture with the colors of `color`, white where there is none, and the opacity of `mask`: its alpha where it
-    /// has any, else its brightness. One picture that is named for both and has no alpha stays as it is, since
-    /// exporters name it so to say that alpha would count. `color`, with a note, where that would be too many pixels.
+    /// has any, else its brightness. One file without alpha named for both stays as it is: exporters name it so to say
+    /// that alpha would count. `color`, with a note, where the result would have too many pixels.
     pub(super) fn masked(&mut self, color: Option<TextureId>, mask: TextureId) -> Option<TextureId> {
         if color == Some(mask) {
             return color;
@@ -77,51 +98,42 @@ impl<'a> Textures<'a> {
         if let Some(&known) = self.masked.get(&(color, mask)) {
             return known;
         }
-        let made = self.with_opacity(color, mask);
-        self.masked.insert((color, mask), made);
-        made
+        let masked = self.with_opacity(color, mask);
+        self.masked.insert((color, mask), masked);
+        masked
     }
 
     fn with_opacity(&mut self, color: Option<TextureId>, mask: TextureId) -> Option<TextureId> {
-        let by_alpha = self.is_cut_out(mask);
+        let by_alpha = self.has_holes(mask);
         let mask = self.pixels.get(mask.0 as usize)?;
-        let painted = color.and_then(|id| self.pixels.get(id.0 as usize));
-        let size = painted.unwrap_or(mask);
+        let colors = color.and_then(|id| self.pixels.get(id.0 as usize));
+        let size = colors.unwrap_or(mask);
         let (width, height) = (size.width(), size.height());
-        let count = u64::from(width) * u64::from(height);
-        if count > MAX_PIXELS - self.used {
-            self.notes
-                .push(format!("an opacity map of {width} × {height} pixels is one too many and not drawn"));
+        if u64::from(width) * u64::from(height) > self.pixels_left {
+            let error = TextureError::TooManyPixels;
+            self.notes.push(format!("an opacity map of {width} × {height} pixels is not drawn: {error}"));
             return color;
         }
-        let joined = Pixels::from_fn(width, height, |x, y| {
-            let Srgba([red, green, blue, _]) = painted.map_or(Srgba::WHITE, |painted| painted.at(x, y));
-            let place =
-                |at: u32, side: u32, there: u32| (u64::from(at) * u64::from(there) / u64::from(side)) as u32;
-            let seen = mask.at(place(x, width, mask.width()), place(y, height, mask.height()));
-            Srgba([red, green, blue, if by_alpha { seen.0[3] } else { brightness(seen) }])
+        let masked = Pixels::from_fn(width, height, |x, y| {
+            let Srgba([red, green, blue, _]) = colors.map_or(Srgba::WHITE, |colors| colors.at(x, y));
+            let scaled =
+                |at: u32, side: u32, other: u32| (u64::from(at) * u64::from(other) / u64::from(side)) as u32;
+            let pixel = mask.at(scaled(x, width, mask.width()), scaled(y, height, mask.height()));
+            Srgba([red, green, blue, if by_alpha { pixel.0[3] } else { brightness(pixel) }])
         });
-        self.used += count;
-        self.pixels.push(joined);
-        Some(TextureId(self.pixels.len() as u32 - 1))
-    }
-
-    /// Notes that the texture `name` cannot be had; `None`.
-    pub(super) fn miss(&mut self, name: &str, reason: &str) -> Option<TextureId> {
-        self.notes.push(format!("texture '{name}' cannot be used: {reason}"));
-        None
+        Some(self.add(masked))
     }
 
     /// Whether a texture has pixels that are not opaque.
-    pub(super) fn is_cut_out(&self, id: TextureId) -> bool {
-        self.pixels
-            .get(id.0 as usize)
-            .is_some_and(|pixels| pixels.data().iter().any(|pixel| pixel.0[3] < 255))
+    pub(super) fn has_holes(&self, id: TextureId) -> bool {
+        let pixels = self.pixels.get(id.0 as usize);
+        pixels.is_some_and(|pixels| pixels.data().iter().any(|pixel| pixel.0[3] < 255))
     }
 
-    /// The textures and what went wrong.
-    pub(super) fn finish(self) -> (Vec<Pixels>, Vec<String>) {
-        (self.pixels, self.notes)
+    /// Moves the textures and notes to `model`.
+    pub(super) fn move_to(self, model: &mut Model) {
+        model.textures = self.pixels;
+        model.notes.extend(self.notes);
     }
 }
 
@@ -131,18 +143,18 @@ fn brightness(pixel: Srgba) -> u8 {
     ((red * 2 + green * 5 + blue) / 8) as u8
 }
 
-/// The companion called `name`, also tried without its folders and in the letter cases that files take when
-/// they leave the systems that wrote 3DS and OBJ files.
+/// The companion called `name`, also tried without its folders and in other letter cases: models leave the systems on
+/// which 3DS and OBJ files were written.
 ///
 /// # Errors
-/// What `companions` says about the first try.
-pub(super) fn load_any(companions: &dyn Companions, name: &str) -> Result<Vec<u8>, String> {
+/// That of the first try.
+pub(super) fn load_any(companions: &dyn Companions, name: &str) -> Result<Vec<u8>, CompanionError> {
     let name = name.trim().replace('\\', "/");
     let file = name.rsplit('/').next().unwrap_or(&name);
     let tries = [file.into(), file.to_ascii_lowercase(), lower_extension(file), file.to_ascii_uppercase()];
     companions
         .load(&name)
-        .or_else(|reason| tries.iter().find_map(|file| companions.load(file).ok()).ok_or(reason))
+        .or_else(|error| tries.iter().find_map(|file| companions.load(file).ok()).ok_or(error))
 }
 
 fn lower_extension(file: &str) -> String {
@@ -152,11 +164,14 @@ fn lower_extension(file: &str) -> String {
     }
 }
 
-fn decode(name: &str, bytes: &[u8], pixels_left: u64) -> Result<Pixels, String> {
-    let format = image::guess_format(bytes)
-        .ok()
-        .or_else(|| ImageFormat::from_path(name).ok().filter(|&format| format == ImageFormat::Tga))
-        .ok_or("it is no PNG, JPEG, BMP or TGA")?;
+fn decode(name: &str, bytes: &[u8], pixels_left: u64) -> Result<Pixels, TextureError> {
+    // A TGA file has no signature.
+    let is_tga = || ImageFormat::from_path(name).is_ok_and(|format| format == ImageFormat::Tga);
+    let format = match image::guess_format(bytes) {
+        Ok(format) => format,
+        Err(_) if is_tga() => ImageFormat::Tga,
+        Err(_) => return Err(TextureError::UnknownFormat),
+    };
     let reader = || {
         let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
         let mut limits = Limits::default();
@@ -165,16 +180,15 @@ fn decode(name: &str, bytes: &[u8], pixels_left: u64) -> Result<Pixels, String> 
         reader.limits(limits);
         reader
     };
-    let (width, height) = reader().into_dimensions().map_err(|error| error.to_string())?;
-    if width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE {
-        return Err(format!("it has {width} × {height} pixels, 1 to {MAX_SIDE} a side can be used"));
+    let (width, height) = reader().into_dimensions()?;
+    if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
+        return Err(TextureError::Size { width, height });
     }
     if u64::from(width) * u64::from(height) > pixels_left {
-        return Err(format!("with it the model's textures would have more than {MAX_PIXELS} pixels"));
+        return Err(TextureError::TooManyPixels);
     }
-    let picture = reader().decode().map_err(|error| error.to_string())?.into_rgba8();
-    let data = picture.pixels().map(|pixel| Srgba(pixel.0)).collect();
-    Pixels::from_data(width, height, data).ok_or_else(|| "its size and its data disagree".into())
+    let data = reader().decode()?.into_rgba8().pixels().map(|pixel| Srgba(pixel.0)).collect();
+    Pixels::from_data(width, height, data).ok_or(TextureError::Size { width, height })
 }
 
 #[cfg(test)]
@@ -184,8 +198,8 @@ mod tests {
     struct Folder(&'static str, Vec<u8>);
 
     impl Companions for Folder {
-        fn load(&self, name: &str) -> Result<Vec<u8>, String> {
-            if name == self.0 { Ok(self.1.clone()) } else { Err(format!("no file {name}")) }
+        fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError> {
+            if name == self.0 { Ok(self.1.clone()) } else { Err(format!("no file {name}").into()) }
         }
     }
 
@@ -198,12 +212,12 @@ mod tests {
     }
 
     #[test]
-    fn folders_and_letter_case_of_other_systems_are_forgiven() {
+    fn folders_and_letter_cases_of_other_systems_are_accepted() {
         let folder = Folder("brick.png", png(2, 2));
         let mut textures = Textures::new(&folder);
-        assert_eq!(textures.by_name("C:\\MAPS\\BRICK.PNG"), Some(TextureId(0)));
-        assert_eq!(textures.by_name("C:\\MAPS\\BRICK.PNG"), Some(TextureId(0)));
-        let (pixels, notes) = textures.finish();
+        assert_eq!(textures.load("C:\\MAPS\\BRICK.PNG"), Some(TextureId(0)));
+        assert_eq!(textures.load("C:\\MAPS\\BRICK.PNG"), Some(TextureId(0)));
+        let Textures { pixels, notes, .. } = textures;
         assert_eq!((pixels.len(), notes.len()), (1, 0));
         assert_eq!(pixels[0].at(1, 1), Srgba::opaque(9, 8, 7));
     }
@@ -214,9 +228,9 @@ mod tests {
         bytes.truncate(50);
         let folder = Folder("broken.png", bytes);
         let mut textures = Textures::new(&folder);
-        assert_eq!(textures.by_name("broken.png"), None);
-        assert_eq!(textures.by_name("absent.png"), None);
-        let (_, notes) = textures.finish();
+        assert_eq!(textures.load("broken.png"), None);
+        assert_eq!(textures.load("absent.png"), None);
+        let notes = textures.notes;
         assert!(
             notes[0].contains("'broken.png' cannot be used") && notes[1].contains("'absent.png' is missing")
         );
@@ -235,7 +249,7 @@ mod tests {
         assert_eq!(textures.masked(Some(leaf), halves), Some(cut), "made once");
         assert_eq!(textures.masked(Some(leaf), leaf), Some(leaf));
         let (by_alpha, alone) = (textures.masked(Some(leaf), clear), textures.masked(None, halves));
-        let (pixels, _) = textures.finish();
+        let pixels = textures.pixels;
         let at = |id: TextureId, x: u32| pixels[id.0 as usize].at(x, 0).0;
         assert_eq!([at(cut, 1), at(cut, 2)], [[10, 200, 30, 0], [10, 200, 30, 255]]);
         assert_eq!(by_alpha.map(|id| at(id, 0)), Some([10, 200, 30, 77]));

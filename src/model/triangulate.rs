@@ -1,18 +1,17 @@
 //! A polygon in space to triangles.
 //!
-//! Convex polygons, nearly all there are, become fans. Others are projected along their Newell normal and
-//! cut into ears, which finds its way on what crosses itself or is folded; where even that gives
-//! nothing, a fan is drawn.
+//! Convex polygons, which nearly all are, become fans. Others are projected along their Newell normal and cut by ear
+//! clipping, which copes with polygons that cross themselves or are folded; where it gives nothing, they become fans too.
 
 use glam::{DVec2, DVec3, Vec3};
 
 use crate::geom::polygon::triangulate_ring;
 
-/// Most corners of a polygon that are cut properly: the time of ear clipping grows with their square at worst. A larger
-/// one is a fan.
+/// The most corners of a polygon that is cut by ear clipping, whose time grows with their square at worst. A larger one
+/// becomes a fan.
 const MAX_CORNERS: usize = 512;
 
-/// Triples of positions in `corners`, oriented like the polygon; none for fewer than three.
+/// Triples of indices into `corners`, oriented like the polygon; none for fewer than three corners.
 pub(super) fn triangulate(corners: &[Vec3]) -> Vec<[usize; 3]> {
     if corners.len() < 4 || corners.len() > MAX_CORNERS {
         return fan(corners.len());
@@ -29,7 +28,7 @@ fn fan(corners: usize) -> Vec<[usize; 3]> {
     (2..corners).map(|corner| [0, corner - 1, corner]).collect()
 }
 
-/// The polygon seen against its normal (Newell's, 1972), so that it runs counter-clockwise.
+/// The polygon projected along its normal (Newell 1972), counter-clockwise.
 fn project(corners: &[Vec3]) -> Vec<DVec2> {
     let origin = corners[0].as_dvec3();
     let points: Vec<DVec3> = corners.iter().map(|corner| corner.as_dvec3() - origin).collect();
@@ -39,7 +38,7 @@ fn project(corners: &[Vec3]) -> Vec<DVec2> {
     points.iter().map(|point| DVec2::new(point.dot(right), point.dot(up))).collect()
 }
 
-/// Whether no corner turns clockwise and the polygon turns round just once.
+/// Whether no corner turns clockwise and the polygon turns once.
 fn is_convex(flat: &[DVec2]) -> bool {
     let count = flat.len();
     let mut reversals = 0;
@@ -96,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn points_and_lines_are_nothing_and_folded_polygons_something() {
+    fn points_and_lines_have_no_triangles_but_folded_polygons_do() {
         assert!(triangulate(&[Vec3::ZERO]).is_empty() && triangulate(&[Vec3::ZERO, Vec3::X]).is_empty());
         assert!(!triangulate(&[Vec3::ZERO, Vec3::X, Vec3::X, Vec3::ZERO]).is_empty());
     }

@@ -76,7 +76,7 @@ impl BoundedMesh {
     ) -> Result<Self, MeshError> {
         let active = least_closure(lattice, layout, tolerance_m.min(f64::from(f32::MAX)) as f32);
         let mut mesh = TriMesh::default();
-        DisplayedTerrain::new(Arc::clone(lattice), active, 1.0, layout.patches().collect()).emit(&mut mesh);
+        DisplayedTerrain::new(Arc::clone(lattice), active, layout.patches().collect()).emit(&mut mesh);
         let deviation = bound::measure(lattice, &mesh)?;
         Ok(Self { mesh, deviation })
     }

@@ -1,6 +1,6 @@
 //! Choices that users write as words, on the command line and in HTTP requests alike.
 
-use crate::dem::gridding::Beyond;
+use crate::dem::gridding::BeyondHull;
 use crate::terrain::query::{Interpolation, Surface};
 
 /// A type whose values are written as words.
@@ -54,7 +54,7 @@ impl Choice for Surface {
     ];
 }
 
-impl Choice for Beyond {
+impl Choice for BeyondHull {
     const CHOICES: &'static [Word<Self>] = &[
         Word { value: Self::NoData, word: "nodata", meaning: "No data" },
         Word { value: Self::Nearest, word: "nearest", meaning: "The height of the nearest point" },

@@ -6,7 +6,7 @@ use crate::dem::mosaic::Mosaic;
 use crate::dem::raster::Raster;
 use crate::dem::voids;
 use crate::dem::warp::WarpError;
-use crate::dem::warp::target::{self, Resampling, Warped};
+use crate::dem::warp::reproject::{Resampling, reproject};
 use crate::geom::crs::{Crs, CrsError};
 
 /// A larger cell, in degrees, is taken for one in meters.
@@ -87,18 +87,18 @@ pub fn convert(source: Mosaic, options: &ConvertOptions) -> Result<Converted, Co
         notes.push(voids::fill(&mut source).note());
     }
     let own = source.crs.clone();
-    let Warped { raster, method } = resample(source, options)?;
+    let (raster, resampling) = resample(source, options)?;
     let datum_shift = match (&own, &raster.crs) {
         (Some(from), Some(to)) if from != to => Some(from.datum_shift_to(to)?.to_string()),
         _ => None,
     };
-    Ok(Converted { raster, resampling: method, datum_shift, notes })
+    Ok(Converted { raster, resampling, datum_shift, notes })
 }
 
-fn resample(source: Raster, options: &ConvertOptions) -> Result<Warped, ConvertError> {
+fn resample(source: Raster, options: &ConvertOptions) -> Result<(Raster, Resampling), ConvertError> {
     let (target, cell) = (options.crs.as_ref(), options.cell);
     if target.is_none() && cell.is_none() {
-        return Ok(Warped { raster: source, method: Resampling::Kept });
+        return Ok((source, Resampling::Kept));
     }
     if let (Some(target), None, true) = (target, &source.crs, source.georeferenced) {
         return Err(ConvertError::NoCrs { target: target.name().to_owned() });
@@ -107,7 +107,8 @@ fn resample(source: Raster, options: &ConvertOptions) -> Result<Warped, ConvertE
     if let Some(cell) = cell.filter(|&cell| is_in_degrees && cell > LARGEST_CELL_DEG) {
         return Err(ConvertError::CellInDegrees { cell, zone: zone(&source) });
     }
-    Ok(target::to_system(&source, target, cell)?)
+    let warped = reproject(&source, target, cell)?;
+    Ok((warped.raster.into_owned(), warped.method))
 }
 
 /// The name of the UTM zone of the raster's center.

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use crate::dem::error::DemErrorKind;
+use crate::dem::formats::height_encoding::HeightEncoding;
 use crate::dem::formats::raw::RawLayout;
-use crate::dem::formats::rgb_png::HeightEncoding;
-use crate::dem::mosaic::{self, Mosaic, MosaicError};
+use crate::dem::mosaic::{Mosaic, MosaicError, Tiles};
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints};
 use crate::geom::crs::Crs;
@@ -49,13 +49,8 @@ pub enum OpenDemError {
         folder: PathBuf,
     },
     /// The files are not tiles of one raster.
-    #[error("{}", cause.named(names))]
-    Tiles {
-        /// The files, in the order in which the cause counts them.
-        names: Vec<String>,
-        /// Why.
-        cause: MosaicError,
-    },
+    #[error(transparent)]
+    Tiles(#[from] MosaicError),
 }
 
 /// Opens the elevation file at `path` with its sidecars, or joins the tiles in the folder at `path`.
@@ -79,23 +74,19 @@ pub fn open(path: &Path, options: &DemOptions) -> Result<Mosaic, OpenDemError> {
 /// # Errors
 /// See [`OpenDemError`].
 pub fn open_tiles<P: AsRef<Path>>(paths: &[P], options: &DemOptions) -> Result<Mosaic, OpenDemError> {
-    let not_tiles = |cause| OpenDemError::Tiles {
-        names: paths.iter().map(|path| path.as_ref().display().to_string()).collect(),
-        cause,
-    };
-    let mut tiles = Vec::with_capacity(paths.len());
+    let mut tiles = Tiles::default();
     for path in paths {
-        tiles.push(open_file(path.as_ref(), options)?);
-        mosaic::check_total(&tiles).map_err(not_tiles)?;
+        let path = path.as_ref();
+        tiles.push(files::file_name(path), open_file(path, options)?)?;
     }
-    mosaic::mosaic(tiles).map_err(not_tiles)
+    Ok(tiles.join()?)
 }
 
 fn open_file(path: &Path, options: &DemOptions) -> Result<Raster, OpenDemError> {
     let bytes = files::read(path)?;
     let hints = DemHints {
-        png_height_scale: options.height_scale,
-        png_height_offset: options.height_offset,
+        height_scale: options.height_scale,
+        height_offset: options.height_offset,
         height_encoding: options.height_encoding,
         raw: options.raw,
         cell: options.cell,
@@ -104,7 +95,7 @@ fn open_file(path: &Path, options: &DemOptions) -> Result<Raster, OpenDemError> 
         ..DemHints::default()
     };
     read::read(&files::file_name(path), &bytes, &hints)
-        .map_err(|error| OpenDemError::Format { path: path.to_owned(), source: error.fault })
+        .map_err(|error| OpenDemError::Format { path: path.to_owned(), source: error.kind })
 }
 
 /// A warning for the user where the tiles at `path` contradict each other.

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::draw::list::{DrawList, FeatureId};
-use crate::export::{glb, obj, prepare};
+use crate::export::{SceneExport, glb, obj, prepare};
+use crate::mesh::write::Remarks;
 use crate::pipeline::files::{self, WriteFileError};
 use crate::roam::criterion::flat::Flat;
 use crate::roam::displayed::DisplayedTerrain;
@@ -60,19 +61,20 @@ pub fn export(
     let list = prepare::prepare(list);
     progress("writing");
     let remarks = remarks(scene, max_error_m);
-    let name = |feature| feature_name(&scene.features, feature);
+    let name_of = |feature| feature_name(&scene.features, feature);
+    let export = SceneExport { list: &list, name_of: &name_of, remarks: &remarks };
     let mut written = vec![path.to_owned()];
     match format {
-        ExportFormat::Glb => files::write_with(path, |out| glb::write(&list, &name, &remarks, out))?,
+        ExportFormat::Glb => files::write_with(path, |out| glb::write(&export, out))?,
         ExportFormat::Obj => {
             let stem = files::file_stem(path);
-            for (name, bytes) in obj::companions(&list, &stem) {
-                let companion = path.with_file_name(name);
-                files::check_output(&companion, &scene.files)?;
-                files::write(&companion, &bytes)?;
-                written.push(companion);
+            for companion in obj::companions(&list, &stem) {
+                let path = path.with_file_name(companion.name);
+                files::check_output(&path, &scene.files)?;
+                files::write(&path, &companion.bytes)?;
+                written.push(path);
             }
-            files::write_with(path, |out| obj::write(&list, (&stem, &name), &remarks, out))?;
+            files::write_with(path, |out| obj::write(&export, &stem, out))?;
         }
     }
     Ok(ExportedScene { files: written, list })
@@ -81,9 +83,9 @@ pub fn export(
 /// The terrain with errors of at most `max_error_m` at every post.
 fn displayed(terrain: &Terrain, max_error_m: f32) -> DisplayedTerrain {
     let patches: Vec<_> = terrain.layout.patches().collect();
-    let criterion = Flat::new(&terrain.layout, &terrain.errors, max_error_m);
+    let criterion = Flat::new(&terrain.layout, terrain.errors(), max_error_m);
     let active = rebuild(&terrain.layout, &criterion, patches.iter().copied());
-    DisplayedTerrain::new(Arc::clone(&terrain.lattice), active, terrain.exaggeration, patches)
+    DisplayedTerrain::new(Arc::clone(terrain.displayed()), active, patches)
 }
 
 fn feature_name(features: &[SceneFeature], feature: FeatureId) -> String {
@@ -98,13 +100,14 @@ fn feature_name(features: &[SceneFeature], feature: FeatureId) -> String {
     })
 }
 
-fn remarks(scene: &Scene, max_error_m: f64) -> Vec<String> {
+fn remarks(scene: &Scene, max_error_m: f64) -> Remarks {
     let origin = scene.terrain.lattice.origin();
     let title = scene.title.as_deref().unwrap_or("a scene");
-    vec![
+    let lines = [
         format!("{title}, written by sandtable"),
         "meters from the south-west post; heights are elevations".to_owned(),
         format!("origin: easting {} northing {} in {}", origin.x, origin.y, scene.crs.name()),
         format!("the ground is off by at most {max_error_m} m at every post"),
-    ]
+    ];
+    Remarks::new(&lines, "")
 }

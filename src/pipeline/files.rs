@@ -79,9 +79,6 @@ pub enum WriteFileCause {
     /// The name has another extension than `.png`.
     #[error("pictures are written as PNG; name one that ends in .png")]
     NotPng,
-    /// The picture has no pixels.
-    #[error("the picture has no pixels")]
-    EmptyPicture,
     /// The system refuses.
     #[error(transparent)]
     System(#[from] SystemError),
@@ -236,13 +233,12 @@ pub fn check_picture_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> Result
     }
 }
 
-/// Writes a picture as PNG, without alpha where it is opaque.
+/// Writes a picture, which must have pixels, as PNG, without alpha where it is opaque.
 ///
 /// # Errors
-/// The picture has no pixels, or the file cannot be written.
+/// The file cannot be written.
 pub fn write_picture(path: &Path, pixels: &Pixels) -> Result<(), WriteFileError> {
-    let png = png::encode(pixels).ok_or_else(|| WriteFileError::new(path, WriteFileCause::EmptyPicture))?;
-    write(path, &png)
+    write(path, &png::encode(pixels))
 }
 
 /// Writes a file: first under another name beside `path`, then renamed to it.

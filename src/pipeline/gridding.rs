@@ -10,7 +10,8 @@ use crate::geom::crs::{Crs, CrsError};
 use crate::pipeline::files::{self, ReadFileError};
 use crate::vector::error::VectorError;
 use crate::vector::feature::{Feature, Geometry, VectorLayer};
-use crate::vector::read::{self, VectorHints};
+use crate::vector::hints::VectorHints;
+use crate::vector::read;
 
 /// Points that cannot be opened.
 #[derive(Debug, thiserror::Error)]

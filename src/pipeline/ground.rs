@@ -49,7 +49,10 @@ impl MetricGround {
     /// See [`GroundError`].
     pub fn from_raster(raster: &Raster) -> Result<Self, GroundError> {
         let metric = warp::to_metric(raster, None).map_err(GroundError::Warp)?;
-        Ok(Self { lattice: Lattice::from_raster(&metric)?, crs: metric.crs.unwrap_or_else(Crs::local) })
+        Ok(Self {
+            lattice: Lattice::from_raster(&metric)?,
+            crs: metric.crs.clone().unwrap_or_else(Crs::local),
+        })
     }
 }
 

@@ -2,11 +2,10 @@
 
 use glam::Vec2;
 
-use crate::annotate::annotation::{Annotations, LabelClass, PictureLabel};
+use crate::annotate::annotation::{Annotations, PictureLabel};
 use crate::annotate::legend::Legend;
 use crate::annotate::north::NorthArrow;
 use crate::annotate::scale_bar::ScaleBar;
-use crate::description::words;
 use crate::render::picture::Picture;
 use crate::scene::{Scene, SceneLabel};
 use crate::view::camera::Camera;
@@ -18,7 +17,7 @@ pub fn annotations(scene: &Scene, camera: &Camera, picture: &Picture) -> Annotat
         labels: scene.labels.iter().filter_map(|label| project(label, camera, picture)).collect(),
         title: scene.title.clone().filter(|_| furniture.title),
         subtitle: scene.subtitle.clone().filter(|_| furniture.title),
-        north: furniture.north_arrow.then(|| NorthArrow::seen_by(camera)),
+        north: furniture.north_arrow.then(|| NorthArrow::from_camera(camera)),
         scale_bar: if furniture.scale_bar { scale_bar(camera, picture) } else { None },
         legend: furniture.legend.then(|| legend(scene)),
         ..Annotations::default()
@@ -35,12 +34,7 @@ fn project(label: &SceneLabel, camera: &Camera, picture: &Picture) -> Option<Pic
         depth_m: ground.depth_m,
         visible: is_visible(picture, ground.pixel, ground.depth_m)
             || is_visible(picture, top.pixel, top.depth_m),
-        kind: match label.kind {
-            words::LabelKind::Summit => LabelClass::Summit,
-            words::LabelKind::Place => LabelClass::Place,
-            words::LabelKind::Water => LabelClass::Water,
-            words::LabelKind::Point => LabelClass::Point,
-        },
+        kind: label.kind,
     })
 }
 
@@ -64,7 +58,7 @@ fn scale_bar(camera: &Camera, picture: &Picture) -> Option<ScaleBar> {
     let (width, height) = (picture.pixels.width() as usize, picture.pixels.height() as usize);
     let middle = (height / 2..height).map(|row| picture.depth_m[row * width + width / 2]);
     let distance_m = middle.into_iter().find(|depth| depth.is_finite())?;
-    Some(ScaleBar::seen_by(camera, distance_m))
+    Some(ScaleBar::at_distance(camera, distance_m))
 }
 
 fn legend(scene: &Scene) -> Legend {

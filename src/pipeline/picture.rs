@@ -7,9 +7,7 @@ use crate::annotate::report::AnnotationReport;
 use crate::draw::pixels::Pixels;
 use crate::pipeline::choice::{Choice, Word};
 use crate::pipeline::labels;
-use crate::render::cpu::{self, RenderError};
-use crate::render::gpu;
-use crate::render::gpu::error::GpuError;
+use crate::render::{RenderBackend, RenderError, render};
 use crate::scene::picture::{ViewDraw, build_draw_list, camera};
 use crate::scene::{Scene, View};
 use crate::view::camera::CameraError;
@@ -48,17 +46,7 @@ impl FromStr for PictureSize {
     }
 }
 
-/// What draws.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Backend {
-    /// The processor: the same picture on every machine.
-    #[default]
-    Cpu,
-    /// A graphics adapter.
-    Gpu,
-}
-
-impl Choice for Backend {
+impl Choice for RenderBackend {
     const CHOICES: &'static [Word<Self>] = &[
         Word { value: Self::Cpu, word: "cpu", meaning: "The processor" },
         Word { value: Self::Gpu, word: "gpu", meaning: "A graphics adapter" },
@@ -81,12 +69,9 @@ pub enum PictureError {
     /// The view's camera sees nothing.
     #[error(transparent)]
     Camera(#[from] CameraError),
-    /// The processor cannot draw the scene.
+    /// The scene cannot be drawn.
     #[error(transparent)]
-    Cpu(#[from] RenderError),
-    /// No graphics adapter can draw the scene.
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
+    Render(#[from] RenderError),
 }
 
 /// The annotated picture of a view, drawn on the current `rayon` pool. `progress` is called with the name of each step
@@ -98,16 +83,13 @@ pub fn render_view(
     scene: &Scene,
     view: &View,
     size: PictureSize,
-    backend: Backend,
+    backend: RenderBackend,
     progress: &dyn Fn(&'static str),
 ) -> Result<RenderedView, PictureError> {
     let camera = camera(scene, view, (size.width, size.height))?;
     let drawn = build_draw_list(scene, &camera, progress);
     progress("drawing");
-    let mut picture = match backend {
-        Backend::Cpu => cpu::render(&drawn.list, &camera, &cpu::Options::default())?,
-        Backend::Gpu => gpu::render(&drawn.list, &camera)?,
-    };
+    let mut picture = render(&drawn.list, &camera, backend)?;
     progress("annotating");
     let annotations = labels::annotations(scene, &camera, &picture);
     let annotations = annotate(&mut picture.pixels, &annotations);

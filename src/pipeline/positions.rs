@@ -10,7 +10,8 @@ use crate::geom::crs::Crs;
 use crate::pipeline::csv::{fields, is_header, numbered_lines};
 use crate::pipeline::files::{self, ReadFileError};
 use crate::vector::error::VectorError;
-use crate::vector::read::{self, VectorHints};
+use crate::vector::hints::VectorHints;
+use crate::vector::read;
 
 /// A position and its text.
 #[derive(Clone, Debug, PartialEq)]

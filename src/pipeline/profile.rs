@@ -6,7 +6,7 @@
 
 use glam::DVec2;
 
-use crate::annotate::chart::Surroundings;
+use crate::annotate::chart::ChartText;
 use crate::annotate::chart_ground::{ChartGround, ChartPoint};
 use crate::annotate::chart_profile::ProfileChart;
 use crate::annotate::nice;
@@ -85,7 +85,7 @@ impl GroundProfile {
             |station: &ProfileStation| transform("the station at", snapshot.crs(), &line.crs, station.at);
         Ok(Self {
             positions: stations.iter().map(from_ground).collect::<Result<_, _>>()?,
-            summary: ProfileSummary::of(&stations),
+            summary: ProfileSummary::from_stations(&stations),
             stations,
             ground_crs: snapshot.crs().clone(),
             line,
@@ -100,16 +100,16 @@ impl GroundProfile {
         let ProfileSummary { length_m, covered_m, ascent_m, descent_m, .. } = self.summary;
         let mut subtitle = format!(
             "{} long, climbs {} m and falls {} m",
-            nice::distance(length_m),
-            nice::number(ascent_m, 0),
-            nice::number(descent_m, 0)
+            nice::format_distance(length_m),
+            nice::format_number(ascent_m, 0),
+            nice::format_number(descent_m, 0)
         );
         if length_m - covered_m > LEAST_GAP_M {
-            subtitle += &format!("; {} without ground", nice::distance(length_m - covered_m));
+            subtitle += &format!("; {} without ground", nice::format_distance(length_m - covered_m));
         }
         let datum = self.vertical_datum.as_deref();
         ProfileChart {
-            around: Surroundings {
+            text: ChartText {
                 title,
                 subtitle,
                 height_axis: datum.map_or("Height (m)".into(), |datum| format!("Height (m, {datum})")),

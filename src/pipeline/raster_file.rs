@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::dem::formats::DemFormat;
 use crate::dem::raster::Raster;
-use crate::dem::write::{self, Companion, DemFormat, WriteError, WrittenDem};
+use crate::dem::write::{self, Companion, WriteError, WrittenDem};
 use crate::pipeline::files::{self, ReadFileError, WriteFileError};
 
 /// A raster that cannot be written.
@@ -37,7 +38,7 @@ pub enum WriteRasterError {
 /// See [`WriteRasterError`]; nothing replaces one of `inputs` or a sidecar of one.
 pub fn write(
     raster: &Raster,
-    format: DemFormat,
+    format: &DemFormat,
     path: &Path,
     inputs: &[PathBuf],
 ) -> Result<WrittenDem, WriteRasterError> {

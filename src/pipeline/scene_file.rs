@@ -53,14 +53,14 @@ pub fn open_scene_true_to_scale(
 ) -> Result<Scene, OpenSceneError> {
     progress("reading the scene file");
     let (mut document, assets) = open_document(path, allowed)?;
-    document.terrain.vertical_exaggeration = None;
+    document.terrain.vertical_exaggeration = 1.0;
     Ok(build(&document, &assets, progress)?)
 }
 
 fn open_document(path: &Path, allowed: &[PathBuf]) -> Result<(Document, Assets), OpenSceneError> {
     let bytes = files::read(path)?;
     let assets = Assets::new(path, allowed)?;
-    let load = |name: &str| assets.read(name).map_err(|error| error.to_string());
+    let load = |name: &str| assets.read(name).map_err(Into::into);
     let document = parse_bytes_including(&path.to_string_lossy(), &bytes, &load)?;
     Ok((document, assets))
 }

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use crate::annotate::chart::Surroundings;
-use crate::annotate::chart_sight::SightChart;
+use crate::annotate::chart::ChartText;
+use crate::annotate::chart_sight::{SightBlocker, SightChart};
 use crate::annotate::nice;
 use crate::dem::answer::Answer;
 use crate::geom::crs::Crs;
@@ -15,7 +15,7 @@ use crate::terrain::query::service::Snapshot;
 use crate::terrain::query::{Interpolation, ground_height};
 use crate::terrain::sight::Curvature;
 use crate::terrain::sight::line::{Blocker, Sight, SightEnd, line_of_sight};
-use crate::terrain::sight::outlook::seen_along;
+use crate::terrain::sight::outlook::visible_stretches;
 use crate::terrain::sight::rise::{Raised, Rise, required_rise};
 
 /// The names of both ends in messages.
@@ -131,7 +131,7 @@ impl SightReport {
         let sunk = if curvature == Curvature::FLAT { "" } else { ", less the Earth’s curvature" };
         let [start, end] = self.query.ends.map(|end| format_position(&self.query.crs, end.at));
         Ok(SightChart {
-            around: Surroundings {
+            text: ChartText {
                 title,
                 subtitle: self.subtitle(),
                 height_axis: format!("Height (m{datum}{sunk})"),
@@ -140,36 +140,39 @@ impl SightReport {
                 end: format!("{end}  Target"),
             },
             points: chart_points(&stations, |along_m, height_m| height_m - drop_m(along_m)),
-            seen_m: seen_along(&stations, eye_m, curvature)
+            visible_m: visible_stretches(&stations, eye_m, curvature)
                 .iter()
                 .map(|seen| (seen.from_m, seen.to_m))
                 .collect(),
             eye_m,
             target_m: target_m - drop_m(self.distance_m),
             blocker: self.blocker.map(|Blocker { distance_m, height_m, .. }| {
-                let (distance, height) = (nice::distance(distance_m), nice::number(height_m, 0));
+                let (distance, height) =
+                    (nice::format_distance(distance_m), nice::format_number(height_m, 0));
                 let label = format!("blocked at {distance}, {height} m high");
-                (distance_m, height_m - drop_m(distance_m), label)
+                SightBlocker { along_m: distance_m, height_m: height_m - drop_m(distance_m), label }
             }),
-            observer: format!("{} m", nice::number(eye_m, 0)),
-            target: format!("{} m", nice::number(target_m, 0)),
+            observer_label: format!("{} m", nice::format_number(eye_m, 0)),
+            target_label: format!("{} m", nice::format_number(target_m, 0)),
         })
     }
 
     fn subtitle(&self) -> String {
         let sight = match (&self.blocker, self.target_rise, self.both_rise) {
-            (Some(_), Some(rise), _) => format!("hidden; seen if {} m higher", nice::number(rise.rise_m, 1)),
+            (Some(_), Some(rise), _) => {
+                format!("hidden; seen if {} m higher", nice::format_number(rise.rise_m, 1))
+            }
             (None, _, Some(rise)) => {
-                format!("visible, {} m clear of the ground", nice::number(-rise.rise_m, 1))
+                format!("visible, {} m clear of the ground", nice::format_number(-rise.rise_m, 1))
             }
             (Some(_), None, _) => "hidden".into(),
             (None, _, None) => "visible".into(),
         };
         let earth = match self.query.curvature {
             Curvature::FLAT => "flat Earth".to_owned(),
-            curved => format!("refraction {}", nice::short_number(curved.refraction, 3)),
+            curved => format!("refraction {}", nice::format_trimmed(curved.refraction, 3)),
         };
-        let distance = nice::distance(self.distance_m);
+        let distance = nice::format_distance(self.distance_m);
         format!("Target {distance} away is {sight} · {earth} · light ground is in sight of the observer")
     }
 }

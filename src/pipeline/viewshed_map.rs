@@ -7,7 +7,7 @@ use glam::{DVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
 use crate::annotate::legend::Legend;
-use crate::annotate::map::{MapFurniture, Outlook, compose, draw_outlook, sheet_size};
+use crate::annotate::map::{MapFurniture, ObserverOverlay, compose, draw_observer, sheet_size};
 use crate::draw::color::Srgba;
 use crate::draw::ground::ColorRamp;
 use crate::draw::pixels::Pixels;
@@ -21,7 +21,7 @@ const LARGEST_PX: DVec2 = DVec2::new(1560.0, 1560.0);
 /// The shortest side, for long and narrow ground.
 const LEAST_PX: f64 = 48.0;
 /// The vertical exaggeration of the shading alone: true heights leave most ground too flat to read.
-const RELIEF: f64 = 2.0;
+const RELIEF: f32 = 2.0;
 /// The share of light in full shade.
 const AMBIENT: f32 = 0.32;
 /// The gray of level ground in the standard light; there the tint is shown unchanged.
@@ -57,13 +57,13 @@ pub fn viewshed_map(
     let frame = MapFrame::around(lattice);
     let mut map = frame.resampled(&colors);
     let outlook = outlook(lattice, options, &frame);
-    draw_outlook(&mut map, &outlook, sheet_size((frame.width, frame.height)));
+    draw_observer(&mut map, &outlook, sheet_size((frame.width, frame.height)));
     let (low_m, high_m) = lattice.height_range();
     let furniture = MapFurniture {
         title: text.title,
         subtitle: text.subtitle,
-        key: key(viewshed, ramp.linear_at(low_m + 0.3 * (high_m - low_m))),
-        heights: Legend {
+        tints: key(viewshed, ramp.linear_at(low_m + 0.3 * (high_m - low_m))),
+        legend: Legend {
             ramp,
             low_m,
             high_m,
@@ -103,8 +103,8 @@ fn tinted(post: PostVisibility, tint: Vec3) -> Vec3 {
 fn colors(lattice: &Lattice, viewshed: &Viewshed, ramp: &ColorRamp) -> Vec<Vec3> {
     const STEPS: usize = 512;
     let table = ramp.table(STEPS);
-    let (low, high) = ramp.range();
-    let grays = hillshade(lattice, &HillshadeOptions { exaggeration: RELIEF, ..HillshadeOptions::default() });
+    let (low, high) = ramp.height_range();
+    let grays = hillshade(&lattice.exaggerated(RELIEF), &HillshadeOptions::default());
     let color = |((&height, &gray), &post): ((&f32, &u8), &PostVisibility)| {
         if height.is_nan() || gray == NO_DATA {
             return EMPTY.linear();
@@ -185,10 +185,10 @@ fn under(pixel: f64, step: f64, count: u32) -> Vec<(u32, f32)> {
         .collect()
 }
 
-fn outlook(lattice: &Lattice, options: &ViewshedOptions, frame: &MapFrame) -> Outlook {
+fn outlook(lattice: &Lattice, options: &ViewshedOptions, frame: &MapFrame) -> ObserverOverlay {
     let grid = lattice.grid_at(options.observer.at - lattice.map_position(Post { column: 0, row: 0 }));
     let sector = options.sector;
-    Outlook {
+    ObserverOverlay {
         at_px: frame.pixel_at(grid),
         range_px: options.range_m.is_finite().then_some((options.range_m * frame.pixels_per_m) as f32),
         sector_deg: (sector.width_deg < 360.0).then_some((sector.from_deg as f32, sector.width_deg as f32)),

@@ -1,10 +1,9 @@
-//! The smaller levels of a ground map, which far ground is read from.
+//! The coarser levels of a ground map, from which far ground is read.
 //!
-//! A far pixel spans many posts, and one reading would make hillshade sparkle; so there are levels of every
-//! second post, each smoothed from the one before (Williams, "Pyramidal Parametrics", 1983). `n` posts become
-//! `n / 2 + 1`, not half as many rounding down as a texture's texels do: posts stay where they are, so that
-//! levels lie exactly over each other, the first post of each over the map's first. The last post of a level
-//! may lie past the map's border.
+//! A far pixel spans many posts, and a single reading would make hillshade sparkle. Each level holds every second post
+//! of the one before, smoothed (Williams 1983). `n` posts become `n / 2 + 1`, where texels would halve rounding down:
+//! posts stay in place, so that the first post of every level is the map's first. The last post of a level may lie
+//! past the map's border.
 
 use std::iter::successors;
 
@@ -12,12 +11,12 @@ use rayon::prelude::*;
 
 use crate::draw::ground::{GroundMap, GroundPost};
 
-/// Every second post counts half, its neighbors a quarter each.
+/// Weights of a post and its two neighbors.
 const KERNEL: [(usize, f32); 3] = [(0, 0.25), (1, 0.5), (2, 0.25)];
 
 /// Columns and rows of posts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::render) struct PostCount {
+pub struct PostCount {
     /// Posts per row.
     pub columns: u32,
     /// Rows of posts.
@@ -26,8 +25,8 @@ pub(in crate::render) struct PostCount {
 
 /// Posts at twice the distance of the level before.
 #[derive(Debug)]
-pub(in crate::render) struct GroundLevel {
-    /// How many.
+pub struct GroundLevel {
+    /// The number of posts.
     pub size: PostCount,
     /// The posts, row by row from the south-west.
     pub posts: Vec<GroundPost>,
@@ -35,38 +34,34 @@ pub(in crate::render) struct GroundLevel {
 
 impl PostCount {
     /// The posts of `map` itself.
-    pub fn of(map: &GroundMap) -> Self {
+    pub fn from_map(map: &GroundMap) -> Self {
         Self { columns: map.columns, rows: map.rows }
     }
 
-    /// The next smaller level; `None` after two posts a side.
+    /// The next coarser level; `None` after two posts a side.
     pub fn halved(self) -> Option<Self> {
         let Self { columns, rows } = self;
         (columns.max(rows) > 2).then_some(Self { columns: columns / 2 + 1, rows: rows / 2 + 1 })
     }
 }
 
-/// Every smaller level of `map`, which has passed its check, the largest first, down to two posts a side.
+/// The coarser levels of a checked `map`, the finest first, down to two posts a side.
 ///
-/// Each is made when the one before is handed out, and no earlier one is kept.
-pub(in crate::render) fn smaller_levels(map: &GroundMap) -> impl Iterator<Item = GroundLevel> {
-    let first = halved(PostCount::of(map), &map.posts);
-    successors(first, |level| halved(level.size, &level.posts))
+/// Each level is made when it is taken; earlier ones are not kept.
+pub fn coarser_levels(map: &GroundMap) -> impl Iterator<Item = GroundLevel> {
+    let first = next_level(PostCount::from_map(map), &map.posts);
+    successors(first, |level| next_level(level.size, &level.posts))
 }
 
 /// Adds `weight` times `post` to `sum`.
-pub(in crate::render) fn add(sum: &mut GroundPost, post: &GroundPost, weight: f32) {
-    sum.height_m += post.height_m * weight;
-    sum.slope_east += post.slope_east * weight;
-    sum.slope_north += post.slope_north * weight;
-    sum.sun_visibility += post.sun_visibility * weight;
-    sum.sky_visibility += post.sky_visibility * weight;
+pub fn add_weighted(sum: &mut GroundPost, post: &GroundPost, weight: f32) {
+    *sum = sum.zip_with(post, |sum, value| sum + value * weight);
 }
 
-fn halved(from: PostCount, posts: &[GroundPost]) -> Option<GroundLevel> {
+fn next_level(from: PostCount, posts: &[GroundPost]) -> Option<GroundLevel> {
     let size = from.halved()?;
     let [columns, rows, stride] = [from.columns, from.rows, size.columns].map(|count| count as usize);
-    // Past the border, the border's posts stand in.
+    // Past the border the border's posts are repeated.
     let neighbor =
         |index: usize, step: usize, count: usize| (2 * index + step).saturating_sub(1).min(count - 1);
     let post = |index: usize| {
@@ -75,7 +70,7 @@ fn halved(from: PostCount, posts: &[GroundPost]) -> Option<GroundLevel> {
         for (down, height) in KERNEL {
             let line = neighbor(row, down, rows) * columns;
             for (across, width) in KERNEL {
-                add(&mut sum, &posts[line + neighbor(column, across, columns)], height * width);
+                add_weighted(&mut sum, &posts[line + neighbor(column, across, columns)], height * width);
             }
         }
         sum
@@ -113,7 +108,7 @@ mod tests {
     fn a_plane_stays_a_plane_away_from_the_border() {
         let height = |column: u32, row: u32| column as f32 * 3.0 - row as f32;
         let from = PostCount { columns: 33, rows: 17 };
-        let level = halved(from, &posts(from, height)).expect("more than two posts a side");
+        let level = next_level(from, &posts(from, height)).expect("more than two posts a side");
         let plane = posts(level.size, |column, row| height(2 * column, 2 * row));
         for (index, (post, plane)) in (0..).zip(level.posts.iter().zip(&plane)) {
             let (column, row) = (index % level.size.columns, index / level.size.columns);

@@ -1,58 +1,55 @@
-//! The smaller copies of a texture, averaged in linear light.
+//! The smaller levels of a texture, averaged in linear light.
 //!
-//! Averaging the sRGB bytes themselves would darken what is fine and bright. Each level halves both sides
-//! rounding down, as WebGPU prescribes, and is kept as 8-bit sRGB, so that all levels together add a third to
-//! what the texture takes. Where a side is odd, a texel of the next level covers a fraction more than two;
-//! weighing its texels by the part covered keeps the picture in place ("Non-Power-of-Two Mipmapping", NVIDIA,
-//! 2005).
+//! Averaging sRGB bytes would darken fine bright detail. Each level halves both sides rounding down, as WebGPU
+//! prescribes, and is kept as 8-bit sRGB: all levels together add a third to the texture's size. Where a side is odd, a
+//! texel of the next level covers a fraction more than two texels. Weighting texels by the part covered keeps the
+//! picture in place (NVIDIA 2005, "Non-Power-of-Two Mipmapping").
 
 use std::iter::successors;
 
 use glam::{Vec3, Vec4};
 
-use crate::draw::color::{Srgba, srgb_from_linear};
+use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 
-/// Every smaller level of `texture`, the largest first, down to a single texel.
-///
-/// None at all where a side is zero.
-pub(in crate::render) fn smaller_levels(texture: &Pixels) -> Vec<Pixels> {
-    successors(halved(texture), halved).collect()
+/// Every smaller level of `texture`, the largest first, down to a single texel; none where a side is zero.
+pub fn smaller_levels(texture: &Pixels) -> Vec<Pixels> {
+    successors(next_level(texture), next_level).collect()
 }
 
 /// The next smaller level; `None` below a single texel.
-fn halved(level: &Pixels) -> Option<Pixels> {
+fn next_level(level: &Pixels) -> Option<Pixels> {
     let (width, height) = (level.width(), level.height());
     if width.min(height) == 0 || width.max(height) == 1 {
         return None;
     }
     Some(Pixels::from_fn((width / 2).max(1), (height / 2).max(1), |x, y| {
-        let mut seen = Vec4::ZERO;
-        let mut all = Vec3::ZERO;
+        let mut by_alpha = Vec4::ZERO;
+        let mut even = Vec3::ZERO;
         for (row, down) in covered(y, height) {
             for (column, across) in covered(x, width) {
                 let (texel, weight) = (level.at(column, row), across * down);
                 let (light, alpha) = (texel.linear(), texel.alpha());
-                seen += (light * alpha).extend(alpha) * weight;
-                all += light * weight;
+                by_alpha += (light * alpha).extend(alpha) * weight;
+                even += light * weight;
             }
         }
-        mean(seen, all)
+        mean(by_alpha, even)
     }))
 }
 
-/// The mean color weighted by alpha, so that the color of what is invisible does not bleed into what is
-/// not; where all is invisible, the plain mean, for surfaces that ignore alpha.
-fn mean(seen: Vec4, all: Vec3) -> Srgba {
-    let light = if seen.w > 0.0 { seen.truncate() / seen.w } else { all };
-    let [red, green, blue] = light.to_array().map(srgb_from_linear);
-    Srgba([red, green, blue, (seen.w.clamp(0.0, 1.0) * 255.0 + 0.5) as u8])
+/// The mean weighted by alpha, so that the color of transparent texels does not bleed into opaque ones. Where all are
+/// transparent, the even mean, for surfaces that ignore alpha.
+fn mean(by_alpha: Vec4, even: Vec3) -> Srgba {
+    let light = if by_alpha.w > 0.0 { by_alpha.truncate() / by_alpha.w } else { even };
+    let Srgba([red, green, blue, _]) = Srgba::from_linear(light);
+    Srgba([red, green, blue, (by_alpha.w.clamp(0.0, 1.0) * 255.0 + 0.5) as u8])
 }
 
-/// The texels of a row of `side` that texel `index` of the next level covers, and the share of each.
+/// The texels of a row of `side` that texel `index` of the next level covers, with their weights.
 ///
-/// Of `2 m + 1` texels, texel `i` of the `m` below covers `2 i` to a part of `m - i`, the next wholly and the
-/// one after to a part of `i + 1`, in `m`-ths: whole numbers, so that no rounding adds up along the row.
+/// Of `2 m + 1` texels, texel `i` of the `m` below covers texel `2 i` to a part of `m - i`, the next one in full and
+/// the one after to a part of `i + 1`, in `m`-ths: integers, so that no rounding adds up along the row.
 fn covered(index: u32, side: u32) -> impl Iterator<Item = (u32, f32)> {
     let half = side / 2;
     let parts = match (side, side % 2) {
@@ -71,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_checcurboard_averages_to_half_the_light_not_half_the_bytes() {
+    fn a_checkerboard_averages_to_half_the_light_not_half_the_bytes() {
         let board = Pixels::from_fn(4, 4, |x, y| match (x + y) % 2 {
             0 => Srgba::WHITE,
             _ => Srgba::opaque(0, 0, 0),
@@ -122,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_invisible_does_not_bleed_into_what_is_not() {
+    fn transparent_colors_do_not_bleed_into_opaque_ones() {
         let leaf = Srgba([20, 120, 30, 255]);
         let edge = Pixels::from_fn(2, 1, |x, _| if x == 0 { leaf } else { Srgba([255, 0, 255, 0]) });
         assert_eq!(smaller_levels(&edge)[0].at(0, 0), Srgba([20, 120, 30, 128]));

@@ -1,12 +1,16 @@
-//! What a renderer gives back.
+//! The result of a renderer.
 
 use crate::draw::list::FeatureId;
 use crate::draw::pixels::Pixels;
 
+/// The least alpha of a transparent surface that the depth and feature buffers show; under a more transparent one
+/// they show the surface behind it.
+pub(in crate::render) const LEAST_VISIBLE_ALPHA: f32 = 0.5;
+
 /// A rendered picture with its buffers, all of the same size, rows from the top.
 ///
-/// Where a transparent surface covers a pixel, depth and feature are its own from an alpha of ½ on, and those
-/// of what lies behind it below that.
+/// Where a transparent surface covers a pixel, depth and feature are its own from an alpha of ½ on, and those of the
+/// surface behind it below that.
 #[derive(Clone, Debug)]
 pub struct Picture {
     /// Colors, opaque.

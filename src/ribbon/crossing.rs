@@ -3,8 +3,6 @@
 //! Ribbons are convex pieces, so what two of them share is a convex polygon: found pair by pair, with a tree of rectangles
 //! that leaves out the pairs that are far apart. What lies in a junction already is left out too.
 
-use std::ops::ControlFlow;
-
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -42,13 +40,15 @@ pub fn crossings<C: PartialEq + Sync>(
     let (tree, joined) = (RectTree::new(&rects), Joined::new(nodes));
     let shared = |one: &ConvexPiece| {
         let mut found = Vec::new();
-        tree.visit(&polygon::bounds(&one.outline), &mut |other| {
+        for other in tree.meeting_in_order(&polygon::bounds(&one.outline)) {
             let other = &pieces[other];
             if other.ribbon < one.ribbon && ribbons[other.ribbon].1 == ribbons[one.ribbon].1 {
                 found.extend(crossing([other, one]).filter(|crossing| !joined.holds(&crossing.outline)));
             }
-            if found.len() > MOST { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        });
+            if found.len() > MOST {
+                break;
+            }
+        }
         if found.len() > MOST {
             found.truncate(1);
             found[0].outline.clone_from(&one.outline);
@@ -70,7 +70,7 @@ fn pieces_of<C>((ribbon, (plan, _)): (usize, &(PlanMesh, C))) -> impl Iterator<I
 }
 
 fn crossing([one, other]: [&ConvexPiece; 2]) -> Option<RibbonOverlap> {
-    let outline = convex::shared(&one.outline, &other.outline, SLIVER_M2)?;
+    let outline = convex::intersection(&one.outline, &other.outline, SLIVER_M2)?;
     Some(RibbonOverlap { outline, ribbons: [one.ribbon, other.ribbon] })
 }
 
@@ -88,13 +88,8 @@ impl<'a> Joined<'a> {
 
     /// Whether one of them covers all of a convex polygon.
     fn holds(&self, outline: &[DVec2]) -> bool {
-        let mut held = false;
-        self.tree.visit(&polygon::bounds(outline), &mut |node| {
-            let node = &self.nodes[node].outline;
-            held = outline.iter().all(|&corner| convex::contains(node, corner));
-            if held { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        });
-        held
+        let covers = |node: usize| outline.iter().all(|&at| convex::touches(&self.nodes[node].outline, at));
+        self.tree.meeting(&polygon::bounds(outline)).any(covers)
     }
 }
 

@@ -11,7 +11,6 @@
 //! square.
 
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -53,8 +52,9 @@ pub fn within(plan: &PlanMesh, ground: &PlanMesh) -> PlanMesh {
     let mut inside = PlanMesh::default();
     for triangle in plan.corners() {
         let (corners, texture) = (triangle.map(|corner| corner.at), TextureMap::of(triangle));
-        for under in covering.tree.found(&Rect::around(corners), |_| true) {
-            let piece = convex::shared(&corners, &covering.triangles[under], SLIVER_M2).unwrap_or_default();
+        for under in covering.tree.meeting_in_order(&Rect::around(corners)) {
+            let piece =
+                convex::intersection(&corners, &covering.triangles[under], SLIVER_M2).unwrap_or_default();
             for corners in fan(&piece) {
                 let ids = corners.map(|at| inside.vertex(PlanVertex { at, uv: texture.at(at) }));
                 inside.triangle(ids);
@@ -117,9 +117,9 @@ impl Covering {
 
     fn overlap_m2(&self, triangle: usize) -> f64 {
         let corners = &self.triangles[triangle];
-        let over = self.tree.found(&Rect::around(*corners), |other| other < triangle);
-        let shared = |over: usize| shared_m2(corners, &self.triangles[over]);
-        over.into_iter().map(shared).sum()
+        let over = self.tree.meeting_in_order(&Rect::around(*corners));
+        let before = over.into_iter().take_while(|&other| other < triangle);
+        before.map(|other| shared_m2(corners, &self.triangles[other])).sum()
     }
 
     /// What no triangle before this one covers. It stops where nothing is left, so that many over one another cost no
@@ -128,14 +128,16 @@ impl Covering {
         let corners = &self.triangles[triangle];
         let mut pieces = vec![corners.to_vec()];
         let mut is_whole = true;
-        self.tree.visit(&Rect::around(*corners), &mut |other| {
-            let window = &self.triangles[other];
-            if other < triangle && shared_m2(corners, window) > SLIVER_M2 {
-                is_whole = false;
-                pieces = outside(std::mem::take(&mut pieces), window);
+        for other in self.tree.meeting_in_order(&Rect::around(*corners)) {
+            if other >= triangle || pieces.is_empty() {
+                break;
             }
-            if pieces.is_empty() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        });
+            let window = &self.triangles[other];
+            if shared_m2(corners, window) > SLIVER_M2 {
+                is_whole = false;
+                pieces = outside(pieces, window);
+            }
+        }
         pieces.retain(|piece| polygon::doubled_area(piece) > 2.0 * SLIVER_M2);
         if is_whole { Rest::Whole } else { Rest::Pieces(pieces) }
     }
@@ -157,13 +159,12 @@ fn outside(pieces: Vec<Vec<DVec2>>, window: &[DVec2; 3]) -> Vec<Vec<DVec2>> {
 
 /// The area that two convex polygons share.
 fn shared_m2(one: &[DVec2], other: &[DVec2]) -> f64 {
-    convex::shared(one, other, 0.0).map_or(0.0, |piece| polygon::doubled_area(&piece) / 2.0)
+    convex::intersection(one, other, 0.0).map_or(0.0, |piece| polygon::doubled_area(&piece) / 2.0)
 }
 
 /// A convex polygon in triangles; those without an area, which cutting at a corner leaves, are left out.
 fn fan(piece: &[DVec2]) -> impl Iterator<Item = [DVec2; 3]> + '_ {
-    let pairs = piece.get(1..).unwrap_or_default().windows(2).map(|pair| [piece[0], pair[0], pair[1]]);
-    pairs.filter(|corners| polygon::doubled_area(corners) > 2.0 * SLIVER_M2)
+    polygon::fan(piece).filter(|corners| polygon::doubled_area(corners) > 2.0 * SLIVER_M2)
 }
 
 #[cfg(test)]
@@ -233,7 +234,8 @@ mod tests {
             prop_assert!(overlap_m2(&parts) < 0.2, "{}", overlap_m2(&parts));
             let rings: Vec<[DVec2; 3]> =
                 plans.iter().flat_map(PlanMesh::corners).map(|corners| corners.map(|corner| corner.at)).collect();
-            let whole = crate::geom::region::Region::covered(rings.iter().map(|ring| &ring[..])).area();
+            let whole = crate::geom::region::union(rings.iter().map(|ring| &ring[..]));
+            let whole: f64 = whole.iter().flatten().map(|ring| polygon::doubled_area(ring) / 2.0).sum::<f64>().abs();
             let area: f64 = parts.iter().map(PlanMesh::area_m2).sum();
             prop_assert!((whole - area).abs() < 0.2, "{whole} {area}");
         }

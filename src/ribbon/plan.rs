@@ -2,6 +2,7 @@
 
 use glam::{DVec2, Vec2};
 
+use crate::geom::convex;
 use crate::mesh::sink::{MeshSink, VertexId};
 
 /// A corner in plan.
@@ -35,7 +36,9 @@ impl PlanMesh {
         while let [first, after @ ..] = rest {
             let at = |id: VertexId| self.vertices[id.index()].at;
             let quad = after.first().filter(|next| next[0] == first[0] && next[1] == first[2]);
-            let quad = quad.map(|next| [first[0], first[1], first[2], next[2]].map(at)).filter(is_convex);
+            let quad = quad
+                .map(|next| [first[0], first[1], first[2], next[2]].map(at))
+                .filter(|quad| convex::is_convex(quad));
             rest = if quad.is_some() { &after[1..] } else { after };
             parts.push(quad.map_or_else(|| first.map(at).to_vec(), |quad| quad.to_vec()));
         }
@@ -46,14 +49,6 @@ impl PlanMesh {
     pub fn area_m2(&self) -> f64 {
         self.corners().map(|[a, b, c]| (b.at - a.at).perp_dot(c.at - a.at) / 2.0).sum()
     }
-}
-
-fn is_convex(quad: &[DVec2; 4]) -> bool {
-    let corner = |index: usize| quad[index % 4];
-    (0..4).all(|index| {
-        let (before, at, after) = (corner(index), corner(index + 1), corner(index + 2));
-        (at - before).perp_dot(after - at) >= 0.0
-    })
 }
 
 impl MeshSink<PlanVertex> for PlanMesh {

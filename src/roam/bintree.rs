@@ -101,7 +101,8 @@ mod tests {
 
     #[test]
     fn the_finest_diagonals_are_those_of_the_ground_lattice() {
-        use crate::terrain::query::Diagonal;
+        use crate::terrain::cell_triangle::Diagonal;
+        use crate::terrain::lattice::Post;
         let mut seen = Vec::new();
         for root in Triangle::roots(Vertex::new(0, 0), 8) {
             visit(root, &mut seen);
@@ -109,8 +110,8 @@ mod tests {
         for triangle in seen.iter().filter(|triangle| triangle.is_finest()) {
             let (left, right) = (triangle.left, triangle.right);
             let rises = (left.x - right.x) * (left.y - right.y) > 0;
-            let cell = (left.x.min(right.x) as u64, left.y.min(right.y) as u64);
-            assert_eq!(rises, Diagonal::of_cell(cell.0, cell.1) == Diagonal::Rising);
+            let cell = Post { column: left.x.min(right.x) as u32, row: left.y.min(right.y) as u32 };
+            assert_eq!(rises, Diagonal::of_cell(cell) == Diagonal::Rising);
         }
     }
 }

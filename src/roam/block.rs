@@ -110,7 +110,7 @@ impl PatchBlock {
         let (from, to) = (first, first.moved(side as i32 - 1, 0));
         let (from, to) = (ground.layout.post(from), ground.layout.post(to));
         let row = &ground.lattice.heights()[ground.lattice.index(from)..=ground.lattice.index(to)];
-        self.z.extend(row.iter().map(|height| height * ground.exaggeration));
+        self.z.extend_from_slice(row);
         // Vertices beyond the east border stand for the last post.
         let last = self.z[self.z.len() - 1];
         self.z.extend(std::iter::repeat_n(last, side - row.len()));

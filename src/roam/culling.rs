@@ -30,12 +30,12 @@ pub enum Culling {
 impl Culling {
     /// The wedge of a camera.
     pub fn wedge(camera: &Camera) -> Self {
-        Self::Wedge(GroundWedge::of(camera))
+        Self::Wedge(GroundWedge::new(camera))
     }
 
     /// The frustum of a camera.
     pub fn frustum(camera: &Camera) -> Self {
-        Self::Frustum(Frustum::of(camera))
+        Self::Frustum(Frustum::new(camera))
     }
 
     fn all(&self) -> u8 {
@@ -50,8 +50,8 @@ impl Culling {
     fn crossed(&self, min: Vec3, max: Vec3, among: u8) -> Option<u8> {
         match self {
             Self::Nothing => Some(0),
-            Self::Wedge(wedge) => wedge.crossed(min.truncate(), max.truncate(), among),
-            Self::Frustum(frustum) => frustum.crossed(min, max, among),
+            Self::Wedge(wedge) => wedge.crossed_lines(min.truncate(), max.truncate(), among),
+            Self::Frustum(frustum) => frustum.crossed_planes(min, max, among),
         }
     }
 }
@@ -171,19 +171,18 @@ fn range(ground: PatchedGround<'_>, corner: Vertex) -> (f32, f32) {
         .map(|row| {
             let start = row as usize * lattice.columns() as usize;
             let posts = &lattice.heights()[start + first.column as usize..=start + last.column as usize];
-            drawn_range(posts, ground.exaggeration)
+            drawn_range(posts)
         })
         .fold(NO_DATA, joined)
 }
 
 /// The lowest and highest drawn Z of some posts, those without data left out. Several at a time: the smaller of two
 /// numbers must be known before that of three.
-pub(in crate::roam) fn drawn_range(heights: &[f32], exaggeration: f32) -> (f32, f32) {
+pub(in crate::roam) fn drawn_range(heights: &[f32]) -> (f32, f32) {
     const LANES: usize = 8;
     let (mut low, mut high) = ([NO_DATA.0; LANES], [NO_DATA.1; LANES]);
     let (groups, rest) = heights.as_chunks::<LANES>();
-    let mut add = |lane: usize, height: f32| {
-        let z = height * exaggeration;
+    let mut add = |lane: usize, z: f32| {
         // Written so that NaN is never taken, and each is one instruction.
         low[lane] = if z < low[lane] { z } else { low[lane] };
         high[lane] = if z > high[lane] { z } else { high[lane] };
@@ -318,18 +317,18 @@ mod tests {
         ) {
             let lattice = hilly(columns, rows, hole);
             let layout = PatchLayout::new(columns, rows, 4).expect("sound");
-            let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.5 };
+            let ground = PatchedGround { lattice: &lattice, layout: &layout };
             let heights = PatchHeights::new(ground);
             let (eye, target) = (Vec3::from(eye), Vec2::from(target).extend(0.0));
             prop_assume!(eye.distance(target) > 1.0);
             let camera = Camera::new(eye, target, 0.7, (640, 480), (1.0, far)).expect("sound");
-            let by_frustum = patches_in_view(ground, &heights, &Frustum::of(&camera));
-            prop_assert_eq!(&by_frustum, &plain(ground, &heights, &Frustum::of(&camera)));
+            let by_frustum = patches_in_view(ground, &heights, &Frustum::new(&camera));
+            prop_assert_eq!(&by_frustum, &plain(ground, &heights, &Frustum::new(&camera)));
             let (mut by_wedge, mut all) = (Vec::new(), Vec::new());
             cull(ground, &heights, &Culling::Nothing, &mut all);
             prop_assert_eq!(all.len(), layout.patches().filter(|&at| heights.bounds(ground, at).is_some()).count());
             cull(ground, &heights, &Culling::wedge(&camera), &mut by_wedge);
-            let wedge = GroundWedge::of(&camera);
+            let wedge = GroundWedge::new(&camera);
             let plain_wedge: Vec<Vertex> = all.into_iter().filter(|&corner| {
                 let far = ground.plan(corner.moved(layout.patch(), layout.patch()));
                 wedge.may_see(ground.plan(corner), far)
@@ -341,10 +340,10 @@ mod tests {
         fn heights_measured_again_equal_those_measured_anew(column in 0u32..40, row in 0u32..50) {
             let mut lattice = hilly(40, 50, 7);
             let layout = PatchLayout::new(40, 50, 8).expect("sound");
-            let before = PatchedGround { lattice: &lattice.clone(), layout: &layout, exaggeration: 2.0 };
+            let before = PatchedGround { lattice: &lattice.clone(), layout: &layout };
             let mut heights = PatchHeights::new(before);
             lattice.pin(Post { column, row }, 500.0);
-            let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 2.0 };
+            let ground = PatchedGround { lattice: &lattice, layout: &layout };
             for corner in layout.patches() {
                 heights.renew(ground, corner);
             }

@@ -18,20 +18,18 @@ use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 pub struct DisplayedTerrain {
     lattice: Arc<Lattice>,
     active: ActiveSet,
-    exaggeration: f32,
     patches: Vec<Vertex>,
     shown: Vec<bool>,
 }
 
 impl DisplayedTerrain {
-    /// The terrain that `active` shows of `lattice`, heights drawn times `exaggeration`, in the patches whose
-    /// south-west corners are listed.
-    pub fn new(lattice: Arc<Lattice>, active: ActiveSet, exaggeration: f32, patches: Vec<Vertex>) -> Self {
+    /// The terrain that `active` shows of `lattice` in the patches whose south-west corners are listed.
+    pub fn new(lattice: Arc<Lattice>, active: ActiveSet, patches: Vec<Vertex>) -> Self {
         let mut shown = vec![false; active.layout().patch_count()];
         for &corner in &patches {
             shown[active.layout().patch_index(corner)] = true;
         }
-        Self { lattice, active, exaggeration, patches, shown }
+        Self { lattice, active, patches, shown }
     }
 
     /// The bits.
@@ -45,11 +43,7 @@ impl DisplayedTerrain {
     }
 
     fn ground(&self) -> PatchedGround<'_> {
-        PatchedGround {
-            lattice: &self.lattice,
-            layout: self.active.layout(),
-            exaggeration: self.exaggeration,
-        }
+        PatchedGround { lattice: &self.lattice, layout: self.active.layout() }
     }
 
     fn plan_bounds(&self, corners: [Vertex; 3]) -> Rect {
@@ -118,7 +112,7 @@ mod tests {
             vertices.iter().for_each(|&(x, y)| active.activate(Vertex::new(x, y)));
             let lattice = lattice(columns, rows, &[]);
             let area = lattice.extent().size().x * lattice.extent().size().y;
-            let terrain = DisplayedTerrain::new(lattice, active, 2.0, layout.patches().collect());
+            let terrain = DisplayedTerrain::new(lattice, active, layout.patches().collect());
             prop_assert_eq!(check::check_with_area(&emitted(&terrain), area).err(), None);
         }
 
@@ -132,7 +126,7 @@ mod tests {
             vertices.iter().for_each(|&(x, y)| active.activate(Vertex::new(x, y)));
             let lattice = lattice(41, 37, &[]);
             let at = DVec2::new(x, y) * lattice.extent().max;
-            let terrain = DisplayedTerrain::new(lattice, active, 1.0, layout.patches().collect());
+            let terrain = DisplayedTerrain::new(lattice, active, layout.patches().collect());
             let mut strictly_inside = 0;
             terrain.visit_facets(&Rect { min: at, max: at }, &mut |facet| {
                 strictly_inside += usize::from(crate::terrain::triangle_surface::facet_contains(facet, at));
@@ -149,7 +143,7 @@ mod tests {
         let errors = crate::roam::errors::ErrorMap::exact(&lattice, &layout);
         let criterion = crate::roam::criterion::flat::Flat::new(&layout, &errors, 0.0);
         let active = crate::roam::refine::rebuild::rebuild(&layout, &criterion, layout.patches());
-        let terrain = DisplayedTerrain::new(Arc::clone(&lattice), active, 1.0, layout.patches().collect());
+        let terrain = DisplayedTerrain::new(Arc::clone(&lattice), active, layout.patches().collect());
         let mesh = emitted(&terrain);
         assert_eq!(mesh.triangles.len(), 2 * 16 * 16 - 8);
         check::check(&mesh).expect("conforming round the hole");

@@ -55,8 +55,6 @@ pub enum Radius {
 pub struct DynamicOptions {
     /// Cells along a patch's side, a power of two from 2 to 4096.
     pub patch: u32,
-    /// Vertical exaggeration, above 0.
-    pub exaggeration: f32,
     /// The errors.
     pub measure: ErrorMeasure,
     /// The spheres.
@@ -114,7 +112,7 @@ impl DynamicTerrain {
     /// The terrain over `lattice`; `None` where patches cannot be laid over it (see [`PatchLayout::new`]).
     pub fn new(lattice: Lattice, options: DynamicOptions) -> Option<Self> {
         let layout = PatchLayout::new(lattice.columns(), lattice.rows(), options.patch)?;
-        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: options.exaggeration };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let (own, errors) = match options.measure {
             ErrorMeasure::Midpoint => (Vec::new(), ErrorMap::midpoint(&lattice, &layout)),
             ErrorMeasure::Exact => {
@@ -144,11 +142,7 @@ impl DynamicTerrain {
 
     /// The ground of this epoch.
     pub fn ground(&self) -> PatchedGround<'_> {
-        PatchedGround {
-            lattice: &self.lattice,
-            layout: &self.layout,
-            exaggeration: self.options.exaggeration,
-        }
+        PatchedGround { lattice: &self.lattice, layout: &self.layout }
     }
 
     /// The patches.
@@ -205,7 +199,7 @@ impl DynamicTerrain {
         if let Some(roughness) = &mut self.roughness {
             roughness.renew(lattice, &change.posts);
         }
-        let ground = PatchedGround { lattice, layout, exaggeration: self.options.exaggeration };
+        let ground = PatchedGround { lattice, layout };
         let own = own_radius(&self.options, &self.errors, self.roughness.as_ref());
         let spheres: Mended = mend_spheres(&mut self.spheres, ground, &own, change, &errors);
         vertices.extend_from_slice(&errors.vertices);
@@ -232,7 +226,6 @@ impl DynamicTerrain {
     /// Mends the ranges of the patches that `change` touches: widened by what is new, measured again where the
     /// lowest or the highest may have gone away.
     fn renew_heights(&mut self, change: &Change) {
-        let exaggeration = self.options.exaggeration;
         let rect = VertexRect::of_posts(&self.layout, &change.posts);
         let (first, last) = (change.posts.first, change.posts.last);
         for corner in patches_meeting(&self.layout, rect) {
@@ -241,15 +234,13 @@ impl DynamicTerrain {
             let (low, high) = (self.layout.post(corner), self.layout.post(far));
             let columns = (low.column.max(first.column), high.column.min(last.column));
             let rows = low.row.max(first.row)..=high.row.min(last.row);
-            let joint = rows.map(|row| {
-                change.row(&self.lattice, row, columns).map(|posts| drawn_range(posts, exaggeration))
-            });
+            let joint = rows.map(|row| change.row(&self.lattice, row, columns).map(drawn_range));
             let [old, new] = joint.fold([NO_DATA; 2], |[a, b], [c, d]| [joined(a, c), joined(b, d)]);
             let range = self.heights.range(index);
             if old.0 > range.0 && old.1 < range.1 {
                 self.heights.widen(index, new);
             } else {
-                let ground = PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration };
+                let ground = PatchedGround { lattice: &self.lattice, layout: &self.layout };
                 self.heights.renew(ground, corner);
             }
         }

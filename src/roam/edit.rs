@@ -104,7 +104,7 @@ pub fn mend_midpoint(
     change: &Change,
 ) -> Mended {
     let changed = VertexRect::of_posts(layout, &change.posts);
-    let field = HeightField::of(PatchedGround { lattice, layout, exaggeration: 1.0 });
+    let field = HeightField::of(PatchedGround { lattice, layout });
     fetch(errors.values(), layout, changed.grown(1, 1));
     let mut mended = Mended::around(change);
     for pass in passes(layout) {

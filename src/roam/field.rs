@@ -15,7 +15,6 @@ pub struct HeightField<'a> {
     last_row: usize,
     first: Post,
     cell: DVec2,
-    exaggeration: f32,
 }
 
 /// A row of vertices of a layout.
@@ -25,7 +24,6 @@ pub struct FieldRow<'a> {
     y: f64,
     first: u32,
     cell: f64,
-    exaggeration: f32,
 }
 
 impl<'a> HeightField<'a> {
@@ -38,7 +36,6 @@ impl<'a> HeightField<'a> {
             last_row: last.row as usize,
             first: ground.lattice.first(),
             cell: ground.lattice.cell(),
-            exaggeration: ground.exaggeration,
         }
     }
 
@@ -51,7 +48,6 @@ impl<'a> HeightField<'a> {
             y: place(row as u32 + self.first.row, self.cell.y),
             first: self.first.column,
             cell: self.cell.x,
-            exaggeration: self.exaggeration,
         }
     }
 }
@@ -79,7 +75,7 @@ impl FieldRow<'_> {
     #[inline]
     pub fn z(&self, x: usize) -> f64 {
         let height = self.height(x);
-        if height.is_nan() { 0.0 } else { f64::from(height * self.exaggeration) }
+        if height.is_nan() { 0.0 } else { f64::from(height) }
     }
 }
 
@@ -103,7 +99,7 @@ mod tests {
         let first = Post { column: 7, row: 1_000_003 };
         let lattice = Lattice::part((DVec2::ZERO, DVec2::new(0.3, 30.7)), first, 21, heights).expect("sound");
         let layout = PatchLayout::new(21, 13, 16).expect("sound");
-        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.3 };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let field = HeightField::of(ground);
         for (x, y) in (0..33).flat_map(|x| (0..17).map(move |y| (x, y))) {
             let vertex = Vertex::new(x, y);

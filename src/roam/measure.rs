@@ -244,13 +244,13 @@ mod tests {
             vertices.iter().for_each(|&(x, y)| active.activate(Vertex::new(x, y)));
             prop_assume!(columns * rows > 4);
             let lattice = lattice(columns, rows, &holes);
-            let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+            let ground = PatchedGround { lattice: &lattice, layout: &layout };
             let patches: Vec<Vertex> =
                 layout.patches().enumerate().filter(|&(at, _)| at != hidden).map(|(_, corner)| corner).collect();
             let lists: Vec<PatchList> =
                 patches.iter().map(|&corner| PatchList::bintree(ground, &active, corner)).collect();
             let found = height_difference(&lattice, &layout, &lists);
-            let terrain = DisplayedTerrain::new(Arc::clone(&lattice), active, 1.0, patches);
+            let terrain = DisplayedTerrain::new(Arc::clone(&lattice), active, patches);
             let plain = plainly(&lattice, &terrain);
             prop_assert_eq!(found.posts, plain.posts);
             prop_assert_eq!(found.mean_m().is_some(), found.posts > 0);
@@ -269,7 +269,7 @@ mod tests {
         let layout = PatchLayout::new(17, 17, 16).expect("sound");
         let mut active = ActiveSet::new(layout);
         (0..289).for_each(|at| active.activate(Vertex::new(at % 17, at / 17)));
-        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 3.0 };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let list = PatchList::bintree(ground, &active, Vertex::new(0, 0));
         let found = height_difference(&lattice, &layout, &[list]);
         assert_eq!(
@@ -283,7 +283,7 @@ mod tests {
     fn only_posts_of_the_picture_are_measured_and_the_most_pixels_are_kept() {
         let lattice = lattice(17, 17, &[]);
         let layout = PatchLayout::new(17, 17, 16).expect("sound");
-        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let shown = [PatchList::bintree(ground, &ActiveSet::new(layout), Vertex::new(0, 0))];
         let whole = height_difference(&lattice, &layout, &shown);
         let seen = height_difference_seen(&lattice, &layout, &shown, |post, shown_m| {

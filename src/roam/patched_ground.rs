@@ -13,8 +13,6 @@ pub struct PatchedGround<'a> {
     pub lattice: &'a Lattice,
     /// The patches over them.
     pub layout: &'a PatchLayout,
-    /// Vertical exaggeration; 1 draws heights as they are.
-    pub exaggeration: f32,
 }
 
 impl PatchedGround<'_> {
@@ -28,8 +26,7 @@ impl PatchedGround<'_> {
     #[inline]
     pub fn position(&self, vertex: Vertex) -> Vec3 {
         let height = self.lattice.height(self.layout.post(vertex));
-        let z = if height.is_nan() { 0.0 } else { height * self.exaggeration };
-        self.plan(vertex).extend(z)
+        self.plan(vertex).extend(if height.is_nan() { 0.0 } else { height })
     }
 
     /// Whether the patch with south-west corner `corner` lies within the borders and has data at every post, so that

@@ -113,7 +113,7 @@ mod tests {
         for (x, y) in [(3, 5), (20, 19), (33, 30), (16, 9), (41, 36)] {
             active.activate(Vertex::new(x, y));
         }
-        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let mut listed = BTreeSet::new();
         for corner in layout.patches() {
             let list = PatchList::bintree(ground, &active, corner);
@@ -125,7 +125,7 @@ mod tests {
         }
         let mut displayed = BTreeSet::new();
         let extent = lattice.extent();
-        DisplayedTerrain::new(Arc::clone(&lattice), active, 1.0, layout.patches().collect()).visit_facets(
+        DisplayedTerrain::new(Arc::clone(&lattice), active, layout.patches().collect()).visit_facets(
             &extent,
             &mut |facet| {
                 displayed.insert(plan_key(facet.map(Vec3::truncate)));

@@ -85,17 +85,14 @@ impl OwnRadius<'_> {
             return 0.0;
         }
         match *self {
-            Self::Plain { errors, reach } => {
-                plain_radius(errors.at(ground.layout, vertex), reach, ground.exaggeration)
-            }
+            Self::Plain { errors, reach } => plain_radius(errors.at(ground.layout, vertex), reach),
             Self::Constrained { reach, roughness } => {
                 let reach = f64::from(reach) * roughness.factor(ground.layout.post(vertex));
                 let error = midpoint_error_at(ground.lattice, ground.layout, vertex);
-                scaled(error, |error| reach * error * f64::from(ground.exaggeration))
+                scaled(error, |error| reach * error)
             }
             Self::Bounding { errors, reach } => scaled(errors.at(ground.layout, vertex), |error| {
-                let drawn = error * f64::from(ground.exaggeration);
-                (f64::from(reach) * drawn + drawn + extent(ground, vertex)) * (1.0 + MARGIN)
+                (f64::from(reach) * error + error + extent(ground, vertex)) * (1.0 + MARGIN)
             }),
         }
     }
@@ -111,8 +108,8 @@ impl OwnRadius<'_> {
 
 /// See [`OwnRadius::Plain`].
 #[inline]
-fn plain_radius(error: f32, reach: f32, exaggeration: f32) -> f32 {
-    scaled(error, |error| f64::from(reach) * error * f64::from(exaggeration))
+fn plain_radius(error: f32, reach: f32) -> f32 {
+    scaled(error, |error| f64::from(reach) * error)
 }
 
 /// The radius that a finite error has; 0 for no error, infinite for an infinite one.
@@ -156,7 +153,7 @@ impl SphereMap {
         radii.par_chunks_mut(columns).enumerate().for_each(|(y, row)| {
             if let OwnRadius::Plain { errors, reach } = *own {
                 let errors = errors.row(ground.layout, y).iter();
-                let radius = |&error: &f32| plain_radius(error, reach, ground.exaggeration);
+                let radius = |&error: &f32| plain_radius(error, reach);
                 row.iter_mut().zip(errors.map(radius)).for_each(|(slot, radius)| *slot = radius);
                 return;
             }
@@ -251,7 +248,7 @@ impl SphereMap {
         match *own {
             OwnRadius::Plain { errors, reach } => {
                 let errors = errors.row(layout, row.y);
-                let own = |x: usize| plain_radius(errors[x], reach, ground.exaggeration);
+                let own = |x: usize| plain_radius(errors[x], reach);
                 self.put_row(layout, field, row, own, changed);
             }
             _ => {

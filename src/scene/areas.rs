@@ -5,9 +5,8 @@
 
 use glam::DVec2;
 
-use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
-use crate::description::document::{Color, Document};
+use crate::description::document::Document;
 use crate::description::features::AreaTable;
 use crate::description::words::{Border, Cover};
 use crate::draw::color::Srgba;
@@ -38,7 +37,7 @@ pub fn lay(
     for table in &document.areas {
         let (mut bare, mut off) = (0, 0);
         for Sourced { attributes, shape } in sources.polygons(&table.source)? {
-            let Some(cover) = attributes.word(table.cover.as_ref()) else {
+            let Some(cover) = attributes.value(Some(&table.cover)) else {
                 bare += 1;
                 continue;
             };
@@ -77,7 +76,7 @@ impl AreaPatch {
         if !Rect::around(shape.exterior.iter().copied()).meets(extent) {
             return None;
         }
-        let width_m = table.border_width.as_ref().map_or(defaults::BORDER_WIDTH_M, |width| *width.get_ref());
+        let width_m = table.border_width;
         let mut fill = Clipped { plan: PlanMesh::default(), extent };
         area::fill(&shape.exterior, &shape.holes, texture_m(cover, width_m), &mut fill);
         let dashes = match border_of(table, cover) {
@@ -88,7 +87,7 @@ impl AreaPatch {
         let rings: Vec<&[DVec2]> =
             std::iter::once(&shape.exterior).chain(&shape.holes).map(Vec::as_slice).collect();
         let line = dashes.map(|dashes| border(&rings, &fill.plan, width_m, dashes)).unwrap_or_default();
-        let tint = table.color.as_ref().map_or(Srgba::WHITE, |color| srgba(*color.get_ref()));
+        let tint = table.color.map_or(Srgba::WHITE, |color| Srgba(color.0));
         (!fill.plan.triangles.is_empty()).then_some(Self { fill: fill.plan, line, cover, tint })
     }
 
@@ -102,10 +101,13 @@ impl AreaPatch {
     }
 }
 
+/// The width of a border in meters at which hatching has its own size: the default of `border_width`.
+const HATCHED_BORDER_M: f64 = 4.0;
+
 /// Meters in one repeat of a cover's texture; hatching is as wide as the border wants it.
 fn texture_m(cover: Cover, border_width_m: f64) -> f64 {
     match cover {
-        Cover::Restricted => cover_length_m(cover) * border_width_m / defaults::BORDER_WIDTH_M,
+        Cover::Restricted => cover_length_m(cover) * border_width_m / HATCHED_BORDER_M,
         _ => cover_length_m(cover),
     }
 }
@@ -113,11 +115,7 @@ fn texture_m(cover: Cover, border_width_m: f64) -> f64 {
 /// The stated border, or the cover's own.
 fn border_of(table: &AreaTable, cover: Cover) -> Border {
     let own = if cover == Cover::Restricted { Border::Solid } else { Border::None };
-    table.border.as_ref().map_or(own, |border| *border.get_ref())
-}
-
-fn srgba(color: Color) -> Srgba {
-    Srgba(color.0)
+    table.border.unwrap_or(own)
 }
 
 fn multiplied(color: Srgba, tint: Srgba) -> Srgba {

@@ -13,8 +13,9 @@ use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::description::suggest::{nearest, quoted};
+use crate::message::suggest::{nearest, quoted};
 use crate::model::Companions;
+use crate::model::error::CompanionError;
 
 /// The largest file read.
 pub const MAX_BYTES: u64 = 2 << 30;
@@ -258,12 +259,8 @@ impl SiblingFiles<'_> {
 }
 
 impl Companions for SiblingFiles<'_> {
-    fn load(&self, name: &str) -> Result<Vec<u8>, String> {
-        let bytes = self.resolve(name).and_then(|path| self.assets.read_resolved(path));
-        bytes.map_err(|error| match std::error::Error::source(&error) {
-            Some(source) => format!("{error}: {source}"),
-            None => error.to_string(),
-        })
+    fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError> {
+        Ok(self.assets.read_resolved(self.resolve(name)?)?)
     }
 }
 

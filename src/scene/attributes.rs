@@ -1,26 +1,24 @@
-//! What a vector file says of a feature, for the expressions of the scene file.
+//! The properties of a feature, for the expressions of the scene file.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use toml::Spanned;
-
-use crate::description::expression::{self, ComputedWord, Expression, Quantity};
-use crate::description::features::Scalar;
-use crate::description::words::Word;
+use crate::description::expression::Expression;
+use crate::description::feature_value::{DefaultedValue, FeatureValue, FromScalar};
+use crate::description::scalar::Scalar;
 use crate::vector::feature::VectorLayer;
 
-/// The properties of one feature; none where it stands in the scene file itself.
+/// The properties of one feature; none for a feature that the scene file itself states.
 #[derive(Clone, Debug, Default)]
 pub struct Attributes {
     of: Option<(Arc<VectorLayer>, usize)>,
 }
 
-/// How often a key's expression gave nothing and its default was taken, by key and default.
-pub type Defaulted = BTreeMap<(&'static str, String), usize>;
+/// How often a key's expression gave no value and a default was taken, by key and default.
+pub type DefaultCounts = BTreeMap<(String, String), usize>;
 
 impl Attributes {
-    /// Those of the feature with this place in the layer.
+    /// The properties of the feature at this place in the layer.
     pub fn new(layer: Arc<VectorLayer>, feature: usize) -> Self {
         Self { of: Some((layer, feature)) }
     }
@@ -36,7 +34,7 @@ impl Attributes {
         }
     }
 
-    /// The feature's name: the one given in the scene file, else its property `name`, else nothing.
+    /// The feature's name: the one given in the scene file, else its property `name`, else empty.
     pub fn name(&self, given: Option<&str>) -> String {
         match (given, self.get("name")) {
             (Some(given), _) => given.to_owned(),
@@ -45,34 +43,37 @@ impl Attributes {
         }
     }
 
-    /// The number that the scene file states; `None` where it states none, or the properties give none in its range.
-    pub fn number(&self, stated: Option<&Spanned<Quantity>>) -> Option<f64> {
-        stated?.get_ref().number(&|name| self.get(name))
+    /// The value of a key; `None` where the key is not stated, or the properties give no value in its range.
+    pub fn value<T: FromScalar>(&self, key: Option<&FeatureValue<T>>) -> Option<T> {
+        key?.value(&|name| self.get(name))
     }
 
-    /// As [`Self::number`], with a default; `key` is told where an expression gives nothing.
+    /// The value of a key, or its default.
+    pub fn value_or_default<T: FromScalar>(&self, key: &DefaultedValue<T>) -> T {
+        key.value(&|name| self.get(name))
+    }
+
+    /// The number of a key, or its default; counts where an expression gives none.
+    pub fn number(&self, key: &DefaultedValue<f64>, counts: &mut DefaultCounts) -> f64 {
+        self.number_or(key.stated(), *key.default(), counts)
+    }
+
+    /// The number of a key, or `default`; counts where an expression gives none.
     pub fn number_or(
         &self,
-        (key, stated): (&'static str, Option<&Spanned<Quantity>>),
+        key: Option<&FeatureValue<f64>>,
         default: f64,
-        defaulted: &mut Defaulted,
+        counts: &mut DefaultCounts,
     ) -> f64 {
-        self.number(stated).unwrap_or_else(|| {
-            if stated.is_some() {
-                *defaulted.entry((key, default.to_string())).or_default() += 1;
-            }
+        self.value(key).unwrap_or_else(|| {
+            count_default(key, &default.to_string(), counts);
             default
         })
     }
 
-    /// The word that the scene file states; `None` where it states none, or the properties give none.
-    pub fn word<W: Word>(&self, stated: Option<&Spanned<ComputedWord<W>>>) -> Option<W> {
-        stated?.get_ref().word(&|name| self.get(name))
-    }
-
-    /// Whether a property is there and does not say no: true, a number other than 0, or such a text.
+    /// Whether a property is there and does not say no.
     pub fn affirm(&self, property: &str) -> bool {
-        self.get(property).is_some_and(|value| expression::holds(&value))
+        self.get(property).is_some_and(|value| value.holds())
     }
 
     /// Whether an expression holds for the feature.
@@ -81,9 +82,20 @@ impl Attributes {
     }
 }
 
-/// What [`Defaulted`] counted, a sentence a key.
-pub fn notes(defaulted: &Defaulted) -> impl Iterator<Item = String> + '_ {
-    defaulted.iter().map(|((key, default), count)| {
+/// Counts that the expression of a key gave no value; nothing where the key is not stated.
+pub fn count_default<T: FromScalar>(
+    key: Option<&FeatureValue<T>>,
+    default: &str,
+    counts: &mut DefaultCounts,
+) {
+    if let Some(key) = key.and_then(FeatureValue::computed_key) {
+        *counts.entry((key.to_owned(), default.to_owned())).or_default() += 1;
+    }
+}
+
+/// A sentence for each key and default counted.
+pub fn notes(counts: &DefaultCounts) -> impl Iterator<Item = String> + '_ {
+    counts.iter().map(|((key, default), count)| {
         let features = if *count == 1 { "1 feature gives" } else { &format!("{count} features give") };
         format!("{key}: {features} no value in its range; {default} was taken")
     })

@@ -18,7 +18,7 @@ use crate::description::document::Document;
 use crate::geom::rect::Rect;
 use crate::ribbon::texture::RibbonSurface;
 use crate::scene::builder::SceneBuilder;
-use crate::scene::report::{ReportCell, ReportColumn};
+use crate::scene::report::SpanRow;
 use crate::scene::roads::centerline::{Centerline, Support};
 use crate::scene::roads::chains::{self, ChainEnd, SpanChain, SpanLink};
 use crate::scene::roads::levels::{self, ChainRun, Site};
@@ -30,7 +30,7 @@ use crate::structure::deck::DeckCourse;
 use crate::structure::deck_profile::{ClearancePoint, DeckProfile};
 use crate::structure::tunnel::Portal;
 use crate::terrain::lattice::Lattice;
-use crate::terrain::query::deck::Deck;
+use crate::terrain::query::deck::{Deck, DeckError};
 use crate::terrain::triangle_surface::SurfaceTriangle;
 
 /// The most piers in a scene.
@@ -51,23 +51,6 @@ const ABUTMENT_M: f64 = 1.5;
 /// The longest part of a bridge that an abutment takes.
 const LONGEST_ABUTMENT: f64 = 0.25;
 
-/// What the report says of bridges and tunnels.
-const TABLE: (&str, &[ReportColumn]) = (
-    "bridges and tunnels",
-    &[
-        ReportColumn { name: "name", unit: "" },
-        ReportColumn { name: "kind", unit: "" },
-        ReportColumn { name: "by", unit: "" },
-        ReportColumn { name: "length", unit: "m" },
-        ReportColumn { name: "greatest height above ground", unit: "m" },
-        ReportColumn { name: "greatest depth below ground", unit: "m" },
-        ReportColumn { name: "steepest grade", unit: "%" },
-        ReportColumn { name: "piers", unit: "" },
-        ReportColumn { name: "portals", unit: "" },
-        ReportColumn { name: "lowest clearance", unit: "m" },
-    ],
-);
-
 /// Builds what carries the document's roads and its tables of bridges. Roads through underpasses become roads on the
 /// ground; all others that are not on the ground are done with.
 ///
@@ -86,7 +69,7 @@ pub fn build(
         return Ok(());
     }
     check_piers(document, &spans)?;
-    let water = water(collected).map_err(|error| document.error_at(0..0, error))?;
+    let water = water(collected).map_err(|error| document.error_at(0..0, WaterError(error)))?;
     let site = Site { lattice, water: &water, exaggeration };
     let chains = chains::join(&spans, roads);
     let runs = levels::settle(&spans, &chains, roads, &site);
@@ -112,7 +95,7 @@ pub fn build(
     }
     let decks = bridges.iter().flat_map(|(built, link, options)| built.deck(link, options));
     let decks = Deck::new(&decks.collect::<Vec<_>>());
-    let decks = decks.map_err(|error| document.error_at(0..0, error.to_string()))?;
+    let decks = decks.map_err(|error| document.error_at(0..0, error))?;
     for (built, link, options) in &bridges {
         built.bridge((link, options), &decks, collected);
     }
@@ -137,7 +120,7 @@ fn check_piers(document: &Document, spans: &[RoadSpan]) -> Result<(), Diagnostic
 }
 
 /// Where there is water, at height 0.
-fn water(collected: &SceneBuilder) -> Result<Deck, String> {
+fn water(collected: &SceneBuilder) -> Result<Deck, DeckError> {
     let of_water = collected
         .ribbons
         .iter()
@@ -145,8 +128,13 @@ fn water(collected: &SceneBuilder) -> Result<Deck, String> {
     let corners = of_water.flat_map(|ribbon| ribbon.plan.corners());
     let facets: Vec<SurfaceTriangle> =
         corners.map(|corners| corners.map(|corner| corner.at.as_vec2().extend(0.0))).collect();
-    Deck::new(&facets).map_err(|error| format!("water under bridges: {error}"))
+    Deck::new(&facets)
 }
+
+/// The water under bridges cannot be indexed.
+#[derive(Debug, thiserror::Error)]
+#[error("water under bridges")]
+struct WaterError(#[source] DeckError);
 
 fn called(spans: &[RoadSpan], chain: &SpanChain) -> String {
     let span = &spans[chain.links[0].span];
@@ -357,24 +345,22 @@ impl<'a> BuiltChain<'a> {
                 passage.reach_m.map(|at| self.run.profile.level_m(at) - depth_m - passage.level_m)
             })
             .reduce(f64::min);
-        let count = |count: Option<usize>| count.map_or(ReportCell::Empty, ReportCell::Count);
         let kind = match (span.carried, counts.1) {
             (Support::Tunnel, Some(0)) if -least < LEAST_COVER_M => "underpass",
             (Support::Tunnel, _) => "tunnel",
             _ => "bridge",
         };
-        let row = vec![
-            ReportCell::Text(span.name.clone()),
-            ReportCell::Text(kind.into()),
-            ReportCell::Text(span.by.word().into()),
-            ReportCell::Number(span.line.length()),
-            ReportCell::Number(most),
-            ReportCell::Number(-least),
-            ReportCell::Number(grade * 100.0),
-            count(counts.0),
-            count(counts.1),
-            clearance.map_or(ReportCell::Empty, ReportCell::Number),
-        ];
-        collected.report.add(TABLE, row);
+        collected.report.bridges_and_tunnels.push(SpanRow {
+            name: span.name.clone(),
+            kind,
+            by: span.by.word(),
+            length: span.line.length(),
+            greatest_height_above_ground: most,
+            greatest_depth_below_ground: -least,
+            steepest_grade: grade * 100.0,
+            piers: counts.0,
+            portals: counts.1,
+            lowest_clearance: clearance,
+        });
     }
 }

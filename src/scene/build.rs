@@ -2,19 +2,17 @@
 
 use std::sync::{Arc, OnceLock};
 
-use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
-use crate::roam::culling::PatchHeights;
-use crate::roam::errors::ErrorMap;
+use crate::geom::crs::Crs;
 use crate::roam::layout::{DEFAULT_PATCH, PatchLayout};
-use crate::roam::patched_ground::PatchedGround;
 use crate::scene::areas;
 use crate::scene::assets::Assets;
 use crate::scene::attributes;
 use crate::scene::bridges;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::buildings;
+use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::fences;
 use crate::scene::ground;
 use crate::scene::models;
@@ -23,9 +21,8 @@ use crate::scene::sources::Sources;
 use crate::scene::style;
 use crate::scene::views;
 use crate::scene::water::{lakes, rivers};
-use crate::scene::world_frame::{WorldFrame, parse_crs};
+use crate::scene::world_frame::WorldFrame;
 use crate::scene::{Scene, Terrain};
-use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::deck::Deck;
 use crate::terrain::query::service::HeightService;
@@ -42,7 +39,7 @@ pub fn build(
     progress("reading elevation");
     let loaded = ground::load(document, assets)?;
     let (crs, mut lattice) = (loaded.crs, loaded.lattice);
-    let places = places(document, &crs, &lattice)?;
+    let places = places(document, &crs, &lattice);
 
     progress("laying features");
     let sources = Sources::new(&places, assets);
@@ -57,7 +54,7 @@ pub fn build(
     let lines = fences::lay_out(document, &sources, &mut lattice, &mut collected)?;
     bridges::build(document, &sources, (&lattice, places.exaggeration), &mut roads, &mut collected)?;
     network::lay(&roads, &extent, &mut collected);
-    let finest = FullResolution { lattice: &lattice, exaggeration: places.exaggeration };
+    let finest = DrawnGround { lattice: &lattice, exaggeration: places.exaggeration };
     fences::set(&lines, finest, &mut collected);
     buildings::raise(document, &plots, finest, &mut collected);
     collected.resolve_overlaps();
@@ -66,10 +63,10 @@ pub fn build(
     let (models, placements) =
         models::place(document, (&places, &sources, assets), &mut lattice, &mut collected)?;
 
-    let defaulted: Vec<String> = attributes::notes(&collected.defaulted).collect();
+    let defaulted: Vec<String> = attributes::notes(&collected.default_counts).collect();
     collected.notes.extend(defaulted);
 
-    progress("measuring terrain");
+    progress("placing labels and cameras");
     let terrain = terrain(document, lattice)?;
     let labels = views::labels(document, &places, &terrain)?;
     let cameras = views::cameras(document, &places, &terrain)?;
@@ -79,16 +76,10 @@ pub fn build(
     let (low, high) = terrain.bounds();
     let lighting = style::lighting(document, (high - low).max_element());
     let ramp = style::ramp(document, &terrain.lattice)?;
-    let map = style::ground_map(
-        &terrain.lattice,
-        terrain.exaggeration,
-        lighting.to_sun,
-        ramp,
-        style::contours(document),
-    );
+    let map = style::ground_map(&terrain, lighting.to_sun, ramp, style::contours(document));
 
     let heights = HeightService::new(loaded.source, crs.clone(), Arc::clone(&terrain.lattice));
-    let decks = Deck::new(&collected.decks).map_err(|error| document.error_at(0..0, error.to_string()))?;
+    let decks = Deck::new(&collected.decks).map_err(|error| document.error_at(0..0, error))?;
     let heights = if decks.facets().is_empty() { heights } else { heights.with_decks(Arc::new(decks)) };
     Ok(Scene {
         title: document.title.clone(),
@@ -115,26 +106,14 @@ pub fn build(
     })
 }
 
-fn places<'a>(
-    document: &'a Document,
-    crs: &'a crate::geom::crs::Crs,
-    lattice: &Lattice,
-) -> Result<WorldFrame<'a>, Diagnostic> {
-    Ok(WorldFrame {
+fn places<'a>(document: &'a Document, crs: &'a Crs, lattice: &Lattice) -> WorldFrame<'a> {
+    WorldFrame {
         document,
         crs,
-        points_crs: parse_crs(document, document.points_crs.as_ref())?.unwrap_or_else(|| crs.clone()),
+        points_crs: document.points_crs.as_ref().unwrap_or(crs).clone(),
         origin: lattice.origin(),
-        exaggeration: exaggeration(document),
-    })
-}
-
-fn exaggeration(document: &Document) -> f32 {
-    document
-        .terrain
-        .vertical_exaggeration
-        .as_ref()
-        .map_or(defaults::VERTICAL_EXAGGERATION, |value| *value.get_ref()) as f32
+        exaggeration: document.terrain.vertical_exaggeration as f32,
+    }
 }
 
 fn terrain(document: &Document, lattice: Lattice) -> Result<Terrain, Diagnostic> {
@@ -142,17 +121,6 @@ fn terrain(document: &Document, lattice: Lattice) -> Result<Terrain, Diagnostic>
         let size = format!("{}×{} posts", lattice.columns(), lattice.rows());
         document.error(&document.terrain.dem, format!("an elevation model of {size} is too large"))
     })?;
-    let exaggeration = exaggeration(document);
-    Ok(Terrain {
-        errors: ErrorMap::exact(&lattice, &layout),
-        patch_heights: PatchHeights::new(PatchedGround { lattice: &lattice, layout: &layout, exaggeration }),
-        lattice: Arc::new(lattice),
-        layout,
-        exaggeration,
-        tolerance_px: document
-            .terrain
-            .tolerance_px
-            .as_ref()
-            .map_or(defaults::TOLERANCE_PX, |value| *value.get_ref()) as f32,
-    })
+    let tolerance_px = document.terrain.tolerance_px as f32;
+    Ok(Terrain::new(Arc::new(lattice), layout, document.terrain.vertical_exaggeration as f32, tolerance_px))
 }

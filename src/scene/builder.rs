@@ -5,7 +5,7 @@ use crate::draw::list::FeatureId;
 use crate::ribbon::partition;
 use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
-use crate::scene::attributes::Defaulted;
+use crate::scene::attributes::DefaultCounts;
 use crate::scene::report::SceneReport;
 use crate::scene::roads::profiles::RoadProfile;
 use crate::scene::{FeatureKind, FeatureSolid, Ribbon, SceneFeature, Solid};
@@ -26,8 +26,8 @@ pub struct SceneBuilder {
     pub decks: Vec<SurfaceTriangle>,
     /// For the user.
     pub notes: Vec<String>,
-    /// Where expressions gave nothing.
-    pub defaulted: Defaulted,
+    /// How often expressions gave no value.
+    pub default_counts: DefaultCounts,
     /// What was found out about single features.
     pub report: SceneReport,
     /// Of every road that the ground follows.

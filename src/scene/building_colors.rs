@@ -1,7 +1,7 @@
 //! Colors as OpenStreetMap's properties write them: `#rgb`, `#rrggbb`, or one of the names that CSS began with.
 
-use crate::description::document::Color;
-use crate::description::features::Scalar;
+use crate::description::color::Color;
+use crate::description::scalar::Scalar;
 use crate::draw::color::Srgba;
 
 /// The names in use on buildings (CSS Color Module Level 4, its basic colors and a few more), muted to what paint and

@@ -7,13 +7,12 @@
 //! ```
 
 use glam::DVec2;
-use toml::Spanned;
 
-use crate::description::defaults;
+use crate::description::color::Color;
 use crate::description::diagnostic::Diagnostic;
-use crate::description::document::{Color, Document};
-use crate::description::expression::as_number;
-use crate::description::features::{BuildingTable, Scalar};
+use crate::description::document::Document;
+use crate::description::features::BuildingTable;
+use crate::description::scalar::Scalar;
 use crate::description::words::{BaseRule, RoofShape as RoofWord, Word};
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
@@ -22,7 +21,8 @@ use crate::geom::rect::Rect;
 use crate::scene::attributes::Attributes;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::building_colors::color_named;
-use crate::scene::report::{ReportCell, ReportColumn};
+use crate::scene::drawn_ground::DrawnGround;
+use crate::scene::report::BuildingPadRow;
 use crate::scene::sources::{Sourced, Sources};
 use crate::scene::{Coat, FeatureKind, FeatureSolid, Solid};
 use crate::structure::building::{BuildingLevels, Paint, raise as raised};
@@ -30,7 +30,6 @@ use crate::structure::building_footing::WallFooting;
 use crate::structure::building_footprint::BuildingFootprint;
 use crate::structure::draped_solid::DrapedSolid;
 use crate::structure::roof::{UnitRoof, roof};
-use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::query::pieces::GridRegion;
 use crate::terrain::query::zone::zone;
@@ -38,6 +37,10 @@ use crate::terrain::volumes::Volumes;
 
 /// The tallest that a property may say, meters; as `height` in a scene file.
 const TALLEST_M: f64 = 1000.0;
+/// The height of one of a building's `levels` in meters.
+const STORY_M: f64 = 3.0;
+/// The height of a building whose properties say neither height nor levels, in meters: one floor with its roof.
+const HOUSE_M: f64 = 6.0;
 /// Rise over run of a roof of 30 degrees.
 const PITCH: f64 = 0.577_350_269;
 /// The most of a building's height that is roof where nobody says how much, so that wide halls keep their walls.
@@ -81,16 +84,6 @@ impl BuildingTally {
     }
 }
 
-const PADS: (&str, &[ReportColumn]) = (
-    "building pads",
-    &[
-        ReportColumn { name: "name", unit: "" },
-        ReportColumn { name: "level", unit: "m" },
-        ReportColumn { name: "cut", unit: "m3" },
-        ReportColumn { name: "fill", unit: "m3" },
-    ],
-);
-
 /// The document's buildings with their footprints mended, and the ground leveled under those whose base is a pad.
 ///
 /// # Errors
@@ -103,7 +96,7 @@ pub fn lay_out(
 ) -> Result<Vec<Plot>, Diagnostic> {
     let (mut plots, mut tally) = (Vec::new(), BuildingTally::default());
     for (table, building) in document.buildings.iter().enumerate() {
-        let wants_pad = base_rule(building) == BaseRule::Pad;
+        let wants_pad = building.base == BaseRule::Pad;
         for Sourced { attributes, shape } in sources.polygons(&building.source)? {
             let parts = BuildingFootprint::parts(&shape.exterior, &shape.holes);
             if parts.is_empty() {
@@ -140,12 +133,10 @@ fn pad(
     }
     let mut volumes = Volumes::default();
     for part in parts {
-        let moved = leveling::level(lattice, part.rings(), mean_m as f32);
-        volumes.cut_m3 += moved.cut_m3;
-        volumes.fill_m3 += moved.fill_m3;
+        volumes += leveling::level(lattice, part.rings(), mean_m as f32);
     }
-    let numbers = [mean_m, volumes.cut_m3, volumes.fill_m3].map(ReportCell::Number);
-    collected.report.add(PADS, std::iter::once(ReportCell::Text(name.to_owned())).chain(numbers).collect());
+    let Volumes { cut_m3: cut, fill_m3: fill } = volumes;
+    collected.report.building_pads.push(BuildingPadRow { name: name.to_owned(), level: mean_m, cut, fill });
     Some(f64::from(mean_m as f32))
 }
 
@@ -197,7 +188,7 @@ impl GroundUnder {
 const NO_DATA_SHARE: f64 = 1e-6;
 
 /// Raises the buildings on the ground as it is now.
-pub fn raise(document: &Document, plots: &[Plot], ground: FullResolution<'_>, collected: &mut SceneBuilder) {
+pub fn raise(document: &Document, plots: &[Plot], ground: DrawnGround<'_>, collected: &mut SceneBuilder) {
     let mut tally = BuildingTally::default();
     for plot in plots {
         let building = &document.buildings[plot.table];
@@ -205,7 +196,7 @@ pub fn raise(document: &Document, plots: &[Plot], ground: FullResolution<'_>, co
             tally.off += 1;
             continue;
         };
-        let base_m = match (plot.pad_m, base_rule(building)) {
+        let base_m = match (plot.pad_m, building.base) {
             (Some(level_m), _) => level_m,
             (None, BaseRule::Lowest) => under.low_m,
             (None, BaseRule::Highest) => under.high_m,
@@ -256,15 +247,11 @@ fn raise_parts(
     tally.roofs_replaced += usize::from(replaced);
 }
 
-fn base_rule(building: &BuildingTable) -> BaseRule {
-    building.base.as_ref().map(|base| *base.get_ref()).unwrap_or_default()
-}
-
 /// A property as a number within its bounds.
 fn property(attributes: &Attributes, names: &[&str], (low, high): (f64, f64)) -> Option<f64> {
     names
         .iter()
-        .filter_map(|name| attributes.get(name).as_ref().and_then(as_number))
+        .filter_map(|name| attributes.get(name)?.number())
         .find(|&number| number > low && number <= high)
 }
 
@@ -275,14 +262,13 @@ fn heights(
     collected: &mut SceneBuilder,
     tally: &mut BuildingTally,
 ) -> (f64, f64) {
-    let stories = |names: &[&str]| property(attributes, names, (0.0, TALLEST_M / defaults::LEVEL_HEIGHT_M));
+    let stories = |names: &[&str]| property(attributes, names, (0.0, TALLEST_M / STORY_M));
     let known = property(attributes, &["height"], (0.0, TALLEST_M))
-        .or_else(|| stories(&["building:levels", "levels"]).map(|levels| levels * defaults::LEVEL_HEIGHT_M))
-        .unwrap_or(defaults::BUILDING_HEIGHT_M);
-    let stated = ("[[building]] height", building.height.as_ref());
-    let height_m = attributes.number_or(stated, known, &mut collected.defaulted);
+        .or_else(|| stories(&["building:levels", "levels"]).map(|levels| levels * STORY_M))
+        .unwrap_or(HOUSE_M);
+    let height_m = attributes.number_or(building.height.as_ref(), known, &mut collected.default_counts);
     let low_m = property(attributes, &["min_height"], (0.0, TALLEST_M))
-        .or_else(|| stories(&["building:min_level"]).map(|levels| levels * defaults::LEVEL_HEIGHT_M))
+        .or_else(|| stories(&["building:min_level"]).map(|levels| levels * STORY_M))
         .unwrap_or(0.0);
     if low_m >= height_m {
         tally.raised_whole += 1;
@@ -298,11 +284,11 @@ fn wanted_roof(building: &BuildingTable, attributes: &Attributes) -> RoofWord {
             "half-hipped" | "mansard" | "side_hipped" => Some(RoofWord::Hipped),
             "gambrel" | "saltbox" | "round" => Some(RoofWord::Gabled),
             "dome" | "onion" | "cone" => Some(RoofWord::Pyramidal),
-            other => RoofWord::ALL.iter().find(|(word, _)| *word == other).map(|(_, shape)| *shape),
+            other => RoofWord::from_word(other),
         },
         _ => None,
     };
-    attributes.word(building.roof.as_ref()).or_else(tagged).unwrap_or_default()
+    attributes.value(building.roof.as_ref()).or_else(tagged).unwrap_or_default()
 }
 
 /// How much of a building's height is roof, meters.
@@ -311,7 +297,7 @@ fn roof_height(building: &BuildingTable, attributes: &Attributes, made: &UnitRoo
         return 0.0;
     }
     let stated = attributes
-        .number(building.roof_height.as_ref())
+        .value(building.roof_height.as_ref())
         .or_else(|| property(attributes, &["roof:height"], (0.0, TALLEST_M)));
     match stated {
         Some(roof_m) => roof_m.min(height_m),
@@ -326,13 +312,13 @@ fn paint(
     made: &UnitRoof,
 ) -> Paint {
     let by_place = Paint::by_place(part, made);
-    let color = |stated: &Option<Spanned<Color>>, names: [&str; 2]| {
+    let color = |stated: Option<Color>, names: [&str; 2]| {
         let tagged = || names.iter().find_map(|name| color_named(&attributes.get(name)?));
-        stated.as_ref().map(|color| Srgba(color.get_ref().0)).or_else(tagged)
+        stated.map(|color| Srgba(color.0)).or_else(tagged)
     };
     // Walls and roofs are solid, whatever the color's alpha says.
     let solid = |Srgba([red, green, blue, _]): Srgba| Srgba::opaque(red, green, blue);
-    let wall = color(&building.wall_color, ["building:colour", "building:color"]);
-    let roof = color(&building.roof_color, ["roof:colour", "roof:color"]);
+    let wall = color(building.wall_color, ["building:colour", "building:color"]);
+    let roof = color(building.roof_color, ["roof:colour", "roof:color"]);
     Paint { wall: wall.map_or(by_place.wall, solid), roof: roof.map_or(by_place.roof, solid), ..by_place }
 }

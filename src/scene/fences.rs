@@ -5,11 +5,11 @@
 
 use glam::DVec2;
 
-use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
-use crate::description::expression::as_number;
-use crate::description::features::{FenceTable, Scalar};
+use crate::description::features::FenceTable;
+use crate::description::scalar::Scalar;
+use crate::description::stated::Stated;
 use crate::description::words::FenceKind;
 use crate::draw::list::FeatureId;
 use crate::earthworks::brush::Trench;
@@ -20,8 +20,9 @@ use crate::ribbon::stroke::{Continuations, StrokeOptions, stroke};
 use crate::ribbon::texture::{RibbonSurface, texture_length_m};
 use crate::scene::attributes::Attributes;
 use crate::scene::builder::SceneBuilder;
+use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::near::{self, Clipped};
-use crate::scene::report::{ReportCell, ReportColumn};
+use crate::scene::report::TrenchRow;
 use crate::scene::sources::Sources;
 use crate::scene::{FeatureKind, FeatureSolid};
 use crate::structure::draped_solid::DrapedSolid;
@@ -31,7 +32,6 @@ use crate::structure::obstacle::{self, Obstacles};
 use crate::structure::power::{PowerLine, clear};
 use crate::structure::trench::{bare_m, parapets};
 use crate::structure::wall::wall;
-use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::triangle_surface::TriangleSurface;
 use crate::terrain::volumes::Volumes;
@@ -76,15 +76,6 @@ fn default_sizes(kind: FenceKind) -> Sizes {
     };
     Sizes { height_m, width_m, spacing_m }
 }
-
-const TRENCHES: (&str, &[ReportColumn]) = (
-    "trenches",
-    &[
-        ReportColumn { name: "name", unit: "" },
-        ReportColumn { name: "length", unit: "m" },
-        ReportColumn { name: "cut", unit: "m3" },
-    ],
-);
 
 /// The document's lines, and the ground dug where they are trenches and its cells are fine enough.
 ///
@@ -133,7 +124,7 @@ fn too_many(document: &Document, fence: &FenceTable, kind: FenceKind) -> Diagnos
         FenceKind::Fence => "posts",
     };
     let message = format!("with the {what} along this, more than {MOST_PIECES} pieces stand along lines");
-    let place = fence.spacing.as_ref().map_or_else(|| fence.source.span(), toml::Spanned::span);
+    let place = fence.spacing.as_ref().and_then(Stated::span).unwrap_or_else(|| fence.source.span());
     document.error_at(place, message).with_help("give it a wider `spacing`, or choose fewer lines by `where`")
 }
 
@@ -144,20 +135,18 @@ fn line_of(
     feature: FeatureId,
     collected: &mut SceneBuilder,
 ) -> FenceLine {
-    let kind = attributes.word(fence.kind.as_ref()).unwrap_or_else(|| tagged_kind(fence, attributes));
+    let kind = attributes.value(fence.kind.as_ref()).unwrap_or_else(|| tagged_kind(fence, attributes));
     let sizes = default_sizes(kind);
-    let tagged = attributes.get("height").as_ref().and_then(as_number).filter(|height| *height > 0.0);
+    let tagged = attributes.get("height").and_then(|height| height.number()).filter(|height| *height > 0.0);
     let tagged = tagged.filter(|height| *height <= 1000.0 && fence.height.is_none());
-    let mut size = |key: &'static str, stated: Option<&_>, default: f64| {
-        attributes.number_or((key, stated), default, &mut collected.defaulted)
-    };
+    let mut size = |key, default: f64| attributes.number_or(key, default, &mut collected.default_counts);
     FenceLine {
         kind,
         parts: within(line.points(), extent),
-        height_m: size("[[fence]] height", fence.height.as_ref(), tagged.unwrap_or(sizes.height_m)),
-        width_m: size("[[fence]] width", fence.width.as_ref(), sizes.width_m),
-        spacing_m: size("[[fence]] spacing", fence.spacing.as_ref(), sizes.spacing_m),
-        sag: fence.sag.as_ref().map_or(defaults::SAG, |sag| *sag.get_ref()),
+        height_m: size(fence.height.as_ref(), tagged.unwrap_or(sizes.height_m)),
+        width_m: size(fence.width.as_ref(), sizes.width_m),
+        spacing_m: size(fence.spacing.as_deref(), sizes.spacing_m),
+        sag: fence.sag,
         feature,
     }
 }
@@ -222,7 +211,7 @@ fn dig(line: &FenceLine, name: &str, lattice: &mut Lattice, collected: &mut Scen
         return false;
     }
     let mut volumes = Volumes::default();
-    let area_m2 = lattice.cell().x * lattice.cell().y;
+    let area_m2 = lattice.cell_m2();
     for part in &line.parts {
         let trench = Trench {
             line: part.clone(),
@@ -243,17 +232,13 @@ fn dig(line: &FenceLine, name: &str, lattice: &mut Lattice, collected: &mut Scen
             }
         }
     }
-    let cells = vec![
-        ReportCell::Text(name.to_owned()),
-        ReportCell::Number(line.length_m()),
-        ReportCell::Number(volumes.cut_m3),
-    ];
-    collected.report.add(TRENCHES, cells);
+    let row = TrenchRow { name: name.to_owned(), length: line.length_m(), cut: volumes.cut_m3 };
+    collected.report.trenches.push(row);
     true
 }
 
 /// Sets the lines on the ground as it is now: boundaries and the floors of trenches as ribbons, the rest upright.
-pub fn set(lines: &[FenceLine], ground: FullResolution<'_>, collected: &mut SceneBuilder) {
+pub fn set(lines: &[FenceLine], ground: DrawnGround<'_>, collected: &mut SceneBuilder) {
     let mut added = 0;
     let extent = ground.lattice.extent();
     for line in lines {

@@ -9,6 +9,7 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
+use crate::geom::aabb::Aabb;
 use crate::geom::polygon;
 use crate::model::Model;
 use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
@@ -30,16 +31,14 @@ pub struct ModelFootprint {
 impl ModelFootprint {
     /// The footprint of a model; a point at its origin where it has no vertices.
     pub fn of(model: &Model) -> Self {
-        let bounds = model.bounds().unwrap_or((Vec3::ZERO, Vec3::ZERO));
-        let foot_z = bounds.0.z + (bounds.1.z - bounds.0.z) * FOOT_PART;
+        let bounds = model.bounds().unwrap_or_default();
+        let foot_z = bounds.min.z + (bounds.max.z - bounds.min.z) * FOOT_PART;
         let vertices = model.parts.iter().flat_map(|part| &part.mesh.vertices);
         let feet = vertices.map(|vertex| Vec3::from(vertex.position)).filter(|at| at.z <= foot_z);
-        let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        let (low, high) = feet.fold(none, |(low, high), at| (low.min(at), high.max(at)));
-        let (low, high) = if low.is_finite() { (low, high) } else { (Vec3::ZERO, Vec3::ZERO) };
-        let middle = (low + high) / 2.0;
-        let half = ((high - low) / 2.0).max(Vec3::splat(LEAST_HALF));
-        Self { min: (middle - half).with_z(bounds.0.z), max: (middle + half).with_z(bounds.0.z) }
+        let foot = Aabb::around(feet).unwrap_or_default();
+        let half = (foot.size() / 2.0).max(Vec3::splat(LEAST_HALF));
+        let (min, max) = (foot.center() - half, foot.center() + half);
+        Self { min: min.with_z(bounds.min.z), max: max.with_z(bounds.min.z) }
     }
 
     /// Its corners, counter-clockwise seen from above: front left, front right, back right and back left, as seen from
@@ -93,9 +92,8 @@ impl Under {
         let normal = (b - a).cross(c - a);
         let gradient = -normal.truncate() / normal.z;
         let z = |p: DVec2| a.z + gradient.dot(p + at - a.truncate());
-        for pair in piece[1..].windows(2) {
-            let corners = [piece[0], pair[0], pair[1]];
-            let area = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]) / 2.0;
+        for corners in polygon::fan(piece) {
+            let area = polygon::doubled_area(&corners) / 2.0;
             let middle = corners.iter().sum::<DVec2>() / 3.0;
             self.area_m2 += area;
             self.moment += middle.extend(z(middle)) * area;
@@ -178,7 +176,8 @@ mod tests {
         let at = |index: u32| DVec2::new(f64::from(index % 21), f64::from(index / 21)) * 5.0;
         let heights = (0..441).map(|index| (200.0 + at(index).dot(rise)) as f32).collect();
         let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(5.0), 21, heights).expect("sound");
-        let finest = FullResolution { lattice: &lattice, exaggeration: 2.0 };
+        let lattice = lattice.exaggerated(2.0);
+        let finest = FullResolution { lattice: &lattice };
         for quarter in 0..4 {
             let turn = DVec2::from_angle(0.3 + f64::from(quarter) * std::f64::consts::FRAC_PI_2);
             let at = DVec2::new(48.0, 51.0);

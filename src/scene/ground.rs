@@ -2,19 +2,18 @@
 
 use std::sync::Arc;
 
-use crate::dem::formats::raw::RawLayout;
-use crate::dem::formats::rgb_png::HeightEncoding;
-use crate::dem::mosaic;
+use crate::dem::formats::height_encoding::HeightEncoding;
+use crate::dem::formats::raw::{RawLayout, RawLayoutError};
+use crate::dem::mosaic::Tiles;
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints};
 use crate::dem::voids;
 use crate::dem::warp;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
-use crate::description::words;
+use crate::description::words::HeightEncodingWord;
 use crate::geom::crs::Crs;
 use crate::scene::assets::Assets;
-use crate::scene::world_frame::parse_crs;
 use crate::terrain::lattice::Lattice;
 
 /// The raster as read and the lattice made of it.
@@ -35,47 +34,44 @@ pub struct LoadedGround {
 /// A file cannot be had or read, several are not tiles of one raster, or they cannot be brought to the scene's
 /// system.
 pub fn load(document: &Document, assets: &Assets) -> Result<LoadedGround, Diagnostic> {
-    let wrong = |reason: String| document.error(&document.terrain.dem, reason);
+    let dem = &document.terrain.dem;
     let mut notes = Vec::new();
     let mut source = joined(document, assets, &mut notes)?;
-    if document.terrain.fill_voids.as_ref().is_some_and(|fill| *fill.get_ref()) {
+    if document.terrain.fill_voids {
         notes.push(voids::fill(&mut source).note());
     }
-    let target = parse_crs(document, document.crs.as_ref())?;
-    let metric = warp::to_metric(&source, target.as_ref()).map_err(|error| wrong(error.to_string()))?;
-    let lattice = Lattice::from_raster(&metric).map_err(|error| wrong(error.to_string()))?;
-    let crs = metric.crs.or(target).unwrap_or_else(Crs::local);
+    let metric =
+        warp::to_metric(&source, document.crs.as_ref()).map_err(|error| document.error(dem, error))?;
+    let lattice = Lattice::from_raster(&metric).map_err(|error| document.error(dem, error))?;
+    let crs = metric.crs.clone().or(document.crs.clone()).unwrap_or_else(Crs::local);
     Ok(LoadedGround { source: Arc::new(source), lattice, crs, notes })
 }
 
 /// The one raster that the document's files are, or are tiles of.
 fn joined(document: &Document, assets: &Assets, notes: &mut Vec<String>) -> Result<Raster, Diagnostic> {
     let terrain = &document.terrain;
-    let wrong = |reason: String| document.error(&terrain.dem, reason);
     let companions = |name: &str| assets.read(name).ok();
-    let value = |stated: &Option<toml::Spanned<f64>>| stated.as_ref().map(|value| *value.get_ref());
     let hints = DemHints {
-        png_height_scale: value(&terrain.height_scale),
-        png_height_offset: value(&terrain.height_offset),
-        height_encoding: terrain.height_encoding.as_ref().map(|encoding| match encoding.get_ref() {
-            words::HeightEncodingWord::TerrainRgb => HeightEncoding::TerrainRgb,
-            words::HeightEncodingWord::Terrarium => HeightEncoding::Terrarium,
+        height_scale: terrain.height_scale,
+        height_offset: Some(terrain.height_offset),
+        height_encoding: terrain.height_encoding.map(|encoding| match encoding {
+            HeightEncodingWord::TerrainRgb => HeightEncoding::TerrainRgb,
+            HeightEncodingWord::Terrarium => HeightEncoding::Terrarium,
         }),
         raw: raw_layout(document)?,
-        vertical_datum: terrain.vertical_datum.as_ref().map(|datum| datum.get_ref().clone()),
-        cell: value(&terrain.cell),
-        crs: parse_crs(document, terrain.crs.as_ref())?,
+        vertical_datum: terrain.vertical_datum.clone(),
+        cell: terrain.cell,
+        crs: terrain.crs.clone(),
         companions: &companions,
     };
-    let names = terrain.dem.get_ref();
-    let mut tiles = Vec::new();
-    for name in names {
-        let bytes = assets.read(name).map_err(|error| wrong(error.to_string()))?;
-        tiles.push(read::read(name, &bytes, &hints).map_err(|error| wrong(error.to_string()))?);
-        mosaic::check_total(&tiles).map_err(|error| wrong(error.named(names)))?;
+    let (dem, mut tiles) = (&terrain.dem, Tiles::default());
+    for name in dem.iter() {
+        let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
+        let tile = read::read(name, &bytes, &hints).map_err(|error| document.error(dem, error))?;
+        tiles.push(name, tile).map_err(|error| document.error(dem, error))?;
     }
-    let mosaic = mosaic::mosaic(tiles).map_err(|error| wrong(error.named(names)))?;
-    if names.len() > 1 {
+    let mosaic = tiles.join().map_err(|error| document.error(dem, error))?;
+    if dem.len() > 1 {
         notes.push(mosaic.note());
     }
     Ok(mosaic.raster)
@@ -83,7 +79,7 @@ fn joined(document: &Document, assets: &Assets, notes: &mut Vec<String>) -> Resu
 
 fn raw_layout(document: &Document) -> Result<Option<RawLayout>, Diagnostic> {
     let Some(stated) = &document.terrain.raw else { return Ok(None) };
-    stated.get_ref().parse().map(Some).map_err(|help: String| {
-        document.error(stated, "this does not say how a RAW file is laid out").with_help(help)
+    stated.parse().map(Some).map_err(|help: RawLayoutError| {
+        document.error(stated, "this does not say how a RAW file is laid out").with_help(help.to_string())
     })
 }

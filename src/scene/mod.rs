@@ -13,6 +13,7 @@ pub mod build;
 pub mod builder;
 pub mod building_colors;
 pub mod buildings;
+pub mod drawn_ground;
 pub mod fences;
 pub mod footprint;
 pub mod ground;
@@ -108,20 +109,50 @@ pub struct Terrain {
     pub lattice: Arc<Lattice>,
     /// The patches over them.
     pub layout: PatchLayout,
-    /// The errors of their vertices.
-    pub errors: ErrorMap,
-    /// The drawn heights' range per patch.
-    pub patch_heights: PatchHeights,
     /// How many times heights are stretched when drawn.
     pub exaggeration: f32,
     /// How many pixels the drawn ground may be off.
     pub tolerance_px: f32,
+    displayed: OnceLock<Arc<Lattice>>,
+    errors: OnceLock<ErrorMap>,
+    patch_heights: OnceLock<PatchHeights>,
 }
 
 impl Terrain {
-    /// What refinement reads.
+    /// The terrain of `lattice`, displayed `exaggeration` times as high. Nothing is measured yet.
+    pub fn new(lattice: Arc<Lattice>, layout: PatchLayout, exaggeration: f32, tolerance_px: f32) -> Self {
+        Self {
+            lattice,
+            layout,
+            exaggeration,
+            tolerance_px,
+            displayed: OnceLock::new(),
+            errors: OnceLock::new(),
+            patch_heights: OnceLock::new(),
+        }
+    }
+
+    /// The heights as they are displayed, made on first use; `lattice` itself without exaggeration.
+    pub fn displayed(&self) -> &Arc<Lattice> {
+        self.displayed.get_or_init(|| match self.exaggeration {
+            1.0 => Arc::clone(&self.lattice),
+            factor => Arc::new(self.lattice.exaggerated(factor)),
+        })
+    }
+
+    /// The patches over the displayed heights.
     pub fn ground(&self) -> PatchedGround<'_> {
-        PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: self.exaggeration }
+        PatchedGround { lattice: self.displayed(), layout: &self.layout }
+    }
+
+    /// The errors of the displayed heights' vertices, measured on first use.
+    pub fn errors(&self) -> &ErrorMap {
+        self.errors.get_or_init(|| ErrorMap::exact(self.displayed(), &self.layout))
+    }
+
+    /// The range of the displayed heights in each patch, measured on first use.
+    pub fn patch_heights(&self) -> &PatchHeights {
+        self.patch_heights.get_or_init(|| PatchHeights::new(self.ground()))
     }
 
     /// The box of the ground in world space, drawn heights.

@@ -18,9 +18,9 @@ use crate::description::words::{Anchor, Clamp, Footing};
 use crate::draw::list::DrawMesh;
 use crate::geom::polygon;
 use crate::scene::Placement;
+use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::footprint::{ModelFootprint, Under};
 use crate::structure::plinth;
-use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::triangle_surface::TriangleSurface;
 
 /// How far a plinth reaches out beyond the footprint, as a part of the longer side: it shows as a step.
@@ -36,7 +36,7 @@ pub struct Grounds<'a> {
     /// As it is displayed.
     pub displayed: &'a dyn TriangleSurface,
     /// As it is.
-    pub finest: FullResolution<'a>,
+    pub finest: DrawnGround<'a>,
 }
 
 /// A model on the ground.
@@ -222,7 +222,7 @@ mod tests {
     }
 
     fn stand_on(lattice: &Lattice, placement: &Placement) -> ModelPose {
-        let finest = FullResolution { lattice, exaggeration: 1.0 };
+        let finest = DrawnGround { lattice, exaggeration: 1.0 };
         stand(placement, &FOOTPRINT, &Grounds { displayed: &finest, finest }).expect("on the ground")
     }
 
@@ -289,7 +289,7 @@ mod tests {
             (gaps(rise, &placement(0.0, GroundFit::default())), gaps(rise, &placement(0.0, sunk)));
         assert!(plain.iter().zip(low).all(|(plain, low)| (plain - low - 0.75).abs() < 1e-3));
         let lattice = ground(|at| 300.0 + at.dot(rise));
-        let finest = FullResolution { lattice: &lattice, exaggeration: 1.0 };
+        let finest = DrawnGround { lattice: &lattice, exaggeration: 1.0 };
         let grounds = Grounds { displayed: &finest, finest };
         let footing = GroundFit { footing: Footing::Plinth, anchor: Anchor::Highest, ..GroundFit::default() };
         let placed = placement(20.0, footing);
@@ -319,7 +319,7 @@ mod tests {
             }
         }
         let lattice = ground(|at| at.x);
-        let finest = FullResolution { lattice: &lattice, exaggeration: 3.0 };
+        let finest = DrawnGround { lattice: &lattice, exaggeration: 3.0 };
         for anchor in [Anchor::Origin, Anchor::Mean] {
             let placed = placement(0.0, GroundFit { anchor, ..GroundFit::default() });
             let found = stand(&placed, &FOOTPRINT, &Grounds { displayed: &Nothing, finest })

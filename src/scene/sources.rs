@@ -5,19 +5,22 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec2;
-use toml::Spanned;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::expression::Expression;
-use crate::description::features::{FeatureSource, Match, Scalar};
-use crate::geom::crs::Crs;
+use crate::description::features::FeatureSource;
+use crate::description::scalar::Scalar;
+use crate::description::selection::Selection;
+use crate::description::stated::Stated;
+use crate::geom::crs::{Crs, CrsError};
 use crate::scene::assets::Assets;
 use crate::scene::attributes::Attributes;
-use crate::scene::world_frame::{WorldFrame, parse_crs};
-use crate::vector::error::VectorError;
+use crate::scene::world_frame::WorldFrame;
+use crate::vector::error::{VectorError, did_you_mean, list};
 use crate::vector::feature::{Geometry, Polygon, VectorLayer};
 use crate::vector::filter::{Condition, Filter};
-use crate::vector::read::{self, VectorHints};
+use crate::vector::hints::VectorHints;
+use crate::vector::read;
 
 /// A file's name, the layer asked for and the system stated for it.
 type LayerKey = (String, Option<String>, Option<String>);
@@ -94,19 +97,20 @@ impl<'a> Sources<'a> {
         pick: impl Fn(&Geometry) -> Vec<T>,
     ) -> Result<(Crs, Vec<Sourced<T>>), Diagnostic> {
         if let Some(points) = &source.points {
-            let line = points.get_ref().iter().map(|&point| DVec2::from(point)).collect();
+            let line = points.iter().map(|&point| DVec2::from(point)).collect();
             let shape = pick(&Geometry::Lines(vec![line]));
             let sourced = |shape| Sourced { attributes: Attributes::default(), shape };
-            return Ok((self.places.crs_of(source.crs.as_ref())?, shape.into_iter().map(sourced).collect()));
+            let crs = source.crs.as_ref().unwrap_or(&self.places.points_crs);
+            return Ok((crs.clone(), shape.into_iter().map(sourced).collect()));
         }
         let Some(file) = &source.file else {
             return Ok((self.places.crs.clone(), Vec::new()));
         };
-        let stated = parse_crs(self.places.document, source.crs.as_ref())?;
-        let layer = self.layer(file, source.layer.as_ref(), stated.as_ref())?;
+        let layer = self.layer(file, source.layer.as_ref(), source.crs.as_ref())?;
         let filter = filter_of(source);
-        let holds = |attributes: &Attributes| {
-            source.condition.as_ref().is_none_or(|condition| attributes.holds(condition.get_ref()))
+        let holds = |attributes: &Attributes| match source.selection.as_deref() {
+            Some(Selection::Holding(condition)) => attributes.holds(condition),
+            _ => true,
         };
         let shapes: Vec<_> = filter
             .select(&layer)
@@ -127,27 +131,25 @@ impl<'a> Sources<'a> {
     fn nothing_found(
         &self,
         source: &FeatureSource,
-        file: &Spanned<String>,
+        file: &Stated<String>,
         filter: &Filter,
         layer: &Arc<VectorLayer>,
     ) -> Diagnostic {
-        let name = file.get_ref();
-        if let Some(condition) = &source.condition
+        let name = file.as_str();
+        let unmatched =
+            |selection| self.places.document.error(selection, format!("no feature of '{name}' matches"));
+        if let Some(selection) = &source.selection
+            && let Selection::Holding(condition) = &**selection
             && !(0..layer.features.len())
-                .any(|index| Attributes::new(Arc::clone(layer), index).holds(condition.get_ref()))
+                .any(|index| Attributes::new(Arc::clone(layer), index).holds(condition))
         {
-            let message = format!("no feature of '{name}' matches");
-            let error = self.places.document.error(condition, message);
-            return match values_of(condition.get_ref()).explain_none(layer) {
-                Some(reason) => error.with_help(reason),
-                None => error,
+            return match values_of(condition).explain_no_match(layer) {
+                Some(reason) => unmatched(selection).with_help(reason),
+                None => unmatched(selection),
             };
         }
-        match (filter.explain_none(layer), &source.filter) {
-            (Some(reason), Some(place)) => {
-                let message = format!("no feature of '{name}' matches");
-                self.places.document.error(place, message).with_help(reason)
-            }
+        match (filter.explain_no_match(layer), &source.selection) {
+            (Some(reason), Some(selection)) => unmatched(selection).with_help(reason),
             _ => {
                 let message = format!("no feature of '{name}' that matches has the shape needed here");
                 let kinds: std::collections::BTreeSet<_> =
@@ -162,21 +164,19 @@ impl<'a> Sources<'a> {
 
     fn layer(
         &self,
-        file: &Spanned<String>,
-        wanted: Option<&Spanned<String>>,
+        file: &Stated<String>,
+        wanted: Option<&Stated<String>>,
         stated: Option<&Crs>,
     ) -> Result<Arc<VectorLayer>, Diagnostic> {
-        let name = wanted.map(|wanted| wanted.get_ref().as_str());
-        let key = (file.get_ref().clone(), name.map(String::from), stated.map(|crs| crs.name().to_owned()));
+        let name = wanted.map(|wanted| wanted.as_str());
+        let key = (file.to_string(), name.map(String::from), stated.map(|crs| crs.name().to_owned()));
         if let Some(layer) = self.layers.borrow().get(&key) {
             return Ok(Arc::clone(layer));
         }
-        let wrong = |reason: String| self.places.document.error(file, reason);
-        let bytes = self.assets.read(file.get_ref()).map_err(|error| wrong(error.to_string()))?;
+        let bytes = self.assets.read(file).map_err(|error| self.places.document.error(file, error))?;
         let companions = |name: &str| self.assets.read(name).ok();
         let hints = VectorHints { crs: stated, layer: name, companions: &companions };
-        let layer =
-            read::read(file.get_ref(), &bytes, &hints).map_err(|error| self.unread(file, wanted, &error))?;
+        let layer = read::read(file, &bytes, &hints).map_err(|error| self.unread(file, wanted, error))?;
         let layer = Arc::new(layer);
         self.layers.borrow_mut().insert(key, Arc::clone(&layer));
         Ok(layer)
@@ -185,21 +185,23 @@ impl<'a> Sources<'a> {
     /// The message about a file that cannot be read, at the key that is to blame.
     fn unread(
         &self,
-        file: &Spanned<String>,
-        wanted: Option<&Spanned<String>>,
-        error: &VectorError,
+        file: &Stated<String>,
+        wanted: Option<&Stated<String>>,
+        error: VectorError,
     ) -> Diagnostic {
         let document = self.places.document;
-        match (error, wanted) {
-            (VectorError::NoSuchLayer { wanted, meant, found }, Some(key)) => {
-                let message = format!("'{}' has no layer '{wanted}'{meant}", file.get_ref());
-                document.error(key, message).with_help(format!("its layers are {found}"))
+        match (&error, wanted) {
+            (VectorError::NoSuchLayer { wanted, suggestion, names }, Some(key)) => {
+                let message =
+                    format!("'{}' has no layer '{wanted}'{}", file.as_str(), did_you_mean(suggestion));
+                document.error(key, message).with_help(format!("its layers are {}", list(names)))
             }
-            (VectorError::WhichLayer { count, found, .. }, _) => {
-                let message = format!("'{}' holds {count} layers", file.get_ref());
-                document.error(file, message).with_help(format!("add `layer = \"...\"` with one of {found}"))
+            (VectorError::WhichLayer { names }, _) => {
+                let message = format!("'{}' holds {} layers", file.as_str(), names.len());
+                let help = format!("add `layer = \"...\"` with one of {}", list(names));
+                document.error(file, message).with_help(help)
             }
-            _ => document.error(file, error.to_string()),
+            _ => document.error(file, error),
         }
     }
 
@@ -208,7 +210,7 @@ impl<'a> Sources<'a> {
         &self,
         source: &FeatureSource,
         (from, shapes): (Crs, Vec<Sourced<T>>),
-        transform: impl Fn(T, &dyn Fn(DVec2) -> Result<DVec2, String>) -> Result<U, String>,
+        transform: impl Fn(T, &dyn Fn(DVec2) -> Result<DVec2, CrsError>) -> Result<U, CrsError>,
     ) -> Result<Vec<Sourced<U>>, Diagnostic> {
         let place = |at: DVec2| self.places.world(&from, at);
         shapes
@@ -217,7 +219,7 @@ impl<'a> Sources<'a> {
                 transform(shape, &place).map(|shape| Sourced { attributes, shape })
             })
             .collect::<Result<_, _>>()
-            .map_err(|reason| self.places.document.error_at(source.span(), reason))
+            .map_err(|error| self.places.document.error_at(source.span(), error))
     }
 }
 
@@ -242,10 +244,13 @@ fn filter_of(source: &FeatureSource) -> Filter {
         Scalar::Number(value) => serde_json::Value::from(*value),
         Scalar::Text(value) => serde_json::Value::from(value.as_str()),
     };
-    let conditions = source.filter.iter().flat_map(|filter| filter.get_ref());
-    let condition = |(property, wanted): (&String, &Match)| Condition {
+    let condition = |(property, wanted): (&String, &Vec<Scalar>)| Condition {
         property: property.clone(),
-        any_of: wanted.values().iter().map(value).collect(),
+        any_of: wanted.iter().map(value).collect(),
     };
-    Filter { conditions: conditions.map(condition).collect() }
+    let conditions = match source.selection.as_deref() {
+        Some(Selection::Matching(wanted)) => wanted.iter().map(condition).collect(),
+        _ => Vec::new(),
+    };
+    Filter { conditions }
 }

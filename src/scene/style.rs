@@ -3,14 +3,15 @@
 use std::f32::consts::FRAC_PI_2;
 
 use glam::Vec3;
-use toml::Spanned;
 
-use crate::description::defaults;
-use crate::description::document::{Color, ContourTable, Document, RampChoice};
-use crate::description::words;
+use crate::description::color::{Color, RampChoice};
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::Document;
+use crate::description::words::RampName;
 use crate::draw::color::Srgba;
 use crate::draw::ground::{ColorRamp, Contours, GroundMap, GroundPost};
 use crate::draw::lighting::{Haze, Lighting};
+use crate::scene::Terrain;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::light;
 
@@ -41,20 +42,12 @@ const GRAY: [(f32, [u8; 3]); 2] = [(0.0, [168, 168, 168]), (1.0, [236, 236, 236]
 ///
 /// # Errors
 /// Stops that do not rise.
-pub fn ramp(
-    document: &Document,
-    lattice: &Lattice,
-) -> Result<ColorRamp, crate::description::diagnostic::Diagnostic> {
-    let named = |name| match name {
-        words::RampName::Atlas => stretched(&ATLAS, lattice),
-        words::RampName::Desert => stretched(&DESERT, lattice),
-        words::RampName::Gray => stretched(&GRAY, lattice),
-    };
-    let Some(choice) = &document.style.ramp else {
-        return Ok(named(words::RampName::default()));
-    };
-    match choice.get_ref() {
-        RampChoice::Named(name) => Ok(named(*name)),
+pub fn ramp(document: &Document, lattice: &Lattice) -> Result<ColorRamp, Diagnostic> {
+    let choice = &document.style.ramp;
+    match &**choice {
+        RampChoice::Named(RampName::Atlas) => Ok(stretched(&ATLAS, lattice)),
+        RampChoice::Named(RampName::Desert) => Ok(stretched(&DESERT, lattice)),
+        RampChoice::Named(RampName::Gray) => Ok(stretched(&GRAY, lattice)),
         RampChoice::Stops(stops) => {
             let stops =
                 stops.iter().map(|&(height, Color(channels))| (height as f32, Srgba(channels))).collect();
@@ -78,10 +71,10 @@ fn stretched(stops: &[(f32, [u8; 3])], lattice: &Lattice) -> ColorRamp {
 
 /// The document's contour lines.
 pub fn contours(document: &Document) -> Option<Contours> {
-    document.style.contours.as_ref().map(|ContourTable { interval, major_every, color }| Contours {
-        interval_m: *interval.get_ref() as f32,
-        major_every: major_every.as_ref().map_or(defaults::CONTOUR_MAJOR_EVERY, |every| *every.get_ref()),
-        color: color.as_ref().map_or(Srgba([112, 74, 40, 150]), |color| Srgba(color.get_ref().0)),
+    document.style.contours.as_ref().map(|contours| Contours {
+        interval_m: contours.interval as f32,
+        major_every: contours.major_every,
+        color: contours.color.map_or(Srgba([112, 74, 40, 150]), |color| Srgba(color.0)),
         width_px: 1.0,
     })
 }
@@ -89,19 +82,13 @@ pub fn contours(document: &Document) -> Option<Contours> {
 /// The document's light, and haze over ground whose drawn box is `extent_m` meters long or, if that is more,
 /// high.
 pub fn lighting(document: &Document, extent_m: f32) -> Lighting {
-    let angle = |stated: &Option<Spanned<f64>>, default: f64| {
-        (stated.as_ref().map_or(default, |value| *value.get_ref()) as f32).to_radians()
-    };
     let light = &document.style.light;
-    let (azimuth, altitude) = (
-        angle(&light.azimuth, defaults::LIGHT_AZIMUTH_DEG),
-        angle(&light.altitude, defaults::LIGHT_ALTITUDE_DEG),
-    );
+    let (azimuth, altitude) = ((light.azimuth as f32).to_radians(), (light.altitude as f32).to_radians());
     let level = libm::sinf(FRAC_PI_2 - altitude);
     let to_sun = Vec3::new(libm::sinf(azimuth) * level, libm::cosf(azimuth) * level, libm::sinf(altitude));
-    let distance_m = match document.style.haze.as_ref().map(Spanned::get_ref) {
+    let distance_m = match document.style.haze {
         Some(0.0) => f32::INFINITY,
-        Some(&distance) => distance as f32,
+        Some(distance) => distance as f32,
         None => extent_m * 8.0,
     };
     let default = Lighting::default();
@@ -109,21 +96,16 @@ pub fn lighting(document: &Document, extent_m: f32) -> Lighting {
 }
 
 /// What the ground shows at every post.
-pub fn ground_map(
-    lattice: &Lattice,
-    exaggeration: f32,
-    to_sun: Vec3,
-    ramp: ColorRamp,
-    contours: Option<Contours>,
-) -> GroundMap {
-    let light = light::light(lattice, exaggeration, to_sun);
+pub fn ground_map(terrain: &Terrain, to_sun: Vec3, ramp: ColorRamp, contours: Option<Contours>) -> GroundMap {
+    let lattice = &terrain.lattice;
+    let light = light::light(terrain.displayed(), to_sun);
     let filled = filled_heights(lattice);
     let posts = lattice
         .posts()
         .zip(filled)
         .zip(light.sun.into_iter().zip(light.sky))
         .map(|((post, height_m), (sun_visibility, sky_visibility))| {
-            let slopes = lattice.slopes(post) * exaggeration;
+            let slopes = lattice.slopes(post) * terrain.exaggeration;
             GroundPost {
                 height_m,
                 slope_east: slopes.x,

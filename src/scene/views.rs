@@ -1,11 +1,9 @@
 //! Labels and cameras in world space.
 
 use glam::Vec3;
-use toml::Spanned;
 
-use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
-use crate::description::document::{CameraTable, Document};
+use crate::description::document::{CameraTable, Document, LabelTable};
 use crate::scene::world_frame::WorldFrame;
 use crate::scene::{SceneLabel, Terrain, View};
 use crate::terrain::query::{Interpolation, ground_height};
@@ -19,16 +17,15 @@ pub fn labels(
     places: &WorldFrame<'_>,
     terrain: &Terrain,
 ) -> Result<Vec<SceneLabel>, Diagnostic> {
-    let label = |table: &crate::description::document::LabelTable| {
+    let label = |table: &LabelTable| {
         let world = places.point(&table.at, table.crs.as_ref())?;
         let ground = places.on_ground(&terrain.lattice, &table.at, world)?;
         let elevation = whole_meters(ground.z / terrain.exaggeration);
-        let above = table.height.as_ref().map_or(defaults::LABEL_HEIGHT_M, |height| *height.get_ref()) as f32;
         Ok(SceneLabel {
-            text: table.text.get_ref().replace("{height}", &elevation),
+            text: table.text.replace("{height}", &elevation),
             ground,
-            anchor: ground + Vec3::Z * above,
-            kind: table.kind.as_ref().map(Spanned::get_ref).copied().unwrap_or_default(),
+            anchor: ground + Vec3::Z * table.height as f32,
+            kind: table.kind,
         })
     };
     document.labels.iter().map(label).collect()
@@ -57,32 +54,29 @@ pub fn cameras(
 }
 
 fn camera(table: &CameraTable, places: &WorldFrame<'_>, terrain: &Terrain) -> Result<View, Diagnostic> {
-    let meters = |stated: &Option<Spanned<f64>>, default: f64| {
-        stated.as_ref().map_or(default, |value| *value.get_ref()) as f32
-    };
     let eye_world = places.point(&table.eye, table.crs.as_ref())?;
-    let eye = match &table.eye_elevation {
-        Some(elevation) => eye_world.as_vec2().extend(*elevation.get_ref() as f32 * terrain.exaggeration),
+    let eye = match table.eye_elevation {
+        Some(elevation) => eye_world.as_vec2().extend(elevation as f32 * terrain.exaggeration),
         None => {
             let ground = places.on_ground(&terrain.lattice, &table.eye, eye_world).map_err(|error| {
                 error.with_help("give the camera an eye_elevation where its eye is not above the model")
             })?;
-            ground + Vec3::Z * meters(&table.eye_height, defaults::EYE_HEIGHT_M)
+            ground + Vec3::Z * table.eye_height as f32
         }
     };
     let target_world = places.point(&table.look_at, table.crs.as_ref())?;
     let target = places.on_ground(&terrain.lattice, &table.look_at, target_world)?;
-    let target = target + Vec3::Z * meters(&table.look_at_height, 0.0);
+    let target = target + Vec3::Z * table.look_at_height as f32;
     if (target - eye).try_normalize().is_none() {
         let message = "the camera looks at the place where its eye is";
         let help = "move look_at, or give it another look_at_height";
         return Err(places.document.error(&table.look_at, message).with_help(help));
     }
     Ok(View {
-        name: table.name.get_ref().clone(),
+        name: table.name.to_string(),
         eye,
         target,
-        fov_y_rad: meters(&table.field_of_view, defaults::FIELD_OF_VIEW_DEG).to_radians(),
+        fov_y_rad: (table.field_of_view as f32).to_radians(),
     })
 }
 

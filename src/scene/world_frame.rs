@@ -1,12 +1,12 @@
 //! From coordinates in a scene file to world space.
 
 use glam::{DVec2, Vec3};
-use toml::Spanned;
 
 use crate::dem::answer::Answer;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
-use crate::geom::crs::Crs;
+use crate::description::stated::Stated;
+use crate::geom::crs::{Crs, CrsError};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 
@@ -25,31 +25,21 @@ pub struct WorldFrame<'a> {
 }
 
 impl WorldFrame<'_> {
-    /// The system that a feature's own `crs` key names, or the default for inline points.
-    ///
-    /// # Errors
-    /// The key's text is no system.
-    pub fn crs_of(&self, stated: Option<&Spanned<String>>) -> Result<Crs, Diagnostic> {
-        parse_crs(self.document, stated).map(|crs| crs.unwrap_or_else(|| self.points_crs.clone()))
-    }
-
     /// World X and Y of a point in `from`.
     ///
     /// # Errors
-    /// A sentence saying why it cannot be brought there.
-    pub fn world(&self, from: &Crs, at: DVec2) -> Result<DVec2, String> {
-        let map = from.transform(self.crs, at).map_err(|error| error.to_string())?;
-        Ok(map - self.origin)
+    /// The point cannot be transformed to the scene's system.
+    pub fn world(&self, from: &Crs, at: DVec2) -> Result<DVec2, CrsError> {
+        Ok(from.transform(self.crs, at)? - self.origin)
     }
 
-    /// World X and Y of a point written in the document.
+    /// World X and Y of a point written in the document; without a `crs` in the default system of inline points.
     ///
     /// # Errors
-    /// The point's system is unknown, or the point cannot be brought to the scene's.
-    pub fn point(&self, at: &Spanned<[f64; 2]>, crs: Option<&Spanned<String>>) -> Result<DVec2, Diagnostic> {
-        let from = self.crs_of(crs)?;
-        let world = self.world(&from, DVec2::from(*at.get_ref()));
-        world.map_err(|reason| self.document.error(at, reason))
+    /// The point cannot be transformed to the scene's system.
+    pub fn point(&self, at: &Stated<[f64; 2]>, crs: Option<&Crs>) -> Result<DVec2, Diagnostic> {
+        let world = self.world(crs.unwrap_or(&self.points_crs), DVec2::from(**at));
+        world.map_err(|error| self.document.error(at, error))
     }
 
     /// The place on the ground below a world position, its drawn height as Z.
@@ -59,7 +49,7 @@ impl WorldFrame<'_> {
     pub fn on_ground(
         &self,
         lattice: &Lattice,
-        at: &Spanned<[f64; 2]>,
+        at: &Stated<[f64; 2]>,
         world: DVec2,
     ) -> Result<Vec3, Diagnostic> {
         match ground_height(lattice, Interpolation::Planar, world + self.origin) {
@@ -72,8 +62,8 @@ impl WorldFrame<'_> {
         }
     }
 
-    fn off_the_model(&self, lattice: &Lattice, at: &Spanned<[f64; 2]>) -> Diagnostic {
-        let [x, y] = *at.get_ref();
+    fn off_the_model(&self, lattice: &Lattice, at: &Stated<[f64; 2]>) -> Diagnostic {
+        let [x, y] = **at;
         let (low, high) = (self.origin, self.origin + lattice.extent().max);
         let message = format!("the point ({x}, {y}) lies off the elevation model");
         let mut help = format!(
@@ -93,14 +83,4 @@ impl WorldFrame<'_> {
 
 fn looks_like_degrees(x: f64, y: f64) -> bool {
     x.abs() <= 180.0 && y.abs() <= 90.0
-}
-
-/// The system that a `crs` key names; `None` where there is no key.
-///
-/// # Errors
-/// The key's text is no system.
-pub fn parse_crs(document: &Document, stated: Option<&Spanned<String>>) -> Result<Option<Crs>, Diagnostic> {
-    stated
-        .map(|text| Crs::parse(text.get_ref()).map_err(|error| document.error(text, error.to_string())))
-        .transpose()
 }

@@ -9,7 +9,7 @@ use crate::draw::color::Srgba;
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::structure::faces::Faces;
-use crate::terrain::support_surface::runs;
+use crate::terrain::support_surface::ground_runs;
 use crate::terrain::triangle_surface::TriangleSurface;
 
 /// The foot of a building's walls.
@@ -38,7 +38,7 @@ impl WallFooting {
         }
         for ring in &self.rings {
             let lowest = polygon::edges(ring)
-                .flat_map(|(from, to)| runs(ground, from, to))
+                .flat_map(|(from, to)| ground_runs(ground, from, to))
                 .flat_map(|run| run.stations().iter().map(|station| station.z).reduce(f64::min))
                 .fold(f64::INFINITY, f64::min) as f32;
             if lowest < self.foot_z {

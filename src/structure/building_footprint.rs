@@ -6,8 +6,9 @@
 
 use glam::DVec2;
 
+use crate::geom::convex;
 use crate::geom::polygon;
-use crate::geom::region::Region;
+use crate::geom::region;
 
 /// Vertices nearer to each other than this, and those nearer to the line between their neighbors, are dropped: less
 /// than a wall's plaster, more than an f32 can tell apart 30 km from the origin.
@@ -32,7 +33,7 @@ impl BuildingFootprint {
             .map(without_needless)
             .filter(|ring| ring.len() > 2)
             .collect();
-        let polygons = Region::enclosed(rings.iter().map(Vec::as_slice)).rings();
+        let polygons = region::even_odd(rings.iter().map(Vec::as_slice));
         polygons.into_iter().filter_map(Self::sound).collect()
     }
 
@@ -74,12 +75,7 @@ impl BuildingFootprint {
 
     /// Whether no corner of the outer ring turns inward.
     pub fn is_convex(&self) -> bool {
-        let ring = self.exterior();
-        let count = ring.len();
-        (0..count).all(|index| {
-            let [a, b, c] = [index, index + 1, index + 2].map(|at| ring[at % count]);
-            (b - a).perp_dot(c - b) >= 0.0
-        })
+        convex::is_convex(self.exterior())
     }
 }
 

@@ -14,6 +14,10 @@
 //!   ▓▓▓▓▓▓▓╲______________________╱▓▓▓▓
 //! ```
 
+use glam::DVec2;
+
+use crate::geom::convex;
+
 /// How far rounding may take a deck down below the corner it rounds, in meters: what is lifted over the ground has this
 /// much to spare.
 const ROUNDED_OFF_M: f64 = 0.2;
@@ -127,23 +131,11 @@ fn grade(from: ClearancePoint, to: ClearancePoint) -> f64 {
     (to.level_m - from.level_m) / (to.station_m - from.station_m)
 }
 
-/// The upper hull of points sorted by station (Andrew 1979); of points at one station the highest, which comes last.
+/// The upper hull of points sorted by station and level.
 fn upper_hull(points: &[ClearancePoint]) -> Vec<ClearancePoint> {
-    let mut hull: Vec<ClearancePoint> = Vec::new();
-    for &point in points {
-        while let Some(&last) = hull.last() {
-            let is_below = match hull.len() {
-                1 => last.station_m >= point.station_m,
-                count => grade(hull[count - 2], last) <= grade(hull[count - 2], point),
-            };
-            if !is_below {
-                break;
-            }
-            hull.pop();
-        }
-        hull.push(point);
-    }
-    hull
+    let backward = points.iter().rev().map(|point| DVec2::new(point.station_m, point.level_m));
+    let hull = convex::left_turns(backward).into_iter().rev();
+    hull.map(|at| ClearancePoint { station_m: at.x, level_m: at.y }).collect()
 }
 
 /// A polyline with its corners rounded by parabolas that touch both sides at equal distances from the corner.

@@ -212,7 +212,7 @@ struct Foot {
 impl Foot {
     fn new(pair: &[TrackJoint], share: f64, ground: &dyn TriangleSurface) -> Self {
         let (from, to) = (pair[0].across(share), pair[1].across(share));
-        Self { from, to, runs: support_surface::runs(ground, from, to) }
+        Self { from, to, runs: support_surface::ground_runs(ground, from, to) }
     }
 
     fn reaches_end(&self) -> bool {

@@ -15,7 +15,7 @@ use crate::draw::color::Srgba;
 use crate::structure::faces::Faces;
 use crate::structure::fence::PostPosition;
 use crate::structure::power_beam::beam;
-use crate::terrain::support_surface::{GroundRun, SupportSurface, runs};
+use crate::terrain::support_surface::{GroundRun, SupportSurface, ground_runs};
 use crate::terrain::triangle_surface::TriangleSurface;
 
 const STEEL: Srgba = Srgba::opaque(138, 144, 150);
@@ -73,7 +73,7 @@ impl PowerLine {
         }
         for (pair, feet) in self.pylons.windows(2).zip(feet.windows(2)) {
             if let [Some(from), Some(to)] = *feet {
-                let ground = runs(under.displayed, pair[0].at, pair[1].at);
+                let ground = ground_runs(under.displayed, pair[0].at, pair[1].at);
                 self.wires([pair[0], pair[1]], [from, to], &ground, faces);
             }
         }
@@ -242,7 +242,7 @@ fn worst([from, to]: [PostPosition; 2], height_m: f64, ground: &dyn TriangleSurf
     let foot = |stand: PostPosition| ground.displayed_z(stand.at);
     let up = DVec3::Z * LOWEST_WIRE.min(0.9) * height_m;
     let ends = (from.at.extend(foot(from)?) + up, to.at.extend(foot(to)?) + up);
-    let found = runs(ground, from.at, to.at);
+    let found = ground_runs(ground, from.at, to.at);
     let clearance = |(part, z): (f64, f64)| (hanging(ends, 0.0, part).z - z, part);
     let least = looks(&found)
         .filter(|(part, _)| (0.2..=0.8).contains(part))
@@ -259,7 +259,7 @@ pub fn check_wires(line: &PowerLine, under: SupportSurface<'_>) -> f64 {
     let mut most: f64 = 0.0;
     for pair in line.pylons.windows(2) {
         let (Some(from_z), Some(to_z)) = (under.z(pair[0].at), under.z(pair[1].at)) else { continue };
-        let ground = runs(under.displayed, pair[0].at, pair[1].at);
+        let ground = ground_runs(under.displayed, pair[0].at, pair[1].at);
         for (_, up) in fastenings(line) {
             let ends = (pair[0].at.extend(from_z + up), pair[1].at.extend(to_z + up));
             let sag_m = sag(ends, line.sag * ends.0.distance(ends.1), &ground, clearance_m);
@@ -298,9 +298,9 @@ mod tests {
     #[test]
     fn a_wire_hangs_less_deep_over_a_ridge_and_keeps_its_clearance() {
         let lattice = ridge(10.0);
-        let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
+        let ground = FullResolution { lattice: &lattice };
         let under = SupportSurface { displayed: &ground, ground };
-        let found = runs(&ground, DVec2::new(350.0, 50.0), DVec2::new(650.0, 50.0));
+        let found = ground_runs(&ground, DVec2::new(350.0, 50.0), DVec2::new(650.0, 50.0));
         let ends = (DVec3::new(350.0, 50.0, 20.4), DVec3::new(650.0, 50.0, 20.4));
         let sag_m = sag(ends, 15.0, &found, 6.0);
         assert!((sag_m - 4.4).abs() < 1e-6, "{sag_m}");
@@ -310,7 +310,7 @@ mod tests {
     #[test]
     fn a_pylon_more_stands_on_a_ridge_that_no_wire_would_clear() {
         let lattice = ridge(25.0);
-        let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
+        let ground = FullResolution { lattice: &lattice };
         let (pylons, added) = clear(&[stand(350.0), stand(650.0)], 30.0, &ground);
         assert_eq!(added, 1);
         assert!(pylons[1].at.distance(DVec2::new(500.0, 50.0)) < 1e-3, "{pylons:?}");
@@ -320,7 +320,7 @@ mod tests {
     #[test]
     fn a_pylon_s_feet_reach_the_ground_and_its_top_is_as_high_as_it_is_said_to_be() {
         let lattice = ridge(0.0);
-        let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
+        let ground = FullResolution { lattice: &lattice };
         for height_m in [12.0, 40.0] {
             let mut faces = Faces::default();
             let line = PowerLine { height_m, ..line(vec![stand(300.0)]) };

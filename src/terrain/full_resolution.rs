@@ -1,13 +1,13 @@
-//! The finest triangles of the ground as facets: what is displayed where nothing is left out.
+//! The finest triangles of the ground as a displayed surface.
 //!
-//! Whatever is computed on displayed triangles can be computed on these, so that one rule holds for a picture and for
-//! what is reported without one.
+//! Whatever is computed on displayed triangles can be computed on these, so that pictures and reports follow one rule.
 
 use glam::{DVec2, Vec3};
 
 use crate::geom::rect::Rect;
+use crate::terrain::cell_triangle::CellTriangle;
 use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::query::{Diagonal, Interpolation, ground_height};
+use crate::terrain::query::{Interpolation, ground_height};
 use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 
 /// All triangles of a lattice, two a cell, those without data left out.
@@ -15,8 +15,6 @@ use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 pub struct FullResolution<'a> {
     /// The heights.
     pub lattice: &'a Lattice,
-    /// How many times heights are stretched.
-    pub exaggeration: f32,
 }
 
 impl FullResolution<'_> {
@@ -25,15 +23,12 @@ impl FullResolution<'_> {
         if !rect.meets(&self.lattice.extent()) {
             return None;
         }
-        let last = DVec2::new(f64::from(self.lattice.columns() - 2), f64::from(self.lattice.rows() - 2));
-        let cell = |at: DVec2| {
-            let at = self.lattice.grid_at(at).floor().clamp(DVec2::ZERO, last);
-            Post { column: at.x as u32, row: at.y as u32 }
-        };
+        let last = self.lattice.last_grid() - 1.0;
+        let cell = |at: DVec2| Post::at_grid(self.lattice.grid_at(at).clamp(DVec2::ZERO, last));
         Some((cell(rect.min), cell(rect.max)))
     }
 
-    /// How many cells [`TriangleSurface::visit_facets`] looks at for a world rectangle.
+    /// The number of cells that [`TriangleSurface::visit_facets`] visits for a world rectangle.
     pub fn cell_count(&self, rect: &Rect) -> u64 {
         self.cells(rect).map_or(0, |(first, last)| {
             u64::from(last.column - first.column + 1) * u64::from(last.row - first.row + 1)
@@ -43,14 +38,11 @@ impl FullResolution<'_> {
     /// The two triangles of a cell, counter-clockwise seen from above; Z NaN where there is no data.
     fn triangles(&self, cell: Post) -> [SurfaceTriangle; 2] {
         let corner = |east: u32, north: u32| -> Vec3 {
-            let post = Post { column: cell.column + east, row: cell.row + north };
-            self.lattice.position(post).extend(self.lattice.height(post) * self.exaggeration)
+            let post = cell.offset(east, north);
+            self.lattice.position(post).extend(self.lattice.height(post))
         };
-        let [sw, se, nw, ne] = [corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)];
-        match Diagonal::of_cell(u64::from(cell.column), u64::from(cell.row)) {
-            Diagonal::Rising => [[sw, se, ne], [sw, ne, nw]],
-            Diagonal::Falling => [[sw, se, nw], [se, ne, nw]],
-        }
+        let corners = [corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)];
+        CellTriangle::of_cell(cell).map(|triangle| triangle.corner_indices().map(|index| corners[index]))
     }
 }
 
@@ -59,15 +51,14 @@ impl TriangleSurface for FullResolution<'_> {
         let Some((first, last)) = self.cells(rect) else { return };
         for row in first.row..=last.row {
             for column in first.column..=last.column {
-                let whole = |facet: &&SurfaceTriangle| facet.iter().all(|corner| corner.z.is_finite());
-                self.triangles(Post { column, row }).iter().filter(whole).for_each(&mut *visit);
+                let has_data = |facet: &&SurfaceTriangle| facet.iter().all(|corner| corner.z.is_finite());
+                self.triangles(Post { column, row }).iter().filter(has_data).for_each(&mut *visit);
             }
         }
     }
 
     fn displayed_z(&self, at: DVec2) -> Option<f64> {
-        let answer = ground_height(self.lattice, Interpolation::Planar, at + self.lattice.origin());
-        answer.height_m().map(|height_m| height_m * f64::from(self.exaggeration))
+        ground_height(self.lattice, Interpolation::Planar, at + self.lattice.origin()).height_m()
     }
 }
 
@@ -86,7 +77,7 @@ mod tests {
     #[test]
     fn the_facets_are_the_planar_ground() {
         let lattice = lattice(None);
-        let finest = FullResolution { lattice: &lattice, exaggeration: 2.0 };
+        let finest = FullResolution { lattice: &lattice };
         for step in 0..500 {
             let at = DVec2::new(f64::from(step * 37 % 799) / 10.0, f64::from(step * 53 % 239) / 10.0);
             let mut found = Vec::new();
@@ -101,10 +92,10 @@ mod tests {
     }
 
     #[test]
-    fn the_facets_cover_the_ground_once_but_for_holes() {
+    fn the_facets_cover_the_ground_once_except_holes() {
         for (hole, triangles) in [(None, 96), (Some(20), 96 - 8), (Some(0), 94)] {
             let lattice = lattice(hole);
-            let finest = FullResolution { lattice: &lattice, exaggeration: 1.0 };
+            let finest = FullResolution { lattice: &lattice };
             let mut count = 0;
             finest.visit_facets(&lattice.extent().grown(50.0), &mut |facet| {
                 let plan = facet.map(|corner| corner.truncate().as_dvec2());
@@ -116,6 +107,6 @@ mod tests {
         }
         let lattice = lattice(None);
         let beside = Rect { min: DVec2::splat(-9.0), max: DVec2::splat(-1.0) };
-        assert_eq!(FullResolution { lattice: &lattice, exaggeration: 1.0 }.cell_count(&beside), 0);
+        assert_eq!(FullResolution { lattice: &lattice }.cell_count(&beside), 0);
     }
 }

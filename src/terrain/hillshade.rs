@@ -1,35 +1,33 @@
-//! Hillshading: how brightly the ground's slope faces the sun, as a gray for each post.
+//! Hillshading: how directly the ground faces the sun, as a gray for each post.
 //!
-//! With the slopes `p` east and `q` north of [`Lattice::slopes`] (Horn 1981), exaggerated by `z`, the gray is
+//! With the slopes `p` east and `q` north of [`Lattice::slopes`] (Horn 1981), the gray is
 //! `1 + 254 · max(0, n · s)`, where `n` is the upward unit normal of the slopes and `s` the direction to the sun: what
-//! `gdaldem hillshade` draws, equal to it within one gray level. 0 stands for no data.
+//! `gdaldem hillshade` draws, equal to it within one gray level. 0 means no data.
 //!
-//! Where a neighbor is missing or lies off the border, the post's own height stands for it, so that there is a gray
-//! for every post with data; `gdaldem` leaves a frame of one post and the posts around holes empty unless told
-//! otherwise (`-compute_edges`, which then continues the slope instead).
+//! A neighbor without data or beyond the border takes the post's own height, so that every post with data has a gray;
+//! `gdaldem` leaves a frame of one post and the posts around holes empty by default, and continues the slope with
+//! `-compute_edges`.
 //!
-//! Inside a row, where all neighbors have data, slopes are sums along columns that two neighboring posts share, and
-//! the loop over a row is one that the compiler turns to vectors; the few other posts are asked one by one.
+//! The loop over the inner posts of a row is written for the compiler to vectorize; posts beside the border or a hole are
+//! computed one by one.
 
 use rayon::prelude::*;
 
 use crate::terrain::lattice::{Lattice, Post};
 
-/// Where the sun stands, and how much heights are stretched.
+/// The direction of the sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HillshadeOptions {
     /// The sun's azimuth, degrees clockwise from north.
     pub azimuth_deg: f64,
     /// The sun's altitude above the horizon, degrees, 0..=90.
     pub altitude_deg: f64,
-    /// How many times heights are stretched.
-    pub exaggeration: f64,
 }
 
 impl Default for HillshadeOptions {
-    /// The cartographer's light: from the north-west, 45° high; true heights.
+    /// The cartographer's light: from the north-west, 45° high.
     fn default() -> Self {
-        Self { azimuth_deg: 315.0, altitude_deg: 45.0, exaggeration: 1.0 }
+        Self { azimuth_deg: 315.0, altitude_deg: 45.0 }
     }
 }
 
@@ -49,12 +47,11 @@ pub fn hillshade(lattice: &Lattice, options: &HillshadeOptions) -> Vec<u8> {
     grays
 }
 
-/// The direction to the sun, and what heights are stretched by.
+/// The direction to the sun.
 struct Sun {
     east: f32,
     north: f32,
     up: f32,
-    stretch: f32,
 }
 
 impl Sun {
@@ -65,11 +62,10 @@ impl Sun {
             east: (level * libm::sin(azimuth)) as f32,
             north: (level * libm::cos(azimuth)) as f32,
             up: libm::sin(altitude) as f32,
-            stretch: options.exaggeration as f32,
         }
     }
 
-    /// `254 · n · s` for stretched slopes, negative where the ground faces away.
+    /// `254 · n · s` for slopes, negative where the ground faces away.
     fn light(&self, east: f32, north: f32) -> f32 {
         let facing = self.up - east * self.east - north * self.north;
         254.0 * facing / (1.0 + east * east + north * north).sqrt()
@@ -90,8 +86,7 @@ fn shade_row(lattice: &Lattice, sun: &Sun, row: usize, light: &mut [f32], grays:
         let (south, north) =
             (&heights[(row - 1) * columns..][..columns], &heights[(row + 1) * columns..][..columns]);
         let cell = lattice.cell();
-        let (per_east, per_north) =
-            (sun.stretch / (8.0 * cell.x as f32), sun.stretch / (8.0 * cell.y as f32));
+        let (per_east, per_north) = (1.0 / (8.0 * cell.x as f32), 1.0 / (8.0 * cell.y as f32));
         let windows = south.windows(3).zip(own.windows(3)).zip(north.windows(3));
         for (((south, own), north), light) in windows.zip(&mut light[1..]) {
             let east = (north[2] - north[0]) + 2.0 * (own[2] - own[0]) + (south[2] - south[0]);
@@ -107,7 +102,7 @@ fn shade_row(lattice: &Lattice, sun: &Sun, row: usize, light: &mut [f32], grays:
             *gray_out = NO_DATA;
         } else if !has_inside || column == 0 || column + 1 == columns || light[column].is_nan() {
             let post = Post { column: column as u32, row: row as u32 };
-            let slopes = lattice.slopes(post) * sun.stretch;
+            let slopes = lattice.slopes(post);
             *gray_out = gray(sun.light(slopes.x, slopes.y));
         }
     }
@@ -126,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plane_is_one_gray_up_to_its_border_and_brightest_where_it_faces_the_sun() {
+    fn a_plane_is_one_gray_and_brightest_where_it_faces_the_sun() {
         let options = HillshadeOptions::default();
         let gray = |east, north| {
             let grays = hillshade(&plane(east, north), &options);
@@ -137,7 +132,7 @@ mod tests {
         assert_eq!(gray(0.0, 0.0), 181);
         let facing = 0.5f32.sqrt();
         assert_eq!(gray(facing, -facing), 255, "rising south-east, it faces north-west");
-        assert_eq!(gray(-3.0, 3.0), 1, "its back is turned");
+        assert_eq!(gray(-3.0, 3.0), 1, "it faces away");
     }
 
     #[test]
@@ -151,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_s_own_arithmetic_and_that_of_single_posts_agree() {
+    fn a_row_and_its_single_posts_agree() {
         let heights = (0..400).map(|index: u32| ((index * 7919) % 101) as f32).collect();
         let rough = Lattice::new(DVec2::ZERO, DVec2::new(30.0, 20.0), 20, heights).expect("sound");
         let sun = Sun::new(&HillshadeOptions::default());

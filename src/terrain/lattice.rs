@@ -1,9 +1,9 @@
 //! The ground as one lattice of posts.
 //!
-//! Posts stand at equal distances east and north of an f64 origin, the south-west post; heights are f32 meters,
-//! NaN where there is no data. Between posts the ground is the plane of the finest bintree triangles: the
-//! diagonal of the cell north-east of post (column, row) joins the two corners whose coordinates are both even
-//! or both odd, as longest-edge bisection leaves it:
+//! Posts stand at equal distances east and north of an f64 origin, the south-west post; heights are f32 meters, NaN where
+//! there is no data. Between posts the ground is the plane of the finest bintree triangles: the diagonal of the cell
+//! north-east of post (column, row) joins the two corners whose coordinates are both even or both odd, as longest-edge
+//! bisection leaves it:
 //!
 //! ```text
 //! row 2  o───────o───────o
@@ -22,6 +22,9 @@ use crate::dem::raster::Raster;
 use crate::geom::rect::Rect;
 
 /// Posts of a regular grid with their heights.
+///
+/// Three kinds of positions occur: map coordinates; world positions, in meters from the origin; and grid positions, in
+/// columns and rows of posts from the lattice's first.
 #[derive(Clone, Debug)]
 pub struct Lattice {
     origin: DVec2,
@@ -32,11 +35,15 @@ pub struct Lattice {
     doublings: u32,
     heights: Vec<f32>,
     pinned: Vec<bool>,
+    pin_slack_m: f32,
 }
 
-/// No height may lie further from 0 than this many meters: as far as a scene file's elevations go, and little
-/// enough that an f32 still tells one meter from the next.
+/// The greatest height above or below 0 in meters: the limit of a scene file's elevations, within which an f32 still
+/// distinguishes one meter from the next.
 pub const HIGHEST_M: f32 = 1e7;
+
+/// Ground may be drawn this many meters off a pinned post: rounding of f32 heights, invisible in a picture.
+const PIN_SLACK_M: f32 = 1e-3;
 
 /// Why a raster cannot become the ground.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -50,7 +57,7 @@ pub enum LatticeError {
     /// All samples are no-data.
     #[error("the elevation model holds no data at all")]
     Empty,
-    /// A height that no ground has: mostly a no-data value that the file does not name as one.
+    /// A height that no ground has: mostly a no-data value that the file does not declare.
     #[error(
         "the elevation model holds a height of {height:e} m, beyond ±{HIGHEST_M} m; if that stands for no data, the file must say so (its no-data value)"
     )]
@@ -69,18 +76,35 @@ pub struct Post {
     pub row: u32,
 }
 
+impl Post {
+    /// Its grid position.
+    #[inline]
+    pub fn grid(self) -> DVec2 {
+        DVec2::new(f64::from(self.column), f64::from(self.row))
+    }
+
+    /// The post at a grid position, rounded down; coordinates below 0 and NaN count as 0.
+    #[inline]
+    pub fn at_grid(grid: DVec2) -> Self {
+        Self { column: grid.x as u32, row: grid.y as u32 }
+    }
+
+    /// The post `columns` east and `rows` north of this one.
+    #[inline]
+    pub fn offset(self, columns: u32, rows: u32) -> Self {
+        Self { column: self.column + columns, row: self.row + rows }
+    }
+}
+
 impl Lattice {
     /// The lattice of a north-up raster in meters.
     ///
     /// # Errors
     /// See [`LatticeError`].
     pub fn from_raster(raster: &Raster) -> Result<Self, LatticeError> {
-        let (columns, rows) = (raster.width, raster.height);
-        if columns < 2 || rows < 2 {
-            return Err(LatticeError::TooSmall(columns, rows));
-        }
         let (origin, cell) = Self::frame(raster)?;
-        let heights: Vec<f32> = (0..rows)
+        let columns = raster.width;
+        let heights: Vec<f32> = (0..raster.height)
             .rev()
             .flat_map(|row| (0..columns).map(move |column| (column, row)))
             .map(|(column, row)| raster.at(column, row) as f32)
@@ -88,7 +112,7 @@ impl Lattice {
         Self::new(origin, cell, columns, heights)
     }
 
-    /// The origin and the cell of the lattice of a north-up raster in meters, whose samples are not looked at.
+    /// The origin and the cell of the lattice of a north-up raster in meters; samples are not read.
     ///
     /// # Errors
     /// [`LatticeError::TooSmall`] and [`LatticeError::NotNorthUp`].
@@ -119,10 +143,10 @@ impl Lattice {
         Self::part((origin, cell), Post { column: 0, row: 0 }, columns, heights)
     }
 
-    /// A part of a larger lattice with this origin and cell, from the larger one's post `first` on. Posts are counted
-    /// from the part's own south-west, and stand where they stand in the larger lattice, to the last bit.
+    /// A part of a larger lattice with this origin and cell, beginning at the larger one's post `first`. Posts are counted
+    /// from the part's own south-west; their positions are those in the larger lattice, to the last bit.
     ///
-    /// A part may hold no data at all; [`Lattice::height_range`] is then empty, the infinities the wrong way round.
+    /// A part may hold no data at all; [`Lattice::height_range`] is then (∞, −∞).
     ///
     /// # Errors
     /// [`LatticeError::TooSmall`] and [`LatticeError::TooHigh`].
@@ -140,7 +164,23 @@ impl Lattice {
             return Err(LatticeError::TooHigh { height });
         }
         let pinned = vec![false; heights.len()];
-        Ok(Self { origin, cell, columns, rows, first, doublings: 0, heights, pinned })
+        Ok(Self {
+            origin,
+            cell,
+            columns,
+            rows,
+            first,
+            doublings: 0,
+            heights,
+            pinned,
+            pin_slack_m: PIN_SLACK_M,
+        })
+    }
+
+    /// The lattice that a vertical exaggeration displays: every height times `factor`, which is above 0.
+    pub fn exaggerated(&self, factor: f32) -> Self {
+        let heights = self.heights.iter().map(|height| height * factor).collect();
+        Self { heights, pinned: self.pinned.clone(), pin_slack_m: self.pin_slack_m * factor, ..*self }
     }
 
     /// Map coordinates of the south-west post: the origin of world space.
@@ -153,6 +193,11 @@ impl Lattice {
         self.cell
     }
 
+    /// The area of a cell in square meters.
+    pub fn cell_m2(&self) -> f64 {
+        self.cell.x * self.cell.y
+    }
+
     /// Posts per row.
     pub fn columns(&self) -> u32 {
         self.columns
@@ -163,14 +208,12 @@ impl Lattice {
         self.rows
     }
 
-    /// How often posts were doubled on the planes between those that were measured; see
-    /// [`crate::terrain::densify`].
+    /// How often the spacing of the measured posts was halved; see [`crate::terrain::densify`].
     pub fn doublings(&self) -> u32 {
         self.doublings
     }
 
-    /// Notes that posts were doubled so many times.
-    pub(in crate::terrain) fn resampled(&mut self, doublings: u32) {
+    pub(in crate::terrain) fn set_doublings(&mut self, doublings: u32) {
         self.doublings = doublings;
     }
 
@@ -181,25 +224,25 @@ impl Lattice {
 
     /// The rectangle of all posts in world space, the origin's post at (0, 0).
     pub fn extent(&self) -> Rect {
-        let last = DVec2::new(f64::from(self.columns - 1), f64::from(self.rows - 1));
-        Rect { min: self.skipped() * self.cell, max: (self.skipped() + last) * self.cell }
+        let first = self.first.grid();
+        Rect { min: first * self.cell, max: (first + self.last_grid()) * self.cell }
     }
 
-    /// The post of the larger lattice that this one's first is; see [`Lattice::part`].
+    /// The first post's place in the larger lattice; see [`Lattice::part`].
     pub fn first(&self) -> Post {
         self.first
     }
 
-    /// How many posts of the larger lattice lie before this one's first, eastward and northward.
-    fn skipped(&self) -> DVec2 {
-        DVec2::new(f64::from(self.first.column), f64::from(self.first.row))
+    /// The grid position of the north-east post.
+    #[inline]
+    pub fn last_grid(&self) -> DVec2 {
+        DVec2::new(f64::from(self.columns - 1), f64::from(self.rows - 1))
     }
 
     /// World X and Y of a post.
     #[inline]
     pub fn position(&self, post: Post) -> Vec2 {
-        let (column, row) = (post.column + self.first.column, post.row + self.first.row);
-        (DVec2::new(f64::from(column), f64::from(row)) * self.cell).as_vec2()
+        (post.offset(self.first.column, self.first.row).grid() * self.cell).as_vec2()
     }
 
     /// The height of a post in meters, NaN where there is no data.
@@ -211,7 +254,7 @@ impl Lattice {
         self.heights[self.index(post)]
     }
 
-    /// Whether the post belongs to something whose true shape must show; see [`Lattice::pin`].
+    /// Whether the post belongs to a feature that must show its true shape; see [`Lattice::pin`].
     pub fn is_pinned(&self, post: Post) -> bool {
         self.pinned[self.index(post)]
     }
@@ -221,6 +264,11 @@ impl Lattice {
         &self.pinned
     }
 
+    /// How far drawn ground may be off a pinned post, meters: rounding of heights, which an exaggeration multiplies.
+    pub fn pin_slack_m(&self) -> f32 {
+        self.pin_slack_m
+    }
+
     /// Sets a post's height and pins it: any drawn triangle that covers it must then be exact.
     pub fn pin(&mut self, post: Post, height: f32) {
         let index = self.index(post);
@@ -228,14 +276,13 @@ impl Lattice {
         self.pinned[index] = true;
     }
 
-    /// The heights of the posts from `first` to column `last` of its row, to be set; whether they are pinned stays as
-    /// it is.
+    /// The heights of the posts from `first` to column `last` of its row, to be set. Pins stay.
     pub(crate) fn heights_mut(&mut self, first: Post, last: u32) -> &mut [f32] {
         let from = self.index(first);
         &mut self.heights[from..=from + (last - first.column) as usize]
     }
 
-    /// Where a post is stored: its place in [`Lattice::heights`].
+    /// A post's index in [`Lattice::heights`].
     ///
     /// # Panics
     /// Where the post lies outside the lattice.
@@ -245,7 +292,7 @@ impl Lattice {
         post.row as usize * self.columns as usize + post.column as usize
     }
 
-    /// The lowest and highest height; finite, since a lattice holds some data.
+    /// The lowest and highest height; finite unless the lattice is a part without data.
     pub fn height_range(&self) -> (f32, f32) {
         let start = (f32::INFINITY, f32::NEG_INFINITY);
         self.heights.iter().fold(start, |(low, high), &height| (low.min(height), high.max(height)))
@@ -253,24 +300,28 @@ impl Lattice {
 
     /// Map coordinates of a post.
     pub fn map_position(&self, post: Post) -> DVec2 {
-        let grid = DVec2::new(f64::from(post.column), f64::from(post.row)) + self.skipped();
-        self.origin + grid * self.cell
+        self.origin + (post.grid() + self.first.grid()) * self.cell
     }
 
-    /// A world position in columns and rows of posts from the lattice's first; may lie outside.
+    /// The grid position of a world position; may lie outside the lattice.
     pub fn grid_at(&self, world: DVec2) -> DVec2 {
-        world / self.cell - self.skipped()
+        world / self.cell - self.first.grid()
+    }
+
+    /// The grid position of map coordinates; may lie outside the lattice.
+    pub fn grid_from_map(&self, at: DVec2) -> DVec2 {
+        self.grid_at(at - self.origin)
     }
 
     /// The cell that holds a world position and the position within it, 0..=1 east and north; `None` outside.
     pub fn cell_at(&self, world: DVec2) -> Option<(Post, DVec2)> {
         let grid = self.grid_at(world);
-        let last = DVec2::new(f64::from(self.columns - 1), f64::from(self.rows - 1));
+        let last = self.last_grid();
         if !(grid.cmpge(DVec2::ZERO).all() && grid.cmple(last).all()) {
             return None;
         }
         let corner = grid.floor().min(last - 1.0);
-        Some((Post { column: corner.x as u32, row: corner.y as u32 }, grid - corner))
+        Some((Post::at_grid(corner), grid - corner))
     }
 
     /// The heights of a cell's corners: south-west, south-east, north-west, north-east.
@@ -285,13 +336,13 @@ impl Lattice {
         ]
     }
 
-    /// The slopes at a post, rise per meter eastward and northward: Horn's weighting of the eight neighbors
-    /// (Horn 1981, as `gdaldem` and most hillshades use); missing neighbors take the post's own height.
-    /// Zero where the post has no data.
+    /// The slopes at a post, rise per meter eastward and northward, by the weights of Horn (1981) over the eight
+    /// neighbors, as `gdaldem` and most hillshades have them. Missing neighbors take the post's own height. Zero where the
+    /// post has no data.
     ///
-    /// Where posts were put in between those measured, the neighbors of a post that nothing was built on are as far away
-    /// as measured ones are: nearer ones lie on the planes between, and would show the planes and not the land. What was
-    /// built there does not count: the land is taken to go on as on the other side.
+    /// On a densified lattice the neighbors of an unpinned post are as far away as measured posts are: nearer ones lie on
+    /// the planes between these, and would show the planes rather than the land. Pinned neighbors do not count there; the
+    /// land is taken to continue straight from the opposite side.
     pub fn slopes(&self, post: Post) -> Vec2 {
         let own = self.height(post);
         if own.is_nan() {
@@ -321,7 +372,7 @@ impl Lattice {
         )
     }
 
-    /// The post so many columns east and rows north, or the last one that way.
+    /// The post `east` columns and `north` rows away, or the last one in that direction.
     fn beside(&self, post: Post, east: i64, north: i64) -> Post {
         let column = (i64::from(post.column) + east).clamp(0, i64::from(self.columns) - 1);
         let row = (i64::from(post.row) + north).clamp(0, i64::from(self.rows) - 1);
@@ -353,7 +404,20 @@ mod tests {
     }
 
     #[test]
-    fn a_no_data_value_that_nobody_named_is_not_taken_for_ground() {
+    fn an_exaggerated_lattice_has_the_same_posts_and_higher_heights() {
+        let mut plain = plane();
+        plain.pin(Post { column: 1, row: 2 }, 7.0);
+        let steep = plain.exaggerated(3.0);
+        for post in plain.posts() {
+            assert_eq!(steep.height(post), plain.height(post) * 3.0);
+            assert_eq!(steep.position(post), plain.position(post));
+            assert_eq!(steep.is_pinned(post), plain.is_pinned(post));
+        }
+        assert_eq!(steep.pin_slack_m(), plain.pin_slack_m() * 3.0);
+    }
+
+    #[test]
+    fn an_undeclared_no_data_value_is_not_taken_for_ground() {
         for height in [f32::MIN, f32::INFINITY, 1.1e7] {
             let lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 2, vec![1.0, f32::NAN, height, 2.0]);
             assert_eq!(lattice.err(), Some(LatticeError::TooHigh { height }));
@@ -361,13 +425,13 @@ mod tests {
     }
 
     #[test]
-    fn a_part_s_posts_stand_where_they_stand_in_the_whole() {
+    fn a_parts_posts_have_their_positions_in_the_larger_lattice() {
         let (cell, first) = (DVec2::new(0.1, 0.3), Post { column: 1, row: 1 });
         let whole = Lattice::new(DVec2::ZERO, cell, 4, (0..12u8).map(f32::from).collect()).expect("sound");
         let heights = vec![5.0, 6.0, 7.0, 9.0, 10.0, 11.0];
         let part = Lattice::part((DVec2::ZERO, cell), first, 3, heights).expect("sound");
         for post in part.posts() {
-            let same = Post { column: post.column + 1, row: post.row + 1 };
+            let same = post.offset(1, 1);
             assert_eq!(part.position(post), whole.position(same));
             assert_eq!(part.height(post), whole.height(same));
         }
@@ -379,7 +443,7 @@ mod tests {
     }
 
     #[test]
-    fn the_border_belongs_to_the_lattice_and_beyond_it_nothing() {
+    fn the_lattice_ends_at_its_border_posts() {
         let lattice = plane();
         let (cell, part) = lattice.cell_at(DVec2::new(30.0, 10.0)).expect("the last post");
         assert_eq!((cell, part), (Post { column: 2, row: 1 }, DVec2::ONE));

@@ -1,9 +1,8 @@
-//! The light that reaches each post past other terrain: how much of the sun, how much of the sky.
+//! The light that reaches each post past other terrain: shares of the sun and of the sky.
 //!
-//! Both walk the lattice along lines and cost a constant per post and direction. The sun's shadow is one
-//! sheet swept from post to post away from the sun, sinking with its rays. The sky is measured in eight
-//! directions; the horizon in each is the steepest line of sight to a post behind, found on the upper
-//! convex hull of the profile walked so far.
+//! Both walk the lattice along lines, at a constant cost per post and direction. The sun's shadow is a sheet swept from
+//! post to post away from the sun, sinking with its rays. The sky is measured in eight directions; the horizon in each is
+//! the steepest line to a post behind, on the upper convex hull of the profile so far.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -19,19 +18,19 @@ pub struct TerrainLight {
     pub sky: Vec<f32>,
 }
 
-/// Over how many meters of height above the shadow's edge the sun comes out, as a share of the cell size:
-/// smaller shows the lattice as stairs along the shadow's edge, larger washes shadows out.
+/// The height over which the sun emerges at the shadow's edge, as a share of the cell size: smaller shows the lattice as
+/// stairs along the edge, larger washes shadows out.
 const PENUMBRA_CELLS: f32 = 0.35;
 
-/// The light on `lattice`, its heights times `exaggeration`, for a sun in direction `to_sun` (unit vector).
-pub fn light(lattice: &Lattice, exaggeration: f32, to_sun: Vec3) -> TerrainLight {
-    let z: Vec<f32> = lattice.heights().iter().map(|height| height * exaggeration).collect();
-    let (sun, sky) = rayon::join(|| sun_visibility(lattice, &z, to_sun), || sky_visibility(lattice, &z));
+/// The light on a displayed lattice for a sun in direction `to_sun` (unit vector).
+pub fn light(lattice: &Lattice, to_sun: Vec3) -> TerrainLight {
+    let (sun, sky) = rayon::join(|| sun_visibility(lattice, to_sun), || sky_visibility(lattice));
     TerrainLight { sun, sky }
 }
 
 /// Sweeps the shadow sheet row by row along the sun's main direction.
-fn sun_visibility(lattice: &Lattice, z: &[f32], to_sun: Vec3) -> Vec<f32> {
+fn sun_visibility(lattice: &Lattice, to_sun: Vec3) -> Vec<f32> {
+    let z = lattice.heights();
     let cell = lattice.cell().as_vec2();
     let steps = (to_sun.truncate() / cell).abs();
     let longest = steps.max_element();
@@ -65,7 +64,7 @@ fn sun_visibility(lattice: &Lattice, z: &[f32], to_sun: Vec3) -> Vec<f32> {
     visible
 }
 
-/// The value at a fractional position, linear between neighbors; nothing beyond the ends casts a shadow.
+/// The value at a fractional position, linear between neighbors; −∞ beyond the ends, where nothing casts a shadow.
 fn between(values: &[f32], at: f32) -> f32 {
     let low = at.floor();
     let (Some(&from), part) = (values.get(low as isize as usize), at - low) else {
@@ -82,43 +81,39 @@ const DIRECTIONS: [(i64, i64); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (
 
 /// The mean over eight directions of cos² of the horizon's angle: the share of a uniform sky's light that a
 /// level surface receives.
-fn sky_visibility(lattice: &Lattice, z: &[f32]) -> Vec<f32> {
+fn sky_visibility(lattice: &Lattice) -> Vec<f32> {
     let by_direction: Vec<Vec<f32>> =
-        DIRECTIONS.par_iter().map(|&direction| open_sky(lattice, z, direction)).collect();
-    (0..z.len())
+        DIRECTIONS.par_iter().map(|&direction| open_sky(lattice, direction)).collect();
+    (0..lattice.heights().len())
         .into_par_iter()
         .map(|post| by_direction.iter().map(|open| open[post]).sum::<f32>() / DIRECTIONS.len() as f32)
         .collect()
 }
 
 /// cos² of the horizon's angle at every post, looking back against `direction`.
-fn open_sky(lattice: &Lattice, z: &[f32], direction: (i64, i64)) -> Vec<f32> {
+fn open_sky(lattice: &Lattice, direction: (i64, i64)) -> Vec<f32> {
+    let z = lattice.heights();
     let mut open = vec![1.0; z.len()];
     let step =
         libm::hypot(lattice.cell().x * direction.0 as f64, lattice.cell().y * direction.1 as f64) as f32;
     let mut hull: Vec<(f32, f32)> = Vec::new();
     for start in line_starts(lattice, direction) {
         hull.clear();
-        let (mut column, mut row, mut distance) = (i64::from(start.column), i64::from(start.row), 0.0);
-        while column >= 0
-            && row >= 0
-            && column < i64::from(lattice.columns())
-            && row < i64::from(lattice.rows())
-        {
-            let index = lattice.index(Post { column: column as u32, row: row as u32 });
+        let (mut post, mut distance) = (Some(start), 0.0);
+        while let Some(here) = post {
+            let index = lattice.index(here);
             if z[index].is_finite() {
-                open[index] = walk_hull(&mut hull, (distance, z[index]));
+                open[index] = extend_hull(&mut hull, (distance, z[index]));
             }
-            column += direction.0;
-            row += direction.1;
+            post = neighbor(lattice, here, direction);
             distance += step;
         }
     }
     open
 }
 
-/// Adds a profile point to the upper hull and returns cos² of the angle up to the horizon behind it.
-fn walk_hull(hull: &mut Vec<(f32, f32)>, here: (f32, f32)) -> f32 {
+/// Adds a profile point to the upper hull; returns cos² of the angle up to the horizon behind it.
+fn extend_hull(hull: &mut Vec<(f32, f32)>, here: (f32, f32)) -> f32 {
     let rise_to = |behind: (f32, f32)| (behind.1 - here.1) / (here.0 - behind.0);
     while hull.len() >= 2 && rise_to(hull[hull.len() - 2]) >= rise_to(hull[hull.len() - 1]) {
         hull.pop();
@@ -130,11 +125,15 @@ fn walk_hull(hull: &mut Vec<(f32, f32)>, here: (f32, f32)) -> f32 {
 
 /// The posts from which lines in `direction` enter the lattice.
 fn line_starts(lattice: &Lattice, direction: (i64, i64)) -> Vec<Post> {
-    let enters = |post: &Post| {
-        let (column, row) = (i64::from(post.column) - direction.0, i64::from(post.row) - direction.1);
-        column < 0 || row < 0 || column >= i64::from(lattice.columns()) || row >= i64::from(lattice.rows())
-    };
-    lattice.posts().filter(enters).collect()
+    let back = (-direction.0, -direction.1);
+    lattice.posts().filter(|&post| neighbor(lattice, post, back).is_none()).collect()
+}
+
+/// The next post in a direction; `None` beyond the lattice.
+fn neighbor(lattice: &Lattice, post: Post, direction: (i64, i64)) -> Option<Post> {
+    let column = u32::try_from(i64::from(post.column) + direction.0).ok()?;
+    let row = u32::try_from(i64::from(post.row) + direction.1).ok()?;
+    (column < lattice.columns() && row < lattice.rows()).then_some(Post { column, row })
 }
 
 #[cfg(test)]
@@ -151,7 +150,7 @@ mod tests {
     #[test]
     fn a_wall_casts_a_shadow_as_long_as_it_is_high_at_45_degrees() {
         let sun = Vec3::new(-1.0, 0.0, 1.0).normalize();
-        let light = light(&wall(), 1.0, sun);
+        let light = light(&wall(), sun);
         let row = 20 * 41;
         assert!(light.sun[row + 25] < 0.01, "50 m behind the wall");
         assert!(light.sun[row + 32] > 0.99, "120 m behind the wall");
@@ -159,16 +158,16 @@ mod tests {
     }
 
     #[test]
-    fn posts_without_data_cast_no_shadow_and_lie_in_full_light() {
+    fn posts_without_data_cast_no_shadow_and_are_fully_lit() {
         let heights = (0..41 * 41).map(|index| if index % 41 == 20 { f32::NAN } else { 3.0 }).collect();
         let holed = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 41, heights).expect("sound");
-        let light = light(&holed, 1.0, Vec3::new(-0.6, 0.1, 0.5).normalize());
+        let light = light(&holed, Vec3::new(-0.6, 0.1, 0.5).normalize());
         assert!(light.sun.iter().chain(&light.sky).all(|&share| share == 1.0));
     }
 
     #[test]
     fn the_foot_of_a_wall_sees_less_sky_than_the_open() {
-        let light = light(&wall(), 1.0, Vec3::Z);
+        let light = light(&wall(), Vec3::Z);
         let row = 20 * 41;
         assert!(light.sky[row + 21] < 0.7);
         assert!(light.sky[row + 20] > 0.99, "the top sees all of it");

@@ -1,6 +1,6 @@
-//! The ground: one lattice of heights, the roads aligned to it, the earthworks and brushes that change it, the light that
-//! reaches it, and the height query service.
+//! The ground: one lattice of heights, the light that reaches it, the height query service, and lines of sight over it.
 
+pub mod cell_triangle;
 pub mod densify;
 pub mod full_resolution;
 pub mod hillshade;

@@ -15,7 +15,25 @@ pub struct PostRect {
 }
 
 impl PostRect {
-    /// Grown by posts east and west, north and south, as far as the lattice reaches.
+    /// All posts of a lattice.
+    pub fn all(lattice: &Lattice) -> Self {
+        let last = Post { column: lattice.columns() - 1, row: lattice.rows() - 1 };
+        Self { first: Post { column: 0, row: 0 }, last }
+    }
+
+    /// The posts of a lattice between two grid positions, ends included; `None` for none.
+    pub fn between(lattice: &Lattice, low: DVec2, high: DVec2) -> Option<Self> {
+        let (low, high) = (low.ceil().max(DVec2::ZERO), high.floor().min(lattice.last_grid()));
+        let rect = || Self { first: Post::at_grid(low), last: Post::at_grid(high) };
+        low.cmple(high).all().then(rect)
+    }
+
+    /// The posts within a rectangle in world space; `None` for none.
+    pub fn within(lattice: &Lattice, rect: &Rect) -> Option<Self> {
+        Self::between(lattice, rect.min / lattice.cell(), rect.max / lattice.cell())
+    }
+
+    /// Extended by posts east and west, north and south, as far as the lattice reaches.
     pub fn grown(self, by: (u32, u32), lattice: &Lattice) -> Self {
         let (column, row) = (self.first.column.saturating_sub(by.0), self.first.row.saturating_sub(by.1));
         Self {
@@ -45,7 +63,7 @@ impl PostRect {
             && (self.first.row..=self.last.row).contains(&post.row)
     }
 
-    /// Grown as far as the post.
+    /// The smallest rectangle that holds this one and the post.
     pub fn with(self, post: Post) -> Self {
         let (first, last) = (self.first, self.last);
         Self {
@@ -56,20 +74,6 @@ impl PostRect {
 
     /// The part on the lattice; `None` where nothing is left.
     pub fn clipped(self, lattice: &Lattice) -> Option<Self> {
-        let last = Post {
-            column: self.last.column.min(lattice.columns() - 1),
-            row: self.last.row.min(lattice.rows() - 1),
-        };
-        (self.first.column <= last.column && self.first.row <= last.row)
-            .then_some(Self { first: self.first, last })
-    }
-
-    /// The posts within a rectangle in world space; `None` for none.
-    pub fn within(lattice: &Lattice, rect: &Rect) -> Option<Self> {
-        let (low, high) = ((rect.min / lattice.cell()).ceil(), (rect.max / lattice.cell()).floor());
-        let last = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
-        let (low, high) = (low.max(DVec2::ZERO), high.min(last));
-        let post = |at: DVec2| Post { column: at.x as u32, row: at.y as u32 };
-        (low.x <= high.x && low.y <= high.y).then(|| Self { first: post(low), last: post(high) })
+        Self::between(lattice, self.first.grid(), self.last.grid())
     }
 }

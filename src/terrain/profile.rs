@@ -1,7 +1,7 @@
-//! The ground along a line: every place where it bends, not only steps.
+//! The ground along a line, at every crossing with an edge of the finest triangles.
 //!
-//! Where the line leaves the model or comes back, there is a station on the model's border; where it runs into a hole,
-//! the last station with a height is the hole's rim. Between two stations with heights there is ground all the way.
+//! Where the line leaves the model or comes back there is a station on the model's border; where it runs into a hole, the
+//! last station with a height is the hole's rim. Between two neighboring stations with heights there is ground throughout.
 
 use std::ops::ControlFlow;
 
@@ -12,7 +12,7 @@ use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 use crate::terrain::sight::crossings::crossings;
 
-/// A place along a profile.
+/// A position along a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProfileStation {
     /// Meters along the line from its start.
@@ -26,23 +26,23 @@ pub struct ProfileStation {
 /// How a profile is sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampling {
-    /// How heights between posts are found. Only the planar ground is straight between stations.
+    /// The interpolation between posts. Only the planar ground is straight between stations.
     pub interpolation: Interpolation,
-    /// Also a station every so many meters from the line's start, above 0; none where `None`.
+    /// The distance, above 0, of additional stations counted from the line's start; `None` for none.
     pub step_m: Option<f64>,
 }
 
 impl Default for Sampling {
-    /// The planar ground, which needs no more stations than its own.
+    /// The planar ground without additional stations.
     fn default() -> Self {
         Self { interpolation: Interpolation::Planar, step_m: None }
     }
 }
 
 /// The ground along `line` (map coordinates in meters, at least one vertex): its vertices and every crossing with an
-/// edge of the finest triangles, in order. Between two stations in a row the planar ground is straight.
+/// edge of the finest triangles, in order. Between neighboring stations the planar ground is straight.
 ///
-/// Costs three stations a cell. A vertex that is not finite has no ground, nor has the line to and from it.
+/// Costs three stations a cell. A vertex that is not finite has no ground, nor have its segments.
 pub fn profile(lattice: &Lattice, line: &[DVec2]) -> Vec<ProfileStation> {
     sampled_profile(lattice, line, Sampling::default())
 }
@@ -52,13 +52,13 @@ pub fn profile(lattice: &Lattice, line: &[DVec2]) -> Vec<ProfileStation> {
 /// # Panics
 /// Where the step is not above 0.
 pub fn sampled_profile(lattice: &Lattice, line: &[DVec2], sampling: Sampling) -> Vec<ProfileStation> {
-    assert!(sampling.step_m.is_none_or(|step_m| step_m > 0.0), "steps go forward: {sampling:?}");
-    let mut profiler = Profiler { lattice, sampling, walked_m: 0.0, stations: Vec::new() };
+    assert!(sampling.step_m.is_none_or(|step_m| step_m > 0.0), "a step must be above 0: {sampling:?}");
+    let mut profiler = Profiler { lattice, sampling, start_m: 0.0, stations: Vec::new() };
     for pair in line.windows(2) {
-        profiler.segment(pair[0], pair[1]);
+        profiler.add_segment(pair[0], pair[1]);
     }
     if let Some(&last) = line.last() {
-        profiler.vertex(last);
+        profiler.add_sample(profiler.start_m, last);
     }
     profiler.stations
 }
@@ -66,13 +66,13 @@ pub fn sampled_profile(lattice: &Lattice, line: &[DVec2], sampling: Sampling) ->
 struct Profiler<'a> {
     lattice: &'a Lattice,
     sampling: Sampling,
-    walked_m: f64,
+    /// The station of the next segment's start.
+    start_m: f64,
     stations: Vec<ProfileStation>,
 }
 
 impl Profiler<'_> {
-    fn vertex(&mut self, at: DVec2) {
-        let station_m = self.walked_m;
+    fn add_sample(&mut self, station_m: f64, at: DVec2) {
         self.stations.push(ProfileStation { station_m, at, ground: self.ground(at) });
     }
 
@@ -80,57 +80,58 @@ impl Profiler<'_> {
         ground_height(self.lattice, self.sampling.interpolation, at)
     }
 
-    fn segment(&mut self, from: DVec2, to: DVec2) {
-        self.vertex(from);
-        let (start_m, length_m) = (self.walked_m, from.distance(to));
+    fn add_segment(&mut self, from: DVec2, to: DVec2) {
+        self.add_sample(self.start_m, from);
+        let length_m = from.distance(to);
         if !length_m.is_finite() {
             return;
         }
         let first = self.stations.len();
-        let grid = |at: DVec2| self.lattice.grid_at(at - self.lattice.origin());
-        let mut breaks = Vec::new();
-        let _ = crossings(self.lattice, grid(from), grid(to), |crossing| {
+        self.add_crossings(from, to, length_m);
+        self.add_steps(from, to, length_m);
+        self.stations[first..].sort_by(|a, b| a.station_m.total_cmp(&b.station_m));
+        self.start_m += length_m;
+    }
+
+    fn add_crossings(&mut self, from: DVec2, to: DVec2, length_m: f64) {
+        let ends = [from, to].map(|at| self.lattice.grid_from_map(at));
+        let _ = crossings(self.lattice, ends[0], ends[1], |crossing| {
             let at = from + (to - from) * crossing.part;
             let ground = match self.sampling.interpolation {
                 Interpolation::Planar if crossing.height_m.is_nan() => Answer::NoData,
                 Interpolation::Planar => Answer::Height(crossing.height_m),
-                // Rounding may put a crossing with the border beside the model, where the model yet is.
-                _ => self.ground(self.on_model(at)),
+                // Rounding may move a crossing with the border off the model.
+                _ => self.ground(self.clamp_to_model(at)),
             };
-            breaks.push(ProfileStation { station_m: start_m + length_m * crossing.part, at, ground });
+            let station_m = self.start_m + length_m * crossing.part;
+            self.stations.push(ProfileStation { station_m, at, ground });
             ControlFlow::<()>::Continue(())
         });
-        self.stations.append(&mut breaks);
-        self.steps(from, to, length_m);
-        // Both kinds of stations rise along the line; where one of each falls together the sort keeps their order.
-        self.stations[first..].sort_by(|a, b| a.station_m.total_cmp(&b.station_m));
-        self.walked_m += length_m;
     }
 
-    /// The stations at whole steps from the line's start that lie within the segment that begins where was walked to.
-    fn steps(&mut self, from: DVec2, to: DVec2, length_m: f64) {
+    /// Adds the stations at multiples of the step that lie within the segment.
+    fn add_steps(&mut self, from: DVec2, to: DVec2, length_m: f64) {
         let Some(step_m) = self.sampling.step_m else { return };
-        let end_m = self.walked_m + length_m;
-        let mut count = (self.walked_m / step_m).floor() + 1.0;
+        let end_m = self.start_m + length_m;
+        let mut count = (self.start_m / step_m).floor() + 1.0;
         while count * step_m < end_m {
             let station_m = count * step_m;
-            let at = from + (to - from) * ((station_m - self.walked_m) / length_m);
-            self.stations.push(ProfileStation { station_m, at, ground: self.ground(at) });
+            self.add_sample(station_m, from + (to - from) * ((station_m - self.start_m) / length_m));
             count += 1.0;
         }
     }
 
     /// The nearest map position on the model.
-    fn on_model(&self, at: DVec2) -> DVec2 {
+    fn clamp_to_model(&self, at: DVec2) -> DVec2 {
         let (origin, extent) = (self.lattice.origin(), self.lattice.extent());
         origin + (at - origin).clamp(extent.min, extent.max)
     }
 }
 
-/// The lowest or the highest place of a profile.
+/// The lowest or the highest point of a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extreme {
-    /// Meters along the line from its start; the first such place.
+    /// Meters along the line from its start; the first such point.
     pub station_m: f64,
     /// Map coordinates.
     pub at: DVec2,
@@ -138,59 +139,48 @@ pub struct Extreme {
     pub height_m: f64,
 }
 
-/// What a profile comes to.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Lengths, climbs and extremes of a profile.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ProfileSummary {
-    /// The line's length in the plane, meters.
+    /// The line's length in plan, meters.
     pub length_m: f64,
-    /// How much of it has ground under it, meters in the plane.
+    /// The length of its parts with ground, meters in plan.
     pub covered_m: f64,
-    /// The way over the ground, up and down, where there is ground; meters.
+    /// The length over the ground, up and down, where there is ground; meters.
     pub ground_length_m: f64,
-    /// Meters climbed, added up.
+    /// The sum of all climbs in meters.
     pub ascent_m: f64,
-    /// Meters gone down, added up; not negative.
+    /// The sum of all descents in meters; not negative.
     pub descent_m: f64,
-    /// The lowest place; `None` where the line has no ground at all.
+    /// The lowest point; `None` where the line has no ground at all.
     pub lowest: Option<Extreme>,
-    /// The highest place.
+    /// The highest point.
     pub highest: Option<Extreme>,
 }
 
 impl ProfileSummary {
-    /// Of the stations of a profile, in order.
-    pub fn of(stations: &[ProfileStation]) -> Self {
-        let mut summary = Self {
-            length_m: stations.last().map_or(0.0, |last| last.station_m),
-            covered_m: 0.0,
-            ground_length_m: 0.0,
-            ascent_m: 0.0,
-            descent_m: 0.0,
-            lowest: None,
-            highest: None,
-        };
+    /// The summary of the stations of a profile, in order.
+    pub fn from_stations(stations: &[ProfileStation]) -> Self {
+        let length_m = stations.last().map_or(0.0, |last| last.station_m);
+        let mut summary = Self { length_m, ..Self::default() };
         let mut before: Option<Extreme> = None;
-        for station in stations {
-            let here = station.ground.height_m().map(|height_m| Extreme {
-                station_m: station.station_m,
-                at: station.at,
-                height_m,
-            });
-            if let (Some(before), Some(here)) = (before, here) {
-                summary.step(here.station_m - before.station_m, here.height_m - before.height_m);
-            }
+        for &ProfileStation { station_m, at, ground } in stations {
+            let here = ground.height_m().map(|height_m| Extreme { station_m, at, height_m });
             if let Some(here) = here {
-                summary.lowest =
-                    summary.lowest.filter(|lowest| lowest.height_m <= here.height_m).or(Some(here));
-                summary.highest =
-                    summary.highest.filter(|highest| highest.height_m >= here.height_m).or(Some(here));
+                if let Some(before) = before {
+                    summary.add_step(here.station_m - before.station_m, here.height_m - before.height_m);
+                }
+                let is_lower = summary.lowest.is_none_or(|lowest| here.height_m < lowest.height_m);
+                let is_higher = summary.highest.is_none_or(|highest| here.height_m > highest.height_m);
+                summary.lowest = if is_lower { Some(here) } else { summary.lowest };
+                summary.highest = if is_higher { Some(here) } else { summary.highest };
             }
             before = here;
         }
         summary
     }
 
-    fn step(&mut self, along_m: f64, up_m: f64) {
+    fn add_step(&mut self, along_m: f64, up_m: f64) {
         self.covered_m += along_m;
         self.ground_length_m += libm::hypot(along_m, up_m);
         self.ascent_m += up_m.max(0.0);
@@ -208,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn a_profile_holds_its_vertices_and_every_break_between() {
+    fn a_profile_has_its_vertices_and_every_crossing_between() {
         let stations =
             profile(&peak(), &[DVec2::new(0.0, 20.0), DVec2::new(40.0, 20.0), DVec2::new(40.0, 0.0)]);
         let along: Vec<_> = stations.iter().map(|at| (at.station_m, at.ground.height_m())).collect();
@@ -226,7 +216,7 @@ mod tests {
         assert_eq!(along.first(), Some(&(0.0, Answer::Outside)));
         assert_eq!(along[1..3], [(30.0, Answer::Height(0.0)), (40.0, Answer::Height(0.0))]);
         assert_eq!(along[5..], [(70.0, Answer::Height(0.0)), (100.0, Answer::Outside)]);
-        let summary = ProfileSummary::of(&stations);
+        let summary = ProfileSummary::from_stations(&stations);
         assert_eq!((summary.length_m, summary.covered_m), (100.0, 40.0));
         assert_eq!((summary.ascent_m, summary.descent_m), (8.0, 8.0));
     }
@@ -237,11 +227,11 @@ mod tests {
         let holed = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 5, heights).expect("sound");
         let stations = profile(&holed, &[DVec2::new(0.0, 20.0), DVec2::new(40.0, 20.0)]);
         assert_eq!(stations[2].ground, Answer::NoData);
-        assert_eq!(ProfileSummary::of(&stations).covered_m, 20.0);
+        assert_eq!(ProfileSummary::from_stations(&stations).covered_m, 20.0);
     }
 
     #[test]
-    fn other_interpolations_keep_the_breaks_and_add_their_steps() {
+    fn other_interpolations_keep_the_crossings_and_add_their_steps() {
         let sampling = Sampling { interpolation: Interpolation::Bilinear, step_m: Some(7.0) };
         let stations = sampled_profile(&peak(), &[DVec2::new(0.0, 15.0), DVec2::new(40.0, 15.0)], sampling);
         let along: Vec<f64> = stations.iter().map(|at| at.station_m).collect();
@@ -252,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn a_vertex_that_is_no_place_ends_nothing_but_its_own_segments() {
+    fn a_vertex_that_is_not_finite_ends_only_its_own_segments() {
         let stations = profile(&peak(), &[DVec2::new(5.0, 5.0), DVec2::NAN, DVec2::new(15.0, 5.0)]);
         assert_eq!(stations.iter().filter(|at| at.ground == Answer::Outside).count(), 1);
         assert_eq!(stations.len(), 3);

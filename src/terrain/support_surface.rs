@@ -1,7 +1,7 @@
-//! The ground under what stands: straight lines laid on a ground's triangles, and the height at a point.
+//! The ground under structures: straight lines draped on the triangles of a ground, and the height at a point.
 //!
-//! A line is cut where it passes from one triangle to the next; between two cuts the ground under it is straight, so
-//! whatever is built from cut to cut lies on the ground exactly, neither in it nor above it:
+//! A line is cut where it passes from one triangle to the next. Between two cuts the ground under it is straight, so what
+//! is built from cut to cut lies exactly on the ground:
 //!
 //! ```text
 //!  from ●──────┬───────┬────● to       seen from above: three triangles, two cuts
@@ -10,22 +10,23 @@
 
 use glam::DVec2;
 
+use crate::geom::convex;
 use crate::geom::rect::Rect;
 use crate::terrain::full_resolution::FullResolution;
-use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface, plane_z};
+use crate::terrain::triangle_surface::{TriangleSurface, plan, plane_z};
 
-/// What counts as lying in a triangle, in meters beside it: more than rounding, so that no line falls between two
-/// triangles, and less than anybody sees.
+/// A position this far beside a triangle, in meters, still lies in it: more than rounding, so that no line falls between
+/// two triangles, and less than is ever visible.
 const BESIDE_M: f64 = 1e-7;
 
-/// The most pieces in which the triangles near a long line are looked up: its own rectangle would hold many that it
-/// does not meet.
+/// The most pieces in which the triangles near a long line are looked up; one rectangle around the line would hold many
+/// triangles that it does not meet.
 const MOST_PIECES: f64 = 64.0;
 
-/// Lines up to this long, in meters, are looked up at once.
+/// The length of a piece in meters, before [`MOST_PIECES`] limits their number.
 const PIECE_M: f64 = 100.0;
 
-/// A place on a line.
+/// A position on a line with the ground there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineStation {
     /// How far along the line, 0 at its start and 1 at its end.
@@ -34,7 +35,7 @@ pub struct LineStation {
     pub z: f64,
 }
 
-/// A stretch of a line with ground under it: stations in rising order, at least two; straight in between.
+/// A stretch of a line with ground under it: stations in ascending order, at least two; straight in between.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundRun {
     stations: Vec<LineStation>,
@@ -46,25 +47,25 @@ impl GroundRun {
         &self.stations
     }
 
-    /// From where to where it goes, in parts of the line.
+    /// Its first and last part of the line.
     pub fn span(&self) -> (f64, f64) {
         (self.stations[0].part, self.stations[self.stations.len() - 1].part)
     }
 
-    /// World Z of the ground at a part of the line; that at the nearer end beyond the run.
+    /// World Z of the ground at a part of the line; beyond the run that at its nearer end.
     pub fn z_at(&self, part: f64) -> f64 {
         let after = self.stations.partition_point(|station| station.part < part);
         let to = self.stations[after.min(self.stations.len() - 1)];
         let from = self.stations[after.max(1).min(self.stations.len() - 1) - 1];
-        let way = to.part - from.part;
-        let along = if way > 0.0 { ((part - from.part) / way).clamp(0.0, 1.0) } else { 1.0 };
+        let length = to.part - from.part;
+        let along = if length > 0.0 { ((part - from.part) / length).clamp(0.0, 1.0) } else { 1.0 };
         from.z + (to.z - from.z) * along
     }
 }
 
-/// The line `from`..`to` laid on `ground`, cut at the edges of its triangles; in several runs where the ground has gaps,
-/// in none where there is no ground or the line is a point.
-pub fn runs(ground: &dyn TriangleSurface, from: DVec2, to: DVec2) -> Vec<GroundRun> {
+/// The line `from`..`to` draped on `ground`, cut at the edges of its triangles: several runs where the ground has gaps,
+/// none where there is no ground or the line is a point.
+pub fn ground_runs(ground: &dyn TriangleSurface, from: DVec2, to: DVec2) -> Vec<GroundRun> {
     let length = from.distance(to);
     if !(length.is_finite() && length > BESIDE_M) {
         return Vec::new();
@@ -75,7 +76,7 @@ pub fn runs(ground: &dyn TriangleSurface, from: DVec2, to: DVec2) -> Vec<GroundR
         let [low, high] = [piece, piece + 1].map(|at| f64::from(at) / f64::from(pieces));
         let rect = Rect::around([from.lerp(to, low), from.lerp(to, high)]).grown(BESIDE_M);
         ground.visit_facets(&rect, &mut |facet| {
-            if let Some((enter, leave)) = parts_over(facet, from, to) {
+            if let Some((enter, leave)) = convex::clip_line(&plan(facet), (from, to), BESIDE_M) {
                 let z = |part: f64| plane_z(facet, from.lerp(to, part));
                 over.push([enter.max(low), leave.min(high)].map(|part| LineStation { part, z: z(part) }));
             }
@@ -86,48 +87,28 @@ pub fn runs(ground: &dyn TriangleSurface, from: DVec2, to: DVec2) -> Vec<GroundR
     joined(&over, 4.0 * BESIDE_M / length)
 }
 
-/// Runs from the stretches over single triangles, in rising order; gaps up to `gap` are rounding.
+/// Joins the stretches over single triangles, in ascending order, to runs; gaps up to `gap` are rounding.
 fn joined(over: &[[LineStation; 2]], gap: f64) -> Vec<GroundRun> {
-    let mut found: Vec<GroundRun> = Vec::new();
+    let mut runs: Vec<GroundRun> = Vec::new();
     for &[enter, leave] in over {
-        if let Some(run) = found.last_mut().filter(|run| enter.part <= run.span().1 + gap) {
+        if let Some(run) = runs.last_mut().filter(|run| enter.part <= run.span().1 + gap) {
             if leave.part > run.span().1 + gap {
                 run.stations.push(leave);
             }
         } else if leave.part - enter.part > gap {
-            found.push(GroundRun { stations: vec![enter, leave] });
+            runs.push(GroundRun { stations: vec![enter, leave] });
         }
     }
-    found
+    runs
 }
 
-/// The parts of a line between which it lies over a triangle (Cyrus and Beck 1978).
-fn parts_over(facet: &SurfaceTriangle, from: DVec2, to: DVec2) -> Option<(f64, f64)> {
-    let corners = facet.map(|corner| corner.truncate().as_dvec2());
-    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
-    for side in 0..3 {
-        let (start, way) = (corners[side], corners[(side + 1) % 3] - corners[side]);
-        let beside = BESIDE_M * way.length();
-        let (first, last) = (way.perp_dot(from - start) + beside, way.perp_dot(to - start) + beside);
-        if first < 0.0 && last < 0.0 {
-            return None;
-        }
-        if first < 0.0 {
-            enter = enter.max(first / (first - last));
-        } else if last < 0.0 {
-            leave = leave.min(first / (first - last));
-        }
-    }
-    (enter < leave).then_some((enter, leave))
-}
-
-/// The ground that a picture's uprights stand on: as displayed, or as it is where the ground there is out of view, since
-/// what stands on it may be in view all the same.
+/// The ground that a picture's structures stand on: as displayed, or at full resolution where that ground is out of view,
+/// since a structure on it may still be in view.
 #[derive(Clone, Copy)]
 pub struct SupportSurface<'a> {
     /// The displayed ground.
     pub displayed: &'a dyn TriangleSurface,
-    /// The ground itself.
+    /// The ground at full resolution.
     pub ground: FullResolution<'a>,
 }
 
@@ -154,18 +135,18 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_line_lies_on_the_ground_all_along(
+        fn a_run_lies_on_the_ground_throughout(
             from in (-20.0..210.0f64, -20.0..150.0f64), to in (-20.0..210.0f64, -20.0..150.0f64),
             snapped in proptest::bool::ANY,
         ) {
             let lattice = rough(&[]);
-            let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
+            let ground = FullResolution { lattice: &lattice };
             let onto = |at: (f64, f64)| {
                 let at = DVec2::from(at);
                 if snapped { (at / DVec2::new(10.0, 7.0)).round() * DVec2::new(10.0, 7.0) } else { at }
             };
             let (from, to) = (onto(from), onto(to));
-            let found = runs(&ground, from, to);
+            let found = ground_runs(&ground, from, to);
             for step in 0..=200 {
                 let part = f64::from(step) / 200.0;
                 // A line that only touches the border has no ground under it.
@@ -184,19 +165,19 @@ mod tests {
     }
 
     #[test]
-    fn a_hole_parts_a_line() {
+    fn a_hole_splits_a_line() {
         let lattice = rough(&[10 * 20 + 10]);
-        let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
-        let found = runs(&ground, DVec2::new(0.0, 71.0), DVec2::new(190.0, 71.0));
+        let ground = FullResolution { lattice: &lattice };
+        let found = ground_runs(&ground, DVec2::new(0.0, 71.0), DVec2::new(190.0, 71.0));
         assert_eq!(found.len(), 2);
         assert!(found[0].span().1 < 0.55 && found[1].span().0 > 0.5);
     }
 
     #[test]
-    fn a_point_and_what_is_not_finite_have_no_runs() {
+    fn points_and_lines_that_are_not_finite_have_no_runs() {
         let lattice = rough(&[]);
-        let ground = FullResolution { lattice: &lattice, exaggeration: 1.0 };
-        assert!(runs(&ground, DVec2::ONE, DVec2::ONE).is_empty());
-        assert!(runs(&ground, DVec2::ONE, DVec2::NAN).is_empty());
+        let ground = FullResolution { lattice: &lattice };
+        assert!(ground_runs(&ground, DVec2::ONE, DVec2::ONE).is_empty());
+        assert!(ground_runs(&ground, DVec2::ONE, DVec2::NAN).is_empty());
     }
 }

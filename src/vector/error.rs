@@ -1,117 +1,135 @@
 //! Why a vector file cannot be read.
 
+use std::borrow::Cow;
+use std::error::Error;
+use std::fmt::Display;
+
+use crate::archive::ArchiveError;
 use crate::geom::crs::CrsError;
+use crate::message::suggest::nearest;
 
-/// As many layers as a message lists.
-const LAYERS_SHOWN: usize = 20;
+/// Most names that a message lists.
+const MAX_LISTED: usize = 20;
+/// Most characters of a name in a message.
+pub(crate) const MAX_NAME_CHARS: usize = 60;
 
-/// Why a vector file cannot be read; the file's name is for the caller to add.
+/// Why a vector file cannot be read. The caller adds the file's name.
 #[derive(Debug, thiserror::Error)]
 pub enum VectorError {
-    /// More bytes than are read into memory.
+    /// The file is larger than is read into memory.
     #[error(
-        "{bytes} bytes are more than the {limit} allowed; cut it down with 'ogr2ogr -clipsrc' or '-where'"
+        "{bytes} bytes exceed the limit of {limit}; cut the file down with 'ogr2ogr -clipsrc' or '-where'"
     )]
     TooLarge {
         /// The file's size.
         bytes: usize,
-        /// The largest size read.
+        /// The largest size that is read.
         limit: usize,
     },
-    /// The text is not JSON, or its JSON is not GeoJSON.
-    #[error("line {line}, column {column}: {reason}; GeoJSON (RFC 7946) is needed")]
-    Malformed {
-        /// Counts from 1.
-        line: usize,
-        /// Counts bytes from 1.
-        column: usize,
-        /// What the parser says.
-        reason: String,
-    },
-    /// JSON of another kind.
+    /// The file is packed and cannot be unpacked.
+    #[error(transparent)]
+    Archive(#[from] ArchiveError),
+    /// The JSON is of another kind.
     #[error("its \"type\" is \"{found}\", not a feature, a collection of features or a geometry; {remedy}")]
     NotGeoJson {
-        /// The value of the top object's `type`.
+        /// The `type` of the top object.
         found: String,
-        /// What to do about it.
-        remedy: String,
+        /// What to do.
+        remedy: &'static str,
     },
     /// The file contradicts itself or ends too early.
     #[error("the {format} is broken at {place}: {reason}; fetch or export the file again")]
     Broken {
         /// The format's name.
         format: &'static str,
-        /// Where, as its readers count: a byte, a line, a record.
+        /// A byte, a line, a record.
         place: String,
-        /// What was found there.
-        reason: String,
+        /// What was found.
+        reason: Cow<'static, str>,
+    },
+    /// The library that reads the format refused the file.
+    #[error("the {format} is broken at {place}: {source}; fetch or export the file again")]
+    Refused {
+        /// The format's name.
+        format: &'static str,
+        /// A byte, a line, a record.
+        place: String,
+        /// The library's error.
+        source: Box<dyn Error + Send + Sync>,
     },
     /// The format is read, but not this kind of it.
-    #[error("this {format} holds {what}, which is not read; {remedy}")]
+    #[error("this {format} holds {content}, which cannot be read; {remedy}")]
     Unsupported {
         /// The format's name.
         format: &'static str,
-        /// What is not read.
-        what: String,
+        /// What cannot be read.
+        content: Cow<'static, str>,
         /// What to do.
-        remedy: String,
+        remedy: &'static str,
     },
-    /// The file does not say which system its coordinates are in, and its format has no default.
-    #[error("this {format} {wanting}, so that its coordinate system is not known; say it with the key 'crs'")]
+    /// The file names no coordinate system, and its format has no default.
+    #[error("this {format} {reason}, so its coordinate system is unknown; state it with the key 'crs'")]
     NoCrs {
         /// The format's name.
         format: &'static str,
-        /// What is not there.
-        wanting: &'static str,
+        /// What is missing.
+        reason: &'static str,
     },
-    /// The file names a system that is not understood.
-    #[error("its coordinate system cannot be used: {0}; or say the right one with the key 'crs'")]
-    Crs(CrsError),
-    /// Several layers, and none was asked for.
-    #[error("it holds {count} layers; say which with 'layer': {found}")]
-    WhichLayer {
-        /// How many.
-        count: usize,
-        /// Their names, as many as fit.
-        found: String,
-        /// All their names.
-        names: Vec<String>,
-    },
-    /// The layer that was asked for is not there.
-    #[error("it has no layer '{wanted}'{meant}; its layers are {found}")]
-    NoSuchLayer {
-        /// What was asked for, shortened.
-        wanted: String,
-        /// `; did you mean 'roads'?`, or nothing.
-        meant: String,
-        /// The names of those that are there, as many as fit.
-        found: String,
-    },
-    /// A format that is known but not read.
-    #[error("this is {format}, which is not read; convert it: {command}")]
-    OtherFormat {
-        /// The format's name.
-        format: &'static str,
-        /// A command line that makes GeoJSON of it.
-        command: String,
-    },
-    /// Nothing that is known.
-    #[error(
-        "neither its content nor its name says what format it is; GeoJSON is read, and ESRI shapefiles, GeoPackage, FlatGeobuf, GPX, KML, KMZ and OpenStreetMap (.osm, .osm.pbf)"
-    )]
-    UnknownFormat,
-    /// The file's `crs` member is not understood.
-    #[error("its \"crs\" member {found} is not understood; say which system it is in with the key 'crs'")]
+    /// The file's coordinate system is not understood.
+    #[error("its coordinate system cannot be used: {0}; state the right one with the key 'crs'")]
+    Crs(#[from] CrsError),
+    /// The `crs` member of a GeoJSON file is not understood.
+    #[error("its \"crs\" member {found} is not understood; state the coordinate system with the key 'crs'")]
     CrsMember {
         /// The member, shortened.
         found: String,
-        /// Why the name is not understood, where it has one.
-        #[source]
+        /// Why its name is not understood; `None` where it has none.
         source: Option<CrsError>,
     },
-    /// Longitude and latitude out of range: most often meters in a file that names no system.
+    /// The file holds several layers, and none was requested.
+    #[error("it holds {} layers; choose one with 'layer': {}", names.len(), list(names))]
+    WhichLayer {
+        /// The names of all layers.
+        names: Vec<String>,
+    },
+    /// The requested layer does not exist.
+    #[error("it has no layer '{wanted}'{}; its layers are {}", did_you_mean(suggestion), list(names))]
+    NoSuchLayer {
+        /// The requested name, shortened.
+        wanted: String,
+        /// The most similar name, where one is similar.
+        suggestion: Option<String>,
+        /// The names of all layers.
+        names: Vec<String>,
+    },
+    /// The format is known but cannot be read.
+    #[error("this is {format}, which cannot be read; convert it: {command}")]
+    OtherFormat {
+        /// The format's name.
+        format: &'static str,
+        /// A command that converts it.
+        command: String,
+    },
+    /// The format needs a feature that this program was built without.
     #[error(
-        "feature {feature} has a vertex at ({x}, {y}), which cannot be longitude and latitude in {crs}; if the file is in another system, say which with the key 'crs'"
+        "this is a {format}, which needs the Cargo feature '{feature}'; build sandtable with it, or convert the file: {command}"
+    )]
+    FeatureDisabled {
+        /// The format's name.
+        format: &'static str,
+        /// The Cargo feature.
+        feature: &'static str,
+        /// A command that converts it.
+        command: String,
+    },
+    /// The format is unknown.
+    #[error(
+        "neither its content nor its name tells its format; GeoJSON is read, and ESRI shapefiles, GeoPackage, FlatGeobuf, GPX, KML, KMZ and OpenStreetMap (.osm, .osm.pbf)"
+    )]
+    UnknownFormat,
+    /// A longitude or latitude is out of range: usually meters in a file that names no system.
+    #[error(
+        "feature {feature} has a vertex at ({x}, {y}), which cannot be longitude and latitude in {crs}; if the file is in another system, state it with the key 'crs'"
     )]
     NotDegrees {
         /// Counts from 1, in the file's order.
@@ -120,7 +138,7 @@ pub enum VectorError {
         x: f64,
         /// Latitude as read.
         y: f64,
-        /// The system it was taken for.
+        /// The name of the assumed system.
         crs: String,
     },
 }
@@ -129,33 +147,62 @@ impl VectorError {
     /// A [`VectorError::Broken`].
     pub(crate) fn broken(
         format: &'static str,
-        place: impl std::fmt::Display,
-        reason: impl Into<String>,
+        place: impl Display,
+        reason: impl Into<Cow<'static, str>>,
     ) -> Self {
         Self::Broken { format, place: place.to_string(), reason: reason.into() }
     }
 
-    /// A [`VectorError::WhichLayer`] among `names`.
-    pub(crate) fn which_layer(names: &[&str]) -> Self {
-        let all = names.iter().map(|&name| name.to_owned()).collect();
-        Self::WhichLayer { count: names.len(), found: listed(names), names: all }
+    /// A [`VectorError::Refused`].
+    pub(crate) fn refused(
+        format: &'static str,
+        place: impl Display,
+        source: impl Error + Send + Sync + 'static,
+    ) -> Self {
+        Self::Refused { format, place: place.to_string(), source: Box::new(source) }
     }
 
-    /// A [`VectorError::NoSuchLayer`] among `names`; one that is most like it is proposed.
+    /// A [`VectorError::Unsupported`] about curves, which no reader turns into lines.
+    pub(crate) fn curves(format: &'static str, kind: &str) -> Self {
+        Self::Unsupported {
+            format,
+            content: format!("shapes of the type {kind}").into(),
+            remedy: "convert them, for example with: ogr2ogr -nlt CONVERT_TO_LINEAR",
+        }
+    }
+
+    /// A [`VectorError::WhichLayer`] among `names`.
+    pub(crate) fn which_layer(names: &[&str]) -> Self {
+        Self::WhichLayer { names: owned(names) }
+    }
+
+    /// A [`VectorError::NoSuchLayer`] among `names`.
     pub(crate) fn no_such_layer(wanted: &str, names: &[&str]) -> Self {
-        let close = |name: &&&str| strsim::osa_distance(&name.to_lowercase(), &wanted.to_lowercase()) <= 2;
-        let meant = names.iter().find(close).map(|name| format!("; did you mean '{name}'?"));
-        let wanted = wanted.chars().take(60).collect();
-        Self::NoSuchLayer { wanted, meant: meant.unwrap_or_default(), found: listed(names) }
+        let suggestion = nearest(wanted, names.iter().copied()).map(str::to_owned);
+        Self::NoSuchLayer { wanted: shorten(wanted), suggestion, names: owned(names) }
     }
 }
 
-/// The names, as many as fit, each shortened.
-fn listed(names: &[&str]) -> String {
+fn owned(names: &[&str]) -> Vec<String> {
+    names.iter().map(|&name| name.to_owned()).collect()
+}
+
+/// Returns the first [`MAX_NAME_CHARS`] characters of `name`.
+pub(crate) fn shorten(name: &str) -> String {
+    name.chars().take(MAX_NAME_CHARS).collect()
+}
+
+/// Returns `; did you mean 'roads'?` for a suggestion, else nothing.
+pub fn did_you_mean(suggestion: &Option<String>) -> String {
+    suggestion.as_ref().map_or_else(String::new, |name| format!("; did you mean '{name}'?"))
+}
+
+/// Returns the first names, each shortened, separated by commas; `none` of no names.
+pub fn list(names: &[String]) -> String {
     if names.is_empty() {
         return "none".into();
     }
-    let shown = names.iter().take(LAYERS_SHOWN).map(|name| name.chars().take(60).collect::<String>());
-    let more = if names.len() > LAYERS_SHOWN { ", ..." } else { "" };
-    shown.collect::<Vec<_>>().join(", ") + more
+    let shown: Vec<String> = names.iter().take(MAX_LISTED).map(|name| shorten(name)).collect();
+    let more = if names.len() > MAX_LISTED { ", ..." } else { "" };
+    shown.join(", ") + more
 }

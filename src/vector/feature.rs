@@ -1,19 +1,23 @@
-//! Features as a vector file holds them.
+//! Features of a vector file.
 
 use std::collections::BTreeMap;
+use std::iter;
 
 use glam::DVec2;
 
 use crate::geom::crs::{Crs, CrsError};
 
-/// All features of one file.
+/// The properties of a feature, by name.
+pub type Properties = BTreeMap<String, serde_json::Value>;
+
+/// All features of one layer.
 #[derive(Clone, Debug)]
 pub struct VectorLayer {
     /// In the file's order.
     pub features: Vec<Feature>,
-    /// The system of all coordinates: what the file states, else its format's default.
+    /// The system of all coordinates: the file's own, else its format's default.
     pub crs: Crs,
-    /// What the file holds that no feature came of, for the user to know.
+    /// What was left out of the layer or looks wrong in the file, for the user.
     pub notes: Vec<String>,
 }
 
@@ -22,14 +26,14 @@ pub struct VectorLayer {
 pub struct Feature {
     /// Its shape; multi-part shapes hold several lines, polygons or points.
     pub geometry: Geometry,
-    /// The elevation of every vertex, in the order of [`Geometry::vertices`] and the file's vertical unit, NaN for a
-    /// vertex without one; `None` where the file gives the feature no elevations.
+    /// The elevation of every vertex in the order of [`Geometry::vertices`], in the file's vertical unit, NaN for a
+    /// vertex without one; `None` where no vertex has one.
     pub elevations: Option<Vec<f64>>,
-    /// Its properties, by name.
-    pub properties: BTreeMap<String, serde_json::Value>,
+    /// Its properties.
+    pub properties: Properties,
 }
 
-/// Coordinates are (easting, northing) or (longitude, latitude).
+/// Shapes of one kind. Coordinates are (easting, northing) or (longitude, latitude).
 #[derive(Clone, Debug, PartialEq)]
 pub enum Geometry {
     /// Points.
@@ -40,7 +44,7 @@ pub enum Geometry {
     Polygons(Vec<Polygon>),
 }
 
-/// A polygon with holes; rings are closed without repeating the first vertex, in either direction.
+/// A polygon with holes. Rings are closed without repeating the first vertex and run in either direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
     /// The outer ring, at least three vertices.
@@ -50,50 +54,40 @@ pub struct Polygon {
 }
 
 impl VectorLayer {
-    /// The same features in the system `to`.
+    /// Returns the same features in the system `to`.
     ///
     /// # Errors
     /// [`CrsError`] for the first vertex that either system cannot express.
     pub fn transformed(mut self, to: &Crs) -> Result<Self, CrsError> {
         if self.crs != *to {
-            let from = self.crs.clone();
             for vertex in self.features.iter_mut().flat_map(|feature| feature.geometry.vertices_mut()) {
-                *vertex = from.transform(to, *vertex)?;
+                *vertex = self.crs.transform(to, *vertex)?;
             }
+            self.crs = to.clone();
         }
-        self.crs = to.clone();
         Ok(self)
     }
 }
 
 impl Feature {
-    /// Its lines; none for points and polygons.
+    /// Returns its lines; none for points and polygons.
     pub fn lines(&self) -> &[Vec<DVec2>] {
-        match &self.geometry {
-            Geometry::Lines(lines) => lines,
-            Geometry::Points(_) | Geometry::Polygons(_) => &[],
-        }
+        if let Geometry::Lines(lines) = &self.geometry { lines } else { &[] }
     }
 
-    /// Its polygons; none for points and lines.
+    /// Returns its polygons; none for points and lines.
     pub fn polygons(&self) -> &[Polygon] {
-        match &self.geometry {
-            Geometry::Polygons(polygons) => polygons,
-            Geometry::Points(_) | Geometry::Lines(_) => &[],
-        }
+        if let Geometry::Polygons(polygons) = &self.geometry { polygons } else { &[] }
     }
 
-    /// Its points; none for lines and polygons.
+    /// Returns its points; none for lines and polygons.
     pub fn points(&self) -> &[DVec2] {
-        match &self.geometry {
-            Geometry::Points(points) => points,
-            Geometry::Lines(_) | Geometry::Polygons(_) => &[],
-        }
+        if let Geometry::Points(points) = &self.geometry { points } else { &[] }
     }
 }
 
 impl Geometry {
-    /// `points`, `lines` or `polygons`.
+    /// Returns `points`, `lines` or `polygons`.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Points(_) => "points",
@@ -102,16 +96,12 @@ impl Geometry {
         }
     }
 
-    /// All its vertices, part by part.
+    /// Returns all vertices, part by part, a polygon's outer ring before its holes.
     pub fn vertices(&self) -> Box<dyn Iterator<Item = &DVec2> + '_> {
         match self {
             Self::Points(points) => Box::new(points.iter()),
             Self::Lines(lines) => Box::new(lines.iter().flatten()),
-            Self::Polygons(polygons) => Box::new(
-                polygons
-                    .iter()
-                    .flat_map(|polygon| polygon.exterior.iter().chain(polygon.holes.iter().flatten())),
-            ),
+            Self::Polygons(polygons) => Box::new(polygons.iter().flat_map(Polygon::rings).flatten()),
         }
     }
 
@@ -119,12 +109,20 @@ impl Geometry {
         match self {
             Self::Points(points) => Box::new(points.iter_mut()),
             Self::Lines(lines) => Box::new(lines.iter_mut().flatten()),
-            Self::Polygons(polygons) => {
-                Box::new(polygons.iter_mut().flat_map(|polygon| {
-                    polygon.exterior.iter_mut().chain(polygon.holes.iter_mut().flatten())
-                }))
-            }
+            Self::Polygons(polygons) => Box::new(
+                polygons
+                    .iter_mut()
+                    .flat_map(|polygon| iter::once(&mut polygon.exterior).chain(&mut polygon.holes))
+                    .flatten(),
+            ),
         }
+    }
+}
+
+impl Polygon {
+    /// Returns the outer ring, then the holes.
+    pub fn rings(&self) -> impl Iterator<Item = &Vec<DVec2>> {
+        iter::once(&self.exterior).chain(&self.holes)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Chooses features by their properties.
+//! Selects features by their properties.
 
 use std::collections::BTreeSet;
 
@@ -6,80 +6,77 @@ use serde_json::Value;
 
 use crate::vector::feature::{Feature, VectorLayer};
 
-/// What a feature's properties must be; all conditions must hold, and none always do.
+/// Conditions on a feature's properties. All must hold; an empty filter matches every feature.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Filter {
     /// In any order.
     pub conditions: Vec<Condition>,
 }
 
-/// What one property must be.
+/// A condition on one property.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condition {
     /// The property's name.
     pub property: String,
-    /// The values of which it must equal one. Numbers equal as numbers, whole or not; text as text; the
-    /// number 2 and the text "2" are different.
+    /// The values that it may have. Numbers are compared as numbers, integers with floats; the number 2 and the text
+    /// "2" differ.
     pub any_of: Vec<Value>,
 }
 
 impl Filter {
-    /// Whether all conditions hold; an absent property fulfils none.
+    /// Returns whether all conditions hold; a condition on an absent property does not.
     pub fn matches(&self, feature: &Feature) -> bool {
         self.conditions.iter().all(|condition| {
             feature.properties.get(&condition.property).is_some_and(|value| condition.holds(value))
         })
     }
 
-    /// The layer's features that match, in its order, each with its place in [`VectorLayer::features`].
+    /// Returns the features that match, each with its index in [`VectorLayer::features`].
     pub fn select<'a>(&'a self, layer: &'a VectorLayer) -> impl Iterator<Item = (usize, &'a Feature)> + 'a {
         layer.features.iter().enumerate().filter(|(_, feature)| self.matches(feature))
     }
 
-    /// Why no feature of the layer matches: for each condition that never holds, the values that there are
-    /// instead. `None` where some feature matches, or each condition holds somewhere but never all together.
-    pub fn explain_none(&self, layer: &VectorLayer) -> Option<String> {
+    /// Explains why no feature matches: the existing values of each property whose condition never holds.
+    ///
+    /// Returns `None` where a feature matches, or where each condition holds for some feature but never all together.
+    pub fn explain_no_match(&self, layer: &VectorLayer) -> Option<String> {
         if self.select(layer).next().is_some() {
             return None;
         }
         let reasons: Vec<String> =
-            self.conditions.iter().filter_map(|condition| condition.explain_none(layer)).collect();
+            self.conditions.iter().filter_map(|condition| condition.explain_no_match(layer)).collect();
         (!reasons.is_empty()).then(|| reasons.join("; "))
     }
 }
 
 impl Condition {
     fn holds(&self, value: &Value) -> bool {
-        self.any_of.iter().any(|wanted| equal(wanted, value))
+        self.any_of.iter().any(|wanted| match (wanted, value) {
+            (Value::Number(wanted), Value::Number(value)) => wanted.as_f64() == value.as_f64(),
+            _ => wanted == value,
+        })
     }
 
-    fn explain_none(&self, layer: &VectorLayer) -> Option<String> {
+    fn explain_no_match(&self, layer: &VectorLayer) -> Option<String> {
         /// As many as fit on a line.
-        const SHOWN: usize = 12;
+        const MAX_SHOWN: usize = 12;
         let property = &self.property;
         let values = layer.features.iter().filter_map(|feature| feature.properties.get(property));
-        let mut found = BTreeSet::new();
+        let mut distinct = BTreeSet::new();
         for value in values.filter(|value| !value.is_null()) {
             if self.holds(value) {
                 return None;
             }
-            if found.len() <= SHOWN {
-                found.insert(value.to_string().chars().take(40).collect::<String>());
+            if distinct.len() <= MAX_SHOWN {
+                distinct.insert(value.to_string().chars().take(40).collect::<String>());
             }
         }
-        if found.is_empty() {
+        if distinct.is_empty() {
             return Some(format!("no feature has the property '{property}'"));
         }
-        let more = if found.len() > SHOWN { ", ..." } else { "" };
-        let shown: Vec<String> = found.into_iter().take(SHOWN).collect();
+        let more = if distinct.len() > MAX_SHOWN { ", ..." } else { "" };
+        let shown: Vec<String> = distinct.into_iter().take(MAX_SHOWN).collect();
         Some(format!("'{property}' is {}{more}", shown.join(", ")))
-    }
-}
-
-fn equal(wanted: &Value, value: &Value) -> bool {
-    match (wanted, value) {
-        (Value::Number(wanted), Value::Number(value)) => wanted.as_f64() == value.as_f64(),
-        _ => wanted == value,
     }
 }
 
@@ -136,9 +133,9 @@ mod tests {
         let roads = layer(&[json!({"lanes": "2"}), json!({"lanes": "4"}), json!({"lanes": null})]);
         let wanted = filter(&[("lanes", &[json!(2)]), ("highway", &[json!("primary")])]);
         assert_eq!(
-            wanted.explain_none(&roads).as_deref(),
+            wanted.explain_no_match(&roads).as_deref(),
             Some("'lanes' is \"2\", \"4\"; no feature has the property 'highway'")
         );
-        assert_eq!(filter(&[("lanes", &[json!("2")])]).explain_none(&roads), None);
+        assert_eq!(filter(&[("lanes", &[json!("2")])]).explain_no_match(&roads), None);
     }
 }

@@ -1,4 +1,4 @@
-//! GPX 1.0 and 1.1 (Topografix, 2002 and 2004): what receivers record and planners draw, always on WGS 84.
+//! GPX 1.0 and 1.1 (Topografix, 2002 and 2004): what receivers record and planners draw, on WGS 84.
 //!
 //! ```text
 //! gpx ─┬─ wpt                    layer waypoints
@@ -7,170 +7,161 @@
 //! ```
 //!
 //! `ele` is the elevation of a point in meters. Extensions are not read.
+//!
+//! Written by hand. `gpx` 0.10 refuses valid files: those with `magvar` (GPX 1.1), with `course` or the elements of
+//! other namespaces (GPX 1.0), and with times that are dates. It refuses 180° E, rewrites times, reports no lines, and
+//! builds six more crates.
 
 use glam::DVec3;
-use serde_json::{Number, Value};
+use serde_json::Number;
 
-use crate::geom::crs::Crs;
-use crate::vector::collect::{Collector, FeatureParts, Properties, position};
+use crate::vector::builder::{FeatureParts, LayerBuilder, Vertices, position};
 use crate::vector::error::VectorError;
-use crate::vector::feature::VectorLayer;
-use crate::vector::xml::{self, Element, Xml};
+use crate::vector::feature::{Properties, VectorLayer};
+use crate::vector::hints::VectorHints;
+use crate::vector::xml::{self, XmlElement, XmlReader};
 
 const FORMAT: &str = "GPX file";
-/// The layers that are chosen from where none is asked for, and those that are had by name besides.
+/// The first three are the choice where none is requested; the others are only read by name.
 const LAYERS: [&str; 5] = ["waypoints", "routes", "tracks", "route_points", "track_points"];
 const MAIN_LAYERS: usize = 3;
+const WAYPOINTS: usize = 0;
+const ROUTES: usize = 1;
+const TRACKS: usize = 2;
+const ROUTE_POINTS: usize = 3;
+const TRACK_POINTS: usize = 4;
 /// The elements that become properties.
 const PROPERTIES: [&str; 7] = ["name", "cmt", "desc", "src", "sym", "type", "number"];
 
-/// One layer of a GPX file, `wanted`, or the only one that holds anything.
+/// Reads the requested layer, or the only one that holds anything.
 ///
 /// # Errors
-/// [`VectorError`]; a point without latitude or longitude is one.
-pub(super) fn read(
-    bytes: &[u8],
-    stated: Option<&Crs>,
-    wanted: Option<&str>,
-) -> Result<VectorLayer, VectorError> {
+/// [`VectorError`], also for a point without latitude or longitude.
+pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
     let text = xml::decode(bytes, FORMAT)?;
-    if let Some(wanted) = wanted.filter(|wanted| !LAYERS.contains(wanted)) {
-        return Err(VectorError::no_such_layer(wanted, &LAYERS));
-    }
-    let crs = stated.cloned().unwrap_or_else(Crs::wgs84);
-    let wanted = wanted.and_then(|wanted| LAYERS.iter().position(|&name| name == wanted));
-    let mut file = GpxFile { layers: LAYERS.map(|_| Collector::new(crs.clone())), wanted };
-    let mut xml = Xml::new(&text, FORMAT);
-    xml.root()?;
-    xml.children(|xml, element| file.read(xml, element))?;
-    xml.end()?;
-    let layers = file.layers.map(Collector::finish);
-    let holding: Vec<usize> = (0..MAIN_LAYERS).filter(|&index| !layers[index].features.is_empty()).collect();
-    let chosen = match (wanted, &holding[..]) {
+    let wanted = hints.layer.map(|_| hints.choose_layer(&LAYERS)).transpose()?;
+    let layers = LAYERS.map(|_| LayerBuilder::new(hints.crs_or_wgs84()));
+    let mut reader = GpxReader { xml: XmlReader::new(&text, FORMAT), layers, wanted };
+    reader.read()?;
+    let has_features = |index: &usize| !reader.layers[*index].is_empty();
+    let chosen = match (wanted, &(0..MAIN_LAYERS).filter(has_features).collect::<Vec<_>>()[..]) {
         (Some(wanted), _) => wanted,
-        (None, []) => 0,
+        (None, []) => WAYPOINTS,
         (None, &[only]) => only,
         (None, several) => {
             let names: Vec<&str> = several.iter().map(|&index| LAYERS[index]).collect();
             return Err(VectorError::which_layer(&names));
         }
     };
-    Ok(layers.into_iter().nth(chosen).expect("chosen among them"))
+    Ok(reader.layers.into_iter().nth(chosen).expect("an index of a layer").finish())
 }
 
-struct GpxFile {
-    layers: [Collector; LAYERS.len()],
+struct GpxReader<'a> {
+    xml: XmlReader<'a>,
+    layers: [LayerBuilder; LAYERS.len()],
     wanted: Option<usize>,
 }
 
-/// A point on the way.
-struct GpxPoint {
-    at: DVec3,
-    properties: Properties,
-}
-
-impl GpxFile {
-    fn read<'a>(&mut self, xml: &mut Xml<'a>, element: &Element<'a>) -> Result<(), VectorError> {
-        match element.name() {
-            "wpt" => {
-                let point = self.point(xml, element, 0)?;
-                self.add_point(0, point)
+impl<'a> GpxReader<'a> {
+    fn read(&mut self) -> Result<(), VectorError> {
+        self.xml.root()?;
+        while let Some(child) = self.xml.next_child()? {
+            match child.name() {
+                "wpt" => {
+                    let point = self.xml.read(child)?;
+                    self.add_point(WAYPOINTS, &point)?;
+                }
+                "rte" => self.read_route()?,
+                "trk" => self.read_track()?,
+                _ => self.xml.skip()?,
             }
-            "rte" => self.route(xml),
-            "trk" => self.track(xml),
-            _ => xml.skip(),
         }
+        self.xml.finish()
     }
 
-    fn route(&mut self, xml: &mut Xml<'_>) -> Result<(), VectorError> {
-        let (mut properties, mut line) = (Properties::new(), Vec::new());
-        xml.children(|xml, element| match element.name() {
-            "rtept" => self.way_point(xml, element, 3, &mut line),
-            name => property(xml, name, &mut properties),
-        })?;
+    fn read_route(&mut self) -> Result<(), VectorError> {
+        let (mut properties, mut line) = (Properties::new(), Vertices::new());
+        while let Some(child) = self.xml.next_child()? {
+            match child.name() {
+                "rtept" => line.push(self.read_vertex(child, ROUTE_POINTS)?),
+                _ => self.read_property(child, &mut properties)?,
+            }
+        }
         let mut parts = FeatureParts::default();
         if !line.is_empty() {
-            parts.line(line);
+            parts.add_line(line);
         }
-        self.layers[1].add(parts, properties)
+        self.layers[ROUTES].add(parts, properties)
     }
 
-    fn track(&mut self, xml: &mut Xml<'_>) -> Result<(), VectorError> {
+    fn read_track(&mut self) -> Result<(), VectorError> {
         let (mut properties, mut parts) = (Properties::new(), FeatureParts::default());
-        xml.children(|xml, element| match element.name() {
-            "trkseg" => {
-                let mut line = Vec::new();
-                xml.children(|xml, element| match element.name() {
-                    "trkpt" => self.way_point(xml, element, 4, &mut line),
-                    _ => xml.skip(),
-                })?;
-                parts.line(line);
-                Ok(())
+        while let Some(child) = self.xml.next_child()? {
+            match child.name() {
+                "trkseg" => parts.add_line(self.read_segment()?),
+                _ => self.read_property(child, &mut properties)?,
             }
-            name => property(xml, name, &mut properties),
-        })?;
-        self.layers[2].add(parts, properties)
-    }
-
-    /// A point of a route or a track: a vertex of its line, and a feature of the layer `points` if that is wanted.
-    fn way_point<'a>(
-        &mut self,
-        xml: &mut Xml<'a>,
-        element: &Element<'a>,
-        points: usize,
-        line: &mut Vec<DVec3>,
-    ) -> Result<(), VectorError> {
-        let point = self.point(xml, element, points)?;
-        line.push(point.at);
-        if self.wanted == Some(points) { self.add_point(points, point) } else { Ok(()) }
-    }
-
-    fn add_point(&mut self, layer: usize, point: GpxPoint) -> Result<(), VectorError> {
-        let mut parts = FeatureParts::default();
-        parts.point(point.at);
-        self.layers[layer].add(parts, point.properties)
-    }
-
-    /// The point that `element` is; its properties only where they are for the layer `layer` and that is wanted.
-    fn point<'a>(
-        &self,
-        xml: &mut Xml<'a>,
-        element: &Element<'a>,
-        layer: usize,
-    ) -> Result<GpxPoint, VectorError> {
-        let (Some(x), Some(y)) = (element.number("lon"), element.number("lat")) else {
-            return Err(xml.broken("a point has no latitude (lat) or longitude (lon) that is a number"));
-        };
-        let keeps = self.wanted == Some(layer) || layer < MAIN_LAYERS;
-        let (mut elevation, mut properties) = (None, Properties::new());
-        xml.children(|xml, element| match element.name() {
-            "ele" => {
-                elevation = xml.text()?.parse().ok();
-                Ok(())
-            }
-            "time" if keeps => {
-                let time = xml.text()?;
-                properties.insert("time".into(), time.into());
-                Ok(())
-            }
-            name if keeps => property(xml, name, &mut properties),
-            _ => xml.skip(),
-        })?;
-        if let Some(number) = elevation.and_then(Number::from_f64).filter(|_| keeps) {
-            properties.insert("ele".into(), Value::Number(number));
         }
-        Ok(GpxPoint { at: position(x, y, elevation), properties })
+        self.layers[TRACKS].add(parts, properties)
     }
-}
 
-/// Keeps the element just opened as a property, if it is one of those.
-fn property(xml: &mut Xml<'_>, name: &str, properties: &mut Properties) -> Result<(), VectorError> {
-    if !PROPERTIES.contains(&name) {
-        return xml.skip();
+    fn read_segment(&mut self) -> Result<Vertices, VectorError> {
+        let mut line = Vertices::new();
+        while let Some(child) = self.xml.next_child()? {
+            match child.name() {
+                "trkpt" => line.push(self.read_vertex(child, TRACK_POINTS)?),
+                _ => self.xml.skip()?,
+            }
+        }
+        Ok(line)
     }
-    let text = xml.text()?;
-    properties.insert(name.into(), text.into());
-    Ok(())
+
+    /// Reads a point of a line, and adds it to the layer `points` where that is requested.
+    fn read_vertex(&mut self, element: XmlElement<'a>, points: usize) -> Result<DVec3, VectorError> {
+        let point = self.xml.read(element)?;
+        if self.wanted == Some(points) {
+            self.add_point(points, &point)?;
+        }
+        self.position(&point)
+    }
+
+    fn read_property(
+        &mut self,
+        element: XmlElement<'a>,
+        properties: &mut Properties,
+    ) -> Result<(), VectorError> {
+        if !PROPERTIES.contains(&element.name()) {
+            return self.xml.skip();
+        }
+        let element = self.xml.read(element)?;
+        properties.insert(element.name().into(), element.text().into());
+        Ok(())
+    }
+
+    fn add_point(&mut self, layer: usize, point: &XmlElement<'_>) -> Result<(), VectorError> {
+        let position = self.position(point)?;
+        let is_property =
+            |child: &&XmlElement<'_>| PROPERTIES.contains(&child.name()) || child.name() == "time";
+        let property = |child: &XmlElement<'_>| (child.name().to_owned(), child.text().into());
+        let mut properties: Properties = point.children().filter(is_property).map(property).collect();
+        if let Some(elevation) = Number::from_f64(position.z) {
+            properties.insert("ele".into(), elevation.into());
+        }
+        let mut parts = FeatureParts::default();
+        parts.add_point(position);
+        self.layers[layer].add(parts, properties)
+    }
+
+    fn position(&self, point: &XmlElement<'_>) -> Result<DVec3, VectorError> {
+        let elevation = point.children_named("ele").last().and_then(|element| element.text().parse().ok());
+        match (point.number("lon"), point.number("lat")) {
+            (Some(x), Some(y)) => Ok(position(x, y, elevation)),
+            _ => {
+                let reason = "a point has no latitude (lat) or longitude (lon) that is a number";
+                Err(self.xml.broken_at(point, reason))
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -182,8 +173,12 @@ mod tests {
         <trk><name>Way</name><trkseg><trkpt lat="48" lon="15"><ele>1</ele></trkpt><trkpt lat="49" lon="16"/></trkseg>
         <trkseg><trkpt lat="50" lon="15"/><trkpt lat="51" lon="15"/><trkpt lat="52" lon="15"/></trkseg></trk></gpx>"#;
 
+    fn read_layer(bytes: &[u8], layer: Option<&str>) -> Result<VectorLayer, VectorError> {
+        read(bytes, &VectorHints { layer, ..VectorHints::default() })
+    }
+
     fn layer(wanted: &str) -> VectorLayer {
-        read(TEXT.as_bytes(), None, Some(wanted)).expect(wanted)
+        read_layer(TEXT.as_bytes(), Some(wanted)).expect(wanted)
     }
 
     #[test]
@@ -208,19 +203,19 @@ mod tests {
 
     #[test]
     fn one_of_several_layers_must_be_asked_for_by_its_name() {
-        let error = read(TEXT.as_bytes(), None, None).expect_err("two").to_string();
+        let error = read_layer(TEXT.as_bytes(), None).expect_err("two").to_string();
         assert!(error.contains("2 layers") && error.contains("waypoints, tracks"), "{error}");
-        let error = read(TEXT.as_bytes(), None, Some("track")).expect_err("none").to_string();
+        let error = read_layer(TEXT.as_bytes(), Some("track")).expect_err("none").to_string();
         assert!(error.contains("did you mean 'tracks'?"), "{error}");
     }
 
     #[test]
     fn a_file_cut_anywhere_is_refused() {
         for end in 0..TEXT.len() {
-            assert!(read(&TEXT.as_bytes()[..end], None, Some("tracks")).is_err(), "{end}");
+            assert!(read_layer(&TEXT.as_bytes()[..end], Some("tracks")).is_err(), "{end}");
         }
         let error =
-            read(b"<gpx>\n<wpt lat='x' lon='2'/></gpx>", None, None).expect_err("no number").to_string();
+            read_layer(b"<gpx>\n<wpt lat='x' lon='2'/></gpx>", None).expect_err("no number").to_string();
         assert!(error.contains("line 2") && error.contains("(lat)"), "{error}");
     }
 }

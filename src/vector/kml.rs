@@ -1,101 +1,90 @@
-//! KML 2.2 (OGC 07-147r2, 2008) and its archives (KMZ): placemarks, always on WGS 84.
+//! KML 2.2 (OGC 07-147r2, 2008): placemarks, on WGS 84.
 //!
-//! Every placemark is a feature. Its properties are `name`, `description`, `folder` (the name of the folder or
-//! document that it lies in, by which it can be asked for as a layer), `altitudeMode`, and all of its extended
-//! data as text. What is only there for looking at (overlays, styles, models, links) is not read.
+//! Every placemark is a feature. Its properties are `name`, `description`, `folder` (the folder or document that holds
+//! it, whose name also requests it as a layer), `altitudeMode`, and its extended data as text. Overlays, styles, models
+//! and links are not read.
 //!
-//! Altitudes are meters above the sea, but relative to the ground where `altitudeMode` says so, and then no
-//! elevations. Programs that have none write 0: where all are 0 and the mode is not `absolute`, there are none.
+//! Altitudes are meters above sea level, which become elevations. Where `altitudeMode` makes them relative to the
+//! ground they do not; nor where all are 0 and the mode is not `absolute`, since programs fill in 0.
+//!
+//! Written by hand. `kml` 0.15 never returns on a file cut short, refuses `<br/>` in a description and a space behind a
+//! comma, drops `gx:Track`, takes an absent `altitudeMode` for `clampToGround`, and builds a second `quick-xml`.
 
 use glam::DVec3;
 
-use crate::geom::crs::Crs;
-use crate::vector::collect::{Collector, FeatureParts, Properties, position};
-use crate::vector::error::VectorError;
-use crate::vector::feature::VectorLayer;
-use crate::vector::xml::{self, Element, Xml};
+use crate::vector::builder::{FeatureParts, LayerBuilder, Vertices, position};
+use crate::vector::error::{VectorError, shorten};
+use crate::vector::feature::{Properties, VectorLayer};
+use crate::vector::hints::VectorHints;
+use crate::vector::xml::{self, XmlElement, XmlReader};
 
 const FORMAT: &str = "KML file";
 
-/// All placemarks of a KML file, or those in the folder named `wanted`.
+/// Reads all placemarks, or those in the folders that have the name of the requested layer.
 ///
 /// # Errors
-/// [`VectorError`]; coordinates that are no numbers are one.
-pub(super) fn read(
-    bytes: &[u8],
-    stated: Option<&Crs>,
-    wanted: Option<&str>,
-) -> Result<VectorLayer, VectorError> {
+/// [`VectorError`], also for coordinates that are not numbers.
+pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
     let text = xml::decode(bytes, FORMAT)?;
-    let crs = stated.cloned().unwrap_or_else(Crs::wgs84);
-    let mut file = KmlFile { wanted, found: false, folders: Vec::new(), collector: Collector::new(crs) };
-    let mut xml = Xml::new(&text, FORMAT);
-    let root = xml.root()?;
+    let mut reader = KmlReader {
+        xml: XmlReader::new(&text, FORMAT),
+        wanted: hints.layer,
+        folders: Vec::new(),
+        layer: LayerBuilder::new(hints.crs_or_wgs84()),
+    };
+    let root = reader.xml.root()?;
     match root.name() {
-        "kml" => file.container(&mut xml, "")?,
-        _ => file.feature(&mut xml, &root, "")?,
+        "kml" => reader.read_container()?,
+        _ => reader.read_feature(root, "")?,
     }
-    xml.end()?;
-    match wanted.filter(|_| !file.found) {
-        Some(wanted) => {
-            let names: Vec<&str> = file.folders.iter().map(String::as_str).collect();
-            Err(VectorError::no_such_layer(wanted, &names))
-        }
-        None => Ok(file.collector.finish()),
+    reader.xml.finish()?;
+    let names: Vec<&str> = reader.folders.iter().map(String::as_str).collect();
+    match reader.wanted.filter(|wanted| !names.contains(wanted)) {
+        Some(wanted) => Err(VectorError::no_such_layer(wanted, &names)),
+        None => Ok(reader.layer.finish()),
     }
 }
 
-struct KmlFile<'w> {
-    wanted: Option<&'w str>,
-    /// Whether a folder has the wanted name.
-    found: bool,
+struct KmlReader<'a> {
+    xml: XmlReader<'a>,
+    wanted: Option<&'a str>,
     /// The names of the folders that hold placemarks, in order.
     folders: Vec<String>,
-    collector: Collector,
+    layer: LayerBuilder,
 }
 
-/// One placemark while it is read.
 #[derive(Default)]
 struct Placemark {
     parts: FeatureParts,
     properties: Properties,
 }
 
-/// One shape's vertices as written, by ring or line, and how their altitudes are meant.
-#[derive(Default)]
-struct KmlShape {
-    mode: Option<String>,
-    lists: Vec<Vec<DVec3>>,
-}
+/// A tuple of coordinates that has no longitude or no latitude.
+#[derive(Debug, thiserror::Error)]
+#[error("'{0}' is not longitude and latitude")]
+struct InvalidTuple(String);
 
-impl KmlFile<'_> {
-    /// What lies in the element just opened, a folder or document that has the name `name` until it says its own.
-    fn container(&mut self, xml: &mut Xml<'_>, name: &str) -> Result<(), VectorError> {
-        let mut name = name.to_owned();
-        xml.children(|xml, element| match element.name() {
-            "name" => {
-                name = xml.text()?;
-                Ok(())
+impl<'a> KmlReader<'a> {
+    /// Reads the content of the folder or document just opened.
+    fn read_container(&mut self) -> Result<(), VectorError> {
+        let mut name = String::new();
+        while let Some(child) = self.xml.next_child()? {
+            match child.name() {
+                "name" => name = self.xml.read(child)?.text(),
+                _ => self.read_feature(child, &name)?,
             }
-            _ => self.feature(xml, element, &name),
-        })
+        }
+        Ok(())
     }
 
-    fn feature<'a>(
-        &mut self,
-        xml: &mut Xml<'a>,
-        element: &Element<'a>,
-        folder: &str,
-    ) -> Result<(), VectorError> {
+    fn read_feature(&mut self, element: XmlElement<'a>, folder: &str) -> Result<(), VectorError> {
         match element.name() {
-            // A folder without a name has none, not that of the folder it lies in.
-            "Document" | "Folder" => self.container(xml, ""),
+            "Document" | "Folder" => self.read_container(),
             "Placemark" => {
-                let mut placemark = Placemark::default();
-                xml.children(|xml, element| placemark.read(xml, element))?;
-                self.add(placemark, folder)
+                let element = self.xml.read(element)?;
+                self.add(self.placemark(&element)?, folder)
             }
-            _ => xml.skip(),
+            _ => self.xml.skip(),
         }
     }
 
@@ -109,168 +98,138 @@ impl KmlFile<'_> {
         if self.wanted.is_some_and(|wanted| wanted != folder) {
             return Ok(());
         }
-        self.found = true;
-        self.collector.add(placemark.parts, placemark.properties)
+        self.layer.add(placemark.parts, placemark.properties)
     }
-}
 
-impl Placemark {
-    fn read<'a>(&mut self, xml: &mut Xml<'a>, element: &Element<'a>) -> Result<(), VectorError> {
-        match element.name() {
-            name @ ("name" | "description") => {
-                let text = xml.text()?;
-                self.properties.insert(name.into(), text.into());
-                Ok(())
+    fn placemark(&self, element: &XmlElement<'_>) -> Result<Placemark, VectorError> {
+        let mut placemark = Placemark::default();
+        for child in element.children() {
+            match child.name() {
+                name @ ("name" | "description") => {
+                    placemark.properties.insert(name.into(), child.text().into());
+                }
+                "ExtendedData" => placemark.add_extended_data(child),
+                _ => self.add_shape(child, &mut placemark)?,
             }
-            "ExtendedData" => self.extended_data(xml),
-            _ => self.shape(xml, element),
         }
+        Ok(placemark)
     }
 
-    /// `Data` with a `value`, or `SchemaData` with `SimpleData`.
-    fn extended_data(&mut self, xml: &mut Xml<'_>) -> Result<(), VectorError> {
-        xml.children(|xml, element| match element.name() {
-            "Data" => {
-                let name = element.attribute("name").map(String::from);
-                xml.children(|xml, element| match element.name() {
-                    "value" => self.keep(xml, name.as_deref()),
-                    _ => xml.skip(),
-                })
+    fn add_shape(&self, element: &XmlElement<'_>, placemark: &mut Placemark) -> Result<(), VectorError> {
+        match element.name() {
+            "MultiGeometry" | "MultiTrack" => {
+                element.children().try_for_each(|child| self.add_shape(child, placemark))?;
             }
-            "SchemaData" => xml.children(|xml, element| match element.name() {
-                "SimpleData" => self.keep(xml, element.attribute("name").as_deref()),
-                _ => xml.skip(),
-            }),
-            _ => xml.skip(),
-        })
-    }
-
-    fn keep(&mut self, xml: &mut Xml<'_>, name: Option<&str>) -> Result<(), VectorError> {
-        let text = xml.text()?;
-        if let Some(name) = name {
-            self.properties.insert(name.into(), text.into());
+            "Point" => {
+                let lists = self.vertex_lists(element, placemark)?;
+                lists.into_iter().flatten().for_each(|position| placemark.parts.add_point(position));
+            }
+            "LineString" | "LinearRing" | "Track" => {
+                let lists = self.vertex_lists(element, placemark)?;
+                lists.into_iter().for_each(|line| placemark.parts.add_line(line));
+            }
+            "Polygon" => {
+                let rings = self.vertex_lists(element, placemark)?;
+                if !rings.is_empty() {
+                    placemark.parts.add_polygon(rings);
+                }
+            }
+            _ => {}
         }
         Ok(())
     }
 
-    fn shape<'a>(&mut self, xml: &mut Xml<'a>, element: &Element<'a>) -> Result<(), VectorError> {
-        match element.name() {
-            "MultiGeometry" | "MultiTrack" => xml.children(|xml, element| self.shape(xml, element)),
-            "Point" => {
-                let shape = self.read_shape(xml)?;
-                shape.into_iter().flatten().for_each(|at| self.parts.point(at));
-                Ok(())
+    /// Returns the vertices of a shape by line or ring, the outer ring first, with altitudes where they are elevations.
+    fn vertex_lists(
+        &self,
+        shape: &XmlElement<'_>,
+        placemark: &mut Placemark,
+    ) -> Result<Vec<Vertices>, VectorError> {
+        let (mut lists, mut track) = (Vec::new(), Vertices::new());
+        for child in shape.children() {
+            match child.name() {
+                "coordinates" => lists.push(self.coordinates(child)?),
+                // Of a gx:Track: "longitude latitude altitude".
+                "coord" => track.push(self.check(child, vertex(child.text().split_whitespace()))?),
+                "outerBoundaryIs" => drop(lists.splice(0..0, self.rings(child)?)),
+                "innerBoundaryIs" => lists.extend(self.rings(child)?),
+                _ => {}
             }
-            "LineString" | "LinearRing" | "Track" => {
-                let shape = self.read_shape(xml)?;
-                shape.into_iter().for_each(|line| self.parts.line(line));
-                Ok(())
-            }
-            "Polygon" => {
-                let rings = self.read_shape(xml)?;
-                if !rings.is_empty() {
-                    self.parts.polygon(rings);
-                }
-                Ok(())
-            }
-            _ => xml.skip(),
         }
-    }
-
-    /// The lists of vertices of the shape just opened, their altitudes kept where they are elevations.
-    fn read_shape(&mut self, xml: &mut Xml<'_>) -> Result<Vec<Vec<DVec3>>, VectorError> {
-        let mut shape = KmlShape::default();
-        let mut track = Vec::new();
-        xml.children(|xml, element| shape.read(xml, element, &mut track))?;
         if !track.is_empty() {
-            shape.lists.push(track);
+            lists.push(track);
         }
-        let mode = shape.mode.as_deref().unwrap_or_default();
-        let flat = shape.lists.iter().flatten().all(|at| at.z == 0.0 || at.z.is_nan());
-        if mode.starts_with("relative") || (mode != "absolute" && flat) {
-            shape.lists.iter_mut().flatten().for_each(|at| at.z = f64::NAN);
+        let mode = shape.children_named("altitudeMode").last().map(XmlElement::text).unwrap_or_default();
+        let is_flat = lists.iter().flatten().all(|vertex| vertex.z == 0.0 || vertex.z.is_nan());
+        if mode.starts_with("relative") || (mode != "absolute" && is_flat) {
+            lists.iter_mut().flatten().for_each(|vertex| vertex.z = f64::NAN);
         }
         if !mode.is_empty() {
-            self.properties.entry("altitudeMode".into()).or_insert_with(|| mode.into());
+            placemark.properties.entry("altitudeMode".into()).or_insert_with(|| mode.into());
         }
-        Ok(shape.lists)
+        Ok(lists)
+    }
+
+    fn rings(&self, boundary: &XmlElement<'_>) -> Result<Vec<Vertices>, VectorError> {
+        let rings = boundary.children_named("LinearRing");
+        rings
+            .flat_map(|ring| ring.children_named("coordinates"))
+            .map(|element| self.coordinates(element))
+            .collect()
+    }
+
+    fn coordinates(&self, element: &XmlElement<'_>) -> Result<Vertices, VectorError> {
+        self.check(element, vertices(&element.text()))
+    }
+
+    fn check<T>(&self, element: &XmlElement<'_>, result: Result<T, InvalidTuple>) -> Result<T, VectorError> {
+        result.map_err(|error| self.xml.refused_at(element, error))
     }
 }
 
-impl KmlShape {
-    fn read<'a>(
-        &mut self,
-        xml: &mut Xml<'a>,
-        element: &Element<'a>,
-        track: &mut Vec<DVec3>,
-    ) -> Result<(), VectorError> {
-        match element.name() {
-            "altitudeMode" => {
-                self.mode = Some(xml.text()?);
-                Ok(())
-            }
-            "coordinates" => {
-                let text = xml.text()?;
-                self.lists.push(coordinates(&text).map_err(|reason| xml.broken(reason))?);
-                Ok(())
-            }
-            // Of a gx:Track: "longitude latitude altitude".
-            "coord" => {
-                let text = xml.text()?;
-                let parts = text.split_whitespace();
-                track.push(vertex(parts, &text).map_err(|reason| xml.broken(reason))?);
-                Ok(())
-            }
-            // The outer ring must come first, as the schema has it too.
-            "outerBoundaryIs" => {
-                let mut outer = Self::default();
-                outer.boundary(xml)?;
-                self.lists.splice(0..0, outer.lists);
-                Ok(())
-            }
-            "innerBoundaryIs" => self.boundary(xml),
-            _ => xml.skip(),
+impl Placemark {
+    /// Adds `Data` with a `value`, and `SchemaData` with `SimpleData`.
+    fn add_extended_data(&mut self, element: &XmlElement<'_>) {
+        for data in element.children_named("Data") {
+            data.children_named("value").for_each(|value| self.add_property(data, value));
+        }
+        let schemas = element.children_named("SchemaData");
+        for data in schemas.flat_map(|schema| schema.children_named("SimpleData")) {
+            self.add_property(data, data);
         }
     }
 
-    fn boundary(&mut self, xml: &mut Xml<'_>) -> Result<(), VectorError> {
-        xml.children(|xml, element| match element.name() {
-            "LinearRing" => {
-                let mut track = Vec::new();
-                xml.children(|xml, element| self.read(xml, element, &mut track))
-            }
-            _ => xml.skip(),
-        })
+    fn add_property(&mut self, named: &XmlElement<'_>, value: &XmlElement<'_>) {
+        if let Some(name) = named.attribute("name") {
+            self.properties.insert(name.into(), value.text().into());
+        }
     }
 }
 
-/// Tuples "longitude,latitude,altitude" apart by white space; white space after a comma, which some programs
-/// write, belongs to the tuple.
-fn coordinates(text: &str) -> Result<Vec<DVec3>, String> {
-    let mut all = Vec::new();
+/// Parses tuples "longitude,latitude,altitude" separated by white space. White space around a comma, which some
+/// programs write, does not separate.
+fn vertices(text: &str) -> Result<Vertices, InvalidTuple> {
+    let mut vertices = Vertices::new();
     let mut tuple = String::new();
     for word in text.split_whitespace() {
-        let goes_on = tuple.ends_with(',') || (word.starts_with(',') && !tuple.is_empty());
-        if !goes_on && !tuple.is_empty() {
-            all.push(vertex(tuple.split(','), &tuple)?);
+        let continues = tuple.ends_with(',') || word.starts_with(',');
+        if !continues && !tuple.is_empty() {
+            vertices.push(vertex(tuple.split(','))?);
             tuple.clear();
         }
         tuple.push_str(word);
     }
     if !tuple.is_empty() {
-        all.push(vertex(tuple.split(','), &tuple)?);
+        vertices.push(vertex(tuple.split(','))?);
     }
-    Ok(all)
+    Ok(vertices)
 }
 
-fn vertex<'a>(mut parts: impl Iterator<Item = &'a str>, whole: &str) -> Result<DVec3, String> {
-    let mut number = || parts.next().and_then(|part| part.parse::<f64>().ok());
-    match (number(), number()) {
-        (Some(x), Some(y)) => Ok(position(x, y, number())),
-        _ => {
-            let whole: String = whole.chars().take(60).collect();
-            Err(format!("'{whole}' is not longitude and latitude"))
-        }
+fn vertex<'a>(parts: impl Iterator<Item = &'a str> + Clone) -> Result<DVec3, InvalidTuple> {
+    let mut numbers = parts.clone().map(|part| part.parse::<f64>().ok());
+    match (numbers.next().flatten(), numbers.next().flatten()) {
+        (Some(x), Some(y)) => Ok(position(x, y, numbers.next().flatten())),
+        _ => Err(InvalidTuple(shorten(&parts.collect::<Vec<_>>().join(",")))),
     }
 }
 
@@ -281,11 +240,11 @@ mod tests {
 
     fn placemark(content: &str) -> VectorLayer {
         let text = format!("<kml><Document><Placemark>{content}</Placemark></Document></kml>");
-        read(text.as_bytes(), None, None).expect("well-formed")
+        read(text.as_bytes(), &VectorHints::default()).expect("well-formed")
     }
 
     #[test]
-    fn polygons_have_their_inner_boundaries_whatever_the_order() {
+    fn boundaries_come_in_any_order() {
         let ring = |size: u32| {
             format!("<LinearRing><coordinates>0,0,9 {size},0,9 0,{size},9 0,0,9</coordinates></LinearRing>")
         };
@@ -301,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn heights_above_the_ground_and_filled_in_zeros_are_no_elevations() {
+    fn heights_above_ground_and_zeros_filled_in_are_not_elevations() {
         let elevations = |mode: &str, z: u32| {
             let mode = format!("<altitudeMode>{mode}</altitudeMode>");
             let point = format!("<Point>{mode}<coordinates>1,2,{z}</coordinates></Point>");
@@ -344,7 +303,10 @@ mod tests {
             folder("Paths"),
             folder("Sights")
         );
-        let count = |wanted| read(text.as_bytes(), None, wanted).map(|layer| layer.features.len());
+        let count = |layer| {
+            let hints = VectorHints { layer, ..VectorHints::default() };
+            read(text.as_bytes(), &hints).map(|layer| layer.features.len())
+        };
         assert_eq!(count(None).expect("all"), 2);
         assert_eq!(count(Some("Sights")).expect("one"), 1);
         let error = count(Some("paths")).expect_err("no such folder").to_string();
@@ -352,11 +314,10 @@ mod tests {
     }
 
     #[test]
-    fn coordinates_that_are_no_numbers_are_refused_with_the_line() {
+    fn coordinates_that_are_not_numbers_are_refused_with_the_line() {
         let error = read(
             b"<kml>\n<Placemark><Point><coordinates>1,x</coordinates></Point></Placemark></kml>",
-            None,
-            None,
+            &VectorHints::default(),
         );
         let error = error.expect_err("no number").to_string();
         assert!(error.contains("line 2") && error.contains("'1,x'"), "{error}");

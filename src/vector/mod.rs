@@ -1,20 +1,20 @@
-//! Lines, polygons and points with properties: what maps are made of, one file or folder per format.
+//! Lines, polygons and points with properties, read from vector files: one file or folder for each format.
 
-mod codepage;
-mod collect;
+mod builder;
 mod cursor;
+mod encoding;
 pub mod error;
 pub mod feature;
 pub mod filter;
 mod flatgeobuf;
-pub mod geojson;
+mod geojson;
+#[cfg(feature = "vector-db")]
 mod geopackage;
 mod gpx;
+pub mod hints;
 mod kml;
 mod osm;
-mod packed;
 pub mod read;
 mod rings;
 mod shapefile;
-mod wkb;
 mod xml;

@@ -1,136 +1,122 @@
-//! A vector file by its content: what is read, and what is named with the command that converts it.
+//! Reads a vector file, whose content tells its format.
 //!
 //! | format | layers | coordinate system |
 //! |---|---|---|
 //! | GeoJSON, also one feature to a line or as a text sequence | one | its `crs` member, else EPSG:4326 |
 //! | ESRI shapefile, also zipped | one; of an archive the names of its `.shp` files | its `.prj` |
-//! | GeoPackage | its tables and views of features | as it says |
-//! | FlatGeobuf | one | as it says |
+//! | GeoPackage (feature `vector-db`) | its tables and views of features | its own |
+//! | FlatGeobuf | one | its own |
 //! | GPX | waypoints, routes, tracks; route_points, track_points | EPSG:4326 |
-//! | KML, KMZ | the names of its folders; all where none is asked for | EPSG:4326 |
+//! | KML, KMZ | the names of its folders; all where none is requested | EPSG:4326 |
 //! | OpenStreetMap XML and PBF | points, lines, multipolygons; roads, railways, waterways, water, buildings | EPSG:4326 |
 //!
 //! Any of them may be packed by gzip.
 
 use std::borrow::Cow;
 
-use crate::geom::crs::Crs;
+use crate::archive::{self, MAX_VECTOR_BYTES, ZipReader};
 use crate::vector::error::VectorError;
 use crate::vector::feature::VectorLayer;
-use crate::vector::packed::{self, Zip};
-use crate::vector::{flatgeobuf, geojson, geopackage, gpx, kml, osm, shapefile};
+#[cfg(feature = "vector-db")]
+use crate::vector::geopackage;
+use crate::vector::hints::VectorHints;
+use crate::vector::{flatgeobuf, geojson, gpx, kml, osm, shapefile};
 
-/// What the caller knows of a vector file beyond its bytes.
-pub struct VectorHints<'a> {
-    /// The coordinate system, in place of what the file says or where it says nothing.
-    pub crs: Option<&'a Crs>,
-    /// Which layer of a file that may hold several; without it the file must hold one.
-    pub layer: Option<&'a str>,
-    /// The bytes of a file that lies beside this one, by its name: the name given to [`read`] with another extension.
-    /// `None` where there is none.
-    pub companions: &'a dyn Fn(&str) -> Option<Vec<u8>>,
-}
+/// Bytes at the start of a document in which its outermost element is searched.
+const XML_HEAD_BYTES: usize = 4096;
 
-impl Default for VectorHints<'_> {
-    fn default() -> Self {
-        Self { crs: None, layer: None, companions: &|_| None }
-    }
-}
-
-/// All features of a vector file, or of one of its layers.
+/// Reads all features of a vector file, or of one of its layers.
 ///
-/// The content decides what format it is; `name` only where the content does not tell, for the names of companions,
-/// and for messages.
+/// The content tells the format. `name` is used where the content does not tell it, for the names of companions, and
+/// for messages.
 ///
 /// # Errors
-/// [`VectorError`], for a format that is not read with the command that converts it.
+/// [`VectorError`]; for a format that cannot be read with the command that converts it.
 pub fn read(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
-    if packed::is_gzip(bytes) {
-        let stem = name.strip_suffix(".gz").unwrap_or(name);
-        return plain(stem, &packed::gunzip(bytes)?, hints);
+    if archive::is_gzip(bytes) {
+        let inner = name.strip_suffix(".gz").unwrap_or(name);
+        return read_unpacked(inner, &archive::gunzip(bytes, MAX_VECTOR_BYTES)?, hints);
     }
-    if packed::is_zip(bytes) { archive(name, bytes, hints) } else { plain(name, bytes, hints) }
+    if archive::is_zip(bytes) { read_zip(name, bytes, hints) } else { read_unpacked(name, bytes, hints) }
 }
 
-/// A file that is not packed.
-fn plain(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
-    let (stated, layer) = (hints.crs, hints.layer);
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
-    match format(name, bytes, text) {
-        VectorFormat::GeoJson => one(name, layer, geojson::read_as(bytes, stated)),
-        VectorFormat::GeoJsonSequence => one(name, layer, geojson::sequence::read(bytes, stated)),
+fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
+    match format_of(name, bytes) {
+        VectorFormat::GeoJson => single(name, hints, geojson::read(bytes, hints)),
+        VectorFormat::GeoJsonSequence => single(name, hints, geojson::read_sequence(bytes, hints)),
         VectorFormat::Shapefile => {
-            let beside = |extension: &str| beside(name, extension, hints);
-            let files = shapefile::Files {
+            let companion = |extension: &str| companion(name, extension, hints);
+            let files = shapefile::ShapefileParts {
                 shapes: bytes,
-                index: beside("shx"),
-                table: beside("dbf"),
-                system: beside("prj"),
-                encoding: beside("cpg"),
+                index: companion("shx"),
+                table: companion("dbf"),
+                crs: companion("prj"),
+                encoding: companion("cpg"),
             };
-            one(name, layer, shapefile::read(&files, stated))
+            single(name, hints, shapefile::read(&files, hints))
         }
-        VectorFormat::GeoPackage => geopackage::read(bytes, stated, layer),
-        VectorFormat::FlatGeobuf => one(name, layer, flatgeobuf::read(bytes, stated)),
-        VectorFormat::Gpx => gpx::read(bytes, stated, layer),
-        VectorFormat::Kml => kml::read(bytes, stated, layer),
-        VectorFormat::OsmXml => osm::read_xml(bytes, stated, layer),
-        VectorFormat::OsmPbf => osm::read_pbf(bytes, stated, layer),
+        #[cfg(feature = "vector-db")]
+        VectorFormat::GeoPackage => geopackage::read(bytes, hints),
+        #[cfg(not(feature = "vector-db"))]
+        VectorFormat::GeoPackage => {
+            let (format, feature) = ("GeoPackage", "vector-db");
+            Err(VectorError::FeatureDisabled { format, feature, command: conversion(name) })
+        }
+        VectorFormat::FlatGeobuf => single(name, hints, flatgeobuf::read(bytes, hints)),
+        VectorFormat::Gpx => gpx::read(bytes, hints),
+        VectorFormat::Kml => kml::read(bytes, hints),
+        VectorFormat::OsmXml => osm::read_xml(bytes, hints),
+        VectorFormat::OsmPbf => osm::read_pbf(bytes, hints),
         VectorFormat::Other(format) => Err(VectorError::OtherFormat { format, command: conversion(name) }),
         VectorFormat::Unknown => Err(VectorError::UnknownFormat),
     }
 }
 
-/// A layer of a format that has one to a file, which may be asked for by the file's own name.
-fn one(
+/// Returns the layer of a file that holds one, which may be requested by the file's name.
+fn single(
     name: &str,
-    wanted: Option<&str>,
+    hints: &VectorHints,
     layer: Result<VectorLayer, VectorError>,
 ) -> Result<VectorLayer, VectorError> {
-    let own = stem(name);
-    match wanted {
-        Some(wanted) if wanted != own => Err(VectorError::no_such_layer(wanted, &[own])),
-        _ => layer,
-    }
+    hints.choose_layer(&[stem(name)])?;
+    layer
 }
 
-/// The file's name without folders and extension.
+/// Returns the file's name without folders and extension.
 fn stem(name: &str) -> &str {
     let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
     file.split_once('.').map_or(file, |(stem, _)| stem)
 }
 
-/// The file beside `name` with another extension, in small letters or in capitals.
-fn beside(name: &str, extension: &str, hints: &VectorHints) -> Option<Vec<u8>> {
-    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
-    let spelled = [extension.to_owned(), extension.to_ascii_uppercase()];
-    spelled.iter().find_map(|extension| (hints.companions)(&format!("{stem}.{extension}")))
+/// Returns the file beside `name` with another extension, in lower or upper case.
+fn companion(name: &str, extension: &str, hints: &VectorHints) -> Option<Vec<u8>> {
+    let base = name.rsplit_once('.').map_or(name, |(base, _)| base);
+    let spellings = [extension.to_owned(), extension.to_ascii_uppercase()];
+    spellings.iter().find_map(|extension| (hints.companions)(&format!("{base}.{extension}")))
 }
 
-/// An archive: a KMZ, a zipped shapefile, or one file of another format.
-fn archive(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
-    const READ: [&str; 6] = [".geojson", ".json", ".gpkg", ".fgb", ".gpx", ".osm"];
-    let zip = Zip::open(bytes)?;
-    let ending = |extension: &str| {
-        let ends = |member: &&str| member.to_ascii_lowercase().ends_with(extension);
-        zip.names().filter(ends).collect::<Vec<_>>()
-    };
-    let content = |member: &str| {
-        zip.member(member)?.ok_or_else(|| VectorError::broken("zip archive", member, "it is not there"))
+/// Reads an archive: a KMZ, zipped shapefiles, or one file of another format.
+fn read_zip(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
+    const OTHERS: [&str; 6] = [".geojson", ".json", ".gpkg", ".fgb", ".gpx", ".osm"];
+    let zip = ZipReader::open(bytes, MAX_VECTOR_BYTES)?;
+    let members = |extensions: &[&str]| {
+        let is_wanted = |member: &&str| has_extension(member, extensions);
+        zip.names().filter(is_wanted).collect::<Vec<_>>()
     };
     // A KMZ's document is the first .kml in it (OGC 07-147r2, section 8.1).
-    if let Some(document) = ending(".kml").first() {
-        return plain(document, &content(document)?, hints);
+    if let Some(document) = members(&[".kml"]).first() {
+        return read_unpacked(document, &zip.read(document)?, hints);
     }
-    let shapes = ending(".shp");
-    if let Some(member) = chosen(&shapes, hints.layer)? {
-        let companions = |name: &str| zip.member(name).ok().flatten();
-        let hints = VectorHints { crs: hints.crs, layer: None, companions: &companions };
-        return plain(member, &content(member)?, &hints);
+    let shapefiles = members(&[".shp"]);
+    if !shapefiles.is_empty() {
+        let names: Vec<&str> = shapefiles.iter().map(|member| stem(member)).collect();
+        let member = shapefiles[hints.choose_layer(&names)?];
+        let companions = |name: &str| zip.read(name).ok();
+        let hints = VectorHints { layer: None, companions: &companions, ..*hints };
+        return read_unpacked(member, &zip.read(member)?, &hints);
     }
-    let others: Vec<&str> = READ.iter().flat_map(|extension| ending(extension)).collect();
-    match others[..] {
-        [only] => plain(only, &content(only)?, hints),
+    match members(&OTHERS)[..] {
+        [only] => read_unpacked(only, &zip.read(only)?, hints),
         _ => Err(VectorError::OtherFormat {
             format: "a zip archive without a .kml, a .shp or one other vector file",
             command: format!("unzip \"{name}\""),
@@ -138,21 +124,12 @@ fn archive(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer,
     }
 }
 
-/// The shapefile of an archive that was asked for, or its only one; `None` where it has none.
-fn chosen<'n>(members: &[&'n str], wanted: Option<&str>) -> Result<Option<&'n str>, VectorError> {
-    let names: Vec<&str> = members.iter().map(|member| stem(member)).collect();
-    match (members, wanted) {
-        ([], _) => Ok(None),
-        (&[only], None) => Ok(Some(only)),
-        (_, None) => Err(VectorError::which_layer(&names)),
-        (_, Some(wanted)) => {
-            let at = names.iter().position(|&name| name == wanted);
-            at.map(|at| Some(members[at])).ok_or_else(|| VectorError::no_such_layer(wanted, &names))
-        }
-    }
+fn has_extension(name: &str, extensions: &[&str]) -> bool {
+    let name = name.to_ascii_lowercase();
+    extensions.iter().any(|extension| name.ends_with(extension))
 }
 
-/// What a file is.
+/// The format of a file.
 #[derive(Debug, PartialEq, Eq)]
 enum VectorFormat {
     GeoJson,
@@ -169,37 +146,31 @@ enum VectorFormat {
     Unknown,
 }
 
-/// What the content tells, and where it does not, the name. `text` is `bytes` without what may precede text.
-fn format(name: &str, bytes: &[u8], text: &[u8]) -> VectorFormat {
+/// Returns the format that the content tells, else the extension of the name.
+fn format_of(name: &str, bytes: &[u8]) -> VectorFormat {
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     match () {
-        () if shapefile::is_shapefile(bytes) => by_extension_of_shapefile(name),
-        () if geopackage::is_sqlite(bytes) => VectorFormat::GeoPackage,
+        // The index of a shapefile starts as its shapes do.
+        () if shapefile::is_shapefile(bytes) && has_extension(name, &[".shx"]) => {
+            VectorFormat::Other("the index of an ESRI shapefile; give the .shp file")
+        }
+        () if shapefile::is_shapefile(bytes) => VectorFormat::Shapefile,
+        () if bytes.starts_with(b"SQLite format 3\0") => VectorFormat::GeoPackage,
         () if flatgeobuf::is_flatgeobuf(bytes) => VectorFormat::FlatGeobuf,
         () if osm::is_pbf(bytes) => VectorFormat::OsmPbf,
         () if bytes.starts_with(b"PAR1") => VectorFormat::Other("GeoParquet"),
-        () => xml(bytes).or_else(|| other_by_name(name)).unwrap_or_else(|| match text.first() {
-            Some(&geojson::sequence::RECORD_SEPARATOR) => VectorFormat::GeoJsonSequence,
-            Some(b'{') if geojson::sequence::is_lines(text) => VectorFormat::GeoJsonSequence,
+        () => xml_format(bytes).or_else(|| format_by_name(name)).unwrap_or_else(|| match text.first() {
+            Some(_) if geojson::is_sequence(text) => VectorFormat::GeoJsonSequence,
             Some(b'{') => VectorFormat::GeoJson,
             _ => VectorFormat::Unknown,
         }),
     }
 }
 
-/// A `.shx` file starts as a `.shp` file does.
-fn by_extension_of_shapefile(name: &str) -> VectorFormat {
-    let is_index = name.len() >= 4 && name.is_char_boundary(name.len() - 4);
-    match is_index && name[name.len() - 4..].eq_ignore_ascii_case(".shx") {
-        true => VectorFormat::Other("the index of an ESRI shapefile; give the .shp file"),
-        false => VectorFormat::Shapefile,
-    }
-}
-
-/// The format whose outermost element XML shows in its first kilobytes.
-fn xml(bytes: &[u8]) -> Option<VectorFormat> {
-    const LOOKED_AT: usize = 4096;
-    let head = &bytes[..bytes.len().min(LOOKED_AT)];
-    // Every second byte of UTF-16 is text enough to know the element by.
+/// Returns the format of XML, by its outermost element.
+fn xml_format(bytes: &[u8]) -> Option<VectorFormat> {
+    let head = &bytes[..bytes.len().min(XML_HEAD_BYTES)];
+    // Of UTF-16, every second byte suffices to recognize the element.
     let text: Cow<'_, [u8]> = match head {
         [0xff, 0xfe, rest @ ..] | [0xfe, 0xff, rest @ ..] => {
             Cow::Owned(rest.iter().copied().filter(|&byte| byte != 0).collect())
@@ -216,35 +187,35 @@ fn xml(bytes: &[u8]) -> Option<VectorFormat> {
         () if holds(b"<gpx") => VectorFormat::Gpx,
         () if holds(b"<osm") => VectorFormat::OsmXml,
         () if holds(b"gml") => VectorFormat::Other("GML"),
-        () => VectorFormat::Other("XML of no kind that is read"),
+        () => VectorFormat::Other("XML of an unknown kind"),
     })
 }
 
-/// The format that the name's extension tells, for content without a signature of its own.
-fn other_by_name(name: &str) -> Option<VectorFormat> {
+/// Returns the format that the name's extension tells.
+fn format_by_name(name: &str) -> Option<VectorFormat> {
     let extension = name.rsplit_once('.')?.1.to_ascii_lowercase();
-    match extension.as_str() {
-        "csv" | "tsv" | "txt" | "xyz" => Some(VectorFormat::Other("a table of text")),
+    Some(match extension.as_str() {
+        "csv" | "tsv" | "txt" | "xyz" => VectorFormat::Other("a table of text"),
         "dbf" | "shx" | "prj" | "cpg" => {
-            Some(VectorFormat::Other("a part of an ESRI shapefile; give the .shp file"))
+            VectorFormat::Other("a part of an ESRI shapefile; give the .shp file")
         }
-        "tab" | "mif" | "mid" => Some(VectorFormat::Other("MapInfo")),
-        "dxf" | "dwg" => Some(VectorFormat::Other("a CAD drawing")),
-        "geojsonl" | "geojsons" | "geojsonseq" | "ndjson" | "jsonl" => Some(VectorFormat::GeoJsonSequence),
-        _ => None,
-    }
+        "tab" | "mif" | "mid" => VectorFormat::Other("MapInfo"),
+        "dxf" | "dwg" => VectorFormat::Other("a CAD drawing"),
+        "geojsonl" | "geojsons" | "geojsonseq" | "ndjson" | "jsonl" => VectorFormat::GeoJsonSequence,
+        _ => return None,
+    })
 }
 
-/// The command that makes GeoJSON of the file `name`.
+/// Returns the command that converts the file `name` to GeoJSON.
 fn conversion(name: &str) -> String {
-    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
-    format!("ogr2ogr -f GeoJSON \"{stem}.geojson\" \"{name}\"")
+    let base = name.rsplit_once('.').map_or(name, |(base, _)| base);
+    format!("ogr2ogr -f GeoJSON \"{base}.geojson\" \"{name}\"")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vector::packed::tests::stored;
+    use crate::archive::tests::zipped;
 
     const POINT: &[u8] = b"{\"type\":\"Point\",\"coordinates\":[1,2]}";
     const KML: &[u8] = b"<kml><Placemark><Point><coordinates>1,2</coordinates></Point></Placemark></kml>";
@@ -265,7 +236,7 @@ mod tests {
 
     #[test]
     fn every_format_is_known_by_its_first_bytes() {
-        let of = |bytes: &[u8]| format("a", bytes, bytes.trim_ascii_start());
+        let of = |bytes: &[u8]| format_of("a", bytes);
         assert_eq!(of(b"\x00\x00\x27\x0a\x00"), VectorFormat::Shapefile);
         assert_eq!(of(b"SQLite format 3\0"), VectorFormat::GeoPackage);
         assert_eq!(of(b"fgb\x03fgb\x00"), VectorFormat::FlatGeobuf);
@@ -279,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn other_formats_are_named_with_the_way_out() {
+    fn other_formats_are_named_with_the_command_that_converts_them() {
         let error = refusal("roads/main.gml", b"<gml:FeatureCollection>");
         assert!(error.contains("this is GML"), "{error}");
         assert!(error.contains("ogr2ogr -f GeoJSON \"roads/main.geojson\" \"roads/main.gml\""), "{error}");
@@ -289,30 +260,33 @@ mod tests {
     }
 
     #[test]
-    fn nothing_known_is_told_so() {
+    fn an_unknown_format_is_refused_with_those_that_are_read() {
         for bytes in [&b""[..], b"hello", b"\xff\xfe{", b"[1]"] {
             assert!(refusal("a", bytes).contains("GeoJSON is read"));
         }
     }
 
     #[test]
-    fn what_is_packed_is_unpacked() {
-        let kmz = stored(&[("doc.kml", KML), ("files/a.png", b"")]);
+    fn packed_files_are_unpacked() {
+        let kmz = zipped(&[("doc.kml", KML), ("files/a.png", b"")]);
         assert_eq!(read("a.kmz", &kmz, &VectorHints::default()).expect("a KMZ").features.len(), 1);
-        let zipped = stored(&[("layers/a.geojson", POINT)]);
-        assert_eq!(read("a.zip", &zipped, &VectorHints::default()).expect("zipped").features.len(), 1);
-        assert!(refusal("a.zip", &stored(&[("readme.txt", b"")])).contains("without a .kml"));
+        let single = zipped(&[("layers/a.geojson", POINT)]);
+        assert_eq!(read("a.zip", &single, &VectorHints::default()).expect("zipped").features.len(), 1);
+        assert!(refusal("a.zip", &zipped(&[("readme.txt", b"")])).contains("without a .kml"));
         let mut shapes = 9994u32.to_be_bytes().to_vec();
         shapes.resize(100, 0);
-        let zipped =
-            stored(&[("x/roads.shp", &shapes), ("x/roads.prj", b"EPSG:32616"), ("x/rivers.shp", &shapes)]);
-        assert!(refusal("a.zip", &zipped).contains("2 layers; say which with 'layer': roads, rivers"));
+        let zipped = zipped(&[
+            ("x/roads.shp", &shapes),
+            ("x/roads.prj", &b"EPSG:32616"[..]),
+            ("x/rivers.shp", &shapes),
+        ]);
+        assert!(refusal("a.zip", &zipped).contains("2 layers; choose one with 'layer': roads, rivers"));
         let hints = VectorHints { layer: Some("roads"), ..VectorHints::default() };
         assert_eq!(read("a.zip", &zipped, &hints).expect("zipped").crs.epsg(), Some(32616));
     }
 
     #[test]
-    fn a_single_layer_is_asked_for_by_the_files_name_or_not_at_all() {
+    fn a_single_layer_has_the_name_of_the_file() {
         let of = |layer| read("in/hills.geojson", POINT, &VectorHints { layer, ..VectorHints::default() });
         assert!(of(Some("hills")).is_ok() && of(None).is_ok());
         let error = of(Some("hill")).expect_err("another").to_string();

@@ -1,144 +1,156 @@
-//! Polygons out of rings that come in no order: which are outer rings, and which is a hole in which.
+//! Sorts rings that come in no order into polygons: which are outer rings, and which is a hole in which.
 //!
-//! A ring lies in another where most of three of its vertices do, since rings that touch share vertices. The
-//! smallest ring around a hole is the one it is cut from. Looking for it takes time that grows with the square of
-//! the number of rings; [`MOST_STEPS`] keeps a hostile file from making that hours.
+//! A ring lies inside another where at least two of three of its vertices do, since rings that touch share vertices.
+//! A hole belongs to the smallest ring around it. The search takes time that grows with the square of the number of
+//! rings, so a budget stops hostile files.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 use crate::geom::polygon::{contains, doubled_area};
 use crate::geom::rect::Rect;
+use crate::vector::builder::Vertices;
 
-/// The most pairs of rings and edges that are looked at for one file: seconds, and a hundred times what real layers
-/// of hundred thousands of polygons take.
-pub(crate) const MOST_STEPS: u64 = 1 << 31;
+/// Most pairs of rings and edges that are compared for one file: seconds, and a hundred times what real layers of
+/// hundred thousands of polygons take.
+const MAX_STEPS: u64 = 1 << 31;
 
 /// What makes a ring a hole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HoleRule {
-    /// It runs counter-clockwise inside one that runs clockwise (ESRI shapefiles). Where no ring of a shape runs
-    /// clockwise, as [`HoleRule::Nesting`].
+    /// It runs counter-clockwise inside one that runs clockwise (ESRI shapefiles). A shape without clockwise rings
+    /// follows [`HoleRule::Nesting`].
     Direction,
     /// It lies directly inside an outer ring; a ring inside a hole is an outer ring again (OpenStreetMap).
     Nesting,
 }
 
-/// The rings are too many, too much inside each other.
-#[derive(Debug)]
-pub(crate) struct Entangled;
+/// The file has too many rings inside one another.
+#[derive(Debug, thiserror::Error)]
+#[error("too many rings lie inside one another")]
+pub(crate) struct RingLimitExceeded;
 
-/// One ring while it is sorted.
+/// Sorts the rings of one file.
+pub(crate) struct RingSorter {
+    rule: HoleRule,
+    steps_left: u64,
+}
+
 struct SortedRing {
-    vertices: Vec<DVec3>,
+    vertices: Vertices,
     flat: Vec<DVec2>,
     bounds: Rect,
-    /// Positive where it runs counter-clockwise.
+    /// Positive for a counter-clockwise ring.
     doubled_area: f64,
     parent: Option<usize>,
     is_hole: bool,
 }
 
-/// Each polygon's rings, the outer one first: polygons in the order of their outer rings, holes in their own.
-///
-/// `steps` counts the work down from [`MOST_STEPS`].
-///
-/// # Errors
-/// [`Entangled`] where no steps are left.
-pub(crate) fn polygons(
-    rings: Vec<Vec<DVec3>>,
-    rule: HoleRule,
-    steps: &mut u64,
-) -> Result<Vec<Vec<Vec<DVec3>>>, Entangled> {
-    if rings.len() == 1 {
-        return Ok(vec![rings]);
+impl RingSorter {
+    /// A sorter with the full budget.
+    pub fn new(rule: HoleRule) -> Self {
+        Self { rule, steps_left: MAX_STEPS }
     }
-    let mut rings: Vec<SortedRing> = rings.into_iter().map(SortedRing::new).collect();
-    let any_clockwise = rings.iter().any(|ring| ring.doubled_area < 0.0);
-    let by_direction = rule == HoleRule::Direction && any_clockwise;
-    let mut by_size: Vec<usize> = (0..rings.len()).collect();
-    by_size.sort_by(|&a, &b| rings[b].size().total_cmp(&rings[a].size()).then(a.cmp(&b)));
-    for (rank, &index) in by_size.iter().enumerate() {
-        if by_direction && rings[index].doubled_area < 0.0 {
-            continue;
+
+    /// Returns the rings of each polygon, the outer one first: polygons in the order of their outer rings, holes in
+    /// their own.
+    ///
+    /// # Errors
+    /// [`RingLimitExceeded`] where the budget of the file is spent.
+    pub fn polygons(&mut self, rings: Vec<Vertices>) -> Result<Vec<Vec<Vertices>>, RingLimitExceeded> {
+        if rings.len() == 1 {
+            return Ok(vec![rings]);
         }
-        let is_candidate = |&&other: &&usize| !by_direction || rings[other].doubled_area < 0.0;
-        let mut parent = None;
-        for &other in by_size[..rank].iter().rev().filter(is_candidate) {
-            if rings[index].lies_in(&rings[other], steps)? {
-                parent = Some(other);
-                break;
+        let mut rings: Vec<SortedRing> = rings.into_iter().map(SortedRing::new).collect();
+        let by_direction = self.rule == HoleRule::Direction && rings.iter().any(SortedRing::is_clockwise);
+        let mut by_size: Vec<usize> = (0..rings.len()).collect();
+        by_size.sort_by(|&a, &b| rings[b].size().total_cmp(&rings[a].size()).then(a.cmp(&b)));
+        for (rank, &index) in by_size.iter().enumerate() {
+            if by_direction && rings[index].is_clockwise() {
+                continue;
+            }
+            for &larger in by_size[..rank].iter().rev() {
+                if by_direction && !rings[larger].is_clockwise() {
+                    continue;
+                }
+                if self.is_inside(&rings[index], &rings[larger])? {
+                    rings[index].parent = Some(larger);
+                    rings[index].is_hole = !rings[larger].is_hole;
+                    break;
+                }
             }
         }
-        rings[index].parent = parent;
-        rings[index].is_hole = parent.is_some_and(|parent| !rings[parent].is_hole);
+        Ok(grouped(rings))
     }
-    Ok(grouped(rings))
+
+    fn is_inside(&mut self, ring: &SortedRing, other: &SortedRing) -> Result<bool, RingLimitExceeded> {
+        let fits = other.bounds.contains(ring.bounds.min) && other.bounds.contains(ring.bounds.max);
+        let work = if fits { 1 + 3 * other.flat.len() as u64 } else { 1 };
+        self.steps_left = self.steps_left.checked_sub(work).ok_or(RingLimitExceeded)?;
+        let count = ring.flat.len();
+        if !fits || count == 0 {
+            return Ok(false);
+        }
+        let witnesses = [0, count / 3, 2 * count / 3].map(|index| ring.flat[index]);
+        let inside = witnesses.iter().filter(|&&vertex| contains([other.flat.as_slice()], vertex)).count();
+        Ok(inside >= 2)
+    }
 }
 
-fn grouped(rings: Vec<SortedRing>) -> Vec<Vec<Vec<DVec3>>> {
-    let mut place = vec![0; rings.len()];
-    let outer = rings.iter().enumerate().filter(|(_, ring)| !ring.is_hole);
-    outer.enumerate().for_each(|(polygon, (index, _))| place[index] = polygon);
+fn grouped(rings: Vec<SortedRing>) -> Vec<Vec<Vertices>> {
+    let mut polygon_of = vec![0; rings.len()];
+    let outer = rings.iter().enumerate().filter(|(_, ring)| !ring.is_hole).map(|(index, _)| index);
+    outer.enumerate().for_each(|(polygon, index)| polygon_of[index] = polygon);
     let count = rings.iter().filter(|ring| !ring.is_hole).count();
-    let mut polygons: Vec<Vec<Vec<DVec3>>> = vec![vec![Vec::new()]; count];
+    let mut polygons: Vec<Vec<Vertices>> = vec![vec![Vec::new()]; count];
     for (index, ring) in rings.into_iter().enumerate() {
         match ring.parent.filter(|_| ring.is_hole) {
-            Some(parent) => polygons[place[parent]].push(ring.vertices),
-            None => polygons[place[index]][0] = ring.vertices,
+            Some(parent) => polygons[polygon_of[parent]].push(ring.vertices),
+            None => polygons[polygon_of[index]][0] = ring.vertices,
         }
     }
     polygons
 }
 
 impl SortedRing {
-    fn new(vertices: Vec<DVec3>) -> Self {
+    fn new(vertices: Vertices) -> Self {
         let flat: Vec<DVec2> = vertices.iter().map(|vertex| vertex.truncate()).collect();
-        // Areas about the first vertex, so that those of small rings far from zero keep their sign.
+        // Relative to the first vertex, so that small rings far from zero keep the sign of their area.
         let first = flat.first().copied().unwrap_or_default();
-        let moved: Vec<DVec2> = flat.iter().map(|&vertex| vertex - first).collect();
-        let (bounds, doubled_area) = (Rect::around(flat.iter().copied()), doubled_area(&moved));
+        let local: Vec<DVec2> = flat.iter().map(|&vertex| vertex - first).collect();
+        let (bounds, doubled_area) = (Rect::around(flat.iter().copied()), doubled_area(&local));
         Self { vertices, flat, bounds, doubled_area, parent: None, is_hole: false }
+    }
+
+    fn is_clockwise(&self) -> bool {
+        self.doubled_area < 0.0
     }
 
     fn size(&self) -> f64 {
         self.doubled_area.abs()
-    }
-
-    fn lies_in(&self, other: &Self, steps: &mut u64) -> Result<bool, Entangled> {
-        let looks_inside = other.bounds.contains(self.bounds.min) && other.bounds.contains(self.bounds.max);
-        let work = if looks_inside { 1 + 3 * other.flat.len() as u64 } else { 1 };
-        *steps = steps.checked_sub(work).ok_or(Entangled)?;
-        if !looks_inside || self.flat.is_empty() {
-            return Ok(false);
-        }
-        let count = self.flat.len();
-        let witnesses = [0, count / 3, 2 * count / 3].map(|at| self.flat[at]);
-        let inside = |at: &&DVec2| contains([other.flat.as_slice()], **at);
-        Ok(witnesses.iter().filter(inside).count() >= 2)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
 
     /// A square about (`x`, `y`); counter-clockwise, or clockwise where `half` is negative.
-    fn square(x: f64, y: f64, half: f64) -> Vec<DVec3> {
+    fn square(x: f64, y: f64, half: f64) -> Vertices {
         let side = half.abs();
         [(-side, -half), (side, -half), (side, half), (-side, half)]
             .map(|(dx, dy)| DVec3::new(x + dx, y + dy, 0.0))
             .to_vec()
     }
 
-    fn counts(rings: &[Vec<DVec3>], rule: HoleRule) -> Vec<usize> {
-        let mut steps = MOST_STEPS;
-        let polygons = polygons(rings.to_vec(), rule, &mut steps).expect("few rings");
+    fn counts(rings: &[Vertices], rule: HoleRule) -> Vec<usize> {
+        let polygons = RingSorter::new(rule).polygons(rings.to_vec()).expect("few rings");
         assert_eq!(polygons.iter().map(Vec::len).sum::<usize>(), rings.len());
         polygons.iter().map(Vec::len).collect()
     }
 
     #[test]
-    fn holes_go_to_the_smallest_ring_around_them_and_islands_stand_alone() {
+    fn holes_go_to_the_smallest_ring_around_them_and_islands_to_none() {
         let rings =
             [square(0.0, 0.0, 1.0), square(0.0, 0.0, 8.0), square(0.0, 0.0, 4.0), square(20.0, 0.0, 2.0)];
         assert_eq!(counts(&rings, HoleRule::Nesting), [1, 2, 1]);
@@ -165,14 +177,12 @@ mod tests {
     }
 
     #[test]
-    fn rings_without_end_inside_each_other_stop() {
-        let rings: Vec<_> = (1..2000).map(|size| square(0.0, 0.0, f64::from(size))).collect();
-        let mut steps = 30_000;
-        assert!(
-            polygons(rings, HoleRule::Nesting, &mut steps).is_ok(),
-            "each lies in the next: found at once"
-        );
-        let apart: Vec<_> = (1..2000).map(|at| square(f64::from(at * 4), 0.0, 1.0)).collect();
-        assert!(polygons(apart, HoleRule::Nesting, &mut 30_000).is_err());
+    fn too_many_rings_are_refused() {
+        let sorted =
+            |rings: Vec<Vertices>| RingSorter { rule: HoleRule::Nesting, steps_left: 30_000 }.polygons(rings);
+        let nested = (1..2000).map(|size| square(0.0, 0.0, f64::from(size))).collect();
+        assert!(sorted(nested).is_ok(), "each lies in the next, which is looked at first");
+        let apart = (1..2000).map(|at| square(f64::from(at * 4), 0.0, 1.0)).collect();
+        assert!(sorted(apart).is_err());
     }
 }

@@ -1,34 +1,34 @@
-//! Flights: where the eye is and what it looks at, frame by frame, over a ground that is only a function.
+//! Flights: the eye and the target of every frame, over a ground given as a function.
 //!
-//! A flight is a list of stations and nothing else, so that every method sees the same cameras and a frame can be
-//! looked at again. Flights over the ground follow its mean height along the way, not its height below: an eye
-//! that jumps over every boulder would measure the boulders.
+//! A flight is a list of stations, so that every method sees the same cameras and any frame can be drawn again.
+//! It follows the mean height of the ground along its track: an eye at a fixed height above the ground itself
+//! would jump over every boulder.
 
 use glam::{Vec2, Vec3};
 
 use crate::view::camera::{Camera, CameraError};
 
-/// The papers' window in pixels.
-pub const PICTURE: (u32, u32) = (1024, 768);
+/// Width and height of a flight's picture in pixels, as in the papers on levels of detail.
+pub const PICTURE_SIZE: (u32, u32) = (1024, 768);
 
-/// Half the picture's width seen from one unit away: the tangent of 30°.
+/// The tangent of half the horizontal field of view: 30°.
 const TAN_HALF_WIDTH: f32 = 0.577_350_26;
 
-/// What the eye falls on the way of one meter ahead: 8° down.
-const FALL: f32 = 0.14;
+/// The descent of the line of sight per meter ahead: 8° down.
+const DESCENT: f32 = 0.14;
 
-/// Heights of the ground that the mean is taken of, on either side of the eye.
-const SMOOTHED: i16 = 8;
+/// Ground heights on either side of the eye that enter the mean.
+const MEAN_REACH: i16 = 8;
 
-/// How far ahead the target lies, in units of the direction's length: far enough for its f32 to tell directions.
-const AHEAD: f32 = 1000.0;
+/// Meters from the eye to the target: far enough for f32 to tell directions apart.
+const TARGET_DISTANCE_M: f32 = 1000.0;
 
-/// Where the eye is and what it looks at, world space.
+/// The eye and its target, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlightStation {
     /// The eye.
     pub eye: Vec3,
-    /// What it looks at; not the eye itself.
+    /// The point it looks at; differs from the eye.
     pub target: Vec3,
 }
 
@@ -36,34 +36,60 @@ impl FlightStation {
     /// The camera of a flight: 60° wide, 1024 × 768 pixels, from `near_m` to `far_m`.
     ///
     /// # Errors
-    /// See [`CameraError`]; the eye is its own target, or the planes are out of order.
+    /// See [`CameraError`]: the eye is the target, or the planes are out of order.
     pub fn camera(&self, near_m: f32, far_m: f32) -> Result<Camera, CameraError> {
-        let (width, height) = PICTURE;
+        let (width, height) = PICTURE_SIZE;
         let fov_y = 2.0 * libm::atanf(TAN_HALF_WIDTH * height as f32 / width as f32);
-        Camera::new(self.eye, self.target, fov_y, PICTURE, (near_m, far_m))
+        Camera::new(self.eye, self.target, fov_y, PICTURE_SIZE, (near_m, far_m))
+    }
+
+    /// Meters that the eye travels to `next`; where the eye does not move, meters that the target travels.
+    fn distance_to(&self, next: &Self) -> f64 {
+        let eye = self.eye.as_dvec3().distance(next.eye.as_dvec3());
+        if eye > 0.0 { eye } else { self.target.as_dvec3().distance(next.target.as_dvec3()) }
+    }
+
+    fn lerp(&self, next: &Self, share: f32) -> Self {
+        Self { eye: self.eye.lerp(next.eye, share), target: self.target.lerp(next.target, share) }
     }
 }
 
-/// How a flight keeps to the ground.
+/// The height of the eye above the smoothed ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Keeping {
-    /// Meters of the eye above the smoothed ground.
-    pub above_m: f32,
-    /// Meters along the way between the 17 heights whose mean is the smoothed ground.
+pub struct GroundClearance {
+    /// Meters between the eye and the smoothed ground.
+    pub height_m: f32,
+    /// Meters along the track between the 17 ground heights whose mean is the smoothed ground.
     pub smoothing_m: f32,
 }
 
-/// A circle flown counter-clockwise from its easternmost point, looking ahead and 8° down.
+impl GroundClearance {
+    /// The station after `distance_m` meters of `track`, looking `ahead` and 8° down.
+    fn station(
+        &self,
+        track: impl Fn(f32) -> Vec2,
+        distance_m: f32,
+        ahead: Vec2,
+        ground: &impl Fn(Vec2) -> f32,
+    ) -> FlightStation {
+        let height = |step: i16| ground(track(distance_m + f32::from(step) * self.smoothing_m));
+        let sum = (-MEAN_REACH..=MEAN_REACH).map(height).sum::<f32>();
+        let eye = track(distance_m).extend(sum / f32::from(2 * MEAN_REACH + 1) + self.height_m);
+        FlightStation { eye, target: eye + ahead.extend(-DESCENT) * TARGET_DISTANCE_M }
+    }
+}
+
+/// A circle flown counter-clockwise from its easternmost point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CircularFlight {
-    /// The middle, world X and Y.
+    /// World X and Y of the center.
     pub center: Vec2,
-    /// Its radius in meters, above 0.
+    /// The radius in meters, above 0.
     pub radius_m: f32,
     /// Meters from one frame to the next.
     pub step_m: f32,
-    /// How it keeps to the ground.
-    pub keeping: Keeping,
+    /// The height above the ground.
+    pub clearance: GroundClearance,
 }
 
 impl CircularFlight {
@@ -72,75 +98,59 @@ impl CircularFlight {
         (0..frames).map(|frame| self.station(frame as f32 * self.step_m, ground)).collect()
     }
 
-    /// The station after `way_m` meters of travel.
-    pub fn station(&self, way_m: f32, ground: &impl Fn(Vec2) -> f32) -> FlightStation {
-        let place = |way_m: f32| {
-            let angle = way_m / self.radius_m;
-            self.center + self.radius_m * Vec2::new(libm::cosf(angle), libm::sinf(angle))
+    /// The station after `distance_m` meters of travel.
+    pub fn station(&self, distance_m: f32, ground: &impl Fn(Vec2) -> f32) -> FlightStation {
+        let outward = |distance_m: f32| {
+            let angle = distance_m / self.radius_m;
+            Vec2::new(libm::cosf(angle), libm::sinf(angle))
         };
-        let angle = way_m / self.radius_m;
-        let ahead = Vec2::new(-libm::sinf(angle), libm::cosf(angle));
-        over(place, way_m, ahead, self.keeping, ground)
+        let track = |distance_m: f32| self.center + self.radius_m * outward(distance_m);
+        self.clearance.station(track, distance_m, outward(distance_m).perp(), ground)
     }
 }
 
-/// Straight on from one place to another, looking ahead and 8° down.
+/// A straight line flown at constant speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StraightFlight {
-    /// Where it starts, world X and Y.
+    /// World X and Y of the start.
     pub from: Vec2,
-    /// Where it ends; not where it starts.
+    /// World X and Y of the end; differs from the start.
     pub to: Vec2,
-    /// How it keeps to the ground.
-    pub keeping: Keeping,
+    /// The height above the ground.
+    pub clearance: GroundClearance,
 }
 
 impl StraightFlight {
-    /// `frames` stations at equal distances, both ends among them, over a ground of world Z `ground`.
+    /// `frames` stations at equal distances, both ends included, over a ground of world Z `ground`.
     pub fn stations(&self, frames: usize, ground: &impl Fn(Vec2) -> f32) -> Vec<FlightStation> {
         let (length, ahead) = (self.from.distance(self.to), (self.to - self.from).normalize_or(Vec2::X));
-        let place = |way_m: f32| self.from + ahead * way_m;
+        let track = |distance_m: f32| self.from + ahead * distance_m;
         let step_m = length / frames.saturating_sub(1).max(1) as f32;
-        (0..frames).map(|frame| over(place, frame as f32 * step_m, ahead, self.keeping, ground)).collect()
+        (0..frames).map(|frame| self.clearance.station(track, frame as f32 * step_m, ahead, ground)).collect()
     }
 }
 
-/// The station at `way_m` of the way `place`, above the mean ground around it.
-fn over(
-    place: impl Fn(f32) -> Vec2,
-    way_m: f32,
-    ahead: Vec2,
-    keeping: Keeping,
-    ground: &impl Fn(Vec2) -> f32,
-) -> FlightStation {
-    let heights = (-SMOOTHED..=SMOOTHED).map(|at| ground(place(way_m + f32::from(at) * keeping.smoothing_m)));
-    let mean = heights.sum::<f32>() / f32::from(2 * SMOOTHED + 1);
-    let eye = place(way_m).extend(mean + keeping.above_m);
-    FlightStation { eye, target: eye + ahead.extend(-FALL) * AHEAD }
-}
-
-/// `frames` stations at equal distances along the legs between `stations`, both ends among them.
+/// `frames` stations at equal distances along the legs between `stations`, both ends included.
 ///
-/// The eye's distance counts; on a leg where the eye stays in its place, the target's. Where nothing moves, or one
-/// station is given, all frames are the first station; where none is given, there are no frames.
-pub fn along(stations: &[FlightStation], frames: usize) -> Vec<FlightStation> {
+/// Distance is that of the eye; on a leg where the eye stays in place, that of the target. All frames are the
+/// first station where nothing moves or one station is given; without stations there are no frames.
+pub fn evenly_spaced(stations: &[FlightStation], frames: usize) -> Vec<FlightStation> {
     let Some(first) = stations.first() else {
         return Vec::new();
     };
-    let lengths: Vec<f64> = stations.windows(2).map(|ends| leg_length(&ends[0], &ends[1])).collect();
-    let whole: f64 = lengths.iter().sum();
-    let step = whole / frames.saturating_sub(1).max(1) as f64;
-    let (mut leg, mut before) = (0, 0.0);
+    let lengths: Vec<f64> = stations.windows(2).map(|ends| ends[0].distance_to(&ends[1])).collect();
+    let step = lengths.iter().sum::<f64>() / frames.saturating_sub(1).max(1) as f64;
+    let (mut leg, mut leg_start) = (0, 0.0);
     let station = |frame: usize| {
-        let way = frame as f64 * step;
-        while leg + 1 < lengths.len() && before + lengths[leg] < way {
-            before += lengths[leg];
+        let distance = frame as f64 * step;
+        while leg + 1 < lengths.len() && leg_start + lengths[leg] < distance {
+            leg_start += lengths[leg];
             leg += 1;
         }
         match lengths.get(leg) {
             Some(&length) if length > 0.0 => {
-                let part = ((way - before) / length).clamp(0.0, 1.0) as f32;
-                between(&stations[leg], &stations[leg + 1], part)
+                let share = ((distance - leg_start) / length).clamp(0.0, 1.0) as f32;
+                stations[leg].lerp(&stations[leg + 1], share)
             }
             _ => stations.get(leg).copied().unwrap_or(*first),
         }
@@ -148,20 +158,11 @@ pub fn along(stations: &[FlightStation], frames: usize) -> Vec<FlightStation> {
     (0..frames).map(station).collect()
 }
 
-fn leg_length(from: &FlightStation, to: &FlightStation) -> f64 {
-    let eye = from.eye.as_dvec3().distance(to.eye.as_dvec3());
-    if eye > 0.0 { eye } else { from.target.as_dvec3().distance(to.target.as_dvec3()) }
-}
-
-fn between(from: &FlightStation, to: &FlightStation, part: f32) -> FlightStation {
-    FlightStation { eye: from.eye.lerp(to.eye, part), target: from.target.lerp(to.target, part) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const KEEPING: Keeping = Keeping { above_m: 30.0, smoothing_m: 2.0 };
+    const CLEARANCE: GroundClearance = GroundClearance { height_m: 30.0, smoothing_m: 2.0 };
 
     #[test]
     fn a_circle_keeps_its_distance_its_pace_and_its_height_over_level_ground() {
@@ -169,7 +170,7 @@ mod tests {
             center: Vec2::new(500.0, 400.0),
             radius_m: 150.0,
             step_m: 3.0,
-            keeping: KEEPING,
+            clearance: CLEARANCE,
         };
         let stations = circle.stations(400, &|_| 70.0);
         assert_eq!(stations[0].eye, Vec3::new(650.0, 400.0, 100.0));
@@ -185,7 +186,7 @@ mod tests {
 
     #[test]
     fn a_line_goes_from_end_to_end_above_the_smoothed_slope() {
-        let line = StraightFlight { from: Vec2::ZERO, to: Vec2::new(300.0, 400.0), keeping: KEEPING };
+        let line = StraightFlight { from: Vec2::ZERO, to: Vec2::new(300.0, 400.0), clearance: CLEARANCE };
         let stations = line.stations(11, &|at| at.x);
         assert_eq!(stations.len(), 11);
         assert!(stations[10].eye.truncate().distance(line.to) < 1e-2);
@@ -195,7 +196,7 @@ mod tests {
     #[test]
     fn stations_along_legs_are_equally_far_apart() {
         let at = |x: f32, y: f32| FlightStation { eye: Vec3::new(x, y, 5.0), target: Vec3::new(x, y, 0.0) };
-        let stations = along(&[at(0.0, 0.0), at(10.0, 0.0), at(10.0, 0.0), at(10.0, 30.0)], 9);
+        let stations = evenly_spaced(&[at(0.0, 0.0), at(10.0, 0.0), at(10.0, 0.0), at(10.0, 30.0)], 9);
         let eyes: Vec<Vec2> = stations.iter().map(|station| station.eye.truncate()).collect();
         assert_eq!((eyes[0], eyes[2], eyes[8]), (Vec2::ZERO, Vec2::X * 10.0, Vec2::new(10.0, 30.0)));
         assert!(eyes.windows(2).all(|pair| (pair[0].distance(pair[1]) - 5.0).abs() < 1e-4), "{eyes:?}");
@@ -204,11 +205,11 @@ mod tests {
     #[test]
     fn an_eye_that_stays_turns_by_its_target_and_one_station_is_enough() {
         let at = |x: f32| FlightStation { eye: Vec3::Z, target: Vec3::new(x, 7.0, 0.0) };
-        let turned: Vec<f32> = along(&[at(0.0), at(4.0)], 5).iter().map(|s| s.target.x).collect();
+        let turned: Vec<f32> = evenly_spaced(&[at(0.0), at(4.0)], 5).iter().map(|s| s.target.x).collect();
         assert_eq!(turned, [0.0, 1.0, 2.0, 3.0, 4.0]);
-        assert_eq!(along(&[at(2.0)], 3), vec![at(2.0); 3]);
-        assert_eq!(along(&[at(2.0), at(2.0)], 2), vec![at(2.0); 2]);
-        assert!(along(&[], 3).is_empty());
+        assert_eq!(evenly_spaced(&[at(2.0)], 3), vec![at(2.0); 3]);
+        assert_eq!(evenly_spaced(&[at(2.0), at(2.0)], 2), vec![at(2.0); 2]);
+        assert!(evenly_spaced(&[], 3).is_empty());
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Looking: the camera, its frustum or wedge, and how large things appear.
+//! The camera, its frustum or ground wedge, flights, and the size of things on the picture.
 
 pub mod camera;
 pub mod flight;

@@ -1,45 +1,46 @@
-//! What a camera sees, reduced to lines on the ground plane: far, left and right (the culling of 000).
+//! A camera's view reduced to lines on the ground plane: far, left and right.
 //!
-//! A wedge knows nothing of heights, so it needs no height ranges, and it never culls what the camera's
-//! [frustum](crate::view::frustum::Frustum) sees. For a level camera its sides are the frustum's; pitched up or
-//! down, the picture's far corners reach further round, and the sides open:
+//! A wedge needs no height ranges and never culls what the camera's
+//! [frustum](crate::view::frustum::Frustum) sees. For a level camera its sides are the frustum's. Pitched up or
+//! down, the far corners of the picture reach further round, and the sides open:
 //!
 //! ```text
-//!     far                 h: how far the ray through the picture's lower (or upper)
-//!  ╲──────────╱              corner gets along the heading, a meter along the
-//!   ╲        ╱               viewing direction
-//!    ╲      ╱ tan / h     tan: how far it gets sideways
+//!     far                 h: meters along the heading per meter along the viewing
+//!  ╲──────────╱              direction, of the ray through a lower (or upper) corner
+//!   ╲        ╱               of the picture
+//!    ╲      ╱ tan / h     tan: the same ray's meters sideways
 //!     ╲    ╱
 //!      ╲  ╱               h = cos pitch − tan(fov_y / 2) · |sin pitch|
 //!      eye
 //! ```
 //!
-//! Once h is not above 0 the camera sees the ground behind its own heading, and there are no sides left: what
-//! remains is the strip between the farthest seen ahead and the farthest seen behind.
+//! Where h is 0 or less, the camera sees ground behind its own heading. The sides vanish, and the strip between the
+//! farthest point ahead and the farthest point behind remains.
 
 use glam::{Vec2, Vec3};
 
 use crate::view::camera::Camera;
 use crate::view::planes;
 
-/// The sides open and the far line recedes by this share, so that rounding never culls a box that the frustum just
-/// touches. A hundred times the rounding of f32.
+/// The share by which the sides open and the far line recedes, so that rounding never culls a box that the frustum
+/// just touches: a hundred times the rounding of f32.
 const SLACK: f32 = 1e-5;
 
-/// Lines on the ground plane with normals inward. Where there are no sides, the left line stands for the farthest
-/// behind, and the right one is nowhere.
+/// Lines on the ground plane, normals inward.
+///
+/// Where there are no sides, the left line is the farthest behind and the right one bounds nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundWedge {
-    /// As upright planes.
+    /// As vertical planes.
     lines: [(Vec3, f32); 3],
 }
 
 impl GroundWedge {
-    /// As many planes as a wedge has lines, as bits for [`GroundWedge::crossed`].
+    /// All lines, as bits for [`GroundWedge::crossed_lines`].
     pub const ALL: u8 = 0b111;
 
     /// The wedge of `camera`.
-    pub fn of(camera: &Camera) -> Self {
+    pub fn new(camera: &Camera) -> Self {
         let (eye, right) = (camera.eye().truncate(), camera.right().truncate());
         // The camera's right is level, whatever its pitch.
         let heading = right.perp();
@@ -59,15 +60,15 @@ impl GroundWedge {
         Self { lines }
     }
 
-    /// Whether some of what stands on the rectangle `min..=max` may be seen. Never false for what is in view.
+    /// Whether something above the rectangle `min..=max` may be in view. Never false for what is in view.
     pub fn may_see(&self, min: Vec2, max: Vec2) -> bool {
-        self.crossed(min, max, Self::ALL).is_some()
+        self.crossed_lines(min, max, Self::ALL).is_some()
     }
 
-    /// The lines of `among`, a bit each, that the rectangle crosses; `None` where it lies outside one of them.
-    /// What lies in the rectangle need be asked about these only.
-    pub fn crossed(&self, min: Vec2, max: Vec2, among: u8) -> Option<u8> {
-        planes::crossed(&self.lines, min.extend(0.0), max.extend(0.0), among)
+    /// The lines of the bit set `lines` that the rectangle crosses, or `None` where it lies outside one of them. A
+    /// rectangle inside this one needs to be tested against the returned lines only.
+    pub fn crossed_lines(&self, min: Vec2, max: Vec2, lines: u8) -> Option<u8> {
+        planes::crossed_planes(&self.lines, min.extend(0.0), max.extend(0.0), lines)
     }
 }
 
@@ -82,7 +83,7 @@ mod tests {
 
     #[test]
     fn a_level_wedge_culls_beside_behind_and_beyond_whatever_the_height() {
-        let wedge = GroundWedge::of(&camera(Vec3::Z * 900.0, Vec3::Y));
+        let wedge = GroundWedge::new(&camera(Vec3::Z * 900.0, Vec3::Y));
         let unit_at = |x: f32, y: f32| wedge.may_see(Vec2::new(x, y) - 1.0, Vec2::new(x, y) + 1.0);
         assert!(unit_at(0.0, 50.0) && unit_at(27.0, 50.0));
         assert!(!unit_at(31.0, 50.0) && !unit_at(-31.0, 50.0));
@@ -91,7 +92,7 @@ mod tests {
 
     #[test]
     fn looking_straight_down_leaves_a_strip() {
-        let wedge = GroundWedge::of(&camera(Vec3::Z * 900.0, -Vec3::Z));
+        let wedge = GroundWedge::new(&camera(Vec3::Z * 900.0, -Vec3::Z));
         let unit_at = |x: f32, y: f32| wedge.may_see(Vec2::new(x, y) - 1.0, Vec2::new(x, y) + 1.0);
         assert!(unit_at(0.0, -300.0) && unit_at(0.0, 300.0) && unit_at(5000.0, 0.0));
         assert!(!unit_at(0.0, -500.0) && !unit_at(0.0, 500.0));
@@ -110,7 +111,7 @@ mod tests {
             let seen = camera.eye() + camera.ray_through(Vec2::new(x, y)) * depth_m;
             let slack = Vec2::splat(2e-3);
             let at = seen.truncate();
-            prop_assert!(GroundWedge::of(&camera).may_see(at - slack, at + slack), "{seen} of {camera:?}");
+            prop_assert!(GroundWedge::new(&camera).may_see(at - slack, at + slack), "{seen} of {camera:?}");
         }
     }
 }

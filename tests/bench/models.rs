@@ -19,10 +19,11 @@ use std::time::Instant;
 
 use sandtable::draw::list::DrawList;
 use sandtable::model::detail::ModelDetail;
+use sandtable::model::error::CompanionError;
 use sandtable::model::read::read;
 use sandtable::model::simplify::levels;
 use sandtable::model::{Companions, Model};
-use sandtable::render::cpu::{Options, render};
+use sandtable::render::cpu::{RenderQuality, render};
 use sandtable::scene::Scene;
 use sandtable::scene::picture::{build_draw_list, display, draw_list};
 use sandtable::view::camera::Camera;
@@ -67,7 +68,7 @@ fn row(name: &str, scene: &Scene, camera: &Camera, listed: impl Fn(&Scene, &Came
     steps.begin("listing");
     let list = listed(scene, camera);
     steps.begin("drawing");
-    render(&list, camera, &Options::default()).expect("sound");
+    render(&list, camera, &RenderQuality::default()).expect("sound");
     let steps: Vec<Step> = steps.finish();
     let peak = steps.iter().filter_map(|step| step.peak_mib).reduce(f64::max);
     let peak = peak.map_or("not measured".into(), |peak| format!("{peak:.0} MiB"));
@@ -84,9 +85,9 @@ fn row(name: &str, scene: &Scene, camera: &Camera, listed: impl Fn(&Scene, &Came
 struct Assets;
 
 impl Companions for Assets {
-    fn load(&self, name: &str) -> Result<Vec<u8>, String> {
+    fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/models");
-        fs::read(folder.join(name)).map_err(|error| error.to_string())
+        Ok(fs::read(folder.join(name))?)
     }
 }
 
@@ -105,7 +106,7 @@ fn print_simplify() {
         let levels = levels(&model);
         let simplified = start.elapsed().as_secs_f64() * 1e3;
         let start = Instant::now();
-        ModelDetail::of(&model);
+        ModelDetail::new(&model);
         let all = start.elapsed().as_secs_f64() * 1e3;
         let each: Vec<String> =
             levels.iter().map(|level| format!("{} ({:.3})", level.triangle_count(), level.error)).collect();

@@ -4,6 +4,8 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use glam::Vec3;
+use sandtable::geom::aabb::Aabb;
+use sandtable::model::error::CompanionError;
 use sandtable::model::read;
 use sandtable::model::{Companions, Model};
 
@@ -15,8 +17,8 @@ use crate::{Ran, project, run_in};
 struct Beside<'a>(&'a Path);
 
 impl Companions for Beside<'_> {
-    fn load(&self, name: &str) -> Result<Vec<u8>, String> {
-        std::fs::read(self.0.join(name)).map_err(|error| error.to_string())
+    fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError> {
+        Ok(std::fs::read(self.0.join(name))?)
     }
 }
 
@@ -65,9 +67,9 @@ fn a_glb_and_an_obj_hold_the_same_scene_true_to_scale() {
     export(&scratch, "scenes/models.toml", "scene.obj").ok();
     let [glb, obj] = ["scene.glb", "scene.obj"].map(|name| model(&scratch, name));
     assert_eq!(obj.notes, Vec::<String>::new(), "every companion is there");
-    let (low, high) = glb.bounds().expect("triangles");
+    let Aabb { min: low, max: high } = glb.bounds().expect("triangles");
     // OBJ files are taken for Y up, so what is Z up in them lies on its back.
-    let (back, front) = obj.bounds().expect("triangles");
+    let Aabb { min: back, max: front } = obj.bounds().expect("triangles");
     let upright = |at: Vec3| Vec3::new(at.x, at.z, -at.y);
     let (a, b) = (upright(back), upright(front));
     assert!((low - a.min(b)).abs().max_element() < 0.01 && (high - a.max(b)).abs().max_element() < 0.01);
@@ -80,7 +82,7 @@ fn ground_and_drapes_cover_every_place_once() {
     let scratch = Scratch::new();
     export(&scratch, "scenes/lake.toml", "scene.glb").ok();
     let model = model(&scratch, "scene.glb");
-    let (low, high) = model.bounds().expect("triangles");
+    let Aabb { min: low, max: high } = model.bounds().expect("triangles");
     let size = (high - low).truncate();
     let area = |name: &dyn Fn(&str) -> bool| -> f32 {
         let parts = model.parts.iter().filter(|part| name(&model.materials[part.material.0 as usize].name));

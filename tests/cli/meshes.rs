@@ -9,6 +9,7 @@ use sandtable::mesh::check;
 use sandtable::mesh::sink::{MeshSink, VertexId};
 use sandtable::mesh::trimesh::TriMesh;
 use sandtable::model::Companions;
+use sandtable::model::error::CompanionError;
 use sandtable::roam::bound::measure;
 use sandtable::terrain::lattice::Lattice;
 use serde_json::Value;
@@ -37,7 +38,7 @@ fn grid() -> String {
 struct Alone;
 
 impl Companions for Alone {
-    fn load(&self, name: &str) -> Result<Vec<u8>, String> {
+    fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError> {
         panic!("{name} is asked for")
     }
 }

@@ -2,18 +2,18 @@
 
 use std::sync::LazyLock;
 
-use sandtable::render::gpu::adapter::{Api, Gpu};
+use sandtable::render::gpu::adapter::{Gpu, GpuApi};
 
 /// One device for each interface that offers one; opening takes a while, so all tests share them.
 ///
 /// Where an interface offers none, this says so; with `SANDTABLE_REQUIRE_GPU` set it fails instead.
 pub fn gpus() -> &'static [Gpu] {
     static GPUS: LazyLock<Vec<Gpu>> =
-        LazyLock::new(|| [Api::Vulkan, Api::Gl].into_iter().filter_map(open).collect());
+        LazyLock::new(|| [GpuApi::Vulkan, GpuApi::Gl].into_iter().filter_map(open).collect());
     &GPUS
 }
 
-fn open(api: Api) -> Option<Gpu> {
+fn open(api: GpuApi) -> Option<Gpu> {
     match Gpu::open(&[api]) {
         Ok(gpu) => Some(gpu),
         Err(error) => {

@@ -3,6 +3,7 @@
 // Each test binary uses its own part of this.
 #![allow(dead_code)]
 
+#[cfg(feature = "gpu")]
 pub mod adapters;
 pub mod data;
 pub mod forest;

@@ -46,16 +46,10 @@ pub fn raster(width: u32, height: u32, seed: u64, holes: u32) -> Raster {
 }
 
 /// Assembles `raster` in memory and gives it with its patches to `work`.
-pub fn in_memory<T>(
-    raster: &Raster,
-    patch: u32,
-    reach: f32,
-    exaggeration: f32,
-    work: impl FnOnce(WholeGround<'_>) -> T,
-) -> T {
+pub fn in_memory<T>(raster: &Raster, patch: u32, reach: f32, work: impl FnOnce(WholeGround<'_>) -> T) -> T {
     let lattice = Lattice::from_raster(raster).expect("sound");
     let layout = PatchLayout::new(lattice.columns(), lattice.rows(), patch).expect("sound");
-    let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration };
+    let ground = PatchedGround { lattice: &lattice, layout: &layout };
     let spheres = exact_spheres(reach)(ground);
     work(WholeGround { ground, spheres: &spheres })
 }
@@ -67,7 +61,7 @@ fn bits(block: &PatchBlock) -> [Vec<u32>; 4] {
 
 fn assert_all_patches_match(raster: &Raster, options: PagingOptions) {
     let mut paged = PagedGround::open(raster.clone(), exact_spheres(40.0), &options).expect("sound");
-    in_memory(raster, options.patch, 40.0, options.exaggeration, |mut whole| {
+    in_memory(raster, options.patch, 40.0, |mut whole| {
         let heights = PatchHeights::new(whole.ground);
         for corner in whole.ground.layout.patches() {
             let (found, wanted) =
@@ -84,9 +78,9 @@ fn assert_all_patches_match(raster: &Raster, options: PagingOptions) {
 #[test]
 fn every_patch_read_alone_is_that_of_the_whole_bit_for_bit() {
     for (width, height, holes) in [(161, 129, 0), (170, 140, 900), (33, 300, 50), (2, 40, 0)] {
-        let raster = raster(width, height, 5, holes);
+        let raster = Raster { meters_per_z: 1.7, ..raster(width, height, 5, holes) };
         for patch in [2, 8, 16, 64] {
-            assert_all_patches_match(&raster, PagingOptions { patch, capacity: 3, exaggeration: 1.7 });
+            assert_all_patches_match(&raster, PagingOptions { patch, capacity: 3 });
         }
     }
 }
@@ -136,7 +130,7 @@ proptest! {
             // A lattice holds some data.
             samples[0] = 1.0;
         }
-        assert_all_patches_match(&raster, PagingOptions { patch: 1 << exponent, capacity: 4, exaggeration: 1.0 });
+        assert_all_patches_match(&raster, PagingOptions { patch: 1 << exponent, capacity: 4 });
     }
 }
 
@@ -147,7 +141,7 @@ struct Failing {
 }
 
 impl Windows for Failing {
-    fn bare(&self) -> &Raster {
+    fn metadata(&self) -> &Raster {
         &self.raster
     }
 
@@ -164,7 +158,7 @@ impl Windows for Failing {
 fn a_failing_read_names_the_patch_and_spoils_nothing() {
     let fails = Arc::new(std::sync::atomic::AtomicBool::new(false));
     let failing = Failing { raster: raster(100, 100, 1, 0), fails: Arc::clone(&fails) };
-    let options = PagingOptions { patch: 16, capacity: 2, exaggeration: 1.0 };
+    let options = PagingOptions { patch: 16, capacity: 2 };
     let mut paged = PagedGround::open(failing, exact_spheres(3.0), &options).expect("sound");
     let kept = [Vertex::new(0, 0), Vertex::new(16, 0)].map(|corner| paged.block(corner).expect("sound"));
     fails.store(true, std::sync::atomic::Ordering::Relaxed);

@@ -57,7 +57,7 @@ fn assert_walks_agree(
     (patch, reach, capacity): (u32, f32, usize),
 ) -> usize {
     let mut most = 0;
-    in_memory(whole, patch, reach, 1.0, |whole| {
+    in_memory(whole, patch, reach, |whole| {
         let size = whole.ground.lattice.extent().max.as_vec2();
         let (_, high) = whole.ground.lattice.height_range();
         for frame in 0..FRAMES {
@@ -92,7 +92,7 @@ fn a_walk_over_a_tiled_file_is_the_walk_over_its_terrain_in_memory() {
     let whole = read("a.tif", &bytes, &DemHints::default()).expect("sound");
     let windows =
         GeoTiffWindows::open("a.tif", Cursor::new(bytes), &DemHints::default(), 1 << 21).expect("sound");
-    let options = PagingOptions { patch: 64, capacity: 12, exaggeration: 1.0 };
+    let options = PagingOptions { patch: 64, capacity: 12 };
     let paged = PagedGround::open(windows, exact_spheres(25.0), &options).expect("sound");
     let most = assert_walks_agree(&whole, paged, (64, 25.0, 12));
     assert!(most > 1500, "{most}");
@@ -108,7 +108,7 @@ fn walks_over_real_files_are_the_walks_over_their_terrain_in_memory() {
         let whole = read(name, &bytes, &DemHints::default()).expect("sound");
         let source = fs::File::open(&path).expect("readable");
         let windows = GeoTiffWindows::open(name, source, &DemHints::default(), 1 << 20).expect("sound");
-        let options = PagingOptions { patch: 16, capacity, exaggeration: 1.0 };
+        let options = PagingOptions { patch: 16, capacity };
         let paged = PagedGround::open(windows, exact_spheres(reach), &options).expect("sound");
         assert_walks_agree(&whole, paged, (16, reach, capacity));
     }
@@ -117,7 +117,7 @@ fn walks_over_real_files_are_the_walks_over_their_terrain_in_memory() {
 #[test]
 fn far_patches_are_shown_without_being_read() {
     let whole = crate::blocks::raster(300, 300, 9, 0);
-    let options = PagingOptions { patch: 32, capacity: 4, exaggeration: 1.0 };
+    let options = PagingOptions { patch: 32, capacity: 4 };
     let mut paged = PagedGround::open(whole, exact_spheres(2.0), &options).expect("sound");
     let patches: Vec<_> = paged.layout().patches().collect();
     let mut count = 0;

@@ -40,8 +40,8 @@ fn bits(values: &[f32]) -> Vec<u32> {
 
 fn assert_windows_match(windows: &mut impl Windows, whole: &mut Raster, seed: u64, what: &str) {
     assert_eq!(windows.size(), (whole.width, whole.height), "{what}");
-    assert_eq!(windows.bare().geotransform(), whole.geotransform(), "{what}");
-    assert_eq!(windows.bare().crs, whole.crs, "{what}");
+    assert_eq!(windows.metadata().geotransform(), whole.geotransform(), "{what}");
+    assert_eq!(windows.metadata().crs, whole.crs, "{what}");
     let mut seeded = Seeded(seed);
     let (mut found, mut wanted) = (Vec::new(), Vec::new());
     let all = RasterWindow { column: 0, row: 0, width: whole.width, height: whole.height };
@@ -79,7 +79,7 @@ fn windows_of_tiles_and_of_their_overviews_hold_what_the_whole_file_holds() {
         let sizes: Vec<_> = overviews.iter().map(|overview| (overview.width, overview.height)).collect();
         assert_eq!(sizes, [(769, 513), (385, 257)]);
         let mut half = windows.at_overview(&overviews[0]).expect("sound");
-        assert_eq!(half.bare().geotransform()[1], 10.0 * 1537.0 / 769.0);
+        assert_eq!(half.metadata().geotransform()[1], 10.0 * 1537.0 / 769.0);
         let mut found = Vec::new();
         half.read(RasterWindow { column: 300, row: 200, width: 9, height: 1 }, &mut found).expect("sound");
         let wanted: Vec<f32> = (300..309)
@@ -165,7 +165,7 @@ fn hostile_geotiffs_are_errors_or_windows_and_never_a_panic() {
         let name = path.to_string_lossy();
         match GeoTiffWindows::open(&name, Cursor::new(&bytes), &DemHints::default(), 1 << 20) {
             Err(error) => {
-                assert!(!error.fault.to_string().is_empty());
+                assert!(!error.kind.to_string().is_empty());
                 refused += 1;
             }
             Ok(mut windows) => {

@@ -28,7 +28,7 @@ use sandtable::scene::build::build;
 use sandtable::scene::picture::{build_draw_list, camera as scene_camera};
 use sandtable::terrain::query::{Interpolation, ground_height};
 use sandtable::terrain::triangle_surface::TriangleSurface;
-use sandtable::view::flight::{CircularFlight, Keeping};
+use sandtable::view::flight::{CircularFlight, GroundClearance};
 use sandtable::view::frustum::Frustum;
 
 use crate::common::scratch::Scratch;
@@ -58,7 +58,7 @@ fn paper_004_features_get_their_elevation_from_the_ground_that_roam_built() {
     let criterion = ScreenError::new(world.ground(), &world.errors, &world.heights, &camera, 4.0);
     let active = rebuild(&world.layout, &criterion, world.layout.patches());
     let patches = world.layout.patches().collect();
-    let displayed = DisplayedTerrain::new(Arc::new(world.lattice.clone()), active, 1.0, patches);
+    let displayed = DisplayedTerrain::new(Arc::new(world.lattice.clone()), active, patches);
 
     let line =
         Polyline::new(vec![DVec2::new(50.0, 80.0), DVec2::new(400.0, 300.0), DVec2::new(900.0, 820.0)], 0.01)
@@ -158,7 +158,7 @@ fn paper_004_a_frame_of_a_terrain_with_sixty_three_times_the_samples_costs_hardl
             center: middle,
             radius_m: 400.0,
             step_m: 4.0,
-            keeping: Keeping { above_m: 60.0, smoothing_m: 10.0 },
+            clearance: GroundClearance { height_m: 60.0, smoothing_m: 10.0 },
         };
         let stations = circle.stations(120, &|_| 0.0);
         let first = stations[0].camera(1.0, 50_000.0).expect("sound");
@@ -168,7 +168,7 @@ fn paper_004_a_frame_of_a_terrain_with_sixty_three_times_the_samples_costs_hardl
         let (mut examined, mut triangles) = (0, 0);
         for (frame, station) in stations.iter().enumerate() {
             let camera = station.camera(1.0, 50_000.0).expect("sound");
-            let seen = patches_in_view(world.ground(), &world.heights, &Frustum::of(&camera));
+            let seen = patches_in_view(world.ground(), &world.heights, &Frustum::new(&camera));
             mesh.update(camera.eye(), &seen).expect("in memory");
             if frame > 0 {
                 examined += mesh.examined();

@@ -200,7 +200,7 @@ fn paper_003_the_constraint_saves_triangles_on_flat_ground_and_hardly_any_on_rou
 
 /// The triangles that two eyes see together, and the mean of |mesh − terrain| over all posts.
 fn cost(lattice: &Lattice, layout: &PatchLayout, map: &SphereMap) -> (usize, f64) {
-    let ground = PatchedGround { lattice, layout, exaggeration: 1.0 };
+    let ground = PatchedGround { lattice, layout };
     let (far, top) = (lattice.extent().max.as_vec2(), lattice.height_range().1);
     let (mut triangles, mut off_m) = (0, 0.0);
     for share in [glam::Vec2::new(0.2, 0.3), glam::Vec2::new(0.75, 0.6)] {
@@ -223,7 +223,7 @@ fn paper_003_the_crater_is_shown_by_fewer_triangles_with_about_the_same_height_d
     let raster = read(&path.to_string_lossy(), &bytes, &hints).expect("readable");
     let lattice = Lattice::from_raster(&to_metric(&raster, None).expect("it has a place")).expect("ground");
     let layout = PatchLayout::new(lattice.columns(), lattice.rows(), 64).expect("sound");
-    let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+    let ground = PatchedGround { lattice: &lattice, layout: &layout };
     let errors = ErrorMap::midpoint(&lattice, &layout);
     let roughness = Roughness::new(&lattice, (1, 1));
     let plain = cost(&lattice, &layout, &SphereMap::plain(ground, &errors, 150.0));
@@ -238,7 +238,6 @@ fn paper_003_the_crater_is_shown_by_fewer_triangles_with_about_the_same_height_d
 
 const OPTIONS: DynamicOptions = DynamicOptions {
     patch: 32,
-    exaggeration: 1.0,
     measure: ErrorMeasure::Midpoint,
     radius: Radius::Constrained((1, 1)),
     reach: 30.0,

@@ -41,7 +41,8 @@ fn paper_002_a_height_map_has_a_horizontal_and_a_vertical_scale_and_a_slope_at_e
         assert!((lattice.slopes(post) - Vec2::new(0.5, 2.0)).length() < 1e-6, "{post:?}");
     }
     let layout = PatchLayout::new(5, 5, 4).expect("sound");
-    let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 10.0 };
+    let displayed = lattice.exaggerated(10.0);
+    let ground = PatchedGround { lattice: &displayed, layout: &layout };
     let post = Post { column: 3, row: 2 };
     assert_eq!((lattice.height(post), ground.position(Vertex::new(3, 2)).z), (17.0, 170.0));
 }
@@ -56,7 +57,7 @@ fn paper_002_no_t_junction_is_left_at_any_side_of_any_block() {
         let active = rebuild(&world.layout, &criterion, world.layout.patches());
         let patches = world.layout.patches().collect();
         let mut mesh = TriMesh::default();
-        DisplayedTerrain::new(Arc::clone(&lattice), active, 1.0, patches).emit(&mut mesh);
+        DisplayedTerrain::new(Arc::clone(&lattice), active, patches).emit(&mut mesh);
         check_with_area(&mesh, area.x * area.y).expect("conforming");
     }
 }
@@ -95,8 +96,7 @@ fn paper_002_the_detail_of_every_triangle_is_under_control_by_one_tolerance() {
 fn read_gray(picture: DynamicImage, meters_per_value: f64) -> Vec<f32> {
     let mut file = Cursor::new(Vec::new());
     picture.write_to(&mut file, ImageFormat::Png).expect("it can be written");
-    let hints =
-        DemHints { png_height_scale: Some(meters_per_value), cell: Some(30.0), ..DemHints::default() };
+    let hints = DemHints { height_scale: Some(meters_per_value), cell: Some(30.0), ..DemHints::default() };
     let raster = read("map.png", file.get_ref(), &hints).expect("a height map");
     let lattice = Lattice::from_raster(&raster).expect("it holds ground");
     assert_eq!(lattice.cell(), DVec2::splat(30.0), "the horizontal scale");
@@ -295,7 +295,7 @@ fn paper_002_the_number_of_triangles_has_a_cap_that_is_reached_and_never_exceede
 fn paper_002_the_ground_has_light_maps() {
     // A wall that runs north, the sun low in the west.
     let world = World::new((65, 33), 32, |x, _| if x == 20.0 { 100.0 } else { 0.0 });
-    let light = light(&world.lattice, 1.0, Vec3::new(-1.0, 0.0, 0.5).normalize());
+    let light = light(&world.lattice, Vec3::new(-1.0, 0.0, 0.5).normalize());
     let at = |column: u32| {
         let place = world.lattice.index(Post { column, row: 16 });
         (light.sun[place], light.sky[place])

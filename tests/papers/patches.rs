@@ -96,7 +96,7 @@ fn paper_000_culled_patches_are_not_refined() {
     let world = World::hills(257, 257, 32);
     let (ground, camera) =
         (world.ground(), camera(Vec3::new(1280.0, 1280.0, 90.0), Vec3::new(2500.0, 1280.0, 0.0)));
-    let seen = patches_in_view(ground, &world.heights, &Frustum::of(&camera));
+    let seen = patches_in_view(ground, &world.heights, &Frustum::new(&camera));
     assert!(!seen.is_empty() && seen.len() < world.layout.patch_count() / 2, "{} patches", seen.len());
     assert!(seen.iter().all(|corner| corner.x >= 96), "what lies behind the eye is culled");
     let finest = Flat::new(&world.layout, &world.errors, 0.0);
@@ -263,7 +263,7 @@ fn paper_000_the_mesh_needs_no_priority_queues() {
     let (mut adjusted, mut queued) =
         (Coherent::new(world.layout), Queues::new(world.ground(), Goal::Tolerance));
     for camera in path().step_by(9) {
-        let seen = patches_in_view(world.ground(), &world.heights, &Frustum::of(&camera));
+        let seen = patches_in_view(world.ground(), &world.heights, &Frustum::new(&camera));
         let criterion = Spheres::new(world.ground(), &spheres, camera.eye());
         adjusted.update(&criterion, &seen);
         queued.update(&criterion, &seen);
@@ -297,7 +297,7 @@ fn paper_000_a_patch_never_refined_is_built_by_splits_and_one_that_was_is_adjust
 #[test]
 fn paper_000_terrain_larger_than_the_memory_shows_what_it_shows_in_memory() {
     let world = World::hills(161, 129, 16);
-    let options = PagingOptions { patch: 16, capacity: 6, exaggeration: 1.0 };
+    let options = PagingOptions { patch: 16, capacity: 6 };
     let mut paged = PagedGround::open(raster(&world), exact_spheres(8.0), &options).expect("sound");
     let spheres = exact_spheres(8.0)(world.ground());
     for step in 0..9u8 {

@@ -254,7 +254,7 @@ impl<C: Criterion> Criterion for Listening<C> {
 fn paper_001_nodes_outside_the_frustum_are_not_visited() {
     let world = World::hills(257, 129, 32);
     let camera = camera(Vec3::new(1280.0, 640.0, 90.0), Vec3::new(2500.0, 900.0, 0.0));
-    let frustum = Frustum::of(&camera);
+    let frustum = Frustum::new(&camera);
     let in_view = |vertex| {
         let found = world.heights.diamond(world.ground(), vertex);
         found.is_some_and(|(min, max)| frustum.may_see(min, max))
@@ -286,7 +286,7 @@ fn paper_001_a_tolerance_of_two_percent_takes_fewer_triangles_than_one_and_a_hal
     let world = World::hills(513, 257, 32);
     let errors = ErrorMap::midpoint(&world.lattice, &world.layout);
     let camera = camera(Vec3::new(-300.0, -200.0, 400.0), Vec3::new(2000.0, 1200.0, 0.0));
-    let seen = patches_in_view(world.ground(), &world.heights, &Frustum::of(&camera));
+    let seen = patches_in_view(world.ground(), &world.heights, &Frustum::new(&camera));
     let triangles = |share: f32| {
         let criterion = Anisotropic::new(world.ground(), &errors, &camera, share * 768.0);
         leaves(&rebuild(&world.layout, &criterion, seen.iter().copied())).len()

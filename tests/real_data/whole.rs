@@ -13,7 +13,7 @@ fn built(place: &str) -> Option<Scene> {
     let (text, allowed) = text_of(place)?;
     let scratch = Scratch::new();
     let scene = crate::scene(&scratch, &text, &allowed).unwrap_or_else(|error| panic!("{error}"));
-    scene.terrain.errors.check(&scene.terrain.layout).expect("errors grow upward");
+    scene.terrain.errors().check(&scene.terrain.layout).expect("errors grow upward");
     let plans: Vec<_> = scene.ribbons.iter().map(|ribbon| &ribbon.plan).collect();
     let area: f64 = plans.iter().map(|plan| plan.area_m2()).sum();
     let overlap = overlap_m2(plans.iter().copied());
@@ -41,7 +41,7 @@ fn swellendam_has_all_its_roads_and_buildings() {
     let Some(scene) = built("swellendam") else { return };
     assert_eq!((count(&scene, FeatureKind::Road), count(&scene, FeatureKind::Building)), (717, 4708));
     assert_eq!(count(&scene, FeatureKind::Lake), 37);
-    let conformed = scene.report.table("conformed roads").expect("the greater roads conform").rows.len();
+    let conformed = scene.report.conformed_roads.len();
     assert!(conformed >= 100 && scene.profiles.len() == conformed, "{conformed}");
     let steepest = scene.profiles.iter().flat_map(|profile| {
         let on_ground = profile.stations_m.windows(2).zip(profile.design_m.windows(2)).zip(&profile.carried);
@@ -78,6 +78,5 @@ fn taunton_s_trees_and_buildings_stand_on_its_ground() {
 fn wake_county_s_streams_never_rise() {
     let Some(scene) = built("wake") else { return };
     assert_eq!((count(&scene, FeatureKind::River), count(&scene, FeatureKind::Lake)), (2450, 6));
-    let rivers = &scene.report.table("rivers").expect("every stream is told of").rows;
-    assert_eq!(rivers.len(), 2450);
+    assert_eq!(scene.report.rivers.len(), 2450);
 }

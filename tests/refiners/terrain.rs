@@ -37,9 +37,9 @@ pub const CELL: DVec2 = DVec2::new(3.0, 4.0);
 
 impl Terrain {
     pub fn new(columns: u32, patch: u32, heights: Vec<f32>) -> Self {
-        let lattice = Lattice::new(DVec2::ZERO, CELL, columns, heights).expect("sound");
+        let lattice = Lattice::new(DVec2::ZERO, CELL, columns, heights).expect("sound").exaggerated(1.5);
         let layout = PatchLayout::new(columns, lattice.rows(), patch).expect("sound");
-        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.5 };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let midpoint = midpoint_errors(&lattice, &layout);
         let radii = midpoint.values().iter().map(|error| error * 30.0).collect();
         Self {
@@ -54,11 +54,11 @@ impl Terrain {
     }
 
     pub fn ground(&self) -> PatchedGround<'_> {
-        PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.5 }
+        PatchedGround { lattice: &self.lattice, layout: &self.layout }
     }
 
     pub fn in_view(&self, camera: &Camera) -> Vec<Vertex> {
-        patches_in_view(self.ground(), &self.heights, &Frustum::of(camera))
+        patches_in_view(self.ground(), &self.heights, &Frustum::new(camera))
     }
 
     pub fn vertices(&self) -> impl Iterator<Item = Vertex> + use<> {

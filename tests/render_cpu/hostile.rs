@@ -3,11 +3,13 @@
 use glam::{Mat4, Vec3};
 use proptest::prelude::*;
 use sandtable::draw::color::Srgba;
-use sandtable::draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureId, MaterialId};
+use sandtable::draw::list::{
+    DepthLayer, DrawList, DrawListError, DrawMesh, DrawVertex, FeatureId, MaterialId,
+};
 use sandtable::draw::material::{AlphaMode, Material};
 use sandtable::draw::pixels::Pixels;
 use sandtable::mesh::sink::{MeshSink, VertexId};
-use sandtable::render::cpu::{Options, RenderError, SampleCount, render};
+use sandtable::render::cpu::{CpuRenderError, RenderQuality, SampleCount, render};
 
 use crate::landscape::{BOX, draped_material, ground_map, ground_material, ground_mesh, item};
 use crate::{count, northward, shot, wall};
@@ -80,7 +82,7 @@ fn textures_without_pixels_and_triangles_without_area_do_no_harm() {
 #[test]
 fn lists_that_are_not_sound_are_refused_with_a_reason() {
     let camera = northward((40, 30));
-    let refused = |list: &DrawList| render(list, &camera, &Options::default()).expect_err("not sound");
+    let refused = |list: &DrawList| render(list, &camera, &RenderQuality::default()).expect_err("not sound");
     let mut list = DrawList::default();
     item(
         &mut list,
@@ -89,21 +91,21 @@ fn lists_that_are_not_sound_are_refused_with_a_reason() {
         DepthLayer::Solid,
         BOX,
     );
-    assert_eq!(refused(&list), RenderError::NoGroundMap { item: 0 });
+    assert_eq!(refused(&list), CpuRenderError::List(DrawListError::MissingGroundMap(0)));
 
     let mut bare = list.clone();
     let mut map = ground_map(5, 10.0, false, |_, _| 0.0);
     map.columns = u32::MAX;
     bare.ground = Some(map.into());
-    assert!(matches!(refused(&bare), RenderError::List(_)));
+    assert!(matches!(refused(&bare), CpuRenderError::List(_)));
 
     let mut dangling = list.clone();
     dangling.items[0].material = MaterialId(9);
-    assert!(matches!(refused(&dangling), RenderError::List(_)));
+    assert!(matches!(refused(&dangling), CpuRenderError::List(_)));
 
     let mut pointing = list;
     pointing.meshes[0].triangles[0][1] = VertexId(99);
-    assert!(matches!(refused(&pointing), RenderError::List(_)));
+    assert!(matches!(refused(&pointing), CpuRenderError::List(_)));
 }
 
 #[test]
@@ -147,7 +149,7 @@ proptest! {
         }
         let camera = crate::looking(Vec3::new(0.0, -15.0, 1.0), Vec3::ZERO, (67, 41));
         for samples in [SampleCount::One, SampleCount::Eight] {
-            let options = Options { samples, anisotropy: u32::MAX };
+            let options = RenderQuality { samples, anisotropy: u32::MAX };
             let picture = render(&list, &camera, &options).expect("indices are sound");
             prop_assert!(picture.depth_m.iter().all(|&depth| depth >= 0.5 * 0.999));
         }

@@ -128,7 +128,7 @@ fn haze_thickens_with_the_true_distance() {
     for (x, y) in [(60, 45), (0, 0), (119, 40)] {
         let ray = camera.ray_through(Vec2::new(x as f32 + 0.5, y as f32 + 0.5));
         let albedo = Srgba::opaque(200, 40, 40).linear();
-        let expected = Srgba::from_linear(list.lighting.hazed(albedo, ray.length() * 10.0));
+        let expected = Srgba::from_linear(list.lighting.add_haze(albedo, ray.length() * 10.0));
         let seen = picture.pixels.at(x, y);
         assert!(seen.0.iter().zip(expected.0).all(|(a, b)| a.abs_diff(b) <= 1), "{seen:?}, {expected:?}");
     }

@@ -188,5 +188,8 @@ fn words_ranges_and_defaults_are_stated() {
     assert_eq!(road["width"]["anyOf"][0]["exclusiveMinimum"], json!(0));
     assert_eq!(road["width"]["default"], json!(6));
     let description = road["width"]["description"].as_str().expect("described");
-    assert!(description.starts_with("Of the carriageway"), "{description}");
+    assert!(
+        description.starts_with("Width of the carriageway") && description.ends_with("Default: 6."),
+        "{description}"
+    );
 }

@@ -1,19 +1,41 @@
-//! ESRI ASCII grid (`.asc`): a few `key value` lines, then the samples as text, north row first.
+//! ESRI ASCII grid (`.asc`): lines of `key value`, then the samples as text, north row first.
 //!
-//! Read as liberally as it is written: keys in any order and case, tabs and CRLF, `xllcenter` for
-//! `xllcorner`, `dx`/`dy` for `cellsize`, line breaks anywhere, a decimal comma. The number of samples must
-//! be right: a wrong `ncols` would shear the terrain without a word.
+//! Read liberally: keys in any order and case, tabs and CRLF, `xllcenter` for `xllcorner`, `dx`/`dy` for `cellsize`,
+//! line breaks anywhere, a decimal comma. The number of samples must be right: a wrong `ncols` would shear the terrain
+//! silently.
+//!
+//! Written with as many digits as a value needs to come back to the last bit, its coordinate system in a `.prj` beside
+//! it. Cells that are not square get `dx` and `dy` in place of `cellsize`, as GDAL reads and writes them.
+
+use std::fmt::Write;
 
 use glam::DVec2;
 
-use crate::dem::error::{DemErrorKind, check_size};
-use crate::dem::raster::{Raster, Samples, north_up};
+use crate::dem::error::DemErrorKind;
+use crate::dem::formats::header::HeaderFields;
+use crate::dem::formats::text::{TextWords, number, quote};
+use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::georef::projection_file_of;
+use crate::dem::limits::SizeClaim;
+use crate::dem::raster::{Raster, SampleFloat, Samples, north_up};
 use crate::dem::read::DemFile;
+use crate::dem::write::{WriteError, WrittenDem};
 
-const FORMAT: &str = "ESRI ASCII grid";
+/// The declaration of this format.
+pub static FORMAT: DemFormat = DemFormat {
+    name: "ESRI ASCII grid",
+    extensions: &["asc"],
+    shared_extensions: &[],
+    recognition: Recognition::Content { matches: recognizes, start: "ncols" },
+    reader: read,
+    writer: Some(write),
+};
 
-/// What stands for no data where the header does not say, by Esri's definition of the format.
+/// The no-data value where the header states none, by Esri's definition of the format.
 const DEFAULT_NODATA: f64 = -9999.0;
+
+/// Written for no data, in the order of preference; the raster's own value comes first.
+const NODATA_VALUES: [f64; 3] = [DEFAULT_NODATA, -32768.0, -99999.0];
 
 const KEYS: [&str; 10] = [
     "ncols",
@@ -28,198 +50,137 @@ const KEYS: [&str; 10] = [
     "nodata_value",
 ];
 
-/// Whether the content starts with a key of the header.
-pub(crate) fn recognizes(bytes: &[u8]) -> bool {
-    let start = &bytes[..bytes.len().min(64)];
-    let text =
-        String::from_utf8_lossy(start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start)).to_ascii_lowercase();
-    text.split_ascii_whitespace().next().is_some_and(|word| KEYS.contains(&word))
+fn is_key(word: &[u8]) -> bool {
+    KEYS.iter().any(|key| key.as_bytes().eq_ignore_ascii_case(word))
 }
 
-/// Reads a grid; its coordinate system comes from a `.prj` companion.
-pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
-    let bytes = source.bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(source.bytes);
-    let mut words = TextWords::new(bytes);
-    let header = AsciiHeader::read(&mut words)?;
-    let (width, height) = (header.size("ncols")?, header.size("nrows")?);
-    // Every sample needs a digit, and all but the last a blank.
-    let room = words.rest().len();
-    let count = check_size((width, height), 2, (room + 1, 1))?;
-    let cell = header.cell()?;
+fn without_byte_order_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
+fn recognizes(bytes: &[u8]) -> bool {
+    let start = &bytes[..bytes.len().min(64)];
+    TextWords::new(without_byte_order_mark(start)).next().is_some_and(is_key)
+}
+
+fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
+    let mut words = TextWords::new(without_byte_order_mark(file.bytes));
+    let header = header(&mut words)?;
+    let (width, height) = (header.required("ncols")?, header.required("nrows")?);
+    // Every sample takes a digit, and all but the last a blank.
+    let size = SizeClaim::new(width, height, 2).check(words.rest().len() + 1)?;
+    let cell = cell(&header)?;
     let corner = header.south_west(cell)?;
-    let nodata = header.get("nodata_value");
-    let AsciiSamples { values, replaced, whole } =
-        samples(&mut words, count, nodata.unwrap_or(DEFAULT_NODATA))?;
+    let corner = corner.ok_or_else(|| header.broken("its header states no xllcorner and yllcorner"))?;
+    if !corner.is_finite() {
+        return Err(header.broken("its corner is not finite"));
+    }
+    let nodata = header.number("nodata_value")?;
+    let values = values(&mut words, size.x as usize * size.y as usize, nodata.unwrap_or(DEFAULT_NODATA))?;
+    let north_west = DVec2::new(corner.x, corner.y + height as f64 * cell.y);
     Ok(Raster {
         driver: "AAIGrid",
-        data_type: if whole { "Int32" } else { "Float32" },
-        width: width as u32,
-        height: height as u32,
-        samples: Samples::F32(values),
-        meters_per_z: 1.0,
-        map_from_grid: north_up(DVec2::new(corner.x, corner.y + height as f64 * cell.y), cell),
-        georeferenced: true,
-        crs: source.crs_beside()?,
-        nodata: nodata.or(replaced.then_some(DEFAULT_NODATA)),
-        vertical_datum: None,
+        data_type: if values.are_whole { "Int32" } else { "Float32" },
+        crs: file.crs()?,
+        nodata: nodata.or(values.have_nodata.then_some(DEFAULT_NODATA)),
+        ..Raster::new(size.x, Samples::F32(values.values)).placed(north_up(north_west, cell))
     })
 }
 
-/// The samples as the text holds them.
-struct AsciiSamples {
-    values: Vec<f32>,
-    /// Whether any of them was no data.
-    replaced: bool,
-    /// Whether all are written as whole numbers.
-    whole: bool,
+/// The fields up to the first word that is no key.
+fn header(words: &mut TextWords) -> Result<HeaderFields, DemErrorKind> {
+    let mut header = HeaderFields::new(FORMAT.name);
+    while let Some(key) = words.next_if(is_key) {
+        let key = String::from_utf8_lossy(key).to_ascii_lowercase();
+        let value = String::from_utf8_lossy(words.next().unwrap_or_default());
+        if header.get(&key).is_some() {
+            return Err(FORMAT.broken(format!("{key} is stated twice")));
+        }
+        header.parse(&key, &value)?;
+        header.push(&key, &value);
+    }
+    Ok(header)
 }
 
-fn samples(words: &mut TextWords, count: usize, nodata: f64) -> Result<AsciiSamples, DemErrorKind> {
-    let mut values = Vec::with_capacity(count);
-    let (mut replaced, mut whole) = (false, true);
+fn cell(header: &HeaderFields) -> Result<DVec2, DemErrorKind> {
+    let sides = header.first_number(["dx", "cellsize"])?.zip(header.first_number(["dy", "cellsize"])?);
+    let cell = DVec2::from(sides.ok_or_else(|| header.broken("neither cellsize nor dx and dy are stated"))?);
+    if cell.is_finite() && cell.min_element() > 0.0 {
+        return Ok(cell);
+    }
+    Err(header.broken(format!("the cells are {} by {}, not of a positive size", cell.x, cell.y)))
+}
+
+/// The samples of the text.
+struct AsciiValues {
+    values: Vec<f32>,
+    /// Whether any of them is no data.
+    have_nodata: bool,
+    /// Whether all are written as whole numbers.
+    are_whole: bool,
+}
+
+fn values(words: &mut TextWords, count: usize, nodata: f64) -> Result<AsciiValues, DemErrorKind> {
+    let mut read = AsciiValues { values: Vec::with_capacity(count), have_nodata: false, are_whole: true };
     for word in words {
-        if values.len() == count {
-            return Err(DemErrorKind::broken(
-                FORMAT,
-                format!("more than the {count} values that ncols and nrows promise"),
-            ));
+        let index = read.values.len();
+        if index == count {
+            return Err(FORMAT.broken(format!("more than the {count} values that ncols and nrows promise")));
         }
         let value = number(word).ok_or_else(|| {
-            let word = String::from_utf8_lossy(&word[..word.len().min(20)]).into_owned();
-            DemErrorKind::broken(
-                FORMAT,
-                format!("value {} of {count} is '{word}', not a number", values.len() + 1),
-            )
+            FORMAT.broken(format!("value {} of {count} is '{}', not a number", index + 1, quote(word)))
         })?;
-        let hole = value == nodata || !value.is_finite();
-        replaced |= hole;
-        whole = whole && word.iter().all(|byte| matches!(byte, b'0'..=b'9' | b'-' | b'+'));
-        values.push(if hole { f32::NAN } else { value as f32 });
+        let is_nodata = value == nodata || !value.is_finite();
+        read.have_nodata |= is_nodata;
+        read.are_whole &= word.iter().all(|byte| matches!(byte, b'0'..=b'9' | b'-' | b'+'));
+        read.values.push(if is_nodata { f32::NAN } else { value as f32 });
     }
-    if values.len() < count {
-        return Err(DemErrorKind::broken(
-            FORMAT,
-            format!("it ends after {} of {count} values", values.len()),
-        ));
+    if read.values.len() < count {
+        return Err(FORMAT.broken(format!("it ends after {} of {count} values", read.values.len())));
     }
-    Ok(AsciiSamples { values, replaced, whole })
+    Ok(read)
 }
 
-/// The `key value` pairs.
-struct AsciiHeader(Vec<(&'static str, f64)>);
-
-impl AsciiHeader {
-    fn read(words: &mut TextWords) -> Result<Self, DemErrorKind> {
-        let mut pairs: Vec<(&'static str, f64)> = Vec::new();
-        loop {
-            let before = words.at;
-            let Some(word) = words.next() else { break };
-            let lower = String::from_utf8_lossy(word).to_ascii_lowercase();
-            let Some(key) = KEYS.into_iter().find(|key| *key == lower) else {
-                words.at = before;
-                break;
-            };
-            let value = words
-                .next()
-                .and_then(number)
-                .ok_or_else(|| DemErrorKind::broken(FORMAT, format!("{key} is not followed by a number")))?;
-            if pairs.iter().any(|(known, _)| *known == key) {
-                return Err(DemErrorKind::broken(FORMAT, format!("{key} is stated twice")));
-            }
-            pairs.push((key, value));
-        }
-        Ok(Self(pairs))
+fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
+    let raster = &raster.in_meters();
+    FORMAT.check_place(raster)?;
+    let nodata = nodata_to_write(raster)?;
+    let (cell, south_west) = (raster.spacing(), raster.extent().min);
+    let sides = if cell.x == cell.y {
+        format!("cellsize {}", cell.x)
+    } else {
+        format!("dx {}\ndy {}", cell.x, cell.y)
+    };
+    let mut text = format!(
+        "ncols {}\nnrows {}\nxllcorner {}\nyllcorner {}\n{sides}\nNODATA_value {nodata}\n",
+        raster.width, raster.height, south_west.x, south_west.y
+    );
+    match &raster.samples {
+        Samples::F32(values) => write_rows(&mut text, values, raster.width, nodata),
+        Samples::F64(values) => write_rows(&mut text, values, raster.width, nodata),
     }
+    Ok(WrittenDem {
+        companions: projection_file_of(raster).into_iter().collect(),
+        ..WrittenDem::new(text.into_bytes(), "text")
+    })
+}
 
-    fn get(&self, key: &str) -> Option<f64> {
-        self.0.iter().find(|(known, _)| *known == key).map(|(_, value)| *value)
-    }
-
-    fn size(&self, key: &str) -> Result<u64, DemErrorKind> {
-        match self.get(key) {
-            Some(value) if value >= 1.0 && value.fract() == 0.0 && value <= u64::MAX as f64 => {
-                Ok(value as u64)
-            }
-            Some(value) => {
-                Err(DemErrorKind::broken(FORMAT, format!("{key} is {value}, not a whole number above 0")))
-            }
-            None => Err(DemErrorKind::broken(FORMAT, format!("{key} is missing"))),
-        }
-    }
-
-    fn cell(&self) -> Result<DVec2, DemErrorKind> {
-        let square = self.get("cellsize");
-        let cell = match (self.get("dx").or(square), self.get("dy").or(square)) {
-            (Some(x), Some(y)) => DVec2::new(x, y),
-            _ => return Err(DemErrorKind::broken(FORMAT, "neither cellsize nor dx and dy are stated")),
-        };
-        if cell.is_finite() && cell.min_element() > 0.0 {
-            return Ok(cell);
-        }
-        Err(DemErrorKind::broken(
-            FORMAT,
-            format!("the cells are {} by {}, not of a positive size", cell.x, cell.y),
-        ))
-    }
-
-    /// The outer south-west corner.
-    fn south_west(&self, cell: DVec2) -> Result<DVec2, DemErrorKind> {
-        let edge = |corner: &str, center: &str, cell: f64| match (self.get(corner), self.get(center)) {
-            (Some(at), _) => Ok(at),
-            (None, Some(at)) => Ok(at - cell * 0.5),
-            (None, None) => {
-                Err(DemErrorKind::broken(FORMAT, format!("neither {corner} nor {center} is stated")))
-            }
-        };
-        let at = DVec2::new(edge("xllcorner", "xllcenter", cell.x)?, edge("yllcorner", "yllcenter", cell.y)?);
-        if at.is_finite() { Ok(at) } else { Err(DemErrorKind::broken(FORMAT, "its corner is not finite")) }
+fn write_rows<T: SampleFloat>(text: &mut String, values: &[T], width: u32, nodata: f64) {
+    for (index, &value) in values.iter().enumerate() {
+        let end = if (index + 1).is_multiple_of(width as usize) { '\n' } else { ' ' };
+        let wide: f64 = value.into();
+        let written =
+            if wide.is_nan() { write!(text, "{nodata}{end}") } else { write!(text, "{value}{end}") };
+        written.expect("a string takes what is written");
     }
 }
 
-/// The words of a text, as bytes.
-pub(crate) struct TextWords<'a> {
-    bytes: &'a [u8],
-    at: usize,
-}
-
-impl<'a> TextWords<'a> {
-    /// The words of `bytes`, which blanks, line ends and NULs stand between.
-    pub fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes, at: 0 }
-    }
-
-    /// What has not been read yet.
-    pub fn rest(&self) -> &'a [u8] {
-        &self.bytes[self.at..]
-    }
-}
-
-impl<'a> Iterator for TextWords<'a> {
-    type Item = &'a [u8];
-
-    fn next(&mut self) -> Option<&'a [u8]> {
-        let is_blank = |byte: &u8| byte.is_ascii_whitespace() || *byte == 0;
-        let rest = &self.bytes[self.at..];
-        let start = self.at + rest.iter().position(|byte| !is_blank(byte))?;
-        let length = self.bytes[start..].iter().position(is_blank).unwrap_or(self.bytes.len() - start);
-        self.at = start + length;
-        Some(&self.bytes[start..self.at])
-    }
-}
-
-/// A number, with a decimal point or a single decimal comma; `nan` in any case and GDAL's `-1.#IND` are NaN.
-pub(crate) fn number(word: &[u8]) -> Option<f64> {
-    let text = std::str::from_utf8(word).ok()?;
-    if let Ok(value) = text.parse() {
-        return Some(value);
-    }
-    if text.contains('#') {
-        return Some(f64::NAN);
-    }
-    if text.matches(',').count() == 1 && !text.contains('.') {
-        return text.replace(',', ".").parse().ok();
-    }
-    None
+/// A value that is no height. It is always stated: readers take −9999 where none is.
+fn nodata_to_write(raster: &Raster) -> Result<f64, WriteError> {
+    let own = raster.nodata.filter(|value| value.is_finite());
+    let is_free = |nodata: &f64| raster.samples.iter().all(|value| value != *nodata);
+    let taken = WriteError::NoDataTaken { format: FORMAT.name, value: DEFAULT_NODATA };
+    own.into_iter().chain(NODATA_VALUES).find(is_free).ok_or(taken)
 }
 
 #[cfg(test)]

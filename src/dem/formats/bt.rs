@@ -1,4 +1,4 @@
-//! Binary Terrain of the Virtual Terrain Project (`.bt`, versions 1.0 to 1.3).
+//! Binary Terrain of the Virtual Terrain Project (`.bt`): versions 1.0 to 1.3 are read, 1.3 is written.
 //!
 //! ```text
 //! offset   1.1 – 1.3                     1.0
@@ -14,40 +14,57 @@
 //! 256      values, little-endian, by columns from the south-west, each column northward
 //! ```
 //!
-//! Where the values stand follows VTP's own reader: **the extents are the coordinates of the outermost grid
-//! nodes**, so that neighbors are (right − left) / (columns − 1) apart. GDAL takes the same numbers as outer
-//! edges of cells and divides by the number of columns; the two differ by up to half a cell. −32768 stands for
-//! no data in all three kinds of value.
+//! As in VTP's own reader **the extents are the coordinates of the outermost grid nodes**: neighbors are (right −
+//! left) / (columns − 1) apart. GDAL takes the same numbers for outer edges of cells and divides by the number of
+//! columns; the two differ by up to half a cell. −32768 is no data in all three types of value.
+//!
+//! The coordinate system is written to the header where that can name it (UTM and degrees on a few datums), and always
+//! to a `.prj` beside the file.
 
 use glam::DVec2;
 
-use crate::dem::error::{DemErrorKind, bytes_at, check_size};
-use crate::dem::raster::{Raster, Samples, north_up};
+use crate::dem::bytes::{ByteFields, ByteOrder};
+use crate::dem::error::DemErrorKind;
+use crate::dem::formats::sample_layout::{NoData, SampleLayout};
+use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::georef::{crs_on_earth, projection_file_of, utm_code};
+use crate::dem::raster::{Raster, north_up_nodes};
 use crate::dem::read::DemFile;
+use crate::dem::sample_type::SampleType;
+use crate::dem::stored::StoredSamples;
+use crate::dem::units::{FOOT_M, US_SURVEY_FOOT_M};
+use crate::dem::write::{WriteError, WrittenDem};
 use crate::geom::crs::Crs;
 
-const FORMAT: &str = "BT terrain";
+/// The declaration of this format.
+pub static FORMAT: DemFormat = DemFormat {
+    name: "BT terrain",
+    extensions: &["bt"],
+    shared_extensions: &[],
+    recognition: Recognition::Content {
+        matches: |bytes| bytes.starts_with(b"binterr"),
+        start: "'binterr1.' and a digit",
+    },
+    reader: read,
+    writer: Some(write),
+};
 
-/// Values start here in every version.
+/// The first byte of the values, in every version.
 const HEADER: usize = 256;
 
 const NODATA: f64 = -32768.0;
 
-/// Whether the content starts as all versions do.
-pub(crate) fn recognizes(bytes: &[u8]) -> bool {
-    bytes.starts_with(b"binterr")
-}
+/// EPSG's number of the datum WGS 84.
+const WGS84_DATUM: i16 = 6326;
 
-/// Reads a terrain; its coordinate system comes from a `.prj` companion where the header says so.
-pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
-    let header = BtHeader::read(source.bytes)?;
-    let data = &source.bytes[HEADER..];
+fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
+    let header = BtHeader::read(file.bytes)?;
     let size = (u64::from(header.columns), u64::from(header.rows));
-    check_size(size, header.value.bytes() as u64, (data.len(), 1))?;
-    let nodes = DVec2::new(f64::from(header.columns - 1), f64::from(header.rows - 1));
-    let (crs, meters_per_unit) = system(source, &header)?;
+    let layout = SampleLayout::dense(size, header.sample, ByteOrder::Little, 0).by_columns();
+    let raster = layout.read(FORMAT.name, &file.bytes[HEADER..], NoData::Value(Some(NODATA)))?;
+    let BtSystem { crs, meters_per_unit } = system(file, &header)?;
     let (min, max) = (header.min * meters_per_unit, header.max * meters_per_unit);
-    let cell = (max - min) / nodes;
+    let cell = (max - min) / (raster.grid_size() - 1.0);
     if !(cell.is_finite() && cell.min_element() > 0.0) {
         return Err(DemErrorKind::Georeference {
             reason: format!("its extents are {} to {}", header.min, header.max),
@@ -56,49 +73,25 @@ pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
     }
     Ok(Raster {
         driver: "BT",
-        data_type: header.value.name(),
-        width: header.columns,
-        height: header.rows,
-        samples: header.samples(data),
         meters_per_z: header.meters_per_z,
-        map_from_grid: north_up(DVec2::new(min.x - cell.x * 0.5, max.y + cell.y * 0.5), cell),
-        georeferenced: true,
         crs,
         nodata: Some(NODATA),
-        vertical_datum: None,
+        ..raster.placed(north_up_nodes(DVec2::new(min.x, max.y), cell))
     })
-}
-
-/// The kinds of value.
-#[derive(Clone, Copy)]
-enum BtKind {
-    I16,
-    I32,
-    F32,
-}
-
-impl BtKind {
-    fn name(self) -> &'static str {
-        match self {
-            Self::I16 => "Int16",
-            Self::I32 => "Int32",
-            Self::F32 => "Float32",
-        }
-    }
-
-    fn bytes(self) -> usize {
-        if matches!(self, Self::I16) { 2 } else { 4 }
-    }
 }
 
 struct BtHeader {
     columns: u32,
     rows: u32,
-    value: BtKind,
+    sample: SampleType,
+    /// 0 degrees, 1 meters, 2 feet, 3 US survey feet.
     unit: i16,
+    /// The UTM zone, negative in the south; 0 for none.
     zone: i16,
+    /// EPSG's number of the datum.
     datum: i16,
-    external: bool,
+    /// Whether the system is stated in a `.prj` beside the file.
+    has_projection_file: bool,
     min: DVec2,
     max: DVec2,
     meters_per_z: f64,
@@ -107,149 +100,119 @@ struct BtHeader {
 impl BtHeader {
     fn read(bytes: &[u8]) -> Result<Self, DemErrorKind> {
         if bytes.len() < HEADER {
-            return Err(DemErrorKind::broken(
-                FORMAT,
-                format!("{} bytes are less than its header", bytes.len()),
-            ));
+            return Err(FORMAT.broken(format!("{} bytes are less than its header", bytes.len())));
         }
         let version = match &bytes[7..10] {
             [b'1', b'.', digit @ b'0'..=b'3'] => digit - b'0',
             other => {
-                return Err(DemErrorKind::Unsupported {
-                    format: FORMAT,
-                    what: format!("version '{}'", String::from_utf8_lossy(other)),
-                    remedy: "save it as version 1.3",
-                });
+                let what = format!("version '{}'", String::from_utf8_lossy(other));
+                return Err(FORMAT.unsupported(what, "save it as version 1.3"));
             }
         };
-        let fields = Fields(bytes);
-        let nodes = |at: usize, what: &str| match fields.long(at) {
-            count if count >= 2 => Ok(count as u32),
-            count => {
-                Err(DemErrorKind::broken(FORMAT, format!("it has {count} {what}; at least 2 make a terrain")))
-            }
+        let fields = ByteFields::little_endian(bytes);
+        let long = |at: usize| fields.i32(at).unwrap_or_default();
+        let nodes = |at: usize, what: &str| match long(at) {
+            count @ 2.. => Ok(count as u32),
+            count => Err(FORMAT.broken(format!("it has {count} {what}; at least 2 make a terrain"))),
         };
-        let mut header = if version == 0 { Self::oldest(&fields)? } else { Self::later(&fields, version)? };
-        header.columns = nodes(10, "columns")?;
-        header.rows = nodes(14, "rows")?;
-        Ok(header)
+        let (columns, rows) = (nodes(10, "columns")?, nodes(14, "rows")?);
+        if version == 0 {
+            Self::version_0(fields, columns, rows)
+        } else {
+            Self::later(fields, version, columns, rows)
+        }
     }
 
-    fn oldest(fields: &Fields) -> Result<Self, DemErrorKind> {
-        let edge = |at: usize| f64::from(fields.float(at));
-        let is_utm = fields.short(22) == 1;
+    fn version_0(fields: ByteFields, columns: u32, rows: u32) -> Result<Self, DemErrorKind> {
+        let long = |at: usize| fields.i32(at).unwrap_or_default();
+        let short = |at: usize| fields.i16(at).unwrap_or_default();
+        let edge = |at: usize| fields.f32(at).map_or(f64::NAN, f64::from);
+        let is_utm = short(22) == 1;
         Ok(Self {
-            columns: 0,
-            rows: 0,
-            value: kind(fields.long(18), fields.long(42) != 0)?,
+            columns,
+            rows,
+            sample: sample_type(long(18), long(42) != 0)?,
             unit: i16::from(is_utm),
-            zone: if is_utm { fields.short(24) } else { 0 },
-            datum: 6326,
-            external: false,
+            zone: if is_utm { short(24) } else { 0 },
+            datum: WGS84_DATUM,
+            has_projection_file: false,
             min: DVec2::new(edge(26), edge(34)),
             max: DVec2::new(edge(30), edge(38)),
             meters_per_z: 1.0,
         })
     }
 
-    fn later(fields: &Fields, version: u8) -> Result<Self, DemErrorKind> {
-        let scale = if version >= 3 { f64::from(fields.float(62)) } else { 1.0 };
+    fn later(fields: ByteFields, version: u8, columns: u32, rows: u32) -> Result<Self, DemErrorKind> {
+        let short = |at: usize| fields.i16(at).unwrap_or_default();
+        let edge = |at: usize| fields.f64(at).unwrap_or(f64::NAN);
+        let scale = if version >= 3 { fields.f32(62).map_or(1.0, f64::from) } else { 1.0 };
         Ok(Self {
-            columns: 0,
-            rows: 0,
-            value: kind(i32::from(fields.short(18)), fields.short(20) != 0)?,
-            unit: fields.short(22),
-            zone: fields.short(24),
-            datum: fields.short(26),
-            external: version >= 2 && fields.short(60) != 0,
-            min: DVec2::new(fields.double(28), fields.double(44)),
-            max: DVec2::new(fields.double(36), fields.double(52)),
+            columns,
+            rows,
+            sample: sample_type(short(18).into(), short(20) != 0)?,
+            unit: short(22),
+            zone: short(24),
+            datum: short(26),
+            has_projection_file: version >= 2 && short(60) != 0,
+            min: DVec2::new(edge(28), edge(44)),
+            max: DVec2::new(edge(36), edge(52)),
             meters_per_z: vertical_unit(scale)?,
         })
     }
+}
 
-    fn samples(&self, data: &[u8]) -> Samples {
-        match self.value {
-            BtKind::I16 => {
-                Samples::F32(self.turned(data, |b: [u8; 2]| f32::from(i16::from_le_bytes(b)), f32::NAN))
-            }
-            BtKind::F32 => Samples::F32(self.turned(data, f32::from_le_bytes, f32::NAN)),
-            BtKind::I32 => Samples::F64(self.turned(data, |b| f64::from(i32::from_le_bytes(b)), f64::NAN)),
-        }
-    }
-
-    /// Columns from the south-west, turned into rows from the north-west.
-    fn turned<const N: usize, T>(&self, data: &[u8], value: impl Fn([u8; N]) -> T, hole: T) -> Vec<T>
-    where
-        T: Copy + Into<f64>,
-    {
-        let (columns, rows) = (self.columns as usize, self.rows as usize);
-        let mut turned = Vec::with_capacity(columns * rows);
-        for row in (0..rows).rev() {
-            for column in 0..columns {
-                let at = (column * rows + row) * N;
-                let found = bytes_at(data, at).map_or(hole, &value);
-                let elevation: f64 = found.into();
-                turned.push(if elevation == NODATA || !elevation.is_finite() { hole } else { found });
-            }
-        }
-        turned
+fn sample_type(bytes: i32, is_float: bool) -> Result<SampleType, DemErrorKind> {
+    match (bytes, is_float) {
+        (2, false) => Ok(SampleType::I16),
+        (4, false) => Ok(SampleType::I32),
+        (4, true) => Ok(SampleType::F32),
+        (_, true) => Err(FORMAT.broken(format!("floating-point values of {bytes} bytes do not exist"))),
+        (_, false) => Err(FORMAT.broken(format!("integer values of {bytes} bytes do not exist"))),
     }
 }
 
-fn kind(bytes: i32, float: bool) -> Result<BtKind, DemErrorKind> {
-    match (bytes, float) {
-        (2, false) => Ok(BtKind::I16),
-        (4, false) => Ok(BtKind::I32),
-        (4, true) => Ok(BtKind::F32),
-        _ => {
-            let sort = if float { "floating-point" } else { "integer" };
-            Err(DemErrorKind::broken(FORMAT, format!("{sort} values of {bytes} bytes do not exist")))
-        }
-    }
-}
-
-/// 0 means meters, as files before 1.3 left it. The two feet are kept in f32 and named again in full.
+/// 0 means meters, as files before 1.3 left it. Feet are stored in 32 bits and restored to 64.
 fn vertical_unit(scale: f64) -> Result<f64, DemErrorKind> {
-    const US_FOOT: f64 = 1200.0 / 3937.0;
     if scale == 0.0 || scale == 1.0 {
         return Ok(1.0);
     }
     if !(scale.is_finite() && scale > 0.0) {
-        return Err(DemErrorKind::broken(FORMAT, format!("its vertical unit is {scale} m")));
+        return Err(FORMAT.broken(format!("its vertical unit is {scale} m")));
     }
-    let named = [US_FOOT, 0.3048].into_iter().find(|foot| f64::from(*foot as f32) == scale);
-    Ok(named.unwrap_or(scale))
+    let feet = [US_SURVEY_FOOT_M, FOOT_M].into_iter().find(|foot| f64::from(*foot as f32) == scale);
+    Ok(feet.unwrap_or(scale))
 }
 
-/// The coordinate system, and the factor that its extents still need: 1, or the length of a foot where a
-/// local grid in feet is brought to meters.
-fn system(source: &DemFile, header: &BtHeader) -> Result<(Option<Crs>, f64), DemErrorKind> {
-    if let Some(crs) = source.hints.crs.clone() {
-        return Ok((Some(crs), 1.0));
-    }
-    if header.external
-        && let Some(crs) = source.crs_beside()?
-    {
-        return Ok((Some(crs), 1.0));
+/// The coordinate system of a terrain.
+struct BtSystem {
+    crs: Option<Crs>,
+    /// What extents are multiplied by: 1, or the length of a foot for a local grid in feet.
+    meters_per_unit: f64,
+}
+
+fn system(file: &DemFile, header: &BtHeader) -> Result<BtSystem, DemErrorKind> {
+    let known = if header.has_projection_file { file.crs()? } else { file.hints.crs.clone() };
+    if known.is_some() {
+        return Ok(BtSystem { crs: known, meters_per_unit: 1.0 });
     }
     let unit = match header.unit {
         0 | 1 => 1.0,
-        2 => 0.3048,
-        3 => 1200.0 / 3937.0,
-        other => {
-            return Err(DemErrorKind::broken(
-                FORMAT,
-                format!("its horizontal unit is {other}; 0 to 3 exist"),
-            ));
-        }
+        2 => FOOT_M,
+        3 => US_SURVEY_FOOT_M,
+        other => return Err(FORMAT.broken(format!("its horizontal unit is {other}; 0 to 3 exist"))),
     };
     let code = match (header.zone, header.unit) {
         (0, 0) => geographic_code(header.datum)?,
-        (0, _) => return Ok((None, unit)),
-        (zone, _) => utm_code(zone, geographic_code(header.datum)?)?,
+        (0, _) => return Ok(BtSystem { crs: None, meters_per_unit: unit }),
+        (zone, _) => {
+            let base = geographic_code(header.datum)?;
+            utm_code(base, zone.into()).ok_or_else(|| DemErrorKind::Georeference {
+                reason: format!("UTM zone {zone} on datum EPSG:{base} is not known"),
+                remedy: "state crs under [terrain]",
+            })?
+        }
     };
-    Ok((Some(Crs::from_epsg_in(code, unit).map_err(DemErrorKind::Crs)?), 1.0))
+    Ok(BtSystem { crs: Some(Crs::from_epsg_in(code, unit)?), meters_per_unit: 1.0 })
 }
 
 /// The geographic system of a datum: EPSG's number less 2000, one of the old USGS numbers, or WGS 84 where it
@@ -267,53 +230,88 @@ fn geographic_code(datum: i16) -> Result<u32, DemErrorKind> {
     }
 }
 
-fn utm_code(zone: i16, base: u32) -> Result<u32, DemErrorKind> {
-    let number = u32::from(zone.unsigned_abs());
-    let code = match (base, zone > 0) {
-        (4326, true) => 32600 + number,
-        (4326, false) => 32700 + number,
-        (4269, true) => 26900 + number,
-        (4267, true) => 26700 + number,
-        (4258, true) => 25800 + number,
-        _ => 0,
-    };
-    if (1..=60).contains(&number) && code > 0 {
-        return Ok(code);
+fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
+    FORMAT.check_place(raster)?;
+    if raster.width.min(raster.height) < 2 {
+        let found = format!("{} x {}", raster.width, raster.height);
+        return Err(WriteError::Shape { format: FORMAT.name, wanted: "at least 2 x 2 samples", found });
     }
-    Err(DemErrorKind::Georeference {
-        reason: format!("UTM zone {zone} on datum EPSG:{base} is not known"),
-        remedy: "state crs under [terrain]",
-    })
+    if raster.samples.iter().any(|value| value == NODATA) {
+        return Err(WriteError::NoDataTaken { format: FORMAT.name, value: NODATA });
+    }
+    let mut notes = Vec::new();
+    let sample = match StoredSamples::of(raster).sample {
+        kept @ (SampleType::I16 | SampleType::I32) => kept,
+        other => {
+            if other.is_wide() {
+                notes.push("heights are rounded to float32".to_owned());
+            }
+            SampleType::F32
+        }
+    };
+    // 32 bits hold the unit: feet are restored by the reader, all others keep seven digits.
+    let unit = raster.meters_per_z as f32;
+    if f64::from(unit) != raster.meters_per_z && ![FOOT_M, US_SURVEY_FOOT_M].contains(&raster.meters_per_z) {
+        notes.push(format!("the unit of heights, {} m, is rounded", raster.meters_per_z));
+    }
+    let mut bytes = header_bytes(raster, sample);
+    for column in 0..raster.width {
+        for row in (0..raster.height).rev() {
+            let value = raster.at(column, row);
+            sample.write(if value.is_nan() { NODATA } else { value }, &mut bytes);
+        }
+    }
+    let companions = projection_file_of(raster).into_iter().collect();
+    Ok(WrittenDem { companions, notes, ..WrittenDem::new(bytes, &sample.gdal_name().to_ascii_lowercase()) })
 }
 
-/// Little-endian fields of a header whose length was checked.
-struct Fields<'a>(&'a [u8]);
-
-impl Fields<'_> {
-    fn take<const N: usize>(&self, at: usize) -> [u8; N] {
-        bytes_at(self.0, at).unwrap_or([0; N])
+fn header_bytes(raster: &Raster, sample: SampleType) -> Vec<u8> {
+    let nodes = raster.node_extent();
+    let (unit, zone, datum) = system_fields(raster.crs.as_ref());
+    let values = raster.samples.len() * sample.bytes();
+    let mut bytes = Vec::with_capacity(HEADER + values);
+    bytes.extend(b"binterr1.3");
+    bytes.extend((raster.width as i32).to_le_bytes());
+    bytes.extend((raster.height as i32).to_le_bytes());
+    for short in [sample.bytes() as i16, i16::from(sample.is_float()), unit, zone, datum] {
+        bytes.extend(short.to_le_bytes());
     }
-
-    fn short(&self, at: usize) -> i16 {
-        i16::from_le_bytes(self.take(at))
+    for edge in [nodes.min.x, nodes.max.x, nodes.min.y, nodes.max.y] {
+        bytes.extend(edge.to_le_bytes());
     }
+    bytes.extend(i16::from(crs_on_earth(raster).is_some()).to_le_bytes());
+    bytes.extend((raster.meters_per_z as f32).to_le_bytes());
+    bytes.resize(HEADER, 0);
+    bytes
+}
 
-    fn long(&self, at: usize) -> i32 {
-        i32::from_le_bytes(self.take(at))
-    }
-
-    fn float(&self, at: usize) -> f32 {
-        f32::from_le_bytes(self.take(at))
-    }
-
-    fn double(&self, at: usize) -> f64 {
-        f64::from_le_bytes(self.take(at))
-    }
+/// The horizontal unit, the UTM zone and the datum, as [`BtHeader`] has them.
+fn system_fields(crs: Option<&Crs>) -> (i16, i16, i16) {
+    let Some(crs) = crs else { return (1, 0, WGS84_DATUM) };
+    let (zone, datum) = match crs.epsg().unwrap_or_default() {
+        code @ 32601..=32660 => (code as i16 - 32600, WGS84_DATUM),
+        code @ 32701..=32760 => (32700 - code as i16, WGS84_DATUM),
+        code @ 26901..=26923 => (code as i16 - 26900, 6269),
+        code @ 26701..=26722 => (code as i16 - 26700, 6267),
+        code @ 25828..=25838 => (code as i16 - 25800, 6258),
+        4269 => (0, 6269),
+        4267 => (0, 6267),
+        4258 => (0, 6258),
+        _ => (0, WGS84_DATUM),
+    };
+    let unit = match crs.meters_per_unit() {
+        _ if crs.is_geographic() => 0,
+        FOOT_M => 2,
+        feet if (feet - US_SURVEY_FOOT_M).abs() < 1e-9 => 3,
+        _ => 1,
+    };
+    (unit, zone, datum)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dem::raster::Samples;
     use crate::dem::read::{DemHints, read};
 
     fn terrain(version: &[u8; 10], values: &[i16]) -> Vec<u8> {

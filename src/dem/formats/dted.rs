@@ -8,21 +8,31 @@
 //!       0xAA, block count u24, longitude count u16, latitude count u16, heights, checksum u32
 //! ```
 //!
-//! A tape's `VOL1` and `HDR1` labels of 80 bytes may stand before. Heights are big-endian sign and magnitude,
-//! −32767 where there is none; some makers wrote two's complement, which shows in depths below −16000 m. Columns
-//! may be missing: a record says by its longitude count which it is. Checksums are not looked at, as GDAL does by
-//! default: many files in use have wrong ones over right heights.
+//! A tape's `VOL1` and `HDR1` labels of 80 bytes may precede. Heights are big-endian sign and magnitude, −32767 for no
+//! data; some makers wrote two's complement, which shows in depths below −16000 m. Columns may be missing: the
+//! longitude count of a record names its column. Checksums are ignored, as in GDAL by default: many files in use have
+//! wrong ones over right heights.
 
 use glam::DVec2;
 
-use crate::dem::error::{DemErrorKind, MOST_SAMPLES, check_size_within};
-use crate::dem::raster::{Raster, Samples, north_up};
+use crate::dem::bytes::ByteFields;
+use crate::dem::error::DemErrorKind;
+use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::limits::SizeClaim;
+use crate::dem::raster::{Raster, Samples, north_up_nodes};
 use crate::dem::read::DemFile;
 use crate::geom::crs::Crs;
 
-const FORMAT: &str = "DTED";
+/// The declaration of this format.
+pub static FORMAT: DemFormat = DemFormat {
+    name: "DTED",
+    extensions: &["dt0", "dt1", "dt2"],
+    shared_extensions: &[],
+    recognition: Recognition::Content { matches: |bytes| label_at(bytes).is_some(), start: "UHL1" },
+    reader: read,
+    writer: None,
+};
 
-/// What stands for no data.
 const VOID: i16 = -32767;
 
 /// Bytes of each label before the records.
@@ -31,78 +41,66 @@ const LABELS: [usize; 3] = [80, 648, 2700];
 /// Bytes of a record besides its heights: eight before and four behind.
 const AROUND: usize = 12;
 
-/// What every record starts with.
+/// The first byte of every record.
 const SENTINEL: u8 = 0xaa;
 
-/// No magnitude of a depth in sign and magnitude is greater; beyond it, it is two's complement.
+/// No depth in sign and magnitude is greater; beyond it, the height is in two's complement.
 const DEEPEST: i16 = -16_000;
-
-/// Whether the content starts as DTED or the labels of its tape do.
-pub(crate) fn recognizes(bytes: &[u8]) -> bool {
-    label_at(bytes).is_some()
-}
 
 /// Where the user header label starts: behind the tape's labels, of which there are at most two.
 fn label_at(bytes: &[u8]) -> Option<usize> {
     let at = |index: usize| bytes.get(80 * index..);
-    let tape =
+    let is_tape =
         |index: usize| at(index).is_some_and(|rest| rest.starts_with(b"VOL") || rest.starts_with(b"HDR"));
-    let before = (0..2).take_while(|&index| tape(index)).count();
+    let before = (0..2).take_while(|&index| is_tape(index)).count();
     at(before)?.starts_with(b"UHL1").then_some(80 * before)
 }
 
-/// Reads a cell.
-pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
-    let labels = source.bytes.get(label_at(source.bytes).unwrap_or(0)..).unwrap_or_default();
-    let data = labels
-        .get(LABELS.iter().sum()..)
-        .ok_or_else(|| DemErrorKind::broken(FORMAT, "it ends before its first column"))?;
+fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
+    let labels = file.bytes.get(label_at(file.bytes).unwrap_or(0)..).unwrap_or_default();
+    let data = labels.get(LABELS.iter().sum()..);
+    let data = data.ok_or_else(|| FORMAT.broken("it ends before its first column"))?;
     let header = DtedHeader::read(labels)?;
     let identification = &labels[LABELS[0]..];
-    let samples = columns(data, &header)?;
+    let samples = samples(data, &header)?;
     let cell = header.cell_deg;
     let north = header.south_west.y + cell.y * f64::from(header.rows - 1);
-    let first = DVec2::new(header.south_west.x, north);
-    let crs = match &source.hints.crs {
-        Some(crs) => crs.clone(),
-        None => system(&text(identification, 144, 5))?,
-    };
+    // The standard knows WGS 72 and WGS 84; a blank is WGS 84, as GDAL takes it.
+    let code = if text(identification, 144, 5) == "WGS72" { 4322 } else { 4326 };
     Ok(Raster {
         driver: "DTED",
         data_type: "Int16",
-        width: header.columns,
-        height: header.rows,
-        samples,
-        meters_per_z: 1.0,
-        map_from_grid: north_up(first + DVec2::new(-0.5, 0.5) * cell, cell),
-        georeferenced: true,
-        crs: Some(crs),
+        crs: file.crs_or(|| Ok(Some(Crs::from_epsg(code)?)))?,
         nodata: Some(f64::from(VOID)),
         vertical_datum: vertical_datum(&text(identification, 141, 3)),
+        ..Raster::new(header.columns, samples)
+            .placed(north_up_nodes(DVec2::new(header.south_west.x, north), cell))
     })
 }
 
 /// The heights by rows from the north.
-fn columns(data: &[u8], header: &DtedHeader) -> Result<Samples, DemErrorKind> {
+fn samples(data: &[u8], header: &DtedHeader) -> Result<Samples, DemErrorKind> {
     let (columns, rows) = (header.columns as usize, header.rows as usize);
     let record = AROUND + 2 * rows;
     let records = data.len() / record;
     // Missing columns take no bytes, but a cell without a single record is cut off.
-    let size = (u64::from(header.columns), u64::from(header.rows));
-    check_size_within(MOST_SAMPLES, size, 0, (data.len(), 1))?;
+    SizeClaim::new(header.columns.into(), header.rows.into(), 0).check(data.len())?;
     if records == 0 || records > columns || !data.len().is_multiple_of(record) && records < columns {
-        let reason = format!("{} bytes are not those of up to {columns} columns of {record}", data.len());
-        return Err(DemErrorKind::broken(FORMAT, reason));
+        let bytes = data.len();
+        return Err(
+            FORMAT.broken(format!("{bytes} bytes are not those of up to {columns} columns of {record}"))
+        );
     }
     let mut values = vec![f32::NAN; columns * rows];
-    let counted = counts_are_columns(data, record, records, columns);
+    let are_counted = counts_are_columns(data.chunks_exact(record), columns);
     for (index, record) in data.chunks_exact(record).take(columns).enumerate() {
         if record[0] != SENTINEL {
-            let reason =
-                format!("column {} starts with {:#04x}, not with {SENTINEL:#04x}", index + 1, record[0]);
-            return Err(DemErrorKind::broken(FORMAT, reason));
+            let (column, found) = (index + 1, record[0]);
+            return Err(
+                FORMAT.broken(format!("column {column} starts with {found:#04x}, not with {SENTINEL:#04x}"))
+            );
         }
-        let column = if counted { longitude_count(record) } else { index };
+        let column = if are_counted { longitude_count(record) } else { index };
         for (up, pair) in record[8..8 + 2 * rows].chunks_exact(2).enumerate() {
             values[(rows - 1 - up) * columns + column] = height([pair[0], pair[1]]);
         }
@@ -111,16 +109,14 @@ fn columns(data: &[u8], header: &DtedHeader) -> Result<Samples, DemErrorKind> {
 }
 
 /// Whether the records' longitude counts name columns, each at most once. A few writers leave them 0.
-fn counts_are_columns(data: &[u8], record: usize, records: usize, columns: usize) -> bool {
+fn counts_are_columns<'a>(mut records: impl Iterator<Item = &'a [u8]>, columns: usize) -> bool {
     let mut seen = vec![false; columns];
-    data.chunks_exact(record)
-        .take(records)
-        .map(longitude_count)
-        .all(|column| seen.get_mut(column).is_some_and(|seen| !std::mem::replace(seen, true)))
+    let mut is_new = |column: usize| seen.get_mut(column).is_some_and(|seen| !std::mem::replace(seen, true));
+    records.all(|record| is_new(longitude_count(record)))
 }
 
 fn longitude_count(record: &[u8]) -> usize {
-    usize::from(u16::from_be_bytes([record[4], record[5]]))
+    ByteFields::big_endian(record).u16(4).unwrap_or_default().into()
 }
 
 fn height(pair: [u8; 2]) -> f32 {
@@ -145,39 +141,34 @@ impl DtedHeader {
     fn read(label: &[u8]) -> Result<Self, DemErrorKind> {
         let whole = |at: usize, what: &str| -> Result<u32, DemErrorKind> {
             let digits = text(label, at, 4);
-            digits.trim().parse().map_err(|_| {
-                DemErrorKind::broken(
-                    FORMAT,
-                    format!("{what} at byte {at} of its header is '{digits}', not a number"),
-                )
-            })
+            let wrong =
+                |_| FORMAT.broken(format!("{what} at byte {at} of its header is '{digits}', not a number"));
+            digits.trim().parse().map_err(wrong)
         };
         let columns = whole(47, "the number of columns")?;
         let rows = whole(51, "the number of rows")?;
         if columns == 0 || rows == 0 {
-            return Err(DemErrorKind::broken(FORMAT, format!("it has {columns} columns and {rows} rows")));
+            return Err(FORMAT.broken(format!("it has {columns} columns and {rows} rows")));
         }
         // Tenths of seconds.
-        let step = |at: usize, what: &str| Ok(f64::from(whole(at, what)?) / 36_000.0);
-        let cell_deg = DVec2::new(step(20, "the longitude interval")?, step(24, "the latitude interval")?);
+        let steps = [whole(20, "the longitude interval")?, whole(24, "the latitude interval")?];
+        let cell_deg = DVec2::from(steps.map(f64::from)) / 36_000.0;
         if cell_deg.min_element() <= 0.0 {
-            return Err(DemErrorKind::Georeference {
-                reason: "its header states no interval between heights".into(),
-                remedy: "fetch the cell again",
-            });
+            return Err(unplaced("its header states no interval between heights".into()));
         }
         let south_west = DVec2::new(angle(label, 4, b"EW", 180.0)?, angle(label, 12, b"NS", 90.0)?);
         Ok(Self { south_west, cell_deg, columns, rows })
     }
 }
 
+fn unplaced(reason: String) -> DemErrorKind {
+    DemErrorKind::Georeference { reason, remedy: "fetch the cell again" }
+}
+
 /// `DDDMMSSH`, the hemisphere one of `letters`, in degrees.
 fn angle(label: &[u8], at: usize, letters: &[u8; 2], most: f64) -> Result<f64, DemErrorKind> {
     let field = text(label, at, 8);
-    let wrong = || DemErrorKind::Georeference {
-        reason: format!("its origin at byte {at} is '{field}', not as 0800000W"),
-        remedy: "fetch the cell again",
-    };
+    let wrong = || unplaced(format!("its origin at byte {at} is '{field}', not as 0800000W"));
     let letter = field.bytes().last().filter(|letter| letters.contains(letter)).ok_or_else(wrong)?;
     // Some write a latitude with two digits for degrees and a blank behind.
     let digits: String = field.chars().filter(char::is_ascii_digit).collect();
@@ -189,14 +180,6 @@ fn angle(label: &[u8], at: usize, letters: &[u8; 2], most: f64) -> Result<f64, D
         f64::from(number / 10_000) + f64::from(number / 100 % 100) / 60.0 + f64::from(number % 100) / 3600.0;
     let signed = if letter == letters[0] { degrees } else { -degrees };
     if degrees <= most { Ok(signed) } else { Err(wrong()) }
-}
-
-fn system(name: &str) -> Result<Crs, DemErrorKind> {
-    match name {
-        "WGS72" => Crs::from_epsg(4322).map_err(DemErrorKind::Crs),
-        // The standard knows but the two; what is left blank is WGS 84, as GDAL takes it.
-        _ => Ok(Crs::wgs84()),
-    }
 }
 
 fn vertical_datum(name: &str) -> Option<String> {

@@ -1,184 +1,115 @@
-//! ESRI's plain grids: `.bil`, `.bip`, `.bsq` and `.flt` with an `.hdr` of `KEY value` lines beside them, GTOPO30
+//! ESRI binary grids: `.bil`, `.bip`, `.bsq` and `.flt` with an `.hdr` of `KEY value` lines beside them, GTOPO30
 //! tiles (`.dem`) among them.
 //!
 //! Specification: Esri, *Extendable Image Formats* ("BIL, BIP, and BSQ raster files", ArcGIS Desktop help), and
 //! *Float to Raster* for `.flt`. Where it leaves a default to the machine, GDAL's is taken: most significant byte
 //! first; 16 bits are signed where the no-data value is negative.
 
-use glam::DVec2;
+use glam::{DAffine2, DVec2};
 
+use crate::dem::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
-use crate::dem::formats::plain::{ByteOrder, Number, SampleLayout};
-use crate::dem::georef::{self, RasterPlace};
-use crate::dem::raster::{Raster, north_up};
+use crate::dem::formats::header::HeaderFields;
+use crate::dem::formats::sample_layout::{NoData, SampleLayout};
+use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::georef;
+use crate::dem::raster::{Raster, north_up, north_up_nodes};
 use crate::dem::read::DemFile;
+use crate::dem::sample_type::{NumberKind, SampleType};
 
-const FORMAT: &str = "ESRI binary grid";
+/// The declaration of this format.
+pub static FORMAT: DemFormat = DemFormat {
+    name: "ESRI binary grid",
+    extensions: &["bil", "flt"],
+    shared_extensions: &["bip", "bsq"],
+    recognition: Recognition::HeaderFile { matches: is_header },
+    reader: read,
+    writer: None,
+};
 
-/// The extensions that say so.
-pub(crate) const EXTENSIONS: [&str; 4] = ["bil", "bip", "bsq", "flt"];
-
-/// Headers are a few hundred bytes; more lines than this are not looked at.
+/// The most lines of a header that are read; headers are a few hundred bytes.
 const MOST_LINES: usize = 1000;
 
-/// Whether `header` is the text of such a header: it states rows and columns.
-pub(crate) fn is_header(header: &[u8]) -> bool {
-    let header = EhdrHeader::new(header);
+fn is_header(header: &[u8]) -> bool {
+    let header = HeaderFields::from_lines(FORMAT.name, header, MOST_LINES);
     header.get("nrows").is_some() && header.get("ncols").is_some()
 }
 
-/// Reads the first band as `header`, the file beside it, says.
-pub(crate) fn read(source: &DemFile, header: &[u8]) -> Result<Raster, DemErrorKind> {
-    let header = EhdrHeader::new(header);
-    let number = header.number_kind(&source.extension())?;
-    let nodata = header.nodata()?;
-    let layout = header.layout(number)?;
-    let (width, height, samples) = layout.read(FORMAT, source.bytes, nodata)?;
-    let place = match header.place(height)? {
-        Some(place) => place,
-        None => georef::beside(source, height, &["blw", "bpw", "bqw", "flw", "wld"])?,
+/// Reads the first band.
+fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
+    let header = file.header().ok_or(DemErrorKind::NoHeader { format: FORMAT.name })?;
+    let header = HeaderFields::from_lines(FORMAT.name, &header, MOST_LINES);
+    let nodata = header.first_number(["nodata", "nodata_value"])?;
+    let sample = sample_type(&header, nodata, &file.extension())?;
+    let raster = layout(&header, sample)?.read(FORMAT.name, file.bytes, NoData::Value(nodata))?;
+    let place = place(&header, raster.height)?;
+    let raster = georef::placed(file, raster, place, &["blw", "bpw", "bqw", "flw", "wld"])?;
+    Ok(Raster { driver: "EHdr", crs: file.crs()?, nodata, ..raster })
+}
+
+fn sample_type(
+    header: &HeaderFields,
+    nodata: Option<f64>,
+    extension: &str,
+) -> Result<SampleType, DemErrorKind> {
+    let is_flt = extension == "flt";
+    let bits = header.whole("nbits")?.unwrap_or(if is_flt { 32 } else { 8 });
+    let stated = header.get("pixeltype").unwrap_or_default().to_ascii_uppercase();
+    let kind = match stated.chars().next() {
+        Some('S') => Some(NumberKind::Signed),
+        Some('U') => Some(NumberKind::Unsigned),
+        Some('F') => Some(NumberKind::Float),
+        Some(_) => None,
+        None if is_flt => Some(NumberKind::Float),
+        None if bits == 16 && nodata.is_some_and(|value| value < 0.0) => Some(NumberKind::Signed),
+        None => Some(NumberKind::Unsigned),
     };
-    Ok(Raster {
-        driver: "EHdr",
-        data_type: number.gdal_name(),
-        width,
-        height,
-        samples,
-        meters_per_z: 1.0,
-        map_from_grid: place.map_from_grid,
-        georeferenced: place.stated,
-        crs: source.crs_beside()?,
-        nodata,
-        vertical_datum: None,
+    kind.and_then(|kind| SampleType::new(kind, bits)).ok_or_else(|| {
+        let what =
+            format!("{bits}-bit samples of type {}", if stated.is_empty() { "UNSIGNEDINT" } else { &stated });
+        FORMAT.unsupported(what, "convert it, for example with: gdal_translate FILE out.tif")
     })
 }
 
-/// The pairs of the header, keys in lower case.
-struct EhdrHeader(Vec<(String, String)>);
-
-impl EhdrHeader {
-    fn new(bytes: &[u8]) -> Self {
-        let text = String::from_utf8_lossy(bytes);
-        let pair = |line: &str| {
-            let mut words = line.split_ascii_whitespace();
-            Some((words.next()?.to_ascii_lowercase(), words.next()?.to_owned()))
-        };
-        Self(text.lines().take(MOST_LINES).filter_map(pair).collect())
-    }
-
-    fn get(&self, key: &str) -> Option<&str> {
-        self.0.iter().find(|(known, _)| known == key).map(|(_, value)| value.as_str())
-    }
-
-    fn float(&self, key: &str) -> Result<Option<f64>, DemErrorKind> {
-        let Some(text) = self.get(key) else { return Ok(None) };
-        match text.parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(Some(value)),
-            _ => Err(DemErrorKind::broken(FORMAT, format!("{key} in its header is '{text}', not a number"))),
+fn layout(header: &HeaderFields, sample: SampleType) -> Result<SampleLayout, DemErrorKind> {
+    let size = (header.required("ncols")?, header.required("nrows")?);
+    let bands = header.whole("nbands")?.unwrap_or(1);
+    let order = match header.get("byteorder").and_then(|order| order.chars().next()) {
+        Some('I' | 'i' | 'L' | 'l') => ByteOrder::Little,
+        _ => ByteOrder::Big,
+    };
+    let start = header.whole("skipbytes")?.unwrap_or(0);
+    let dense = SampleLayout::dense(size, sample, order, start);
+    let total = header.whole("totalrowbytes")?;
+    let interleaved = match header.get("layout").unwrap_or("BIL").to_ascii_uppercase().as_str() {
+        "BIL" => {
+            let row_step = header.whole("bandrowbytes")?.unwrap_or(dense.row_step).saturating_mul(bands);
+            SampleLayout { row_step, ..dense }
         }
-    }
-
-    fn whole(&self, key: &str) -> Result<Option<u64>, DemErrorKind> {
-        let Some(text) = self.get(key) else { return Ok(None) };
-        let wrong =
-            || DemErrorKind::broken(FORMAT, format!("{key} in its header is '{text}', not a whole number"));
-        text.parse().map(Some).map_err(|_| wrong())
-    }
-
-    fn nodata(&self) -> Result<Option<f64>, DemErrorKind> {
-        Ok(self.float("nodata")?.or(self.float("nodata_value")?))
-    }
-
-    fn number_kind(&self, extension: &str) -> Result<Number, DemErrorKind> {
-        let is_flt = extension == "flt";
-        let bits = self.whole("nbits")?.unwrap_or(if is_flt { 32 } else { 8 });
-        let kind = self.get("pixeltype").map(str::to_ascii_uppercase);
-        let negative = self.nodata()?.is_some_and(|value| value < 0.0);
-        let letter = match kind.as_deref().and_then(|kind| kind.chars().next()) {
-            Some(letter) => letter,
-            None if is_flt => 'F',
-            None if bits == 16 && negative => 'S',
-            None => 'U',
-        };
-        match (letter, bits) {
-            ('S', 8) => Ok(Number::I8),
-            ('U', 8) => Ok(Number::U8),
-            ('S', 16) => Ok(Number::I16),
-            ('U', 16) => Ok(Number::U16),
-            ('S', 32) => Ok(Number::I32),
-            ('U', 32) => Ok(Number::U32),
-            ('F', 32) => Ok(Number::F32),
-            ('F', 64) => Ok(Number::F64),
-            (_, bits) => Err(DemErrorKind::Unsupported {
-                format: FORMAT,
-                what: format!("{bits}-bit samples of type {}", kind.as_deref().unwrap_or("UNSIGNEDINT")),
-                remedy: "convert it, for example with: gdal_translate FILE out.tif",
-            }),
+        "BIP" => dense.by_pixel(bands),
+        "BSQ" => dense,
+        other => {
+            return Err(header.broken(format!("LAYOUT in its header is '{other}'; BIL, BIP and BSQ exist")));
         }
-    }
+    };
+    Ok(SampleLayout { row_step: total.unwrap_or(interleaved.row_step), ..interleaved })
+}
 
-    fn order(&self) -> ByteOrder {
-        match self.get("byteorder").and_then(|order| order.chars().next()) {
-            Some('I' | 'i' | 'L' | 'l') => ByteOrder::Little,
-            _ => ByteOrder::Big,
-        }
+/// The place by the center of the first sample, or by the south-west corner or sample; `None` where neither is stated.
+fn place(header: &HeaderFields, height: u32) -> Result<Option<DAffine2>, DemErrorKind> {
+    let x = header.first_number(["xdim", "cellsize"])?.unwrap_or(1.0);
+    let cell = DVec2::new(x, header.first_number(["ydim", "cellsize"])?.unwrap_or(1.0));
+    if cell.min_element() <= 0.0 {
+        return Err(DemErrorKind::Georeference {
+            reason: format!("its cells are {} by {}", cell.x, cell.y),
+            remedy: "correct XDIM and YDIM, or cellsize, in its .hdr",
+        });
     }
-
-    fn layout(&self, number: Number) -> Result<SampleLayout, DemErrorKind> {
-        let size = |key: &'static str| {
-            let missing = || DemErrorKind::broken(FORMAT, format!("its header does not state {key}"));
-            self.whole(key)?.ok_or_else(missing)
-        };
-        let (width, height) = (size("ncols")?, size("nrows")?);
-        let bands = self.whole("nbands")?.unwrap_or(1);
-        let row = width.saturating_mul(number.bytes());
-        let total = self.whole("totalrowbytes")?;
-        let order = self.get("layout").unwrap_or("BIL").to_ascii_uppercase();
-        let (sample_step, row_step) = match order.as_str() {
-            "BIL" => {
-                let band = self.whole("bandrowbytes")?.unwrap_or(row);
-                (number.bytes(), total.unwrap_or(band.saturating_mul(bands)))
-            }
-            "BIP" => (number.bytes().saturating_mul(bands), total.unwrap_or(row.saturating_mul(bands))),
-            "BSQ" => (number.bytes(), total.unwrap_or(row)),
-            other => {
-                let reason = format!("LAYOUT in its header is '{other}'; BIL, BIP and BSQ exist");
-                return Err(DemErrorKind::broken(FORMAT, reason));
-            }
-        };
-        let start = self.whole("skipbytes")?.unwrap_or(0);
-        Ok(SampleLayout { width, height, number, order: self.order(), start, sample_step, row_step })
+    if let Some(first) = header.number("ulxmap")?.zip(header.number("ulymap")?) {
+        return Ok(Some(north_up_nodes(DVec2::from(first), cell)));
     }
-
-    /// The place by the center of the first sample, or by the south-west corner or sample; `None` where neither
-    /// is stated.
-    fn place(&self, height: u32) -> Result<Option<RasterPlace>, DemErrorKind> {
-        let square = self.float("cellsize")?;
-        let cell = DVec2::new(
-            self.float("xdim")?.or(square).unwrap_or(1.0),
-            self.float("ydim")?.or(square).unwrap_or(1.0),
-        );
-        if cell.min_element() <= 0.0 {
-            return Err(DemErrorKind::Georeference {
-                reason: format!("its cells are {} by {}", cell.x, cell.y),
-                remedy: "correct XDIM and YDIM, or cellsize, in its .hdr",
-            });
-        }
-        let both = |x: &str, y: &str| -> Result<Option<DVec2>, DemErrorKind> {
-            Ok(self.float(x)?.zip(self.float(y)?).map(DVec2::from))
-        };
-        let reach = DVec2::new(0.0, f64::from(height) * cell.y);
-        let corner = if let Some(first) = both("ulxmap", "ulymap")? {
-            first + DVec2::new(-0.5, 0.5) * cell
-        } else if let Some(corner) = both("xllcorner", "yllcorner")? {
-            corner + reach
-        } else if let Some(center) = both("xllcenter", "yllcenter")? {
-            center - cell * 0.5 + reach
-        } else {
-            return Ok(None);
-        };
-        Ok(Some(RasterPlace { map_from_grid: north_up(corner, cell), stated: true }))
-    }
+    let reach = DVec2::new(0.0, f64::from(height) * cell.y);
+    Ok(header.south_west(cell)?.map(|corner| north_up(corner + reach, cell)))
 }
 
 #[cfg(test)]

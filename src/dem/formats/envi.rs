@@ -4,167 +4,104 @@
 //! place is `map info = {projection, column, row, x, y, dx, dy, …}`, where pixel (1, 1) is the outer corner of the
 //! first sample.
 
-use glam::DVec2;
+use glam::{DAffine2, DVec2};
 
+use crate::dem::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
-use crate::dem::formats::plain::{ByteOrder, Number, SampleLayout};
-use crate::dem::georef::{self, RasterPlace};
+use crate::dem::formats::header::HeaderFields;
+use crate::dem::formats::sample_layout::{NoData, SampleLayout};
+use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::georef::{self, utm_code};
 use crate::dem::raster::{Raster, north_up};
 use crate::dem::read::DemFile;
+use crate::dem::sample_type::SampleType;
 use crate::geom::crs::Crs;
 
-const FORMAT: &str = "ENVI raster";
+/// The declaration of this format.
+pub static FORMAT: DemFormat = DemFormat {
+    name: "ENVI raster",
+    extensions: &[],
+    shared_extensions: &[],
+    recognition: Recognition::HeaderFile { matches: |header| header.starts_with(b"ENVI") },
+    reader: read,
+    writer: None,
+};
 
-/// Whether `header` is the text of such a header.
-pub(crate) fn is_header(header: &[u8]) -> bool {
-    header.starts_with(b"ENVI")
+/// Reads the first band.
+fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
+    let text = file.header().ok_or(DemErrorKind::NoHeader { format: FORMAT.name })?;
+    let header = header(&String::from_utf8_lossy(&text));
+    let nodata = header.number("data ignore value")?;
+    let raster = layout(&header)?.read(FORMAT.name, file.bytes, NoData::Value(nodata))?;
+    let first_number = |key: &str| list(&header, key).first().map(|text| header.parse(key, text)).transpose();
+    let gain = first_number("data gain values")?.unwrap_or(1.0);
+    let offset = first_number("data offset values")?.unwrap_or(0.0);
+    let map = list(&header, "map info");
+    let raster = georef::placed(file, raster, place(&map)?, &["wld"])?;
+    let crs = file.crs_or(|| match header.get("coordinate system string") {
+        Some(text) => Ok(Some(Crs::parse(text)?)),
+        None => system(&map),
+    })?;
+    Ok(Raster { driver: "ENVI", samples: raster.samples.scaled(gain, offset), crs, nodata, ..raster })
 }
 
-/// Reads the first band as `header`, the file beside it, says.
-pub(crate) fn read(source: &DemFile, header: &[u8]) -> Result<Raster, DemErrorKind> {
-    let header = EnviHeader::new(&String::from_utf8_lossy(header));
-    let number = header.number_kind()?;
-    let nodata = header.float("data ignore value")?;
-    let (width, height, samples) = header.layout(number)?.read(FORMAT, source.bytes, nodata)?;
-    let gain = header.first_of("data gain values")?.unwrap_or(1.0);
-    let offset = header.first_of("data offset values")?.unwrap_or(0.0);
-    let map = header.list("map info");
-    let place = match map.is_empty() {
-        false => place(&map)?,
-        true => georef::beside(source, height, &["wld"])?,
+/// The fields, values without their braces.
+fn header(text: &str) -> HeaderFields {
+    let mut header = HeaderFields::new(FORMAT.name);
+    let mut lines = text.lines().skip(1);
+    while let Some(line) = lines.next() {
+        let Some((key, value)) = line.split_once('=') else { continue };
+        let mut value = value.trim().to_owned();
+        while value.starts_with('{') && !value.ends_with('}') {
+            let Some(line) = lines.next() else { break };
+            value.push(' ');
+            value.push_str(line.trim());
+        }
+        let list = value.strip_prefix('{').map(|rest| rest.strip_suffix('}').unwrap_or(rest));
+        header.push(key, list.unwrap_or(&value));
+    }
+    header
+}
+
+/// The parts of a list; none where it is not stated.
+fn list<'a>(header: &'a HeaderFields, key: &str) -> Vec<&'a str> {
+    header.get(key).map(|text| text.split(',').map(str::trim).collect()).unwrap_or_default()
+}
+
+fn layout(header: &HeaderFields) -> Result<SampleLayout, DemErrorKind> {
+    let sample = match header.required("data type")? {
+        1 => SampleType::U8,
+        2 => SampleType::I16,
+        3 => SampleType::I32,
+        4 => SampleType::F32,
+        5 => SampleType::F64,
+        12 => SampleType::U16,
+        13 => SampleType::U32,
+        14 => SampleType::I64,
+        15 => SampleType::U64,
+        other => {
+            let remedy = "convert it, for example with: gdal_translate -ot Float64 FILE out.tif";
+            return Err(FORMAT.unsupported(format!("data type {other} (complex numbers)"), remedy));
+        }
     };
-    let crs = match (&source.hints.crs, header.get("coordinate system string")) {
-        (Some(crs), _) => Some(crs.clone()),
-        (None, Some(text)) => Some(Crs::parse(text).map_err(DemErrorKind::Crs)?),
-        (None, None) => system(&map)?.map_or_else(|| source.crs_beside(), |crs| Ok(Some(crs)))?,
+    let size = (header.required("samples")?, header.required("lines")?);
+    let bands = header.whole("bands")?.unwrap_or(1);
+    let order = match header.whole("byte order")?.unwrap_or(0) {
+        0 => ByteOrder::Little,
+        1 => ByteOrder::Big,
+        other => return Err(header.broken(format!("byte order is {other}; 0 and 1 exist"))),
     };
-    Ok(Raster {
-        driver: "ENVI",
-        data_type: number.gdal_name(),
-        width,
-        height,
-        samples: samples.scaled(gain, offset),
-        meters_per_z: 1.0,
-        map_from_grid: place.map_from_grid,
-        georeferenced: place.stated,
-        crs,
-        nodata,
-        vertical_datum: None,
-    })
-}
-
-/// The pairs of the header, keys in lower case, values without their braces.
-struct EnviHeader(Vec<(String, String)>);
-
-impl EnviHeader {
-    fn new(text: &str) -> Self {
-        let mut pairs: Vec<(String, String)> = Vec::new();
-        let mut open = false;
-        for line in text.lines().skip(1) {
-            if let (true, Some((_, value))) = (open, pairs.last_mut()) {
-                value.push(' ');
-                value.push_str(line.trim());
-            } else if let Some((key, value)) = line.split_once('=') {
-                pairs.push((key.trim().to_ascii_lowercase(), value.trim().to_owned()));
-            } else {
-                continue;
-            }
-            open = pairs.last().is_some_and(|(_, value)| value.starts_with('{') && !value.ends_with('}'));
-        }
-        for (_, value) in &mut pairs {
-            let inner = value.strip_prefix('{').map(|rest| rest.strip_suffix('}').unwrap_or(rest).trim());
-            if let Some(inner) = inner.map(str::to_owned) {
-                *value = inner;
-            }
-        }
-        Self(pairs)
-    }
-
-    fn get(&self, key: &str) -> Option<&str> {
-        self.0.iter().find(|(known, _)| known == key).map(|(_, value)| value.as_str())
-    }
-
-    /// The parts of a list; none where it is not stated.
-    fn list(&self, key: &str) -> Vec<&str> {
-        self.get(key).map(|text| text.split(',').map(str::trim).collect()).unwrap_or_default()
-    }
-
-    fn whole(&self, key: &str) -> Result<Option<u64>, DemErrorKind> {
-        let Some(text) = self.get(key) else { return Ok(None) };
-        text.parse().map(Some).map_err(|_| not_a_number(key, text))
-    }
-
-    fn float(&self, key: &str) -> Result<Option<f64>, DemErrorKind> {
-        self.get(key).map(|text| number(key, text)).transpose()
-    }
-
-    fn first_of(&self, key: &str) -> Result<Option<f64>, DemErrorKind> {
-        self.list(key).first().map(|text| number(key, text)).transpose()
-    }
-
-    fn number_kind(&self) -> Result<Number, DemErrorKind> {
-        match self.whole("data type")? {
-            Some(1) => Ok(Number::U8),
-            Some(2) => Ok(Number::I16),
-            Some(3) => Ok(Number::I32),
-            Some(4) => Ok(Number::F32),
-            Some(5) => Ok(Number::F64),
-            Some(12) => Ok(Number::U16),
-            Some(13) => Ok(Number::U32),
-            Some(other) => Err(DemErrorKind::Unsupported {
-                format: FORMAT,
-                what: format!("data type {other} (complex or 64-bit whole numbers)"),
-                remedy: "convert it, for example with: gdal_translate -ot Float64 FILE out.tif",
-            }),
-            None => Err(DemErrorKind::broken(FORMAT, "its header does not state the data type")),
-        }
-    }
-
-    fn layout(&self, number: Number) -> Result<SampleLayout, DemErrorKind> {
-        let size = |key: &'static str| {
-            let missing = || DemErrorKind::broken(FORMAT, format!("its header does not state {key}"));
-            self.whole(key)?.ok_or_else(missing)
-        };
-        let (width, height) = (size("samples")?, size("lines")?);
-        let bands = self.whole("bands")?.unwrap_or(1);
-        let order = match self.whole("byte order")?.unwrap_or(0) {
-            0 => ByteOrder::Little,
-            1 => ByteOrder::Big,
-            other => {
-                return Err(DemErrorKind::broken(FORMAT, format!("byte order is {other}; 0 and 1 exist")));
-            }
-        };
-        let start = self.whole("header offset")?.unwrap_or(0);
-        let dense = SampleLayout::dense((width, height), number, order, start);
-        match self.get("interleave").unwrap_or("bsq").to_ascii_lowercase().as_str() {
-            "bsq" => Ok(dense),
-            "bil" => Ok(SampleLayout { row_step: dense.row_step.saturating_mul(bands), ..dense }),
-            "bip" => Ok(SampleLayout {
-                sample_step: dense.sample_step.saturating_mul(bands),
-                row_step: dense.row_step.saturating_mul(bands),
-                ..dense
-            }),
-            other => {
-                Err(DemErrorKind::broken(FORMAT, format!("interleave is '{other}'; bsq, bil and bip exist")))
-            }
-        }
+    let dense = SampleLayout::dense(size, sample, order, header.whole("header offset")?.unwrap_or(0));
+    match header.get("interleave").unwrap_or("bsq").to_ascii_lowercase().as_str() {
+        "bsq" => Ok(dense),
+        "bil" => Ok(SampleLayout { row_step: dense.row_step.saturating_mul(bands), ..dense }),
+        "bip" => Ok(dense.by_pixel(bands)),
+        other => Err(header.broken(format!("interleave is '{other}'; bsq, bil and bip exist"))),
     }
 }
 
-fn number(key: &str, text: &str) -> Result<f64, DemErrorKind> {
-    match text.parse::<f64>() {
-        Ok(value) => Ok(value),
-        Err(_) => Err(not_a_number(key, text)),
-    }
-}
-
-fn not_a_number(key: &str, text: &str) -> DemErrorKind {
-    let shown: String = text.chars().take(20).collect();
-    DemErrorKind::broken(FORMAT, format!("{key} in its header is '{shown}', not a number"))
-}
-
-/// The place that the parts of `map info` state.
-fn place(map: &[&str]) -> Result<RasterPlace, DemErrorKind> {
+/// The place that the parts of `map info` state; `None` where there are none.
+fn place(map: &[&str]) -> Result<Option<DAffine2>, DemErrorKind> {
     let wrong =
         |reason: String| DemErrorKind::Georeference { reason, remedy: "correct map info in its .hdr" };
     let part = |index: usize| {
@@ -172,8 +109,11 @@ fn place(map: &[&str]) -> Result<RasterPlace, DemErrorKind> {
         let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
         value.ok_or_else(|| wrong(format!("part {} of map info is '{text}', not a number", index + 1)))
     };
-    let turned = map.iter().find_map(|part| part.strip_prefix("rotation="));
-    if let Some(angle) = turned.filter(|angle| angle.trim().parse::<f64>().ok() != Some(0.0)) {
+    if map.is_empty() {
+        return Ok(None);
+    }
+    let rotation = map.iter().find_map(|part| part.strip_prefix("rotation="));
+    if let Some(angle) = rotation.filter(|angle| angle.trim().parse::<f64>().ok() != Some(0.0)) {
         return Err(DemErrorKind::Georeference {
             reason: format!("it is turned by {angle} degrees"),
             remedy: "straighten it first, for example with: gdalwarp FILE out.tif",
@@ -184,8 +124,7 @@ fn place(map: &[&str]) -> Result<RasterPlace, DemErrorKind> {
     if cell.min_element() <= 0.0 {
         return Err(wrong(format!("its cells are {} by {}", cell.x, cell.y)));
     }
-    let corner = at + DVec2::new(-first.x, first.y) * cell;
-    Ok(RasterPlace { map_from_grid: north_up(corner, cell), stated: true })
+    Ok(Some(north_up(at + DVec2::new(-first.x, first.y) * cell, cell)))
 }
 
 /// The system that `map info` names: UTM or geographic on WGS 84, what most are written in.
@@ -194,14 +133,12 @@ fn system(map: &[&str]) -> Result<Option<Crs>, DemErrorKind> {
     if is(0, "Geographic Lat/Lon") && is(7, "WGS-84") {
         return Ok(Some(Crs::wgs84()));
     }
-    let zone = map.get(7).and_then(|zone| zone.parse::<u32>().ok()).filter(|zone| (1..=60).contains(zone));
-    match zone {
-        Some(zone) if is(0, "UTM") && is(9, "WGS-84") => {
-            let base = if is(8, "South") { 32700 } else { 32600 };
-            Crs::from_epsg(base + zone).map(Some).map_err(DemErrorKind::Crs)
-        }
-        _ => Ok(None),
+    if !(is(0, "UTM") && is(9, "WGS-84")) {
+        return Ok(None);
     }
+    let zone = map.get(7).and_then(|zone| zone.parse::<u8>().ok()).map(i64::from);
+    let code = zone.and_then(|zone| utm_code(4326, if is(8, "South") { -zone } else { zone }));
+    Ok(code.map(Crs::from_epsg).transpose()?)
 }
 
 #[cfg(test)]

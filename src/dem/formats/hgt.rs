@@ -1,65 +1,61 @@
 //! SRTM tiles (`.hgt`): big-endian 16-bit meters of a one-degree square, north row first.
 //!
-//! Nothing but the samples is in the file: the south-west corner is its name, the spacing follows from its
-//! size. Values stand on nodes that include both borders, so the raster reaches half a sample beyond the
-//! square.
+//! The file holds samples only: its name is the south-west corner, and the spacing follows from its size. Values lie
+//! on nodes that include both borders, so the raster reaches half a sample beyond the square.
 
 use glam::DVec2;
 
-use crate::dem::error::{DemErrorKind, MOST_SAMPLES};
-use crate::dem::raster::{Raster, Samples, north_up};
+use crate::dem::bytes::ByteOrder;
+use crate::dem::error::DemErrorKind;
+use crate::dem::formats::sample_layout::{NoData, SampleLayout};
+use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::raster::{Raster, north_up_nodes};
 use crate::dem::read::DemFile;
+use crate::dem::sample_type::SampleType;
+use crate::dem::write::{WriteError, WrittenDem};
 use crate::geom::crs::Crs;
 
-const FORMAT: &str = "SRTM tile";
+/// The declaration of this format.
+pub static FORMAT: DemFormat = DemFormat {
+    name: "SRTM tile",
+    extensions: &["hgt"],
+    shared_extensions: &[],
+    recognition: Recognition::Extension,
+    reader: read,
+    writer: Some(write),
+};
 
-/// What SRTM writes where the radar saw nothing.
-pub(crate) const VOID: i16 = -32768;
+const VOID: i16 = -32768;
 
-/// The sizes tiles come in: 3″, 1″, 1″ north of 50° with every other column, and 0.5″.
-pub(crate) const SIZES: [(u32, u32); 4] = [(1201, 1201), (3601, 3601), (1801, 3601), (7201, 7201)];
+/// Columns and rows of tiles: 3″, 1″, 1″ north of 50° with every other column, and 0.5″.
+const SIZES: [(u32, u32); 4] = [(1201, 1201), (3601, 3601), (1801, 3601), (7201, 7201)];
 
-/// Reads a tile.
-pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
-    let corner = corner(source.stem()).ok_or_else(|| DemErrorKind::Georeference {
+/// How far, in samples, the nodes of a raster may lie from those of the tile that is written.
+const OFF_SAMPLES: f64 = 1e-3;
+
+fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
+    let corner = corner(file.stem()).ok_or_else(|| DemErrorKind::Georeference {
         reason: format!(
             "a tile's name states its corner, as N43E007.hgt does, and '{}' does not",
-            source.stem()
+            file.stem()
         ),
         remedy: "give the file its name back",
     })?;
-    let samples = (source.bytes.len() / 2) as u64;
-    let size = SIZES.into_iter().find(|&(width, height)| {
-        u64::from(width) * u64::from(height) == samples && source.bytes.len().is_multiple_of(2)
-    });
-    let (width, height) = size.filter(|_| samples <= MOST_SAMPLES).ok_or_else(|| {
-        DemErrorKind::broken(
-            FORMAT,
-            format!("{} bytes are not those of 1201 or 3601 samples squared", source.bytes.len()),
-        )
+    let bytes = file.bytes.len() as u64;
+    let size = SIZES.map(|(width, height)| (u64::from(width), u64::from(height)));
+    let size = size.into_iter().find(|(width, height)| width * height * 2 == bytes).ok_or_else(|| {
+        FORMAT.broken(format!("{bytes} bytes are not those of 1201 or 3601 samples squared"))
     })?;
-    let cell = DVec2::new(1.0 / f64::from(width - 1), 1.0 / f64::from(height - 1));
-    let north_west = DVec2::new(corner.x, corner.y + 1.0);
+    let layout = SampleLayout::dense(size, SampleType::I16, ByteOrder::Big, 0);
+    let raster = layout.read(FORMAT.name, file.bytes, NoData::Value(Some(VOID.into())))?;
+    let cell = (raster.grid_size() - 1.0).recip();
     Ok(Raster {
         driver: "SRTMHGT",
-        data_type: "Int16",
-        width,
-        height,
-        samples: Samples::F32(source.bytes.chunks_exact(2).map(|pair| value([pair[0], pair[1]])).collect()),
-        meters_per_z: 1.0,
-        map_from_grid: north_up(north_west + DVec2::new(-0.5, 0.5) * cell, cell),
-        georeferenced: true,
-        crs: Some(source.hints.crs.clone().unwrap_or_else(Crs::wgs84)),
-        nodata: Some(f64::from(VOID)),
+        crs: Some(file.hints.crs.clone().unwrap_or_else(Crs::wgs84)),
+        nodata: Some(VOID.into()),
         vertical_datum: Some("EGM96 geoid".into()),
+        ..raster.placed(north_up_nodes(corner + DVec2::Y, cell))
     })
-}
-
-fn value(bytes: [u8; 2]) -> f32 {
-    match i16::from_be_bytes(bytes) {
-        VOID => f32::NAN,
-        meters => f32::from(meters),
-    }
 }
 
 /// The south-west corner in degrees that a name such as `N43E007` states.
@@ -78,6 +74,47 @@ fn corner(stem: &str) -> Option<DVec2> {
     let longitude = sign(3, b'E', b'W')? * part(4, 7)?;
     ((-90.0..90.0).contains(&latitude) && (-180.0..180.0).contains(&longitude))
         .then_some(DVec2::new(longitude, latitude))
+}
+
+/// The name of the tile with a south-west corner.
+fn name(corner: DVec2) -> String {
+    let letter = |value: f64, plus: char, minus: char| if value < 0.0 { minus } else { plus };
+    let (north, east) = (letter(corner.y, 'N', 'S'), letter(corner.x, 'E', 'W'));
+    format!("{north}{:02}{east}{:03}", corner.y.abs(), corner.x.abs())
+}
+
+fn write(raster: &Raster, stem: &str) -> Result<WrittenDem, WriteError> {
+    let raster = &raster.in_meters();
+    FORMAT.check_place(raster)?;
+    let size = (raster.width, raster.height);
+    let is_wgs84 = raster.crs.as_ref().is_none_or(|crs| crs.epsg() == Some(4326));
+    let nodes = raster.node_extent();
+    let (corner, off) = (nodes.min.round(), raster.spacing() * OFF_SAMPLES);
+    let is_degree = (nodes.min - corner).abs().cmple(off).all()
+        && (nodes.max - corner - DVec2::ONE).abs().cmple(off).all();
+    if !is_wgs84 || !is_degree || !SIZES.contains(&size) {
+        return Err(WriteError::Shape {
+            format: FORMAT.name,
+            wanted: "one degree of EPSG:4326 with nodes on whole degrees and 1201 x 1201, 3601 x 3601, 1801 x 3601 or 7201 x 7201 samples",
+            found: format!(
+                "{} x {} samples from ({}, {}) to ({}, {})",
+                size.0, size.1, nodes.min.x, nodes.min.y, nodes.max.x, nodes.max.y
+            ),
+        });
+    }
+    let wanted = name(corner);
+    if !stem.to_ascii_uppercase().starts_with(&wanted) {
+        return Err(WriteError::Name { wanted });
+    }
+    let (least, greatest) = (f64::from(VOID) + 1.0, f64::from(i16::MAX));
+    if let Some(found) = raster.samples.valid().find(|value| !(least..=greatest).contains(&value.round())) {
+        return Err(WriteError::OutOfRange { format: FORMAT.name, least, greatest, found });
+    }
+    let stored = raster.samples.iter().map(|value| if value.is_nan() { VOID } else { value.round() as i16 });
+    let bytes = stored.flat_map(i16::to_be_bytes).collect();
+    let is_rounded = raster.samples.valid().any(|value| value.fract() != 0.0);
+    let notes = if is_rounded { vec!["heights are rounded to whole meters".to_owned()] } else { vec![] };
+    Ok(WrittenDem { notes, ..WrittenDem::new(bytes, "int16") })
 }
 
 #[cfg(test)]

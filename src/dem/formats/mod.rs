@@ -1,16 +1,172 @@
-//! File formats of elevation, a file each.
+//! File formats of elevation: a file each, declared in one list.
+//!
+//! A new format is a file with a `FORMAT` and its line in [`FORMATS`]: recognition, reading, writing, the extensions of
+//! tiles in folders and archives, and the formats that messages list all come from that declaration.
 
 pub mod ascii;
 pub mod bt;
 pub mod dted;
 pub mod ehdr;
 pub mod envi;
+mod header;
+pub mod height_encoding;
 pub mod hgt;
-pub mod plain;
 pub mod png;
 pub mod raw;
-pub mod rgb_png;
+mod sample_layout;
 pub mod surfer;
 pub mod terragen;
+pub mod text;
 pub mod usgs;
 pub mod xyz;
+
+use crate::dem::error::DemErrorKind;
+use crate::dem::raster::Raster;
+use crate::dem::read::DemFile;
+use crate::dem::tiff::geotiff;
+use crate::dem::write::{WriteError, WrittenDem};
+
+/// The formats, in the order in which their content is tried.
+pub static FORMATS: [&DemFormat; 13] = [
+    &geotiff::FORMAT,
+    &ascii::FORMAT,
+    &envi::FORMAT,
+    &ehdr::FORMAT,
+    &hgt::FORMAT,
+    &dted::FORMAT,
+    &usgs::FORMAT,
+    &bt::FORMAT,
+    &terragen::FORMAT,
+    &surfer::FORMAT,
+    &xyz::FORMAT,
+    &png::FORMAT,
+    &raw::FORMAT,
+];
+
+/// The declaration of a format.
+#[derive(Debug)]
+pub struct DemFormat {
+    /// Its name in messages.
+    pub name: &'static str,
+    /// Extensions that belong to it alone, in lower case and without the dot: files of such a name are tiles in folders
+    /// and archives.
+    pub extensions: &'static [&'static str],
+    /// Extensions that pictures and tables have as well.
+    pub shared_extensions: &'static [&'static str],
+    /// How files of it are recognized.
+    pub(crate) recognition: Recognition,
+    /// Reads a file of it.
+    pub(crate) reader: fn(&DemFile) -> Result<Raster, DemErrorKind>,
+    /// Writes a raster; `None` where the format is only read. The text is the stem of the file's name.
+    pub(crate) writer: Option<fn(&Raster, &str) -> Result<WrittenDem, WriteError>>,
+}
+
+/// How files of a format are recognized.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Recognition {
+    /// By their first bytes.
+    Content {
+        /// Whether content is of the format.
+        matches: fn(&[u8]) -> bool,
+        /// The first bytes in words, for messages.
+        start: &'static str,
+    },
+    /// By their extension.
+    Extension,
+    /// By a text header in a file beside them.
+    HeaderFile {
+        /// Whether a header is of the format.
+        matches: fn(&[u8]) -> bool,
+    },
+    /// By a statement of the caller.
+    Statement,
+}
+
+impl DemFormat {
+    /// The format that files with an extension are written in; `None` where there is none. The extension has no dot and
+    /// may be in any case.
+    pub fn to_write(extension: &str) -> Option<&'static Self> {
+        let lower = extension.to_ascii_lowercase();
+        FORMATS.into_iter().find(|format| format.writer.is_some() && format.has_extension(&lower))
+    }
+
+    /// Whether files of this format have an extension, which is in lower case.
+    pub(crate) fn has_extension(&self, extension: &str) -> bool {
+        self.extensions.contains(&extension) || self.shared_extensions.contains(&extension)
+    }
+
+    /// Whether content is recognized as this format's.
+    pub(crate) fn recognizes_content(&self, bytes: &[u8]) -> bool {
+        matches!(self.recognition, Recognition::Content { matches, .. } if matches(bytes))
+    }
+
+    /// Whether the header beside a file is recognized as this format's.
+    pub(crate) fn recognizes_header(&self, header: &[u8]) -> bool {
+        matches!(self.recognition, Recognition::HeaderFile { matches } if matches(header))
+    }
+
+    /// A broken file of this format.
+    pub(crate) fn broken(&self, reason: impl Into<String>) -> DemErrorKind {
+        DemErrorKind::Broken { format: self.name, reason: reason.into() }
+    }
+
+    /// A file of this format that a decoder or the file system refuses.
+    pub(crate) fn undecodable(&self, source: impl std::error::Error + Send + Sync + 'static) -> DemErrorKind {
+        DemErrorKind::Undecodable { format: self.name, source: Box::new(source) }
+    }
+
+    /// A part of this format that is not read.
+    pub(crate) fn unsupported(&self, what: impl Into<String>, remedy: &'static str) -> DemErrorKind {
+        DemErrorKind::Unsupported { format: self.name, what: what.into(), remedy }
+    }
+
+    /// Checks that a raster has north up and a georeference, for formats that hold no other.
+    pub(crate) fn check_place(&self, raster: &Raster) -> Result<(), WriteError> {
+        match (raster.georeferenced, raster.is_north_up()) {
+            (false, _) => Err(WriteError::NoPlace { format: self.name }),
+            (_, false) => Err(WriteError::NotNorthUp { format: self.name }),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The formats that are read, for messages: `GeoTIFF (.tif, .tiff), …`.
+pub(crate) fn list() -> String {
+    let entries = FORMATS.map(|format| {
+        let all = format.extensions.iter().chain(format.shared_extensions);
+        let mut extensions: Vec<String> = all.map(|extension| format!(".{extension}")).collect();
+        if matches!(format.recognition, Recognition::HeaderFile { .. }) {
+            extensions.push("with .hdr".into());
+        }
+        format!("{} ({})", format.name, extensions.join(", "))
+    });
+    entries.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_extension_belongs_to_one_format() {
+        let mut all: Vec<&str> = FORMATS
+            .iter()
+            .flat_map(|format| format.extensions.iter().chain(format.shared_extensions))
+            .copied()
+            .collect();
+        let count = all.len();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), count);
+    }
+
+    #[test]
+    fn formats_that_are_written_are_found_by_extension() {
+        let name = |extension: &str| DemFormat::to_write(extension).map(|format| format.name);
+        assert_eq!(
+            (name("TIF"), name("png"), name("bt")),
+            (Some("GeoTIFF"), Some("PNG"), Some("BT terrain"))
+        );
+        assert_eq!((name("dem"), name("btz"), name("")), (None, None, None));
+    }
+}

@@ -1,194 +1,206 @@
-//! Gray PNG as a height map: 8 or 16 bits per value, meters by a stated scale and offset.
+//! PNG as a height map: gray of 8 or 16 bits by a stated scale and offset, or colors by a stated encoding.
 //!
-//! The picture's own transparency (a gray value that stands for "nothing", or an alpha channel) is no data.
-//! What colors mean differs from maker to maker: they are heights by a stated [`HeightEncoding`], or else refused.
+//! The picture's own transparency (a gray value or an alpha channel) is no data. The meaning of colors differs from
+//! maker to maker: without a stated [`HeightEncoding`] they are refused.
+//!
+//! Gray of 16 bits is written, with a world file beside it. Gray value 0 is no data, and stated as transparent; heights
+//! take 1 to 65535. Whole meters that fit are kept; others are spread over all values and rounded to half a step.
 
 use std::io::Cursor;
 
-use image::{DynamicImage, ImageDecoder, Limits};
+use png::{BitDepth, ColorType, Transformations};
 
-use crate::dem::error::{DemErrorKind, bytes_at, check_size};
-use crate::dem::formats::rgb_png::HeightEncoding;
-use crate::dem::georef;
+use crate::dem::error::DemErrorKind;
+use crate::dem::formats::height_encoding::HeightEncoding;
+use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::georef::{self, projection_file_of, world_file_of};
+use crate::dem::limits::SizeClaim;
 use crate::dem::raster::{Raster, Samples};
 use crate::dem::read::DemFile;
+use crate::dem::write::{WriteError, WrittenDem};
 
-const FORMAT: &str = "PNG";
+/// The declaration of this format.
+pub static FORMAT: DemFormat = DemFormat {
+    name: "PNG",
+    extensions: &[],
+    shared_extensions: &["png"],
+    recognition: Recognition::Content {
+        matches: |bytes| bytes.starts_with(b"\x89PNG\r\n\x1a\n"),
+        start: "the signature of a PNG file",
+    },
+    reader: read,
+    writer: Some(write),
+};
 
 /// Deflate turns one byte into at most 1032; filters add one byte a row.
 const EXPANSION: u64 = 1032;
 
-/// Whether the content starts as PNG does.
-pub(crate) fn recognizes(bytes: &[u8]) -> bool {
-    bytes.starts_with(b"\x89PNG\r\n\x1a\n")
-}
+/// Steps from the lowest height to the highest that is written: the 65,534 between the gray values for heights, less
+/// one for an offset on a multiple of the step.
+const STEPS: f64 = 65533.0;
 
-/// Reads a picture, its place from a world file or the hinted cell.
-pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
-    let header = PngHeader::read(source.bytes)?;
-    let count = check_size(
-        (u64::from(header.width), u64::from(header.height)),
-        u64::from(header.bits / 8).max(1),
-        (source.bytes.len(), EXPANSION),
-    )?;
-    let samples = match (header.is_colored, source.hints.height_encoding) {
-        (true, Some(encoding)) => Samples::F64(decode_colors(source.bytes, count, encoding)?),
-        (true, None) => return Err(DemErrorKind::NoHeightEncoding),
-        (false, Some(encoding)) => {
-            return Err(DemErrorKind::Unsupported {
-                format: FORMAT,
-                what: format!("gray values, where {encoding} is stated"),
-                remedy: "state height_scale (--height-scale) instead of the encoding",
-            });
-        }
-        (false, None) => {
-            let (scale, offset) = heights(source)?;
-            Samples::F32(decode(source.bytes, count)?).scaled(scale, offset)
-        }
+fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
+    let mut decoder = png::Decoder::new(Cursor::new(file.bytes));
+    let header = decoder.read_header_info().map_err(|error| FORMAT.undecodable(error))?;
+    let (color, depth) = (header.color_type, header.bit_depth);
+    check_pixels(color, depth)?;
+    let claim = SizeClaim {
+        expansion: EXPANSION,
+        ..SizeClaim::new(header.width.into(), header.height.into(), (depth as u64 / 8).max(1))
     };
-    let place = georef::beside(source, header.height, &["pgw", "pngw", "wld"])?;
+    let size = claim.check(file.bytes.len())?;
+    let heights = PngHeights::new(file, color)?;
+    // Four samples a pixel with alpha, and as much again for rows and the inflater.
+    decoder.set_limits(png::Limits { bytes: size.x as usize * size.y as usize * 8 + (1 << 20) });
+    decoder.set_transformations(Transformations::EXPAND);
+    let pixels = Pixels::read(decoder).map_err(|error| FORMAT.undecodable(error))?;
+    let samples = match heights {
+        PngHeights::Gray { scale, offset } => Samples::F32(pixels.gray()).scaled(scale, offset),
+        PngHeights::Colors(encoding) => Samples::F64(pixels.heights(encoding)),
+    };
+    let raster = georef::placed(file, Raster::new(size.x, samples), None, &["pgw", "pngw", "wld"])?;
     Ok(Raster {
         driver: "PNG",
-        data_type: if header.bits == 8 { "Byte" } else { "UInt16" },
-        width: header.width,
-        height: header.height,
-        samples,
-        meters_per_z: 1.0,
-        map_from_grid: place.map_from_grid,
-        georeferenced: place.stated,
-        crs: source.crs_beside()?,
-        nodata: header.transparent,
-        vertical_datum: None,
+        data_type: if depth == BitDepth::Sixteen { "UInt16" } else { "Byte" },
+        crs: file.crs()?,
+        nodata: pixels.transparent_gray,
+        ..raster
     })
 }
 
-/// Meters per gray value, and the height of value 0.
-fn heights(source: &DemFile) -> Result<(f64, f64), DemErrorKind> {
-    Ok((source.height_scale()?.ok_or(DemErrorKind::NoHeightScale)?, source.height_offset()?))
+/// The meaning of pixels.
+enum PngHeights {
+    /// Gray values: meters per value, and the height of value 0.
+    Gray {
+        scale: f64,
+        offset: f64,
+    },
+    Colors(HeightEncoding),
 }
 
-struct PngHeader {
-    width: u32,
-    height: u32,
-    bits: u8,
-    is_colored: bool,
-    transparent: Option<f64>,
-}
-
-impl PngHeader {
-    fn read(bytes: &[u8]) -> Result<Self, DemErrorKind> {
-        let cut = || DemErrorKind::broken(FORMAT, "it ends inside its header");
-        let long = |at: usize| bytes_at(bytes, at).map(u32::from_be_bytes).ok_or_else(cut);
-        let [bits, color] = bytes_at(bytes, 24).ok_or_else(cut)?;
-        if bytes.get(12..16) != Some(b"IHDR") {
-            return Err(DemErrorKind::broken(FORMAT, "its first chunk is not IHDR"));
-        }
-        let what = match (color, bits) {
-            (0 | 4, 8 | 16) | (2 | 6, 8) => None,
-            // Encoders may pack a tile of few heights.
-            (3, 1 | 2 | 4 | 8) => None,
-            (0, 1 | 2 | 4) => Some(format!("{bits} bits per gray value")),
-            (2 | 6, 16) => Some("colors of 16 bits".into()),
-            _ => {
-                return Err(DemErrorKind::broken(
-                    FORMAT,
-                    format!("color type {color} with {bits} bits does not exist"),
-                ));
+impl PngHeights {
+    fn new(file: &DemFile, color: ColorType) -> Result<Self, DemErrorKind> {
+        let is_gray = matches!(color, ColorType::Grayscale | ColorType::GrayscaleAlpha);
+        match (is_gray, file.hints.height_encoding) {
+            (false, Some(encoding)) => Ok(Self::Colors(encoding)),
+            (false, None) => Err(DemErrorKind::NoHeightEncoding),
+            (true, Some(encoding)) => {
+                let what = format!("gray values, where {encoding} is stated");
+                Err(FORMAT.unsupported(what, "state height_scale (--height-scale) instead of the encoding"))
             }
+            (true, None) => {
+                let scale = file.height_scale()?.ok_or(DemErrorKind::NoHeightScale)?;
+                Ok(Self::Gray { scale, offset: file.height_offset()? })
+            }
+        }
+    }
+}
+
+/// Whether pixels of a kind are read; encoders may pack a tile of few heights into a palette.
+fn check_pixels(color: ColorType, depth: BitDepth) -> Result<(), DemErrorKind> {
+    let what = match (color, depth) {
+        (ColorType::Indexed, _) | (_, BitDepth::Eight) => return Ok(()),
+        (ColorType::Grayscale | ColorType::GrayscaleAlpha, BitDepth::Sixteen) => return Ok(()),
+        (ColorType::Rgb | ColorType::Rgba, _) => "colors of 16 bits".into(),
+        _ => format!("{} bits per gray value", depth as u8),
+    };
+    Err(FORMAT.unsupported(what, "give the elevation as 16-bit gray, or as a GeoTIFF"))
+}
+
+/// Decoded pixels: palettes as colors, transparency as alpha, two bytes a sample with the most significant first.
+struct Pixels {
+    bytes: Vec<u8>,
+    /// Bytes of a sample.
+    sample: usize,
+    /// Samples of a pixel.
+    channels: usize,
+    /// The gray value that is transparent.
+    transparent_gray: Option<f64>,
+}
+
+impl Pixels {
+    fn read(decoder: png::Decoder<Cursor<&[u8]>>) -> Result<Self, png::DecodingError> {
+        let mut reader = decoder.read_info()?;
+        let is_gray = reader.info().color_type == ColorType::Grayscale;
+        let transparent = reader.info().trns.as_deref().filter(|_| is_gray).map(number);
+        let (color, depth) = reader.output_color_type();
+        let mut bytes = vec![0; reader.output_buffer_size().ok_or(png::DecodingError::LimitsExceeded)?];
+        reader.next_frame(&mut bytes)?;
+        let sample = depth as usize / 8;
+        Ok(Self { bytes, sample, channels: color.samples(), transparent_gray: transparent.map(f64::from) })
+    }
+
+    fn gray(&self) -> Vec<f32> {
+        let pixels = self.bytes.chunks_exact(self.sample * self.channels);
+        pixels
+            .map(|pixel| {
+                let (gray, alpha) = pixel.split_at(self.sample);
+                let is_clear = self.channels == 2 && alpha.iter().all(|byte| *byte == 0);
+                if is_clear { f32::NAN } else { number(gray) }
+            })
+            .collect()
+    }
+
+    fn heights(&self, encoding: HeightEncoding) -> Vec<f64> {
+        let pixels = self.bytes.chunks_exact(self.channels);
+        let height = |pixel: &[u8]| match *pixel {
+            [_, _, _, 0] => f64::NAN,
+            [red, green, blue, ..] => encoding.meters([red, green, blue]),
+            _ => f64::NAN,
         };
-        if let Some(what) = what {
-            return Err(DemErrorKind::Unsupported {
-                format: FORMAT,
-                what,
-                remedy: "give the elevation as 16-bit gray, or as a GeoTIFF",
-            });
-        }
-        let is_colored = matches!(color, 2 | 3 | 6);
-        Ok(Self { width: long(16)?, height: long(20)?, bits, is_colored, transparent: transparent(bytes) })
+        pixels.map(height).collect()
     }
 }
 
-/// The gray value of a tRNS chunk, which stands before the picture data.
-fn transparent(bytes: &[u8]) -> Option<f64> {
-    let mut at = 8usize;
-    loop {
-        let length = u32::from_be_bytes(bytes_at(bytes, at)?) as usize;
-        match bytes.get(at + 4..at + 8)? {
-            b"tRNS" if length == 2 => {
-                return bytes_at(bytes, at + 8).map(|gray| f64::from(u16::from_be_bytes(gray)));
-            }
-            b"IDAT" | b"tRNS" => return None,
-            _ => at = at.checked_add(length)?.checked_add(12)?,
-        }
-    }
+/// A big-endian number of one or two bytes.
+fn number(bytes: &[u8]) -> f32 {
+    bytes.iter().fold(0.0, |number, byte| number * 256.0 + f32::from(*byte))
 }
 
-/// The pixels, with no more memory than so many need.
-fn pixels(bytes: &[u8], count: usize) -> Result<DynamicImage, DemErrorKind> {
-    let broken = |error: image::ImageError| DemErrorKind::broken(FORMAT, error.to_string());
-    let mut decoder = image::codecs::png::PngDecoder::new(Cursor::new(bytes)).map_err(broken)?;
-    let mut limits = Limits::default();
-    // Four bytes a sample with alpha, and as much again for rows and the inflater.
-    limits.max_alloc = Some(count as u64 * 8 + (1 << 20));
-    decoder.set_limits(limits).map_err(broken)?;
-    DynamicImage::from_decoder(decoder).map_err(broken)
+fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
+    let raster = &raster.in_meters();
+    let least = raster.samples.valid().fold(f64::INFINITY, f64::min);
+    let greatest = raster.samples.valid().fold(f64::NEG_INFINITY, f64::max);
+    if least > greatest {
+        return Err(WriteError::Empty);
+    }
+    let are_whole = raster.samples.valid().all(|value| value.fract() == 0.0) && greatest - least <= STEPS;
+    let scale = if are_whole { 1.0 } else { readable(((greatest - least) / STEPS).max(f64::MIN_POSITIVE)) };
+    let offset = (least / scale).floor() * scale - scale;
+    let gray = |value: f64| if value.is_nan() { 0 } else { ((value - offset) / scale).round() as u16 };
+    let mut notes = vec![format!("read it with --height-scale {scale} --height-offset {offset}")];
+    if !are_whole {
+        notes.push(format!("heights are rounded to multiples of {scale} m"));
+    }
+    let pixels: Vec<u8> = raster.samples.iter().flat_map(|value| gray(value).to_be_bytes()).collect();
+    let bytes =
+        encode(raster.width, raster.height, &pixels).expect("memory takes a picture that is not empty");
+    let companions = world_file_of(raster, "pgw").into_iter().chain(projection_file_of(raster)).collect();
+    Ok(WrittenDem { companions, notes, ..WrittenDem::new(bytes, "uint16") })
 }
 
-fn decode_colors(bytes: &[u8], count: usize, encoding: HeightEncoding) -> Result<Vec<f64>, DemErrorKind> {
-    let values: Vec<f64> = match pixels(bytes, count)? {
-        DynamicImage::ImageRgb8(picture) => picture.pixels().map(|pixel| encoding.meters(pixel.0)).collect(),
-        DynamicImage::ImageRgba8(picture) => {
-            let meters = |[red, green, blue, alpha]: [u8; 4]| match alpha {
-                0 => f64::NAN,
-                _ => encoding.meters([red, green, blue]),
-            };
-            picture.pixels().map(|pixel| meters(pixel.0)).collect()
-        }
-        other => {
-            return Err(DemErrorKind::broken(
-                FORMAT,
-                format!("it decodes to {:?}, not to colors", other.color()),
-            ));
-        }
-    };
-    if values.len() != count {
-        return Err(DemErrorKind::broken(
-            FORMAT,
-            format!("it decodes to {} of {count} values", values.len()),
-        ));
-    }
-    Ok(values)
+/// The least number of two digits that is no smaller: a scale that can be typed.
+fn readable(scale: f64) -> f64 {
+    let power = scale.log10().floor() as i32 - 1;
+    let digits = (scale / 10f64.powi(power)).ceil();
+    // Parsed, so that the scale in the note is the scale in use.
+    format!("{digits}e{power}").parse().unwrap_or(scale)
 }
 
-fn decode(bytes: &[u8], count: usize) -> Result<Vec<f32>, DemErrorKind> {
-    let values: Vec<f32> = match pixels(bytes, count)? {
-        DynamicImage::ImageLuma8(gray) => gray.as_raw().iter().map(|&v| f32::from(v)).collect(),
-        DynamicImage::ImageLuma16(gray) => gray.as_raw().iter().map(|&v| f32::from(v)).collect(),
-        DynamicImage::ImageLumaA8(both) => {
-            both.pixels().map(|p| if p[1] == 0 { f32::NAN } else { f32::from(p[0]) }).collect()
-        }
-        DynamicImage::ImageLumaA16(both) => {
-            both.pixels().map(|p| if p[1] == 0 { f32::NAN } else { f32::from(p[0]) }).collect()
-        }
-        other => {
-            return Err(DemErrorKind::broken(
-                FORMAT,
-                format!("it decodes to {:?}, not to gray", other.color()),
-            ));
-        }
-    };
-    if values.len() != count {
-        return Err(DemErrorKind::broken(
-            FORMAT,
-            format!("it decodes to {} of {count} values", values.len()),
-        ));
-    }
-    Ok(values)
+fn encode(width: u32, height: u32, pixels: &[u8]) -> Result<Vec<u8>, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(ColorType::Grayscale);
+    encoder.set_depth(BitDepth::Sixteen);
+    encoder.set_filter(png::Filter::Up);
+    encoder.set_trns(vec![0, 0]);
+    encoder.write_header()?.write_image_data(pixels)?;
+    Ok(bytes)
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::dem::formats::rgb_png::HeightEncoding;
+    use crate::dem::formats::height_encoding::HeightEncoding;
     use crate::dem::read::{DemHints, read};
     use image::ImageEncoder;
 
@@ -204,8 +216,8 @@ mod tests {
     #[test]
     fn gray_becomes_meters_by_the_stated_scale() {
         let hints = DemHints {
-            png_height_scale: Some(0.5),
-            png_height_offset: Some(-100.0),
+            height_scale: Some(0.5),
+            height_offset: Some(-100.0),
             cell: Some(30.0),
             ..DemHints::default()
         };
@@ -241,7 +253,7 @@ mod tests {
     #[test]
     fn a_picture_cut_anywhere_is_an_error() {
         let whole = picture(&[1, 2, 3, 4]);
-        let hints = DemHints { png_height_scale: Some(1.0), ..DemHints::default() };
+        let hints = DemHints { height_scale: Some(1.0), ..DemHints::default() };
         for end in 0..whole.len() - 12 {
             assert!(read("a.png", &whole[..end], &hints).is_err(), "{end}");
         }

@@ -5,94 +5,91 @@
 
 use std::str::FromStr;
 
+use crate::dem::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
-use crate::dem::formats::plain::{ByteOrder, Number, SampleLayout};
+use crate::dem::formats::sample_layout::{NoData, SampleLayout};
+use crate::dem::formats::{DemFormat, Recognition};
 use crate::dem::georef;
 use crate::dem::raster::Raster;
 use crate::dem::read::DemFile;
+use crate::dem::sample_type::{NumberKind, SampleType};
 
-const FORMAT: &str = "RAW file";
+/// The declaration of this format.
+pub static FORMAT: DemFormat = DemFormat {
+    name: "RAW with a stated size",
+    extensions: &[],
+    shared_extensions: &["raw", "r16"],
+    recognition: Recognition::Statement,
+    reader: read,
+    writer: None,
+};
 
-/// What a RAW file holds: north row first, from the west.
+/// The layout of a RAW file: north row first, from the west.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RawLayout {
     width: u32,
     height: u32,
-    number: Number,
+    sample: SampleType,
     order: ByteOrder,
     skip: u64,
     nodata: Option<f64>,
 }
 
-impl FromStr for RawLayout {
-    type Err = String;
+/// A text states no layout of a RAW file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "write it as 1201x1201:i16be, where needed with :skip=BYTES and :nodata=VALUE; types are u8 to u64, i8 to i64, f16, f32 and f64, followed by le or be"
+)]
+pub struct RawLayoutError;
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        const FORM: &str = "write it as 1201x1201:i16be, where needed with :skip=BYTES and :nodata=VALUE; types are \
-                            u8, i8, u16, i16, u32, i32, f32 and f64, followed by le or be";
+impl FromStr for RawLayout {
+    type Err = RawLayoutError;
+
+    fn from_str(text: &str) -> Result<Self, RawLayoutError> {
         let mut parts = text.split(':');
         let size = parts.next().and_then(|size| size.split_once(['x', 'X', '×']));
         let size = size.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
-        let (Some((width @ 1.., height @ 1..)), Some(kind)) = (size, parts.next()) else {
-            return Err(FORM.into());
-        };
-        let (number, order) = kind_of(kind).ok_or(FORM)?;
-        let mut layout = Self { width, height, number, order, skip: 0, nodata: None };
+        let Some((width @ 1.., height @ 1..)) = size else { return Err(RawLayoutError) };
+        let (sample, order) = parts.next().and_then(sample_and_order).ok_or(RawLayoutError)?;
+        let mut layout = Self { width, height, sample, order, skip: 0, nodata: None };
         for part in parts {
             match part.split_once('=') {
-                Some(("skip", bytes)) => layout.skip = bytes.parse().map_err(|_| FORM)?,
-                Some(("nodata", value)) => layout.nodata = Some(value.parse().map_err(|_| FORM)?),
-                _ => return Err(FORM.into()),
+                Some(("skip", bytes)) => layout.skip = bytes.parse().map_err(|_| RawLayoutError)?,
+                Some(("nodata", value)) => layout.nodata = Some(value.parse().map_err(|_| RawLayoutError)?),
+                _ => return Err(RawLayoutError),
             }
         }
         Ok(layout)
     }
 }
 
-/// `i16be` as a number and its byte order; single bytes need no order.
-fn kind_of(text: &str) -> Option<(Number, ByteOrder)> {
+/// `i16be` as a type and its byte order; single bytes need no order.
+fn sample_and_order(text: &str) -> Option<(SampleType, ByteOrder)> {
     let lower = text.to_ascii_lowercase();
     let (name, order) = match (lower.strip_suffix("le"), lower.strip_suffix("be")) {
         (Some(name), _) => (name, Some(ByteOrder::Little)),
         (_, Some(name)) => (name, Some(ByteOrder::Big)),
         _ => (lower.as_str(), None),
     };
-    let number = match name {
-        "u8" => Number::U8,
-        "i8" => Number::I8,
-        "u16" => Number::U16,
-        "i16" => Number::I16,
-        "u32" => Number::U32,
-        "i32" => Number::I32,
-        "f32" => Number::F32,
-        "f64" => Number::F64,
+    let kind = match name.chars().next()? {
+        'u' => NumberKind::Unsigned,
+        'i' => NumberKind::Signed,
+        'f' => NumberKind::Float,
         _ => return None,
     };
-    if number.bytes() == 1 { Some((number, ByteOrder::Little)) } else { Some((number, order?)) }
+    let sample = SampleType::new(kind, name[1..].parse().ok()?)?;
+    Some((sample, order.or((sample.bytes() == 1).then_some(ByteOrder::Little))?))
 }
 
-/// Reads the file as the caller says it is laid out. Heights are the samples, or what a stated scale and offset make
-/// of them.
-pub(crate) fn read(source: &DemFile, raw: &RawLayout) -> Result<Raster, DemErrorKind> {
-    let scale = source.height_scale()?.unwrap_or(1.0);
-    let offset = source.height_offset()?;
-    let size = (u64::from(raw.width), u64::from(raw.height));
-    let layout = SampleLayout::dense(size, raw.number, raw.order, raw.skip);
-    let (width, height, samples) = layout.read(FORMAT, source.bytes, raw.nodata)?;
-    let place = georef::beside(source, height, &["rww", "wld"])?;
-    Ok(Raster {
-        driver: "RAW",
-        data_type: raw.number.gdal_name(),
-        width,
-        height,
-        samples: samples.scaled(scale, offset),
-        meters_per_z: 1.0,
-        map_from_grid: place.map_from_grid,
-        georeferenced: place.stated,
-        crs: source.crs_beside()?,
-        nodata: raw.nodata,
-        vertical_datum: None,
-    })
+/// Heights are the samples, or what a stated scale and offset make of them.
+fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
+    let raw = file.hints.raw.ok_or(DemErrorKind::NoRawLayout)?;
+    let (scale, offset) = (file.height_scale()?.unwrap_or(1.0), file.height_offset()?);
+    let layout = SampleLayout::dense((raw.width.into(), raw.height.into()), raw.sample, raw.order, raw.skip);
+    let raster = layout.read("RAW file", file.bytes, NoData::Value(raw.nodata))?;
+    let raster = georef::placed(file, raster, None, &["rww", "wld"])?;
+    let samples = raster.samples.scaled(scale, offset);
+    Ok(Raster { driver: "RAW", samples, crs: file.crs()?, nodata: raw.nodata, ..raster })
 }
 
 #[cfg(test)]
@@ -104,7 +101,7 @@ mod tests {
     fn the_statement_is_a_size_a_type_and_what_is_needed_besides() {
         let stated: RawLayout = "3x2:i16be:skip=4:nodata=-1".parse().expect("sound");
         assert_eq!((stated.width, stated.height, stated.skip, stated.nodata), (3, 2, 4, Some(-1.0)));
-        assert_eq!((stated.number, stated.order), (Number::I16, ByteOrder::Big));
+        assert_eq!((stated.sample, stated.order), (SampleType::I16, ByteOrder::Big));
         assert!("3x2:u8".parse::<RawLayout>().is_ok());
         for wrong in [
             "",
@@ -117,7 +114,7 @@ mod tests {
             "3x2:u8:skip=-1",
             "3x2:u8:a=1",
         ] {
-            let error = wrong.parse::<RawLayout>().expect_err(wrong);
+            let error = wrong.parse::<RawLayout>().expect_err(wrong).to_string();
             assert!(error.contains("1201x1201:i16be"), "{error}");
         }
     }
@@ -126,8 +123,8 @@ mod tests {
     fn samples_become_meters_by_a_stated_scale() {
         let hints = DemHints {
             raw: "2x1:u16le:skip=1".parse().ok(),
-            png_height_scale: Some(0.5),
-            png_height_offset: Some(-10.0),
+            height_scale: Some(0.5),
+            height_offset: Some(-10.0),
             cell: Some(30.0),
             ..DemHints::default()
         };

@@ -10,216 +10,150 @@
 //!   DATA       heights f64
 //! ```
 //!
-//! Little-endian. Heights stand on nodes, rows run north; what is as large as the blank value (1.70141e38) is no
-//! data.
+//! Little-endian. Heights lie on nodes, rows run north. Values from the blank value (1.70141e38) on are no data.
 
 use glam::DVec2;
 
-use crate::dem::error::{DemErrorKind, bytes_at, check_size};
-use crate::dem::formats::ascii::{TextWords, number};
-use crate::dem::raster::{Raster, Samples, north_up};
+use crate::dem::bytes::{ByteFields, ByteOrder, bytes_at};
+use crate::dem::error::DemErrorKind;
+use crate::dem::formats::sample_layout::{NoData, SampleLayout};
+use crate::dem::formats::text::{TextWords, number};
+use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::limits::SizeClaim;
+use crate::dem::raster::{Raster, Samples, north_up_nodes};
 use crate::dem::read::DemFile;
+use crate::dem::sample_type::SampleType;
 
-const FORMAT: &str = "Surfer grid";
+/// The declaration of this format.
+pub static FORMAT: DemFormat = DemFormat {
+    name: "Surfer grid",
+    extensions: &["grd"],
+    shared_extensions: &[],
+    recognition: Recognition::Content {
+        matches: |bytes| [b"DSAA", b"DSBB", b"DSRB"].iter().any(|start| bytes.starts_with(*start)),
+        start: "DSAA, DSBB or DSRB",
+    },
+    reader: read,
+    writer: None,
+};
 
-/// What is as large as this is blank, in the versions whose files do not say.
+/// The blank value of the versions whose files do not state it.
 const BLANK: f64 = 1.70141e38;
 
-/// The same as version 6 writes it: the nearest of 32 bits, what GDAL states as the no-data value.
+/// The same as version 6 writes it: the nearest of 32 bits, which GDAL states as the no-data value.
 const BLANK_STATED: f64 = 1.701_410_009_187_828e38;
 
-/// Whether the content starts as one of the three does.
-pub(crate) fn recognizes(bytes: &[u8]) -> bool {
-    [b"DSAA", b"DSBB", b"DSRB"].iter().any(|start| bytes.starts_with(*start))
-}
-
-/// Reads a grid.
-pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
-    let grid = match &source.bytes[..4] {
-        b"DSAA" => text(source.bytes)?,
-        b"DSBB" => version_6(source.bytes)?,
-        _ => version_7(source.bytes)?,
+fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
+    let grid = match &file.bytes[..4] {
+        b"DSAA" => text_grid(file.bytes)?,
+        b"DSBB" => version_6(file.bytes)?,
+        _ => version_7(file.bytes)?,
     };
-    let Grid { driver, data_type, columns, rows, first, cell, samples, blank } = grid;
+    let SurferGrid { raster, first, cell } = grid;
     if !(first.is_finite() && cell.is_finite() && cell.min_element() > 0.0) {
         return Err(DemErrorKind::Georeference {
             reason: format!("its nodes start at {first} and are {} by {} apart", cell.x, cell.y),
             remedy: "save the grid again",
         });
     }
-    let north_west = DVec2::new(first.x, first.y + cell.y * f64::from(rows - 1));
-    Ok(Raster {
-        driver,
-        data_type,
-        width: columns,
-        height: rows,
-        samples,
-        meters_per_z: 1.0,
-        map_from_grid: north_up(north_west + DVec2::new(-0.5, 0.5) * cell, cell),
-        georeferenced: true,
-        crs: source.crs_beside()?,
-        nodata: Some(blank),
-        vertical_datum: None,
-    })
+    let north_west = DVec2::new(first.x, first.y + cell.y * f64::from(raster.height - 1));
+    Ok(Raster { crs: file.crs()?, ..raster.placed(north_up_nodes(north_west, cell)) })
 }
 
-struct Grid {
-    driver: &'static str,
-    data_type: &'static str,
-    columns: u32,
-    rows: u32,
+struct SurferGrid {
+    raster: Raster,
     /// The south-west node.
     first: DVec2,
     cell: DVec2,
-    samples: Samples,
-    blank: f64,
 }
 
-/// Heights from the south, turned into rows from the north, blank ones as NaN.
-fn turned<T: Copy>(columns: usize, rows: usize, value: impl Fn(usize) -> T) -> Vec<T> {
-    (0..rows)
-        .rev()
-        .flat_map(|row| (0..columns).map(move |column| row * columns + column))
-        .map(value)
-        .collect()
+impl SurferGrid {
+    /// A grid of version 6 between its outermost nodes.
+    fn between(driver: &'static str, raster: Raster, min: DVec2, max: DVec2) -> Self {
+        let cell = (max - min) / (raster.grid_size() - 1.0);
+        Self { raster: Raster { driver, nodata: Some(BLANK_STATED), ..raster }, first: min, cell }
+    }
 }
 
-fn narrow(value: f32) -> f32 {
-    if f64::from(value) >= BLANK || !value.is_finite() { f32::NAN } else { value }
-}
-
-/// The distance between nodes, given the first and the last of a side.
-fn between(low: f64, high: f64, nodes: u64) -> f64 {
-    (high - low) / (nodes.saturating_sub(1)) as f64
-}
-
-fn text(bytes: &[u8]) -> Result<Grid, DemErrorKind> {
+fn text_grid(bytes: &[u8]) -> Result<SurferGrid, DemErrorKind> {
     let mut words = TextWords::new(&bytes[4..]);
-    let mut head = |what: &str| {
+    let mut next = |what: &str| {
         let word = words.next().and_then(number);
-        word.ok_or_else(|| DemErrorKind::broken(FORMAT, format!("{what} is missing or no number")))
+        word.ok_or_else(|| FORMAT.broken(format!("{what} is missing or no number")))
     };
-    let (columns, rows) = (head("the number of columns")?, head("the number of rows")?);
-    let [x0, x1, y0, y1] = [head("x from")?, head("x to")?, head("y from")?, head("y to")?];
+    let (columns, rows) = (next("the number of columns")?, next("the number of rows")?);
+    let [x0, x1, y0, y1] = [next("x from")?, next("x to")?, next("y from")?, next("y to")?];
     for unused in ["z from", "z to"] {
-        head(unused)?;
+        next(unused)?;
     }
     let whole = |value: f64| if value.fract() == 0.0 && value >= 0.0 { value as u64 } else { 0 };
-    let size = (whole(columns), whole(rows));
-    let count = check_size(size, 2, (words.rest().len() + 1, 1))?;
+    let size = SizeClaim::new(whole(columns), whole(rows), 2).check(words.rest().len() + 1)?;
+    let count = size.x as usize * size.y as usize;
     let mut values = Vec::with_capacity(count);
-    for word in words.by_ref().take(count) {
-        let value = number(word).ok_or_else(|| {
-            DemErrorKind::broken(FORMAT, format!("height {} of {count} is not a number", values.len() + 1))
-        })?;
+    for word in words.take(count) {
+        let wrong = || FORMAT.broken(format!("height {} of {count} is not a number", values.len() + 1));
+        let value = number(word).ok_or_else(wrong)?;
         values.push(if value >= BLANK || !value.is_finite() { f32::NAN } else { value as f32 });
     }
     if values.len() < count {
-        return Err(DemErrorKind::broken(
-            FORMAT,
-            format!("it ends after {} of {count} heights", values.len()),
-        ));
+        return Err(FORMAT.broken(format!("it ends after {} of {count} heights", values.len())));
     }
-    let (columns, rows) = (size.0 as usize, size.1 as usize);
-    Ok(Grid {
-        driver: "GSAG",
-        data_type: "Float32",
-        columns: columns as u32,
-        rows: rows as u32,
-        first: DVec2::new(x0, y0),
-        cell: DVec2::new(between(x0, x1, size.0), between(y0, y1, size.1)),
-        samples: Samples::F32(turned(columns, rows, |index| values[index])),
-        blank: BLANK_STATED,
-    })
+    let north_first = values.chunks(size.x as usize).rev().flatten().copied().collect();
+    let raster = Raster::new(size.x, Samples::F32(north_first));
+    Ok(SurferGrid::between("GSAG", raster, DVec2::new(x0, y0), DVec2::new(x1, y1)))
 }
 
-fn version_6(bytes: &[u8]) -> Result<Grid, DemErrorKind> {
+fn version_6(bytes: &[u8]) -> Result<SurferGrid, DemErrorKind> {
     const HEADER: usize = 56;
-    let cut = || DemErrorKind::broken(FORMAT, "it ends inside its header");
-    let data = bytes.get(HEADER..).ok_or_else(cut)?;
-    let count =
-        |at: usize| bytes_at(bytes, at).map_or(0, |raw| u64::try_from(i16::from_le_bytes(raw)).unwrap_or(0));
-    let double = |at: usize| bytes_at(bytes, at).map_or(f64::NAN, f64::from_le_bytes);
-    let size = (count(4), count(6));
-    check_size(size, 4, (data.len(), 1))?;
-    let (columns, rows) = (size.0 as usize, size.1 as usize);
-    let height = |index: usize| narrow(bytes_at(data, 4 * index).map_or(f32::NAN, f32::from_le_bytes));
-    Ok(Grid {
-        driver: "GSBG",
-        data_type: "Float32",
-        columns: columns as u32,
-        rows: rows as u32,
-        first: DVec2::new(double(8), double(24)),
-        cell: DVec2::new(between(double(8), double(16), size.0), between(double(24), double(32), size.1)),
-        samples: Samples::F32(turned(columns, rows, height)),
-        blank: BLANK_STATED,
-    })
+    let data = bytes.get(HEADER..).ok_or_else(|| FORMAT.broken("it ends inside its header"))?;
+    let fields = ByteFields::little_endian(bytes);
+    let count = |at: usize| u64::try_from(fields.i16(at).unwrap_or(0)).unwrap_or(0);
+    let double = |at: usize| fields.f64(at).unwrap_or(f64::NAN);
+    let layout = SampleLayout::dense((count(4), count(6)), SampleType::F32, ByteOrder::Little, 0).south_up();
+    let raster = layout.read(FORMAT.name, data, NoData::From(BLANK))?;
+    let (min, max) = (DVec2::new(double(8), double(24)), DVec2::new(double(16), double(32)));
+    Ok(SurferGrid::between("GSBG", raster, min, max))
 }
 
-/// What the `GRID` section states.
-struct Section7 {
-    size: (u64, u64),
-    first: DVec2,
-    cell: DVec2,
-    blank: f64,
-}
-
-fn version_7(bytes: &[u8]) -> Result<Grid, DemErrorKind> {
-    let cut = || DemErrorKind::broken(FORMAT, "it ends before its heights");
-    let mut at = 0usize;
-    let mut grid = None;
+fn version_7(bytes: &[u8]) -> Result<SurferGrid, DemErrorKind> {
+    let cut = || FORMAT.broken("it ends before its heights");
+    let fields = ByteFields::little_endian(bytes);
+    let (mut at, mut grid_at) = (0usize, None);
     loop {
         let name: [u8; 4] = bytes_at(bytes, at).ok_or_else(cut)?;
-        let length = u32::from_le_bytes(bytes_at(bytes, at + 4).ok_or_else(cut)?) as usize;
-        let inside = at + 8;
-        match (&name, &grid) {
-            (b"GRID", _) => grid = Some(section_7(bytes, inside)?),
-            (b"DATA", Some(grid)) => {
-                let end = inside.saturating_add(length).min(bytes.len());
-                return heights_7(grid, &bytes[inside..end]);
+        let length = fields.u32(at + 4).ok_or_else(cut)? as usize;
+        let content = at + 8;
+        match (&name, grid_at) {
+            (b"GRID", _) => grid_at = Some(content),
+            (b"DATA", Some(grid_at)) => {
+                let end = content.saturating_add(length).min(bytes.len());
+                return grid_7(fields, grid_at, &bytes[content..end]);
             }
             _ => {}
         }
-        at = inside.checked_add(length).ok_or_else(cut)?;
+        at = content.checked_add(length).ok_or_else(cut)?;
     }
 }
 
-fn section_7(bytes: &[u8], at: usize) -> Result<Section7, DemErrorKind> {
-    let cut = || DemErrorKind::broken(FORMAT, "it ends inside its GRID section");
-    let count = |offset: usize| bytes_at(bytes, at + offset).map(i32::from_le_bytes).ok_or_else(cut);
-    let double = |index: usize| bytes_at(bytes, at + 8 + 8 * index).map(f64::from_le_bytes).ok_or_else(cut);
-    let whole = |value: i32| u64::try_from(value).unwrap_or(0);
-    if double(6)? != 0.0 {
-        return Err(DemErrorKind::Unsupported {
-            format: FORMAT,
-            what: format!("a rotation of {} degrees", double(6)?),
-            remedy: "save the grid without rotation",
-        });
+/// The grid whose `GRID` section has its content at `at`.
+fn grid_7(fields: ByteFields, at: usize, data: &[u8]) -> Result<SurferGrid, DemErrorKind> {
+    let cut = || FORMAT.broken("it ends inside its GRID section");
+    let count = |offset: usize| {
+        fields.i32(at + offset).ok_or_else(cut).map(|count| u64::try_from(count).unwrap_or(0))
+    };
+    let double = |index: usize| fields.f64(at + 8 + 8 * index).ok_or_else(cut);
+    let (rotation, blank) = (double(6)?, double(7)?);
+    if rotation != 0.0 {
+        let what = format!("a rotation of {rotation} degrees");
+        return Err(FORMAT.unsupported(what, "save the grid without rotation"));
     }
-    Ok(Section7 {
-        size: (whole(count(4)?), whole(count(0)?)),
+    let size = (count(4)?, count(0)?);
+    let layout = SampleLayout::dense(size, SampleType::F64, ByteOrder::Little, 0).south_up();
+    let raster = layout.read(FORMAT.name, data, NoData::From(blank))?;
+    Ok(SurferGrid {
+        raster: Raster { driver: "GS7BG", nodata: Some(blank), ..raster },
         first: DVec2::new(double(0)?, double(1)?),
         cell: DVec2::new(double(2)?, double(3)?),
-        blank: double(7)?,
-    })
-}
-
-fn heights_7(grid: &Section7, data: &[u8]) -> Result<Grid, DemErrorKind> {
-    check_size(grid.size, 8, (data.len(), 1))?;
-    let (columns, rows) = (grid.size.0 as usize, grid.size.1 as usize);
-    let height = |index: usize| {
-        let value = bytes_at(data, 8 * index).map_or(f64::NAN, f64::from_le_bytes);
-        if value >= grid.blank || !value.is_finite() { f64::NAN } else { value }
-    };
-    Ok(Grid {
-        driver: "GS7BG",
-        data_type: "Float64",
-        columns: columns as u32,
-        rows: rows as u32,
-        first: grid.first,
-        cell: grid.cell,
-        samples: Samples::F64(turned(columns, rows, height)),
-        blank: grid.blank,
     })
 }
 

@@ -3,118 +3,108 @@
 //! ```text
 //! "TERRAGENTERRAIN "
 //! "SIZE" n − 1 of the shorter side i16, pad      "XPTS" columns i16, pad      "YPTS" rows i16, pad
-//! "SCAL" meters per unit, x y z f32              "CRAD" f32, "CRVM" u32: the planet, not looked at
+//! "SCAL" meters per unit, x y z f32              "CRAD" f32, "CRVM" u32: the planet, ignored
 //! "ALTW" scale i16, base i16, heights i16…: meters = z meters · (base + height · scale / 65536)
 //! ```
 //!
-//! All little-endian. The last row is the northern one and becomes the first. Nothing says where on earth a terrain
-//! lies: as GDAL has it, the outer corner of that first row is at (0, 0), and **y counts from there on, southward**.
+//! All little-endian. The last row is the northern one and becomes the first. The format states no place on Earth: as
+//! in GDAL, the outer corner of that first row is at (0, 0), and **y counts from there on, southward**.
 
-use glam::{DAffine2, DMat2, DVec2};
+use glam::{DAffine2, DMat2, DVec2, DVec3};
 
-use crate::dem::error::{DemErrorKind, bytes_at};
-use crate::dem::formats::plain::{ByteOrder, Number, SampleLayout};
-use crate::dem::raster::{Raster, Samples};
+use crate::dem::bytes::{ByteFields, ByteOrder, bytes_at};
+use crate::dem::error::DemErrorKind;
+use crate::dem::formats::sample_layout::{NoData, SampleLayout};
+use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::raster::Raster;
 use crate::dem::read::DemFile;
+use crate::dem::sample_type::SampleType;
 
-const FORMAT: &str = "Terragen terrain";
+/// The declaration of this format.
+pub static FORMAT: DemFormat = DemFormat {
+    name: "Terragen terrain",
+    extensions: &["ter"],
+    shared_extensions: &[],
+    recognition: Recognition::Content { matches: |bytes| bytes.starts_with(START), start: "TERRAGENTERRAIN" },
+    reader: read,
+    writer: None,
+};
 
 const START: &[u8] = b"TERRAGENTERRAIN ";
 
-/// Meters between heights where the file does not say.
+/// Meters between heights where the file does not state them.
 const DEFAULT_SCALE: f64 = 30.0;
 
-/// Whether the content starts as a terrain does.
-pub(crate) fn recognizes(bytes: &[u8]) -> bool {
-    bytes.starts_with(START)
-}
-
-/// Reads a terrain.
-pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
-    let bytes = source.bytes;
-    let Chunks { columns, rows, scale, heights_at } = Chunks::read(bytes)?;
-    let short = |at: usize| bytes_at(bytes, at).map(i16::from_le_bytes).unwrap_or_default();
-    let (height_scale, base) = (f64::from(short(heights_at)), f64::from(short(heights_at + 2)));
-    let layout = SampleLayout::dense((columns, rows), Number::I16, ByteOrder::Little, heights_at as u64 + 4);
-    let (width, height, samples) = layout.read(FORMAT, bytes, None)?;
+fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
+    let Chunks { columns, rows, scale, heights_at } = Chunks::read(file.bytes)?;
+    let short = |at: usize| f64::from(ByteFields::little_endian(file.bytes).i16(at).unwrap_or_default());
+    let (height_scale, base) = (short(heights_at), short(heights_at + 2));
+    let start = heights_at as u64 + 4;
+    let layout = SampleLayout::dense((columns, rows), SampleType::I16, ByteOrder::Little, start).south_up();
+    let raster = layout.read(FORMAT.name, file.bytes, NoData::Value(None))?;
+    let axes = DMat2::from_diagonal(DVec2::new(scale.x, scale.y));
     Ok(Raster {
         driver: "Terragen",
-        data_type: "Int16",
-        width,
-        height,
-        samples: last_row_first(&samples, width as usize)
-            .scaled(scale.z * height_scale / 65_536.0, scale.z * base),
-        meters_per_z: 1.0,
-        map_from_grid: DAffine2::from_mat2(DMat2::from_diagonal(DVec2::new(scale.x, scale.y))),
+        samples: raster.samples.scaled(scale.z * height_scale / 65_536.0, scale.z * base),
+        map_from_grid: DAffine2::from_mat2(axes),
         georeferenced: true,
-        crs: source.crs_beside()?,
-        nodata: None,
-        vertical_datum: None,
+        crs: file.crs()?,
+        ..raster
     })
-}
-
-fn last_row_first(samples: &Samples, width: usize) -> Samples {
-    let last = samples.len() / width - 1;
-    let turned = |index: usize| samples.get((last - index / width) * width + index % width) as f32;
-    Samples::F32((0..samples.len()).map(turned).collect())
 }
 
 struct Chunks {
     columns: u64,
     rows: u64,
-    scale: glam::DVec3,
+    scale: DVec3,
     /// Where the content of `ALTW` starts.
     heights_at: usize,
 }
 
 impl Chunks {
-    /// Walks the chunks up to the heights, which come last.
+    /// Reads the chunks up to the heights, which come last.
     fn read(bytes: &[u8]) -> Result<Self, DemErrorKind> {
-        let cut = || DemErrorKind::broken(FORMAT, "it ends before its heights");
+        let cut = || FORMAT.broken("it ends before its heights");
+        let fields = ByteFields::little_endian(bytes);
         let (mut side, mut columns, mut rows) = (None, None, None);
-        let mut scale = glam::DVec3::splat(DEFAULT_SCALE);
+        let mut scale = DVec3::splat(DEFAULT_SCALE);
         let mut at = START.len();
         loop {
             let name: [u8; 4] = bytes_at(bytes, at).ok_or_else(cut)?;
-            let inside = at + 4;
-            let count =
-                || bytes_at(bytes, inside).map(|pair| u64::from(u16::from_le_bytes(pair))).ok_or_else(cut);
-            at = inside + 4;
+            let content = at + 4;
+            let count = || fields.u16(content).map(u64::from).ok_or_else(cut);
+            at = content + 4;
             match &name {
                 b"SIZE" => side = Some(count()? + 1),
                 b"XPTS" => columns = Some(count()?),
                 b"YPTS" => rows = Some(count()?),
                 b"CRAD" | b"CRVM" => {}
                 b"SCAL" => {
-                    scale = scale_at(bytes, inside)?;
-                    at = inside + 12;
+                    scale = scale_at(fields, content)?;
+                    at = content + 12;
                 }
                 b"ALTW" => {
-                    let missing = || DemErrorKind::broken(FORMAT, "it does not say how many heights it has");
-                    let (columns, rows) = (columns.or(side), rows.or(side));
-                    let (columns, rows) = columns.zip(rows).ok_or_else(missing)?;
-                    return Ok(Self { columns, rows, scale, heights_at: inside });
+                    let size = columns.or(side).zip(rows.or(side));
+                    let missing = || FORMAT.broken("it does not state how many heights it has");
+                    let (columns, rows) = size.ok_or_else(missing)?;
+                    return Ok(Self { columns, rows, scale, heights_at: content });
                 }
-                b"EOF " => return Err(DemErrorKind::broken(FORMAT, "it has no heights")),
+                b"EOF " => return Err(FORMAT.broken("it has no heights")),
                 other => {
-                    let name = String::from_utf8_lossy(other).into_owned();
-                    let reason = format!("the chunk '{name}' at byte {} is not known", inside - 4);
-                    return Err(DemErrorKind::broken(FORMAT, reason));
+                    let (name, at) = (String::from_utf8_lossy(other), content - 4);
+                    return Err(FORMAT.broken(format!("the chunk '{name}' at byte {at} is not known")));
                 }
             }
         }
     }
 }
 
-fn scale_at(bytes: &[u8], at: usize) -> Result<glam::DVec3, DemErrorKind> {
-    let part = |index: usize| {
-        bytes_at(bytes, at + 4 * index).map_or(f64::NAN, |raw| f64::from(f32::from_le_bytes(raw)))
-    };
-    let scale = glam::DVec3::new(part(0), part(1), part(2));
+fn scale_at(fields: ByteFields, at: usize) -> Result<DVec3, DemErrorKind> {
+    let scale = DVec3::from([0, 4, 8].map(|offset| fields.f32(at + offset).map_or(f64::NAN, f64::from)));
     if scale.is_finite() && scale.min_element() > 0.0 {
         return Ok(scale);
     }
-    Err(DemErrorKind::broken(FORMAT, format!("its scale is {scale}, not of positive meters")))
+    Err(FORMAT.broken(format!("its scale is {scale}, not of positive meters")))
 }
 
 #[cfg(test)]

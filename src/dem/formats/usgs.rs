@@ -9,58 +9,59 @@
 //!
 //! Everything is text of fixed widths: whole numbers of 6, Fortran doubles of 24 (`0.5578D+06`). Profiles of a quad
 //! cut from UTM start and end where the quad does: they are set into the smallest raster around all, the rest is no
-//! data. Each profile starts at a multiple of 1024 bytes where record A took as many. Where the record says less
+//! data. Each profile starts at a multiple of 1024 bytes where record A takes as many. Where the record states less
 //! than is needed, this follows GDAL's reader.
 
 use glam::DVec2;
 
-use crate::dem::error::{DemErrorKind, check_size};
-use crate::dem::raster::{Raster, Samples, north_up};
+use crate::dem::error::DemErrorKind;
+use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::georef::utm_code;
+use crate::dem::limits::SizeClaim;
+use crate::dem::raster::{Raster, Samples, north_up_nodes};
 use crate::dem::read::DemFile;
+use crate::dem::units::{FOOT_M, US_SURVEY_FOOT_M};
 use crate::geom::crs::Crs;
 
-const FORMAT: &str = "USGS elevation model";
+/// The declaration of this format.
+pub static FORMAT: DemFormat = DemFormat {
+    name: "USGS elevation model",
+    extensions: &["dem"],
+    shared_extensions: &[],
+    recognition: Recognition::Content { matches: recognizes, start: "a record A" },
+    reader: read,
+    writer: None,
+};
 
-/// What stands for no data.
 const VOID: i64 = -32767;
 
 /// Bytes of record A, and the unit that profiles are padded to.
 const RECORD: usize = 1024;
 
-/// At least so many of a raster's heights, one in `SPARSEST`, must be in the file: quads lie askew in their raster,
-/// but fill most of it.
+/// At least one height in so many must be in the file: quads lie askew in their raster, but fill most of it.
 const SPARSEST: u64 = 4;
 
-/// Whether the content is a record A: by its level code and its coordinate system, as GDAL tells it.
-pub(crate) fn recognizes(bytes: &[u8]) -> bool {
+/// Whether the content is a record A: by its level code and its coordinate system, as in GDAL.
+fn recognizes(bytes: &[u8]) -> bool {
     let field = |at: usize| bytes.get(at..at + 6);
     let one_of = |at: usize, known: &[&[u8; 6]]| known.iter().any(|known| field(at) == Some(&known[..]));
     one_of(156, &[b"     0", b"     1", b"     2", b"     3", b" -9999"])
         && one_of(150, &[b"     1", b"     4"])
 }
 
-/// Reads a model.
-pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
-    let text = FixedText(source.bytes);
+fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
+    let text = FixedText(file.bytes);
     let header = UsgsHeader::read(&text)?;
     let samples = profiles(&text, &header)?;
-    let crs = match &source.hints.crs {
-        Some(crs) => Some(crs.clone()),
-        None => header.system()?,
-    };
-    let cell = header.cell;
     Ok(Raster {
         driver: "USGSDEM",
-        data_type: if header.is_float() { "Float32" } else { "Int16" },
-        width: header.columns,
-        height: header.rows,
-        samples,
-        meters_per_z: if header.in_feet { 0.3048 } else { 1.0 },
-        map_from_grid: north_up(header.first + DVec2::new(-0.5, 0.5) * cell, cell),
-        georeferenced: true,
-        crs,
+        // As in GDAL, whole meters of a resolution of a meter or more are integers.
+        data_type: if header.is_in_feet || header.resolution < 1.0 { "Float32" } else { "Int16" },
+        meters_per_z: if header.is_in_feet { FOOT_M } else { 1.0 },
+        crs: file.crs_or(|| header.system())?,
         nodata: Some(VOID as f64),
-        vertical_datum: header.vertical_datum,
+        vertical_datum: header.vertical_datum.map(str::to_owned),
+        ..Raster::new(header.columns, samples).placed(north_up_nodes(header.first, header.cell))
     })
 }
 
@@ -71,12 +72,14 @@ fn profiles(text: &FixedText, header: &UsgsHeader) -> Result<Samples, DemErrorKi
     let south = header.first.y - header.cell.y * f64::from(header.rows - 1);
     let mut at = header.profiles_at;
     for column in 0..columns {
-        let cut = || DemErrorKind::broken(FORMAT, format!("it ends in profile {} of {columns}", column + 1));
+        let cut = || FORMAT.broken(format!("it ends in profile {} of {columns}", column + 1));
         let mut whole = || text.whole(&mut at).ok_or_else(cut);
-        let (_row, _column, points, of) = (whole()?, whole()?, whole()?, whole()?);
-        if of != 1 {
-            let reason = format!("profile {} is {of} wide; such models are not in use", column + 1);
-            return Err(DemErrorKind::broken(FORMAT, reason));
+        let (_row, _column, points, width) = (whole()?, whole()?, whole()?, whole()?);
+        if width != 1 {
+            let profile = column + 1;
+            return Err(
+                FORMAT.broken(format!("profile {profile} is {width} wide; such models are not in use"))
+            );
         }
         let mut real = || text.real(&mut at, 24).ok_or_else(cut);
         let (_x, y, base, _low, _high) = (real()?, real()?, real()?, real()?, real()?);
@@ -85,9 +88,9 @@ fn profiles(text: &FixedText, header: &UsgsHeader) -> Result<Samples, DemErrorKi
             let height = text.whole(&mut at).ok_or_else(cut)?;
             let up = first + index as f64;
             if height != VOID && up >= 0.0 && up < rows as f64 {
-                let meters = (height as f64 * header.resolution + base) as f32;
-                values[(rows - 1 - up as usize) * columns + column] =
-                    if meters.is_finite() { meters } else { f32::NAN };
+                let height = (height as f64 * header.resolution + base) as f32;
+                let value = &mut values[(rows - 1 - up as usize) * columns + column];
+                *value = if height.is_finite() { height } else { f32::NAN };
             }
         }
         if header.profiles_at == RECORD {
@@ -103,127 +106,125 @@ struct UsgsHeader {
     /// The north-west height's position, in degrees or ground units.
     first: DVec2,
     cell: DVec2,
-    /// What positions in the file are multiplied by: a 3600th for seconds, 1 otherwise.
+    /// The factor of positions in the file: a 3600th for seconds, 1 otherwise.
     degrees: f64,
     resolution: f64,
-    in_feet: bool,
-    /// Coordinate system (0 geographic, 1 UTM, 2 state plane), its zone and its ground unit.
-    system: (i64, i64, i64),
+    is_in_feet: bool,
+    /// 0 geographic, 1 UTM, 2 state plane, -9999 unstated.
+    system: i64,
+    /// Of UTM or state plane; negative in the south.
+    zone: i64,
+    /// 1 US survey foot, 2 meter, 3 second.
+    ground_unit: i64,
     datum: i64,
-    vertical_datum: Option<String>,
+    vertical_datum: Option<&'static str>,
     profiles_at: usize,
 }
 
 impl UsgsHeader {
     fn read(text: &FixedText) -> Result<Self, DemErrorKind> {
-        let whole = |at: usize| text.whole(&mut { at }).unwrap_or(0);
         let real = |at: usize, width: usize, what: &str| {
-            let wrong =
-                || DemErrorKind::broken(FORMAT, format!("{what} at byte {at} of record A is no number"));
+            let wrong = || FORMAT.broken(format!("{what} at byte {at} of record A is no number"));
             text.real(&mut { at }, width).ok_or_else(wrong)
         };
         let profiles_at = text.profiles_at()?;
         let is_old = profiles_at == 864;
-        let system = (whole(156), text.field(162, 6).unwrap_or(0), text.field(528, 6).unwrap_or(0));
+        let system = text.whole(&mut { 156 }).unwrap_or(0);
         let cell = DVec2::new(real(816, 12, "the x resolution")?, real(828, 12, "the y resolution")?);
         let resolution = real(840, 12, "the z resolution")?;
         if !(cell.min_element() > 0.0 && resolution > 0.0) {
-            let reason = format!("its resolution is {} by {} by {resolution}", cell.x, cell.y);
-            return Err(DemErrorKind::broken(FORMAT, reason));
+            return Err(FORMAT.broken(format!("its resolution is {} by {} by {resolution}", cell.x, cell.y)));
         }
         let corner = |index: usize| -> Result<DVec2, DemErrorKind> {
             let at = 546 + 48 * index;
             Ok(DVec2::new(real(at, 24, "a corner")?, real(at + 24, 24, "a corner")?))
         };
         let corners = [corner(0)?, corner(1)?, corner(2)?, corner(3)?];
-        let in_map_units = matches!(system.0, 1 | 2 | -9999);
+        let is_in_map_units = matches!(system, 1 | 2 | -9999);
         let first_x = text.first_profile_x(profiles_at).unwrap_or(f64::NAN);
-        let (size, first) =
-            frame(text.field(858, 6).unwrap_or(0), cell, corners, in_map_units.then_some(first_x));
-        let samples = check_size(size, 6, (text.0.len(), SPARSEST));
-        samples?;
-        let degrees = if in_map_units { 1.0 } else { 1.0 / 3600.0 };
+        let Quad { first, rows } = Quad::new(cell, corners, is_in_map_units.then_some(first_x));
+        let columns = u64::try_from(text.field(858, 6).unwrap_or(0)).unwrap_or(0);
+        let claim = SizeClaim { expansion: SPARSEST, ..SizeClaim::new(columns, rows, 6) };
+        let size = claim.check(text.0.len())?;
+        let degrees = if is_in_map_units { 1.0 } else { 1.0 / 3600.0 };
         let first = first * degrees;
         if !first.is_finite() {
-            return Err(DemErrorKind::broken(FORMAT, "its corners are not finite"));
+            return Err(FORMAT.broken("its corners are not finite"));
         }
         Ok(Self {
-            columns: size.0 as u32,
-            rows: size.1 as u32,
+            columns: size.x,
+            rows: size.y,
             first,
             cell: cell * degrees,
             degrees,
             resolution,
-            in_feet: text.field(534, 6) == Some(1),
+            is_in_feet: text.field(534, 6) == Some(1),
             system,
+            zone: text.field(162, 6).unwrap_or(0),
+            ground_unit: text.field(528, 6).unwrap_or(0),
             datum: if is_old { 1 } else { text.field(890, 2).unwrap_or(0) },
-            vertical_datum: if is_old { None } else { vertical_datum(text.field(888, 2)) },
+            vertical_datum: vertical_datum(text.field(888, 2).filter(|_| !is_old)),
             profiles_at,
         })
     }
 
-    /// As GDAL has it: whole meters of a resolution of a meter or more are integers.
-    fn is_float(&self) -> bool {
-        self.in_feet || self.resolution < 1.0
-    }
-
     fn system(&self) -> Result<Option<Crs>, DemErrorKind> {
-        let (system, zone, unit) = self.system;
-        let number = zone.unsigned_abs() as u32;
-        let meters = if unit == 1 { 1200.0 / 3937.0 } else { 1.0 };
-        let code = match (system, self.datum, zone < 0) {
-            (-9999, ..) => return Ok(None),
-            (0, 2, _) => 4322,
-            (0, 3, _) => 4326,
-            (0, 4, _) => 4269,
-            (0, ..) => 4267,
-            (1, ..) if !(1..=60).contains(&number) => 0,
-            (1, 2, false) => 32200 + number,
-            (1, 2, true) => 32300 + number,
-            (1, 3, false) => 32600 + number,
-            (1, 3, true) => 32700 + number,
-            (1, 4, false) => 26900 + number,
-            (1, _, false) => 26700 + number,
-            _ => 0,
+        let geographic = match self.datum {
+            2 => 4322,
+            3 => 4326,
+            4 => 4269,
+            _ => 4267,
         };
-        match (system, code) {
-            (0, code) => Crs::from_epsg(code).map(Some).map_err(DemErrorKind::Crs),
-            (_, 0) => Err(DemErrorKind::Georeference {
-                reason: match system {
-                    2 => format!("it is in state plane zone {zone}"),
-                    _ => format!(
-                        "coordinate system {system}, zone {zone} on datum {} is not known",
-                        self.datum
-                    ),
-                },
-                remedy: "state crs under [terrain]",
-            }),
-            (_, code) => Crs::from_epsg_in(code, meters).map(Some).map_err(DemErrorKind::Crs),
+        let code = match self.system {
+            -9999 => return Ok(None),
+            0 => Some(geographic),
+            1 => utm_code(geographic, self.zone),
+            _ => None,
+        };
+        let code = code.ok_or_else(|| DemErrorKind::Georeference {
+            reason: match self.system {
+                2 => format!("it is in state plane zone {}", self.zone),
+                system => {
+                    format!(
+                        "coordinate system {system}, zone {} on datum {} is not known",
+                        self.zone, self.datum
+                    )
+                }
+            },
+            remedy: "state crs under [terrain]",
+        })?;
+        let meters = if self.ground_unit == 1 { US_SURVEY_FOOT_M } else { 1.0 };
+        Ok(Some(Crs::from_epsg_in(code, meters)?))
+    }
+}
+
+/// The raster around a quad.
+struct Quad {
+    /// The position of the north-west height, in the file's units.
+    first: DVec2,
+    rows: u64,
+}
+
+impl Quad {
+    /// Corners come in the order south-west, north-west, north-east, south-east. In map units (`first_x` is given) the
+    /// quad lies askew: y runs over whole multiples of the resolution, x from the first profile on.
+    fn new(cell: DVec2, corners: [DVec2; 4], first_x: Option<f64>) -> Self {
+        let mut south = corners[0].y.min(corners[3].y);
+        let mut north = corners[1].y.max(corners[2].y);
+        if first_x.is_some() {
+            south = (south / cell.y).floor() * cell.y;
+            north = (north / cell.y).ceil() * cell.y;
         }
+        let west = first_x.unwrap_or(corners[0].x.min(corners[1].x));
+        Self { first: DVec2::new(west, north), rows: ((north - south) / cell.y + 1.5) as u64 }
     }
 }
 
-/// Columns and rows, and the position of the north-west height, in the file's units.
-///
-/// Corners stand in the order south-west, north-west, north-east, south-east. In map units (`first_x` is given) the
-/// quad lies askew: y runs over whole multiples of the resolution, x from the first profile on.
-fn frame(columns: i64, cell: DVec2, corners: [DVec2; 4], first_x: Option<f64>) -> ((u64, u64), DVec2) {
-    let mut south = corners[0].y.min(corners[3].y);
-    let mut north = corners[1].y.max(corners[2].y);
-    if first_x.is_some() {
-        south = (south / cell.y).floor() * cell.y;
-        north = (north / cell.y).ceil() * cell.y;
-    }
-    let west = first_x.unwrap_or(corners[0].x.min(corners[1].x));
-    let rows = ((north - south) / cell.y + 1.5) as u64;
-    ((u64::try_from(columns).unwrap_or(0), rows), DVec2::new(west, north))
-}
-
-fn vertical_datum(code: Option<i64>) -> Option<String> {
+fn vertical_datum(code: Option<i64>) -> Option<&'static str> {
     match code? {
-        1 => Some("local mean sea level".into()),
-        2 => Some("NGVD29".into()),
-        3 => Some("NAVD88".into()),
+        1 => Some("local mean sea level"),
+        2 => Some("NGVD29"),
+        3 => Some("NAVD88"),
         _ => None,
     }
 }
@@ -232,7 +233,7 @@ fn vertical_datum(code: Option<i64>) -> Option<String> {
 struct FixedText<'a>(&'a [u8]);
 
 impl FixedText<'_> {
-    /// The next whole number from `at` on, of up to six characters, and `at` behind it.
+    /// The next whole number from `at` on, of up to six characters; moves `at` behind it.
     fn whole(&self, at: &mut usize) -> Option<i64> {
         let rest = self.0.get(*at..)?;
         let start = rest.iter().position(|byte| !byte.is_ascii_whitespace())?;
@@ -244,7 +245,7 @@ impl FixedText<'_> {
         std::str::from_utf8(&word[..length]).ok()?.parse().ok()
     }
 
-    /// The number in `width` characters at `at`, a Fortran exponent of `D` among them, and `at` behind it.
+    /// The number in `width` characters at `at`, also with a Fortran exponent of `D`; moves `at` behind it.
     fn real(&self, at: &mut usize, width: usize) -> Option<f64> {
         let field = std::str::from_utf8(self.0.get(*at..*at + width)?).ok()?;
         *at += width;
@@ -257,7 +258,7 @@ impl FixedText<'_> {
         std::str::from_utf8(self.0.get(at..at + width)?).ok()?.trim().parse().ok()
     }
 
-    /// Where the first profile starts: the first place known that says row 1, column 1.
+    /// Where the first profile starts: the first place known that states row 1, column 1.
     fn profiles_at(&self) -> Result<usize, DemErrorKind> {
         let pair = |mut at: usize| (self.whole(&mut at), self.whole(&mut at), at);
         if let (Some(1), Some(1), ..RECORD) = pair(864) {
@@ -269,7 +270,7 @@ impl FixedText<'_> {
             return Ok(if ends(1) && ends(2) { RECORD + 1 } else { RECORD });
         }
         let found = [893, 918].into_iter().find(|&at| matches!(pair(at), (Some(1), Some(1), _)));
-        found.ok_or_else(|| DemErrorKind::broken(FORMAT, "no profile says that it is row 1, column 1"))
+        found.ok_or_else(|| FORMAT.broken("no profile states that it is row 1, column 1"))
     }
 
     /// The x that the first profile states.

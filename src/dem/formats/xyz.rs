@@ -1,193 +1,84 @@
-//! Grids written as text, a point a line (`.xyz`, `.csv`, `.txt`): `x y z`, as GDAL's XYZ driver reads them.
+//! Grids as text, a point a line (`.xyz`, `.csv`, `.txt`): `x y z`, as GDAL's XYZ driver reads them.
 //!
-//! Read twice: first the bounds and the steps between neighboring lines, the small ones of which are the cell, since
-//! lines run along rows or columns; then every point is set on its node. Points in any order, and nodes without a point (no
-//! data), are taken; points off the nodes are not: they are scattered, and want interpolating.
-//!
-//! Numbers stand apart by blanks, tabs, semicolons or commas; a first line of names says which are x, y and z, and
-//! lines that start with `#` are passed over.
+//! Two passes: the first finds the bounds and the steps between neighboring lines, the small ones of which are the
+//! cell, since lines run along rows or columns; the second sets every point on its node. Points in any order and nodes
+//! without a point (no data) are taken; points off the nodes are scattered and must be interpolated instead.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
-use crate::dem::error::{DemErrorKind, MOST_SAMPLES};
-use crate::dem::formats::ascii::number;
-use crate::dem::raster::{Raster, Samples, north_up};
+use crate::dem::error::DemErrorKind;
+use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::limits::MOST_SAMPLES;
+use crate::dem::point_text::PointText;
+use crate::dem::raster::{Raster, Samples, north_up_nodes};
 use crate::dem::read::DemFile;
 
-const FORMAT: &str = "XYZ grid";
-
-/// The extensions that such grids have.
-pub(crate) const EXTENSIONS: [&str; 4] = ["xyz", "csv", "txt", "tsv"];
+/// The declaration of this format.
+pub static FORMAT: DemFormat = DemFormat {
+    name: "XYZ grid",
+    extensions: &["xyz"],
+    shared_extensions: &["csv", "txt", "tsv"],
+    recognition: Recognition::Extension,
+    reader: read,
+    writer: None,
+};
 
 /// How far from its node a point may lie, in cells: rounded decimals of degrees are a few thousandths off.
 const OFF_NODE: f64 = 0.01;
 
-/// At least one node in so many must have a point. Scattered points at whole meters stand on nodes as well, but on
+/// At least one node in so many must have a point. Scattered points at whole meters lie on nodes as well, but on
 /// few of them; a catchment cut from a grid fills a third of its rectangle.
 const SPARSEST: u64 = 5;
 
-/// Steps that are looked at for the cell: many rows' worth.
+/// The steps that the cell is found from: many rows' worth.
 const MOST_STEPS: usize = 1 << 16;
 
-/// The remedy for points that are no grid.
-const SCATTERED: &str = "make a grid of them with: sandtable dem grid POINTS OUT.tif --cell METERS";
-
-/// Reads a grid; its coordinate system comes from a `.prj` companion.
-pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
-    let text = std::str::from_utf8(source.bytes).map_err(|error| {
-        DemErrorKind::broken(FORMAT, format!("byte {} is not UTF-8 text", error.valid_up_to()))
-    })?;
-    let text = XyzLines::new(text);
-    let survey = XyzSurvey::of(&text)?;
-    let lattice = survey.lattice()?;
-    let XyzGrid { values, whole, low, high } = place(&text, &lattice)?;
-    let corner = DVec2::new(lattice.min.x, lattice.max.y) + DVec2::new(-0.5, 0.5) * lattice.cell;
+fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
+    let text = std::str::from_utf8(file.bytes)
+        .map_err(|error| FORMAT.broken(format!("byte {} is not UTF-8 text", error.valid_up_to())))?;
+    let text = PointText::new(text);
+    let lattice = XyzLattice::find(&text)?;
+    let XyzGrid { values, are_whole, low, high } = XyzGrid::fill(&text, &lattice)?;
+    let north_west = DVec2::new(lattice.min.x, lattice.max.y);
     Ok(Raster {
         driver: "XYZ",
-        data_type: match (whole, low, high) {
+        data_type: match (are_whole, low, high) {
             (true, 0.0.., ..=255.0) => "Byte",
             (true, -32_768.0.., ..=32_767.0) => "Int16",
             (true, ..) => "Int32",
             _ => "Float32",
         },
-        width: lattice.columns as u32,
-        height: lattice.rows as u32,
-        samples: Samples::F32(values),
-        meters_per_z: 1.0,
-        map_from_grid: north_up(corner, lattice.cell),
-        georeferenced: true,
-        crs: source.crs_beside()?,
-        nodata: None,
-        vertical_datum: None,
+        crs: file.crs()?,
+        ..Raster::new(lattice.columns as u32, Samples::F32(values))
+            .placed(north_up_nodes(north_west, lattice.cell))
     })
 }
 
-/// A text of points.
-struct XyzLines<'a> {
-    text: &'a str,
-    /// Lines before the first point.
-    skip: usize,
-    /// Which of a line's numbers are x, y and z.
-    columns: [usize; 3],
+fn points(text: &PointText) -> impl Iterator<Item = Result<DVec3, DemErrorKind>> {
+    let columns = [0, 1, 2].map(|index| text.columns[index].unwrap_or(index));
+    text.lines().map(move |line| {
+        let wrong = || FORMAT.broken(format!("line {} is '{}', not x, y and z", line.number, line.quote()));
+        line.point(columns).ok_or_else(wrong)
+    })
 }
 
-impl<'a> XyzLines<'a> {
-    fn new(text: &'a str) -> Self {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let (mut skip, mut columns) = (0, [0, 1, 2]);
-        let first = text.lines().enumerate().find(|(_, line)| is_content(line));
-        if let Some((index, line)) =
-            first.filter(|(_, line)| words(line).any(|word| number(word.as_bytes()).is_none()))
-        {
-            skip = index + 1;
-            let names: Vec<String> =
-                words(line).map(|name| name.trim_matches('"').to_ascii_lowercase()).collect();
-            let named = |known: &[&str]| names.iter().position(|name| known.contains(&name.as_str()));
-            columns = [
-                named(&["x", "lon", "long", "longitude", "east", "easting"]).unwrap_or(0),
-                named(&["y", "lat", "latitude", "north", "northing"]).unwrap_or(1),
-                named(&["z", "alt", "altitude", "height", "elevation", "elev"]).unwrap_or(2),
-            ];
+/// The smallest steps between neighboring lines along one axis, but for 0.
+#[derive(Default)]
+struct Steps(Vec<f64>);
+
+impl Steps {
+    fn add(&mut self, step: f64) {
+        if step > 0.0 && self.0.len() < MOST_STEPS {
+            self.0.push(step);
         }
-        Self { text, skip, columns }
     }
 
-    /// The points with the number of their line, from 1.
-    fn points(&self) -> impl Iterator<Item = Result<(DVec2, f64), DemErrorKind>> {
-        let lines = self.text.lines().enumerate().skip(self.skip).filter(|(_, line)| is_content(line));
-        lines.map(|(index, line)| {
-            let wrong = || {
-                let shown: String = line.chars().take(40).collect();
-                DemErrorKind::broken(FORMAT, format!("line {} is '{shown}', not x, y and z", index + 1))
-            };
-            let [x, y, z] =
-                self.columns.map(|column| words(line).nth(column).and_then(|word| number(word.as_bytes())));
-            let (Some(x), Some(y), Some(z)) = (x, y, z) else { return Err(wrong()) };
-            let at = DVec2::new(x, y);
-            if at.is_finite() { Ok((at, z)) } else { Err(wrong()) }
-        })
+    /// The step that a tenth of all are shorter than; 0 where there is none. Steps are whole multiples of the cell,
+    /// longer ones where rows end and nodes are left out; the very shortest may be a slip of the last decimal.
+    fn small(mut self) -> f64 {
+        self.0.sort_by(f64::total_cmp);
+        self.0.get(self.0.len() / 10).copied().unwrap_or(0.0)
     }
-}
-
-fn is_content(line: &str) -> bool {
-    let line = line.trim();
-    !line.is_empty() && !line.starts_with('#')
-}
-
-/// The parts of a line: between semicolons, or blanks, or else commas, which elsewhere may be decimal.
-fn words(line: &str) -> impl Iterator<Item = &str> {
-    let by_semicolons = line.contains(';');
-    let by_blanks = !by_semicolons && line.split_ascii_whitespace().nth(2).is_some();
-    let is_between = move |letter: char| match (by_semicolons, by_blanks) {
-        (true, _) => letter == ';',
-        (_, true) => letter.is_ascii_whitespace(),
-        _ => letter == ',',
-    };
-    let strip = move |word: &'_ str| if by_blanks { word.trim_end_matches(',').len() } else { word.len() };
-    line.split(is_between)
-        .map(move |word| word[..strip(word)].trim())
-        .filter(move |word| !by_blanks || !word.is_empty())
-}
-
-/// What the first reading tells.
-struct XyzSurvey {
-    points: u64,
-    min: DVec2,
-    max: DVec2,
-    step: DVec2,
-}
-
-impl XyzSurvey {
-    fn of(text: &XyzLines) -> Result<Self, DemErrorKind> {
-        let (mut points, mut min, mut max) = (0u64, DVec2::INFINITY, DVec2::NEG_INFINITY);
-        let mut before: Option<DVec2> = None;
-        let mut steps: [Vec<f64>; 2] = [Vec::new(), Vec::new()];
-        for point in text.points() {
-            let (at, _) = point?;
-            points += 1;
-            (min, max) = (min.min(at), max.max(at));
-            let step = before.map_or(DVec2::ZERO, |before| (at - before).abs());
-            for (steps, step) in steps.iter_mut().zip(step.to_array()) {
-                if step > 0.0 && steps.len() < MOST_STEPS {
-                    steps.push(step);
-                }
-            }
-            before = Some(at);
-        }
-        let [x, y] = steps.map(small_step);
-        Ok(Self { points, min, max, step: DVec2::new(x, y) })
-    }
-
-    fn lattice(&self) -> Result<XyzLattice, DemErrorKind> {
-        if self.points == 0 {
-            return Err(DemErrorKind::broken(FORMAT, "it holds no point"));
-        }
-        if self.step.min_element() == 0.0 {
-            return Err(scattered("all of its points stand in one line".into()));
-        }
-        let sides = ((self.max - self.min) / self.step).round();
-        let nodes = (sides.x + 1.0) * (sides.y + 1.0);
-        let (columns, rows) = (sides.x as u64 + 1, sides.y as u64 + 1);
-        if nodes > MOST_SAMPLES as f64 || nodes > (self.points.saturating_mul(SPARSEST)) as f64 {
-            let step = self.step;
-            let reason =
-                format!("{} points on {columns} x {rows} nodes, {} by {} apart", self.points, step.x, step.y);
-            return Err(scattered(reason));
-        }
-        let cell = (self.max - self.min) / sides;
-        Ok(XyzLattice { columns, rows, min: self.min, max: self.max, cell })
-    }
-}
-
-/// The step that a tenth of all are shorter than; 0 where there is none. Steps are whole multiples of the cell, longer
-/// ones where rows end and where nodes are left out; the very shortest may be a slip of the last decimal.
-fn small_step(mut steps: Vec<f64>) -> f64 {
-    steps.sort_by(f64::total_cmp);
-    steps.get(steps.len() / 10).copied().unwrap_or(0.0)
-}
-
-fn scattered(found: String) -> DemErrorKind {
-    DemErrorKind::Georeference { reason: format!("its points are no grid: {found}"), remedy: SCATTERED }
 }
 
 struct XyzLattice {
@@ -198,41 +89,79 @@ struct XyzLattice {
     cell: DVec2,
 }
 
-/// What the second reading gives.
+impl XyzLattice {
+    /// The first pass.
+    fn find(text: &PointText) -> Result<Self, DemErrorKind> {
+        let (mut count, mut min, mut max) = (0u64, DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let (mut x_steps, mut y_steps) = (Steps::default(), Steps::default());
+        let mut before: Option<DVec2> = None;
+        for point in points(text) {
+            let at = point?.truncate();
+            count += 1;
+            (min, max) = (min.min(at), max.max(at));
+            let step = before.map_or(DVec2::ZERO, |before| (at - before).abs());
+            x_steps.add(step.x);
+            y_steps.add(step.y);
+            before = Some(at);
+        }
+        let step = DVec2::new(x_steps.small(), y_steps.small());
+        if count == 0 {
+            return Err(FORMAT.broken("it holds no point"));
+        }
+        if step.min_element() == 0.0 {
+            return Err(scattered("all of its points lie on one line".into()));
+        }
+        let sides = ((max - min) / step).round();
+        let nodes = (sides.x + 1.0) * (sides.y + 1.0);
+        let (columns, rows) = (sides.x as u64 + 1, sides.y as u64 + 1);
+        if nodes > MOST_SAMPLES as f64 || nodes > count.saturating_mul(SPARSEST) as f64 {
+            let apart = format!("{} by {} apart", step.x, step.y);
+            return Err(scattered(format!("{count} points on {columns} x {rows} nodes, {apart}")));
+        }
+        Ok(Self { columns, rows, min, max, cell: (max - min) / sides })
+    }
+}
+
+fn scattered(found: String) -> DemErrorKind {
+    DemErrorKind::Georeference {
+        reason: format!("its points are no grid: {found}"),
+        remedy: "make a grid of them with: sandtable dem grid POINTS OUT.tif --cell METERS",
+    }
+}
+
 struct XyzGrid {
     values: Vec<f32>,
-    whole: bool,
+    are_whole: bool,
     low: f64,
     high: f64,
 }
 
-fn place(text: &XyzLines, lattice: &XyzLattice) -> Result<XyzGrid, DemErrorKind> {
-    let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
-    let mut placed = XyzGrid {
-        values: vec![f32::NAN; columns * rows],
-        whole: true,
-        low: f64::INFINITY,
-        high: f64::NEG_INFINITY,
-    };
-    for point in text.points() {
-        let (at, height) = point?;
-        let grid = DVec2::new(at.x - lattice.min.x, lattice.max.y - at.y) / lattice.cell;
-        let node = grid.round();
-        if (grid - node).abs().max_element() > OFF_NODE {
-            return Err(scattered(format!("({}, {}) lies between nodes that others stand on", at.x, at.y)));
+impl XyzGrid {
+    /// The second pass.
+    fn fill(text: &PointText, lattice: &XyzLattice) -> Result<Self, DemErrorKind> {
+        let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
+        let values = vec![f32::NAN; columns * rows];
+        let mut grid = Self { values, are_whole: true, low: f64::INFINITY, high: f64::NEG_INFINITY };
+        for point in points(text) {
+            let DVec3 { x, y, z } = point?;
+            let at = DVec2::new(x - lattice.min.x, lattice.max.y - y) / lattice.cell;
+            let node = at.round();
+            if (at - node).abs().max_element() > OFF_NODE {
+                return Err(scattered(format!("({x}, {y}) lies between the nodes of others")));
+            }
+            let index = (node.y as usize).min(rows - 1) * columns + (node.x as usize).min(columns - 1);
+            let old = f64::from(grid.values[index]);
+            if old.is_finite() && old != f64::from(z as f32) {
+                return Err(scattered(format!("({x}, {y}) has the heights {old} and {z}")));
+            }
+            if z.is_finite() {
+                grid.values[index] = z as f32;
+                grid.are_whole &= z.fract() == 0.0;
+                (grid.low, grid.high) = (grid.low.min(z), grid.high.max(z));
+            }
         }
-        let index = (node.y as usize).min(rows - 1) * columns + (node.x as usize).min(columns - 1);
-        let old = f64::from(placed.values[index]);
-        if old.is_finite() && old != f64::from(height as f32) {
-            return Err(scattered(format!("({}, {}) has the heights {old} and {height}", at.x, at.y)));
-        }
-        if height.is_finite() {
-            placed.values[index] = height as f32;
-            placed.whole &= height.fract() == 0.0;
-            (placed.low, placed.high) = (placed.low.min(height), placed.high.max(height));
-        }
+        Ok(grid)
     }
-    Ok(placed)
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! Breaklines: as edges of a triangulation, and as points along them.
 //!
-//! A breakline whose way is free becomes edges. Where it crosses another away from their vertices, both are split
-//! there, at the mean of the two heights; how often and how far the two disagreed is told, because a stream that
-//! passes under a road is no breakline to cross.
+//! A breakline that crosses no other becomes edges. Where it crosses another away from their vertices, both are split
+//! there, at the mean of the two heights. How often and how far the two disagree is reported: a stream that passes under
+//! a road is no breakline to cross.
 
 use glam::{DVec2, DVec3};
 use spade::Triangulation;
@@ -11,15 +11,15 @@ use spade::handles::FixedVertexHandle;
 use crate::dem::gridding::sites::Sites;
 use crate::dem::gridding::tin::{Constrained, TinVertex, vertex_of_site};
 
-/// Points along one segment of a breakline at most: a segment that spans the largest grid has fewer half cells.
+/// The most points along one segment of a breakline: a segment across the largest grid has fewer half cells.
 const MOST_ALONG: f64 = 1e6;
 
-/// Where breaklines crossed each other away from their vertices.
+/// The crossings of breaklines away from their vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Crossings {
-    /// How many places.
+    /// The number of crossings.
     pub count: usize,
-    /// The most that two breaklines were apart in height where they crossed, in the points' vertical unit.
+    /// The greatest difference in height of two breaklines where they cross, in the points' vertical unit.
     pub largest_gap: f64,
 }
 
@@ -33,7 +33,7 @@ pub(super) fn constrain(web: &mut Constrained, sites: &Sites, lines: &[Vec<DVec3
         if from == to {
             continue;
         }
-        // Asked first: adding an edge that crosses another panics.
+        // Adding an edge that crosses another panics.
         if web.can_add_constraint(from, to) {
             web.add_constraint(from, to);
         } else {
@@ -43,7 +43,7 @@ pub(super) fn constrain(web: &mut Constrained, sites: &Sites, lines: &[Vec<DVec3
     crossings
 }
 
-/// A segment with heights, for the place where another crosses it.
+/// A segment with heights, for the point where another crosses it.
 #[derive(Clone, Copy)]
 struct BreaklineSegment {
     from: DVec3,
@@ -55,11 +55,11 @@ impl BreaklineSegment {
         Self { from: from.at.extend(from.z), to: to.at.extend(to.z) }
     }
 
-    /// Its height nearest to `at`, and the squared distance from it.
+    /// Its height at its point nearest to `at`, and the squared distance of that point.
     fn height(&self, at: DVec2) -> (f64, f64) {
-        let (from, way) = (self.from.truncate(), self.to.truncate() - self.from.truncate());
-        let part = ((at - from).dot(way) / way.length_squared()).clamp(0.0, 1.0);
-        (self.from.z + part * (self.to.z - self.from.z), (from + way * part).distance_squared(at))
+        let (from, along) = (self.from.truncate(), self.to.truncate() - self.from.truncate());
+        let part = ((at - from).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+        (self.from.z + part * (self.to.z - self.from.z), (from + along * part).distance_squared(at))
     }
 }
 
@@ -87,7 +87,7 @@ fn split(web: &mut Constrained, from: FixedVertexHandle, to: FixedVertexHandle, 
     }
 }
 
-/// The vertices of a breakline and points between them at most `apart` apart.
+/// The vertices of a breakline and points between them, at most `apart` apart.
 pub(super) fn points_along(line: &[DVec3], apart: f64) -> Vec<DVec3> {
     let mut points: Vec<DVec3> = line.first().copied().into_iter().collect();
     for ends in line.windows(2) {

@@ -1,32 +1,35 @@
-//! Which cells lie between the points: the convex hull of the sites (Andrew 1979), cut by the rows of cells.
+//! The cells between the points: the convex hull of the sites, cut by the rows of cells.
+
+use std::ops::Range;
 
 use glam::DVec2;
 
 use crate::dem::gridding::linear::{CellCenters, crossing};
 use crate::dem::gridding::sites::Sites;
+use crate::geom::convex;
 
-/// The corners of the convex hull, counter-clockwise, none between two others on a side.
+/// The corners of the convex hull, counter-clockwise; the ends of the line where all sites lie on one.
 pub(super) struct Hull {
     corners: Vec<DVec2>,
 }
 
 impl Hull {
-    /// The hull of the sites, which are sorted.
+    /// The hull of the sites.
     pub fn new(sites: &Sites) -> Self {
-        let mut corners = chain(sites.at.iter().copied());
-        corners.pop();
-        let back = chain(sites.at.iter().rev().copied());
-        corners.extend(&back[..back.len().saturating_sub(1)]);
+        let mut corners = convex::hull(&sites.at);
+        if let (true, [first, .., last]) = (corners.is_empty(), &sites.at[..]) {
+            corners = vec![*first, *last];
+        }
         Self { corners }
     }
 
-    /// Whether it holds no area: all sites on one line.
+    /// Whether it holds no area.
     pub fn is_flat(&self) -> bool {
         self.corners.len() < 3
     }
 
-    /// For each row of cells, the columns whose centers lie inside or on the border; empty for rows that pass by.
-    pub fn columns(&self, cells: &CellCenters) -> Vec<std::ops::Range<usize>> {
+    /// For each row of cells, the columns whose centers lie inside or on the border; empty for rows outside.
+    pub fn columns(&self, cells: &CellCenters) -> Vec<Range<usize>> {
         let mut spans = vec![(f64::INFINITY, f64::NEG_INFINITY); cells.y.len()];
         for (index, &from) in self.corners.iter().enumerate() {
             let to = self.corners[(index + 1) % self.corners.len()];
@@ -40,27 +43,12 @@ impl Hull {
     }
 }
 
-/// The corners that a walk along sorted sites turns left at, from its first site to its last.
-fn chain(sites: impl Iterator<Item = DVec2>) -> Vec<DVec2> {
-    let mut corners: Vec<DVec2> = Vec::new();
-    for site in sites {
-        while let [.., before, last] = corners[..] {
-            if (last - before).perp_dot(site - before) > 0.0 {
-                break;
-            }
-            corners.pop();
-        }
-        corners.push(site);
-    }
-    corners
-}
-
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::dem::gridding::frame::CellGrid;
+    use crate::dem::cell_grid::CellGrid;
     use crate::geom::rect::Rect;
 
     fn hull(points: &[(f64, f64)]) -> (Hull, Sites) {
@@ -83,7 +71,7 @@ mod tests {
     fn centers_on_the_border_lie_inside() {
         let (hull, sites) = hull(&[(0.5, 0.5), (4.5, 0.5), (0.5, 4.5)]);
         let extent = Rect { min: DVec2::ZERO, max: DVec2::splat(5.0) };
-        let cells = CellCenters::new(&CellGrid::around(extent, 1.0).expect("a frame"), sites.origin);
+        let cells = CellCenters::new(&CellGrid::around(extent, 1.0).expect("a grid"), sites.origin);
         assert_eq!(hull.columns(&cells), [0..1, 0..2, 0..3, 0..4, 0..5]);
     }
 }

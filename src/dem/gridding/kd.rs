@@ -1,4 +1,4 @@
-//! The sites nearest to a place: a k-d tree (Bentley 1975) over halves, searched by the offsets to its planes (Arya
+//! The sites nearest to a position: a k-d tree (Bentley 1975) over halves, searched by the offsets to its planes (Arya
 //! and Mount 1993).
 //!
 //! A grid of buckets is as fast where points lie evenly. Surveys do not: a bucket sized for the mean holds half the
@@ -12,13 +12,13 @@ use std::cmp::Ordering;
 
 use glam::DVec2;
 
-/// Sites in a leaf at most: below some eight, walking the tree costs more than looking at all of a leaf.
+/// Sites in a leaf at most: below some eight, walking the tree costs more than comparing all of a leaf.
 const LEAF: usize = 8;
 
 /// Subtrees of more sites are built by two threads.
 const PARALLEL: usize = 16_384;
 
-/// A line that parts a subtree: no site of its left half lies above it, none of its right half below.
+/// A line that splits a subtree: no site of its left half lies above it, none of its right half below.
 #[derive(Clone, Copy, Debug, Default)]
 struct SplitLine {
     axis: usize,
@@ -36,7 +36,7 @@ pub(super) struct KdTree {
 /// A site and its squared distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Near {
-    /// From the place that was asked about.
+    /// From the position of the search.
     pub distance2: f64,
     /// The site.
     pub site: u32,
@@ -44,20 +44,30 @@ pub(super) struct Near {
 
 impl Near {
     /// Nearer first; of two equally far the one that comes first among the sites.
-    fn order(&self, other: &Self) -> Ordering {
+    pub fn order(&self, other: &Self) -> Ordering {
         self.distance2.total_cmp(&other.distance2).then(self.site.cmp(&other.site))
     }
 }
 
-/// How many sites more than wanted are gathered before the farthest are thrown out. Keeping them sorted all the time
-/// costs more than the search; a search that starts with a good bound never throws any out before its end.
+/// A search of the tree.
+trait Search {
+    /// Whether it needs sites of a box whose offset from the position is `offset` along each axis; 0 along an axis where
+    /// the box is not known to lie on one side.
+    fn needs(&self, offset: DVec2) -> bool;
+
+    /// Takes a site.
+    fn take(&mut self, at: DVec2, site: u32);
+}
+
+/// How many sites more than wanted are gathered before the farthest are dropped. Keeping them sorted all the time
+/// costs more than the search; a search that starts with a good bound never drops any before its end.
 const SPARE: usize = 32;
 
-/// The sites that a search finds.
+/// The nearest sites of a search.
 pub(super) struct NearestSites {
     near: Vec<Near>,
     wanted: usize,
-    /// Nothing farther is wanted.
+    /// Nothing farther is needed.
     limit2: f64,
 }
 
@@ -67,7 +77,7 @@ impl NearestSites {
         Self { near: Vec::new(), wanted, limit2: 0.0 }
     }
 
-    /// What the last search found, nearest first.
+    /// The result of the last search, nearest first.
     pub fn near(&self) -> &[Near] {
         &self.near
     }
@@ -77,15 +87,15 @@ impl NearestSites {
         self.near.clear();
         self.limit2 = limit2;
         for &(at, site) in candidates {
-            let distance2 = (at - q).length_squared();
-            if distance2 <= self.limit2 {
-                self.take(Near { distance2, site });
-            }
+            self.offer(Near { distance2: (at - q).length_squared(), site });
         }
         self.finish();
     }
 
-    fn take(&mut self, near: Near) {
+    fn offer(&mut self, near: Near) {
+        if near.distance2 > self.limit2 {
+            return;
+        }
         self.near.push(near);
         if self.near.len() == self.wanted + SPARE {
             let (_, last, _) = self.near.select_nth_unstable_by(self.wanted - 1, Near::order);
@@ -100,9 +110,76 @@ impl NearestSites {
     }
 }
 
+/// A search of the nearest sites to `q`.
+struct NearestSearch<'a> {
+    q: DVec2,
+    found: &'a mut NearestSites,
+}
+
+impl Search for NearestSearch<'_> {
+    fn needs(&self, offset: DVec2) -> bool {
+        // Rounding only ever lowers it: each step is rounded as a site's own distance is, from a smaller number.
+        offset.length_squared() <= self.found.limit2
+    }
+
+    fn take(&mut self, at: DVec2, site: u32) {
+        self.found.offer(Near { distance2: (at - self.q).length_squared(), site });
+    }
+}
+
+/// A search of all sites at most as far from `q` as the root of `limit2`; of more than `most` it gathers only some.
+struct RangeSearch<'a> {
+    q: DVec2,
+    limit2: f64,
+    most: usize,
+    gathered: &'a mut Vec<(DVec2, u32)>,
+}
+
+impl Search for RangeSearch<'_> {
+    fn needs(&self, offset: DVec2) -> bool {
+        offset.length_squared() <= self.limit2 && self.gathered.len() <= self.most
+    }
+
+    fn take(&mut self, at: DVec2, site: u32) {
+        if (at - self.q).length_squared() <= self.limit2 {
+            self.gathered.push((at, site));
+        }
+    }
+}
+
 /// The nearest site of each quadrant: south-west, south-east, north-west, north-east. A site due east counts as
 /// north-east, one due north as north-east, one due west as north-west and one due south as south-east.
-pub(super) type Quadrants = [Option<(f64, u32)>; 4];
+pub(super) type Quadrants = [Option<Near>; 4];
+
+/// A search of the nearest site of each quadrant around `q`.
+struct QuadrantSearch {
+    q: DVec2,
+    found: Quadrants,
+}
+
+impl Search for QuadrantSearch {
+    fn needs(&self, offset: DVec2) -> bool {
+        let distance2 = offset.length_squared();
+        let is_open = |quadrant: usize| {
+            // A box at a positive offset lies below `q` along the axis, one at a negative offset above.
+            let sides = [(quadrant & 1, offset.x), (quadrant >> 1, offset.y)];
+            sides.iter().all(|&(above, offset)| if above == 1 { offset <= 0.0 } else { offset >= 0.0 })
+        };
+        let mut found = self.found.iter().enumerate();
+        found.any(|(quadrant, found)| {
+            is_open(quadrant) && found.is_none_or(|near| distance2 <= near.distance2)
+        })
+    }
+
+    fn take(&mut self, at: DVec2, site: u32) {
+        let quadrant = usize::from(at.x >= self.q.x) + 2 * usize::from(at.y >= self.q.y);
+        let near = Near { distance2: (at - self.q).length_squared(), site };
+        let nearest = &mut self.found[quadrant];
+        if nearest.is_none_or(|best| near.order(&best).is_lt()) {
+            *nearest = Some(near);
+        }
+    }
+}
 
 /// Part of the tree while it is searched.
 #[derive(Clone, Copy)]
@@ -138,10 +215,6 @@ impl KdTree {
         Self { at, sites, planes, depth }
     }
 
-    fn root(&self) -> Subtree {
-        Subtree { start: 0, end: self.at.len(), plane: 0, depth: self.depth }
-    }
-
     /// The site nearest to `q`; `None` where there is none at all.
     pub fn nearest(&self, q: DVec2) -> Option<u32> {
         let mut found = NearestSites::new(1);
@@ -156,93 +229,33 @@ impl KdTree {
     pub fn nearest_k(&self, q: DVec2, limit2: f64, found: &mut NearestSites) {
         found.near.clear();
         found.limit2 = limit2;
-        self.visit(self.root(), q, DVec2::ZERO, found);
+        self.search(q, &mut NearestSearch { q, found });
         found.finish();
-    }
-
-    /// `offset` is how far the subtree's box is from `q` along each axis, as far as the planes above tell.
-    fn visit(&self, part: Subtree, q: DVec2, offset: DVec2, found: &mut NearestSites) {
-        if part.depth == 0 {
-            for (at, &site) in self.at[part.start..part.end].iter().zip(&self.sites[part.start..part.end]) {
-                let distance2 = (*at - q).length_squared();
-                if distance2 <= found.limit2 {
-                    found.take(Near { distance2, site });
-                }
-            }
-            return;
-        }
-        let plane = self.planes[part.plane];
-        let to_plane = q[plane.axis] - plane.at;
-        let [left, right] = part.halves();
-        let (near, far) = if to_plane < 0.0 { (left, right) } else { (right, left) };
-        self.visit(near, q, offset, found);
-        let mut offset = offset;
-        offset[plane.axis] = to_plane;
-        // Rounding only ever lowers it: each step is rounded as a site's own distance is, from a smaller number.
-        if offset.length_squared() <= found.limit2 {
-            self.visit(far, q, offset, found);
-        }
     }
 
     /// Puts all sites at most as far from `q` as the root of `limit2` into `gathered`, or more than `most`.
     pub fn gather(&self, q: DVec2, limit2: f64, most: usize, gathered: &mut Vec<(DVec2, u32)>) {
         gathered.clear();
-        self.visit_all(self.root(), q, DVec2::ZERO, (limit2, most), gathered);
-    }
-
-    fn visit_all(
-        &self,
-        part: Subtree,
-        q: DVec2,
-        offset: DVec2,
-        (limit2, most): (f64, usize),
-        gathered: &mut Vec<(DVec2, u32)>,
-    ) {
-        if part.depth == 0 {
-            let sites = self.at[part.start..part.end].iter().zip(&self.sites[part.start..part.end]);
-            let near = sites.filter(|(at, _)| (**at - q).length_squared() <= limit2);
-            gathered.extend(near.map(|(&at, &site)| (at, site)));
-            return;
-        }
-        let plane = self.planes[part.plane];
-        let to_plane = q[plane.axis] - plane.at;
-        let [left, right] = part.halves();
-        let (near, far) = if to_plane < 0.0 { (left, right) } else { (right, left) };
-        self.visit_all(near, q, offset, (limit2, most), gathered);
-        let mut offset = offset;
-        offset[plane.axis] = to_plane;
-        if offset.length_squared() <= limit2 && gathered.len() <= most {
-            self.visit_all(far, q, offset, (limit2, most), gathered);
-        }
+        self.search(q, &mut RangeSearch { q, limit2, most, gathered });
     }
 
     /// The nearest site of each quadrant around `q`.
     pub fn quadrants(&self, q: DVec2) -> Quadrants {
-        let mut found = [None; 4];
-        self.visit_quadrants(self.root(), q, DVec2::ZERO, [true; 4], &mut found);
-        found
+        let mut search = QuadrantSearch { q, found: [None; 4] };
+        self.search(q, &mut search);
+        search.found
     }
 
-    /// `open` are the quadrants that the subtree may have sites in.
-    fn visit_quadrants(
-        &self,
-        part: Subtree,
-        q: DVec2,
-        offset: DVec2,
-        open: [bool; 4],
-        found: &mut Quadrants,
-    ) {
+    fn search(&self, q: DVec2, search: &mut impl Search) {
+        let root = Subtree { start: 0, end: self.at.len(), plane: 0, depth: self.depth };
+        self.visit(root, q, DVec2::ZERO, search);
+    }
+
+    /// `offset` is that of the subtree's box from `q` along each axis, as far as the planes above tell.
+    fn visit(&self, part: Subtree, q: DVec2, mut offset: DVec2, search: &mut impl Search) {
         if part.depth == 0 {
-            for (at, &site) in self.at[part.start..part.end].iter().zip(&self.sites[part.start..part.end]) {
-                let quadrant = usize::from(at.x >= q.x) + 2 * usize::from(at.y >= q.y);
-                let candidate = ((*at - q).length_squared(), site);
-                let nearest = &mut found[quadrant];
-                let nearer = |best: (f64, u32)| {
-                    candidate.0 < best.0 || (candidate.0 == best.0 && candidate.1 < best.1)
-                };
-                if nearest.is_none_or(nearer) {
-                    *nearest = Some(candidate);
-                }
+            for (&at, &site) in self.at[part.start..part.end].iter().zip(&self.sites[part.start..part.end]) {
+                search.take(at, site);
             }
             return;
         }
@@ -250,18 +263,10 @@ impl KdTree {
         let to_plane = q[plane.axis] - plane.at;
         let [left, right] = part.halves();
         let (near, far) = if to_plane < 0.0 { (left, right) } else { (right, left) };
-        self.visit_quadrants(near, q, offset, open, found);
-        let mut offset = offset;
+        self.visit(near, q, offset, search);
         offset[plane.axis] = to_plane;
-        let mut open = open;
-        for (quadrant, open) in open.iter_mut().enumerate() {
-            let above = quadrant >> plane.axis & 1 == 1;
-            *open &= if to_plane < 0.0 { above } else { !above || to_plane == 0.0 };
-        }
-        let distance2 = offset.length_squared();
-        let mut wanted = open.iter().zip(found.iter());
-        if wanted.any(|(&open, found)| open && found.is_none_or(|(nearest2, _)| distance2 <= nearest2)) {
-            self.visit_quadrants(far, q, offset, open, found);
+        if search.needs(offset) {
+            self.visit(far, q, offset, search);
         }
     }
 }
@@ -275,7 +280,7 @@ fn build(order: &mut [(DVec2, u32)], planes: &mut [SplitLine]) {
     let middle = middle(0, order.len());
     let (left_planes, right_planes) = below.split_at_mut(below.len() / 2);
     if middle == 0 {
-        // No site left of the plane; it stands at the only one there is, or nowhere.
+        // No site lies left of the plane: it is at the only one, or there is none.
         *plane = SplitLine { axis, at: order.first().map_or(0.0, |(at, _)| at[axis]) };
     } else {
         let by_axis =
@@ -296,7 +301,7 @@ fn build(order: &mut [(DVec2, u32)], planes: &mut [SplitLine]) {
 mod tests {
     use super::*;
 
-    /// Places on a coarse lattice, so that many are equally far.
+    /// Positions on a coarse lattice, so that many are equally far.
     fn places(count: u32, seed: u32) -> Vec<DVec2> {
         let mut state = seed;
         let mut next = move || {
@@ -354,7 +359,8 @@ mod tests {
                     let quadrant = usize::from(place.x >= q.x) + 2 * usize::from(place.y >= q.y);
                     wanted[quadrant] = wanted[quadrant].or(Some((distance2, site)));
                 }
-                assert_eq!(tree.quadrants(q), wanted, "{count} places, {q}");
+                let found = tree.quadrants(q).map(|near| near.map(|near| (near.distance2, near.site)));
+                assert_eq!(found, wanted, "{count} places, {q}");
             }
         }
     }

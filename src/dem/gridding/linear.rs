@@ -1,5 +1,5 @@
-//! Triangles to heights of cells, row by row: where a row of cell centers enters and leaves a triangle, x and z are
-//! taken along its edges, and between the two z runs straight.
+//! Triangles to heights of cells, row by row: x and z where a row of cell centers enters and leaves a triangle are taken
+//! along its edges, and between the two z is linear.
 //!
 //! ```text
 //!            c             at row y:  x and z on edge ac (left), x and z on edge bc (right)
@@ -11,79 +11,69 @@
 //!
 //! An edge is always taken from its lower end to its upper one, so that both its triangles get the very same crossing:
 //! no center falls between them. Heights are means of the corners at every step and stay in their range, however thin
-//! the triangle is; a plane's gradient, the usual way, is boundless there.
+//! the triangle is; the gradient of its plane, the usual way, has no bound there.
 
 use std::ops::Range;
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use crate::dem::gridding::frame::CellGrid;
+use crate::dem::cell_grid::CellGrid;
 use crate::dem::gridding::tin::Tin;
 
 /// Rows a task: enough that few triangles lie in two, few enough that all cores stay busy to the end.
 const BAND_ROWS: usize = 16;
 
-/// Where cells' centers lie, from the sites' origin.
+/// The positions of cells' centers, from the sites' origin.
 pub(super) struct CellCenters {
-    /// Of columns, rising.
+    /// The x of columns, rising.
     pub x: Vec<f64>,
-    /// Of rows, falling.
+    /// The y of rows, falling.
     pub y: Vec<f64>,
     per_cell: f64,
 }
 
 impl CellCenters {
-    /// The centers of a frame's cells.
-    pub fn new(frame: &CellGrid, origin: DVec2) -> Self {
-        let corner = frame.corner() - origin;
-        let cell = frame.cell();
-        let x = (0..frame.width()).map(|column| corner.x + (f64::from(column) + 0.5) * cell);
-        let y = (0..frame.height()).map(|row| corner.y - (f64::from(row) + 0.5) * cell);
+    /// The centers of a grid's cells.
+    pub fn new(grid: &CellGrid, origin: DVec2) -> Self {
+        let corner = grid.corner() - origin;
+        let cell = grid.cell();
+        let x = (0..grid.width()).map(|column| corner.x + (f64::from(column) + 0.5) * cell);
+        let y = (0..grid.height()).map(|row| corner.y - (f64::from(row) + 0.5) * cell);
         Self { x: x.collect(), y: y.collect(), per_cell: cell.recip() }
     }
 
-    /// How many cells there are.
+    /// The number of cells.
     pub fn len(&self) -> usize {
         self.x.len() * self.y.len()
     }
 
     /// The columns whose centers lie from `low` to `high`, both included.
     pub fn columns_between(&self, low: f64, high: f64) -> Range<usize> {
-        // The division only guesses; the comparison with the centers themselves decides.
-        let mut first = (((low - self.x[0]) * self.per_cell) as usize).min(self.x.len());
-        while first > 0 && self.x[first - 1] >= low {
-            first -= 1;
-        }
-        while first < self.x.len() && self.x[first] < low {
-            first += 1;
-        }
-        let mut end =
-            ((((high - self.x[0]) * self.per_cell) as usize).saturating_add(1)).clamp(first, self.x.len());
-        while end > first && self.x[end - 1] > high {
-            end -= 1;
-        }
-        while end < self.x.len() && self.x[end] <= high {
-            end += 1;
-        }
-        first..end
+        self.between(self.x.len(), |column| self.x[column], low, high)
     }
 
     /// The rows whose centers lie from `low` to `high`, both included.
     pub fn rows_between(&self, low: f64, high: f64) -> Range<usize> {
-        let mut first = (((self.y[0] - high) * self.per_cell) as usize).min(self.y.len());
-        while first > 0 && self.y[first - 1] <= high {
+        self.between(self.y.len(), |row| -self.y[row], -high, -low)
+    }
+
+    /// The indices whose positions, which rise, lie from `low` to `high`.
+    fn between(&self, count: usize, position: impl Fn(usize) -> f64, low: f64, high: f64) -> Range<usize> {
+        // The division only guesses; the comparison with the centers themselves decides.
+        let guess = |at: f64| ((at - position(0)) * self.per_cell) as usize;
+        let mut first = guess(low).min(count);
+        while first > 0 && position(first - 1) >= low {
             first -= 1;
         }
-        while first < self.y.len() && self.y[first] > high {
+        while first < count && position(first) < low {
             first += 1;
         }
-        let mut end =
-            ((((self.y[0] - low) * self.per_cell) as usize).saturating_add(1)).clamp(first, self.y.len());
-        while end > first && self.y[end - 1] < low {
+        let mut end = guess(high).saturating_add(1).clamp(first, count);
+        while end > first && position(end - 1) > high {
             end -= 1;
         }
-        while end < self.y.len() && self.y[end] >= low {
+        while end < count && position(end) <= high {
             end += 1;
         }
         first..end
@@ -109,7 +99,7 @@ fn cut(low: DVec3, high: DVec3, y: f64) -> (f64, f64) {
     (low.x + part * (high.x - low.x), low.z + part * (high.z - low.z))
 }
 
-/// Gives every cell whose center lies in a triangle the triangle's height there; other cells are left as they are.
+/// Sets every cell whose center lies in a triangle to the triangle's height there; other cells stay.
 ///
 /// A center on an edge takes the height of the later of its triangles, which is the same but for rounding.
 pub(super) fn fill(tin: &Tin, cells: &CellCenters, out: &mut [f64]) {
@@ -142,21 +132,14 @@ fn bands(tin: &Tin, cells: &CellCenters) -> Vec<Vec<u32>> {
 }
 
 fn fill_triangle(corners: [DVec3; 3], cells: &CellCenters, band: &Range<usize>, out: &mut [f64]) {
-    let [mut low, mut middle, mut high] = corners;
-    if middle.y < low.y {
-        std::mem::swap(&mut low, &mut middle);
-    }
-    if high.y < middle.y {
-        std::mem::swap(&mut middle, &mut high);
-    }
-    if middle.y < low.y {
-        std::mem::swap(&mut low, &mut middle);
-    }
+    let mut by_y = corners;
+    by_y.sort_by(|a, b| a.y.total_cmp(&b.y));
+    let [low, middle, high] = by_y;
     let rows = cells.rows_between(low.y, high.y);
     for row in rows.start.max(band.start)..rows.end.min(band.end) {
         let y = cells.y[row];
         let (long, short) = if low.y == high.y {
-            // No area, but its row must not be left out: it is some neighbor's border.
+            // No area, but its row must not be left out: it is a neighbor's border.
             ((low.x, low.z), (high.x, high.z))
         } else if y < middle.y || middle.y == high.y {
             (cut(low, high, y), if low.y == middle.y { (middle.x, middle.z) } else { cut(low, middle, y) })

@@ -1,19 +1,18 @@
 //! Grids of scattered points: the ground between points that were measured, at the center of every cell.
 //!
 //! ```text
-//!   PointCloud ──► sites ──────────────┬──► hull ──► which cells lie between the points
+//!   PointCloud ──► sites ──────────────┬──► hull ──► the cells between the points
 //!   (any order,    (sorted, one per    │
 //!    doubles)       position)          ├──► tin ──► linear   planes between three sites (breaklines hold)
 //!                                      │      └───► natural  Sibson's natural neighbors
 //!                                      └──► kd ───► weighted inverse distance, quadrants, nearest
 //! ```
 //!
-//! Everything is computed from the sites in sorted order and cell by cell from a fixed start, so that the same points
-//! in any order and on any number of threads give the same bits. Cells whose center lies outside the convex hull of
-//! the points hold no data unless it is asked for: there, every method guesses.
+//! Everything is computed from the sites in sorted order and cell by cell from a fixed start: the same points in any
+//! order and on any number of threads give the same bits. Cells whose center lies outside the convex hull of the points
+//! hold no data by default: there, every method guesses.
 
 pub mod breaklines;
-pub mod frame;
 mod hull;
 mod kd;
 mod linear;
@@ -25,8 +24,8 @@ mod weighted;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
+use crate::dem::cell_grid::{CellGrid, CellGridError};
 use crate::dem::gridding::breaklines::Crossings;
-use crate::dem::gridding::frame::{CellGrid, CellGridError};
 use crate::dem::gridding::hull::Hull;
 use crate::dem::gridding::kd::KdTree;
 use crate::dem::gridding::linear::CellCenters;
@@ -49,14 +48,14 @@ pub enum GriddingMethod {
     /// The mean of the nearest points, each weighing as its distance to the power of −`power` (Shepard 1968).
     /// Discontinuous where the set of nearest points changes.
     InverseDistance {
-        /// How many points; at least 1.
+        /// The number of points; at least 1.
         k: u32,
         /// The power; above 0.
         power: f64,
     },
-    /// The mean of the four points around, weighted by distance, as the DTM paper reads a grid from its samples: the
-    /// nearest point of each quadrant, weighing as its distance to the power of −`power`. It draws on all sides also
-    /// where points lie along lines, as contours and cross-sections do. Quadrants without points are left out.
+    /// The mean of the four points around, weighted by distance: the nearest point of each quadrant, weighing as its
+    /// distance to the power of −`power`. It draws on all sides even where points lie along lines, such as contours and
+    /// cross-sections. Quadrants without points are left out.
     Quadrant {
         /// The power; above 0.
         power: f64,
@@ -65,9 +64,9 @@ pub enum GriddingMethod {
     Nearest,
 }
 
-/// What a cell outside the convex hull of the points holds.
+/// The value of a cell outside the convex hull of the points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Beyond {
+pub enum BeyondHull {
     /// No data.
     #[default]
     NoData,
@@ -75,7 +74,7 @@ pub enum Beyond {
     Nearest,
 }
 
-/// A grid of points, and how it came about.
+/// A grid of points, and its report.
 #[derive(Clone, Debug)]
 pub struct Gridded {
     /// The grid, in 64 bits and the points' vertical unit.
@@ -84,17 +83,17 @@ pub struct Gridded {
     pub report: GriddingReport,
 }
 
-/// What a grid was made of.
+/// The counts of a gridding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GriddingReport {
-    /// Points as given, vertices of breaklines not among them.
+    /// Points, without the vertices of breaklines.
     pub points: usize,
-    /// Points and vertices of breaklines that shared their x and y with an earlier one; each position took the mean
-    /// of its heights.
+    /// Points and vertices of breaklines with the x and y of an earlier one; each position takes the mean of its
+    /// heights.
     pub duplicates: usize,
     /// Breaklines.
     pub breaklines: usize,
-    /// Where breaklines crossed each other away from their vertices, and by how much they disagreed there.
+    /// Crossings of breaklines away from their vertices.
     pub crossings: Crossings,
     /// Cells that hold a height.
     pub filled: usize,
@@ -103,21 +102,21 @@ pub struct GriddingReport {
 /// Why no grid was made.
 #[derive(Debug, thiserror::Error)]
 pub enum GridError {
-    /// The lattice of cells cannot be had.
+    /// There is no lattice of cells.
     #[error(transparent)]
-    Frame(#[from] CellGridError),
+    Cells(#[from] CellGridError),
     /// A parameter of the method out of range.
     #[error("{what} is {value}; it must be {wanted}")]
     Parameter {
-        /// Which.
+        /// The parameter.
         what: &'static str,
-        /// What it was.
+        /// Its value.
         value: f64,
         /// What it must be.
         wanted: &'static str,
     },
-    /// A point or a vertex of a breakline that has no place.
-    #[error("a point at {x}, {y} with the height {z} has no place: all three must be finite and below 1e60")]
+    /// A point or a vertex of a breakline is not finite or too large.
+    #[error("a point at {x}, {y} has the height {z}: all three must be finite and below 1e60")]
     Unplaceable {
         /// Its x.
         x: f64,
@@ -126,45 +125,38 @@ pub enum GridError {
         /// Its height.
         z: f64,
     },
-    /// Nothing lies between the points.
+    /// All points lie on one line.
     #[error(
-        "all {sites} positions lie on one line: no cell lies between them; give more points, or grid by distance (idw, quadrant or nearest) with the nearest point's height beyond the hull"
+        "all {sites} positions lie on one line and no cell between them; give more points, or grid by distance (idw, quadrant or nearest) with the nearest point's height beyond the hull"
     )]
     Collinear {
-        /// Different positions.
+        /// The number of different positions.
         sites: usize,
     },
 }
 
-/// Makes a grid of a cloud.
+/// Makes a grid of a cloud: a [`Raster`] of `cells`, NaN where there is no data, with the cloud's system, unit and datum.
 ///
-/// The heights of a [`Raster`] of the same size and place as `frame`, NaN where there is no data; the cloud's system,
-/// unit and datum go with it. Breaklines are edges of triangles for [`GriddingMethod::Tin`]; the other methods know no edges
-/// and take points along them, at most half a cell apart.
+/// Breaklines are edges of triangles for [`GriddingMethod::Tin`]; the other methods take points along them, at most half
+/// a cell apart.
 ///
 /// # Errors
 /// [`GridError`]: a point that is not finite, points that all lie on one line, a parameter out of range.
 pub fn grid(
     cloud: &PointCloud,
-    frame: &CellGrid,
+    cells: &CellGrid,
     method: GriddingMethod,
-    beyond: Beyond,
+    beyond: BeyondHull,
 ) -> Result<Gridded, GridError> {
     check(method)?;
-    let (heights, mut report) = heights(cloud, frame, method, beyond)?;
+    let (heights, mut report) = heights(cloud, cells, method, beyond)?;
     report.filled = heights.iter().filter(|height| !height.is_nan()).count();
     let raster = Raster {
         driver: "grid",
-        data_type: "Float64",
-        width: frame.width(),
-        height: frame.height(),
-        samples: Samples::F64(heights),
         meters_per_z: cloud.meters_per_z,
-        map_from_grid: frame.map_from_grid(),
-        georeferenced: true,
         crs: cloud.crs.clone(),
-        nodata: None,
         vertical_datum: cloud.vertical_datum.clone(),
+        ..Raster::new(cells.width(), Samples::F64(heights)).placed(cells.map_from_grid())
     };
     Ok(Gridded { raster, report })
 }
@@ -185,16 +177,16 @@ fn check(method: GriddingMethod) -> Result<(), GridError> {
 
 fn heights(
     cloud: &PointCloud,
-    frame: &CellGrid,
+    grid: &CellGrid,
     method: GriddingMethod,
-    beyond: Beyond,
+    beyond: BeyondHull,
 ) -> Result<(Vec<f64>, GriddingReport), GridError> {
     let along: Vec<DVec3> = match method {
         GriddingMethod::Tin => cloud.breaklines.iter().flatten().copied().collect(),
         _ => cloud
             .breaklines
             .iter()
-            .flat_map(|line| breaklines::points_along(line, frame.cell() * 0.5))
+            .flat_map(|line| breaklines::points_along(line, grid.cell() * 0.5))
             .collect(),
     };
     let sites = Sites::new(&cloud.points, &along)?;
@@ -204,7 +196,7 @@ fn heights(
         breaklines: cloud.breaklines.len(),
         ..GriddingReport::default()
     };
-    let cells = CellCenters::new(frame, sites.origin);
+    let cells = CellCenters::new(grid, sites.origin);
     let mut out = vec![f64::NAN; cells.len()];
     match method {
         GriddingMethod::Tin => {
@@ -220,19 +212,19 @@ fn heights(
         | GriddingMethod::Quadrant { .. }
         | GriddingMethod::Nearest => {
             let hull = Hull::new(&sites);
-            if hull.is_flat() && beyond == Beyond::NoData {
+            if hull.is_flat() && beyond == BeyondHull::NoData {
                 return Err(GridError::Collinear { sites: sites.len() });
             }
             WeightedSites::new(&sites, method).fill(&hull, &cells, &mut out);
         }
     }
-    if beyond == Beyond::Nearest {
+    if beyond == BeyondHull::Nearest {
         fill_with_nearest(&sites, &cells, &mut out);
     }
     Ok((out, report))
 }
 
-/// Gives every cell without data the height of the nearest site.
+/// Sets every cell without data to the height of the nearest site.
 fn fill_with_nearest(sites: &Sites, cells: &CellCenters, out: &mut [f64]) {
     if !out.iter().any(|height| height.is_nan()) {
         return;

@@ -28,22 +28,22 @@ use crate::dem::gridding::sites::Sites;
 use crate::dem::gridding::tin::{OUTSIDE, Tin, delaunay, neighbors};
 
 /// Rows a task. A task starts its walk from the first triangle, whatever thread it runs on: where a center lies on an
-/// edge, the way it was reached by decides on which side it is taken.
+/// edge, the walk to it decides on which side it is taken.
 const BAND_ROWS: usize = 16;
 
-/// A center nearer to a site than this part of the extent takes its height: closer by, circles through the site can
-/// no longer be told from circles through the center.
+/// A center nearer to a site than this part of the extent takes its height: nearer, circles through the site do not
+/// differ from circles through the center.
 const SNAP: f64 = 1e-11;
 
 /// A center nearer to a side of the hull than this part of the side's length lies on it.
 const ON_SIDE: f64 = 1e-12;
 
-/// A triangle with what a search asks of it.
+/// A triangle as a search needs it.
 struct SearchTriangle {
     circumcenter: DVec2,
     radius2: f64,
     corners: [u32; 3],
-    /// Beyond the side from corner i to corner i + 1.
+    /// The triangles beyond the sides from corner i to corner i + 1.
     neighbors: [u32; 3],
 }
 
@@ -55,10 +55,10 @@ pub(super) struct Naturals {
     snap2: f64,
 }
 
-/// What a search fills again for every center.
+/// Buffers that a task reuses for every center.
 #[derive(Default)]
 struct NeighborScratch {
-    /// Sides yet to be looked across: the triangle and the side, the next in counter-clockwise order on top.
+    /// Sides yet to be crossed: the triangle and the side, the next in counter-clockwise order on top.
     sides: Vec<(u32, u8)>,
 }
 
@@ -66,7 +66,7 @@ impl Naturals {
     /// Triangulates the sites.
     pub fn new(sites: &Sites) -> Result<Self, GridError> {
         let web = delaunay(sites)?;
-        let (tin, neighbors) = rayon::join(|| Tin::of(&web), || neighbors(&web));
+        let (tin, neighbors) = rayon::join(|| Tin::from_web(&web), || neighbors(&web));
         let cells = tin.triangles.iter().zip(neighbors).map(|(&corners, neighbors)| {
             let [a, b, c] = corners.map(|corner| tin.vertices[corner as usize].truncate());
             let from_a = circumcenter(b - a, c - a);
@@ -82,7 +82,7 @@ impl Naturals {
         })
     }
 
-    /// Gives every cell in the hull its height; other cells are left as they are.
+    /// Sets every cell in the hull to its height; other cells stay.
     pub fn fill(&self, hull: &Hull, cells: &CellCenters, out: &mut [f64]) {
         let width = cells.x.len();
         let columns = hull.columns(cells);
@@ -104,11 +104,11 @@ impl Naturals {
         });
     }
 
-    /// The triangle around `q`, walking from another toward it; where rounding puts `q` outside of all, the one at
-    /// the border that the walk ended in.
+    /// The triangle around `q`, found by walking from another toward it; where rounding puts `q` outside of all, the
+    /// triangle at the border where the walk ends.
     fn locate(&self, q: DVec2, from: u32) -> u32 {
         let mut at = from;
-        // A walk meets no triangle twice (Devillers, Pion and Teillaud 2002), if it were not for rounding.
+        // But for rounding, a walk meets no triangle twice (Devillers, Pion and Teillaud 2002).
         for _ in 0..self.cells.len() {
             let cell = &self.cells[at as usize];
             let [a, b, c] = cell.corners.map(|corner| self.at[corner as usize] - q);
@@ -141,7 +141,7 @@ impl Naturals {
         }
     }
 
-    /// Goes round the triangles that a site at `q` would make vanish.
+    /// Sums over the triangles that a site at `q` would make vanish.
     fn gather(&self, q: DVec2, around: u32, scratch: &mut NeighborScratch) -> AreaSums {
         let sides = &mut scratch.sides;
         sides.clear();
@@ -184,15 +184,15 @@ impl Naturals {
     /// The height at `q` on the plane through three corners, or the nearest corner's where they have no area.
     fn planar(&self, q: DVec2, corners: [u32; 3]) -> f64 {
         let [a, b, c] = corners.map(|corner| self.at[corner as usize] - q);
-        let [za, zb, zc] = corners.map(|corner| self.z[corner as usize]);
+        let z = corners.map(|corner| self.z[corner as usize]);
         let weights = [b.perp_dot(c), c.perp_dot(a), a.perp_dot(b)].map(|weight| weight.max(0.0));
         let total: f64 = weights.iter().sum();
         if total > 0.0 {
-            return (weights[0] * za + weights[1] * zb + weights[2] * zc) / total;
+            return (weights[0] * z[0] + weights[1] * z[1] + weights[2] * z[2]) / total;
         }
-        let distances = [a, b, c].map(|corner| corner.length_squared());
-        let nearest = if distances[0] <= distances[1].min(distances[2]) { za } else { zb };
-        if distances[2] < distances[0].min(distances[1]) { zc } else { nearest }
+        let distances2 = [a, b, c].map(|corner| corner.length_squared());
+        let nearest = (0..3).min_by(|&i, &j| distances2[i].total_cmp(&distances2[j]));
+        nearest.map_or(f64::NAN, |corner| z[corner])
     }
 }
 
@@ -205,26 +205,26 @@ impl SearchTriangle {
     }
 }
 
-/// The point as far from zero as from `a` and `b`; not finite where the three are on one line.
+/// The point as far from zero as from `a` and `b`; not finite where the three lie on one line.
 fn circumcenter(a: DVec2, b: DVec2) -> DVec2 {
     let scale = 0.5 / a.perp_dot(b);
     let (a2, b2) = (a.length_squared(), b.length_squared());
     DVec2::new(b.y * a2 - a.y * b2, a.x * b2 - b.x * a2) * scale
 }
 
-/// The sums over the sides of all areas taken, each twice its area.
+/// The sums over the sides of all areas taken.
 struct AreaSums {
     /// Heights are summed as differences from this one.
     zero: f64,
-    /// The areas' heights.
+    /// Twice the areas times their heights.
     heights: f64,
-    /// The areas.
+    /// Twice the areas.
     area: f64,
     first: Option<(DVec2, f64)>,
     last: DVec2,
     lowest: f64,
     highest: f64,
-    /// The height, where the center lies on a side of the hull: there all areas are without bound.
+    /// The height, where the center lies on a side of the hull: there the areas have no bound.
     on_side: Option<f64>,
 }
 
@@ -242,12 +242,12 @@ impl AreaSums {
         }
     }
 
-    /// A side between what is taken from a and from b, `rise` = z_b − z_a.
+    /// Adds a side between the areas taken from a and from b, `rise` = z_b − z_a.
     fn across(&mut self, from: DVec2, to: DVec2, rise: f64) {
         self.heights += from.perp_dot(to) * rise;
     }
 
-    /// The next side of the ring, from a to b.
+    /// Adds the next side of the ring, from a to b.
     fn ring(&mut self, center: DVec2, corner: DVec2, z_a: f64, z_b: f64) {
         self.across(center, corner, z_b - z_a);
         match self.first {
@@ -259,7 +259,7 @@ impl AreaSums {
         self.highest = self.highest.max(z_a);
     }
 
-    /// The side of q's own region toward a neighbor.
+    /// Adds the side of q's own region toward a neighbor.
     fn at_neighbor(&mut self, corner: DVec2, z: f64) {
         let product = self.last.perp_dot(corner);
         self.area += product;

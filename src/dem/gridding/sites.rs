@@ -1,7 +1,7 @@
-//! The points as the methods take them: sorted, one to a position, near zero.
+//! The points as the methods take them: sorted, one a position, near zero.
 //!
 //! Points come in any order and some twice (overlapping flight lines, a breakline through a surveyed point). Sorting
-//! by x, y and z makes all that follows independent of the order. Coordinates become offsets from a whole-numbered
+//! by x, y and z makes the results independent of the order. Coordinates become offsets from a whole-numbered
 //! corner: subtracting it is exact, and circumcenters keep the digits that eastings of half a million would cost.
 
 use glam::{DVec2, DVec3};
@@ -9,31 +9,31 @@ use rayon::prelude::*;
 
 use crate::dem::gridding::GridError;
 
-/// Beyond this the triangulation does not go (spade's limit is 2²⁰⁰, about 1.6e60).
+/// The largest coordinate: spade's limit is 2²⁰⁰, about 1.6e60.
 const LARGEST: f64 = 1e60;
 
 /// Different positions, sorted by x, then y.
 pub(super) struct Sites {
-    /// What was subtracted from all positions.
+    /// The map position of (0, 0).
     pub origin: DVec2,
     /// Positions, from `origin`.
     pub at: Vec<DVec2>,
-    /// The height of each position: the mean of all that were given for it.
+    /// The height of each position: the mean of all points there.
     pub z: Vec<f64>,
-    /// How many points were more than the first of their position.
+    /// Points beyond the first at their position.
     pub duplicates: usize,
 }
 
 impl Sites {
     /// The sites of points and of vertices of breaklines.
     pub fn new(points: &[DVec3], vertices: &[DVec3]) -> Result<Self, GridError> {
-        let sound = |point: &DVec3| point.abs().cmplt(DVec3::splat(LARGEST)).all();
-        if let Some(point) = points.iter().chain(vertices).find(|point| !sound(point)) {
+        let is_sound = |point: &DVec3| point.abs().cmplt(DVec3::splat(LARGEST)).all();
+        if let Some(point) = points.iter().chain(vertices).find(|point| !is_sound(point)) {
             return Err(GridError::Unplaceable { x: point.x, y: point.y, z: point.z });
         }
         let low = points.iter().chain(vertices).fold(DVec2::INFINITY, |low, point| low.min(point.truncate()));
         let origin = if low.is_finite() { low.floor() } else { DVec2::ZERO };
-        // Adding zero turns a negative zero into a positive one, which is the same place.
+        // Adding zero turns a negative zero into a positive one, which is the same position.
         let mut sorted: Vec<DVec3> =
             points.iter().chain(vertices).map(|&point| point - origin.extend(0.0) + 0.0).collect();
         sorted.par_sort_unstable_by(|a, b| {
@@ -53,12 +53,12 @@ impl Sites {
         Ok(sites)
     }
 
-    /// How many there are.
+    /// The number of sites.
     pub fn len(&self) -> usize {
         self.at.len()
     }
 
-    /// The site at a position of the map, if there is one.
+    /// The site at a map position; `None` where there is none.
     pub fn find(&self, at: DVec2) -> Option<usize> {
         let at = at - self.origin + 0.0;
         self.at.binary_search_by(|site| site.x.total_cmp(&at.x).then(site.y.total_cmp(&at.y))).ok()
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn points_without_a_place_are_refused() {
+    fn points_that_are_not_finite_are_refused() {
         for wrong in
             [DVec3::new(f64::NAN, 0.0, 0.0), DVec3::new(0.0, 1e80, 0.0), DVec3::new(0.0, 0.0, f64::INFINITY)]
         {

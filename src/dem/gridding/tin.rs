@@ -1,8 +1,8 @@
 //! The Delaunay triangulation of the sites (`spade`), as flat lists.
 //!
-//! `spade` triangulates with exact predicates, which no grid of survey points (all on circles with their neighbors)
-//! confuses. What it makes is a web of half-edges; the methods read triangles by the hundred thousand, so corners and
-//! neighbors are copied into lists once.
+//! `spade` triangulates with exact predicates, which stay right on grids of survey points (all on circles with their
+//! neighbors). Its triangulation is a web of half-edges; the methods read triangles by the hundred thousand, so corners
+//! and neighbors are copied into lists once.
 
 use glam::{DVec2, DVec3};
 use spade::handles::FixedVertexHandle;
@@ -12,7 +12,7 @@ use crate::dem::gridding::GridError;
 use crate::dem::gridding::breaklines::{self, Crossings};
 use crate::dem::gridding::sites::Sites;
 
-/// In place of a triangle's neighbor: beyond the hull.
+/// In place of a triangle's neighbor: outside of the hull.
 pub(super) const OUTSIDE: u32 = u32::MAX;
 
 /// A site as `spade` holds it.
@@ -22,7 +22,7 @@ pub(super) struct TinVertex {
     pub at: DVec2,
     /// Its height.
     pub z: f64,
-    /// Its place among the sites; `None` for one that was made where breaklines cross.
+    /// The index of its site; `None` for a vertex where breaklines cross.
     pub site: Option<u32>,
 }
 
@@ -49,15 +49,15 @@ impl Tin {
     /// The triangulation of the sites in which the breaklines, whose vertices are among the sites, are edges.
     pub fn new(sites: &Sites, lines: &[Vec<DVec3>]) -> Result<(Self, Crossings), GridError> {
         if lines.is_empty() {
-            return Ok((Self::of(&delaunay(sites)?), Crossings::default()));
+            return Ok((Self::from_web(&delaunay(sites)?), Crossings::default()));
         }
         let mut constrained: Constrained = load(sites)?;
         let crossings = breaklines::constrain(&mut constrained, sites, lines);
-        Ok((Self::of(&constrained), crossings))
+        Ok((Self::from_web(&constrained), crossings))
     }
 
-    /// The triangles of what `spade` made.
-    pub fn of<T: Triangulation<Vertex = TinVertex>>(web: &T) -> Self {
+    /// The triangles of a triangulation of `spade`.
+    pub fn from_web<T: Triangulation<Vertex = TinVertex>>(web: &T) -> Self {
         let vertices = web.vertices().map(|vertex| vertex.data().at.extend(vertex.data().z)).collect();
         let triangles =
             web.inner_faces().map(|face| face.vertices().map(|vertex| vertex.fix().index() as u32));
@@ -70,10 +70,10 @@ impl Tin {
     }
 }
 
-/// The neighbors of every triangle, in the order of [`Tin::of`]: for each side from corner i to corner i + 1 the
+/// The neighbors of every triangle, in the order of [`Tin::from_web`]: for each side from corner i to corner i + 1 the
 /// triangle beyond, or [`OUTSIDE`].
 pub(super) fn neighbors(web: &DelaunayTriangulation<TinVertex>) -> Vec<[u32; 3]> {
-    // Face 0 is what lies beyond the hull; the inner faces follow.
+    // Face 0 is the outside of the hull; the inner faces follow.
     let beyond = |index: usize| index.checked_sub(1).map_or(OUTSIDE, |index| index as u32);
     web.inner_faces()
         .map(|face| face.adjacent_edges().map(|edge| beyond(edge.rev().face().fix().index())))
@@ -90,11 +90,10 @@ fn load<T: Triangulation<Vertex = TinVertex>>(sites: &Sites) -> Result<T, GridEr
     let vertices: Vec<TinVertex> =
         vertices.map(|(index, (&at, &z))| TinVertex { at, z, site: Some(index as u32) }).collect();
     let unplaceable = |_| {
-        // Offsets from a whole number are far below spade's limit and either zero or far above its smallest, unless
-        // they were given as such.
-        let tiny =
-            sites.at.iter().position(|at| at.abs().cmplt(DVec2::splat(1e-60)).any() && *at != DVec2::ZERO);
-        let index = tiny.unwrap_or(0);
+        // Offsets from a whole number are far below spade's limit, and zero or far above its smallest number, unless
+        // the points themselves are that close to zero.
+        let is_tiny = |at: &DVec2| at.abs().cmplt(DVec2::splat(1e-60)).any() && *at != DVec2::ZERO;
+        let index = sites.at.iter().position(is_tiny).unwrap_or(0);
         let at = sites.at[index] + sites.origin;
         GridError::Unplaceable { x: at.x, y: at.y, z: sites.z[index] }
     };
@@ -105,13 +104,13 @@ fn load<T: Triangulation<Vertex = TinVertex>>(sites: &Sites) -> Result<T, GridEr
     Ok(web)
 }
 
-/// For every site the vertex of `spade` that holds it; `spade` loads in an order of its own.
+/// The vertex of every site; `spade` loads them in another order.
 pub(super) fn vertex_of_site(web: &Constrained, sites: &Sites) -> Vec<FixedVertexHandle> {
-    let mut found = vec![FixedVertexHandle::from_index(0); sites.len()];
+    let mut vertices = vec![FixedVertexHandle::from_index(0); sites.len()];
     for vertex in web.vertices() {
         if let Some(site) = vertex.data().site {
-            found[site as usize] = vertex.fix();
+            vertices[site as usize] = vertex.fix();
         }
     }
-    found
+    vertices
 }

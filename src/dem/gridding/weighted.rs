@@ -1,7 +1,7 @@
-//! Heights by distance: k nearest sites, one of each quadrant, or the nearest alone.
+//! Heights by distance: k nearest sites, the nearest of each quadrant, or the nearest alone.
 //!
-//! Weights are taken relative to the nearest site's, (d₀/d)^power, which is the same mean and never overflows next to
-//! a site; a center on a site takes its height.
+//! Weights are relative to the nearest site's, (d₀/d)^power, which gives the same mean and never overflows next to a
+//! site; a center on a site takes its height.
 
 use std::ops::Range;
 
@@ -10,40 +10,40 @@ use rayon::prelude::*;
 
 use crate::dem::gridding::GriddingMethod;
 use crate::dem::gridding::hull::Hull;
-use crate::dem::gridding::kd::{KdTree, NearestSites};
+use crate::dem::gridding::kd::{KdTree, Near, NearestSites};
 use crate::dem::gridding::linear::CellCenters;
 use crate::dem::gridding::sites::Sites;
 
 /// Cells along the side of a tile whose cells share a search.
 const TILE: usize = 8;
 
-/// Candidates that the cells of a tile may share for each site that one of them wants, and at least. Looking at so many
+/// The most candidates that the cells of a tile share, for each site that a cell needs, and at least. Comparing so many
 /// costs about as much as a search of the tree for each cell.
-const CROWD_PER_SITE: usize = 10;
-const CROWD: usize = 64;
+const CANDIDATES_PER_SITE: usize = 10;
+const LEAST_CANDIDATES: usize = 64;
 
-/// What a bound on distances is widened by, against rounding.
+/// The factor that widens a bound on distances, against rounding.
 const SLACK: f64 = 1.0 + 1e-9;
 
 /// Cells that share a search.
 struct Tile<'a> {
     /// The first column.
     left: usize,
-    /// Of its columns.
+    /// The centers of its columns.
     x: &'a [f64],
-    /// Of its rows.
+    /// The centers of its rows.
     y: &'a [f64],
-    /// For each row, which columns of the whole row lie in the hull.
+    /// For each row, the columns of the grid that lie in the hull.
     columns: &'a [Range<usize>],
 }
 
 impl Tile<'_> {
-    /// Those of `columns` that are the tile's.
+    /// The tile's part of `columns`.
     fn part(&self, columns: &Range<usize>) -> Range<usize> {
         columns.start.max(self.left)..columns.end.min(self.left + self.x.len())
     }
 
-    /// The middle of its cells' centers, and how far the farthest is from it.
+    /// The middle of its cells' centers, and the distance of the farthest from it.
     fn circle(&self) -> (DVec2, f64) {
         let corner = DVec2::new(self.x[0], self.y[0]);
         let opposite = DVec2::new(self.x[self.x.len() - 1], self.y[self.y.len() - 1]);
@@ -52,7 +52,7 @@ impl Tile<'_> {
     }
 }
 
-/// What a task fills again for every tile.
+/// Buffers that a task reuses for every tile.
 struct SearchScratch {
     found: NearestSites,
     candidates: Vec<(DVec2, u32)>,
@@ -64,7 +64,7 @@ impl SearchScratch {
     }
 }
 
-/// Sites that can be asked by distance.
+/// Sites that are searched by distance.
 pub(super) struct WeightedSites<'a> {
     sites: &'a Sites,
     tree: KdTree,
@@ -72,12 +72,12 @@ pub(super) struct WeightedSites<'a> {
 }
 
 impl<'a> WeightedSites<'a> {
-    /// Sites for a method that goes by distance; any other is taken as the nearest.
+    /// Sites for a method by distance; any other counts as the nearest.
     pub fn new(sites: &'a Sites, method: GriddingMethod) -> Self {
         Self { sites, tree: KdTree::new(&sites.at), method }
     }
 
-    /// Gives every cell in the hull its height; other cells are left as they are.
+    /// Sets every cell in the hull to its height; other cells stay.
     pub fn fill(&self, hull: &Hull, cells: &CellCenters, out: &mut [f64]) {
         let columns = hull.columns(cells);
         let width = cells.x.len();
@@ -109,7 +109,7 @@ impl<'a> WeightedSites<'a> {
         }
     }
 
-    /// Searches the tree once for all cells of a tile, where the tile is not much larger than what a cell needs.
+    /// Searches the tree once for all cells of a tile, where the tile is not much larger than the search of a cell.
     fn fill_tile(&self, tile: &Tile, width: usize, scratch: &mut SearchScratch, out: &mut [f64]) {
         if tile.columns.iter().all(|columns| tile.part(columns).is_empty()) {
             return;
@@ -119,21 +119,21 @@ impl<'a> WeightedSites<'a> {
         let (center, half) = tile.circle();
         self.tree.nearest_k(center, f64::INFINITY, found);
         let enough = found.near().get(wanted - 1).map_or(f64::INFINITY, |near| near.distance2.sqrt());
-        // So many sites lie within `enough` of the center, so within `enough + half` of any cell; those that a cell
+        // The wanted sites lie within `enough` of the center, so within `enough + half` of any cell; those that a cell
         // needs lie half a tile farther from the center at most.
         let reach = (enough + 2.0 * half) * SLACK;
-        let most = CROWD.max(CROWD_PER_SITE * wanted);
+        let most = LEAST_CANDIDATES.max(CANDIDATES_PER_SITE * wanted);
         let expected = wanted as f64 * (reach / enough).powi(2);
-        let shared = expected <= most as f64 || self.sites.len() <= most;
-        if shared {
+        let mut shares = expected <= most as f64 || self.sites.len() <= most;
+        if shares {
             self.tree.gather(center, reach * reach, 2 * most, candidates);
+            shares = candidates.len() <= 2 * most;
         }
-        let shared = shared && candidates.len() <= 2 * most;
         for (row, (&y, columns)) in tile.y.iter().zip(tile.columns).enumerate() {
             let mut limit2 = f64::INFINITY;
             for column in tile.part(columns) {
                 let q = DVec2::new(tile.x[column - tile.left], y);
-                if shared {
+                if shares {
                     found.choose(q, limit2, candidates);
                 } else {
                     self.tree.nearest_k(q, limit2, found);
@@ -147,7 +147,7 @@ impl<'a> WeightedSites<'a> {
         }
     }
 
-    /// The squared distance from `q` to the farthest of the sites found for the cell before: as many as are wanted lie
+    /// The squared distance from `q` to the farthest of the sites found for the previous cell: as many as are wanted lie
     /// within it.
     fn farthest2(&self, found: &NearestSites, q: DVec2) -> f64 {
         let distances2 =
@@ -156,33 +156,30 @@ impl<'a> WeightedSites<'a> {
     }
 
     fn by_nearest(&self, found: &NearestSites) -> f64 {
-        let z = |site: u32| self.sites.z[site as usize];
         match self.method {
-            GriddingMethod::InverseDistance { power, .. } => {
-                mean(found.near().iter().map(|near| (near.distance2, z(near.site))), power)
-            }
-            _ => found.near().first().map_or(f64::NAN, |near| z(near.site)),
+            GriddingMethod::InverseDistance { power, .. } => self.mean(found.near(), power),
+            _ => found.near().first().map_or(f64::NAN, |near| self.sites.z[near.site as usize]),
         }
     }
 
     fn by_quadrants(&self, q: DVec2, power: f64) -> f64 {
-        let mut found = self.tree.quadrants(q);
-        found.sort_by(|a, b| match (a, b) {
-            (Some(a), Some(b)) => a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)),
-            (a, b) => a.is_none().cmp(&b.is_none()),
-        });
-        mean(found.iter().flatten().map(|&(distance2, site)| (distance2, self.sites.z[site as usize])), power)
+        let mut found: Vec<Near> = self.tree.quadrants(q).into_iter().flatten().collect();
+        found.sort_by(Near::order);
+        self.mean(&found, power)
+    }
+
+    fn mean(&self, near: &[Near], power: f64) -> f64 {
+        mean(near.iter().map(|near| (near.distance2, self.sites.z[near.site as usize])), power)
     }
 }
 
 /// The mean of heights at squared distances, nearest first; NaN for none.
-fn mean(sites: impl Iterator<Item = (f64, f64)>, power: f64) -> f64 {
-    let mut sites = sites;
+fn mean(mut sites: impl Iterator<Item = (f64, f64)>, power: f64) -> f64 {
     let Some((nearest2, nearest_z)) = sites.next() else { return f64::NAN };
     if nearest2 == 0.0 {
         return nearest_z;
     }
-    // Differences from the nearest keep a level plain level.
+    // Sums of differences from the nearest keep level ground level.
     let (mut sum, mut total) = (0.0, 1.0);
     for (distance2, z) in sites {
         let weight = weight(nearest2 / distance2, power);

@@ -1,62 +1,64 @@
 //! The coordinate system of a LAS file: GeoTIFF keys (before 1.4, and formats 0 to 5) or WKT, in its records.
 //!
 //! Heights are in the vertical unit that is stated, else in the unit of x and y, as ASPRS LAS 1.4 R15 has it of a
-//! system that states one unit only; that heights were taken for feet is told, because so much hangs on it.
+//! system that states one unit only. That heights were taken for feet is noted: so much depends on it.
 
+use crate::dem::error::DemErrorKind;
 use crate::dem::points::PointsError;
 use crate::dem::points::las_header::{LasHeader, Record};
 use crate::dem::tiff::geokeys::GeoKeys;
 use crate::geom::crs::Crs;
 
-/// Who defined the records of coordinate systems.
+/// The owner of the records of coordinate systems, and their numbers.
 const OWNER: &[u8] = b"LASF_Projection";
 const KEYS: u16 = 34735;
 const DOUBLES: u16 = 34736;
-/// Records with text that keys point into.
 const TEXTS: u16 = 34737;
 const WKT: u16 = 2112;
 
-/// What a file says of its coordinates.
+/// The coordinate system of a file.
 pub(super) struct LasCrs {
     /// Of x and y.
     pub crs: Option<Crs>,
-    /// Of z.
+    /// Meters in one unit of z.
     pub meters_per_z: f64,
-    /// What heights are counted from.
+    /// The vertical datum.
     pub vertical_datum: Option<String>,
-    /// What was taken for granted.
+    /// What was assumed.
     pub notes: Vec<String>,
 }
 
-/// The system that the records state; for x and y `stated` instead, where the caller knows better.
-pub(super) fn read(
-    records: &[Record],
-    header: &LasHeader,
-    stated: Option<&Crs>,
-) -> Result<LasCrs, PointsError> {
-    let content = |id: u16| {
-        let found = records.iter().find(|record| record.owner == OWNER && record.id == id);
-        found.map(|record| record.content).filter(|content| !content.is_empty())
-    };
-    let wkt = content(WKT).map(text).filter(|text| !text.is_empty());
-    let keys = content(KEYS).map(|directory| {
-        keys(directory, content(DOUBLES).unwrap_or_default(), content(TEXTS).unwrap_or_default())
-    });
-    let by_wkt = wkt.as_deref().filter(|_| header.says_wkt || keys.is_none());
-    let (crs, unit) = match (by_wkt, &keys, stated) {
-        (Some(text), _, None) => (Some(crs_of(text)?), vertical_unit(text)),
-        (Some(text), _, Some(crs)) => (Some(crs.clone()), vertical_unit(text)),
-        (None, Some(keys), None) => (keys.crs()?, keys.meters_per_z()?),
-        (None, Some(keys), Some(crs)) => (Some(crs.clone()), keys.meters_per_z().ok().flatten()),
-        (None, None, stated) => (stated.cloned(), None),
-    };
-    let mut notes = Vec::new();
-    let of_plane = crs.as_ref().filter(|crs| !crs.is_geographic()).map_or(1.0, Crs::meters_per_unit);
-    if unit.is_none() && of_plane != 1.0 {
-        notes.push(format!("heights were taken to be in the unit of x and y, {of_plane} m"));
+impl LasCrs {
+    /// The system that the records state; for x and y `stated` instead, where the caller knows better.
+    pub fn new(records: &[Record], header: &LasHeader, stated: Option<&Crs>) -> Result<Self, PointsError> {
+        let content = |id: u16| {
+            let record = records.iter().find(|record| record.owner == OWNER && record.id == id);
+            record.map(|record| record.content).filter(|content| !content.is_empty())
+        };
+        let keys = content(KEYS).map(|directory| {
+            keys(directory, content(DOUBLES).unwrap_or_default(), content(TEXTS).unwrap_or_default())
+        });
+        let wkt = content(WKT).map(text).filter(|text| !text.is_empty());
+        let wkt = wkt.filter(|_| header.says_wkt || keys.is_none());
+        let (own, unit) = match (&wkt, &keys, stated) {
+            (Some(wkt), ..) => (None, vertical_unit(wkt)),
+            (None, Some(keys), None) => (keys.crs()?, keys.meters_per_z()?),
+            (None, Some(keys), Some(_)) => (None, keys.meters_per_z().ok().flatten()),
+            (None, None, _) => (None, None),
+        };
+        let crs = match (stated, &wkt) {
+            (Some(stated), _) => Some(stated.clone()),
+            (None, Some(wkt)) => Some(Crs::parse(wkt).map_err(DemErrorKind::Crs)?),
+            (None, None) => own,
+        };
+        let mut notes = Vec::new();
+        let of_plane = crs.as_ref().filter(|crs| !crs.is_geographic()).map_or(1.0, Crs::meters_per_unit);
+        if unit.is_none() && of_plane != 1.0 {
+            notes.push(format!("heights were taken to be in the unit of x and y, {of_plane} m"));
+        }
+        let vertical_datum = wkt.as_deref().and_then(|wkt| quoted(vertical(wkt)?));
+        Ok(Self { crs, meters_per_z: unit.unwrap_or(of_plane), vertical_datum, notes })
     }
-    let vertical_datum = by_wkt.and_then(|text| quoted(vertical(text)?));
-    Ok(LasCrs { crs, meters_per_z: unit.unwrap_or(of_plane), vertical_datum, notes })
 }
 
 /// A text up to its first zero.
@@ -65,15 +67,9 @@ fn text(content: &[u8]) -> String {
     String::from_utf8_lossy(&content[..end]).trim().to_owned()
 }
 
-fn crs_of(wkt: &str) -> Result<Crs, PointsError> {
-    Crs::parse(wkt).map_err(|error| PointsError::Crs { reason: error.to_string() })
-}
-
 fn keys(directory: &[u8], doubles: &[u8], text: &[u8]) -> GeoKeys {
-    let directory: Vec<u16> =
-        directory.chunks_exact(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]])).collect();
-    let double = |eight: &[u8]| eight.try_into().map(f64::from_le_bytes).unwrap_or(f64::NAN);
-    let doubles: Vec<f64> = doubles.chunks_exact(8).map(double).collect();
+    let directory: Vec<u16> = directory.as_chunks().0.iter().map(|raw| u16::from_le_bytes(*raw)).collect();
+    let doubles: Vec<f64> = doubles.as_chunks().0.iter().map(|raw| f64::from_le_bytes(*raw)).collect();
     GeoKeys::new(&directory, &doubles, &String::from_utf8_lossy(text))
 }
 
@@ -87,11 +83,11 @@ fn vertical(wkt: &str) -> Option<&str> {
 fn vertical_unit(wkt: &str) -> Option<f64> {
     let part = vertical(wkt)?;
     let unit = &part[part.find("UNIT[")?..];
-    let factor = unit.split(',').nth(1)?.trim_end_matches([']', ' ']).trim();
-    let factor: f64 = factor.split(']').next()?.trim().parse().ok()?;
-    (factor.is_finite() && factor > 0.0).then_some(factor)
+    let factor = unit.split(',').nth(1)?.split(']').next()?.trim();
+    factor.parse().ok().filter(|factor: &f64| factor.is_finite() && *factor > 0.0)
 }
 
+/// The first text in quotes.
 fn quoted(part: &str) -> Option<String> {
     part.split('"').nth(1).map(str::to_owned).filter(|name| !name.is_empty())
 }

@@ -1,65 +1,52 @@
 //! The header of a LAS file (ASPRS LAS 1.0 to 1.4 R15), every count and offset in it held against the file.
 //!
-//! ```text
-//!   0 LASF   6 flags   25 version   94 header size   96 offset of points   100 records   104 format   105 length
-//! 107 count (32 bits)  131 scales   155 offsets      235 extended records and 247 count (64 bits): 1.4 only
-//! ── header size ── variable length records ── offset of points ── points ── extended records
-//! ```
+//! The `las` crate reads the header's fields, but trusts them: its reader allocates what a forged count states and ends
+//! the process. So its other parts are not used; points and records are sliced here, out of what the file holds.
 
 use glam::DVec3;
+use las::raw::header::Header;
 
-use crate::dem::error::bytes_at;
+use crate::dem::bytes::ByteFields;
 use crate::dem::points::{MOST_POINTS, PointsError};
-
-/// Bytes of the header of each version from 1.0 on.
-const HEADER_BYTES: [usize; 5] = [227, 227, 227, 235, 375];
-
-/// Bytes of a point of each format; a file may state more, of bytes that its writer added.
-const POINT_BYTES: [usize; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
-
-/// The first format with 16 flags and 256 classes.
-const EXTENDED: u8 = 6;
 
 /// Set in the format of a compressed file.
 const COMPRESSED: u8 = 0x80;
 
-/// A header whose promises the file can hold.
+/// A header whose claims the file can hold.
 #[derive(Debug)]
 pub(super) struct LasHeader {
-    /// 0 to 4 of version 1.
-    pub minor: u8,
     /// Where variable length records start.
-    pub size: usize,
+    size: usize,
     /// Where points start.
     pub points_at: usize,
     /// The format of a point, 0 to 10.
     pub format: u8,
     /// Whether points are compressed.
-    pub compressed: bool,
+    pub is_compressed: bool,
     /// Bytes of a point.
-    pub record: usize,
-    /// Points.
+    pub point_bytes: usize,
+    /// Bytes of a point that its writer added to the format.
+    pub extra_bytes: u16,
+    /// The number of points.
     pub count: u64,
-    /// What stored coordinates are multiplied by.
+    /// The factor of stored coordinates.
     pub scale: DVec3,
     /// What is added then.
     pub offset: DVec3,
     /// Whether the system is stated as WKT.
     pub says_wkt: bool,
-    /// Variable length records.
+    /// The number of variable length records.
     records: u32,
-    /// Extended records: where and how many.
+    /// Where extended records start, and their number.
     extended: (u64, u32),
 }
 
 /// A variable length record.
 pub(super) struct Record<'a> {
-    /// Who defined it.
+    /// Its owner.
     pub owner: &'a [u8],
     /// Its number among those of the same owner.
     pub id: u16,
-    /// The record with its own header.
-    pub whole: &'a [u8],
     /// Its content.
     pub content: &'a [u8],
 }
@@ -67,162 +54,106 @@ pub(super) struct Record<'a> {
 impl LasHeader {
     /// Reads and checks a header.
     pub fn read(bytes: &[u8]) -> Result<Self, PointsError> {
-        let format = u8_at(bytes, 104)?;
+        let raw = Header::read_from(bytes)
+            .map_err(|error| PointsError::Undecodable { format: "LAS", source: Box::new(error) })?;
+        if raw.version.major != 1 || raw.version.minor > 4 {
+            return Err(unsupported(format!("is of version {} (1.0 to 1.4 are known)", raw.version)));
+        }
+        let format = raw.point_data_record_format & !COMPRESSED;
+        let known = las::point::Format::new(format);
+        let known =
+            known.map_err(|_| unsupported(format!("has points of format {format} (0 to 10 are known)")))?;
+        let (stated, needed) = (raw.point_data_record_length, known.len());
+        let extra_bytes = stated
+            .checked_sub(needed)
+            .ok_or_else(|| broken(format!("points of format {format} in {stated} bytes need {needed}")))?;
+        let count = raw.large_file.map_or(0, |large| large.number_of_point_records);
         let header = Self {
-            minor: version(bytes)?,
-            size: u16_at(bytes, 94)?.into(),
-            points_at: u32_at(bytes, 96)? as usize,
-            format: format & !COMPRESSED,
-            compressed: format & COMPRESSED != 0,
-            record: u16_at(bytes, 105)?.into(),
-            count: 0,
-            scale: vector_at(bytes, 131)?,
-            offset: vector_at(bytes, 155)?,
-            says_wkt: u16_at(bytes, 6)? & 0x10 != 0,
-            records: u32_at(bytes, 100)?,
-            extended: (0, 0),
+            size: raw.header_size.into(),
+            points_at: raw.offset_to_point_data as usize,
+            format,
+            is_compressed: raw.point_data_record_format & COMPRESSED != 0,
+            point_bytes: stated.into(),
+            extra_bytes,
+            count: if count == 0 { raw.number_of_point_records.into() } else { count },
+            scale: DVec3::new(raw.x_scale_factor, raw.y_scale_factor, raw.z_scale_factor),
+            offset: DVec3::new(raw.x_offset, raw.y_offset, raw.z_offset),
+            says_wkt: raw.global_encoding & 0x10 != 0,
+            records: raw.number_of_variable_length_records,
+            extended: raw.evlr.map_or((0, 0), |evlr| (evlr.start_of_first_evlr, evlr.number_of_evlrs)),
         };
-        let header = header.with_version_4(bytes)?;
-        header.check(bytes)?;
+        header.check(bytes.len(), raw.version.header_size().into())?;
         Ok(header)
     }
 
-    fn with_version_4(self, bytes: &[u8]) -> Result<Self, PointsError> {
-        let legacy = u64::from(u32_at(bytes, 107)?);
-        if self.minor < 4 {
-            return Ok(Self { count: legacy, ..self });
-        }
-        let count = u64_at(bytes, 247)?;
-        let extended = (u64_at(bytes, 235)?, u32_at(bytes, 243)?);
-        Ok(Self { count: if count == 0 { legacy } else { count }, extended, ..self })
-    }
-
-    fn check(&self, bytes: &[u8]) -> Result<(), PointsError> {
-        let least = HEADER_BYTES[usize::from(self.minor)];
-        if self.size < least || self.points_at < self.size || self.points_at > bytes.len() {
+    fn check(&self, file_bytes: usize, least_size: usize) -> Result<(), PointsError> {
+        let Self { size, points_at, count, scale, offset, .. } = *self;
+        if size < least_size || points_at < size || points_at > file_bytes {
             return Err(broken(format!(
-                "its header of {} bytes (version 1.{} has {least}) is followed by points at byte {}, in a file of {}",
-                self.size,
-                self.minor,
-                self.points_at,
-                bytes.len()
+                "its header of {size} bytes (its version has {least_size}) is followed by points at byte {points_at}, in a file of {file_bytes}"
             )));
         }
-        let Some(&least) = POINT_BYTES.get(usize::from(self.format)) else {
-            return Err(PointsError::Unsupported {
-                format: "LAS",
-                what: format!("has points of format {} (0 to 10 are known)", self.format),
-            });
-        };
-        if self.record < least {
-            let record = self.record;
-            return Err(broken(format!("points of format {} in {record} bytes need {least}", self.format)));
+        if count > MOST_POINTS {
+            return Err(PointsError::TooMany { count });
         }
-        if self.count > MOST_POINTS {
-            return Err(PointsError::TooMany { count: self.count });
+        let most = ((file_bytes - points_at) / self.point_bytes) as u64;
+        if !self.is_compressed && count > most {
+            let bytes = self.point_bytes;
+            return Err(broken(format!("it states {count} points of {bytes} bytes and can hold {most}")));
         }
-        let room = (bytes.len() - self.points_at) as u64;
-        if !self.compressed && self.count * self.record as u64 > room {
-            return Err(broken(format!(
-                "it promises {} points of {} bytes and has room for {}",
-                self.count,
-                self.record,
-                room / self.record as u64
-            )));
-        }
-        if self.scale.is_finite() && self.offset.is_finite() && self.scale.cmpne(DVec3::ZERO).all() {
+        if scale.is_finite() && offset.is_finite() && scale.cmpne(DVec3::ZERO).all() {
             return Ok(());
         }
-        Err(broken(format!("its scales are {} and its offsets {}", self.scale, self.offset)))
-    }
-
-    /// Bytes of a point of the format itself, without bytes that the writer added.
-    pub fn plain_record(&self) -> usize {
-        POINT_BYTES[usize::from(self.format)]
+        Err(broken(format!("its scales are {scale} and its offsets {offset}")))
     }
 
     /// Whether points have the layout of formats 6 to 10.
     pub fn is_extended(&self) -> bool {
-        self.format >= EXTENDED
+        self.format >= 6
     }
 
-    /// All records that lie whole before the points, then the extended ones after them. Some writers count more
-    /// records than there are; what runs into the points is no record.
+    /// All records that lie before the points, then the extended ones after them. Some writers count more records than
+    /// there are; what runs into the points is no record.
     pub fn records<'a>(&self, bytes: &'a [u8]) -> Vec<Record<'a>> {
-        let mut found = Vec::new();
-        let before = &bytes[..self.points_at];
+        let mut records = Vec::new();
         let mut at = self.size;
         for _ in 0..self.records {
-            let Some(record) = record(before, at, Length::Short) else { break };
-            at += record.whole.len();
-            found.push(record);
+            let length = |fields: ByteFields| fields.u16(20).map(u64::from);
+            let Some(record) = Record::read(&bytes[..self.points_at], &mut at, 54, length) else { break };
+            records.push(record);
         }
         let mut at = usize::try_from(self.extended.0).unwrap_or(usize::MAX);
         for _ in 0..self.extended.1 {
-            let Some(record) = record(bytes, at, Length::Long) else { break };
-            at += record.whole.len();
-            found.push(record);
+            let Some(record) = Record::read(bytes, &mut at, 60, |fields| fields.u64(20)) else { break };
+            records.push(record);
         }
-        found
+        records
     }
 }
 
-/// How a record states its length: in 16 bits, or in 64 where it is extended.
-#[derive(Clone, Copy)]
-enum Length {
-    Short,
-    Long,
-}
-
-fn record(bytes: &[u8], at: usize, length: Length) -> Option<Record<'_>> {
-    let (header, length) = match length {
-        Length::Short => (54, u16::from_le_bytes(bytes_at(bytes, at.checked_add(20)?)?).into()),
-        Length::Long => (60, u64::from_le_bytes(bytes_at(bytes, at.checked_add(20)?)?)),
-    };
-    let end = at.checked_add(header)?.checked_add(usize::try_from(length).ok()?)?;
-    let whole = bytes.get(at..end)?;
-    let owner = &whole[2..18];
-    let owner = &owner[..owner.iter().position(|&byte| byte == 0).unwrap_or(owner.len())];
-    Some(Record { owner, id: u16::from_le_bytes(bytes_at(whole, 18)?), whole, content: &whole[header..] })
-}
-
-fn version(bytes: &[u8]) -> Result<u8, PointsError> {
-    match (u8_at(bytes, 24)?, u8_at(bytes, 25)?) {
-        (1, minor @ 0..=4) => Ok(minor),
-        (major, minor) => Err(PointsError::Unsupported {
-            format: "LAS",
-            what: format!("is of version {major}.{minor} (1.0 to 1.4 are known)"),
-        }),
+impl<'a> Record<'a> {
+    /// The record at `at`, which moves behind it. `header` are the bytes before its content, whose length is a field of
+    /// it; `None` where it does not lie within `bytes`.
+    fn read(
+        bytes: &'a [u8],
+        at: &mut usize,
+        header: usize,
+        length: impl Fn(ByteFields) -> Option<u64>,
+    ) -> Option<Self> {
+        let rest = bytes.get(*at..)?;
+        let fields = ByteFields::little_endian(rest);
+        let end = header.checked_add(usize::try_from(length(fields)?).ok()?)?;
+        let content = rest.get(header..end)?;
+        *at += end;
+        let owner = rest[2..18].split(|&byte| byte == 0).next().unwrap_or_default();
+        Some(Self { owner, id: fields.u16(18)?, content })
     }
 }
 
-/// A [`PointsError::Broken`] LAS file.
-pub(super) fn broken(reason: impl Into<String>) -> PointsError {
-    PointsError::Broken { format: "LAS", reason: reason.into() }
+fn unsupported(what: String) -> PointsError {
+    PointsError::Unsupported { format: "LAS", what }
 }
 
-fn u8_at(bytes: &[u8], at: usize) -> Result<u8, PointsError> {
-    field(bytes, at).map(|[byte]| byte)
-}
-
-fn u16_at(bytes: &[u8], at: usize) -> Result<u16, PointsError> {
-    field(bytes, at).map(u16::from_le_bytes)
-}
-
-fn u32_at(bytes: &[u8], at: usize) -> Result<u32, PointsError> {
-    field(bytes, at).map(u32::from_le_bytes)
-}
-
-fn u64_at(bytes: &[u8], at: usize) -> Result<u64, PointsError> {
-    field(bytes, at).map(u64::from_le_bytes)
-}
-
-fn vector_at(bytes: &[u8], at: usize) -> Result<DVec3, PointsError> {
-    let number = |index: usize| field(bytes, at + 8 * index).map(f64::from_le_bytes);
-    Ok(DVec3::new(number(0)?, number(1)?, number(2)?))
-}
-
-fn field<const N: usize>(bytes: &[u8], at: usize) -> Result<[u8; N], PointsError> {
-    bytes_at(bytes, at)
-        .ok_or_else(|| broken(format!("it ends after {} bytes, inside its header", bytes.len())))
+fn broken(reason: String) -> PointsError {
+    PointsError::Broken { format: "LAS", reason }
 }

@@ -1,20 +1,25 @@
-//! Scattered points of known height, and the readers that bring them: text ([`table`]), LAS and LAZ ([`las`]).
+//! Scattered points of known height, and their readers: text ([`table`]), LAS and LAZ ([`las`]).
 //!
-//! A cloud is what a survey hands over before anybody has made a grid of it: points in no order, lines along which
-//! the ground breaks, a system for their x and y and a unit for their z. [`crate::dem::gridding`] makes the grid.
+//! A cloud is what a survey measures: points in no order, lines along which the ground breaks, a system for their x and y
+//! and a unit for their z. [`crate::dem::gridding`] makes a grid of it.
 
+#[cfg(feature = "las")]
 pub mod las;
+#[cfg(feature = "las")]
 mod las_crs;
+#[cfg(feature = "las")]
 mod las_header;
+#[cfg(feature = "las")]
 mod laz;
 pub mod table;
 
 use glam::DVec3;
 
+#[cfg(feature = "las")]
 use crate::dem::error::DemErrorKind;
 use crate::geom::crs::Crs;
 
-/// Points that are taken of one file; more than any flight line holds, and 1.5 GiB of memory.
+/// The most points of one file; more than any flight line holds, and 1.5 GiB of memory.
 pub const MOST_POINTS: u64 = 1 << 26;
 
 /// Points and breaklines in one coordinate system.
@@ -29,16 +34,24 @@ pub struct PointCloud {
     pub crs: Option<Crs>,
     /// Meters in one unit of the heights.
     pub meters_per_z: f64,
-    /// What heights are counted from, in the file's words; `None` where it does not say.
+    /// The vertical datum in the file's words; `None` where it is not stated.
     pub vertical_datum: Option<String>,
-    /// What the user should know of what was read: what was left out, what was taken for granted.
+    /// What the user should know: what was left out or assumed.
     pub notes: Vec<String>,
+}
+
+impl PointCloud {
+    /// Points in meters, in no named system.
+    pub fn new(points: Vec<DVec3>) -> Self {
+        let (breaklines, notes) = (Vec::new(), Vec::new());
+        Self { points, breaklines, crs: None, meters_per_z: 1.0, vertical_datum: None, notes }
+    }
 }
 
 /// What the caller knows of a file of points beyond its bytes.
 #[derive(Clone, Debug, Default)]
 pub struct PointHints<'a> {
-    /// The system of x and y, in place of what the file says or where it says nothing.
+    /// The system of x and y, in place of the file's.
     pub crs: Option<&'a Crs>,
     /// The classes of LAS points that are taken. Empty: ground (class 2) where the file has any, else all.
     pub classes: &'a [u8],
@@ -47,17 +60,15 @@ pub struct PointHints<'a> {
 /// Why a file of points was not read.
 #[derive(Debug, thiserror::Error)]
 pub enum PointsError {
-    /// A line that is no point.
-    #[error("line {line}: found '{found}', each line must hold {wanted}")]
+    /// A line is no point.
+    #[error("line {line}: found '{found}', each line must hold numbers x, y, z")]
     Line {
         /// The line, from 1.
         line: usize,
         /// Its text, cut where it is long.
         found: String,
-        /// What it should hold.
-        wanted: &'static str,
     },
-    /// A header without the columns that are needed.
+    /// The header lacks columns that are needed.
     #[error("line {line}: the header '{found}' must name columns x, y and z (or lon, lat and elevation)")]
     Columns {
         /// The line, from 1.
@@ -65,25 +76,33 @@ pub enum PointsError {
         /// Its text, cut where it is long.
         found: String,
     },
-    /// Bytes that are no text.
+    /// The bytes are no text.
     #[error("byte {at} is not UTF-8 text; points are read from text (.xyz, .csv, .txt), LAS and LAZ")]
     NotText {
         /// Where the text ends.
         at: usize,
     },
-    /// Nothing to make a grid of.
-    #[error("it holds no points{why}")]
+    /// The file holds no points with a height.
+    #[error("it holds no points{}", if *.without_height > 0 { " that have a height" } else { "" })]
     Empty {
-        /// Of which kind, where there are others; starts with a blank or is empty.
-        why: String,
+        /// Points without a height.
+        without_height: usize,
     },
-    /// More points than are taken.
-    #[error("{count} points are more than the {MOST_POINTS} that are taken; thin or cut the file")]
+    /// The file holds no points of the wanted classes.
+    #[error("it holds no points of class {wanted}; it has {found}")]
+    NoClass {
+        /// The wanted classes.
+        wanted: String,
+        /// The classes of the file, with their counts.
+        found: String,
+    },
+    /// The file holds more points than are read.
+    #[error("{count} points are more than the {MOST_POINTS} that are read; thin or cut the file")]
     TooMany {
         /// Points as stated or found.
         count: u64,
     },
-    /// A LAS or LAZ file that contradicts itself or ends too early.
+    /// The file contradicts itself or ends too early.
     #[error("the {format} file is broken: {reason}; fetch or export it again")]
     Broken {
         /// `LAS` or `LAZ`.
@@ -91,39 +110,51 @@ pub enum PointsError {
         /// Where and what.
         reason: String,
     },
-    /// A LAS or LAZ file of a kind that is not read.
+    /// A decoder refuses the file.
+    #[error("the {format} file is broken: {source}; fetch or export it again")]
+    Undecodable {
+        /// `LAS` or `LAZ`.
+        format: &'static str,
+        /// The decoder's error.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+    /// The file is of a kind that is not read.
     #[error(
         "this {format} file {what}, which is not read; write it again with another program, for example: pdal translate IN OUT.las"
     )]
     Unsupported {
         /// `LAS` or `LAZ`.
         format: &'static str,
-        /// What it is or uses.
+        /// The kind.
         what: String,
     },
+    /// The program was built without the readers of LAS and LAZ.
+    #[error(
+        "this is a LAS or LAZ file, and this program was built without the feature `las`: build it with --features las, or convert the points to text"
+    )]
+    WithoutLas,
     /// The file's coordinate system is not understood.
-    #[error("its coordinate system cannot be used: {reason}; state the right one with --crs")]
-    Crs {
-        /// What was found.
-        reason: String,
-    },
+    #[error("{0}; or state the right one with --crs")]
+    Crs(#[source] Box<dyn std::error::Error + Send + Sync>),
 }
 
+#[cfg(feature = "las")]
 impl From<DemErrorKind> for PointsError {
-    fn from(fault: DemErrorKind) -> Self {
-        match fault {
-            DemErrorKind::Georeference { reason, .. } => Self::Crs { reason },
-            DemErrorKind::Crs(error) => Self::Crs { reason: error.to_string() },
-            other => Self::Crs { reason: other.to_string() },
-        }
+    fn from(error: DemErrorKind) -> Self {
+        Self::Crs(Box::new(error))
     }
+}
+
+/// Whether the content is that of a LAS or LAZ file.
+fn is_las(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"LASF")
 }
 
 /// Whether a file is one of points: LAS and LAZ by content, text by its name's extension.
 pub fn recognizes(name: &str, bytes: &[u8]) -> bool {
     const TEXT: [&str; 6] = ["xyz", "csv", "txt", "tsv", "dat", "pts"];
     let extension = name.rsplit_once('.').map(|(_, extension)| extension.to_ascii_lowercase());
-    las::recognizes(bytes) || extension.is_some_and(|extension| TEXT.contains(&extension.as_str()))
+    is_las(bytes) || extension.is_some_and(|extension| TEXT.contains(&extension.as_str()))
 }
 
 /// Reads a file of points: LAS or LAZ by its first bytes, anything else as text.
@@ -131,5 +162,11 @@ pub fn recognizes(name: &str, bytes: &[u8]) -> bool {
 /// # Errors
 /// [`PointsError`]; the caller names the file.
 pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError> {
-    if las::recognizes(bytes) { las::read(bytes, hints) } else { table::read(bytes, hints) }
+    if !is_las(bytes) {
+        return table::read(bytes, hints);
+    }
+    #[cfg(feature = "las")]
+    return las::read(bytes, hints);
+    #[cfg(not(feature = "las"))]
+    Err(PointsError::WithoutLas)
 }

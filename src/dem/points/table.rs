@@ -1,23 +1,10 @@
 //! Points as text (`.xyz`, `.csv`, `.txt`): a point a line, with or without a header that names the columns.
 //!
-//! Fields are parted by semicolons, else commas, else blanks or tabs; with semicolons a number may have a decimal
-//! comma. Empty lines and lines that start with `#` or `//` are passed over. A point without a height (an empty field
-//! or NaN) is left out and counted; any other line that is no point is refused with its number, because a line that
-//! was silently dropped is a hole nobody knows of.
+//! A point without a height (an empty field or NaN) is left out and counted; any other line that is no point is an
+//! error with its number: a line dropped silently would leave a hole.
 
-use glam::DVec3;
-
+use crate::dem::point_text::PointText;
 use crate::dem::points::{MOST_POINTS, PointCloud, PointHints, PointsError};
-
-const X: [&str; 9] = ["x", "lon", "long", "longitude", "lng", "easting", "east", "e", "rechtswert"];
-const Y: [&str; 8] = ["y", "lat", "latitude", "northing", "north", "n", "hochwert", "lati"];
-const Z: [&str; 9] = ["z", "elevation", "elev", "height", "h", "alt", "altitude", "ele", "hoehe"];
-
-/// What a line must hold, for messages.
-const WANTED: &str = "numbers x, y, z";
-
-/// The longest part of a line that a message repeats.
-const LONGEST_QUOTE: usize = 60;
 
 /// Reads a table of points.
 ///
@@ -26,102 +13,38 @@ const LONGEST_QUOTE: usize = 60;
 pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError> {
     let text =
         std::str::from_utf8(bytes).map_err(|error| PointsError::NotText { at: error.valid_up_to() })?;
-    let mut lines = lines(text).peekable();
-    let columns = match lines.peek() {
-        Some(&(line, text)) if is_header(text) => {
-            lines.next();
-            columns(text).ok_or_else(|| PointsError::Columns { line, found: quote(text) })?
+    let text = PointText::new(text);
+    let columns = match (text.columns, text.header) {
+        ([Some(x), Some(y), Some(z)], _) => [x, y, z],
+        (_, header) => {
+            let (line, found) = header.map_or((1, String::new()), |header| (header.number, header.quote()));
+            return Err(PointsError::Columns { line, found });
         }
-        _ => [0, 1, 2],
     };
     let mut points = Vec::new();
     let mut without_height = 0usize;
-    for (line, text) in lines {
-        match point(text, columns) {
+    for line in text.lines() {
+        match line.point(columns) {
             Some(point) if point.z.is_nan() => without_height += 1,
-            Some(point) if points.len() as u64 == MOST_POINTS => {
-                return Err(PointsError::TooMany {
-                    count: points.len() as u64 + u64::from(point.is_finite()),
-                });
-            }
-            Some(point) => points.push(point),
-            None => return Err(PointsError::Line { line, found: quote(text), wanted: WANTED }),
+            Some(point) if point.z.is_finite() => points.push(point),
+            _ => return Err(PointsError::Line { line: line.number, found: line.quote() }),
+        }
+        if points.len() as u64 > MOST_POINTS {
+            return Err(PointsError::TooMany { count: points.len() as u64 });
         }
     }
     if points.is_empty() {
-        let why = if without_height > 0 { " that have a height" } else { "" };
-        return Err(PointsError::Empty { why: why.into() });
+        return Err(PointsError::Empty { without_height });
     }
     let left_out = format!("{without_height} points without a height were left out");
-    Ok(PointCloud {
-        points,
-        breaklines: Vec::new(),
-        crs: hints.crs.cloned(),
-        meters_per_z: 1.0,
-        vertical_datum: None,
-        notes: if without_height > 0 { vec![left_out] } else { Vec::new() },
-    })
-}
-
-/// The lines that say something, with their numbers from 1.
-fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    text.trim_start_matches('\u{feff}')
-        .lines()
-        .enumerate()
-        .map(|(index, line)| (index + 1, line.trim()))
-        .filter(|(_, line)| !(line.is_empty() || line.starts_with('#') || line.starts_with("//")))
-}
-
-/// The point of a line; its height NaN where the line gives none. `None` for a line that is no point.
-fn point(line: &str, columns: [usize; 3]) -> Option<DVec3> {
-    let mut found = [None; 3];
-    for (index, field) in fields(line).enumerate() {
-        for (column, found) in columns.iter().zip(&mut found) {
-            if *column == index {
-                *found = Some(field);
-            }
-        }
-    }
-    let [x, y, z] = found;
-    let z = match z? {
-        "" => f64::NAN,
-        field => number(field)?,
-    };
-    let point = DVec3::new(number(x?)?, number(y?)?, z);
-    let sound = point.x.is_finite() && point.y.is_finite() && !point.z.is_infinite();
-    sound.then_some(point)
-}
-
-fn number(field: &str) -> Option<f64> {
-    field.parse().ok().or_else(|| field.replacen(',', ".", 1).parse().ok())
-}
-
-/// Whether a first line holds names; one with a number in it is a point, or meant to be one.
-fn is_header(line: &str) -> bool {
-    fields(line).all(|field| number(field).is_none())
-}
-
-/// The columns of x, y and z that a header names.
-fn columns(header: &str) -> Option<[usize; 3]> {
-    let names: Vec<String> = fields(header).map(str::to_lowercase).collect();
-    let find = |accepted: &[&str]| names.iter().position(|name| accepted.contains(&name.as_str()));
-    Some([find(&X)?, find(&Y)?, find(&Z)?])
-}
-
-fn fields(line: &str) -> impl Iterator<Item = &str> {
-    let separator = [';', ','].into_iter().find(|&separator| line.contains(separator));
-    line.split(move |at: char| separator.map_or(at.is_whitespace(), |separator| at == separator))
-        .map(|field| field.trim().trim_matches('"'))
-        .filter(move |field| separator.is_some() || !field.is_empty())
-}
-
-/// A line as a message repeats it.
-fn quote(line: &str) -> String {
-    line.chars().take(LONGEST_QUOTE).collect()
+    let notes = if without_height > 0 { vec![left_out] } else { Vec::new() };
+    Ok(PointCloud { crs: hints.crs.cloned(), notes, ..PointCloud::new(points) })
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
 
     fn points(text: &str) -> Result<Vec<DVec3>, String> {

@@ -1,44 +1,17 @@
-//! GeoTIFF keys (OGC 19-008r4): the coordinate system, the vertical unit, and what a sample's position means.
+//! Reading GeoTIFF keys (OGC 19-008r4): the coordinate system, the vertical unit, and what a sample's position means.
 
 use crate::dem::error::DemErrorKind;
-use crate::dem::tiff::gdal_metadata::US_FOOT;
+use crate::dem::tiff::geokey_codes::{
+    ANGULAR_UNIT_SIZE, ANGULAR_UNITS, CITATION, EASTINGS, GEODETIC_DATUM, GEOGRAPHIC_TYPE, IN_DOUBLES,
+    IN_TEXT, INVERSE_FLATTENING, LATITUDES, LINEAR_UNIT_SIZE, LINEAR_UNITS, LONGITUDES, MODEL_TYPE,
+    NORTHINGS, PARALLEL_1, PARALLEL_2, PRIME_MERIDIAN, PROJECTED_TYPE, PROJECTION, PROJECTIONS, RASTER_TYPE,
+    SCALES, SEMI_MAJOR, SEMI_MINOR, TO_WGS84, TRANSFORMATION, USER_DEFINED, VERTICAL_CITATION,
+    VERTICAL_DATUM, VERTICAL_TYPE, VERTICAL_UNITS,
+};
+use crate::dem::units::{FOOT_M, US_SURVEY_FOOT_M, length_of_code};
 use crate::dem::vertical;
 use crate::geom::crs::Crs;
 use crate::geom::projection::{Datum, Definition, Ellipsoid, MapProjection};
-
-/// "The parameters are in other keys", in place of a code.
-const USER_DEFINED: u16 = 32767;
-
-const MODEL_TYPE: u16 = 1024;
-const RASTER_TYPE: u16 = 1025;
-const CITATION: u16 = 1026;
-const GEOGRAPHIC_TYPE: u16 = 2048;
-const GEODETIC_DATUM: u16 = 2050;
-const ANGULAR_UNITS: u16 = 2054;
-const ANGULAR_UNIT_SIZE: u16 = 2055;
-const SEMI_MAJOR: u16 = 2057;
-const SEMI_MINOR: u16 = 2058;
-const INVERSE_FLATTENING: u16 = 2059;
-const PRIME_MERIDIAN: u16 = 2061;
-const TO_WGS84: u16 = 2062;
-const PROJECTED_TYPE: u16 = 3072;
-const PROJECTION: u16 = 3074;
-const TRANSFORMATION: u16 = 3075;
-const LINEAR_UNITS: u16 = 3076;
-const LINEAR_UNIT_SIZE: u16 = 3077;
-const VERTICAL_TYPE: u16 = 4096;
-const VERTICAL_CITATION: u16 = 4097;
-const VERTICAL_DATUM: u16 = 4098;
-const VERTICAL_UNITS: u16 = 4099;
-
-// A parameter may stand under any of several keys; the writers of GeoTIFF never agreed on one.
-const LATITUDES: [u16; 4] = [3081, 3085, 3089, 3094];
-const LONGITUDES: [u16; 5] = [3080, 3084, 3088, 3095, 3096];
-const SCALES: [u16; 2] = [3092, 3093];
-const EASTINGS: [u16; 3] = [3082, 3086, 3090];
-const NORTHINGS: [u16; 3] = [3083, 3087, 3091];
-const PARALLEL_1: u16 = 3078;
-const PARALLEL_2: u16 = 3079;
 
 /// The keys of a file.
 #[derive(Clone, Debug, Default)]
@@ -49,7 +22,7 @@ pub(crate) struct GeoKeys {
 }
 
 impl GeoKeys {
-    /// Takes the directory and the doubles and the text it points into; keys that point outside are left out.
+    /// Keys from a directory and the doubles and the text it points into; keys that point outside are left out.
     pub fn new(directory: &[u16], doubles: &[f64], text: &str) -> Self {
         let mut keys = Self::default();
         let entries = directory.get(4..).unwrap_or_default().chunks_exact(4);
@@ -57,13 +30,13 @@ impl GeoKeys {
             let (key, place, count, value) = (entry[0], entry[1], usize::from(entry[2]), entry[3]);
             match place {
                 0 => keys.codes.push((key, value)),
-                34736 => {
+                IN_DOUBLES => {
                     let at = usize::from(value);
                     if let Some(values) = doubles.get(at..at + count) {
                         keys.numbers.push((key, values.to_vec()));
                     }
                 }
-                34737 => {
+                IN_TEXT => {
                     let at = usize::from(value);
                     if let Some(words) = text.get(at..at + count) {
                         keys.texts.push((key, words.trim_end_matches(['|', '\0', ' ']).to_owned()));
@@ -82,22 +55,21 @@ impl GeoKeys {
 
     /// Meters in the unit of the elevations; `None` where not stated.
     pub fn meters_per_z(&self) -> Result<Option<f64>, DemErrorKind> {
-        match (self.code(VERTICAL_UNITS), self.code(VERTICAL_TYPE)) {
-            (Some(unit), _) if unit != USER_DEFINED && unit != 0 => length(unit).map(Some),
+        match (self.real_code(VERTICAL_UNITS), self.code(VERTICAL_TYPE)) {
+            (Some(unit), _) => length(unit).map(Some),
             // NAVD88 in US survey feet and in feet.
-            (_, Some(6360)) => Ok(Some(US_FOOT)),
-            (_, Some(8228)) => Ok(Some(0.3048)),
+            (_, Some(6360)) => Ok(Some(US_SURVEY_FOOT_M)),
+            (_, Some(8228)) => Ok(Some(FOOT_M)),
             _ => Ok(None),
         }
     }
 
-    /// What heights are counted from: by the code of the vertical system or of its datum, else as the citation has
-    /// it; `None` where not stated.
+    /// The vertical datum: by the code of the vertical system or of its datum, else by the citation; `None` where not
+    /// stated.
     pub fn vertical_datum(&self) -> Option<String> {
-        let real = |key: u16| self.code(key).filter(|&code| code != USER_DEFINED && code != 0);
         let cited = || self.text(VERTICAL_CITATION).filter(|words| !words.is_empty()).map(str::to_owned);
-        let system = real(VERTICAL_TYPE).map(vertical::words);
-        system.or_else(|| real(VERTICAL_DATUM).map(vertical::words)).or_else(cited)
+        let code = self.real_code(VERTICAL_TYPE).or_else(|| self.real_code(VERTICAL_DATUM));
+        code.map(vertical::name).or_else(cited)
     }
 
     /// The coordinate system; `None` where the keys state none.
@@ -116,32 +88,27 @@ impl GeoKeys {
         }
     }
 
-    /// The system whose proj string stands in the citation, as this program writes those without a code.
+    /// The system whose proj string is the citation: this program writes systems without a code so.
     fn cited(&self) -> Option<Crs> {
         Crs::parse(self.text(CITATION).filter(|words| words.starts_with("+proj="))?).ok()
     }
 
     fn geographic(&self) -> Result<Crs, DemErrorKind> {
         self.check_degrees()?;
-        match self.code(GEOGRAPHIC_TYPE) {
-            Some(code) if code != USER_DEFINED && code != 0 => {
-                Crs::from_epsg(code.into()).map_err(DemErrorKind::Crs)
-            }
-            _ => match self.cited() {
-                Some(crs) => Ok(crs),
-                None => Crs::from_definition(&self.base()).map_err(DemErrorKind::Crs),
-            },
-        }
+        Ok(match (self.real_code(GEOGRAPHIC_TYPE), self.cited()) {
+            (Some(code), _) => Crs::from_epsg(code.into())?,
+            (None, Some(crs)) => crs,
+            (None, None) => Crs::from_definition(&self.base())?,
+        })
     }
 
     fn projected(&self) -> Result<Crs, DemErrorKind> {
         let unit = self.linear_unit()?;
-        if let Some(code) = self.code(PROJECTED_TYPE).filter(|&code| code != USER_DEFINED && code != 0) {
-            let found = match unit {
-                Some(meters) => Crs::from_epsg_in(code.into(), meters),
-                None => Crs::from_epsg(code.into()),
-            };
-            return found.map_err(DemErrorKind::Crs);
+        if let Some(code) = self.real_code(PROJECTED_TYPE) {
+            return Ok(match unit {
+                Some(meters) => Crs::from_epsg_in(code.into(), meters)?,
+                None => Crs::from_epsg(code.into())?,
+            });
         }
         if let Some(crs) = self.cited() {
             return Ok(crs);
@@ -151,7 +118,7 @@ impl GeoKeys {
             Some(code @ (16001..=16060 | 16101..=16160)) => self.utm(code, unit.unwrap_or(1.0)),
             _ => self.by_parameters(unit.unwrap_or(1.0))?,
         };
-        Crs::from_definition(&definition).map_err(DemErrorKind::Crs)
+        Ok(Crs::from_definition(&definition)?)
     }
 
     /// EPSG's conversions 16001 to 16060 are the UTM zones north, 16101 to 16160 those south.
@@ -169,26 +136,20 @@ impl GeoKeys {
     }
 
     fn by_parameters(&self, meters_per_unit: f64) -> Result<Definition, DemErrorKind> {
-        let method = match self.code(TRANSFORMATION) {
-            Some(1) => MapProjection::TransverseMercator,
-            Some(7) => MapProjection::Mercator,
-            Some(8) => MapProjection::LambertConic2,
-            Some(9) => MapProjection::LambertConic1,
-            Some(10) => MapProjection::LambertAzimuthal,
-            Some(11) => MapProjection::Albers,
-            Some(15) => MapProjection::PolarStereographic,
-            Some(other) => return Err(unusable(&format!("coordinate transformation {other} is not read"))),
-            None => return Err(unusable("it is user-defined without a coordinate transformation")),
-        };
+        let code = self.code(TRANSFORMATION);
+        let code = code.ok_or_else(|| unusable("it is user-defined without a coordinate transformation"))?;
+        let method = PROJECTIONS.iter().find(|keys| keys.code == code).map(|keys| keys.method);
+        let method =
+            method.ok_or_else(|| unusable(&format!("coordinate transformation {code} is not read")))?;
         let at = |keys: &[u16]| keys.iter().find_map(|&key| self.number(key));
         let latitude = at(&LATITUDES);
-        let pole = method == MapProjection::PolarStereographic;
+        let is_polar = method == MapProjection::PolarStereographic;
         Ok(Definition {
             method,
             latitude_deg: latitude.unwrap_or(0.0),
             longitude_deg: at(&LONGITUDES).unwrap_or(0.0),
             // A pole's "origin" away from the pole is its parallel of true scale.
-            parallel_1_deg: self.number(PARALLEL_1).or(latitude.filter(|lat| pole && lat.abs() < 90.0)),
+            parallel_1_deg: self.number(PARALLEL_1).or(latitude.filter(|lat| is_polar && lat.abs() < 90.0)),
             parallel_2_deg: self.number(PARALLEL_2),
             scale: at(&SCALES).unwrap_or(1.0),
             false_easting_m: at(&EASTINGS).unwrap_or(0.0) * meters_per_unit,
@@ -198,10 +159,9 @@ impl GeoKeys {
         })
     }
 
-    /// The figure of the Earth and its place.
+    /// The ellipsoid and its datum.
     fn base(&self) -> Definition {
-        let real = |code: Option<u16>| code.filter(|&code| code != USER_DEFINED && code != 0);
-        let by_datum = real(self.code(GEODETIC_DATUM)).and_then(|code| code.checked_sub(2000));
+        let by_datum = self.real_code(GEODETIC_DATUM).and_then(|code| code.checked_sub(2000));
         let major = self.number(SEMI_MAJOR);
         let inverse = self.number(INVERSE_FLATTENING).or_else(|| {
             let (major, minor) = (major?, self.number(SEMI_MINOR)?);
@@ -210,7 +170,7 @@ impl GeoKeys {
         let ellipsoid =
             major.zip(inverse).map(|(major_m, inverse_flattening)| Ellipsoid { major_m, inverse_flattening });
         let shift = self.numbers.iter().find(|(key, _)| *key == TO_WGS84).map(|(_, values)| values.clone());
-        let datum = match (real(self.code(GEOGRAPHIC_TYPE)).or(by_datum), shift) {
+        let datum = match (self.real_code(GEOGRAPHIC_TYPE).or(by_datum), shift) {
             (Some(code), _) => Datum::OfEpsg(code.into()),
             (None, Some(values)) => Datum::ToWgs84(values),
             (None, None) => Datum::Unstated,
@@ -223,15 +183,10 @@ impl GeoKeys {
     }
 
     fn check_degrees(&self) -> Result<(), DemErrorKind> {
+        let is_degree = |size: f64| (size - 1f64.to_radians()).abs() < 1e-9;
         match self.code(ANGULAR_UNITS) {
             None | Some(0 | 9102) => Ok(()),
-            Some(USER_DEFINED)
-                if self
-                    .number(ANGULAR_UNIT_SIZE)
-                    .is_some_and(|size| (size - 1f64.to_radians()).abs() < 1e-9) =>
-            {
-                Ok(())
-            }
+            Some(USER_DEFINED) if self.number(ANGULAR_UNIT_SIZE).is_some_and(is_degree) => Ok(()),
             Some(other) => Err(unusable(&format!("angular unit {other} is not the degree"))),
         }
     }
@@ -242,6 +197,11 @@ impl GeoKeys {
             Some(USER_DEFINED) => Ok(self.number(LINEAR_UNIT_SIZE)),
             Some(code) => length(code).map(Some),
         }
+    }
+
+    /// The code of a key that is neither 0 nor "user-defined".
+    fn real_code(&self, key: u16) -> Option<u16> {
+        self.code(key).filter(|&code| code != USER_DEFINED && code != 0)
     }
 
     fn code(&self, key: u16) -> Option<u16> {
@@ -259,13 +219,7 @@ impl GeoKeys {
 
 /// Meters in EPSG's unit of length.
 fn length(code: u16) -> Result<f64, DemErrorKind> {
-    match code {
-        9001 => Ok(1.0),
-        9002 => Ok(0.3048),
-        9003 => Ok(US_FOOT),
-        9036 => Ok(1000.0),
-        other => Err(unusable(&format!("unit of length {other} is not read"))),
-    }
+    length_of_code(code).ok_or_else(|| unusable(&format!("unit of length {code} is not read")))
 }
 
 fn unusable(reason: &str) -> DemErrorKind {
@@ -288,7 +242,7 @@ mod tests {
     #[test]
     fn a_code_is_taken_and_its_unit_replaced() {
         let crs = keys(&[[1024, 0, 1, 1], [3072, 0, 1, 2853], [3076, 0, 1, 9003]], &[]).crs();
-        assert_eq!(crs.expect("known").expect("stated").meters_per_unit(), US_FOOT);
+        assert_eq!(crs.expect("known").expect("stated").meters_per_unit(), US_SURVEY_FOOT_M);
         let crs = keys(&[[1024, 0, 1, 2], [2048, 0, 1, 4326]], &[]).crs();
         assert_eq!(crs.expect("known").expect("stated").epsg(), Some(4326));
         assert_eq!(keys(&[], &[]).crs().expect("nothing stated"), None);
@@ -326,18 +280,18 @@ mod tests {
     }
 
     #[test]
-    fn what_heights_are_counted_from_is_told_by_code_or_by_citation() {
-        let told = |entries: &[[u16; 4]]| {
+    fn the_vertical_datum_comes_from_a_code_or_from_the_citation() {
+        let datum = |entries: &[[u16; 4]]| {
             let mut directory = vec![1, 1, 0, entries.len() as u16];
             directory.extend(entries.iter().flatten());
             GeoKeys::new(&directory, &[], "old name|the harbour's gauge|").vertical_datum()
         };
-        assert_eq!(told(&[[4096, 0, 1, 5703]]).as_deref(), Some("NAVD88"));
-        assert_eq!(told(&[[4098, 0, 1, 5103]]).as_deref(), Some("NAVD88"));
+        assert_eq!(datum(&[[4096, 0, 1, 5703]]).as_deref(), Some("NAVD88"));
+        assert_eq!(datum(&[[4098, 0, 1, 5103]]).as_deref(), Some("NAVD88"));
         assert_eq!(
-            told(&[[4096, 0, 1, 32767], [4097, 34737, 20, 9]]).as_deref(),
+            datum(&[[4096, 0, 1, 32767], [4097, 34737, 20, 9]]).as_deref(),
             Some("the harbour's gauge")
         );
-        assert_eq!(told(&[[4097, 34737, 99, 9]]), None);
+        assert_eq!(datum(&[[4097, 34737, 99, 9]]), None);
     }
 }

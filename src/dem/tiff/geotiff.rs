@@ -1,26 +1,39 @@
-//! GeoTIFF over the `tiff` crate: strips and tiles, integers and floats of 8 to 64 bits, uncompressed, LZW,
-//! deflate and PackBits, with predictors, classic and BigTIFF in both byte orders.
+//! GeoTIFF: strips and tiles, integers and floats of 8 to 64 bits, uncompressed, LZW, deflate, PackBits and Zstandard,
+//! with predictors, classic and BigTIFF in both byte orders.
 //!
 //! Of several bands the first is read, of several images the first (a cloud-optimized file's full
-//! resolution). Scale, offset, unit and no-data value come from GDAL's tags. What the crate cannot decode is
+//! resolution). Scale, offset, unit and no-data value come from GDAL's tags. What cannot be unpacked is
 //! refused by name before it is tried.
 
 use std::io::{Cursor, Read, Seek};
 
+use glam::DAffine2;
 use tiff::decoder::{Decoder, Limits, ifd};
 use tiff::tags::Tag;
 
-use crate::dem::error::{DemErrorKind, MOST_SAMPLES};
-use crate::dem::georef::{self, PlaceTags, RasterPlace};
+use crate::dem::error::DemErrorKind;
+use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::georef;
+use crate::dem::limits::MOST_SAMPLES;
 use crate::dem::raster::{Raster, Samples};
 use crate::dem::read::DemFile;
 use crate::dem::tiff::blocks;
-use crate::dem::tiff::gdal_metadata;
+use crate::dem::tiff::gdal_metadata::{BandMetadata, GDAL_METADATA};
 use crate::dem::tiff::geokeys::GeoKeys;
 use crate::dem::tiff::mask;
-use crate::dem::tiff::mask::MaskLocation;
-use crate::dem::tiff::neutral::neutralised;
-use crate::dem::tiff::storage::{Storage, fault};
+use crate::dem::tiff::place::PlaceTags;
+use crate::dem::tiff::storage::{Storage, decode_error};
+use crate::dem::tiff::write::write;
+
+/// The declaration of this format.
+pub static FORMAT: DemFormat = DemFormat {
+    name: "GeoTIFF",
+    extensions: &["tif", "tiff"],
+    shared_extensions: &[],
+    recognition: Recognition::Content { matches: recognizes, start: "the signature of a TIFF file" },
+    reader: read,
+    writer: Some(write),
+};
 
 /// The most bytes of one tag: the offsets of a million blocks.
 const LARGEST_TAG: usize = 16 << 20;
@@ -28,10 +41,8 @@ const LARGEST_TAG: usize = 16 << 20;
 /// The most bytes of a text tag; GDAL's metadata takes a few kilobytes.
 const LARGEST_TEXT: u64 = 1 << 20;
 
-/// The most bytes that one block decodes to.
-const LARGEST_BLOCK: usize = 2 << 30;
-
-const GDAL_METADATA: u16 = 42112;
+/// The most bytes that one block of an image in memory decodes to.
+pub(crate) const LARGEST_BLOCK: usize = 2 << 30;
 
 /// Whether the content starts as TIFF or BigTIFF does.
 pub(crate) fn recognizes(bytes: &[u8]) -> bool {
@@ -39,28 +50,23 @@ pub(crate) fn recognizes(bytes: &[u8]) -> bool {
 }
 
 /// Reads the first band of the first image.
-pub(crate) fn read(source: &DemFile) -> Result<Raster, DemErrorKind> {
-    let bytes = neutralised(source.bytes);
-    let limits = limits(bytes.len(), LARGEST_BLOCK);
-    let mut decoder = Decoder::new(Cursor::new(&bytes[..])).map_err(fault)?.with_limits(limits.clone());
-    let storage = Storage::of(&mut decoder, bytes.len(), MOST_SAMPLES)?;
-    let GeoTiffHeader { bare, scale, offset } = describe(&mut decoder, &storage, source)?;
-    let mut samples = blocks::decode(&bytes, &storage, bare.nodata, &limits)?;
+fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
+    let bytes = file.bytes;
+    let decoder = Decoder::new(Cursor::new(bytes)).map_err(decode_error)?;
+    let mut decoder = decoder.with_limits(limits(bytes.len(), LARGEST_BLOCK));
+    let storage = Storage::read(&mut decoder, bytes.len(), MOST_SAMPLES)?;
+    let GeoTiffHeader { raster, scale, offset } = GeoTiffHeader::read(&mut decoder, &storage, file)?;
+    let mut samples = blocks::decode(bytes, &storage, raster.nodata)?;
     let size = (storage.width, storage.height);
-    let found = mask::apply(&mut decoder, size, bytes.len(), &mut samples)?;
-    if let (MaskLocation::Nothing, Some(mask)) = (found, mask_beside(source)) {
-        let limits = |mask_bytes| self::limits(mask_bytes, LARGEST_BLOCK);
-        mask::apply_beside(&mask, limits, size, &mut samples)?;
+    if !mask::apply_within(&mut decoder, bytes, size, &mut samples)?
+        && let Some(mask) = mask::file_beside(file)
+    {
+        mask::apply_beside(&mask, size, &mut samples)?;
     }
-    Ok(Raster { samples: samples.scaled(scale, offset), ..bare })
+    Ok(Raster { samples: samples.scaled(scale, offset), ..raster })
 }
 
-/// The bytes of the mask that GDAL keeps in a file of its own.
-pub(crate) fn mask_beside(source: &DemFile) -> Option<Vec<u8>> {
-    (source.hints.companions)(&format!("{}.msk", source.name))
-}
-
-/// What the decoder may allocate for a file of `file_bytes` bytes.
+/// The most that the decoder may allocate for a file of `file_bytes` bytes.
 pub(crate) fn limits(file_bytes: usize, largest_block: usize) -> Limits {
     let mut limits = Limits::default();
     limits.ifd_value_size = file_bytes.clamp(1024, LARGEST_TAG);
@@ -69,85 +75,60 @@ pub(crate) fn limits(file_bytes: usize, largest_block: usize) -> Limits {
     limits
 }
 
-/// What a file says of itself.
+/// All that a file states but its samples.
 pub(crate) struct GeoTiffHeader {
     /// The raster without its samples.
-    pub bare: Raster,
-    /// What a stored value is multiplied by.
+    pub raster: Raster,
+    /// The factor of stored values.
     pub scale: f64,
     /// What is then added.
     pub offset: f64,
 }
 
-/// Reads everything but the samples of the decoder's current image.
-pub(crate) fn describe<R: Read + Seek>(
-    decoder: &mut Decoder<R>,
-    storage: &Storage,
-    source: &DemFile,
-) -> Result<GeoTiffHeader, DemErrorKind> {
-    let tags = GeoTags::read(decoder);
-    let place = tags.place(source, storage.height)?;
-    let crs = match &source.hints.crs {
-        Some(crs) => Some(crs.clone()),
-        None => tags.keys.crs()?.map_or_else(|| source.crs_beside(), |crs| Ok(Some(crs)))?,
-    };
-    let band = gdal_metadata::first_band(&tags.metadata)?;
-    let meters_per_z = band.meters_per_z.or(tags.keys.meters_per_z()?).unwrap_or(1.0);
-    let bare = Raster {
-        driver: "GTiff",
-        data_type: storage.data_type(),
-        width: storage.width,
-        height: storage.height,
-        samples: Samples::F32(Vec::new()),
-        meters_per_z,
-        map_from_grid: place.map_from_grid,
-        georeferenced: place.stated,
-        crs,
-        nodata: tags.nodata,
-        vertical_datum: tags.keys.vertical_datum(),
-    };
-    Ok(GeoTiffHeader { bare, scale: band.scale, offset: band.offset })
+impl GeoTiffHeader {
+    /// Reads the tags of the decoder's current image. A tag of the wrong type counts as absent, as in GDAL.
+    pub fn read<R: Read + Seek>(
+        decoder: &mut Decoder<R>,
+        storage: &Storage,
+        file: &DemFile,
+    ) -> Result<Self, DemErrorKind> {
+        let keys = geo_keys(decoder);
+        let mut numbers = |tag: Tag| decoder.get_tag_f64_vec(tag).unwrap_or_default();
+        let place = PlaceTags {
+            scale: numbers(Tag::ModelPixelScaleTag),
+            ties: numbers(Tag::ModelTiepointTag),
+            matrix: numbers(Tag::ModelTransformationTag),
+            is_point: keys.is_point(),
+        };
+        let nodata = text(decoder, Tag::GdalNodata).trim().trim_start_matches('+').parse().ok();
+        let band = BandMetadata::of_first_band(&text(decoder, Tag::Unknown(GDAL_METADATA)))?;
+        let raster = Raster {
+            driver: "GTiff",
+            data_type: storage.sample.map_or("Byte", |sample| sample.gdal_name()),
+            width: storage.width,
+            height: storage.height,
+            samples: Samples::F32(Vec::new()),
+            meters_per_z: band.meters_per_z.or(keys.meters_per_z()?).unwrap_or(1.0),
+            map_from_grid: DAffine2::IDENTITY,
+            georeferenced: false,
+            crs: file.crs_or(|| keys.crs())?,
+            nodata,
+            vertical_datum: keys.vertical_datum(),
+        };
+        let raster = georef::placed(file, raster, place.map_from_grid()?, &["tfw", "tifw", "wld"])?;
+        Ok(Self { raster, scale: band.scale, offset: band.offset })
+    }
 }
 
-/// The tags beyond the picture; a tag of the wrong type counts as absent, as GDAL has it.
-struct GeoTags {
-    place: PlaceTags,
-    keys: GeoKeys,
-    nodata: Option<f64>,
-    metadata: String,
-}
-
-impl GeoTags {
-    fn read<R: Read + Seek>(decoder: &mut Decoder<R>) -> Self {
-        let numbers = |decoder: &mut Decoder<R>, tag: Tag| decoder.get_tag_f64_vec(tag).unwrap_or_default();
-        let directory = decoder.get_tag_u16_vec(Tag::GeoKeyDirectoryTag).unwrap_or_default();
-        let words = text(decoder, Tag::GeoAsciiParamsTag);
-        let keys = GeoKeys::new(&directory, &numbers(decoder, Tag::GeoDoubleParamsTag), &words);
-        let nodata = text(decoder, Tag::GdalNodata);
-        Self {
-            place: PlaceTags {
-                scale: numbers(decoder, Tag::ModelPixelScaleTag),
-                ties: numbers(decoder, Tag::ModelTiepointTag),
-                matrix: numbers(decoder, Tag::ModelTransformationTag),
-                is_point: keys.is_point(),
-            },
-            keys,
-            nodata: nodata.trim().trim_start_matches('+').parse().ok(),
-            metadata: text(decoder, Tag::Unknown(GDAL_METADATA)),
-        }
-    }
-
-    fn place(&self, source: &DemFile, height: u32) -> Result<RasterPlace, DemErrorKind> {
-        match self.place.place()? {
-            Some(map_from_grid) => Ok(RasterPlace { map_from_grid, stated: true }),
-            None => georef::beside(source, height, &["tfw", "tifw", "wld"]),
-        }
-    }
+fn geo_keys<R: Read + Seek>(decoder: &mut Decoder<R>) -> GeoKeys {
+    let directory = decoder.get_tag_u16_vec(Tag::GeoKeyDirectoryTag).unwrap_or_default();
+    let doubles = decoder.get_tag_f64_vec(Tag::GeoDoubleParamsTag).unwrap_or_default();
+    GeoKeys::new(&directory, &doubles, &text(decoder, Tag::GeoAsciiParamsTag))
 }
 
 /// A tag of text, or of bytes that are text, up to its first NUL; empty where absent.
 fn text<R: Read + Seek>(decoder: &mut Decoder<R>, tag: Tag) -> String {
-    // The decoder allocates what a text tag claims before it looks whether the file holds it.
+    // The decoder allocates what a text tag claims before it checks whether the file holds it.
     let claimed = decoder.image_ifd().find_entry(tag).map_or(0, |entry| entry.count());
     if claimed > LARGEST_TEXT {
         return String::new();

@@ -1,14 +1,28 @@
-//! GeoTIFF: how an image is stored, where it lies, and how windows of it are read.
+//! GeoTIFF: how an image is stored, where it lies, how it is read, in whole or in windows, and how it is written.
 
-pub mod blocks;
-pub mod file;
-pub mod gdal_metadata;
+mod blocks;
+mod gdal_metadata;
+mod geokey_codes;
 pub mod geokeys;
 pub mod geotiff;
-pub mod lzw;
-pub mod mask;
-pub mod neutral;
-pub mod rows;
-pub mod storage;
-pub mod unpack;
+mod mask;
+mod place;
+mod rows;
+mod storage;
+mod unpack;
 pub mod windows;
+mod write;
+mod write_geokeys;
+
+use std::io::{Read, Seek};
+
+use tiff::decoder::Decoder;
+use tiff::tags::Tag;
+
+/// The most images of a file that are read: overviews and masks.
+const MOST_IMAGES: usize = 64;
+
+/// The bits of NewSubfileType of the decoder's current image; 0 where it has none.
+fn image_kind<R: Read + Seek>(decoder: &mut Decoder<R>) -> u32 {
+    decoder.find_tag_unsigned(Tag::NewSubfileType).ok().flatten().unwrap_or(0)
+}

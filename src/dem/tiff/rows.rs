@@ -10,60 +10,48 @@
 //! chain: ──────────►│───────────►│───────────►│──────────►
 //! ```
 //!
-//! A chain over all of them takes one step a byte, each waiting for the one before. But where each quarter's chain
-//! starts is the plain sum of the quarters before it, which takes no chain: so four shorter chains run side by side,
-//! and give samples as they go.
+//! A chain over all of them takes one step a byte, each waiting for the one before. But each quarter's chain starts at
+//! the plain sum of the quarters before it, which takes no chain: so four shorter chains run side by side and yield
+//! samples as they go.
 
-use tiff::tags::ByteOrder;
+use crate::dem::bytes::ByteOrder;
+use crate::dem::error::DemErrorKind;
+use crate::dem::raster::SampleFloat;
+use crate::dem::sample_type::SampleType;
+use crate::dem::tiff::storage::{Predictor, Storage};
 
-use crate::dem::tiff::storage::{Predictor, SampleKind, Storage};
-
-/// How rows of an image become elevations, where it is stored in one of the common ways.
+/// How rows of an image become elevations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowDecoder {
-    bits: u16,
-    kind: SampleKind,
+    sample: SampleType,
     predictor: Predictor,
     order: ByteOrder,
     bands: usize,
-    hole: f64,
+    nodata: f64,
 }
 
 impl RowDecoder {
-    /// Of an image whose no-data value is `nodata`; `None` where its samples or its predictor are uncommon.
-    pub fn of(storage: &Storage, nodata: Option<f64>) -> Option<Self> {
-        let Storage { bits, kind, predictor, order, bands_per_block, .. } = *storage;
-        let common = match (kind, predictor) {
-            (SampleKind::Other, _) | (_, Predictor::Other) => false,
-            (SampleKind::Float, _) => matches!(bits, 32 | 64),
-            (_, Predictor::FloatBytes) => false,
-            (SampleKind::Unsigned | SampleKind::Signed, _) => matches!(bits, 8 | 16 | 32 | 64),
-        };
-        let rows = Self {
-            bits,
-            kind,
+    /// For an image whose no-data value is `nodata`.
+    pub fn new(storage: &Storage, nodata: Option<f64>) -> Result<Self, DemErrorKind> {
+        let sample = storage.elevation_type()?;
+        let Storage { predictor, order, bands_per_block, .. } = *storage;
+        Ok(Self {
+            sample,
             predictor,
             order,
             bands: bands_per_block.into(),
-            hole: storage.comparable(nodata),
-        };
-        common.then_some(rows)
+            nodata: sample.comparable(nodata),
+        })
     }
 }
 
-/// An elevation in the precision that keeps a file's samples.
-pub(crate) trait Elevation: Copy + Default + Send + Sync {
-    /// No data.
-    const NONE: Self;
-
-    /// From 64 bits.
-    fn of(value: f64) -> Self;
-
-    /// The elevations of a row's first samples, as many as `out` holds. `row` holds whole rows of a block.
-    fn fill(rows: &RowDecoder, row: &[u8], words: &mut RowWords, out: &mut [Self]);
+/// A float type that rows are decoded to.
+pub(crate) trait Elevation: SampleFloat {
+    /// Decodes a row's first samples, as many as `out` holds. `row` is a whole row of a block.
+    fn decode(rows: &RowDecoder, row: &[u8], words: &mut RowWords, out: &mut [Self]);
 }
 
-/// Room for the words of one row.
+/// The words of one row, reused.
 #[derive(Debug, Default)]
 pub(crate) struct RowWords {
     of_8: Vec<u8>,
@@ -73,50 +61,38 @@ pub(crate) struct RowWords {
 }
 
 impl Elevation for f32 {
-    const NONE: Self = Self::NAN;
-
-    fn of(value: f64) -> Self {
-        value as Self
-    }
-
-    fn fill(rows: &RowDecoder, row: &[u8], words: &mut RowWords, out: &mut [Self]) {
-        // What is kept in 32 bits holds no more: the value to compare with is exact, or equals none.
-        let hole = if f64::from(rows.hole as Self) == rows.hole { rows.hole as Self } else { Self::NAN };
-        let known = |value: Self| if value == hole || !value.is_finite() { Self::NAN } else { value };
-        match (rows.bits, rows.kind) {
-            (8, SampleKind::Signed) => {
-                convert(words_of(rows, row, &mut words.of_8), out, |w| known((w as i8).into()))
+    fn decode(rows: &RowDecoder, row: &[u8], words: &mut RowWords, out: &mut [Self]) {
+        // No sample of 32 bits equals a value that 32 bits cannot hold.
+        let nodata =
+            if f64::from(rows.nodata as Self) == rows.nodata { rows.nodata as Self } else { Self::NAN };
+        let known = |value: Self| if value == nodata || !value.is_finite() { Self::NAN } else { value };
+        match rows.sample {
+            SampleType::U8 => convert(words_of(rows, row, &mut words.of_8), out, |w| known(w.into())),
+            SampleType::I8 => convert(words_of(rows, row, &mut words.of_8), out, |w| known((w as i8).into())),
+            SampleType::U16 => convert(words_of(rows, row, &mut words.of_16), out, |w| known(w.into())),
+            SampleType::I16 => {
+                convert(words_of(rows, row, &mut words.of_16), out, |w| known((w as i16).into()));
             }
-            (8, _) => convert(words_of(rows, row, &mut words.of_8), out, |w| known(w.into())),
-            (16, SampleKind::Signed) => {
-                convert(words_of(rows, row, &mut words.of_16), out, |w| known((w as i16).into()))
+            SampleType::F16 => {
+                let value = |w| known(half::f16::from_bits(w).to_f32());
+                convert(words_of(rows, row, &mut words.of_16), out, value);
             }
-            (16, _) => convert(words_of(rows, row, &mut words.of_16), out, |w| known(w.into())),
             _ => convert(words_of(rows, row, &mut words.of_32), out, |w| known(Self::from_bits(w))),
         }
     }
 }
 
 impl Elevation for f64 {
-    const NONE: Self = Self::NAN;
-
-    fn of(value: f64) -> Self {
-        value
-    }
-
-    fn fill(rows: &RowDecoder, row: &[u8], words: &mut RowWords, out: &mut [Self]) {
-        let hole = rows.hole;
-        let known = |value: Self| if value == hole || !value.is_finite() { Self::NAN } else { value };
-        match (rows.bits, rows.kind) {
-            (32, SampleKind::Signed) => {
-                convert(words_of(rows, row, &mut words.of_32), out, |w| known((w as i32).into()))
+    fn decode(rows: &RowDecoder, row: &[u8], words: &mut RowWords, out: &mut [Self]) {
+        let known = |value: Self| if value == rows.nodata || !value.is_finite() { Self::NAN } else { value };
+        match rows.sample {
+            SampleType::U32 => convert(words_of(rows, row, &mut words.of_32), out, |w| known(w.into())),
+            SampleType::I32 => {
+                convert(words_of(rows, row, &mut words.of_32), out, |w| known((w as i32).into()));
             }
-            (32, _) => convert(words_of(rows, row, &mut words.of_32), out, |w| known(w.into())),
-            (_, SampleKind::Signed) => {
-                convert(words_of(rows, row, &mut words.of_64), out, |w| known(w as i64 as Self))
-            }
-            (_, SampleKind::Unsigned) => {
-                convert(words_of(rows, row, &mut words.of_64), out, |w| known(w as Self))
+            SampleType::U64 => convert(words_of(rows, row, &mut words.of_64), out, |w| known(w as Self)),
+            SampleType::I64 => {
+                convert(words_of(rows, row, &mut words.of_64), out, |w| known(w as i64 as Self));
             }
             _ => convert(words_of(rows, row, &mut words.of_64), out, |w| known(Self::from_bits(w))),
         }
@@ -131,7 +107,7 @@ fn convert<W: Copy, E>(words: &[W], out: &mut [E], elevation: impl Fn(W) -> E) {
 
 /// The bits of a sample as one number.
 trait SampleWord: Copy + Default {
-    fn of(bytes: &[u8], order: ByteOrder) -> Self;
+    fn from_bytes(bytes: &[u8], order: ByteOrder) -> Self;
     fn plus(self, other: Self) -> Self;
     /// Undoes the floating-point predictor: the first of every `bands` samples of a row of them.
     fn sum_planes(row: &[u8], bands: usize, words: &mut [Self]);
@@ -140,11 +116,11 @@ trait SampleWord: Copy + Default {
 macro_rules! words {
     ($($word:ty: $bytes:literal),*) => {$(
         impl SampleWord for $word {
-            fn of(bytes: &[u8], order: ByteOrder) -> Self {
+            fn from_bytes(bytes: &[u8], order: ByteOrder) -> Self {
                 let bytes = bytes.try_into().unwrap_or_default();
                 match order {
-                    ByteOrder::LittleEndian => Self::from_le_bytes(bytes),
-                    ByteOrder::BigEndian => Self::from_be_bytes(bytes),
+                    ByteOrder::Little => Self::from_le_bytes(bytes),
+                    ByteOrder::Big => Self::from_be_bytes(bytes),
                 }
             }
 
@@ -195,20 +171,20 @@ fn sum(plane: &[u8], bands: usize) -> u8 {
 fn words_of<'a, W: SampleWord>(rows: &RowDecoder, row: &[u8], words: &'a mut Vec<W>) -> &'a [W] {
     let bytes = size_of::<W>();
     words.resize(row.len() / (bytes * rows.bands), W::default());
-    let of = |sample: &[u8]| W::of(&sample[..bytes], rows.order);
+    let word_of = |sample: &[u8]| W::from_bytes(&sample[..bytes], rows.order);
     let samples = row.chunks_exact(bytes * rows.bands);
     match rows.predictor {
         Predictor::FloatBytes => W::sum_planes(row, rows.bands, words),
         Predictor::Differences => {
             let mut sum = W::default();
             for (word, sample) in words.iter_mut().zip(samples) {
-                sum = sum.plus(of(sample));
+                sum = sum.plus(word_of(sample));
                 *word = sum;
             }
         }
-        Predictor::Plain | Predictor::Other => {
+        Predictor::Plain => {
             for (word, sample) in words.iter_mut().zip(samples) {
-                *word = of(sample);
+                *word = word_of(sample);
             }
         }
     }
@@ -220,19 +196,19 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn rows(bits: u16, kind: SampleKind, predictor: Predictor, order: ByteOrder, bands: usize) -> RowDecoder {
-        RowDecoder { bits, kind, predictor, order, bands, hole: f64::NAN }
+    fn rows(sample: SampleType, predictor: Predictor, order: ByteOrder, bands: usize) -> RowDecoder {
+        RowDecoder { sample, predictor, order, bands, nodata: f64::NAN }
     }
 
     #[test]
     fn differences_are_summed_band_by_band_in_either_byte_order() {
         let mut out = [0f32; 3];
-        let rows_of = |order| rows(16, SampleKind::Signed, Predictor::Differences, order, 2);
+        let rows_of = |order| rows(SampleType::I16, Predictor::Differences, order, 2);
         let little = [5u8, 0, 9, 9, 0xff, 0xff, 9, 9, 0xfb, 0xff, 9, 9];
-        f32::fill(&rows_of(ByteOrder::LittleEndian), &little, &mut RowWords::default(), &mut out);
+        f32::decode(&rows_of(ByteOrder::Little), &little, &mut RowWords::default(), &mut out);
         assert_eq!(out, [5.0, 4.0, -1.0]);
         let big: Vec<u8> = little.chunks_exact(2).flat_map(|pair| [pair[1], pair[0]]).collect();
-        f32::fill(&rows_of(ByteOrder::BigEndian), &big, &mut RowWords::default(), &mut out);
+        f32::decode(&rows_of(ByteOrder::Big), &big, &mut RowWords::default(), &mut out);
         assert_eq!(out, [5.0, 4.0, -1.0]);
     }
 
@@ -240,11 +216,11 @@ mod tests {
     fn the_value_for_no_data_and_what_is_not_finite_become_nan() {
         let row = [7f32, -9999.0, f32::INFINITY, 8.0].map(f32::to_le_bytes).concat();
         let mut out = [0f32; 4];
-        let plain = rows(32, SampleKind::Float, Predictor::Plain, ByteOrder::LittleEndian, 1);
-        f32::fill(&RowDecoder { hole: -9999.0, ..plain }, &row, &mut RowWords::default(), &mut out);
+        let plain = rows(SampleType::F32, Predictor::Plain, ByteOrder::Little, 1);
+        f32::decode(&RowDecoder { nodata: -9999.0, ..plain }, &row, &mut RowWords::default(), &mut out);
         assert!(out[0] == 7.0 && out[1].is_nan() && out[2].is_nan() && out[3] == 8.0);
         // 0.1 is no float: no sample of 32 bits equals it.
-        f32::fill(&RowDecoder { hole: 0.1, ..plain }, &row, &mut RowWords::default(), &mut out);
+        f32::decode(&RowDecoder { nodata: 0.1, ..plain }, &row, &mut RowWords::default(), &mut out);
         assert_eq!(out[1], -9999.0);
     }
 

@@ -1,4 +1,4 @@
-//! How the first band of a TIFF image is stored: what its tags say, held against what the file can hold.
+//! How the first band of a TIFF image is stored: its tags, held against what the file can hold.
 //!
 //! Everything that a header can claim is checked here, before anything is allocated for it: the size of the image, of
 //! one tile, and the number of blocks.
@@ -14,13 +14,19 @@ use std::io::{Read, Seek};
 
 use tiff::TiffError;
 use tiff::decoder::{ChunkType, Decoder};
-use tiff::tags::{ByteOrder, Tag};
+use tiff::tags::Tag;
 
-use crate::dem::error::{DemErrorKind, check_size, check_size_within};
+use crate::dem::bytes::ByteOrder;
+use crate::dem::error::DemErrorKind;
+use crate::dem::limits::SizeClaim;
+use crate::dem::sample_type::{NumberKind, SampleType};
+use crate::dem::tiff::geotiff::FORMAT;
 
-pub(crate) const FORMAT: &str = "GeoTIFF";
+/// What to do about a packing that is not read.
+pub(crate) const TO_DEFLATE: &str =
+    "convert it, for example with: gdal_translate -co COMPRESS=DEFLATE FILE out.tif";
 
-/// What an image says of how it is stored.
+/// How an image is stored.
 #[derive(Clone, Debug)]
 pub(crate) struct Storage {
     /// Samples per row.
@@ -29,37 +35,26 @@ pub(crate) struct Storage {
     pub height: u32,
     /// Bits of one sample.
     pub bits: u16,
-    /// What the bits of a sample mean.
-    pub kind: SampleKind,
+    /// The type of samples; `None` where they are not read as elevation, or not alike in all bands.
+    pub sample: Option<SampleType>,
     /// How blocks are packed.
     pub packing: Packing,
-    /// What was done to rows before they were packed.
+    /// How rows were transformed before they were packed.
     pub predictor: Predictor,
     /// The order of a sample's bytes.
     pub order: ByteOrder,
     /// Bands that lie side by side in one block.
     pub bands_per_block: u16,
-    /// Columns and rows of a block; the last ones may reach beyond the image.
-    pub block_size: (u32, u32),
-    /// How rows beyond the image are kept.
-    shape: ChunkType,
+    /// Columns of a block; the last one may reach beyond the image.
+    pub block_width: u32,
+    /// Rows of a block; the last one may reach beyond the image.
+    pub block_height: u32,
+    /// Whether blocks are tiles: as large at the border as anywhere.
+    is_tiled: bool,
     /// Where each block starts in the file.
     block_starts: Vec<u64>,
     /// Packed bytes of each block; 0 for one that was never written.
     block_bytes: Vec<u64>,
-}
-
-/// What the bits of a sample mean.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum SampleKind {
-    /// An integer from 0 on.
-    Unsigned,
-    /// An integer in two's complement.
-    Signed,
-    /// An IEEE 754 number.
-    Float,
-    /// Something else, or not the same in all bands.
-    Other,
 }
 
 /// How blocks are packed.
@@ -71,21 +66,21 @@ pub(crate) enum Packing {
     Deflate,
     /// LZW (TIFF 6.0, section 13).
     Lzw,
-    /// PackBits, ZSTD: what the decoder unpacks.
-    Other,
+    /// PackBits (TIFF 6.0, section 9).
+    PackBits,
+    /// A Zstandard frame (RFC 8878).
+    Zstd,
 }
 
-/// What was done to rows before they were packed (TIFF 6.0, section 14; Adobe's Technical Note 3).
+/// How rows were transformed before they were packed (TIFF 6.0, section 14; Adobe's Technical Note 3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Predictor {
-    /// Nothing.
+    /// Not at all.
     Plain,
     /// Samples are differences to their neighbors on the left.
     Differences,
     /// The bytes of samples are sorted by significance, and those are differences.
     FloatBytes,
-    /// Another one.
-    Other,
 }
 
 /// A block and the part of it that lies within the image.
@@ -105,139 +100,113 @@ pub(crate) struct TiffBlock {
 
 impl Storage {
     /// Reads and checks the tags of the decoder's current image, of at most `most` samples.
-    pub fn of<R: Read + Seek>(
+    pub fn read<R: Read + Seek>(
         decoder: &mut Decoder<R>,
         file_bytes: usize,
         most: u64,
     ) -> Result<Self, DemErrorKind> {
-        let (width, height) = decoder.dimensions().map_err(fault)?;
+        let (width, height) = decoder.dimensions().map_err(decode_error)?;
         let mut shorts = |tag: Tag, default: u16| {
-            let found = decoder.find_tag_unsigned_vec::<u16>(tag).map_err(fault)?;
+            let found = decoder.find_tag_unsigned_vec::<u16>(tag).map_err(decode_error)?;
             Ok::<_, DemErrorKind>(found.filter(|values| !values.is_empty()).unwrap_or_else(|| vec![default]))
         };
-        let compression = shorts(Tag::Compression, 1)?[0];
-        let expansion = expansion(compression)?;
+        let packing = packing(shorts(Tag::Compression, 1)?[0])?;
         let depths = shorts(Tag::BitsPerSample, 1)?;
         let bands = shorts(Tag::SamplesPerPixel, 1)?[0];
-        if bands == 0 {
-            return Err(DemErrorKind::broken(FORMAT, "it has no band"));
-        }
-        let planar = shorts(Tag::PlanarConfiguration, 1)?[0] == 2;
+        let is_planar = shorts(Tag::PlanarConfiguration, 1)?[0] == 2;
         let formats = shorts(Tag::SampleFormat, 1)?;
-        let predictor = predictor(shorts(Tag::Predictor, 1)?[0]);
+        let predictor = predictor(shorts(Tag::Predictor, 1)?[0])?;
+        let is_tiled = decoder.get_chunk_type() == ChunkType::Tile;
         let (across, down) = decoder.chunk_dimensions();
-        let shape = decoder.get_chunk_type();
-        let (starts, bytes) = match shape {
-            ChunkType::Strip => (Tag::StripOffsets, Tag::StripByteCounts),
-            ChunkType::Tile => (Tag::TileOffsets, Tag::TileByteCounts),
+        let (starts, bytes) = match is_tiled {
+            false => (Tag::StripOffsets, Tag::StripByteCounts),
+            true => (Tag::TileOffsets, Tag::TileByteCounts),
         };
-        let mut table =
-            |tag: Tag| decoder.find_tag_unsigned_vec(tag).map_err(fault).map(Option::unwrap_or_default);
+        let mut table = |tag: Tag| {
+            decoder.find_tag_unsigned_vec(tag).map_err(decode_error).map(Option::unwrap_or_default)
+        };
         let (block_starts, block_bytes) = (table(starts)?, table(bytes)?);
+        let are_alike = |values: &[u16]| values.iter().all(|value| *value == values[0]);
+        let kind = number_kind(formats[0]).filter(|_| are_alike(&depths) && are_alike(&formats));
         let storage = Self {
             width,
             height,
             bits: depths[0],
-            kind: if alike(&depths) && alike(&formats) { kind(formats[0]) } else { SampleKind::Other },
-            packing: packing(compression),
+            sample: kind.and_then(|kind| SampleType::new(kind, depths[0].into())),
+            packing,
             predictor,
-            order: decoder.byte_order(),
-            bands_per_block: if planar { 1 } else { bands },
-            block_size: match shape {
-                ChunkType::Strip => (width.max(1), down.clamp(1, height.max(1))),
-                ChunkType::Tile => (across.max(1), down.max(1)),
+            order: match decoder.byte_order() {
+                tiff::tags::ByteOrder::LittleEndian => ByteOrder::Little,
+                tiff::tags::ByteOrder::BigEndian => ByteOrder::Big,
             },
-            shape,
+            bands_per_block: if is_planar { 1 } else { bands },
+            block_width: if is_tiled { across.max(1) } else { width.max(1) },
+            block_height: if is_tiled { down.max(1) } else { down.clamp(1, height.max(1)) },
+            is_tiled,
             block_starts,
             block_bytes,
         };
-        storage.check((file_bytes, expansion), most)?;
+        storage.check(file_bytes, most)?;
         Ok(storage)
     }
 
-    fn check(&self, (file, expansion): (usize, u64), most: u64) -> Result<(), DemErrorKind> {
+    fn check(&self, file_bytes: usize, most_samples: u64) -> Result<(), DemErrorKind> {
+        if self.bands_per_block == 0 {
+            return Err(FORMAT.broken("it has no band"));
+        }
+        let expansion = expansion(self.packing);
         // Blocks that were never written take no bytes: such a file may claim more than it holds.
-        let sparse = self.block_bytes.contains(&0);
-        let held = (file, if sparse { expansion.max(2) } else { expansion });
+        let sparse = expansion.max(2);
         let bytes = u64::from(self.bits.div_ceil(8)) * u64::from(self.bands_per_block);
-        let size = (self.width.into(), self.height.into());
-        check_size_within(most, size, if self.bits < 8 { 0 } else { bytes }, held)?;
-        if self.shape == ChunkType::Tile {
-            let (across, down) = self.block_size;
-            check_size((across.into(), down.into()), bytes, (file, expansion.max(2)))?;
+        let image = SizeClaim {
+            expansion: if self.block_bytes.contains(&0) { sparse } else { expansion },
+            most_samples,
+            ..SizeClaim::new(self.width.into(), self.height.into(), if self.bits < 8 { 0 } else { bytes })
+        };
+        image.check(file_bytes)?;
+        if self.is_tiled {
+            let tile = SizeClaim::new(self.block_width.into(), self.block_height.into(), bytes);
+            SizeClaim { expansion: sparse, ..tile }.check(file_bytes)?;
         }
         Ok(())
     }
 
-    /// How many bytes a block of `samples` samples decodes to.
+    /// Bytes that so many samples of a block decode to.
     pub fn decoded_bytes(&self, samples: u64) -> u64 {
-        samples * u64::from(self.bits) * u64::from(self.bands_per_block) / 8
+        (samples * u64::from(self.bits) * u64::from(self.bands_per_block)).div_ceil(8)
     }
 
-    /// How many bytes one row of a block decodes to.
+    /// Bytes that one row of a block decodes to.
     pub fn row_bytes(&self) -> usize {
-        self.decoded_bytes(self.block_size.0.into()) as usize
+        self.decoded_bytes(self.block_width.into()) as usize
     }
 
-    /// The type of a sample, as GDAL names it.
-    pub fn data_type(&self) -> &'static str {
-        match (self.kind, self.bits) {
-            (SampleKind::Float, ..=32) => "Float32",
-            (SampleKind::Float, _) => "Float64",
-            (SampleKind::Signed, ..=8) => "Int8",
-            (SampleKind::Signed, ..=16) => "Int16",
-            (SampleKind::Signed, ..=32) => "Int32",
-            (SampleKind::Signed, _) => "Int64",
-            // What is neither is refused before anybody asks.
-            (SampleKind::Unsigned | SampleKind::Other, ..=8) => "Byte",
-            (SampleKind::Unsigned | SampleKind::Other, ..=16) => "UInt16",
-            (SampleKind::Unsigned | SampleKind::Other, ..=32) => "UInt32",
-            (SampleKind::Unsigned | SampleKind::Other, _) => "UInt64",
+    /// The type of samples that are read as elevation.
+    pub fn elevation_type(&self) -> Result<SampleType, DemErrorKind> {
+        let remedy = "convert it, for example with: gdal_translate -ot Float32 FILE out.tif";
+        let sample =
+            self.sample.ok_or_else(|| FORMAT.unsupported(format!("{}-bit samples", self.bits), remedy))?;
+        if self.predictor == Predictor::FloatBytes && !sample.is_float() {
+            return Err(FORMAT.unsupported("the floating-point predictor on integers", TO_DEFLATE));
         }
-    }
-
-    /// Whether samples need 64 bits to stay exact.
-    pub fn is_wide(&self) -> bool {
-        self.bits == 64 || (self.bits == 32 && self.kind != SampleKind::Float)
-    }
-
-    /// A no-data value as a sample can equal it; NaN, which nothing equals, where there is none.
-    pub fn comparable(&self, nodata: Option<f64>) -> f64 {
-        match nodata {
-            Some(value) if self.kind == SampleKind::Float && self.bits <= 32 => f64::from(value as f32),
-            Some(value) => value,
-            None => f64::NAN,
-        }
-    }
-
-    /// Whether samples of this kind are read.
-    pub fn check_samples(&self) -> Result<(), DemErrorKind> {
-        let is_float = self.kind == SampleKind::Float;
-        if [8, 16, 32, 64].contains(&self.bits) && !(is_float && self.bits == 8) {
-            return Ok(());
-        }
-        Err(DemErrorKind::Unsupported {
-            format: FORMAT,
-            what: format!("{}-bit {}", self.bits, if is_float { "floats" } else { "samples" }),
-            remedy: "convert it, for example with: gdal_translate -ot Float32 FILE out.tif",
-        })
+        Ok(sample)
     }
 
     /// Blocks side by side, and above each other.
     pub fn blocks_across_and_down(&self) -> (u32, u32) {
-        (self.width.div_ceil(self.block_size.0), self.height.div_ceil(self.block_size.1))
+        (self.width.div_ceil(self.block_width), self.height.div_ceil(self.block_height))
     }
 
     /// The block at a column and a row of blocks.
     pub fn block(&self, across: u32, down: u32) -> TiffBlock {
-        let (width, height) = self.block_size;
-        let (column, row) = (across * width, down * height);
+        let (column, row) = (across * self.block_width, down * self.block_height);
+        let blocks_across = u64::from(self.width.div_ceil(self.block_width));
         TiffBlock {
-            index: (u64::from(down) * u64::from(self.width.div_ceil(width)) + u64::from(across)) as u32,
+            index: (u64::from(down) * blocks_across + u64::from(across)) as u32,
             column,
             row,
-            width: width.min(self.width - column),
-            height: height.min(self.height - row),
+            width: self.block_width.min(self.width - column),
+            height: self.block_height.min(self.height - row),
         }
     }
 
@@ -258,47 +227,31 @@ impl Storage {
     }
 }
 
-fn alike(values: &[u16]) -> bool {
-    values.iter().all(|value| *value == values[0])
-}
-
-fn kind(format: u16) -> SampleKind {
+fn number_kind(format: u16) -> Option<NumberKind> {
     match format {
-        1 => SampleKind::Unsigned,
-        2 => SampleKind::Signed,
-        3 => SampleKind::Float,
-        _ => SampleKind::Other,
+        1 => Some(NumberKind::Unsigned),
+        2 => Some(NumberKind::Signed),
+        3 => Some(NumberKind::Float),
+        _ => None,
     }
 }
 
-fn packing(compression: u16) -> Packing {
-    match compression {
-        1 => Packing::Plain,
-        5 => Packing::Lzw,
-        8 | 32946 => Packing::Deflate,
-        _ => Packing::Other,
-    }
-}
-
-fn predictor(code: u16) -> Predictor {
+fn predictor(code: u16) -> Result<Predictor, DemErrorKind> {
     match code {
-        1 => Predictor::Plain,
-        2 => Predictor::Differences,
-        3 => Predictor::FloatBytes,
-        _ => Predictor::Other,
+        1 => Ok(Predictor::Plain),
+        2 => Ok(Predictor::Differences),
+        3 => Ok(Predictor::FloatBytes),
+        other => Err(FORMAT.unsupported(format!("predictor {other}"), TO_DEFLATE)),
     }
 }
 
-/// How many bytes one packed byte can become, by compression scheme.
-fn expansion(compression: u16) -> Result<u64, DemErrorKind> {
+fn packing(compression: u16) -> Result<Packing, DemErrorKind> {
     let what = match compression {
-        1 => return Ok(1),
-        // A code of 12 bits stands for up to 4 KiB.
-        5 => return Ok(2731),
-        8 | 32946 => return Ok(1032),
-        32773 => return Ok(64),
-        // A block of 128 KiB that repeats one byte takes four (RFC 8878).
-        50000 => return Ok(32_768),
+        1 => return Ok(Packing::Plain),
+        5 => return Ok(Packing::Lzw),
+        8 | 32946 => return Ok(Packing::Deflate),
+        32773 => return Ok(Packing::PackBits),
+        50000 => return Ok(Packing::Zstd),
         2..=4 => "fax compression".into(),
         6 | 7 => "JPEG compression".into(),
         34712 => "JPEG 2000 compression".into(),
@@ -308,24 +261,27 @@ fn expansion(compression: u16) -> Result<u64, DemErrorKind> {
         50002 | 52546 => "JPEG XL compression".into(),
         other => format!("compression scheme {other}"),
     };
-    Err(DemErrorKind::Unsupported {
-        format: FORMAT,
-        what,
-        remedy: "convert it, for example with: gdal_translate -co COMPRESS=DEFLATE FILE out.tif",
-    })
+    Err(FORMAT.unsupported(what, TO_DEFLATE))
 }
 
-/// The decoder's error in our words.
-pub(crate) fn fault(error: TiffError) -> DemErrorKind {
+/// The most bytes that one packed byte becomes.
+fn expansion(packing: Packing) -> u64 {
+    match packing {
+        Packing::Plain => 1,
+        // A code of 12 bits is a string of up to 4 KiB.
+        Packing::Lzw => 2731,
+        Packing::Deflate => 1032,
+        Packing::PackBits => 64,
+        // A block of 128 KiB that repeats one byte takes four.
+        Packing::Zstd => 32_768,
+    }
+}
+
+/// The decoder's error in the words of the other readers.
+pub(crate) fn decode_error(error: TiffError) -> DemErrorKind {
     match error {
-        TiffError::UnsupportedError(what) => DemErrorKind::Unsupported {
-            format: FORMAT,
-            what: what.to_string(),
-            remedy: "convert it, for example with: gdal_translate -co COMPRESS=DEFLATE FILE out.tif",
-        },
-        TiffError::LimitsExceeded => {
-            DemErrorKind::broken(FORMAT, "a tag or a block claims more than the file holds")
-        }
-        other => DemErrorKind::broken(FORMAT, other.to_string()),
+        TiffError::UnsupportedError(what) => FORMAT.unsupported(what.to_string(), TO_DEFLATE),
+        TiffError::LimitsExceeded => FORMAT.broken("a tag claims more than the file holds"),
+        other => FORMAT.undecodable(other),
     }
 }

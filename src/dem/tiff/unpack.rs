@@ -1,137 +1,288 @@
-//! Blocks of a TIFF that are stored in the common ways — plain, deflated or by LZW — straight from their bytes.
+//! Packed blocks of a TIFF to the bytes of their rows.
 //!
-//! The decoder gives a block as a value of its own, unpacked through a chain of small reads; nearly all elevation is
-//! deflated, and a zlib stream that lies in memory can be inflated in one call into room that is kept. What is
-//! uncommon goes by the decoder (see [`crate::dem::tiff::blocks`]); both give the same bits.
+//! The `tiff` crate reads the directory, but not blocks: it refuses valid LZW streams of small flat tiles, changes values
+//! by their photometric meaning, and unpacks Zstandard through C. So blocks go straight to the crates that unpack:
+//! `flate2`, `weezl` and `ruzstd`, each in one call from memory into a buffer that is kept.
+
+use std::borrow::Cow;
+use std::io::Read;
+use std::ops::Range;
 
 use flate2::{Decompress, FlushDecompress, Status};
+use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
+use weezl::decode::Decoder as LzwDecoder;
+use weezl::{BitOrder, LzwStatus};
 
 use crate::dem::error::DemErrorKind;
-use crate::dem::tiff::lzw;
-use crate::dem::tiff::rows::{Elevation, RowDecoder, RowWords};
-use crate::dem::tiff::storage::{FORMAT, Packing, Storage, TiffBlock};
+use crate::dem::tiff::geotiff::FORMAT;
+use crate::dem::tiff::storage::{Packing, Storage, TO_DEFLATE, TiffBlock};
 
-/// Packed bytes beyond twice what a block unpacks to are not looked at; no packing needs more.
+/// Packed bytes beyond twice what a block unpacks to are ignored; no packing needs more.
 const MOST_GROWTH: usize = 2;
 
 /// Bytes that even an empty stream may take.
 const SLACK: usize = 1 << 10;
 
-/// What unpacks blocks, with the room that it needs for one.
+/// A file that blocks are read from.
+pub(crate) trait BlockBytes {
+    /// The number of bytes in the file.
+    fn length(&self) -> usize;
+
+    /// The bytes in a range within the file; fewer where the file has shrunk.
+    fn bytes(&mut self, range: Range<usize>) -> std::io::Result<Cow<'_, [u8]>>;
+}
+
+impl BlockBytes for &[u8] {
+    fn length(&self) -> usize {
+        self.len()
+    }
+
+    fn bytes(&mut self, range: Range<usize>) -> std::io::Result<Cow<'_, [u8]>> {
+        Ok(Cow::Borrowed(&self[range]))
+    }
+}
+
+/// What unpacks the blocks of an image, one after the other.
 pub(crate) struct Unpacker<'a> {
     storage: &'a Storage,
-    rows: RowDecoder,
-    inflater: Decompress,
-    unpacked: Vec<u8>,
-    words: RowWords,
+    decompressor: Decompressor,
+}
+
+enum Decompressor {
+    Plain,
+    Deflate(Decompress),
+    Lzw(weezl::decode::Decoder),
+    PackBits,
+    Zstd(Box<FrameDecoder>),
 }
 
 impl<'a> Unpacker<'a> {
-    /// For an image whose no-data value is `nodata`; `None` where it is stored in another way.
-    pub fn of(storage: &'a Storage, nodata: Option<f64>) -> Option<Self> {
-        let rows = RowDecoder::of(storage, nodata).filter(|_| storage.packing != Packing::Other)?;
-        Some(Self {
-            storage,
-            rows,
-            inflater: Decompress::new(true),
-            unpacked: Vec::new(),
-            words: RowWords::default(),
-        })
+    /// For the blocks of an image.
+    pub fn new(storage: &'a Storage) -> Self {
+        let decompressor = match storage.packing {
+            Packing::Plain => Decompressor::Plain,
+            Packing::Deflate => Decompressor::Deflate(Decompress::new(true)),
+            Packing::Lzw => Decompressor::Lzw(LzwDecoder::with_tiff_size_switch(BitOrder::Msb, 8)),
+            Packing::PackBits => Decompressor::PackBits,
+            Packing::Zstd => Decompressor::Zstd(Box::default()),
+        };
+        Self { storage, decompressor }
     }
 
-    /// Where the packed bytes of a block lie in a file of `file_bytes` bytes; empty beyond its end.
-    pub fn range(&self, block: TiffBlock, file_bytes: usize) -> Result<std::ops::Range<usize>, DemErrorKind> {
-        let (start, bytes) = self.storage.place(block.index).ok_or_else(|| {
-            DemErrorKind::broken(FORMAT, format!("its tables do not say where block {} lies", block.index))
-        })?;
-        let most = self.bytes_within(block).saturating_mul(MOST_GROWTH).saturating_add(SLACK);
+    /// Unpacks the rows of a block that lie in the image into `rows`, which is resized.
+    ///
+    /// # Errors
+    /// The tables do not list the block, it cannot be read, or its stream is broken or ends before its last row.
+    pub fn unpack(
+        &mut self,
+        file: &mut impl BlockBytes,
+        block: TiffBlock,
+        rows: &mut Vec<u8>,
+    ) -> Result<(), DemErrorKind> {
+        let needed = self.storage.row_bytes() * block.height as usize;
+        let range = self.range(block, needed, file.length())?;
+        let packed = file.bytes(range).map_err(|error| FORMAT.undecodable(error))?;
+        rows.resize(needed, 0);
+        let unpacked = match &mut self.decompressor {
+            Decompressor::Plain => copy(&packed, rows),
+            Decompressor::Deflate(inflater) => inflate(inflater, &packed, rows),
+            Decompressor::Lzw(_) if is_ancient_lzw(&packed) => {
+                return Err(FORMAT.unsupported("LZW in the bit order of before 1991", TO_DEFLATE));
+            }
+            Decompressor::Lzw(decoder) => unpack_lzw(decoder, &packed, rows),
+            Decompressor::PackBits => unpack_bits(&packed, rows),
+            Decompressor::Zstd(decoder) => unpack_zstd(decoder, &packed, rows),
+        };
+        if unpacked == needed {
+            return Ok(());
+        }
+        let index = block.index;
+        Err(FORMAT.broken(format!("block {index} holds {unpacked} of the {needed} bytes of its rows")))
+    }
+
+    /// Where the packed bytes of a block lie in a file; empty beyond its end.
+    fn range(
+        &self,
+        block: TiffBlock,
+        needed: usize,
+        file_bytes: usize,
+    ) -> Result<Range<usize>, DemErrorKind> {
+        let unlisted = || FORMAT.broken(format!("its tables do not state where block {} lies", block.index));
+        let (start, bytes) = self.storage.place(block.index).ok_or_else(unlisted)?;
+        let most = needed.saturating_mul(MOST_GROWTH).saturating_add(SLACK);
         let start = usize::try_from(start).unwrap_or(usize::MAX).min(file_bytes);
         let bytes = usize::try_from(bytes).unwrap_or(usize::MAX).min(most);
         Ok(start..start.saturating_add(bytes).min(file_bytes))
     }
+}
 
-    /// The elevations of a block to `out`, whose rows lie `stride` apart and start where the block's do.
-    ///
-    /// # Errors
-    /// The stream is broken or ends before the block's last row.
-    ///
-    /// # Panics
-    /// Where `out` has no room for the block.
-    pub fn fill<E: Elevation>(
-        &mut self,
-        packed: &[u8],
-        block: TiffBlock,
-        out: &mut [E],
-        stride: usize,
-    ) -> Result<(), DemErrorKind> {
-        let needed = self.bytes_within(block);
-        let rows = match self.storage.packing {
-            Packing::Plain => packed.get(..needed).ok_or_else(|| short(block, packed.len(), needed))?,
-            Packing::Lzw => {
-                self.unpacked.resize(needed, 0);
-                unpack_lzw(packed, block, &mut self.unpacked)?;
-                &self.unpacked
+// Each of these fills `out` from the start of a stream, ignores what follows, and returns how many bytes there were.
+
+fn copy(packed: &[u8], out: &mut [u8]) -> usize {
+    let length = packed.len().min(out.len());
+    out[..length].copy_from_slice(&packed[..length]);
+    length
+}
+
+fn inflate(inflater: &mut Decompress, packed: &[u8], out: &mut [u8]) -> usize {
+    inflater.reset(true);
+    loop {
+        let before = (inflater.total_in() as usize, inflater.total_out() as usize);
+        let status = inflater.decompress(&packed[before.0..], &mut out[before.1..], FlushDecompress::Finish);
+        let after = (inflater.total_in() as usize, inflater.total_out() as usize);
+        if after.1 == out.len() || after == before || !matches!(status, Ok(Status::Ok | Status::BufError)) {
+            return after.1;
+        }
+    }
+}
+
+/// Whether a stream is in the bit order that libtiff wrote before 1991.
+fn is_ancient_lzw(packed: &[u8]) -> bool {
+    matches!(packed, [0, second, ..] if second & 1 == 1)
+}
+
+fn unpack_lzw(decoder: &mut LzwDecoder, packed: &[u8], out: &mut [u8]) -> usize {
+    decoder.reset();
+    let (mut read, mut written) = (0, 0);
+    loop {
+        let step = decoder.decode_bytes(&packed[read..], &mut out[written..]);
+        read += step.consumed_in;
+        written += step.consumed_out;
+        let is_stuck = step.consumed_in + step.consumed_out == 0;
+        if written == out.len() || is_stuck || !matches!(step.status, Ok(LzwStatus::Ok)) {
+            return written;
+        }
+    }
+}
+
+fn unpack_bits(packed: &[u8], out: &mut [u8]) -> usize {
+    let (mut rest, mut written) = (packed, 0);
+    while let ([count, tail @ ..], true) = (rest, written < out.len()) {
+        let left = out.len() - written;
+        let length = match *count as i8 {
+            -128 => {
+                rest = tail;
+                continue;
             }
-            Packing::Deflate | Packing::Other => {
-                self.unpacked.resize(needed, 0);
-                inflate(&mut self.inflater, packed, block, &mut self.unpacked)?;
-                &self.unpacked
+            literal @ 0.. => {
+                let length = (literal as usize + 1).min(tail.len());
+                written += copy(&tail[..length], &mut out[written..]);
+                length
+            }
+            repeated => {
+                let Some(byte) = tail.first() else { break };
+                let length = (1 - isize::from(repeated)) as usize;
+                out[written..][..length.min(left)].fill(*byte);
+                written += length.min(left);
+                1
             }
         };
-        let row_bytes = self.storage.row_bytes().max(1);
-        for (row, out) in rows.chunks_exact(row_bytes).zip(out.chunks_mut(stride)) {
-            E::fill(&self.rows, row, &mut self.words, &mut out[..block.width as usize]);
-        }
-        Ok(())
+        rest = &tail[length..];
     }
-
-    /// The bytes of those rows of a block that lie in the image.
-    fn bytes_within(&self, block: TiffBlock) -> usize {
-        self.storage.row_bytes() * block.height as usize
-    }
+    written
 }
 
-/// Fills `out` with the first bytes of a stream; what follows them is not looked at.
-fn inflate(
-    inflater: &mut Decompress,
-    packed: &[u8],
-    block: TiffBlock,
-    out: &mut [u8],
-) -> Result<(), DemErrorKind> {
-    inflater.reset(true);
-    let (mut read, mut written) = (0, 0);
+fn unpack_zstd(decoder: &mut FrameDecoder, packed: &[u8], out: &mut [u8]) -> usize {
+    let Ok(mut stream) = StreamingDecoder::new_with_decoder(packed, decoder) else { return 0 };
+    let mut written = 0;
     while written < out.len() {
-        let before = (inflater.total_in(), inflater.total_out());
-        let status = inflater
-            .decompress(&packed[read..], &mut out[written..], FlushDecompress::Finish)
-            .map_err(|error| {
-                DemErrorKind::broken(FORMAT, format!("block {} does not inflate: {error}", block.index))
-            })?;
-        read += (inflater.total_in() - before.0) as usize;
-        written += (inflater.total_out() - before.1) as usize;
-        let stuck = (inflater.total_in(), inflater.total_out()) == before;
-        if (status == Status::StreamEnd || stuck) && written < out.len() {
-            return Err(short(block, written, out.len()));
+        match stream.read(&mut out[written..]) {
+            Ok(count @ 1..) => written += count,
+            _ => break,
         }
     }
-    Ok(())
+    written
 }
 
-fn unpack_lzw(packed: &[u8], block: TiffBlock, out: &mut [u8]) -> Result<(), DemErrorKind> {
-    if lzw::is_ancient(packed) {
-        return Err(DemErrorKind::Unsupported {
-            format: FORMAT,
-            what: "LZW in the order of bits of before 1991".into(),
-            remedy: "convert it, for example with: gdal_translate -co COMPRESS=DEFLATE FILE out.tif",
-        });
-    }
-    match lzw::unpack(packed, out) {
-        written if written < out.len() => Err(short(block, written, out.len())),
-        _ => Ok(()),
-    }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
 
-fn short(block: TiffBlock, found: usize, wanted: usize) -> DemErrorKind {
-    let index = block.index;
-    DemErrorKind::broken(FORMAT, format!("block {index} holds {found} of the {wanted} bytes of its rows"))
+    fn packed_by_lzw(plain: &[u8]) -> Vec<u8> {
+        let mut encoder = weezl::encode::Encoder::with_tiff_size_switch(BitOrder::Msb, 8);
+        encoder.encode(plain).expect("bytes are codes")
+    }
+
+    fn unpacked_by_lzw(packed: &[u8], length: usize) -> Vec<u8> {
+        let mut out = vec![0xaa; length];
+        let mut decoder = LzwDecoder::with_tiff_size_switch(BitOrder::Msb, 8);
+        let written = unpack_lzw(&mut decoder, packed, &mut out);
+        out.truncate(written);
+        out
+    }
+
+    #[test]
+    fn the_lzw_example_of_the_specification_comes_out() {
+        // TIFF 6.0, section 13: 7 7 7 8 8 7 7 6 6 as codes of 9 bits, 256 7 258 8 8 258 6 6 257.
+        let codes = [256u32, 7, 258, 8, 8, 258, 6, 6, 257];
+        let bits: Vec<u32> =
+            codes.iter().flat_map(|code| (0..9).rev().map(move |bit| code >> bit & 1)).collect();
+        let bytes: Vec<u8> = bits
+            .chunks(8)
+            .map(|byte| byte.iter().enumerate().map(|(at, bit)| (*bit as u8) << (7 - at)).sum())
+            .collect();
+        assert_eq!(unpacked_by_lzw(&bytes, 9), [7, 7, 7, 8, 8, 7, 7, 6, 6]);
+    }
+
+    #[test]
+    fn flat_ground_comes_out_of_a_few_bytes_of_lzw() {
+        let plain = vec![0u8; 100_000];
+        let stream = packed_by_lzw(&plain);
+        assert!(stream.len() < 700, "{}", stream.len());
+        assert_eq!(unpacked_by_lzw(&stream, plain.len()), plain);
+    }
+
+    #[test]
+    fn an_lzw_stream_that_breaks_off_gives_what_it_held() {
+        let plain: Vec<u8> = (0..5000u32).map(|at| (at * at % 251) as u8).collect();
+        let stream = packed_by_lzw(&plain);
+        for end in 0..stream.len() - 2 {
+            let found = unpacked_by_lzw(&stream[..end], plain.len());
+            assert!(found.len() < plain.len() && plain.starts_with(&found), "{end}");
+        }
+    }
+
+    #[test]
+    fn the_packbits_example_of_the_specification_comes_out() {
+        // Apple, Technical Note TN1023.
+        let packed =
+            [0xfe, 0xaa, 0x02, 0x80, 0x00, 0x2a, 0xfd, 0xaa, 0x80, 0x03, 0x80, 0x00, 0x2a, 0x22, 0xf7, 0xaa];
+        let plain = [
+            0xaa, 0xaa, 0xaa, 0x80, 0x00, 0x2a, 0xaa, 0xaa, 0xaa, 0xaa, 0x80, 0x00, 0x2a, 0x22, 0xaa, 0xaa,
+            0xaa, 0xaa, 0xaa, 0xaa, 0xaa, 0xaa, 0xaa, 0xaa,
+        ];
+        for length in 0..plain.len() {
+            let mut out = vec![0; length];
+            assert_eq!(unpack_bits(&packed, &mut out), length);
+            assert_eq!(out, plain[..length]);
+        }
+        let mut out = [0; 24];
+        for end in 0..packed.len() {
+            let written = unpack_bits(&packed[..end], &mut out);
+            assert!(plain.starts_with(&out[..written]) && written < plain.len(), "{end}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn what_was_packed_by_lzw_comes_out(
+            parts in proptest::collection::vec((any::<u8>(), 1usize..400, 0u8..5), 0..80),
+        ) {
+            let plain: Vec<u8> = parts
+                .into_iter()
+                .flat_map(|(byte, count, step)| (0..count).map(move |at| byte.wrapping_add(step.wrapping_mul(at as u8))))
+                .collect();
+            prop_assert_eq!(unpacked_by_lzw(&packed_by_lzw(&plain), plain.len()), plain);
+        }
+
+        #[test]
+        fn any_bytes_end_within_the_buffer(bytes in proptest::collection::vec(any::<u8>(), 0..300)) {
+            let mut out = [0; 1000];
+            prop_assert!(unpacked_by_lzw(&bytes, 1000).len() <= 1000);
+            prop_assert!(unpack_bits(&bytes, &mut out) <= 1000);
+            prop_assert!(unpack_zstd(&mut FrameDecoder::new(), &bytes, &mut out) <= 1000);
+            prop_assert!(inflate(&mut Decompress::new(true), &bytes, &mut out) <= 1000);
+        }
+    }
 }

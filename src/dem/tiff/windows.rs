@@ -1,4 +1,4 @@
-//! Windows of a GeoTIFF that stays where it is: blocks are decoded when a window meets them and a few are kept.
+//! Windows of a GeoTIFF that stays on disk: blocks are decoded when a window meets them, and a few are kept.
 //!
 //! ```text
 //! ┌────┬────┬────┐   blocks (tiles, or strips as wide as the image); a window is copied
@@ -13,24 +13,24 @@
 //!
 //! Overviews — reduced images in the same file — are listed, and open as rasters of their own.
 
-use std::io::{BufReader, Read, Seek};
-use std::sync::Arc;
+use std::borrow::Cow;
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::ops::Range;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::{DAffine2, DVec2};
 use tiff::decoder::Decoder;
-use tiff::tags::Tag;
 
+use crate::dem::cache::LruCache;
 use crate::dem::error::{DemError, DemErrorKind};
 use crate::dem::raster::{Raster, scaled};
 use crate::dem::read::{DemFile, DemHints};
-use crate::dem::recent::Recent;
 use crate::dem::tiff::blocks;
-use crate::dem::tiff::file::TiffFile;
-use crate::dem::tiff::geotiff;
-use crate::dem::tiff::geotiff::GeoTiffHeader;
-use crate::dem::tiff::mask;
-use crate::dem::tiff::mask::{IS_MASK, MOST_IMAGES};
-use crate::dem::tiff::storage::{FORMAT, Storage, TiffBlock, fault};
+use crate::dem::tiff::geotiff::{self, FORMAT, GeoTiffHeader};
+use crate::dem::tiff::mask::{self, IS_MASK};
+use crate::dem::tiff::storage::{Storage, TiffBlock, decode_error};
+use crate::dem::tiff::unpack::{BlockBytes, Unpacker};
+use crate::dem::tiff::{MOST_IMAGES, image_kind};
 use crate::dem::windows::{RasterWindow, Windows};
 
 /// The most samples of an image that is read in windows: 262,144 a side. Nothing is allocated for them; it keeps the
@@ -60,15 +60,15 @@ pub struct Overview {
 }
 
 /// A GeoTIFF, read in windows.
-pub struct GeoTiffWindows<R: Read + Seek> {
+pub struct GeoTiffWindows<R> {
     name: String,
-    file: TiffFile<R>,
-    described: GeoTiffHeader,
+    file: SharedFile<R>,
+    header: GeoTiffHeader,
     overviews: Vec<Overview>,
     masks: Vec<Overview>,
-    heights: TiffImage<R>,
-    mask: Option<TiffImage<R>>,
-    blocks: Recent<u32, Arc<[f32]>>,
+    heights: Storage,
+    mask: Option<Storage>,
+    blocks: LruCache<u32, Arc<[f32]>>,
     cache_bytes: usize,
 }
 
@@ -77,52 +77,44 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
     /// of [`crate::dem::read::read`].
     ///
     /// # Errors
-    /// What the whole reader refuses is refused alike, except images that are merely too large for the memory; so
-    /// are files whose single blocks are.
+    /// Those of the whole reader, except for images that are merely too large for the memory; and single blocks that
+    /// are too large for the memory.
     pub fn open(name: &str, file: R, hints: &DemHints, cache_bytes: usize) -> Result<Self, DemError> {
         Self::open_first(name, file, hints, cache_bytes)
-            .map_err(|fault| DemError { name: name.to_owned(), fault })
+            .map_err(|kind| DemError { name: name.to_owned(), kind })
     }
 
     fn open_first(name: &str, file: R, hints: &DemHints, cache_bytes: usize) -> Result<Self, DemErrorKind> {
-        let unread = |error: std::io::Error| DemErrorKind::broken(FORMAT, error.to_string());
-        let file = TiffFile::new(file).map_err(unread)?;
-        let mut start = Vec::new();
-        file.clone().take(4).read_to_end(&mut start).map_err(unread)?;
+        let mut file = SharedFile::new(file).map_err(|error| FORMAT.undecodable(error))?;
+        let start = file.bytes(0..4).map_err(|error| FORMAT.undecodable(error))?;
         if !geotiff::recognizes(&start) {
-            return Err(DemErrorKind::broken(FORMAT, "it does not start as a TIFF file does"));
+            return Err(FORMAT.broken("it does not start with the signature of a TIFF file"));
         }
-        let mut heights = TiffImage::open(&file, 0)?;
-        heights.storage.check_samples()?;
         let source = DemFile { name, bytes: &[], hints };
-        let described = geotiff::describe(&mut heights.decoder, &heights.storage, &source)?;
-        if geotiff::mask_beside(&source).is_some() {
-            return Err(DemErrorKind::Unsupported {
-                format: FORMAT,
-                what: "a mask in a file beside it (.msk), and is to be read in parts".into(),
-                remedy: "take the mask into it: gdal_translate --config GDAL_TIFF_INTERNAL_MASK YES FILE out.tif",
-            });
+        let heights = file.storage(0)?;
+        heights.elevation_type()?;
+        let header = GeoTiffHeader::read(&mut file.decoder(&mut file.lock())?, &heights, &source)?;
+        if mask::file_beside(&source).is_some() {
+            return Err(FORMAT.unsupported(
+                "a mask in a file beside it (.msk), and is to be read in parts",
+                "take the mask into it: gdal_translate --config GDAL_TIFF_INTERNAL_MASK YES FILE out.tif",
+            ));
         }
-        let (overviews, masks) = images(&file, (described.bare.width, described.bare.height));
-        Self::assemble(name, file, described, (overviews, masks), heights, cache_bytes)
+        let (overviews, masks) = file.reduced_images_and_masks();
+        let (mask, blocks) = (None, LruCache::new(cache_bytes));
+        let name = name.to_owned();
+        Self { name, file, header, overviews, masks, heights, mask, blocks, cache_bytes }.with_mask()
     }
 
-    fn assemble(
-        name: &str,
-        file: TiffFile<R>,
-        described: GeoTiffHeader,
-        (overviews, masks): (Vec<Overview>, Vec<Overview>),
-        heights: TiffImage<R>,
-        cache_bytes: usize,
-    ) -> Result<Self, DemErrorKind> {
-        let size = (described.bare.width, described.bare.height);
-        let mask = masks.iter().find(|mask| (mask.width, mask.height) == size);
-        let mask = mask.map(|mask| TiffImage::open(&file, mask.image)).transpose()?;
-        if let Some(mask) = &mask {
-            mask::check(&mask.storage)?;
+    /// Looks for a mask of this image's size.
+    fn with_mask(mut self) -> Result<Self, DemErrorKind> {
+        let mut masks = self.masks.iter();
+        if let Some(mask) = masks.find(|mask| (mask.width, mask.height) == self.size()) {
+            let mask = self.file.storage(mask.image)?;
+            mask::check(&mask)?;
+            self.mask = Some(mask);
         }
-        let (name, blocks) = (name.to_owned(), Recent::new(cache_bytes));
-        Ok(Self { name, file, described, overviews, masks, heights, mask, blocks, cache_bytes })
+        Ok(self)
     }
 
     /// The reduced images of this one, as the file lists them: mostly from the finest to the coarsest.
@@ -130,73 +122,71 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
         &self.overviews
     }
 
-    /// Opens a reduced image from [`GeoTiffWindows::overviews`]; it lies where this one lies, its samples further
-    /// apart.
+    /// Opens a reduced image from [`GeoTiffWindows::overviews`]: the same ground, samples further apart.
     ///
     /// # Errors
     /// The image is broken, or stored in a way that is not read.
     pub fn at_overview(&self, overview: &Overview) -> Result<Self, DemError> {
-        self.open_overview(overview).map_err(|fault| DemError { name: self.name.clone(), fault })
+        self.open_overview(overview).map_err(|kind| DemError { name: self.name.clone(), kind })
     }
 
     fn open_overview(&self, overview: &Overview) -> Result<Self, DemErrorKind> {
-        let heights = TiffImage::open(&self.file, overview.image)?;
-        heights.storage.check_samples()?;
-        let bare = &self.described.bare;
-        let times = DVec2::new(
-            f64::from(bare.width) / f64::from(overview.width),
-            f64::from(bare.height) / f64::from(overview.height),
-        );
-        let bare = Raster {
-            width: overview.width,
-            height: overview.height,
-            map_from_grid: bare.map_from_grid * DAffine2::from_scale(times),
-            ..bare.clone()
+        let heights = self.file.storage(overview.image)?;
+        heights.elevation_type()?;
+        let Overview { width, height, .. } = *overview;
+        let times = self.header.raster.grid_size() / DVec2::new(width.into(), height.into());
+        let map_from_grid = self.header.raster.map_from_grid * DAffine2::from_scale(times);
+        let raster = Raster { width, height, map_from_grid, ..self.header.raster.without_samples() };
+        let overview = Self {
+            name: self.name.clone(),
+            file: self.file.clone(),
+            header: GeoTiffHeader { raster, ..self.header },
+            overviews: Vec::new(),
+            masks: self.masks.clone(),
+            heights,
+            mask: None,
+            blocks: LruCache::new(self.cache_bytes),
+            cache_bytes: self.cache_bytes,
         };
-        let described = GeoTiffHeader { bare, ..self.described };
-        let images = (Vec::new(), self.masks.clone());
-        Self::assemble(&self.name, self.file.clone(), described, images, heights, self.cache_bytes)
+        overview.with_mask()
     }
 
     /// Bytes of decoded blocks that are kept now.
     pub fn cached_bytes(&self) -> usize {
-        self.blocks.held()
+        self.blocks.weight()
     }
 
     /// The heights of a block, in meters.
     fn block(&mut self, at: TiffBlock) -> Result<Arc<[f32]>, DemErrorKind> {
-        let TiffBlock { index, column, row, width, height } = at;
-        if let Some(block) = self.blocks.get(index) {
+        if let Some(block) = self.blocks.get(at.index) {
             return Ok(Arc::clone(block));
         }
-        self.blocks.make_room(width as usize * height as usize * 4);
-        let TiffImage { decoder, storage } = &mut self.heights;
-        let GeoTiffHeader { bare, scale, offset } = &self.described;
-        let stored = blocks::block(decoder, storage, bare.nodata, at, self.file.length())?;
-        let meters = |stored: f64| scaled(scaled(stored, *scale, *offset), bare.meters_per_z, 0.0) as f32;
+        self.blocks.make_room(at.width as usize * at.height as usize * 4);
+        let GeoTiffHeader { raster, scale, offset } = &self.header;
+        let stored = blocks::block(&mut self.file, &self.heights, raster.nodata, at)?;
+        let meters = |stored: f64| scaled(scaled(stored, *scale, *offset), raster.meters_per_z, 0.0) as f32;
         let mut heights: Vec<f32> = stored.iter().map(meters).collect();
-        if let Some(mask) = &mut self.mask {
-            mask.hide(RasterWindow { column, row, width, height }, &mut heights)?;
+        if let Some(mask) = &self.mask {
+            hide(&mut self.file, mask, window_of(at), &mut heights)?;
         }
         let block: Arc<[f32]> = heights.into();
-        self.blocks.put(index, Arc::clone(&block), block.len() * 4);
+        self.blocks.put(at.index, Arc::clone(&block), block.len() * 4);
         Ok(block)
     }
 }
 
 impl<R: Read + Seek> Windows for GeoTiffWindows<R> {
-    fn bare(&self) -> &Raster {
-        &self.described.bare
+    fn metadata(&self) -> &Raster {
+        &self.header.raster
     }
 
     fn read(&mut self, window: RasterWindow, out: &mut Vec<f32>) -> Result<(), DemErrorKind> {
         window.assert_within(self.size());
         out.clear();
         out.resize(window.samples(), f32::NAN);
-        for at in self.heights.blocks_meeting(window) {
+        for at in blocks_meeting(&self.heights, window) {
             let block = self.block(at)?;
-            let stored = RasterWindow { column: at.column, row: at.row, width: at.width, height: at.height };
-            for (from, to) in overlap(stored, window) {
+            for (from, to) in shared_rows(window_of(at), window) {
                 out[to].copy_from_slice(&block[from]);
             }
         }
@@ -204,102 +194,142 @@ impl<R: Read + Seek> Windows for GeoTiffWindows<R> {
     }
 }
 
+fn window_of(block: TiffBlock) -> RasterWindow {
+    let TiffBlock { column, row, width, height, .. } = block;
+    RasterWindow { column, row, width, height }
+}
+
 /// The index ranges, in two windows' samples, of the rows they share.
-fn overlap(
-    from: RasterWindow,
-    to: RasterWindow,
-) -> impl Iterator<Item = (std::ops::Range<usize>, std::ops::Range<usize>)> {
+fn shared_rows(from: RasterWindow, to: RasterWindow) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
     let first = from.column.max(to.column);
     let last = (from.column + from.width).min(to.column + to.width).max(first);
     let rows = from.row.max(to.row)..(from.row + from.height).min(to.row + to.height);
-    let range = move |of: RasterWindow, row: u32| {
-        let start = (row - of.row) as usize * of.width as usize + (first - of.column) as usize;
+    let range = move |window: RasterWindow, row: u32| {
+        let start = (row - window.row) as usize * window.width as usize + (first - window.column) as usize;
         start..start + (last - first) as usize
     };
     rows.map(move |row| (range(from, row), range(to, row)))
 }
 
-/// One image of the file.
-struct TiffImage<R: Read + Seek> {
-    decoder: Decoder<BufReader<TiffFile<R>>>,
-    storage: Storage,
+/// The blocks that a window meets.
+fn blocks_meeting(storage: &Storage, window: RasterWindow) -> Vec<TiffBlock> {
+    let span = |first: u32, count: u32, block: u32| first / block..(first + count).div_ceil(block);
+    let columns = span(window.column, window.width, storage.block_width);
+    span(window.row, window.height, storage.block_height)
+        .flat_map(|down| columns.clone().map(move |across| storage.block(across, down)))
+        .collect()
 }
 
-impl<R: Read + Seek> TiffImage<R> {
-    fn open(file: &TiffFile<R>, image: usize) -> Result<Self, DemErrorKind> {
-        let mut decoder = decoder(file)?;
-        for _ in 0..image {
-            decoder.next_image().map_err(fault)?;
+/// Makes NaN of the heights of `window` that a mask hides.
+fn hide(
+    file: &mut impl BlockBytes,
+    mask: &Storage,
+    window: RasterWindow,
+    heights: &mut [f32],
+) -> Result<(), DemErrorKind> {
+    let mut unpacker = Unpacker::new(mask);
+    for at in blocks_meeting(mask, window) {
+        for (x, y) in mask::block(&mut unpacker, file, mask, at)?.hidden() {
+            let x = (at.column as usize + x).checked_sub(window.column as usize);
+            let y = (at.row as usize + y).checked_sub(window.row as usize);
+            if let (Some(x), Some(y)) = (x, y)
+                && x < window.width as usize
+                && y < window.height as usize
+            {
+                heights[y * window.width as usize + x] = f32::NAN;
+            }
         }
-        let storage = Storage::of(&mut decoder, file.length(), MOST_WINDOWED)?;
-        let (across, down) = storage.block_size;
-        let (across, down) = (across.clamp(1, storage.width), down.clamp(1, storage.height));
+    }
+    Ok(())
+}
+
+/// A file that a raster shares with its overviews.
+struct SharedFile<R> {
+    file: Arc<Mutex<R>>,
+    length: usize,
+}
+
+impl<R> Clone for SharedFile<R> {
+    fn clone(&self) -> Self {
+        Self { file: Arc::clone(&self.file), length: self.length }
+    }
+}
+
+impl<R: Read + Seek> SharedFile<R> {
+    fn new(mut file: R) -> io::Result<Self> {
+        let length = usize::try_from(file.seek(SeekFrom::End(0))?).map_err(io::Error::other)?;
+        Ok(Self { file: Arc::new(Mutex::new(file)), length })
+    }
+
+    fn lock(&self) -> MutexGuard<'_, R> {
+        // A reader that panicked elsewhere left no state here: every read seeks first.
+        self.file.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn decoder<'a>(&self, file: &'a mut R) -> Result<Decoder<BufReader<&'a mut R>>, DemErrorKind> {
+        file.rewind().map_err(|error| FORMAT.undecodable(error))?;
+        let decoder = Decoder::new(BufReader::new(file)).map_err(decode_error)?;
+        Ok(decoder.with_limits(geotiff::limits(self.length, LARGEST_BLOCK)))
+    }
+
+    /// How one image of the file is stored.
+    fn storage(&self, image: usize) -> Result<Storage, DemErrorKind> {
+        let mut file = self.lock();
+        let mut decoder = self.decoder(&mut file)?;
+        for _ in 0..image {
+            decoder.next_image().map_err(decode_error)?;
+        }
+        let storage = Storage::read(&mut decoder, self.length, MOST_WINDOWED)?;
+        let across = storage.block_width.clamp(1, storage.width);
+        let down = storage.block_height.clamp(1, storage.height);
         let samples = u64::from(across) * u64::from(down);
         if samples > MOST_BLOCK_SAMPLES || storage.decoded_bytes(samples) > LARGEST_BLOCK as u64 {
-            return Err(DemErrorKind::Unsupported {
-                format: FORMAT,
-                what: format!("blocks of {across} x {down} samples"),
-                remedy: "rewrite it in tiles, for example with: gdal_translate -co TILED=YES FILE out.tif",
-            });
+            return Err(FORMAT.unsupported(
+                format!("blocks of {across} x {down} samples"),
+                "rewrite it in tiles, for example with: gdal_translate -co TILED=YES FILE out.tif",
+            ));
         }
         let blocks = u64::from(storage.width.div_ceil(across)) * u64::from(storage.height.div_ceil(down));
         if blocks > u64::from(u32::MAX) {
-            return Err(DemErrorKind::broken(FORMAT, format!("it claims {blocks} blocks")));
+            return Err(FORMAT.broken(format!("it claims {blocks} blocks")));
         }
-        Ok(Self { decoder, storage })
+        Ok(storage)
     }
 
-    /// The blocks that a window meets.
-    fn blocks_meeting(&self, window: RasterWindow) -> Vec<TiffBlock> {
-        let (width, height) = self.storage.block_size;
-        let span = |first: u32, count: u32, block: u32| first / block..(first + count).div_ceil(block);
-        let columns = span(window.column, window.width, width);
-        span(window.row, window.height, height)
-            .flat_map(|down| columns.clone().map(move |across| self.storage.block(across, down)))
-            .collect()
-    }
-
-    /// Makes NaN of the heights of `window` that this mask hides.
-    fn hide(&mut self, window: RasterWindow, heights: &mut [f32]) -> Result<(), DemErrorKind> {
-        for at in self.blocks_meeting(window) {
-            let block = mask::block(&mut self.decoder, &self.storage, at)?;
-            for (x, y) in block.hidden() {
-                let x = (at.column as usize + x).checked_sub(window.column as usize);
-                let y = (at.row as usize + y).checked_sub(window.row as usize);
-                if let (Some(x), Some(y)) = (x, y)
-                    && x < window.width as usize
-                    && y < window.height as usize
-                {
-                    heights[y * window.width as usize + x] = f32::NAN;
-                }
+    /// The overviews and the masks among the images after the first.
+    fn reduced_images_and_masks(&self) -> (Vec<Overview>, Vec<Overview>) {
+        let (mut overviews, mut masks) = (Vec::new(), Vec::new());
+        let mut file = self.lock();
+        let Ok(mut decoder) = self.decoder(&mut file) else { return (overviews, masks) };
+        let size = decoder.dimensions().unwrap_or_default();
+        for image in 1..=MOST_IMAGES {
+            // A broken overview or page is no reason to refuse the images before it.
+            if !decoder.more_images() || decoder.next_image().is_err() {
+                break;
+            }
+            let kind = image_kind(&mut decoder);
+            let Ok((width, height)) = decoder.dimensions() else { continue };
+            let found = Overview { width, height, image };
+            if kind & IS_MASK != 0 {
+                masks.push(found);
+            } else if kind & IS_REDUCED != 0 && width.min(height) > 0 && width < size.0 && height <= size.1 {
+                overviews.push(found);
             }
         }
-        Ok(())
+        (overviews, masks)
     }
 }
 
-fn decoder<R: Read + Seek>(file: &TiffFile<R>) -> Result<Decoder<BufReader<TiffFile<R>>>, DemErrorKind> {
-    let limits = geotiff::limits(file.length(), LARGEST_BLOCK);
-    Ok(Decoder::new(BufReader::new(file.clone())).map_err(fault)?.with_limits(limits))
-}
-
-/// The overviews and the masks among the images after the first, whose size is `size`.
-fn images<R: Read + Seek>(file: &TiffFile<R>, size: (u32, u32)) -> (Vec<Overview>, Vec<Overview>) {
-    let (mut overviews, mut masks) = (Vec::new(), Vec::new());
-    let Ok(mut decoder) = decoder(file) else { return (overviews, masks) };
-    for image in 1..=MOST_IMAGES {
-        // A broken overview or page is no reason to refuse the images before it.
-        if !decoder.more_images() || decoder.next_image().is_err() {
-            break;
-        }
-        let kind = decoder.find_tag_unsigned::<u32>(Tag::NewSubfileType).ok().flatten().unwrap_or(0);
-        let Ok((width, height)) = decoder.dimensions() else { continue };
-        let found = Overview { width, height, image };
-        if kind & IS_MASK != 0 {
-            masks.push(found);
-        } else if kind & IS_REDUCED != 0 && width.min(height) > 0 && width < size.0 && height <= size.1 {
-            overviews.push(found);
-        }
+impl<R: Read + Seek> BlockBytes for SharedFile<R> {
+    fn length(&self) -> usize {
+        self.length
     }
-    (overviews, masks)
+
+    fn bytes(&mut self, range: Range<usize>) -> io::Result<Cow<'_, [u8]>> {
+        let mut file = self.lock();
+        file.seek(SeekFrom::Start(range.start as u64))?;
+        let mut bytes = Vec::new();
+        (&mut *file).take(range.len() as u64).read_to_end(&mut bytes)?;
+        Ok(Cow::Owned(bytes))
+    }
 }

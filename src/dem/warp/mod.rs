@@ -1,25 +1,30 @@
-//! A raster in whatever system its file used, to one in meters with north up.
+//! Rasters in whatever system their files use, to other systems and cells, with north up.
 
-pub mod grid;
-pub mod line;
-pub mod target;
+mod crs_transform;
+mod data_extent;
+pub mod reproject;
+mod resample;
+mod row_positions;
+
+use std::borrow::Cow;
 
 use glam::DVec2;
 
 use crate::dem::raster::{Raster, Samples, north_up};
-use crate::dem::valid::{outline, valid_grid};
-use crate::dem::warp::grid::{CrsTransform, WarpGrid};
+use crate::dem::warp::crs_transform::CrsTransform;
+use crate::dem::warp::data_extent::{data_extent, outline};
+use crate::dem::warp::resample::Resampler;
 use crate::geom::crs::{Crs, CrsError};
 use crate::geom::rect::Rect;
 
-/// How far from its central meridian a UTM zone is used when nobody chose it. At 9° lengths are off by up
+/// How far from its central meridian a UTM zone is used where no system is chosen. At 9° lengths are off by up
 /// to 1.2 %.
 const UTM_REACH_DEG: f64 = 9.0;
 
 /// UTM ends at 84° north and 80° south.
 const UTM_LATITUDES_DEG: (f64, f64) = (-80.0, 84.0);
 
-/// Why a raster cannot be brought to meters.
+/// Why a raster cannot be warped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum WarpError {
     /// No system is named, and the coordinates look like degrees.
@@ -36,15 +41,15 @@ pub enum WarpError {
         /// North.
         max_y: f64,
     },
-    /// Nothing says how far apart the samples are.
+    /// The raster has no georeference.
     #[error(
-        "the elevation file does not say where it lies or how far apart its samples are; state cell (meters between samples) under [terrain]"
+        "the elevation file does not state where it lies or how far apart its samples are; state cell (meters between samples) under [terrain]"
     )]
     NoPlace,
-    /// There is nothing to lay out a raster around.
+    /// The raster holds no data.
     #[error("the elevation file holds no valid sample: all of them are no data; check its no-data value")]
     Empty,
-    /// The wanted system is not one in meters.
+    /// The wanted system is not in meters.
     #[error(
         "a scene needs a projected system in meters, and {name} is not one; choose a UTM zone, for example EPSG:32616"
     )]
@@ -78,7 +83,7 @@ pub enum WarpError {
         /// Rows.
         height: u64,
     },
-    /// Around a pole there is no east and west border to lay a raster in degrees out by.
+    /// The raster covers a pole, where one in degrees has no border.
     #[error(
         "the elevation file covers a pole, which a raster in degrees ({system}) cannot; cut it, or choose a polar system, for example EPSG:3413 or EPSG:3031"
     )]
@@ -86,18 +91,17 @@ pub enum WarpError {
         /// The wanted system.
         system: String,
     },
-    /// A coordinate cannot be brought from one system to the other.
+    /// A coordinate cannot be transformed from one system to the other.
     #[error(transparent)]
     Crs(#[from] CrsError),
 }
 
-/// The raster in meters, north up, elevations in meters too.
+/// The raster in meters, north up, with elevations in meters; borrowed where it is so already.
 ///
-/// One that is so already, and in `target` where that is given, comes back as it is (its cells need not be
-/// square). One that only runs the other way along an axis is turned round, sample by sample. Any other is
-/// resampled bilinearly to square cells in `target`, or by default in the UTM zone (WGS 84) of its center;
-/// a cell's area is that of the source's cells at the center, the grid lies on multiples of the cell size,
-/// its extent covers the valid samples, and cells outside them are NaN.
+/// A raster in meters, and in `target` where that is given, keeps its samples (its cells need not be square); one that
+/// only runs the other way along an axis is mirrored. Any other is resampled bilinearly to square cells in `target`, or
+/// by default in the UTM zone (WGS 84) of its center: a cell's area is that of the source's cells at the center, the grid
+/// lies on multiples of the cell size, its extent covers the valid samples, and cells outside them are NaN.
 ///
 /// A raster without a system is taken to be in `target`, or in plain meters.
 ///
@@ -108,12 +112,14 @@ pub enum WarpError {
 /// not metric, a raster too large for UTM, and points that one of the systems does not cover.
 ///
 /// ```
-/// use sandtable::dem::{read::{Hints, read}, warp::to_metric};
+/// use sandtable::dem::read::{DemHints, read};
+/// use sandtable::dem::warp::to_metric;
 /// let grid = b"ncols 2\nnrows 2\nxllcorner 500000\nyllcorner 4000000\ncellsize 30\n1 2 3 4";
-/// let raster = read("a.asc", grid, &Hints::default()).unwrap();
-/// assert_eq!(to_metric(&raster, None).unwrap().at(1, 0), 2.0);
+/// let raster = read("a.asc", grid, &DemHints::default())?;
+/// assert_eq!(to_metric(&raster, None)?.at(1, 0), 2.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn to_metric(raster: &Raster, target: Option<&Crs>) -> Result<Raster, WarpError> {
+pub fn to_metric<'a>(raster: &'a Raster, target: Option<&Crs>) -> Result<Cow<'a, Raster>, WarpError> {
     check_source(raster)?;
     if let Some(target) = target.filter(|target| !target.is_metric()) {
         return Err(WarpError::TargetNotMetric { name: target.name().into() });
@@ -121,25 +127,24 @@ pub fn to_metric(raster: &Raster, target: Option<&Crs>) -> Result<Raster, WarpEr
     let system = match (&raster.crs, target) {
         (_, Some(target)) => Some(target.clone()),
         (Some(own), None) if own.is_metric() => Some(own.clone()),
-        (Some(own), None) => Some(zone(raster, own)?),
+        (Some(own), None) => Some(utm_zone(raster, own)?),
         (None, None) => None,
     };
     let own = raster.crs.as_ref().or(system.as_ref());
-    let mut metric = if own == system.as_ref() && is_axis_aligned(raster) {
+    let north_up = if own == system.as_ref() && raster.is_axis_aligned() {
         turned_north_up(raster)
     } else {
-        let way = CrsTransform::new(raster, own, system.as_ref());
-        let frame = WarpGrid::around(raster, &way, None)?;
-        frame.bilinear(raster, &way)
+        let transform = CrsTransform::new(raster, own, system.as_ref());
+        Cow::Owned(Resampler::around(raster, &transform, None)?.bilinear())
     };
-    metric.samples = metric.samples.scaled(raster.meters_per_z, 0.0);
-    metric.meters_per_z = 1.0;
-    metric.crs = system;
-    Ok(metric)
+    let metric = match north_up {
+        Cow::Borrowed(raster) => raster.in_meters(),
+        Cow::Owned(raster) => Cow::Owned(raster.into_meters()),
+    };
+    Ok(with_crs(metric, system.as_ref()))
 }
 
-/// Whether the raster lies in a system in meters already, so that nothing has to be resampled; its samples are not
-/// looked at.
+/// Checks that the raster lies in a system in meters already; its samples are ignored.
 ///
 /// # Errors
 /// [`WarpError`]: it has no place, it looks like degrees, or its system is not metric.
@@ -151,22 +156,22 @@ pub fn check_metric(raster: &Raster) -> Result<(), WarpError> {
     }
 }
 
-/// That a raster says where it lies, and in what.
-pub(crate) fn check_source(raster: &Raster) -> Result<(), WarpError> {
+/// Checks that a raster states where it lies, and in what.
+fn check_source(raster: &Raster) -> Result<(), WarpError> {
     if !raster.georeferenced {
         return Err(WarpError::NoPlace);
     }
     let (Rect { min, max }, cell) = (raster.extent(), raster.spacing());
-    let degrees = min.x >= -360.0 && max.x <= 360.0 && min.y >= -90.5 && max.y <= 90.5;
-    if raster.crs.is_none() && degrees && cell.max_element() < 0.1 {
+    let may_be_degrees = min.x >= -360.0 && max.x <= 360.0 && min.y >= -90.5 && max.y <= 90.5;
+    if raster.crs.is_none() && may_be_degrees && cell.max_element() < 0.1 {
         return Err(WarpError::LooksLikeDegrees { min_x: min.x, max_x: max.x, min_y: min.y, max_y: max.y });
     }
     Ok(())
 }
 
 /// The UTM zone of the raster's center, if its valid samples lie near enough.
-fn zone(raster: &Raster, own: &Crs) -> Result<Crs, WarpError> {
-    let valid = valid_grid(raster).ok_or(WarpError::Empty)?;
+fn utm_zone(raster: &Raster, own: &Crs) -> Result<Crs, WarpError> {
+    let valid = data_extent(raster).ok_or(WarpError::Empty)?;
     let degrees = Crs::wgs84();
     let at = |grid: DVec2| own.transform(&degrees, raster.map_from_grid.transform_point2(grid));
     let center = at(valid.center())?;
@@ -175,10 +180,9 @@ fn zone(raster: &Raster, own: &Crs) -> Result<Crs, WarpError> {
     let east_of_center = |point: &DVec2| (point.x - center.x + 540.0).rem_euclid(360.0) - 180.0;
     let around =
         Rect::around(border.iter().map(|point| DVec2::new(center.x + east_of_center(point), point.y)));
-    let utm = Crs::utm_at(center.x, center.y);
     let meridian = ((center.x + 180.0) / 6.0).floor() * 6.0 - 177.0;
     let reach = (around.max.x - meridian).max(meridian - around.min.x);
-    // All around the globe both borders are the same meridian: the samples' own span tells.
+    // All around the globe both borders are the same meridian: the samples' own span counts.
     let span =
         if own.is_geographic() { valid.size().x * raster.map_from_grid.matrix2.x_axis.x.abs() } else { 0.0 };
     let (south, north) = UTM_LATITUDES_DEG;
@@ -186,42 +190,42 @@ fn zone(raster: &Raster, own: &Crs) -> Result<Crs, WarpError> {
         let (west, east) = (around.min.x, around.max.x.max(around.min.x + span));
         return Err(WarpError::NoZone { west, east, south: around.min.y, north: around.max.y });
     }
-    Ok(utm)
+    Ok(Crs::utm_at(center.x, center.y))
 }
 
-/// Whether rows and columns run along the axes of the map.
-pub(crate) fn is_axis_aligned(raster: &Raster) -> bool {
-    let axes = raster.map_from_grid.matrix2;
-    axes.x_axis.y == 0.0 && axes.y_axis.x == 0.0
-}
-
-/// The raster with columns and rows in the order that puts north up.
-pub(crate) fn turned_north_up(raster: &Raster) -> Raster {
-    let mut turned = raster.clone();
+/// An axis-aligned raster with columns and rows in the order that puts north up.
+fn turned_north_up(raster: &Raster) -> Cow<'_, Raster> {
     if raster.is_north_up() {
-        return turned;
+        return Cow::Borrowed(raster);
     }
     let Rect { min, max } = raster.extent();
-    let axes = raster.map_from_grid.matrix2;
-    let (mirror_x, mirror_y) = (axes.x_axis.x < 0.0, axes.y_axis.y > 0.0);
-    turned.map_from_grid = north_up(DVec2::new(min.x, max.y), raster.spacing());
-    turned.samples = match &raster.samples {
-        Samples::F32(values) => Samples::F32(mirrored(values, raster.width, mirror_x, mirror_y)),
-        Samples::F64(values) => Samples::F64(mirrored(values, raster.width, mirror_x, mirror_y)),
+    let samples = match &raster.samples {
+        Samples::F32(values) => Samples::F32(mirrored(values, raster)),
+        Samples::F64(values) => Samples::F64(mirrored(values, raster)),
     };
-    turned
+    let map_from_grid = north_up(DVec2::new(min.x, max.y), raster.spacing());
+    Cow::Owned(Raster { samples, map_from_grid, ..raster.without_samples() })
 }
 
-fn mirrored<T: Copy>(values: &[T], width: u32, mirror_x: bool, mirror_y: bool) -> Vec<T> {
-    let width = width as usize;
-    let height = values.len() / width;
+fn mirrored<T: Copy>(values: &[T], raster: &Raster) -> Vec<T> {
+    let axes = raster.map_from_grid.matrix2;
+    let (mirrors_x, mirrors_y) = (axes.x_axis.x < 0.0, axes.y_axis.y > 0.0);
+    let (width, height) = (raster.width as usize, raster.height as usize);
     let at = |index: usize| {
         let (row, column) = (index / width, index % width);
-        let row = if mirror_y { height - 1 - row } else { row };
-        let column = if mirror_x { width - 1 - column } else { column };
+        let row = if mirrors_y { height - 1 - row } else { row };
+        let column = if mirrors_x { width - 1 - column } else { column };
         values[row * width + column]
     };
     (0..values.len()).map(at).collect()
+}
+
+/// The raster with another name for its system; cloned only where that changes.
+fn with_crs<'a>(mut raster: Cow<'a, Raster>, crs: Option<&Crs>) -> Cow<'a, Raster> {
+    if raster.crs.as_ref() != crs {
+        raster.to_mut().crs = crs.cloned();
+    }
+    raster
 }
 
 #[cfg(test)]
@@ -256,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn south_up_is_turned_without_a_change_of_values() {
+    fn south_up_is_mirrored_without_a_change_of_values() {
         let mut raster = small(2, 2, vec![1.0, 2.0, 3.0, 4.0]);
         raster.map_from_grid = DAffine2 {
             matrix2: DMat2::from_diagonal(DVec2::splat(10.0)),
@@ -272,8 +276,8 @@ mod tests {
         // Easting as elevation shows every shift.
         let easting = |at: DVec2| Crs::wgs84().transform(&utm_12(), at).expect("inside").x;
         let place = north_up(DVec2::new(-111.3, 37.2), DVec2::splat(1.0 / 1200.0));
-        let metric =
-            to_metric(&painted((200, 150), place, Some(Crs::wgs84()), easting), None).expect("metric");
+        let source = painted((200, 150), place, Some(Crs::wgs84()), easting);
+        let metric = to_metric(&source, None).expect("metric");
         assert_eq!(metric.crs.as_ref().and_then(Crs::epsg), Some(32612));
         let mut valid = 0;
         for row in 1..metric.height - 1 {
@@ -337,7 +341,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_done_is_refused_with_the_way_out() {
+    fn what_cannot_be_done_is_refused_with_the_remedy() {
         let refused = |raster: &Raster, target: Option<&Crs>| {
             to_metric(raster, target).expect_err("refused").to_string()
         };

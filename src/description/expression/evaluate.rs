@@ -5,9 +5,9 @@
 
 use std::cmp::Ordering;
 
+use crate::description::expression::PropertyLookup;
 use crate::description::expression::syntax::{Binary, ExpressionNode, Function, arms};
-use crate::description::expression::{PropertyLookup, as_number, holds};
-use crate::description::features::Scalar;
+use crate::description::scalar::Scalar;
 
 /// Says of a value whether it can be used.
 type Usable<'u> = &'u dyn Fn(&Scalar) -> bool;
@@ -24,7 +24,7 @@ pub(super) fn any(_: &Scalar) -> bool {
 
 /// Only what is a number can be used.
 fn numeric(value: &Scalar) -> bool {
-    as_number(value).is_some()
+    value.number().is_some()
 }
 
 impl Evaluation<'_> {
@@ -46,11 +46,11 @@ impl Evaluation<'_> {
     }
 
     fn holds(&self, node: &ExpressionNode) -> bool {
-        self.value(node, &any).is_some_and(|value| holds(&value))
+        self.value(node, &any).is_some_and(|value| value.holds())
     }
 
     fn number(&self, node: &ExpressionNode) -> Option<f64> {
-        self.value(node, &numeric).as_ref().and_then(as_number)
+        self.value(node, &numeric).and_then(|value| value.number())
     }
 
     fn binary(
@@ -124,14 +124,14 @@ fn finite(number: f64) -> Option<Scalar> {
 fn equal(left: &Scalar, right: &Scalar) -> bool {
     match (left, right) {
         (Scalar::Text(left), Scalar::Text(right)) => left == right,
-        (Scalar::Bool(wanted), other) | (other, Scalar::Bool(wanted)) => holds(other) == *wanted,
-        _ => as_number(left).zip(as_number(right)).is_some_and(|(left, right)| left == right),
+        (Scalar::Bool(wanted), other) | (other, Scalar::Bool(wanted)) => other.holds() == *wanted,
+        _ => left.number().zip(right.number()).is_some_and(|(left, right)| left == right),
     }
 }
 
 /// Which is greater; `None` where they cannot be ordered.
 fn order(left: &Scalar, right: &Scalar) -> Option<Ordering> {
-    match (as_number(left).zip(as_number(right)), left, right) {
+    match (left.number().zip(right.number()), left, right) {
         (Some((left, right)), ..) => left.partial_cmp(&right),
         (None, Scalar::Text(left), Scalar::Text(right)) => Some(left.cmp(right)),
         _ => None,

@@ -62,12 +62,10 @@ mod token;
 use std::fmt;
 use std::ops::Range;
 
-use crate::description::bounds::Bounds;
 use crate::description::expression::evaluate::{Evaluation, any};
 use crate::description::expression::parser::ExpressionParser;
 use crate::description::expression::syntax::ExpressionNode;
-use crate::description::features::Scalar;
-use crate::description::words::Word;
+use crate::description::scalar::Scalar;
 
 /// The longest text of an expression: a screen full. Far above what anybody can read, and it bounds the work.
 pub const MAX_TEXT_BYTES: usize = 4096;
@@ -151,118 +149,13 @@ impl Expression {
     /// Whether it holds for a feature: its value is true, a number that is not 0, or a text that is neither empty nor
     /// `no`, `false` or `0`.
     pub fn holds(&self, properties: PropertyLookup<'_>) -> bool {
-        self.value(properties).is_some_and(|value| holds(&value))
+        self.value(properties).is_some_and(|value| value.holds())
     }
 }
 
 impl fmt::Display for Expression {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.root.fmt(out)
-    }
-}
-
-/// Whether a value is true, a number other than 0, or a text that does not say no.
-pub fn holds(value: &Scalar) -> bool {
-    match value {
-        Scalar::Bool(value) => *value,
-        Scalar::Number(number) => *number != 0.0,
-        Scalar::Text(text) => !["", "no", "false", "0"].contains(&text.as_str()),
-    }
-}
-
-/// A number, the same for all features or computed for each.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Quantity(FixedOrComputed<f64>);
-
-#[derive(Clone, Debug, PartialEq)]
-enum FixedOrComputed<T> {
-    Fixed(T),
-    OfFeatures(Expression, Bounds),
-}
-
-impl Quantity {
-    /// The same number for all.
-    pub fn fixed(number: f64) -> Self {
-        Self(FixedOrComputed::Fixed(number))
-    }
-
-    /// What `expression` gives, where that lies within `bounds`.
-    pub fn of_features(expression: Expression, bounds: Bounds) -> Self {
-        Self(FixedOrComputed::OfFeatures(expression, bounds))
-    }
-
-    /// The number for a feature; `None` where its properties give none within the key's bounds. A text that is a number,
-    /// or a number of meters (`"4.5 m"`) or feet (`"12 ft"`), is that number.
-    pub fn number(&self, properties: PropertyLookup<'_>) -> Option<f64> {
-        match &self.0 {
-            FixedOrComputed::Fixed(number) => Some(*number),
-            FixedOrComputed::OfFeatures(expression, bounds) => {
-                let usable = |value: &Scalar| as_number(value).is_some_and(|number| bounds.hold(number));
-                expression.value_for(properties, &usable).as_ref().and_then(as_number)
-            }
-        }
-    }
-}
-
-/// A word, the same for all features or computed for each.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ComputedWord<W> {
-    /// The same for all.
-    Fixed(W),
-    /// What an expression gives.
-    OfFeatures(Expression),
-}
-
-impl<W: Word> ComputedWord<W> {
-    /// What `expression` gives.
-    pub fn of_features(expression: Expression) -> Self {
-        Self::OfFeatures(expression)
-    }
-
-    /// The word for a feature; `None` where its properties give none of `W`'s words.
-    pub fn word(&self, properties: PropertyLookup<'_>) -> Option<W> {
-        let known = |value: &Scalar| match value {
-            Scalar::Text(text) => W::ALL.iter().find(|(word, _)| word == text).map(|(_, value)| *value),
-            Scalar::Bool(_) | Scalar::Number(_) => None,
-        };
-        match self {
-            Self::Fixed(word) => Some(*word),
-            Self::OfFeatures(expression) => {
-                expression.value_for(properties, &|value| known(value).is_some()).as_ref().and_then(known)
-            }
-        }
-    }
-}
-
-/// The number that a value is: a text that is one too, in meters where it ends in `m`, and made meters of where it is in
-/// feet (`ft`, `'`) and inches (`"`). Never NaN or infinite.
-pub fn as_number(value: &Scalar) -> Option<f64> {
-    match value {
-        Scalar::Number(number) => Some(*number).filter(|number| number.is_finite()),
-        Scalar::Text(text) => text_as_number(text.trim()),
-        Scalar::Bool(_) => None,
-    }
-}
-
-/// Meters in a foot: the international one, exactly.
-const METERS_PER_FOOT: f64 = 0.3048;
-
-fn text_as_number(text: &str) -> Option<f64> {
-    let plain = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-    let feet = |text: &str| plain(text).map(|feet| feet * METERS_PER_FOOT);
-    if let Some(meters) = text.strip_suffix('m') {
-        return plain(meters);
-    }
-    if let Some(number) = text.strip_suffix("ft") {
-        return feet(number);
-    }
-    match text.split_once('\'') {
-        Some((whole, "")) => feet(whole),
-        Some((whole, inches)) => {
-            let inches = plain(inches.strip_suffix('"')?).filter(|inches| (0.0..12.0).contains(inches))?;
-            plain(whole).map(|whole| (whole + inches / 12.0) * METERS_PER_FOOT)
-        }
-        None => plain(text),
     }
 }
 

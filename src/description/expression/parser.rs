@@ -5,8 +5,8 @@ use std::ops::Range;
 use crate::description::expression::syntax::{Binary, ExpressionNode, FUNCTIONS, RESERVED};
 use crate::description::expression::token::{ExpressionToken, SpannedToken, tokens, wrong};
 use crate::description::expression::{ExpressionError, MAX_DEPTH};
-use crate::description::features::Scalar;
-use crate::description::suggest::{nearest, quoted, remedy};
+use crate::description::scalar::Scalar;
+use crate::message::suggest::{nearest, quoted, remedy};
 
 /// A node and how many nodes lie one below another in it.
 type Deep = (ExpressionNode, usize);

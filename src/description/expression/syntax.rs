@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::description::expression::token::{continues_name, starts_name};
-use crate::description::features::Scalar;
+use crate::description::scalar::Scalar;
 
 /// Names that mean something in the language, so that a property of that name needs quotes.
 pub(super) const RESERVED: [&str; 6] = ["and", "or", "not", "in", "true", "false"];

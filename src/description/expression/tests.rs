@@ -3,7 +3,9 @@
 use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop_oneof};
 
 use super::*;
+use crate::description::bounds::Bounds;
 use crate::description::expression::syntax::{Binary, FUNCTIONS, Function};
+use crate::description::feature_value::{FeatureValue, FromScalar};
 use crate::description::words::RoadSurface;
 
 fn road(name: &str) -> Option<Scalar> {
@@ -100,18 +102,18 @@ fn what_is_missing_stays_missing_until_a_fallback() {
 
 #[test]
 fn a_fallback_is_taken_for_what_the_key_cannot_use() {
-    let quantity = |text: &str, bounds| {
-        Quantity::of_features(Expression::parse(text).expect("an expression"), bounds).number(&road)
-    };
+    fn computed<T: FromScalar>(text: &str, limits: T::Limits) -> Option<T> {
+        let expression = Expression::parse(text).expect("an expression");
+        FeatureValue::Computed { expression, limits, key: "[[road]] width".into() }.value(&road)
+    }
+    let quantity = computed::<f64>;
     let width = Bounds::Above(0.0, 100.0);
     assert_eq!(quantity("width ?? 6", width), Some(6.0));
     assert_eq!(quantity("depth ?? 6", width), Some(6.0), "−2.5 lies outside");
     assert_eq!(quantity("if(true, width ?? 5, 1)", width), Some(5.0));
     assert_eq!(quantity("width", width), None);
     assert_eq!(quantity("maxheight", width), Some(12.5 * 0.3048));
-    let choice = |text: &str| {
-        ComputedWord::<RoadSurface>::of_features(Expression::parse(text).expect("an expression")).word(&road)
-    };
+    let choice = |text: &str| computed::<RoadSurface>(text, ());
     assert_eq!(choice("highway ?? 'gravel'"), Some(RoadSurface::Gravel), "primary is no surface");
     assert_eq!(choice("if(lanes > 1, 'asphalt', 'track')"), Some(RoadSurface::Asphalt));
     assert_eq!(choice("highway"), None);
@@ -157,7 +159,7 @@ fn comparisons_compare_numbers_as_numbers_and_texts_as_texts() {
 
 #[test]
 fn a_text_is_a_number_plain_in_meters_or_in_feet() {
-    let number = |text: &str| as_number(&Scalar::Text(text.into()));
+    let number = |text: &str| Scalar::Text(text.into()).number();
     for (text, wanted) in
         [("4.5", 4.5), (" 4.5 m ", 4.5), ("4m", 4.0), ("10 ft", 3.048), ("10'", 3.048), ("10'6\"", 3.2004)]
     {
@@ -167,8 +169,8 @@ fn a_text_is_a_number_plain_in_meters_or_in_feet() {
     for text in ["", "m", "wide", "4,5", "inf", "nan", "1e999", "10'12\"", "10'6", "5 km", "'", "4 5"] {
         assert_eq!(number(text), None, "{text}");
     }
-    assert_eq!(as_number(&Scalar::Bool(true)), None);
-    assert_eq!(as_number(&Scalar::Number(f64::NAN)), None);
+    assert_eq!(Scalar::Bool(true).number(), None);
+    assert_eq!(Scalar::Number(f64::NAN).number(), None);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::description::expression::{ExpressionError, MAX_TEXT_BYTES};
-use crate::description::suggest::quoted;
+use crate::message::suggest::quoted;
 
 /// One of them.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,127 +1,125 @@
 //! A JSON Schema of the scene file, for editors that complete and check while one writes.
 //!
-//! Derived from the decoder itself (`sketch`) and from the tables' documentation
-//! (`documentation`), so that it cannot say anything else than they. It is of draft 2020-12 (Wright
-//! et al. 2022) and uses only what the common TOML editors know. What it cannot tell is what one key means for another,
-//! or whether an expression can be read: `sandtable check` does.
+//! Made from the declarations that the decoder reads ([`KeyDeclaration`]). It is of draft 2020-12 (Wright et al. 2022) and
+//! uses only what the common TOML editors know. It does not check what one key means for another, nor whether an
+//! expression can be read: `sandtable check` does.
 
 use serde_json::{Map, Value, json};
 
 use crate::description::bounds::Bounds;
-use crate::description::decode::document;
-use crate::description::documentation::{Documentation, default_of};
+use crate::description::declaration::{KeyDeclaration, KeyKind, Presence};
+use crate::description::document::Document;
 use crate::description::expression::MAX_TEXT_BYTES;
-use crate::description::item::{MAX_COORDINATE, MAX_TEXT};
-use crate::description::reader::TableReader;
-use crate::description::sketch::{KeyPart, KeyProbe, KeyShape, Needed, SchemaProbe};
-use crate::description::source_text::SourceText;
+use crate::description::styles::STYLE_KEY;
+use crate::description::value::{COORDINATES, MAX_TEXT};
+use crate::description::words::WordDeclaration;
 
 /// The schema as one JSON object.
 pub fn schema() -> Value {
-    let root = TableReader::sketch_root(|reader| document(reader, SourceText::new("", "")));
-    let documentation = Documentation::read();
-    let mut tables = Map::new();
-    let mut whole = object(&root, "", &documentation, &mut tables);
-    let includes = json!({ "required": ["include"] });
-    whole.insert("anyOf".into(), json!([includes, completeness(&root)]));
-    let mut defs = common();
-    defs.append(&mut tables);
-    whole.insert("$defs".into(), Value::Object(defs));
-    whole.insert("$schema".into(), "https://json-schema.org/draft/2020-12/schema".into());
-    whole.insert("title".into(), "sandtable scene file".into());
-    Value::Object(whole)
+    let keys = Document::DECLARATIONS;
+    let mut root = object(KeyDeclaration::flattened(keys));
+    root.insert("anyOf".into(), json!([{ "required": ["include"] }, completeness(keys)]));
+    let repeated = keys.iter().filter_map(|key| Some((key.name.to_owned(), repeated_table(key)?)));
+    let definitions: Map<String, Value> = shared_definitions().into_iter().chain(repeated).collect();
+    root.insert("$defs".into(), Value::Object(definitions));
+    root.insert("$schema".into(), "https://json-schema.org/draft/2020-12/schema".into());
+    root.insert("title".into(), "sandtable scene file".into());
+    Value::Object(root)
 }
 
-/// A table: its keys, and that it has no others.
-fn object(
-    sketch: &SchemaProbe,
-    table: &str,
-    documentation: &Documentation,
-    tables: &mut Map<String, Value>,
-) -> Map<String, Value> {
-    let mut properties = Map::new();
-    for key in &sketch.keys {
-        let mut value = match &key.part {
-            KeyPart::Value(shape) => of_shape(shape),
-            KeyPart::Table(inner) => {
-                Value::Object(object(inner, &inside(table, key.name), documentation, tables))
-            }
-            KeyPart::Tables(inner) => repeated(inner, key.name, documentation, tables),
-            KeyPart::Named => styles(sketch),
-        };
-        if let (Some(said), Value::Object(value)) = (documentation.of(table, key.name), &mut value) {
-            value.insert("description".into(), said.into());
-            if let Some(default) = default_of(said) {
-                value.insert("default".into(), default);
-            }
+/// A table that has `keys` and no others.
+fn object<'k>(keys: impl Iterator<Item = &'k KeyDeclaration>) -> Map<String, Value> {
+    let properties: Map<String, Value> = keys.map(|key| (key.name.to_owned(), property(key))).collect();
+    [
+        ("type".to_owned(), json!("object")),
+        ("properties".to_owned(), Value::Object(properties)),
+        ("additionalProperties".to_owned(), json!(false)),
+    ]
+    .into_iter()
+    .collect()
+}
+
+/// The value of a key, with its description and, for what an editor may insert, its default.
+fn property(key: &KeyDeclaration) -> Value {
+    let mut value = shape(key);
+    value["description"] = description(key).into();
+    let is_insertable = key.inner().is_empty() && !matches!(key.kind, KeyKind::Switch | KeyKind::Styles);
+    if let Presence::Default(text) = key.presence
+        && is_insertable
+        && let Ok(default) = serde_json::from_str(text)
+    {
+        value["default"] = default;
+    }
+    value
+}
+
+fn description(key: &KeyDeclaration) -> String {
+    let unit = if key.unit.is_empty() { String::new() } else { format!(" Unit: {}.", key.unit) };
+    let words = match key.kind {
+        KeyKind::Word(words) | KeyKind::FeatureWord(words) => meanings(words),
+        _ => String::new(),
+    };
+    let presence = match key.presence {
+        Presence::Required => " Needed.".to_owned(),
+        Presence::Default(value) if key.inner().is_empty() => format!(" Default: {value}."),
+        Presence::Otherwise(text) => format!(" Default: {text}."),
+        Presence::Default(_) | Presence::Inline => String::new(),
+    };
+    format!("{}{words}{unit}{presence}", key.doc())
+}
+
+fn meanings(words: &[WordDeclaration]) -> String {
+    let meaning = |declared: &WordDeclaration| format!("`{}`: {}", declared.word, declared.doc);
+    format!(" {}.", words.iter().map(meaning).collect::<Vec<_>>().join("; "))
+}
+
+/// The definition of a table that may be repeated; `None` for other keys.
+fn repeated_table(key: &KeyDeclaration) -> Option<Value> {
+    let required = required_keys(key.inner());
+    let mut table = match key.kind {
+        KeyKind::Tables(keys) => object(KeyDeclaration::flattened(keys)),
+        KeyKind::StyledTables(keys) => object(KeyDeclaration::flattened(keys).chain([&STYLE_KEY])),
+        _ => return None,
+    };
+    match key.kind {
+        _ if required.is_empty() => {}
+        KeyKind::StyledTables(_) => {
+            table.insert("anyOf".into(), json!([{ "required": [STYLE_KEY.name] }, { "required": required }]));
         }
-        properties.insert(key.name.into(), value);
+        _ => drop(table.insert("required".into(), json!(required))),
     }
-    let fixed = json!({ "type": "object", "properties": properties, "additionalProperties": false });
-    match fixed {
-        Value::Object(fixed) => fixed,
-        _ => Map::new(),
-    }
-}
-
-/// A list of tables, each defined once under its own name.
-fn repeated(
-    sketch: &SchemaProbe,
-    name: &'static str,
-    documentation: &Documentation,
-    tables: &mut Map<String, Value>,
-) -> Value {
-    let mut of = object(sketch, name, documentation, tables);
-    let needed = needed_keys(sketch);
-    if is_styled(sketch) && !needed.is_empty() {
-        of.insert("anyOf".into(), json!([{ "required": ["style"] }, { "required": needed }]));
-    } else if !needed.is_empty() {
-        of.insert("required".into(), json!(needed));
-    }
-    tables.insert(name.into(), Value::Object(of));
-    json!({ "type": "array", "items": reference(name) })
+    Some(Value::Object(table))
 }
 
 /// `[styles.NAME]`: keys of any one of the tables that can name a style.
-fn styles(root: &SchemaProbe) -> Value {
-    let keys = |key: &KeyProbe| match &key.part {
-        KeyPart::Tables(sketch) if is_styled(sketch) => {
-            let known = sketch.keys.iter().filter(|inner| inner.name != STYLE);
-            let properties: Map<String, Value> = known
-                .map(|inner| {
-                    let path = format!("{}/properties/{}", key.name, inner.name);
-                    (inner.name.to_owned(), reference(&path))
-                })
-                .collect();
-            Some(json!({ "properties": properties, "additionalProperties": false }))
-        }
-        _ => None,
+fn styles() -> Value {
+    let keys_of = |key: &KeyDeclaration| {
+        let KeyKind::StyledTables(keys) = key.kind else { return None };
+        let property = |inner: &KeyDeclaration| {
+            (inner.name.to_owned(), reference(&format!("{}/properties/{}", key.name, inner.name)))
+        };
+        let properties: Map<String, Value> = KeyDeclaration::flattened(keys).map(property).collect();
+        Some(json!({ "properties": properties, "additionalProperties": false }))
     };
-    let any: Vec<Value> = root.keys.iter().filter_map(keys).collect();
+    let any: Vec<Value> = Document::DECLARATIONS.iter().filter_map(keys_of).collect();
     json!({ "type": "object", "additionalProperties": { "type": "object", "anyOf": any } })
 }
 
-/// The key that names a style.
-const STYLE: &str = "style";
-
-fn is_styled(sketch: &SchemaProbe) -> bool {
-    sketch.keys.iter().any(|key| key.name == STYLE && matches!(key.part, KeyPart::Value(_)))
+fn required_keys(keys: &'static [KeyDeclaration]) -> Vec<&'static str> {
+    let required = KeyDeclaration::flattened(keys).filter(|key| key.presence == Presence::Required);
+    required.map(|key| key.name).collect()
 }
 
-fn needed_keys(sketch: &SchemaProbe) -> Vec<&'static str> {
-    sketch.keys.iter().filter(|key| key.needed == Needed::Yes).map(|key| key.name).collect()
-}
-
-/// What must be there where nothing is included: the needed keys of the tables that there is one of.
-fn completeness(sketch: &SchemaProbe) -> Value {
-    let inner = sketch.keys.iter().filter_map(|key| match &key.part {
-        KeyPart::Table(table) => Some((key.name.to_owned(), completeness(table))),
+/// What must be there where nothing is included: the required keys of single tables.
+fn completeness(keys: &'static [KeyDeclaration]) -> Value {
+    let inner = keys.iter().filter_map(|key| match key.kind {
+        KeyKind::Table(inner) => Some((key.name.to_owned(), completeness(inner))),
         _ => None,
     });
     let inner: Map<String, Value> = inner.filter(|(_, needs)| *needs != json!({})).collect();
     let mut needs = Map::new();
-    if !needed_keys(sketch).is_empty() {
-        needs.insert("required".into(), json!(needed_keys(sketch)));
+    if !required_keys(keys).is_empty() {
+        needs.insert("required".into(), json!(required_keys(keys)));
     }
     if !inner.is_empty() {
         needs.insert("properties".into(), Value::Object(inner));
@@ -130,10 +128,8 @@ fn completeness(sketch: &SchemaProbe) -> Value {
 }
 
 /// Definitions that many keys refer to.
-fn common() -> Map<String, Value> {
-    let coordinate = number(Bounds::Within(-MAX_COORDINATE, MAX_COORDINATE));
-    let scalar = json!({ "type": ["string", "number", "boolean"] });
-    let pairs = [
+fn shared_definitions() -> [(String, Value); 5] {
+    let definitions = [
         (
             "expression",
             json!({ "type": "string", "minLength": 1, "maxLength": MAX_TEXT_BYTES,
@@ -148,45 +144,54 @@ fn common() -> Map<String, Value> {
             "color",
             json!({ "type": "string", "pattern": "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6}|[0-9a-fA-F]{8})$" }),
         ),
-        ("point", json!({ "type": "array", "items": coordinate, "minItems": 2, "maxItems": 2 })),
-        ("scalar", scalar),
+        ("point", json!({ "type": "array", "items": number(COORDINATES), "minItems": 2, "maxItems": 2 })),
+        ("scalar", json!({ "type": ["string", "number", "boolean"] })),
     ];
-    pairs.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    definitions.map(|(name, value)| (name.to_owned(), value))
 }
 
-fn of_shape(shape: &KeyShape) -> Value {
-    match shape {
-        KeyShape::Number(bounds) => number(*bounds),
-        KeyShape::Whole(bounds) => {
-            json!({ "type": "integer", "minimum": bounds.start(), "maximum": bounds.end() })
-        }
-        KeyShape::Quantity(bounds) => json!({ "anyOf": [number(*bounds), reference("expression")] }),
-        KeyShape::Switch => json!({ "type": "boolean" }),
-        KeyShape::Text => json!({ "type": "string", "maxLength": MAX_TEXT }),
-        KeyShape::FilledText => text(),
-        KeyShape::OneOrMoreTexts(most) => json!({ "anyOf": [text(), list(text(), 1, *most)] }),
-        KeyShape::Texts(most) => {
+/// The values that the type of a key allows.
+fn shape(key: &KeyDeclaration) -> Value {
+    match key.kind {
+        KeyKind::Number(range) => number(range),
+        KeyKind::Integer { least, most } => json!({ "type": "integer", "minimum": least, "maximum": most }),
+        KeyKind::FeatureNumber(range) => json!({ "anyOf": [number(range), reference("expression")] }),
+        KeyKind::Switch => json!({ "type": "boolean" }),
+        KeyKind::Text => json!({ "type": "string", "maxLength": MAX_TEXT }),
+        KeyKind::FilledText => text(),
+        KeyKind::TextList { most } => json!({ "anyOf": [text(), list(text(), 1, most)] }),
+        KeyKind::TextTable { most } => {
             json!({ "type": "object", "additionalProperties": text(), "minProperties": 1, "maxProperties": most })
         }
-        KeyShape::Expression => json!({ "allOf": [reference("expression")] }),
-        KeyShape::Word(words) => json!({ "enum": words }),
-        KeyShape::Choice(words) => json!({ "anyOf": [{ "enum": words }, reference("computed")] }),
-        KeyShape::Color => json!({ "allOf": [reference("color")] }),
-        KeyShape::Point => json!({ "allOf": [reference("point")] }),
-        KeyShape::Points(least, most) => list(reference("point"), *least, *most),
-        KeyShape::Range(bounds) => list(number(*bounds), 2, 2),
-        KeyShape::Numbers(bounds, most) => list(number(*bounds), 0, *most),
-        KeyShape::Ramp(words, most) => {
+        KeyKind::Expression => json!({ "allOf": [reference("expression")] }),
+        KeyKind::Word(words) => one_of(words),
+        KeyKind::FeatureWord(words) => json!({ "anyOf": [one_of(words), reference("computed")] }),
+        KeyKind::Color => json!({ "allOf": [reference("color")] }),
+        KeyKind::Point => json!({ "allOf": [reference("point")] }),
+        KeyKind::Points { least, most } => list(reference("point"), least, most),
+        KeyKind::NumberRange(range) => list(number(range), 2, 2),
+        KeyKind::Numbers { range, most } => list(number(range), 0, most),
+        KeyKind::Ramp { words, most } => {
             let stop = json!({ "type": "array", "prefixItems": [{ "type": "number" }, reference("color")],
                                "minItems": 2, "maxItems": 2 });
-            json!({ "anyOf": [{ "enum": words }, list(stop, 2, *most)] })
+            json!({ "anyOf": [one_of(words), list(stop, 2, most)] })
         }
-        KeyShape::Filter(most) => {
-            let values = json!({ "anyOf": [reference("scalar"), list(reference("scalar"), 1, *most)] });
+        KeyKind::Selection { most } => {
+            let values = json!({ "anyOf": [reference("scalar"), list(reference("scalar"), 1, most)] });
             let table = json!({ "type": "object", "additionalProperties": values, "minProperties": 1 });
             json!({ "anyOf": [table, reference("expression")] })
         }
+        KeyKind::Table(keys) => Value::Object(object(KeyDeclaration::flattened(keys))),
+        KeyKind::Tables(_) | KeyKind::StyledTables(_) => {
+            json!({ "type": "array", "items": reference(key.name) })
+        }
+        KeyKind::Styles => styles(),
+        KeyKind::Group(_) => Value::Null,
     }
+}
+
+fn one_of(words: &[WordDeclaration]) -> Value {
+    json!({ "enum": words.iter().map(|declared| declared.word).collect::<Vec<_>>() })
 }
 
 fn text() -> Value {
@@ -197,29 +202,22 @@ fn list(items: Value, least: usize, most: usize) -> Value {
     json!({ "type": "array", "items": items, "minItems": least, "maxItems": most })
 }
 
-fn number(bounds: Bounds) -> Value {
-    match bounds {
-        Bounds::Above(low, high) => {
-            json!({ "type": "number", "exclusiveMinimum": plain(low), "maximum": plain(high) })
-        }
-        Bounds::Within(low, high) => {
-            json!({ "type": "number", "minimum": plain(low), "maximum": plain(high) })
-        }
-    }
+fn number(range: Bounds) -> Value {
+    let (low, least, most) = match range {
+        Bounds::Above(least, most) => ("exclusiveMinimum", least, most),
+        Bounds::Within(least, most) => ("minimum", least, most),
+    };
+    json!({ "type": "number", low: whole_or_exact(least), "maximum": whole_or_exact(most) })
 }
 
-/// A number without a tail of zeros where it is whole.
-fn plain(number: f64) -> Value {
+/// A number without trailing zeros where it is whole.
+fn whole_or_exact(number: f64) -> Value {
     const EXACT: f64 = (1_u64 << 53) as f64;
     if number == number.trunc() && number.abs() < EXACT { json!(number as i64) } else { json!(number) }
 }
 
 fn reference(path: &str) -> Value {
     json!({ "$ref": format!("#/$defs/{path}") })
-}
-
-fn inside(table: &str, key: &str) -> String {
-    if table.is_empty() { key.to_owned() } else { format!("{table}.{key}") }
 }
 
 #[cfg(test)]

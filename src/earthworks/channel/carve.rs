@@ -18,8 +18,8 @@
 
 use crate::earthworks::channel::bed::ChannelBed;
 use crate::earthworks::channel::course::{ChannelCourse, CourseStation};
-use crate::terrain::lattice::Lattice;
-use crate::terrain::query::Diagonal;
+use crate::terrain::cell_triangle::Diagonal;
+use crate::terrain::lattice::{Lattice, Post};
 use glam::DVec2;
 
 /// What a stretch may rise by rounding, in meters: a thousand of them come to a thousandth of a millimeter.
@@ -81,7 +81,7 @@ impl CenterlinePiece {
         let first = row * lattice.columns() as usize + column;
         let north = first + lattice.columns() as usize;
         let corners = [first, first + 1, north, north + 1];
-        let diagonal = Diagonal::of_cell(column as u64, row as u64);
+        let diagonal = Diagonal::of_cell(Post::at_grid(low));
         let (used, weigh) = triangle(diagonal, middle - low);
         let (start, end) = (weigh(from.grid - low), weigh(to.grid - low));
         let shares = std::array::from_fn(|at| end[at] - start[at]);

@@ -15,7 +15,7 @@ use crate::earthworks::channel::course::{ChannelCourse, CourseStation};
 use crate::earthworks::channel::flow::node;
 use crate::earthworks::channel::reaches::{Sill, reaches};
 use crate::earthworks::channel::{Channel, Climb, Cut};
-use crate::earthworks::falling_levels::{WeightedLevel, falling};
+use crate::earthworks::falling_levels::{WeightedLevel, fit_falling};
 
 /// The least that a station weighs in meters: two on one spot still count.
 const LEAST_WEIGHT_M: f64 = 1e-3;
@@ -81,7 +81,7 @@ fn fit_reach(course: &mut ChannelCourse, reach: &[usize], sills: &[Sill]) {
         let level_m = sill.ground_m.max(course.stations[reach[index]].lowest_m);
         WeightedLevel { level_m, weight: (stands_for_m / 2.0).max(LEAST_WEIGHT_M) }
     };
-    let fitted = falling(&sills.iter().enumerate().map(weighted).collect::<Vec<_>>());
+    let fitted = fit_falling(&sills.iter().enumerate().map(weighted).collect::<Vec<_>>());
     let mut lowest_bank_m = f64::INFINITY;
     for ((&at, sill), fitted_m) in reach.iter().zip(sills).zip(fitted) {
         lowest_bank_m = lowest_bank_m.min(sill.bank_m);

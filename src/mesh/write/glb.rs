@@ -1,97 +1,283 @@
-//! Binary glTF 2.0: one mesh of one primitive.
+//! Binary glTF 2.0 (Khronos, ISO/IEC 12113:2022): meshes, materials, images and the nodes that show them.
 //!
-//! glTF has Y up, and programs that read it turn it to what they have. The accessors hold the coordinates as the
-//! mesh has them, Z up, and the node that shows the mesh carries the turn: `(x, y, z)` becomes `(x, z, −y)`, so
-//! that east stays X, up becomes Y and north is −Z, away from the viewer. Who looks at the accessors finds the
-//! meters; who looks at the scene finds it upright.
+//! ```text
+//!  scene ─► node "world" (Z up to glTF's Y up) ─► nodes ─► meshes ─► primitives
+//!
+//!  one buffer:  │ positions │ normals │ texture coordinates │ colors │ indices │ images │
+//! ```
+//!
+//! One buffer view holds all positions, one all normals and so on: a city of ten thousand roads has five views, not
+//! fifty thousand. Coordinates are stored Z up; the root node turns `(x, y, z)` to `(x, z, −y)`, so that east stays X,
+//! up becomes Y and north is −Z.
 
+use std::borrow::Cow;
 use std::io::{self, Write};
 
-use glam::Vec3;
-use serde_json::{Value, json};
+use bytemuck::Pod;
+use glam::{Mat4, Vec2, Vec3};
+use serde_json::{Map, Value, json};
 
+use crate::geom::aabb::Aabb;
+use crate::mesh::sink::VertexId;
 use crate::mesh::trimesh::TriMesh;
-use crate::mesh::write::{Remarks, count};
+use crate::mesh::write::{Remarks, count_u32, little_endian};
 
 /// From X east, Y north, Z up to glTF's axes, column by column.
-pub const GLTF_FROM_WORLD: [f32; 16] = [1., 0., 0., 0., 0., 0., -1., 0., 0., 1., 0., 0., 0., 0., 0., 1.];
+const GLTF_FROM_WORLD: [f32; 16] = [1., 0., 0., 0., 0., 0., -1., 0., 0., 1., 0., 0., 0., 0., 0., 1.];
 
-/// The specification's number for an accessor that holds f32.
-pub const FLOAT: u32 = 5126;
-/// For one that holds u32.
-pub const UNSIGNED_INT: u32 = 5125;
-/// For a buffer view of vertices.
-pub const ARRAY_BUFFER: u32 = 34962;
-/// For one of indices.
-pub const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+// The specification's numbers for component types and buffer targets.
+const UNSIGNED_SHORT: u32 = 5123;
+const UNSIGNED_INT: u32 = 5125;
+const FLOAT: u32 = 5126;
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
-/// Writes `mesh`, which has at least one triangle; remarks go to `asset.extras`.
-///
-/// # Errors
-/// `out` cannot be written, the file would be larger than 4 GiB, or there is no triangle.
-pub fn write(mesh: &TriMesh, remarks: &Remarks, out: &mut impl Write) -> io::Result<()> {
-    if mesh.triangles.is_empty() {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "glTF has no mesh without triangles"));
-    }
-    let (positions, indices) = (mesh.positions.len() * 12, mesh.triangles.len() * 12);
-    let mut text = document(mesh, remarks).to_string().into_bytes();
-    text.resize(text.len().next_multiple_of(4), b' ');
-    let total = count(12 + 8 + text.len() + 8 + positions + indices, "bytes")?;
-    out.write_all(b"glTF")?;
-    for number in [2, total, count(text.len(), "bytes")?] {
-        out.write_all(&number.to_le_bytes())?;
-    }
-    out.write_all(b"JSON")?;
-    out.write_all(&text)?;
-    out.write_all(&count(positions + indices, "bytes")?.to_le_bytes())?;
-    out.write_all(b"BIN\0")?;
-    for coordinate in mesh.positions.iter().flat_map(|at| at.to_array()) {
-        out.write_all(&coordinate.to_le_bytes())?;
-    }
-    for id in mesh.triangles.iter().flatten() {
-        out.write_all(&id.0.to_le_bytes())?;
-    }
-    Ok(())
+/// The content of a GLB file; elements name each other by their index.
+#[derive(Clone, Debug, Default)]
+pub struct GlbScene<'a> {
+    /// Vertices, shared by primitives.
+    pub vertices: Vec<GlbVertices<'a>>,
+    /// Meshes of one or more primitives.
+    pub meshes: Vec<Vec<GlbPrimitive<'a>>>,
+    /// Meshes in their places.
+    pub nodes: Vec<GlbNode>,
+    /// glTF material objects. Texture `i` shows image `i`.
+    pub materials: Vec<Value>,
+    /// PNG files.
+    pub images: Vec<Vec<u8>>,
 }
 
-fn document(mesh: &TriMesh, remarks: &Remarks) -> Value {
-    let (vertices, corners) = (mesh.positions.len(), mesh.triangles.len() * 3);
-    let low = mesh.positions.iter().copied().fold(Vec3::INFINITY, Vec3::min);
-    let high = mesh.positions.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
-    json!({
-        "asset": {"version": "2.0", "generator": "sandtable", "extras": {"remarks": remarks.lines()}},
-        "scene": 0,
-        "scenes": [{"nodes": [0]}],
-        "nodes": [{"name": "terrain", "mesh": 0, "matrix": GLTF_FROM_WORLD}],
-        "meshes": [{"name": "terrain", "primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
-        "accessors": [
-            {
-                "bufferView": 0, "componentType": FLOAT, "count": vertices, "type": "VEC3",
-                "min": low.to_array(), "max": high.to_array(),
-            },
-            {"bufferView": 1, "componentType": UNSIGNED_INT, "count": corners, "type": "SCALAR"},
-        ],
-        "bufferViews": [
-            {"buffer": 0, "byteLength": vertices * 12, "target": ARRAY_BUFFER},
-            {
-                "buffer": 0, "byteOffset": vertices * 12, "byteLength": corners * 4,
-                "target": ELEMENT_ARRAY_BUFFER,
-            },
-        ],
-        "buffers": [{"byteLength": vertices * 12 + corners * 4}],
-    })
+/// Vertices attribute by attribute. All but the positions may be empty.
+#[derive(Clone, Debug, Default)]
+pub struct GlbVertices<'a> {
+    /// Positions, Z up.
+    pub positions: Cow<'a, [Vec3]>,
+    /// Unit normals.
+    pub normals: Vec<Vec3>,
+    /// Texture coordinates; V runs downward.
+    pub uvs: Vec<Vec2>,
+    /// Linear light and alpha; 65535 is 1.
+    pub colors: Vec<[u16; 4]>,
+}
+
+/// Triangles in one material.
+#[derive(Clone, Debug)]
+pub struct GlbPrimitive<'a> {
+    /// Which of [`GlbScene::vertices`].
+    pub vertices: usize,
+    /// At least one triangle.
+    pub triangles: Cow<'a, [[VertexId; 3]]>,
+    /// Which of [`GlbScene::materials`].
+    pub material: Option<usize>,
+}
+
+/// A mesh in its place.
+#[derive(Clone, Debug)]
+pub struct GlbNode {
+    /// The name; empty for none.
+    pub name: String,
+    /// Which of [`GlbScene::meshes`].
+    pub mesh: usize,
+    /// Mesh space to world space.
+    pub world_from_mesh: Mat4,
+}
+
+impl<'a> GlbScene<'a> {
+    /// A scene of one mesh with at least one triangle.
+    pub fn from_mesh(mesh: &'a TriMesh) -> Self {
+        let vertices = GlbVertices { positions: Cow::Borrowed(&mesh.positions), ..GlbVertices::default() };
+        let triangles = Cow::Borrowed(mesh.triangles.as_slice());
+        Self {
+            vertices: vec![vertices],
+            meshes: vec![vec![GlbPrimitive { vertices: 0, triangles, material: None }]],
+            nodes: vec![GlbNode { name: "terrain".into(), mesh: 0, world_from_mesh: Mat4::IDENTITY }],
+            ..Self::default()
+        }
+    }
+
+    /// Writes the file; remarks go to `asset.extras`.
+    ///
+    /// # Errors
+    /// `out` cannot be written, or the file would exceed 4 GiB.
+    pub fn write(&self, remarks: &Remarks, out: &mut impl Write) -> io::Result<()> {
+        let mut data = GlbData::default();
+        let mut text = self.document(remarks, &mut data).to_string().into_bytes();
+        text.resize(text.len().next_multiple_of(4), b' ');
+        let data_chunk = if data.length > 0 { 8 + data.length } else { 0 };
+        out.write_all(b"glTF")?;
+        out.write_all(&2u32.to_le_bytes())?;
+        out.write_all(&count_u32(20 + text.len() + data_chunk, "bytes")?.to_le_bytes())?;
+        out.write_all(&count_u32(text.len(), "bytes")?.to_le_bytes())?;
+        out.write_all(b"JSON")?;
+        out.write_all(&text)?;
+        if data.length > 0 {
+            out.write_all(&count_u32(data.length, "bytes")?.to_le_bytes())?;
+            out.write_all(b"BIN\0")?;
+        }
+        data.chunks.iter().try_for_each(|chunk| out.write_all(chunk))
+    }
+
+    /// The JSON chunk; fills `data` with the binary chunk.
+    fn document<'s>(&'s self, remarks: &Remarks, data: &mut GlbData<'s>) -> Value {
+        let attributes = self.add_vertices(data);
+        let meshes = self.add_meshes(&attributes, data);
+        let images: Vec<Value> = self.images.iter().map(|png| data.add_image(png)).collect();
+        let texture = |image: usize| json!({"source": image, "sampler": 0});
+        let sampler = json!({"magFilter": 9729, "minFilter": 9987});
+        let mut document = json!({
+            "asset": {"version": "2.0", "generator": "sandtable", "extras": {"remarks": remarks.lines}},
+            "scene": 0,
+            "scenes": [{"nodes": [0]}],
+            "nodes": self.nodes(),
+        });
+        let lists = [
+            ("meshes", meshes),
+            ("materials", self.materials.clone()),
+            ("textures", (0..images.len()).map(texture).collect()),
+            ("samplers", if images.is_empty() { Vec::new() } else { vec![sampler] }),
+            ("images", images),
+            ("buffers", if data.length > 0 { vec![json!({"byteLength": data.length})] } else { Vec::new() }),
+            ("accessors", std::mem::take(&mut data.accessors)),
+            ("bufferViews", std::mem::take(&mut data.views)),
+        ];
+        for (key, list) in lists.into_iter().filter(|(_, list)| !list.is_empty()) {
+            document[key] = Value::Array(list);
+        }
+        document
+    }
+
+    /// The accessors of each element of `vertices`, by attribute.
+    fn add_vertices<'s>(&'s self, data: &mut GlbData<'s>) -> Vec<Map<String, Value>> {
+        data.next_view = Some(json!({"byteStride": 12, "target": ARRAY_BUFFER}));
+        let mut attributes = Vec::new();
+        for vertices in &self.vertices {
+            let Aabb { min, max } = Aabb::around(vertices.positions.iter().copied()).unwrap_or_default();
+            let (min, max) = (min.to_array(), max.to_array());
+            let accessor = json!({"componentType": FLOAT, "type": "VEC3", "min": min, "max": max});
+            let position = data.add(&vertices.positions, accessor);
+            attributes.push(Map::from_iter([("POSITION".to_owned(), json!(position))]));
+        }
+        let all = self.vertices.iter();
+        let normal = json!({"componentType": FLOAT, "type": "VEC3"});
+        data.add_attribute("NORMAL", &normal, all.clone().map(|each| &*each.normals), &mut attributes);
+        let uv = json!({"componentType": FLOAT, "type": "VEC2"});
+        data.add_attribute("TEXCOORD_0", &uv, all.clone().map(|each| &*each.uvs), &mut attributes);
+        let color = json!({"componentType": UNSIGNED_SHORT, "type": "VEC4", "normalized": true});
+        data.add_attribute("COLOR_0", &color, all.map(|each| &*each.colors), &mut attributes);
+        attributes
+    }
+
+    fn add_meshes<'s>(&'s self, attributes: &[Map<String, Value>], data: &mut GlbData<'s>) -> Vec<Value> {
+        data.next_view = Some(json!({"target": ELEMENT_ARRAY_BUFFER}));
+        let mut primitive = |primitive: &'s GlbPrimitive<'_>| {
+            let accessor = json!({"componentType": UNSIGNED_INT, "type": "SCALAR"});
+            let indices = data.add(primitive.triangles.as_flattened(), accessor);
+            let mut object = json!({"attributes": attributes[primitive.vertices], "indices": indices});
+            if let Some(material) = primitive.material {
+                object["material"] = json!(material);
+            }
+            object
+        };
+        let mesh = |primitives: &'s Vec<GlbPrimitive<'_>>| -> Value {
+            json!({"primitives": primitives.iter().map(&mut primitive).collect::<Vec<_>>()})
+        };
+        self.meshes.iter().map(mesh).collect()
+    }
+
+    /// The root and its children.
+    fn nodes(&self) -> Vec<Value> {
+        let mut root = json!({"name": "world", "matrix": GLTF_FROM_WORLD});
+        // The format forbids an empty list of children.
+        if !self.nodes.is_empty() {
+            root["children"] = (1..=self.nodes.len()).collect();
+        }
+        let child = |node: &GlbNode| {
+            let mut object = json!({"mesh": node.mesh});
+            if !node.name.is_empty() {
+                object["name"] = json!(node.name);
+            }
+            if node.world_from_mesh != Mat4::IDENTITY {
+                object["matrix"] = json!(node.world_from_mesh.to_cols_array());
+            }
+            object
+        };
+        std::iter::once(root).chain(self.nodes.iter().map(child)).collect()
+    }
+}
+
+/// The binary chunk, and the views and accessors into it.
+#[derive(Default)]
+struct GlbData<'s> {
+    chunks: Vec<Cow<'s, [u8]>>,
+    /// Bytes of all chunks.
+    length: usize,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+    /// The view that the next bytes open: an attribute that no vertex has gets no view.
+    next_view: Option<Value>,
+}
+
+impl<'s> GlbData<'s> {
+    /// Adds a view of an attribute, and an accessor for each list that is not empty.
+    fn add_attribute<T: Pod>(
+        &mut self,
+        name: &str,
+        accessor: &Value,
+        lists: impl Iterator<Item = &'s [T]>,
+        attributes: &mut [Map<String, Value>],
+    ) {
+        self.next_view = Some(json!({"byteStride": size_of::<T>(), "target": ARRAY_BUFFER}));
+        for (values, attributes) in lists.zip(attributes).filter(|(values, _)| !values.is_empty()) {
+            attributes.insert(name.to_owned(), json!(self.add(values, accessor.clone())));
+        }
+    }
+
+    /// Adds values to the current view; returns the index of `accessor`, which reads them.
+    fn add<T: Pod>(&mut self, values: &'s [T], mut accessor: Value) -> usize {
+        let offset = self.append(little_endian(values));
+        accessor["bufferView"] = json!(self.views.len() - 1);
+        accessor["byteOffset"] = json!(offset);
+        accessor["count"] = json!(values.len());
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+
+    /// Adds a view of a PNG file; returns the image object.
+    fn add_image(&mut self, png: &'s [u8]) -> Value {
+        self.next_view = Some(json!({}));
+        self.append(png.into());
+        let padding = self.length.next_multiple_of(4) - self.length;
+        self.chunks.push(Cow::Borrowed(&[0; 3][..padding]));
+        self.length += padding;
+        json!({"bufferView": self.views.len() - 1, "mimeType": "image/png"})
+    }
+
+    /// Adds bytes to the current view; returns their offset in it.
+    fn append(&mut self, bytes: Cow<'s, [u8]>) -> usize {
+        if let Some(mut view) = self.next_view.take() {
+            view["buffer"] = json!(0);
+            view["byteOffset"] = json!(self.length);
+            view["byteLength"] = json!(0);
+            self.views.push(view);
+        }
+        let length = &mut self.views.last_mut().expect("next_view was set")["byteLength"];
+        let offset = length.as_u64().expect("a length") as usize;
+        *length = json!(offset + bytes.len());
+        self.length += bytes.len();
+        self.chunks.push(bytes);
+        offset
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::mesh::write::samples::{remarks, square};
-    use glam::{Mat4, Vec3};
 
     #[test]
     fn chunks_are_aligned_and_bounds_are_those_of_the_positions() {
         let mut bytes = Vec::new();
-        write(&square(), &remarks(), &mut bytes).expect("memory");
+        GlbScene::from_mesh(&square()).write(&remarks(), &mut bytes).expect("memory");
         let number =
             |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().expect("four bytes")) as usize;
         assert_eq!((&bytes[..4], number(4), number(8)), (&b"glTF"[..], 2, bytes.len()));
@@ -104,14 +290,17 @@ mod tests {
     }
 
     #[test]
-    fn the_node_turns_up_to_y_and_north_away() {
+    fn the_root_node_turns_up_to_y_and_north_away() {
         let turn = Mat4::from_cols_array(&GLTF_FROM_WORLD);
         assert_eq!(turn.transform_point3(Vec3::new(1.0, 2.0, 3.0)), Vec3::new(1.0, 3.0, -2.0));
         assert_eq!(turn.determinant(), 1.0);
     }
 
     #[test]
-    fn no_triangle_no_file() {
-        assert!(write(&TriMesh::default(), &remarks(), &mut Vec::new()).is_err());
+    fn an_empty_scene_has_neither_children_nor_a_binary_chunk() {
+        let mut bytes = Vec::new();
+        GlbScene::default().write(&remarks(), &mut bytes).expect("memory");
+        let document: Value = serde_json::from_slice(&bytes[20..]).expect("JSON to the end");
+        assert!(document["nodes"][0].get("children").is_none() && document.get("buffers").is_none());
     }
 }

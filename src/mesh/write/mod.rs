@@ -1,18 +1,20 @@
-//! Meshes as files that other programs read: OBJ, PLY, STL and binary glTF.
+//! Writers of mesh files: OBJ, PLY, STL and binary glTF.
 //!
-//! All say where the mesh stands in remarks, since none of the formats has a place for it. Coordinates are written
-//! as the mesh has them (meters, X east, Y north, Z up), every one so that an f32 read back is the very same.
+//! Coordinates are written as the mesh has them: meters, X east, Y north, Z up; an f32 that is read back is the very
+//! same. No format has a field for the origin, so files state it in remarks.
 
 pub mod glb;
 pub mod obj;
 pub mod ply;
 pub mod stl;
 
+use std::borrow::Cow;
 use std::io::{self, Write};
 
 use crate::mesh::trimesh::TriMesh;
+use crate::mesh::write::glb::GlbScene;
 
-/// A format by the extension of its files.
+/// A format of mesh files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshFormat {
     /// Wavefront OBJ, text.
@@ -26,8 +28,8 @@ pub enum MeshFormat {
 }
 
 impl MeshFormat {
-    /// The format of files with this extension, in upper or lower case.
-    pub fn of_extension(extension: &str) -> Option<Self> {
+    /// The format of files with this extension, in any case; `None` for other extensions.
+    pub fn from_extension(extension: &str) -> Option<Self> {
         match extension.to_ascii_lowercase().as_str() {
             "obj" => Some(Self::Obj),
             "ply" => Some(Self::Ply),
@@ -38,8 +40,29 @@ impl MeshFormat {
     }
 }
 
-/// What a file says about the mesh in it: lines without control characters, so that none of them can end a comment
-/// or begin anything else.
+/// Why a mesh does not fit a format; the inner error of an [`io::ErrorKind::InvalidInput`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MeshWriteError {
+    /// More than a 32-bit count can state.
+    #[error("{count} {what} exceed the {} that the format can hold; raise the maximum error", u32::MAX)]
+    TooLarge {
+        /// How many there are.
+        count: usize,
+        /// What is counted.
+        what: &'static str,
+    },
+    /// The mesh has no triangles.
+    #[error("a glTF mesh needs at least one triangle")]
+    Empty,
+}
+
+impl From<MeshWriteError> for io::Error {
+    fn from(error: MeshWriteError) -> Self {
+        Self::new(io::ErrorKind::InvalidInput, error)
+    }
+}
+
+/// What a file states about its content.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Remarks {
     lines: Vec<String>,
@@ -47,48 +70,43 @@ pub struct Remarks {
 }
 
 impl Remarks {
-    /// Full sentences, and in short what fits the 80 bytes that STL has; more is cut off there.
+    /// Full sentences, and a short form for the 80 bytes of an STL header. Control characters become `?`, so that no line
+    /// can end a comment.
     pub fn new(lines: &[String], short: &str) -> Self {
-        Self { lines: lines.iter().map(|line| plain(line)).collect(), short: plain(short) }
+        let printable = |line: &str| line.replace(char::is_control, "?");
+        Self { lines: lines.iter().map(|line| printable(line)).collect(), short: printable(short) }
     }
-
-    /// All lines.
-    pub fn lines(&self) -> &[String] {
-        &self.lines
-    }
-
-    /// The short form.
-    pub fn short(&self) -> &str {
-        &self.short
-    }
-}
-
-fn plain(line: &str) -> String {
-    line.chars().map(|at| if at.is_control() { '?' } else { at }).collect()
 }
 
 /// Writes `mesh` in a format.
 ///
 /// # Errors
-/// `out` cannot be written, or the mesh is larger than the format can hold.
+/// `out` cannot be written, or the mesh does not fit the format ([`MeshWriteError`]).
 pub fn write(format: MeshFormat, mesh: &TriMesh, remarks: &Remarks, out: &mut impl Write) -> io::Result<()> {
     match format {
         MeshFormat::Obj => obj::write(mesh, remarks, out),
         MeshFormat::Ply => ply::write(mesh, remarks, out),
         MeshFormat::Stl => stl::write(mesh, remarks, out),
-        MeshFormat::Glb => glb::write(mesh, remarks, out),
+        MeshFormat::Glb if mesh.triangles.is_empty() => Err(MeshWriteError::Empty.into()),
+        MeshFormat::Glb => GlbScene::from_mesh(mesh).write(remarks, out),
     }
 }
 
-/// A count as the 32 bits that a format has for it.
+/// `count` as the 32 bits that a format has for it.
 ///
 /// # Errors
-/// It is more than they hold.
-pub fn count(number: usize, what: &str) -> io::Result<u32> {
-    u32::try_from(number).map_err(|_| {
-        let reason = format!("{number} {what} are more than this format can hold; choose a larger error");
-        io::Error::new(io::ErrorKind::InvalidInput, reason)
-    })
+/// [`MeshWriteError::TooLarge`].
+fn count_u32(count: usize, what: &'static str) -> Result<u32, MeshWriteError> {
+    u32::try_from(count).map_err(|_| MeshWriteError::TooLarge { count, what })
+}
+
+/// `values` as little-endian bytes; copied only on big-endian processors. All words of `T` must have its alignment.
+fn little_endian<T: bytemuck::Pod>(values: &[T]) -> Cow<'_, [u8]> {
+    let bytes: &[u8] = bytemuck::cast_slice(values);
+    if cfg!(target_endian = "little") {
+        return bytes.into();
+    }
+    bytes.chunks_exact(align_of::<T>()).flat_map(|word| word.iter().rev()).copied().collect()
 }
 
 #[cfg(test)]
@@ -119,13 +137,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn formats_go_by_extension_in_any_case() {
-        assert_eq!(MeshFormat::of_extension("GLB"), Some(MeshFormat::Glb));
-        assert_eq!(MeshFormat::of_extension("gltf"), None);
+    fn formats_are_known_by_their_extensions_in_any_case() {
+        assert_eq!(MeshFormat::from_extension("GLB"), Some(MeshFormat::Glb));
+        assert_eq!(MeshFormat::from_extension("gltf"), None);
     }
 
     #[test]
     fn remarks_are_single_lines() {
-        assert_eq!(samples::remarks().lines(), ["a?v 9 9 9", "zwölf"]);
+        assert_eq!(samples::remarks().lines, ["a?v 9 9 9", "zwölf"]);
+    }
+
+    #[test]
+    fn a_glb_without_triangles_is_refused() {
+        let result = write(MeshFormat::Glb, &TriMesh::default(), &samples::remarks(), &mut Vec::new());
+        assert_eq!(result.expect_err("empty").kind(), io::ErrorKind::InvalidInput);
     }
 }

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::mesh::trimesh::TriMesh;
-use crate::mesh::write::Remarks;
+use crate::mesh::write::{Remarks, little_endian};
 
 /// Writes `mesh`.
 ///
@@ -11,7 +11,7 @@ use crate::mesh::write::Remarks;
 /// `out` cannot be written.
 pub fn write(mesh: &TriMesh, remarks: &Remarks, out: &mut impl Write) -> io::Result<()> {
     out.write_all(b"ply\nformat binary_little_endian 1.0\n")?;
-    for line in remarks.lines() {
+    for line in &remarks.lines {
         writeln!(out, "comment {line}")?;
     }
     writeln!(out, "element vertex {}", mesh.positions.len())?;
@@ -20,16 +20,10 @@ pub fn write(mesh: &TriMesh, remarks: &Remarks, out: &mut impl Write) -> io::Res
     }
     writeln!(out, "element face {}", mesh.triangles.len())?;
     out.write_all(b"property list uchar uint vertex_indices\nend_header\n")?;
-    for at in &mesh.positions {
-        for coordinate in at.to_array() {
-            out.write_all(&coordinate.to_le_bytes())?;
-        }
-    }
+    out.write_all(&little_endian(&mesh.positions))?;
     for corners in &mesh.triangles {
         out.write_all(&[3])?;
-        for id in corners {
-            out.write_all(&id.0.to_le_bytes())?;
-        }
+        out.write_all(&little_endian(corners))?;
     }
     Ok(())
 }
@@ -40,7 +34,7 @@ mod tests {
     use crate::mesh::write::samples::{remarks, square};
 
     #[test]
-    fn the_header_tells_what_follows_it() {
+    fn the_header_states_what_follows_it() {
         let mut bytes = Vec::new();
         write(&square(), &remarks(), &mut bytes).expect("memory");
         let end = b"end_header\n";

@@ -1,33 +1,33 @@
-//! Binary STL: every triangle with its normal and its three corners, nothing shared.
+//! Binary STL: every triangle with its normal and its three corners; no vertex is shared.
 
 use std::io::{self, Write};
 
-use crate::mesh::trimesh::TriMesh;
-use crate::mesh::write::{Remarks, count};
+use glam::{DVec3, Vec3};
 
-/// Bytes of the header, which may hold anything but what begins a text STL: `solid`.
+use crate::geom::triangle::normal;
+use crate::mesh::trimesh::TriMesh;
+use crate::mesh::write::{Remarks, count_u32, little_endian};
+
+/// Bytes of the header. It must not begin with `solid`, as text STL files do.
 const HEADER: usize = 80;
 
-/// Writes `mesh`, the short remark in its header.
+/// Writes `mesh`; the header holds the short remark.
 ///
 /// # Errors
 /// `out` cannot be written, or there are 2³² triangles or more.
 pub fn write(mesh: &TriMesh, remarks: &Remarks, out: &mut impl Write) -> io::Result<()> {
-    out.write_all(&header(remarks.short()))?;
-    out.write_all(&count(mesh.triangles.len(), "triangles")?.to_le_bytes())?;
+    out.write_all(&header(&remarks.short))?;
+    out.write_all(&count_u32(mesh.triangles.len(), "triangles")?.to_le_bytes())?;
     for triangle in 0..mesh.triangles.len() {
         let [a, b, c] = mesh.corners(triangle);
-        let normal = (b.as_dvec3() - a.as_dvec3()).cross(c.as_dvec3() - a.as_dvec3());
-        let normal = normal.normalize_or_zero().as_vec3();
-        for number in [normal, a, b, c].iter().flat_map(|at| at.to_array()) {
-            out.write_all(&number.to_le_bytes())?;
-        }
+        let normal: DVec3 = normal([a, b, c].map(Vec3::as_dvec3)).normalize_or_zero();
+        out.write_all(&little_endian(&[normal.as_vec3(), a, b, c]))?;
         out.write_all(&[0, 0])?;
     }
     Ok(())
 }
 
-/// The text in 80 bytes: what a reader takes for Latin, so without other letters; padded with blanks.
+/// `text` in 80 bytes: other letters than ASCII become `?`, the rest is blanks.
 fn header(text: &str) -> [u8; HEADER] {
     let mut header = [b' '; HEADER];
     let text = if text.trim_start().to_ascii_lowercase().starts_with("solid") { "" } else { text };

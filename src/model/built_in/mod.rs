@@ -1,8 +1,8 @@
-//! Models that need no file: trees, a shrub and a rock, made by formula, life-size in meters.
+//! Models that need no file: trees, a shrub and a rock, computed by formula, life-size in meters.
 //!
-//! A sand table needs woods more often than anything else, and a wood is seen from far away by the thousand: so each is
-//! some hundred triangles of vertex colors, with light and shade between the boughs painted in, and no texture. The
-//! origin is at the ground under the middle; a little of each reaches below it, so that nothing floats on a slope.
+//! Woods are the most frequent need of a terrain scene, and they are seen from afar by the thousand: so each model has
+//! some hundred triangles with vertex colors, light and shade between the boughs included, and no texture. The origin is on
+//! the ground under the center; a little of each model is below, so that nothing floats on a slope.
 //!
 //! ```text
 //!   conifer          broadleaf        shrub        rock
@@ -12,16 +12,19 @@
 //!      ┃ 18 m           ┃ 14 m       ▀▀▀▀▀ 2 m   ▐██▙ 1.5 m
 //! ```
 //!
-//! The same numbers come out on every machine: all arithmetic is that of f32 and of `libm`.
+//! The numbers are the same on every machine: all arithmetic is that of f32 and `libm`.
 
-mod blob;
 mod broadleaf;
 mod conifer;
+mod lump;
 mod rock;
 mod shrub;
 mod trunk;
 
-use crate::draw::list::{DrawMesh, MaterialId};
+use glam::Vec3;
+
+use crate::draw::color::Srgba;
+use crate::draw::list::{DrawMesh, DrawVertex, MaterialId};
 use crate::draw::material::Material;
 use crate::model::{Census, Model, ModelPart};
 
@@ -40,7 +43,12 @@ pub fn by_name(name: &str) -> Option<Model> {
     Some(model(name, mesh))
 }
 
-/// A model of one mesh that shows the colors of its vertices.
+/// A vertex without texture coordinates.
+fn colored_vertex(position: Vec3, normal: Vec3, color: Srgba) -> DrawVertex {
+    DrawVertex { position: position.to_array(), normal: normal.to_array(), uv: [0.0; 2], color }
+}
+
+/// A model of one mesh with vertex colors.
 fn model(name: &str, mesh: DrawMesh) -> Model {
     let census =
         Census { meshes: 1, vertices: mesh.vertices.len(), faces: mesh.triangles.len(), materials: 1 };
@@ -55,7 +63,7 @@ fn model(name: &str, mesh: DrawMesh) -> Model {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
+    use crate::geom::aabb::Aabb;
 
     fn models() -> impl Iterator<Item = (&'static str, Model)> {
         NAMES.into_iter().map(|name| (name, by_name(name).expect("it has a model")))
@@ -64,7 +72,7 @@ mod tests {
     #[test]
     fn every_name_has_a_model_of_its_height_and_no_other_name_has() {
         for ((name, model), height) in models().zip([18.0, 14.0, 2.0, 1.5]) {
-            let (min, max) = model.bounds().expect("not empty");
+            let Aabb { min, max } = model.bounds().expect("not empty");
             assert!((max.z - height).abs() < height * 0.1, "{name} is {} m high", max.z);
             assert!(min.z < 0.0 && min.z > -height * 0.2, "{name} reaches {} m into the ground", -min.z);
             assert!((60..=220).contains(&model.triangle_count()), "{name}: {}", model.triangle_count());
@@ -73,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn normals_are_unit_and_look_the_way_that_their_triangles_face() {
+    fn normals_are_unit_and_on_the_side_that_their_triangles_face() {
         for (name, model) in models() {
             let mesh = &model.parts[0].mesh;
             for ids in &mesh.triangles {

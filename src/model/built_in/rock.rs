@@ -1,12 +1,12 @@
-//! A rock: a ball broken along flat faces, half its belly in the ground.
+//! A rock: a ball with flat facets, its lower part in the ground.
 
 use glam::Vec3;
 
 use crate::draw::color::Srgba;
 use crate::draw::list::DrawMesh;
-use crate::model::built_in::blob::{UnitSphere, between, waves};
+use crate::model::built_in::lump::{UnitSphere, mix, waves};
 
-/// Faces to the sky, and those that the rain does not reach.
+/// Facets toward the sky, and steep ones.
 const TOP: Srgba = Srgba::opaque(176, 168, 154);
 const SIDE: Srgba = Srgba::opaque(116, 108, 100);
 
@@ -18,10 +18,10 @@ pub(super) fn mesh() -> DrawMesh {
     let mut mesh = DrawMesh::default();
     let shape = |direction: Vec3| {
         let at = direction * HALF * (1.0 + 0.16 * waves(direction, 0.6)) + Vec3::Z * 0.45;
-        // The foot is flat, below the ground.
+        // The base is flat, below the ground.
         at.with_z(at.z.max(-0.25))
     };
-    let color = |normal: Vec3| between(SIDE, TOP, 0.5 + 0.5 * normal.z + 0.18 * waves(normal * 2.0, 1.0));
-    UnitSphere::fine().add_sharp(&mut mesh, shape, color);
+    let color = |normal: Vec3| mix(SIDE, TOP, 0.5 + 0.5 * normal.z + 0.18 * waves(normal * 2.0, 1.0));
+    UnitSphere::fine().add_faceted(&mut mesh, shape, color);
     mesh
 }

@@ -1,113 +1,94 @@
-//! From bytes to a document whose every index points at something.
+//! Bytes to a document whose indices are all in range.
 
-use ::gltf::json::mesh::Semantic;
+use ::gltf::Document;
 use ::gltf::json::validation::{Checked, Error, Validate};
 use ::gltf::json::{Path, Root};
+use ::gltf::mesh::Semantic;
 use serde_json::{Value, json};
 
 use crate::model::error::ModelError;
 
 /// Extensions that change where data is or what it means, and are read.
-const READ: [&str; 3] = ["KHR_texture_transform", "KHR_materials_unlit", "KHR_mesh_quantization"];
-/// Extensions with this start only refine how a material looks; it is drawn without.
-const REFINES: &str = "KHR_materials_";
+const SUPPORTED: [&str; 3] = ["KHR_texture_transform", "KHR_materials_unlit", "KHR_mesh_quantization"];
+/// The start of extensions that refine how a material looks; it is drawn without them.
+const REFINEMENTS: &str = "KHR_materials_";
 
-/// The document and, for GLB, its binary chunk.
-///
-/// # Errors
-/// [`ModelError::Gltf`] with what does not hold.
-pub(super) fn open(bytes: &[u8]) -> Result<(Root, Option<&[u8]>), ModelError> {
-    let (json, binary) = if bytes.starts_with(b"glTF") { split(bytes)? } else { (bytes, None) };
-    let json = json.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(json);
-    let fail = |error: serde_json::Error| ModelError::gltf("the JSON", error.to_string());
-    let mut document: Value = serde_json::from_slice(json).map_err(fail)?;
-    complete(&mut document);
-    let mut root: Root = serde_json::from_value(document).map_err(fail)?;
-    check_version(&root.asset.version)?;
-    check_extensions(&root)?;
-    root.extensions_required.clear();
-    check_positions(&root)?;
-    check_indices(&root)?;
-    Ok((root, binary))
+/// The content of a glTF or GLB file.
+pub(super) struct GltfFile<'a> {
+    pub document: Document,
+    /// The binary chunk of a GLB file.
+    pub binary: Option<&'a [u8]>,
+}
+
+impl<'a> GltfFile<'a> {
+    /// Parses and checks a file.
+    ///
+    /// # Errors
+    /// [`ModelError::Gltf`] and [`ModelError::GltfJson`].
+    pub(super) fn open(bytes: &'a [u8]) -> Result<Self, ModelError> {
+        let (json, binary) = if bytes.starts_with(b"glTF") { split(bytes)? } else { (bytes, None) };
+        let json = json.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(json);
+        let mut document: Value = serde_json::from_slice(json).map_err(ModelError::GltfJson)?;
+        complete(&mut document);
+        let root: Root = serde_json::from_value(document).map_err(ModelError::GltfJson)?;
+        check_version(&root.asset.version)?;
+        check_extensions(&root)?;
+        check_positions(&root)?;
+        check_indices(&root)?;
+        Ok(Self { document: Document::from_json_without_validation(root), binary })
+    }
 }
 
 /// The JSON and binary chunks of a GLB file.
 fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ModelError> {
-    const JSON: u32 = u32::from_le_bytes(*b"JSON");
-    const BINARY: u32 = u32::from_le_bytes(*b"BIN\0");
-    let fail = |reason: String| ModelError::gltf("the GLB header", reason);
-    let word = |at: usize| Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk::<4>()?));
-    let (Some(version), Some(length)) = (word(4), word(8)) else {
-        return Err(fail(format!("the file ends after {} of 12 bytes", bytes.len())));
-    };
-    if version != 2 {
-        return Err(fail(format!("version {version} is stated; export it as glTF 2.0")));
+    const JSON: usize = u32::from_le_bytes(*b"JSON") as usize;
+    const BINARY: usize = u32::from_le_bytes(*b"BIN\0") as usize;
+    let fail = |reason: String| ModelError::gltf("the GLB chunks", reason);
+    let word = |at: usize| Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk::<4>()?) as usize);
+    let (version, length) = (word(4).unwrap_or(0), word(8).unwrap_or(0));
+    if version != 2 && bytes.len() >= 12 {
+        return Err(fail(format!("the file has version {version}; export it as glTF 2.0")));
     }
-    let length = length as usize;
-    if length > bytes.len() || length < 12 {
-        return Err(fail(format!(
-            "{length} bytes are stated and {} there; the file is cut off",
-            bytes.len()
-        )));
-    }
-    let (mut json, mut binary) = (None, None);
-    let mut at = 12;
-    while at + 8 <= length {
+    let file = bytes.get(..length).filter(|file| file.len() >= 12).ok_or_else(|| {
+        fail(format!("the file has {} of {length} bytes; copy or export it again", bytes.len()))
+    })?;
+    let (mut json, mut binary, mut rest) = (None, None, &file[12..]);
+    while let Some((header, body)) = rest.split_first_chunk::<8>() {
+        let at = file.len() - rest.len();
         let (Some(size), Some(kind)) = (word(at), word(at + 4)) else { break };
-        let end = (at + 8).checked_add(size as usize).filter(|&end| end <= length);
-        let body = end.map(|end| &bytes[at + 8..end]).ok_or_else(|| {
-            let left = length - at - 8;
-            ModelError::gltf(
-                "a GLB chunk",
-                format!("{size} bytes are stated and {left} left; the file is cut off"),
-            )
+        let chunk = body.get(..size).ok_or_else(|| {
+            let left = body.len();
+            fail(format!("a chunk has {left} of {size} bytes; copy or export the file again"))
         })?;
         match kind {
-            JSON if json.is_none() => json = Some(body),
-            BINARY if binary.is_none() => binary = Some(body),
+            JSON if json.is_none() => json = Some(chunk),
+            BINARY if binary.is_none() => binary = Some(chunk),
             _ => {}
         }
-        at += 8 + body.len();
+        rest = &rest[header.len() + size..];
     }
-    json.map(|json| (json, binary)).ok_or_else(|| fail("no JSON chunk follows it".into()))
+    let json = json.ok_or_else(|| fail("there is no JSON chunk; export the file again".into()))?;
+    Ok((json, binary))
 }
 
-/// Adds what the format lets out and `gltf-json` 1.4.1 insists on: nodes of scenes, and the image of a
-/// texture that has one only by an extension. Takes out `extras`, of which it refuses all but objects.
+/// Adds what the format leaves out and `gltf-json` 1.4.1 requires: nodes of scenes. Removes `extras`, of which it
+/// accepts only objects.
 fn complete(document: &mut Value) {
-    drop_extras(document);
-    for scene in list_in(document, "scenes") {
+    remove_extras(document);
+    for scene in document.get_mut("scenes").and_then(Value::as_array_mut).into_iter().flatten() {
         if let Some(scene) = scene.as_object_mut() {
             scene.entry("nodes").or_insert_with(|| json!([]));
         }
     }
-    let images = list_in(document, "images").len();
-    let mut lacking = false;
-    for texture in list_in(document, "textures") {
-        if let Some(texture) = texture.as_object_mut().filter(|texture| !texture.contains_key("source")) {
-            texture.insert("source".into(), json!(images));
-            lacking = true;
-        }
-    }
-    if lacking && let Some(document) = document.as_object_mut() {
-        let images = document.entry("images").or_insert_with(|| json!([]));
-        if let Some(images) = images.as_array_mut() {
-            images.push(json!({ "name": "an image in a format that is not supported" }));
-        }
-    }
-}
-
-fn list_in<'a>(document: &'a mut Value, field: &str) -> &'a mut [Value] {
-    document.get_mut(field).and_then(Value::as_array_mut).map_or(&mut [], Vec::as_mut_slice)
 }
 
 /// Recursion ends: `serde_json` lets values nest no deeper than 128 levels.
-fn drop_extras(value: &mut Value) {
+fn remove_extras(value: &mut Value) {
     match value {
-        Value::Array(values) => values.iter_mut().for_each(drop_extras),
+        Value::Array(values) => values.iter_mut().for_each(remove_extras),
         Value::Object(fields) => {
             fields.remove("extras");
-            fields.values_mut().for_each(drop_extras);
+            fields.values_mut().for_each(remove_extras);
         }
         _ => {}
     }
@@ -117,39 +98,31 @@ fn check_version(version: &str) -> Result<(), ModelError> {
     if version.starts_with("2.") {
         return Ok(());
     }
-    Err(ModelError::gltf("asset.version", format!("'{version}' is stated; export it as glTF 2.0")))
+    Err(ModelError::gltf("asset.version", format!("it is '{version}'; export the model as glTF 2.0")))
 }
 
-/// The extensions that a document uses and could do without, and that are not read.
-pub(super) fn unread_extensions(root: &Root) -> impl Iterator<Item = &String> {
-    root.extensions_used.iter().filter(lacks)
-}
-
-fn lacks(name: &&String) -> bool {
-    !READ.contains(&name.as_str()) && !name.starts_with(REFINES)
+/// Whether an extension is neither read nor can be left out.
+pub(super) fn is_unsupported(name: &str) -> bool {
+    !SUPPORTED.contains(&name) && !name.starts_with(REFINEMENTS)
 }
 
 fn check_extensions(root: &Root) -> Result<(), ModelError> {
-    match root.extensions_required.iter().find(lacks) {
-        Some(name) => Err(ModelError::gltf(
-            "extensionsRequired",
-            format!("{name} is needed and not supported; export the model without it"),
-        )),
+    match root.extensions_required.iter().find(|name| is_unsupported(name)) {
+        Some(name) => {
+            let reason = format!("{name} is required but not supported; export the model without it");
+            Err(ModelError::gltf("extensionsRequired", reason))
+        }
         None => Ok(()),
     }
 }
 
-/// What `gltf-json` 1.4.1 panics on when it is not so: POSITION names an accessor that is there.
+/// Checks that POSITION is an accessor: `gltf-json` 1.4.1 panics where it is not.
 fn check_positions(root: &Root) -> Result<(), ModelError> {
-    for (mesh, primitive) in root
-        .meshes
-        .iter()
-        .enumerate()
-        .flat_map(|(mesh, one)| one.primitives.iter().map(move |each| (mesh, each)))
-    {
-        let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
-        if let Some(index) = positions.filter(|index| index.value() >= root.accessors.len()) {
-            let (index, count) = (index.value(), root.accessors.len());
+    for (mesh, primitives) in root.meshes.iter().map(|mesh| &mesh.primitives).enumerate() {
+        let positions =
+            primitives.iter().filter_map(|each| each.attributes.get(&Checked::Valid(Semantic::Positions)));
+        let count = root.accessors.len();
+        if let Some(index) = positions.map(|index| index.value()).find(|&index| index >= count) {
             let reason = format!("POSITION names accessor {index} of {count}");
             return Err(ModelError::gltf(format!("meshes[{mesh}]"), reason));
         }
@@ -157,24 +130,21 @@ fn check_positions(root: &Root) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Indices out of range and values that are none of those allowed. What else the crate reports — missing
-/// bounds of positions, attributes of the author's own — is no reason to refuse a file.
+/// Refuses indices out of range and unknown values. The rest that the crate reports, such as missing bounds of positions
+/// and attributes of the author's own, does no harm.
 fn check_indices(root: &Root) -> Result<(), ModelError> {
     let mut first = None;
     root.validate(root, Path::new, &mut |path, error| {
         let path = path();
-        let own_attribute = error == Error::Invalid && path.as_str().contains(".attributes");
-        if first.is_none() && matches!(error, Error::IndexOutOfBounds | Error::Invalid) && !own_attribute {
-            first = Some((path, error));
-        }
+        let is_own_attribute = error == Error::Invalid && path.as_str().contains(".attributes");
+        let reason = match error {
+            Error::IndexOutOfBounds => "the index is out of range",
+            Error::Invalid if !is_own_attribute => "the value is not one of those allowed",
+            _ => return,
+        };
+        first.get_or_insert((path, reason));
     });
-    match first {
-        Some((path, Error::IndexOutOfBounds)) => {
-            Err(ModelError::gltf(path.as_str(), "the index names something that is not there"))
-        }
-        Some((path, _)) => Err(ModelError::gltf(path.as_str(), "the value is none of those allowed")),
-        None => Ok(()),
-    }
+    first.map_or(Ok(()), |(path, reason)| Err(ModelError::gltf(path.as_str(), reason)))
 }
 
 #[cfg(test)]
@@ -196,42 +166,49 @@ mod tests {
 
     const LEAST: &[u8] = br#"{"asset":{"version":"2.0"}}"#;
 
+    fn error_of(json: &[u8]) -> String {
+        GltfFile::open(json).map(|_| ()).expect_err("refused").to_string()
+    }
+
     #[test]
-    fn a_glb_is_split_into_its_chunks() {
+    fn a_glb_is_split_into_its_chunks_and_others_are_ignored() {
         let file = glb(&[(b"JSON", LEAST), (b"BIN\0", &[7, 8])]);
-        assert_eq!(open(&file).map(|(_, binary)| binary).expect("a sound file"), Some(&[7, 8][..]));
+        assert_eq!(GltfFile::open(&file).expect("a sound file").binary, Some(&[7, 8][..]));
+        let file = glb(&[(b"JSON", LEAST), (b"what", &[1]), (b"BIN\0", &[7, 8])]);
+        assert_eq!(GltfFile::open(&file).expect("a sound file").binary, Some(&[7, 8][..]));
     }
 
     #[test]
     fn every_cut_of_a_glb_is_refused() {
         let file = glb(&[(b"JSON", LEAST), (b"BIN\0", &[7, 8])]);
-        assert!((4..file.len()).all(|end| open(&file[..end]).is_err()));
+        assert!((4..file.len()).all(|end| GltfFile::open(&file[..end]).is_err()));
         let mut forged = file.clone();
         forged[8..12].copy_from_slice(&[3, 0, 0, 0]);
-        assert!(open(&forged).is_err());
+        assert!(GltfFile::open(&forged).is_err());
     }
 
     #[test]
     fn a_position_that_names_no_accessor_is_refused() {
         let json =
             br#"{"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":{"POSITION":4}}]}]}"#;
-        assert!(open(json).expect_err("forged").to_string().contains("accessor 4 of 0"));
+        assert!(error_of(json).contains("accessor 4 of 0"));
     }
 
     #[test]
-    fn what_the_format_lets_out_may_be_let_out() {
+    fn what_the_format_leaves_out_may_be_left_out() {
         let json = br#"{"asset":{"version":"2.0"},"scenes":[{}],"textures":[{"extras":3}],"extras":[1]}"#;
-        let (root, _) = open(json).expect("a sound file");
-        assert_eq!((root.scenes[0].nodes.len(), root.images.len()), (0, 1));
+        let GltfFile { document, .. } = GltfFile::open(json).expect("a sound file");
+        assert_eq!(document.scenes().map(|scene| scene.nodes().count()).collect::<Vec<_>>(), [0]);
+        assert!(document.textures().all(|texture| texture.source().is_none()));
         for odd in [&b"[]"[..], b"3", br#"{"scenes":3}"#, br#"{"images":{},"textures":[{}]}"#] {
-            assert!(open(odd).is_err());
+            assert!(GltfFile::open(odd).is_err());
         }
     }
 
     #[test]
-    fn what_a_file_cannot_do_without_is_named() {
+    fn an_extension_that_a_file_requires_is_named() {
         let json = br#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_draco_mesh_compression"]}"#;
-        assert!(open(json).expect_err("unsupported").to_string().contains("KHR_draco_mesh_compression"));
-        assert!(open(br#"{"asset":{"version":"1.0"}}"#).is_err());
+        assert!(error_of(json).contains("KHR_draco_mesh_compression"));
+        assert!(GltfFile::open(br#"{"asset":{"version":"1.0"}}"#).is_err());
     }
 }

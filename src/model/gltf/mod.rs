@@ -1,106 +1,108 @@
-//! glTF 2.0 (Khronos, ISO/IEC 12113) as JSON with companions, and as GLB.
+//! glTF 2.0 (Khronos, ISO/IEC 12113:2022) as JSON with companions, and as GLB.
 //!
 //! ```text
 //! bytes ─ container (GLB chunks, JSON, indices checked) ─ data (buffers, URIs)
 //!                                        │                   │
-//!         nodes (where things stand) ────┼── accessor (numbers out of buffers)
-//!                                        └── shape (primitives, skins, materials) ─► Model
+//!                  nodes (transforms) ───┼── accessor (numbers out of buffers)
+//!                                        └── primitive, skin, material ─► Model
 //! ```
 //!
-//! The document is that of the `gltf` crate (1.4.1). Its own accessors and buffer readers panic on forged
-//! indices and lengths, so everything past the JSON is looked up and sliced here, and refused where it does
-//! not hold. What animations would move stands in its rest pose.
+//! The document is that of the `gltf` crate (1.4.1), whose indices are checked before it is used. Models are read in
+//! their rest pose, without animation.
 
 mod accessor;
 mod container;
 mod data;
 mod material;
 mod nodes;
-mod shape;
+mod primitive;
 mod skin;
 
-use ::gltf::json::Root;
-use glam::{Mat4, Vec3};
+use ::gltf::Document;
+use glam::{Mat4, Vec4};
 
 use crate::model::error::ModelError;
 use crate::model::part::PartBuilder;
-use crate::model::{Census, Companions, Model};
+use crate::model::texture::Textures;
+use crate::model::{Companions, Model};
 
+use accessor::AccessorReader;
+use container::GltfFile;
 use data::GltfBuffers;
-use shape::Painter;
+use material::load_materials;
+use nodes::SceneNodes;
+use primitive::MeshReader;
+use skin::MeshPose;
 
 /// From glTF's axes (Y up, front +Z) to ours (Z up, front −Y): (x, −z, y).
-const Z_UP: Mat4 =
-    Mat4 { x_axis: glam::Vec4::X, y_axis: glam::Vec4::Z, z_axis: glam::Vec4::NEG_Y, w_axis: glam::Vec4::W };
+const Z_UP: Mat4 = Mat4::from_cols(Vec4::X, Vec4::Z, Vec4::NEG_Y, Vec4::W);
 
 /// The model in the bytes of a glTF or GLB file.
 ///
 /// # Errors
-/// [`ModelError::Gltf`] and [`ModelError::TooLarge`]. A picture that cannot be had is a note.
+/// [`ModelError::Gltf`] and its like, and [`ModelError::TooLarge`]. A texture that cannot be loaded is a note.
 pub fn read(bytes: &[u8], companions: &dyn Companions) -> Result<Model, ModelError> {
-    let (root, binary) = container::open(bytes)?;
-    let data = GltfBuffers::load(&root, binary, companions);
-    let standing = nodes::standing(&root)?;
+    let GltfFile { document, binary } = GltfFile::open(bytes)?;
+    let buffers = GltfBuffers::load(&document, binary, companions);
+    let scene = SceneNodes::new(&document)?;
     let mut model = Model::default();
-    let mut painter = Painter::new(&root, &data, companions);
-    let mut meshes = 0;
-    let mut seen = vec![false; root.meshes.len()];
-    for index in standing.order.iter().copied() {
-        let node = &root.nodes[index];
-        let Some(mesh) = node.mesh else { continue };
-        let pose = match node.skin {
-            Some(skin) => skin::pose(&root, painter.accessors(), skin.value(), &standing.world_from_node)?,
-            None => skin::Pose::Rigid(Z_UP * standing.world_from_node[index]),
+    let mut textures = Textures::new(companions);
+    let materials = load_materials(&document, &buffers, &mut textures);
+    textures.move_to(&mut model);
+    let mut reader = MeshReader::new(AccessorReader::new(&buffers), materials);
+    let nodes: Vec<_> = document.nodes().collect();
+    let mut is_counted = vec![false; document.meshes().len()];
+    for &index in &scene.order {
+        let node = &nodes[index];
+        let Some(mesh) = node.mesh() else { continue };
+        let pose = match node.skin() {
+            Some(skin) => MeshPose::new(&skin, &reader.accessors, &scene.world_from_node)?,
+            None => MeshPose::Rigid(Z_UP * scene.world_from_node[index]),
         };
-        let name =
-            node.name.as_ref().or(root.meshes[mesh.value()].name.as_ref()).cloned().unwrap_or_default();
-        let mut parts = PartBuilder::new(name);
-        meshes += painter.mesh(
-            mesh.value(),
-            &pose,
-            !std::mem::replace(&mut seen[mesh.value()], true),
-            &mut parts,
-        )?;
+        let mut parts = PartBuilder::new(node.name().or(mesh.name()).unwrap_or_default());
+        let counts = reader.add_mesh(&mesh, &pose, &mut parts)?;
         model.parts.extend(parts.finish());
+        model.census.meshes += counts.primitives;
+        if !std::mem::replace(&mut is_counted[mesh.index()], true) {
+            model.census.vertices += counts.vertices;
+            model.census.faces += counts.triangles;
+        }
     }
-    note_what_is_left_out(&root, &mut model.notes);
-    let (counted, materials, textures, notes) = painter.finish();
-    model.census = Census { meshes, materials: root.materials.len(), ..counted };
-    model.materials = materials;
-    model.textures = textures;
-    model.notes.extend(notes);
+    model.census.materials = document.materials().len();
+    model.materials = reader.materials.into_iter().map(|material| material.material).collect();
+    model.notes.extend(reader.notes);
+    note_omissions(&document, &mut model.notes);
     Ok(model)
 }
 
-fn note_what_is_left_out(root: &Root, notes: &mut Vec<String>) {
-    for name in container::unread_extensions(root) {
-        notes.push(format!("extension {name} is not read; what it adds is not drawn"));
+fn note_omissions(document: &Document, notes: &mut Vec<String>) {
+    for name in document.extensions_used().filter(|name| container::is_unsupported(name)) {
+        notes.push(format!("extension {name} is not supported; what it adds is not drawn"));
     }
-    if !root.animations.is_empty() {
-        notes.push(format!("{} animations are not played; the rest pose is drawn", root.animations.len()));
+    let animations = document.animations().len();
+    if animations > 0 {
+        notes.push(format!("{animations} animations are not played; the rest pose is drawn"));
     }
-    let moves = |weights: &Option<Vec<f32>>| weights.iter().flatten().any(|&weight| weight != 0.0);
-    if root.meshes.iter().any(|mesh| moves(&mesh.weights))
-        || root.nodes.iter().any(|node| moves(&node.weights))
+    let moves = |weights: Option<&[f32]>| weights.into_iter().flatten().any(|&weight| weight != 0.0);
+    if document.meshes().any(|mesh| moves(mesh.weights()))
+        || document.nodes().any(|node| moves(node.weights()))
     {
         notes.push("morph targets are not drawn".into());
     }
 }
 
-/// A vector turned by `matrix`, of unit length; `fallback` where nothing is left of it.
-fn turned(matrix: &glam::Mat3, vector: Vec3, fallback: Vec3) -> Vec3 {
-    (*matrix * vector).try_normalize().unwrap_or(fallback)
-}
-
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
+    use crate::model::error::CompanionError;
 
-    struct Nothing;
+    struct NoCompanions;
 
-    impl Companions for Nothing {
-        fn load(&self, name: &str) -> Result<Vec<u8>, String> {
-            Err(format!("there is no {name}"))
+    impl Companions for NoCompanions {
+        fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError> {
+            Err(format!("there is no {name}").into())
         }
     }
 
@@ -120,19 +122,20 @@ mod tests {
                 "attributes":{{"POSITION":0,"TEXCOORD_0":1,"COLOR_0":0}}}}]}}]}}"#,
             bytes.concat()
         );
-        read(json.as_bytes(), &Nothing)
+        read(json.as_bytes(), &NoCompanions)
     }
 
     #[test]
-    fn a_mesh_stands_wherever_a_node_names_it() {
+    fn a_mesh_is_drawn_at_every_node_that_names_it() {
         let nodes = r#"{"mesh":0},{"mesh":0,"translation":[10,0,0],"scale":[2,2,2]}"#;
         let model = triangle("{}", nodes, "").expect("sound");
         assert_eq!((model.parts.len(), model.triangle_count(), model.census.faces), (2, 2, 1));
-        assert_eq!(model.bounds(), Some((Vec3::ZERO, Vec3::new(12.0, 0.0, 2.0))));
+        let bounds = model.bounds().expect("six vertices");
+        assert_eq!((bounds.min, bounds.max), (Vec3::ZERO, Vec3::new(12.0, 0.0, 2.0)));
     }
 
     #[test]
-    fn texture_coordinates_are_scaled_turned_and_moved_as_the_material_says() {
+    fn texture_coordinates_are_transformed_as_the_material_says() {
         let transform = r#"{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":
             {"KHR_texture_transform":{"offset":[0.5,0.25],"rotation":1.5707963,"scale":[2,4]}}}}}"#;
         let model = triangle(transform, r#"{"mesh":0}"#, "").expect("sound");
@@ -157,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn an_extension_that_is_not_read_is_named_or_refused_where_it_is_needed() {
+    fn an_unsupported_extension_is_noted_or_refused_where_it_is_required() {
         let name = "EXT_mesh_gpu_instancing";
         let used = format!(r#""extensionsUsed":["{name}","KHR_materials_unlit"],"#);
         let model = triangle("{}", r#"{"mesh":0}"#, &used).expect("sound");

@@ -1,25 +1,46 @@
 //! Skins in their rest pose.
 
-use ::gltf::json::Root;
+use ::gltf::Skin;
 use glam::{Mat4, Vec4};
 
 use crate::model::error::ModelError;
 
 use super::Z_UP;
-use super::accessor::Accessors;
+use super::accessor::AccessorReader;
 
-/// How a mesh is brought to the world, Z up.
-pub(super) enum Pose {
-    /// All of it alike.
+/// From a mesh to the world, Z up.
+pub(super) enum MeshPose {
+    /// One transform for all vertices.
     Rigid(Mat4),
-    /// Every vertex by the joints it hangs on.
+    /// A transform for each joint.
     Skinned(Vec<Mat4>),
 }
 
-impl Pose {
-    /// The transform of a vertex with these joints and weights; a skinned vertex that hangs on nothing stays
-    /// where it is stored.
-    pub(super) fn of_vertex(&self, joints: Option<[f32; 4]>, weights: Option<[f32; 4]>) -> Mat4 {
+impl MeshPose {
+    /// The rest pose of `skin`.
+    ///
+    /// # Errors
+    /// [`ModelError`] where its matrices cannot be read.
+    pub(super) fn new(
+        skin: &Skin<'_>,
+        accessors: &AccessorReader<'_>,
+        world_from_node: &[Mat4],
+    ) -> Result<Self, ModelError> {
+        accessors.charge(skin.joints().count())?;
+        let inverse_binds = match skin.inverse_bind_matrices() {
+            Some(accessor) => accessors.vectors::<16>(&accessor)?,
+            None => Vec::new(),
+        };
+        let joints = skin.joints().enumerate().map(|(place, joint)| {
+            let inverse_bind = inverse_binds.get(place).map_or(Mat4::IDENTITY, Mat4::from_cols_array);
+            Z_UP * world_from_node[joint.index()] * inverse_bind
+        });
+        Ok(Self::Skinned(joints.collect()))
+    }
+
+    /// The transform of a vertex with these joints and weights; a skinned vertex without weights stays where it is
+    /// stored.
+    pub(super) fn world_from_vertex(&self, joints: Option<[f32; 4]>, weights: Option<[f32; 4]>) -> Mat4 {
         match self {
             Self::Rigid(matrix) => *matrix,
             Self::Skinned(matrices) => {
@@ -35,27 +56,4 @@ impl Pose {
             }
         }
     }
-}
-
-/// The rest pose of skin `index`.
-///
-/// # Errors
-/// [`ModelError::Gltf`] where its matrices do not hold what they state; [`ModelError::TooLarge`].
-pub(super) fn pose(
-    root: &Root,
-    accessors: &Accessors<'_>,
-    index: usize,
-    world_from_node: &[Mat4],
-) -> Result<Pose, ModelError> {
-    let skin = &root.skins[index];
-    accessors.charge(skin.joints.len())?;
-    let inverse_binds = match skin.inverse_bind_matrices {
-        Some(accessor) => accessors.vectors::<16>(accessor.value())?,
-        None => Vec::new(),
-    };
-    let joints = skin.joints.iter().enumerate().map(|(place, joint)| {
-        let inverse_bind = inverse_binds.get(place).map_or(Mat4::IDENTITY, Mat4::from_cols_array);
-        Z_UP * world_from_node[joint.value()] * inverse_bind
-    });
-    Ok(Pose::Skinned(joints.collect()))
 }

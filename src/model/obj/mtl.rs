@@ -1,31 +1,28 @@
-//! Material libraries: what is read is the name, the diffuse color, the opacity and the maps of both.
+//! Material libraries: names, diffuse colors, opacities and the maps of both.
 
-use super::plain::number;
-use super::text::logical_lines;
+use super::text::{logical_lines, number, split_keyword};
 
-/// A material as stated.
+/// A material as stored.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Stated {
+pub(super) struct MtlMaterial {
     pub name: String,
-    /// Diffuse color, in 0..=1 as authored (sRGB).
+    /// The diffuse color: sRGB in 0..=1.
     pub diffuse: [f32; 3],
     /// 1 is opaque.
     pub opacity: f32,
-    /// The diffuse map's file, options taken off.
+    /// The file of the diffuse map.
     pub map: Option<String>,
-    /// The opacity map's file, options taken off; often the diffuse map's.
+    /// The file of the opacity map; often the diffuse map's.
     pub opacity_map: Option<String>,
 }
 
-/// The materials of a library, in order. Statements that are not understood are passed over.
-pub(super) fn parse(text: &str) -> Vec<Stated> {
-    let mut materials: Vec<Stated> = Vec::new();
+/// The materials of a library, in order. Unknown statements are ignored.
+pub(super) fn parse(text: &str) -> Vec<MtlMaterial> {
+    let mut materials: Vec<MtlMaterial> = Vec::new();
     for (_, line) in logical_lines(text) {
-        let line = line.trim();
-        let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
-        let rest = rest.trim();
+        let (keyword, rest) = split_keyword(&line);
         if keyword == "newmtl" {
-            materials.push(Stated {
+            materials.push(MtlMaterial {
                 name: rest.into(),
                 diffuse: [0.8; 3],
                 opacity: 1.0,
@@ -33,25 +30,26 @@ pub(super) fn parse(text: &str) -> Vec<Stated> {
                 opacity_map: None,
             });
         } else if let Some(material) = materials.last_mut() {
-            state(material, keyword, rest);
+            set(material, keyword, rest);
         }
     }
     materials
 }
 
-fn state(material: &mut Stated, keyword: &str, rest: &str) {
+fn set(material: &mut MtlMaterial, keyword: &str, rest: &str) {
     let first = || rest.split_whitespace().next().map(number).filter(|value| value.is_finite());
+    let file = || Some(without_options(rest)).filter(|file| !file.is_empty());
     match keyword {
         "Kd" => material.diffuse = color(rest).unwrap_or(material.diffuse),
         "d" => material.opacity = first().unwrap_or(1.0).clamp(0.0, 1.0),
         "Tr" => material.opacity = 1.0 - first().unwrap_or(0.0).clamp(0.0, 1.0),
-        "map_Kd" => material.map = Some(without_options(rest)).filter(|file| !file.is_empty()),
-        "map_d" => material.opacity_map = Some(without_options(rest)).filter(|file| !file.is_empty()),
+        "map_Kd" => material.map = file(),
+        "map_d" => material.opacity_map = file(),
         _ => {}
     }
 }
 
-/// Three values, or one for all; `None` for `spectral` and `xyz` colors.
+/// Three values, or one for all three; `None` for `spectral` and `xyz` colors.
 fn color(rest: &str) -> Option<[f32; 3]> {
     let values: Vec<f32> =
         rest.split_whitespace().map(number).take_while(|value| value.is_finite()).take(3).collect();
@@ -75,7 +73,7 @@ fn without_options(rest: &str) -> String {
         };
         for count in 0..most {
             let Some((value, after)) = words.split_once(char::is_whitespace) else { break };
-            // Offsets, scales and turbulence may state fewer than three numbers.
+            // Offsets, scales and turbulence may have fewer than three numbers.
             if count > 0 && value.parse::<f32>().is_err() {
                 break;
             }
@@ -90,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn options_are_taken_off_and_spaces_kept() {
+    fn options_are_removed_and_spaces_kept() {
         for (rest, file) in [
             ("texture 01.png", "texture 01.png"),
             ("-o 0.1 diffuse.jpg", "diffuse.jpg"),
@@ -104,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn odd_statements_do_not_lose_the_library() {
+    fn odd_statements_are_skipped_and_the_library_is_kept() {
         let text =
             "Kd 1 0 0\nnewmtl a b\n  Kd 0.5\n d 0.25\nKd spectral x.rfl\nnewmtl c\nTr 0.25\nmap_Kd\nilum";
         let materials = parse(text);

@@ -1,8 +1,8 @@
 //! A 3DS file's objects, materials and nodes to a [`Model`].
 //!
-//! The way of a vertex, stored in the editor's world: into its object's own axes (the inverse of the mesh
-//! matrix; mirrored along X where that matrix mirrors, which is how 3D Studio stores mirrored objects),
-//! relative to its node's pivot, and out through the node. An object without a node stays as stored.
+//! Vertices are stored in the editor's world. They go to their object's axes (the inverse of the mesh matrix, mirrored
+//! along X where that matrix mirrors: 3D Studio stores mirrored objects so), from there relative to the node's pivot,
+//! and out through the node. An object without a node stays as stored.
 
 use std::collections::BTreeMap;
 
@@ -10,76 +10,74 @@ use glam::{Mat4, Vec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::draw::list::MaterialId;
-use crate::draw::material::{AlphaMode, Material};
+use crate::draw::material::Material;
 use crate::model::error::ModelError;
+use crate::model::material::{MappedMaterial, unnamed_material};
 use crate::model::normals::{Smoothing, corner_normals};
-use crate::model::part::{Budget, ModelCorner, PartBuilder};
+use crate::model::part::{ModelCorner, PartBuilder, TriangleBudget};
 use crate::model::texture::Textures;
 use crate::model::{Census, Companions, Model};
 
 use super::ThreeDsFile;
 use super::keyframer::world_from_nodes;
-use super::material::{Map, MaterialChunk};
+use super::material::{MapChunk, MaterialChunk};
 use super::mesh::TriObject;
 
-/// How texture coordinates of a material are changed before use.
+/// How a map changes texture coordinates.
 #[derive(Clone, Copy, Debug)]
 struct MapUvTransform {
     scale: Vec2,
     offset: Vec2,
-    /// Cosine and sine of the picture's turn about the middle of the square of coordinates.
-    turn: Vec2,
+    /// Cosine and sine of the rotation about the middle of the unit square.
+    rotation: Vec2,
 }
 
 impl MapUvTransform {
-    const NONE: Self = Self { scale: Vec2::ONE, offset: Vec2::ZERO, turn: Vec2::X };
+    const IDENTITY: Self = Self { scale: Vec2::ONE, offset: Vec2::ZERO, rotation: Vec2::X };
 
-    fn of(map: &Map) -> Self {
-        let (sin, cos) = libm::sincosf(map.turn_rad);
-        Self { scale: map.scale, offset: map.offset, turn: Vec2::new(cos, sin) }
+    fn new(map: &MapChunk) -> Self {
+        let (sin, cos) = libm::sincosf(map.rotation_rad);
+        Self { scale: map.scale, offset: map.offset, rotation: Vec2::new(cos, sin) }
     }
 
     /// From V upward to V downward.
     fn apply(self, uv: Vec2) -> Vec2 {
         let uv = uv * self.scale + self.offset;
-        let from_middle = uv - 0.5;
-        // Where the picture turns one way, places on it are found by turning the other.
-        let turned = || Vec2::new(self.turn.x, -self.turn.y).rotate(from_middle) + 0.5;
-        let uv = if self.turn == Vec2::X { uv } else { turned() };
+        // Coordinates rotate against the picture.
+        let rotated = || Vec2::new(self.rotation.x, -self.rotation.y).rotate(uv - 0.5) + 0.5;
+        let uv = if self.rotation == Vec2::X { uv } else { rotated() };
         Vec2::new(uv.x, 1.0 - uv.y)
     }
 }
 
-/// What faces need to know of the file's materials.
+/// The file's materials, for faces.
 #[derive(Debug, Default)]
 struct Palette<'a> {
     by_name: BTreeMap<&'a str, usize>,
-    changes: Vec<MapUvTransform>,
+    uv_transforms: Vec<MapUvTransform>,
 }
 
 /// The model of a parsed file.
-pub(super) fn assemble(file: ThreeDsFile, companions: &dyn Companions) -> Result<Model, ModelError> {
+pub(super) fn assemble(file: &ThreeDsFile, companions: &dyn Companions) -> Result<Model, ModelError> {
     let mut textures = Textures::new(companions);
-    let mut model = Model { census: census(&file), ..Model::default() };
+    let mut model = Model { census: census(file), ..Model::default() };
     let mut palette = Palette::default();
-    for (index, described) in file.materials.iter().enumerate() {
-        let (material, change) = translate(described, &mut textures);
-        model.materials.push(material);
-        palette.changes.push(change);
-        palette.by_name.entry(&described.name).or_insert(index);
+    for (index, stored) in file.materials.iter().enumerate() {
+        model.materials.push(translate(stored, &mut textures));
+        let map = stored.map.as_ref().or(stored.opacity_map.as_ref());
+        palette.uv_transforms.push(map.map_or(MapUvTransform::IDENTITY, MapUvTransform::new));
+        palette.by_name.entry(&stored.name).or_insert(index);
     }
-    let mut budget = Budget::default();
+    let mut budget = TriangleBudget::default();
     let mut dropped = 0;
-    for (object, world_from_stored) in placed(&file) {
-        budget.take(object.faces.len().max(object.positions.len()))?;
-        dropped += draw(object, world_from_stored, &palette, &mut model);
+    for placed in placed_objects(file) {
+        budget.take(placed.object.faces.len().max(placed.object.positions.len()))?;
+        dropped += placed.add_to(&mut model, &palette);
     }
     if dropped > 0 {
-        model.notes.push(format!("{dropped} faces name a vertex that is not there or not finite"));
+        model.notes.push(format!("{dropped} faces have a vertex that is missing or not finite"));
     }
-    let (pixels, notes) = textures.finish();
-    model.textures = pixels;
-    model.notes.extend(notes);
+    textures.move_to(&mut model);
     Ok(model)
 }
 
@@ -92,33 +90,30 @@ fn census(file: &ThreeDsFile) -> Census {
     }
 }
 
-fn translate(described: &MaterialChunk, textures: &mut Textures<'_>) -> (Material, MapUvTransform) {
-    let [painted, mask] = [&described.map, &described.opacity_map]
-        .map(|map| map.as_ref().and_then(|map| textures.by_name(&map.file)));
-    // 3D Studio paints the map over the diffuse color.
-    let mut base_color = if painted.is_some() { Srgba::WHITE } else { described.diffuse };
-    let texture = mask.map_or(painted, |mask| textures.masked(painted, mask));
-    base_color.0[3] = 255 - (described.transparency * 255.0 + 0.5) as u8;
-    let alpha = match texture {
-        _ if base_color.0[3] < 255 => AlphaMode::Blend,
-        Some(id) if textures.is_cut_out(id) => AlphaMode::Mask(0.5),
-        _ => AlphaMode::Opaque,
+fn translate(stored: &MaterialChunk, textures: &mut Textures<'_>) -> Material {
+    let file = |map: &'_ Option<MapChunk>| map.as_ref().map(|map| map.file.clone());
+    let (map, opacity_map) = (file(&stored.map), file(&stored.opacity_map));
+    let mapped = MappedMaterial {
+        name: &stored.name,
+        color: stored.diffuse,
+        // 3D Studio paints the map over the diffuse color.
+        color_under_map: Srgba::WHITE,
+        alpha: 255 - (stored.transparency * 255.0 + 0.5) as u8,
+        map: map.as_deref(),
+        opacity_map: opacity_map.as_deref(),
+        two_sided: stored.two_sided,
     };
-    let material = Material {
-        name: described.name.clone(),
-        base_color,
-        texture,
-        alpha,
-        two_sided: described.two_sided,
-        ..Material::default()
-    };
-    let laid = described.map.as_ref().or(described.opacity_map.as_ref());
-    let change = laid.map_or(MapUvTransform::NONE, MapUvTransform::of);
-    (material, change)
+    mapped.load(textures)
 }
 
-/// Every object with every place it stands in.
-fn placed(file: &ThreeDsFile) -> Vec<(&TriObject, Mat4)> {
+/// An object in one of its places.
+struct PlacedObject<'a> {
+    object: &'a TriObject,
+    world_from_stored: Mat4,
+}
+
+/// Every object in every place that a node gives it.
+fn placed_objects(file: &ThreeDsFile) -> Vec<PlacedObject<'_>> {
     let mut by_name = BTreeMap::new();
     for (index, object) in file.objects.iter().enumerate() {
         by_name.entry(object.name.as_str()).or_insert(index);
@@ -129,82 +124,73 @@ fn placed(file: &ThreeDsFile) -> Vec<(&TriObject, Mat4)> {
         if let Some(&index) = by_name.get(node.object.as_str()) {
             has_node[index] = true;
             let object = &file.objects[index];
-            let node_from_stored = Mat4::from_translation(-node.pivot) * own_from_stored(object);
-            placed.push((object, world_from_node * node_from_stored));
+            let node_from_stored = Mat4::from_translation(-node.pivot) * object_from_stored(object);
+            placed.push(PlacedObject { object, world_from_stored: world_from_node * node_from_stored });
         }
     }
     let loose = file.objects.iter().zip(has_node).filter(|&(_, has_node)| !has_node);
-    placed.extend(loose.map(|(object, _)| (object, Mat4::IDENTITY)));
+    placed.extend(loose.map(|(object, _)| PlacedObject { object, world_from_stored: Mat4::IDENTITY }));
     placed
 }
 
-fn own_from_stored(object: &TriObject) -> Mat4 {
-    let determinant = object.world_from_own.determinant();
+fn object_from_stored(object: &TriObject) -> Mat4 {
+    let determinant = object.world_from_object.determinant();
     if !determinant.is_finite() || determinant == 0.0 {
         return Mat4::IDENTITY;
     }
-    let mirrored = if determinant < 0.0 { Vec3::new(-1.0, 1.0, 1.0) } else { Vec3::ONE };
-    Mat4::from_scale(mirrored) * object.world_from_own.inverse()
+    let mirror = if determinant < 0.0 { Vec3::new(-1.0, 1.0, 1.0) } else { Vec3::ONE };
+    Mat4::from_scale(mirror) * object.world_from_object.inverse()
 }
 
-/// Adds an object's parts to the model; returns how many faces could not be drawn.
-fn draw(object: &TriObject, world_from_stored: Mat4, palette: &Palette<'_>, model: &mut Model) -> usize {
-    let positions: Vec<Vec3> =
-        object.positions.iter().map(|&position| world_from_stored.transform_point3(position)).collect();
-    let drawn: Vec<usize> = (0..object.faces.len())
-        .filter(|&face| {
-            object.faces[face]
-                .iter()
-                .all(|&id| positions.get(usize::from(id)).is_some_and(|position| position.is_finite()))
-        })
-        .collect();
-    let mirrors = world_from_stored.determinant() < 0.0;
-    let triangles: Vec<[u32; 3]> = drawn
-        .iter()
-        .map(|&face| {
+impl PlacedObject<'_> {
+    /// Adds the object's parts to the model; returns how many faces could not be drawn.
+    fn add_to(&self, model: &mut Model, palette: &Palette<'_>) -> usize {
+        let Self { object, world_from_stored } = self;
+        let positions: Vec<Vec3> =
+            object.positions.iter().map(|&position| world_from_stored.transform_point3(position)).collect();
+        let is_drawable = |id: &u16| positions.get(usize::from(*id)).is_some_and(|at| at.is_finite());
+        let drawn: Vec<usize> =
+            (0..object.faces.len()).filter(|&face| object.faces[face].iter().all(is_drawable)).collect();
+        let mirrors = world_from_stored.determinant() < 0.0;
+        let triangle = |&face: &usize| {
             let [a, b, c] = object.faces[face].map(u32::from);
             if mirrors { [a, c, b] } else { [a, b, c] }
-        })
-        .collect();
-    let normals = corner_normals_of(object, &drawn, &positions, &triangles);
-    let materials = materials_of(object, palette, model);
-    let mut parts = PartBuilder::new(&object.name);
-    for ((&face, ids), normals) in drawn.iter().zip(&triangles).zip(&normals) {
-        let material = materials[face];
-        let change = palette.changes.get(material.0 as usize).copied().unwrap_or(MapUvTransform::NONE);
-        let corner = |corner: usize| {
-            let id = ids[corner] as usize;
-            let uv =
-                object.uvs.get(id).filter(|uv| uv.is_finite()).map_or(Vec2::ZERO, |&uv| change.apply(uv));
-            ModelCorner { position: positions[id], normal: normals[corner], uv, color: Srgba::WHITE }
         };
-        parts.triangle(material, [corner(0), corner(1), corner(2)]);
+        let triangles: Vec<[u32; 3]> = drawn.iter().map(triangle).collect();
+        let group = |&face: &usize| object.smoothing.get(face).copied().unwrap_or(0);
+        let groups: Vec<u32> = drawn.iter().map(group).collect();
+        let smoothing =
+            if object.smoothing.is_empty() { Smoothing::Flat } else { Smoothing::Groups(&groups) };
+        let normals = corner_normals(&positions, &triangles, smoothing);
+        let materials = face_materials(object, palette, model);
+        let mut parts = PartBuilder::new(&object.name);
+        for ((&face, ids), normals) in drawn.iter().zip(&triangles).zip(&normals) {
+            let material = materials[face];
+            let uv_transform = palette.uv_transforms.get(material.0 as usize);
+            let uv_transform = uv_transform.copied().unwrap_or(MapUvTransform::IDENTITY);
+            let corner = |place: usize| {
+                let id = ids[place] as usize;
+                let uv = object.uvs.get(id).filter(|uv| uv.is_finite());
+                let uv = uv.map_or(Vec2::ZERO, |&uv| uv_transform.apply(uv));
+                ModelCorner { position: positions[id], normal: normals[place], uv, color: Srgba::WHITE }
+            };
+            parts.triangle(material, [corner(0), corner(1), corner(2)]);
+        }
+        model.parts.extend(parts.finish());
+        object.faces.len() - drawn.len()
     }
-    model.parts.extend(parts.finish());
-    object.faces.len() - drawn.len()
 }
 
-fn corner_normals_of(
-    object: &TriObject,
-    drawn: &[usize],
-    positions: &[Vec3],
-    triangles: &[[u32; 3]],
-) -> Vec<[Vec3; 3]> {
-    let masks: Vec<u32> =
-        drawn.iter().map(|&face| object.smoothing.get(face).copied().unwrap_or(0)).collect();
-    let smoothing = if object.smoothing.is_empty() { Smoothing::Flat } else { Smoothing::Groups(&masks) };
-    corner_normals(positions, triangles, smoothing)
-}
-
-/// The material of every face; faces without one share a default that is added where needed.
-fn materials_of(object: &TriObject, palette: &Palette<'_>, model: &mut Model) -> Vec<MaterialId> {
+/// The material of every face. Faces without one share a default, which is added where it is needed.
+fn face_materials(object: &TriObject, palette: &Palette<'_>, model: &mut Model) -> Vec<MaterialId> {
     let mut ids: Vec<Option<MaterialId>> = vec![None; object.faces.len()];
-    for (name, faces) in &object.groups {
+    for group in &object.groups {
+        let name = &group.material;
         let Some(&material) = palette.by_name.get(name.as_str()) else {
             model.notes.push(format!("material '{name}' is used by '{}' but not defined", object.name));
             continue;
         };
-        for &face in faces {
+        for &face in &group.faces {
             if let Some(id) = ids.get_mut(usize::from(face)) {
                 *id = Some(MaterialId(material as u32));
             }
@@ -214,16 +200,11 @@ fn materials_of(object: &TriObject, palette: &Palette<'_>, model: &mut Model) ->
     ids.into_iter().map(|id| id.or(default).unwrap_or(MaterialId(0))).collect()
 }
 
-/// What is drawn where a file names no material: light gray, both sides.
 fn default_material(model: &mut Model) -> MaterialId {
-    let name = "(no material)";
-    let index = model.materials.iter().position(|material| material.name == name).unwrap_or_else(|| {
-        model.materials.push(Material {
-            name: name.into(),
-            base_color: Srgba::opaque(190, 190, 190),
-            two_sided: true,
-            ..Material::default()
-        });
+    const NAME: &str = "(no material)";
+    let known = model.materials.iter().position(|material| material.name == NAME);
+    let index = known.unwrap_or_else(|| {
+        model.materials.push(unnamed_material(NAME));
         model.materials.len() - 1
     });
     MaterialId(index as u32)
@@ -235,20 +216,20 @@ mod tests {
 
     #[test]
     fn a_map_turned_by_a_right_angle_shows_its_lower_left_corner_at_the_lower_right() {
-        let map = Map {
+        let map = MapChunk {
             file: String::new(),
             scale: Vec2::ONE,
             offset: Vec2::ZERO,
-            turn_rad: std::f32::consts::FRAC_PI_2,
+            rotation_rad: std::f32::consts::FRAC_PI_2,
         };
-        let lower_left = MapUvTransform::NONE.apply(Vec2::ZERO);
-        assert!(MapUvTransform::of(&map).apply(Vec2::X).abs_diff_eq(lower_left, 1e-6));
+        let lower_left = MapUvTransform::IDENTITY.apply(Vec2::ZERO);
+        assert!(MapUvTransform::new(&map).apply(Vec2::X).abs_diff_eq(lower_left, 1e-6));
     }
 
     #[test]
     fn an_unturned_map_keeps_every_bit_of_common_coordinates() {
         for uv in [Vec2::ZERO, Vec2::new(0.25, 0.75), Vec2::ONE] {
-            assert_eq!(MapUvTransform::NONE.apply(uv), Vec2::new(uv.x, 1.0 - uv.y));
+            assert_eq!(MapUvTransform::IDENTITY.apply(uv), Vec2::new(uv.x, 1.0 - uv.y));
         }
     }
 }

@@ -1,10 +1,10 @@
-//! Chunks and a cursor over a chunk's body; every length is checked against what holds it.
+//! Chunks, and a cursor over a chunk's body; every length is checked against its parent's.
 
 use glam::Vec3;
 
 use crate::model::error::ModelError;
 
-/// Length of a chunk's header: id and length.
+/// Bytes of a chunk's header: id and length.
 const HEADER: usize = 6;
 
 /// A chunk: `id: u16, length: u32` (header included), then its body.
@@ -12,19 +12,19 @@ const HEADER: usize = 6;
 pub(super) struct Chunk<'a> {
     pub id: u16,
     body: &'a [u8],
-    /// Where the body begins in the file.
+    /// The offset of the body in the file.
     offset: usize,
 }
 
 impl<'a> Chunk<'a> {
-    /// The chunk a file begins with.
+    /// The chunk at the start of a file.
     pub(super) fn first(bytes: &'a [u8]) -> Result<Self, ModelError> {
         ChunkCursor { bytes, offset: 0 }
             .chunk()?
-            .ok_or_else(|| ModelError::three_ds(0, "it ends before its first chunk"))
+            .ok_or_else(|| ModelError::three_ds(0, "the file ends before its first chunk"))
     }
 
-    /// The chunks in the body, for a chunk that holds nothing else.
+    /// The chunks in the body, for a chunk that has nothing else.
     pub(super) fn children(&self) -> impl Iterator<Item = Result<Chunk<'a>, ModelError>> + use<'a> {
         self.read().chunks()
     }
@@ -46,7 +46,7 @@ impl<'a> ChunkCursor<'a> {
     fn take<const N: usize>(&mut self) -> Result<[u8; N], ModelError> {
         let (head, rest) = self.bytes.split_first_chunk::<N>().ok_or_else(|| {
             let left = self.bytes.len();
-            ModelError::three_ds(self.offset, format!("a value of {N} bytes begins where {left} are left"))
+            ModelError::three_ds(self.offset, format!("a value has {left} of {N} bytes"))
         })?;
         self.bytes = rest;
         self.offset += N;
@@ -73,13 +73,13 @@ impl<'a> ChunkCursor<'a> {
         Ok(Vec3::new(self.f32()?, self.f32()?, self.f32()?))
     }
 
-    /// A text that ends with a zero byte; Latin-1, so that no byte is lost.
+    /// A text that ends with a zero byte, as Latin-1.
     pub(super) fn text(&mut self) -> Result<String, ModelError> {
         let length = self
             .bytes
             .iter()
             .position(|&byte| byte == 0)
-            .ok_or_else(|| ModelError::three_ds(self.offset, "a name does not end within its chunk"))?;
+            .ok_or_else(|| ModelError::three_ds(self.offset, "a name does not end in its chunk"))?;
         let text = self.bytes[..length].iter().map(|&byte| char::from(byte)).collect();
         self.skip(length + 1)?;
         Ok(text)
@@ -89,28 +89,27 @@ impl<'a> ChunkCursor<'a> {
         self.bytes = self
             .bytes
             .get(count..)
-            .ok_or_else(|| ModelError::three_ds(self.offset, "a chunk ends within its fixed part"))?;
+            .ok_or_else(|| ModelError::three_ds(self.offset, "a chunk ends in its fixed part"))?;
         self.offset += count;
         Ok(())
     }
 
-    /// `count` values of `size` bytes each, counted before anything is allocated.
+    /// `count` values of `size` bytes each; their length is checked before memory is allocated.
     pub(super) fn list<T>(
         &mut self,
         count: usize,
         size: usize,
-        mut one: impl FnMut(&mut Self) -> Result<T, ModelError>,
+        mut read: impl FnMut(&mut Self) -> Result<T, ModelError>,
     ) -> Result<Vec<T>, ModelError> {
         let left = self.bytes.len();
         if count.checked_mul(size).is_none_or(|needed| needed > left) {
-            let reason = format!("{count} values of {size} bytes are announced where {left} bytes are left");
+            let reason = format!("{count} values of {size} bytes are stated, but {left} bytes are left");
             return Err(ModelError::three_ds(self.offset, reason));
         }
-        (0..count).map(|_| one(self)).collect()
+        (0..count).map(|_| read(self)).collect()
     }
 
-    /// The chunks from here to the end of the body. Fewer bytes than a header at the end are passed over,
-    /// as other readers do.
+    /// The chunks up to the end of the body. Fewer bytes than a header at the end are ignored, as in other readers.
     pub(super) fn chunks(mut self) -> impl Iterator<Item = Result<Chunk<'a>, ModelError>> + use<'a> {
         std::iter::from_fn(move || {
             let next = self.chunk().transpose();
@@ -129,10 +128,8 @@ impl<'a> ChunkCursor<'a> {
         let (id, length) = (self.u16()?, self.u32()? as usize);
         let left = self.bytes.len();
         let Some(body) = length.checked_sub(HEADER).and_then(|length| self.bytes.get(..length)) else {
-            let reason = format!(
-                "chunk {id:04X} says it is {length} bytes long where its parent has {}",
-                left + HEADER
-            );
+            let left = left + HEADER;
+            let reason = format!("chunk {id:04X} states {length} bytes, but its parent has {left} left");
             return Err(ModelError::three_ds(start, reason));
         };
         let chunk = Chunk { id, body, offset: self.offset };
@@ -152,7 +149,7 @@ mod tests {
     fn a_child_lies_within_its_parent() {
         let chunk = Chunk::first(&NESTED).expect("a chunk");
         let child = chunk.children().next().expect("one child").expect("a sound child");
-        assert_eq!((chunk.id, child.id, child.read().u8()), (1, 2, Ok(7)));
+        assert_eq!((chunk.id, child.id, child.read().u8().expect("one byte")), (1, 2, 7));
     }
 
     #[test]
@@ -171,13 +168,13 @@ mod tests {
         let mut cursor = Chunk::first(&NESTED).expect("a chunk").read();
         assert!(cursor.list(usize::MAX, 12, ChunkCursor::vec3).is_err());
         assert!(cursor.list(8, 1, ChunkCursor::u8).is_err());
-        assert_eq!(cursor.list(7, 1, ChunkCursor::u8).map(|bytes| bytes.len()), Ok(7));
+        assert_eq!(cursor.list(7, 1, ChunkCursor::u8).expect("seven bytes").len(), 7);
     }
 
     #[test]
     fn a_name_without_an_end_is_refused() {
         let mut cursor = ChunkCursor { bytes: b"ab\0cd", offset: 0 };
-        assert_eq!(cursor.text(), Ok("ab".into()));
+        assert_eq!(cursor.text().expect("ended"), "ab");
         assert!(cursor.text().is_err());
     }
 }

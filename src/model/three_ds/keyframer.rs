@@ -1,6 +1,6 @@
-//! The keyframer's tree of nodes: which object stands where at frame 0.
+//! The keyframer's tree of nodes: the pose of every object at frame 0.
 //!
-//! A node moves its object by `translation · rotation · scale` of its first keys, within its parent.
+//! A node moves its object by `translation · rotation · scale` of its first keys, in its parent's space.
 
 use glam::{Mat4, Quat, Vec3};
 
@@ -8,7 +8,7 @@ use crate::model::error::ModelError;
 
 use super::chunk::{Chunk, ChunkCursor};
 
-/// No parent.
+/// The id that means no parent.
 const NO_PARENT: u16 = 0xFFFF;
 
 /// An object node as stored.
@@ -16,9 +16,9 @@ const NO_PARENT: u16 = 0xFFFF;
 pub(super) struct KeyframeNode {
     id: u16,
     parent: u16,
-    /// The name of its object; `$$$DUMMY` for a node that only moves others.
+    /// The name of its object; `$$$DUMMY` for a node without one.
     pub object: String,
-    /// The point of the object, in its own axes, that the node moves and turns about.
+    /// The point, in the object's axes, that the node moves and rotates about.
     pub pivot: Vec3,
     parent_from_node: Mat4,
 }
@@ -30,7 +30,7 @@ pub(super) fn parse(chunk: &Chunk<'_>) -> Result<Vec<KeyframeNode>, ModelError> 
     for part in chunk.children() {
         let part = part?;
         if part.id == OBJECT_NODE {
-            // Files of the first version have no ids; their parents count nodes.
+            // Files of the first version have no ids; their parents are indices of nodes.
             let next = u16::try_from(nodes.len()).unwrap_or(NO_PARENT);
             nodes.push(node(&part, next)?);
         }
@@ -52,7 +52,7 @@ fn node(chunk: &Chunk<'_>, id: u16) -> Result<KeyframeNode, ModelError> {
         pivot: Vec3::ZERO,
         parent_from_node: Mat4::IDENTITY,
     };
-    let (mut position, mut rotation, mut scale) = (Vec3::ZERO, Quat::IDENTITY, Vec3::ONE);
+    let (mut position, mut turn, mut scale) = (Vec3::ZERO, Quat::IDENTITY, Vec3::ONE);
     for part in chunk.children() {
         let part = part?;
         let mut cursor = part.read();
@@ -64,18 +64,18 @@ fn node(chunk: &Chunk<'_>, id: u16) -> Result<KeyframeNode, ModelError> {
             }
             PIVOT => node.pivot = cursor.vec3()?,
             POSITION => position = first_key(cursor, ChunkCursor::vec3)?.unwrap_or(Vec3::ZERO),
-            ROTATION => rotation = first_key(cursor, turn)?.unwrap_or(Quat::IDENTITY),
+            ROTATION => turn = first_key(cursor, rotation)?.unwrap_or(Quat::IDENTITY),
             SCALE => scale = first_key(cursor, ChunkCursor::vec3)?.unwrap_or(Vec3::ONE),
             ID => node.id = cursor.u16()?,
             _ => {}
         }
     }
-    node.parent_from_node = Mat4::from_scale_rotation_translation(scale, rotation, position);
+    node.parent_from_node = Mat4::from_scale_rotation_translation(scale, turn, position);
     Ok(node)
 }
 
-/// The first key of a track: `flags: u16, 8 bytes, keys: u32`, then for each key
-/// `frame: u32, spline flags: u16`, a float for each of the five spline flags set, and its value.
+/// The value of a track's first key. A track is `flags: u16, 8 bytes, keys: u32`, then for each key
+/// `frame: u32, spline flags: u16`, a float for each of the five spline flags that is set, and the value.
 fn first_key<'a, T>(
     mut cursor: ChunkCursor<'a>,
     value: impl FnOnce(&mut ChunkCursor<'a>) -> Result<T, ModelError>,
@@ -91,8 +91,8 @@ fn first_key<'a, T>(
     value(&mut cursor).map(Some)
 }
 
-/// `angle, axis`; the angle turns clockwise seen against the axis.
-fn turn(cursor: &mut ChunkCursor<'_>) -> Result<Quat, ModelError> {
+/// `angle, axis`; the angle is clockwise seen against the axis.
+fn rotation(cursor: &mut ChunkCursor<'_>) -> Result<Quat, ModelError> {
     let (angle, axis) = (cursor.f32()?, cursor.vec3()?);
     let axis = axis.try_normalize().unwrap_or(Vec3::Y);
     let (sin, cos) = libm::sincosf(-angle * 0.5);
@@ -100,8 +100,8 @@ fn turn(cursor: &mut ChunkCursor<'_>) -> Result<Quat, ModelError> {
     Ok(Quat::from_xyzw(vector.x, vector.y, vector.z, cos))
 }
 
-/// Transforms of `nodes` to the world, in the same order. A parent that is missing, and a node among its
-/// own ancestors, stand in the world.
+/// The transforms from `nodes` to the world, in the same order. Nodes without a parent in the file and nodes that are
+/// their own ancestors have the world as their parent.
 pub(super) fn world_from_nodes(nodes: &[KeyframeNode]) -> Vec<Mat4> {
     let mut by_id = std::collections::BTreeMap::new();
     for (index, node) in nodes.iter().enumerate() {
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn circles_and_lost_parents_end() {
+    fn cycles_and_missing_parents_end() {
         let worlds = world_from_nodes(&[node(0, 1, 1.0), node(1, 0, 1.0), node(2, 2, 1.0), node(3, 77, 1.0)]);
         assert!(worlds.iter().all(|world| world.is_finite()));
         assert_eq!(worlds[3].w_axis.x, 1.0);

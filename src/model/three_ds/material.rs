@@ -1,11 +1,11 @@
-//! Materials: colors, transparency, sides and the diffuse map.
+//! Materials: colors, transparency, sides, color and opacity maps.
 
 use glam::Vec2;
 
 use crate::draw::color::Srgba;
 use crate::model::error::ModelError;
 
-use super::chunk::{Chunk, ChunkCursor};
+use super::chunk::Chunk;
 
 /// A material as stored.
 #[derive(Clone, Debug)]
@@ -15,19 +15,19 @@ pub(super) struct MaterialChunk {
     /// 0 is opaque, 1 lets all light pass.
     pub transparency: f32,
     pub two_sided: bool,
-    pub map: Option<Map>,
+    pub map: Option<MapChunk>,
     /// A picture that is dark where the surface has holes.
-    pub opacity_map: Option<Map>,
+    pub opacity_map: Option<MapChunk>,
 }
 
-/// A picture laid over a surface.
+/// A picture mapped on a surface.
 #[derive(Clone, Debug)]
-pub(super) struct Map {
+pub(super) struct MapChunk {
     pub file: String,
     pub scale: Vec2,
     pub offset: Vec2,
-    /// How far the picture is turned about the middle of the square of coordinates, counter-clockwise.
-    pub turn_rad: f32,
+    /// The rotation of the picture about the middle of the unit square, counter-clockwise.
+    pub rotation_rad: f32,
 }
 
 /// The material in a material chunk.
@@ -38,7 +38,7 @@ pub(super) fn parse(chunk: &Chunk<'_>) -> Result<MaterialChunk, ModelError> {
     const TWO_SIDED: u16 = 0xA081;
     const TEXTURE_MAP: u16 = 0xA200;
     const OPACITY_MAP: u16 = 0xA210;
-    /// 3D Studio's own gray.
+    /// 3D Studio's default.
     const GRAY: Srgba = Srgba::opaque(150, 150, 150);
     let mut material = MaterialChunk {
         name: String::new(),
@@ -63,15 +63,15 @@ pub(super) fn parse(chunk: &Chunk<'_>) -> Result<MaterialChunk, ModelError> {
     Ok(material)
 }
 
-/// The first color in a chunk: bytes or shares of one, plain or gamma-corrected, which are the same here.
+/// The first color in a chunk, in bytes or fractions; the gamma-corrected kinds are read alike.
 fn color(chunk: &Chunk<'_>) -> Result<Option<Srgba>, ModelError> {
-    const SHARES: [u16; 2] = [0x0010, 0x0013];
+    const FRACTIONS: [u16; 2] = [0x0010, 0x0013];
     const BYTES: [u16; 2] = [0x0011, 0x0012];
     for part in chunk.children() {
         let part = part?;
         let mut cursor = part.read();
-        if SHARES.contains(&part.id) {
-            let [red, green, blue] = cursor.vec3()?.to_array().map(|share| (share * 255.0 + 0.5) as u8);
+        if FRACTIONS.contains(&part.id) {
+            let [red, green, blue] = cursor.vec3()?.to_array().map(|channel| (channel * 255.0 + 0.5) as u8);
             return Ok(Some(Srgba::opaque(red, green, blue)));
         }
         if BYTES.contains(&part.id) {
@@ -81,50 +81,48 @@ fn color(chunk: &Chunk<'_>) -> Result<Option<Srgba>, ModelError> {
     Ok(None)
 }
 
-/// The first percentage in a chunk as a share in 0..=1.
+/// The first percentage in a chunk as a fraction in 0..=1.
 fn percentage(chunk: &Chunk<'_>) -> Result<Option<f32>, ModelError> {
-    const WHOLE: u16 = 0x0030;
+    const INTEGER: u16 = 0x0030;
     const FLOAT: u16 = 0x0031;
     for part in chunk.children() {
         let part = part?;
-        let share = match part.id {
-            WHOLE => f32::from(part.read().u16()?) / 100.0,
+        let fraction = match part.id {
+            INTEGER => f32::from(part.read().u16()?) / 100.0,
             FLOAT => part.read().f32()?,
             _ => continue,
         };
-        return Ok(Some(if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }));
+        return Ok(Some(if fraction.is_finite() { fraction.clamp(0.0, 1.0) } else { 0.0 }));
     }
     Ok(None)
 }
 
-fn map(chunk: &Chunk<'_>) -> Result<Option<Map>, ModelError> {
+/// A map; `None` where it names no file.
+fn map(chunk: &Chunk<'_>) -> Result<Option<MapChunk>, ModelError> {
     const FILE: u16 = 0xA300;
     const V_SCALE: u16 = 0xA354;
     const U_SCALE: u16 = 0xA356;
     const U_OFFSET: u16 = 0xA358;
     const V_OFFSET: u16 = 0xA35A;
-    const TURN_DEG: u16 = 0xA35C;
-    let mut map = Map { file: String::new(), scale: Vec2::ONE, offset: Vec2::ZERO, turn_rad: 0.0 };
-    let number = |mut cursor: ChunkCursor<'_>, target: &mut f32| -> Result<(), ModelError> {
-        let value = cursor.f32()?;
-        if value.is_finite() {
-            *target = value;
-        }
-        Ok(())
-    };
+    const ROTATION_DEG: u16 = 0xA35C;
+    let mut map = MapChunk { file: String::new(), scale: Vec2::ONE, offset: Vec2::ZERO, rotation_rad: 0.0 };
     for part in chunk.children() {
         let part = part?;
-        match part.id {
-            FILE => map.file = part.read().text()?,
-            U_SCALE => number(part.read(), &mut map.scale.x)?,
-            V_SCALE => number(part.read(), &mut map.scale.y)?,
-            U_OFFSET => number(part.read(), &mut map.offset.x)?,
-            V_OFFSET => number(part.read(), &mut map.offset.y)?,
-            TURN_DEG => {
-                number(part.read(), &mut map.turn_rad)?;
-                map.turn_rad = map.turn_rad.to_radians();
+        let target = match part.id {
+            FILE => {
+                map.file = part.read().text()?;
+                continue;
             }
-            _ => {}
+            U_SCALE => &mut map.scale.x,
+            V_SCALE => &mut map.scale.y,
+            U_OFFSET => &mut map.offset.x,
+            V_OFFSET => &mut map.offset.y,
+            ROTATION_DEG => &mut map.rotation_rad,
+            _ => continue,
+        };
+        let value = part.read().f32()?;
+        if value.is_finite() {
+            *target = if part.id == ROTATION_DEG { value.to_radians() } else { value };
         }
     }
     Ok((!map.file.trim().is_empty()).then_some(map))
@@ -166,7 +164,7 @@ mod tests {
             (map.file.as_str(), map.scale, map.offset),
             ("LEAF.TGA", Vec2::new(1.0, 2.0), Vec2::new(0.25, 0.0))
         );
-        assert_eq!(map.turn_rad, std::f32::consts::FRAC_PI_2);
+        assert_eq!(map.rotation_rad, std::f32::consts::FRAC_PI_2);
         assert_eq!(leaf.opacity_map.map(|map| map.file).as_deref(), Some("LEAF_O.TGA"));
     }
 }

@@ -1,4 +1,4 @@
-//! Triangle meshes: positions, faces, their materials and smoothing groups, texture coordinates, own axes.
+//! Triangle meshes: positions, texture coordinates, faces with materials and smoothing groups, and the mesh's axes.
 
 use glam::{Mat4, Vec2, Vec3};
 
@@ -12,16 +12,23 @@ pub(super) struct TriObject {
     pub name: String,
     /// Positions in the editor's world.
     pub positions: Vec<Vec3>,
-    /// As many as positions, or none; V upward.
+    /// As many as positions, or none. V runs upward.
     pub uvs: Vec<Vec2>,
     /// Triples of indices, which may be out of range.
     pub faces: Vec<[u16; 3]>,
     /// Smoothing masks, as many as faces, or none.
     pub smoothing: Vec<u32>,
-    /// Names of materials with the faces that have them.
-    pub groups: Vec<(String, Vec<u16>)>,
-    /// The object's own axes in the editor's world; the identity where none are stored.
-    pub world_from_own: Mat4,
+    pub groups: Vec<MaterialGroup>,
+    /// From the object's axes to the editor's world; the identity where none is stored.
+    pub world_from_object: Mat4,
+}
+
+/// The faces of one material.
+#[derive(Clone, Debug)]
+pub(super) struct MaterialGroup {
+    pub material: String,
+    /// Indices of faces, which may be out of range.
+    pub faces: Vec<u16>,
 }
 
 /// The mesh of an object chunk; `None` for a light, a camera or an empty object.
@@ -43,7 +50,7 @@ fn tri_object(name: String, chunk: &Chunk<'_>) -> Result<TriObject, ModelError> 
     const FACES: u16 = 0x4120;
     const TEXTURE_COORDINATES: u16 = 0x4140;
     const MATRIX: u16 = 0x4160;
-    let mut mesh = TriObject { name, world_from_own: Mat4::IDENTITY, ..TriObject::default() };
+    let mut mesh = TriObject { name, world_from_object: Mat4::IDENTITY, ..TriObject::default() };
     for part in chunk.children() {
         let part = part?;
         let mut cursor = part.read();
@@ -60,7 +67,7 @@ fn tri_object(name: String, chunk: &Chunk<'_>) -> Result<TriObject, ModelError> 
             MATRIX => {
                 let axes = cursor.list(4, 12, ChunkCursor::vec3)?;
                 let [x, y, z, origin] = [axes[0], axes[1], axes[2], axes[3]];
-                mesh.world_from_own =
+                mesh.world_from_object =
                     Mat4::from_cols(x.extend(0.0), y.extend(0.0), z.extend(0.0), origin.extend(1.0));
             }
             _ => {}
@@ -69,7 +76,7 @@ fn tri_object(name: String, chunk: &Chunk<'_>) -> Result<TriObject, ModelError> 
     Ok(mesh)
 }
 
-/// Faces, then chunks that say more about them.
+/// Faces, then chunks with their attributes.
 fn faces(mesh: &mut TriObject, mut cursor: ChunkCursor<'_>) -> Result<(), ModelError> {
     const MATERIAL_GROUP: u16 = 0x4130;
     const SMOOTHING: u16 = 0x4150;
@@ -83,9 +90,10 @@ fn faces(mesh: &mut TriObject, mut cursor: ChunkCursor<'_>) -> Result<(), ModelE
         let mut cursor = part.read();
         match part.id {
             MATERIAL_GROUP => {
-                let name = cursor.text()?;
+                let material = cursor.text()?;
                 let count = cursor.u16()?.into();
-                mesh.groups.push((name, cursor.list(count, 2, ChunkCursor::u16)?));
+                let faces = cursor.list(count, 2, ChunkCursor::u16)?;
+                mesh.groups.push(MaterialGroup { material, faces });
             }
             SMOOTHING => mesh.smoothing = cursor.list(count, 4, ChunkCursor::u32)?,
             _ => {}

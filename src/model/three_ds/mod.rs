@@ -8,10 +8,10 @@
 //! └─ B000 keyframer ─ B002 node …  keyframer.rs
 //! ```
 //!
-//! Vertices are stored where the object stood in the editor; the keyframer says where it stands at frame 0.
-//! `assemble` brings one to the other. Ids and layouts follow lib3ds and the "3D Studio File Format"
-//! notes of Jochen Wilhelmy (1996). A chunk that reaches past its parent is refused, as lib3ds and assimp do:
-//! what comes after it cannot be told from noise.
+//! Vertices are stored where the object was in the editor; the keyframer gives its pose at frame 0. `assemble` brings
+//! one to the other. Ids and layouts follow lib3ds and the "3D Studio File Format" notes of Jochen Wilhelmy (1996). A
+//! chunk that reaches past its parent is refused, as lib3ds and assimp do: the rest of the file cannot be told from
+//! noise.
 
 mod assemble;
 mod chunk;
@@ -27,7 +27,7 @@ use keyframer::KeyframeNode;
 use material::MaterialChunk;
 use mesh::TriObject;
 
-/// All that a picture needs of a 3DS file, as stored.
+/// The parts of a 3DS file that a picture needs, as stored.
 #[derive(Debug, Default)]
 struct ThreeDsFile {
     objects: Vec<TriObject>,
@@ -40,7 +40,7 @@ struct ThreeDsFile {
 /// # Errors
 /// [`ModelError::ThreeDs`] and [`ModelError::TooLarge`].
 pub fn read(bytes: &[u8], companions: &dyn Companions) -> Result<Model, ModelError> {
-    assemble::assemble(parse(bytes)?, companions)
+    assemble::assemble(&parse(bytes)?, companions)
 }
 
 fn parse(bytes: &[u8]) -> Result<ThreeDsFile, ModelError> {
@@ -51,7 +51,7 @@ fn parse(bytes: &[u8]) -> Result<ThreeDsFile, ModelError> {
     const KEYFRAMER: u16 = 0xB000;
     let main = Chunk::first(bytes)?;
     if main.id != MAIN {
-        let reason = format!("it starts with chunk {:04X} where a 3DS file has {MAIN:04X}", main.id);
+        let reason = format!("it starts with chunk {:04X} instead of {MAIN:04X}", main.id);
         return Err(ModelError::three_ds(0, reason));
     }
     let mut file = ThreeDsFile::default();

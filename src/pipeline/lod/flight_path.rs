@@ -13,7 +13,7 @@ use crate::pipeline::lod::station_file::{self, StationFileError};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 use crate::view::camera::{Camera, CameraError};
-use crate::view::flight::{self, CircularFlight, FlightStation, Keeping, StraightFlight};
+use crate::view::flight::{self, CircularFlight, FlightStation, GroundClearance, StraightFlight};
 
 /// Posts along a side of the block around whose center the circle is flown.
 const BLOCK: u32 = 513;
@@ -106,22 +106,22 @@ impl FlightPath {
     ) -> Result<Vec<FlightStation>, FlightError> {
         let cell = lattice.cell().as_vec2();
         let size_m = (cell.x * cell.y).sqrt();
-        let keeping = Keeping { above_m: ABOVE * size_m, smoothing_m: 2.0 * size_m };
+        let clearance = GroundClearance { height_m: ABOVE * size_m, smoothing_m: 2.0 * size_m };
         let ground = |at: Vec2| ground_z(lattice, at, missing_m);
         Ok(match self {
             Self::Circle => {
                 let side = (lattice.columns().min(lattice.rows()).min(BLOCK) - 1) as f32;
                 let (center, radius_m) = (cell * side * 0.5, RADIUS * side * size_m);
-                CircularFlight { center, radius_m, step_m: size_m, keeping }.stations(frames, &ground)
+                CircularFlight { center, radius_m, step_m: size_m, clearance }.stations(frames, &ground)
             }
             Self::Line => {
                 let far = lattice.extent().max.as_vec2();
                 let (from, to) = (far * MARGIN, far * (1.0 - MARGIN));
-                StraightFlight { from, to, keeping }.stations(frames, &ground)
+                StraightFlight { from, to, clearance }.stations(frames, &ground)
             }
             Self::File(path) => {
                 let text = files::read_text(path)?;
-                flight::along(&station_file::parse(&files::display_name(path), &text)?, frames)
+                flight::evenly_spaced(&station_file::parse(&files::display_name(path), &text)?, frames)
             }
         })
     }

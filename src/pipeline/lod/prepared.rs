@@ -78,7 +78,7 @@ impl PreparedGround {
     pub fn new(lattice: Lattice, tolerance_px: f32) -> Result<Self, TooManyPosts> {
         let (columns, rows) = (lattice.columns(), lattice.rows());
         let layout = PatchLayout::new(columns, rows, DEFAULT_PATCH).ok_or(TooManyPosts { columns, rows })?;
-        let patched = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let patched = PatchedGround { lattice: &lattice, layout: &layout };
         Ok(Self {
             heights: PatchHeights::new(patched),
             whole: layout.patches().map(|corner| patched.is_whole(corner)).collect(),
@@ -96,7 +96,7 @@ impl PreparedGround {
 
     /// The ground with its patches, true to scale.
     pub fn patched(&self) -> PatchedGround<'_> {
-        PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
+        PatchedGround { lattice: &self.lattice, layout: &self.layout }
     }
 
     /// Whether the patch with south-west corner `corner` lies within the border and has data at every post, so that all

@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 
-use crate::annotate::nice::Nice;
+use crate::annotate::nice::NiceNumber;
 use crate::description::parse::parse;
 use crate::pipeline::files::{self, SystemError, WriteFileError};
 use crate::pipeline::new_scene::folder::{FolderError, SceneFolder};
@@ -145,7 +145,7 @@ fn complete(path: &Path, mut draft: SceneDraft, allowed: &[PathBuf]) -> Result<S
     draft.relief_m = f64::from(high - low);
     draft.crs_name = plain.crs.name().to_owned();
     draft.exaggeration = exaggeration(draft.relief_m / draft.size_m);
-    draft.contours_m = Nice::at_most(draft.relief_m / CONTOURS).map(|nice| nice.value());
+    draft.contours_m = NiceNumber::at_most(draft.relief_m / CONTOURS).map(|nice| nice.value());
     let scene = if draft.exaggeration == 1.0 { plain } else { built(&draft)? };
     draft.camera = camera(&scene);
     Ok(draft)

@@ -12,7 +12,8 @@ use crate::pipeline::files::{self, ReadFileError};
 use crate::scene::attributes::Attributes;
 use crate::vector::error::VectorError;
 use crate::vector::feature::{Geometry, VectorLayer};
-use crate::vector::read::{self, VectorHints};
+use crate::vector::hints::VectorHints;
+use crate::vector::read;
 
 /// One layer of a file.
 pub(super) struct SurveyedLayer {

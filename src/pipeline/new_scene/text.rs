@@ -5,7 +5,7 @@ use std::fmt::Write;
 use glam::DVec2;
 use serde_json::Value;
 
-use crate::annotate::nice::Nice;
+use crate::annotate::nice::NiceNumber;
 use crate::pipeline::new_scene::survey::{FeatureSelection, RULES, SurveyedLayer, TableMatch};
 
 /// What is known of the scene; zero and empty where it is not known yet.
@@ -61,7 +61,8 @@ pub(super) fn scene(draft: &SceneDraft, vectors: &[VectorDraft]) -> String {
     let mut out = head(draft);
     out.push_str(&terrain(draft));
     out.push_str(&style(draft));
-    let factor = Nice::at_most(draft.size_m / TRUE_TO_SCALE_M).map_or(1.0, |nice| nice.value().max(1.0));
+    let factor =
+        NiceNumber::at_most(draft.size_m / TRUE_TO_SCALE_M).map_or(1.0, |nice| nice.value().max(1.0));
     let sources: Vec<LayerSource<'_>> = vectors
         .iter()
         .flat_map(|VectorDraft { file, layers }| layers.iter().map(move |layer| LayerSource { file, layer }))

@@ -1,10 +1,10 @@
-//! The alpha of a texture by itself, read for masks.
+//! The alpha of a texture, stored apart and read for masks.
 //!
-//! Whether a sample sees a leaf or a hole is asked far more often than what color a leaf has: at every sample, and of
-//! every leaf behind another. So alpha has bytes of its own, a quarter of what a texture takes, and a reading is one
-//! bilinear tap of the level whose texels come nearest to a sample's share of the pixel; only where that share is at
-//! least half as long again as wide are there more. Blending two levels, as colors need it, would show nowhere: what
-//! comes of a reading is yes or no, and the samples of a pixel are averaged after it.
+//! Alpha is read far more often than color: at every sample, and at every leaf behind another. It is therefore stored
+//! as bytes of its own, a quarter of the texture's size. A reading is one bilinear tap of the level whose texels are
+//! nearest in size to a sample's share of the pixel. More taps are taken only where that share is at least 1.5 times
+//! as long as wide. Blending two levels, as colors need, would not show: a reading ends as yes or no, and the samples
+//! of a pixel are averaged after it.
 
 use glam::Vec2;
 
@@ -17,9 +17,9 @@ pub struct AlphaMask {
     levels: Vec<AlphaLevel>,
 }
 
-/// How a mask is read for the samples of one pixel.
+/// Level and taps of the mask readings for one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reading {
+pub struct MaskFootprint {
     level: usize,
     taps: u32,
     axis: Vec2,
@@ -33,7 +33,7 @@ struct AlphaLevel {
 
 impl AlphaMask {
     /// The alpha of `base` and of its `smaller` levels.
-    pub fn of(base: &Pixels, smaller: &[Pixels]) -> Self {
+    pub fn new(base: &Pixels, smaller: &[Pixels]) -> Self {
         let is_opaque = base.data().iter().all(|color| color.0[3] == u8::MAX);
         let levels = std::iter::once(base).chain(smaller).map(|level| AlphaLevel {
             size: [level.width(), level.height()],
@@ -42,50 +42,49 @@ impl AlphaMask {
         Self { levels: if is_opaque { Vec::new() } else { levels.collect() } }
     }
 
-    /// How to read it for a sample that stands for the parallelogram of the sides `right` and `down`, by at most
-    /// `most_taps` taps. Sides that are not finite read the coarsest level once.
-    pub fn reading(&self, right: Vec2, down: Vec2, most_taps: u32) -> Reading {
+    /// The footprint of a sample whose share of the pixel is the parallelogram of the sides `right` and `down`, with
+    /// at most `most_taps` taps. Sides that are not finite read the coarsest level once.
+    pub fn footprint(&self, right: Vec2, down: Vec2, most_taps: u32) -> MaskFootprint {
         let scale =
             self.levels.first().map_or(Vec2::ONE, |level| Vec2::from(level.size.map(|side| side as f32)));
         let (across, along) = ((right * scale).length_squared(), (down * scale).length_squared());
         let (longer, shorter) = (across.max(along), across.min(along).max(1.0));
         let last = self.levels.len().saturating_sub(1);
         if !(across + along).is_finite() {
-            return Reading { level: last, taps: 1, axis: Vec2::ZERO };
+            return MaskFootprint { level: last, taps: 1, axis: Vec2::ZERO };
         }
-        // Whole and a half, squared: below it one tap is the nearest number.
+        // 1.5 squared: below it the ratio of the sides rounds to one tap.
         let taps = if longer < 2.25 * shorter { 1.0 } else { (longer / shorter).sqrt().round() };
         let taps = taps.clamp(1.0, most_taps.max(1) as f32);
         let axis = if across > along { right } else { down };
-        Reading { level: nearest_level(longer / (taps * taps)).min(last), taps: taps as u32, axis }
+        MaskFootprint { level: nearest_level(longer / (taps * taps)).min(last), taps: taps as u32, axis }
     }
 
-    /// The alpha around `uv`, 0..=1; the picture repeats in both directions.
-    pub fn at(&self, uv: Vec2, reading: &Reading) -> f32 {
-        let Some(level) = self.levels.get(reading.level) else { return 1.0 };
-        if reading.taps == 1 {
+    /// The alpha around `uv`, 0..=1; the texture repeats in both directions.
+    pub fn sample(&self, uv: Vec2, footprint: &MaskFootprint) -> f32 {
+        let Some(level) = self.levels.get(footprint.level) else { return 1.0 };
+        if footprint.taps == 1 {
             return level.bilinear(uv);
         }
-        let taps = reading.taps as f32;
-        let offset = |tap: u32| reading.axis * ((tap as f32 + 0.5) / taps - 0.5);
-        (0..reading.taps).map(|tap| level.bilinear(uv + offset(tap))).sum::<f32>() / taps
+        let taps = footprint.taps as f32;
+        let offset = |tap: u32| footprint.axis * ((tap as f32 + 0.5) / taps - 0.5);
+        (0..footprint.taps).map(|tap| level.bilinear(uv + offset(tap))).sum::<f32>() / taps
     }
 }
 
-/// The mip level whose texels are nearest in size to one of which `squared` is the side's square: half the logarithm,
-/// rounded, read from the number's exponent.
-fn nearest_level(squared: f32) -> usize {
-    let exponent = (squared.max(1.0) * 2.0).to_bits() >> (f32::MANTISSA_DIGITS - 1);
+/// The mip level whose texels are nearest in size to a square of area `area`, in texels of the largest level: half the
+/// base-2 logarithm, rounded, taken from the float's exponent.
+fn nearest_level(area: f32) -> usize {
+    let exponent = (area.max(1.0) * 2.0).to_bits() >> (f32::MANTISSA_DIGITS - 1);
     (exponent as usize).saturating_sub(f32::MAX_EXP as usize - 1) / 2
 }
 
 impl AlphaLevel {
-    /// In 0..=1.
+    /// The alpha around `uv`, 0..=1.
     fn bilinear(&self, uv: Vec2) -> f32 {
         let [width, height] = self.size;
-        let place = Vec2::new(uv.x * width as f32, uv.y * height as f32) - 0.5;
-        let [x, y] = place.to_array();
-        // Away from the border, where most readings are, nothing has to be repeated.
+        let [x, y] = (Vec2::new(uv.x * width as f32, uv.y * height as f32) - 0.5).to_array();
+        // Most readings are away from the border, where nothing repeats.
         if x >= 0.0 && y >= 0.0 && x < (width - 1) as f32 && y < (height - 1) as f32 {
             let (left, top) = (x as u32, y as u32);
             let columns = (left as usize, left as usize + 1, x - left as f32);
@@ -102,15 +101,16 @@ impl AlphaLevel {
     }
 }
 
-/// The two texels around a repeated coordinate and how far it lies toward the second. `size` must not be 0.
+/// The two texels around a repeating coordinate and its distance from the first toward the second, in texels. `size`
+/// must not be 0.
 ///
-/// Rounds by casting, which is much cheaper than `floor` and `rem_euclid`. Casts saturate and turn NaN to 0, so
-/// that coordinates which are not finite give some texel, too.
+/// Rounds by casting, which is much cheaper than `floor` and `rem_euclid`. Casts saturate and turn NaN to 0:
+/// coordinates that are not finite give some texel too.
 pub fn neighbors(coordinate: f32, size: u32) -> (usize, usize, f32) {
     let part = coordinate - coordinate as i64 as f32;
     let repeated = if part < 0.0 { part + 1.0 } else { part }.clamp(0.0, 1.0);
     let position = repeated * size as f32 - 0.5;
-    // It may be half a texel below 0, whence whole texels are counted one higher while they are rounded.
+    // It may be half a texel below 0: 1 is added before rounding, since casts round toward 0.
     let above = (position + 1.0) as u32;
     let last = size - 1;
     let (first, second) =
@@ -128,7 +128,7 @@ mod tests {
     fn half(side: u32) -> AlphaMask {
         let alpha = |x: u32| if x < side / 2 { 0 } else { 255 };
         let pixels = Pixels::from_fn(side, side, |x, _| Srgba([0, 0, 0, alpha(x)]));
-        AlphaMask::of(&pixels, &smaller_levels(&pixels))
+        AlphaMask::new(&pixels, &smaller_levels(&pixels))
     }
 
     #[test]
@@ -139,33 +139,33 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_half_as_long_again_as_wide_takes_more_taps() {
+    fn only_footprints_half_as_long_again_as_wide_take_more_taps() {
         let alpha = half(16);
-        let reading = |across: f32| alpha.reading(Vec2::X * across / 16.0, Vec2::Y * 2.0 / 16.0, 8);
-        assert_eq!([1.5, 2.9, 3.1, 8.0, 99.0].map(|across| reading(across).taps), [1, 1, 2, 4, 8]);
-        assert_eq!(reading(2.0).level, 1);
-        assert_eq!(reading(f32::INFINITY).level, 4);
+        let footprint = |across: f32| alpha.footprint(Vec2::X * across / 16.0, Vec2::Y * 2.0 / 16.0, 8);
+        assert_eq!([1.5, 2.9, 3.1, 8.0, 99.0].map(|across| footprint(across).taps), [1, 1, 2, 4, 8]);
+        assert_eq!(footprint(2.0).level, 1);
+        assert_eq!(footprint(f32::INFINITY).level, 4);
     }
 
     #[test]
-    fn alpha_is_what_the_texels_around_a_place_have_and_repeats() {
+    fn alpha_blends_the_texels_around_a_place_and_repeats() {
         let alpha = half(8);
-        let sharp = alpha.reading(Vec2::ZERO, Vec2::ZERO, 8);
+        let sharp = alpha.footprint(Vec2::ZERO, Vec2::ZERO, 8);
         for (u, there) in [(0.25, 0.0), (0.75, 1.0), (0.5, 0.5), (1.0, 0.5), (-0.25, 1.0), (7.25, 0.0)] {
-            assert_eq!(alpha.at(Vec2::new(u, 0.3), &sharp), there, "at {u}");
+            assert_eq!(alpha.sample(Vec2::new(u, 0.3), &sharp), there, "at {u}");
         }
-        let long = alpha.reading(Vec2::X, Vec2::ZERO, 8);
-        assert_eq!(alpha.at(Vec2::new(0.1, 0.3), &long), 0.5);
+        let long = alpha.footprint(Vec2::X, Vec2::ZERO, 8);
+        assert_eq!(alpha.sample(Vec2::new(0.1, 0.3), &long), 0.5);
     }
 
     #[test]
     fn opaque_textures_and_hostile_coordinates_give_an_answer() {
-        let opaque = AlphaMask::of(&Pixels::filled(4, 4, Srgba::WHITE), &[]);
-        assert_eq!(opaque.at(Vec2::ZERO, &opaque.reading(Vec2::X, Vec2::Y, 8)), 1.0);
+        let opaque = AlphaMask::new(&Pixels::filled(4, 4, Srgba::WHITE), &[]);
+        assert_eq!(opaque.sample(Vec2::ZERO, &opaque.footprint(Vec2::X, Vec2::Y, 8)), 1.0);
         let alpha = half(4);
         for coordinate in [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX] {
-            let reading = alpha.reading(Vec2::splat(coordinate), Vec2::ONE, 8);
-            alpha.at(Vec2::splat(coordinate), &reading);
+            let footprint = alpha.footprint(Vec2::splat(coordinate), Vec2::ONE, 8);
+            alpha.sample(Vec2::splat(coordinate), &footprint);
         }
     }
 }

@@ -1,15 +1,14 @@
-//! Tiles gathered in bands: a picture's rows, 64 at a time.
+//! Tiles gathered in bands of 64 rows.
 //!
-//! A band first picks its pieces out of all, and each of its tiles then picks from those. Nothing is
-//! counted or sorted beforehand, pieces keep the list's order by themselves, and only the bands at work
-//! take memory, however many tiles a hostile list's triangles cover.
+//! A band first selects its pieces from all, and each of its tiles selects from those. Nothing is counted or sorted
+//! beforehand, and pieces keep the list's order. Only the bands in work take memory, however many tiles the triangles
+//! of a hostile list cover.
 
 use rayon::prelude::*;
 
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
 use crate::render::cpu::geometry::FacePiece;
-use crate::render::cpu::pattern::SamplePattern;
 use crate::render::cpu::raster::PixelWindow;
 use crate::render::cpu::tile::{TileContext, TileScratch, draw_tile};
 use crate::render::cpu::visibility::TILE;
@@ -26,33 +25,28 @@ pub struct BandRows<'a> {
 }
 
 /// Draws band `number`, counted from the top, into its rows.
-pub fn draw_band<const N: usize>(
-    frame: &TileContext,
-    pattern: &SamplePattern<N>,
-    number: u32,
-    out: BandRows,
-) {
+pub fn draw_band<const N: usize>(frame: &TileContext<N>, number: u32, rows: BandRows) {
     let [width, height] = frame.screen.size;
     let (top, bottom) = (number * TILE, (number * TILE + TILE).min(height));
     let band = PixelWindow { from: [0, top], to: [width, bottom] };
-    let reaches = |piece: &&FacePiece| !piece.window.and(band).is_empty();
-    let pieces: Vec<FacePiece> = frame.geometry.pieces().filter(reaches).copied().collect();
+    let touches_band = |piece: &&FacePiece| !piece.window.intersection(band).is_empty();
+    let pieces: Vec<FacePiece> = frame.geometry.pieces().filter(touches_band).copied().collect();
     let window =
         |tile: u32| PixelWindow { from: [tile * TILE, top], to: [(tile * TILE + TILE).min(width), bottom] };
     let tiles: Vec<_> = (0..width.div_ceil(TILE))
         .into_par_iter()
         .map_init(TileScratch::new, |scratch, tile| {
-            (window(tile), draw_tile(frame, pattern, &pieces, window(tile), scratch))
+            (window(tile), draw_tile(frame, &pieces, window(tile), scratch))
         })
         .collect();
     for (window, pixels) in tiles {
         let columns = (window.to[0] - window.from[0]) as usize;
         for (row, line) in pixels.chunks_exact(columns).enumerate() {
             let start = row * width as usize + window.from[0] as usize;
-            for (place, pixel) in (start..).zip(line) {
-                out.colors[place] = pixel.color;
-                out.depths_m[place] = pixel.depth_m;
-                out.features[place] = pixel.feature;
+            for (index, pixel) in (start..).zip(line) {
+                rows.colors[index] = pixel.color;
+                rows.depths_m[index] = pixel.depth_m;
+                rows.features[index] = pixel.feature;
             }
         }
     }

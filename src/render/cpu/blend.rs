@@ -1,27 +1,24 @@
-//! Transparent surfaces: sorted per pixel and laid over the opaque picture, sample by sample.
+//! Transparent surfaces: sorted per pixel and blended over the opaque picture, sample by sample.
 //!
-//! Fragments are collected after everything opaque of a tile is known, so none is kept that cannot be seen.
-//! They are kept in order from the nearest to the farthest while they come in, drapes by the rule of
-//! layers; colors are then laid over each other exactly, with no dithering and no limit on overlap but
-//! [`MOST_LAYERS`].
+//! Fragments are collected after all opaque surfaces of a tile, so that hidden ones are not kept. They are inserted in
+//! order from the nearest to the farthest, drapes by the rule of layers. Colors are blended exactly, without dithering
+//! and with no limit on overlap but [`MOST_LAYERS`].
 
 use glam::Vec3;
 
 use crate::draw::list::DepthLayer;
-use crate::render::cpu::geometry::{FaceId, FacePiece, ScreenFace, ScreenGeometry};
-use crate::render::cpu::pattern::{Mask, SamplePattern};
+use crate::render::cpu::geometry::{FaceId, FacePiece, ScreenFace};
+use crate::render::cpu::pattern::SampleMask;
 use crate::render::cpu::raster::{PixelWindow, cover};
-use crate::render::cpu::shade::Shader;
+use crate::render::cpu::tile::TileContext;
 use crate::render::cpu::visibility::{SampleDepths, TILE, Visibility};
+use crate::render::picture::LEAST_VISIBLE_ALPHA;
 
-/// Transparent fragments a pixel keeps; of more, the farthest is dropped. Bounds memory to 2 MiB a tile.
+/// Transparent fragments that a pixel keeps; of more, the farthest is dropped. Bounds memory to 2 MiB per tile.
 const MOST_LAYERS: usize = 32;
 
 /// No fragment.
 const END: u32 = u32::MAX;
-
-/// From this alpha on a transparent surface counts as what is seen at a pixel, in depths and features.
-const SEEN_ALPHA: f32 = 0.5;
 
 /// A transparent face in one pixel.
 #[derive(Clone, Copy, Debug)]
@@ -29,10 +26,10 @@ struct Fragment {
     face: FaceId,
     next: u32,
     inverse_depth: f32,
-    mask: Mask,
+    mask: SampleMask,
 }
 
-/// The transparent fragments of one tile.
+/// The transparent fragments of one tile: a linked list per pixel.
 #[derive(Debug)]
 pub struct Blend {
     window: PixelWindow,
@@ -41,60 +38,55 @@ pub struct Blend {
 }
 
 impl Blend {
-    /// Room for one tile.
+    /// Without fragments.
     pub fn new() -> Self {
-        Self {
-            window: PixelWindow { from: [0; 2], to: [0; 2] },
-            heads: vec![END; (TILE * TILE) as usize],
-            fragments: Vec::new(),
-        }
+        let heads = vec![END; (TILE * TILE) as usize];
+        Self { window: PixelWindow::EMPTY, heads, fragments: Vec::new() }
     }
 
-    /// Empties the tile and moves it to `window`.
+    /// Removes all fragments and moves the tile to `window`.
     pub fn clear(&mut self, window: PixelWindow) {
         self.window = window;
         self.fragments.clear();
         self.heads.fill(END);
     }
 
-    /// Whether nothing transparent was drawn.
-    pub fn is_empty(&self) -> bool {
-        self.fragments.is_empty()
-    }
-
     fn index(&self, x: u32, y: u32) -> usize {
         ((y - self.window.from[1]) * TILE + x - self.window.from[0]) as usize
     }
 
-    /// Adds what of a transparent piece lies before the opaque surfaces.
+    /// Adds the part of a transparent piece that lies before the opaque surfaces.
     pub fn draw<const N: usize>(
         &mut self,
+        frame: &TileContext<N>,
         piece: &FacePiece,
-        (geometry, shader): (&ScreenGeometry, &Shader),
         visibility: &Visibility<N>,
-        pattern: &SamplePattern<N>,
     ) {
-        let face = geometry.face(piece.face);
-        let slope = SampleDepths::of(face, pattern);
-        cover(&piece.corners, pattern, piece.window.and(self.window), |x, y, mask| {
-            let new = slope.at(face, x, y);
-            let (faces, depths) = (visibility.faces(x, y), visibility.depths(x, y));
+        let face = frame.geometry.face(piece.face);
+        let offsets = SampleDepths::new(face, frame.pattern);
+        cover(&piece.corners, frame.pattern, piece.window.intersection(self.window), |x, y, mask| {
+            let depths = offsets.at(face, x, y);
+            let (opaque, opaque_depths) = (visibility.faces(x, y), visibility.depths(x, y));
             let mut seen = 0;
             for sample in (0..N).filter(|sample| mask & (1 << sample) != 0) {
-                let id = faces[sample];
-                let there = (id != FaceId::NONE).then(|| geometry.face(id));
-                seen |= Mask::from(shows_before(face, new[sample], there, depths[sample], shader)) << sample;
+                let is_before = match opaque[sample] {
+                    FaceId::NONE => depths[sample] > opaque_depths[sample],
+                    id => {
+                        let opaque = frame.geometry.face(id);
+                        is_before(frame, face, depths[sample], opaque, opaque_depths[sample])
+                    }
+                };
+                seen |= SampleMask::from(is_before) << sample;
             }
             if seen != 0 {
-                let [right, down] = pattern.centroid(seen);
-                let inverse_depth = face.inverse_depth([x as f32 + 0.5 + right, y as f32 + 0.5 + down]);
+                let inverse_depth = face.inverse_depth(frame.pattern.centroid_in(x, y, seen));
                 let fragment = Fragment { face: piece.face, next: END, inverse_depth, mask: seen };
                 self.insert(self.index(x, y), fragment, face);
             }
         });
     }
 
-    /// Puts a fragment before the first of its pixel that does not lie in front of it.
+    /// Inserts a fragment before the first of its pixel that does not lie in front of it.
     fn insert(&mut self, pixel: usize, mut fragment: Fragment, face: &ScreenFace) {
         let (mut before, mut here, mut count) = (END, self.heads[pixel], 0);
         while here != END && self.fragments[here as usize].inverse_depth > fragment.inverse_depth * face.reach
@@ -114,7 +106,7 @@ impl Blend {
         self.drop_farthest(new, count);
     }
 
-    /// Ends a pixel's chain after [`MOST_LAYERS`] fragments; `at` is the `count`-th.
+    /// Ends a pixel's list after [`MOST_LAYERS`] fragments; `count` fragments precede `at`.
     fn drop_farthest(&mut self, mut at: u32, mut count: usize) {
         while at != END {
             count += 1;
@@ -125,37 +117,34 @@ impl Blend {
         }
     }
 
-    fn chain(&self, x: u32, y: u32) -> impl Iterator<Item = &Fragment> {
-        let at = |index: u32| (index != END).then(|| &self.fragments[index as usize]);
-        std::iter::successors(at(self.heads[self.index(x, y)]), move |fragment| at(fragment.next))
-    }
-
-    /// Lays a pixel's fragments over the `colors` of its samples, and returns the face that is seen at the
-    /// first sample in place of the opaque one, if any.
-    pub fn lay_over<const N: usize>(
+    /// Blends a pixel's fragments over the `colors` of its samples. Returns the transparent face that the depth and
+    /// feature buffers show, if any.
+    pub fn composite<const N: usize>(
         &self,
+        frame: &TileContext<N>,
         (x, y): (u32, u32),
         colors: &mut [Vec3; N],
-        (geometry, shader): (&ScreenGeometry, &Shader),
-        pattern: &SamplePattern<N>,
     ) -> Option<FaceId> {
-        let mut chain = [None; MOST_LAYERS];
-        let mut count = 0;
-        for (place, fragment) in chain.iter_mut().zip(self.chain(x, y)) {
-            *place = Some(fragment);
-            count += 1;
+        if self.fragments.is_empty() {
+            return None;
+        }
+        let mut nearest_first = [END; MOST_LAYERS];
+        let (mut count, mut at) = (0, self.heads[self.index(x, y)]);
+        while at != END {
+            nearest_first[count] = at;
+            (count, at) = (count + 1, self.fragments[at as usize].next);
         }
         let mut seen = None;
-        for fragment in chain[..count].iter().rev().flatten() {
-            let [right, down] = pattern.centroid(fragment.mask);
-            let at = [x as f32 + 0.5 + right, y as f32 + 0.5 + down];
-            let shaded = shader.shade(geometry.face(fragment.face), at);
+        for &index in nearest_first[..count].iter().rev() {
+            let fragment = &self.fragments[index as usize];
+            let at = frame.pattern.centroid_in(x, y, fragment.mask);
+            let shaded = frame.shader.shade(frame.geometry.face(fragment.face), at);
             for (sample, color) in colors.iter_mut().enumerate() {
                 if fragment.mask & (1 << sample) != 0 {
                     *color = color.lerp(shaded.color, shaded.alpha);
                 }
             }
-            if fragment.mask & 1 != 0 && shaded.alpha >= SEEN_ALPHA {
+            if fragment.mask & 1 != 0 && shaded.alpha >= LEAST_VISIBLE_ALPHA {
                 seen = Some(fragment.face);
             }
         }
@@ -163,21 +152,24 @@ impl Blend {
     }
 }
 
-/// Whether a transparent face at inverse depth `new` shows before the opaque face that is `there`.
+/// Whether a transparent face at inverse depth `depth` shows before an opaque face.
 ///
-/// In the same plane a drape shows over the ground and over drapes that come before it in the list, and is
-/// covered by drapes that come after it.
-fn shows_before(
+/// In the same plane a drape shows over the ground and over drapes that come before it in the list; drapes that come
+/// after it cover it.
+fn is_before<const N: usize>(
+    frame: &TileContext<N>,
     face: &ScreenFace,
-    new: f32,
-    there: Option<&ScreenFace>,
     depth: f32,
-    shader: &Shader,
+    opaque: &ScreenFace,
+    opaque_depth: f32,
 ) -> bool {
-    let Some(opaque) = there else { return new > depth };
-    match (shader.item(face).layer, shader.item(opaque).layer) {
-        (DepthLayer::Draped(_), DepthLayer::Draped(_)) if opaque.item > face.item => new > depth * face.reach,
-        (DepthLayer::Draped(_), DepthLayer::Ground | DepthLayer::Draped(_)) => new * face.reach >= depth,
-        _ => new > depth,
+    match (frame.shader.item(face).layer, frame.shader.item(opaque).layer) {
+        (DepthLayer::Draped(_), DepthLayer::Draped(_)) if opaque.item > face.item => {
+            depth > opaque_depth * face.reach
+        }
+        (DepthLayer::Draped(_), DepthLayer::Ground | DepthLayer::Draped(_)) => {
+            depth * face.reach >= opaque_depth
+        }
+        _ => depth > opaque_depth,
     }
 }

@@ -1,9 +1,9 @@
-//! Cutting triangles to the part a picture can show.
+//! Cutting triangles to the part that a picture can show.
 //!
-//! A triangle is cut at the near plane, where the division by `w` would fail, and at a guard band far
-//! outside the picture, beyond which sub-pixel coordinates would not fit (Sutherland and Hodgman, "Reentrant
-//! Polygon Clipping", 1974). A crossing is always computed from the inner end of an edge to the outer, so
-//! that the two triangles of an edge get the same corner and no crack opens.
+//! A triangle is cut at the near plane, where the division by `w` would fail, and at a guard band far outside the
+//! picture, beyond which sub-pixel coordinates would overflow (Sutherland and Hodgman 1974). A crossing is computed
+//! from the inner end of an edge to the outer one, so that both triangles of an edge get the same corner and no crack
+//! opens.
 
 use glam::DVec3;
 
@@ -32,7 +32,7 @@ impl Outline {
     }
 
     fn push(&mut self, corner: DVec3) {
-        // Rounding can make an outline cross a plane more than twice; what exceeds the room is dropped.
+        // Rounding can make an outline cross a plane more than twice; corners that exceed the array are dropped.
         if self.count < MOST_CORNERS {
             self.corners[self.count] = corner;
             self.count += 1;
@@ -63,8 +63,7 @@ fn crossing(inner: DVec3, d_inner: f64, outer: DVec3, d_outer: f64) -> DVec3 {
     inner + (outer - inner) * (d_inner / (d_inner - d_outer))
 }
 
-/// The part of the triangle before the near plane and inside the guard band; `None` where no part of it
-/// can be on the picture.
+/// The part of the triangle before the near plane and inside the guard band, or `None` where it is off the picture.
 ///
 /// Corners are homogeneous pixels and must be finite.
 pub fn clipped(corners: [DVec3; 3], screen: &Screen) -> Option<Outline> {
@@ -108,7 +107,7 @@ mod tests {
     use glam::Vec3;
 
     fn screen() -> Screen {
-        Screen::of(&Camera::new(Vec3::ZERO, Vec3::Y, 1.0, (100, 100), (1.0, 1000.0)).expect("sound"))
+        Screen::new(&Camera::new(Vec3::ZERO, Vec3::Y, 1.0, (100, 100), (1.0, 1000.0)).expect("sound"))
     }
 
     #[test]
@@ -146,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_wholly_outside_is_dropped() {
+    fn triangles_entirely_outside_are_dropped() {
         let beside = [(-10.0, 10.0), (-50.0, 10.0), (-10.0, 50.0)].map(|(x, y)| DVec3::new(x, y, 5.0));
         assert!(clipped(beside, &screen()).is_none());
         let behind = [(10.0, 10.0), (50.0, 10.0), (10.0, 50.0)].map(|(x, y)| DVec3::new(x, y, -5.0));

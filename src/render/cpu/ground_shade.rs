@@ -1,62 +1,60 @@
-//! The ground map at a pixel: heights, slopes and light filtered to what the pixel sees, ramp and contours.
+//! The ground map at a pixel: heights, slopes and light filtered over the pixel's footprint, ramp and contours.
 //!
-//! Near the eye this is the map's own bilinear reading. Far away, where a pixel spans many posts, the map is read
-//! from its smaller levels, along the longer side of the pixel's footprint.
+//! Near the eye this is the map's own bilinear reading. Far away, where a pixel spans many posts, the map is read from
+//! its coarser levels, along the longer side of the footprint.
 
 use glam::{Vec2, Vec3};
 
 use crate::draw::ground::{GroundMap, GroundPost};
 use crate::render::cpu::hit::FacePoint;
 use crate::render::cpu::texture::TexelFootprint;
-use crate::render::ground_levels::{GroundLevel, PostCount, add, smaller_levels};
+use crate::render::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
 
-/// A ground map with its smaller levels.
+/// A ground map with its coarser levels.
 #[derive(Debug)]
 pub struct GroundShader<'a> {
     map: &'a GroundMap,
     posts_per_meter: Vec2,
-    smaller: Vec<GroundLevel>,
-    stops: Vec<(f32, Vec3)>,
+    coarser: Vec<GroundLevel>,
 }
 
-/// The ground as one pixel sees it.
+/// The ground over one pixel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GroundPoint {
-    post: GroundPost,
+    /// Height, slopes and light.
+    pub post: GroundPost,
     /// The rise of `height_m` eastward and northward, meters per meter.
     gradient: Vec2,
 }
 
 impl<'a> GroundShader<'a> {
-    /// `map`, which has passed its check, with all smaller levels.
+    /// A checked `map` with all coarser levels.
     pub fn new(map: &'a GroundMap) -> Self {
-        let smaller = smaller_levels(map).collect();
-        let stops = map.ramp.stops().iter().map(|&(height, color)| (height, color.linear())).collect();
-        Self { map, posts_per_meter: map.cell.recip(), smaller, stops }
+        Self { map, posts_per_meter: map.cell.recip(), coarser: coarser_levels(map).collect() }
     }
 
     /// The ground beneath a hit, over the pixel's footprint.
     pub fn at(&self, hit: &FacePoint, most_taps: u32) -> GroundPoint {
         let [right, down] = [hit.right.truncate(), hit.down.truncate()];
         let footprint = TexelFootprint::new(right, down, self.posts_per_meter, most_taps);
-        let level = footprint.level.min(self.smaller.len() as f32);
-        let (lower, part) = (level as usize, level - (level as usize) as f32);
+        let level = footprint.level.min(self.coarser.len() as f32);
+        let (finer, part) = (level as usize, level - (level as usize) as f32);
         let share = 1.0 / footprint.taps as f32;
         let mut point = GroundPoint::default();
         for offset in footprint.offsets() {
             let at = hit.world.truncate() + offset;
-            self.add_bilinear(&mut point, at, lower, share * (1.0 - part));
+            self.add_bilinear(&mut point, at, finer, share * (1.0 - part));
             if part > 0.0 {
-                self.add_bilinear(&mut point, at, lower + 1, share * part);
+                self.add_bilinear(&mut point, at, finer + 1, share * part);
             }
         }
         point
     }
 
-    /// The map's color at a point: the ramp with contours on it, in linear light.
+    /// The map's color at a point, in linear light: the ramp with contours on it.
     pub fn albedo(&self, point: &GroundPoint, hit: &FacePoint) -> Vec3 {
         let height = point.post.height_m;
-        let color = self.ramp_at(height);
+        let color = self.map.ramp.linear_at(height);
         let Some(contours) = &self.map.contours else { return color };
         let change = |step: Vec3| point.gradient.dot(step.truncate());
         let across = Vec2::new(change(hit.right), change(hit.down)).length();
@@ -64,18 +62,11 @@ impl<'a> GroundShader<'a> {
         color.lerp(contours.color.linear(), strength * contours.color.alpha())
     }
 
-    fn ramp_at(&self, height_m: f32) -> Vec3 {
-        let above = self.stops.partition_point(|stop| stop.0 <= height_m);
-        let last = self.stops.len() - 1;
-        let (low, high) = (self.stops[above.saturating_sub(1)], self.stops[above.min(last)]);
-        if low.0 < high.0 { low.1.lerp(high.1, (height_m - low.0) / (high.0 - low.0)) } else { low.1 }
-    }
-
     /// Adds `weight` times the bilinear reading of a level at world position `at`.
     fn add_bilinear(&self, sum: &mut GroundPoint, at: Vec2, level: usize, weight: f32) {
         let (size, posts) = match level.checked_sub(1) {
-            Some(index) => (self.smaller[index].size, self.smaller[index].posts.as_slice()),
-            None => (PostCount::of(self.map), self.map.posts.as_slice()),
+            Some(index) => (self.coarser[index].size, self.coarser[index].posts.as_slice()),
+            None => (PostCount::from_map(self.map), self.map.posts.as_slice()),
         };
         let (columns, rows) = (size.columns as usize, size.rows as usize);
         let scale = 1.0 / (1u64 << level) as f32;
@@ -89,7 +80,7 @@ impl<'a> GroundShader<'a> {
         let corners = [first, first + east, first + north, first + north + east].map(|index| posts[index]);
         let weights = [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y];
         for (post, share) in corners.iter().zip(weights) {
-            add(&mut sum.post, post, weight * share);
+            add_weighted(&mut sum.post, post, weight * share);
         }
         let [sw, se, nw, ne] = corners.map(|post| post.height_m);
         let rise = Vec2::new((se - sw) * (1.0 - y) + (ne - nw) * y, (nw - sw) * (1.0 - x) + (ne - se) * x);
@@ -97,19 +88,7 @@ impl<'a> GroundShader<'a> {
     }
 }
 
-impl GroundPoint {
-    /// The upward unit normal.
-    pub fn normal(&self) -> Vec3 {
-        self.post.normal()
-    }
-
-    /// The shares of the sun and of the sky that reach the point.
-    pub fn visibility(&self) -> [f32; 2] {
-        [self.post.sun_visibility, self.post.sky_visibility]
-    }
-}
-
-/// The cell of a grid coordinate among `count` posts, and the place within it.
+/// The cell of a grid coordinate among `count` posts, and the position within it.
 fn split(coordinate: f32, count: usize) -> (usize, f32) {
     let cell = (coordinate as usize).min(count.saturating_sub(2));
     (cell, coordinate - cell as f32)
@@ -144,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn close_up_the_reading_is_the_map_s_own() {
+    fn close_up_the_reading_is_that_of_the_map() {
         let map = map(6, 5, |x, y| x * x - 3.0 * y + x * y);
         let ground = GroundShader::new(&map);
         for at in [(-30.0, 70.0), (-27.3, 81.2), (-20.0, 90.0), (-99.0, 77.0), (99.0, 999.0)] {
@@ -173,14 +152,5 @@ mod tests {
         let map = map(64, 64, |x, y| if (x + y) % 2.0 == 0.0 { 0.0 } else { 10.0 });
         let point = GroundShader::new(&map).at(&hit(Vec3::new(31.0, 230.0, 0.0), 100.0), 8);
         assert!((point.post.height_m - 5.0).abs() < 0.2, "{}", point.post.height_m);
-    }
-
-    #[test]
-    fn the_ramp_is_the_list_s_ramp() {
-        let map = map(2, 2, |_, _| 0.0);
-        let ground = GroundShader::new(&map);
-        for height in [-5.0, 0.0, 3.3, 9.0, 14.2, 20.0, 99.0] {
-            assert!((ground.ramp_at(height) - map.ramp.linear_at(height)).length() < 1e-6, "{height}");
-        }
     }
 }

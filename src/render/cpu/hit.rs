@@ -1,11 +1,11 @@
-//! Where the ray of a pixel meets a face.
+//! The point of a face that a pixel shows.
 
 use glam::{Vec2, Vec3};
 
 use crate::render::cpu::geometry::ScreenFace;
 use crate::render::cpu::screen::Screen;
 
-/// A point of a face, with how it moves from pixel to pixel.
+/// A point of a face and its change from pixel to pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct FacePoint {
     /// In world space.
@@ -18,9 +18,9 @@ pub struct FacePoint {
     pub down: Vec3,
 }
 
-/// The shares of a face's second and third corner at a point, and how they change from pixel to pixel.
+/// The barycentric weights of a face's second and third corner at a point, and their change from pixel to pixel.
 #[derive(Clone, Copy, Debug)]
-pub struct Shares {
+pub struct Barycentric {
     at: Vec2,
     right: Vec2,
     down: Vec2,
@@ -28,31 +28,30 @@ pub struct Shares {
 
 impl FacePoint {
     /// The point of `face` seen at pixel position `at`.
-    pub fn of(face: &ScreenFace, screen: &Screen, at: [f32; 2]) -> Self {
+    pub fn new(face: &ScreenFace, screen: &Screen, at: [f32; 2]) -> Self {
         let plane = &face.planes.inverse_depth;
         let depth_m = 1.0 / face.inverse_depth(at);
         let ray = screen.ray_at(at);
         let [ray_right, ray_down] = screen.ray_steps();
         // p = eye + ray · depth and depth = 1 / plane, hence dp = depth · (dray − ray · depth · dplane).
-        let moved = |step: Vec3, slope: f64| (step - ray * (slope as f32 * depth_m)) * depth_m;
+        let change = |step: Vec3, slope: f64| (step - ray * (slope as f32 * depth_m)) * depth_m;
         Self {
             world: screen.eye().as_vec3() + ray * depth_m,
             distance_m: ray.length() * depth_m,
-            right: moved(ray_right, plane.right),
-            down: moved(ray_down, plane.down),
+            right: change(ray_right, plane.right),
+            down: change(ray_down, plane.down),
         }
     }
 }
 
-impl Shares {
-    /// The shares at pixel position `at`, kept inside the triangle.
-    pub fn of(face: &ScreenFace, at: [f32; 2]) -> Self {
+impl Barycentric {
+    /// The weights at pixel position `at`, clamped to the triangle.
+    pub fn new(face: &ScreenFace, at: [f32; 2]) -> Self {
         let planes = &face.planes;
         let depth = 1.0 / planes.inverse_depth.at(at);
         let (second, third) = (planes.second.at(at) * depth, planes.third.at(at) * depth);
-        let step = |slopes: [f64; 3]| {
-            let [inverse, second_slope, third_slope] = slopes;
-            let change = |slope: f64, share: f64| ((slope - share * inverse) * depth) as f32;
+        let step = |[inverse, second_slope, third_slope]: [f64; 3]| {
+            let change = |slope: f64, weight: f64| ((slope - weight * inverse) * depth) as f32;
             Vec2::new(change(second_slope, second), change(third_slope, third))
         };
         let second_kept = (second as f32).clamp(0.0, 1.0);
@@ -63,21 +62,20 @@ impl Shares {
         }
     }
 
-    /// What the corners' values blend to.
+    /// The blend of the corners' vectors.
     pub fn blend(&self, [a, b, c]: [Vec3; 3]) -> Vec3 {
         a + (b - a) * self.at.x + (c - a) * self.at.y
     }
 
-    /// What the corners' numbers blend to.
+    /// The blend of the corners' numbers.
     pub fn blend_number(&self, [a, b, c]: [f32; 3]) -> f32 {
         a + (b - a) * self.at.x + (c - a) * self.at.y
     }
 
     /// Texture coordinates, and their change over one pixel to the right and one down.
-    pub fn blend_uv(&self, [a, b, c]: [[f32; 2]; 3]) -> [Vec2; 3] {
-        let a = Vec2::from(a);
-        let (ab, ac) = (Vec2::from(b) - a, Vec2::from(c) - a);
-        let along = |shares: Vec2| ab * shares.x + ac * shares.y;
+    pub fn blend_uv(&self, corners: [[f32; 2]; 3]) -> [Vec2; 3] {
+        let [a, b, c] = corners.map(Vec2::from);
+        let along = |weights: Vec2| (b - a) * weights.x + (c - a) * weights.y;
         [a + along(self.at), along(self.right), along(self.down)]
     }
 }

@@ -1,40 +1,38 @@
-//! The deterministic renderer: needs nothing but the processor, and gives the same bytes on every platform
-//! and for every number of threads.
+//! The deterministic renderer: needs nothing but the processor, and gives the same bytes on every platform and for
+//! every number of threads.
 //!
 //! # How
 //! ```text
-//! DrawList ──geometry──▶ faces, pieces ──band──▶ tiles of 64×64 ──visibility──▶ which face each sample sees
+//! DrawList ──geometry──▶ faces, pieces ──band──▶ tiles of 64×64 ──visibility──▶ the face each sample sees
 //!            plane, clip, raster::snapped              raster, pattern, occlusion     │
 //!                                                                 blend ◀─────────────┤
 //!                        Picture ◀──band── pixels ◀──tile::resolve── shade ◀──────────┘
 //!                                                  cutout, alpha     hit, ground_shade, texture
 //! ```
-//! Coverage is integer arithmetic on snapped corners; depth and attributes come from the exact planes of the
-//! unsnapped triangles in f64, so that a road cut from the ground's triangles has the ground's very depth.
-//! Shading runs once per pixel and face (as multisampling does), at the middle of the samples the face
-//! holds. Tiles are drawn in parallel on the current `rayon` pool; none depends on another. Within a
-//! tile ground and drapes keep the list's order; solids are drawn from the nearest on, which the picture does
-//! not show, and what is hidden as a whole is passed over.
+//! Coverage is integer arithmetic on snapped corners. Depth and attributes come from the exact planes of the unsnapped
+//! triangles in f64, so that a road cut from the ground's triangles has exactly the ground's depth. Shading runs once
+//! per pixel and face, as in multisampling, at the mean of the samples that the face covers. Tiles are independent and
+//! are drawn in parallel on the current `rayon` pool. Within a tile ground and drapes keep the list's order. Solids
+//! are drawn from the nearest on, and hidden ones are skipped; the picture does not depend on their order.
 //!
 //! # Surfaces
-//! Ground and solids hide what is behind them; draped faces follow [`crate::draw::list::DepthLayer`], with the
-//! tolerance widened where f32 corners far from the origin round by more than it (see
-//! `geometry::drape_tolerance`). Masked surfaces are tested at each sample that
-//! nothing nearer covers, by one reading of their alpha as a rule. Blended surfaces are sorted per pixel, up to
-//! 32 deep, and laid over each sample in linear light; from alpha ½ on they are what depth and
-//! feature buffers hold, below it what lies behind them.
+//! Ground and solids hide what is behind them. Draped faces follow [`crate::draw::list::DepthLayer`]; the tolerance is
+//! widened where f32 corners far from the origin round by more than it (see `geometry::drape_tolerance`). Masked
+//! surfaces are tested at each sample that nothing nearer covers, usually by one reading of their alpha. Transparent
+//! surfaces are sorted per pixel, up to 32 deep, and blended over each sample in linear light; depth and feature
+//! buffers show them from alpha ½ on, and what lies behind them below that.
 //!
 //! # Cost
-//! Time is a sum of pixels × the surfaces seen in each (shading, two thirds of it and more), triangles
-//! (three corners projected and three planes each), and covered samples (one depth test each). Against one
-//! sample a pixel, four take about a quarter more time and eight a third. A landscape of 180,000 triangles,
-//! 1920×1080, eight samples, takes about half a second of processor time, shared evenly by the threads.
-//! A forest of 100,000 trees, most of them pictures on masked quads, takes about three.
+//! Time is a sum of pixels × the surfaces seen in each (shading, two thirds and more), triangles (three corners
+//! projected and three planes each), and covered samples (one depth test each). Against one sample per pixel, four take
+//! about a quarter more time and eight a third. A landscape of 180,000 triangles, 1920×1080, eight samples, takes about
+//! half a second of processor time, shared evenly by the threads. A forest of 100,000 trees, most of them pictures on
+//! masked quads, takes about three.
 //!
-//! Memory: 12 bytes a pixel for the picture; 150 bytes a visible triangle; for each band of 64 rows at work
-//! 12 bytes a pixel and 48 a triangle in it; for each thread 0.3 MiB, and up to 2 MiB more under
-//! transparent surfaces; a third of each texture and of the ground map for their smaller levels, and as
-//! much again of a texture with holes for its alpha by itself.
+//! Memory: 12 bytes per pixel for the picture; 150 bytes per visible triangle; for each band of 64 rows in work 12
+//! bytes per pixel and 48 per triangle in it; for each thread 0.3 MiB, and up to 2 MiB more under transparent surfaces;
+//! a third of each texture and of the ground map for their coarser levels, and as much again of a texture with holes
+//! for its alpha.
 
 mod alpha;
 mod band;
@@ -57,8 +55,7 @@ mod visibility;
 use rayon::prelude::*;
 
 use crate::draw::color::Srgba;
-use crate::draw::list::{DrawList, FeatureId};
-use crate::draw::material::{Albedo, NormalSource};
+use crate::draw::list::{DrawList, DrawListError, FeatureId};
 use crate::draw::pixels::Pixels;
 use crate::render::cpu::band::{BandRows, draw_band};
 use crate::render::cpu::geometry::ScreenGeometry;
@@ -70,17 +67,17 @@ use crate::render::cpu::visibility::TILE;
 use crate::render::picture::Picture;
 use crate::view::camera::Camera;
 
-/// How carefully to render.
+/// Samples and filter of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Options {
-    /// Samples a pixel. Default: eight.
+pub struct RenderQuality {
+    /// Samples per pixel. Default: eight.
     pub samples: SampleCount,
-    /// The most readings of a texture or of the ground map along a pixel seen at a grazing angle, 1..=16.
-    /// Default: 8.
+    /// The most readings of a texture or of the ground map along a pixel seen at a grazing angle, 1..=16; values
+    /// outside are clamped. Default: 8.
     pub anisotropy: u32,
 }
 
-/// In how many places each pixel is tested for what it sees.
+/// The number of positions at which each pixel is tested for what it shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SampleCount {
     /// Once, at the center: jagged, for drafts.
@@ -91,67 +88,51 @@ pub enum SampleCount {
     Eight,
 }
 
-/// Why a draw list cannot be rendered.
+/// Why the CPU renderer gives no picture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum RenderError {
-    /// [`DrawList::check`] found something out of place.
-    #[error("the draw list is not sound: {0}; its maker must be mended")]
-    List(String),
-    /// A material takes color or normals from a ground map that is not there.
-    #[error(
-        "item {item} takes its color or normals from the ground map, but the draw list has none; add one"
-    )]
-    NoGroundMap {
-        /// The item's index in the list.
-        item: usize,
-    },
+pub enum CpuRenderError {
+    /// [`DrawList::check`] failed.
+    #[error("the draw list is unsound: {0}")]
+    List(#[from] DrawListError),
     /// There are too many triangles.
     #[error("the draw list draws {0} triangles, the most is 4294965000; draw fewer or coarser meshes")]
     TooManyTriangles(usize),
 }
 
-impl Default for Options {
+impl Default for RenderQuality {
     fn default() -> Self {
         Self { samples: SampleCount::Eight, anisotropy: 8 }
     }
 }
 
-/// The picture that `camera` takes of `list`, drawn on the current `rayon` pool.
+/// The picture of `list` as `camera` sees it, drawn on the current `rayon` pool.
 ///
 /// Triangles with corners that are not finite are left out.
 ///
 /// # Errors
-/// See [`RenderError`].
-pub fn render(list: &DrawList, camera: &Camera, options: &Options) -> Result<Picture, RenderError> {
-    check(list)?;
-    let screen = Screen::of(camera);
-    let geometry = ScreenGeometry::of(list, &screen)
-        .ok_or_else(|| RenderError::TooManyTriangles(list.triangle_count()))?;
-    let shader = Shader::new(list, &screen, options.anisotropy.clamp(1, 16));
-    let frame =
-        TileContext { screen: &screen, geometry: &geometry, shader: &shader, lighting: &list.lighting };
-    Ok(match options.samples {
-        SampleCount::One => draw(&frame, &ONE),
-        SampleCount::Four => draw(&frame, &FOUR),
-        SampleCount::Eight => draw(&frame, &EIGHT),
+/// See [`CpuRenderError`].
+pub fn render(list: &DrawList, camera: &Camera, quality: &RenderQuality) -> Result<Picture, CpuRenderError> {
+    list.check()?;
+    let screen = Screen::new(camera);
+    let geometry = ScreenGeometry::new(list, &screen)
+        .ok_or_else(|| CpuRenderError::TooManyTriangles(list.triangle_count()))?;
+    let shader = Shader::new(list, &screen, quality.anisotropy.clamp(1, 16));
+    Ok(match quality.samples {
+        SampleCount::One => draw(&screen, &geometry, &shader, &ONE),
+        SampleCount::Four => draw(&screen, &geometry, &shader, &FOUR),
+        SampleCount::Eight => draw(&screen, &geometry, &shader, &EIGHT),
     })
 }
 
-fn check(list: &DrawList) -> Result<(), RenderError> {
-    list.check().map_err(RenderError::List)?;
-    let needs_ground = list.items.iter().position(|item| {
-        let material = &list.materials[item.material.0 as usize];
-        material.albedo == Albedo::GroundMap || material.normals == NormalSource::Ground
-    });
-    match needs_ground {
-        Some(item) if list.ground.is_none() => Err(RenderError::NoGroundMap { item }),
-        _ => Ok(()),
-    }
-}
-
 /// All bands of the picture.
-fn draw<const N: usize>(frame: &TileContext, pattern: &SamplePattern<N>) -> Picture {
-    let [width, height] = frame.screen.size;
+fn draw<const N: usize>(
+    screen: &Screen,
+    geometry: &ScreenGeometry,
+    shader: &Shader,
+    pattern: &SamplePattern<N>,
+) -> Picture {
+    let frame = TileContext { screen, geometry, shader, pattern };
+    let [width, height] = screen.size;
     let (count, band) = (width as usize * height as usize, (width * TILE) as usize);
     let mut pixels = Pixels::filled(width, height, Srgba::WHITE);
     let mut depth_m = vec![f32::INFINITY; count];
@@ -163,7 +144,7 @@ fn draw<const N: usize>(frame: &TileContext, pattern: &SamplePattern<N>) -> Pict
         .zip(features.par_chunks_mut(band))
         .enumerate()
         .for_each(|(number, ((colors, depths_m), features))| {
-            draw_band(frame, pattern, number as u32, BandRows { colors, depths_m, features });
+            draw_band(&frame, number as u32, BandRows { colors, depths_m, features });
         });
     Picture { pixels, depth_m, features }
 }

@@ -1,9 +1,11 @@
-//! How near everything in a block of a tile already is: what lies behind it need not be looked at.
+//! The farthest depth in each block of a tile: pieces that lie behind it need not be drawn.
 //!
-//! For each block of 8×8 pixels the farthest depth that any of its samples sees is kept (the idea of Greene and others,
-//! "Hierarchical Z-Buffer Visibility", 1993, at a single level). Depths only ever come nearer, so a value found
-//! earlier stays true, if not tight; it is found anew once [`STALE`] more pieces have been drawn into the block, which
-//! costs less than a fifth of what they did.
+//! The farthest depth of any sample is kept for each block of 8×8 pixels (the hierarchical depth buffer of Greene et
+//! al. 1993, at a single level). Depths only ever come nearer, so that an old value stays true, if not tight. It is
+//! computed again once [`STALE`] more pieces have been drawn into the block, which costs less than a fifth of drawing
+//! them.
+
+use std::ops::Range;
 
 use crate::render::cpu::raster::PixelWindow;
 use crate::render::cpu::visibility::TILE;
@@ -14,16 +16,16 @@ const BLOCK: u32 = 8;
 /// Blocks along the side of a tile.
 const BLOCKS: usize = (TILE / BLOCK) as usize;
 
-/// Pieces drawn into a block after which its farthest depth is found anew.
+/// Pieces drawn into a block after which its farthest depth is computed again.
 const STALE: u8 = 16;
 
-/// Pieces over more blocks than these are not tested: hardly any of them is hidden as a whole.
+/// Pieces over more blocks than these are not tested: hardly any of them is hidden entirely.
 const MOST_BLOCKS: usize = 4;
 
 /// The farthest depths of the blocks of one tile.
 #[derive(Debug)]
 pub struct Occlusion {
-    /// As inverse depths: the least of each block.
+    /// The least inverse depth of each block.
     farthest: [[f32; BLOCKS]; BLOCKS],
     /// Pieces drawn since, [`STALE`] at most.
     drawn: [[u8; BLOCKS]; BLOCKS],
@@ -35,14 +37,9 @@ impl Occlusion {
         Self { farthest: [[0.0; BLOCKS]; BLOCKS], drawn: [[STALE; BLOCKS]; BLOCKS] }
     }
 
-    /// Forgets what is known.
-    pub fn clear(&mut self) {
-        *self = Self::new();
-    }
-
     /// Whether all of `window`, in pixels of the tile, is nearer than the inverse depth `nearest`.
     ///
-    /// `depths` are those of the tile's samples, row by row, [`TILE`] pixels a row.
+    /// `depths` are those of the tile's samples, row by row, [`TILE`] pixels per row.
     pub fn hides<const N: usize>(&mut self, window: PixelWindow, nearest: f32, depths: &[[f32; N]]) -> bool {
         let [columns, rows] = blocks(window);
         if columns.len() * rows.len() > MOST_BLOCKS {
@@ -59,8 +56,8 @@ impl Occlusion {
         })
     }
 
-    /// Takes note that something was drawn in `window`, in pixels of the tile.
-    pub fn note(&mut self, window: PixelWindow) {
+    /// Counts a piece drawn in `window`, in pixels of the tile.
+    pub fn count_piece(&mut self, window: PixelWindow) {
         let [columns, rows] = blocks(window);
         for row in rows {
             for drawn in &mut self.drawn[row][columns.clone()] {
@@ -71,7 +68,7 @@ impl Occlusion {
 }
 
 /// The columns and rows of blocks that a window touches.
-fn blocks(window: PixelWindow) -> [std::ops::Range<usize>; 2] {
+fn blocks(window: PixelWindow) -> [Range<usize>; 2] {
     [0, 1].map(|axis| (window.from[axis] / BLOCK) as usize..window.to[axis].div_ceil(BLOCK) as usize)
 }
 
@@ -99,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_lies_behind_every_sample_of_its_blocks_is_hidden() {
+    fn only_pieces_behind_every_sample_of_their_blocks_are_hidden() {
         let mut depths = depths(0.5);
         depths[(TILE * 3 + 20) as usize] = [0.1];
         let window = |left: u32, right: u32| PixelWindow { from: [left, 2], to: [right, 5] };
@@ -111,18 +108,18 @@ mod tests {
     }
 
     #[test]
-    fn what_has_come_nearer_is_found_once_enough_was_drawn() {
+    fn nearer_depths_are_found_once_enough_pieces_were_drawn() {
         let mut occlusion = Occlusion::new();
         let window = PixelWindow { from: [0; 2], to: [8; 2] };
         assert!(!occlusion.hides(window, 0.4, &depths(0.1)));
-        (1..STALE).for_each(|_| occlusion.note(ALL));
+        (1..STALE).for_each(|_| occlusion.count_piece(ALL));
         assert!(!occlusion.hides(window, 0.4, &depths(0.5)));
-        occlusion.note(ALL);
+        occlusion.count_piece(ALL);
         assert!(occlusion.hides(window, 0.4, &depths(0.5)));
     }
 
     #[test]
-    fn what_spans_many_blocks_is_taken_to_be_seen() {
+    fn pieces_over_many_blocks_are_taken_to_be_visible() {
         assert!(!Occlusion::new().hides(ALL, 0.1, &depths(0.5)));
     }
 }

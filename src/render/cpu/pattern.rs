@@ -1,11 +1,11 @@
-//! Where in a pixel it is sampled.
+//! The sample positions in a pixel.
 //!
-//! The patterns are the standard multisample patterns of Direct3D 11 (its reference for
-//! `D3D11_STANDARD_MULTISAMPLE_PATTERN`), as graphics hardware uses them: no two samples of one share a row
-//! or a column, so that near-horizontal and near-vertical edges get as many steps as there are samples.
+//! The patterns are the standard multisample patterns of Direct3D 11 (`D3D11_STANDARD_MULTISAMPLE_PATTERN`), as used by
+//! graphics hardware: no two samples share a row or a column, so that near-horizontal and near-vertical edges get as
+//! many steps as there are samples.
 
-/// Which of a pixel's samples are meant: bit `s` is sample `s`.
-pub type Mask = u8;
+/// A set of a pixel's samples: bit `s` is sample `s`.
+pub type SampleMask = u8;
 
 /// `N` sample positions, at most 8.
 ///
@@ -28,7 +28,7 @@ pub const EIGHT: SamplePattern<8> =
 
 impl<const N: usize> SamplePattern<N> {
     /// Every sample.
-    pub const FULL: Mask = ((1u16 << N) - 1) as Mask;
+    pub const FULL: SampleMask = ((1u16 << N) - 1) as SampleMask;
 
     /// The offset of `sample` from the pixel's center, in pixels.
     pub fn offset(&self, sample: usize) -> [f32; 2] {
@@ -37,9 +37,9 @@ impl<const N: usize> SamplePattern<N> {
 
     /// The mean offset of the samples in `mask` from the pixel's center, in pixels; zero for none.
     ///
-    /// A triangle is convex, so the mean of the samples it covers lies inside it: attributes taken there
-    /// never reach beyond its border.
-    pub fn centroid(&self, mask: Mask) -> [f32; 2] {
+    /// A triangle is convex, so that the mean of the samples it covers lies inside it: attributes taken there never
+    /// reach beyond its border.
+    pub fn centroid(&self, mask: SampleMask) -> [f32; 2] {
         if mask == Self::FULL || mask == 0 {
             return [0.0; 2];
         }
@@ -50,6 +50,12 @@ impl<const N: usize> SamplePattern<N> {
             }
         }
         sum.map(|sixteenths| sixteenths as f32 / (16 * mask.count_ones()) as f32)
+    }
+
+    /// The picture position of the mean of the samples in `mask` of pixel `(x, y)`.
+    pub fn centroid_in(&self, x: u32, y: u32, mask: SampleMask) -> [f32; 2] {
+        let [right, down] = self.centroid(mask);
+        [x as f32 + 0.5 + right, y as f32 + 0.5 + down]
     }
 }
 

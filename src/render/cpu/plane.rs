@@ -14,55 +14,47 @@ pub struct ScreenPlane {
 }
 
 impl ScreenPlane {
-    /// The plane whose coefficients are the components of `vector`.
-    pub fn of(vector: DVec3) -> Self {
-        Self { right: vector.x, down: vector.y, start: vector.z }
+    /// The plane whose coefficients are the components of `vector`; `None` where one is not finite.
+    fn from_vector(vector: DVec3) -> Option<Self> {
+        vector.is_finite().then_some(Self { right: vector.x, down: vector.y, start: vector.z })
     }
 
     /// The value at a pixel position.
     pub fn at(&self, position: [f32; 2]) -> f64 {
         self.right * f64::from(position[0]) + self.down * f64::from(position[1]) + self.start
     }
-
-    /// Whether all coefficients are finite.
-    pub fn is_finite(&self) -> bool {
-        self.right.is_finite() && self.down.is_finite() && self.start.is_finite()
-    }
 }
 
-/// What the homogeneous corners of a triangle say about every point of it on the picture.
+/// Depth and corner weights of a triangle over the picture.
 #[derive(Clone, Copy, Debug)]
 pub struct TrianglePlanes {
     /// `1 / w`, `w` being meters along the viewing direction.
     pub inverse_depth: ScreenPlane,
-    /// The share of the second corner, divided by `w`.
+    /// The barycentric weight of the second corner, divided by `w`.
     pub second: ScreenPlane,
-    /// The share of the third corner, divided by `w`.
+    /// The barycentric weight of the third corner, divided by `w`.
     pub third: ScreenPlane,
     /// Whether the corners run counter-clockwise as seen.
     pub faces_eye: bool,
 }
 
 impl TrianglePlanes {
-    /// The planes of a triangle with corners `(x·w, y·w, w)`; `None` where it is seen edge-on or a corner
-    /// is not finite.
+    /// The planes of a triangle with corners `(x·w, y·w, w)`; `None` where it is seen edge-on or a corner is not finite.
     ///
-    /// A point of the triangle on the picture, `p = (x, y, 1)`, is `w · p = Σ λᵢ cornerᵢ`, so
-    /// `λᵢ / w = Bᵢ · p` with the rows `Bᵢ` of the inverse of the corners' matrix. Differences of corners
-    /// are taken first, since a distant triangle is small beside its distance.
-    pub fn of([a, b, c]: [DVec3; 3]) -> Option<Self> {
+    /// A point of the triangle on the picture, `p = (x, y, 1)`, is `w · p = Σ λᵢ cornerᵢ`, so that `λᵢ / w = Bᵢ · p`
+    /// with the rows `Bᵢ` of the inverse of the corners' matrix. Differences of corners are taken first, since a
+    /// distant triangle is small beside its distance.
+    pub fn from_corners([a, b, c]: [DVec3; 3]) -> Option<Self> {
         let (ab, ac) = (b - a, c - a);
         let normal = ab.cross(ac);
         let volume = a.dot(normal);
-        let planes = Self {
-            inverse_depth: ScreenPlane::of(normal / volume),
-            second: ScreenPlane::of(ac.cross(a) / volume),
-            third: ScreenPlane::of(a.cross(ab) / volume),
+        Some(Self {
+            // A volume of 0 divides to infinity or NaN.
+            inverse_depth: ScreenPlane::from_vector(normal / volume)?,
+            second: ScreenPlane::from_vector(ac.cross(a) / volume)?,
+            third: ScreenPlane::from_vector(a.cross(ab) / volume)?,
             faces_eye: volume < 0.0,
-        };
-        let finite =
-            planes.inverse_depth.is_finite() && planes.second.is_finite() && planes.third.is_finite();
-        (volume != 0.0 && finite).then_some(planes)
+        })
     }
 }
 
@@ -75,7 +67,7 @@ mod tests {
 
     #[test]
     fn each_corner_has_its_own_depth_and_share() {
-        let planes = TrianglePlanes::of(CORNERS).expect("a sound triangle");
+        let planes = TrianglePlanes::from_corners(CORNERS).expect("a sound triangle");
         for (index, corner) in CORNERS.into_iter().enumerate() {
             let at = [(corner.x / corner.z) as f32, (corner.y / corner.z) as f32];
             let depth = 1.0 / planes.inverse_depth.at(at);
@@ -87,7 +79,7 @@ mod tests {
 
     #[test]
     fn shares_are_perspective_correct_halfway_along_an_edge() {
-        let planes = TrianglePlanes::of(CORNERS).expect("a sound triangle");
+        let planes = TrianglePlanes::from_corners(CORNERS).expect("a sound triangle");
         let middle = (CORNERS[1] + CORNERS[2]) / 2.0;
         let at = [(middle.x / middle.z) as f32, (middle.y / middle.z) as f32];
         let depth = 1.0 / planes.inverse_depth.at(at);
@@ -98,8 +90,8 @@ mod tests {
     #[test]
     fn triangles_without_area_or_with_infinite_corners_have_no_planes() {
         let [a, b, _] = CORNERS;
-        assert!(TrianglePlanes::of([a, b, b]).is_none());
-        assert!(TrianglePlanes::of([a, b, DVec3::splat(f64::INFINITY)]).is_none());
-        assert!(TrianglePlanes::of([a, b, DVec3::NAN]).is_none());
+        assert!(TrianglePlanes::from_corners([a, b, b]).is_none());
+        assert!(TrianglePlanes::from_corners([a, b, DVec3::splat(f64::INFINITY)]).is_none());
+        assert!(TrianglePlanes::from_corners([a, b, DVec3::NAN]).is_none());
     }
 }

@@ -1,19 +1,18 @@
 //! Which samples of which pixels a triangle covers, exactly.
 //!
-//! Corners are snapped to a sub-pixel grid; from there on all is integer arithmetic. An edge function tells
-//! on which side of an edge a sample lies (Pineda, "A Parallel Algorithm for Polygon Rasterization", 1988),
-//! and a sample on an edge belongs to the triangle for which the edge is a top or a left one. Two triangles
-//! that share an edge therefore cover every sample along it exactly once.
+//! Corners are snapped to a sub-pixel grid; everything after that is integer arithmetic. An edge function gives the
+//! side of an edge on which a sample lies (Pineda 1988). A sample on an edge belongs to the triangle for which the edge
+//! is a top or a left one: two triangles that share an edge cover every sample along it exactly once.
 //!
-//! Blocks of 8×8 pixels are passed over or taken whole where the edge functions' extremes allow it.
+//! Blocks of 8×8 pixels are skipped or taken in full where the extremes of the edge functions allow it.
 
-use crate::render::cpu::pattern::{Mask, SamplePattern};
+use crate::render::cpu::pattern::{SampleMask, SamplePattern};
 
 /// Corners are snapped to `2^-SUBPIXEL_BITS` pixels.
 ///
-/// Fine enough that the outline of a draped surface leaves its ground triangle's by no more than the depth
-/// tolerance covers, a few pixels from the horizon; coarse enough that edge functions over 32,768 pixels
-/// (the largest picture and its guard band) stay below 2^61.
+/// Fine enough that the outline of a draped surface leaves its ground triangle's by no more than the depth tolerance
+/// covers, a few pixels from the horizon; coarse enough that edge functions over 32,768 pixels (the largest picture and
+/// its guard band) stay below 2^61.
 pub const SUBPIXEL_BITS: u32 = 14;
 
 /// Pixels along the side of a block.
@@ -34,8 +33,11 @@ pub struct PixelWindow {
 }
 
 impl PixelWindow {
+    /// No pixel.
+    pub const EMPTY: Self = Self { from: [0; 2], to: [0; 2] };
+
     /// The pixels in both.
-    pub fn and(self, other: Self) -> Self {
+    pub fn intersection(self, other: Self) -> Self {
         let from = [self.from[0].max(other.from[0]), self.from[1].max(other.from[1])];
         Self { from, to: [self.to[0].min(other.to[0]), self.to[1].min(other.to[1])] }
     }
@@ -57,9 +59,9 @@ impl PixelWindow {
     }
 }
 
-/// The nearest sub-pixel position to a pixel coordinate; those beyond ±32,768 pixels are moved there.
+/// The sub-pixel position nearest to a pixel coordinate, clamped to ±32,768 pixels.
 pub fn snapped(pixel: f64) -> i32 {
-    // A bias makes every position positive, where truncation is rounding down: cheaper than `round`.
+    // The bias makes every position positive, where truncation rounds down: cheaper than `round`.
     const BIAS: i64 = 1 << 31;
     let pixel = pixel.clamp(-32_768.0, 32_768.0);
     ((pixel * ONE_PIXEL as f64 + BIAS as f64 + 0.5) as i64 - BIAS) as i32
@@ -75,11 +77,11 @@ pub fn doubled_area([a, b, c]: &[SubpixelPoint; 3]) -> i64 {
 /// One edge: not negative at the samples on its inner side.
 #[derive(Clone, Copy)]
 struct EdgeFunction<const N: usize> {
-    /// At the center of the window's first pixel.
+    /// The value at the center of the window's first pixel.
     origin: i64,
     /// The change over one pixel to the right and one down.
     step: [i64; 2],
-    /// From a pixel's center to its samples.
+    /// The change from a pixel's center to its samples.
     samples: [i64; N],
     /// The extremes of `samples`.
     least: i64,
@@ -117,13 +119,13 @@ impl<const N: usize> EdgeFunction<N> {
 
 /// Calls `visit(column, row, mask)` for every pixel in `window` of which the triangle covers samples.
 ///
-/// The corners run clockwise as seen, that is, with a positive [`doubled_area`]. Each pixel is visited at
-/// most once, and never with an empty mask; blocks come row by row.
+/// The corners run clockwise as seen, that is, with a positive [`doubled_area`]. Each pixel is visited at most once, and
+/// never with an empty mask; blocks come row by row.
 pub fn cover<const N: usize>(
     corners: &[SubpixelPoint; 3],
     pattern: &SamplePattern<N>,
     window: PixelWindow,
-    mut visit: impl FnMut(u32, u32, Mask),
+    mut visit: impl FnMut(u32, u32, SampleMask),
 ) {
     if window.is_empty() {
         return;
@@ -139,10 +141,10 @@ pub fn cover<const N: usize>(
             if extremes.iter().any(|&(_, greatest)| greatest < 0) {
                 continue;
             }
-            let whole = extremes.iter().all(|&(least, _)| least >= 0);
+            let is_full = extremes.iter().all(|&(least, _)| least >= 0);
             for row in rows[0]..rows[1] {
                 for column in columns[0]..columns[1] {
-                    let mask = if whole { SamplePattern::<N>::FULL } else { covered(&edges, column, row) };
+                    let mask = if is_full { SamplePattern::<N>::FULL } else { covered(&edges, column, row) };
                     if mask != 0 {
                         visit(window.from[0] + column, window.from[1] + row, mask);
                     }
@@ -153,7 +155,7 @@ pub fn cover<const N: usize>(
 }
 
 /// The samples of one pixel on the inner side of all edges.
-fn covered<const N: usize>(edges: &[EdgeFunction<N>; 3], column: u32, row: u32) -> Mask {
+fn covered<const N: usize>(edges: &[EdgeFunction<N>; 3], column: u32, row: u32) -> SampleMask {
     let mut mask = SamplePattern::<N>::FULL;
     for edge in edges {
         let center = edge.at(column, row);
@@ -162,7 +164,7 @@ fn covered<const N: usize>(edges: &[EdgeFunction<N>; 3], column: u32, row: u32) 
         }
         if center + edge.least < 0 {
             for (sample, offset) in edge.samples.iter().enumerate() {
-                mask &= !(Mask::from(center + offset < 0) << sample);
+                mask &= !(SampleMask::from(center + offset < 0) << sample);
             }
         }
     }
@@ -191,11 +193,16 @@ mod tests {
         let mut counts = vec![[0; N]; (SIDE * SIDE) as usize];
         for &[a, b, c] in triangles {
             let corners = if doubled_area(&[a, b, c]) > 0 { [a, b, c] } else { [a, c, b] };
-            cover(&corners, pattern, PixelWindow::around(&corners, [SIDE; 2]).and(ALL), |x, y, mask| {
-                for (sample, count) in counts[(y * SIDE + x) as usize].iter_mut().enumerate() {
-                    *count += u32::from(mask >> sample & 1);
-                }
-            });
+            cover(
+                &corners,
+                pattern,
+                PixelWindow::around(&corners, [SIDE; 2]).intersection(ALL),
+                |x, y, mask| {
+                    for (sample, count) in counts[(y * SIDE + x) as usize].iter_mut().enumerate() {
+                        *count += u32::from(mask >> sample & 1);
+                    }
+                },
+            );
         }
         counts
     }

@@ -1,17 +1,16 @@
-//! The camera as the rasterizer uses it: pixels in homogeneous form, and rays back.
+//! The camera as the rasterizer uses it: world points to homogeneous pixels, and pixels to rays.
 //!
-//! A world point becomes `(x·w, y·w, w)` with `x`, `y` in pixels from the picture's upper left corner and
-//! `w` in meters along the viewing direction. The form is a linear image of eye-centered world space, so a
-//! triangle's attributes divided by `w` are linear over the picture even where a corner lies behind the eye
-//! (Olano and Greer, "Triangle Scan Conversion using 2D Homogeneous Coordinates", 1997); nothing but the
-//! outline needs clipping. All in f64: the f32 corners are then exact, and what lies in one plane in the
-//! world lies in one plane on the picture.
+//! A world point becomes `(x·w, y·w, w)` with `x`, `y` in pixels from the picture's upper left corner and `w` in meters
+//! along the viewing direction. The form is a linear image of eye-centered world space, so that a triangle's attributes
+//! divided by `w` are linear over the picture even where a corner lies behind the eye (Olano and Greer 1997); only the
+//! outline needs clipping. All values are f64: the f32 corners are then exact, and what lies in one plane in the world
+//! lies in one plane on the picture.
 
 use glam::{DMat4, DVec3, Mat4, Vec3};
 
 use crate::view::camera::Camera;
 
-/// A camera made ready for projecting many points.
+/// A camera prepared for projecting many points.
 #[derive(Clone, Copy, Debug)]
 pub struct Screen {
     /// Columns and rows of pixels.
@@ -37,7 +36,7 @@ pub struct Projection {
 
 impl Screen {
     /// The screen of `camera`.
-    pub fn of(camera: &Camera) -> Self {
+    pub fn new(camera: &Camera) -> Self {
         let (width, height) = camera.size();
         let tan = camera.tan_half_fov();
         let half = [f64::from(width) / 2.0, f64::from(height) / 2.0];
@@ -65,17 +64,17 @@ impl Screen {
         self.eye
     }
 
-    /// The direction from the eye through the pixel position, one meter long along the viewing direction.
+    /// The direction from the eye through a pixel position, one meter long along the viewing direction.
     pub fn ray_at(&self, at: [f32; 2]) -> Vec3 {
         self.ray_corner + self.ray_right * at[0] + self.ray_down * at[1]
     }
 
-    /// How [`Screen::ray_at`] changes over one pixel to the right and one down.
+    /// The change of [`Screen::ray_at`] over one pixel to the right and one down.
     pub fn ray_steps(&self) -> [Vec3; 2] {
         [self.ray_right, self.ray_down]
     }
 
-    /// The way from a mesh's space to this screen.
+    /// The projection from a mesh's space to this screen.
     pub fn projection(&self, world_from_mesh: &Mat4) -> Projection {
         Projection { world_from_mesh: world_from_mesh.as_dmat4(), eye: self.eye, rows: self.rows }
     }
@@ -103,7 +102,7 @@ mod tests {
         let eye = Vec3::new(100.0, -50.0, 30.0);
         let camera =
             Camera::new(eye, Vec3::new(0.0, 400.0, 5.0), 0.8, (640, 480), (1.0, 5000.0)).expect("sound");
-        let screen = Screen::of(&camera);
+        let screen = Screen::new(&camera);
         let to_screen = screen.projection(&Mat4::IDENTITY);
         let world = Vec3::new(-40.0, 300.0, 12.0);
         let seen = camera.project(world).expect("in front of the eye");

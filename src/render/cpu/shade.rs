@@ -1,4 +1,6 @@
-//! What a face shows at a pixel: the draw list's formulas put together.
+//! The color of a face at a pixel, by the formulas of the draw list.
+
+use std::cell::LazyCell;
 
 use glam::{Mat3, Vec3};
 use rayon::prelude::*;
@@ -7,12 +9,12 @@ use crate::draw::list::{DrawItem, DrawList, DrawVertex};
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use crate::render::cpu::cutout::Cutout;
 use crate::render::cpu::geometry::ScreenFace;
-use crate::render::cpu::ground_shade::{GroundPoint, GroundShader};
-use crate::render::cpu::hit::{FacePoint, Shares};
+use crate::render::cpu::ground_shade::GroundShader;
+use crate::render::cpu::hit::{Barycentric, FacePoint};
 use crate::render::cpu::screen::Screen;
 use crate::render::cpu::texture::{Texel, TexelFootprint, Texture, Weighting};
 
-/// A draw list with everything that is made once a frame for shading it.
+/// A draw list with everything that is computed once per frame for shading.
 #[derive(Debug)]
 pub struct Shader<'a> {
     list: &'a DrawList,
@@ -22,10 +24,13 @@ pub struct Shader<'a> {
     most_taps: u32,
 }
 
-/// A face's vertices and their shares at a point.
-type FaceCorners<'a> = ([&'a DrawVertex; 3], Shares);
+/// A face's vertices and their weights at a point.
+struct FaceVertices<'a> {
+    corners: [&'a DrawVertex; 3],
+    weights: Barycentric,
+}
 
-/// What a surface sends to the eye.
+/// The color of a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Shaded {
     /// Lit and seen through the haze; linear, in 0..=1.
@@ -51,48 +56,59 @@ impl<'a> Shader<'a> {
         &self.list.items[face.item as usize]
     }
 
-    /// Whether a face looks the same as any other at its place: colored and lit by the ground map alone.
+    /// Whether a face is colored and lit by the ground map alone: all such faces look alike at the same place.
     pub fn is_mapped(&self, face: &ScreenFace) -> bool {
         let material = self.material(self.item(face));
         material.albedo == Albedo::GroundMap && material.normals == NormalSource::Ground
     }
 
-    /// What `face` shows at pixel position `at`.
+    /// The color of the sky at pixel position `at`.
+    pub fn sky(&self, at: [f32; 2]) -> Vec3 {
+        self.list.lighting.sky_color(self.screen.ray_at(at))
+    }
+
+    /// The color of `face` at pixel position `at`.
     pub fn shade(&self, face: &ScreenFace, at: [f32; 2]) -> Shaded {
         let item = self.item(face);
         let material = self.material(item);
-        let hit = FacePoint::of(face, self.screen, at);
-        let ground = self.ground_beneath(material, &hit);
-        let corners = || (self.corners(item, face), Shares::of(face, at));
+        let hit = FacePoint::new(face, self.screen, at);
+        let ground = self.ground.as_ref().filter(|_| material.reads_ground_map());
+        let ground = ground.map(|ground| (ground, ground.at(&hit, self.most_taps)));
+        let vertices = LazyCell::new(|| FaceVertices {
+            corners: self.corners(item, face),
+            weights: Barycentric::new(face, at),
+        });
         let (albedo, alpha) = match (material.albedo, &ground) {
             (Albedo::GroundMap, Some((ground, point))) => (ground.albedo(point, &hit), 1.0),
-            _ => self.surface_color(material, corners()),
+            _ => self.surface_color(material, &vertices),
         };
-        let (normal, [sun, sky]) = match (material.normals, &ground) {
-            (NormalSource::Ground, Some((_, point))) => (point.normal(), point.visibility()),
-            _ => (vertex_normal(item, face, corners()), [1.0, 1.0]),
+        let (normal, sun, sky) = match (material.normals, &ground) {
+            (NormalSource::Ground, Some((_, point))) => {
+                (point.post.normal(), point.post.sun_visibility, point.post.sky_visibility)
+            }
+            _ => (vertices.normal(item, face), 1.0, 1.0),
         };
         let lighting = &self.list.lighting;
-        let lit = lighting.lit(albedo, normal, sun, sky);
-        let seen =
-            if lighting.haze.distance_m.is_finite() { lighting.hazed(lit, hit.distance_m) } else { lit };
-        // Clamped before samples are averaged, as a picture with 8-bit samples would be: an overexposed
-        // surface would otherwise eat away the smooth border of its neighbor.
-        Shaded { color: seen.max(Vec3::ZERO).min(Vec3::ONE), alpha }
+        let mut color = lighting.shade(albedo, normal, sun, sky);
+        if lighting.haze.distance_m.is_finite() {
+            color = lighting.add_haze(color, hit.distance_m);
+        }
+        // Clamped before samples are averaged, as in a picture with 8-bit samples: an overexposed surface would
+        // otherwise spoil the smooth border of its neighbor.
+        Shaded { color: color.max(Vec3::ZERO).min(Vec3::ONE), alpha }
     }
 
-    /// A masked face with its mask; one without a mask has no hole.
+    /// A masked face with its mask; a face without a mask has no hole.
     pub fn cutout<'b>(&'b self, face: &'b ScreenFace) -> Cutout<'b> {
         let item = self.item(face);
         let material = self.material(item);
         let corners = self.corners(item, face);
+        let texture = material.texture.map(|id| &self.textures[id.0 as usize]);
         Cutout {
             face,
             cutoff: if let AlphaMode::Mask(cutoff) = material.alpha { cutoff } else { 0.0 },
             alphas: corners.map(|corner| material.base_color.alpha() * corner.color.alpha()),
-            texture: material
-                .texture
-                .map(|id| (&self.textures[id.0 as usize], corners.map(|corner| corner.uv))),
+            texture: texture.map(|texture| (texture, corners.map(|corner| corner.uv))),
             most_taps: self.most_taps,
         }
     }
@@ -106,30 +122,25 @@ impl<'a> Shader<'a> {
         mesh.triangles[face.triangle as usize].map(|id| &mesh.vertices[id.index()])
     }
 
-    fn ground_beneath(
-        &self,
-        material: &Material,
-        hit: &FacePoint,
-    ) -> Option<(&GroundShader<'a>, GroundPoint)> {
-        let wanted = material.albedo == Albedo::GroundMap || material.normals == NormalSource::Ground;
-        self.ground.as_ref().filter(|_| wanted).map(|ground| (ground, ground.at(hit, self.most_taps)))
-    }
-
-    /// Base color × vertex color × texture, in linear light, and alpha.
-    fn surface_color(&self, material: &Material, (corners, shares): FaceCorners) -> (Vec3, f32) {
-        let texel = self.texel(material, &corners, &shares);
-        let vertex = shares.blend(corners.map(|corner| corner.color.linear()));
+    /// Base color × vertex color × texture in linear light, and alpha.
+    fn surface_color(&self, material: &Material, vertices: &FaceVertices) -> (Vec3, f32) {
+        let texel = self.texel(material, vertices);
+        let FaceVertices { corners, weights } = vertices;
+        let vertex = weights.blend(corners.map(|corner| corner.color.linear()));
         let alpha = match material.alpha {
-            AlphaMode::Blend => alpha(material, &corners, &shares, &texel),
+            AlphaMode::Blend => {
+                let vertex = weights.blend_number(corners.map(|corner| corner.color.alpha()));
+                material.base_color.alpha() * vertex * texel.alpha
+            }
             AlphaMode::Opaque | AlphaMode::Mask(_) => 1.0,
         };
         (material.base_color.linear() * vertex * texel.color, alpha)
     }
 
-    fn texel(&self, material: &Material, corners: &[&DrawVertex; 3], shares: &Shares) -> Texel {
-        let Some(id) = material.texture else { return Texel { color: Vec3::ONE, alpha: 1.0 } };
+    fn texel(&self, material: &Material, vertices: &FaceVertices) -> Texel {
+        let Some(id) = material.texture else { return Texel::WHITE };
         let texture = &self.textures[id.0 as usize];
-        let [uv, right, down] = shares.blend_uv(corners.map(|corner| corner.uv));
+        let [uv, right, down] = vertices.weights.blend_uv(vertices.corners.map(|corner| corner.uv));
         let footprint = TexelFootprint::new(right, down, texture.size(), self.most_taps);
         let weighting =
             if material.alpha == AlphaMode::Opaque { Weighting::Even } else { Weighting::ByAlpha };
@@ -137,19 +148,15 @@ impl<'a> Shader<'a> {
     }
 }
 
-/// Base alpha × vertex alpha × texture alpha, 0..=1.
-fn alpha(material: &Material, corners: &[&DrawVertex; 3], shares: &Shares, texel: &Texel) -> f32 {
-    let vertex = shares.blend_number(corners.map(|corner| corner.color.alpha()));
-    material.base_color.alpha() * vertex * texel.alpha
-}
-
-/// The unit normal in world space on the side that is seen; the triangle's own where vertices have none.
-fn vertex_normal(item: &DrawItem, face: &ScreenFace, (corners, shares): FaceCorners) -> Vec3 {
-    let blended = shares.blend(corners.map(|corner| Vec3::from(corner.normal)));
-    let to_world = Mat3::from_mat4(item.world_from_mesh);
-    let normal = (to_world * blended).try_normalize().unwrap_or_else(|| {
-        let [a, b, c] = corners.map(|corner| Vec3::from(corner.position));
-        (to_world * (b - a).cross(c - a)).normalize_or_zero()
-    });
-    if face.planes.faces_eye { normal } else { -normal }
+impl FaceVertices<'_> {
+    /// The unit normal in world space on the side that is seen; the triangle's own where vertices have none.
+    fn normal(&self, item: &DrawItem, face: &ScreenFace) -> Vec3 {
+        let blended = self.weights.blend(self.corners.map(|corner| Vec3::from(corner.normal)));
+        let to_world = Mat3::from_mat4(item.world_from_mesh);
+        let normal = (to_world * blended).try_normalize().unwrap_or_else(|| {
+            let [a, b, c] = self.corners.map(|corner| Vec3::from(corner.position));
+            (to_world * (b - a).cross(c - a)).normalize_or_zero()
+        });
+        if face.planes.faces_eye { normal } else { -normal }
+    }
 }

@@ -1,8 +1,7 @@
 //! Textures: filtered reading of a picture and its mip levels.
 //!
-//! A footprint longer than wide is read by several taps along its length, each at the level of its width (the
-//! idea of McCormack and others, "Feline: Fast Elliptical Lines for Anisotropic Texture Mapping", 1999): roads
-//! are seen at grazing angles.
+//! A footprint longer than wide is read by several taps along its length, each at the level of its width (McCormack et
+//! al. 1999, "Feline"): roads are seen at grazing angles.
 
 use glam::{Vec2, Vec3};
 
@@ -20,12 +19,12 @@ pub struct Texture<'a> {
     linear: [f32; 256],
 }
 
-/// How the colors of transparent texels count.
+/// The weight of the colors of transparent texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weighting {
-    /// Like all others, for opaque surfaces.
+    /// The same as of all others, for opaque surfaces.
     Even,
-    /// By their alpha, so that the unseen color of holes does not bleed into borders.
+    /// Their alpha, so that the unseen color of holes does not bleed into borders.
     ByAlpha,
 }
 
@@ -38,10 +37,15 @@ pub struct Texel {
     pub alpha: f32,
 }
 
-/// How many texels a pixel spans, and where from.
+impl Texel {
+    /// Opaque white.
+    pub const WHITE: Self = Self { color: Vec3::ONE, alpha: 1.0 };
+}
+
+/// The readings that cover a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TexelFootprint {
-    /// The longer of the pixel's two sides, in whatever the map's unit is.
+    /// The longer of the pixel's two sides, in the map's unit.
     pub axis: Vec2,
     /// Readings along the axis, at least 1.
     pub taps: u32,
@@ -52,8 +56,8 @@ pub struct TexelFootprint {
 impl TexelFootprint {
     /// The footprint of a pixel whose sides span `right` and `down`, measured in cells of `scale` per unit.
     ///
-    /// At most `most_taps` readings are taken; where that is too few, the level rises instead. What is not finite
-    /// reads the coarsest level once.
+    /// At most `most_taps` readings are taken; where that is too few, the level rises instead. Sides that are not finite
+    /// read the coarsest level once.
     pub fn new(right: Vec2, down: Vec2, scale: Vec2, most_taps: u32) -> Self {
         let (across, along) = ((right * scale).length_squared(), (down * scale).length_squared());
         if across.max(along) <= 1.0 {
@@ -80,7 +84,7 @@ impl<'a> Texture<'a> {
     /// `base` with all smaller levels; an empty picture reads as opaque white.
     pub fn new(base: &'a Pixels) -> Self {
         let smaller = smaller_levels(base);
-        let alpha = AlphaMask::of(base, &smaller);
+        let alpha = AlphaMask::new(base, &smaller);
         Self { base, smaller, alpha, linear: std::array::from_fn(|channel| linear_from_srgb(channel as u8)) }
     }
 
@@ -89,7 +93,7 @@ impl<'a> Texture<'a> {
         Vec2::new(self.base.width() as f32, self.base.height() as f32)
     }
 
-    /// Its alpha by itself, for masks.
+    /// Its alpha, for masks.
     pub fn alpha(&self) -> &AlphaMask {
         &self.alpha
     }
@@ -99,22 +103,22 @@ impl<'a> Texture<'a> {
     /// (0, 0) is the upper left corner, (1, 1) the lower right; the picture repeats in both directions.
     pub fn sample(&self, uv: Vec2, footprint: &TexelFootprint, weighting: Weighting) -> Texel {
         if self.base.data().is_empty() {
-            return Texel { color: Vec3::ONE, alpha: 1.0 };
+            return Texel::WHITE;
         }
         let level = footprint.level.min(self.smaller.len() as f32);
-        let (lower, part) = (level as usize, level - (level as usize) as f32);
-        let mut sum = Sum::default();
+        let (larger, part) = (level as usize, level - (level as usize) as f32);
+        let mut sum = TexelSum { weighting, color: Vec3::ZERO, color_weight: 0.0, alpha: 0.0, weight: 0.0 };
         for offset in footprint.offsets() {
             let at = uv + offset;
-            self.add_bilinear(&mut sum, at, lower, 1.0 - part, weighting);
+            self.add_bilinear(&mut sum, at, larger, 1.0 - part);
             if part > 0.0 {
-                self.add_bilinear(&mut sum, at, lower + 1, part, weighting);
+                self.add_bilinear(&mut sum, at, larger + 1, part);
             }
         }
         sum.mean()
     }
 
-    fn add_bilinear(&self, sum: &mut Sum, uv: Vec2, level: usize, weight: f32, weighting: Weighting) {
+    fn add_bilinear(&self, sum: &mut TexelSum, uv: Vec2, level: usize, weight: f32) {
         let pixels = level.checked_sub(1).map_or(self.base, |index| &self.smaller[index]);
         let (left, right, x) = neighbors(uv.x, pixels.width());
         let (top, bottom, y) = neighbors(uv.y, pixels.height());
@@ -122,8 +126,7 @@ impl<'a> Texture<'a> {
         let mut add = |row: usize, column: usize, weight: f32| {
             let Srgba([red, green, blue, alpha]) = data[row * pixels.width() as usize + column];
             let linear = |channel: u8| self.linear[usize::from(channel)];
-            let color = Vec3::new(linear(red), linear(green), linear(blue));
-            sum.add(color, f32::from(alpha) / 255.0, weight, weighting);
+            sum.add(Vec3::new(linear(red), linear(green), linear(blue)), f32::from(alpha) / 255.0, weight);
         };
         add(top, left, weight * (1.0 - x) * (1.0 - y));
         add(top, right, weight * x * (1.0 - y));
@@ -133,17 +136,17 @@ impl<'a> Texture<'a> {
 }
 
 /// A weighted sum of colors.
-#[derive(Default)]
-struct Sum {
+struct TexelSum {
+    weighting: Weighting,
     color: Vec3,
     color_weight: f32,
     alpha: f32,
     weight: f32,
 }
 
-impl Sum {
-    fn add(&mut self, color: Vec3, alpha: f32, weight: f32, weighting: Weighting) {
-        let color_weight = match weighting {
+impl TexelSum {
+    fn add(&mut self, color: Vec3, alpha: f32, weight: f32) {
+        let color_weight = match self.weighting {
             Weighting::Even => weight,
             Weighting::ByAlpha => weight * alpha,
         };

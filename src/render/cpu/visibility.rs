@@ -1,17 +1,17 @@
-//! Which face each sample of a tile sees: the outcome of the opaque and masked surfaces.
+//! The face that each sample of a tile sees, among opaque and masked surfaces.
 //!
-//! A depth is kept as its inverse, which is linear over the picture; larger is nearer. Ground and drapes
-//! must come in the list's order, layers rising, which makes the rules of [`crate::draw::list::DepthLayer`] local: whatever
-//! a draped face meets is ground or a drape that it lies over. Solids come last, in any order: the nearest wins, and of
-//! two at the same depth the first of the list.
+//! A depth is kept as its inverse, which is linear over the picture; larger is nearer. Ground and drapes must come in
+//! the list's order, layers rising, which makes the rules of [`crate::draw::list::DepthLayer`] local: what a draped face
+//! meets is ground or a drape that it lies over. Solids come last, in any order: the nearest wins, and of two at the
+//! same depth the first of the list.
 
 use crate::render::cpu::geometry::{FaceId, FacePiece, ScreenFace};
 use crate::render::cpu::occlusion::Occlusion;
-use crate::render::cpu::pattern::{Mask, SamplePattern};
+use crate::render::cpu::pattern::{SampleMask, SamplePattern};
 use crate::render::cpu::raster::{PixelWindow, cover};
 
-/// Pixels along the side of a tile: 8 bytes a sample keep a tile of 8 samples within 256 KiB, the second
-/// level cache of common processors.
+/// Pixels along the side of a tile: at 8 bytes per sample a tile of 8 samples takes 256 KiB, the second level cache of
+/// common processors.
 pub const TILE: u32 = 64;
 
 /// The faces seen in one tile and their inverse depths.
@@ -24,27 +24,27 @@ pub struct Visibility<const N: usize> {
 }
 
 impl<const N: usize> Visibility<N> {
-    /// Room for one tile.
+    /// Buffers for one tile.
     pub fn new() -> Self {
         let pixels = (TILE * TILE) as usize;
         Self {
-            window: PixelWindow { from: [0; 2], to: [0; 2] },
+            window: PixelWindow::EMPTY,
             faces: vec![[FaceId::NONE; N]; pixels],
             depths: vec![[0.0; N]; pixels],
             occlusion: Occlusion::new(),
         }
     }
 
-    /// Empties the tile and moves it to `window`, of at most [`TILE`] pixels a side; what lies beyond
-    /// `farthest_m` will not be seen.
+    /// Empties the tile and moves it to `window`, of at most [`TILE`] pixels a side. Surfaces beyond `farthest_m` will
+    /// not be seen.
     pub fn clear(&mut self, window: PixelWindow, farthest_m: f64) {
         self.window = window;
-        self.occlusion.clear();
+        self.occlusion = Occlusion::new();
         self.faces.fill([FaceId::NONE; N]);
         self.depths.fill([(1.0 / farthest_m) as f32; N]);
     }
 
-    /// The faces the samples of a pixel see.
+    /// The faces that the samples of a pixel see.
     pub fn faces(&self, x: u32, y: u32) -> &[FaceId; N] {
         &self.faces[self.index(x, y)]
     }
@@ -58,96 +58,62 @@ impl<const N: usize> Visibility<N> {
         ((y - self.window.from[1]) * TILE + x - self.window.from[0]) as usize
     }
 
-    /// Whether a solid's piece may be seen in front of what is there; if so, takes note that it is drawn.
+    /// Whether a solid's piece may be seen in front of what is there; if so, counts it as drawn.
     ///
-    /// To be asked of solids only, after everything else is drawn: it notes nothing else.
+    /// Must be called for solids only, after everything else is drawn.
     pub fn may_show(&mut self, piece: &FacePiece, face: &ScreenFace) -> bool {
-        let here = piece.window.and(self.window);
+        let visible = piece.window.intersection(self.window);
         let [left, top] = self.window.from;
-        let within = |[x, y]: [u32; 2]| [x - left, y - top];
-        let window = PixelWindow { from: within(here.from), to: within(here.to) };
+        let in_tile = |[x, y]: [u32; 2]| [x - left, y - top];
+        let window = PixelWindow { from: in_tile(visible.from), to: in_tile(visible.to) };
         if self.occlusion.hides(window, face.range[1], &self.depths) {
             return false;
         }
-        self.occlusion.note(window);
+        self.occlusion.count_piece(window);
         true
     }
 
-    /// Draws a piece of a solid or of the ground where it is nearer than what is there. Solids may come in any order:
-    /// of two at the same depth the first of the list is kept.
-    pub fn draw_nearer(&mut self, piece: &FacePiece, face: &ScreenFace, pattern: &SamplePattern<N>) {
-        let id = piece.face;
-        self.draw(piece, face, pattern, |new, there, other| new > there || (new == there && id.0 < other.0));
-    }
-
-    /// Draws a piece of a draped face where it is behind what is there by no more than the face's reach.
-    pub fn draw_draped(&mut self, piece: &FacePiece, face: &ScreenFace, pattern: &SamplePattern<N>) {
-        self.draw(piece, face, pattern, |new, there, _| new * face.reach >= there);
-    }
-
-    /// Draws a piece where `is_seen` says so of its inverse depth, the one there and the face there.
+    /// Draws a piece where it is seen: of a draped face where it is behind what is there by no more than the face's
+    /// reach, of another face where it is nearer. `solid` returns those of a pixel's seen samples that are not in a hole
+    /// of the face.
     ///
     /// The nearer of both depths is kept, so that drapes laid over each other do not sink step by step.
-    fn draw(
+    pub fn draw(
         &mut self,
         piece: &FacePiece,
         face: &ScreenFace,
         pattern: &SamplePattern<N>,
-        is_seen: impl Fn(f32, f32, FaceId) -> bool,
+        solid: impl Fn((u32, u32), SampleMask) -> SampleMask,
     ) {
-        let slope = SampleDepths::of(face, pattern);
-        cover(&piece.corners, pattern, piece.window.and(self.window), |x, y, mask| {
+        let offsets = SampleDepths::new(face, pattern);
+        cover(&piece.corners, pattern, piece.window.intersection(self.window), |x, y, mask| {
             let index = self.index(x, y);
-            let new = slope.at(face, x, y);
-            let (faces, depths) = (&mut self.faces[index], &mut self.depths[index]);
-            for sample in 0..N {
-                let seen = mask & (1 << sample) != 0 && is_seen(new[sample], depths[sample], faces[sample]);
-                faces[sample] = if seen { piece.face } else { faces[sample] };
-                depths[sample] = if seen { new[sample].max(depths[sample]) } else { depths[sample] };
-            }
-        });
-    }
-
-    /// Draws a piece with holes. Of the samples of a pixel, at `(x, y)`, that it would be seen at, `solid` tells those
-    /// at which it has none; nothing changes at the others.
-    ///
-    /// Solids may come in any order: of two at the same depth the first of the list is kept.
-    pub fn draw_masked(
-        &mut self,
-        piece: &FacePiece,
-        face: &ScreenFace,
-        pattern: &SamplePattern<N>,
-        solid: impl Fn((u32, u32), Mask) -> Mask,
-    ) {
-        let slope = SampleDepths::of(face, pattern);
-        cover(&piece.corners, pattern, piece.window.and(self.window), |x, y, mask| {
-            let index = self.index(x, y);
-            let new = slope.at(face, x, y);
+            let new = offsets.at(face, x, y);
             let (faces, depths) = (&mut self.faces[index], &mut self.depths[index]);
             let mut in_front = 0;
             for sample in 0..N {
                 let there = depths[sample];
-                let seen = if face.is_draped() {
+                let is_seen = if face.is_draped() {
                     new[sample] * face.reach >= there
                 } else {
                     new[sample] > there || (new[sample] == there && piece.face.0 < faces[sample].0)
                 };
-                in_front |= Mask::from(seen) << sample;
+                in_front |= SampleMask::from(is_seen) << sample;
             }
-            let seen = mask & in_front;
-            if seen == 0 {
-                return;
+            let mut seen = mask & in_front;
+            if seen != 0 {
+                seen = solid((x, y), seen);
             }
-            let seen = solid((x, y), seen);
-            for sample in (0..N).filter(|sample| seen & (1 << sample) != 0) {
-                faces[sample] = piece.face;
-                depths[sample] = new[sample].max(depths[sample]);
+            for sample in 0..N {
+                let is_seen = seen & (1 << sample) != 0;
+                faces[sample] = if is_seen { piece.face } else { faces[sample] };
+                depths[sample] = if is_seen { new[sample].max(depths[sample]) } else { depths[sample] };
             }
         });
     }
 }
 
-/// How a face's inverse depth differs between a pixel's center and its samples.
+/// The differences of a face's inverse depth between a pixel's center and its samples.
 #[derive(Clone, Copy, Debug)]
 pub struct SampleDepths<const N: usize> {
     offsets: [f32; N],
@@ -155,13 +121,13 @@ pub struct SampleDepths<const N: usize> {
 
 impl<const N: usize> SampleDepths<N> {
     /// The differences for one face.
-    pub fn of(face: &ScreenFace, pattern: &SamplePattern<N>) -> Self {
+    pub fn new(face: &ScreenFace, pattern: &SamplePattern<N>) -> Self {
         let plane = &face.planes.inverse_depth;
         let change = |[x, y]: [i32; 2]| (plane.right * f64::from(x) + plane.down * f64::from(y)) / 16.0;
         Self { offsets: pattern.sixteenths.map(|offset| change(offset) as f32) }
     }
 
-    /// The inverse depths at the samples of a pixel, kept to what the face's corners span.
+    /// The inverse depths at the samples of a pixel, clamped to the range of the face's corners.
     pub fn at(&self, face: &ScreenFace, x: u32, y: u32) -> [f32; N] {
         let center = face.planes.inverse_depth.at([x as f32 + 0.5, y as f32 + 0.5]) as f32;
         let [least, most] = face.range;
@@ -170,7 +136,7 @@ impl<const N: usize> SampleDepths<N> {
 }
 
 /// The samples of `faces` that see `face`.
-pub fn samples_of<const N: usize>(faces: &[FaceId; N], face: FaceId) -> Mask {
-    let bits = faces.iter().enumerate().map(|(sample, &seen)| Mask::from(seen == face) << sample);
+pub fn samples_of<const N: usize>(faces: &[FaceId; N], face: FaceId) -> SampleMask {
+    let bits = faces.iter().enumerate().map(|(sample, &seen)| SampleMask::from(seen == face) << sample);
     bits.fold(0, |mask, bit| mask | bit)
 }

@@ -1,21 +1,20 @@
-//! Finding a GPU and talking to it safely.
+//! Opening an adapter, and running commands on it safely.
 //!
-//! A device reports mistakes and exhaustion not where they happen but to the innermost error scope, and the
-//! library panics where a device vanishes in the middle of a wait. `Gpu::guarded` is the one place that
-//! turns all of these into values.
+//! A device reports errors and exhaustion not where they occur but to the innermost error scope, and `wgpu` panics
+//! where a device vanishes during a wait. `Gpu::guarded` turns all of these into values.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::render::gpu::error::GpuError;
+use crate::render::gpu::error::{DriverError, GpuError};
+use crate::render::gpu::pipelines::{COLOR, DEPTH};
 
-/// How many samples a pixel's color is averaged from, where the adapter can; every WebGPU adapter offers
-/// one and four, nothing else is common.
+/// Samples per pixel, where the adapter supports them; every WebGPU adapter has one and four, nothing else is common.
 const SAMPLES: u32 = 4;
 
 /// The interface to a GPU's driver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Api {
+pub enum GpuApi {
     /// Vulkan: the full feature set.
     Vulkan,
     /// OpenGL or OpenGL ES through EGL: older drivers and machines without a display.
@@ -25,92 +24,81 @@ pub enum Api {
 /// An open device; drawing with it again saves the 0.1 to 0.3 seconds that opening takes.
 #[derive(Debug)]
 pub struct Gpu {
-    pub(in crate::render::gpu) device: wgpu::Device,
-    pub(in crate::render::gpu) queue: wgpu::Queue,
-    pub(in crate::render::gpu) limits: wgpu::Limits,
-    pub(in crate::render::gpu) samples: u32,
-    pub(in crate::render::gpu) anisotropy: u16,
-    api: Api,
+    pub(super) device: wgpu::Device,
+    pub(super) queue: wgpu::Queue,
+    pub(super) limits: wgpu::Limits,
+    pub(super) samples: u32,
+    pub(super) anisotropy: u16,
+    api: GpuApi,
     name: String,
-    lost: Arc<Mutex<Option<String>>>,
+    failure: DeviceFailure,
 }
 
+/// The first failure that a device reported outside an error scope: its loss, or a stray error.
+type DeviceFailure = Arc<Mutex<Option<Arc<DriverError>>>>;
+
 impl Gpu {
-    /// Opens the first of `apis` that offers an adapter, the fastest one where there are several.
+    /// Opens the first of `apis` that offers an adapter, and its fastest adapter.
     ///
     /// # Errors
     /// [`GpuError::NoAdapter`] where none does.
-    pub fn open(apis: &[Api]) -> Result<Self, GpuError> {
+    pub fn open(apis: &[GpuApi]) -> Result<Self, GpuError> {
         let mut tried = Vec::new();
         for &api in apis {
-            match catch_unwind(|| pollster::block_on(open(api))) {
-                Ok(Ok(gpu)) => return Ok(gpu),
-                Ok(Err(reason)) => tried.push(format!("{api:?}: {reason}")),
-                Err(_) => tried.push(format!("{api:?}: the driver crashed")),
+            match catch_unwind(|| pollster::block_on(open(api))).unwrap_or(Err(DriverError::Crash)) {
+                Ok(gpu) => return Ok(gpu),
+                Err(error) => tried.push((api, error)),
             }
         }
-        Err(GpuError::NoAdapter { tried: tried.join("; ") })
+        Err(GpuError::NoAdapter(tried))
     }
 
-    /// The adapter's name as its driver gives it, with the interface it is reached by.
+    /// The adapter's name as its driver gives it, with the interface.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The interface it is reached by.
-    pub fn api(&self) -> Api {
+    /// The interface.
+    pub fn api(&self) -> GpuApi {
         self.api
     }
 
-    /// Does `work` and reports whatever the device or its driver holds against it.
-    pub(in crate::render::gpu) fn guarded<T>(
+    /// Runs `work`, and returns what the device or its driver reports against it.
+    pub(super) fn guarded<T>(
         &self,
         doing: &'static str,
         work: impl FnOnce() -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
-        let failed = |reason: String| GpuError::Failed { doing, adapter: self.name.clone(), reason };
         let scopes =
             [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::Validation, wgpu::ErrorFilter::OutOfMemory]
                 .map(|filter| self.device.push_error_scope(filter));
         let result = catch_unwind(AssertUnwindSafe(work));
-        // Scopes are a stack: the last one pushed is popped first.
+        // Scopes are a stack: the last one pushed is popped first. All of them must be popped.
         let errors = scopes.into_iter().rev().map(|scope| pollster::block_on(scope.pop()));
-        let error = errors.collect::<Vec<_>>().into_iter().flatten().next();
-        let lost = self.lost.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        match (error, lost, result) {
-            (Some(wgpu::Error::OutOfMemory { .. }), _, _) => {
-                Err(GpuError::OutOfMemory { doing, adapter: self.name.clone() })
-            }
-            (_, Some(reason), _) => Err(failed(format!("the device was lost ({reason})"))),
-            (Some(error), None, _) => Err(failed(error.to_string())),
-            (None, None, Ok(result)) => result,
-            (None, None, Err(_)) => Err(failed("the driver crashed".into())),
+        let error = errors.fold(None, |first, error| first.or(error));
+        if let Some(wgpu::Error::OutOfMemory { .. }) = error {
+            return Err(GpuError::OutOfMemory { doing, adapter: self.name.clone() });
+        }
+        if let Some(failure) = self.failure.lock().unwrap_or_else(PoisonError::into_inner).clone() {
+            return Err(GpuError::Driver { doing, adapter: self.name.clone(), source: failure });
+        }
+        match error {
+            Some(error) => Err(self.driver_error(doing, error)),
+            None => result.unwrap_or_else(|_| Err(self.driver_error(doing, DriverError::Crash))),
         }
     }
 
-    /// `bytes` where one buffer can hold them.
-    ///
-    /// # Errors
-    /// [`GpuError::BufferSize`].
-    pub(in crate::render::gpu) fn fitting(
-        &self,
-        what: impl FnOnce() -> String,
-        bytes: u64,
-    ) -> Result<u64, GpuError> {
-        // Offsets into buffers are 32 bits wide, however large a buffer may be.
-        let limit = self.limits.max_buffer_size.min(u64::from(u32::MAX));
-        if bytes <= limit {
-            return Ok(bytes);
-        }
-        Err(GpuError::BufferSize { what: what(), bytes, limit, adapter: self.name.clone() })
+    /// What the driver reported while `doing` something.
+    pub(super) fn driver_error(&self, doing: &'static str, source: impl Into<DriverError>) -> GpuError {
+        GpuError::Driver { doing, adapter: self.name.clone(), source: Arc::new(source.into()) }
     }
 }
 
-async fn open(api: Api) -> Result<Gpu, String> {
+async fn open(api: GpuApi) -> Result<Gpu, DriverError> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: match api {
-            Api::Vulkan => wgpu::Backends::VULKAN,
-            Api::Gl => wgpu::Backends::GL,
+            GpuApi::Vulkan => wgpu::Backends::VULKAN,
+            GpuApi::Gl => wgpu::Backends::GL,
         },
         flags: wgpu::InstanceFlags::empty(),
         ..wgpu::InstanceDescriptor::new_without_display_handle()
@@ -119,45 +107,42 @@ async fn open(api: Api) -> Result<Gpu, String> {
         power_preference: wgpu::PowerPreference::HighPerformance,
         ..Default::default()
     };
-    let adapter = instance.request_adapter(&options).await.map_err(|error| error.to_string())?;
-    // What the adapter has is asked for, no more: that is within downlevel limits wherever the adapter is.
+    let adapter = instance.request_adapter(&options).await?;
+    // Exactly the adapter's own limits: within downlevel limits wherever the adapter is.
     let limits = adapter.limits();
     let descriptor = wgpu::DeviceDescriptor { required_limits: limits.clone(), ..Default::default() };
-    let (device, queue) = adapter.request_device(&descriptor).await.map_err(|error| error.to_string())?;
-    let info = adapter.get_info();
+    let (device, queue) = adapter.request_device(&descriptor).await?;
     let flags = adapter.get_downlevel_capabilities().flags;
     Ok(Gpu {
-        lost: watch(&device),
+        failure: watch(&device),
         device,
         queue,
         limits,
-        samples: samples_of(&adapter),
+        samples: if supports_samples(&adapter) { SAMPLES } else { 1 },
         anisotropy: if flags.contains(wgpu::DownlevelFlags::ANISOTROPIC_FILTERING) { 16 } else { 1 },
         api,
-        name: format!("{} ({api:?})", info.name),
+        name: format!("{} ({api:?})", adapter.get_info().name),
     })
 }
 
-/// Where the loss of `device` will be noted; also keeps stray errors from ending the program.
-fn watch(device: &wgpu::Device) -> Arc<Mutex<Option<String>>> {
-    let lost = Arc::new(Mutex::new(None));
-    let note = Arc::clone(&lost);
+/// Where the failure of `device` will be recorded; also keeps stray errors from ending the program.
+fn watch(device: &wgpu::Device) -> DeviceFailure {
+    let failure = DeviceFailure::default();
+    let record = |error: DriverError, failure: &DeviceFailure| {
+        *failure.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(error));
+    };
+    let lost = Arc::clone(&failure);
     device.set_device_lost_callback(move |reason, message| {
         if reason != wgpu::DeviceLostReason::Destroyed {
-            *note.lock().unwrap_or_else(PoisonError::into_inner) = Some(message);
+            record(DriverError::Lost(message), &lost);
         }
     });
-    let note = Arc::clone(&lost);
-    device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-        *note.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
-    }));
-    lost
+    let stray = Arc::clone(&failure);
+    device.on_uncaptured_error(Arc::new(move |error| record(DriverError::Command(error), &stray)));
+    failure
 }
 
-fn samples_of(adapter: &wgpu::Adapter) -> u32 {
-    let formats = [crate::render::gpu::pipelines::COLOR, crate::render::gpu::pipelines::DEPTH];
-    let all = formats
-        .iter()
-        .all(|&format| adapter.get_texture_format_features(format).flags.sample_count_supported(SAMPLES));
-    if all { SAMPLES } else { 1 }
+fn supports_samples(adapter: &wgpu::Adapter) -> bool {
+    let flags = |format| adapter.get_texture_format_features(format).flags;
+    [COLOR, DEPTH].into_iter().all(|format| flags(format).sample_count_supported(SAMPLES))
 }

@@ -1,58 +1,31 @@
-//! What can keep the GPU from drawing: one enum, each case a sentence with a remedy.
+//! Why the GPU renderer gives no picture.
 
-/// Why there is no picture from the GPU. Every case leaves the CPU renderer as a way out.
+use std::sync::Arc;
+
+use crate::draw::list::DrawListError;
+use crate::render::gpu::adapter::GpuApi;
+
+/// Why the GPU renderer gives no picture. In every case but an unsound list, the CPU renderer can draw it.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
-    /// No driver offers an adapter, or none that can be opened.
+    /// No interface offers an adapter that can be opened.
     #[error(
-        "no GPU adapter can be used here ({tried}); draw with the CPU renderer instead: --backend cpu, the default"
+        "no GPU adapter can be used here ({}); draw with the CPU renderer instead: --backend cpu, the default",
+        join(.0)
     )]
-    NoAdapter {
-        /// What each interface said.
-        tried: String,
-    },
-    /// The draw list contradicts itself.
+    NoAdapter(Vec<(GpuApi, DriverError)>),
+    /// The draw list is unsound.
     #[error("the draw list is unsound: {0}")]
-    List(String),
-    /// The picture is larger than the adapter can hold.
-    #[error(
-        "the picture is {width}×{height} pixels, but {adapter} draws at most {limit} a side; ask for a smaller picture or use --backend cpu"
-    )]
-    PictureSize {
-        /// Columns asked for.
-        width: u32,
-        /// Rows asked for.
-        height: u32,
-        /// The longest side the adapter draws.
-        limit: u32,
-        /// The adapter's name.
-        adapter: String,
-    },
-    /// The ground map has more posts a side than a texture can hold.
-    #[error(
-        "the ground has {columns}×{rows} posts, but {adapter} holds at most {limit} a side; use a smaller or coarser elevation model, or --backend cpu"
-    )]
-    GroundSize {
-        /// Posts per row.
-        columns: u32,
-        /// Rows of posts.
-        rows: u32,
-        /// The most posts a side.
-        limit: u32,
-        /// The adapter's name.
-        adapter: String,
-    },
-    /// Something needs a buffer larger than the adapter offers.
-    #[error(
-        "{what} takes {bytes} bytes, but {adapter} holds at most {limit} in one piece; use --backend cpu"
-    )]
-    BufferSize {
-        /// What is too large.
+    List(#[from] DrawListError),
+    /// The scene or the picture exceeds a limit of the adapter.
+    #[error("{what} exceed the {limit} {unit} that {adapter} holds; use less detail or --backend cpu")]
+    TooLarge {
+        /// What is too large, with its size; a plural.
         what: String,
-        /// Bytes needed.
-        bytes: u64,
-        /// Bytes offered.
+        /// The adapter's limit.
         limit: u64,
+        /// The unit of the limit.
+        unit: &'static str,
         /// The adapter's name.
         adapter: String,
     },
@@ -65,13 +38,50 @@ pub enum GpuError {
         adapter: String,
     },
     /// The driver refused a command or failed.
-    #[error("{adapter} failed while {doing}: {reason}; use --backend cpu")]
-    Failed {
+    #[error("{adapter} failed while {doing}: {source}; use --backend cpu")]
+    Driver {
         /// What was being done.
         doing: &'static str,
         /// The adapter's name.
         adapter: String,
-        /// What the driver said.
-        reason: String,
+        /// The driver's report.
+        source: Arc<DriverError>,
     },
+}
+
+/// What a driver reports.
+#[derive(Debug, thiserror::Error)]
+pub enum DriverError {
+    /// There is no adapter.
+    #[error(transparent)]
+    Adapter(#[from] wgpu::RequestAdapterError),
+    /// The adapter gives no device.
+    #[error(transparent)]
+    Device(#[from] wgpu::RequestDeviceError),
+    /// A command failed.
+    #[error(transparent)]
+    Command(#[from] wgpu::Error),
+    /// The device did not finish in time.
+    #[error(transparent)]
+    Wait(#[from] wgpu::PollError),
+    /// A buffer cannot be read.
+    #[error(transparent)]
+    Map(#[from] wgpu::BufferAsyncError),
+    /// A part of a buffer cannot be read.
+    #[error(transparent)]
+    MapRange(#[from] wgpu::MapRangeError),
+    /// The device was lost.
+    #[error("the device was lost ({0})")]
+    Lost(String),
+    /// The driver or `wgpu` panicked.
+    #[error("the driver crashed")]
+    Crash,
+    /// A picture came back incomplete.
+    #[error("the driver returned too few pixels")]
+    TooFewPixels,
+}
+
+fn join(tried: &[(GpuApi, DriverError)]) -> String {
+    let each: Vec<String> = tried.iter().map(|(api, error)| format!("{api:?}: {error}")).collect();
+    each.join("; ")
 }

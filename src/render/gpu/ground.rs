@@ -1,7 +1,7 @@
-//! The ground map as textures: the map itself and the smaller levels that far ground is read from.
+//! The ground map as textures: the map itself and the coarser levels from which far ground is read.
 //!
-//! They are no mip levels to the device, which would halve rounding down: `n` posts become `n / 2 + 1`. The
-//! smaller ones lie side by side in a texture of their own:
+//! They are not mip levels of the device, which would halve rounding down: `n` posts become `n / 2 + 1`. The coarser
+//! levels lie side by side in a texture of their own:
 //!
 //! ```text
 //!   posts          coarse
@@ -11,8 +11,8 @@
 //! └───────────┘  └──────┘
 //! ```
 //!
-//! Texels are integers holding the bits of floats: every adapter can read them and none may filter them, so
-//! that what the shader interpolates by hand is the same everywhere.
+//! Texels are integers that hold the bits of floats. Every adapter can read them and none may filter them, so that the
+//! interpolation in the shader is the same everywhere.
 
 use std::iter::successors;
 
@@ -22,18 +22,19 @@ use rayon::prelude::*;
 use crate::draw::ground::{GroundMap, GroundPost};
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
-use crate::render::ground_levels::{PostCount, smaller_levels};
+use crate::render::gpu::memory::texture;
+use crate::render::ground_levels::{PostCount, coarser_levels};
 
-/// More levels than the largest texture has; the shader's array is as long.
-pub(in crate::render::gpu) const MOST_LEVELS: usize = 24;
+/// More levels than the largest texture has; the length of the shader's array.
+pub const MOST_LEVELS: usize = 24;
 
-/// Posts are sent in portions of about this many bytes, so that a large map is never held three times over.
+/// Posts are sent in portions of about this many bytes, so that a large map is never held three times.
 const PORTION_BYTES: usize = 16 << 20;
 
 /// A level and its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::render::gpu) struct PlacedLevel {
-    /// How many posts.
+pub struct PlacedLevel {
+    /// The number of posts.
     pub size: PostCount,
     /// Its first column in the texture that holds it.
     pub first: u32,
@@ -41,7 +42,7 @@ pub(in crate::render::gpu) struct PlacedLevel {
 
 /// The textures of a ground map.
 #[derive(Debug)]
-pub(in crate::render::gpu) struct GroundTextures {
+pub struct GroundTextures {
     /// Level 0.
     pub posts: wgpu::Texture,
     /// All further levels.
@@ -49,7 +50,7 @@ pub(in crate::render::gpu) struct GroundTextures {
 }
 
 /// The levels of a map of `size`, down to two posts a side.
-pub(in crate::render::gpu) fn levels(size: PostCount) -> Vec<PlacedLevel> {
+pub fn levels(size: PostCount) -> Vec<PlacedLevel> {
     let next = |last: &PlacedLevel| {
         let first = if last.size == size { 0 } else { last.first + last.size.columns };
         last.size.halved().map(|size| PlacedLevel { size, first })
@@ -58,70 +59,46 @@ pub(in crate::render::gpu) fn levels(size: PostCount) -> Vec<PlacedLevel> {
 }
 
 impl GroundTextures {
-    /// Sends a map, which has passed its check, to the device; without a map, one texel that nothing reads.
+    /// Sends a checked map to the device; without a map, one texel that nothing reads.
     ///
     /// # Errors
-    /// [`GpuError::GroundSize`].
+    /// [`GpuError::TooLarge`].
     pub fn upload(gpu: &Gpu, map: Option<&GroundMap>) -> Result<Self, GpuError> {
-        let levels = map.map_or_else(Vec::new, |map| levels(PostCount::of(map)));
+        let levels = map.map_or_else(Vec::new, |map| levels(PostCount::from_map(map)));
         let one = PostCount { columns: 1, rows: 1 };
-        let posts_size = levels.first().map_or(one, |level| level.size);
-        let coarse_size = match (levels.get(1), levels.last()) {
-            (Some(largest), Some(last)) => {
-                PostCount { columns: last.first + last.size.columns, ..largest.size }
+        let posts = levels.first().map_or(one, |level| level.size);
+        let coarse = match (levels.get(1), levels.last()) {
+            (Some(finest), Some(last)) => {
+                PostCount { columns: last.first + last.size.columns, ..finest.size }
             }
             _ => one,
         };
-        let limit = gpu.limits.max_texture_dimension_2d;
-        let PostCount { columns, rows } = posts_size;
-        if columns.max(rows).max(coarse_size.columns) > limit {
-            return Err(GpuError::GroundSize { columns, rows, limit, adapter: gpu.name().into() });
-        }
-        let textures = Self { posts: texture(gpu, posts_size), coarse: texture(gpu, coarse_size) };
+        let what = || format!("the {}×{} posts of the ground map", posts.columns, posts.rows);
+        gpu.check_sides(what, [posts.columns.max(coarse.columns), posts.rows])?;
+        let create = |PostCount { columns, rows }| {
+            gpu.device.create_texture(&texture(columns, rows, wgpu::TextureFormat::Rgba32Uint))
+        };
+        let textures = Self { posts: create(posts), coarse: create(coarse) };
         if let Some(map) = map {
-            textures.fill(gpu, map, &levels);
+            write(gpu, &textures.posts, &levels[0], &map.posts);
+            for (place, level) in levels[1..].iter().zip(coarser_levels(map)) {
+                write(gpu, &textures.coarse, place, &level.posts);
+            }
         }
         Ok(textures)
     }
-
-    fn fill(&self, gpu: &Gpu, map: &GroundMap, levels: &[PlacedLevel]) {
-        write(gpu, &self.posts, &levels[0], &map.posts);
-        for (place, level) in levels[1..].iter().zip(smaller_levels(map)) {
-            write(gpu, &self.coarse, place, &level.posts);
-        }
-    }
-}
-
-fn texture(gpu: &Gpu, PostCount { columns: width, rows: height }: PostCount) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("ground"),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba32Uint,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    })
 }
 
 fn write(gpu: &Gpu, texture: &wgpu::Texture, place: &PlacedLevel, posts: &[GroundPost]) {
     let stride = place.size.columns as usize;
-    let row_bytes = stride * size_of::<[u32; 4]>();
-    let portion = (PORTION_BYTES / row_bytes).max(1);
+    let portion = (PORTION_BYTES / (stride * size_of::<[u32; 4]>())).max(1);
     let mut to = texture.as_image_copy();
     to.origin.x = place.first;
     for posts in posts.chunks(portion * stride) {
         let texels: Vec<[u32; 4]> = posts.par_iter().with_min_len(1024).map(packed).collect();
-        let height = (posts.len() / stride) as u32;
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(row_bytes as u32),
-            rows_per_image: None,
-        };
-        let size = wgpu::Extent3d { width: place.size.columns, height, depth_or_array_layers: 1 };
-        gpu.queue.write_texture(to, cast_slice(&texels), layout, size);
-        to.origin.y += height;
+        let rows = (posts.len() / stride) as u32;
+        gpu.write(to, place.size.columns, rows, cast_slice(&texels));
+        to.origin.y += rows;
     }
 }
 

@@ -4,18 +4,16 @@ use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 use crate::render::mip_levels::smaller_levels;
 
-/// `texture` and every smaller level down to a single texel. Levels larger than `limit` a side are left out,
-/// so that a texture too large for the adapter is drawn coarser instead of not at all.
-///
-/// None at all where a side is zero.
-pub(in crate::render::gpu) fn levels(texture: &Pixels, limit: u32) -> Vec<Pixels> {
+/// `texture` and every smaller level down to a single texel; none where a side is zero. Levels larger than `limit` a
+/// side are left out, so that a texture too large for the adapter is drawn coarser.
+pub fn levels(texture: &Pixels, limit: u32) -> Vec<Pixels> {
     let fits = |level: &Pixels| (1..=limit).contains(&level.width()) && (1..=limit).contains(&level.height());
-    let whole = fits(texture).then(|| texture.clone());
-    whole.into_iter().chain(smaller_levels(texture).into_iter().filter(fits)).collect()
+    let largest = fits(texture).then(|| texture.clone());
+    largest.into_iter().chain(smaller_levels(texture).into_iter().filter(fits)).collect()
 }
 
-/// The same picture with colors multiplied by alpha, in linear light.
-pub(in crate::render::gpu) fn premultiplied(level: &Pixels) -> Pixels {
+/// `level` with colors multiplied by alpha, in linear light.
+pub fn premultiplied(level: &Pixels) -> Pixels {
     Pixels::from_fn(level.width(), level.height(), |x, y| {
         let texel = level.at(x, y);
         let Srgba([red, green, blue, _]) = Srgba::from_linear(texel.linear() * texel.alpha());
@@ -28,7 +26,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_invisible_is_black_when_multiplied() {
+    fn transparent_texels_are_black_when_multiplied() {
         let leaf = Srgba([20, 120, 30, 255]);
         let edge = Pixels::from_fn(2, 1, |x, _| if x == 0 { leaf } else { Srgba([255, 0, 255, 0]) });
         assert_eq!(premultiplied(&edge).data(), [leaf, Srgba([0, 0, 0, 0])]);

@@ -1,32 +1,31 @@
-//! The fixed part of drawing: shader, bindings and one pipeline for each way an item can be drawn.
+//! The fixed part of drawing: shader, bindings and one pipeline for each kind of draw call.
 
 use std::collections::BTreeMap;
 
-use crate::draw::list::DrawVertex;
-use crate::render::gpu::adapter::{Api, Gpu};
+use crate::draw::list::{DRAPE_TOLERANCE, DrawVertex};
+use crate::render::gpu::adapter::{Gpu, GpuApi};
 use crate::render::gpu::plan::{DepthRule, DrawCall, PipelineKey, Plan};
 use crate::render::gpu::uniforms::{FrameUniforms, Instance, SurfaceConstants};
 
-/// What colors are drawn to and read back as.
-pub(in crate::render::gpu) const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-/// Reversed depth needs floats: their resolution near zero is what makes it worth reversing.
-pub(in crate::render::gpu) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// The format of colors, as drawn and as read back.
+pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// The format of depth. Reversed depth needs floats: their resolution near zero is why it is reversed.
+pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Feature numbers and the bits of depths in meters: integers, because OpenGL ES need not draw to floats.
-pub(in crate::render::gpu) const FEATURE: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
+pub const FEATURE: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 
-/// By how much a drape counts as nearer than it is: the one part in 50,000 of the draw list's contract.
-const DRAPE_NEARER: f64 = 1.0 + 1.0 / 50_000.0;
+/// The factor by which a drape counts as nearer than it is.
+const DRAPE_NEARER: f64 = 1.0 + DRAPE_TOLERANCE;
 
-/// The same as a part of a pixel. Hardware moves corners to a grid of 1/256 pixel, each by up to 0.7 of half
-/// a step; a drape has corners that the ground has not, and four times that covers both.
+/// The same as a part of a pixel. Hardware snaps corners to a grid of 1/256 pixel, moving each by up to 0.7 of half a
+/// step. A drape has corners that the ground lacks; four times that covers both.
 const DRAPE_NEARER_PX: f32 = 1.0 / 128.0;
 
-pub(in crate::render::gpu) const SHADER: &str =
-    concat!(include_str!("shader.wgsl"), "\n", include_str!("sky.wgsl"));
+const SHADER: &str = concat!(include_str!("shader.wgsl"), "\n", include_str!("sky.wgsl"));
 
-/// The shapes of what shaders are given.
+/// The layouts of what shaders read.
 #[derive(Debug)]
-pub(in crate::render::gpu) struct Layouts {
+pub struct Layouts {
     /// Group 0: constants, ground posts, ramp.
     pub frame: wgpu::BindGroupLayout,
     /// Group 1: a material's constants, at a dynamic offset.
@@ -37,23 +36,23 @@ pub(in crate::render::gpu) struct Layouts {
 
 /// The two passes of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::render::gpu) enum GpuPass {
-    /// Colors, several samples a pixel.
+pub enum GpuPass {
+    /// Colors, several samples per pixel.
     Color,
     /// Features and depths at pixels' centers.
     Feature,
 }
 
-/// Every pipeline that a plan calls for.
+/// Every pipeline that a plan needs.
 #[derive(Debug)]
-pub(in crate::render::gpu) struct Pipelines {
+pub struct Pipelines {
     /// Draws the sky behind everything.
     pub sky: wgpu::RenderPipeline,
-    by_way: BTreeMap<(GpuPass, PipelineKey), wgpu::RenderPipeline>,
+    by_key: BTreeMap<(GpuPass, PipelineKey), wgpu::RenderPipeline>,
 }
 
 impl Layouts {
-    /// The layouts all pipelines share.
+    /// The layouts that all pipelines share.
     pub fn new(gpu: &Gpu) -> Self {
         let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
         let fragment = wgpu::ShaderStages::FRAGMENT;
@@ -68,15 +67,13 @@ impl Layouts {
             min_binding_size: wgpu::BufferSize::new(size as u64),
         };
         let group = |bindings: &[(wgpu::ShaderStages, wgpu::BindingType)]| {
-            let entries: Vec<_> = (0..)
-                .zip(bindings)
-                .map(|(binding, &(visibility, ty))| wgpu::BindGroupLayoutEntry {
-                    binding,
-                    visibility,
-                    ty,
-                    count: None,
-                })
-                .collect();
+            let entry = |(binding, &(visibility, ty))| wgpu::BindGroupLayoutEntry {
+                binding,
+                visibility,
+                ty,
+                count: None,
+            };
+            let entries: Vec<_> = (0..).zip(bindings).map(entry).collect();
             let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
             gpu.device.create_bind_group_layout(&descriptor)
         };
@@ -97,34 +94,31 @@ impl Layouts {
 }
 
 impl Pipelines {
-    /// The pipelines for all steps of `plan`.
+    /// The pipelines for all draw calls of `plan`.
     pub fn new(gpu: &Gpu, layouts: &Layouts, plan: &Plan) -> Self {
         let shader = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("sandtable"),
             source: wgpu::ShaderSource::Wgsl(SHADER.into()),
         });
-        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: &[Some(&layouts.frame), Some(&layouts.surface), Some(&layouts.texture)],
-            immediate_size: 0,
-        });
-        let sky_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: &[Some(&layouts.frame)],
-            immediate_size: 0,
-        });
-        let color = plan.color.iter().map(|step| (GpuPass::Color, step.way));
-        let features = plan.features.iter().map(|step| (GpuPass::Feature, step.way));
-        let mut by_way = BTreeMap::new();
-        for (pass, way) in color.chain(features) {
-            by_way.entry((pass, way)).or_insert_with(|| pipeline(gpu, &layout, &shader, pass, way));
+        let layout = |bind_group_layouts: &[Option<&wgpu::BindGroupLayout>]| {
+            let immediate_size = 0;
+            let descriptor =
+                wgpu::PipelineLayoutDescriptor { label: None, bind_group_layouts, immediate_size };
+            gpu.device.create_pipeline_layout(&descriptor)
+        };
+        let items = layout(&[Some(&layouts.frame), Some(&layouts.surface), Some(&layouts.texture)]);
+        let color = plan.color.iter().map(|call| (GpuPass::Color, call.key));
+        let features = plan.features.iter().map(|call| (GpuPass::Feature, call.key));
+        let mut by_key = BTreeMap::new();
+        for (pass, key) in color.chain(features) {
+            by_key.entry((pass, key)).or_insert_with(|| pipeline(gpu, &items, &shader, pass, key));
         }
-        Self { sky: sky(gpu, &sky_layout, &shader), by_way }
+        Self { sky: sky(gpu, &layout(&[Some(&layouts.frame)]), &shader), by_key }
     }
 
-    /// The pipeline for a step of the plan these were made for.
-    pub fn get(&self, pass: GpuPass, step: &DrawCall) -> Option<&wgpu::RenderPipeline> {
-        self.by_way.get(&(pass, step.way))
+    /// The pipeline for a draw call of the plan these were made for.
+    pub fn get(&self, pass: GpuPass, call: &DrawCall) -> Option<&wgpu::RenderPipeline> {
+        self.by_key.get(&(pass, call.key))
     }
 }
 
@@ -133,17 +127,17 @@ fn pipeline(
     layout: &wgpu::PipelineLayout,
     shader: &wgpu::ShaderModule,
     pass: GpuPass,
-    way: PipelineKey,
+    key: PipelineKey,
 ) -> wgpu::RenderPipeline {
     let (nearer, nearer_px) =
-        if is_tested_nearer(way.rule) { (DRAPE_NEARER, f64::from(DRAPE_NEARER_PX)) } else { (1.0, 0.0) };
+        if key.rule.is_drape_color() { (DRAPE_NEARER, f64::from(DRAPE_NEARER_PX)) } else { (1.0, 0.0) };
     let vertex_constants = [("nearer", nearer)];
     let fragment_constants = [("nearer", nearer), ("nearer_px", nearer_px)];
     let entry_point = match (pass, gpu.api()) {
         (GpuPass::Feature, _) => "feature",
-        (GpuPass::Color, Api::Gl) => "color_and_depth",
-        (GpuPass::Color, Api::Vulkan) if way.masked && gpu.samples == 4 => "masked_color",
-        (GpuPass::Color, Api::Vulkan) => "color",
+        (GpuPass::Color, GpuApi::Gl) => "color_and_depth",
+        (GpuPass::Color, GpuApi::Vulkan) if key.masked && gpu.samples == 4 => "masked_color",
+        (GpuPass::Color, GpuApi::Vulkan) => "color",
     };
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(entry_point),
@@ -157,36 +151,29 @@ fn pipeline(
                     array_stride: size_of::<DrawVertex>() as u64,
                     step_mode: wgpu::VertexStepMode::Vertex,
                     attributes: &wgpu::vertex_attr_array![
-                        0 => Float32x3,
-                        1 => Float32x3,
-                        2 => Float32x2,
-                        3 => Unorm8x4,
+                        0 => Float32x3, 1 => Float32x3, 2 => Float32x2, 3 => Unorm8x4,
                     ],
                 }),
                 Some(wgpu::VertexBufferLayout {
                     array_stride: size_of::<Instance>() as u64,
                     step_mode: wgpu::VertexStepMode::Instance,
                     attributes: &wgpu::vertex_attr_array![
-                        4 => Float32x4,
-                        5 => Float32x4,
-                        6 => Float32x4,
-                        7 => Float32x4,
-                        8 => Uint32,
+                        4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Float32x4, 8 => Uint32,
                     ],
                 }),
             ],
         },
         primitive: wgpu::PrimitiveState {
-            cull_mode: (!way.two_sided).then_some(wgpu::Face::Back),
+            cull_mode: (!key.two_sided).then_some(wgpu::Face::Back),
             ..Default::default()
         },
-        depth_stencil: Some(depth_state(way.rule)),
+        depth_stencil: Some(depth_state(key.rule)),
         multisample: multisample(gpu, pass),
         fragment: Some(wgpu::FragmentState {
             module: shader,
             entry_point: Some(entry_point),
             compilation_options: options(&fragment_constants),
-            targets: &target(pass, way.rule),
+            targets: &target(pass, key.rule),
         }),
         multiview_mask: None,
         cache: None,
@@ -197,10 +184,6 @@ fn options<'a>(constants: &'a [(&'a str, f64)]) -> wgpu::PipelineCompilationOpti
     wgpu::PipelineCompilationOptions { constants, ..Default::default() }
 }
 
-fn is_tested_nearer(rule: DepthRule) -> bool {
-    matches!(rule, DepthRule::Drape | DepthRule::DrapeBlend)
-}
-
 /// Depth is reversed: greater is nearer.
 fn depth_state(rule: DepthRule) -> wgpu::DepthStencilState {
     let (writes, compare) = match rule {
@@ -209,16 +192,14 @@ fn depth_state(rule: DepthRule) -> wgpu::DepthStencilState {
         DepthRule::Drape | DepthRule::DrapeBlend => (false, wgpu::CompareFunction::GreaterEqual),
         DepthRule::DrapeDepth => (true, wgpu::CompareFunction::GreaterEqual),
     };
+    // Where the shader writes the depth this has no effect, and `nearer_px` does the same.
+    let slope_scale = if rule.is_drape_color() { DRAPE_NEARER_PX } else { 0.0 };
     wgpu::DepthStencilState {
         format: DEPTH,
         depth_write_enabled: Some(writes),
         depth_compare: Some(compare),
         stencil: Default::default(),
-        // Where the shader writes the depth itself this has no effect, and `nearer_px` does the same.
-        bias: wgpu::DepthBiasState {
-            slope_scale: if is_tested_nearer(rule) { DRAPE_NEARER_PX } else { 0.0 },
-            ..Default::default()
-        },
+        bias: wgpu::DepthBiasState { slope_scale, ..Default::default() },
     }
 }
 
@@ -256,7 +237,6 @@ fn sky(gpu: &Gpu, layout: &wgpu::PipelineLayout, shader: &wgpu::ShaderModule) ->
         },
         primitive: Default::default(),
         depth_stencil: Some(wgpu::DepthStencilState {
-            depth_write_enabled: Some(false),
             depth_compare: Some(wgpu::CompareFunction::Always),
             ..depth_state(DepthRule::Blend)
         }),
@@ -274,6 +254,8 @@ fn sky(gpu: &Gpu, layout: &wgpu::PipelineLayout, shader: &wgpu::ShaderModule) ->
 
 #[cfg(test)]
 mod tests {
+    use wgpu::naga;
+
     use super::*;
 
     #[test]

@@ -1,13 +1,13 @@
-//! In which order and by which rule each item is drawn.
+//! The order and the depth rule of every draw call.
 //!
 //! ```text
-//! ground ─► drapes in list order ─► solids ─► blended solids, farthest first
+//! ground ─► drapes in list order ─► solids ─► transparent solids, farthest first
 //! ```
 //!
-//! A drape lies in the ground's triangles, so its depth differs from the ground's by rounding only. Drawing
-//! it as if it were nearer by a hair and writing *that* depth would stack up from drape to drape, and bury
-//! what stands on the road; so a drape is tested a hair nearer but leaves its true depth behind, by a second,
-//! colorless draw. A blended drape keeps its place among the drapes: a lake under a road stays under it.
+//! A drape lies in the ground's triangles, so that its depth differs from the ground's only by rounding. If it were
+//! drawn slightly nearer and wrote *that* depth, the offset would add up from drape to drape and bury what is on the
+//! road. A drape is therefore tested slightly nearer, and a second, colorless draw writes its true depth. A transparent
+//! drape keeps its place among the drapes: a lake under a road stays under it.
 
 use std::ops::Range;
 
@@ -17,33 +17,40 @@ use crate::draw::list::{DepthLayer, DrawItem, DrawList};
 use crate::draw::material::AlphaMode;
 use crate::view::camera::Camera;
 
-/// The rule by which an item meets the depth buffer.
+/// How an item meets the depth buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::render::gpu) enum DepthRule {
-    /// Drawn where nearer, leaving its depth.
+pub enum DepthRule {
+    /// Drawn where nearer; writes its depth.
     Solid,
-    /// Drawn where nearer, mixed with what is there, leaving no depth.
+    /// Blended where nearer; writes no depth.
     Blend,
-    /// Drawn where no farther by a hair, leaving no depth.
+    /// Drawn where not farther by more than the drape tolerance; writes no depth.
     Drape,
-    /// The same, mixed with what is there.
+    /// Blended where not farther by more than the drape tolerance; writes no depth.
     DrapeBlend,
-    /// Not drawn; leaves its depth where no farther.
+    /// Not drawn; writes its depth where not farther.
     DrapeDepth,
+}
+
+impl DepthRule {
+    /// Whether it draws the color of a drape, and so tests it slightly nearer.
+    pub fn is_drape_color(self) -> bool {
+        matches!(self, Self::Drape | Self::DrapeBlend)
+    }
 }
 
 /// One draw call.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(in crate::render::gpu) struct DrawCall {
-    /// Indices into the draw list's items: part of a run, so that they differ in place and feature only.
+pub struct DrawCall {
+    /// Indices into the draw list's items: part of a run, so that they differ in placement and feature only.
     pub items: Range<usize>,
-    /// What it needs of a pipeline.
-    pub way: PipelineKey,
+    /// Its pipeline.
+    pub key: PipelineKey,
 }
 
-/// All that tells one pipeline of a pass from another.
+/// What distinguishes the pipelines of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::render::gpu) struct PipelineKey {
+pub struct PipelineKey {
     /// How it meets the depth buffer.
     pub rule: DepthRule,
     /// Whether backs are drawn too.
@@ -54,59 +61,58 @@ pub(in crate::render::gpu) struct PipelineKey {
 
 /// The draw calls of both passes.
 #[derive(Debug, Default, PartialEq, Eq)]
-pub(in crate::render::gpu) struct Plan {
-    /// What makes the colors.
+pub struct Plan {
+    /// For the colors.
     pub color: Vec<DrawCall>,
-    /// What makes the feature and depth buffers: the same items, blended ones like solid ones.
+    /// For the feature and depth buffers: the same items, transparent ones like solid ones.
     pub features: Vec<DrawCall>,
 }
 
 impl Plan {
-    /// The plan for a list that has passed its own check; items without triangles are left out.
-    pub fn of(list: &DrawList, camera: &Camera) -> Self {
+    /// The plan for a checked list; items without triangles are left out.
+    pub fn new(list: &DrawList, camera: &Camera) -> Self {
         let mut plan = Self::default();
-        let mut blended = Vec::new();
+        let mut transparent = Vec::new();
         for run in list.runs().filter(|run| !list.items[run.start].triangles.is_empty()) {
             let item = &list.items[run.start];
             let material = &list.materials[item.material.0 as usize];
             let masked = matches!(material.alpha, AlphaMode::Mask(_));
-            let way = |rule| PipelineKey { rule, two_sided: material.two_sided, masked };
             let is_blend = material.alpha == AlphaMode::Blend;
-            match (item.layer, is_blend) {
-                (DepthLayer::Draped(_), _) => {
-                    for index in run {
-                        let step = |rule| DrawCall { items: index..index + 1, way: way(rule) };
-                        plan.features.extend([step(DepthRule::Drape), step(DepthRule::DrapeDepth)]);
-                        match is_blend {
-                            true => plan.color.push(step(DepthRule::DrapeBlend)),
-                            false => plan.color.extend([step(DepthRule::Drape), step(DepthRule::DrapeDepth)]),
-                        }
+            let call = |items: Range<usize>, rule| DrawCall {
+                items,
+                key: PipelineKey { rule, two_sided: material.two_sided, masked },
+            };
+            if matches!(item.layer, DepthLayer::Draped(_)) {
+                for index in run {
+                    let call = |rule| call(index..index + 1, rule);
+                    plan.features.extend([call(DepthRule::Drape), call(DepthRule::DrapeDepth)]);
+                    match is_blend {
+                        true => plan.color.push(call(DepthRule::DrapeBlend)),
+                        false => plan.color.extend([call(DepthRule::Drape), call(DepthRule::DrapeDepth)]),
                     }
                 }
-                (_, false) => {
-                    let step = DrawCall { items: run, way: way(DepthRule::Solid) };
-                    plan.color.push(step.clone());
-                    plan.features.push(step);
-                }
-                (_, true) => {
-                    let middle = middle_of(list, item);
-                    blended.extend(run.clone().map(|index| {
-                        let step = DrawCall { items: index..index + 1, way: way(DepthRule::Blend) };
-                        (depth_of(middle, &list.items[index], camera), step)
-                    }));
-                    plan.features.push(DrawCall { items: run, way: way(DepthRule::Solid) });
-                }
+                continue;
+            }
+            plan.features.push(call(run.clone(), DepthRule::Solid));
+            if is_blend {
+                let center = center_of(list, item);
+                transparent.extend(run.map(|index| {
+                    let depth_m = depth_m(center, &list.items[index], camera);
+                    (depth_m, call(index..index + 1, DepthRule::Blend))
+                }));
+            } else {
+                plan.color.push(call(run, DepthRule::Solid));
             }
         }
         // Stable, so that equally far items keep the list's order.
-        blended.sort_by(|a, b| b.0.total_cmp(&a.0));
-        plan.color.extend(blended.into_iter().map(|(_, step): (f32, DrawCall)| step));
+        transparent.sort_by(|(a, _), (b, _): &(f32, _)| b.total_cmp(a));
+        plan.color.extend(transparent.into_iter().map(|(_, call)| call));
         plan
     }
 }
 
-/// The middle of what `item` draws, in its mesh's space.
-fn middle_of(list: &DrawList, item: &DrawItem) -> Vec3 {
+/// The center of the bounds of what `item` draws, in mesh space.
+fn center_of(list: &DrawList, item: &DrawItem) -> Vec3 {
     let mesh = &list.meshes[item.mesh.0 as usize];
     let Range { start, end } = item.triangles;
     let corners = mesh.triangles[start as usize..end as usize].iter().flatten();
@@ -117,9 +123,9 @@ fn middle_of(list: &DrawList, item: &DrawItem) -> Vec3 {
     (min + max) * 0.5
 }
 
-/// Meters along the viewing direction to `middle` of the mesh of `item`.
-fn depth_of(middle: Vec3, item: &DrawItem, camera: &Camera) -> f32 {
-    (item.world_from_mesh.transform_point3(middle) - camera.eye()).dot(camera.forward())
+/// Meters along the viewing direction to the point `center` of the mesh of `item`.
+fn depth_m(center: Vec3, item: &DrawItem, camera: &Camera) -> f32 {
+    (item.world_from_mesh.transform_point3(center) - camera.eye()).dot(camera.forward())
 }
 
 #[cfg(test)]
@@ -151,7 +157,7 @@ mod tests {
 
     fn color_order(list: &DrawList) -> Vec<(usize, DepthRule)> {
         let camera = Camera::new(Vec3::ZERO, Vec3::Y, 1.0, (8, 8), (1.0, 100.0)).expect("sound");
-        Plan::of(list, &camera).color.iter().map(|step| (step.items.start, step.way.rule)).collect()
+        Plan::new(list, &camera).color.iter().map(|call| (call.items.start, call.key.rule)).collect()
     }
 
     #[test]
@@ -191,14 +197,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_alike_is_drawn_at_once_unless_it_is_blended() {
+    fn a_run_is_drawn_at_once_unless_it_is_blended() {
         let mut list =
             list(&[(DepthLayer::Solid, AlphaMode::Opaque, 5.0), (DepthLayer::Solid, AlphaMode::Blend, 5.0)]);
         let [solid, glass] = [list.items[0].clone(), list.items[1].clone()];
         list.items = vec![solid.clone(), solid.clone(), solid, glass.clone(), glass];
         let camera = Camera::new(Vec3::ZERO, Vec3::Y, 1.0, (8, 8), (1.0, 100.0)).expect("sound");
-        let plan = Plan::of(&list, &camera);
-        let ranges = |steps: &[DrawCall]| steps.iter().map(|step| step.items.clone()).collect::<Vec<_>>();
+        let plan = Plan::new(&list, &camera);
+        let ranges = |calls: &[DrawCall]| calls.iter().map(|call| call.items.clone()).collect::<Vec<_>>();
         assert_eq!(ranges(&plan.color), [0..3, 3..4, 4..5]);
         assert_eq!(ranges(&plan.features), [0..3, 3..5]);
     }

@@ -1,4 +1,4 @@
-//! The constants shaders read, laid out as `shader.wgsl` declares them.
+//! The constants that shaders read, laid out as `shader.wgsl` declares them.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -7,24 +7,21 @@ use crate::draw::list::{DrawItem, DrawList};
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use crate::render::gpu::ground::{MOST_LEVELS, levels};
 use crate::render::ground_levels::PostCount;
+use crate::render::picture::LEAST_VISIBLE_ALPHA;
 use crate::view::camera::Camera;
 
-/// How many ramp stops lie in one row of their texture; any number below the smallest limit will do.
-pub(in crate::render::gpu) const RAMP_COLUMNS: u32 = 1024;
-
-/// A blended surface at least this opaque is what the feature and depth buffers show; through a clearer one
-/// they show what lies behind, as a reader of the picture would.
-const SEEN_ALPHA: f32 = 0.5;
+/// Ramp stops in one row of their texture; any number below the smallest texture limit works.
+pub const RAMP_COLUMNS: u32 = 1024;
 
 const FROM_GROUND_NORMAL: u32 = 1;
 const FROM_GROUND_ALBEDO: u32 = 2;
 const MASK: u32 = 4;
 const BLEND: u32 = 8;
 
-/// What is the same for a whole picture: `Frame` in the shader.
+/// The constants of a picture: `Frame` in the shader.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub(in crate::render::gpu) struct FrameUniforms {
+pub struct FrameUniforms {
     eye: [f32; 4],
     right: [f32; 4],
     up: [f32; 4],
@@ -43,19 +40,19 @@ pub(in crate::render::gpu) struct FrameUniforms {
     ground_levels: [[u32; 4]; MOST_LEVELS],
 }
 
-/// What is the same for all items of one material: `Surface` in the shader.
+/// The constants of a material: `Surface` in the shader.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub(in crate::render::gpu) struct SurfaceConstants {
+pub struct SurfaceConstants {
     base_color: [f32; 4],
     flags: [u32; 4],
     cutoff: [f32; 4],
 }
 
-/// What each item has of its own: `Instance` in the shader.
+/// The constants of an item: `Instance` in the shader.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub(in crate::render::gpu) struct Instance {
+pub struct Instance {
     world_from_mesh: [[f32; 4]; 4],
     feature: u32,
 }
@@ -65,8 +62,8 @@ fn with(vector: Vec3, w: f32) -> [f32; 4] {
 }
 
 impl FrameUniforms {
-    /// The constants of `list` seen by `camera`.
-    pub fn of(list: &DrawList, camera: &Camera) -> Self {
+    /// The constants of `list` as `camera` sees it.
+    pub fn new(list: &DrawList, camera: &Camera) -> Self {
         let tan = camera.tan_half_fov();
         let (near, far) = camera.planes();
         let (width, height) = camera.size();
@@ -76,7 +73,7 @@ impl FrameUniforms {
             right: with(camera.right(), 1.0 / tan.x),
             up: with(camera.up(), 1.0 / tan.y),
             forward: with(camera.forward(), 0.0),
-            // near · far may exceed what f32 holds; their ratio cannot be lost that way.
+            // near · far may exceed f32; the ratio cannot.
             depth: [near / (1.0 - near / far), near / (far - near), width as f32, height as f32],
             to_sun: with(light.to_sun, 0.0),
             sun: with(light.sun, 0.0),
@@ -84,16 +81,17 @@ impl FrameUniforms {
             bounce: with(light.bounce, 0.0),
             haze: with(light.haze.color, 1.0 / light.haze.distance_m),
             zenith: with(light.zenith, 0.0),
-            ..Self::of_ground(list)
+            ..Self::ground(list)
         }
     }
 
-    fn of_ground(list: &DrawList) -> Self {
+    /// The constants of the ground map; all others are zero.
+    fn ground(list: &DrawList) -> Self {
         let mut frame = Self::zeroed();
         let Some(map) = &list.ground else { return frame };
-        let levels = levels(PostCount::of(map));
-        for (place, level) in frame.ground_levels.iter_mut().zip(&levels) {
-            *place = [level.size.columns, level.size.rows, level.first, 0];
+        let levels = levels(PostCount::from_map(map));
+        for (slot, level) in frame.ground_levels.iter_mut().zip(&levels) {
+            *slot = [level.size.columns, level.size.rows, level.first, 0];
         }
         frame.ground = [map.origin.x, map.origin.y, map.cell.x, map.cell.y];
         frame.ground_size = [map.ramp.stops().len() as u32, RAMP_COLUMNS, levels.len() as u32, 0];
@@ -107,36 +105,25 @@ impl FrameUniforms {
 }
 
 impl Instance {
-    /// The place and feature of `item`.
-    pub fn of(item: &DrawItem) -> Self {
+    /// The placement and feature of `item`.
+    pub fn new(item: &DrawItem) -> Self {
         Self { world_from_mesh: item.world_from_mesh.to_cols_array_2d(), feature: item.feature.0 }
     }
 }
 
 impl SurfaceConstants {
     /// The constants of `material`.
-    pub fn of(material: &Material) -> Self {
-        let mut flags = 0;
-        if material.normals == NormalSource::Ground {
-            flags |= FROM_GROUND_NORMAL;
-        }
-        if material.albedo == Albedo::GroundMap {
-            flags |= FROM_GROUND_ALBEDO;
-        }
-        let cutoff = match material.alpha {
-            AlphaMode::Opaque => 0.0,
-            AlphaMode::Mask(cutoff) => {
-                flags |= MASK;
-                cutoff
-            }
-            AlphaMode::Blend => {
-                flags |= BLEND;
-                SEEN_ALPHA
-            }
+    pub fn new(material: &Material) -> Self {
+        let normal = if material.normals == NormalSource::Ground { FROM_GROUND_NORMAL } else { 0 };
+        let albedo = if material.albedo == Albedo::GroundMap { FROM_GROUND_ALBEDO } else { 0 };
+        let (alpha, cutoff) = match material.alpha {
+            AlphaMode::Opaque => (0, 0.0),
+            AlphaMode::Mask(cutoff) => (MASK, cutoff),
+            AlphaMode::Blend => (BLEND, LEAST_VISIBLE_ALPHA),
         };
         Self {
             base_color: with(material.base_color.linear(), material.base_color.alpha()),
-            flags: [flags, 0, 0, 0],
+            flags: [normal | albedo | alpha, 0, 0, 0],
             cutoff: [cutoff, 0.0, 0.0, 0.0],
         }
     }

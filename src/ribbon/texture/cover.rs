@@ -231,7 +231,7 @@ mod tests {
     use crate::ribbon::texture::{RibbonSurface, texture};
 
     fn covers() -> impl Iterator<Item = Cover> {
-        Cover::ALL.iter().map(|(_, cover)| *cover)
+        Cover::ALL.iter().copied()
     }
 
     #[test]

@@ -28,7 +28,7 @@ pub struct Anisotropic<'a> {
 impl<'a> Anisotropic<'a> {
     /// The criterion for one camera; `tolerance_px` is above 0.
     pub fn new(ground: PatchedGround<'a>, errors: &'a ErrorMap, camera: &Camera, tolerance_px: f32) -> Self {
-        Self { ground, errors, lens: Lens::new(ground, camera, tolerance_px) }
+        Self { ground, errors, lens: Lens::new(camera, tolerance_px) }
     }
 }
 

@@ -38,7 +38,7 @@ impl<'a> BlockRelief<'a> {
     /// The criterion as published, for an eye in drawn world space; `k_m`, meters, is above 0.
     pub fn with_k(ground: PatchedGround<'a>, relief: &'a ErrorMap, eye: Vec3, k_m: f32) -> Self {
         let cell_m = ground.lattice.cell().max_element() as f32;
-        Self { ground, relief, eye, cell_m, over_k: ground.exaggeration / k_m }
+        Self { ground, relief, eye, cell_m, over_k: 1.0 / k_m }
     }
 }
 

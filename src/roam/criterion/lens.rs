@@ -2,7 +2,6 @@
 
 use glam::Vec3;
 
-use crate::roam::patched_ground::PatchedGround;
 use crate::view::camera::Camera;
 
 /// The eye, and how many tolerances a meter of error spans at a distance of one meter.
@@ -14,14 +13,13 @@ pub(super) struct Lens {
 
 impl Lens {
     /// Errors are meters without exaggeration; `tolerance_px`, above 0, is pixels in the middle of the picture.
-    pub(super) fn new(ground: PatchedGround<'_>, camera: &Camera, tolerance_px: f32) -> Self {
-        let scale = camera.pixels_per_meter(1.0) * ground.exaggeration / tolerance_px;
-        Self { eye: camera.eye(), scale }
+    pub(super) fn new(camera: &Camera, tolerance_px: f32) -> Self {
+        Self { eye: camera.eye(), scale: camera.pixels_per_meter(1.0) / tolerance_px }
     }
 
     /// A lens of given strength: tolerances spanned by a drawn meter at a distance of one meter.
-    pub(super) fn of_strength(ground: PatchedGround<'_>, eye: Vec3, strength: f32) -> Self {
-        Self { eye, scale: strength * ground.exaggeration }
+    pub(super) fn of_strength(eye: Vec3, strength: f32) -> Self {
+        Self { eye, scale: strength }
     }
 
     /// How many tolerances `error_m` spans at `distance_m`; 0 without error, infinite for an infinite error.

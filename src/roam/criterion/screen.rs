@@ -33,12 +33,12 @@ struct ErrorReach {
 }
 
 impl ErrorReach {
-    fn new(camera: &Camera, tolerance_px: f32, exaggeration: f32) -> Self {
+    fn new(camera: &Camera, tolerance_px: f32) -> Self {
         // A length δ at distance d from the eye, θ off the viewing direction, spans at most δ / (d · cos² θ) on the
         // picture's plane: cos θ since depth is shorter than distance, and once more since the plane is met at a slant.
         let corner = 1.0 + camera.tan_half_fov().length_squared();
         let pixels = camera.pixels_per_meter(1.0) * corner;
-        Self { eye: camera.eye(), meters_per_meter: pixels * exaggeration / tolerance_px }
+        Self { eye: camera.eye(), meters_per_meter: pixels / tolerance_px }
     }
 
     /// The distance in meters within which an error of `error_m` must be refined.
@@ -62,8 +62,8 @@ impl<'a> ScreenError<'a> {
         camera: &Camera,
         tolerance_px: f32,
     ) -> Self {
-        let reach = ErrorReach::new(camera, tolerance_px, ground.exaggeration);
-        Self { ground, errors, heights, frustum: Frustum::of(camera), reach }
+        let reach = ErrorReach::new(camera, tolerance_px);
+        Self { ground, errors, heights, frustum: Frustum::new(camera), reach }
     }
 }
 
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn an_error_is_refined_up_to_the_distance_where_it_spans_the_tolerance() {
         let camera = Camera::new(Vec3::ZERO, Vec3::Y, 0.8, (640, 480), (1.0, 9000.0)).expect("sound");
-        let criterion = ErrorReach::new(&camera, 2.0, 1.0);
+        let criterion = ErrorReach::new(&camera, 2.0);
         let at = |distance: f32| criterion.excess(3.0, Vec3::Y * distance, Vec3::Y * distance) > 1.0;
         let seen_px = |distance: f32| 3.0 * camera.pixels_per_meter(distance);
         assert!(at(500.0) && seen_px(500.0) > 2.0);

@@ -37,7 +37,7 @@ impl<'a> Variance<'a> {
 
     /// The criterion as published, for an eye in drawn world space; the greater `k`, 0 or more, the finer.
     pub fn with_k(ground: PatchedGround<'a>, errors: &'a ErrorMap, eye: Vec3, k: f32) -> Self {
-        Self { ground, errors, lens: Lens::of_strength(ground, eye, k * land_width_m(ground)) }
+        Self { ground, errors, lens: Lens::of_strength(eye, k * land_width_m(ground)) }
     }
 }
 

@@ -43,7 +43,7 @@ pub fn mesh_of(
     emit: impl FnOnce(&mut dyn FnMut([Vertex; 3])),
 ) -> TriMesh {
     let mut mesh = TriMesh::default();
-    emit(&mut world::placing(PatchedGround { lattice, layout, exaggeration: 2.0 }, &mut mesh));
+    emit(&mut world::placing(PatchedGround { lattice, layout }, &mut mesh));
     mesh
 }
 

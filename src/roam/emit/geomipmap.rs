@@ -77,7 +77,7 @@ impl Pyramids {
     ) -> PatchLevels {
         // Twice longer than its share at the picture's middle where seen aslant, as in the screen-space criterion.
         let aslant = 1.0 + camera.tan_half_fov().length_squared();
-        let meters_at_one = tolerance_px / (camera.pixels_per_meter(1.0) * aslant * ground.exaggeration);
+        let meters_at_one = tolerance_px / (camera.pixels_per_meter(1.0) * aslant);
         self.chosen(|corner| match heights.bounds(ground, corner) {
             Some((min, max)) => nearest_m(camera.eye(), min, max) * meters_at_one,
             None => f32::INFINITY,
@@ -320,9 +320,7 @@ mod tests {
         let mut worst = 0f32;
         for level in 1..pyramids.level_count() {
             let levels = PatchLevels::new(&layout, vec![level]).expect("one patch");
-            let mut mesh = mesh_of(&lattice, &layout, |place| triangles(&layout, &levels, [corner], place));
-            // The meshes of tests are drawn at twice their height.
-            mesh.positions.iter_mut().for_each(|position| position.z /= 2.0);
+            let mesh = mesh_of(&lattice, &layout, |place| triangles(&layout, &levels, [corner], place));
             for post in lattice.posts() {
                 let at = lattice.position(post).as_dvec2();
                 let facet = (0..mesh.triangles.len())
@@ -338,7 +336,7 @@ mod tests {
     #[test]
     fn patches_far_from_the_eye_are_coarser_and_hold_the_tolerance_at_their_nearest_point() {
         let (layout, lattice) = (layout(129, 129), lattice(129, 129, &[]));
-        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let heights = PatchHeights::new(ground);
         let pyramids = Pyramids::new(&lattice, &layout);
         let eye = Vec3::new(10.0, 10.0, 20.0);

@@ -204,7 +204,7 @@ mod tests {
             let lattice = lattice(columns, rows, &holes);
             let active = active_set(columns, rows, 16, &vertices);
             let layout = active.layout();
-            let ground = PatchedGround { lattice: &lattice, layout, exaggeration: 1.0 };
+            let ground = PatchedGround { lattice: &lattice, layout };
             let drawn = |corners| world::drawn_posts(ground, corners).is_some();
             let mut strips = Strips::default();
             strips.add_patches(&active, layout.patches(), drawn);

@@ -23,7 +23,7 @@ fn doubled_area(posts: [Post; 3]) -> i64 {
 
 /// Where a post with data is drawn, meters.
 pub fn position(ground: PatchedGround<'_>, post: Post) -> Vec3 {
-    ground.lattice.position(post).extend(ground.lattice.height(post) * ground.exaggeration)
+    ground.lattice.position(post).extend(ground.lattice.height(post))
 }
 
 /// What writes an emitter's triangles to `sink`, those that are drawn, with one vertex a post.
@@ -61,8 +61,7 @@ mod tests {
         let lattice = Lattice::new(DVec2::ZERO, DVec2::new(2.0, 3.0), 4, heights).expect("sound");
         let layout = PatchLayout::new(4, 3, 4).expect("sound");
         let mut mesh = TriMesh::default();
-        let mut place =
-            placing(PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 5.0 }, &mut mesh);
+        let mut place = placing(PatchedGround { lattice: &lattice, layout: &layout }, &mut mesh);
         let triangle = |points: [(i32, i32); 3]| points.map(|(x, y)| Vertex::new(x, y));
         place(triangle([(0, 0), (4, 0), (0, 2)]));
         place(triangle([(4, 0), (3, 1), (0, 2)]));
@@ -70,6 +69,6 @@ mod tests {
         place(triangle([(2, 1), (3, 1), (3, 2)]));
         drop(place);
         assert_eq!((mesh.positions.len(), mesh.triangles.len()), (4, 2));
-        assert_eq!(mesh.positions[1], Vec3::new(6.0, 0.0, 5.0));
+        assert_eq!(mesh.positions[1], Vec3::new(6.0, 0.0, 1.0));
     }
 }

@@ -28,9 +28,6 @@ use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
 use crate::terrain::lattice::{Lattice, Post};
 
-/// Pinned ground may be off by this many meters: rounding of f32 heights, nothing a picture shows.
-const PINNED_SLACK_M: f32 = 1e-3;
-
 /// Vertices up to this step are measured block by block while the block's posts are in the cache; beyond it they
 /// are few, and their posts are scanned in strips.
 const NEAR_STEP: i32 = 32;
@@ -309,7 +306,7 @@ pub fn triangle_error(lattice: &Lattice, layout: &PatchLayout, triangle: &Triang
     let Some(plane) = PostPlane::through(lattice, posts) else {
         return 0.0;
     };
-    let mut seen = CoveredPosts::default();
+    let mut seen = CoveredPosts { slack_m: lattice.pin_slack_m(), ..CoveredPosts::default() };
     for row in RowSpans::of(posts) {
         seen.scan(lattice, &plane, row);
         if seen.error() == f32::INFINITY {
@@ -326,6 +323,7 @@ struct CoveredPosts {
     data: bool,
     no_data: bool,
     worst_pinned: f32,
+    slack_m: f32,
 }
 
 impl CoveredPosts {
@@ -350,7 +348,7 @@ impl CoveredPosts {
 
     fn error(&self) -> f32 {
         let torn = self.data && self.no_data;
-        if torn || self.worst_pinned > PINNED_SLACK_M { f32::INFINITY } else { self.worst }
+        if torn || self.worst_pinned > self.slack_m { f32::INFINITY } else { self.worst }
     }
 }
 

@@ -403,7 +403,7 @@ mod tests {
         tolerance_m: f32,
     ) -> Vec<[u32; 3]> {
         let active = rebuild(layout, &Flat::new(layout, map, tolerance_m), layout.patches());
-        let terrain = DisplayedTerrain::new(lattice.clone(), active, 1.0, layout.patches().collect());
+        let terrain = DisplayedTerrain::new(lattice.clone(), active, layout.patches().collect());
         let mut mesh = TriMesh::default();
         terrain.emit(&mut mesh);
         let post = |position: glam::Vec3| position.y as u32 * lattice.columns() + position.x as u32;

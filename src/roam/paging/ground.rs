@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec2, Vec3};
 
+use crate::dem::cache::LruCache;
 use crate::dem::error::DemError;
-use crate::dem::recent::Recent;
 use crate::dem::tiff::windows::GeoTiffWindows;
 use crate::dem::warp::{self, WarpError};
 use crate::dem::windows::Windows;
@@ -28,13 +28,11 @@ pub struct PagingOptions {
     /// The most patches that are kept; at least 1. A walk reads hardly anything twice where all patches hold whose
     /// spheres the eye is inside. Default 256, 8 MiB in patches of 64.
     pub capacity: usize,
-    /// Vertical exaggeration; 1 draws heights as they are. Default 1.
-    pub exaggeration: f32,
 }
 
 impl Default for PagingOptions {
     fn default() -> Self {
-        Self { patch: DEFAULT_PATCH, capacity: 256, exaggeration: 1.0 }
+        Self { patch: DEFAULT_PATCH, capacity: 256 }
     }
 }
 
@@ -99,7 +97,7 @@ pub struct PagedGround<W, S> {
     spheres: S,
     frame: PagedFrame,
     summaries: Vec<PatchSummary>,
-    cache: Recent<usize, Arc<PatchBlock>>,
+    cache: LruCache<usize, Arc<PatchBlock>>,
     capacity: usize,
     counts: PagingCounts,
     buffer: Vec<f32>,
@@ -110,7 +108,7 @@ pub struct PagedGround<W, S> {
 pub fn exact_spheres(reach: f32) -> impl Fn(PatchedGround<'_>) -> SphereMap {
     move |ground| {
         let errors = ErrorMap::exact(ground.lattice, ground.layout);
-        let own = errors.values().iter().map(|error| error * ground.exaggeration * reach).collect();
+        let own = errors.values().iter().map(|error| error * reach).collect();
         SphereMap::nested(ground, own)
     }
 }
@@ -142,18 +140,18 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> PagedGround<W, S> {
     /// [`PagingError`]: the raster is not north-up or not in meters, has too many patches or no data at all, or a
     /// piece of it cannot be read.
     pub fn open(mut windows: W, spheres: S, options: &PagingOptions) -> Result<Self, PagingError> {
-        warp::check_metric(windows.bare()).map_err(PagingError::NotMetric)?;
-        let (origin, cell) = Lattice::frame(windows.bare())?;
+        warp::check_metric(windows.metadata()).map_err(PagingError::NotMetric)?;
+        let (origin, cell) = Lattice::frame(windows.metadata())?;
         let ((columns, rows), patch) = (windows.size(), options.patch);
         let layout = PatchLayout::paged(columns, rows, patch).filter(|_| patch <= LARGEST_PATCH);
         let layout = layout.ok_or(PagingError::Patches { columns, rows, patch })?;
-        let frame = PagedFrame { layout, origin, cell, exaggeration: options.exaggeration };
+        let frame = PagedFrame { layout, origin, cell };
         let summaries = summary::of_all(&mut windows, &frame, &spheres)?;
         if summaries.iter().all(|summary| summary.low > summary.high) {
             return Err(LatticeError::Empty.into());
         }
         let capacity = options.capacity.max(1);
-        let (cache, counts) = (Recent::new(capacity), PagingCounts::default());
+        let (cache, counts) = (LruCache::new(capacity), PagingCounts::default());
         Ok(Self { windows, spheres, frame, summaries, cache, capacity, counts, buffer: Vec::new() })
     }
 
@@ -200,7 +198,7 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> PagedGround<W, S> {
 
     /// How many patches are kept now.
     pub fn kept(&self) -> usize {
-        self.cache.held()
+        self.cache.weight()
     }
 
     /// Whether the cache is in order and within its capacity, the counts add up, and patches that are kept agree
@@ -209,9 +207,9 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> PagedGround<W, S> {
     /// # Errors
     /// A sentence naming what disagrees.
     pub fn check(&self) -> Result<(), String> {
-        self.cache.check()?;
+        self.cache.check();
         let PagingCounts { loads, evictions, peak, .. } = self.counts;
-        let kept = self.cache.held();
+        let kept = self.cache.weight();
         if kept > peak || peak > self.capacity || loads - evictions != kept as u64 {
             return Err(format!("{kept} kept, {peak} at most of {}: {:?}", self.capacity, self.counts));
         }
@@ -292,7 +290,7 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> BlockSource for PagedGro
         let block = Arc::new(self.load(corner)?);
         self.counts.loads += 1;
         self.counts.evictions += self.cache.put(index, Arc::clone(&block), 1) as u64;
-        self.counts.peak = self.counts.peak.max(self.cache.held());
+        self.counts.peak = self.counts.peak.max(self.cache.weight());
         Ok(block)
     }
 }

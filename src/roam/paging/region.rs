@@ -19,8 +19,6 @@ pub struct PagedFrame {
     pub origin: DVec2,
     /// Meters between posts, eastward and northward.
     pub cell: DVec2,
-    /// Vertical exaggeration.
-    pub exaggeration: f32,
 }
 
 /// Patches of the terrain, from `first` to `last`, counted in patches east and north, ends included.
@@ -61,7 +59,6 @@ pub struct PagedRegion {
     lattice: Lattice,
     layout: PatchLayout,
     first: Vertex,
-    exaggeration: f32,
 }
 
 impl PagedRegion {
@@ -89,13 +86,13 @@ impl PagedRegion {
         let lattice = Lattice::part((frame.origin, frame.cell), post, columns, heights).map_err(sentence)?;
         let layout = PatchLayout::new(columns, rows, side as u32);
         let layout = layout.ok_or_else(|| format!("{columns} x {rows} posts are too many at once"))?;
-        Ok(Self { lattice, layout, first, exaggeration: frame.exaggeration })
+        Ok(Self { lattice, layout, first })
     }
 
     /// The piece as a ground of its own: vertices are counted from its own south-west, their positions are those of
     /// the whole terrain.
     pub fn ground(&self) -> PatchedGround<'_> {
-        PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: self.exaggeration }
+        PatchedGround { lattice: &self.lattice, layout: &self.layout }
     }
 
     /// A vertex of the terrain as this region counts it.

@@ -42,7 +42,7 @@ impl PatchSummary {
         corner: Vertex,
     ) -> Self {
         let side = ground.layout.patch();
-        let z = |x, y| ground.lattice.height(ground.layout.post(corner.moved(x, y))) * ground.exaggeration;
+        let z = |x, y| ground.lattice.height(ground.layout.post(corner.moved(x, y)));
         let middle = corner.moved(side / 2, side / 2);
         let (low, high) = heights.range(ground.layout.patch_index(corner));
         Self {

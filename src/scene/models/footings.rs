@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use toml::Spanned;
-
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::ModelPlacement;
@@ -11,6 +9,7 @@ use crate::description::words::{Clamp, Footing};
 use crate::earthworks::pad;
 use crate::earthworks::pad::Batters;
 use crate::geom::polygon;
+use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::footprint::ModelFootprint;
 use crate::scene::models::Group;
 use crate::scene::models::library::Library;
@@ -51,7 +50,7 @@ pub fn lay(
                 continue;
             }
             let reach = polygon::bounds(&outline(placement, &footprint.grown(PAD_REACH)));
-            cells += FullResolution { lattice, exaggeration: places.exaggeration }.cell_count(&reach);
+            cells += FullResolution { lattice }.cell_count(&reach);
             if cells > MAX_CELLS {
                 return Err(too_large(document, group.table));
             }
@@ -75,7 +74,7 @@ fn level(
     lattice: &mut Lattice,
 ) -> Option<Volumes> {
     let upright = Placement { standing: GroundFit { tilt_rad: 0.0, ..placement.standing }, ..*placement };
-    let finest = FullResolution { lattice, exaggeration };
+    let finest = DrawnGround { lattice, exaggeration };
     let found = stand(&upright, footprint, &Grounds { displayed: &finest, finest })?;
     let level_z = match placement.clamp {
         Clamp::Absolute => f64::from(found.base(footprint)[0].z),
@@ -84,17 +83,17 @@ fn level(
     let highest = f64::from(HIGHEST_M);
     let level_m = (level_z / f64::from(exaggeration)).clamp(-highest, highest);
     let ring = outline(placement, &footprint.grown(PAD_REACH));
-    Some(pad::pad(lattice, &ring, level_m, Batters::default()))
+    Some(pad::build_pad(lattice, &ring, level_m, Batters::default()))
 }
 
 fn too_many(document: &Document, table: &ModelPlacement) -> Diagnostic {
-    let place = table.footing.as_ref().map_or(table.file.span(), Spanned::span);
+    let place = table.footing.span().or(table.file.span()).unwrap_or_default();
     let message = format!("more than {MAX_PADS} models have the ground leveled for them");
     document.error_at(place, message).with_help("use footing = \"plinth\", which moves no earth")
 }
 
 fn too_large(document: &Document, table: &ModelPlacement) -> Diagnostic {
-    let place = table.scale.as_ref().map_or(table.file.span(), Spanned::span);
+    let place = table.scale.span().or(table.file.span()).unwrap_or_default();
     let message = format!("up to this model, the footprints cover more than {MAX_CELLS} cells of ground");
     document
         .error_at(place, message)

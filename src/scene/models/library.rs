@@ -4,6 +4,7 @@
 //! the path of a file. A file that has such a name is reached by `./`.
 
 use std::collections::BTreeMap;
+use std::error::Error;
 use std::ops::Range;
 
 use crate::description::diagnostic::Diagnostic;
@@ -46,7 +47,7 @@ impl<'a> Library<'a> {
     pub fn get(
         &mut self,
         name: &str,
-        span: Range<usize>,
+        span: Option<Range<usize>>,
         collected: &mut SceneBuilder,
     ) -> Result<usize, Diagnostic> {
         if let Some(&model) = self.known.get(name) {
@@ -63,17 +64,18 @@ impl<'a> Library<'a> {
         Ok(self.models.len() - 1)
     }
 
-    fn load(&self, name: &str, span: Range<usize>) -> Result<Model, Diagnostic> {
-        let wrong = |reason: String| {
-            let error = self.document.error_at(span.clone(), reason);
+    fn load(&self, name: &str, span: Option<Range<usize>>) -> Result<Model, Diagnostic> {
+        let read = || -> Result<Model, Box<dyn Error + Send + Sync>> {
+            let bytes = self.assets.read(name)?;
+            Ok(read::read(name, &bytes, &self.assets.beside(name)?)?)
+        };
+        read().map_err(|cause| {
+            let error = self.document.error_at(span.unwrap_or_default(), cause);
             if name.contains(['.', '/', '\\']) {
                 return error;
             }
             error.with_help(format!("the built-in models are {}", built_in::NAMES.join(", ")))
-        };
-        let bytes = self.assets.read(name).map_err(|error| wrong(error.to_string()))?;
-        let companions = self.assets.beside(name).map_err(|error| wrong(error.to_string()))?;
-        read::read(name, &bytes, &companions).map_err(|error| wrong(error.to_string()))
+        })
     }
 
     /// Where a model touches the ground.
@@ -93,7 +95,7 @@ impl<'a> Library<'a> {
     /// How far a model reaches from its origin in plan, in its own units.
     pub fn reach(&self, model: usize) -> f32 {
         let bounds = self.models[model].bounds();
-        bounds.map_or(0.0, |(min, max)| min.abs().max(max.abs()).truncate().max_element())
+        bounds.map_or(0.0, |bounds| bounds.min.abs().max(bounds.max.abs()).truncate().max_element())
     }
 
     /// All models, in the order of their places.

@@ -15,12 +15,11 @@ pub mod model_report;
 use std::ops::Range;
 
 use glam::DVec2;
-use toml::Spanned;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
-use crate::description::expression::Quantity;
-use crate::description::features::{FeatureSource, ModelPlacement, Scalar};
+use crate::description::features::{FeatureSource, ModelPlacement};
+use crate::description::scalar::Scalar;
 use crate::model::Model;
 use crate::scene::assets::Assets;
 use crate::scene::attributes::Attributes;
@@ -69,8 +68,8 @@ pub fn place(
         if let Some(at) = &table.at {
             let world = places.point(at, table.crs.as_ref())?;
             places.on_ground(lattice, at, world)?;
-            let model = library.get(table.file.get_ref(), table.file.span(), collected)?;
-            let name = table.name.clone().unwrap_or_else(|| table.file.get_ref().clone());
+            let model = library.get(&table.file, table.file.span(), collected)?;
+            let name = table.name.clone().unwrap_or_else(|| table.file.to_string());
             placements.push(placed(
                 table,
                 (&library, model),
@@ -83,7 +82,7 @@ pub fn place(
             within(document, source, placements.len() + points.len())?;
             let mut choice = ModelChoice::new(table, &mut library, collected)?;
             for Sourced { attributes, shape } in points {
-                let ground = FullResolution { lattice, exaggeration: places.exaggeration };
+                let ground = FullResolution { lattice };
                 if ground.displayed_z(shape).is_none() {
                     off += 1;
                     continue;
@@ -123,18 +122,14 @@ fn placed(
     name: String,
     collected: &mut SceneBuilder,
 ) -> Placement {
-    let mut number = |key: &'static str, stated: &Option<Spanned<Quantity>>, default: f64| {
-        attributes.number_or((key, stated.as_ref()), default, &mut collected.defaulted) as f32
-    };
-    let (height_m, heading_deg, scale) = (
-        number("[[model]] height", &table.height, 0.0),
-        number("[[model]] heading", &table.heading, 0.0),
-        number("[[model]] scale", &table.scale, 1.0),
-    );
+    let counts = &mut collected.default_counts;
+    let height_m = attributes.number_or(table.height.as_ref(), 0.0, counts) as f32;
+    let heading_deg = attributes.number(&table.heading, counts) as f32;
+    let scale = attributes.number(&table.scale, counts) as f32;
     Placement {
         model,
         at: at.as_vec2(),
-        clamp: library.clamp(model, table.clamp.as_ref().map(Spanned::get_ref).copied().unwrap_or_default()),
+        clamp: library.clamp(model, table.clamp),
         height_m,
         heading_rad: heading_deg.to_radians(),
         scale,
@@ -144,12 +139,11 @@ fn placed(
 }
 
 fn standing(table: &ModelPlacement) -> GroundFit {
-    let number = |stated: &Option<Spanned<f64>>| stated.as_ref().map_or(0.0, |value| *value.get_ref()) as f32;
     GroundFit {
-        anchor: table.anchor.as_ref().map(Spanned::get_ref).copied().unwrap_or_default(),
-        tilt_rad: number(&table.tilt).to_radians(),
-        sink_m: number(&table.sink),
-        footing: table.footing.as_ref().map(Spanned::get_ref).copied().unwrap_or_default(),
+        anchor: table.anchor,
+        tilt_rad: (table.tilt as f32).to_radians(),
+        sink_m: table.sink as f32,
+        footing: *table.footing,
     }
 }
 
@@ -167,10 +161,10 @@ impl<'a> ModelChoice<'a> {
         library: &mut Library<'_>,
         collected: &mut SceneBuilder,
     ) -> Result<Self, Diagnostic> {
-        let file = library.get(table.file.get_ref(), table.file.span(), collected)?;
+        let file = library.get(&table.file, table.file.span(), collected)?;
         let mut variants = Vec::new();
         if let Some(given) = &table.variants {
-            for (value, name) in given.get_ref() {
+            for (value, name) in given.iter() {
                 variants.push((value.as_str(), library.get(name, given.span(), collected)?));
             }
         }
@@ -179,7 +173,7 @@ impl<'a> ModelChoice<'a> {
 
     fn of(&mut self, attributes: &Attributes) -> usize {
         let Some(variant) = &self.table.variant else { return self.file };
-        let value = variant.get_ref().value(&|name| attributes.get(name)).map(|value| match value {
+        let value = variant.value(&|name| attributes.get(name)).map(|value| match value {
             Scalar::Text(text) => text,
             Scalar::Number(number) => number.to_string(),
             Scalar::Bool(value) => value.to_string(),

@@ -8,54 +8,16 @@ use std::collections::BTreeMap;
 use crate::description::words::Clamp;
 use crate::scene::Placement;
 use crate::scene::builder::SceneBuilder;
+use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::footprint::ModelFootprint;
 use crate::scene::models::Group;
 use crate::scene::models::library::Library;
 use crate::scene::placement::{Grounds, ModelPose, stand};
-use crate::scene::report::{ReportCell, ReportColumn, SceneReport};
+use crate::scene::report::{InstancesRow, ModelRow};
 use crate::scene::world_frame::WorldFrame;
-use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::triangle_surface::TriangleSurface;
 use crate::terrain::volumes::Volumes;
-
-const fn column(name: &'static str, unit: &'static str) -> ReportColumn {
-    ReportColumn { name, unit }
-}
-
-/// One row for a model that stands `at` a place.
-const MODELS: (&str, &[ReportColumn]) = (
-    "models",
-    &[
-        column("name", ""),
-        column("anchor", "m"),
-        column("gap front left", "m"),
-        column("gap front right", "m"),
-        column("gap back right", "m"),
-        column("gap back left", "m"),
-        column("tilt", "deg"),
-        column("plinth", "m"),
-        column("cut", "m3"),
-        column("fill", "m3"),
-    ],
-);
-
-/// One row for a table with instances.
-const INSTANCES: (&str, &[ReportColumn]) = (
-    "instances",
-    &[
-        column("name", ""),
-        column("models", ""),
-        column("off the ground", ""),
-        column("of no variant", ""),
-        column("least gap", "m"),
-        column("greatest gap", "m"),
-        column("greatest tilt", "deg"),
-        column("highest plinth", "m"),
-        column("cut", "m3"),
-        column("fill", "m3"),
-    ],
-);
 
 /// Adds what there is to tell of the document's models.
 pub fn tell(
@@ -65,7 +27,7 @@ pub fn tell(
     lattice: &Lattice,
     collected: &mut SceneBuilder,
 ) {
-    let finest = FullResolution { lattice, exaggeration: places.exaggeration };
+    let finest = DrawnGround { lattice, exaggeration: places.exaggeration };
     for group in groups {
         let all: Vec<Told> = group
             .placements
@@ -75,13 +37,12 @@ pub fn tell(
                 Told::of(placement, library.footprint(placement.model), &finest, volumes.get(&index).copied())
             })
             .collect();
-        let name = group.table.name.clone().unwrap_or_else(|| group.table.file.get_ref().clone());
+        let name = group.table.name.clone().unwrap_or_else(|| group.table.file.to_string());
         if group.table.instances.is_some() {
             note(group, &name, &mut collected.notes);
-            collected.report.add(INSTANCES, instances(group, name, &all));
+            collected.report.instances.push(instances(group, name, &all));
         } else {
-            let report: &mut SceneReport = &mut collected.report;
-            all.iter().for_each(|told| report.add(MODELS, told.row(name.clone())));
+            collected.report.models.extend(all.iter().map(|told| told.row(name.clone())));
         }
     }
 }
@@ -99,7 +60,7 @@ impl Told {
     fn of(
         placement: &Placement,
         footprint: &ModelFootprint,
-        finest: &FullResolution<'_>,
+        finest: &DrawnGround<'_>,
         moved: Option<Volumes>,
     ) -> Option<Self> {
         let grounds = Grounds { displayed: finest, finest: *finest };
@@ -117,45 +78,41 @@ impl Told {
         })
     }
 
-    fn row(&self, name: String) -> Vec<ReportCell> {
-        let [front_left, front_right, back_right, back_left] = self.gaps_m.map(number);
-        vec![
-            ReportCell::Text(name),
-            number(self.anchor_m),
-            front_left,
-            front_right,
-            back_right,
-            back_left,
-            ReportCell::Number(self.tilt_deg),
-            number(self.plinth_m),
-            number(self.moved.map(|moved| moved.cut_m3)),
-            number(self.moved.map(|moved| moved.fill_m3)),
-        ]
+    fn row(&self, name: String) -> ModelRow {
+        let [gap_front_left, gap_front_right, gap_back_right, gap_back_left] = self.gaps_m;
+        ModelRow {
+            name,
+            anchor: self.anchor_m,
+            gap_front_left,
+            gap_front_right,
+            gap_back_right,
+            gap_back_left,
+            tilt: self.tilt_deg,
+            plinth: self.plinth_m,
+            cut: self.moved.map(|moved| moved.cut_m3),
+            fill: self.moved.map(|moved| moved.fill_m3),
+        }
     }
 }
 
-fn instances(group: &Group<'_>, name: String, all: &[Told]) -> Vec<ReportCell> {
+fn instances(group: &Group<'_>, name: String, all: &[Told]) -> InstancesRow {
     let gaps = || all.iter().flat_map(|told| told.gaps_m).flatten();
     let total = |of: fn(&Volumes) -> f64| {
         let moved: Vec<f64> = all.iter().filter_map(|told| told.moved.as_ref()).map(of).collect();
         (!moved.is_empty()).then(|| moved.iter().sum())
     };
-    vec![
-        ReportCell::Text(name),
-        ReportCell::Count(group.placements.len()),
-        ReportCell::Count(group.off),
-        ReportCell::Count(group.unknown),
-        number(gaps().min_by(f64::total_cmp)),
-        number(gaps().max_by(f64::total_cmp)),
-        number(all.iter().map(|told| told.tilt_deg).max_by(f64::total_cmp)),
-        number(all.iter().filter_map(|told| told.plinth_m).max_by(f64::total_cmp)),
-        number(total(|moved| moved.cut_m3)),
-        number(total(|moved| moved.fill_m3)),
-    ]
-}
-
-fn number(value: Option<f64>) -> ReportCell {
-    value.map_or(ReportCell::Empty, ReportCell::Number)
+    InstancesRow {
+        name,
+        models: group.placements.len(),
+        off_the_ground: group.off,
+        of_no_variant: group.unknown,
+        least_gap: gaps().min_by(f64::total_cmp),
+        greatest_gap: gaps().max_by(f64::total_cmp),
+        greatest_tilt: all.iter().map(|told| told.tilt_deg).max_by(f64::total_cmp),
+        highest_plinth: all.iter().filter_map(|told| told.plinth_m).max_by(f64::total_cmp),
+        cut: total(|moved| moved.cut_m3),
+        fill: total(|moved| moved.fill_m3),
+    }
 }
 
 fn note(group: &Group<'_>, name: &str, notes: &mut Vec<String>) {
@@ -164,7 +121,7 @@ fn note(group: &Group<'_>, name: &str, notes: &mut Vec<String>) {
         notes.push(format!("{} of '{name}' left out: off the elevation model", models(group.off)));
     }
     if group.unknown > 0 {
-        let file = group.table.file.get_ref();
+        let file = group.table.file.as_str();
         let (what, name_s) = (models(group.unknown), if group.unknown == 1 { "names" } else { "name" });
         notes.push(format!("{what} of '{name}' {name_s} none of its variants; '{file}' was taken"));
     }

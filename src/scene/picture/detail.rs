@@ -43,7 +43,7 @@ pub(super) struct PlacedModel {
     pub feature: FeatureId,
 }
 
-/// The ball around a model, in its own space.
+/// The sphere around a model, in its own space.
 #[derive(Clone, Copy, Debug, Default)]
 struct BoundingSphere {
     center: Vec3,
@@ -56,7 +56,7 @@ pub(super) fn add(list: &mut DrawList, scene: &Scene, placed: &[PlacedModel], vi
     let groups = match viewer {
         Viewer::Anyone => grouped(placed.iter().map(|stand| (stand, DetailForm::Full))),
         Viewer::Camera(camera) => {
-            let frustum = Frustum::of(camera);
+            let frustum = Frustum::new(camera);
             let in_view: Vec<&PlacedModel> = placed
                 .par_iter()
                 .filter(|stand| balls[stand.model].in_world(stand).is_in(&frustum))
@@ -123,16 +123,14 @@ fn prepare(scene: &Scene, in_view: &[&PlacedModel]) {
     wanted.dedup();
     wanted.par_iter().filter(|&&model| scene.details[model].get().is_none()).for_each(|&model| {
         // Another picture may have been faster; it made the same.
-        let _ = scene.details[model].set(ModelDetail::of(&scene.models[model]));
+        let _ = scene.details[model].set(ModelDetail::new(&scene.models[model]));
     });
 }
 
 impl BoundingSphere {
     fn around(model: &Model) -> Self {
-        model.bounds().map_or_else(Self::default, |(min, max)| Self {
-            center: (min + max) * 0.5,
-            radius: (max - min).length() * 0.5,
-        })
+        let bounds = model.bounds().unwrap_or_default();
+        Self { center: bounds.center(), radius: bounds.radius() }
     }
 
     /// The ball in world space.

@@ -83,11 +83,11 @@ fn listed(
 
 /// The terrain as `camera` shows it.
 pub fn display(terrain: &Terrain, camera: &Camera) -> DisplayedTerrain {
-    let (ground, heights) = (terrain.ground(), &terrain.patch_heights);
-    let patches = patches_in_view(ground, heights, &Frustum::of(camera));
-    let criterion = ScreenError::new(ground, &terrain.errors, heights, camera, terrain.tolerance_px);
+    let (ground, heights) = (terrain.ground(), terrain.patch_heights());
+    let patches = patches_in_view(ground, heights, &Frustum::new(camera));
+    let criterion = ScreenError::new(ground, terrain.errors(), heights, camera, terrain.tolerance_px);
     let active = rebuild(&terrain.layout, &criterion, patches.iter().copied());
-    DisplayedTerrain::new(Arc::clone(&terrain.lattice), active, terrain.exaggeration, patches)
+    DisplayedTerrain::new(Arc::clone(terrain.displayed()), active, patches)
 }
 
 fn add_mesh(

@@ -4,17 +4,17 @@ use rayon::prelude::*;
 
 use crate::draw::list::{DepthLayer, DrawList, DrawMesh};
 use crate::draw::material::Material;
+use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::footprint::ModelFootprint;
 use crate::scene::picture::add_mesh;
 use crate::scene::picture::detail::{self, PlacedModel, Viewer};
 use crate::scene::placement::{Grounds, stand};
 use crate::scene::{Placement, Scene};
-use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::triangle_surface::TriangleSurface;
 
 /// Adds every placement that has ground under it and may be seen, and the plinths.
 pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn TriangleSurface, viewer: Viewer<'_>) {
-    let finest = FullResolution { lattice: &scene.terrain.lattice, exaggeration: scene.terrain.exaggeration };
+    let finest = DrawnGround { lattice: &scene.terrain.lattice, exaggeration: scene.terrain.exaggeration };
     let grounds = Grounds { displayed, finest };
     let footprints: Vec<ModelFootprint> = scene.models.iter().map(ModelFootprint::of).collect();
     let set = |placement: &Placement| -> Option<(PlacedModel, Option<DrawMesh>)> {

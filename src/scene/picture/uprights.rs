@@ -12,8 +12,7 @@ use crate::terrain::triangle_surface::TriangleSurface;
 
 /// Adds all uprights that have ground under them.
 pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn TriangleSurface) {
-    let terrain = &scene.terrain;
-    let ground = FullResolution { lattice: &terrain.lattice, exaggeration: terrain.exaggeration };
+    let ground = FullResolution { lattice: scene.terrain.displayed() };
     let under = SupportSurface { displayed, ground };
     let meshes: Vec<DrawMesh> =
         scene.uprights.par_iter().map(|standing| standing.upright.mesh(under)).collect();

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 
 use crate::geom::rect::Rect;
+use crate::geom::segment;
 use crate::scene::roads::centerline::Centerline;
 
 /// No square is smaller, in meters: a file of very short legs would fill more squares than it has legs.
@@ -100,16 +101,14 @@ fn crossing(one: &RoadLeg, other: &RoadLeg) -> Option<[RoadStation; 2]> {
         return None;
     }
     let (a, b) = (one.ends[1] - one.ends[0], other.ends[1] - other.ends[0]);
-    let (between, turn) = (other.ends[0] - one.ends[0], a.perp_dot(b));
-    if turn.abs() < 1e-9 * a.length() * b.length() {
+    if a.perp_dot(b).abs() < 1e-9 * a.length() * b.length() {
         return None;
     }
-    let parts = [between.perp_dot(b) / turn, between.perp_dot(a) / turn];
-    let is_on = parts.iter().all(|part| (0.0..=1.0).contains(part));
+    let parts = segment::crossing(one.ends.into(), other.ends.into())?;
     // Legs of one road that follow each other touch at their vertex.
     let follows = one.road == other.road && (one.ends[1] == other.ends[0] || other.ends[1] == one.ends[0]);
     let place = |leg: &RoadLeg, part: f64| (leg.road, leg.start_m + leg.ends[0].distance(leg.ends[1]) * part);
-    (is_on && !follows).then(|| [place(one, parts[0]), place(other, parts[1])])
+    (!follows).then(|| [place(one, parts[0]), place(other, parts[1])])
 }
 
 #[cfg(test)]

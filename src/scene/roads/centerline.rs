@@ -2,7 +2,6 @@
 
 use glam::DVec2;
 
-use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::RoadTable;
@@ -123,20 +122,13 @@ fn centerline(
     line: Polyline,
     collected: &mut SceneBuilder,
 ) -> Centerline {
-    let defaulted = &mut collected.defaulted;
     let surface = surface(road, &attributes);
-    let width_m =
-        attributes.number_or(("[[road]] width", road.width.as_ref()), defaults::ROAD_WIDTH_M, defaulted);
-    let shoulder_m = attributes.number_or(
-        ("[[road]] shoulder", road.shoulder.as_ref()),
-        defaults::ROAD_SHOULDER_M,
-        defaulted,
-    );
-    let standard = StrokeOptions::default();
+    let width_m = attributes.number(&road.width, &mut collected.default_counts);
+    let shoulder_m = attributes.number(&road.shoulder, &mut collected.default_counts);
     let options = StrokeOptions {
         width_m,
-        join: road.join.as_ref().map_or(standard.join, |join| *join.get_ref()),
-        miter_limit: road.miter_limit.as_ref().map_or(standard.miter_limit, |limit| *limit.get_ref()),
+        join: road.join,
+        miter_limit: road.miter_limit,
         texture_length_m: texture_length_m(surface, width_m),
     };
     let carried = carried(road, &attributes);
@@ -157,7 +149,7 @@ fn centerline(
 
 /// The widths stated for the points of an inline line, at the vertices that are left of it.
 fn widths_m(road: &RoadTable, shape: &[DVec2]) -> Option<Vec<f64>> {
-    let stated = road.widths.as_ref()?.get_ref();
+    let stated = road.widths.as_ref()?;
     let widths_m: Option<Vec<f64>> =
         kept(shape, near::MERGE_M).into_iter().map(|index| stated.get(index).copied()).collect();
     widths_m.filter(|widths_m| widths_m.len() >= 2)
@@ -165,10 +157,10 @@ fn widths_m(road: &RoadTable, shape: &[DVec2]) -> Option<Vec<f64>> {
 
 /// What it is paved with and what is painted on it.
 fn surface(road: &RoadTable, attributes: &Attributes) -> RibbonSurface {
-    match attributes.word(road.surface.as_ref()).unwrap_or_default() {
+    match attributes.value_or_default(&road.surface) {
         words::RoadSurface::Gravel => RibbonSurface::Gravel,
         words::RoadSurface::Track => RibbonSurface::Track,
-        words::RoadSurface::Asphalt => match attributes.word(road.markings.as_ref()).unwrap_or_default() {
+        words::RoadSurface::Asphalt => match attributes.value_or_default(&road.markings) {
             Markings::Dashed => RibbonSurface::Asphalt,
             Markings::Solid => RibbonSurface::AsphaltSolid,
             Markings::Edges => RibbonSurface::AsphaltEdges,
@@ -179,8 +171,8 @@ fn surface(road: &RoadTable, attributes: &Attributes) -> RibbonSurface {
 
 /// What carries a road, by the expressions stated for it, else by its properties as OpenStreetMap has them.
 pub(in crate::scene) fn carried(road: &RoadTable, attributes: &Attributes) -> Support {
-    let holds = |stated: &Option<toml::Spanned<_>>, property| match stated {
-        Some(expression) => attributes.holds(expression.get_ref()),
+    let holds = |stated: &Option<_>, property| match stated {
+        Some(expression) => attributes.holds(expression),
         None => attributes.affirm(property),
     };
     match (holds(&road.tunnel, "tunnel"), holds(&road.bridge, "bridge")) {
@@ -191,19 +183,20 @@ pub(in crate::scene) fn carried(road: &RoadTable, attributes: &Attributes) -> Su
 }
 
 fn level(road: &RoadTable, attributes: &Attributes, carried: Support) -> i32 {
-    let tagged = || attributes.get("layer").as_ref().and_then(crate::description::expression::as_number);
+    let tagged = || attributes.get("layer").and_then(|layer| layer.number());
     let by_kind = match carried {
         Support::Ground => 0.0,
         Support::Bridge => 1.0,
         Support::Tunnel => -1.0,
     };
-    let level = attributes.number(road.level.as_ref()).or_else(tagged).unwrap_or(by_kind);
+    let level = attributes.value(road.level.as_ref()).or_else(tagged).unwrap_or(by_kind);
     level.round().clamp(-20.0, 20.0) as i32
 }
 
 #[cfg(test)]
 pub(in crate::scene::roads) mod tests {
     use super::*;
+    use crate::description::parse::parse;
 
     /// A road along these points, six meters wide, from the document's first table.
     pub fn road(points: &[(f64, f64)], carried: Support, level: i32) -> Centerline {
@@ -227,10 +220,16 @@ pub(in crate::scene::roads) mod tests {
         Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line")
     }
 
+    /// The road of a scene file with these keys.
+    fn table(keys: &str) -> RoadTable {
+        let text = format!("[terrain]\ndem = \"a\"\n[[road]]\n{keys}\n");
+        parse("road.toml", &text).expect("a valid scene").roads.remove(0)
+    }
+
     #[test]
     fn a_part_of_a_road_is_as_wide_as_the_road_there() {
         let mut road = centerline(
-            (0, &RoadTable::default()),
+            (0, &table("points = [[0, 0], [1, 1]]")),
             Attributes::default(),
             line(&[(0.0, 0.0), (10.0, 0.0), (30.0, 0.0)]),
             &mut SceneBuilder::default(),
@@ -243,8 +242,7 @@ pub(in crate::scene::roads) mod tests {
 
     #[test]
     fn widths_stay_with_their_points_where_points_are_merged() {
-        let widths = toml::Spanned::new(0..0, vec![3.0, 4.0, 5.0]);
-        let road = RoadTable { widths: Some(widths), ..RoadTable::default() };
+        let road = table("points = [[0, 0], [0.001, 0], [9, 0]]\nwidths = [3, 4, 5]");
         let shape = [DVec2::ZERO, DVec2::X * 0.001, DVec2::X * 9.0];
         assert_eq!(widths_m(&road, &shape), Some(vec![3.0, 5.0]));
     }

@@ -15,7 +15,7 @@ use crate::earthworks::grading::grade;
 use crate::earthworks::grading::strip::{GradingStrip, StripEnd};
 use crate::geom::polyline::Polyline;
 use crate::scene::builder::SceneBuilder;
-use crate::scene::report::{ReportCell, ReportColumn};
+use crate::scene::report::ConformedRoadRow;
 use crate::scene::roads::centerline::{Centerline, Support};
 use crate::scene::roads::meetings::{RoadMeetings, meetings};
 use crate::scene::roads::network_survey::{NetworkSurvey, Rules, conforms};
@@ -36,19 +36,6 @@ const CURVE_CELLS: f64 = 2.0;
 /// wider than itself; more, and the lattice grows with the square.
 const POSTS_ACROSS: f64 = 4.0;
 
-/// What is reported of each road.
-const COLUMNS: [ReportColumn; 9] = [
-    ReportColumn { name: "name", unit: "" },
-    ReportColumn { name: "length", unit: "m" },
-    ReportColumn { name: "highest grade", unit: "%" },
-    ReportColumn { name: "cut", unit: "m3" },
-    ReportColumn { name: "fill", unit: "m3" },
-    ReportColumn { name: "highest fill", unit: "m" },
-    ReportColumn { name: "deepest cut", unit: "m" },
-    ReportColumn { name: "bridges", unit: "" },
-    ReportColumn { name: "tunnels", unit: "" },
-];
-
 /// Designs the roads that the ground follows, grades the ground for them and cuts them where bridges and tunnels begin.
 ///
 /// The lattice may get more posts; its origin, its extent and all heights beside the earthworks stay as they are.
@@ -62,7 +49,7 @@ pub fn conform(
     collected: &mut SceneBuilder,
 ) -> Result<(), Diagnostic> {
     let rules: Vec<Option<Rules>> =
-        roads.iter().map(|road| Rules::of(document, road, &mut collected.defaulted)).collect();
+        roads.iter().map(|road| Rules::of(document, road, &mut collected.default_counts)).collect();
     if rules.iter().all(Option::is_none) {
         return Ok(());
     }
@@ -109,8 +96,7 @@ impl Earthworks<'_> {
         let mut volumes = vec![Volumes::default(); routes.len()];
         if !strips.is_empty() {
             for (owner, moved) in owners.into_iter().zip(grade(lattice, &strips)) {
-                volumes[owner].cut_m3 += moved.cut_m3;
-                volumes[owner].fill_m3 += moved.fill_m3;
+                volumes[owner] += moved;
             }
         }
         volumes
@@ -164,9 +150,9 @@ fn make_denser(lattice: &mut Lattice, strips: &[GradingStrip], collected: &mut S
     let widths = strips.iter().map(|strip| 2.0 * strip.section.half_width_m);
     let narrowest_m = widths.fold(f64::INFINITY, f64::min);
     let wanted = densify::doublings_for(lattice, narrowest_m / POSTS_ACROSS);
-    let times = densify::affordable(lattice, wanted);
+    let times = densify::affordable_doublings(lattice, wanted);
     if times > 0
-        && let Ok(dense) = densify::densified(lattice, times)
+        && let Ok(dense) = densify::densify(lattice, times)
     {
         *lattice = dense;
     }
@@ -208,18 +194,17 @@ fn tell(road: &Centerline, route: &Route, volumes: &Volumes, collected: &mut Sce
         });
     let count = |kind| all.iter().filter(|stretch| stretch.carried == kind).count();
     let highest = |sign: f64| rises.iter().fold(0.0, |most: f64, rise| most.max(rise * sign));
-    let row = vec![
-        ReportCell::Text(name.clone()),
-        ReportCell::Number(road.line.length()),
-        ReportCell::Number(steepest * 100.0),
-        ReportCell::Number(volumes.cut_m3),
-        ReportCell::Number(volumes.fill_m3),
-        ReportCell::Number(highest(1.0)),
-        ReportCell::Number(highest(-1.0)),
-        ReportCell::Count(count(Support::Bridge)),
-        ReportCell::Count(count(Support::Tunnel)),
-    ];
-    collected.report.add(("conformed roads", &COLUMNS), row);
+    collected.report.conformed_roads.push(ConformedRoadRow {
+        name: name.clone(),
+        length: road.line.length(),
+        highest_grade: steepest * 100.0,
+        cut: volumes.cut_m3,
+        fill: volumes.fill_m3,
+        highest_fill: highest(1.0),
+        deepest_cut: highest(-1.0),
+        bridges: count(Support::Bridge),
+        tunnels: count(Support::Tunnel),
+    });
     collected.profiles.push(RoadProfile {
         feature: road.feature,
         name,
@@ -241,8 +226,7 @@ fn total(
     for (route, moved) in routes.iter().zip(volumes) {
         let (count, sum, spans) = tables.entry(roads[route.road].table).or_default();
         *count += 1;
-        sum.cut_m3 += moved.cut_m3;
-        sum.fill_m3 += moved.fill_m3;
+        *sum += *moved;
         for stretch in route.stretches() {
             spans[0] += usize::from(stretch.carried == Support::Bridge);
             spans[1] += usize::from(stretch.carried == Support::Tunnel);

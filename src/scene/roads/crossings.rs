@@ -10,6 +10,7 @@ use glam::DVec2;
 
 use crate::geom::polyline::Polyline;
 use crate::geom::rect::Rect;
+use crate::geom::segment;
 
 /// Segments in a piece: enough to make boxes cheap, few enough to keep them small.
 const SEGMENTS: usize = 8;
@@ -97,19 +98,21 @@ fn cross(
 ) {
     for above in piece.segments.clone() {
         for below in other.segments.clone() {
-            let ends = |line: &Polyline, segment: usize| [line.points()[segment], line.points()[segment + 1]];
-            let Some(parts) = meet(ends(over.line, above), ends(under.line, below)) else { continue };
+            let ends = |line: &Polyline, segment: usize| (line.points()[segment], line.points()[segment + 1]);
+            let Some(parts) = segment::crossing(ends(over.line, above), ends(under.line, below)) else {
+                continue;
+            };
             let station = |line: &Polyline, segment: usize, part: f64| {
                 let stations = line.stations();
                 stations[segment] + (stations[segment + 1] - stations[segment]) * part
             };
             let (upper_m, lower_m) =
-                (station(over.line, above, parts.0), station(under.line, below, parts.1));
+                (station(over.line, above, parts[0]), station(under.line, below, parts[1]));
             if is_end(over.line, upper_m) && is_end(under.line, lower_m) {
                 continue;
             }
             let direction = |line, segment| {
-                let [from, to]: [DVec2; 2] = ends(line, segment);
+                let (from, to) = ends(line, segment);
                 (to - from).normalize_or_zero()
             };
             let sine = direction(over.line, above).perp_dot(direction(under.line, below)).abs();
@@ -127,15 +130,6 @@ fn cross(
 
 fn is_end(line: &Polyline, station_m: f64) -> bool {
     station_m < 0.01 || station_m > line.length() - 0.01
-}
-
-/// Where two segments meet, as parts of the way along both; `None` where they do not, or are parallel.
-fn meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Option<(f64, f64)> {
-    let (one, other) = (b - a, d - c);
-    let area = one.perp_dot(other);
-    let parts = ((c - a).perp_dot(other) / area, (c - a).perp_dot(one) / area);
-    let within = |part: f64| (0.0..=1.0).contains(&part);
-    (area != 0.0 && within(parts.0) && within(parts.1)).then_some(parts)
 }
 
 #[cfg(test)]
@@ -173,12 +167,12 @@ mod tests {
             under in prop::collection::vec((0.0..100.0f64, 0.0..100.0f64), 2..40),
         ) {
             let (over, under) = (line(&over), line(&under));
-            let segments = |line: &Polyline| -> Vec<[DVec2; 2]> {
-                line.points().windows(2).map(|pair| [pair[0], pair[1]]).collect()
+            let segments = |line: &Polyline| -> Vec<(DVec2, DVec2)> {
+                line.points().windows(2).map(|pair| (pair[0], pair[1])).collect()
             };
             let pairs = segments(&over).into_iter()
                 .flat_map(|one| segments(&under).into_iter().map(move |other| (one, other)))
-                .filter(|&(one, other)| meet(one, other).is_some())
+                .filter(|&(one, other)| segment::crossing(one, other).is_some())
                 .count();
             prop_assert_eq!(find(&[way(&over, 1)], &[way(&under, 0)]).len(), pairs);
         }

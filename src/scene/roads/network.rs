@@ -204,8 +204,7 @@ fn joints(
 fn write_convex(outline: &[DVec2], sink: &mut impl MeshSink<PlanVertex>) {
     let vertex = |at: DVec2| PlanVertex { at, uv: (at / JUNCTION_TEXTURE_M).as_vec2() };
     let corners: Vec<_> = outline.iter().map(|&at| (sink.vertex(vertex(at)), at)).collect();
-    for pair in corners[1..].windows(2) {
-        let triangle = [corners[0], pair[0], pair[1]];
+    for triangle in polygon::fan(&corners) {
         if polygon::doubled_area(&triangle.map(|(_, at)| at)) > 2.0 * NOTHING_M2 {
             sink.triangle(triangle.map(|(id, _)| id));
         }

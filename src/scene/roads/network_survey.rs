@@ -2,18 +2,15 @@
 
 use std::ops::Range;
 
-use toml::Spanned;
-
-use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::RoadTable;
-use crate::description::words;
+use crate::description::words::ProfileMode;
 use crate::earthworks::alignment::design::{Design, SectionGround};
 use crate::earthworks::alignment::network::{RoadSection, SectionNetwork};
 use crate::earthworks::alignment::spans::{DesignSpan, EarthworkLimits, SpanKind};
 use crate::earthworks::grading::strip;
-use crate::scene::attributes::Defaulted;
+use crate::scene::attributes::DefaultCounts;
 use crate::scene::roads::centerline::{Centerline, Support};
 use crate::scene::roads::meetings::RoadMeetings;
 use crate::scene::roads::route::{Route, points_between};
@@ -36,28 +33,23 @@ pub struct Rules {
 
 impl Rules {
     /// The rules of a road; `None` where it follows the ground.
-    pub fn of(document: &Document, road: &Centerline, defaulted: &mut Defaulted) -> Option<Self> {
+    pub fn of(document: &Document, road: &Centerline, counts: &mut DefaultCounts) -> Option<Self> {
         let table = &document.roads[road.table];
         if !conforms(table) {
             return None;
         }
-        let stated = ("[[road]] max_grade", table.max_grade.as_ref());
-        let value = |key: &Option<Spanned<f64>>| key.as_ref().map(|value| *value.get_ref());
         Some(Self {
-            max_grade: road.attributes.number_or(stated, defaults::MAX_GRADE_PERCENT, defaulted) / 100.0,
+            max_grade: road.attributes.number(&table.max_grade, counts) / 100.0,
             limits: EarthworkLimits {
-                max_fill_m: value(&table.max_fill).unwrap_or(f64::INFINITY),
-                max_cut_m: value(&table.max_cut).unwrap_or(f64::INFINITY),
+                max_fill_m: table.max_fill.unwrap_or(f64::INFINITY),
+                max_cut_m: table.max_cut.unwrap_or(f64::INFINITY),
             },
             section: strip::CrossSection {
                 half_width_m: road.options.width_m / 2.0,
-                shoulder_m: road
-                    .attributes
-                    .number(table.shoulder.as_ref())
-                    .unwrap_or(defaults::ROAD_SHOULDER_M),
-                crown: value(&table.crown).unwrap_or(defaults::CROWN_PERCENT) / 100.0,
-                fill_slope: value(&table.fill_slope).unwrap_or(defaults::FILL_SLOPE),
-                cut_slope: value(&table.cut_slope).unwrap_or(defaults::CUT_SLOPE),
+                shoulder_m: road.attributes.value_or_default(&table.shoulder),
+                crown: table.crown / 100.0,
+                fill_slope: table.fill_slope,
+                cut_slope: table.cut_slope,
             },
         })
     }
@@ -65,7 +57,7 @@ impl Rules {
 
 /// Whether the ground follows the roads of a table.
 pub fn conforms(table: &RoadTable) -> bool {
-    table.profile.as_ref().is_some_and(|profile| *profile.get_ref() == words::ProfileMode::Conform)
+    table.profile == ProfileMode::Conform
 }
 
 /// A network of roads with what is known of it.

@@ -5,7 +5,6 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::words;
@@ -155,15 +154,14 @@ fn of_tables(
             near::lines(lines, (extent, REACH_M), (FeatureKind::Bridge, given), collected)
         {
             let Some((line, _)) = within(&line, None, extent) else { continue };
-            let surface = surface(attributes.word(bridge.surface.as_ref()).unwrap_or_default());
-            let stated = ("[[bridge]] width", bridge.width.as_ref());
-            let width_m = attributes.number_or(stated, defaults::BRIDGE_WIDTH_M, &mut collected.defaulted);
+            let surface = surface(attributes.value_or_default(&bridge.surface));
+            let width_m = attributes.number(&bridge.width, &mut collected.default_counts);
             let options = StrokeOptions {
                 width_m,
                 texture_length_m: texture_length_m(surface, width_m),
                 ..StrokeOptions::default()
             };
-            let deck_m = attributes.number(bridge.deck.as_ref());
+            let deck_m = attributes.value(bridge.deck.as_ref());
             all.push(RoadSpan {
                 levels_m: deck_m.map(|level| vec![level; line.points().len()]),
                 line,
@@ -173,7 +171,7 @@ fn of_tables(
                 options,
                 surface,
                 level: 1,
-                pier_spacing_m: bridge.pier_spacing.as_ref().map(|value| *value.get_ref()),
+                pier_spacing_m: bridge.pier_spacing.stated().copied(),
                 name: attributes.name(given),
                 by: SpanOrigin::Table,
                 place: bridge.source.span(),

@@ -77,11 +77,7 @@ impl Bands {
 
     /// Whether a place in a row lies inside, by the even-odd rule over all rings.
     pub fn contains(&self, row: i64, at: DVec2) -> bool {
-        let crossings = self.edges(row).iter().filter(|(from, to)| {
-            (from.y > at.y) != (to.y > at.y)
-                && at.x < from.x + (to.x - from.x) * (at.y - from.y) / (to.y - from.y)
-        });
-        crossings.count() % 2 == 1
+        polygon::is_within(self.edges(row).iter().copied(), at)
     }
 
     fn edges(&self, row: i64) -> &[(DVec2, DVec2)] {

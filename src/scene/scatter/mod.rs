@@ -13,9 +13,7 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
-use toml::Spanned;
 
-use crate::description::defaults;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::ScatterTable;
@@ -27,7 +25,7 @@ use crate::scene::builder::SceneBuilder;
 use crate::scene::models::library::Library;
 use crate::scene::models::within;
 use crate::scene::placement::outline;
-use crate::scene::report::{ReportCell, ReportColumn};
+use crate::scene::report::ScatterRow;
 use crate::scene::scatter::bands::Bands;
 use crate::scene::scatter::chance::{Chance, seed_of};
 use crate::scene::scatter::pattern::{PatternPoint, PointPattern};
@@ -49,20 +47,6 @@ const CLEAR_PART: f64 = 0.5;
 const MAX_SQUARES: usize = 1 << 25;
 /// Rows of squares done side by side before the models are counted.
 const ROWS_AT_ONCE: usize = 256;
-
-/// One row for each `[[scatter]]`.
-const SCATTERED: (&str, &[ReportColumn]) = (
-    "scattered",
-    &[
-        ReportColumn { name: "name", unit: "" },
-        ReportColumn { name: "models", unit: "" },
-        ReportColumn { name: "areas", unit: "" },
-        ReportColumn { name: "by slope", unit: "" },
-        ReportColumn { name: "by elevation", unit: "" },
-        ReportColumn { name: "by roads, water and buildings", unit: "" },
-        ReportColumn { name: "off the ground", unit: "" },
-    ],
-);
 
 /// Strews the document's scattered models among the other placements.
 ///
@@ -124,14 +108,11 @@ impl Species {
         collected: &mut SceneBuilder,
     ) -> Result<Self, Diagnostic> {
         let mut models = Vec::new();
-        let names = table.of.as_ref();
-        for name in names.into_iter().flat_map(Spanned::get_ref) {
-            let span = names.map_or(0..0, Spanned::span);
-            models.push(library.get(name, span, collected)?);
+        for name in table.models.iter() {
+            models.push(library.get(name, table.models.span(), collected)?);
         }
         // Tables of other species strew otherwise, so that two do not stand in each other.
-        let texts = names.into_iter().flat_map(Spanned::get_ref).map(String::as_str);
-        let seed = seed_of(table.seed.as_ref().map_or(defaults::SEED, |seed| *seed.get_ref()), texts);
+        let seed = seed_of(table.seed, table.models.iter().map(String::as_str));
         Ok(Self { models, seed })
     }
 }
@@ -163,9 +144,8 @@ fn pattern(
     seed: u64,
     collected: &mut SceneBuilder,
 ) -> PointPattern {
-    let stated = ("[[scatter]] density", table.density.as_ref());
-    let density = attributes.number_or(stated, defaults::DENSITY_PER_HA, &mut collected.defaulted) / 1e4;
-    let spacing_m = attributes.number(table.spacing.as_ref());
+    let density = attributes.number(&table.density, &mut collected.default_counts) / 1e4;
+    let spacing_m = attributes.value(table.spacing.as_ref());
     PointPattern::new(seed, density, spacing_m.unwrap_or(SPACING_PART / density.sqrt()))
 }
 
@@ -190,7 +170,7 @@ fn bands(
         *squares <= MAX_SQUARES
     });
     bands.ok_or_else(|| {
-        let place = table.density.as_ref().map_or(table.source.span(), Spanned::span);
+        let place = table.density.span().unwrap_or(table.source.span());
         let message = format!("so dense a pattern has more than {MAX_SQUARES} places in these areas");
         document
             .error_at(place, message)
@@ -227,11 +207,11 @@ impl ScatterGround<'_> {
             counts.off += 1;
             return None;
         };
-        if outside(self.table.elevation.as_ref(), height_m) {
+        if self.table.elevation.is_some_and(|range| !holds(range, height_m)) {
             counts.elevation += 1;
             return None;
         }
-        if outside(self.table.slope.as_ref(), gradient.slope_deg()) {
+        if !holds(self.table.slope, gradient.slope_deg()) {
             counts.slope += 1;
             return None;
         }
@@ -254,7 +234,7 @@ impl ScatterGround<'_> {
     fn placement(&self, place: &PatternPoint, gradient: Gradient) -> Placement {
         let mut chance = Chance::from_number(place.fate);
         let model = self.species.models[chance.below(self.species.models.len())];
-        let [from, to] = self.table.scale.as_ref().map_or(defaults::SCATTER_SCALE, |scale| *scale.get_ref());
+        let [from, to] = self.table.scale;
         let scale = (from + (to - from) * chance.part()) as f32;
         let heading_rad = (chance.part() * TAU) as f32;
         let rise = (gradient.0.length() as f32) * self.places.exaggeration;
@@ -268,8 +248,8 @@ impl ScatterGround<'_> {
     }
 }
 
-fn outside(range: Option<&Spanned<[f64; 2]>>, value: f64) -> bool {
-    range.is_some_and(|range| !(range.get_ref()[0]..=range.get_ref()[1]).contains(&value))
+fn holds([from, to]: [f64; 2], value: f64) -> bool {
+    (from..=to).contains(&value)
 }
 
 /// The ground that roads, water and buildings take, and what stands on it already.
@@ -314,16 +294,13 @@ fn tell(
         let message = "fewer than `density` says, since `spacing` leaves no room for more";
         collected.notes.push(format!("{called}: {message}"));
     }
-    collected.report.add(
-        SCATTERED,
-        vec![
-            ReportCell::Text(name),
-            ReportCell::Count(count),
-            ReportCell::Count(areas),
-            ReportCell::Count(counts.slope),
-            ReportCell::Count(counts.elevation),
-            ReportCell::Count(counts.taken),
-            ReportCell::Count(counts.off),
-        ],
-    );
+    collected.report.scattered.push(ScatterRow {
+        name,
+        models: count,
+        areas,
+        by_slope: counts.slope,
+        by_elevation: counts.elevation,
+        by_obstacles: counts.taken,
+        off_the_ground: counts.off,
+    });
 }

@@ -7,8 +7,10 @@ use std::collections::{BTreeSet, HashMap};
 
 use glam::DVec2;
 
+use crate::geom::convex;
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
+use crate::geom::segment;
 
 /// A grid's squares have sides of two to this power, in meters.
 type Power = i32;
@@ -30,8 +32,7 @@ pub struct Taken {
 impl Taken {
     /// Takes a triangle's ground; one without area, or running clockwise, takes none.
     pub fn add(&mut self, triangle: [DVec2; 3]) {
-        let [a, b, c] = triangle;
-        let has_area = (b - a).perp_dot(c - a) > 0.0;
+        let has_area = polygon::doubled_area(&triangle) > 0.0;
         if !has_area {
             return;
         }
@@ -47,9 +48,7 @@ impl Taken {
 
     /// Takes a convex counter-clockwise polygon's ground.
     pub fn add_convex(&mut self, polygon: &[DVec2]) {
-        for pair in polygon.get(1..).unwrap_or_default().windows(2) {
-            self.add([polygon[0], pair[0], pair[1]]);
-        }
+        polygon::fan(polygon).for_each(|triangle| self.add(triangle));
     }
 
     /// Whether nothing is taken within `clear_m` of a place.
@@ -84,13 +83,8 @@ fn squares(rect: &Rect, power: Power) -> impl Iterator<Item = (i64, i64)> + use<
 
 /// Whether a place lies in a counter-clockwise triangle or no farther from it than `clear_m`.
 fn is_near(triangle: &[DVec2; 3], at: DVec2, clear_m: f64) -> bool {
-    let is_inside = polygon::edges(triangle).all(|(from, to)| (to - from).perp_dot(at - from) >= 0.0);
-    is_inside
-        || polygon::edges(triangle).any(|(from, to)| {
-            let way = to - from;
-            let part = ((at - from).dot(way) / way.length_squared()).clamp(0.0, 1.0);
-            at.distance_squared(from + way * part) < clear_m * clear_m
-        })
+    convex::contains(triangle, at)
+        || polygon::edges(triangle).any(|edge| segment::distance_squared(edge, at) < clear_m * clear_m)
 }
 
 #[cfg(test)]

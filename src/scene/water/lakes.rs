@@ -14,10 +14,10 @@ use crate::ribbon::area;
 use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
 use crate::scene::FeatureKind;
-use crate::scene::attributes::Attributes;
+use crate::scene::attributes::{Attributes, count_default};
 use crate::scene::builder::SceneBuilder;
 use crate::scene::near::Clipped;
-use crate::scene::report::{ReportCell, ReportColumn};
+use crate::scene::report::LakeRow;
 use crate::scene::sources::{Sourced, Sources};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
@@ -25,21 +25,6 @@ use crate::vector::feature::Polygon;
 
 /// Meters in one repeat of the water's texture: fine enough not to be seen as a pattern.
 const LAKE_TEXTURE_M: f64 = 400.0;
-
-/// What the report says of each lake.
-const TABLE: (&str, &[ReportColumn]) = (
-    "lakes",
-    &[
-        ReportColumn { name: "name", unit: "" },
-        ReportColumn { name: "level", unit: "m" },
-        ReportColumn { name: "rule", unit: "" },
-        ReportColumn { name: "lowest shore", unit: "m" },
-        ReportColumn { name: "highest shore", unit: "m" },
-        ReportColumn { name: "area", unit: "m2" },
-        ReportColumn { name: "cut", unit: "m3" },
-        ReportColumn { name: "fill", unit: "m3" },
-    ],
-);
 
 /// Adds the document's lakes to `collected` and levels the ground under them. Lakes off the ground and those
 /// without an area are left out, with a note.
@@ -103,20 +88,16 @@ fn flood(
             called(&name)
         ));
     }
-    let number = |value: Option<f64>| value.map_or(ReportCell::Empty, ReportCell::Number);
-    collected.report.add(
-        TABLE,
-        vec![
-            ReportCell::Text(name.clone()),
-            ReportCell::Number(level_m),
-            ReportCell::Text(level.rule.into()),
-            number(shore.lowest_m()),
-            number(shore.highest_m()),
-            ReportCell::Number(area_m2(shape)),
-            ReportCell::Number(volumes.cut_m3),
-            ReportCell::Number(volumes.fill_m3),
-        ],
-    );
+    collected.report.lakes.push(LakeRow {
+        name: name.clone(),
+        level: level_m,
+        rule: level.rule,
+        lowest_shore: shore.lowest_m(),
+        highest_shore: shore.highest_m(),
+        area: area_m2(shape),
+        cut: volumes.cut_m3,
+        fill: volumes.fill_m3,
+    });
     collected.add(FeatureKind::Lake, name)
 }
 
@@ -127,16 +108,12 @@ fn level_of(
     (attributes, shore): (&Attributes, &Shore),
     collected: &mut SceneBuilder,
 ) -> Result<LakeLevel, Diagnostic> {
-    if let Some(level_m) = attributes.number(lake.level.as_ref()) {
+    if let Some(level_m) = attributes.value(lake.level.as_ref()) {
         return Ok(LakeLevel { level_m, rule: "given" });
     }
-    let rule = lake.level_rule.as_ref().map_or_else(LevelRule::default, |rule| *rule.get_ref());
-    if lake.level.is_some() {
-        let default = "the lowest height along the shore".to_owned();
-        *collected.defaulted.entry(("[[lake]] level", default)).or_default() += 1;
-    }
-    let name = LevelRule::ALL.iter().find(|(_, word)| *word == rule).map_or("", |(name, _)| *name);
-    shore.level_m(rule).map(|level_m| LakeLevel { level_m, rule: name }).ok_or_else(|| {
+    let rule = lake.level_rule;
+    count_default(lake.level.as_ref(), "the lowest height along the shore", &mut collected.default_counts);
+    shore.level_m(rule).map(|level_m| LakeLevel { level_m, rule: rule.word() }).ok_or_else(|| {
         let message = "no ground lies along this lake's shore to take its level from";
         document.error_at(lake.source.span(), message).with_help("state it: level = <meters>")
     })

@@ -23,11 +23,6 @@ use crate::terrain::lattice::Lattice;
 /// How far from the ground a centerline may run whose water still reaches it, in meters.
 const REACH_M: f64 = 1000.0;
 
-/// How deep a river may be cut where its table does not say, in meters: the relative error that the makers of global
-/// elevation models promise (Farr et al. 2007). Ground that rises by less may be level; ground that rises by more does rise,
-/// and a river that is drawn over it is not where the model has its valley.
-const MAX_CUT_M: f64 = 10.0;
-
 /// A river, downstream.
 pub struct Stream {
     /// The centerline in world coordinates.
@@ -94,7 +89,7 @@ pub fn collect(
             near::lines(lines, (&extent, REACH_M), (FeatureKind::River, given), collected)
         {
             if let Some((widths, points)) = &inline {
-                widths_m.insert(drawn.len(), kept(&line, points, widths.get_ref()));
+                widths_m.insert(drawn.len(), kept(&line, points, widths));
             }
             drawn.push((river, attributes, line));
         }
@@ -132,17 +127,13 @@ fn stream(
     };
     let name = attributes.name(river.name.as_deref());
     let feature = collected.add(FeatureKind::River, name.clone());
-    let width = ("[[river]] width", river.width.as_ref());
-    let defaulted = &mut collected.defaulted;
+    let counts = &mut collected.default_counts;
     let widths_m = stated.unwrap_or_else(|| {
-        let width_m = attributes.number_or(width, 8.0, defaulted);
-        let mouth = ("[[river]] mouth_width", river.mouth_width.as_ref());
-        let mouth_m = attributes.number_or(mouth, width_m, defaulted);
+        let width_m = attributes.number(&river.width, counts);
+        let mouth_m = attributes.number_or(river.mouth_width.as_ref(), width_m, counts);
         let part = |station: &f64| station / line.length();
         line.stations().iter().map(|station| width_m + (mouth_m - width_m) * part(station)).collect()
     });
-    let bank_m = attributes.number_or(("[[river]] bank", river.bank.as_ref()), 0.0, defaulted);
-    let water = river.water.as_ref().map_or_else(Water::default, |water| *water.get_ref());
-    let max_cut_m = river.max_cut.as_ref().map_or(MAX_CUT_M, |depth| *depth.get_ref());
-    Stream { line, widths_m, bank_m, water, max_cut_m, feature, name }
+    let bank_m = attributes.number(&river.bank, counts);
+    Stream { line, widths_m, bank_m, water: river.water, max_cut_m: river.max_cut, feature, name }
 }

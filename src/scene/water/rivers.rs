@@ -25,26 +25,10 @@ use crate::ribbon::stroke::{Continuations, Stations, StrokeOptions, StrokePath, 
 use crate::ribbon::texture::RibbonSurface;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::near::Clipped;
-use crate::scene::report::{ReportCell, ReportColumn};
+use crate::scene::report::RiverRow;
 use crate::scene::sources::Sources;
 use crate::scene::water::network::{self, Stream};
 use crate::terrain::lattice::Lattice;
-
-/// What the report says of each river.
-const TABLE: (&str, &[ReportColumn]) = (
-    "rivers",
-    &[
-        ReportColumn { name: "name", unit: "" },
-        ReportColumn { name: "length", unit: "m" },
-        ReportColumn { name: "from", unit: "m" },
-        ReportColumn { name: "to", unit: "m" },
-        ReportColumn { name: "deepest cut", unit: "m" },
-        ReportColumn { name: "cut", unit: "m3" },
-        ReportColumn { name: "fill", unit: "m3" },
-        ReportColumn { name: "climbs", unit: "" },
-        ReportColumn { name: "greatest climb", unit: "m" },
-    ],
-);
 
 /// The corners of a confluence's disc: with 8 its rim is nowhere further than a thirteenth of its radius from the circle,
 /// which is less than the ribbon's darker sides, and thousands of confluences cost little.
@@ -66,7 +50,7 @@ pub fn lay(
     let cuts = cuts.map_err(|error| {
         let place = document.rivers.first().map_or(0..0, |river| river.source.span());
         let help = "make them narrower, or say `water = \"drape\"`";
-        document.error_at(place, error.to_string()).with_help(help)
+        document.error_at(place, error).with_help(help)
     })?;
     tell(&falling, &cuts, collected);
     tell_of_climbs(&falling, &cuts, collected);
@@ -86,7 +70,7 @@ fn channel_of(stream: &Stream) -> Channel {
 /// Tells what cutting came to: a row a river, and a note on them all.
 fn tell(streams: &[&Stream], cuts: &Cuts, collected: &mut SceneBuilder) {
     for (stream, cut) in streams.iter().zip(&cuts.cuts) {
-        collected.report.add(TABLE, row(stream, cut));
+        collected.report.rivers.push(row(stream, cut));
     }
     let deepest = streams.iter().zip(&cuts.cuts).max_by(|(_, a), (_, b)| a.deepest_m.total_cmp(&b.deepest_m));
     let Some((stream, cut)) = deepest.filter(|(_, cut)| cut.deepest_m > 0.0) else { return };
@@ -122,21 +106,18 @@ fn greatest(cut: &Cut) -> Option<&Climb> {
     cut.climbs.iter().max_by(|a, b| a.rise_m.total_cmp(&b.rise_m))
 }
 
-fn row(stream: &Stream, cut: &Cut) -> Vec<ReportCell> {
-    let level = |of: fn((f64, f64)) -> f64| {
-        cut.levels_m.map_or(ReportCell::Empty, |levels| ReportCell::Number(of(levels)))
-    };
-    vec![
-        ReportCell::Text(stream.name.clone()),
-        ReportCell::Number(stream.line.length()),
-        level(|levels| levels.0),
-        level(|levels| levels.1),
-        ReportCell::Number(cut.deepest_m),
-        ReportCell::Number(cut.volumes.cut_m3),
-        ReportCell::Number(cut.volumes.fill_m3),
-        ReportCell::Count(cut.climbs.len()),
-        greatest(cut).map_or(ReportCell::Empty, |climb| ReportCell::Number(climb.rise_m)),
-    ]
+fn row(stream: &Stream, cut: &Cut) -> RiverRow {
+    RiverRow {
+        name: stream.name.clone(),
+        length: stream.line.length(),
+        from: cut.levels_m.map(|levels| levels.0),
+        to: cut.levels_m.map(|levels| levels.1),
+        deepest_cut: cut.deepest_m,
+        cut: cut.volumes.cut_m3,
+        fill: cut.volumes.fill_m3,
+        climbs: cut.climbs.len(),
+        greatest_climb: greatest(cut).map(|climb| climb.rise_m),
+    }
 }
 
 /// Lays water, banks and confluences; narrower water over wider, so that a mouth shows in the river that it flows into.

@@ -1,26 +1,23 @@
-//! Many bilinear heights at once, to the last bit what single questions answer, several times as fast.
+//! Many bilinear heights at once, equal to single queries to the last bit and several times as fast.
 //!
-//! Positions go through in chunks of 128, each in three passes over arrays on the stack, so that the compiler makes
-//! vector code of the first and the last, and nothing but reads is left in the second, where many cache misses are then
-//! under way at once:
+//! Positions are processed in chunks of 128, in three passes over arrays on the stack. The first and the last pass are
+//! written for the compiler to vectorize; the second only reads, so that many cache misses overlap:
 //!
 //! ```text
 //! positions ─► cell and part of it ─► four corners of each ─► height
 //!              (vectors)              (reads only)            (vectors)
 //! ```
 //!
-//! No pass branches on what it finds. A position outside, and one that a special rule applies to, gets NaN for its part of
-//! the cell, a hole has NaN for its height, and both come out as NaN heights: those are asked again one by one. So one
-//! rule decides every special case, and the passes need only be right where all goes well.
+//! No pass branches on its data. A position outside, or one that a special rule applies to, gets NaN as its part of the
+//! cell; a hole has NaN as its height. Both yield NaN heights, which are then queried one by one. So the rules for special
+//! cases are written once, and the passes need only be right for ordinary positions.
 //!
 //! **Layout.** Row by row, the four corners of a cell lie in two cache lines and two pages. Positions near each other share
-//! them; scattered over a large ground, each costs two misses. Scattered chunks therefore read [`HeightTiles`], once it is
-//! made, where a cell lies in one line.
+//! them; scattered over a large ground, each costs two misses. Scattered chunks therefore read [`HeightTiles`], once they
+//! are made, where a cell lies in one line.
 //!
-//! Only the instructions that every x86-64 has are used (SSE2): choosing wider ones while running needs `unsafe` calls,
-//! which this crate forbids. Rounding down is therefore done by adding and taking away a large number.
-
-use std::array::TryFromSliceError;
+//! Only instructions that every x86-64 has are used (SSE2): choosing wider ones at run time needs `unsafe` calls, which
+//! this crate forbids. Rounding down is therefore done by adding and subtracting a large number.
 
 use glam::{DMat2, DVec2};
 use rayon::prelude::*;
@@ -33,24 +30,55 @@ use crate::terrain::query::source::raster_height;
 use crate::terrain::query::tiles::{HeightTiles, TileSlot};
 use crate::terrain::query::{Interpolation, ground_height};
 
-/// Positions per chunk: the arrays of one take 6 KiB and stay in the first cache. With fewer than 32 the passes cost
-/// more than what is in them, with more than 512 the arrays leave the cache.
+/// Positions per chunk: its arrays take 6 KiB and stay in the first cache. Below 32 the passes cost more than their work,
+/// above 512 the arrays leave the cache.
 const CHUNK: usize = 128;
 
 /// Positions per task of a batch that is spread over threads: a few hundredths of a millisecond.
-pub const TASK: usize = 4096;
+const TASK: usize = 4096;
 
-/// Positions of which [`answers`] keeps heights and statuses apart at a time, on the stack.
+/// Positions whose heights and statuses [`answers`] holds on the stack at a time.
 const PARTS: usize = 4 * CHUNK;
 
-/// A chunk whose positions span more rows than this is scattered: each then has pages of its own.
+/// A chunk whose positions span more rows than this is scattered: each position then has pages of its own.
 const COHERENT_ROWS: f64 = 64.0;
 
-/// 1.5 · 2⁵²: a number added to it is rounded to a whole one, which its lowest bits then hold.
+/// 1.5 · 2⁵²: a number added to it is rounded to a whole one, held in its lowest bits.
 const WHOLE: f64 = 6_755_399_441_055_744.0;
 
-/// Where the positions of a chunk lie: the cell's column and row, whole numbers, and the part of it, east and north (of a
-/// raster: south); NaN for what must be asked by itself.
+/// Where a batch writes heights in meters, NaN where there is none, and statuses: slices of equal length.
+pub struct HeightSlices<'a> {
+    /// Heights in meters.
+    pub heights_m: &'a mut [f64],
+    /// Statuses of the heights.
+    pub statuses: &'a mut [Status],
+}
+
+impl HeightSlices<'_> {
+    /// Panics unless there is one height and one status for each of `count` positions.
+    pub(in crate::terrain::query) fn check_len(&self, count: usize) {
+        assert_eq!((count, count), (self.heights_m.len(), self.statuses.len()), "one answer per position");
+    }
+
+    /// In chunks of `size`, the last one shorter where `size` does not divide the length.
+    pub(in crate::terrain::query) fn chunks_mut(
+        &mut self,
+        size: usize,
+    ) -> impl Iterator<Item = HeightSlices<'_>> {
+        let chunks = self.heights_m.chunks_mut(size).zip(self.statuses.chunks_mut(size));
+        chunks.map(|(heights_m, statuses)| HeightSlices { heights_m, statuses })
+    }
+
+    /// Writes `answer` of each position.
+    pub(in crate::terrain::query) fn fill(&mut self, at: &[DVec2], answer: impl Fn(DVec2) -> Answer) {
+        for ((&at, height_m), status) in at.iter().zip(&mut *self.heights_m).zip(&mut *self.statuses) {
+            (*height_m, *status) = answer(at).parts();
+        }
+    }
+}
+
+/// Where the positions of a chunk lie: the cell's column and row, whole numbers, and the part of it, east and north (in a
+/// raster: south); NaN for a position that must be queried by itself.
 struct CellPositions {
     column: [f64; CHUNK],
     row: [f64; CHUNK],
@@ -58,7 +86,7 @@ struct CellPositions {
     y: [f64; CHUNK],
 }
 
-/// The corners of the cells of a chunk: of each two in the row that comes first, and two in the next.
+/// The corners of the cells of a chunk: two of each in the row stored first, and two in the next.
 struct CellCorners<S> {
     first: [[S; 2]; CHUNK],
     next: [[S; 2]; CHUNK],
@@ -78,22 +106,21 @@ impl CellPositions {
     }
 }
 
-/// Spreads positions over all threads and joins what `task` says of them, heights (NaN where there is none) and statuses,
-/// to answers.
+/// Spreads positions over all threads and joins the heights and statuses that `task` writes to answers.
 ///
 /// # Panics
 /// Where `out` is not as long as `at`.
-pub fn answers(
+pub(in crate::terrain::query) fn answers(
     at: &[DVec2],
     out: &mut [Answer],
-    task: impl Fn(&[DVec2], (&mut [f64], &mut [Status])) + Sync,
+    task: impl Fn(&[DVec2], HeightSlices<'_>) + Sync,
 ) {
     assert_eq!(at.len(), out.len(), "one answer per position");
     at.par_chunks(TASK).zip(out.par_chunks_mut(TASK)).for_each(|(at, out)| {
         let (mut heights_m, mut statuses) = ([0.0; PARTS], [Status::Ok; PARTS]);
         for (at, out) in at.chunks(PARTS).zip(out.chunks_mut(PARTS)) {
             let (heights_m, statuses) = (&mut heights_m[..at.len()], &mut statuses[..at.len()]);
-            task(at, (&mut *heights_m, &mut *statuses));
+            task(at, HeightSlices { heights_m, statuses });
             for ((out, &height_m), &status) in out.iter_mut().zip(&*heights_m).zip(&*statuses) {
                 *out = status.with_height(height_m);
             }
@@ -101,54 +128,56 @@ pub fn answers(
     });
 }
 
-/// The bilinear heights of the ground at map positions: [`ground_height`] of each, NaN where it answers none, and the
-/// statuses beside them. Scattered positions read `tiles` where they are given. Returns how many positions were
-/// scattered.
+/// Spreads positions over all threads; `task` writes their heights and statuses.
+pub(in crate::terrain::query) fn spread(
+    at: &[DVec2],
+    out: HeightSlices<'_>,
+    task: impl Fn(&[DVec2], HeightSlices<'_>) + Sync,
+) {
+    let outs = out.heights_m.par_chunks_mut(TASK).zip(out.statuses.par_chunks_mut(TASK));
+    at.par_chunks(TASK)
+        .zip(outs)
+        .for_each(|(at, (heights_m, statuses))| task(at, HeightSlices { heights_m, statuses }));
+}
+
+/// The bilinear heights of the ground at map positions, as [`ground_height`] answers each. Scattered positions read
+/// `tiles` where they are given. Returns the number of scattered positions.
 ///
 /// # Panics
-/// Where the three slices are not equally long.
+/// Where the slices are not as long as `at`.
 pub fn bilinear_ground(
     lattice: &Lattice,
     tiles: Option<&HeightTiles>,
     at: &[DVec2],
-    (heights_m, statuses): (&mut [f64], &mut [Status]),
+    out: HeightSlices<'_>,
 ) -> usize {
-    assert_eq!((at.len(), at.len()), (heights_m.len(), statuses.len()), "one answer per position");
-    let axes = [0, 1].map(|axis| LatticeAxis::of(lattice, axis));
-    let mut places = CellPositions::EMPTY;
+    let axes = [0, 1].map(|axis| LatticeAxis::new(lattice, axis));
+    let mut positions = CellPositions::EMPTY;
     let mut corners = CellCorners { first: [[0f32; 2]; CHUNK], next: [[0f32; 2]; CHUNK] };
     let mut scattered = 0;
-    for ((at, heights_m), statuses) in
-        at.chunks(CHUNK).zip(heights_m.chunks_mut(CHUNK)).zip(statuses.chunks_mut(CHUNK))
-    {
-        if let (Ok(at), Ok(heights_m)) = whole_chunk(at, heights_m) {
-            axes[0].place::<0>(at, &mut places.column, &mut places.x);
-            axes[1].place::<1>(at, &mut places.row, &mut places.y);
-            let is_scattered = places.are_scattered();
-            scattered += CHUNK * usize::from(is_scattered);
-            match tiles.filter(|_| is_scattered) {
-                Some(tiles) => gather_tiles(tiles, &places, &mut corners),
-                None => gather(lattice.heights(), lattice.columns(), &places, &mut corners),
-            }
-            mix(&places, &corners, heights_m);
-        } else {
-            heights_m.fill(f64::NAN);
+    let passes = |at: &[DVec2; CHUNK], heights_m: &mut [f64; CHUNK]| {
+        axes[0].place::<0>(at, &mut positions.column, &mut positions.x);
+        axes[1].place::<1>(at, &mut positions.row, &mut positions.y);
+        let is_scattered = positions.are_scattered();
+        scattered += CHUNK * usize::from(is_scattered);
+        match tiles.filter(|_| is_scattered) {
+            Some(tiles) => gather_tiles(tiles, &positions, &mut corners),
+            None => gather(lattice.heights(), lattice.columns(), &positions, &mut corners),
         }
-        mend(at, heights_m, statuses, |at| ground_height(lattice, Interpolation::Bilinear, at).parts());
-    }
+        mix(&positions, &corners, heights_m);
+    };
+    in_chunks(at, out, passes, |at| ground_height(lattice, Interpolation::Bilinear, at));
     scattered
 }
 
-/// The bilinear heights of a raster at positions in its own coordinates, in meters: [`raster_height`] of each, NaN where
-/// it answers none, and the statuses beside them.
+/// The bilinear heights of a raster at positions in its own coordinates, in meters, as [`raster_height`] answers each.
 ///
 /// # Panics
-/// Where the three slices are not equally long.
-pub fn bilinear_raster(raster: &Raster, at: &[DVec2], (heights_m, statuses): (&mut [f64], &mut [Status])) {
-    assert_eq!((at.len(), at.len()), (heights_m.len(), statuses.len()), "one answer per position");
+/// Where the slices are not as long as `at`.
+pub(in crate::terrain::query) fn bilinear_raster(raster: &Raster, at: &[DVec2], out: HeightSlices<'_>) {
     match &raster.samples {
-        Samples::F32(samples) => bilinear_samples(raster, samples, at, (heights_m, statuses)),
-        Samples::F64(samples) => bilinear_samples(raster, samples, at, (heights_m, statuses)),
+        Samples::F32(samples) => bilinear_samples(raster, samples, at, out),
+        Samples::F64(samples) => bilinear_samples(raster, samples, at, out),
     }
 }
 
@@ -156,34 +185,38 @@ fn bilinear_samples<S: Copy + Default + Into<f64>>(
     raster: &Raster,
     samples: &[S],
     at: &[DVec2],
-    (heights_m, statuses): (&mut [f64], &mut [Status]),
+    mut out: HeightSlices<'_>,
 ) {
-    let grid_from_map = raster.map_from_grid.matrix2.inverse();
-    let has_cells = raster.width >= 2 && raster.height >= 2;
-    let mut places = CellPositions::EMPTY;
-    let mut corners = CellCorners { first: [[S::default(); 2]; CHUNK], next: [[S::default(); 2]; CHUNK] };
-    for ((at, heights_m), statuses) in
-        at.chunks(CHUNK).zip(heights_m.chunks_mut(CHUNK)).zip(statuses.chunks_mut(CHUNK))
-    {
-        match whole_chunk(at, heights_m) {
-            (Ok(at), Ok(heights_m)) if has_cells => {
-                place_between_samples(raster, grid_from_map, at, &mut places);
-                gather(samples, raster.width, &places, &mut corners);
-                mix_by_weights(&places, &corners, raster.meters_per_z, heights_m);
-            }
-            _ => heights_m.fill(f64::NAN),
-        }
-        mend(at, heights_m, statuses, |at| raster_height(raster, Interpolation::Bilinear, at).parts());
+    let single = |at: DVec2| raster_height(raster, Interpolation::Bilinear, at);
+    if raster.width < 2 || raster.height < 2 {
+        return out.fill(at, single);
     }
+    let grid_from_map = raster.map_from_grid.matrix2.inverse();
+    let mut positions = CellPositions::EMPTY;
+    let mut corners = CellCorners { first: [[S::default(); 2]; CHUNK], next: [[S::default(); 2]; CHUNK] };
+    let passes = |at: &[DVec2; CHUNK], heights_m: &mut [f64; CHUNK]| {
+        place_between_samples(raster, grid_from_map, at, &mut positions);
+        gather(samples, raster.width, &positions, &mut corners);
+        mix_by_weights(&positions, &corners, raster.meters_per_z, heights_m);
+    };
+    in_chunks(at, out, passes, single);
 }
 
-/// Slices as arrays, whose length the compiler knows; the last chunk of a batch may be shorter.
-type ArrayChunks<'a> =
-    (Result<&'a [DVec2; CHUNK], TryFromSliceError>, Result<&'a mut [f64; CHUNK], TryFromSliceError>);
-
+/// Runs `passes` over every full chunk, and `single` for each height that they leave NaN and for the positions after the
+/// last full chunk.
 #[inline(always)]
-fn whole_chunk<'a>(at: &'a [DVec2], heights_m: &'a mut [f64]) -> ArrayChunks<'a> {
-    (at.try_into(), heights_m.try_into())
+fn in_chunks(
+    at: &[DVec2],
+    mut out: HeightSlices<'_>,
+    mut passes: impl FnMut(&[DVec2; CHUNK], &mut [f64; CHUNK]),
+    single: impl Fn(DVec2) -> Answer,
+) {
+    out.check_len(at.len());
+    for (at, mut out) in at.chunks(CHUNK).zip(out.chunks_mut(CHUNK)) {
+        let Ok(positions) = at.try_into() else { return out.fill(at, &single) };
+        passes(positions, (&mut *out.heights_m).try_into().expect("as long as its positions"));
+        mend(at, &mut out, &single);
+    }
 }
 
 /// One axis of a lattice.
@@ -195,14 +228,12 @@ struct LatticeAxis {
 }
 
 impl LatticeAxis {
-    fn of(lattice: &Lattice, axis: usize) -> Self {
-        let first = lattice.first();
-        let posts = [lattice.columns(), lattice.rows()][axis];
+    fn new(lattice: &Lattice, axis: usize) -> Self {
         Self {
             origin: lattice.origin()[axis],
             cell: lattice.cell()[axis],
-            skipped: f64::from([first.column, first.row][axis]),
-            last: f64::from(posts - 1),
+            skipped: lattice.first().grid()[axis],
+            last: lattice.last_grid()[axis],
         }
     }
 
@@ -216,11 +247,10 @@ impl LatticeAxis {
     ) {
         for (index, at) in at.iter().enumerate() {
             let grid = (at.to_array()[AXIS] - self.origin) / self.cell - self.skipped;
-            let held = held_within(grid, self.last);
-            let floor = rounded_down(held);
-            let corner = if floor < self.last - 1.0 { floor } else { self.last - 1.0 };
+            let inside = clamped(grid, self.last);
+            let corner = lower_of_pair(inside, self.last);
             cell[index] = corner;
-            part[index] = if grid == held { held - corner } else { f64::NAN };
+            part[index] = if grid == inside { inside - corner } else { f64::NAN };
         }
     }
 }
@@ -231,42 +261,42 @@ fn place_between_samples(
     raster: &Raster,
     grid_from_map: DMat2,
     at: &[DVec2; CHUNK],
-    places: &mut CellPositions,
+    positions: &mut CellPositions,
 ) {
     let translation = raster.map_from_grid.translation;
     let last = [f64::from(raster.width - 1), f64::from(raster.height - 1)];
     let part_of = |grid: f64, last: f64| {
-        let from_first = held_within(grid - 0.5, last);
-        let floor = rounded_down(from_first);
-        let first = if floor < last - 1.0 { floor } else { last - 1.0 };
+        let from_first = clamped(grid - 0.5, last);
+        let first = lower_of_pair(from_first, last);
         let part = from_first - first;
         (first, if part > ON_CENTER && part < 1.0 - ON_CENTER { part } else { f64::NAN })
     };
     for (index, &at) in at.iter().enumerate() {
         let grid = grid_from_map * (at - translation);
-        (places.column[index], places.x[index]) = part_of(grid.x, last[0]);
-        (places.row[index], places.y[index]) = part_of(grid.y, last[1]);
+        (positions.column[index], positions.x[index]) = part_of(grid.x, last[0]);
+        (positions.row[index], positions.y[index]) = part_of(grid.y, last[1]);
     }
 }
 
-/// `value` held to 0..=`last`; 0 for NaN.
+/// `value` clamped to 0..=`last`; 0 for NaN.
 #[inline(always)]
-fn held_within(value: f64, last: f64) -> f64 {
+fn clamped(value: f64, last: f64) -> f64 {
     let from_zero = if value > 0.0 { value } else { 0.0 };
     if from_zero < last { from_zero } else { last }
+}
+
+/// The lower of the two whole numbers around `value`, which lies within 0..=`last`, both of which do too.
+#[inline(always)]
+fn lower_of_pair(value: f64, last: f64) -> f64 {
+    let nearest = rounded(value);
+    let floor = nearest - if nearest > value { 1.0 } else { 0.0 };
+    if floor < last - 1.0 { floor } else { last - 1.0 }
 }
 
 /// The whole number nearest to `value`, which lies within ±2⁵¹.
 #[inline(always)]
 pub(in crate::terrain::query) fn rounded(value: f64) -> f64 {
     (value + WHOLE) - WHOLE
-}
-
-/// The whole number at or below `value`, which lies within ±2⁵¹.
-#[inline(always)]
-fn rounded_down(value: f64) -> f64 {
-    let nearest = rounded(value);
-    nearest - if nearest > value { 1.0 } else { 0.0 }
 }
 
 /// A whole number from 0 to 2⁵¹ as an index.
@@ -276,10 +306,10 @@ pub(in crate::terrain::query) fn index_of(whole: f64) -> usize {
 }
 
 /// Reads the corners from rows of `columns` samples.
-fn gather<S: Copy>(samples: &[S], columns: u32, places: &CellPositions, corners: &mut CellCorners<S>) {
+fn gather<S: Copy>(samples: &[S], columns: u32, positions: &CellPositions, corners: &mut CellCorners<S>) {
     let stride = columns as usize;
     let mut indices = [0usize; CHUNK];
-    for (index, (row, column)) in indices.iter_mut().zip(places.row.iter().zip(&places.column)) {
+    for (index, (row, column)) in indices.iter_mut().zip(positions.row.iter().zip(&positions.column)) {
         *index = index_of(row * f64::from(columns) + column);
     }
     for (index, &start) in indices.iter().enumerate() {
@@ -290,9 +320,9 @@ fn gather<S: Copy>(samples: &[S], columns: u32, places: &CellPositions, corners:
 }
 
 /// Reads the corners from tiles.
-fn gather_tiles(tiles: &HeightTiles, places: &CellPositions, corners: &mut CellCorners<f32>) {
+fn gather_tiles(tiles: &HeightTiles, positions: &CellPositions, corners: &mut CellCorners<f32>) {
     let mut slots = [TileSlot::default(); CHUNK];
-    for (slot, (&column, &row)) in slots.iter_mut().zip(places.column.iter().zip(&places.row)) {
+    for (slot, (&column, &row)) in slots.iter_mut().zip(positions.column.iter().zip(&positions.row)) {
         *slot = tiles.slot(column, row);
     }
     for (index, &slot) in slots.iter().enumerate() {
@@ -301,23 +331,23 @@ fn gather_tiles(tiles: &HeightTiles, places: &CellPositions, corners: &mut CellC
 }
 
 /// The formula of [`crate::terrain::query::cell::bilinear`].
-fn mix(places: &CellPositions, corners: &CellCorners<f32>, heights_m: &mut [f64; CHUNK]) {
+fn mix(positions: &CellPositions, corners: &CellCorners<f32>, heights_m: &mut [f64; CHUNK]) {
     for (index, height_m) in heights_m.iter_mut().enumerate() {
         let [[sw, se], [nw, ne]] = [corners.first[index].map(f64::from), corners.next[index].map(f64::from)];
-        let (south, north) = (sw + (se - sw) * places.x[index], nw + (ne - nw) * places.x[index]);
-        *height_m = south + (north - south) * places.y[index];
+        let (south, north) = (sw + (se - sw) * positions.x[index], nw + (ne - nw) * positions.x[index]);
+        *height_m = south + (north - south) * positions.y[index];
     }
 }
 
 /// The formula of [`crate::dem::sample`], where all four corners count.
 fn mix_by_weights<S: Copy + Into<f64>>(
-    places: &CellPositions,
+    positions: &CellPositions,
     corners: &CellCorners<S>,
     meters_per_z: f64,
     heights_m: &mut [f64; CHUNK],
 ) {
     for (index, height_m) in heights_m.iter_mut().enumerate() {
-        let (across, down) = (places.x[index], places.y[index]);
+        let (across, down) = (positions.x[index], positions.y[index]);
         let weights =
             [(1.0 - across) * (1.0 - down), across * (1.0 - down), (1.0 - across) * down, across * down];
         let [[a, b], [c, d]] = [corners.first[index].map(S::into), corners.next[index].map(S::into)];
@@ -327,22 +357,17 @@ fn mix_by_weights<S: Copy + Into<f64>>(
     }
 }
 
-/// Sets the statuses of a chunk, and asks again by itself for every height that is NaN.
-fn mend(
-    at: &[DVec2],
-    heights_m: &mut [f64],
-    statuses: &mut [Status],
-    alone: impl Fn(DVec2) -> (f64, Status),
-) {
-    statuses.fill(Status::Ok);
-    // Counted rather than sought: a search that may end early is no vector code.
-    let missing: u64 = heights_m.iter().map(|height_m| u64::from(height_m.is_nan())).sum();
+/// Sets the statuses of a chunk, and queries every position whose height is NaN by itself.
+fn mend(at: &[DVec2], out: &mut HeightSlices<'_>, answer: impl Fn(DVec2) -> Answer) {
+    out.statuses.fill(Status::Ok);
+    // Counted rather than searched: a loop that may end early is not vectorized.
+    let missing: u64 = out.heights_m.iter().map(|height_m| u64::from(height_m.is_nan())).sum();
     if missing == 0 {
         return;
     }
-    for ((&at, height_m), status) in at.iter().zip(heights_m).zip(statuses) {
+    for ((&at, height_m), status) in at.iter().zip(&mut *out.heights_m).zip(&mut *out.statuses) {
         if height_m.is_nan() {
-            (*height_m, *status) = alone(at);
+            (*height_m, *status) = answer(at).parts();
         }
     }
 }

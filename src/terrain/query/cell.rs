@@ -1,11 +1,12 @@
-//! Heights within one cell: the formulas of the contract, each in one place.
+//! Heights within one cell: the formulas of the height contract.
 //!
-//! Corners are always given south-west, south-east, north-west, north-east; NaN stands for no data.
+//! Corners are in the order south-west, south-east, north-west, north-east; NaN means no data.
 
 use glam::DVec2;
 
 use crate::dem::answer::Answer;
-use crate::terrain::query::{Diagonal, Interpolation};
+use crate::terrain::cell_triangle::{CellTriangle, Diagonal};
+use crate::terrain::query::Interpolation;
 
 /// The height at `part` of a cell, 0..=1 east and north from its south-west corner, or [`Answer::NoData`].
 ///
@@ -18,27 +19,31 @@ pub fn interpolate(
     cell: DVec2,
 ) -> Answer {
     match interpolation {
-        Interpolation::Planar => without_gaps(planar_weights(part, diagonal), corners),
-        Interpolation::Nearest => without_gaps(bilinear_weights((part + 0.5).floor()), corners),
+        Interpolation::Planar => weighted_sum(planar_weights(part, diagonal), corners),
+        Interpolation::Nearest => weighted_sum(bilinear_weights((part + 0.5).floor()), corners),
         Interpolation::Bilinear => {
             let height = bilinear(corners, part);
-            if height.is_nan() { over_gaps(bilinear_weights(part), corners) } else { Answer::Height(height) }
+            if height.is_nan() {
+                weighted_mean(bilinear_weights(part), corners)
+            } else {
+                Answer::Height(height)
+            }
         }
-        Interpolation::DistanceWeighted4 => over_gaps(inverse_distance_weights(part, cell), corners),
+        Interpolation::DistanceWeighted4 => weighted_mean(inverse_distance_weights(part, cell), corners),
     }
 }
 
 /// The bilinear height, NaN where a corner has none.
 ///
-/// Written so that a level cell answers its level exactly.
+/// This form answers the level of a level cell exactly.
 #[inline]
 pub fn bilinear([sw, se, nw, ne]: [f64; 4], part: DVec2) -> f64 {
     let (south, north) = (sw + (se - sw) * part.x, nw + (ne - nw) * part.x);
     south + (north - south) * part.y
 }
 
-/// The sum of the corners that weigh anything; no answer where one of them has no data.
-fn without_gaps(weights: [f64; 4], corners: [f64; 4]) -> Answer {
+/// The weighted sum of the corners; no answer where a corner with a weight has no data.
+fn weighted_sum(weights: [f64; 4], corners: [f64; 4]) -> Answer {
     let mut sum = 0.0;
     for (weight, height) in weights.into_iter().zip(corners) {
         if weight > 0.0 {
@@ -48,8 +53,8 @@ fn without_gaps(weights: [f64; 4], corners: [f64; 4]) -> Answer {
     if sum.is_nan() { Answer::NoData } else { Answer::Height(sum) }
 }
 
-/// The mean of the corners that have data; no answer where none of those weighs anything.
-fn over_gaps(weights: [f64; 4], corners: [f64; 4]) -> Answer {
+/// The weighted mean of the corners that have data; no answer where none of those has a weight.
+fn weighted_mean(weights: [f64; 4], corners: [f64; 4]) -> Answer {
     let (mut sum, mut total) = (0.0, 0.0);
     for (weight, height) in weights.into_iter().zip(corners) {
         if weight > 0.0 && !height.is_nan() {
@@ -67,11 +72,11 @@ fn bilinear_weights(part: DVec2) -> [f64; 4] {
 
 fn planar_weights(part: DVec2, diagonal: Diagonal) -> [f64; 4] {
     let DVec2 { x, y } = part;
-    match diagonal {
-        Diagonal::Rising if x >= y => [1.0 - x, x - y, 0.0, y],
-        Diagonal::Rising => [1.0 - y, 0.0, y - x, x],
-        Diagonal::Falling if x + y <= 1.0 => [1.0 - x - y, x, y, 0.0],
-        Diagonal::Falling => [0.0, 1.0 - y, 1.0 - x, x + y - 1.0],
+    match CellTriangle::holding(diagonal, part) {
+        CellTriangle::SouthEast => [1.0 - x, x - y, 0.0, y],
+        CellTriangle::NorthWest => [1.0 - y, 0.0, y - x, x],
+        CellTriangle::SouthWest => [1.0 - x - y, x, y, 0.0],
+        CellTriangle::NorthEast => [0.0, 1.0 - y, 1.0 - x, x + y - 1.0],
     }
 }
 
@@ -97,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn a_position_where_all_weights_are_none_of_those_with_data_has_no_answer() {
+    fn a_position_where_only_corners_without_data_have_a_weight_has_no_answer() {
         let corners = [f64::NAN, 1.0, 2.0, 3.0];
         for interpolation in [Interpolation::Bilinear, Interpolation::DistanceWeighted4] {
             let answer = interpolate(interpolation, corners, DVec2::ZERO, Diagonal::Rising, DVec2::ONE);

@@ -1,17 +1,17 @@
-//! How the ground lies at a point: its gradient, and from that the normal, the slope and the aspect.
+//! The gradient of the ground at a point, and from it the normal, the slope and the aspect.
 //!
-//! On the planar surface the gradient is that of the triangle; it steps at edges, where the triangle north-west or
-//! south-west of a diagonal, and the cell that [`Lattice::cell_at`] names, count. On a bilinear patch it is the patch's
-//! own: `∂h/∂x = (1−y)(se − sw) + y(ne − nw)`, `∂h/∂y = (1−x)(nw − sw) + x(ne − se)`, per cell; continuous within a
-//! cell. A constant cell has none, and distance-weighted patches have a cusp at every post, so there is none of either.
+//! The planar surface has the gradient of its triangle; it steps at edges, where the southern triangle at a diagonal and
+//! the cell of [`Lattice::cell_at`] count. A bilinear patch has `∂h/∂x = (1−y)(se − sw) + y(ne − nw)`,
+//! `∂h/∂y = (1−x)(nw − sw) + x(ne − se)`, continuous within a cell. A constant cell has no gradient, and distance-weighted
+//! patches have a cusp at every post, so neither is offered.
 
 use glam::{DVec2, DVec3};
 
 use crate::dem::answer::Status;
+use crate::terrain::cell_triangle::{CellTriangle, Diagonal};
 use crate::terrain::lattice::Lattice;
-use crate::terrain::query::Diagonal;
 
-/// Which surface between the posts is asked for its gradient.
+/// The surface between the posts whose gradient is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GradientSurface {
     /// The finest triangles.
@@ -28,7 +28,7 @@ pub struct Gradient(pub DVec2);
 impl Gradient {
     /// The upward normal, of length 1; X east, Y north, Z up.
     pub fn normal(self) -> DVec3 {
-        DVec3::new(-self.0.x, -self.0.y, 1.0).normalize()
+        (-self.0).extend(1.0).normalize()
     }
 
     /// The angle from the horizontal in degrees, 0..90.
@@ -36,19 +36,19 @@ impl Gradient {
         libm::atan(self.0.length()).to_degrees()
     }
 
-    /// Meters of rise per hundred meters along the steepest way, from 0 on: 100 at 45°.
+    /// Meters of rise per hundred meters in the steepest direction, at least 0: 100 at 45°.
     pub fn slope_percent(self) -> f64 {
         self.0.length() * 100.0
     }
 
-    /// Where the ground faces, downhill: degrees clockwise from north, 0..360; `None` where it is level.
+    /// The direction that the ground faces, downhill: degrees clockwise from north, 0..360; `None` where it is level.
     pub fn aspect_deg(self) -> Option<f64> {
         if self.0 == DVec2::ZERO {
             return None;
         }
-        let degrees = libm::atan2(-self.0.x, -self.0.y).to_degrees();
-        // A negative angle too small to count would become 360.
-        Some(degrees.rem_euclid(360.0)).map(|degrees| if degrees < 360.0 { degrees } else { 0.0 })
+        let degrees = libm::atan2(-self.0.x, -self.0.y).to_degrees().rem_euclid(360.0);
+        // The remainder of a tiny negative angle rounds to 360.
+        Some(if degrees < 360.0 { degrees } else { 0.0 })
     }
 }
 
@@ -59,18 +59,13 @@ impl Gradient {
 /// the lattice.
 pub fn ground_gradient(lattice: &Lattice, patch: GradientSurface, at: DVec2) -> Result<Gradient, Status> {
     let (cell, part) = lattice.cell_at(at - lattice.origin()).ok_or(Status::Outside)?;
-    let [sw, se, nw, ne] = lattice.corner_heights(cell).map(f64::from);
-    let DVec2 { x, y } = part;
+    let corners = lattice.corner_heights(cell).map(f64::from);
     let per_cell = match patch {
+        GradientSurface::Planar => CellTriangle::holding(Diagonal::of_cell(cell), part).slope(corners),
         GradientSurface::Bilinear => {
+            let (DVec2 { x, y }, [sw, se, nw, ne]) = (part, corners);
             DVec2::new((1.0 - y) * (se - sw) + y * (ne - nw), (1.0 - x) * (nw - sw) + x * (ne - se))
         }
-        GradientSurface::Planar => match Diagonal::of_cell(u64::from(cell.column), u64::from(cell.row)) {
-            Diagonal::Rising if x >= y => DVec2::new(se - sw, ne - se),
-            Diagonal::Rising => DVec2::new(ne - nw, nw - sw),
-            Diagonal::Falling if x + y <= 1.0 => DVec2::new(se - sw, nw - sw),
-            Diagonal::Falling => DVec2::new(ne - nw, ne - se),
-        },
     };
     let gradient = per_cell / lattice.cell();
     if gradient.is_nan() { Err(Status::NoData) } else { Ok(Gradient(gradient)) }
@@ -108,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plane_lies_the_same_everywhere() {
+    fn a_plane_has_one_gradient() {
         let ground = lattice(8.0, 9, |at| 100.0 + 0.25 * at.x - 0.5 * at.y);
         for step in 0..200 {
             let at = DVec2::new(f64::from(step * 37 % 640) / 10.0, f64::from(step * 53 % 640) / 10.0);
@@ -138,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn on_a_sinusoid_the_gradient_is_the_cosine_within_what_a_cell_curves() {
+    fn on_a_sinusoid_the_gradient_is_the_cosine_within_a_cells_curvature() {
         let wave = 0.01;
         let ground = lattice(2.0, 401, |at| 100.0 * libm::sin(at.x * wave) + 50.0 * libm::cos(at.y * wave));
         for step in 0..500 {
@@ -153,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn the_gradient_is_what_heights_around_the_point_say() {
+    fn the_gradient_is_that_of_the_heights_around_the_point() {
         let ground =
             lattice(10.0, 12, |at| libm::sin(at.x * 0.37) * 20.0 + libm::cos(at.y * 0.71 + at.x * 0.2) * 9.0);
         let step = 1e-4;
@@ -176,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hole_and_the_edge_are_told_apart() {
+    fn a_hole_and_the_edge_have_different_statuses() {
         let holed = lattice(1.0, 4, |at| if at == DVec2::ONE { f64::NAN } else { 0.0 });
         for patch in PATCHES {
             assert_eq!(ground_gradient(&holed, patch, DVec2::splat(0.9)), Err(Status::NoData));

@@ -1,8 +1,8 @@
-//! The height contract: what a question about heights means, for the library, the command line and the service alike.
+//! The height contract: what a height query means, the same for the library, the command line and the HTTP service.
 //!
-//! A question names a [`Surface`], an [`Interpolation`] and a map position; the answer is a height **in meters**,
-//! without vertical exaggeration, or the reason why there is none ([`Answer`], or a number and a
-//! [`Status`](crate::dem::answer::Status) side by side). A hole is never answered by a bare number.
+//! A query names a [`Surface`], an [`Interpolation`] and a map position. The answer is a height **in meters**, without
+//! vertical exaggeration, or the reason why there is none: an [`Answer`], or a number and a
+//! [`Status`](crate::dem::answer::Status) side by side. A hole is never answered by a bare number.
 //!
 //! **Surfaces.**
 //!
@@ -10,7 +10,7 @@
 //! |---|---|---|
 //! | source | the raster as read; vertical units other than meters are converted in the answer | the raster's own, rotated ones too |
 //! | ground | the lattice in meters after earthworks: what is measured, built on and exported | posts, north up |
-//! | displayed | the triangles drawn now, whichever the camera and the level of detail | the drawn triangles |
+//! | displayed | the triangles drawn now, whatever the camera and the level of detail | the drawn triangles |
 //! | scene | the higher of the ground and the decks over it ([`deck::Deck`]): what one stands on | the ground's, and the decks' triangles |
 //!
 //! Source and ground never depend on what is drawn; displayed is always planar, whatever the interpolation.
@@ -27,25 +27,25 @@
 //!
 //! | interpolation | formula | continuity | no-data corners |
 //! |---|---|---|---|
-//! | planar | rising diagonal, `x ≥ y`: `(1−x)·sw + (x−y)·se + y·ne`, and likewise on the other three triangles | continuous, bends at edges and diagonals | no answer where the triangle has one that counts |
+//! | planar | rising diagonal, `x ≥ y`: `(1−x)·sw + (x−y)·se + y·ne`, and likewise on the other three triangles | continuous, bends at edges and diagonals | no answer where the triangle has one with a weight |
 //! | bilinear | `s + (n − s)·y` with `s = sw + (se − sw)·x`, `n = nw + (ne − nw)·x`; the source's as GDAL, [`crate::dem::sample`] | continuous, bends at cell edges | left out, weights renormalized |
-//! | nearest | the post nearest to the point: a constant cell round each post | steps halfway between posts | no answer |
+//! | nearest | the nearest post: a constant cell around each post | steps halfway between posts | no answer |
 //! | distance-weighted | `Σ hᵢ/dᵢ ÷ Σ 1/dᵢ` over the four corners, `d` in meters; at a corner, its height | continuous within a cell, steps across its edges | left out, weights renormalized |
 //!
-//! All four answer a post's own height at the post, and none overshoots: an answer lies between the lowest and the
-//! highest corner that counts, but for rounding.
+//! At a post all four answer that post's own height. None overshoots: but for rounding, an answer lies between the lowest
+//! and the highest corner with a weight.
 //!
 //! **Where the model ends.** The ground, and the source's planar and distance-weighted surfaces, end at the outer posts,
 //! which belong to them. The source's nearest and bilinear reach half a sample further, to the outer edge of the outer
-//! samples, as GDAL counts pixels. Beyond, the answer is [`Answer::Outside`]; so it is for a position that is not
-//! finite, or that cannot be brought to the surface's coordinate system.
+//! samples, as GDAL counts pixels. Beyond, the answer is [`Answer::Outside`]; so it is for a position that is not finite,
+//! or that cannot be transformed to the surface's coordinate system.
 //!
-//! **Cost.** A query is one look-up of a cell and its corners, whatever the size of the model; a batch is spread over
-//! all threads, allocates nothing per point and answers to the last bit what single questions answer ([`batch`]). Edits
-//! come as whole epochs ([`service`]).
+//! **Cost.** A query looks up one cell and its corners, whatever the size of the model. A batch is spread over all
+//! threads, allocates nothing per point and equals single queries to the last bit ([`batch`]). Edits are published as
+//! whole snapshots ([`service`]).
 //!
-//! Beside heights: how the surface lies at a point ([`gradient`]), what lies within a polygon ([`zone`]), and what was
-//! cut and filled between two epochs ([`change`]).
+//! Beside heights: the gradient at a point ([`gradient`]), statistics within a polygon ([`zone`]), and the volumes cut and
+//! filled between two snapshots ([`change`]).
 
 pub mod batch;
 pub mod cell;
@@ -61,10 +61,11 @@ pub mod zone;
 use glam::DVec2;
 
 use crate::dem::answer::Answer;
+use crate::terrain::cell_triangle::Diagonal;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::cell::interpolate;
 
-/// Which surface a height is asked of.
+/// The surface of a height query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surface {
     /// The raster as read, in its own grid.
@@ -77,7 +78,7 @@ pub enum Surface {
     Scene,
 }
 
-/// How a height between posts is found; see the module's table.
+/// How heights between posts are computed; see the module's table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interpolation {
     /// On the finest triangles.
@@ -85,9 +86,9 @@ pub enum Interpolation {
     /// Between four posts, as GDAL does.
     #[default]
     Bilinear,
-    /// The nearest post's.
+    /// The nearest post's height.
     Nearest,
-    /// The four posts around, weighted by nearness.
+    /// The four posts around, weighted by inverse distance.
     DistanceWeighted4,
 }
 
@@ -97,25 +98,7 @@ pub fn ground_height(lattice: &Lattice, interpolation: Interpolation, at: DVec2)
         return Answer::Outside;
     };
     let corners = lattice.corner_heights(cell).map(f64::from);
-    let diagonal = Diagonal::of_cell(u64::from(cell.column), u64::from(cell.row));
-    interpolate(interpolation, corners, part, diagonal, lattice.cell())
-}
-
-/// Which corners of a cell its diagonal joins.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Diagonal {
-    /// South-west to north-east.
-    Rising,
-    /// North-west to south-east.
-    Falling,
-}
-
-impl Diagonal {
-    /// The diagonal of the cell north-east of post (`column`, `row`): it joins the corners whose coordinates
-    /// are both even or both odd.
-    pub fn of_cell(column: u64, row: u64) -> Self {
-        if column % 2 == row % 2 { Self::Rising } else { Self::Falling }
-    }
+    interpolate(interpolation, corners, part, Diagonal::of_cell(cell), lattice.cell())
 }
 
 #[cfg(test)]
@@ -169,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hole_is_not_the_edge_of_the_world() {
+    fn a_hole_is_not_the_edge_of_the_model() {
         let holed = lattice(|column, _| if column == 2 { f32::NAN } else { 1.0 });
         assert_eq!(ground_height(&holed, Interpolation::Planar, at(15.0, 30.0)), Answer::NoData);
         assert_eq!(ground_height(&holed, Interpolation::Bilinear, at(15.0, 30.0)), Answer::Height(1.0));

@@ -1,4 +1,4 @@
-//! The finest triangles within a polygon, whole ones and cut ones, for whatever is summed over an area.
+//! The finest triangles within a polygon, whole ones and cut ones, for sums over an area.
 //!
 //! Over each triangle the ground is a plane, so an integral over a polygon is exact when it is the sum over what the
 //! polygon leaves of each triangle. The polygon is halved along lines of posts until a part of it fills its rectangle of
@@ -7,13 +7,13 @@
 //! ```text
 //!  ┌───────┬───────┐
 //!  │  ____ │__     │      a line of posts halves the rectangle; each half is clipped by that one
-//!  │ /     │██\    │      line alone (Sutherland and Hodgman 1974); what is full (██) or empty
-//!  │/______│███\   │      needs no further look
+//!  │ /     │██\    │      line alone (Sutherland and Hodgman 1974); a full half (██) or an empty
+//!  │/______│███\   │      one is not halved further
 //!  └───────┴───────┘
 //! ```
 //!
-//! A ring clipped so may run back along a line that it has been cut by, there and back. Sums over the signed triangles of a
-//! fan take no harm: such stretches cancel, and so do holes, which run the other way round.
+//! A ring clipped so may run there and back along a line that cut it. Sums over the signed triangles of a fan are right
+//! all the same: such stretches cancel, and so do holes, which run the other way round.
 //!
 //! Costs the length of the border in cells times the logarithm of its number of vertices, and one step for each whole
 //! triangle.
@@ -24,14 +24,14 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::geom::polygon;
+use crate::terrain::cell_triangle::CellTriangle;
 use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::query::Diagonal;
 
 /// Rows of cells that one thread takes at a time; fixed, so that sums are the same for any number of threads.
 const BAND: u32 = 64;
 
-/// By what share a part may fall short of its rectangle and still fill it: more than areas of a few thousand cells lose
-/// to rounding, less than anybody measures. Only parts with all vertices on the rectangle's border are asked.
+/// The share by which a part may fall short of its rectangle and still fill it: more than areas of a few thousand cells
+/// lose to rounding, and negligible in any sum. It is applied only to parts with all vertices on the rectangle's border.
 const FULL: f64 = 1e-9;
 
 /// Why rings enclose no region.
@@ -45,34 +45,21 @@ pub enum RegionError {
     NotFinite(usize),
 }
 
-/// A polygon over a lattice, in grid coordinates: columns and rows of posts.
+/// A polygon over a lattice, in grid positions.
 #[derive(Clone, Debug)]
 pub struct GridRegion {
     /// The outer ring counter-clockwise, holes clockwise.
     rings: Vec<Vec<DVec2>>,
-    cells: Cells,
+    cells: CellRange,
     /// Of the whole polygon, on the lattice and off it.
     area_cells: f64,
 }
 
 /// A rectangle of cells, by the columns and rows of their south-west posts.
 #[derive(Clone, Debug)]
-struct Cells {
+struct CellRange {
     columns: Range<u32>,
     rows: Range<u32>,
-}
-
-/// One of the two triangles of a cell, named after the corner with its right angle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Half {
-    /// South-east of a rising diagonal.
-    SouthEast,
-    /// North-west of a rising diagonal.
-    NorthWest,
-    /// South-west of a falling diagonal.
-    SouthWest,
-    /// North-east of a falling diagonal.
-    NorthEast,
 }
 
 /// What a polygon leaves of one of the finest triangles.
@@ -81,8 +68,8 @@ pub struct TrianglePiece<'a> {
     /// The cell, by its south-west post.
     pub cell: Post,
     /// Which of its triangles.
-    pub half: Half,
-    /// A ring within the triangle, from the cell's south-west corner in cells; its signed fan is what counts, see
+    pub triangle: CellTriangle,
+    /// A ring within the triangle, from the cell's south-west corner in cells; only its signed fan is meaningful, see
     /// [`TrianglePiece::fan`].
     pub ring: &'a [DVec2],
     /// Whether it is the whole triangle.
@@ -98,102 +85,61 @@ pub enum PieceExtent {
     Part,
 }
 
-impl Half {
-    /// The halves of a cell.
-    pub fn of_cell(cell: Post) -> [Self; 2] {
-        match Diagonal::of_cell(u64::from(cell.column), u64::from(cell.row)) {
-            Diagonal::Rising => [Self::SouthEast, Self::NorthWest],
-            Diagonal::Falling => [Self::SouthWest, Self::NorthEast],
-        }
-    }
-
-    /// Its corners in the cell, counter-clockwise.
-    pub fn corners(self) -> [DVec2; 3] {
-        let [sw, se, nw, ne] = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
-        match self {
-            Self::SouthEast => [sw, se, ne],
-            Self::NorthWest => [sw, ne, nw],
-            Self::SouthWest => [sw, se, nw],
-            Self::NorthEast => [se, ne, nw],
-        }
-    }
-
-    /// The height of its plane at a position in the cell, from the cell's corner heights (south-west, south-east,
-    /// north-west, north-east); NaN where one of its own corners is.
-    pub fn height(self, [sw, se, nw, ne]: [f64; 4], at: DVec2) -> f64 {
-        match self {
-            Self::SouthEast => sw + (se - sw) * at.x + (ne - se) * at.y,
-            Self::NorthWest => sw + (ne - nw) * at.x + (nw - sw) * at.y,
-            Self::SouthWest => sw + (se - sw) * at.x + (nw - sw) * at.y,
-            Self::NorthEast => ne - (ne - nw) * (1.0 - at.x) - (ne - se) * (1.0 - at.y),
-        }
-    }
-
-    /// How far a position in the cell lies on this half's side of the diagonal.
-    fn side(self, at: DVec2) -> f64 {
-        match self {
-            Self::SouthEast => at.x - at.y,
-            Self::NorthWest => at.y - at.x,
-            Self::SouthWest => 1.0 - at.x - at.y,
-            Self::NorthEast => at.x + at.y - 1.0,
-        }
-    }
-}
-
 impl TrianglePiece<'_> {
     /// Triangles whose signed areas add up to the piece: three corners and the area in cells, negative for what must be
-    /// taken away.
+    /// subtracted.
     pub fn fan(&self) -> impl Iterator<Item = ([DVec2; 3], f64)> + '_ {
-        let first = self.ring.first().copied().unwrap_or_default();
-        self.ring.windows(2).skip(1).map(move |pair| {
-            let corners = [first, pair[0], pair[1]];
-            (corners, (pair[0] - first).perp_dot(pair[1] - first) * 0.5)
-        })
+        polygon::fan(self.ring).map(|corners| (corners, polygon::doubled_area(&corners) * 0.5))
+    }
+
+    /// Its area in cells.
+    pub fn area_cells(&self) -> f64 {
+        self.fan().map(|(_, area)| area).sum()
+    }
+
+    /// Whether all corners of its triangle have data, given the heights of its cell's.
+    pub fn has_data(&self, corners: [f64; 4]) -> bool {
+        self.triangle.corner_indices().iter().all(|&corner| !corners[corner].is_nan())
     }
 }
 
 impl GridRegion {
-    /// The polygon whose outer ring and holes, in map coordinates and either way round, do not cross themselves or each
-    /// other.
+    /// The polygon of an outer ring and holes, in map coordinates and either way round, that do not cross themselves or
+    /// each other.
     ///
     /// # Errors
     /// See [`RegionError`].
     pub fn new(lattice: &Lattice, rings: &[Vec<DVec2>]) -> Result<Self, RegionError> {
-        let to_grid = |at: &DVec2| lattice.grid_at(*at - lattice.origin());
         let mut oriented = Vec::with_capacity(rings.len());
         for (index, ring) in rings.iter().enumerate() {
-            let mut ring: Vec<DVec2> = ring.iter().map(to_grid).collect();
+            let mut ring: Vec<DVec2> = ring.iter().map(|&at| lattice.grid_from_map(at)).collect();
             if ring.len() < 3 {
                 return Err(RegionError::TooFew(index));
             }
             if !ring.iter().all(|at| at.is_finite()) {
                 return Err(RegionError::NotFinite(index));
             }
-            if (signed_area(&ring) > 0.0) != (index == 0) {
+            if (polygon::doubled_area(&ring) > 0.0) != (index == 0) {
                 ring.reverse();
             }
             oriented.push(ring);
         }
-        if oriented.is_empty() {
-            return Err(RegionError::TooFew(0));
-        }
-        let area_cells = oriented.iter().map(|ring| signed_area(ring)).sum();
-        let last = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
-        let bounds = polygon::bounds(&oriented[0]);
+        let bounds = polygon::bounds(oriented.first().ok_or(RegionError::TooFew(0))?);
+        let last = lattice.last_grid();
         let low = bounds.min.clamp(DVec2::ZERO, last).floor().as_uvec2();
         let high = bounds.max.clamp(DVec2::ZERO, last).ceil().as_uvec2();
-        Ok(Self { rings: oriented, cells: Cells { columns: low.x..high.x, rows: low.y..high.y }, area_cells })
+        let cells = CellRange { columns: low.x..high.x, rows: low.y..high.y };
+        Ok(Self { area_cells: area(&oriented), rings: oriented, cells })
     }
 
     /// All cells of a lattice.
     pub fn whole(lattice: &Lattice) -> Self {
-        let (columns, rows) = (lattice.columns() - 1, lattice.rows() - 1);
-        let (east, north) = (f64::from(columns), f64::from(rows));
-        let corners = [(0.0, 0.0), (east, 0.0), (east, north), (0.0, north)].map(DVec2::from);
+        let last = lattice.last_grid();
+        let corners = [(0.0, 0.0), (last.x, 0.0), (last.x, last.y), (0.0, last.y)].map(DVec2::from);
         Self {
             rings: vec![corners.into()],
-            cells: Cells { columns: 0..columns, rows: 0..rows },
-            area_cells: east * north,
+            cells: CellRange { columns: 0..lattice.columns() - 1, rows: 0..lattice.rows() - 1 },
+            area_cells: last.x * last.y,
         }
     }
 
@@ -203,21 +149,21 @@ impl GridRegion {
     }
 
     /// Whether a grid position lies in it or on its border.
-    pub fn holds(&self, at: DVec2) -> bool {
-        let on = |(from, to): (DVec2, DVec2)| {
+    pub fn contains(&self, at: DVec2) -> bool {
+        let is_on = |(from, to): (DVec2, DVec2)| {
             (to - from).perp_dot(at - from) == 0.0 && (from - at).dot(to - at) <= 0.0
         };
         polygon::contains(self.rings.iter().map(Vec::as_slice), at)
-            || self.rings.iter().flat_map(|ring| polygon::edges(ring)).any(on)
+            || self.rings.iter().flat_map(|ring| polygon::edges(ring)).any(is_on)
     }
 
-    /// Adds every piece up: one sum for each band of rows from the south, in order, each made by `add` from its default.
+    /// Sums over all pieces: one sum for each band of rows from the south, in order, to which `add` adds each piece.
     pub fn fold<T: Default + Send>(&self, add: impl Fn(&mut T, TrianglePiece<'_>) + Sync) -> Vec<T> {
         let Range { start, end } = self.cells.rows.clone();
         let bands: Vec<u32> = (start..end).step_by(BAND as usize).collect();
         let sum_of = |first: u32| {
             let rows = first..end.min(first + BAND);
-            let cells = Cells { columns: self.cells.columns.clone(), rows };
+            let cells = CellRange { columns: self.cells.columns.clone(), rows };
             let mut sum = T::default();
             visit(clipped_to(&self.rings, &cells), cells, &mut |piece| add(&mut sum, piece));
             sum
@@ -226,44 +172,47 @@ impl GridRegion {
     }
 }
 
-fn signed_area(ring: &[DVec2]) -> f64 {
-    // From a vertex of its own: far from the origin, doubled areas would cancel away.
-    let origin = ring.first().copied().unwrap_or_default();
-    ring.windows(2).map(|pair| (pair[0] - origin).perp_dot(pair[1] - origin)).sum::<f64>() * 0.5
+/// The area within rings, holes clockwise.
+fn area(rings: &[Vec<DVec2>]) -> f64 {
+    rings.iter().map(|ring| polygon::doubled_area(ring) * 0.5).sum()
 }
 
-impl Cells {
-    fn corners(&self) -> (DVec2, DVec2) {
-        let at = |column: u32, row: u32| DVec2::new(f64::from(column), f64::from(row));
-        (at(self.columns.start, self.rows.start), at(self.columns.end, self.rows.end))
+impl CellRange {
+    /// Its south-west and its north-east corner.
+    fn corners(&self) -> [DVec2; 2] {
+        let (columns, rows) = (&self.columns, &self.rows);
+        [(columns.start, rows.start), (columns.end, rows.end)]
+            .map(|(column, row)| Post { column, row }.grid())
     }
 
     /// Whether the rings leave nothing of it out.
     fn is_filled(&self, rings: &[Vec<DVec2>]) -> bool {
-        let (low, high) = self.corners();
+        let [low, high] = self.corners();
         let on_border = |at: &DVec2| at.x == low.x || at.x == high.x || at.y == low.y || at.y == high.y;
         let size = high - low;
-        rings.iter().flatten().all(on_border)
-            && rings.iter().map(|ring| signed_area(ring)).sum::<f64>() >= size.x * size.y * (1.0 - FULL)
+        rings.iter().flatten().all(on_border) && area(rings) >= size.x * size.y * (1.0 - FULL)
     }
 
-    /// Its two halves, cut across the longer side, and where: on which axis, at which line of posts.
-    fn halves(&self) -> ([Self; 2], usize, f64) {
+    /// Its two halves, cut across the longer side.
+    fn halves(&self) -> ([Self; 2], PostLine) {
+        let middle = |range: &Range<u32>| range.start + (range.end - range.start) / 2;
         let Self { columns, rows } = self.clone();
         if columns.len() >= rows.len() {
-            let middle = columns.start + (columns.end - columns.start) / 2;
+            let middle = middle(&columns);
             let west = Self { columns: columns.start..middle, rows: rows.clone() };
-            ([west, Self { columns: middle..columns.end, rows }], 0, f64::from(middle))
+            let line = PostLine { axis: 0, position: f64::from(middle) };
+            ([west, Self { columns: middle..columns.end, rows }], line)
         } else {
-            let middle = rows.start + (rows.end - rows.start) / 2;
+            let middle = middle(&rows);
             let south = Self { columns: columns.clone(), rows: rows.start..middle };
-            ([south, Self { columns, rows: middle..rows.end }], 1, f64::from(middle))
+            let line = PostLine { axis: 1, position: f64::from(middle) };
+            ([south, Self { columns, rows: middle..rows.end }], line)
         }
     }
 }
 
 /// Visits the pieces of rings that lie within `cells`.
-fn visit(rings: Vec<Vec<DVec2>>, cells: Cells, add: &mut impl FnMut(TrianglePiece<'_>)) {
+fn visit(rings: Vec<Vec<DVec2>>, cells: CellRange, add: &mut impl FnMut(TrianglePiece<'_>)) {
     if rings.is_empty() || cells.columns.is_empty() || cells.rows.is_empty() {
         return;
     }
@@ -273,82 +222,79 @@ fn visit(rings: Vec<Vec<DVec2>>, cells: Cells, add: &mut impl FnMut(TrianglePiec
         let cell = Post { column: cells.columns.start, row: cells.rows.start };
         rings.iter().for_each(|ring| visit_cell(ring, cell, add));
     } else {
-        let ([first, second], axis, line) = cells.halves();
-        visit(clipped(&rings, axis, line, LineSide::Below), first, add);
-        visit(clipped(&rings, axis, line, LineSide::Above), second, add);
+        let ([first, second], line) = cells.halves();
+        visit(line.clip(&rings, LineSide::Below), first, add);
+        visit(line.clip(&rings, LineSide::Above), second, add);
     }
 }
 
-fn visit_whole(cells: &Cells, add: &mut impl FnMut(TrianglePiece<'_>)) {
+fn visit_whole(cells: &CellRange, add: &mut impl FnMut(TrianglePiece<'_>)) {
     for row in cells.rows.clone() {
         for column in cells.columns.clone() {
             let cell = Post { column, row };
-            for half in Half::of_cell(cell) {
-                add(TrianglePiece { cell, half, ring: &half.corners(), extent: PieceExtent::Whole });
+            for triangle in CellTriangle::of_cell(cell) {
+                add(TrianglePiece { cell, triangle, ring: &triangle.corners(), extent: PieceExtent::Whole });
             }
         }
     }
 }
 
-/// The pieces that a ring within one cell leaves of its two triangles.
+/// Visits the pieces that a ring within one cell leaves of its two triangles.
 fn visit_cell(ring: &[DVec2], cell: Post, add: &mut impl FnMut(TrianglePiece<'_>)) {
-    let corner = DVec2::new(f64::from(cell.column), f64::from(cell.row));
-    let local: Vec<DVec2> = ring.iter().map(|&at| at - corner).collect();
-    for half in Half::of_cell(cell) {
-        let piece = clip(&local, |at| half.side(at), |at| at);
+    let local: Vec<DVec2> = ring.iter().map(|&at| at - cell.grid()).collect();
+    for triangle in CellTriangle::of_cell(cell) {
+        let piece = clip(&local, |at| triangle.side(at), |at| at);
         if piece.len() >= 3 {
-            add(TrianglePiece { cell, half, ring: &piece, extent: PieceExtent::Part });
+            add(TrianglePiece { cell, triangle, ring: &piece, extent: PieceExtent::Part });
         }
     }
 }
 
-/// Which side of a line of posts is kept.
+/// A column (axis 0) or row (axis 1) of posts.
+#[derive(Clone, Copy)]
+struct PostLine {
+    axis: usize,
+    position: f64,
+}
+
+/// The side of a line of posts that is kept.
 #[derive(Clone, Copy)]
 enum LineSide {
     Below,
     Above,
 }
 
-/// What of the rings lies in a rectangle of cells.
-fn clipped_to(rings: &[Vec<DVec2>], cells: &Cells) -> Vec<Vec<DVec2>> {
-    let (low, high) = cells.corners();
-    let mut kept = clipped(rings, 0, low.x, LineSide::Above);
-    kept = clipped(&kept, 0, high.x, LineSide::Below);
-    kept = clipped(&kept, 1, low.y, LineSide::Above);
-    clipped(&kept, 1, high.y, LineSide::Below)
+impl PostLine {
+    /// The parts of rings on one side; where they cross the line, they end exactly on it.
+    fn clip(self, rings: &[Vec<DVec2>], side: LineSide) -> Vec<Vec<DVec2>> {
+        let sign = match side {
+            LineSide::Below => -1.0,
+            LineSide::Above => 1.0,
+        };
+        let snap = |mut at: DVec2| {
+            at[self.axis] = self.position;
+            at
+        };
+        let distance = |at: DVec2| (at[self.axis] - self.position) * sign;
+        rings.iter().map(|ring| clip(ring, distance, snap)).filter(|ring| ring.len() >= 3).collect()
+    }
 }
 
-/// What of the rings lies on one side of a line of posts; where they cross it, they end exactly on it.
-fn clipped(rings: &[Vec<DVec2>], axis: usize, line: f64, side: LineSide) -> Vec<Vec<DVec2>> {
-    let sign = match side {
-        LineSide::Below => -1.0,
-        LineSide::Above => 1.0,
-    };
-    let snap = |mut at: DVec2| {
-        at[axis] = line;
-        at
-    };
-    let kept = rings.iter().map(|ring| clip(ring, |at| (at[axis] - line) * sign, snap));
-    kept.filter(|ring| ring.len() >= 3).collect()
+/// The parts of rings in a rectangle of cells.
+fn clipped_to(rings: &[Vec<DVec2>], cells: &CellRange) -> Vec<Vec<DVec2>> {
+    let [low, high] = cells.corners();
+    (0..2).fold(rings.to_vec(), |rings, axis| {
+        let above = PostLine { axis, position: low[axis] }.clip(&rings, LineSide::Above);
+        PostLine { axis, position: high[axis] }.clip(&above, LineSide::Below)
+    })
 }
 
-/// What of a ring lies where `side` is not negative; new vertices go through `snap`.
+/// The part of a ring where `side` is not negative; new vertices go through `snap`.
 fn clip(ring: &[DVec2], side: impl Fn(DVec2) -> f64, snap: impl Fn(DVec2) -> DVec2) -> Vec<DVec2> {
     let mut kept = Vec::with_capacity(ring.len() + 4);
-    let Some(&last) = ring.last() else { return kept };
-    let (mut before, mut side_before) = (last, side(last));
-    for &here in ring {
-        let side_here = side(here);
-        if (side_before < 0.0) != (side_here < 0.0) {
-            // Not `lerp`, whose two products round: what both ends have in common must stay as it is.
-            let part = side_before / (side_before - side_here);
-            kept.push(snap(before.lerp_monotonic(here, part)));
-        }
-        if side_here >= 0.0 {
-            kept.push(here);
-        }
-        (before, side_before) = (here, side_here);
-    }
+    // Not `lerp`, whose two products round: a coordinate that both ends have in common must stay as it is.
+    let cut = |before: DVec2, here: DVec2, part: f64| snap(before.lerp_monotonic(here, part));
+    polygon::clip(ring, side, cut, &mut kept);
     kept
 }
 
@@ -362,10 +308,7 @@ mod tests {
     }
 
     fn area_of(region: &GridRegion) -> f64 {
-        region
-            .fold(|sum: &mut f64, piece| *sum += piece.fan().map(|(_, area)| area).sum::<f64>())
-            .iter()
-            .sum()
+        region.fold(|sum: &mut f64, piece| *sum += piece.area_cells()).iter().sum()
     }
 
     fn star(center: DVec2, reach: f64, count: u32) -> Vec<DVec2> {
@@ -378,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn the_pieces_of_a_star_with_a_hole_add_up_to_its_area_either_way_round() {
+    fn the_pieces_of_a_star_with_a_hole_add_up_to_its_area() {
         let lattice = level(200, 300);
         let center = DVec2::new(300.0, 650.0);
         let mut rings = vec![star(center, 190.0, 30), star(center, 50.0, 12)];
@@ -392,16 +335,16 @@ mod tests {
     }
 
     #[test]
-    fn every_piece_lies_in_its_triangle_and_whole_ones_are_not_repeated() {
+    fn every_piece_lies_in_its_triangle_and_whole_ones_occur_once() {
         let lattice = level(40, 40);
         let rings = [star(DVec2::new(140.0, 260.0), 37.0, 14)];
         let region = GridRegion::new(&lattice, &rings).expect("sound");
-        let found = region.fold(|found: &mut Vec<(Post, Half, PieceExtent)>, piece| {
+        let found = region.fold(|found: &mut Vec<(Post, CellTriangle, PieceExtent)>, piece| {
             for &at in piece.ring {
-                let slack = piece.half.side(at).min(at.min_element()).min(1.0 - at.max_element());
-                assert!(slack >= -1e-9, "{at} in {:?}", piece.half);
+                let slack = piece.triangle.side(at).min(at.min_element()).min(1.0 - at.max_element());
+                assert!(slack >= -1e-9, "{at} in {:?}", piece.triangle);
             }
-            found.push((piece.cell, piece.half, piece.extent));
+            found.push((piece.cell, piece.triangle, piece.extent));
         });
         let whole: Vec<_> =
             found.concat().into_iter().filter(|found| found.2 == PieceExtent::Whole).collect();
@@ -412,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_off_the_lattice_gives_no_pieces() {
+    fn there_are_no_pieces_off_the_lattice() {
         let lattice = level(11, 11);
         let square = |low: (f64, f64), high: (f64, f64)| {
             [(low.0, low.1), (high.0, low.1), (high.0, high.1), (low.0, high.1)].map(DVec2::from).to_vec()
@@ -434,16 +377,5 @@ mod tests {
         assert_eq!(GridRegion::new(&lattice, &[two]).err(), Some(RegionError::TooFew(0)));
         let infinite = vec![DVec2::ZERO, DVec2::ONE, DVec2::INFINITY];
         assert_eq!(GridRegion::new(&lattice, &[infinite]).err(), Some(RegionError::NotFinite(0)));
-    }
-
-    #[test]
-    fn a_half_s_plane_goes_through_its_corners() {
-        let corners = [3.0, 5.0, 11.0, 20.0];
-        for half in [Half::SouthEast, Half::NorthWest, Half::SouthWest, Half::NorthEast] {
-            for at in half.corners() {
-                let post = at.x as usize + 2 * at.y as usize;
-                assert_eq!(half.height(corners, at), corners[post], "{half:?} at {at}");
-            }
-        }
     }
 }

@@ -1,33 +1,32 @@
-//! The service that answers: whole epochs of the ground, one at a time.
+//! The height service: whole snapshots of the ground, one at a time.
 //!
-//! [`HeightService`] is a handle that every clone shares; what it answers from is an [`Snapshot`], which never changes.
-//! An edit makes the next epoch beside the one in use and puts it in place at once, so that a reader sees all of an
-//! edit or nothing of it. Whoever asks several things that must agree takes [`HeightService::now`] once.
+//! [`HeightService`] is a handle that all clones share; it answers from a [`Snapshot`], which never changes. An edit
+//! prepares the next snapshot beside the current one and publishes it at once, so that a reader sees all of an edit or
+//! nothing of it. Several queries that must agree use one [`HeightService::snapshot`].
 
 use std::sync::{Arc, PoisonError, RwLock};
 
 use glam::DVec2;
-use rayon::prelude::*;
 
-use crate::dem::answer::{Answer, Status};
+use crate::dem::answer::Answer;
 use crate::dem::raster::Raster;
 use crate::geom::crs::Crs;
 use crate::terrain::lattice::Lattice;
-use crate::terrain::query::batch::{self, TASK};
+use crate::terrain::query::batch::{self, HeightSlices};
 use crate::terrain::query::deck::Deck;
 use crate::terrain::query::source::{source_height, source_task};
 use crate::terrain::query::tiles::LazyTiles;
 use crate::terrain::query::{Interpolation, Surface, ground_height};
 use crate::terrain::triangle_surface::TriangleSurface;
 
-/// Positions between two looks at whether tiles should be made, so that a single long batch gets them too.
+/// Positions between two checks whether tiles should be made, so that a single long batch gets them too.
 const STRETCH: usize = 1 << 20;
 
-/// Answers height queries on the ground of one scene; cheap to clone, safe to share between threads while the ground
-/// is edited.
+/// Answers height queries on the ground of one scene; cheap to clone, safe to share between threads while the ground is
+/// edited.
 #[derive(Clone)]
 pub struct HeightService {
-    now: Arc<RwLock<Arc<Snapshot>>>,
+    current: Arc<RwLock<Arc<Snapshot>>>,
 }
 
 /// The ground between two edits.
@@ -43,7 +42,7 @@ pub struct Snapshot {
     displayed: Option<Displayed>,
 }
 
-/// What is drawn now.
+/// The surface drawn now.
 #[derive(Clone)]
 struct Displayed {
     facets: Arc<dyn TriangleSurface>,
@@ -51,76 +50,75 @@ struct Displayed {
 }
 
 impl HeightService {
-    /// A service on a raster as read and the lattice made of it, asked in coordinates of `crs`.
+    /// A service on a raster as read and the lattice made of it; positions are in coordinates of `crs`.
     pub fn new(source: Arc<Raster>, crs: Crs, lattice: Arc<Lattice>) -> Self {
         let tiles = Arc::default();
-        Self::at(Snapshot { number: 0, source, crs, lattice, tiles, decks: None, displayed: None })
+        Self::from_snapshot(Snapshot { number: 0, source, crs, lattice, tiles, decks: None, displayed: None })
     }
 
-    fn at(epoch: Snapshot) -> Self {
-        Self { now: Arc::new(RwLock::new(Arc::new(epoch))) }
+    fn from_snapshot(snapshot: Snapshot) -> Self {
+        Self { current: Arc::new(RwLock::new(Arc::new(snapshot))) }
     }
 
-    /// The epoch in use.
+    /// The current snapshot.
     pub fn snapshot(&self) -> Arc<Snapshot> {
-        // An epoch is put in place whole, so a thread that panicked elsewhere left none half made.
-        Arc::clone(&self.now.read().unwrap_or_else(PoisonError::into_inner))
+        // A snapshot is replaced in one assignment, so a thread that panicked left none half made.
+        Arc::clone(&self.current.read().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Puts an edited lattice in place of the ground, for every clone of this service; returns the new epoch.
+    /// Replaces the ground by an edited lattice, for every clone of this service; returns the new snapshot.
     pub fn publish(&self, lattice: Arc<Lattice>) -> Arc<Snapshot> {
-        self.replace(|now| Snapshot { lattice, tiles: Arc::default(), ..Snapshot::clone(now) })
+        self.replace(|current| Snapshot { lattice, tiles: Arc::default(), ..Snapshot::clone(current) })
     }
 
-    /// Puts decks in place of those there are, for every clone of this service; returns the new epoch.
+    /// Replaces the decks, for every clone of this service; returns the new snapshot.
     pub fn publish_decks(&self, decks: Arc<Deck>) -> Arc<Snapshot> {
-        self.replace(|now| Snapshot { decks: Some(decks), ..Snapshot::clone(now) })
+        self.replace(|current| Snapshot { decks: Some(decks), ..Snapshot::clone(current) })
     }
 
-    /// Puts the next epoch in place.
     fn replace(&self, next: impl FnOnce(&Snapshot) -> Snapshot) -> Arc<Snapshot> {
-        let mut now = self.now.write().unwrap_or_else(PoisonError::into_inner);
-        let next = Arc::new(Snapshot { number: now.number + 1, ..next(&now) });
-        *now = Arc::clone(&next);
+        let mut current = self.current.write().unwrap_or_else(PoisonError::into_inner);
+        let next = Arc::new(Snapshot { number: current.number + 1, ..next(&current) });
+        *current = Arc::clone(&next);
         next
     }
 
-    /// A service of its own, on the epoch in use now, with decks over the ground.
+    /// An independent service on the current snapshot, with decks over the ground.
     pub fn with_decks(&self, decks: Arc<Deck>) -> Self {
-        Self::at(Snapshot { decks: Some(decks), ..Snapshot::clone(&self.snapshot()) })
+        Self::from_snapshot(Snapshot { decks: Some(decks), ..Snapshot::clone(&self.snapshot()) })
     }
 
-    /// A service of its own, on the epoch in use now, with the surface displayed now, whose Z is the height times
+    /// An independent service on the current snapshot, with a displayed surface whose Z is the height times
     /// `exaggeration`.
     pub fn displaying(&self, facets: Arc<dyn TriangleSurface>, exaggeration: f64) -> Self {
         let displayed = Some(Displayed { facets, exaggeration });
-        Self::at(Snapshot { displayed, ..Snapshot::clone(&self.snapshot()) })
+        Self::from_snapshot(Snapshot { displayed, ..Snapshot::clone(&self.snapshot()) })
     }
 
-    /// [`Snapshot::height`] of the epoch in use.
+    /// [`Snapshot::height`] of the current snapshot.
     pub fn height(&self, surface: Surface, interpolation: Interpolation, at: DVec2) -> Answer {
         self.snapshot().height(surface, interpolation, at)
     }
 
-    /// [`Snapshot::heights`] of the epoch in use: one epoch for the whole batch.
+    /// [`Snapshot::heights`] of the current snapshot: one snapshot for the whole batch.
     pub fn heights(&self, surface: Surface, interpolation: Interpolation, at: &[DVec2], out: &mut [Answer]) {
         self.snapshot().heights(surface, interpolation, at, out);
     }
 
-    /// [`Snapshot::heights_apart`] of the epoch in use: one epoch for the whole batch.
+    /// [`Snapshot::heights_apart`] of the current snapshot: one snapshot for the whole batch.
     pub fn heights_apart(
         &self,
         surface: Surface,
         interpolation: Interpolation,
         at: &[DVec2],
-        out: (&mut [f64], &mut [Status]),
+        out: HeightSlices<'_>,
     ) {
         self.snapshot().heights_apart(surface, interpolation, at, out);
     }
 }
 
 impl Snapshot {
-    /// How many edits were put in place before it.
+    /// The number of edits published before it.
     pub fn number(&self) -> u64 {
         self.number
     }
@@ -130,7 +128,7 @@ impl Snapshot {
         &self.source
     }
 
-    /// The system that positions are given in: the ground's.
+    /// The system of positions: the ground's.
     pub fn crs(&self) -> &Crs {
         &self.crs
     }
@@ -165,51 +163,39 @@ impl Snapshot {
         assert_eq!(at.len(), out.len(), "one answer per position");
         for (at, out) in at.chunks(STRETCH).zip(out.chunks_mut(STRETCH)) {
             self.tiles.make_if_worthwhile(&self.lattice);
-            batch::answers(at, out, |at, parts| self.task(surface, interpolation, at, parts));
+            batch::answers(at, out, |at, out| self.task(surface, interpolation, at, out));
         }
     }
 
-    /// [`Snapshot::heights`] as heights in meters, NaN where there is none, and statuses in slices of their own: the fastest
-    /// way to ask, since less is written.
+    /// [`Snapshot::heights`] as heights and statuses in slices of their own: the fastest form, since less is written.
     ///
     /// # Panics
-    /// Where the three slices are not equally long.
+    /// Where the slices are not as long as `at`.
     pub fn heights_apart(
         &self,
         surface: Surface,
         interpolation: Interpolation,
         at: &[DVec2],
-        (heights_m, statuses): (&mut [f64], &mut [Status]),
+        mut out: HeightSlices<'_>,
     ) {
-        assert_eq!((at.len(), at.len()), (heights_m.len(), statuses.len()), "one answer per position");
-        let outs = heights_m.chunks_mut(STRETCH).zip(statuses.chunks_mut(STRETCH));
-        for (at, (heights_m, statuses)) in at.chunks(STRETCH).zip(outs) {
+        out.check_len(at.len());
+        for (at, out) in at.chunks(STRETCH).zip(out.chunks_mut(STRETCH)) {
             self.tiles.make_if_worthwhile(&self.lattice);
-            let outs = heights_m.par_chunks_mut(TASK).zip(statuses.par_chunks_mut(TASK));
-            at.par_chunks(TASK).zip(outs).for_each(|(at, outs)| self.task(surface, interpolation, at, outs));
+            batch::spread(at, out, |at, out| self.task(surface, interpolation, at, out));
         }
     }
 
     /// One task of a batch, on this thread.
-    fn task(
-        &self,
-        surface: Surface,
-        interpolation: Interpolation,
-        at: &[DVec2],
-        (heights_m, statuses): (&mut [f64], &mut [Status]),
-    ) {
+    fn task(&self, surface: Surface, interpolation: Interpolation, at: &[DVec2], mut out: HeightSlices<'_>) {
         if surface == Surface::Source {
-            return source_task(&self.source, &self.crs, interpolation, at, (heights_m, statuses));
+            return source_task(&self.source, &self.crs, interpolation, at, out);
         }
-        let of_ground = surface == Surface::Ground || (surface == Surface::Scene && self.decks.is_none());
-        if of_ground && interpolation == Interpolation::Bilinear {
-            let scattered =
-                batch::bilinear_ground(&self.lattice, self.tiles.get(), at, (heights_m, statuses));
+        let is_ground = surface == Surface::Ground || (surface == Surface::Scene && self.decks.is_none());
+        if is_ground && interpolation == Interpolation::Bilinear {
+            let scattered = batch::bilinear_ground(&self.lattice, self.tiles.get(), at, out);
             return self.tiles.count(scattered);
         }
-        for ((&at, height_m), status) in at.iter().zip(heights_m).zip(statuses) {
-            (*height_m, *status) = self.height(surface, interpolation, at).parts();
-        }
+        out.fill(at, |at| self.height(surface, interpolation, at));
     }
 
     /// The higher of the ground's answer and the deck over it; the deck's own where the ground has none.
@@ -223,17 +209,10 @@ impl Snapshot {
     }
 
     fn displayed_height(&self, at: DVec2) -> Answer {
-        let Some(displayed) = &self.displayed else {
-            return Answer::Outside;
-        };
         let world = at - self.lattice.origin();
-        if !world.is_finite() {
-            return Answer::Outside;
-        }
-        match displayed.facets.displayed_z(world) {
-            Some(z) => Answer::Height(z / displayed.exaggeration),
-            None => Answer::Outside,
-        }
+        let displayed = self.displayed.as_ref().filter(|_| world.is_finite());
+        let z = displayed.and_then(|shown| Some(shown.facets.displayed_z(world)? / shown.exaggeration));
+        z.map_or(Answer::Outside, Answer::Height)
     }
 }
 
@@ -278,12 +257,12 @@ mod tests {
         ] {
             assert_eq!(ask(&bridged, Surface::Ground, x), ground, "at {x}");
             assert_eq!(ask(&bridged, Surface::Scene, x), scene, "at {x}");
-            assert_eq!(ask(&plain, Surface::Scene, x), ground, "no deck was put in place of the other's");
+            assert_eq!(ask(&plain, Surface::Scene, x), ground, "no deck was added to the other's");
         }
     }
 
     #[test]
-    fn decks_stay_when_the_ground_changes_and_are_an_epoch_of_their_own() {
+    fn decks_stay_when_the_ground_changes_and_make_a_snapshot() {
         let service = service(|_, _| 0.0);
         let clone = service.clone();
         let (first, at) = (service.snapshot(), DVec2::new(1030.0, 2040.0));

@@ -1,21 +1,23 @@
 //! Heights of the raster as read, in its own grid.
 //!
-//! Nearest and bilinear are GDAL's ([`crate::dem::sample`]): they reach half a sample beyond the outer samples. Planar
-//! and distance-weighted stand on the grid of sample centers and end at the outer ones. Where the file's heights are
-//! not meters, they are made meters here: an answer is always in meters.
+//! Nearest and bilinear are GDAL's ([`crate::dem::sample`]) and reach half a sample beyond the centers of the outer
+//! samples. Planar and distance-weighted use the grid of sample centers and end at the outer ones. Heights in another unit
+//! are converted to meters.
 
 use glam::DVec2;
 
-use crate::dem::answer::{Answer, Status};
+use crate::dem::answer::Answer;
 use crate::dem::raster::Raster;
 use crate::dem::sample;
 use crate::geom::crs::Crs;
-use crate::terrain::query::batch;
+use crate::terrain::cell_triangle::Diagonal;
+use crate::terrain::lattice::Post;
+use crate::terrain::query::Interpolation;
+use crate::terrain::query::batch::{self, HeightSlices};
 use crate::terrain::query::cell::interpolate;
-use crate::terrain::query::{Diagonal, Interpolation};
 
-/// Positions that are brought to the raster's system at a time, on the stack.
-const BROUGHT: usize = 512;
+/// Positions that are transformed to the raster's system at a time, on the stack.
+const TRANSFORMED: usize = 512;
 
 /// The height of a raster at a position in its own coordinates, in meters.
 pub fn raster_height(raster: &Raster, interpolation: Interpolation, at: DVec2) -> Answer {
@@ -34,7 +36,7 @@ pub fn raster_height(raster: &Raster, interpolation: Interpolation, at: DVec2) -
 
 /// The height of a raster as read at a position in coordinates of `from`, in meters.
 ///
-/// A raster that names no system lies in `from`. A position that cannot be brought to the raster's system lies
+/// A raster without a system lies in `from`. A position that cannot be transformed to the raster's system lies
 /// [`Answer::Outside`].
 pub fn source_height(source: &Raster, from: &Crs, interpolation: Interpolation, at: DVec2) -> Answer {
     raster_height(source, interpolation, SourceTransform::new(source, from).position(at))
@@ -51,36 +53,33 @@ pub fn source_heights(
     at: &[DVec2],
     out: &mut [Answer],
 ) {
-    batch::answers(at, out, |at, parts| source_task(source, from, interpolation, at, parts));
+    batch::answers(at, out, |at, out| source_task(source, from, interpolation, at, out));
 }
 
-/// [`source_height`] at many positions, on this thread: heights in meters, NaN where there is none, and statuses.
+/// [`source_height`] at many positions, on this thread.
 pub(in crate::terrain::query) fn source_task(
     source: &Raster,
     from: &Crs,
     interpolation: Interpolation,
     at: &[DVec2],
-    (heights_m, statuses): (&mut [f64], &mut [Status]),
+    mut out: HeightSlices<'_>,
 ) {
-    let way = SourceTransform::new(source, from);
+    let transform = SourceTransform::new(source, from);
     if interpolation != Interpolation::Bilinear {
-        for ((&at, height_m), status) in at.iter().zip(heights_m).zip(statuses) {
-            (*height_m, *status) = raster_height(source, interpolation, way.position(at)).parts();
-        }
-    } else if way.is_straight() {
-        batch::bilinear_raster(source, at, (heights_m, statuses));
+        out.fill(at, |at| raster_height(source, interpolation, transform.position(at)));
+    } else if transform.is_identity() {
+        batch::bilinear_raster(source, at, out);
     } else {
-        let mut brought = [DVec2::NAN; BROUGHT];
-        let outs = heights_m.chunks_mut(BROUGHT).zip(statuses.chunks_mut(BROUGHT));
-        for (at, outs) in at.chunks(BROUGHT).zip(outs) {
-            let brought = &mut brought[..at.len()];
-            brought.iter_mut().zip(at).for_each(|(to, &at)| *to = way.position(at));
-            batch::bilinear_raster(source, brought, outs);
+        let mut transformed = [DVec2::NAN; TRANSFORMED];
+        for (at, out) in at.chunks(TRANSFORMED).zip(out.chunks_mut(TRANSFORMED)) {
+            let transformed = &mut transformed[..at.len()];
+            transformed.iter_mut().zip(at).for_each(|(to, &at)| *to = transform.position(at));
+            batch::bilinear_raster(source, transformed, out);
         }
     }
 }
 
-/// The way from one system's positions to a raster's own.
+/// The transform from one system's positions to a raster's own.
 struct SourceTransform<'a> {
     from: &'a Crs,
     /// The raster's system, where it is another.
@@ -101,29 +100,25 @@ impl<'a> SourceTransform<'a> {
     }
 
     /// Whether every position stays as it is.
-    fn is_straight(&self) -> bool {
+    fn is_identity(&self) -> bool {
         self.to.is_none() && self.degrees.is_none()
     }
 
-    /// A position in the raster's own coordinates; NaN where it cannot be brought there.
+    /// A position in the raster's own coordinates; NaN where it cannot be transformed.
     fn position(&self, at: DVec2) -> DVec2 {
         let at = match self.to {
             Some(to) => self.from.transform(to, at).unwrap_or(DVec2::NAN),
             None => at,
         };
         match self.degrees {
-            // A raster across the date line counts longitudes on from 180°; who asks may begin again at −180°.
+            // A raster across the date line continues longitudes beyond 180°; positions may restart at −180°.
             Some((west, east)) if !(west..=east).contains(&at.x) => {
-                at + DVec2::X * whole_turns((west + east) / 2.0 - at.x)
+                let turns = (((west + east) / 2.0 - at.x) / 360.0).round();
+                at + DVec2::X * (360.0 * turns)
             }
             _ => at,
         }
     }
-}
-
-/// The whole turns, in degrees, nearest to `degrees`.
-fn whole_turns(degrees: f64) -> f64 {
-    360.0 * (degrees / 360.0).round()
 }
 
 /// Planar and distance-weighted heights of a raster, on the grid of its sample centers, in its vertical unit.
@@ -137,8 +132,8 @@ fn between_samples(raster: &Raster, interpolation: Interpolation, at: DVec2) -> 
     let (column, row) = (first.x as u32, first.y as u32);
     let corners = [(0, 1), (1, 1), (0, 0), (1, 0)].map(|(x, y)| raster.at(column + x, row + y));
     let part = DVec2::new(grid.x - first.x, 1.0 - (grid.y - first.y));
-    let from_south = u64::from(raster.height) - 2 - u64::from(row);
-    let diagonal = Diagonal::of_cell(u64::from(column), from_south);
+    // Rows count from the south in a lattice.
+    let diagonal = Diagonal::of_cell(Post { column, row: raster.height - 2 - row });
     interpolate(interpolation, corners, part, diagonal, raster.spacing())
 }
 
@@ -165,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn heights_in_feet_are_answered_in_meters() {
+    fn heights_in_feet_are_converted_to_meters() {
         let text = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n100 100\n100 100\n";
         let mut source = read_grid(text, None);
         source.meters_per_z = 0.3048;

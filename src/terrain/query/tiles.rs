@@ -1,4 +1,4 @@
-//! A copy of the heights in tiles the size of a cache line, for scattered queries on large grounds.
+//! A copy of the heights in tiles of one cache line, for scattered queries on large grounds.
 //!
 //! ```text
 //!  12 13 14 15 │ 12            a line of 64 bytes holds 4 × 4 posts, 3 × 3 cells; the last
@@ -7,10 +7,10 @@
 //!   0  1  2  3 │  0
 //! ```
 //!
-//! The overlap costs memory: 16 posts for every 9, 78 % more than the lattice itself, beside the lattice. What it saves is
-//! the second cache line, and the second page, of every query. Making it reads and writes every post once, so it is made
-//! when as many scattered positions have been asked as there are posts: whoever asks less has paid at most twice what
-//! the better choice would have cost, and whoever asks much more pays little more than it.
+//! The overlap costs memory: 16 posts for every 9, 78 % more than the lattice, beside the lattice. It saves the second
+//! cache line, and the second page, of every query. Making the tiles reads and writes every post once, so they are made
+//! when as many scattered positions were queried as there are posts: fewer queries have then paid at most twice what the
+//! better choice would have cost, and many more queries hardly more than it.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -38,9 +38,21 @@ pub struct HeightTiles {
 #[repr(align(64))]
 struct CacheLine([f32; 16]);
 
-/// Where a cell's corners lie: the tile's number times 16, and the south-west corner's in it.
+/// The place of a cell's corners: the tile's number times 16, plus the index of the south-west corner in it.
 #[derive(Clone, Copy, Default)]
 pub struct TileSlot(usize);
+
+/// A cell whose corners in the tiles differ from the lattice's.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("the tiles have {found:?} at cell ({}, {}), the lattice {expected:?}", .cell.column, .cell.row)]
+pub struct TileFault {
+    /// The cell.
+    pub cell: Post,
+    /// Its corner heights in the tiles.
+    pub found: [f32; 4],
+    /// Its corner heights in the lattice.
+    pub expected: [f32; 4],
+}
 
 impl HeightTiles {
     /// The tiles of a lattice.
@@ -56,7 +68,7 @@ impl HeightTiles {
         Self { across, lines }
     }
 
-    /// Where the corners of the cell at `column` and `row`, whole numbers, lie.
+    /// The place of the corners of the cell at `column` and `row`, whole numbers.
     #[inline(always)]
     pub fn slot(&self, column: f64, row: f64) -> TileSlot {
         const THIRD: f64 = 1.0 / 3.0;
@@ -71,20 +83,24 @@ impl HeightTiles {
     #[inline(always)]
     pub fn corners(&self, slot: TileSlot) -> [[f32; 2]; 2] {
         let line = &self.lines[slot.0 >> 4].0;
-        // A cell's south-west corner is at most in the third column and row: the hold is for the compiler.
+        // A cell's south-west corner is at most in the third column and row; the clamp proves it to the compiler.
         let cell = &line[(slot.0 & 15).min(10)..][..6];
         [[cell[0], cell[1]], [cell[4], cell[5]]]
     }
 
-    /// Whether every cell's corners are the lattice's, bit for bit.
-    pub fn check(&self, lattice: &Lattice) -> Result<(), String> {
-        for row in 0..lattice.rows() - 1 {
-            for column in 0..lattice.columns() - 1 {
-                let ours = self.corners(self.slot(f64::from(column), f64::from(row)));
-                let theirs = lattice.corner_heights(Post { column, row });
-                if ours.as_flattened().iter().zip(theirs).any(|(a, b)| a.to_bits() != b.to_bits()) {
-                    return Err(format!("the cell at ({column}, {row}) has {ours:?}, not {theirs:?}"));
-                }
+    /// Checks that every cell's corners are the lattice's, bit for bit.
+    ///
+    /// # Errors
+    /// The first cell that differs.
+    pub fn check(&self, lattice: &Lattice) -> Result<(), TileFault> {
+        for cell in lattice.posts() {
+            if cell.column + 1 == lattice.columns() || cell.row + 1 == lattice.rows() {
+                continue;
+            }
+            let [[sw, se], [nw, ne]] = self.corners(self.slot(f64::from(cell.column), f64::from(cell.row)));
+            let (found, expected) = ([sw, se, nw, ne], lattice.corner_heights(cell));
+            if found.map(f32::to_bits) != expected.map(f32::to_bits) {
+                return Err(TileFault { cell, found, expected });
             }
         }
         Ok(())
@@ -95,11 +111,10 @@ impl HeightTiles {
 fn line_at(lattice: &Lattice, first: Post) -> CacheLine {
     let mut line = CacheLine([f32::NAN; 16]);
     let width = (lattice.columns() - first.column).min(4) as usize;
-    let heights = lattice.heights();
     for row in 0..(lattice.rows() - first.row).min(4) {
-        let from = lattice.index(Post { row: first.row + row, ..first });
+        let from = lattice.index(first.offset(0, row));
         let slot = 4 * row as usize;
-        line.0[slot..slot + width].copy_from_slice(&heights[from..from + width]);
+        line.0[slot..slot + width].copy_from_slice(&lattice.heights()[from..from + width]);
     }
     line
 }
@@ -118,18 +133,18 @@ impl LazyTiles {
         self.tiles.get()
     }
 
-    /// Counts scattered positions that were asked.
+    /// Counts scattered positions that were queried.
     pub fn count(&self, scattered: usize) {
         self.scattered.fetch_add(scattered, Ordering::Relaxed);
     }
 
-    /// Makes the tiles of `lattice`, always the same one, where they pay and nobody else is making them. Who finds them
-    /// being made goes on without: waiting for another thread here could wait for itself.
+    /// Makes the tiles of `lattice`, always the same one, where they pay and no other thread is making them. It does not
+    /// wait for another thread: in a thread pool that could deadlock.
     pub fn make_if_worthwhile(&self, lattice: &Lattice) {
         let posts = lattice.heights().len();
         let pays = posts >= LEAST_POSTS && self.scattered.load(Ordering::Relaxed) >= posts;
         if pays && self.tiles.get().is_none() && !self.is_making.swap(true, Ordering::Relaxed) {
-            // Nobody else sets it: `is_making` never becomes false again.
+            // It is unset: `is_making` never becomes false again.
             let _ = self.tiles.set(HeightTiles::new(lattice));
         }
     }
@@ -141,7 +156,7 @@ mod tests {
     use glam::DVec2;
 
     #[test]
-    fn tiles_hold_every_cell_whatever_the_size_of_the_lattice() {
+    fn tiles_hold_every_cell_of_a_lattice_of_any_size() {
         for columns in 2..12u32 {
             for rows in 2..12u32 {
                 let heights = (0..columns * rows).map(|index| index as f32).collect();
@@ -152,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn tiles_are_made_when_as_much_was_asked_as_they_cost() {
+    fn tiles_are_made_after_as_many_queries_as_they_cost() {
         let lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 1024, vec![1.0; 1 << 20]).expect("sound");
         let lazy = LazyTiles::default();
         lazy.make_if_worthwhile(&lattice);

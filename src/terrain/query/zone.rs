@@ -1,16 +1,16 @@
 //! Elevation statistics within a polygon, exact: integrals of the planar ground, not means of posts.
 //!
 //! Over a triangle of area `A` with corner heights `a, b, c` the plane's integral is `A (a + b + c)/3`, that of its square
-//! `A (a² + b² + c² + ab + bc + ca)/6`. The volume between the plane and a level is that of the prism cut where the plane
+//! `A (a² + b² + c² + ab + bc + ca)/6`. The volume between the plane and a level is that of a prism cut where the plane
 //! meets the level.
 
 use glam::DVec2;
 
 use crate::terrain::lattice::Lattice;
-use crate::terrain::query::pieces::{GridRegion, Half, PieceExtent, TrianglePiece};
+use crate::terrain::query::pieces::{GridRegion, PieceExtent, TrianglePiece};
 use crate::terrain::volumes::Volumes;
 
-/// What lies within a polygon.
+/// Areas and heights within a polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Zone {
     /// Square meters of plan with data.
@@ -23,7 +23,7 @@ pub struct Zone {
     pub heights: Option<ZoneHeights>,
 }
 
-/// Heights over an area, meters, every square meter of plan counting the same.
+/// Heights over an area, meters, weighted by plan area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ZoneHeights {
     /// The lowest, inside or on the border.
@@ -32,11 +32,11 @@ pub struct ZoneHeights {
     pub max_m: f64,
     /// The mean.
     pub mean_m: f64,
-    /// The standard deviation, from 0 on.
+    /// The standard deviation, at least 0.
     pub std_m: f64,
 }
 
-/// What has been added up of a band, heights counted from the reference.
+/// Sums over a band, heights counted from the reference.
 #[derive(Clone, Copy)]
 struct BandSums {
     cells: f64,
@@ -54,7 +54,7 @@ impl Default for BandSums {
     }
 }
 
-/// The planar ground within `region`.
+/// The statistics of the planar ground within `region`.
 ///
 /// # Panics
 /// Where the region is one of a larger lattice.
@@ -65,9 +65,7 @@ pub fn zone(lattice: &Lattice, region: &GridRegion) -> Zone {
         let corners = lattice.corner_heights(piece.cell).map(|height| f64::from(height) - reference);
         sums.add(region, piece, corners);
     });
-    let total = bands.into_iter().fold(BandSums::default(), BandSums::and);
-    let cell = lattice.cell();
-    let cell_m2 = cell.x * cell.y;
+    let total = bands.into_iter().fold(BandSums::default(), BandSums::merged);
     let heights = (total.cells > 0.0).then(|| {
         let mean = total.sum / total.cells;
         let variance = (total.squares / total.cells - mean * mean).max(0.0);
@@ -78,62 +76,36 @@ pub fn zone(lattice: &Lattice, region: &GridRegion) -> Zone {
             std_m: variance.sqrt(),
         }
     });
+    let area_m2 = |cells: f64| cells.max(0.0) * lattice.cell_m2();
     Zone {
-        area_m2: total.cells.max(0.0) * cell_m2,
-        no_data_m2: total.no_data_cells.max(0.0) * cell_m2,
-        outside_m2: (region.area_cells() - total.cells - total.no_data_cells).max(0.0) * cell_m2,
+        area_m2: area_m2(total.cells),
+        no_data_m2: area_m2(total.no_data_cells),
+        outside_m2: area_m2(region.area_cells() - total.cells - total.no_data_cells),
         heights,
     }
 }
 
-/// What must be moved to bring the ground within `region` to `level_m`: cut from above it, filled below it. Ground without
-/// data counts as level.
+/// The earth moved when the ground within `region` is brought to `level_m`: cut from above it, filled below it. Ground
+/// without data counts as level.
 ///
 /// # Panics
 /// Where the region is one of a larger lattice.
 pub fn volumes_to_level(lattice: &Lattice, region: &GridRegion, level_m: f64) -> Volumes {
-    let bands = region.fold(|volumes: &mut Volumes, piece| {
-        let corners = lattice.corner_heights(piece.cell).map(|height| level_m - f64::from(height));
-        add_rises(volumes, piece, corners);
+    let bands = region.fold(|cells: &mut Volumes, piece| {
+        let rises = lattice.corner_heights(piece.cell).map(|height| level_m - f64::from(height));
+        if piece.has_data(rises) {
+            add_rises(cells, piece, rises);
+        }
     });
-    in_cubic_meters(lattice, bands)
+    bands.into_iter().map(|cells| cells * lattice.cell_m2()).sum()
 }
 
-/// The sum of volumes counted in cells.
-pub(in crate::terrain::query) fn in_cubic_meters(lattice: &Lattice, bands: Vec<Volumes>) -> Volumes {
-    let cell = lattice.cell();
-    let cell_m2 = cell.x * cell.y;
-    bands.into_iter().fold(Volumes::default(), |sum, band| Volumes {
-        cut_m3: sum.cut_m3 + band.cut_m3 * cell_m2,
-        fill_m3: sum.fill_m3 + band.fill_m3 * cell_m2,
-    })
-}
-
-/// Adds what a piece is cut and filled where its cell's corners rise by `rises`; returns whether they are known.
-pub(in crate::terrain::query) fn add_rises(
-    volumes: &mut Volumes,
-    piece: TrianglePiece<'_>,
-    rises: [f64; 4],
-) -> Known {
-    if piece.half.corners().iter().any(|&at| piece.half.height(rises, at).is_nan()) {
-        return Known::No;
-    }
+/// Adds the earth moved, in cells times meters, where a piece's cell corners rise by `rises`.
+pub(in crate::terrain::query) fn add_rises(cells: &mut Volumes, piece: TrianglePiece<'_>, rises: [f64; 4]) {
     for (corners, area) in piece.fan() {
-        let rises = corners.map(|at| piece.half.height(rises, at));
-        let (fill, cut) = above_and_below(rises);
-        volumes.fill_m3 += fill * area;
-        volumes.cut_m3 += cut * area;
+        let (fill, cut) = above_and_below(corners.map(|at| piece.triangle.height(rises, at)));
+        *cells += Volumes { cut_m3: cut, fill_m3: fill } * area;
     }
-    Known::Yes
-}
-
-/// Whether all corners of a triangle have data.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::terrain::query) enum Known {
-    /// All have.
-    Yes,
-    /// One has none.
-    No,
 }
 
 /// The volumes between the plane through three heights and the level 0, above and below it, over a triangle of area 1.
@@ -157,11 +129,11 @@ fn above_and_below(mut heights: [f64; 3]) -> (f64, f64) {
 
 impl BandSums {
     fn add(&mut self, region: &GridRegion, piece: TrianglePiece<'_>, corners: [f64; 4]) {
-        let height = |at: DVec2| piece.half.height(corners, at);
-        if piece.half.corners().iter().any(|&at| height(at).is_nan()) {
-            self.no_data_cells += piece.fan().map(|(_, area)| area).sum::<f64>();
+        if !piece.has_data(corners) {
+            self.no_data_cells += piece.area_cells();
             return;
         }
+        let height = |at: DVec2| piece.triangle.height(corners, at);
         for (triangle, area) in piece.fan() {
             let [a, b, c] = triangle.map(height);
             self.cells += area;
@@ -169,15 +141,15 @@ impl BandSums {
             self.squares += area * (a * a + b * b + c * c + a * b + b * c + c * a) / 6.0;
         }
         for &at in piece.ring {
-            let found = height(at);
-            if (found < self.low || found > self.high) && is_in(region, piece, at) {
-                self.low = self.low.min(found);
-                self.high = self.high.max(found);
+            let height = height(at);
+            if (height < self.low || height > self.high) && is_in_region(region, piece, at) {
+                self.low = self.low.min(height);
+                self.high = self.high.max(height);
             }
         }
     }
 
-    fn and(self, other: Self) -> Self {
+    fn merged(self, other: Self) -> Self {
         Self {
             cells: self.cells + other.cells,
             no_data_cells: self.no_data_cells + other.no_data_cells,
@@ -189,12 +161,12 @@ impl BandSums {
     }
 }
 
-/// Whether a vertex of a piece lies in the region: where a clipped ring runs back along lines of posts, it may have posts
-/// for vertices that do not. Everywhere else a vertex is one of the polygon's, or a crossing of its border.
-fn is_in(region: &GridRegion, piece: TrianglePiece<'_>, at: DVec2) -> bool {
-    let is_post = Half::corners(piece.half).contains(&at);
-    let corner = DVec2::new(f64::from(piece.cell.column), f64::from(piece.cell.row));
-    piece.extent == PieceExtent::Whole || !is_post || region.holds(corner + at)
+/// Whether a vertex of a piece lies in the region. Where a clipped ring runs back along lines of posts, posts beyond the
+/// region may be vertices; all other vertices are the polygon's own, or crossings of its border.
+fn is_in_region(region: &GridRegion, piece: TrianglePiece<'_>, at: DVec2) -> bool {
+    piece.extent == PieceExtent::Whole
+        || !piece.triangle.corners().contains(&at)
+        || region.contains(piece.cell.grid() + at)
 }
 
 #[cfg(test)]
@@ -218,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn on_a_plane_a_triangle_s_statistics_are_those_of_geometry() {
+    fn on_a_plane_a_triangles_statistics_are_those_of_geometry() {
         let ground = lattice(65, DVec2::new(4.0, 2.0), |at| 1000.0 + 0.5 * at.x - 0.25 * at.y);
         let triangle = ring(&[(10.3, 11.7), (201.9, 33.1), (88.8, 120.4)]);
         let plane = |at: DVec2| 1000.0 + 0.5 * at.x - 0.25 * at.y;
@@ -250,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn over_whole_waves_a_sinusoid_has_mean_zero_and_deviation_of_its_amplitude_over_root_two() {
+    fn over_whole_waves_a_sinusoid_has_its_mean_deviation_and_volumes() {
         let wave = std::f64::consts::TAU / 200.0;
         let ground = lattice(401, DVec2::ONE, |at| 10.0 * libm::sin(at.x * wave));
         let heights = zone(&ground, &GridRegion::whole(&ground)).heights.expect("data");
@@ -264,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn areas_without_data_and_beyond_the_model_are_told_apart() {
+    fn areas_without_data_and_beyond_the_model_are_separate() {
         let ground =
             lattice(11, DVec2::splat(10.0), |at| if at == DVec2::splat(50.0) { f64::NAN } else { 7.0 });
         let over = ring(&[(-50.0, 0.0), (100.0, 0.0), (100.0, 100.0), (-50.0, 100.0)]);
@@ -279,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn a_peak_beside_the_polygon_is_not_its_highest_point() {
+    fn a_peak_beside_the_polygon_does_not_count() {
         let ground = lattice(9, DVec2::ONE, |at| if at == DVec2::splat(4.0) { 100.0 } else { at.x });
         // An L round the peak: clipped, its ring runs along lines of posts.
         let angle = ring(&[(0.5, 0.5), (7.5, 0.5), (7.5, 2.5), (2.5, 2.5), (2.5, 7.5), (0.5, 7.5)]);

@@ -1,10 +1,9 @@
 //! Where a straight line over the ground crosses the edges of its finest triangles.
 //!
-//! Between two crossings the ground is one plane, so a function of the ground along the line is known exactly when it
-//! is known at the crossings: profiles, lines of sight and viewsheds all stand on this walk.
+//! Between two crossings the ground is one plane, so a function of the ground along the line is known exactly when it is
+//! known at the crossings: profiles, lines of sight and viewsheds all use this walk.
 //!
-//! The line is cut where it meets a column of posts, a row of posts, and the one diagonal of each cell that it passes
-//! through:
+//! The line is cut where it meets a column of posts, a row of posts, and the one diagonal of each cell that it passes:
 //!
 //! ```text
 //!  o───────o──────b        from `a` to `b`: a column, then a diagonal, then a row of posts …
@@ -14,38 +13,39 @@
 //!  a────────────  o
 //! ```
 //!
-//! The part of the line at which it meets a column or a row is one division, never a sum over the columns before: whoever
-//! begins half-way meets the same crossings to the last bit. A line may begin and end anywhere; only what lies on the lattice is walked, so that even one from far away
-//! meets no more crossings than the lattice has columns, rows and cells for it.
+//! The part of the line at which it meets a column or a row is one division, never a sum over the columns before: a walk
+//! that begins halfway meets the same crossings to the last bit. A line may begin and end anywhere; only its part on the
+//! lattice is walked, so even a line from far away meets no more crossings than the lattice has columns, rows and cells on
+//! it.
 
 use std::ops::ControlFlow;
 
 use glam::DVec2;
 
+use crate::terrain::cell_triangle::Diagonal;
 use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::query::Diagonal;
 
-/// How exactly a position on a line is known, in cells; it is off by rounding alone, some 1e-10 on the largest lattices
-/// that memory holds. What lies nearer than this to a line of posts may lie on either side of it.
+/// The error of a position on a line, in cells: rounding alone, some 1e-10 on the largest lattices that memory holds. A
+/// position nearer than this to a line of posts may lie on either side of it.
 pub(in crate::terrain) const POSITION_ERROR: f64 = 1e-8;
 
-/// A place on a line where the ground bends.
+/// A crossing of a line with an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineCrossing {
     /// How far along the line, 0 at its start and 1 at its end.
     pub part: f64,
-    /// Grid position: columns and rows of posts from the lattice's first.
+    /// The grid position.
     pub grid: DVec2,
-    /// The height of the ground there in meters, on the edge that is crossed; NaN where that edge has no data.
+    /// The height of the ground in meters, on the edge that is crossed; NaN where that edge has no data.
     pub height_m: f64,
 }
 
-/// The parts of a line between which it is walked: from the first to the second, 0..=1.
+/// A part of a line: where it begins and ends, 0..=1.
 pub(in crate::terrain) type LinePart = (f64, f64);
 
 /// Visits every crossing of the line `from`..`to` with edges of the finest triangles, in order, ends excluded, until
-/// `visit` breaks. Both ends are grid positions and may lie off the lattice, where there are no crossings; a line that
-/// is not finite has none at all.
+/// `visit` breaks. Both ends are grid positions and may lie off the lattice, where there are no crossings; a line that is
+/// not finite has none at all.
 ///
 /// A line along an edge crosses the posts on it; a crossing at a post is visited once. Costs three crossings a cell.
 pub fn crossings<B>(
@@ -54,39 +54,39 @@ pub fn crossings<B>(
     to: DVec2,
     visit: impl FnMut(LineCrossing) -> ControlFlow<B>,
 ) -> ControlFlow<B> {
-    match parts_on(lattice, from, to) {
-        Some(parts) => crossings_within(lattice, from, to, parts, visit),
+    match part_on(lattice, from, to) {
+        Some(part) => crossings_within(lattice, (from, to), part, visit),
         None => ControlFlow::Continue(()),
     }
 }
 
-/// The parts of the line between which it lies on the lattice, its border included; `None` where it does not, or is not
-/// finite. Where the line comes in or leaves, the part is that of the crossing with the border.
-fn parts_on(lattice: &Lattice, from: DVec2, to: DVec2) -> Option<LinePart> {
+/// The part of the line on the lattice, its border included; `None` where there is none, or the line is not finite. It
+/// begins and ends at the very parts of the crossings with the border.
+fn part_on(lattice: &Lattice, from: DVec2, to: DVec2) -> Option<LinePart> {
     if !(from.is_finite() && to.is_finite() && (to - from).is_finite()) {
         return None;
     }
-    let columns = parts_between(from.x, to.x, f64::from(lattice.columns() - 1))?;
-    let rows = parts_between(from.y, to.y, f64::from(lattice.rows() - 1))?;
-    let parts = (columns.0.max(rows.0), columns.1.min(rows.1));
-    (parts.0 <= parts.1).then_some(parts)
+    let last = lattice.last_grid();
+    let (columns, rows) = (part_between(from.x, to.x, last.x)?, part_between(from.y, to.y, last.y)?);
+    let part = (columns.0.max(rows.0), columns.1.min(rows.1));
+    (part.0 <= part.1).then_some(part)
 }
 
-/// The parts between which a coordinate that runs `from`..`to` lies within 0..=`last`.
-fn parts_between(from: f64, to: f64, last: f64) -> Option<LinePart> {
-    let inside = |at: f64| (0.0..=last).contains(&at);
+/// The part of a coordinate that runs `from`..`to` within 0..=`last`.
+fn part_between(from: f64, to: f64, last: f64) -> Option<LinePart> {
+    let is_inside = |at: f64| (0.0..=last).contains(&at);
     if from == to {
-        return inside(from).then_some((0.0, 1.0));
+        return is_inside(from).then_some((0.0, 1.0));
     }
     let (near, far) = if to > from { (0.0, last) } else { (last, 0.0) };
     let part = |line: f64| (line - from) / (to - from);
-    let first = if inside(from) { 0.0 } else { part(near) };
-    let last = if inside(to) { 1.0 } else { part(far) };
+    let first = if is_inside(from) { 0.0 } else { part(near) };
+    let last = if is_inside(to) { 1.0 } else { part(far) };
     let all = 0.0..=1.0;
     (all.contains(&first) && all.contains(&last)).then_some((first, last))
 }
 
-/// Which edge a line crosses.
+/// An edge of a cell's border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::terrain) enum CellEdge {
     /// Along this column of posts.
@@ -108,25 +108,27 @@ pub(in crate::terrain) fn crossing_at(
     match edge {
         CellEdge::Column(column) => on_column(lattice, part, column, from.y + (to.y - from.y) * part),
         CellEdge::Row(row) => on_row(lattice, part, from.x + (to.x - from.x) * part, row),
-        CellEdge::Post(post) => at_post(lattice, part, post),
+        CellEdge::Post(grid) => {
+            LineCrossing { part, grid, height_m: f64::from(lattice.height(Post::at_grid(grid))) }
+        }
     }
 }
 
 fn crossings_within<B>(
     lattice: &Lattice,
-    from: DVec2,
-    to: DVec2,
+    ends: (DVec2, DVec2),
     (first, through): LinePart,
     mut visit: impl FnMut(LineCrossing) -> ControlFlow<B>,
 ) -> ControlFlow<B> {
+    let (from, to) = ends;
     let mut last = first;
     let mut columns = PostLines::new(from.x, to.x, lattice.columns());
     let mut rows = PostLines::new(from.y, to.y, lattice.rows());
-    columns.pass(first);
-    rows.pass(first);
+    columns.skip_before(first);
+    rows.skip_before(first);
     loop {
         let next = columns.part.min(rows.part).min(1.0);
-        if let Some(crossing) = diagonal_between(lattice, from, to, (last, next.min(through))) {
+        if let Some(crossing) = diagonal_between(lattice, ends, (last, next.min(through))) {
             visit(crossing)?;
         }
         if next >= 1.0 || next > through {
@@ -137,12 +139,11 @@ fn crossings_within<B>(
             (true, false) => CellEdge::Column(columns.line),
             _ => CellEdge::Row(rows.line),
         };
-        visit(crossing_at(lattice, (from, to), next, edge))?;
-        if columns.part == next {
-            columns.advance();
-        }
-        if rows.part == next {
-            rows.advance();
+        visit(crossing_at(lattice, ends, next, edge))?;
+        for lines in [&mut columns, &mut rows] {
+            if lines.part == next {
+                lines.advance();
+            }
         }
         last = next;
     }
@@ -157,7 +158,7 @@ struct PostLines {
     most: f64,
     /// The next line.
     line: f64,
-    /// Where it is met; beyond 1 where there is none.
+    /// The part at which it is met; infinite where there is none.
     part: f64,
 }
 
@@ -181,29 +182,22 @@ impl PostLines {
     }
 
     fn meet(&mut self) {
-        let is_there = self.length != 0.0 && self.line >= 0.0 && self.line <= self.most;
-        self.part = if is_there { (self.line - self.start) / self.length } else { f64::INFINITY };
+        let exists = self.length != 0.0 && self.line >= 0.0 && self.line <= self.most;
+        self.part = if exists { (self.line - self.start) / self.length } else { f64::INFINITY };
     }
 
-    /// Leaves out the lines that are met before `part`.
-    fn pass(&mut self, part: f64) {
+    fn skip_before(&mut self, part: f64) {
         while self.part < part {
             self.advance();
         }
     }
 }
 
-fn at_post(lattice: &Lattice, part: f64, grid: DVec2) -> LineCrossing {
-    let post = Post { column: grid.x as u32, row: grid.y as u32 };
-    LineCrossing { part, grid, height_m: f64::from(lattice.height(post)) }
-}
-
 /// On the column of posts `column`, at `y` rows.
 fn on_column(lattice: &Lattice, part: f64, column: f64, y: f64) -> LineCrossing {
     let y = y.clamp(0.0, f64::from(lattice.rows() - 1));
     let south = Post { column: column as u32, row: (y as u32).min(lattice.rows() - 2) };
-    let north = Post { row: south.row + 1, ..south };
-    let height_m = between(lattice, south, north, y - f64::from(south.row));
+    let height_m = between(lattice, south, south.offset(0, 1), y - f64::from(south.row));
     LineCrossing { part, grid: DVec2::new(column, y), height_m }
 }
 
@@ -211,8 +205,7 @@ fn on_column(lattice: &Lattice, part: f64, column: f64, y: f64) -> LineCrossing 
 fn on_row(lattice: &Lattice, part: f64, x: f64, row: f64) -> LineCrossing {
     let x = x.clamp(0.0, f64::from(lattice.columns() - 1));
     let west = Post { column: (x as u32).min(lattice.columns() - 2), row: row as u32 };
-    let east = Post { column: west.column + 1, ..west };
-    let height_m = between(lattice, west, east, x - f64::from(west.column));
+    let height_m = between(lattice, west, west.offset(1, 0), x - f64::from(west.column));
     LineCrossing { part, grid: DVec2::new(x, row), height_m }
 }
 
@@ -228,25 +221,21 @@ fn between(lattice: &Lattice, from: Post, to: Post, part: f64) -> f64 {
     }
 }
 
-/// The crossing with the diagonal of the cell that the line passes between two parts of it, if it crosses it inside.
+/// The crossing with the diagonal of the one cell that the line passes in a part of it, if it crosses it inside.
 #[inline]
 pub(in crate::terrain) fn diagonal_between(
     lattice: &Lattice,
-    from: DVec2,
-    to: DVec2,
+    (from, to): (DVec2, DVec2),
     (first, last): LinePart,
 ) -> Option<LineCrossing> {
-    let middle = from.lerp(to, 0.5 * (first + last));
-    // Casting rounds down, and what is below 0 becomes 0.
-    let cell = Post {
-        column: (middle.x as u32).min(lattice.columns() - 2),
-        row: (middle.y as u32).min(lattice.rows() - 2),
-    };
-    let corner = DVec2::new(f64::from(cell.column), f64::from(cell.row));
+    let middle = Post::at_grid(from.lerp(to, 0.5 * (first + last)));
+    let cell =
+        Post { column: middle.column.min(lattice.columns() - 2), row: middle.row.min(lattice.rows() - 2) };
+    let corner = cell.grid();
     let (start, along) = (from - corner, to - from);
-    let rising = Diagonal::of_cell(u64::from(cell.column), u64::from(cell.row)) == Diagonal::Rising;
+    let is_rising = Diagonal::of_cell(cell) == Diagonal::Rising;
     // On the rising diagonal x − y = 0, on the falling one x + y = 1.
-    let (offset, slope) = if rising {
+    let (offset, slope) = if is_rising {
         (start.x - start.y, along.x - along.y)
     } else {
         (start.x + start.y - 1.0, along.x + along.y)
@@ -258,7 +247,7 @@ pub(in crate::terrain) fn diagonal_between(
     let grid = from + along * part;
     let x = (grid.x - corner.x).clamp(0.0, 1.0);
     let [sw, se, nw, ne] = lattice.corner_heights(cell).map(f64::from);
-    let height_m = if rising { sw + (ne - sw) * x } else { nw + (se - nw) * x };
+    let height_m = if is_rising { sw + (ne - sw) * x } else { nw + (se - nw) * x };
     Some(LineCrossing { part, grid, height_m })
 }
 
@@ -283,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn between_crossings_the_ground_is_straight_and_on_them_it_is_the_planar_one() {
+    fn the_ground_is_planar_at_crossings_and_straight_between_them() {
         let lattice = rough(9, 7);
         let mut seed = 1u64;
         let mut random = || {

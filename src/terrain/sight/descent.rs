@@ -1,159 +1,185 @@
-//! Along a line from block to block: over those that rule themselves out in one step, into the others.
+//! A walk along a line from block to block of the [`Pyramid`]: over blocks that are ruled out in one step, into the
+//! others.
 //!
 //! ```text
 //!            side 16 ┌───────────────┐
-//!                    │               │      from a block that ruled itself out on to the next one as large, or to the
-//!   side 4 ┌──┬──┐   │    one step   │      next one larger where the borders of both are one; into one that did not,
-//!      ────┼──┼──┼───┼───────────────┼──►   down to single cells and the crossings in them
+//!                    │               │      from a block that is ruled out to the next one as large, or to the next
+//!   side 4 ┌──┬──┐   │    one step   │      larger one where the borders of both coincide; into any other, down to
+//!      ────┼──┼──┼───┼───────────────┼──►   single cells and the crossings in them
 //!          └──┴──┘   │               │
 //!                    └───────────────┘
 //! ```
 //!
-//! What is asked is up to a [`Probe`]. It sees the crossings of every cell that it did not rule out, in order, with the
-//! values that [`crossings`](crate::terrain::sight::crossings::crossings) finds, to the last bit: where a block ends is
-//! where the line meets its border's column or row of posts, by the same division, and a crossing's height is told by
-//! the same functions. A probe that rules out only what it would not have answered to therefore answers as if it had
-//! seen all.
+//! A [`Probe`] decides which blocks are ruled out. It visits the crossings of every other cell, in order, with the values
+//! that [`crossings`](crate::terrain::sight::crossings::crossings) computes, to the last bit: a block ends where the line
+//! meets its border's column or row of posts, by the same division, and the same functions compute a crossing's height. So
+//! a probe that rules out only crossings without effect on its answer answers as if it had visited all.
 //!
-//! There is no stack, and no position is turned into a block: each axis keeps its block's number and the part at which
-//! the line leaves it. Going up drops the number's last bits; going down asks whether the line has passed the block's
-//! middle, whose part is the nearer half's exit.
+//! There is no stack, and no position is converted to a block: each axis keeps its block's number and the part at which the
+//! line leaves it. Ascending drops the number's last bits; descending compares the line's part with that of the block's
+//! middle, which is the nearer half's exit.
 
 use std::ops::ControlFlow;
 
 use glam::DVec2;
 
-use crate::terrain::lattice::Lattice;
+use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::sight::crossings::{CellEdge, LineCrossing, LinePart, crossing_at, diagonal_between};
-use crate::terrain::sight::pyramid::{FACTOR_BITS, FINEST_BITS, Pyramid};
+use crate::terrain::sight::pyramid::{FINEST_BITS, Pyramid};
 
-/// What is asked of the ground along a line.
+/// A search along a line.
 pub(in crate::terrain) trait Probe {
-    /// What ends the walk.
+    /// The result that ends the walk.
     type Found;
 
-    /// Whether no crossing between these parts can matter, on ground that is nowhere there higher than `highest_m` nor,
-    /// should the probe ask, lower than `lowest_m` tells.
-    fn rules_out(&self, parts: LinePart, highest_m: f64, lowest_m: impl FnOnce() -> f64) -> bool;
+    /// Whether no crossing in this part of the line has an effect, on ground that is nowhere there higher than `highest_m`
+    /// nor lower than `lowest_m()`.
+    fn rules_out(&self, part: LinePart, highest_m: f64, lowest_m: impl FnOnce() -> f64) -> bool;
 
-    /// Is told that what was last seen lies before cells that were ruled out, and that crossings from this part on come
-    /// next; that at the part itself is among them, where there is one.
+    /// Resets what depends on the crossing before: cells were ruled out since, and the next crossing, one at `_part` itself
+    /// included, follows them.
     fn resume(&mut self, _part: f64) {}
 
-    /// Looks at a crossing.
-    fn see(&mut self, crossing: LineCrossing) -> ControlFlow<Self::Found>;
+    /// Visits a crossing.
+    fn visit(&mut self, crossing: LineCrossing) -> ControlFlow<Self::Found>;
 
-    /// Is told that all crossings up to the line's end were seen since the walk last resumed.
+    /// Notes that all crossings up to the line's end were visited since the walk last resumed.
     fn finish(&mut self) {}
 }
 
-/// Shows `probe` the crossings of the line `from`..`to` in order, but for those of cells and blocks that it rules out.
-/// Both ends are grid positions on the lattice, of which `pyramid` is.
+/// Shows `probe` the crossings of the line `from`..`to` in order, except those of blocks that it rules out. Both ends are
+/// grid positions on the lattice, whose pyramid is `pyramid`.
 pub(in crate::terrain) fn descend<P: Probe>(
     lattice: &Lattice,
     pyramid: &Pyramid,
-    (from, to): (DVec2, DVec2),
+    ends: (DVec2, DVec2),
     probe: &mut P,
 ) -> ControlFlow<P::Found> {
-    let mut x = AxisWalk::new(from.x, to.x, lattice.columns() - 1);
-    let mut y = AxisWalk::new(from.y, to.y, lattice.rows() - 1);
-    let top_bits = pyramid.top_bits();
-    let (mut bits, mut part, mut entered) = (0, 0.0, None);
-    let mut was_seen = false;
+    let mut walk = BlockWalk::new(lattice, ends);
+    let (mut part, mut entered, mut was_visited) = (0.0, None, false);
     loop {
-        let out = x.exit.min(y.exit).min(1.0);
-        let parts = (part, out);
-        let ruled_out = if bits == 0 {
-            let corners = corners(lattice, x.block, y.block);
-            probe.rules_out(parts, highest_of(corners), || lowest_of(corners))
-        } else {
-            let block = [x.block, y.block];
-            let highest = f64::from(pyramid.highest(bits, block));
-            probe.rules_out(parts, highest, || f64::from(pyramid.lowest(bits, block)))
-        };
-        if !ruled_out && bits > 0 {
-            let halvings = if bits == FINEST_BITS { FINEST_BITS } else { FACTOR_BITS };
-            for _ in 0..halvings {
-                bits -= 1;
-                x.halve(bits, part);
-                y.halve(bits, part);
-            }
+        let exit = walk.exit();
+        let block_part = (part, exit);
+        let is_ruled_out = walk.is_ruled_out(lattice, pyramid, block_part, probe);
+        if !is_ruled_out && walk.bits > 0 {
+            walk.descend(part);
             continue;
         }
-        let (leaves_x, leaves_y) = (x.exit == out, y.exit == out);
-        let left = if out < 1.0 { Some(edge_left(&x, &y, leaves_x, leaves_y, bits)) } else { None };
-        if !ruled_out {
-            if !was_seen {
+        let edge = (exit < 1.0).then(|| walk.exit_edge(exit));
+        if !is_ruled_out {
+            if !was_visited {
                 probe.resume(part);
                 if let Some(edge) = entered {
-                    probe.see(crossing_at(lattice, (from, to), part, edge))?;
+                    probe.visit(crossing_at(lattice, ends, part, edge))?;
                 }
             }
-            if let Some(crossing) = diagonal_between(lattice, from, to, parts) {
-                probe.see(crossing)?;
+            if let Some(crossing) = diagonal_between(lattice, ends, block_part) {
+                probe.visit(crossing)?;
             }
-            match left {
-                Some(edge) => probe.see(crossing_at(lattice, (from, to), out, edge))?,
+            match edge {
+                Some(edge) => probe.visit(crossing_at(lattice, ends, exit, edge))?,
                 None => probe.finish(),
             }
         }
-        if left.is_none() {
+        if edge.is_none() {
             return ControlFlow::Continue(());
         }
-        was_seen = !ruled_out;
-        (part, entered) = (out, left);
-        let rising_bits = if bits == 0 { FINEST_BITS } else { FACTOR_BITS };
-        let mut rises = (ruled_out || bits == 0) && bits < top_bits;
-        let mut leaves_larger = false;
-        if leaves_x {
-            x.advance(bits);
-            leaves_larger |= x.is_first_of(rising_bits);
+        was_visited = !is_ruled_out;
+        (part, entered) = (exit, edge);
+        walk.advance(exit, pyramid.top_bits());
+    }
+}
+
+/// The block that a line is in.
+struct BlockWalk {
+    x: AxisWalk,
+    y: AxisWalk,
+    /// The block's side is 2 to this power, in cells.
+    bits: u32,
+}
+
+impl BlockWalk {
+    fn new(lattice: &Lattice, (from, to): (DVec2, DVec2)) -> Self {
+        let x = AxisWalk::new(from.x, to.x, lattice.columns() - 1);
+        Self { x, y: AxisWalk::new(from.y, to.y, lattice.rows() - 1), bits: 0 }
+    }
+
+    /// The part at which the line leaves the block, at most 1.
+    #[inline]
+    fn exit(&self) -> f64 {
+        self.x.exit.min(self.y.exit).min(1.0)
+    }
+
+    #[inline]
+    fn is_ruled_out(&self, lattice: &Lattice, pyramid: &Pyramid, part: LinePart, probe: &impl Probe) -> bool {
+        let block = Post { column: self.x.block, row: self.y.block };
+        if self.bits == 0 {
+            let [a, b, c, d] = corners(lattice, block);
+            let highest_m = f64::from(a.max(b).max(c.max(d)));
+            probe.rules_out(part, highest_m, || f64::from(a.min(b).min(c.min(d))))
+        } else {
+            let highest_m = f64::from(pyramid.highest(self.bits, block));
+            probe.rules_out(part, highest_m, || f64::from(pyramid.lowest(self.bits, block)))
         }
-        if leaves_y {
-            y.advance(bits);
-            leaves_larger |= y.is_first_of(rising_bits);
+    }
+
+    /// The edge by which the line leaves the block.
+    #[inline]
+    fn exit_edge(&self, exit: f64) -> CellEdge {
+        match (self.x.exit == exit, self.y.exit == exit) {
+            (true, true) => {
+                CellEdge::Post(DVec2::new(self.x.far_line(self.bits), self.y.far_line(self.bits)))
+            }
+            (true, false) => CellEdge::Column(self.x.far_line(self.bits)),
+            _ => CellEdge::Row(self.y.far_line(self.bits)),
         }
-        rises &= leaves_larger;
-        if rises {
-            x.rise(bits, rising_bits);
-            y.rise(bits, rising_bits);
-            bits += rising_bits;
+    }
+
+    /// To the next smaller block that holds the line after `part`.
+    #[inline]
+    fn descend(&mut self, part: f64) {
+        let halvings = if self.bits == FINEST_BITS { FINEST_BITS } else { 1 };
+        for _ in 0..halvings {
+            self.bits -= 1;
+            self.x.halve(self.bits, part);
+            self.y.halve(self.bits, part);
+        }
+    }
+
+    /// To the next block, and from there to the larger one of at most 2^`top_bits` cells a side that the line enters with
+    /// it.
+    #[inline]
+    fn advance(&mut self, exit: f64, top_bits: u32) {
+        let doublings = if self.bits == 0 { FINEST_BITS } else { 1 };
+        let mut enters_larger = false;
+        for axis in [&mut self.x, &mut self.y] {
+            if axis.exit == exit {
+                axis.advance(self.bits);
+                enters_larger |= axis.is_first_of(doublings);
+            }
+        }
+        if enters_larger && self.bits < top_bits {
+            self.x.ascend(self.bits, doublings);
+            self.y.ascend(self.bits, doublings);
+            self.bits += doublings;
         }
     }
 }
 
-/// The edge by which the line leaves the block.
+/// [`Lattice::corner_heights`] with one bounds check.
 #[inline]
-fn edge_left(x: &AxisWalk, y: &AxisWalk, leaves_x: bool, leaves_y: bool, bits: u32) -> CellEdge {
-    match (leaves_x, leaves_y) {
-        (true, true) => CellEdge::Post(DVec2::new(x.far_line(bits), y.far_line(bits))),
-        (true, false) => CellEdge::Column(x.far_line(bits)),
-        _ => CellEdge::Row(y.far_line(bits)),
-    }
-}
-
-/// As [`Lattice::corner_heights`].
-#[inline]
-fn corners(lattice: &Lattice, column: u32, row: u32) -> [f32; 4] {
+fn corners(lattice: &Lattice, cell: Post) -> [f32; 4] {
     let stride = lattice.columns() as usize;
-    let south = row as usize * stride + column as usize;
+    let south = cell.row as usize * stride + cell.column as usize;
     let heights = &lattice.heights()[south..south + stride + 2];
     [heights[0], heights[1], heights[stride], heights[stride + 1]]
-}
-
-fn highest_of(corners: [f32; 4]) -> f64 {
-    f64::from(corners[0].max(corners[1]).max(corners[2].max(corners[3])))
-}
-
-fn lowest_of(corners: [f32; 4]) -> f64 {
-    f64::from(corners[0].min(corners[1]).min(corners[2].min(corners[3])))
 }
 
 /// One coordinate of a line, and the block that it is in.
 struct AxisWalk {
     from: f64,
     length: f64,
-    /// 1 where the coordinate grows or stays, 0 where it falls: what is added to a block's number for its far border.
+    /// 1 where the coordinate grows or stays, 0 where it falls: added to a block's number it gives its far border.
     ahead: u32,
     /// The block, counted from the lattice's first.
     block: u32,
@@ -166,10 +192,10 @@ impl AxisWalk {
     fn new(from: f64, to: f64, cells: u32) -> Self {
         let length = to - from;
         let ahead = u32::from(length >= 0.0);
-        // `from` lies on the lattice and is not below 0, where casting rounds down.
+        // `from` lies on the lattice and is not below 0, so casting rounds down.
         let behind = from as u32;
-        let on_line = f64::from(behind) == from;
-        let block = if ahead == 0 && on_line { behind.saturating_sub(1) } else { behind.min(cells - 1) };
+        let is_on_line = f64::from(behind) == from;
+        let block = if ahead == 0 && is_on_line { behind.saturating_sub(1) } else { behind.min(cells - 1) };
         // A line that stays on the lattice's far border runs along the last cells.
         let from = if length == 0.0 { from.min(f64::from(cells) - 0.5) } else { from };
         let mut axis = Self { from, length, ahead, block, exit: 0.0 };
@@ -177,7 +203,7 @@ impl AxisWalk {
         axis
     }
 
-    /// The part at which the line meets a column or row of posts, as `crossings` has it.
+    /// The part at which the line meets a column or row of posts, as `crossings` computes it.
     #[inline]
     fn part(&self, line: f64) -> f64 {
         if self.length == 0.0 {
@@ -200,31 +226,31 @@ impl AxisWalk {
         self.exit = self.part(self.far_line(bits));
     }
 
-    /// Whether the line comes into a block of 2^`larger_bits` of these, along a side, with this one.
+    /// Whether this block is the first that the line enters of a larger one, of 2^`doublings` such blocks a side.
     #[inline]
-    fn is_first_of(&self, larger_bits: u32) -> bool {
-        let last = (1 << larger_bits) - 1;
+    fn is_first_of(&self, doublings: u32) -> bool {
+        let last = (1 << doublings) - 1;
         self.block & last == if self.ahead == 1 { 0 } else { last }
     }
 
-    /// To the block of 2^`larger_bits` of these along a side.
+    /// To the larger block, of 2^`doublings` such blocks a side.
     #[inline]
-    fn rise(&mut self, bits: u32, larger_bits: u32) {
+    fn ascend(&mut self, bits: u32, doublings: u32) {
         let border = (self.block + self.ahead) << bits;
-        self.block >>= larger_bits;
-        if (self.block + self.ahead) << (bits + larger_bits) != border {
-            self.exit = self.part(self.far_line(bits + larger_bits));
+        self.block >>= doublings;
+        if (self.block + self.ahead) << (bits + doublings) != border {
+            self.exit = self.part(self.far_line(bits + doublings));
         }
     }
 
-    /// To the half of the block, now with sides of 2^`bits` cells, in which the line runs on from `part`.
+    /// To the half of the block, now with sides of 2^`bits` cells, that holds the line after `part`.
     #[inline]
     fn halve(&mut self, bits: u32, part: f64) {
         let middle = self.part(f64::from((2 * self.block + 1) << bits));
-        let passed = middle <= part;
-        if !passed {
+        let is_passed = middle <= part;
+        if !is_passed {
             self.exit = middle;
         }
-        self.block = 2 * self.block + u32::from(passed == (self.ahead == 1));
+        self.block = 2 * self.block + u32::from(is_passed == (self.ahead == 1));
     }
 }

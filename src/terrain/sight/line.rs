@@ -1,4 +1,4 @@
-//! A single line of sight, and what blocks it first.
+//! A single line of sight, and its first obstacle.
 
 use std::ops::ControlFlow;
 
@@ -8,7 +8,7 @@ use crate::dem::answer::Answer;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 use crate::terrain::sight::Curvature;
-use crate::terrain::sight::crossings::{LineCrossing, crossings};
+use crate::terrain::sight::crossings::{LineCrossing, LinePart, crossings};
 
 /// One end of a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,23 +19,23 @@ pub struct SightEnd {
     pub above_m: f64,
 }
 
-/// What came of looking.
+/// Whether a line of sight is clear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sight {
-    /// Nothing stands between.
+    /// Nothing blocks it.
     Clear,
-    /// The ground stands in the way.
+    /// The ground blocks it.
     Blocked(Blocker),
-    /// An end has no ground under it: what the ground answered there.
+    /// An end has no ground under it; the ground's answer there.
     NoGround(Answer),
 }
 
-/// The first place, from the observer, where the ground stands higher than the line.
+/// The first position, from the observer, where the ground is higher than the line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blocker {
     /// Map coordinates.
     pub at: DVec2,
-    /// Meters from the observer, along the ground.
+    /// Meters from the observer, in plan.
     pub distance_m: f64,
     /// The height of the ground there in meters.
     pub height_m: f64,
@@ -43,16 +43,15 @@ pub struct Blocker {
 
 /// Whether `target` can be seen from `observer`. Ground without data blocks nothing.
 ///
-/// Costs three crossings a cell of the way to the first blocker;
+/// Costs three crossings a cell up to the first blocker;
 /// [`SightGround::line_of_sight`](crate::terrain::sight::ground::SightGround::line_of_sight) gives the same answer for
 /// less.
 pub fn line_of_sight(lattice: &Lattice, observer: SightEnd, target: SightEnd, curvature: Curvature) -> Sight {
-    match GroundedSight::new(lattice, observer, target, curvature) {
-        Ok(look) => {
-            look.sight(crossings(lattice, look.grid.0, look.grid.1, |crossing| look.blocked(crossing)))
-        }
-        Err(missing) => Sight::NoGround(missing),
-    }
+    let sight = match GroundedSight::new(lattice, observer, target, curvature) {
+        Ok(sight) => sight,
+        Err(missing) => return Sight::NoGround(missing),
+    };
+    sight.result(crossings(lattice, sight.grid.0, sight.grid.1, |crossing| sight.check(crossing)))
 }
 
 /// A line of sight between two ends that have ground under them.
@@ -71,47 +70,46 @@ impl GroundedSight {
     /// The line from one end to the other.
     ///
     /// # Errors
-    /// What the ground answers at the first end, the observer's before the target's, that has none.
+    /// The ground's answer at the first end, the observer's before the target's, without a height.
     pub(in crate::terrain) fn new(
         lattice: &Lattice,
         observer: SightEnd,
         target: SightEnd,
         curvature: Curvature,
     ) -> Result<Self, Answer> {
-        let ground = |end: SightEnd| match ground_height(lattice, Interpolation::Planar, end.at) {
+        let height_m = |end: SightEnd| match ground_height(lattice, Interpolation::Planar, end.at) {
             Answer::Height(height_m) => Ok(height_m + end.above_m),
             missing => Err(missing),
         };
-        let (from, to) = (ground(observer)?, ground(target)?);
+        let (from_m, to_m) = (height_m(observer)?, height_m(target)?);
         let length_m = observer.at.distance(target.at);
-        let grid = |at: DVec2| lattice.grid_at(at - lattice.origin());
         Ok(Self {
             observer: observer.at,
             target: target.at,
-            grid: (grid(observer.at), grid(target.at)),
+            grid: (lattice.grid_from_map(observer.at), lattice.grid_from_map(target.at)),
             length_m,
-            line: SightLine::new(from, to, length_m, curvature),
+            line: SightLine::new(from_m, to_m, length_m, curvature),
         })
     }
 
-    /// Breaks where the ground at a crossing stands higher than the line.
+    /// Breaks where the ground at a crossing is higher than the line.
     #[inline]
-    pub(in crate::terrain) fn blocked(&self, crossing: LineCrossing) -> ControlFlow<LineCrossing> {
+    pub(in crate::terrain) fn check(&self, crossing: LineCrossing) -> ControlFlow<LineCrossing> {
         if self.line.is_below(crossing.height_m, crossing.part) {
             return ControlFlow::Break(crossing);
         }
         ControlFlow::Continue(())
     }
 
-    /// What came of looking along the whole line.
-    pub(in crate::terrain) fn sight(&self, looked: ControlFlow<LineCrossing>) -> Sight {
-        match looked {
+    /// The result of a walk along the whole line, which breaks at the first blocker.
+    pub(in crate::terrain) fn result(&self, walk: ControlFlow<LineCrossing>) -> Sight {
+        match walk {
             ControlFlow::Break(crossing) => Sight::Blocked(self.place(crossing)),
             ControlFlow::Continue(()) => Sight::Clear,
         }
     }
 
-    /// A crossing as a place on the map.
+    /// A crossing as a position on the map.
     pub(in crate::terrain) fn place(&self, crossing: LineCrossing) -> Blocker {
         Blocker {
             at: self.observer.lerp(self.target, crossing.part),
@@ -121,49 +119,50 @@ impl GroundedSight {
     }
 }
 
-/// A line of sight as heights over the way along it.
+/// A line of sight as a height at each part of it.
 #[derive(Clone, Copy, Debug)]
 pub struct SightLine {
-    from: f64,
-    rise: f64,
-    sag: f64,
+    from_m: f64,
+    rise_m: f64,
+    sag_m: f64,
 }
 
 impl SightLine {
-    /// The line from height `from` to height `to`, both in meters, over `length` meters of ground.
-    pub fn new(from: f64, to: f64, length: f64, curvature: Curvature) -> Self {
-        Self { from, rise: to - from, sag: curvature.drop_per_square_m() * length * length }
+    /// The line between two heights over `length_m` meters in plan.
+    pub fn new(from_m: f64, to_m: f64, length_m: f64, curvature: Curvature) -> Self {
+        let sag_m = curvature.drop_per_square_m() * length_m * length_m;
+        Self { from_m, rise_m: to_m - from_m, sag_m }
     }
 
-    /// The height of ground that the line would just touch, `part` of the way along it, 0..=1.
+    /// The height of ground that the line would just touch, at a part of it, 0..=1.
     ///
-    /// With the ground sunk by `sag·part²` and the target by `sag`, the line over unsunk ground is
+    /// With the ground lowered by `sag·part²` and the target by `sag`, the line over ground as it is lies at
     /// `from + rise·part − sag·part·(1 − part)`.
     pub fn height_m(&self, part: f64) -> f64 {
-        self.from + (self.rise - self.sag * (1.0 - part)) * part
+        self.from_m + (self.rise_m - self.sag_m * (1.0 - part)) * part
     }
 
-    /// Whether ground of this height stands higher than the line; ground without data (NaN) never does.
+    /// Whether ground of this height is higher than the line; ground without data (NaN) never is.
     pub fn is_below(&self, ground_m: f64, part: f64) -> bool {
         ground_m > self.height_m(part)
     }
 
-    /// A height that the line is nowhere below between two parts of it, but for rounding; at the best no more than
-    /// `sag/4` times the square of their distance too low.
+    /// A lower bound, but for rounding, of the line's height in a part of it; too low by at most `sag/4` times the square
+    /// of the part's length.
     ///
-    /// The line is a parabola that opens upward (downward where light bends more than the Earth does): it hangs below
-    /// its chord by no more than that.
+    /// The line is a parabola that opens upward (downward where refraction exceeds the curvature): it hangs below its
+    /// chord by no more than that.
     #[inline]
-    pub fn lowest_m(&self, (first, last): (f64, f64)) -> f64 {
+    pub(in crate::terrain) fn lowest_m(&self, (first, last): LinePart) -> f64 {
         let span = last - first;
-        let hang = 0.25 * self.sag.max(0.0) * span * span;
+        let hang = 0.25 * self.sag_m.max(0.0) * span * span;
         self.height_m(first).min(self.height_m(last)) - hang
     }
 
-    /// How far rounding may mistake the line's height, in meters, and more than that.
+    /// An upper bound of the rounding error of the line's height, in meters.
     pub(in crate::terrain) fn rounding_m(&self) -> f64 {
-        // Four operations, each off by half an epsilon of what is no larger than the sum of all three.
-        8.0 * f64::EPSILON * (self.from.abs() + self.rise.abs() + self.sag.abs())
+        // Four operations, each off by half an epsilon of a value no larger than the sum of all three.
+        8.0 * f64::EPSILON * (self.from_m.abs() + self.rise_m.abs() + self.sag_m.abs())
     }
 }
 
@@ -181,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wall_blocks_what_is_lower_than_the_line_over_it() {
+    fn a_wall_blocks_targets_below_the_line_over_it() {
         let walled = lattice(|column, _| if column == 50 { 10.0 } else { 0.0 });
         let look = |above| {
             line_of_sight(&walled, end(0.0, 5000.0, 5.0), end(10_000.0, 5000.0, above), Curvature::FLAT)
@@ -192,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn over_level_ground_the_horizon_is_where_geometry_puts_it() {
+    fn over_level_ground_the_horizon_is_at_its_geometric_distance() {
         let sea = lattice(|_, _| 0.0);
         let eye = 2.0;
         let curvature = Curvature { radius_m: 6_371_000.0, refraction: 0.0 };
@@ -203,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn an_end_off_the_model_or_over_a_hole_is_told() {
+    fn an_end_off_the_model_or_over_a_hole_has_no_ground() {
         let holed = lattice(|column, row| if column < 3 && row < 3 { f32::NAN } else { 1.0 });
         let look = |to| line_of_sight(&holed, end(5000.0, 5000.0, 2.0), to, Curvature::default());
         assert_eq!(look(end(50.0, 50.0, 2.0)), Sight::NoGround(Answer::NoData));

@@ -1,17 +1,16 @@
-//! Who can see what: lines of sight and viewsheds over the ground, with the Earth's curvature and refraction.
+//! Lines of sight and viewsheds over the ground, with the Earth's curvature and refraction.
 //!
 //! The ground is planar on the finest triangles. A line of sight runs from a point above the ground to another; it is
-//! blocked where, at a crossing with an edge of those triangles strictly between its ends, the ground stands higher
-//! than the line. The Earth's curvature lowers everything at distance `d` from the observer by `(1 − k) d² / 2R`, which
-//! is applied at the crossings and at the target: between two crossings the sunk ground counts as straight, wrong by
-//! less than `(1 − k) l² / 8R` for crossings `l` apart, 2 µm at 10 m.
+//! blocked where, at a crossing with an edge of those triangles strictly between its ends, the ground is higher than the
+//! line. The Earth's curvature lowers everything at distance `d` from the observer by `(1 − k) d² / 2R`, applied at the
+//! crossings and at the target. Between two crossings the lowered ground counts as straight, wrong by less than
+//! `(1 − k) l² / 8R` for crossings `l` apart, 2 µm at 10 m.
 //!
-//! **One definition.** [`line::line_of_sight`] is it. Whatever answers the same question faster must give the same
-//! answer to the last bit, and tests hold it to that: [`ground::SightGround`] does, by a [`pyramid::Pyramid`] of the
-//! highest and lowest posts.
+//! **One definition.** [`line::line_of_sight`] is it. Every faster answer must equal it to the last bit, and tests check
+//! that: [`ground::SightGround`] is faster by a [`pyramid::Pyramid`] of the highest and lowest posts.
 //!
 //! ```text
-//! crossings ─► line, rise (one line, all of it) ─► outlook (what of the ground is seen)
+//! crossings ─► line, rise (one line, all of it) ─► outlook (the visible stretches of a line)
 //!     │         ║ the same answers
 //!     └─► descent ─► ground (batches), ray ◄─ pyramid
 //! ```
@@ -26,12 +25,12 @@ pub mod ray;
 pub mod rise;
 pub mod viewshed;
 
-/// How the Earth's shape and its air bend a line of sight.
+/// The Earth's shape and the refraction of its air along a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Curvature {
     /// The Earth's radius in meters; infinite for a flat one.
     pub radius_m: f64,
-    /// The refraction coefficient k, the share of the curvature that the bending of light takes back: 0 for none.
+    /// The refraction coefficient k, the share of the curvature that refraction cancels: 0 for none.
     pub refraction: f64,
 }
 
@@ -46,7 +45,7 @@ impl Curvature {
     /// A flat Earth without air.
     pub const FLAT: Self = Self { radius_m: f64::INFINITY, refraction: 0.0 };
 
-    /// By how many meters the Earth sinks below the observer's horizontal, per square meter of distance.
+    /// How many meters the ground drops below the observer's horizontal, per square meter of distance.
     pub fn drop_per_square_m(self) -> f64 {
         (1.0 - self.refraction) / (2.0 * self.radius_m)
     }

@@ -1,111 +1,107 @@
-//! Areas that relations make of ways: ways are joined end to end to rings, and rings to polygons with holes.
+//! Areas of relations: ways are joined end to end to rings, and rings to polygons with holes.
 //!
-//! A relation is only taken whole: where one of its ways is not in the extract or does not close, its islands
-//! would turn into lakes.
+//! A relation is only read complete: with a way missing or open, its islands would turn into lakes.
 
 use std::collections::BTreeMap;
 
+use crate::vector::builder::Vertices;
 use crate::vector::error::VectorError;
-use crate::vector::osm::OsmLine;
-use crate::vector::osm::data::{OsmData, OsmTags, OsmWay, Relation, Role};
-use crate::vector::osm::saying;
-use crate::vector::rings::{self, HoleRule};
+use crate::vector::osm::data::{OsmData, OsmRelation, OsmTags, OsmWay};
+use crate::vector::osm::significant_tags;
+use crate::vector::rings::{HoleRule, RingLimitExceeded, RingSorter};
 
-/// The most vertices that the areas of one extract may have: far more than any has, and a gigabyte. Relations can
-/// name the same ways again and again.
-const MOST_VERTICES: usize = 1 << 25;
+/// Most vertices of all areas of an extract: far more than any has, and a gigabyte. Relations can name the same ways
+/// again and again.
+const MAX_VERTICES: usize = 1 << 25;
 
-/// Makes areas, and knows which ways they stand for.
-pub(super) struct Areas<'a> {
+/// Assembles areas, and tracks the ways that they replace.
+pub(super) struct AreaAssembler<'a> {
     data: &'a OsmData,
-    /// By the way's index: whether an area of a relation stands for it.
-    stood_for: Vec<bool>,
-    steps: u64,
+    /// By the way's index.
+    is_replaced: Vec<bool>,
+    sorter: RingSorter,
     vertices_left: usize,
 }
 
-impl<'a> Areas<'a> {
-    /// None yet.
+impl<'a> AreaAssembler<'a> {
+    /// An assembler that has replaced no way.
     pub fn new(data: &'a OsmData) -> Self {
-        let stood_for = vec![false; data.ways().len()];
-        Self { data, stood_for, steps: rings::MOST_STEPS, vertices_left: MOST_VERTICES }
+        Self {
+            data,
+            is_replaced: vec![false; data.ways().len()],
+            sorter: RingSorter::new(HoleRule::Nesting),
+            vertices_left: MAX_VERTICES,
+        }
     }
 
-    /// Whether an area of a relation stands for this way, so that it is none of its own.
-    pub fn stand_for(&self, way: &OsmWay) -> bool {
-        self.data.way(way.id).is_some_and(|index| self.stood_for[index])
+    /// Returns whether the area of a relation replaces that of the way.
+    pub fn replaces(&self, way: &OsmWay) -> bool {
+        self.data.way_index(way.id).is_some_and(|index| self.is_replaced[index])
     }
 
-    /// Lets the area of a relation with these tags stand for those of its outer ways that say nothing else. An outer
-    /// way that says more, as the building that a named site is made of, stays an area of its own; GDAL drops it.
-    pub fn stand_for_outer_ways(&mut self, relation: &Relation, tags: OsmTags) {
+    /// Lets the area of a relation with these tags replace its outer ways. An outer way with other tags, such as the
+    /// building that a named site consists of, stays an area; GDAL drops it.
+    pub fn replace_outer_ways(&mut self, relation: &OsmRelation, tags: &OsmTags) {
         let data = self.data;
         for index in outer_ways(data, relation) {
-            let mut own = saying(data, data.ways()[index].tags);
-            self.stood_for[index] |= own.all(|(key, value)| data.value(tags, key) == Some(value));
+            let mut own = significant_tags(data, &data.ways()[index].tags);
+            self.is_replaced[index] |= own.all(|(key, value)| data.value(tags, key) == Some(value));
         }
     }
 
-    /// The tags of a relation or, where it has none but its type, those of the first of its outer ways that has any:
-    /// old relations are tagged so.
-    pub fn tags_of(&self, relation: &Relation) -> OsmTags {
+    /// Returns the tags of a relation; where it has none but its type, as old relations, those of its first outer way
+    /// that has any.
+    pub fn tags_of(&self, relation: &'a OsmRelation) -> &'a OsmTags {
         let data = self.data;
-        if data.tags(relation.tags).any(|tag| tag.0 != "type") {
-            return relation.tags;
+        if data.tags(&relation.tags).any(|(key, _)| key != "type") {
+            return &relation.tags;
         }
-        let tags = outer_ways(data, relation).map(|index| data.ways()[index].tags);
-        let mut telling = tags.filter(|&tags| saying(data, tags).next().is_some());
-        telling.next().unwrap_or(relation.tags)
+        let mut tags = outer_ways(data, relation).map(|index| &data.ways()[index].tags);
+        tags.find(|tags| significant_tags(data, tags).next().is_some()).unwrap_or(&relation.tags)
     }
 
-    /// The polygons of a relation, each its rings, the outer one first; `None` where it is not whole.
+    /// Returns the polygons of a relation, each its rings with the outer one first; `None` where it is incomplete.
     ///
     /// # Errors
-    /// The areas of this extract are more than are taken.
-    pub fn polygons(&mut self, relation: &Relation) -> Result<Option<Vec<Vec<OsmLine>>>, VectorError> {
+    /// The areas of this extract exceed a limit.
+    pub fn polygons(&mut self, relation: &OsmRelation) -> Result<Option<Vec<Vec<Vertices>>>, VectorError> {
         let data = self.data;
-        let mut ids: Vec<i64> = data.members(relation).iter().map(|member| member.0).collect();
+        let mut ids: Vec<i64> = relation.members.iter().map(|member| member.way).collect();
         ids.sort_unstable();
         ids.dedup();
         let ways: Option<Vec<&OsmWay>> =
-            ids.iter().map(|&id| data.way(id).map(|index| &data.ways()[index])).collect();
-        let Some(loops) = ways.filter(|ways| !ways.is_empty()).and_then(|ways| closed_loops(data, &ways))
-        else {
-            return Ok(None);
-        };
-        let too_much = || {
-            VectorError::broken(
-                "OpenStreetMap extract",
-                format!("relation {}", relation.id),
-                "its areas are too many, too much inside each other",
-            )
+            ids.iter().map(|&id| data.way_index(id).map(|index| &data.ways()[index])).collect();
+        let loops = ways.filter(|ways| !ways.is_empty()).and_then(|ways| closed_loops(&ways));
+        let Some(loops) = loops else { return Ok(None) };
+        let exceeded = |error: RingLimitExceeded| {
+            let place = format!("relation {}", relation.id);
+            VectorError::refused("OpenStreetMap extract", place, error)
         };
         let vertices = loops.iter().map(Vec::len).sum();
-        self.vertices_left = self.vertices_left.checked_sub(vertices).ok_or_else(too_much)?;
-        let rings: Vec<OsmLine> =
-            loops.iter().map(|ids| ids.iter().filter_map(|&id| data.position(id)).collect()).collect();
+        self.vertices_left =
+            self.vertices_left.checked_sub(vertices).ok_or_else(|| exceeded(RingLimitExceeded))?;
+        let rings: Vec<Vertices> = loops.iter().map(|ids| data.positions(ids)).collect();
         if rings.iter().zip(&loops).any(|(ring, ids)| ring.len() < ids.len()) {
             return Ok(None);
         }
-        rings::polygons(rings, HoleRule::Nesting, &mut self.steps).map(Some).map_err(|_| too_much())
+        self.sorter.polygons(rings).map(Some).map_err(exceeded)
     }
 }
 
-/// The indices of the outer ways of a relation that the extract has.
-fn outer_ways<'a>(data: &'a OsmData, relation: &'a Relation) -> impl Iterator<Item = usize> + 'a {
-    let outer = data.members(relation).iter().filter(|member| member.1 == Role::Outer);
-    outer.filter_map(|member| data.way(member.0))
+/// Returns the indices of the outer ways of a relation that the extract has.
+fn outer_ways<'a>(data: &'a OsmData, relation: &'a OsmRelation) -> impl Iterator<Item = usize> + 'a {
+    let outer = relation.members.iter().filter(|member| !member.is_inner);
+    outer.filter_map(|member| data.way_index(member.way))
 }
 
-/// The closed lists of nodes that the ways make, joined at their ends; `None` where some are left over.
-fn closed_loops(data: &OsmData, ways: &[&OsmWay]) -> Option<Vec<Vec<i64>>> {
-    let mut ends: BTreeMap<i64, Vec<usize>> = BTreeMap::new();
+/// Joins ways at their ends and returns the ids of the nodes of each loop; `None` where some ways are left over.
+fn closed_loops(ways: &[&OsmWay]) -> Option<Vec<Vec<i64>>> {
+    let mut ways_at: BTreeMap<i64, Vec<usize>> = BTreeMap::new();
     for (index, way) in ways.iter().enumerate() {
-        let refs = data.refs(way);
-        let (first, last) = (*refs.first()?, *refs.last()?);
-        ends.entry(first).or_default().push(index);
+        let (first, last) = (*way.refs.first()?, *way.refs.last()?);
+        ways_at.entry(first).or_default().push(index);
         if first != last {
-            ends.entry(last).or_default().push(index);
+            ways_at.entry(last).or_default().push(index);
         }
     }
     let mut is_free = vec![true; ways.len()];
@@ -115,15 +111,15 @@ fn closed_loops(data: &OsmData, ways: &[&OsmWay]) -> Option<Vec<Vec<i64>>> {
             continue;
         }
         is_free[index] = false;
-        let mut ring = data.refs(ways[index]).to_vec();
+        let mut ring = ways[index].refs.to_vec();
         while ring.first() != ring.last() {
             let end = *ring.last()?;
-            // Ways that were taken are dropped from the list, so that it is not gone through again.
-            let candidates = ends.get_mut(&end)?;
+            // Ways in use are removed, so that no list is searched twice.
+            let candidates = ways_at.get_mut(&end)?;
             candidates.retain(|&candidate| is_free[candidate]);
             let next = candidates.pop()?;
             is_free[next] = false;
-            let refs = data.refs(ways[next]);
+            let refs = &ways[next].refs;
             if refs.first() == Some(&end) {
                 ring.extend(&refs[1..]);
             } else {

@@ -1,11 +1,11 @@
 //! OpenStreetMap extracts, as XML (`.osm`) and as protocol buffers (`.osm.pbf`): features by their tags.
 //!
-//! OpenStreetMap has nodes, ways (lists of nodes) and relations (lists of those). What is a line and what an area
-//! only tags say; the rules are those of GDAL's `osmconf.ini`, so that its layers hold the same features:
+//! OpenStreetMap has nodes, ways (lists of nodes) and relations (lists of those). Only tags state what is a line and
+//! what an area. The rules are those of GDAL's `osmconf.ini`, so that its layers hold the same features:
 //!
 //! | layer | holds |
 //! |---|---|
-//! | `points` | nodes with a tag that says something |
+//! | `points` | nodes with a significant tag |
 //! | `lines` | ways that are not areas |
 //! | `multipolygons` | closed ways that their tags make areas, and relations of the type multipolygon or boundary |
 //! | `roads`, `railways`, `waterways` | of `lines` those tagged `highway`, `railway`, `waterway` |
@@ -13,7 +13,7 @@
 //! | `buildings` | of `multipolygons` those tagged `building` |
 //!
 //! All tags become properties, as text, beside `osm_id` (of areas made of one way: `osm_way_id`). A node's tag `ele`
-//! is its elevation. Coordinates are kept to 10⁻⁷ degrees, about a centimeter, as OpenStreetMap itself keeps them.
+//! is its elevation. Coordinates are kept to 10⁻⁷ degrees, about a centimeter, as OpenStreetMap keeps them.
 //!
 //! ```text
 //! pbf ◄─ protobuf ─┐
@@ -26,69 +26,65 @@ mod pbf;
 mod protobuf;
 mod xml;
 
-use glam::DVec3;
-
-use crate::geom::crs::Crs;
-use crate::vector::collect::{Collector, FeatureParts, Properties, position};
+use crate::vector::builder::{FeatureParts, LayerBuilder, position};
 use crate::vector::error::VectorError;
-use crate::vector::feature::VectorLayer;
-use crate::vector::osm::areas::Areas;
-use crate::vector::osm::data::{OsmData, OsmTags, OsmWay};
+use crate::vector::feature::{Properties, VectorLayer};
+use crate::vector::hints::VectorHints;
+use crate::vector::osm::areas::AreaAssembler;
+use crate::vector::osm::data::{OsmData, OsmRelation, OsmTags, OsmWay};
 
-/// Whether `bytes` are an extract as protocol buffers.
+/// Returns whether `bytes` are an extract as protocol buffers.
 pub(super) fn is_pbf(bytes: &[u8]) -> bool {
     bytes.get(4..).is_some_and(|rest| rest.starts_with(b"\x0a\x09OSMHeader"))
 }
 
-/// The layer `wanted` of an extract as protocol buffers.
+/// Reads the requested layer of an extract as protocol buffers.
 ///
 /// # Errors
-/// [`VectorError`]; none or another layer is one.
-pub(super) fn read_pbf(
-    bytes: &[u8],
-    stated: Option<&Crs>,
-    wanted: Option<&str>,
-) -> Result<VectorLayer, VectorError> {
-    let kind = OsmLayer::named(wanted)?;
-    features(&pbf::read(bytes)?, stated, kind)
+/// [`VectorError`], also where no layer is requested.
+pub(super) fn read_pbf(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
+    OsmLayer::requested(hints)?.features(&pbf::read(bytes)?, hints)
 }
 
-/// The layer `wanted` of an extract as XML.
+/// Reads the requested layer of an extract as XML.
 ///
 /// # Errors
 /// As [`read_pbf`].
-pub(super) fn read_xml(
-    bytes: &[u8],
-    stated: Option<&Crs>,
-    wanted: Option<&str>,
-) -> Result<VectorLayer, VectorError> {
-    let kind = OsmLayer::named(wanted)?;
-    features(&xml::read(bytes)?, stated, kind)
+pub(super) fn read_xml(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
+    OsmLayer::requested(hints)?.features(&xml::read(bytes)?, hints)
+}
+
+/// The shape of a layer's features.
+#[derive(Clone, Copy)]
+enum OsmShape {
+    Point,
+    Line,
+    Area,
 }
 
 /// A layer of an extract.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum OsmLayer {
-    Points,
-    Lines,
-    Multipolygons,
-    Roads,
-    Railways,
-    Waterways,
-    Water,
-    Buildings,
+#[derive(Clone, Copy)]
+struct OsmLayer {
+    name: &'static str,
+    shape: OsmShape,
+    /// The keys, each with its value or none for any, one of which a feature has; with an empty list any significant
+    /// tag.
+    tags: &'static [(&'static str, Option<&'static str>)],
 }
 
-/// Every layer by its name.
-const LAYERS: [(&str, OsmLayer); 8] = [
-    ("points", OsmLayer::Points),
-    ("lines", OsmLayer::Lines),
-    ("multipolygons", OsmLayer::Multipolygons),
-    ("roads", OsmLayer::Roads),
-    ("railways", OsmLayer::Railways),
-    ("waterways", OsmLayer::Waterways),
-    ("water", OsmLayer::Water),
-    ("buildings", OsmLayer::Buildings),
+const LAYERS: [OsmLayer; 8] = [
+    OsmLayer { name: "points", shape: OsmShape::Point, tags: &[] },
+    OsmLayer { name: "lines", shape: OsmShape::Line, tags: &[] },
+    OsmLayer { name: "multipolygons", shape: OsmShape::Area, tags: &[] },
+    OsmLayer { name: "roads", shape: OsmShape::Line, tags: &[("highway", None)] },
+    OsmLayer { name: "railways", shape: OsmShape::Line, tags: &[("railway", None)] },
+    OsmLayer { name: "waterways", shape: OsmShape::Line, tags: &[("waterway", None)] },
+    OsmLayer {
+        name: "water",
+        shape: OsmShape::Area,
+        tags: &[("natural", Some("water")), ("waterway", Some("riverbank")), ("landuse", Some("reservoir"))],
+    },
+    OsmLayer { name: "buildings", shape: OsmShape::Area, tags: &[("building", None)] },
 ];
 
 /// Keys that make a closed way an area (`closed_ways_are_polygons`).
@@ -110,145 +106,120 @@ const AREA_KEYS: [&str; 16] = [
     "sport",
     "tourism",
 ];
-/// Keys and values that do.
+/// Tags that make a closed way an area.
 const AREA_TAGS: [(&str, &str); 2] = [("highway", "platform"), ("public_transport", "platform")];
-/// Keys that say nothing of what a thing is (`unsignificant`).
-const SAYING_NOTHING: [&str; 6] = ["created_by", "converted_by", "source", "time", "ele", "attribution"];
+/// Keys that do not state what a thing is (`unsignificant`).
+const INSIGNIFICANT_KEYS: [&str; 6] = ["created_by", "converted_by", "source", "time", "ele", "attribution"];
 
 impl OsmLayer {
-    fn named(wanted: Option<&str>) -> Result<Self, VectorError> {
-        let names = LAYERS.map(|(name, _)| name);
-        let Some(wanted) = wanted else { return Err(VectorError::which_layer(&names)) };
-        let found = LAYERS.iter().find(|(name, _)| *name == wanted);
-        found.map(|&(_, kind)| kind).ok_or_else(|| VectorError::no_such_layer(wanted, &names))
+    fn requested(hints: &VectorHints) -> Result<Self, VectorError> {
+        hints.choose_layer(&LAYERS.map(|layer| layer.name)).map(|index| LAYERS[index])
     }
 
-    /// Whether things with these tags, of the right shape, belong to it.
-    fn holds(self, data: &OsmData, tags: OsmTags) -> bool {
-        match self {
-            Self::Points | Self::Lines | Self::Multipolygons => saying(data, tags).next().is_some(),
-            Self::Roads => data.value(tags, "highway").is_some(),
-            Self::Railways => data.value(tags, "railway").is_some(),
-            Self::Waterways => data.value(tags, "waterway").is_some(),
-            Self::Water => {
-                let water = [("natural", "water"), ("waterway", "riverbank"), ("landuse", "reservoir")];
-                water.iter().any(|&(key, value)| data.value(tags, key) == Some(value))
-            }
-            Self::Buildings => data.value(tags, "building").is_some(),
+    fn features(self, data: &OsmData, hints: &VectorHints) -> Result<VectorLayer, VectorError> {
+        let mut layer = LayerBuilder::new(hints.crs_or_wgs84());
+        match self.shape {
+            OsmShape::Point => self.add_points(data, &mut layer)?,
+            OsmShape::Line => self.add_lines(data, &mut layer)?,
+            OsmShape::Area => self.add_areas(data, &mut layer)?,
+        }
+        Ok(layer.finish())
+    }
+
+    /// Returns whether things with these tags, of the layer's shape, belong to it.
+    fn holds(self, data: &OsmData, tags: &OsmTags) -> bool {
+        let has = |&(key, wanted): &(&str, Option<&str>)| {
+            let value = data.value(tags, key);
+            value.is_some() && (wanted.is_none() || wanted == value)
+        };
+        if self.tags.is_empty() {
+            significant_tags(data, tags).next().is_some()
+        } else {
+            self.tags.iter().any(has)
         }
     }
-}
 
-/// The tags that say what a thing is.
-fn saying(data: &OsmData, tags: OsmTags) -> impl Iterator<Item = (&str, &str)> {
-    data.tags(tags).filter(|(key, _)| !SAYING_NOTHING.contains(key))
-}
-
-/// Whether a closed way with these tags is an area.
-fn makes_area(data: &OsmData, tags: OsmTags) -> bool {
-    match data.value(tags, "area") {
-        Some("yes") => true,
-        Some("no") => false,
-        _ => data.tags(tags).any(|tag| AREA_KEYS.contains(&tag.0) || AREA_TAGS.contains(&tag)),
-    }
-}
-
-fn features(data: &OsmData, stated: Option<&Crs>, kind: OsmLayer) -> Result<VectorLayer, VectorError> {
-    let mut collector = Collector::new(stated.cloned().unwrap_or_else(Crs::wgs84));
-    match kind {
-        OsmLayer::Points => points(data, &mut collector)?,
-        OsmLayer::Lines | OsmLayer::Roads | OsmLayer::Railways | OsmLayer::Waterways => {
-            lines(data, kind, &mut collector)?
-        }
-        OsmLayer::Multipolygons | OsmLayer::Water | OsmLayer::Buildings => areas(data, kind, &mut collector)?,
-    }
-    Ok(collector.finish())
-}
-
-fn points(data: &OsmData, collector: &mut Collector) -> Result<(), VectorError> {
-    for (node, tags) in data.tagged_nodes() {
-        if !OsmLayer::Points.holds(data, tags) {
-            continue;
-        }
-        let elevation = data.value(tags, "ele").and_then(|text| text.trim().parse().ok());
-        let (x, y) = node.degrees();
-        let mut parts = FeatureParts::default();
-        parts.point(position(x, y, elevation));
-        collector.add(parts, properties(data, tags, "osm_id", node.id))?;
-    }
-    Ok(())
-}
-
-fn lines(data: &OsmData, kind: OsmLayer, collector: &mut Collector) -> Result<(), VectorError> {
-    let mut cut = 0;
-    for way in data.ways() {
-        if !kind.holds(data, way.tags) || is_area(data, way) {
-            continue;
-        }
-        let line = data.positions(way);
-        cut += usize::from(line.len() < data.refs(way).len());
-        if line.len() >= 2 {
+    fn add_points(self, data: &OsmData, layer: &mut LayerBuilder) -> Result<(), VectorError> {
+        for (node, tags) in data.tagged_nodes().iter().filter(|(_, tags)| self.holds(data, tags)) {
+            let elevation = data.value(tags, "ele").and_then(|text| text.trim().parse().ok());
+            let (x, y) = node.degrees();
             let mut parts = FeatureParts::default();
-            parts.line(line);
-            collector.add(parts, properties(data, way.tags, "osm_id", way.id))?;
+            parts.add_point(position(x, y, elevation));
+            layer.add(parts, properties(data, tags, "osm_id", node.id))?;
         }
+        Ok(())
     }
-    if cut > 0 {
-        collector.note(format!("{cut} ways leave the extract; only what lies within it is there"));
-    }
-    Ok(())
-}
 
-fn areas(data: &OsmData, kind: OsmLayer, collector: &mut Collector) -> Result<(), VectorError> {
-    let mut areas = Areas::new(data);
-    let mut incomplete = 0;
-    for relation in data.relations() {
-        if !matches!(data.value(relation.tags, "type"), Some("multipolygon" | "boundary")) {
-            continue;
-        }
-        let tags = areas.tags_of(relation);
-        if !kind.holds(data, tags) {
-            continue;
-        }
-        match areas.polygons(relation)? {
-            Some(polygons) => {
+    fn add_lines(self, data: &OsmData, layer: &mut LayerBuilder) -> Result<(), VectorError> {
+        let mut cut = 0;
+        for way in data.ways().iter().filter(|way| self.holds(data, &way.tags) && !is_area(data, way)) {
+            let line = data.positions(&way.refs);
+            cut += usize::from(line.len() < way.refs.len());
+            if line.len() >= 2 {
                 let mut parts = FeatureParts::default();
-                polygons.into_iter().for_each(|rings| parts.polygon(rings));
-                collector.add(parts, properties(data, tags, "osm_id", relation.id))?;
-                areas.stand_for_outer_ways(relation, tags);
+                parts.add_line(line);
+                layer.add(parts, properties(data, &way.tags, "osm_id", way.id))?;
             }
-            None => incomplete += 1,
         }
+        if cut > 0 {
+            layer.note(format!("{cut} ways leave the extract; only their parts within it are there"));
+        }
+        Ok(())
     }
-    collector.left_out(incomplete, "areas of relations that leave the extract or do not close");
-    for way in data.ways() {
-        if !kind.holds(data, way.tags) || !is_area(data, way) || areas.stand_for(way) {
-            continue;
+
+    fn add_areas(self, data: &OsmData, layer: &mut LayerBuilder) -> Result<(), VectorError> {
+        let mut assembler = AreaAssembler::new(data);
+        let mut incomplete = 0;
+        let is_area_relation = |relation: &&OsmRelation| {
+            matches!(data.value(&relation.tags, "type"), Some("multipolygon" | "boundary"))
+        };
+        for relation in data.relations().iter().filter(is_area_relation) {
+            let tags = assembler.tags_of(relation);
+            if !self.holds(data, tags) {
+                continue;
+            }
+            match assembler.polygons(relation)? {
+                Some(polygons) => {
+                    let mut parts = FeatureParts::default();
+                    polygons.into_iter().for_each(|rings| parts.add_polygon(rings));
+                    layer.add(parts, properties(data, tags, "osm_id", relation.id))?;
+                    assembler.replace_outer_ways(relation, tags);
+                }
+                None => incomplete += 1,
+            }
         }
-        let mut parts = FeatureParts::default();
-        parts.polygon([data.positions(way)]);
-        if !parts.is_empty() {
-            collector.add(parts, properties(data, way.tags, "osm_way_id", way.id))?;
+        layer.note_omitted(incomplete, "areas of relations that leave the extract or do not close");
+        for way in data.ways().iter().filter(|way| self.holds(data, &way.tags) && is_area(data, way)) {
+            let mut parts = FeatureParts::default();
+            parts.add_polygon([data.positions(&way.refs)]);
+            if !parts.is_empty() && !assembler.replaces(way) {
+                layer.add(parts, properties(data, &way.tags, "osm_way_id", way.id))?;
+            }
         }
+        Ok(())
     }
-    Ok(())
 }
 
-/// Whether the way is closed and its tags make it an area.
+/// Returns the tags that state what a thing is.
+fn significant_tags<'a>(data: &'a OsmData, tags: &'a OsmTags) -> impl Iterator<Item = (&'a str, &'a str)> {
+    data.tags(tags).filter(|(key, _)| !INSIGNIFICANT_KEYS.contains(key))
+}
+
+/// Returns whether the way is closed and its tags make it an area.
 fn is_area(data: &OsmData, way: &OsmWay) -> bool {
-    let refs = data.refs(way);
-    refs.len() >= 4 && refs.first() == refs.last() && makes_area(data, way.tags)
+    way.refs.len() >= 4
+        && way.refs.first() == way.refs.last()
+        && match data.value(&way.tags, "area") {
+            Some("yes") => true,
+            Some("no") => false,
+            _ => data.tags(&way.tags).any(|tag| AREA_KEYS.contains(&tag.0) || AREA_TAGS.contains(&tag)),
+        }
 }
 
-fn properties(data: &OsmData, tags: OsmTags, id_key: &str, id: i64) -> Properties {
-    let mut properties: Properties =
-        data.tags(tags).map(|(key, value)| (key.to_owned(), value.into())).collect();
-    properties.insert(id_key.into(), id.to_string().into());
-    properties
+fn properties(data: &OsmData, tags: &OsmTags, id_key: &str, id: i64) -> Properties {
+    let tags = data.tags(tags).map(|(key, value)| (key.to_owned(), value.into()));
+    tags.chain([(id_key.to_owned(), id.to_string().into())]).collect()
 }
-
-/// A ring or a line.
-type OsmLine = Vec<DVec3>;
 
 #[cfg(test)]
 mod tests {
@@ -272,7 +243,8 @@ mod tests {
     }
 
     fn layer(content: &str, wanted: &str) -> VectorLayer {
-        read_xml(extract(content).as_bytes(), None, Some(wanted)).expect(wanted)
+        let hints = VectorHints { layer: Some(wanted), ..VectorHints::default() };
+        read_xml(extract(content).as_bytes(), &hints).expect(wanted)
     }
 
     const SQUARE: [u32; 5] = [1, 10, 100, 91, 1];
@@ -312,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn an_outer_way_that_says_more_than_its_relation_stays_an_area() {
+    fn an_outer_way_with_other_tags_than_its_relation_stays_an_area() {
         let relation = "<relation id='9'><member type='way' ref='1' role='outer'/>\
             <tag k='type' v='multipolygon'/><tag k='name' v='Palace'/></relation>";
         let palace = way(1, &SQUARE, &[("building", "yes")]) + relation;
@@ -323,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn a_relation_without_tags_has_those_of_its_outer_way_which_is_then_no_area_of_its_own() {
+    fn a_relation_without_tags_takes_those_of_its_outer_way_and_replaces_it() {
         let relation = "<relation id='9'><member type='way' ref='1' role='outer'/>\
             <member type='way' ref='3' role='inner'/><tag k='type' v='multipolygon'/></relation>";
         let content = way(1, &SQUARE, &[("building", "yes")]) + &way(3, &[34, 35, 45, 34], &[]) + relation;
@@ -343,7 +315,8 @@ mod tests {
 
     #[test]
     fn without_a_layer_the_layers_are_listed() {
-        let error = read_xml(extract("").as_bytes(), None, None).expect_err("which?").to_string();
+        let error =
+            read_xml(extract("").as_bytes(), &VectorHints::default()).expect_err("which?").to_string();
         assert!(
             error.contains("8 layers") && error.contains("points, lines, multipolygons, roads"),
             "{error}"

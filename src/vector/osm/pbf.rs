@@ -5,65 +5,56 @@
 //! OSMHeader: what a reader must know │ OSMData: texts, then groups of nodes, ways or relations
 //! ```
 //!
-//! Numbers of nodes follow one another as differences. The limits on the sizes of headers and blobs are the
-//! format's own, and they are held before anything is unpacked.
+//! Numbers of nodes are stored as differences. The limits on the sizes of headers and blobs are the format's own; they
+//! are checked before anything is unpacked.
+//!
+//! Written by hand. `osmpbf` 0.3 makes a structure of every message before it can be counted: a file of 31 kB took 2 GB
+//! and 20 s. It also generates code with `protobuf-codegen` and `regex`, nineteen crates and 50 s of processor time.
 
+use crate::archive;
 use crate::vector::cursor::ByteCursor;
-use crate::vector::error::VectorError;
-use crate::vector::osm::data::{OsmData, Role, TextId, TooMuch};
-use crate::vector::osm::protobuf::{FieldValue, Malformed, Packed, fields, signed};
-use crate::vector::packed::inflate_zlib;
+use crate::vector::error::{VectorError, shorten};
+use crate::vector::osm::data::{
+    OsmData, OsmMember, OsmMemoryExceeded, OsmNode, OsmRelation, OsmTags, OsmWay, TextId,
+};
+use crate::vector::osm::protobuf::{
+    FieldValue, MalformedMessage, delta_sums, fields, last_values, next, varints, zigzag,
+};
 
 const FORMAT: &str = "OpenStreetMap extract (PBF)";
-const MOST_HEADER_BYTES: usize = 64 << 10;
-const MOST_BLOB_BYTES: usize = 32 << 20;
-/// What a file may ask its reader to know.
-const KNOWN: [&[u8]; 2] = [b"OsmSchema-V0.6", b"DenseNodes"];
-/// Billionths of a degree in a unit of coordinates here.
-const NANO_PER_UNIT: i64 = 100;
+const MAX_HEADER_BYTES: usize = 64 << 10;
+const MAX_BLOB_BYTES: u64 = 32 << 20;
+/// The features that a file may require of its reader.
+const KNOWN_FEATURES: [&[u8]; 2] = [b"OsmSchema-V0.6", b"DenseNodes"];
+/// Billionths of a degree in a unit of coordinates.
+const NANODEGREES_PER_UNIT: i64 = 100;
 
-/// What can go wrong in a block.
+/// What can be wrong with a block.
+#[derive(Debug, thiserror::Error)]
 enum PbfError {
-    Malformed,
-    TooMuch,
+    #[error(transparent)]
+    Malformed(#[from] MalformedMessage),
+    #[error(transparent)]
+    Memory(#[from] OsmMemoryExceeded),
+    #[error("a node lies beyond the poles or the date line")]
     NotOnEarth,
 }
 
-impl From<Malformed> for PbfError {
-    fn from(_: Malformed) -> Self {
-        Self::Malformed
-    }
-}
-
-impl From<TooMuch> for PbfError {
-    fn from(_: TooMuch) -> Self {
-        Self::TooMuch
-    }
-}
-
-/// Everything in the file.
+/// Reads everything in the file.
 ///
 /// # Errors
 /// [`VectorError`].
 pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
     let mut data = OsmData::default();
     let mut cursor = ByteCursor::new(bytes);
-    while !cursor.rest().is_empty() {
-        let at = cursor.at();
-        let broken = |reason: &str| VectorError::broken(FORMAT, format!("byte {at}"), reason);
-        let (kind, blob) =
-            next_blob(&mut cursor).ok_or_else(|| broken("there is no blob that fits the file"))?;
-        match kind {
-            b"OSMHeader" => check_header(&unpack(blob, at)?)?,
-            b"OSMData" => block(&unpack(blob, at)?, &mut data).map_err(|fault| {
-                broken(match fault {
-                    PbfError::Malformed => "a block is cut short or contradicts itself",
-                    PbfError::TooMuch => {
-                        "it holds more than fits in memory; cut it down with 'osmium extract'"
-                    }
-                    PbfError::NotOnEarth => "a node lies beyond the poles or the date line",
-                })
-            })?,
+    while !cursor.is_empty() {
+        let place = format!("the blob at byte {}", cursor.position());
+        let blob = next_blob(&mut cursor)
+            .ok_or_else(|| VectorError::broken(FORMAT, &place, "it does not fit the file"))?;
+        match blob.kind {
+            b"OSMHeader" => check_header(&unpack(blob.content, &place)?)?,
+            b"OSMData" => read_block(&unpack(blob.content, &place)?, &mut data)
+                .map_err(|error| VectorError::refused(FORMAT, &place, error))?,
             _ => {}
         }
     }
@@ -71,109 +62,96 @@ pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
     Ok(data)
 }
 
-/// The type and the bytes of the next blob.
-fn next_blob<'a>(cursor: &mut ByteCursor<'a>) -> Option<(&'a [u8], &'a [u8])> {
-    let length = u32::from_be_bytes(cursor.array()?) as usize;
-    let header = cursor.take(Some(length).filter(|&length| length <= MOST_HEADER_BYTES)?)?;
-    let (mut kind, mut size) = (None, None);
-    for field in fields(header) {
-        match field.ok()? {
-            (1, FieldValue::Bytes(name)) => kind = Some(name),
-            (3, FieldValue::Number(bytes)) => size = usize::try_from(bytes).ok(),
-            _ => {}
-        }
-    }
-    let blob = cursor.take(size.filter(|&size| size <= MOST_BLOB_BYTES)?)?;
-    Some((kind?, blob))
+struct PbfBlob<'a> {
+    kind: &'a [u8],
+    content: &'a [u8],
 }
 
-/// A blob's content.
-fn unpack(blob: &[u8], at: usize) -> Result<Vec<u8>, VectorError> {
-    let broken = |reason: &str| VectorError::broken(FORMAT, format!("the blob at byte {at}"), reason);
-    let (mut raw, mut packed, mut size, mut other) = (None, None, None, false);
-    for field in fields(blob) {
-        match field.map_err(|_| broken("it is cut short"))? {
-            (1, FieldValue::Bytes(bytes)) => raw = Some(bytes),
-            (2, FieldValue::Number(bytes)) => size = usize::try_from(bytes).ok(),
-            (3, FieldValue::Bytes(bytes)) => packed = Some(bytes),
-            (4..=7, _) => other = true,
-            _ => {}
+fn next_blob<'a>(cursor: &mut ByteCursor<'a>) -> Option<PbfBlob<'a>> {
+    let length = u32::from_be_bytes(cursor.array()?) as usize;
+    let header = cursor.take(Some(length).filter(|&length| length <= MAX_HEADER_BYTES)?)?;
+    let [FieldValue::Bytes(kind), FieldValue::Number(bytes)] = last_values(header, [1, 3]).ok()? else {
+        return None;
+    };
+    let bytes = Some(bytes).filter(|&bytes| bytes <= MAX_BLOB_BYTES)?;
+    Some(PbfBlob { kind, content: cursor.take(bytes as usize)? })
+}
+
+/// Returns a blob's content, unpacked.
+fn unpack(blob: &[u8], place: &str) -> Result<Vec<u8>, VectorError> {
+    let broken = |reason: &'static str| VectorError::broken(FORMAT, place, reason);
+    let values = last_values(blob, [1, 2, 3, 4, 5, 6, 7]);
+    let [raw, size, zlib, others @ ..] =
+        values.map_err(|error| VectorError::refused(FORMAT, place, error))?;
+    match (raw, zlib) {
+        (FieldValue::Bytes(raw), _) => Ok(raw.to_vec()),
+        (_, FieldValue::Bytes(packed)) => {
+            let FieldValue::Number(size @ 0..=MAX_BLOB_BYTES) = size else {
+                return Err(broken("it states no size that is allowed"));
+            };
+            let unpacked = archive::inflate_zlib(packed, size)
+                .map_err(|error| VectorError::refused(FORMAT, place, error))?;
+            let is_full = unpacked.len() as u64 == size;
+            if is_full { Ok(unpacked) } else { Err(broken("it unpacks to less than it states")) }
         }
-    }
-    match (raw, packed) {
-        (Some(raw), _) => Ok(raw.to_vec()),
-        (None, Some(packed)) => {
-            let size = size.filter(|&size| size <= MOST_BLOB_BYTES);
-            let size = size.ok_or_else(|| broken("it says no size that is allowed"))?;
-            let unpacked = inflate_zlib(packed, size, FORMAT)?;
-            if unpacked.len() == size { Ok(unpacked) } else { Err(broken("it unpacks to less than it says")) }
+        _ if others.iter().any(|value| !matches!(value, FieldValue::Absent)) => {
+            Err(VectorError::Unsupported {
+                format: FORMAT,
+                content: "blobs packed by LZMA, LZ4 or ZSTD".into(),
+                remedy: "convert it with: osmium cat -f pbf,pbf_compression=zlib",
+            })
         }
-        (None, None) if other => Err(VectorError::Unsupported {
-            format: FORMAT,
-            what: "blobs packed by LZMA, LZ4 or ZSTD".into(),
-            remedy: "write it anew with: osmium cat -f pbf,pbf_compression=zlib".into(),
-        }),
-        (None, None) => Err(broken("it holds nothing")),
+        _ => Err(broken("it holds nothing")),
     }
 }
 
 fn check_header(header: &[u8]) -> Result<(), VectorError> {
     for field in fields(header) {
-        let field = field.map_err(|_| VectorError::broken(FORMAT, "its header", "it is cut short"))?;
+        let field = field.map_err(|error| VectorError::refused(FORMAT, "its header", error))?;
         if let (4, FieldValue::Bytes(name)) = field
-            && !KNOWN.contains(&name)
+            && !KNOWN_FEATURES.contains(&name)
         {
             return Err(VectorError::Unsupported {
                 format: FORMAT,
-                what: format!("'{}'", String::from_utf8_lossy(&name[..name.len().min(60)])),
-                remedy: "write it anew as a plain extract, for example with: osmium cat".into(),
+                content: format!("'{}'", shorten(&String::from_utf8_lossy(name))).into(),
+                remedy: "convert it to a plain extract, for example with: osmium cat",
             });
         }
     }
     Ok(())
 }
 
-/// A text of a block, and its number in the data once it is used there.
-type Entry<'a> = (&'a [u8], Option<TextId>);
-
 /// One block while it is read.
 struct PbfBlock<'a> {
-    texts: Vec<Entry<'a>>,
+    data: &'a mut OsmData,
+    texts: Vec<PbfText<'a>>,
+    /// Billionths of a degree in a unit of the block, and those of its origin: longitude, latitude.
     granularity: i64,
-    offset: [i64; 2],
-    tags: Vec<(TextId, TextId)>,
-    refs: Vec<i64>,
-    members: Vec<(i64, Role)>,
+    origin: [i64; 2],
 }
 
-fn block(message: &[u8], data: &mut OsmData) -> Result<(), PbfError> {
+/// A text of a block, with its index in the data once it is used.
+struct PbfText<'a> {
+    bytes: &'a [u8],
+    id: Option<TextId>,
+}
+
+fn read_block(message: &[u8], data: &mut OsmData) -> Result<(), PbfError> {
+    let [texts, granularity, latitude, longitude] = last_values(message, [1, 17, 19, 20])?;
     let mut block = PbfBlock {
-        texts: Vec::new(),
-        granularity: NANO_PER_UNIT,
-        offset: [0; 2],
-        tags: Vec::new(),
-        refs: Vec::new(),
-        members: Vec::new(),
+        data,
+        texts: read_texts(texts.bytes()?)?,
+        granularity: granularity.number_or(NANODEGREES_PER_UNIT as u64)? as i64,
+        origin: [longitude.number_or(0)? as i64, latitude.number_or(0)? as i64],
     };
-    // Groups need what may follow them, so they wait.
-    let mut groups = Vec::new();
     for field in fields(message) {
-        match field? {
-            (1, value) => block.texts = texts(value.bytes()?)?,
-            (2, value) => groups.push(value.bytes()?),
-            (17, value) => block.granularity = value.number()? as i64,
-            (19, value) => block.offset[1] = value.number()? as i64,
-            (20, value) => block.offset[0] = value.number()? as i64,
-            _ => {}
-        }
-    }
-    for group in groups {
-        for field in fields(group) {
+        let (2, group) = field? else { continue };
+        for field in fields(group.bytes()?) {
             match field? {
-                (1, value) => block.node(value.bytes()?, data)?,
-                (2, value) => block.dense_nodes(value.bytes()?, data)?,
-                (3, value) => block.way(value.bytes()?, data)?,
-                (4, value) => block.relation(value.bytes()?, data)?,
+                (1, node) => block.read_node(node.bytes()?)?,
+                (2, nodes) => block.read_dense_nodes(nodes.bytes()?)?,
+                (3, way) => block.read_way(way.bytes()?)?,
+                (4, relation) => block.read_relation(relation.bytes()?)?,
                 _ => {}
             }
         }
@@ -181,176 +159,107 @@ fn block(message: &[u8], data: &mut OsmData) -> Result<(), PbfError> {
     Ok(())
 }
 
-fn texts(table: &[u8]) -> Result<Vec<Entry<'_>>, PbfError> {
+fn read_texts(table: &[u8]) -> Result<Vec<PbfText<'_>>, PbfError> {
     let mut texts = Vec::new();
     for field in fields(table) {
-        if let (1, value) = field? {
-            texts.push((value.bytes()?, None));
+        if let (1, text) = field? {
+            texts.push(PbfText { bytes: text.bytes()?, id: None });
         }
     }
     Ok(texts)
 }
 
 impl PbfBlock<'_> {
-    /// The number in `data` of the block's text `index`.
-    fn text(&mut self, index: u64, data: &mut OsmData) -> Result<TextId, PbfError> {
-        let entry = usize::try_from(index).ok().and_then(|index| self.texts.get_mut(index));
-        let (bytes, number) = entry.ok_or(PbfError::Malformed)?;
-        match number {
-            Some(known) => Ok(*known),
-            None => Ok(*number.insert(data.text(&String::from_utf8_lossy(bytes))?)),
+    fn text(&mut self, index: u64) -> Result<TextId, PbfError> {
+        let text = usize::try_from(index).ok().and_then(|index| self.texts.get_mut(index));
+        let text = text.ok_or(MalformedMessage)?;
+        match text.id {
+            Some(id) => Ok(id),
+            None => Ok(*text.id.insert(self.data.text(&String::from_utf8_lossy(text.bytes))?)),
         }
     }
 
-    /// In ten-millionths of a degree, from the block's units.
-    fn place(&self, place: [i64; 2]) -> Result<[i32; 2], PbfError> {
-        const HALVES: [i64; 2] = [180 * 10_000_000, 90 * 10_000_000];
-        let mut units = [0; 2];
-        for axis in 0..2 {
-            let nano = place[axis].checked_mul(self.granularity);
-            let nano =
-                nano.and_then(|nano| nano.checked_add(self.offset[axis])).ok_or(PbfError::NotOnEarth)?;
-            let rounded = nano.saturating_add(NANO_PER_UNIT / 2).div_euclid(NANO_PER_UNIT);
-            if rounded.abs() > HALVES[axis] {
-                return Err(PbfError::NotOnEarth);
-            }
-            units[axis] = rounded as i32;
+    /// Returns the node at a longitude and latitude in units of the block.
+    fn node(&self, id: i64, position: [i64; 2]) -> Result<OsmNode, PbfError> {
+        const MAX_UNITS: [i64; 2] = [180 * 10_000_000, 90 * 10_000_000];
+        let units = |axis: usize| {
+            let nanodegrees = position[axis].checked_mul(self.granularity)?.checked_add(self.origin[axis])?;
+            let rounded =
+                nanodegrees.saturating_add(NANODEGREES_PER_UNIT / 2).div_euclid(NANODEGREES_PER_UNIT);
+            (rounded.abs() <= MAX_UNITS[axis]).then_some(rounded as i32)
+        };
+        match (units(0), units(1)) {
+            (Some(longitude), Some(latitude)) => Ok(OsmNode { id, longitude, latitude }),
+            _ => Err(PbfError::NotOnEarth),
         }
-        Ok(units)
     }
 
-    fn node(&mut self, message: &[u8], data: &mut OsmData) -> Result<(), PbfError> {
-        let (mut id, mut place, mut keys, mut values) = (0, [0; 2], &[][..], &[][..]);
-        for field in fields(message) {
-            match field? {
-                (1, value) => id = signed(value.number()?),
-                (2, value) => keys = value.bytes()?,
-                (3, value) => values = value.bytes()?,
-                (8, value) => place[1] = signed(value.number()?),
-                (9, value) => place[0] = signed(value.number()?),
-                _ => {}
-            }
-        }
-        self.read_tags(keys, values, data)?;
-        let place = self.place(place)?;
-        let tags = data.add_tags(&self.tags)?;
-        Ok(data.add_node(id, place, tags)?)
+    fn read_node(&mut self, message: &[u8]) -> Result<(), PbfError> {
+        let [id, keys, values, latitude, longitude] = last_values(message, [1, 2, 3, 8, 9])?;
+        let [id, latitude, longitude] = [id.number_or(0)?, latitude.number_or(0)?, longitude.number_or(0)?];
+        let tags = self.tags(keys, values)?;
+        let node = self.node(zigzag(id), [zigzag(longitude), zigzag(latitude)])?;
+        Ok(self.data.add_node(node, tags)?)
     }
 
-    /// Ids and coordinates as rows of differences; tags of all in one row, each node's ended by a 0.
-    fn dense_nodes(&mut self, message: &[u8], data: &mut OsmData) -> Result<(), PbfError> {
-        let [mut ids, mut latitudes, mut longitudes, mut tags] = [<&[u8]>::default(); 4];
-        for field in fields(message) {
-            match field? {
-                (1, value) => ids = value.bytes()?,
-                (8, value) => latitudes = value.bytes()?,
-                (9, value) => longitudes = value.bytes()?,
-                (10, value) => tags = value.bytes()?,
-                _ => {}
-            }
+    /// Reads nodes whose ids and coordinates are packed differences. The tags of all are packed together.
+    fn read_dense_nodes(&mut self, message: &[u8]) -> Result<(), PbfError> {
+        let [ids, latitudes, longitudes, tags] = last_values(message, [1, 8, 9, 10])?;
+        let (mut longitudes, mut latitudes) =
+            (delta_sums(longitudes.bytes()?), delta_sums(latitudes.bytes()?));
+        let has_tags = !tags.bytes()?.is_empty();
+        let mut tags = varints(tags.bytes()?);
+        for id in delta_sums(ids.bytes()?) {
+            let position = [next(&mut longitudes)?, next(&mut latitudes)?];
+            let node = self.node(id?, position)?;
+            let tags = if has_tags { self.dense_tags(&mut tags)? } else { OsmTags::default() };
+            self.data.add_node(node, tags)?;
         }
-        let has_tags = !tags.is_empty();
-        let [mut ids, mut latitudes, mut longitudes, mut tags] =
-            [ids, latitudes, longitudes, tags].map(Packed::new);
-        let (mut id, mut place) = (0i64, [0i64; 2]);
-        while let Some(step) = ids.next_signed() {
-            id = id.wrapping_add(step);
-            for (axis, steps) in [&mut longitudes, &mut latitudes].into_iter().enumerate() {
-                place[axis] = place[axis].wrapping_add(steps.next_signed().ok_or(PbfError::Malformed)?);
-            }
-            self.tags.clear();
-            if has_tags {
-                self.read_dense_tags(&mut tags, data)?;
-            }
-            let place = self.place(place)?;
-            let tags = data.add_tags(&self.tags)?;
-            data.add_node(id, place, tags)?;
-        }
-        if ids.is_whole() { Ok(()) } else { Err(PbfError::Malformed) }
+        Ok(())
     }
 
     /// Reads the tags of one dense node: keys and values in turn, until a 0.
-    fn read_dense_tags(&mut self, tags: &mut Packed<'_>, data: &mut OsmData) -> Result<(), PbfError> {
+    fn dense_tags(
+        &mut self,
+        packed: &mut impl Iterator<Item = Result<u64, MalformedMessage>>,
+    ) -> Result<OsmTags, PbfError> {
+        let mut tags = Vec::new();
         loop {
-            let key = tags.next_unsigned().ok_or(PbfError::Malformed)?;
-            if key == 0 {
-                return Ok(());
+            match next(packed)? {
+                0 => return Ok(tags.into()),
+                key => tags.push((self.text(key)?, self.text(next(packed)?)?)),
             }
-            let value = tags.next_unsigned().ok_or(PbfError::Malformed)?;
-            let tag = (self.text(key, data)?, self.text(value, data)?);
-            self.tags.push(tag);
         }
     }
 
-    fn way(&mut self, message: &[u8], data: &mut OsmData) -> Result<(), PbfError> {
-        let (mut id, [mut keys, mut values, mut refs]) = (0, [<&[u8]>::default(); 3]);
-        for field in fields(message) {
-            match field? {
-                (1, value) => id = value.number()? as i64,
-                (2, value) => keys = value.bytes()?,
-                (3, value) => values = value.bytes()?,
-                (8, value) => refs = value.bytes()?,
-                _ => {}
-            }
-        }
-        self.refs.clear();
-        let (mut steps, mut node) = (Packed::new(refs), 0i64);
-        while let Some(step) = steps.next_signed() {
-            node = node.wrapping_add(step);
-            self.refs.push(node);
-        }
-        if !steps.is_whole() {
-            return Err(PbfError::Malformed);
-        }
-        self.read_tags(keys, values, data)?;
-        let tags = data.add_tags(&self.tags)?;
-        Ok(data.add_way(id, &self.refs, tags)?)
+    fn read_way(&mut self, message: &[u8]) -> Result<(), PbfError> {
+        let [id, keys, values, refs] = last_values(message, [1, 2, 3, 8])?;
+        let (id, refs) = (id.number_or(0)? as i64, delta_sums(refs.bytes()?).collect::<Result<_, _>>()?);
+        let tags = self.tags(keys, values)?;
+        Ok(self.data.add_way(OsmWay { id, refs, tags })?)
     }
 
-    fn relation(&mut self, message: &[u8], data: &mut OsmData) -> Result<(), PbfError> {
+    fn read_relation(&mut self, message: &[u8]) -> Result<(), PbfError> {
         const WAY: u64 = 1;
-        let (mut id, [mut keys, mut values, mut roles, mut members, mut kinds]) =
-            (0, [<&[u8]>::default(); 5]);
-        for field in fields(message) {
-            match field? {
-                (1, value) => id = value.number()? as i64,
-                (2, value) => keys = value.bytes()?,
-                (3, value) => values = value.bytes()?,
-                (8, value) => roles = value.bytes()?,
-                (9, value) => members = value.bytes()?,
-                (10, value) => kinds = value.bytes()?,
-                _ => {}
-            }
-        }
-        self.members.clear();
-        let [mut roles, mut members, mut kinds] = [roles, members, kinds].map(Packed::new);
-        let mut member = 0i64;
-        while let Some(step) = members.next_signed() {
-            member = member.wrapping_add(step);
-            let kind = kinds.next_unsigned().ok_or(PbfError::Malformed)?;
-            let role = roles.next_unsigned().and_then(|role| usize::try_from(role).ok());
-            let (role, _) = role.and_then(|role| self.texts.get(role)).ok_or(PbfError::Malformed)?;
+        let [id, keys, values, roles, ways, kinds] = last_values(message, [1, 2, 3, 8, 9, 10])?;
+        let (mut roles, mut kinds) = (varints(roles.bytes()?), varints(kinds.bytes()?));
+        let mut members = Vec::new();
+        for way in delta_sums(ways.bytes()?) {
+            let (way, kind, role) = (way?, next(&mut kinds)?, next(&mut roles)?);
+            let role = usize::try_from(role).ok().and_then(|role| self.texts.get(role));
+            let is_inner = role.ok_or(MalformedMessage)?.bytes == b"inner";
             if kind == WAY {
-                self.members.push((member, if *role == b"inner" { Role::Inner } else { Role::Outer }));
+                members.push(OsmMember { way, is_inner });
             }
         }
-        if !members.is_whole() {
-            return Err(PbfError::Malformed);
-        }
-        self.read_tags(keys, values, data)?;
-        let tags = data.add_tags(&self.tags)?;
-        Ok(data.add_relation(id, &self.members, tags)?)
+        let (id, tags) = (id.number_or(0)? as i64, self.tags(keys, values)?);
+        Ok(self.data.add_relation(OsmRelation { id, members: members.into(), tags })?)
     }
 
-    /// Reads tags from a row of keys and one of values.
-    fn read_tags(&mut self, keys: &[u8], values: &[u8], data: &mut OsmData) -> Result<(), PbfError> {
-        self.tags.clear();
-        let (mut keys, mut values) = (Packed::new(keys), Packed::new(values));
-        while let Some(key) = keys.next_unsigned() {
-            let value = values.next_unsigned().ok_or(PbfError::Malformed)?;
-            let tag = (self.text(key, data)?, self.text(value, data)?);
-            self.tags.push(tag);
-        }
-        if keys.is_whole() { Ok(()) } else { Err(PbfError::Malformed) }
+    /// Reads packed keys and their values.
+    fn tags(&mut self, keys: FieldValue<'_>, values: FieldValue<'_>) -> Result<OsmTags, PbfError> {
+        let mut values = varints(values.bytes()?);
+        let tag = |key: Result<u64, MalformedMessage>| Ok((self.text(key?)?, self.text(next(&mut values)?)?));
+        varints(keys.bytes()?).map(tag).collect()
     }
 }

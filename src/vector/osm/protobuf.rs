@@ -1,81 +1,129 @@
-//! As much of protocol buffers as OpenStreetMap's need: fields of numbers and of bytes, and numbers in a row.
+//! The part of protocol buffers that OpenStreetMap uses: fields of numbers and of bytes, and packed numbers.
 //!
-//! A message is fields one after another, each a number `field << 3 | wire type` and a value: 0 a number of seven
-//! bits a byte, 1 eight bytes, 2 a length and that many bytes, 5 four bytes.
+//! A message is fields one after another, each a number `field << 3 | wire type` and a value: 0 a number of seven bits
+//! a byte, 1 eight bytes, 2 a length and that many bytes, 5 four bytes. Nothing is allocated for what is not used.
 
 use crate::vector::cursor::ByteCursor;
 
-/// The message is cut short, or no message.
-#[derive(Debug)]
-pub(super) struct Malformed;
+/// The message is cut short, or not a message.
+#[derive(Debug, thiserror::Error)]
+#[error("a block is cut short or contradicts itself")]
+pub(super) struct MalformedMessage;
 
 /// A field's value.
 #[derive(Clone, Copy)]
 pub(super) enum FieldValue<'a> {
+    /// The message does not have the field.
+    Absent,
     /// A number.
     Number(u64),
-    /// Text, a message, or numbers in a row.
+    /// Text, a message, or packed numbers.
     Bytes(&'a [u8]),
-    /// Of a type that no field here has.
-    Other,
+    /// Four or eight bytes, which no field here has.
+    Fixed,
 }
 
 impl<'a> FieldValue<'a> {
-    /// The number that it is.
-    pub fn number(self) -> Result<u64, Malformed> {
+    /// Returns the number, or `default` for an absent field.
+    pub fn number_or(self, default: u64) -> Result<u64, MalformedMessage> {
         match self {
+            Self::Absent => Ok(default),
             Self::Number(number) => Ok(number),
-            Self::Bytes(_) | Self::Other => Err(Malformed),
+            Self::Bytes(_) | Self::Fixed => Err(MalformedMessage),
         }
     }
 
-    /// The bytes that it is.
-    pub fn bytes(self) -> Result<&'a [u8], Malformed> {
+    /// Returns the bytes, none for an absent field.
+    pub fn bytes(self) -> Result<&'a [u8], MalformedMessage> {
         match self {
+            Self::Absent => Ok(&[]),
             Self::Bytes(bytes) => Ok(bytes),
-            Self::Number(_) | Self::Other => Err(Malformed),
+            Self::Number(_) | Self::Fixed => Err(MalformedMessage),
         }
     }
 }
 
-/// The fields of a message, in its order.
-pub(super) fn fields<'a>(
-    message: &'a [u8],
-) -> impl Iterator<Item = Result<(u64, FieldValue<'a>), Malformed>> {
-    let mut cursor = ByteCursor::new(message);
-    std::iter::from_fn(move || {
-        if cursor.rest().is_empty() {
-            return None;
-        }
-        let field = field(&mut cursor).ok_or(Malformed);
-        if field.is_err() {
-            // Nothing that follows means anything.
-            cursor = ByteCursor::new(&[]);
-        }
-        Some(field)
+/// Returns the fields of a message, each its number and its value, in order. The first error ends them.
+pub(super) fn fields(
+    message: &[u8],
+) -> impl Iterator<Item = Result<(u64, FieldValue<'_>), MalformedMessage>> {
+    items(message, |cursor| {
+        let key = varint(cursor)?;
+        let value = match key & 7 {
+            0 => FieldValue::Number(varint(cursor)?),
+            1 => cursor.take(8).map(|_| FieldValue::Fixed)?,
+            2 => {
+                let length = usize::try_from(varint(cursor)?).ok()?;
+                FieldValue::Bytes(cursor.take(length)?)
+            }
+            5 => cursor.take(4).map(|_| FieldValue::Fixed)?,
+            _ => return None,
+        };
+        Some((key >> 3, value))
     })
 }
 
-fn field<'a>(cursor: &mut ByteCursor<'a>) -> Option<(u64, FieldValue<'a>)> {
-    let key = varint(cursor)?;
-    let value = match key & 7 {
-        0 => FieldValue::Number(varint(cursor)?),
-        1 => cursor.take(8).map(|_| FieldValue::Other)?,
-        2 => {
-            let length = usize::try_from(varint(cursor)?).ok()?;
-            FieldValue::Bytes(cursor.take(length)?)
+/// Returns the last value of each of the fields `numbers`.
+pub(super) fn last_values<const N: usize>(
+    message: &[u8],
+    numbers: [u64; N],
+) -> Result<[FieldValue<'_>; N], MalformedMessage> {
+    let mut values = [FieldValue::Absent; N];
+    for field in fields(message) {
+        let (number, value) = field?;
+        if let Some(index) = numbers.iter().position(|&wanted| wanted == number) {
+            values[index] = value;
         }
-        5 => cursor.take(4).map(|_| FieldValue::Other)?,
-        _ => return None,
-    };
-    Some((key >> 3, value))
+    }
+    Ok(values)
 }
 
-/// A number, least significant seven bits first.
+/// Returns packed numbers. The first error ends them.
+pub(super) fn varints(bytes: &[u8]) -> impl Iterator<Item = Result<u64, MalformedMessage>> {
+    items(bytes, varint)
+}
+
+/// Returns the sums of packed signed differences. The first error ends them.
+pub(super) fn delta_sums(bytes: &[u8]) -> impl Iterator<Item = Result<i64, MalformedMessage>> {
+    let mut sum = 0i64;
+    varints(bytes).map(move |step| {
+        sum = sum.wrapping_add(zigzag(step?));
+        Ok(sum)
+    })
+}
+
+/// Returns the next of `items`.
+///
+/// # Errors
+/// There is none, or it is malformed.
+pub(super) fn next<T>(
+    items: &mut impl Iterator<Item = Result<T, MalformedMessage>>,
+) -> Result<T, MalformedMessage> {
+    items.next().unwrap_or(Err(MalformedMessage))
+}
+
+fn items<'a, T>(
+    bytes: &'a [u8],
+    read: impl Fn(&mut ByteCursor<'a>) -> Option<T>,
+) -> impl Iterator<Item = Result<T, MalformedMessage>> {
+    let mut cursor = ByteCursor::new(bytes);
+    std::iter::from_fn(move || {
+        if cursor.is_empty() {
+            return None;
+        }
+        let item = read(&mut cursor).ok_or(MalformedMessage);
+        if item.is_err() {
+            cursor = ByteCursor::new(&[]);
+        }
+        Some(item)
+    })
+}
+
+/// Reads a number, its least significant seven bits first.
 fn varint(cursor: &mut ByteCursor<'_>) -> Option<u64> {
     let mut number = 0;
     for shift in (0..64).step_by(7) {
-        let byte = cursor.byte()?;
+        let byte = cursor.u8()?;
         number |= u64::from(byte & 0x7f) << shift;
         if byte < 0x80 {
             return Some(number);
@@ -84,33 +132,8 @@ fn varint(cursor: &mut ByteCursor<'_>) -> Option<u64> {
     None
 }
 
-/// Numbers in a row; ends at the first that is cut short, which [`Packed::is_whole`] tells.
-pub(super) struct Packed<'a>(ByteCursor<'a>);
-
-impl<'a> Packed<'a> {
-    /// The numbers in `bytes`.
-    pub fn new(bytes: &'a [u8]) -> Self {
-        Self(ByteCursor::new(bytes))
-    }
-
-    /// The number after the last one; `None` where there is none.
-    pub fn next_unsigned(&mut self) -> Option<u64> {
-        varint(&mut self.0)
-    }
-
-    /// As [`Packed::next_unsigned`], with the sign in the lowest bit.
-    pub fn next_signed(&mut self) -> Option<i64> {
-        self.next_unsigned().map(signed)
-    }
-
-    /// Whether nothing is left.
-    pub fn is_whole(&self) -> bool {
-        self.0.rest().is_empty()
-    }
-}
-
-/// A number whose sign is its lowest bit.
-pub(super) fn signed(number: u64) -> i64 {
+/// Returns the signed number whose sign is the lowest bit of `number`.
+pub(super) fn zigzag(number: u64) -> i64 {
     (number >> 1) as i64 ^ -((number & 1) as i64)
 }
 
@@ -120,17 +143,19 @@ mod tests {
 
     #[test]
     fn numbers_come_back_with_their_sign() {
-        let mut packed = Packed::new(&[0, 1, 2, 3, 0xac, 0x02]);
-        let read: Vec<i64> = std::iter::from_fn(|| packed.next_signed()).collect();
+        let read: Vec<i64> =
+            varints(&[0, 1, 2, 3, 0xac, 0x02]).map(|number| zigzag(number.expect("intact"))).collect();
         assert_eq!(read, [0, -1, 1, -2, 150]);
-        assert!(packed.is_whole());
-        assert_eq!(signed(u64::MAX), i64::MIN);
+        assert_eq!(zigzag(u64::MAX), i64::MIN);
+        let sums: Vec<i64> = delta_sums(&[2, 2, 3]).map(|sum| sum.expect("intact")).collect();
+        assert_eq!(sums, [1, 2, 0]);
+        assert!(varints(&[0x80]).all(|number| number.is_err()));
     }
 
     #[test]
-    fn fields_are_told_apart_and_what_is_cut_short_is_malformed() {
+    fn fields_have_their_numbers_and_a_message_cut_short_is_malformed() {
         let message = [0x08, 0x96, 0x01, 0x12, 0x02, b'o', b'k', 0x1d, 0, 0, 0, 0];
-        let read: Vec<_> = fields(&message).map(|field| field.expect("whole").0).collect();
+        let read: Vec<_> = fields(&message).map(|field| field.expect("intact").0).collect();
         assert_eq!(read, [1, 2, 3]);
         assert!(fields(&message[..6]).any(|field| field.is_err()));
         assert!(fields(&[0xff; 11]).any(|field| field.is_err()), "eleven bytes are no number");

@@ -1,118 +1,87 @@
 //! Extracts as XML, version 0.6: `node`, `way` and `relation` elements with `tag`, `nd` and `member` in them.
 
-use crate::vector::error::VectorError;
-use crate::vector::osm::data::{OsmData, PER_DEGREE, Role, TextId, TooMuch};
-use crate::vector::xml::{self, Element, Xml};
+use crate::vector::error::{VectorError, shorten};
+use crate::vector::osm::data::{
+    OsmData, OsmMember, OsmMemoryExceeded, OsmNode, OsmRelation, OsmTags, OsmWay, UNITS_PER_DEGREE,
+};
+use crate::vector::xml::{self, XmlElement, XmlReader};
 
 const FORMAT: &str = "OpenStreetMap XML";
 
-/// Everything in the file; what is marked deleted is left out.
+/// Reads everything in the file but what is marked as deleted.
 ///
 /// # Errors
 /// [`VectorError`].
 pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
     let text = xml::decode(bytes, FORMAT)?;
-    let mut xml = Xml::new(&text, FORMAT);
+    let mut xml = XmlReader::new(&text, FORMAT);
     let root = xml.root()?;
     if root.name() != "osm" {
         return Err(VectorError::Unsupported {
             format: FORMAT,
-            what: format!("<{}>, not an extract", root.name().chars().take(40).collect::<String>()),
-            remedy: "apply changes first, for example with: osmium apply-changes".into(),
+            content: format!("<{}>, not an extract", shorten(root.name())).into(),
+            remedy: "apply changes first, for example with: osmium apply-changes",
         });
     }
     let mut data = OsmData::default();
-    let mut scratch = ElementScratch::default();
-    xml.children(|xml, element| match element.name() {
-        "node" | "way" | "relation" => {
-            scratch.read(xml, element, &mut data)?;
-            scratch.keep(xml, element, &mut data)
+    while let Some(element) = xml.next_child()? {
+        if matches!(element.name(), "node" | "way" | "relation") {
+            let element = xml.read(element)?;
+            add(&xml, &element, &mut data)?;
+        } else {
+            xml.skip()?;
         }
-        _ => xml.skip(),
-    })?;
-    xml.end()?;
+    }
+    xml.finish()?;
     data.sort();
     Ok(data)
 }
 
-/// What lies in one element, before it is kept.
-#[derive(Default)]
-struct ElementScratch {
-    tags: Vec<(TextId, TextId)>,
-    refs: Vec<i64>,
-    members: Vec<(i64, Role)>,
+fn add(xml: &XmlReader<'_>, element: &XmlElement<'_>, data: &mut OsmData) -> Result<(), VectorError> {
+    let is_deleted = |(name, value): (&str, &str)| element.attribute(name).as_deref() == Some(value);
+    if [("visible", "false"), ("action", "delete")].into_iter().any(is_deleted) {
+        return Ok(());
+    }
+    let id = id(xml, element, "id")?;
+    let node = if element.name() == "node" { Some(node(xml, element, id)?) } else { None };
+    let refs = if element.name() == "way" { refs(xml, element)? } else { Box::default() };
+    let members = if element.name() == "relation" { members(xml, element)? } else { Box::default() };
+    let added = tags(element, data).and_then(|tags| match (node, element.name()) {
+        (Some(node), _) => data.add_node(node, tags),
+        (None, "way") => data.add_way(OsmWay { id, refs, tags }),
+        (None, _) => data.add_relation(OsmRelation { id, members, tags }),
+    });
+    added.map_err(|error| xml.refused_at(element, error))
 }
 
-impl ElementScratch {
-    fn read<'a>(
-        &mut self,
-        xml: &mut Xml<'a>,
-        element: &Element<'a>,
-        data: &mut OsmData,
-    ) -> Result<(), VectorError> {
-        self.tags.clear();
-        self.refs.clear();
-        self.members.clear();
-        let is_way = element.name() == "way";
-        xml.children(|xml, element| {
-            match element.name() {
-                "tag" => {
-                    let key = element.attribute("k").unwrap_or_default();
-                    let value = element.attribute("v").unwrap_or_default();
-                    let key = data.text(&key).map_err(|error| too_much(xml, &error))?;
-                    let value = data.text(&value).map_err(|error| too_much(xml, &error))?;
-                    self.tags.push((key, value));
-                }
-                "nd" if is_way => self.refs.push(id(xml, element, "ref")?),
-                "member" if element.attribute("type").as_deref() == Some("way") => {
-                    let is_inner = element.attribute("role").as_deref() == Some("inner");
-                    let role = if is_inner { Role::Inner } else { Role::Outer };
-                    self.members.push((id(xml, element, "ref")?, role));
-                }
-                _ => {}
-            }
-            xml.skip()
-        })
-    }
+fn tags(element: &XmlElement<'_>, data: &mut OsmData) -> Result<OsmTags, OsmMemoryExceeded> {
+    let mut text = |tag: &XmlElement<'_>, name| data.text(&tag.attribute(name).unwrap_or_default());
+    element.children_named("tag").map(|tag| Ok((text(tag, "k")?, text(tag, "v")?))).collect()
+}
 
-    fn keep(&self, xml: &Xml<'_>, element: &Element<'_>, data: &mut OsmData) -> Result<(), VectorError> {
-        let deleted = [("visible", "false"), ("action", "delete")];
-        if deleted.iter().any(|&(name, value)| element.attribute(name).as_deref() == Some(value)) {
-            return Ok(());
+fn refs(xml: &XmlReader<'_>, way: &XmlElement<'_>) -> Result<Box<[i64]>, VectorError> {
+    way.children_named("nd").map(|node| id(xml, node, "ref")).collect()
+}
+
+fn members(xml: &XmlReader<'_>, relation: &XmlElement<'_>) -> Result<Box<[OsmMember]>, VectorError> {
+    let has = |member: &XmlElement<'_>, name, value| member.attribute(name).as_deref() == Some(value);
+    let ways = relation.children_named("member").filter(|member| has(member, "type", "way"));
+    ways.map(|member| Ok(OsmMember { way: id(xml, member, "ref")?, is_inner: has(member, "role", "inner") }))
+        .collect()
+}
+
+fn id(xml: &XmlReader<'_>, element: &XmlElement<'_>, name: &str) -> Result<i64, VectorError> {
+    let reason = || format!("<{}> has no number as its {name}", shorten(element.name()));
+    element.number(name).ok_or_else(|| xml.broken_at(element, reason()))
+}
+
+fn node(xml: &XmlReader<'_>, element: &XmlElement<'_>, id: i64) -> Result<OsmNode, VectorError> {
+    let degrees = |name, limit: f64| element.number::<f64>(name).filter(|degrees| degrees.abs() <= limit);
+    let units = |degrees: f64| (degrees * UNITS_PER_DEGREE).round() as i32;
+    match (degrees("lon", 180.0), degrees("lat", 90.0)) {
+        (Some(longitude), Some(latitude)) => {
+            Ok(OsmNode { id, longitude: units(longitude), latitude: units(latitude) })
         }
-        let id = id(xml, element, "id")?;
-        let place = if element.name() == "node" { Some(place(xml, element)?) } else { None };
-        let kept = data.add_tags(&self.tags).and_then(|tags| match (place, element.name()) {
-            (Some(place), _) => data.add_node(id, place, tags),
-            (None, "way") => data.add_way(id, &self.refs, tags),
-            (None, _) => data.add_relation(id, &self.members, tags),
-        });
-        kept.map_err(|error| too_much(xml, &error))
+        _ => Err(xml.broken_at(element, "a node has no latitude (lat) and longitude (lon) on Earth")),
     }
-}
-
-fn id(xml: &Xml<'_>, element: &Element<'_>, name: &str) -> Result<i64, VectorError> {
-    let id = element.attribute(name).and_then(|text| text.parse().ok());
-    id.ok_or_else(|| xml.broken(format!("<{}> has no number as its {name}", element.name())))
-}
-
-fn place(xml: &Xml<'_>, element: &Element<'_>) -> Result<[i32; 2], VectorError> {
-    let (mut longitude, mut latitude) = (None, None);
-    for (name, value) in element.raw_attributes() {
-        match name {
-            "lon" => longitude = value.parse::<f64>().ok(),
-            "lat" => latitude = value.parse::<f64>().ok(),
-            _ => {}
-        }
-    }
-    match (longitude, latitude) {
-        (Some(longitude), Some(latitude)) if longitude.abs() <= 180.0 && latitude.abs() <= 90.0 => {
-            Ok([longitude, latitude].map(|degrees| (degrees * PER_DEGREE).round() as i32))
-        }
-        _ => Err(xml.broken("a node has no latitude (lat) and longitude (lon) on Earth")),
-    }
-}
-
-fn too_much(xml: &Xml<'_>, _: &TooMuch) -> VectorError {
-    xml.broken("it holds more than fits in memory; cut it down with 'osmium extract'")
 }

@@ -1,26 +1,31 @@
-//! A shapefile's attributes: dBASE tables (dBASE III PLUS and the types that later versions added).
+//! Attributes of a shapefile: dBASE tables (dBASE III PLUS and the types that later versions added).
 //!
 //! ```text
 //! header  version date×3  rows:u32  header length:u16  row length:u16  …  29: language driver
 //! columns 32 bytes each, until 0x0d:  name×11  type  …  16: length  17: decimals
 //! rows    ' ' or '*' (deleted), then each column's characters
 //! ```
+//!
+//! Written by hand. `dbase` 0.8 turns integers into floats (9007199254740993 loses its last digit), leaves out deleted
+//! rows, after which rows and shapes no longer match, and builds eight more crates.
+
+use std::slice::ChunksExact;
 
 use serde_json::{Number, Value};
 
-use crate::vector::codepage::Encoding;
-use crate::vector::collect::Properties;
 use crate::vector::cursor::ByteCursor;
+use crate::vector::encoding::TextEncoding;
 use crate::vector::error::VectorError;
+use crate::vector::feature::Properties;
 
 const FORMAT: &str = "dBASE table (.dbf)";
 
 /// A table.
 pub(super) struct DbfTable<'a> {
     columns: Vec<DbfColumn>,
-    encoding: Encoding,
-    /// All whole rows that there are.
-    rows: std::slice::ChunksExact<'a, u8>,
+    encoding: TextEncoding,
+    /// The complete rows.
+    rows: ChunksExact<'a, u8>,
 }
 
 struct DbfColumn {
@@ -29,68 +34,70 @@ struct DbfColumn {
     length: usize,
 }
 
-/// One row.
+/// A row.
 pub(super) struct DbfRow<'a> {
     table: &'a DbfTable<'a>,
     bytes: &'a [u8],
 }
 
 impl<'a> DbfTable<'a> {
-    /// The table that `bytes` are, its texts in `encoding` or, without, what its language driver says.
+    /// Reads the header of a table whose texts are in `encoding`, else in that of its language driver.
     ///
     /// # Errors
-    /// The header is cut short or contradicts itself. Fewer rows than it promises are no error.
-    pub fn open(bytes: &'a [u8], encoding: Option<Encoding>) -> Result<Self, VectorError> {
-        let broken = |reason: &str| VectorError::broken(FORMAT, "its header", reason);
-        let cut = || broken("it ends within it");
+    /// The header is cut short or contradicts itself. Fewer rows than it promises are not an error.
+    pub fn open(bytes: &'a [u8], encoding: Option<TextEncoding>) -> Result<Self, VectorError> {
+        let broken = |reason: &'static str| VectorError::broken(FORMAT, "its header", reason);
+        let cut = || broken("the file ends within it");
         let header = bytes.first_chunk::<32>().ok_or_else(cut)?;
-        let short = |at: usize| usize::from(u16::from_le_bytes([header[at], header[at + 1]]));
-        let rows = u32::from_le_bytes([header[4], header[5], header[6], header[7]]) as usize;
-        let (start, row_length) = (short(8), short(10));
-        let encoding =
-            encoding.or_else(|| Encoding::of_language_driver(header[29])).unwrap_or(Encoding::Guessed);
+        let u16_at = |at: usize| usize::from(u16::from_le_bytes([header[at], header[at + 1]]));
+        let promised = u32::from_le_bytes([header[4], header[5], header[6], header[7]]) as usize;
+        let (start, row_bytes) = (u16_at(8), u16_at(10));
+        let encoding = encoding.or_else(|| TextEncoding::from_language_driver(header[29]));
+        let encoding = encoding.unwrap_or(TextEncoding::Guess);
         let columns = columns(bytes.get(32..start).ok_or_else(cut)?, encoding);
-        if row_length != 1 + columns.iter().map(|column| column.length).sum::<usize>() {
+        if row_bytes != 1 + columns.iter().map(|column| column.length).sum::<usize>() {
             return Err(broken("the lengths of its columns do not add up to that of a row"));
         }
         let data = &bytes[start..];
-        let rows = rows.min(data.len() / row_length);
-        Ok(Self { columns, encoding, rows: data[..rows * row_length].chunks_exact(row_length) })
+        let rows = promised.min(data.len() / row_bytes);
+        Ok(Self { columns, encoding, rows: data[..rows * row_bytes].chunks_exact(row_bytes) })
     }
 
-    /// How many rows there are, deleted ones too.
-    pub fn rows(&self) -> usize {
+    /// Returns the number of rows, with deleted ones.
+    pub fn row_count(&self) -> usize {
         self.rows.len()
     }
 
-    /// The row with this index; `None` past the end.
+    /// Returns the row `index`, `None` past the end.
     pub fn row(&'a self, index: usize) -> Option<DbfRow<'a>> {
         self.rows.clone().nth(index).map(|bytes| DbfRow { table: self, bytes })
     }
 }
 
-fn columns(bytes: &[u8], encoding: Encoding) -> Vec<DbfColumn> {
+fn columns(bytes: &[u8], encoding: TextEncoding) -> Vec<DbfColumn> {
     let (descriptors, _) = bytes.as_chunks::<32>();
     let descriptors = descriptors.iter().take_while(|descriptor| descriptor[0] != 0x0d);
     let column = |descriptor: &[u8; 32]| {
-        let name = descriptor[..11].split(|&byte| byte == 0).next().unwrap_or_default();
-        let length = match descriptor[11] {
-            // Clipper and FoxPro: the decimals are the upper byte of long texts' lengths.
-            b'C' => usize::from(descriptor[16]) + (usize::from(descriptor[17]) << 8),
-            _ => usize::from(descriptor[16]),
-        };
-        DbfColumn { name: encoding.decode(name).trim().to_owned(), kind: descriptor[11], length }
+        let (kind, length, decimals) = (descriptor[11], descriptor[16], descriptor[17]);
+        // Clipper and FoxPro: the decimals of texts are the upper byte of their length.
+        let length = usize::from(length) + if kind == b'C' { usize::from(decimals) << 8 } else { 0 };
+        let name = encoding.decode(until_nul(&descriptor[..11])).trim().to_owned();
+        DbfColumn { name, kind, length }
     };
     descriptors.map(column).collect()
 }
 
+fn until_nul(bytes: &[u8]) -> &[u8] {
+    bytes.split(|&byte| byte == 0).next().unwrap_or_default()
+}
+
 impl DbfRow<'_> {
-    /// Whether it is marked as deleted.
+    /// Returns whether it is marked as deleted.
     pub fn is_deleted(&self) -> bool {
         self.bytes[0] == b'*'
     }
 
-    /// Its values by their columns' names; what is blank or not understood is null.
+    /// Returns its values by their columns' names; a blank or malformed value is null.
     pub fn properties(&self) -> Properties {
         let mut cursor = ByteCursor::new(&self.bytes[1..]);
         let value = |column: &DbfColumn| {
@@ -101,8 +108,8 @@ impl DbfRow<'_> {
     }
 }
 
-fn value(kind: u8, bytes: &[u8], encoding: Encoding) -> Value {
-    let text = || encoding.decode(bytes.split(|&byte| byte == 0).next().unwrap_or_default());
+fn value(kind: u8, bytes: &[u8], encoding: TextEncoding) -> Value {
+    let text = || encoding.decode(until_nul(bytes));
     match kind {
         b'N' | b'F' => number(text().trim()),
         b'L' => match bytes.first() {
@@ -112,9 +119,9 @@ fn value(kind: u8, bytes: &[u8], encoding: Encoding) -> Value {
         },
         b'D' => date(text().trim()),
         b'I' => bytes.try_into().map_or(Value::Null, |bytes| i32::from_le_bytes(bytes).into()),
-        b'O' | b'B' if bytes.len() == 8 => {
-            let bytes = bytes.try_into().unwrap_or_default();
-            Number::from_f64(f64::from_le_bytes(bytes)).map_or(Value::Null, Value::Number)
+        b'O' | b'B' => {
+            let number = bytes.try_into().ok().and_then(|bytes| Number::from_f64(f64::from_le_bytes(bytes)));
+            number.map_or(Value::Null, Value::Number)
         }
         b'C' => match text().trim_end() {
             "" => Value::Null,
@@ -124,15 +131,15 @@ fn value(kind: u8, bytes: &[u8], encoding: Encoding) -> Value {
     }
 }
 
-/// A number as it is written, whole where it is written so.
+/// Returns a number; an integer where it is written as one.
 fn number(text: &str) -> Value {
     match text.parse::<i64>() {
-        Ok(whole) => whole.into(),
+        Ok(integer) => integer.into(),
         Err(_) => text.parse().ok().and_then(Number::from_f64).map_or(Value::Null, Value::Number),
     }
 }
 
-/// `YYYYMMDD` as `YYYY-MM-DD`.
+/// Returns `YYYYMMDD` as `YYYY-MM-DD`.
 fn date(text: &str) -> Value {
     if text.len() == 8 && text.bytes().all(|byte| byte.is_ascii_digit()) && text != "00000000" {
         format!("{}-{}-{}", &text[..4], &text[4..6], &text[6..]).into()
@@ -194,7 +201,7 @@ mod tests {
             turned[end] ^= 0xff;
             for bytes in [&bytes[..end], &turned] {
                 let Ok(table) = DbfTable::open(bytes, None) else { continue };
-                (0..table.rows()).for_each(|row| drop(table.row(row).expect("counted").properties()));
+                (0..table.row_count()).for_each(|row| drop(table.row(row).expect("counted").properties()));
             }
         }
     }

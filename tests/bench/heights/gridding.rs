@@ -6,8 +6,8 @@
 //! are of the calls alone.
 
 use glam::{DVec2, DVec3};
-use sandtable::dem::gridding::frame::CellGrid;
-use sandtable::dem::gridding::{self, Beyond, GriddingMethod};
+use sandtable::dem::cell_grid::CellGrid;
+use sandtable::dem::gridding::{self, BeyondHull, GriddingMethod};
 use sandtable::dem::points::PointCloud;
 use sandtable::geom::rect::Rect;
 use spade::{
@@ -39,7 +39,7 @@ pub fn print() {
     let extent = Rect { min: DVec2::splat(-0.5), max: DVec2::splat(SIDE as f64 - 0.5) };
     let frame = CellGrid::within(extent, 1.0).expect("a lattice");
     let ours =
-        |method: GriddingMethod| gridding::grid(&cloud, &frame, method, Beyond::NoData).expect("a grid");
+        |method: GriddingMethod| gridding::grid(&cloud, &frame, method, BeyondHull::NoData).expect("a grid");
     let by_distance = GriddingMethod::InverseDistance { k: 12, power: 2.0 };
     println!(
         "{POINTS} points to {SIDE} x {SIDE} cells; medians of {ROUNDS} rounds, ratio = peer / ours in a round\n"

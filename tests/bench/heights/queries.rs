@@ -13,6 +13,7 @@ use sandtable::dem::answer::{Answer, Status};
 use sandtable::dem::raster::{Raster, Samples};
 use sandtable::geom::crs::Crs;
 use sandtable::terrain::lattice::{Lattice, Post};
+use sandtable::terrain::query::batch::HeightSlices;
 use sandtable::terrain::query::service::{HeightService, Snapshot};
 use sandtable::terrain::query::tiles::HeightTiles;
 use sandtable::terrain::query::{Interpolation, Surface};
@@ -134,7 +135,7 @@ impl Out {
     }
 
     fn apart(&mut self, epoch: &Snapshot, surface: Surface, at: &[DVec2]) {
-        let out = (&mut self.heights_m[..], &mut self.statuses[..]);
+        let out = HeightSlices { heights_m: &mut self.heights_m, statuses: &mut self.statuses };
         epoch.heights_apart(surface, Interpolation::Bilinear, at, out);
     }
 

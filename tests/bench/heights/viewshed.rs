@@ -121,7 +121,7 @@ fn report(lattice: &Lattice, options: &ViewshedOptions, swept: &Viewshed) {
         "{:.3} % in sight; {wrong} of {count} posts differ from their lines, which took {ms:.0} ms on one thread; \
          {} posts of all were looked at by line",
         swept.counts().visible as f64 / all * 100.0,
-        swept.looked_at
+        swept.lines
     );
 }
 

@@ -112,7 +112,7 @@ fn print_triangle_counts(n: usize, bounds_m: &[f32]) {
 fn row(lattice: &Arc<Lattice>, active: ActiveSet) -> (usize, f64) {
     let patches = active.layout().patches().collect();
     let mut mesh = TriMesh::default();
-    DisplayedTerrain::new(Arc::clone(lattice), active, 1.0, patches).emit(&mut mesh);
+    DisplayedTerrain::new(Arc::clone(lattice), active, patches).emit(&mut mesh);
     (mesh.triangles.len(), measure(lattice, &mesh).expect("a mesh on posts").max_m)
 }
 

@@ -56,7 +56,7 @@ fn print_nesting() {
         let lattice = ground(posts);
         let layout = PatchLayout::new(posts, posts, 64).expect("sound");
         let errors = ErrorMap::midpoint(&lattice, &layout);
-        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let [one, two] = [1, 2].map(|threads| {
             let pool =
                 rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be had");
@@ -100,7 +100,7 @@ fn print_row(lattice: &Lattice, patch: u32, measure: ErrorMeasure) {
             ErrorMeasure::Midpoint => mend_midpoint(&mut maps.errors, &lattice, &layout, change),
             ErrorMeasure::Exact => mend_exact(&mut maps.own, &mut maps.errors, &lattice, &layout, change),
         });
-        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let own = own_radius(&maps.errors, measure);
         let (_, more) = timed(|| mend_spheres(&mut maps.spheres, ground, &own, change, &errors));
         errors_us.push(spent);
@@ -129,7 +129,7 @@ fn whole_edits(lattice: &Lattice, patch: u32, measure: ErrorMeasure) -> Vec<f64>
         ErrorMeasure::Midpoint => Radius::Plain,
         ErrorMeasure::Exact => Radius::Bounding,
     };
-    let options = DynamicOptions { patch, exaggeration: 1.0, measure, radius, reach: REACH };
+    let options = DynamicOptions { patch, measure, radius, reach: REACH };
     let mut terrain = DynamicTerrain::new(lattice.clone(), options).expect("sound");
     (0..EDITS).map(|number| timed(|| terrain.edit(|lattice| bump(lattice, number + EDITS))).1).collect()
 }
@@ -139,16 +139,11 @@ fn print_walked() {
     let posts = 4097;
     let heights = fractal(posts);
     let camera = flight::cameras(&heights, 1.0, 1)[0];
-    let options = DynamicOptions {
-        patch: 64,
-        exaggeration: 1.0,
-        measure: ErrorMeasure::Midpoint,
-        radius: Radius::Plain,
-        reach: REACH,
-    };
+    let options =
+        DynamicOptions { patch: 64, measure: ErrorMeasure::Midpoint, radius: Radius::Plain, reach: REACH };
     let terrain = DynamicTerrain::new(flight::lattice(&heights), options).expect("sound");
     let mut walk = Deferred::new(terrain, f64::from(flight::CELL_M)).expect("small patches");
-    let patches = patches_in_view(walk.source().ground(), walk.source().heights(), &Frustum::of(&camera));
+    let patches = patches_in_view(walk.source().ground(), walk.source().heights(), &Frustum::new(&camera));
     walk.update(camera.eye(), &patches).expect("in memory");
     let ahead = (camera.eye() + camera.forward() * 100.0 * flight::CELL_M) / flight::CELL_M;
     let [mut edit_us, mut mesh_us] = [Vec::new(), Vec::new()];
@@ -188,7 +183,7 @@ fn make(lattice: &Lattice, layout: &PatchLayout, measure: ErrorMeasure) -> Maps 
             (own.clone(), ErrorMap::raised(own, layout))
         }
     };
-    let ground = PatchedGround { lattice, layout, exaggeration: 1.0 };
+    let ground = PatchedGround { lattice, layout };
     let spheres = SphereMap::of(ground, &own_radius(&errors, measure));
     Maps { own, errors, spheres }
 }
@@ -295,7 +290,7 @@ struct Sight {
 
 fn compare(name: &str, lattice: &Arc<Lattice>, reach: f32) {
     let layout = PatchLayout::new(lattice.columns(), lattice.rows(), 64).expect("sound");
-    let ground = PatchedGround { lattice, layout: &layout, exaggeration: 1.0 };
+    let ground = PatchedGround { lattice, layout: &layout };
     let errors = ErrorMap::midpoint(lattice, &layout);
     let roughness = Roughness::new(lattice, (1, 1));
     let plain = see(lattice, &layout, &SphereMap::plain(ground, &errors, reach));
@@ -323,7 +318,7 @@ fn compare(name: &str, lattice: &Arc<Lattice>, reach: f32) {
 }
 
 fn see(lattice: &Arc<Lattice>, layout: &PatchLayout, spheres: &SphereMap) -> Sight {
-    let ground = PatchedGround { lattice, layout, exaggeration: 1.0 };
+    let ground = PatchedGround { lattice, layout };
     let (far, top) = (lattice.extent().max.as_vec2(), lattice.height_range().1);
     let eyes = (0..8u16).map(|eye| {
         let angle = f32::from(eye) * std::f32::consts::FRAC_PI_4;
@@ -338,7 +333,7 @@ fn see(lattice: &Arc<Lattice>, layout: &PatchLayout, spheres: &SphereMap) -> Sig
 fn see_from(lattice: &Arc<Lattice>, ground: PatchedGround<'_>, spheres: &SphereMap, eye: Vec3) -> Sight {
     let layout = ground.layout;
     let active = rebuild(layout, &Spheres::new(ground, spheres, eye), layout.patches());
-    let shown = DisplayedTerrain::new(Arc::clone(lattice), active, 1.0, layout.patches().collect());
+    let shown = DisplayedTerrain::new(Arc::clone(lattice), active, layout.patches().collect());
     let mut mesh = TriMesh::default();
     shown.emit(&mut mesh);
     Sight { triangles: mesh.triangles.len() as f64, mean_m: mean_difference(lattice, &mesh) }

@@ -172,7 +172,7 @@ fn fans(active: &ActiveSet) -> StripStats {
 
 fn placed(field: &Field<'_>) -> StripStats {
     let mut mesh = TriMesh::default();
-    let ground = PatchedGround { lattice: field.lattice, layout: field.layout, exaggeration: 1.0 };
+    let ground = PatchedGround { lattice: field.lattice, layout: field.layout };
     bintree::triangles(field.active, field.layout.patches(), world::placing(ground, &mut mesh));
     let triangles = black_box(&mesh).triangles.len();
     StripStats { triangles, vertices: mesh.positions.len(), strips: triangles }

@@ -5,7 +5,7 @@
 use glam::{DVec2, Vec2, Vec3};
 use sandtable::terrain::lattice::Lattice;
 use sandtable::view::camera::Camera;
-use sandtable::view::flight::{CircularFlight, Keeping};
+use sandtable::view::flight::{CircularFlight, GroundClearance};
 
 /// Meters between posts.
 pub const CELL_M: f32 = 10.0;
@@ -18,7 +18,7 @@ pub fn cameras(heights: &[f32], speed: f32, frames: usize) -> Vec<Camera> {
         center: Vec2::splat(block * 0.5 * CELL_M),
         radius_m: block * 0.3 * CELL_M,
         step_m: speed * CELL_M,
-        keeping: Keeping { above_m: 30.0 * CELL_M, smoothing_m: 2.0 * CELL_M },
+        clearance: GroundClearance { height_m: 30.0 * CELL_M, smoothing_m: 2.0 * CELL_M },
     };
     let stations = circle.stations(frames, &|at| bilinear(heights, n, at / CELL_M));
     let camera = |station: &sandtable::view::flight::FlightStation| station.camera(1.0, 60_000.0);

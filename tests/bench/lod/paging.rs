@@ -63,7 +63,7 @@ impl Rolling {
 }
 
 impl Windows for Rolling {
-    fn bare(&self) -> &Raster {
+    fn metadata(&self) -> &Raster {
         &self.bare
     }
 
@@ -180,7 +180,7 @@ fn in_view<S: Fn(PatchedGround<'_>) -> SphereMap>(
 ) -> Vec<Vertex> {
     let ahead = eye + Vec3::new(0.0, 1000.0, -80.0);
     let camera = Camera::new(eye, ahead, 1.047, (1920, 1080), (1.0, 30_000.0)).expect("a sound camera");
-    let frustum = Frustum::of(&camera);
+    let frustum = Frustum::new(&camera);
     let visible =
         |&corner: &Vertex| ground.bounds(corner).is_some_and(|(min, max)| frustum.may_see(min, max));
     ground.layout().patches().filter(visible).collect()

@@ -85,13 +85,12 @@ impl World {
         let lattice = Lattice::new(DVec2::ZERO, spacing, POSTS, fractal(POSTS as usize)).expect("sound");
         let layout = PatchLayout::new(POSTS, POSTS, DEFAULT_PATCH).expect("sound");
         let errors = ErrorMap::midpoint(&lattice, &layout);
-        let heights =
-            PatchHeights::new(PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 });
+        let heights = PatchHeights::new(PatchedGround { lattice: &lattice, layout: &layout });
         Self { lattice, layout, errors, heights }
     }
 
     fn ground(&self) -> PatchedGround<'_> {
-        PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
+        PatchedGround { lattice: &self.lattice, layout: &self.layout }
     }
 
     fn spheres(&self, meters_per_meter: f32) -> SphereMap {

@@ -32,14 +32,14 @@ impl World {
         let layout =
             PatchLayout::new(lattice.columns(), lattice.rows(), DEFAULT_PATCH).expect("patches can be laid");
         let errors = ErrorMap::midpoint(&lattice, &layout);
-        let ground = PatchedGround { lattice: &lattice, layout: &layout, exaggeration: 1.0 };
+        let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let heights = PatchHeights::new(ground);
         Self { layout, errors, heights, lattice }
     }
 
     /// What refinement reads.
     pub fn ground(&self) -> PatchedGround<'_> {
-        PatchedGround { lattice: &self.lattice, layout: &self.layout, exaggeration: 1.0 }
+        PatchedGround { lattice: &self.lattice, layout: &self.layout }
     }
 
     /// The spheres in which errors show: `reach` meters of distance a meter of error.

@@ -1,7 +1,7 @@
-//! The horizon that a wedge of rays sees: the upper envelope of terrain edges, exact but for a stated error.
+//! The horizon over a wedge of rays: the upper envelope of terrain edges, exact but for a stated error.
 //!
 //! A ray leaves the observer at `y = u·x`. Seen from there, a terrain edge is a segment in the plane of `u` and
-//! `v = rise / x`: a point on it hides whatever lies on the same ray, farther off and lower in `v`. The horizon is the
+//! `v = rise / x`: a point on it hides everything on the same ray that is farther off and lower in `v`. The horizon is the
 //! greatest `v` of the edges passed so far, as a piecewise linear function of `u` (the envelope of Katz, Overmars and
 //! Sharir 1992, kept in buckets instead of a tree: edges are short, so an insertion touches one bucket or two, and a
 //! bucket holds a piece or two).
@@ -13,8 +13,8 @@
 //!  └───────┴───────┴───────┴─── u       floor    the least low of the buckets around
 //! ```
 //!
-//! Every piece carries how far off it may be. Where one edge hides another by less than that, the greater error
-//! stays, so that `v ± error` always holds the true horizon.
+//! Every piece carries its error. Where one edge hides another by less than that, the greater error is kept, so that
+//! `v ± error` always contains the true horizon.
 
 /// A terrain edge as the observer sees it, `u0` < `u1`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +23,7 @@ pub(super) struct HorizonEdge {
     pub v0: f64,
     pub u1: f64,
     pub v1: f64,
-    /// How far off `v` may be between them.
+    /// The error of `v` between them.
     pub error: f64,
 }
 
@@ -43,15 +43,18 @@ struct HorizonPiece {
 }
 
 impl HorizonPiece {
-    const NOTHING: f64 = f64::NEG_INFINITY;
-
     fn at(&self, u: f64) -> f64 {
         self.v + self.slope * (u - self.u)
     }
+
+    /// This piece from `u` on.
+    fn from(&self, u: f64) -> Self {
+        if u == self.u { *self } else { Self { u, v: self.at(u), ..*self } }
+    }
 }
 
-/// Rays on which something may stand as high as `v` and nobody can say without looking: an edge almost along the rays,
-/// or a post beside a gap in the data.
+/// Rays on which ground may reach `v`, which only a line of sight decides: at an edge almost along the rays, or at a post
+/// beside a gap in the data.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Doubt {
     pub u0: f64,
@@ -65,12 +68,12 @@ struct Bucket {
     doubts: Vec<Doubt>,
 }
 
-/// Where the horizon stands on one ray.
+/// Bounds of the horizon on one ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct HorizonSpan {
-    /// Certainly no lower.
+    /// A lower bound.
     pub low: f64,
-    /// Certainly no higher.
+    /// An upper bound.
     pub high: f64,
 }
 
@@ -88,29 +91,24 @@ pub(super) struct Horizon {
     scratch: Vec<HorizonPiece>,
 }
 
-/// How many buckets to either side a floor takes in: an edge with an end in a bucket ends at most so many away, where
-/// there are no more buckets than posts across the wedge.
+/// The buckets to either side that a floor takes in: an edge with an end in a bucket ends at most so many away, where there
+/// are no more buckets than posts across the wedge.
 const REACH: usize = 3;
 
 impl Horizon {
     /// A horizon that hides nothing.
     pub fn new(from: f64, to: f64) -> Self {
+        let nothing = HorizonPiece { u: 0.0, v: f64::NEG_INFINITY, slope: 0.0, error: 0.0 };
         let mut horizon = Self {
             from,
             to,
             count: 1,
-            buckets: vec![Bucket::default()],
+            buckets: vec![Bucket { pieces: vec![nothing], doubts: Vec::new() }],
             low: Vec::new(),
             floor: Vec::new(),
             floor_is_stale: true,
             scratch: Vec::new(),
         };
-        horizon.buckets[0].pieces.push(HorizonPiece {
-            u: 0.0,
-            v: HorizonPiece::NOTHING,
-            slope: 0.0,
-            error: 0.0,
-        });
         horizon.measure_all();
         horizon
     }
@@ -127,28 +125,16 @@ impl Horizon {
         self.count *= 2;
         for (index, bucket) in old.into_iter().enumerate() {
             let middle = self.border(2 * index + 1);
-            let mut halves = [Bucket::default(), Bucket::default()];
-            for piece in bucket.pieces {
-                if piece.u < middle {
-                    halves[0].pieces.push(piece);
-                    halves[1].pieces.clear();
-                    halves[1].pieces.push(HorizonPiece { u: middle, v: piece.at(middle), ..piece });
-                } else {
-                    if piece.u == middle {
-                        halves[1].pieces.clear();
-                    }
-                    halves[1].pieces.push(piece);
-                }
-            }
-            for doubt in bucket.doubts {
-                if doubt.u0 < middle {
-                    halves[0].doubts.push(doubt);
-                }
-                if doubt.u1 >= middle {
-                    halves[1].doubts.push(doubt);
-                }
-            }
-            self.buckets.extend(halves);
+            let (before, after): (Vec<_>, Vec<_>) =
+                bucket.pieces.into_iter().partition(|piece| piece.u < middle);
+            // The last piece before the middle continues after it, unless one begins there.
+            let across = before.last().filter(|_| after.first().is_none_or(|first| first.u > middle));
+            let after = across.map(|piece| piece.from(middle)).into_iter().chain(after).collect();
+            let doubts =
+                |holds: &dyn Fn(&Doubt) -> bool| bucket.doubts.iter().copied().filter(holds).collect();
+            let first = Bucket { pieces: before, doubts: doubts(&|doubt| doubt.u0 < middle) };
+            let second = Bucket { pieces: after, doubts: doubts(&|doubt| doubt.u1 >= middle) };
+            self.buckets.extend([first, second]);
         }
         self.measure_all();
     }
@@ -164,7 +150,7 @@ impl Horizon {
         self.floor_is_stale = true;
     }
 
-    /// The least that the horizon can be in a bucket; beyond the wedge nobody asks.
+    /// A lower bound of the horizon in a bucket; ∞ beyond the wedge, where nothing reads it.
     fn least(&self, index: usize) -> f64 {
         let end = self.border(index + 1);
         if end <= self.from || self.border(index) >= self.to {
@@ -178,12 +164,12 @@ impl Horizon {
             .fold(f64::INFINITY, |least, (piece, end)| least.min(piece.v.min(piece.at(end)) - piece.error))
     }
 
-    /// For each of the equal buckets of 0..=1 a height that the horizon is nowhere below, in it and as far around as
-    /// an edge reaches that ends in it.
+    /// For each of the equal buckets of 0..=1 a lower bound of the horizon, in it and as far around as an edge reaches that
+    /// ends in it.
     pub fn floor(&mut self) -> &mut Vec<f64> {
         if self.floor_is_stale {
             self.floor_is_stale = false;
-            // where no edge reaches the wedge from, lows are infinite, and so are floors
+            // Beyond the reach of the wedge's edges, lows are infinite, and so are floors.
             let (first, last) = (self.bucket_of(self.from), self.bucket_of(self.to));
             for index in first.saturating_sub(REACH)..(last + REACH + 1).min(self.count) {
                 let around = index.saturating_sub(REACH)..(index + REACH + 1).min(self.count);
@@ -197,20 +183,21 @@ impl Horizon {
         ((u * self.count as f64) as usize).min(self.count - 1)
     }
 
-    /// Where the horizon stands on the ray `u`, `None` where only looking can tell; `shake` is how far off `u` may be
-    /// and `v` what is to be seen there.
-    pub fn span(&self, u: f64, v: f64, shake: f64) -> Option<HorizonSpan> {
+    /// The bounds of the horizon on the ray `u`, `None` where only a line of sight to `v` decides; `ray_error` is the error
+    /// of `u`.
+    pub fn span(&self, u: f64, v: f64, ray_error: f64) -> Option<HorizonSpan> {
         let bucket = &self.buckets[self.bucket_of(u)];
         let after = bucket.pieces.iter().take_while(|piece| piece.u <= u).count();
         let piece = bucket.pieces[after.saturating_sub(1)];
         let at = piece.at(u);
         let span = HorizonSpan { low: at - piece.error, high: at + piece.error };
-        let doubted =
-            |doubt: &Doubt| u >= doubt.u0 - shake && u <= doubt.u1 + shake && v <= doubt.v && v >= span.low;
-        (!bucket.doubts.iter().any(doubted)).then_some(span)
+        let applies = |doubt: &Doubt| {
+            u >= doubt.u0 - ray_error && u <= doubt.u1 + ray_error && v <= doubt.v && v >= span.low
+        };
+        (!bucket.doubts.iter().any(applies)).then_some(span)
     }
 
-    /// Takes in what cannot be told without looking.
+    /// Adds rays that only lines of sight decide.
     pub fn doubt(&mut self, doubt: Doubt) {
         if doubt.u1 < self.from || doubt.u0 > self.to {
             return;
@@ -225,7 +212,7 @@ impl Horizon {
         }
     }
 
-    /// Takes in an edge; what of it lies off the wedge does not matter.
+    /// Adds an edge; its parts off the wedge have no effect.
     pub fn insert(&mut self, edge: &HorizonEdge) {
         if edge.u1 <= self.from || edge.u0 >= self.to {
             return;
@@ -233,16 +220,16 @@ impl Horizon {
         let line = HorizonPiece { u: edge.u0, v: edge.v0, slope: edge.slope(), error: edge.error };
         let high = edge.v0.max(edge.v1) + edge.error;
         for index in self.bucket_of(edge.u0)..=self.bucket_of(edge.u1) {
-            // an edge may end where a bucket begins
+            // An edge may end where a bucket begins.
             let (start, end) = (edge.u0.max(self.border(index)), edge.u1.min(self.border(index + 1)));
-            if start < end && high > self.low[index] && self.stands_out(index, &line, start, end) {
+            if start < end && high > self.low[index] && self.changes(index, &line, start, end) {
                 self.insert_in(index, &line, start, end);
             }
         }
     }
 
-    /// Whether a line changes a bucket from `start` to `end`: most do not, and need no bucket made anew.
-    fn stands_out(&self, index: usize, line: &HorizonPiece, start: f64, end: f64) -> bool {
+    /// Whether a line changes a bucket from `start` to `end`; most do not, and need no merge.
+    fn changes(&self, index: usize, line: &HorizonPiece, start: f64, end: f64) -> bool {
         let pieces = &self.buckets[index].pieces;
         let (line_start, line_end) = (line.at(start), line.at(end));
         let ends = pieces.iter().skip(1).map(|next| next.u).chain([f64::INFINITY]);
@@ -259,24 +246,27 @@ impl Horizon {
 
     fn insert_in(&mut self, index: usize, line: &HorizonPiece, start: f64, end: f64) {
         let last = self.border(index + 1);
-        let mut merged = Merged { pieces: std::mem::take(&mut self.scratch), tag: Tag::None, changed: false };
+        let pieces = std::mem::take(&mut self.scratch);
+        let mut merged = MergedBucket { pieces, origin: PieceOrigin::None, is_changed: false };
+        let new = Contender { origin: PieceOrigin::New, piece: line };
         let pieces = &self.buckets[index].pieces;
         for (at, old) in pieces.iter().enumerate() {
+            let origin = PieceOrigin::Old(at);
             let stop = pieces.get(at + 1).map_or(last, |next| next.u);
             if stop <= start || old.u >= end {
-                merged.push(Tag::Old(at), old, old.u);
+                merged.push(origin, old, old.u);
                 continue;
             }
             if old.u < start {
-                merged.push(Tag::Old(at), old, old.u);
+                merged.push(origin, old, old.u);
             }
-            merged.greater((at, old), line, old.u.max(start), stop.min(end));
+            merged.push_greater(Contender { origin, piece: old }, new, old.u.max(start), stop.min(end));
             if stop > end {
-                merged.push(Tag::Old(at), old, end);
+                merged.push(origin, old, end);
             }
         }
-        let Merged { mut pieces, changed, .. } = merged;
-        if changed {
+        let MergedBucket { mut pieces, is_changed, .. } = merged;
+        if is_changed {
             std::mem::swap(&mut pieces, &mut self.buckets[index].pieces);
             self.low[index] = self.least(index);
             self.floor_is_stale = true;
@@ -284,74 +274,64 @@ impl Horizon {
         pieces.clear();
         self.scratch = pieces;
     }
-
-    /// Whether every bucket's pieces run on in order and its low is theirs.
-    #[cfg(test)]
-    pub fn check(&self) -> Result<(), String> {
-        for (index, bucket) in self.buckets.iter().enumerate() {
-            let in_order = bucket.pieces.windows(2).all(|pair| pair[0].u < pair[1].u);
-            let first = bucket.pieces.first().map(|piece| piece.u);
-            if !in_order || first != Some(self.border(index)) {
-                return Err(format!("bucket {index} of {}: {:?}", self.count, bucket.pieces));
-            }
-            if self.low[index] != self.least(index) {
-                return Err(format!("bucket {index}: low {} is not its least", self.low[index]));
-            }
-        }
-        Ok(())
-    }
 }
 
-/// Whose the last stretch of a bucket being made anew is.
+/// Where the last stretch of a merged bucket comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Tag {
+enum PieceOrigin {
     None,
     Old(usize),
     New,
 }
 
-/// A bucket being made anew.
-struct Merged {
-    pieces: Vec<HorizonPiece>,
-    tag: Tag,
-    changed: bool,
+/// A piece or the new line, of which the greater becomes part of a merged bucket.
+#[derive(Clone, Copy)]
+struct Contender<'a> {
+    origin: PieceOrigin,
+    piece: &'a HorizonPiece,
 }
 
-impl Merged {
-    /// `piece` counts from `u` on; what is the same line as before, and no less sure, goes on.
-    fn push(&mut self, tag: Tag, piece: &HorizonPiece, u: f64) {
+/// A bucket under construction, from its old pieces and a new line.
+struct MergedBucket {
+    pieces: Vec<HorizonPiece>,
+    origin: PieceOrigin,
+    is_changed: bool,
+}
+
+impl MergedBucket {
+    /// Lets `piece` apply from `u` on; the last stretch continues if it is the same line with the same error.
+    fn push(&mut self, origin: PieceOrigin, piece: &HorizonPiece, u: f64) {
         match self.pieces.last_mut() {
-            Some(last) if self.tag == tag && last.error == piece.error => {}
+            Some(last) if self.origin == origin && last.error == piece.error => {}
             Some(last) if last.u == u => *last = HorizonPiece { u, v: piece.at(u), ..*piece },
-            _ if piece.u == u => self.pieces.push(*piece),
-            _ => self.pieces.push(HorizonPiece { u, v: piece.at(u), ..*piece }),
+            _ => self.pieces.push(piece.from(u)),
         }
-        self.tag = tag;
-        self.changed |= tag == Tag::New;
+        self.origin = origin;
+        self.is_changed |= origin == PieceOrigin::New;
     }
 
-    /// The greater of the old piece `at` and the new line, from `start` to `end`.
-    fn greater(&mut self, (at, old): (usize, &HorizonPiece), new: &HorizonPiece, start: f64, end: f64) {
-        let (first, last) = (new.at(start) - old.at(start), new.at(end) - old.at(end));
+    /// Pushes the greater of an old piece and the new line, from `start` to `end`.
+    fn push_greater(&mut self, old: Contender<'_>, new: Contender<'_>, start: f64, end: f64) {
+        let above = |u: f64| new.piece.at(u) - old.piece.at(u);
+        let (first, last) = (above(start), above(end));
         if first <= 0.0 && last <= 0.0 {
-            self.winner(Tag::Old(at), old, new.error, -first.max(last), start);
+            self.push_winner(old, new, -first.max(last), start);
         } else if first >= 0.0 && last >= 0.0 {
-            self.winner(Tag::New, new, old.error, first.min(last), start);
+            self.push_winner(new, old, first.min(last), start);
         } else {
             let middle = (start + (end - start) * (first / (first - last))).clamp(start, end);
-            let (early, late) = if first > 0.0 { (Tag::New, Tag::Old(at)) } else { (Tag::Old(at), Tag::New) };
-            for (tag, u) in [(early, start), (late, middle)] {
-                let (piece, other) = if tag == Tag::New { (new, old) } else { (old, new) };
-                self.winner(tag, piece, other.error, 0.0, u);
-            }
+            let (early, late) = if first > 0.0 { (new, old) } else { (old, new) };
+            self.push_winner(early, late, 0.0, start);
+            self.push_winner(late, early, 0.0, middle);
         }
     }
 
-    /// The winner of a stretch; one that wins by less than the loser may be off is as unsure as that.
-    fn winner(&mut self, tag: Tag, piece: &HorizonPiece, loser_error: f64, gap: f64, u: f64) {
+    /// Pushes the greater piece from `u` on; where it wins by less than the loser's error, it takes on the greater error.
+    fn push_winner(&mut self, winner: Contender<'_>, loser: Contender<'_>, gap: f64, u: f64) {
+        let (piece, loser_error) = (winner.piece, loser.piece.error);
         let error = if gap < loser_error { piece.error.max(loser_error) } else { piece.error };
-        self.changed |= error != piece.error;
-        self.push(tag, &HorizonPiece { error, ..*piece }, u);
+        self.is_changed |= error != piece.error;
+        self.push(winner.origin, &HorizonPiece { error, ..*piece }, u);
     }
 }
 
@@ -368,8 +348,17 @@ mod tests {
         }
     }
 
+    /// Checks that every bucket's pieces follow each other in order and that its low is theirs.
+    fn check(horizon: &Horizon) {
+        for (index, bucket) in horizon.buckets.iter().enumerate() {
+            assert!(bucket.pieces.windows(2).all(|pair| pair[0].u < pair[1].u), "bucket {index}: {bucket:?}");
+            assert_eq!(bucket.pieces.first().map(|piece| piece.u), Some(horizon.border(index)));
+            assert_eq!(horizon.low[index], horizon.least(index), "the low of bucket {index}");
+        }
+    }
+
     #[test]
-    fn it_is_the_greatest_of_all_edges_however_often_it_is_split() {
+    fn the_horizon_is_the_greatest_of_all_edges_after_any_splits() {
         let mut seeded = Seeded(5);
         let mut horizon = Horizon::new(0.0, 1.0);
         let mut edges: Vec<HorizonEdge> = Vec::new();
@@ -382,20 +371,20 @@ mod tests {
             let edge = HorizonEdge { u0: start, v0: seeded.part(), u1: end, v1: seeded.part(), error: 1e-9 };
             horizon.insert(&edge);
             edges.push(edge);
-            horizon.check().expect("sound");
+            check(&horizon);
         }
         for _ in 0..2000 {
             let u = seeded.part();
             let over = edges.iter().filter(|edge| edge.u0 <= u && u <= edge.u1);
             let true_v =
                 over.map(|edge| edge.v0 + edge.slope() * (u - edge.u0)).fold(f64::NEG_INFINITY, f64::max);
-            let span = horizon.span(u, 0.0, 0.0).expect("nothing is doubted");
+            let span = horizon.span(u, 0.0, 0.0).expect("no doubts");
             assert!(span.low <= true_v && true_v <= span.high, "{u}: {true_v} not in {span:?}");
         }
     }
 
     #[test]
-    fn a_doubt_leaves_open_what_is_lower_than_it_and_not_hidden() {
+    fn a_doubt_leaves_open_whether_lower_unhidden_ground_is_visible() {
         let mut horizon = Horizon::new(0.0, 1.0);
         horizon.insert(&HorizonEdge { u0: 0.0, v0: 1.0, u1: 1.0, v1: 1.0, error: 0.0 });
         horizon.doubt(Doubt { u0: 0.3, u1: 0.3001, v: 2.0 });

@@ -1,0 +1,69 @@
+//! Caps that a header must keep before anything is allocated for it.
+
+use glam::UVec2;
+
+use crate::dem::error::DemErrorKind;
+
+/// The most samples of a raster in memory: 2²⁸, a gigabyte of 32-bit floats.
+///
+/// Arbitrary: larger than any terrain that fits a scene, small enough that a forged header cannot exhaust the memory.
+pub const MOST_SAMPLES: u64 = 1 << 28;
+
+/// Bytes that a packed file of any size may decode to: sparse files hold almost nothing.
+const SPARSE_BYTES: u64 = 64 << 20;
+
+/// The size that a header claims, to be held against the bytes of its file.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SizeClaim {
+    /// Samples per row.
+    pub width: u64,
+    /// Rows.
+    pub height: u64,
+    /// The fewest bytes that a sample decodes to; 0 where a file may leave samples out.
+    pub bytes_per_sample: u64,
+    /// The most bytes that one byte of the file decodes to.
+    pub expansion: u64,
+    /// The most samples that are allowed.
+    pub most_samples: u64,
+}
+
+impl SizeClaim {
+    /// A claim on plain, unpacked samples of a raster in memory.
+    pub fn new(width: u64, height: u64, bytes_per_sample: u64) -> Self {
+        Self { width, height, bytes_per_sample, expansion: 1, most_samples: MOST_SAMPLES }
+    }
+
+    /// Returns width and height, both at least 1.
+    ///
+    /// # Errors
+    /// The size is 0, above the cap, or more than `file_bytes` bytes can hold.
+    pub fn check(&self, file_bytes: usize) -> Result<UVec2, DemErrorKind> {
+        let Self { width, height, most_samples, .. } = *self;
+        let samples = width.checked_mul(height).filter(|&samples| samples <= most_samples);
+        let samples = samples.ok_or(DemErrorKind::TooLarge { width, height, most: most_samples })?;
+        let (Ok(columns @ 1..), Ok(rows @ 1..)) = (u32::try_from(width), u32::try_from(height)) else {
+            return Err(DemErrorKind::NoSamples { width, height });
+        };
+        let sparse = if self.expansion > 1 { SPARSE_BYTES } else { 0 };
+        let possible = (file_bytes as u64).saturating_mul(self.expansion).saturating_add(sparse);
+        if samples.saturating_mul(self.bytes_per_sample) > possible {
+            return Err(DemErrorKind::Truncated { width, height, file_bytes });
+        }
+        Ok(UVec2::new(columns, rows))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_that_a_file_cannot_hold_are_refused() {
+        assert!(SizeClaim::new(10, 10, 2).check(200).is_ok());
+        assert!(SizeClaim::new(10, 10, 2).check(199).is_err());
+        assert!(SizeClaim::new(0, 10, 2).check(200).is_err());
+        let packed = |side, bytes| SizeClaim { expansion: 4000, ..SizeClaim::new(side, side, bytes) };
+        assert!(packed(u64::MAX, 2).check(200).is_err());
+        assert!(packed(1 << 14, 4).check(1000).is_err());
+    }
+}

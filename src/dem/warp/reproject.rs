@@ -1,0 +1,155 @@
+//! Rasters in a wanted system and with cells of a wanted size.
+//!
+//! ```text
+//! cells of the source   │  1×          2×                  cells that are wanted
+//! ──────────────────────┼───┼───────────┼─────────────────────────────────────►
+//!                        bilinear        average of the samples in each cell
+//! ```
+
+use std::borrow::Cow;
+
+use glam::DVec2;
+
+use crate::dem::raster::Raster;
+use crate::dem::warp::crs_transform::CrsTransform;
+use crate::dem::warp::resample::{CellSize, Resampler};
+use crate::dem::warp::{WarpError, check_source, turned_north_up, with_crs};
+use crate::geom::crs::Crs;
+
+/// From this many times the source's cells on, cells hold the average: a bilinear value at their center would leave
+/// samples out. At twice the size the two differ little; above it only the average keeps the mean height.
+const COARSER: f64 = 2.0;
+
+/// How samples were made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Resampling {
+    /// They are the source's, perhaps in another order.
+    Kept,
+    /// Between the four samples of the source around each cell's center.
+    Bilinear,
+    /// As the mean of the source's samples in each cell.
+    Average,
+}
+
+/// A raster in another system or with other cells.
+#[derive(Clone, Debug)]
+pub struct Warped<'a> {
+    /// The raster, heights in the source's vertical unit; borrowed where it is the source.
+    pub raster: Cow<'a, Raster>,
+    /// How its samples were made.
+    pub method: Resampling,
+}
+
+/// `raster` in `target`, or in its own system, with square cells of `cell` units of that system, or of the size of its
+/// own. North is up.
+///
+/// In its own system, a raster along the axes keeps its north-west corner, and without a `cell` its samples. All else is
+/// resampled: cells lie on multiples of their size and cover the valid samples. Longitudes of a raster across the date
+/// line continue beyond 180°.
+///
+/// A raster without a system is taken to be in `target`. The same bits for every number of threads.
+///
+/// # Errors
+/// [`WarpError`]: a raster without a place, one that looks like degrees and names no system, one without valid
+/// samples, too many cells, a pole in degrees, and points that one of the systems does not cover or datums whose shift
+/// is not known.
+pub fn reproject<'a>(
+    raster: &'a Raster,
+    target: Option<&Crs>,
+    cell: Option<f64>,
+) -> Result<Warped<'a>, WarpError> {
+    check_source(raster)?;
+    let own = raster.crs.as_ref().or(target);
+    let system = target.or(own);
+    let stays = own == system && raster.is_axis_aligned();
+    let source = if stays { turned_north_up(raster) } else { Cow::Borrowed(raster) };
+    let Some(cell) = cell.filter(|&cell| !stays || DVec2::splat(cell) != source.spacing()) else {
+        if stays {
+            return Ok(Warped { raster: with_crs(source, own), method: Resampling::Kept });
+        }
+        let transform = CrsTransform::new(&source, own, system);
+        let warped = Resampler::around(&source, &transform, None)?.bilinear();
+        return Ok(Warped { raster: Cow::Owned(warped), method: Resampling::Bilinear });
+    };
+    let transform = CrsTransform::new(&source, own, system);
+    let resampler = if stays {
+        Resampler::over(&source, &transform, cell)?
+    } else {
+        Resampler::around(&source, &transform, Some(cell))?
+    };
+    let center = source.grid_from_map(source.center());
+    let at = |grid: DVec2| transform.forward(source.map_from_grid.transform_point2(grid));
+    let (raster, method) = if resampler.cell() >= COARSER * CellSize::new(center, &at)?.longest {
+        (resampler.average(), Resampling::Average)
+    } else {
+        (resampler.bilinear(), Resampling::Bilinear)
+    };
+    Ok(Warped { raster: Cow::Owned(raster), method })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dem::raster::Samples;
+    use crate::dem::raster::tests::small;
+
+    fn utm(code: u32) -> Option<Crs> {
+        Some(Crs::from_epsg(code).expect("known"))
+    }
+
+    #[test]
+    fn coarse_cells_hold_the_mean_of_the_samples_in_them() {
+        let values = vec![1.0, 3.0, 10.0, 20.0, 5.0, 7.0, f32::NAN, 30.0, 2.0, 2.0, f32::NAN, f32::NAN];
+        let raster = Raster { crs: utm(32612), ..small(4, 3, values) };
+        let Warped { raster: coarse, method } = reproject(&raster, None, Some(20.0)).expect("in meters");
+        assert_eq!((coarse.width, coarse.height, method), (2, 2, Resampling::Average));
+        assert_eq!([coarse.at(0, 0), coarse.at(1, 0), coarse.at(0, 1)], [4.0, 20.0, 2.0]);
+        assert!(coarse.at(1, 1).is_nan());
+        assert_eq!(coarse.geotransform(), [1000.0, 20.0, 0.0, 2030.0, 0.0, -20.0]);
+    }
+
+    #[test]
+    fn finer_cells_lie_between_the_samples() {
+        let raster = Raster { crs: utm(32612), ..small(2, 2, vec![0.0, 10.0, 20.0, 30.0]) };
+        let Warped { raster: fine, method } = reproject(&raster, None, Some(5.0)).expect("in meters");
+        assert_eq!((fine.width, fine.height, method), (4, 4, Resampling::Bilinear));
+        assert_eq!([fine.at(0, 0), fine.at(1, 1), fine.at(2, 2)], [0.0, 7.5, 22.5]);
+    }
+
+    #[test]
+    fn without_another_system_or_cell_nothing_changes() {
+        let raster = Raster { crs: utm(32612), ..small(2, 2, vec![0.0, 10.0, 20.0, f32::NAN]) };
+        for cell in [None, Some(10.0)] {
+            let warped = reproject(&raster, utm(32612).as_ref(), cell).expect("in meters");
+            assert_eq!(warped.method, Resampling::Kept);
+            assert_eq!(warped.raster.geotransform(), raster.geotransform());
+            assert_eq!(warped.raster.at(1, 0), 10.0);
+        }
+    }
+
+    #[test]
+    fn a_plane_in_degrees_comes_back_from_meters_and_the_date_line_is_no_border() {
+        let value = |at: DVec2| at.y * 100.0;
+        let place = crate::dem::raster::north_up(DVec2::new(179.9, -17.0), DVec2::splat(0.001));
+        let centers =
+            (0..200u32 * 100).map(|i| DVec2::new(f64::from(i % 200) + 0.5, f64::from(i / 200) + 0.5));
+        let samples = Samples::F64(centers.map(|at| value(place.transform_point2(at))).collect());
+        let degrees =
+            Raster { samples, map_from_grid: place, crs: utm(4326), ..small(200, 100, vec![0.0; 20_000]) };
+        let metric = reproject(&degrees, utm(32760).as_ref(), Some(100.0)).expect("one zone").raster;
+        let again = reproject(&metric, utm(4326).as_ref(), Some(0.001)).expect("near the date line").raster;
+        assert!((195..=205).contains(&again.width), "{} columns", again.width);
+        let middle = (again.width / 2, again.height / 2);
+        let center = again
+            .map_from_grid
+            .transform_point2(DVec2::new(f64::from(middle.0) + 0.5, f64::from(middle.1) + 0.5));
+        assert!((again.at(middle.0, middle.1) - value(center)).abs() < 0.01);
+    }
+
+    #[test]
+    fn a_pole_has_no_place_in_degrees() {
+        let mut polar = Raster { crs: utm(3413), ..small(3, 3, vec![1.0; 9]) };
+        polar.map_from_grid = crate::dem::raster::north_up(DVec2::new(-15.0, 15.0), DVec2::splat(10.0));
+        assert!(matches!(reproject(&polar, utm(4326).as_ref(), None), Err(WarpError::Pole { .. })));
+    }
+}

@@ -1,0 +1,180 @@
+//! The two ways of resampling a raster to square cells.
+//!
+//! *Bilinear* interpolates the source at the center of every cell. It is right where cells are about as large as the
+//! source's, or smaller; where they are much larger it sees one sample of many. *Average* goes the other way round: the
+//! value of a cell is the mean of the source's samples whose centers fall into it, holes left out.
+
+use std::ops::Range;
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::dem::cell_grid::{CellGrid, CellGridError};
+use crate::dem::limits::MOST_SAMPLES;
+use crate::dem::raster::{Raster, SampleFloat, Samples};
+use crate::dem::sample::bilinear_at_grid;
+use crate::dem::warp::WarpError;
+use crate::dem::warp::crs_transform::CrsTransform;
+use crate::dem::warp::data_extent::{data_extent, outline};
+use crate::dem::warp::row_positions::positions;
+use crate::geom::crs::{Crs, CrsError};
+use crate::geom::rect::Rect;
+
+/// Where the cell is not chosen the output may have this many times the samples of the source: a raster turned by 45°
+/// needs 2.
+const GROWTH: u64 = 8;
+
+/// Positions that are computed before their samples are summed: some megabytes.
+const POSITIONS_AT_ONCE: usize = 1 << 19;
+
+/// A raster and the cells that it is resampled to.
+pub(super) struct Resampler<'a> {
+    source: &'a Raster,
+    transform: &'a CrsTransform<'a>,
+    cells: CellGrid,
+}
+
+impl<'a> Resampler<'a> {
+    /// To cells around the valid samples, on multiples of the cell; without a `cell`, of the size of the source's cells
+    /// at the center.
+    pub fn around(
+        source: &'a Raster,
+        transform: &'a CrsTransform<'a>,
+        cell: Option<f64>,
+    ) -> Result<Self, WarpError> {
+        let valid = data_extent(source).ok_or(WarpError::Empty)?;
+        transform.check_poles(source)?;
+        let at = |grid: DVec2| transform.forward(source.map_from_grid.transform_point2(grid));
+        let side = match cell {
+            Some(cell) => cell,
+            None => CellSize::new(valid.center(), &at)?.side,
+        };
+        let extent = Rect::around(outline(valid).map(at).collect::<Result<Vec<_>, _>>()?);
+        let most = if cell.is_some() { MOST_SAMPLES } else { source.samples.len() as u64 * GROWTH + 1024 };
+        Self::new(source, transform, CellGrid::around(extent, side), most)
+    }
+
+    /// To cells over a raster with north up, from its own corner.
+    pub fn over(source: &'a Raster, transform: &'a CrsTransform<'a>, cell: f64) -> Result<Self, WarpError> {
+        Self::new(source, transform, CellGrid::within(source.extent(), cell), MOST_SAMPLES)
+    }
+
+    fn new(
+        source: &'a Raster,
+        transform: &'a CrsTransform<'a>,
+        cells: Result<CellGrid, CellGridError>,
+        most: u64,
+    ) -> Result<Self, WarpError> {
+        let too_large = |width, height| {
+            let system = transform.to.map_or("north up", Crs::name).into();
+            WarpError::TooLarge { system, width, height }
+        };
+        let cells = cells.map_err(|error| match error {
+            CellGridError::TooMany { columns, rows, .. } => too_large(columns as u64, rows as u64),
+            CellGridError::Cell(_) | CellGridError::Empty(_) => too_large(0, 0),
+        })?;
+        let (width, height) = (u64::from(cells.width()), u64::from(cells.height()));
+        if width * height > most {
+            Err(too_large(width, height))
+        } else {
+            Ok(Self { source, transform, cells })
+        }
+    }
+
+    /// The side of a cell.
+    pub fn cell(&self) -> f64 {
+        self.cells.cell()
+    }
+
+    /// The source's values at the centers of the cells.
+    pub fn bilinear(&self) -> Raster {
+        self.raster(match self.source.samples {
+            Samples::F32(_) => self.interpolated::<f32>(),
+            Samples::F64(_) => self.interpolated::<f64>(),
+        })
+    }
+
+    fn interpolated<T: SampleFloat>(&self) -> Samples {
+        let rows = (0..self.cells.height()).into_par_iter().map(|row| {
+            let position = |column: usize| {
+                let at = self.transform.back(self.cells.center(column as u32, row))?;
+                Some(self.source.grid_from_map(at))
+            };
+            let value = |at: DVec2| bilinear_at_grid(self.source, at).parts().0;
+            let positions = positions(self.cells.width() as usize, &position);
+            positions.into_iter().map(|at| T::from_f64(value(at))).collect::<Vec<T>>()
+        });
+        T::into_samples(rows.flatten_iter().collect())
+    }
+
+    /// The means of the source's samples in each cell.
+    pub fn average(&self) -> Raster {
+        let cells = self.cells.width() as usize * self.cells.height() as usize;
+        let (mut sums, mut counts) = (vec![0f64; cells], vec![0u32; cells]);
+        let (width, height) = (self.source.width as usize, self.source.height as usize);
+        let rows_at_once = (POSITIONS_AT_ONCE / width).max(1);
+        for first in (0..height).step_by(rows_at_once) {
+            let rows: Range<usize> = first..height.min(first + rows_at_once);
+            let positions: Vec<Vec<DVec2>> =
+                rows.clone().into_par_iter().map(|row| self.cells_of_row(row)).collect();
+            // Summed in order: the same bits for every number of threads.
+            for (index, at) in (rows.start * width..).zip(positions.into_iter().flatten()) {
+                let value = self.source.samples.get(index);
+                if let Some(cell) = self.index(at).filter(|_| !value.is_nan()) {
+                    sums[cell] += value;
+                    counts[cell] += 1;
+                }
+            }
+        }
+        let means = sums.into_iter().zip(counts).map(|(sum, count)| sum / f64::from(count));
+        self.raster(match self.source.samples {
+            Samples::F32(_) => Samples::F32(means.map(|mean| mean as f32).collect()),
+            Samples::F64(_) => Samples::F64(means.collect()),
+        })
+    }
+
+    /// Where the centers of a row of the source lie, in cells from the lattice's corner.
+    fn cells_of_row(&self, row: usize) -> Vec<DVec2> {
+        positions(self.source.width as usize, &|column| {
+            let center = DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
+            let at = self.transform.forward(self.source.map_from_grid.transform_point2(center)).ok()?;
+            Some((at - self.cells.corner()) * DVec2::new(1.0, -1.0) / self.cells.cell())
+        })
+    }
+
+    fn index(&self, at: DVec2) -> Option<usize> {
+        let (width, height) = (self.cells.width(), self.cells.height());
+        let is_within = at.x >= 0.0 && at.y >= 0.0 && at.x < f64::from(width) && at.y < f64::from(height);
+        is_within.then(|| at.y as usize * width as usize + at.x as usize)
+    }
+
+    fn raster(&self, samples: Samples) -> Raster {
+        Raster {
+            width: self.cells.width(),
+            height: self.cells.height(),
+            samples,
+            map_from_grid: self.cells.map_from_grid(),
+            georeferenced: true,
+            crs: self.transform.to.cloned(),
+            ..self.source.without_samples()
+        }
+    }
+}
+
+/// The size of a source cell in the output's system.
+pub(super) struct CellSize {
+    /// The side of a square of the same area.
+    pub side: f64,
+    /// The longer side.
+    pub longest: f64,
+}
+
+impl CellSize {
+    /// Of the cell around the grid position `center`.
+    pub fn new(center: DVec2, at: &impl Fn(DVec2) -> Result<DVec2, CrsError>) -> Result<Self, WarpError> {
+        let half = DVec2::splat(0.5);
+        let east = at(center + half * DVec2::X)? - at(center - half * DVec2::X)?;
+        let south = at(center + half * DVec2::Y)? - at(center - half * DVec2::Y)?;
+        Ok(Self { side: east.perp_dot(south).abs().sqrt(), longest: east.length().max(south.length()) })
+    }
+}

@@ -1,0 +1,127 @@
+//! Rasters to the bytes of files.
+//!
+//! What a format cannot hold is refused with what to do, except where rounding is the format's nature (an SRTM tile has
+//! whole meters): then it is done and noted. [`crate::dem::read::read`] returns the raster again, bit for bit where
+//! nothing was rounded.
+
+use crate::dem::formats::DemFormat;
+use crate::dem::raster::Raster;
+
+/// The bytes of a file and of those that belong beside it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WrittenDem {
+    /// The file.
+    pub bytes: Vec<u8>,
+    /// Files of the same name with another extension.
+    pub companions: Vec<Companion>,
+    /// The type of the stored heights: `float32`, `int16`, `text`.
+    pub stored: String,
+    /// What the user must know: what was rounded, how to read it.
+    pub notes: Vec<String>,
+}
+
+/// A file beside another, of the same name with another extension.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Companion {
+    /// The extension without its dot.
+    pub extension: &'static str,
+    /// The content.
+    pub bytes: Vec<u8>,
+}
+
+impl WrittenDem {
+    /// A file alone, without notes.
+    pub(crate) fn new(bytes: Vec<u8>, stored: &str) -> Self {
+        Self { bytes, companions: Vec::new(), stored: stored.to_ascii_lowercase(), notes: Vec::new() }
+    }
+}
+
+/// Why a raster cannot be written in a format.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum WriteError {
+    /// The format is only read.
+    #[error("elevation is not written as {format}; write a GeoTIFF")]
+    OnlyRead {
+        /// The format.
+        format: &'static str,
+    },
+    /// Rows or columns run in another direction than the format's.
+    #[error(
+        "a {format} has rows that run east, from the northernmost to the southernmost, and this elevation lies otherwise; write a GeoTIFF, or turn it with --crs"
+    )]
+    NotNorthUp {
+        /// The format.
+        format: &'static str,
+    },
+    /// The format needs a georeference, and the raster has none.
+    #[error("a {format} states where its samples lie, and this elevation does not; write a GeoTIFF or a PNG")]
+    NoPlace {
+        /// The format.
+        format: &'static str,
+    },
+    /// The format's value for no data is one of the heights.
+    #[error("a {format} writes {value} for no data, and {value} is one of the heights; write a GeoTIFF")]
+    NoDataTaken {
+        /// The format.
+        format: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// The format cannot hold a height.
+    #[error(
+        "a {format} holds heights from {least} to {greatest} and this elevation has {found}; write a GeoTIFF"
+    )]
+    OutOfRange {
+        /// The format.
+        format: &'static str,
+        /// The lowest that it holds.
+        least: f64,
+        /// The highest that it holds.
+        greatest: f64,
+        /// The height.
+        found: f64,
+    },
+    /// The format has no raster of this shape.
+    #[error("a {format} has {wanted}, not {found}; write a GeoTIFF")]
+    Shape {
+        /// The format.
+        format: &'static str,
+        /// The shapes of the format.
+        wanted: &'static str,
+        /// The shape of the raster.
+        found: String,
+    },
+    /// The file's name states another place than the raster's.
+    #[error("an SRTM tile is named by its south-west corner: name this one {wanted}.hgt")]
+    Name {
+        /// The right name, without its extension.
+        wanted: String,
+    },
+    /// There is no height to write.
+    #[error("a PNG needs at least one height to choose its scale by, and all samples are no data")]
+    Empty,
+}
+
+/// Writes `raster` in a format. `stem` is the file's name without its extension: the place of an SRTM tile is its name.
+///
+/// Heights stay in the raster's vertical unit where the format can name it, and are converted to meters where it cannot.
+///
+/// # Errors
+/// [`WriteError`].
+///
+/// ```
+/// use sandtable::dem::formats::DemFormat;
+/// use sandtable::dem::read::{DemHints, read};
+/// use sandtable::dem::write::write;
+/// let grid = b"ncols 2\nnrows 2\nxllcorner 500000\nyllcorner 4000000\ncellsize 30\n1 2 3 4.5";
+/// let raster = read("a.asc", grid, &DemHints::default())?;
+/// let written = write(&raster, DemFormat::to_write("tif").expect("a GeoTIFF"), "a")?;
+/// assert_eq!(written.stored, "float32");
+/// let again = read("a.tif", &written.bytes, &DemHints::default())?;
+/// assert_eq!(again.samples, raster.samples);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn write(raster: &Raster, format: &DemFormat, stem: &str) -> Result<WrittenDem, WriteError> {
+    let writer = format.writer.ok_or(WriteError::OnlyRead { format: format.name })?;
+    writer(raster, stem)
+}

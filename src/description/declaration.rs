@@ -1,0 +1,145 @@
+//! What is declared of a key: name, documentation, type, unit, range and default.
+//!
+//! The macro [`table!`](crate::description::table) makes these declarations. The decoder, the JSON schema, the reference
+//! page `scenes/README.md` and the messages read them.
+
+use std::iter;
+
+use crate::description::bounds::Bounds;
+use crate::description::words::WordDeclaration;
+
+/// One key of a table.
+#[derive(Clone, Copy, Debug)]
+pub struct KeyDeclaration {
+    /// The key as a scene file writes it.
+    pub name: &'static str,
+    /// One sentence or a few: what the value means.
+    pub doc: &'static str,
+    /// The type of the value and its range.
+    pub kind: KeyKind,
+    /// The unit of a number, such as `m`; empty where it has none.
+    pub unit: &'static str,
+    /// Whether the key may be absent, and what holds then.
+    pub presence: Presence,
+    /// Keys that are stated in place of this one: a table that states one of them does not take this one from its style.
+    pub rivals: &'static [&'static str],
+}
+
+/// Whether a table may lack a key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Presence {
+    /// It may not.
+    Required,
+    /// It may; this value then holds, written as in a scene file.
+    Default(&'static str),
+    /// It may; these words say what holds then.
+    Otherwise(&'static str),
+    /// The declaration is of several keys in the same table ([`KeyKind::Group`]).
+    Inline,
+}
+
+/// The type of a value, with its range.
+#[derive(Clone, Copy, Debug)]
+pub enum KeyKind {
+    /// A number.
+    Number(Bounds),
+    /// A whole number.
+    Integer {
+        /// The least value.
+        least: u32,
+        /// The greatest value.
+        most: u32,
+    },
+    /// A number, or an expression that gives one for each feature.
+    FeatureNumber(Bounds),
+    /// `true` or `false`.
+    Switch,
+    /// Text, possibly empty.
+    Text,
+    /// Text that is not empty.
+    FilledText,
+    /// Text that is not empty, or a list of such texts.
+    TextList {
+        /// The greatest number of texts.
+        most: usize,
+    },
+    /// A table of texts under names that the user chooses.
+    TextTable {
+        /// The greatest number of texts.
+        most: usize,
+    },
+    /// An expression over a feature's properties.
+    Expression,
+    /// One of some words.
+    Word(&'static [WordDeclaration]),
+    /// One of some words, or an expression that gives one for each feature.
+    FeatureWord(&'static [WordDeclaration]),
+    /// A color.
+    Color,
+    /// A coordinate pair.
+    Point,
+    /// A list of coordinate pairs.
+    Points {
+        /// The least number of points.
+        least: usize,
+        /// The greatest number of points.
+        most: usize,
+    },
+    /// Two numbers, from and to.
+    NumberRange(Bounds),
+    /// A list of numbers.
+    Numbers {
+        /// The range of each.
+        range: Bounds,
+        /// The greatest number of numbers.
+        most: usize,
+    },
+    /// The name of a color ramp, or a list of its stops.
+    Ramp {
+        /// The names.
+        words: &'static [WordDeclaration],
+        /// The greatest number of stops.
+        most: usize,
+    },
+    /// A table of properties with the values wanted of each, or an expression.
+    Selection {
+        /// The greatest number of values of one property.
+        most: usize,
+    },
+    /// A table.
+    Table(&'static [KeyDeclaration]),
+    /// A list of tables.
+    Tables(&'static [KeyDeclaration]),
+    /// A list of tables, each of which may take keys from a style.
+    StyledTables(&'static [KeyDeclaration]),
+    /// Tables of keys under names that the user chooses.
+    Styles,
+    /// Several keys in the same table.
+    Group(&'static [KeyDeclaration]),
+}
+
+impl KeyDeclaration {
+    /// The keys of the table or group that the declaration is of; empty for a value.
+    pub fn inner(&self) -> &'static [Self] {
+        match self.kind {
+            KeyKind::Table(keys)
+            | KeyKind::Tables(keys)
+            | KeyKind::StyledTables(keys)
+            | KeyKind::Group(keys) => keys,
+            _ => &[],
+        }
+    }
+
+    /// The keys of a table, those of its groups one by one.
+    pub fn flattened(keys: &'static [Self]) -> Box<dyn Iterator<Item = &'static Self>> {
+        Box::new(keys.iter().flat_map(|key| match key.kind {
+            KeyKind::Group(inner) => Self::flattened(inner),
+            _ => Box::new(iter::once(key)),
+        }))
+    }
+
+    /// The documentation as one line.
+    pub fn doc(&self) -> &'static str {
+        self.doc.trim_ascii()
+    }
+}

@@ -1,0 +1,110 @@
+//! Values that may differ from feature to feature: stated as such, or as an expression over a feature's properties.
+
+use std::fmt::Debug;
+use std::ops::Range;
+
+use crate::description::bounds::Bounds;
+use crate::description::expression::{Expression, PropertyLookup};
+use crate::description::scalar::Scalar;
+use crate::description::stated::Stated;
+use crate::description::words::Word;
+
+/// A type that the result of an expression may be used as.
+pub trait FromScalar: Clone + Debug + PartialEq {
+    /// What bounds the values of a key.
+    type Limits: Copy + Debug + PartialEq;
+
+    /// The value that `scalar` is, `None` where it is none within `limits`.
+    fn from_scalar(scalar: &Scalar, limits: Self::Limits) -> Option<Self>;
+}
+
+impl FromScalar for f64 {
+    type Limits = Bounds;
+
+    /// A text that is a number, or a number of meters (`"4.5 m"`) or feet (`"12 ft"`), is that number.
+    fn from_scalar(scalar: &Scalar, limits: Bounds) -> Option<Self> {
+        scalar.number().filter(|&number| limits.hold(number))
+    }
+}
+
+impl<W: Word> FromScalar for W {
+    type Limits = ();
+
+    fn from_scalar(scalar: &Scalar, (): ()) -> Option<Self> {
+        match scalar {
+            Scalar::Text(text) => W::from_word(text),
+            Scalar::Bool(_) | Scalar::Number(_) => None,
+        }
+    }
+}
+
+/// A value that is the same for all features, or computed for each.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FeatureValue<T: FromScalar> {
+    /// The same for all.
+    Fixed(T),
+    /// The result of an expression, where it lies within limits.
+    Computed {
+        /// The expression.
+        expression: Expression,
+        /// The limits of the key.
+        limits: T::Limits,
+        /// The table and the key, such as `[[road]] width`.
+        key: String,
+    },
+}
+
+impl<T: FromScalar> FeatureValue<T> {
+    /// The value for a feature; `None` where its properties give none within the limits.
+    pub fn value(&self, properties: PropertyLookup<'_>) -> Option<T> {
+        match self {
+            Self::Fixed(value) => Some(value.clone()),
+            Self::Computed { expression, limits, .. } => {
+                let usable = |value: &Scalar| T::from_scalar(value, *limits).is_some();
+                T::from_scalar(&expression.value_for(properties, &usable)?, *limits)
+            }
+        }
+    }
+
+    /// The table and the key whose expression may give no value; `None` where the value is the same for all features.
+    pub fn computed_key(&self) -> Option<&str> {
+        match self {
+            Self::Fixed(_) => None,
+            Self::Computed { key, .. } => Some(key),
+        }
+    }
+}
+
+/// A value of each feature with its default: for a key that is not stated, or whose expression gives no value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DefaultedValue<T: FromScalar> {
+    stated: Option<Stated<FeatureValue<T>>>,
+    default: T,
+}
+
+impl<T: FromScalar> DefaultedValue<T> {
+    /// `stated`, or where that is `None` or gives no value, `default`.
+    pub fn new(stated: Option<Stated<FeatureValue<T>>>, default: T) -> Self {
+        Self { stated, default }
+    }
+
+    /// What the scene file states; `None` where it does not state the key.
+    pub fn stated(&self) -> Option<&FeatureValue<T>> {
+        self.stated.as_deref()
+    }
+
+    /// The default.
+    pub fn default(&self) -> &T {
+        &self.default
+    }
+
+    /// The bytes that state the value; `None` where it is not stated.
+    pub fn span(&self) -> Option<Range<usize>> {
+        self.stated.as_ref().and_then(Stated::span)
+    }
+
+    /// The value for a feature.
+    pub fn value(&self, properties: PropertyLookup<'_>) -> T {
+        self.stated().and_then(|stated| stated.value(properties)).unwrap_or_else(|| self.default.clone())
+    }
+}

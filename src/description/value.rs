@@ -1,0 +1,414 @@
+//! Reads one value of the scene file: checks its type and range, and notes what is wrong with it.
+
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeArray, DeString, DeTable, DeValue};
+
+use crate::description::bounds::{Bounds, ShortNumber};
+use crate::description::color::{Color, RampChoice};
+use crate::description::expression::{Expression, ExpressionError};
+use crate::description::feature_value::FeatureValue;
+use crate::description::include::joined;
+use crate::description::reader::{DecodeContext, TableName};
+use crate::description::words::Word;
+use crate::geom::crs::Crs;
+use crate::message::suggest::{quoted, remedy};
+
+/// The largest coordinate, in any unit: beyond it centimeters are lost to rounding.
+pub(super) const COORDINATES: Bounds = Bounds::Within(-1e9, 1e9);
+/// The most inline points of one feature; longer lines belong in a file.
+pub(super) const MAX_POINTS: usize = 100_000;
+/// The longest text, in characters.
+pub(super) const MAX_TEXT: usize = 4096;
+/// The most stops of a ramp, values of a selection's list, and files of a mosaic.
+pub(super) const MAX_LIST: usize = 256;
+
+/// A value on its way from TOML to a type.
+pub(super) struct KeyValue<'k, 't> {
+    pub context: &'k mut DecodeContext<'t>,
+    pub table: &'k TableName,
+    pub key: &'k str,
+    pub key_span: Range<usize>,
+    pub value: &'k Spanned<DeValue<'k>>,
+}
+
+/// A TOML type in the words of messages.
+pub(super) fn type_name(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(_) => "text",
+        DeValue::Integer(_) | DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "true or false",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a table",
+    }
+}
+
+/// The number that `value` is; `None` where it is none or is too large for TOML.
+fn number_of(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Integer(whole) => {
+            i64::from_str_radix(whole.as_str(), whole.radix()).ok().map(|whole| whole as f64)
+        }
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        _ => None,
+    }
+}
+
+/// `name`, which is relative to `folder`, as seen from the scene file.
+fn seen_from(folder: &str, name: String) -> String {
+    if folder.is_empty() { name } else { joined(folder, &name) }
+}
+
+fn words<W: Word>() -> Vec<&'static str> {
+    W::DECLARATIONS.iter().map(|declared| declared.word).collect()
+}
+
+impl<'t> KeyValue<'_, 't> {
+    /// Notes an error about the value; always `None`.
+    pub fn wrong<T>(
+        &mut self,
+        message: impl Into<Box<dyn Error + Send + Sync>>,
+        help: impl Into<String>,
+    ) -> Option<T> {
+        self.context.report.error(self.value.span(), message, help);
+        None
+    }
+
+    /// Notes that the value is not what was `wanted`; always `None`.
+    pub fn wrong_type<T>(&mut self, wanted: &str, help: impl Into<String>) -> Option<T> {
+        let found = type_name(self.value.get_ref());
+        self.wrong(format!("`{}` must be {wanted}, but this is {found}", self.key), help)
+    }
+
+    pub fn element<'e>(&'e mut self, value: &'e Spanned<DeValue<'e>>) -> KeyValue<'e, 't> {
+        let key_span = self.key_span.clone();
+        KeyValue { context: self.context, table: self.table, key: self.key, key_span, value }
+    }
+
+    /// Every element of a list, so that all their errors are noted; `None` where one is wrong.
+    pub fn each<T>(
+        &mut self,
+        list: &DeArray<'_>,
+        read: impl Fn(KeyValue<'_, 't>) -> Option<T>,
+    ) -> Option<Vec<T>> {
+        let values: Vec<_> = list.iter().map(|value| read(self.element(value))).collect();
+        values.into_iter().collect()
+    }
+
+    /// As [`Self::each`], of a table with keys of the user's.
+    pub fn each_entry<T>(
+        &mut self,
+        table: &DeTable<'_>,
+        read: impl Fn(KeyValue<'_, 't>) -> Option<T>,
+    ) -> Option<BTreeMap<String, T>> {
+        let entry = |(key, value): (&Spanned<DeString<'_>>, _)| {
+            let key = key.get_ref().as_ref();
+            Some((key.to_owned(), read(KeyValue { key, ..self.element(value) })?))
+        };
+        let entries: Vec<_> = table.iter().map(entry).collect();
+        entries.into_iter().collect()
+    }
+
+    /// A finite number within `range`.
+    pub fn number(mut self, range: Bounds) -> Option<f64> {
+        match number_of(self.value.get_ref()) {
+            Some(number) if range.hold(number) => Some(number),
+            Some(number) => {
+                let message = format!("`{}` must be {range}, but this is {}", self.key, ShortNumber(number));
+                self.wrong(message, "give a number in that range")
+            }
+            None => self.not_a_number(&range.to_string()),
+        }
+    }
+
+    /// A whole number from `least` to `most`.
+    pub fn integer(mut self, least: u32, most: u32) -> Option<u32> {
+        let range = Bounds::Within(f64::from(least), f64::from(most));
+        let wanted = format!("from {least} to {most}");
+        match number_of(self.value.get_ref()) {
+            Some(number) if number == number.trunc() && range.hold(number) => Some(number as u32),
+            Some(number) => {
+                let (key, number) = (self.key, ShortNumber(number));
+                let message = format!("`{key}` must be a whole number {wanted}, but this is {number}");
+                self.wrong(message, "give a number in that range")
+            }
+            None => self.not_a_number(&wanted),
+        }
+    }
+
+    fn not_a_number<T>(&mut self, wanted: &str) -> Option<T> {
+        let help = match self.value.get_ref() {
+            DeValue::String(text) if text.trim().parse::<f64>().is_ok() => {
+                format!("write {} without quotes", text.trim())
+            }
+            _ => format!("give a number {wanted}"),
+        };
+        self.wrong_type("a number", help)
+    }
+
+    /// Two numbers within `range`, the second not less than the first.
+    pub fn number_range(mut self, range: Bounds) -> Option<[f64; 2]> {
+        let help = "write [from, to]";
+        let DeValue::Array(list) = self.value.get_ref() else { return self.wrong_type("two numbers", help) };
+        if list.len() != 2 {
+            return self.wrong(format!("`{}` holds {} numbers", self.key, list.len()), help);
+        }
+        match self.each(list, |number| number.number(range))?[..] {
+            [from, to] if from <= to => Some([from, to]),
+            _ => self.wrong(format!("`{}` ends below where it begins", self.key), help),
+        }
+    }
+
+    /// At most as many numbers as points, each within `range`.
+    pub fn numbers(mut self, range: Bounds) -> Option<Vec<f64>> {
+        match self.value.get_ref() {
+            DeValue::Array(list) if list.len() <= MAX_POINTS => {
+                self.each(list, |number| number.number(range))
+            }
+            _ => self.wrong_type(&format!("a list of up to {MAX_POINTS} numbers"), "write [8, 8.5, ...]"),
+        }
+    }
+
+    /// A number within `range`, or an expression that gives one.
+    pub fn feature_number(mut self, range: Bounds) -> Option<FeatureValue<f64>> {
+        match self.value.get_ref() {
+            DeValue::String(text) if text.trim().parse::<f64>().is_err() => {
+                let expression = self.expression_among(&[])?;
+                Some(FeatureValue::Computed { expression, limits: range, key: self.key_in_table() })
+            }
+            _ => self.number(range).map(FeatureValue::Fixed),
+        }
+    }
+
+    /// One of `W`'s words, or an expression that gives one.
+    pub fn feature_word<W: Word>(mut self) -> Option<FeatureValue<W>> {
+        match self.value.get_ref() {
+            DeValue::String(text) if W::from_word(text).is_none() && Expression::computes(text) => {
+                let expression = self.expression_among(&words::<W>())?;
+                Some(FeatureValue::Computed { expression, limits: (), key: self.key_in_table() })
+            }
+            _ => self.word().map(FeatureValue::Fixed),
+        }
+    }
+
+    fn key_in_table(&self) -> String {
+        format!("{} {}", self.table.title(), self.key)
+    }
+
+    /// An expression over a feature's properties.
+    pub fn expression(mut self) -> Option<Expression> {
+        self.expression_among(&[])
+    }
+
+    /// An expression that gives one of `words`, or anything where they are none.
+    fn expression_among(&mut self, words: &[&str]) -> Option<Expression> {
+        let text = self.element(self.value).filled_text()?;
+        match Expression::parse_among(&text, words) {
+            Ok(expression) => Some(expression),
+            Err(error) => {
+                let (span, message) = match self.span_in_text(&text, &error) {
+                    Some(span) => (span, error.message),
+                    None => (self.value.span(), error.to_string()),
+                };
+                self.context.report.error(span, format!("`{}`: {message}", self.key), error.help);
+                None
+            }
+        }
+    }
+
+    /// The bytes of the scene file that an error is about; `None` where the text is written with escapes.
+    fn span_in_text(&self, text: &str, error: &ExpressionError) -> Option<Range<usize>> {
+        let span = self.value.span();
+        let written = self.context.report.source().text().get(span.start + 1..span.end.checked_sub(1)?)?;
+        let within = (error.at.start + span.start + 1)..(error.at.end + span.start + 1);
+        (written == text).then_some(within)
+    }
+
+    /// True or false.
+    pub fn switch(mut self) -> Option<bool> {
+        match self.value.get_ref() {
+            DeValue::Boolean(on) => Some(*on),
+            _ => self.wrong_type("true or false", "write true or false, without quotes"),
+        }
+    }
+
+    /// Text of bounded length, possibly empty.
+    pub fn text(mut self) -> Option<String> {
+        match self.value.get_ref() {
+            DeValue::String(text) if text.chars().nth(MAX_TEXT).is_none() => Some(text.to_string()),
+            DeValue::String(_) => {
+                self.wrong(format!("`{}` is longer than {MAX_TEXT} characters", self.key), "shorten it")
+            }
+            _ => self.wrong_type("text", "write it in double quotes"),
+        }
+    }
+
+    /// Text that is not empty.
+    pub fn filled_text(mut self) -> Option<String> {
+        let text = self.element(self.value).text()?;
+        if text.trim().is_empty() {
+            let message = format!("`{}` is empty", self.key);
+            return self.wrong(message, "write something in it, or leave the key out");
+        }
+        Some(text)
+    }
+
+    /// Text that is not empty, or a list of such texts.
+    pub fn text_list(mut self) -> Option<Vec<String>> {
+        match self.value.get_ref() {
+            DeValue::Array(list) if (1..=MAX_LIST).contains(&list.len()) => {
+                self.each(list, |text| text.filled_text())
+            }
+            DeValue::Array(list) => {
+                let message = format!("`{}` lists {} texts", self.key, list.len());
+                self.wrong(message, format!("list from 1 to {MAX_LIST}"))
+            }
+            _ => self.filled_text().map(|text| vec![text]),
+        }
+    }
+
+    /// The name of a file, as seen from the scene file.
+    pub fn file(self) -> Option<String> {
+        let folder = self.folder();
+        self.filled_text().map(|name| seen_from(&folder, name))
+    }
+
+    /// The names of one or more files, as seen from the scene file; a name among `built_in` is none.
+    pub fn files(self, built_in: &[&str]) -> Option<Vec<String>> {
+        let folder = self.folder();
+        let seen =
+            |name: String| if built_in.contains(&name.as_str()) { name } else { seen_from(&folder, name) };
+        self.text_list().map(|names| names.into_iter().map(seen).collect())
+    }
+
+    /// The names of files by words of the user's, as seen from the scene file.
+    pub fn named_files(mut self) -> Option<BTreeMap<String, String>> {
+        match self.value.get_ref() {
+            DeValue::Table(table) if (1..=MAX_LIST).contains(&table.len()) => {
+                self.each_entry(table, |name| name.file())
+            }
+            _ => {
+                let help = "write { name = \"text\", ... }";
+                self.wrong_type(&format!("a table of 1 to {MAX_LIST} texts"), help)
+            }
+        }
+    }
+
+    /// The folder of the file that the value stands in, as seen from the scene file.
+    fn folder(&self) -> String {
+        self.context.report.source().folder_at(self.value.span().start).to_owned()
+    }
+
+    /// A coordinate reference system.
+    pub fn crs(mut self) -> Option<Crs> {
+        let text = self.element(self.value).filled_text()?;
+        Crs::parse(&text).map_or_else(|error| self.wrong(error, CRS_HELP), Some)
+    }
+
+    /// A coordinate reference system in meters: heights, widths and distances of a scene are.
+    pub fn metric_crs(mut self) -> Option<Crs> {
+        let crs = self.element(self.value).crs()?;
+        let (name, unit) = (crs.name(), crs.meters_per_unit());
+        let found = match crs.is_geographic() {
+            true => format!("{name} is in degrees"),
+            false if unit != 1.0 => format!("a unit of {name} is {unit} m"),
+            false => return Some(crs),
+        };
+        self.wrong(format!("the scene's coordinate system must be metric, but {found}"), CRS_HELP)
+    }
+
+    /// One of `W`'s words.
+    pub fn word<W: Word>(mut self) -> Option<W> {
+        let DeValue::String(text) = self.value.get_ref() else {
+            return self.wrong_type("a word in quotes", remedy("", &words::<W>(), "it may be"));
+        };
+        W::from_word(text).or_else(|| {
+            let message = format!("`{}` cannot be \"{}\"", self.key, quoted(text));
+            self.wrong(message, remedy(text, &words::<W>(), "it may be"))
+        })
+    }
+
+    /// `#rgb`, `#rrggbb` or `#rrggbbaa`.
+    pub fn color(mut self) -> Option<Color> {
+        let help = "write \"#rgb\", \"#rrggbb\" or \"#rrggbbaa\" in hexadecimal digits";
+        let DeValue::String(text) = self.value.get_ref() else {
+            return self.wrong_type("a color in quotes", help);
+        };
+        Color::parse(text).or_else(|| self.wrong(format!("\"{}\" is not a color", quoted(text)), help))
+    }
+
+    /// The name of a ramp, or its stops from low to high.
+    pub fn ramp(mut self) -> Option<RampChoice> {
+        match self.value.get_ref() {
+            DeValue::Array(stops) => self.stops(stops).map(RampChoice::Stops),
+            _ => self.word().map(RampChoice::Named),
+        }
+    }
+
+    fn stops(&mut self, list: &DeArray<'_>) -> Option<Vec<(f64, Color)>> {
+        let help = "write [[height, \"#rrggbb\"], ...] with heights in meters that grow";
+        if !(2..=MAX_LIST).contains(&list.len()) {
+            let message = format!("a ramp has from 2 to {MAX_LIST} stops, but this has {}", list.len());
+            return self.wrong(message, help);
+        }
+        let stops = self.each(list, |stop| stop.stop(help))?;
+        match stops.windows(2).position(|pair| pair[0].0 >= pair[1].0) {
+            Some(at) => {
+                self.element(&list[at + 1]).wrong("this stop is not higher than the one before it", help)
+            }
+            None => Some(stops),
+        }
+    }
+
+    fn stop(mut self, help: &str) -> Option<(f64, Color)> {
+        match self.value.get_ref() {
+            DeValue::Array(pair) if pair.len() == 2 => {
+                let height = self.element(&pair[0]).number(Bounds::ELEVATION);
+                let color = self.element(&pair[1]).color();
+                Some((height?, color?))
+            }
+            _ => self.wrong("a stop is a height and a color", help),
+        }
+    }
+
+    /// A coordinate pair.
+    pub fn point(mut self) -> Option<[f64; 2]> {
+        let help =
+            "write [easting, northing], or [longitude, latitude] in degrees; heights come from the ground";
+        match self.value.get_ref() {
+            DeValue::Array(pair) if pair.len() == 2 => {
+                let pair = self.each(pair, |number| number.number(COORDINATES))?;
+                Some([pair[0], pair[1]])
+            }
+            DeValue::Array(other) => {
+                self.wrong(format!("a point has two numbers, but this has {}", other.len()), help)
+            }
+            _ => self.wrong_type("a point", help),
+        }
+    }
+
+    /// At least `least` coordinate pairs; the last one of a ring, of `least` 3, is not counted where it repeats the first.
+    pub fn points(mut self, least: usize) -> Option<Vec<[f64; 2]>> {
+        let help = format!("write at least {least} points as [[x1, y1], [x2, y2], ...]");
+        let DeValue::Array(list) = self.value.get_ref() else {
+            return self.wrong_type("a list of points", help);
+        };
+        if list.len() > MAX_POINTS {
+            let message = format!("{} points are more than the {MAX_POINTS} allowed here", list.len());
+            return self.wrong(message, "put them in a GeoJSON file and name it with `file`");
+        }
+        let points = self.each(list, |point| point.point())?;
+        let closed = least > 2 && points.len() > 1 && points.first() == points.last();
+        let count = points.len() - usize::from(closed);
+        if count < least {
+            return self.wrong(format!("`{}` has {count} of the {least} points it needs", self.key), help);
+        }
+        Some(points)
+    }
+}
+
+const CRS_HELP: &str = "write \"EPSG:n\", for example \"EPSG:32616\", or a proj string in meters";

@@ -1,0 +1,177 @@
+//! Writes systems as well-known text, version 1 (OGC 01-009), for `.prj` files: in OGC's spelling, which GDAL, QGIS and
+//! Esri's programs read alike.
+
+use crate::geom::crs::Crs;
+use crate::geom::projection::{Datum, Definition, Ellipsoid, MapProjection};
+
+/// The WKT of a system; `None` for [`Crs::local`] and for a projection that [`Definition`] cannot express.
+///
+/// A system with an EPSG code has it at the root, for readers that look it up.
+pub fn write(crs: &Crs) -> Option<String> {
+    let definition = crs.definition()?;
+    let name = quoted(crs.name());
+    let authority = crs.epsg().map_or_else(String::new, authority);
+    if definition.method == MapProjection::Geographic {
+        return Some(format!("{}{authority}]", geographic(&definition, &name)));
+    }
+    let (method, parameters) = projection(&definition)?;
+    let (base, base_authority) = match definition.datum {
+        Datum::OfEpsg(code) => (quoted(geographic_name(code)), self::authority(code)),
+        _ => ("unnamed".into(), String::new()),
+    };
+    let base = geographic(&definition, &base);
+    let unit = definition.meters_per_unit;
+    let origin = [
+        ("false_easting", definition.false_easting_m / unit),
+        ("false_northing", definition.false_northing_m / unit),
+    ];
+    let parameters: String = parameters
+        .into_iter()
+        .chain(origin)
+        .map(|(parameter, value)| format!(",PARAMETER[\"{parameter}\",{value}]"))
+        .collect();
+    Some(format!(
+        "PROJCS[\"{name}\",{base}{base_authority}],PROJECTION[\"{method}\"]{parameters},UNIT[\"{}\",{unit}]{authority}]",
+        unit_name(unit),
+    ))
+}
+
+fn authority(code: u32) -> String {
+    format!(",AUTHORITY[\"EPSG\",\"{code}\"]")
+}
+
+/// A GEOGCS without its authority and closing bracket.
+fn geographic(definition: &Definition, name: &str) -> String {
+    let wgs84 = Ellipsoid { major_m: 6_378_137.0, inverse_flattening: 298.257_223_563 };
+    let Ellipsoid { major_m, inverse_flattening } = definition.ellipsoid.unwrap_or(wgs84);
+    let (datum, shift) = match &definition.datum {
+        Datum::OfEpsg(code) => (datum_name(*code), String::new()),
+        Datum::ToWgs84(numbers) => ("unknown", to_wgs84(numbers)),
+        Datum::Unstated => ("unknown", String::new()),
+    };
+    format!(
+        "GEOGCS[\"{name}\",DATUM[\"{datum}\",SPHEROID[\"{}\",{major_m},{inverse_flattening}]{shift}],PRIMEM[\"{}\",{}],UNIT[\"degree\",0.0174532925199433]",
+        spheroid_name(major_m, inverse_flattening),
+        if definition.prime_meridian_deg == 0.0 { "Greenwich" } else { "unnamed" },
+        definition.prime_meridian_deg,
+    )
+}
+
+/// Seven numbers, as WKT 1 requires.
+fn to_wgs84(numbers: &[f64]) -> String {
+    let seven: Vec<String> = (0..7).map(|at| numbers.get(at).unwrap_or(&0.0).to_string()).collect();
+    format!(",TOWGS84[{}]", seven.join(","))
+}
+
+/// A projection's name and its parameters other than the false origin.
+type WktProjection = (&'static str, Vec<(&'static str, f64)>);
+
+/// The projection; `None` for a geographic system, or where a parallel is missing.
+fn projection(definition: &Definition) -> Option<WktProjection> {
+    let Definition { latitude_deg, longitude_deg, scale, parallel_1_deg, parallel_2_deg, .. } = *definition;
+    let (latitude, meridian) = (("latitude_of_origin", latitude_deg), ("central_meridian", longitude_deg));
+    let center = [("latitude_of_center", latitude_deg), ("longitude_of_center", longitude_deg)];
+    let scale = ("scale_factor", scale);
+    let parallels =
+        || Some([("standard_parallel_1", parallel_1_deg?), ("standard_parallel_2", parallel_2_deg?)]);
+    Some(match (definition.method, parallel_1_deg) {
+        (MapProjection::Geographic, _) => return None,
+        (MapProjection::TransverseMercator, _) => ("Transverse_Mercator", vec![latitude, meridian, scale]),
+        (MapProjection::Mercator, Some(parallel)) => {
+            ("Mercator_2SP", vec![("standard_parallel_1", parallel), meridian])
+        }
+        (MapProjection::Mercator, None) => ("Mercator_1SP", vec![meridian, scale]),
+        (MapProjection::LambertConic1, _) => ("Lambert_Conformal_Conic_1SP", vec![latitude, meridian, scale]),
+        (MapProjection::LambertConic2, _) => {
+            ("Lambert_Conformal_Conic_2SP", [parallels()?, [latitude, meridian]].concat())
+        }
+        (MapProjection::Albers, _) => ("Albers_Conic_Equal_Area", [parallels()?, center].concat()),
+        (MapProjection::LambertAzimuthal, _) => ("Lambert_Azimuthal_Equal_Area", center.to_vec()),
+        // OGC's latitude of origin is the parallel of true scale here.
+        (MapProjection::PolarStereographic, parallel) => (
+            "Polar_Stereographic",
+            vec![("latitude_of_origin", parallel.unwrap_or(latitude_deg)), meridian, scale],
+        ),
+    })
+}
+
+fn geographic_name(code: u32) -> &'static str {
+    match code {
+        4326 => "WGS 84",
+        4269 => "NAD83",
+        4267 => "NAD27",
+        4277 => "OSGB36",
+        _ => "unnamed",
+    }
+}
+
+fn datum_name(code: u32) -> &'static str {
+    match code {
+        4326 => "WGS_1984",
+        4269 => "North_American_Datum_1983",
+        4267 => "North_American_Datum_1927",
+        4277 => "OSGB_1936",
+        _ => "unknown",
+    }
+}
+
+fn spheroid_name(major_m: f64, inverse_flattening: f64) -> &'static str {
+    match (major_m, (inverse_flattening * 1e6).round()) {
+        (6_378_137.0, 298_257_224.0) => "WGS 84",
+        (6_378_137.0, 298_257_222.0) => "GRS 1980",
+        _ => "unnamed",
+    }
+}
+
+fn unit_name(meters: f64) -> &'static str {
+    match meters {
+        1.0 => "metre",
+        0.3048 => "foot",
+        feet if (feet - 1200.0 / 3937.0).abs() < 1e-9 => "US survey foot",
+        _ => "unit",
+    }
+}
+
+/// A name without the characters that would end it.
+fn quoted(name: &str) -> String {
+    name.replace(['"', '[', ']'], " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+
+    #[test]
+    fn a_system_with_a_code_is_read_back_as_that_code() {
+        for code in [32612, 4326, 27700, 5070, 3031] {
+            let crs = Crs::from_epsg(code).expect("known");
+            let text = write(&crs).expect("a common projection");
+            assert_eq!(Crs::parse(&text).expect("readable").epsg(), Some(code), "{text}");
+        }
+        assert_eq!(write(&Crs::local()), None);
+    }
+
+    #[test]
+    fn a_system_without_a_code_is_read_back_by_its_parameters() {
+        for (text, at) in [
+            (
+                "+proj=lcc +lat_1=36.5 +lat_2=34.25 +lat_0=33.75 +lon_0=-79 +x_0=609601.22 +datum=NAD83 +to_meter=0.3048006096012192",
+                (2e6, 5e5),
+            ),
+            (
+                "+proj=tmerc +lat_0=10 +lon_0=20 +k=0.9999 +x_0=1000 +ellps=intl +towgs84=-87,-98,-121",
+                (3e4, 2e4),
+            ),
+            ("+proj=stere +lat_0=-90 +lat_ts=-71 +lon_0=30 +datum=WGS84", (1e6, 2e6)),
+            ("+proj=laea +lat_0=50 +lon_0=12 +ellps=GRS80 +towgs84=0,0,0", (1e5, 1e5)),
+        ] {
+            let crs = Crs::parse(text).expect("readable");
+            let wkt = write(&crs).expect("a common projection");
+            let again = Crs::parse(&wkt).unwrap_or_else(|error| panic!("{wkt}: {error}"));
+            let at = DVec2::from(at);
+            let degrees = |crs: &Crs| crs.transform(&Crs::wgs84(), at).expect("inside");
+            assert!(degrees(&crs).distance(degrees(&again)) < 1e-9, "{wkt}");
+        }
+    }
+}

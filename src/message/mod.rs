@@ -1,0 +1,3 @@
+//! Parts of messages to users.
+
+pub mod suggest;
