@@ -1,8 +1,9 @@
 #![doc = include_str!("ARCHITECTURE.md")]
 
 pub mod annotate;
-pub mod app;
 pub mod archive;
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod dem;
 pub mod description;
 pub mod draw;
@@ -12,10 +13,13 @@ pub mod geom;
 pub mod mesh;
 pub mod message;
 pub mod model;
+pub mod pipeline;
 pub mod render;
 pub mod ribbon;
 pub mod roam;
 pub mod scene;
+#[cfg(feature = "serve")]
+pub mod serve;
 pub mod structure;
 pub mod terrain;
 pub mod vector;

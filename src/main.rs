@@ -1,7 +1,15 @@
-//! The `sandtable` program: everything it does is in [`sandtable::app`].
+//! The `sandtable` program: the command line, with the height service where it is built in.
 
 use std::process::ExitCode;
 
+use sandtable::cli::ServeProgram;
+
+#[cfg(feature = "serve")]
+const SERVE: Option<ServeProgram> = Some(|options| Ok(sandtable::serve::run(options)?));
+
+#[cfg(not(feature = "serve"))]
+const SERVE: Option<ServeProgram> = None;
+
 fn main() -> ExitCode {
-    sandtable::app::main()
+    sandtable::cli::main(SERVE)
 }

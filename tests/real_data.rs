@@ -21,9 +21,9 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 use sandtable::annotate::paint::annotate;
-use sandtable::app::labels::annotations;
 use sandtable::description::parse::parse_bytes;
 use sandtable::draw::list::{DepthLayer, FeatureId};
+use sandtable::pipeline::labels::annotations;
 use sandtable::render::cpu;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;

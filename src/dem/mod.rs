@@ -1,6 +1,7 @@
 //! Elevation rasters: their formats and georeference, mosaics, voids, other systems and cells; scattered points, and
 //! grids of them.
 
+pub mod answer;
 mod bytes;
 pub mod cache;
 pub mod cell_grid;

@@ -6,6 +6,7 @@
 
 use glam::DVec2;
 
+use crate::dem::answer::Answer;
 use crate::dem::raster::Raster;
 
 /// How far outside the border, in samples, a point still counts as on it: map coordinates of a corner written with a
@@ -16,51 +17,26 @@ const BORDER: f64 = 1e-6;
 /// not mix a neighbor, or a hole, into an exact value.
 pub(crate) const ON_CENTER: f64 = 1e-7;
 
-/// The elevation of a raster at a point, or why there is none.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sampled {
-    /// The elevation in the raster's vertical unit.
-    Ok(f64),
-    /// Inside, but the samples there hold no data.
-    NoData,
-    /// Beyond the outer edge of the raster, or not a finite point.
-    Outside,
-}
-
-impl Sampled {
-    /// The elevation, where there is one.
-    pub fn value(self) -> Option<f64> {
-        match self {
-            Self::Ok(value) => Some(value),
-            Self::NoData | Self::Outside => None,
-        }
-    }
-
-    fn from_value(value: f64) -> Self {
-        if value.is_nan() { Self::NoData } else { Self::Ok(value) }
-    }
-}
-
 /// The value of the sample that contains a point in the raster's own coordinates.
-pub fn nearest(raster: &Raster, at_map: DVec2) -> Sampled {
+pub fn nearest(raster: &Raster, at_map: DVec2) -> Answer {
     let at = raster.grid_from_map(at_map);
     if !contains(raster, at) {
-        return Sampled::Outside;
+        return Answer::Outside;
     }
     let column = (at.x.max(0.0) as u32).min(raster.width - 1);
     let row = (at.y.max(0.0) as u32).min(raster.height - 1);
-    Sampled::from_value(raster.at(column, row))
+    Answer::from_sample(raster.at(column, row))
 }
 
 /// The bilinear value at a point in the raster's own coordinates.
-pub fn bilinear(raster: &Raster, at_map: DVec2) -> Sampled {
+pub fn bilinear(raster: &Raster, at_map: DVec2) -> Answer {
     bilinear_at_grid(raster, raster.grid_from_map(at_map))
 }
 
 /// The bilinear value at a grid position (column, row), where (0.5, 0.5) is the first sample's center.
-pub fn bilinear_at_grid(raster: &Raster, at: DVec2) -> Sampled {
+pub fn bilinear_at_grid(raster: &Raster, at: DVec2) -> Answer {
     if !contains(raster, at) {
-        return Sampled::Outside;
+        return Answer::Outside;
     }
     let (left, right, across) = neighbors(at.x, raster.width);
     let (above, below, down) = neighbors(at.y, raster.height);
@@ -78,7 +54,7 @@ pub fn bilinear_at_grid(raster: &Raster, at: DVec2) -> Sampled {
             weights += weight;
         }
     }
-    if weights > 0.0 { Sampled::from_value(sum / weights) } else { Sampled::NoData }
+    if weights > 0.0 { Answer::from_sample(sum / weights) } else { Answer::NoData }
 }
 
 fn contains(raster: &Raster, at: DVec2) -> bool {
@@ -106,26 +82,26 @@ mod tests {
     #[test]
     fn a_plane_is_kept_between_centers_and_held_beyond_them() {
         let raster = small(3, 2, vec![0.0, 10.0, 20.0, 100.0, 110.0, 120.0]);
-        assert_eq!(bilinear(&raster, DVec2::new(1015.0, 2010.0)), Sampled::Ok(60.0));
-        assert_eq!(bilinear(&raster, DVec2::new(1000.0, 2020.0)), Sampled::Ok(0.0));
-        assert_eq!(bilinear(&raster, DVec2::new(1030.0, 2000.0)), Sampled::Ok(120.0));
-        assert_eq!(nearest(&raster, DVec2::new(1019.0, 2011.0)), Sampled::Ok(10.0));
-        assert_eq!(nearest(&raster, DVec2::new(1030.0, 2000.0)), Sampled::Ok(120.0));
+        assert_eq!(bilinear(&raster, DVec2::new(1015.0, 2010.0)), Answer::Height(60.0));
+        assert_eq!(bilinear(&raster, DVec2::new(1000.0, 2020.0)), Answer::Height(0.0));
+        assert_eq!(bilinear(&raster, DVec2::new(1030.0, 2000.0)), Answer::Height(120.0));
+        assert_eq!(nearest(&raster, DVec2::new(1019.0, 2011.0)), Answer::Height(10.0));
+        assert_eq!(nearest(&raster, DVec2::new(1030.0, 2000.0)), Answer::Height(120.0));
     }
 
     #[test]
     fn holes_drop_out_and_leave_their_weight_to_the_others() {
         let raster = small(2, 2, vec![f32::NAN, 10.0, f32::NAN, 30.0]);
-        assert_eq!(bilinear(&raster, DVec2::new(1010.0, 2010.0)), Sampled::Ok(20.0));
-        assert_eq!(bilinear(&raster, DVec2::new(1005.0, 2010.0)), Sampled::NoData);
-        assert_eq!(nearest(&raster, DVec2::new(1005.0, 2010.0)), Sampled::NoData);
+        assert_eq!(bilinear(&raster, DVec2::new(1010.0, 2010.0)), Answer::Height(20.0));
+        assert_eq!(bilinear(&raster, DVec2::new(1005.0, 2010.0)), Answer::NoData);
+        assert_eq!(nearest(&raster, DVec2::new(1005.0, 2010.0)), Answer::NoData);
     }
 
     #[test]
     fn a_hole_is_not_the_edge_of_the_raster() {
         let raster = small(1, 1, vec![f32::NAN]);
-        assert_eq!(bilinear(&raster, DVec2::new(1005.0, 2005.0)), Sampled::NoData);
-        assert_eq!(bilinear(&raster, DVec2::new(1011.0, 2005.0)), Sampled::Outside);
-        assert_eq!(nearest(&raster, DVec2::new(f64::NAN, 2005.0)), Sampled::Outside);
+        assert_eq!(bilinear(&raster, DVec2::new(1005.0, 2005.0)), Answer::NoData);
+        assert_eq!(bilinear(&raster, DVec2::new(1011.0, 2005.0)), Answer::Outside);
+        assert_eq!(nearest(&raster, DVec2::new(f64::NAN, 2005.0)), Answer::Outside);
     }
 }

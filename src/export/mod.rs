@@ -14,7 +14,7 @@ mod bake;
 pub mod glb;
 mod inlay;
 pub mod obj;
-mod png;
+pub mod png;
 pub mod prepare;
 
 use std::ops::Range;

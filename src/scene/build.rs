@@ -27,17 +27,21 @@ use crate::terrain::lattice::Lattice;
 use crate::terrain::query::deck::Deck;
 use crate::terrain::query::service::HeightService;
 
-/// Builds the scene that `document` describes. `step` is called with what is done next, as each pass begins.
+/// Builds the scene that `document` describes. `progress` is called with the name of each pass as it begins.
 ///
 /// # Errors
 /// The first thing that cannot be had or does not fit, pointing at its place in the scene file.
-pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) -> Result<Scene, Diagnostic> {
-    step("reading elevation");
+pub fn build(
+    document: &Document,
+    assets: &Assets,
+    progress: &dyn Fn(&'static str),
+) -> Result<Scene, Diagnostic> {
+    progress("reading elevation");
     let loaded = ground::load(document, assets)?;
     let (crs, mut lattice) = (loaded.crs, loaded.lattice);
     let places = places(document, &crs, &lattice);
 
-    step("laying features");
+    progress("laying features");
     let sources = Sources::new(&places, assets);
     let mut collected = SceneBuilder { notes: loaded.notes, ..SceneBuilder::default() };
     let extent = lattice.extent();
@@ -55,20 +59,20 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     buildings::raise(document, &plots, finest, &mut collected);
     collected.resolve_overlaps();
 
-    step("loading models");
+    progress("loading models");
     let (models, placements) =
         models::place(document, (&places, &sources, assets), &mut lattice, &mut collected)?;
 
     let defaulted: Vec<String> = attributes::notes(&collected.default_counts).collect();
     collected.notes.extend(defaulted);
 
-    step("placing labels and cameras");
+    progress("placing labels and cameras");
     let terrain = terrain(document, lattice)?;
     let labels = views::labels(document, &places, &terrain)?;
     let cameras = views::cameras(document, &places, &terrain)?;
     collected.notes.extend(views::buried(&cameras, &terrain));
 
-    step("lighting terrain");
+    progress("lighting terrain");
     let (low, high) = terrain.bounds();
     let lighting = style::lighting(document, (high - low).max_element());
     let ramp = style::ramp(document, &terrain.lattice)?;

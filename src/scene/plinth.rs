@@ -4,11 +4,12 @@
 use glam::{DVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
+use crate::dem::answer::Answer;
 use crate::draw::color::Srgba;
 use crate::draw::list::{DrawMesh, DrawVertex};
 use crate::mesh::sink::MeshSink;
 use crate::terrain::lattice::Lattice;
-use crate::terrain::query::{Answer, Interpolation, ground_height};
+use crate::terrain::query::{Interpolation, ground_height};
 
 /// How far the base lies below the lowest ground, as a share of the ground's longer side.
 const DEPTH: f64 = 0.02;

@@ -2,12 +2,13 @@
 
 use glam::{DVec2, Vec3};
 
+use crate::dem::answer::Answer;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::stated::Stated;
 use crate::geom::crs::{Crs, CrsError};
 use crate::terrain::lattice::Lattice;
-use crate::terrain::query::{Answer, Interpolation, ground_height};
+use crate::terrain::query::{Interpolation, ground_height};
 
 /// Brings a document's points to the world.
 pub struct WorldFrame<'a> {

@@ -11,10 +11,11 @@ mod steps;
 
 use std::path::Path;
 
-use sandtable::app::arguments::{Access, Backend, PictureSize};
-use sandtable::app::load;
-use sandtable::app::picture::{Finished, picture_of, png};
 use sandtable::draw::list::{DepthLayer, DrawItem, FeatureId};
+use sandtable::export::png;
+use sandtable::pipeline::picture::{PictureSize, RenderedView, render_view};
+use sandtable::pipeline::scene_file::open_scene;
+use sandtable::render::RenderBackend;
 use sandtable::scene::picture::ViewDraw;
 use sandtable::scene::{Scene, View};
 
@@ -33,7 +34,7 @@ fn main() {
     }
     let run = pool(cores).install(run_once);
     print_steps(&run.steps);
-    print_triangles(&run.finished.shot);
+    print_triangles(&run.finished.drawn);
     println!("PNG: {:.2} MB", run.png_bytes as f64 / 1e6);
     print_threads(&run, cores);
 }
@@ -42,7 +43,7 @@ fn main() {
 struct Run {
     scene: Scene,
     view: View,
-    finished: Finished,
+    finished: RenderedView,
     steps: Vec<Step>,
     png_bytes: usize,
 }
@@ -50,17 +51,17 @@ struct Run {
 fn run_once() -> Run {
     let steps = Steps::default();
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/jacksboro.toml");
-    let access = Access { allow: Vec::new() };
-    let scene = load::scene(&path, &access, &|step| steps.begin(step)).expect("the demonstration is sound");
+    let scene = open_scene(&path, &[], &|step| steps.begin(step)).expect("the demonstration is sound");
     let view = scene.view(None).expect("a scene has a camera").clone();
     let finished = picture(&scene, &view, &steps);
     steps.begin("encoding");
-    let png_bytes = png(&finished.pixels).expect("the picture is not empty").len();
+    let png_bytes = png::encode(&finished.pixels).len();
     Run { scene, view, finished, steps: steps.finish(), png_bytes }
 }
 
-fn picture(scene: &Scene, view: &View, steps: &Steps) -> Finished {
-    picture_of(scene, view, SIZE, Backend::Cpu, &|step| steps.begin(step)).expect("the camera is sound")
+fn picture(scene: &Scene, view: &View, steps: &Steps) -> RenderedView {
+    render_view(scene, view, SIZE, RenderBackend::Cpu, &|step| steps.begin(step))
+        .expect("the camera is sound")
 }
 
 fn pool(threads: usize) -> rayon::ThreadPool {

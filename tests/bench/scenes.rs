@@ -37,10 +37,9 @@ fn built(
     allowed: &[std::path::PathBuf],
 ) -> (sandtable::scene::Scene, Vec<steps::Step>) {
     let path = folder.write("scene.toml", text);
-    let access = sandtable::app::arguments::Access { allow: allowed.to_vec() };
     let steps = steps::Steps::default();
-    let scene =
-        sandtable::app::load::scene(&path, &access, &|step| steps.begin(step)).expect("a sound scene");
+    let scene = sandtable::pipeline::scene_file::open_scene(&path, allowed, &|step| steps.begin(step))
+        .expect("a sound scene");
     (scene, steps.finish())
 }
 

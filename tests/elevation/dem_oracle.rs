@@ -9,11 +9,12 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use glam::DVec2;
+use sandtable::dem::answer::Answer;
 use sandtable::dem::error::DemError;
 use sandtable::dem::formats::height_encoding::HeightEncoding;
 use sandtable::dem::raster::Raster;
 use sandtable::dem::read::{DemHints, read};
-use sandtable::dem::sample::{Sampled, bilinear, nearest};
+use sandtable::dem::sample::{bilinear, nearest};
 use sandtable::dem::stats::Stats;
 use sandtable::dem::warp::to_metric;
 use sandtable::geom::crs::{Crs, CrsError};
@@ -97,11 +98,11 @@ fn same(a: f64, b: f64, within: f64) -> bool {
     (a.is_nan() && b.is_nan()) || (a - b).abs() <= within
 }
 
-fn value(sampled: Sampled) -> f64 {
+fn value(sampled: Answer) -> f64 {
     match sampled {
-        Sampled::Ok(value) => value,
-        Sampled::NoData => f64::NAN,
-        Sampled::Outside => f64::INFINITY,
+        Answer::Height(value) => value,
+        Answer::NoData => f64::NAN,
+        Answer::Outside => f64::INFINITY,
     }
 }
 
@@ -508,7 +509,7 @@ fn the_flagship_keeps_its_heights_on_the_way_to_utm() {
     let samples = samples(&folder, file, "samples");
     let inside = samples.iter().filter(|sample| {
         let at = Crs::wgs84().transform(utm, sample.at).expect("inside");
-        matches!(bilinear(&metric, at), Sampled::Ok(_))
+        matches!(bilinear(&metric, at), Answer::Height(_))
     });
     assert!(inside.count() > 190, "the extent is kept");
 }

@@ -6,15 +6,14 @@ use std::path::{Path, PathBuf};
 use crate::common::data::data;
 use crate::common::scratch::Scratch;
 use glam::DVec2;
-use sandtable::app::arguments::Access;
-use sandtable::app::load;
 use sandtable::draw::list::{DrawMesh, FeatureId};
+use sandtable::pipeline::scene_file::open_scene;
 use sandtable::scene::{FeatureKind, Scene};
 use sandtable::structure::deck_check::closed;
 use sandtable::terrain::query::{Interpolation, Surface};
 
 fn scene(path: &Path, allow: Vec<PathBuf>) -> Scene {
-    load::scene(path, &Access { allow }, &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))
+    open_scene(path, &allow, &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))
 }
 
 fn crossing() -> Scene {
@@ -92,7 +91,7 @@ fn too_many_piers_are_refused_at_the_bridge_that_asks_for_most() {
         zigzag.join(", ")
     );
     let path = scratch.write("scene.toml", text);
-    let failure = load::scene(&path, &Access { allow: Vec::new() }, &|_| {}).err().expect("too many");
+    let failure = open_scene(&path, &[], &|_| {}).err().expect("too many");
     assert!(format!("{failure:?}").contains("piers"), "{failure:?}");
 }
 

@@ -4,9 +4,8 @@ use std::path::{Path, PathBuf};
 
 use glam::{DVec2, Vec3};
 use proptest::prelude::*;
-use sandtable::app::arguments::Access;
-use sandtable::app::load;
 use sandtable::draw::list::{DrawMesh, FeatureId};
+use sandtable::pipeline::scene_file::open_scene;
 use sandtable::scene::picture::display;
 use sandtable::scene::report::BuildingPadRow;
 use sandtable::scene::{FeatureKind, Scene};
@@ -32,8 +31,7 @@ fn scene(tables: &str) -> Scene {
 }
 
 fn load_scene(path: &Path, allow: &[PathBuf]) -> Scene {
-    let access = Access { allow: allow.to_vec() };
-    load::scene(path, &access, &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))
+    open_scene(path, allow, &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))
 }
 
 fn demo() -> Scene {

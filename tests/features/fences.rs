@@ -5,8 +5,7 @@ use std::sync::LazyLock;
 
 use glam::{DVec2, Vec3};
 use proptest::prelude::*;
-use sandtable::app::arguments::Access;
-use sandtable::app::load;
+use sandtable::pipeline::scene_file::open_scene;
 use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::scene::Scene;
 use sandtable::scene::picture::display;
@@ -30,7 +29,7 @@ const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 static SCENES: LazyLock<Vec<Scene>> = LazyLock::new(|| {
     let path = Path::new(ROOT).join("scenes/lines.toml");
     let load = |tolerance_px: f32| {
-        let mut scene = load::scene(&path, &Access { allow: Vec::new() }, &|_| {}).expect("sound");
+        let mut scene = open_scene(&path, &[], &|_| {}).expect("sound");
         scene.terrain.tolerance_px = tolerance_px;
         scene
     };
@@ -155,7 +154,7 @@ fn built(tables: &str) -> Result<Scene, String> {
         .expect("copied");
     let ground = "[terrain]\ndem = \"hills.png\"\nheight_scale = 0.1\ncell = 10\n";
     let path = scratch.write("scene.toml", format!("{ground}{tables}"));
-    load::scene(&path, &Access { allow: Vec::new() }, &|_| {}).map_err(|failure| format!("{failure:?}"))
+    open_scene(&path, &[], &|_| {}).map_err(|failure| format!("{failure:?}"))
 }
 
 #[test]

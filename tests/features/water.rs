@@ -2,8 +2,6 @@
 
 use glam::{DVec2, Vec3};
 use proptest::prelude::*;
-use sandtable::app::arguments::Access;
-use sandtable::app::load;
 use sandtable::dem::read as dem;
 use sandtable::description::parse::parse_bytes;
 use sandtable::draw::list::DepthLayer;
@@ -13,6 +11,7 @@ use sandtable::earthworks::channel::flow::Flow;
 use sandtable::earthworks::channel::{Channel, check_rise};
 use sandtable::earthworks::shore;
 use sandtable::geom::polyline::Polyline;
+use sandtable::pipeline::scene_file::open_scene;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::picture::{build_draw_list, camera};
@@ -225,7 +224,7 @@ fn a_bed_of_more_posts_than_there_is_time_for_is_refused() {
 
 fn gallery(name: &str) -> Scene {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);
-    load::scene(&path, &Access { allow: Vec::new() }, &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))
+    open_scene(&path, &[], &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))
 }
 
 #[test]

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::{DAffine2, DMat2, DVec2, Vec3};
 use proptest::prelude::*;
+use sandtable::dem::answer::{Answer, Status};
 use sandtable::dem::raster::{Raster, Samples};
 use sandtable::earthworks::brush::Crater;
 use sandtable::geom::crs::Crs;
@@ -25,7 +26,7 @@ use sandtable::terrain::query::batch::bilinear_ground;
 use sandtable::terrain::query::service::{HeightService, Snapshot};
 use sandtable::terrain::query::source::{raster_height, source_heights};
 use sandtable::terrain::query::tiles::HeightTiles;
-use sandtable::terrain::query::{Answer, Interpolation, Status, Surface, ground_height};
+use sandtable::terrain::query::{Interpolation, Surface, ground_height};
 use sandtable::terrain::triangle_surface::{TriangleSurface, facet_contains, plane_z};
 use sandtable::view::camera::Camera;
 use sandtable::view::frustum::Frustum;

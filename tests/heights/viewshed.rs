@@ -4,9 +4,9 @@ use std::fs;
 
 use glam::DVec2;
 use proptest::prelude::*;
+use sandtable::dem::answer::Answer;
 use sandtable::dem::read::{self, DemHints};
 use sandtable::terrain::lattice::{Lattice, Post};
-use sandtable::terrain::query::Answer;
 use sandtable::terrain::sight::Curvature;
 use sandtable::terrain::sight::line::{Sight, SightEnd, line_of_sight};
 use sandtable::terrain::sight::viewshed::{

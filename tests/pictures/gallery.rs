@@ -10,12 +10,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use sandtable::app::arguments::{Access, Backend, PictureSize};
-use sandtable::app::load;
-use sandtable::app::picture::{Finished, picture_of};
 use sandtable::draw::list::{DepthLayer, DrawItem};
 use sandtable::mesh::check;
 use sandtable::mesh::trimesh::TriMesh;
+use sandtable::pipeline::picture::{PictureSize, RenderedView, render_view};
+use sandtable::pipeline::scene_file::open_scene;
+use sandtable::render::RenderBackend;
 use sandtable::ribbon::drape::check_clearance;
 use sandtable::scene::picture::ViewDraw;
 use sandtable::scene::{Scene, View};
@@ -37,7 +37,7 @@ struct Shown {
     name: String,
     exhibit: &'static Exhibit,
     view: &'static View,
-    finished: Finished,
+    finished: RenderedView,
 }
 
 fn scene_files() -> Vec<PathBuf> {
@@ -57,8 +57,7 @@ fn exhibits() -> &'static [Exhibit] {
 }
 
 fn load(path: &Path) -> Exhibit {
-    let access = Access { allow: Vec::new() };
-    let scene = load::scene(path, &access, &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"));
+    let scene = open_scene(path, &[], &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"));
     Exhibit { name: path.file_stem().expect("named").to_string_lossy().into_owned(), scene }
 }
 
@@ -78,9 +77,9 @@ fn show(exhibit: &'static Exhibit, view: &'static View) -> Shown {
     Shown { name, exhibit, view, finished: render(&exhibit.scene, view, 1) }
 }
 
-fn render(scene: &Scene, view: &View, threads: usize) -> Finished {
+fn render(scene: &Scene, view: &View, threads: usize) -> RenderedView {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-    let finished = pool.install(|| picture_of(scene, view, SIZE, Backend::Cpu, &|_| {}));
+    let finished = pool.install(|| render_view(scene, view, SIZE, RenderBackend::Cpu, &|_| {}));
     finished.unwrap_or_else(|failure| panic!("{}: {failure:?}", view.name))
 }
 
@@ -104,12 +103,12 @@ fn every_scene_s_errors_never_shrink_from_a_vertex_to_its_parents() {
 #[test]
 fn every_view_s_ground_is_a_conforming_mesh() {
     for Shown { name, finished, .. } in shown() {
-        let displayed = &finished.shot.displayed;
+        let displayed = &finished.drawn.displayed;
         assert_eq!(displayed.active().check(), Ok(()), "{name}");
         let mut mesh = TriMesh::default();
         displayed.emit(&mut mesh);
         assert_eq!(check::check(&mesh).err(), None, "{name}");
-        assert_eq!(mesh.triangles.len(), finished.shot.ground_triangles, "{name}");
+        assert_eq!(mesh.triangles.len(), finished.drawn.ground_triangles, "{name}");
         assert!(mesh.triangles.len() > 500, "{name}: {} triangles of ground", mesh.triangles.len());
     }
 }
@@ -117,7 +116,7 @@ fn every_view_s_ground_is_a_conforming_mesh() {
 #[test]
 fn every_view_s_draw_list_is_sound() {
     for Shown { name, finished, .. } in shown() {
-        assert_eq!(finished.shot.list.check(), Ok(()), "{name}");
+        assert_eq!(finished.drawn.list.check(), Ok(()), "{name}");
     }
 }
 
@@ -134,7 +133,7 @@ fn clearance_m(scene: &Scene) -> f64 {
 #[test]
 fn every_road_river_and_lake_lies_on_the_displayed_ground() {
     for Shown { name, exhibit, finished, .. } in shown() {
-        let (shot, most_m) = (&finished.shot, clearance_m(&exhibit.scene));
+        let (shot, most_m) = (&finished.drawn, clearance_m(&exhibit.scene));
         for item in draped(shot) {
             let found_m = check_clearance(&shot.list.meshes[item.mesh.0 as usize], &*shot.displayed);
             assert!(found_m < most_m, "{name}: {:?} is {found_m} m off, not {most_m} m", item.feature);
@@ -149,7 +148,7 @@ fn one_thread_and_three_give_the_same_bytes() {
     for Shown { name, exhibit, view, finished } in shown() {
         let other = render(&exhibit.scene, view, 3);
         assert!(finished.pixels == other.pixels, "{name}");
-        assert_eq!(finished.report, other.report, "{name}");
+        assert_eq!(finished.annotations, other.annotations, "{name}");
     }
 }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::{DAffine2, DVec2, Vec3};
 use proptest::prelude::*;
+use sandtable::dem::answer::Answer;
 use sandtable::dem::raster::{Raster, Samples};
 use sandtable::draw::list::DrawMesh;
 use sandtable::earthworks::leveling;
@@ -24,7 +25,7 @@ use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::terrain::lattice::Lattice;
 use sandtable::terrain::query::service::HeightService;
-use sandtable::terrain::query::{Answer, Interpolation, Surface};
+use sandtable::terrain::query::{Interpolation, Surface};
 use sandtable::terrain::triangle_surface::TriangleSurface;
 use sandtable::view::camera::Camera;
 use sandtable::view::frustum::Frustum;

@@ -5,9 +5,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::Vec3;
-use sandtable::app::arguments::Access;
-use sandtable::app::load;
 use sandtable::draw::list::DrawMesh;
+use sandtable::pipeline::scene_file::open_scene;
 use sandtable::ribbon::drape::drape;
 use sandtable::ribbon::patches::Drapes;
 use sandtable::roam::criterion::screen::ScreenError;
@@ -65,8 +64,7 @@ fn plan_area(mesh: &DrawMesh) -> f64 {
 #[test]
 fn after_every_frame_of_a_flight_the_drapes_are_what_cutting_all_anew_would_give() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/jacksboro.toml");
-    let scene =
-        load::scene(&path, &Access { allow: Vec::new() }, &|_| {}).expect("the demonstration is sound");
+    let scene = open_scene(&path, &[], &|_| {}).expect("the demonstration is sound");
     let mut walk = Walk {
         scene: &scene,
         coherent: Coherent::new(scene.terrain.layout),

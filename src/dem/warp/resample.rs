@@ -100,7 +100,7 @@ impl<'a> Resampler<'a> {
                 let at = self.transform.back(self.cells.center(column as u32, row))?;
                 Some(self.source.grid_from_map(at))
             };
-            let value = |at: DVec2| bilinear_at_grid(self.source, at).value().unwrap_or(f64::NAN);
+            let value = |at: DVec2| bilinear_at_grid(self.source, at).parts().0;
             let positions = positions(self.cells.width() as usize, &position);
             positions.into_iter().map(|at| T::from_f64(value(at))).collect::<Vec<T>>()
         });

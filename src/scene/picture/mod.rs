@@ -43,37 +43,37 @@ pub fn camera(scene: &Scene, view: &View, size: (u32, u32)) -> Result<Camera, Ca
     Camera::new(view.eye, view.target, view.fov_y_rad, size, (0.5, far))
 }
 
-/// The draw list for one camera. `step` is called with what is done next.
-pub fn build_draw_list(scene: &Scene, camera: &Camera, step: &dyn Fn(&'static str)) -> ViewDraw {
-    step("refining terrain");
+/// The draw list for one camera. `progress` is called with the name of each step as it begins.
+pub fn build_draw_list(scene: &Scene, camera: &Camera, progress: &dyn Fn(&'static str)) -> ViewDraw {
+    progress("refining terrain");
     let displayed = Arc::new(display(&scene.terrain, camera));
-    let (list, ground_triangles) = listed(scene, &displayed, Viewer::Camera(camera), step);
+    let (list, ground_triangles) = listed(scene, &displayed, Viewer::Camera(camera), progress);
     ViewDraw { list, displayed, ground_triangles }
 }
 
 /// What is to be drawn of a scene whose terrain is shown as `displayed`, and how many triangles of it are ground: all
-/// models wherever they stand, as their files have them. `step` is called with what is done next.
+/// models wherever they stand, as their files have them. `progress` is called with the name of each step as it begins.
 pub fn draw_list(
     scene: &Scene,
     displayed: &DisplayedTerrain,
-    step: &dyn Fn(&'static str),
+    progress: &dyn Fn(&'static str),
 ) -> (DrawList, usize) {
-    listed(scene, displayed, Viewer::Anyone, step)
+    listed(scene, displayed, Viewer::Anyone, progress)
 }
 
 fn listed(
     scene: &Scene,
     displayed: &DisplayedTerrain,
     viewer: Viewer<'_>,
-    step: &dyn Fn(&'static str),
+    progress: &dyn Fn(&'static str),
 ) -> (DrawList, usize) {
     let mut list =
         DrawList { ground: Some(Arc::clone(&scene.map)), lighting: scene.lighting, ..DrawList::default() };
     let walls = ground::add(&mut list, &scene.terrain, displayed);
     let ground_triangles = list.triangle_count();
-    step("draping features");
+    progress("draping features");
     drapes::add(&mut list, scene, displayed);
-    step("setting models");
+    progress("setting models");
     ground::add_plinth(&mut list, walls);
     solids::add(&mut list, scene);
     uprights::add(&mut list, scene, displayed);

@@ -22,12 +22,13 @@
 use glam::{DMat2, DVec2};
 use rayon::prelude::*;
 
+use crate::dem::answer::{Answer, Status};
 use crate::dem::raster::{Raster, Samples};
 use crate::dem::sample::ON_CENTER;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::source::raster_height;
 use crate::terrain::query::tiles::{HeightTiles, TileSlot};
-use crate::terrain::query::{Answer, Interpolation, Status, ground_height};
+use crate::terrain::query::{Interpolation, ground_height};
 
 /// Positions per chunk: its arrays take 6 KiB and stay in the first cache. Below 32 the passes cost more than their work,
 /// above 512 the arrays leave the cache.

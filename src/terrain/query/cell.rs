@@ -4,8 +4,9 @@
 
 use glam::DVec2;
 
+use crate::dem::answer::Answer;
 use crate::terrain::cell_triangle::{CellTriangle, Diagonal};
-use crate::terrain::query::{Answer, Interpolation};
+use crate::terrain::query::Interpolation;
 
 /// The height at `part` of a cell, 0..=1 east and north from its south-west corner, or [`Answer::NoData`].
 ///

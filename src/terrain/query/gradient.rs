@@ -7,9 +7,9 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::dem::answer::Status;
 use crate::terrain::cell_triangle::{CellTriangle, Diagonal};
 use crate::terrain::lattice::Lattice;
-use crate::terrain::query::Status;
 
 /// The surface between the posts whose gradient is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! The height contract: what a height query means, the same for the library, the command line and the HTTP service.
 //!
 //! A query names a [`Surface`], an [`Interpolation`] and a map position. The answer is a height **in meters**, without
-//! vertical exaggeration, or the reason why there is none: an [`Answer`], or a number and a [`Status`] side by side. A
-//! hole is never answered by a bare number.
+//! vertical exaggeration, or the reason why there is none: an [`Answer`], or a number and a
+//! [`Status`](crate::dem::answer::Status) side by side. A hole is never answered by a bare number.
 //!
 //! **Surfaces.**
 //!
@@ -60,6 +60,7 @@ pub mod zone;
 
 use glam::DVec2;
 
+use crate::dem::answer::Answer;
 use crate::terrain::cell_triangle::Diagonal;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::cell::interpolate;
@@ -89,79 +90,6 @@ pub enum Interpolation {
     Nearest,
     /// The four posts around, weighted by inverse distance.
     DistanceWeighted4,
-}
-
-/// A height, or why there is none.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Answer {
-    /// Meters, without vertical exaggeration.
-    Height(f64),
-    /// The position lies on the model, where it holds no data.
-    NoData,
-    /// The position lies outside the model.
-    Outside,
-}
-
-/// Whether an answer is a height or why there is none, beside a height in a slice of its own.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Status {
-    /// The height is valid.
-    #[default]
-    Ok,
-    /// The position lies on the model, where it holds no data; the height is NaN.
-    NoData,
-    /// The position lies outside the model; the height is NaN.
-    Outside,
-}
-
-impl Status {
-    /// `Ok`, `NoData` or `Outside`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Ok => "Ok",
-            Self::NoData => "NoData",
-            Self::Outside => "Outside",
-        }
-    }
-
-    /// The answer of this status with a height beside it.
-    pub fn with_height(self, height_m: f64) -> Answer {
-        match self {
-            Self::Ok => Answer::Height(height_m),
-            Self::NoData => Answer::NoData,
-            Self::Outside => Answer::Outside,
-        }
-    }
-}
-
-impl Answer {
-    /// The height in meters, where there is one.
-    pub fn height_m(self) -> Option<f64> {
-        match self {
-            Self::Height(height) => Some(height),
-            Self::NoData | Self::Outside => None,
-        }
-    }
-
-    /// `Ok`, `NoData` or `Outside`.
-    pub fn status(self) -> &'static str {
-        self.kind().name()
-    }
-
-    /// The status alone.
-    pub fn kind(self) -> Status {
-        match self {
-            Self::Height(_) => Status::Ok,
-            Self::NoData => Status::NoData,
-            Self::Outside => Status::Outside,
-        }
-    }
-
-    /// The height in meters, NaN where there is none, and the status beside it.
-    pub fn parts(self) -> (f64, Status) {
-        (self.height_m().unwrap_or(f64::NAN), self.kind())
-    }
 }
 
 /// The height of the ground lattice at a map position.

@@ -8,6 +8,7 @@ use std::sync::{Arc, PoisonError, RwLock};
 
 use glam::DVec2;
 
+use crate::dem::answer::Answer;
 use crate::dem::raster::Raster;
 use crate::geom::crs::Crs;
 use crate::terrain::lattice::Lattice;
@@ -15,7 +16,7 @@ use crate::terrain::query::batch::{self, HeightSlices};
 use crate::terrain::query::deck::Deck;
 use crate::terrain::query::source::{source_height, source_task};
 use crate::terrain::query::tiles::LazyTiles;
-use crate::terrain::query::{Answer, Interpolation, Surface, ground_height};
+use crate::terrain::query::{Interpolation, Surface, ground_height};
 use crate::terrain::triangle_surface::TriangleSurface;
 
 /// Positions between two checks whether tiles should be made, so that a single long batch gets them too.

@@ -6,14 +6,15 @@
 
 use glam::DVec2;
 
+use crate::dem::answer::Answer;
 use crate::dem::raster::Raster;
-use crate::dem::sample::{self, Sampled};
+use crate::dem::sample;
 use crate::geom::crs::Crs;
 use crate::terrain::cell_triangle::Diagonal;
 use crate::terrain::lattice::Post;
+use crate::terrain::query::Interpolation;
 use crate::terrain::query::batch::{self, HeightSlices};
 use crate::terrain::query::cell::interpolate;
-use crate::terrain::query::{Answer, Interpolation};
 
 /// Positions that are transformed to the raster's system at a time, on the stack.
 const TRANSFORMED: usize = 512;
@@ -21,8 +22,8 @@ const TRANSFORMED: usize = 512;
 /// The height of a raster at a position in its own coordinates, in meters.
 pub fn raster_height(raster: &Raster, interpolation: Interpolation, at: DVec2) -> Answer {
     let answer = match interpolation {
-        Interpolation::Nearest => answer(sample::nearest(raster, at)),
-        Interpolation::Bilinear => answer(sample::bilinear(raster, at)),
+        Interpolation::Nearest => sample::nearest(raster, at),
+        Interpolation::Bilinear => sample::bilinear(raster, at),
         Interpolation::Planar | Interpolation::DistanceWeighted4 => {
             between_samples(raster, interpolation, at)
         }
@@ -117,14 +118,6 @@ impl<'a> SourceTransform<'a> {
             }
             _ => at,
         }
-    }
-}
-
-fn answer(sampled: Sampled) -> Answer {
-    match sampled {
-        Sampled::Ok(height) => Answer::Height(height),
-        Sampled::NoData => Answer::NoData,
-        Sampled::Outside => Answer::Outside,
     }
 }
 

@@ -12,9 +12,9 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use crate::dem::answer::Answer;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::post_rect::PostRect;
-use crate::terrain::query::Answer;
 use crate::terrain::sight::Curvature;
 use crate::terrain::sight::crossings::{LineCrossing, LinePart, POSITION_ERROR};
 use crate::terrain::sight::descent::{Probe, descend};

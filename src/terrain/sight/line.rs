@@ -4,8 +4,9 @@ use std::ops::ControlFlow;
 
 use glam::DVec2;
 
+use crate::dem::answer::Answer;
 use crate::terrain::lattice::Lattice;
-use crate::terrain::query::{Answer, Interpolation, ground_height};
+use crate::terrain::query::{Interpolation, ground_height};
 use crate::terrain::sight::Curvature;
 use crate::terrain::sight::crossings::{LineCrossing, LinePart, crossings};
 

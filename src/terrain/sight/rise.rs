@@ -14,8 +14,8 @@
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 
+use crate::dem::answer::Answer;
 use crate::terrain::lattice::Lattice;
-use crate::terrain::query::Answer;
 use crate::terrain::sight::Curvature;
 use crate::terrain::sight::crossings::{LineCrossing, LinePart, crossings};
 use crate::terrain::sight::descent::Probe;

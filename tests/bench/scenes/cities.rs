@@ -1,7 +1,7 @@
 //! Real places, whole: from the scene file to the finished scene and to its picture.
 
-use sandtable::app::arguments::{Backend, PictureSize};
-use sandtable::app::picture::picture_of;
+use sandtable::pipeline::picture::{PictureSize, render_view};
+use sandtable::render::RenderBackend;
 use sandtable::scene::FeatureKind;
 
 use crate::tests_common::places::{PLACES, text_of};
@@ -24,7 +24,7 @@ pub fn print() {
         let count = |wanted| scene.features.iter().filter(|feature| feature.kind == wanted).count();
         let view = scene.view(None).expect("a scene has a camera").clone();
         let start = std::time::Instant::now();
-        picture_of(&scene, &view, SIZE, Backend::Cpu, &|_| ()).expect("the camera is sound");
+        render_view(&scene, &view, SIZE, RenderBackend::Cpu, &|_| ()).expect("the camera is sound");
         let picture = building + start.elapsed().as_secs_f64();
         println!(
             "{place:<16}{:>8}{:>10}{:>9.2} s{building:>9.2} s{picture:>9.2} s{:>9.0} MiB",

@@ -3,8 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use sandtable::app::arguments::Access;
-use sandtable::app::load;
+use sandtable::pipeline::scene_file::open_scene;
 use sandtable::scene::picture::{camera, display, recut};
 
 use crate::rounds::{median, quantile, time_ms};
@@ -12,8 +11,7 @@ use crate::rounds::{median, quantile, time_ms};
 /// Prints the demonstration's patches.
 pub fn print() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/jacksboro.toml");
-    let scene =
-        load::scene(&path, &Access { allow: Vec::new() }, &|_| {}).expect("the demonstration is sound");
+    let scene = open_scene(&path, &[], &|_| {}).expect("the demonstration is sound");
     let mut drapes = None;
     let dividing = time_ms(|| drapes = Some(recut::drapes(&scene)));
     let mut drapes = drapes.expect("just made");

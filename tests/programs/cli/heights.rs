@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use glam::DVec2;
-use sandtable::app::arguments::{Access, StatedHeights};
-use sandtable::app::dataset::Dataset;
 use sandtable::geom::crs::Crs;
-use sandtable::terrain::query::{Answer, Interpolation, Surface};
+use sandtable::pipeline::dataset::{Dataset, DatasetOptions};
+use sandtable::pipeline::dem::DemOptions;
+use sandtable::terrain::query::{Interpolation, Surface};
 use serde_json::Value;
 
 use crate::cli::{project, run, run_in, run_with_input};
@@ -192,8 +192,9 @@ fn a_scene_is_asked_for_its_ground_and_a_file_for_what_it_holds() {
 }
 
 fn open(path: &Path) -> Dataset {
-    let heights = StatedHeights { height_scale: Some(1.0), ..StatedHeights::default() };
-    Dataset::open(path, heights, &Access { allow: Vec::new() }).unwrap_or_else(|error| panic!("{error:?}"))
+    let dem = DemOptions { height_scale: Some(1.0), ..DemOptions::default() };
+    Dataset::open(path, &DatasetOptions { dem, ..DatasetOptions::default() })
+        .unwrap_or_else(|error| panic!("{error:?}"))
 }
 
 /// Every file with samples, asked through the program and through the library: the same bits, and GDAL's heights.
@@ -227,12 +228,11 @@ fn the_program_says_to_the_last_bit_what_the_library_says_and_what_gdal_says() {
             continue;
         }
         let dataset = open(&file);
-        let mut answers = vec![Answer::Outside; at.len()];
         for (choice, interpolation, column) in
             [("bilinear", Interpolation::Bilinear, 3), ("nearest", Interpolation::Nearest, 2)]
         {
             let crs = dataset.crs();
-            dataset.heights(Surface::Source, interpolation, &crs, &at, &mut answers).expect("answers");
+            let answers = dataset.heights(Surface::Source, interpolation, &crs, &at).expect("answers");
             let out = run(&[&asked[..], &[choice]].concat()).ok();
             for ((line, answer), row) in out.lines().skip(1).zip(&answers).zip(&rows) {
                 let cells: Vec<&str> = line.split(',').collect();

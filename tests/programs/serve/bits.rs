@@ -5,10 +5,9 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use glam::DVec2;
-use sandtable::app::arguments::{Access, StatedHeights};
-use sandtable::app::dataset::Dataset;
 use sandtable::geom::crs::Crs;
-use sandtable::terrain::query::{Answer, Interpolation, Surface};
+use sandtable::pipeline::dataset::{Dataset, DatasetOptions};
+use sandtable::terrain::query::{Interpolation, Surface};
 
 use crate::common::data::data;
 use crate::serve::client::{Server, numbers, strings};
@@ -57,8 +56,7 @@ fn of_library(
     from: &Crs,
     at: &[DVec2],
 ) -> Vec<Bits> {
-    let mut answers = vec![Answer::Outside; at.len()];
-    data.heights(surface, interpolation, from, at, &mut answers).expect("answered");
+    let answers = data.heights(surface, interpolation, from, at).expect("answered");
     answers.iter().map(|answer| (answer.height_m().map(f64::to_bits), answer.status().to_owned())).collect()
 }
 
@@ -176,6 +174,5 @@ fn a_scene_is_asked_for_its_ground_and_its_source_in_its_own_coordinates() {
 }
 
 fn open(file: &Path) -> Dataset {
-    let gray = StatedHeights::default();
-    Dataset::open(file, gray, &Access { allow: Vec::new() }).expect("sound")
+    Dataset::open(file, &DatasetOptions::default()).expect("sound")
 }

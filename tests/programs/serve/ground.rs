@@ -4,8 +4,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use glam::DVec2;
-use sandtable::app::arguments::{Access, StatedHeights};
-use sandtable::app::dataset::Dataset;
+use sandtable::pipeline::dataset::{Dataset, DatasetOptions};
 use sandtable::terrain::profile::profile;
 use sandtable::terrain::sight::Curvature;
 use sandtable::terrain::sight::line::SightEnd;
@@ -108,8 +107,7 @@ fn a_viewshed_too_large_is_refused_with_the_range_that_is_not() {
 #[test]
 fn on_a_real_model_profile_and_viewshed_are_the_librarys() {
     let Some(file) = data("dem/bigtujunga_utm11_i16_tiled.tif") else { return };
-    let gray = StatedHeights::default();
-    let dataset = Dataset::open(&file, gray, &Access { allow: Vec::new() }).expect("sound");
+    let dataset = Dataset::open(&file, &DatasetOptions::default()).expect("sound");
     let epoch = dataset.service().expect("in meters").snapshot();
     let lattice = epoch.lattice();
     let server = Server::start(Path::new("."), &[&format!("dem={}", file.display())]);

@@ -22,8 +22,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use glam::DVec2;
 use rayon::prelude::*;
 
+use crate::dem::answer::Answer;
 use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::query::{Answer, Interpolation, ground_height};
+use crate::terrain::query::{Interpolation, ground_height};
 use crate::terrain::sight::Curvature;
 use crate::terrain::sight::crossings::crossings;
 use crate::terrain::sight::line::{SightEnd, SightLine};

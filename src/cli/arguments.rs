@@ -1,0 +1,102 @@
+//! The commands and their arguments.
+
+use clap::{Parser, Subcommand};
+
+use crate::cli::convert::ConvertArguments;
+use crate::cli::dem_info::DemInfoArguments;
+use crate::cli::export::ExportArguments;
+use crate::cli::grid::GridArguments;
+use crate::cli::height::HeightQueryArguments;
+use crate::cli::lod::LodArguments;
+use crate::cli::los::LosArguments;
+use crate::cli::mesh::MeshArguments;
+use crate::cli::model::ModelArguments;
+use crate::cli::new::NewArguments;
+use crate::cli::options::SceneArguments;
+use crate::cli::profile::ProfileArguments;
+use crate::cli::render::RenderArguments;
+use crate::cli::report::ReportArguments;
+use crate::cli::serve::ServeArguments;
+use crate::cli::viewshed::ViewshedArguments;
+
+/// Builds digital terrain models from scene files and renders annotated pictures of them.
+#[derive(Debug, Parser)]
+#[command(name = "sandtable", version, propagate_version = true)]
+#[command(after_help = "Exit codes: 0 done, 1 the input is wrong, 2 wrong usage.")]
+pub struct Arguments {
+    /// The command.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene file to an annotated PNG
+    Render(RenderArguments),
+    /// Load and validate a scene file without rendering it
+    Check(SceneArguments),
+    /// Write a first scene file for an elevation file and vector files
+    New(NewArguments),
+    /// Print the JSON Schema of scene files, with which editors complete and check them
+    Schema,
+    /// Inspect, convert and make elevation files
+    Dem {
+        /// The command.
+        #[command(subcommand)]
+        command: DemCommand,
+    },
+    /// Inspect model files
+    Model {
+        /// The command.
+        #[command(subcommand)]
+        command: ModelCommand,
+    },
+    /// Print the heights of an elevation file or a scene at points
+    Height(HeightQueryArguments),
+    /// Print or chart the ground along a line
+    Profile(ProfileArguments),
+    /// Print or chart whether one point can be seen from another, and what blocks the view
+    Los(LosArguments),
+    /// Print, map or write as a raster what can be seen from a point
+    Viewshed(ViewshedArguments),
+    /// Answer height queries over HTTP
+    Serve(ServeArguments),
+    /// Print what building a scene found about single features: earth moved, gaps left, water levels
+    Report(ReportArguments),
+    /// Write a scene as a file that modeling programs open
+    Export(ExportArguments),
+    /// Write an elevation file as a mesh with an error bound
+    Mesh(MeshArguments),
+    /// Fly over an elevation file and compare level-of-detail methods
+    Lod(LodArguments),
+}
+
+/// The commands for elevation files.
+#[derive(Debug, Subcommand)]
+pub enum DemCommand {
+    /// Print format, size, coordinate system, no-data value and statistics
+    Info(DemInfoArguments),
+    /// Write elevation files in another format, coordinate system or cell size; several are joined
+    Convert(ConvertArguments),
+    /// Make a grid of scattered points
+    Grid(GridArguments),
+}
+
+/// The commands for model files.
+#[derive(Debug, Subcommand)]
+pub enum ModelCommand {
+    /// Print meshes, vertices, faces, materials and bounds (Z up, the file's units)
+    Info(ModelArguments),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_arguments_are_sound() {
+        use clap::CommandFactory;
+        Arguments::command().debug_assert();
+    }
+}

@@ -1,0 +1,143 @@
+//! `sandtable dem convert`: elevation in another format, another coordinate system or with other cells.
+
+use std::ops::Bound;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use crate::cli::error::CliError;
+use crate::cli::options::HeightArguments;
+use crate::cli::output::{print_lines, row};
+use crate::cli::progress::StepTimer;
+use crate::cli::rasters::format_for;
+use crate::cli::values::number;
+use crate::dem::formats::DemFormat;
+use crate::dem::warp::WarpError;
+use crate::dem::warp::reproject::Resampling;
+use crate::dem::write::WrittenDem;
+use crate::geom::crs::Crs;
+use crate::pipeline::convert::{ConvertError, ConvertOptions, Converted, VoidHandling, convert};
+use crate::pipeline::dem::{self, DemOptions};
+use crate::pipeline::error::error_text;
+use crate::pipeline::raster_file;
+
+/// `dem convert`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Cells as large as the file's or finer are bilinear between its samples; from twice as large on they hold the mean\n\
+                  of the samples in them. A shift between datums uses the numbers of the systems' definitions (towgs84), good\n\
+                  to some meters; one that needs a grid file is refused."
+)]
+pub struct ConvertArguments {
+    /// The elevation files, tiles of one raster where there are several, and the file to write: .tif, .asc, .bt, .hgt or
+    /// .png
+    #[arg(required = true, num_args = 2.., value_names = ["IN", "OUT"])]
+    pub files: Vec<PathBuf>,
+    /// Fill voids that samples enclose, with a membrane from their rims; the filled samples are counted
+    #[arg(long)]
+    pub fill_voids: bool,
+    /// The coordinate system to bring it to, for example EPSG:32616 [default: its own]
+    #[arg(long, value_name = "CRS", value_parser = Crs::parse)]
+    pub crs: Option<Crs>,
+    /// The coordinate system that it is in, where it names none or the wrong one
+    #[arg(long, value_name = "CRS", value_parser = Crs::parse)]
+    pub source_crs: Option<Crs>,
+    /// Side of a cell in units of the system that it is brought to [default: its own]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = number::<f64>((Bound::Excluded(0.0), Bound::Unbounded), "write a number above 0"))]
+    pub cell: Option<f64>,
+    /// What the file does not state about its heights.
+    #[command(flatten)]
+    pub heights: HeightArguments,
+}
+
+pub fn run(arguments: &ConvertArguments) -> Result<(), CliError> {
+    let (out, inputs) = match arguments.files.split_last() {
+        Some((out, inputs @ [_, ..])) => (out.as_path(), inputs),
+        _ => return Err(CliError::usage("name an elevation file and the file to write")),
+    };
+    let format = format_for(out, inputs)?;
+    let steps = StepTimer::default();
+    steps.begin("reading");
+    let options = DemOptions {
+        cell: arguments.cell,
+        crs: arguments.source_crs.clone(),
+        ..arguments.heights.dem_options()
+    };
+    let source = match inputs {
+        [input] => dem::open(input, &options)?,
+        tiles => dem::open_tiles(tiles, &options)?,
+    };
+    steps.begin("resampling");
+    let options = ConvertOptions {
+        crs: arguments.crs.clone(),
+        cell: arguments.cell,
+        voids: if arguments.fill_voids { VoidHandling::Fill } else { VoidHandling::Keep },
+    };
+    let converted = convert(source, &options).map_err(|error| with_remedy(&inputs[0], &error))?;
+    steps.begin("writing");
+    let written = raster_file::write(&converted.raster, format, out, inputs)?;
+    steps.finish();
+    print_lines(&summary(out, format, &converted, &written))
+}
+
+/// The error with the arguments that would mend it.
+fn with_remedy(file: &Path, error: &ConvertError) -> CliError {
+    let remedy = match error {
+        ConvertError::NoCrs { .. } => "; name its own, for example --source-crs EPSG:4326".to_owned(),
+        ConvertError::CellInDegrees { cell, zone: Some(zone) } => {
+            format!("; for cells of {cell} m bring it to its UTM zone, --crs {zone}")
+        }
+        ConvertError::CellInDegrees { cell, zone: None } => {
+            format!("; for cells of {cell} m bring it to a projected system")
+        }
+        ConvertError::Warp(error) => return place_error(file, error, "--source-crs"),
+        ConvertError::Crs(_) => String::new(),
+    };
+    CliError::input(format!("{}: {}{remedy}", file.display(), error_text(error)))
+}
+
+/// The error of elevation that does not state its place, with the arguments that state it. `crs_option` is the one that
+/// states its coordinate system.
+pub fn place_error(file: &Path, error: &WarpError, crs_option: &str) -> CliError {
+    let reason = match error {
+        WarpError::LooksLikeDegrees { min_x, max_x, min_y, max_y } => format!(
+            "no coordinate system is named, and the coordinates, {min_x} to {max_x} and {min_y} to {max_y}, look like degrees; name it, for example {crs_option} EPSG:4326"
+        ),
+        WarpError::NoPlace => {
+            "it does not say where it lies or how far apart its samples are; give --cell METERS".into()
+        }
+        WarpError::NoZone { west, east, south, north } => format!(
+            "it reaches from longitude {west} to {east} and from latitude {south} to {north}, which no UTM zone covers well; cut it, or warp it to a projected system in meters first"
+        ),
+        other => error_text(other),
+    };
+    CliError::input(format!("{}: {reason}", file.display()))
+}
+
+fn summary(out: &Path, format: &DemFormat, converted: &Converted, written: &WrittenDem) -> Vec<String> {
+    let Converted { raster, resampling, datum_shift, notes } = converted;
+    let cell = raster.spacing();
+    let valid = raster.samples.iter().filter(|value| !value.is_nan()).count();
+    let resampled = match resampling {
+        Resampling::Kept => "no, the samples are the file's",
+        Resampling::Bilinear => "bilinear, between the four samples around each cell's center",
+        Resampling::Average => "average of the samples in each cell",
+    };
+    let row = |name: &str, value: &str| row(12, name, value);
+    let mut lines = vec![
+        out.display().to_string(),
+        row("format", &format!("{}, {}", format.name, written.stored)),
+        row("size", &format!("{} columns, {} rows", raster.width, raster.height)),
+        row("crs", raster.crs.as_ref().map_or("none stated", |crs| crs.name())),
+        row("cell", &format!("{} x {}", cell.x, cell.y)),
+        row("resampled", resampled),
+    ];
+    lines.extend(datum_shift.iter().map(|shift| row("datum shift", shift)));
+    lines.extend(raster.vertical_datum.iter().map(|datum| row("heights", &format!("from {datum}"))));
+    lines.push(row("valid", &format!("{valid} of {} samples", raster.samples.len())));
+    lines.extend(written.notes.iter().map(|note| row("note", note)));
+    let companions = written.companions.iter().map(|companion| out.with_extension(companion.extension));
+    lines.extend(companions.map(|path| row("beside it", &path.display().to_string())));
+    lines.extend(notes.iter().map(|note| row("note", note)));
+    lines
+}

@@ -1,0 +1,130 @@
+//! `sandtable dem info`: what an elevation file or a folder of tiles holds.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use crate::cli::error::CliError;
+use crate::cli::options::HeightArguments;
+use crate::cli::output::{print, print_lines, row};
+use crate::dem::raster::Raster;
+use crate::dem::stats::Stats;
+use crate::dem::voids;
+use crate::pipeline::dem;
+
+/// `dem info`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Where an elevation file is wanted a folder may be named: the elevation files in it, sorted by name, are then tiles of
+one raster and are joined. Of values that tiles share the first tile's is kept. Gray or color pictures, tables and RAW
+files in the folder are skipped.")]
+pub struct DemInfoArguments {
+    /// The file
+    pub file: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+    /// What the file does not state about its heights.
+    #[command(flatten)]
+    pub heights: HeightArguments,
+}
+
+pub fn run(arguments: &DemInfoArguments) -> Result<(), CliError> {
+    let mosaic = dem::open(&arguments.file, &arguments.heights.dem_options())?;
+    let joined = arguments.file.is_dir().then(|| mosaic.note());
+    let raster = mosaic.raster;
+    let info = DemInfo {
+        stats: Stats::new(&raster),
+        enclosed_voids: voids::count(&raster),
+        notes: joined.into_iter().chain(format_note(&raster).map(str::to_owned)).collect(),
+        raster,
+    };
+    if arguments.json { print(&format!("{}\n", info.json())) } else { print_lines(&info.table()) }
+}
+
+/// A raster and what is known of it.
+struct DemInfo {
+    raster: Raster,
+    stats: Stats,
+    /// Voids that other samples enclose, and samples in them.
+    enclosed_voids: (u64, u64),
+    notes: Vec<String>,
+}
+
+impl DemInfo {
+    /// One JSON object; a missing number is null.
+    fn json(&self) -> Value {
+        let Self { raster, stats, enclosed_voids: (voids, samples), notes } = self;
+        json!({
+            "driver": raster.driver,
+            "width": raster.width,
+            "height": raster.height,
+            "type": raster.data_type,
+            "crs": raster.crs.as_ref().map(|crs| crs.name()),
+            "transform": raster.geotransform(),
+            "georeferenced": raster.georeferenced,
+            "nodata": json_nodata(raster.nodata),
+            "vertical_datum": raster.vertical_datum,
+            "meters_per_z": raster.meters_per_z,
+            "valid": stats.valid,
+            "enclosed_voids": voids,
+            "enclosed_void_samples": samples,
+            "min": stats.min,
+            "max": stats.max,
+            "mean": stats.mean,
+            "std": stats.std,
+            "notes": notes,
+        })
+    }
+
+    fn table(&self) -> Vec<String> {
+        let Self { raster, stats, enclosed_voids: (voids, samples), notes } = self;
+        let affine = raster.map_from_grid;
+        let (east, south) = (affine.matrix2.x_axis, affine.matrix2.y_axis);
+        let corner = affine.translation;
+        let all = raster.samples.len();
+        let heights = match stats.valid {
+            0 => "none".to_owned(),
+            _ => format!("{} to {}, mean {}, deviation {}", stats.min, stats.max, stats.mean, stats.std),
+        };
+        let rows = [
+            ("driver", raster.driver.to_owned()),
+            ("size", format!("{} columns, {} rows", raster.width, raster.height)),
+            ("type", raster.data_type.to_owned()),
+            ("crs", raster.crs.as_ref().map_or("none stated", |crs| crs.name()).to_owned()),
+            ("corner", format!("({}, {}), outer corner of the first sample", corner.x, corner.y)),
+            ("sample", format!("({}, {}) a column, ({}, {}) a row", east.x, east.y, south.x, south.y)),
+            ("nodata", raster.nodata.map_or("none stated".to_owned(), |value| value.to_string())),
+            ("valid", format!("{} of {all} samples", stats.valid)),
+            ("voids", format!("{} samples, {samples} of them enclosed, in {voids} voids", all - stats.valid)),
+            ("heights", heights),
+            ("unit", format!("{} m", raster.meters_per_z)),
+            ("datum", raster.vertical_datum.as_deref().unwrap_or("none stated").to_owned()),
+        ];
+        let notes = notes.iter().map(|note| row(8, "note", note));
+        rows.iter().map(|(name, value)| row(8, name, value)).chain(notes).collect()
+    }
+}
+
+/// A remark about a format that readers interpret differently.
+fn format_note(raster: &Raster) -> Option<&'static str> {
+    match raster.driver {
+        "BT" => Some(
+            "the extents are those of the outermost nodes, as the Virtual Terrain Project has it; GDAL takes them \
+             for the edges of cells, up to half a cell away",
+        ),
+        "Terragen" => {
+            Some("the format states no place: as with GDAL, y counts southward from the northern edge")
+        }
+        _ => None,
+    }
+}
+
+/// The no-data value; NaN, which JSON does not have, is the text `"nan"`.
+fn json_nodata(value: Option<f64>) -> Value {
+    match value {
+        Some(value) if value.is_nan() => json!("nan"),
+        value => json!(value),
+    }
+}

@@ -1,0 +1,66 @@
+//! How a command fails: the message on standard error and the exit code.
+
+use std::error::Error;
+use std::fmt::Display;
+use std::iter::successors;
+use std::process::ExitCode;
+
+use crate::cli::output::warn;
+use crate::description::diagnostic::{Diagnostic, Diagnostics};
+use crate::pipeline::error::error_text;
+
+/// Why a command stopped.
+#[derive(Debug)]
+pub enum CliError {
+    /// The input is wrong or missing: exit code 1.
+    Input {
+        /// What is wrong.
+        error: Box<dyn Error + Send + Sync>,
+        /// A remedy, after the message.
+        hint: Option<String>,
+    },
+    /// The command was used wrongly: exit code 2.
+    Usage(String),
+}
+
+impl<E: Error + Send + Sync + 'static> From<E> for CliError {
+    fn from(error: E) -> Self {
+        Self::Input { error: error.into(), hint: None }
+    }
+}
+
+impl CliError {
+    /// Wrong input, with a message.
+    pub fn input(message: impl Into<String>) -> Self {
+        Self::Input { error: message.into().into(), hint: None }
+    }
+
+    /// Wrong usage, with a message.
+    pub fn usage(message: impl Display) -> Self {
+        Self::Usage(message.to_string())
+    }
+
+    /// Prints the message on standard error and returns the exit code.
+    pub fn report(&self) -> ExitCode {
+        match self {
+            Self::Usage(message) => {
+                warn(&format!("error: {message}"));
+                ExitCode::from(2)
+            }
+            Self::Input { error, hint } => {
+                warn(&message(error.as_ref()));
+                hint.iter().for_each(|hint| warn(hint));
+                ExitCode::from(1)
+            }
+        }
+    }
+}
+
+/// The text of an error. Diagnostics of a scene file stand alone: they begin with the place in the file.
+fn message(error: &(dyn Error + 'static)) -> String {
+    let mut causes = successors(Some(error), |&error| error.source());
+    match causes.find(|cause| cause.is::<Diagnostic>() || cause.is::<Diagnostics>()) {
+        Some(diagnostic) => diagnostic.to_string(),
+        None => format!("error: {}", error_text(error)),
+    }
+}

@@ -1,0 +1,83 @@
+//! `sandtable height`: heights at points, as CSV or JSON.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use clap::Args;
+use glam::DVec2;
+use serde_json::json;
+
+use crate::cli::error::CliError;
+use crate::cli::options::DatasetArguments;
+use crate::cli::output::stream;
+use crate::cli::values::choice;
+use crate::dem::answer::Answer;
+use crate::pipeline::files;
+use crate::pipeline::positions::{WrittenPosition, parse_positions};
+use crate::terrain::query::{Interpolation, Surface};
+
+/// `height`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Heights are meters, whatever unit the file has. A point without a height has a status that says why:\n\
+                  NoData where the model has a hole, Outside beyond it."
+)]
+pub struct HeightQueryArguments {
+    /// The dataset.
+    #[command(flatten)]
+    pub dataset: DatasetArguments,
+    /// A point; may be given several times
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, required_unless_present = "points")]
+    pub at: Vec<WrittenPosition<'static>>,
+    /// A CSV file of x,y, with or without a header; - reads standard input
+    #[arg(long, value_name = "CSV", conflicts_with = "at")]
+    pub points: Option<PathBuf>,
+    /// The surface to query [default: source of a file, ground of a scene]
+    #[arg(long, value_parser = choice::<Surface>())]
+    pub surface: Option<Surface>,
+    /// How heights between posts are found
+    #[arg(long, default_value = "bilinear", value_parser = choice::<Interpolation>())]
+    pub interpolation: Interpolation,
+}
+
+/// Prints `x,y,height,status` for every point, in order; x and y as they were written.
+pub fn run(arguments: &HeightQueryArguments) -> Result<(), CliError> {
+    let dataset = arguments.dataset.open()?;
+    let text = arguments.points.as_deref().map(files::read_text).transpose()?;
+    let points = match (&arguments.points, &text) {
+        (Some(path), Some(text)) => parse_positions(&files::display_name(path), text)?,
+        _ => arguments.at.clone(),
+    };
+    let at: Vec<DVec2> = points.iter().map(|point| point.at).collect();
+    let surface = arguments.surface.unwrap_or_else(|| dataset.default_surface());
+    let crs = arguments.dataset.crs(&dataset);
+    let answers = dataset.heights(surface, arguments.interpolation, &crs, &at)?;
+    stream(|out| match arguments.dataset.json {
+        true => write_json(out, &points, &answers),
+        false => write_csv(out, &points, &answers),
+    })
+}
+
+fn write_csv(out: &mut dyn Write, points: &[WrittenPosition<'_>], answers: &[Answer]) -> io::Result<()> {
+    writeln!(out, "x,y,height,status")?;
+    for (point, answer) in points.iter().zip(answers) {
+        let [x, y] = &point.written;
+        match answer.height_m() {
+            Some(height) => writeln!(out, "{x},{y},{height},{}", answer.status())?,
+            None => writeln!(out, "{x},{y},,{}", answer.status())?,
+        }
+    }
+    Ok(())
+}
+
+/// Writes one object a line; a missing height is null.
+fn write_json(out: &mut dyn Write, points: &[WrittenPosition<'_>], answers: &[Answer]) -> io::Result<()> {
+    write!(out, "[")?;
+    for (index, (point, answer)) in points.iter().zip(answers).enumerate() {
+        let object = json!({
+            "x": point.at.x, "y": point.at.y, "height": answer.height_m(), "status": answer.status()
+        });
+        write!(out, "{}\n  {object}", if index == 0 { "" } else { "," })?;
+    }
+    writeln!(out, "\n]")
+}

@@ -1,0 +1,142 @@
+//! `sandtable los`: whether one point can be seen from another, what stands between, and how much is missing.
+
+use clap::Args;
+use glam::DVec2;
+use serde_json::{Value, json};
+
+use crate::annotate::chart_sight::paint;
+use crate::annotate::nice;
+use crate::cli::error::CliError;
+use crate::cli::options::{ChartArguments, DatasetArguments};
+use crate::cli::output::{print, print_lines, row};
+use crate::cli::values::{RaisedPosition, number};
+use crate::pipeline::files;
+use crate::pipeline::positions::format_position;
+use crate::pipeline::sight::{GroundedEnd, SightQuery, SightReport};
+use crate::terrain::sight::Curvature;
+use crate::terrain::sight::line::{Blocker, SightEnd};
+use crate::terrain::sight::rise::Rise;
+
+/// `los`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The exit code is 0 whether the target is visible or not. Ground without data blocks nothing.\n\
+                  The line is straight in the ground's coordinate system."
+)]
+pub struct LosArguments {
+    /// The dataset.
+    #[command(flatten)]
+    pub dataset: DatasetArguments,
+    /// The position of the observer, and meters above the ground there
+    #[arg(long, value_name = "X,Y[,H]", allow_hyphen_values = true)]
+    pub from: RaisedPosition,
+    /// The position of the target, and meters above the ground there
+    #[arg(long, value_name = "X,Y[,H]", allow_hyphen_values = true)]
+    pub to: RaisedPosition,
+    /// Meters of the observer's eye above the ground, where --from states none
+    #[arg(long, value_name = "METERS", default_value = "2", allow_negative_numbers = true, value_parser = number::<f64>(.., "write a number"))]
+    pub observer_height: f64,
+    /// Meters of the target above the ground, where --to states none
+    #[arg(long, value_name = "METERS", default_value = "0", allow_negative_numbers = true, value_parser = number::<f64>(.., "write a number"))]
+    pub target_height: f64,
+    /// The refraction coefficient: the share of the Earth's curvature that bent light makes up for [default: 1/7]
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = number::<f64>(.., "write a number"))]
+    pub refraction: Option<f64>,
+    /// Assume a flat Earth
+    #[arg(long, conflicts_with = "refraction")]
+    pub flat: bool,
+    /// The chart.
+    #[command(flatten)]
+    pub chart: ChartArguments,
+}
+
+pub fn run(arguments: &LosArguments) -> Result<(), CliError> {
+    arguments.chart.check(&arguments.dataset.file)?;
+    let dataset = arguments.dataset.open()?;
+    let snapshot = dataset.service()?.snapshot();
+    let end = |position: RaisedPosition, default_m: f64| SightEnd {
+        at: position.at,
+        above_m: position.above_m.unwrap_or(default_m),
+    };
+    let query = SightQuery {
+        ends: [end(arguments.from, arguments.observer_height), end(arguments.to, arguments.target_height)],
+        crs: arguments.dataset.crs(&dataset),
+        curvature: curvature(arguments.flat, arguments.refraction),
+    };
+    let report = SightReport::new(&snapshot, query)?;
+    if let Some(path) = &arguments.chart.output {
+        let size = arguments.chart.size;
+        let chart = report.chart(&snapshot, arguments.dataset.chart_title("Line of sight"))?;
+        files::write_picture(path, &paint((size.width, size.height), &chart))?;
+    }
+    if arguments.dataset.json { print(&format!("{}\n", json(&report))) } else { print_lines(&text(&report)) }
+}
+
+/// The curvature that `--flat` and `--refraction` state.
+pub fn curvature(flat: bool, refraction: Option<f64>) -> Curvature {
+    let round = Curvature::default();
+    match flat {
+        true => Curvature::FLAT,
+        false => Curvature { refraction: refraction.unwrap_or(round.refraction), ..round },
+    }
+}
+
+fn json(report: &SightReport) -> Value {
+    let place = |Blocker { at, distance_m, height_m }: Blocker| json!({"x": at.x, "y": at.y, "distance_m": distance_m, "height_m": height_m});
+    let [observer, target] = report.ends.map(|end: GroundedEnd| {
+        let GroundedEnd { at, ground_m, above_m } = end;
+        json!({"x": at.x, "y": at.y, "ground_m": ground_m, "above_m": above_m, "height_m": end.height_m()})
+    });
+    let grazing = |rise: Option<Rise>| rise.map(|rise| place(rise.grazing));
+    let rise_m = |rise: Option<Rise>| rise.map(|rise| rise.rise_m);
+    let curved = Some(report.query.curvature).filter(|curvature| *curvature != Curvature::FLAT);
+    json!({
+        "crs": report.query.crs.name(),
+        "visible": report.blocker.is_none(),
+        "distance_m": report.distance_m,
+        "observer": observer,
+        "target": target,
+        "blocker": report.blocker.map(place),
+        "clearance_m": rise_m(report.both_rise).map(|rise_m| -rise_m),
+        "least_clearance_at": grazing(report.both_rise),
+        "target_rise_m": rise_m(report.target_rise),
+        "grazing": grazing(report.target_rise),
+        "observer_rise_m": rise_m(report.observer_rise),
+        "earth_radius_m": curved.map(|curvature| curvature.radius_m),
+        "refraction": curved.map(|curvature| curvature.refraction),
+    })
+}
+
+fn text(report: &SightReport) -> Vec<String> {
+    let position = |at: DVec2| format_position(&report.query.crs, at);
+    let mut lines = vec![match &report.blocker {
+        None => "visible".to_owned(),
+        Some(Blocker { at, distance_m, height_m }) => format!(
+            "blocked at {}, {distance_m:.1} m from the observer, where the ground is {height_m:.2} m high",
+            position(*at)
+        ),
+    }];
+    lines.push(row(10, "distance", format!("{:.1} m", report.distance_m)));
+    for (name, end) in ["observer", "target"].iter().zip(report.ends) {
+        let height = format!("{:.2} m high, {} m above the ground", end.height_m(), end.above_m);
+        lines.push(row(10, name, height));
+    }
+    if let Some(Rise { rise_m, grazing }) = report.both_rise {
+        let place = format!("{} ({:.1} m along)", position(grazing.at), grazing.distance_m);
+        lines.push(row(10, "clearance", format!("{:.2} m, least at {place}", -rise_m)));
+    }
+    let rises = [("the target", report.target_rise), ("the observer", report.observer_rise)];
+    for (name, rise) in rises.into_iter().filter(|_| report.blocker.is_some()) {
+        lines.extend(rise.map(|rise| format!("  to be seen, {name} must rise {:.2} m", rise.rise_m)));
+    }
+    lines.push(row(10, "Earth", earth(report.query.curvature)));
+    lines
+}
+
+fn earth(curvature: Curvature) -> String {
+    if curvature == Curvature::FLAT {
+        return "flat".into();
+    }
+    let radius_km = nice::format_number(curvature.radius_m / 1000.0, 0);
+    format!("curved, radius {radius_km} km, refraction {}", nice::format_trimmed(curvature.refraction, 3))
+}

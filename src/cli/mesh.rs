@@ -1,0 +1,149 @@
+//! `sandtable mesh`: an elevation file as a mesh with an error bound.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use clap::Args;
+
+use crate::cli::convert::place_error;
+use crate::cli::error::CliError;
+use crate::cli::options::HeightArguments;
+use crate::cli::output::{print_lines, row, warn};
+use crate::cli::progress::StepTimer;
+use crate::cli::rasters::extension;
+use crate::cli::values::number;
+use crate::dem::raster::Raster;
+use crate::geom::crs::Crs;
+use crate::mesh::write::{self, MeshFormat, Remarks};
+use crate::pipeline::bounded_mesh::BoundedMesh;
+use crate::pipeline::dem::{self, DemOptions};
+use crate::pipeline::error::error_text;
+use crate::pipeline::files;
+use crate::pipeline::ground::{GroundError, MetricGround};
+use crate::roam::bound::Deviation;
+use crate::terrain::lattice::Lattice;
+
+/// `mesh`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Coordinates are meters from the south-west post, X east, Y north, Z up; the file says where that is.\n\
+                  An elevation file in degrees is brought to its UTM zone first. Ground without data is left out."
+)]
+pub struct MeshArguments {
+    /// The elevation file
+    pub file: PathBuf,
+    /// The largest vertical error of the mesh at any post of the elevation file
+    #[arg(long, value_name = "METERS", allow_negative_numbers = true, value_parser = number::<f64>(0.0.., "write meters as a number from 0 on"))]
+    pub max_error: f64,
+    /// Write the mesh to this file: .obj, .ply, .stl or .glb
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// The coordinate system of an elevation file that names none, for example EPSG:4326
+    #[arg(long, value_name = "CRS", value_parser = Crs::parse)]
+    pub crs: Option<Crs>,
+    /// Meters between the posts of an elevation file that does not state it
+    #[arg(long, value_name = "METERS", allow_negative_numbers = true)]
+    pub cell: Option<f64>,
+    /// What the file does not state about its heights.
+    #[command(flatten)]
+    pub heights: HeightArguments,
+}
+
+pub fn run(arguments: &MeshArguments) -> Result<(), CliError> {
+    let out = &arguments.output;
+    let format = MeshFormat::from_extension(&extension(out)).ok_or_else(|| {
+        let out = out.display();
+        CliError::usage(format!(
+            "{out}: meshes are written as .obj, .ply, .stl or .glb; name a file that ends so"
+        ))
+    })?;
+    files::check_output(out, &[&arguments.file])?;
+    let steps = StepTimer::default();
+    steps.begin("reading");
+    let options =
+        DemOptions { cell: arguments.cell, crs: arguments.crs.clone(), ..arguments.heights.dem_options() };
+    let mosaic = dem::open(&arguments.file, &options)?;
+    let warning = dem::warning(&arguments.file, &mosaic);
+    let MetricGround { lattice, crs } =
+        MetricGround::from_raster(&mosaic.raster).map_err(|error| about(arguments, &error))?;
+    let lattice = Arc::new(lattice);
+    steps.begin("building the mesh");
+    let bounded = BoundedMesh::new(&lattice, arguments.max_error)
+        .map_err(|error| CliError::input(format!("{}: {}", arguments.file.display(), error_text(&error))))?;
+    steps.begin("writing");
+    let remarks = remarks(arguments, &lattice, &crs, bounded.deviation);
+    files::write_with(out, |out| write::write(format, &bounded.mesh, &remarks, out))?;
+    steps.finish();
+    warning.iter().for_each(|warning| warn(&format!("warning: {warning}")));
+    if let Some(note) = resampled(&mosaic.raster, &lattice, &crs) {
+        warn(&format!("note: {}: {note}", arguments.file.display()));
+    }
+    print_lines(&summary(arguments, &lattice, &crs, &bounded))
+}
+
+fn about(arguments: &MeshArguments, error: &GroundError) -> CliError {
+    match error {
+        GroundError::Warp(error) => place_error(&arguments.file, error, "--crs"),
+        GroundError::Lattice(error) => CliError::input(format!("{}: {error}", arguments.file.display())),
+    }
+}
+
+/// That the posts are not those of the file, where they are not.
+fn resampled(raster: &Raster, lattice: &Lattice, crs: &Crs) -> Option<String> {
+    let from = raster.crs.as_ref().map_or("no system", |crs| crs.name());
+    let axes = raster.map_from_grid.matrix2;
+    let is_rotated = axes.x_axis.y != 0.0 || axes.y_axis.x != 0.0;
+    if raster.crs.as_ref().is_none_or(|own| own == crs) && !is_rotated {
+        return None;
+    }
+    let to = if *crs == Crs::local() { "no system" } else { crs.name() };
+    let (columns, rows, cell_m) = (lattice.columns(), lattice.rows(), lattice.cell().x);
+    let grid = format!("{columns} x {rows} posts {cell_m:.3} m apart");
+    Some(format!("brought from {from} to {to}, {grid}; the error is measured at these"))
+}
+
+/// Where the mesh lies and its error bound.
+fn remarks(arguments: &MeshArguments, lattice: &Lattice, crs: &Crs, deviation: Deviation) -> Remarks {
+    let (origin, crs) = (lattice.origin(), crs.name());
+    let lines = [
+        format!("terrain mesh of {}, written by sandtable", files::file_name(&arguments.file)),
+        "meters from the south-west post: X east, Y north, Z up".to_owned(),
+        format!(
+            "origin: X 0, Y 0 is easting {} northing {} in {crs}; Z is the elevation",
+            origin.x, origin.y
+        ),
+        format!(
+            "vertical error: at most {} m at every post, asked for {} m",
+            rounded_up(deviation.max_m),
+            arguments.max_error
+        ),
+    ];
+    Remarks::new(&lines, &format!("meters; origin E {} N {}; {crs}", origin.x, origin.y))
+}
+
+/// A maximum in tenths of a millimeter, rounded up, so that it stays a bound.
+fn rounded_up(max_m: f64) -> f64 {
+    (max_m * 1e4).ceil() / 1e4
+}
+
+fn summary(arguments: &MeshArguments, lattice: &Lattice, crs: &Crs, bounded: &BoundedMesh) -> Vec<String> {
+    let Deviation { max_m, mean_m, rms_m, worst, measured, left_out } = bounded.deviation;
+    let origin = lattice.origin();
+    let place = worst.map_or_else(String::new, |post| {
+        let at = lattice.map_position(post);
+        format!(" at column {}, row {} from the south-west ({:.2}, {:.2})", post.column, post.row, at.x, at.y)
+    });
+    let row = |name: &str, value: String| row(10, name, value);
+    let mut lines = vec![
+        arguments.output.display().to_string(),
+        row("vertices", bounded.mesh.positions.len().to_string()),
+        row("triangles", bounded.mesh.triangles.len().to_string()),
+        row("error", format!("maximum {} m, asked for {} m{place}", rounded_up(max_m), arguments.max_error)),
+        row("", format!("mean {mean_m:.4} m, RMS {rms_m:.4} m, over {measured} posts")),
+        row("origin", format!("({:.3}, {:.3}) in {}", origin.x, origin.y, crs.name())),
+    ];
+    if left_out > 0 {
+        lines.push(row("left out", format!("{left_out} posts with data that only cells with a hole touch")));
+    }
+    lines
+}

@@ -1,0 +1,73 @@
+//! The command line: one file a command, which turns arguments into the options of a [pipeline](crate::pipeline), runs
+//! it and prints the result.
+
+mod arguments;
+mod check;
+mod convert;
+mod dem_info;
+mod error;
+mod export;
+mod grid;
+mod height;
+mod lod;
+mod lod_selection;
+mod los;
+mod mesh;
+mod model;
+mod new;
+mod options;
+mod output;
+mod profile;
+mod progress;
+mod rasters;
+mod render;
+mod report;
+mod schema;
+mod serve;
+mod values;
+mod viewshed;
+
+use std::error::Error;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::cli::arguments::{Arguments, Command, DemCommand, ModelCommand};
+use crate::cli::error::CliError;
+use crate::pipeline::service::ServiceOptions;
+
+/// A height service: serves until a signal ends it.
+pub type ServeProgram = fn(&ServiceOptions) -> Result<(), Box<dyn Error + Send + Sync>>;
+
+/// Runs the program: parses the arguments, runs the command, reports errors. `serve` runs the command of that name;
+/// `None` where the service is not built in.
+///
+/// Exit codes: 0 done, 1 the input is wrong, 2 usage.
+pub fn main(serve: Option<ServeProgram>) -> ExitCode {
+    match run(&Arguments::parse(), serve) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => error.report(),
+    }
+}
+
+fn run(arguments: &Arguments, serve: Option<ServeProgram>) -> Result<(), CliError> {
+    match &arguments.command {
+        Command::Render(arguments) => render::run(arguments),
+        Command::Check(arguments) => check::run(arguments),
+        Command::New(arguments) => new::run(arguments),
+        Command::Schema => schema::run(),
+        Command::Dem { command: DemCommand::Info(arguments) } => dem_info::run(arguments),
+        Command::Dem { command: DemCommand::Convert(arguments) } => convert::run(arguments),
+        Command::Dem { command: DemCommand::Grid(arguments) } => grid::run(arguments),
+        Command::Model { command: ModelCommand::Info(arguments) } => model::run(arguments),
+        Command::Height(arguments) => height::run(arguments),
+        Command::Profile(arguments) => profile::run(arguments),
+        Command::Los(arguments) => los::run(arguments),
+        Command::Viewshed(arguments) => viewshed::run(arguments),
+        Command::Serve(arguments) => serve::run(arguments, serve),
+        Command::Report(arguments) => report::run(arguments),
+        Command::Export(arguments) => export::run(arguments),
+        Command::Mesh(arguments) => mesh::run(arguments),
+        Command::Lod(arguments) => lod::run(arguments),
+    }
+}

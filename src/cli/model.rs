@@ -1,0 +1,49 @@
+//! `sandtable model info`: what a model file holds.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde_json::json;
+
+use crate::cli::error::CliError;
+use crate::cli::output::{print, print_lines, row};
+use crate::geom::aabb::Aabb;
+use crate::pipeline::model_file;
+
+/// `model info`.
+#[derive(Debug, Args)]
+pub struct ModelArguments {
+    /// The file
+    pub file: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+pub fn run(arguments: &ModelArguments) -> Result<(), CliError> {
+    let model = model_file::open(&arguments.file)?;
+    let census = model.census;
+    let Aabb { min, max } = model.bounds().unwrap_or_default();
+    if arguments.json {
+        let object = json!({
+            "meshes": census.meshes,
+            "vertices": census.vertices,
+            "faces": census.faces,
+            "materials": census.materials,
+            "bounds": { "min": min.to_array(), "max": max.to_array() },
+            "notes": model.notes,
+        });
+        return print(&format!("{object}\n"));
+    }
+    let bounds = format!("({}, {}, {}) to ({}, {}, {}), Z up", min.x, min.y, min.z, max.x, max.y, max.z);
+    let mut lines = vec![
+        arguments.file.display().to_string(),
+        row(10, "meshes", census.meshes),
+        row(10, "vertices", census.vertices),
+        row(10, "faces", census.faces),
+        row(10, "materials", census.materials),
+        row(10, "bounds", bounds),
+    ];
+    lines.extend(model.notes.iter().map(|note| row(10, "note", note)));
+    print_lines(&lines)
+}

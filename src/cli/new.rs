@@ -1,0 +1,93 @@
+//! `sandtable new`: a first scene file of an elevation model and vector files.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use crate::cli::check::contents;
+use crate::cli::error::CliError;
+use crate::cli::output::print_lines;
+use crate::cli::progress::StepTimer;
+use crate::pipeline::new_scene::{self, NewSceneOptions, WrittenScene};
+use crate::pipeline::scene_file::open_scene;
+
+/// `new`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Every layer of the vector files is surveyed: lines with `highway` become roads by class, with `waterway` rivers, with \
+`barrier` fences and walls, with `power` power lines; polygons of water become lakes, with `building` buildings, with \
+`landuse`, `natural` or `leisure` areas. A layer without such properties is classified by its name (roads, rivers, \
+lakes, buildings). What is left is named in a comment.
+
+No file is overwritten, and none is copied.")]
+pub struct NewArguments {
+    /// The folder for scene.toml; it is made if it does not exist
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+    /// The elevation file; several are tiles of one raster
+    #[arg(long, value_name = "FILE", num_args = 1.., required = true)]
+    pub dem: Vec<PathBuf>,
+    /// Vector files for the features on the ground
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    pub vectors: Vec<PathBuf>,
+    /// The picture's title [default: the elevation file's name]
+    #[arg(long, value_name = "TEXT")]
+    pub title: Option<String>,
+    /// The coordinate system of an elevation file that names none, for example EPSG:32616
+    #[arg(long, value_name = "CRS")]
+    pub crs: Option<String>,
+}
+
+/// Writes the scene file, builds the scene, and prints what it holds and how to render it.
+pub fn run(arguments: &NewArguments) -> Result<(), CliError> {
+    let steps = StepTimer::default();
+    let progress = |step| steps.begin(step);
+    let options = NewSceneOptions {
+        folder: arguments.folder.clone(),
+        dem: arguments.dem.clone(),
+        vectors: arguments.vectors.clone(),
+        title: arguments.title.clone(),
+        crs: arguments.crs.clone(),
+    };
+    let WrittenScene { path, allowed } = new_scene::write(&options, &progress)?;
+    let scene = open_scene(&path, &allowed, &progress);
+    steps.finish();
+    let command = |verb: &str| command(verb, &path, &allowed);
+    let scene = scene.map_err(|error| {
+        let (path, check) = (path.display(), command("check"));
+        let hint = format!("{path} is written, but cannot be built yet; correct it and try\n  {check}");
+        CliError::Input { error: error.into(), hint: Some(hint) }
+    })?;
+    let mut lines = vec![path.display().to_string()];
+    lines.extend(contents(&scene));
+    lines.extend(["to render it:".into(), format!("  {}", command("render"))]);
+    print_lines(&lines)
+}
+
+/// A command on the scene, as a shell reads it.
+fn command(verb: &str, scene: &Path, allowed: &[PathBuf]) -> String {
+    let allow = allowed.iter().map(|folder| format!(" --allow {}", shell(folder)));
+    format!("sandtable {verb} {}{}", shell(scene), allow.collect::<String>())
+}
+
+/// A path as a shell reads it.
+fn shell(path: &Path) -> String {
+    let text = path.display().to_string();
+    let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "/._-+,:@%".contains(letter);
+    if !text.is_empty() && text.chars().all(is_plain) {
+        text
+    } else {
+        format!("'{}'", text.replace('\'', "'\\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_with_a_space_or_a_quote_is_one_word_of_the_shell() {
+        assert_eq!(shell(Path::new("a/b-1.toml")), "a/b-1.toml");
+        assert_eq!(shell(Path::new("a b's")), "'a b'\\''s'");
+    }
+}

@@ -1,0 +1,129 @@
+//! Options that commands share.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::error::CliError;
+use crate::cli::output::warn;
+use crate::dem::formats::height_encoding::HeightEncoding;
+use crate::dem::formats::raw::RawLayout;
+use crate::geom::crs::Crs;
+use crate::pipeline::dataset::{Dataset, DatasetOptions};
+use crate::pipeline::dem::DemOptions;
+use crate::pipeline::files;
+use crate::pipeline::picture::PictureSize;
+
+/// The scene file of a command, and the files it may read.
+#[derive(Debug, Args)]
+pub struct SceneArguments {
+    /// The scene file
+    pub scene: PathBuf,
+    /// The folders that the scene may read.
+    #[command(flatten)]
+    pub access: AccessArguments,
+}
+
+/// The folders that a scene may read.
+#[derive(Debug, Args)]
+pub struct AccessArguments {
+    /// Also let the scene read files under DIR; without it, only under the parent of the scene's folder
+    #[arg(long, value_name = "DIR")]
+    pub allow: Vec<PathBuf>,
+}
+
+/// What an elevation file does not state about its heights.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub struct HeightArguments {
+    /// Meters per gray value of a PNG, which needs it, or of a RAW file [default: 1]
+    #[arg(long, value_name = "METERS", allow_negative_numbers = true)]
+    pub height_scale: Option<f64>,
+    /// Height in meters of value 0 of a gray PNG or a RAW file [default: 0]
+    #[arg(long, value_name = "METERS", allow_negative_numbers = true)]
+    pub height_offset: Option<f64>,
+    /// What the colors of a PNG mean: terrain-rgb (Mapbox) or terrarium (Mapzen)
+    #[arg(long, value_name = "ENCODING", conflicts_with_all = ["height_scale", "height_offset"])]
+    pub height_encoding: Option<HeightEncoding>,
+    /// The layout of a RAW file: 1201x1201:i16be, then :skip=BYTES and :nodata=VALUE
+    #[arg(long, value_name = "WxH:TYPE")]
+    pub raw: Option<RawLayout>,
+}
+
+/// The dataset that a command queries.
+#[derive(Debug, Args)]
+pub struct DatasetArguments {
+    /// The elevation file or scene
+    pub file: PathBuf,
+    /// The coordinate system of positions, for example EPSG:4326 for longitude,latitude [default: the file's or scene's]
+    #[arg(long, value_name = "CRS", value_parser = Crs::parse)]
+    pub crs: Option<Crs>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// What the file does not state about its heights.
+    #[command(flatten)]
+    pub heights: HeightArguments,
+    /// The folders that a scene may read.
+    #[command(flatten)]
+    pub access: AccessArguments,
+}
+
+/// A chart.
+#[derive(Debug, Args)]
+pub struct ChartArguments {
+    /// Write a chart to this file
+    #[arg(short, long, value_name = "OUT.png")]
+    pub output: Option<PathBuf>,
+    /// Size of the chart in pixels
+    #[arg(long, value_name = "WxH", default_value = "1600x800")]
+    pub size: PictureSize,
+}
+
+impl HeightArguments {
+    /// The options for opening elevation.
+    pub fn dem_options(&self) -> DemOptions {
+        DemOptions {
+            height_scale: self.height_scale,
+            height_offset: self.height_offset,
+            height_encoding: self.height_encoding,
+            raw: self.raw,
+            ..DemOptions::default()
+        }
+    }
+}
+
+impl DatasetArguments {
+    /// Opens the dataset; prints its warning.
+    ///
+    /// # Errors
+    /// The dataset cannot be opened.
+    pub fn open(&self) -> Result<Dataset, CliError> {
+        let options = DatasetOptions { dem: self.heights.dem_options(), allowed: self.access.allow.clone() };
+        let dataset = Dataset::open(&self.file, &options)?;
+        dataset.warning().into_iter().for_each(|warning| warn(&format!("warning: {warning}")));
+        Ok(dataset)
+    }
+
+    /// The coordinate system of positions.
+    pub fn crs(&self, dataset: &Dataset) -> Crs {
+        self.crs.clone().unwrap_or_else(|| dataset.crs())
+    }
+
+    /// The title of a chart of the dataset.
+    pub fn chart_title(&self, what: &str) -> String {
+        format!("{what} · {}", files::file_name(&self.file))
+    }
+}
+
+impl ChartArguments {
+    /// Checks that the chart could be written.
+    ///
+    /// # Errors
+    /// It could not, or would replace `input`.
+    pub fn check(&self, input: &PathBuf) -> Result<(), CliError> {
+        match &self.output {
+            Some(path) => Ok(files::check_picture_output(path, std::slice::from_ref(input))?),
+            None => Ok(()),
+        }
+    }
+}

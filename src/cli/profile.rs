@@ -1,0 +1,124 @@
+//! `sandtable profile`: the ground along a line, as a table or JSON, and as a chart.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use clap::Args;
+use glam::DVec2;
+use serde_json::{Value, json};
+
+use crate::annotate::chart_profile::paint;
+use crate::cli::error::CliError;
+use crate::cli::options::{ChartArguments, DatasetArguments};
+use crate::cli::output::{print, stream};
+use crate::cli::values::{PositionList, choice};
+use crate::geom::crs::Crs;
+use crate::pipeline::dataset::{Dataset, QueryError, transform};
+use crate::pipeline::files;
+use crate::pipeline::positions::{InputLine, read_line};
+use crate::pipeline::profile::{GroundProfile, ProfileError};
+use crate::terrain::profile::{Extreme, ProfileStation, Sampling};
+use crate::terrain::query::Interpolation;
+
+/// `profile`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The table has station,x,y,height,status a line: meters from the start, the position in the coordinate\n\
+                  system of the line, meters. There is a station wherever the ground bends, and on the model's border."
+)]
+pub struct ProfileArguments {
+    /// The dataset.
+    #[command(flatten)]
+    pub dataset: DatasetArguments,
+    /// The line: --line X,Y X,Y and so on; in quotes where one begins with a minus sign
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, required_unless_present = "points")]
+    pub line: Vec<PositionList>,
+    /// The line's other vertices
+    #[arg(value_name = "X,Y", requires = "line", hide = true)]
+    pub rest: Vec<PositionList>,
+    /// A file with the line: x,y a line of CSV, or the first line of a vector file; - reads CSV from standard input
+    #[arg(long, value_name = "FILE", conflicts_with = "line")]
+    pub points: Option<PathBuf>,
+    /// How heights between posts are found
+    #[arg(long, default_value = "planar", value_parser = choice::<Interpolation>())]
+    pub interpolation: Interpolation,
+    /// Also a station every so many meters
+    #[arg(long, value_name = "METERS", allow_negative_numbers = true)]
+    pub step: Option<f64>,
+    /// The chart.
+    #[command(flatten)]
+    pub chart: ChartArguments,
+}
+
+pub fn run(arguments: &ProfileArguments) -> Result<(), CliError> {
+    arguments.chart.check(&arguments.dataset.file)?;
+    let dataset = arguments.dataset.open()?;
+    let line = line(arguments, &dataset)?;
+    let snapshot = dataset.service()?.snapshot();
+    let sampling = Sampling { interpolation: arguments.interpolation, step_m: arguments.step };
+    let profile = GroundProfile::new(&snapshot, line, sampling).map_err(|error| match error {
+        ProfileError::Query(error) => error.into(),
+        step => CliError::usage(format!("--step: {step}")),
+    })?;
+    if let Some(path) = &arguments.chart.output {
+        let size = arguments.chart.size;
+        let chart = profile.chart(arguments.dataset.chart_title("Profile"));
+        files::write_picture(path, &paint((size.width, size.height), &chart))?;
+    }
+    if arguments.dataset.json {
+        return print(&format!("{}\n", json(&profile)?));
+    }
+    stream(|out| write_csv(out, &profile))
+}
+
+fn line(arguments: &ProfileArguments, dataset: &Dataset) -> Result<InputLine, CliError> {
+    if let Some(path) = &arguments.points {
+        return Ok(read_line(path, arguments.dataset.crs.clone(), &dataset.crs())?);
+    }
+    let lists = arguments.line.iter().chain(&arguments.rest);
+    let vertices: Vec<DVec2> = lists.flat_map(|list| list.0.clone()).collect();
+    if vertices.len() < 2 {
+        return Err(CliError::usage("--line needs at least two positions: --line X,Y X,Y"));
+    }
+    Ok(InputLine { vertices, crs: arguments.dataset.crs(dataset) })
+}
+
+fn write_csv(out: &mut dyn Write, profile: &GroundProfile) -> io::Result<()> {
+    writeln!(out, "station,x,y,height,status")?;
+    for (station, at) in profile.stations.iter().zip(&profile.positions) {
+        let height = station.ground.height_m().map(|height_m| height_m.to_string()).unwrap_or_default();
+        writeln!(out, "{},{},{},{height},{}", station.station_m, at.x, at.y, station.ground.status())?;
+    }
+    Ok(())
+}
+
+fn json(profile: &GroundProfile) -> Result<Value, QueryError> {
+    let station = |(station, at): (&ProfileStation, &DVec2)| {
+        json!({
+            "station": station.station_m,
+            "x": at.x,
+            "y": at.y,
+            "height": station.ground.height_m(),
+            "status": station.ground.status(),
+        })
+    };
+    let (summary, crs, ground_crs) = (&profile.summary, &profile.line.crs, &profile.ground_crs);
+    Ok(json!({
+        "crs": crs.name(),
+        "straight_in": ground_crs.name(),
+        "length_m": summary.length_m,
+        "covered_m": summary.covered_m,
+        "ground_length_m": summary.ground_length_m,
+        "ascent_m": summary.ascent_m,
+        "descent_m": summary.descent_m,
+        "lowest": extreme(summary.lowest, ground_crs, crs)?,
+        "highest": extreme(summary.highest, ground_crs, crs)?,
+        "stations": profile.stations.iter().zip(&profile.positions).map(station).collect::<Vec<_>>(),
+    }))
+}
+
+fn extreme(place: Option<Extreme>, from: &Crs, to: &Crs) -> Result<Value, QueryError> {
+    let Some(Extreme { station_m, at, height_m }) = place else { return Ok(Value::Null) };
+    let at = transform("the station at", from, to, at)?;
+    Ok(json!({"station": station_m, "x": at.x, "y": at.y, "height": height_m}))
+}

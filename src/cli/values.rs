@@ -1,0 +1,114 @@
+//! Parsers of argument values.
+
+use std::ops::RangeBounds;
+use std::str::FromStr;
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use glam::DVec2;
+
+use crate::pipeline::choice::Choice;
+
+/// Parses one of the words of a [`Choice`].
+pub fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {
+    let values = T::CHOICES.iter().map(|choice| PossibleValue::new(choice.word).help(choice.meaning));
+    PossibleValuesParser::new(values).map(|word| T::from_word(&word).expect("only listed words are accepted"))
+}
+
+/// Parses a finite number in `range`; `advice` is the message for anything else.
+pub fn number<T: FromStr + Into<f64> + Copy>(
+    range: impl RangeBounds<f64> + Clone,
+    advice: &'static str,
+) -> impl Fn(&str) -> Result<T, &'static str> + Clone {
+    move |text| {
+        let number = text.parse::<T>().ok();
+        let is_valid = |number: f64| number.is_finite() && range.contains(&number);
+        number.filter(|&number| is_valid(number.into())).ok_or(advice)
+    }
+}
+
+/// Parses finite numbers with commas between.
+pub fn numbers(text: &str) -> Option<Vec<f64>> {
+    let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
+    text.split(',').map(number).collect()
+}
+
+/// Two finite numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NumberPair(pub f64, pub f64);
+
+impl FromStr for NumberPair {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        match numbers(text).as_deref() {
+            Some(&[first, second]) => Ok(Self(first, second)),
+            _ => Err("write two numbers with a comma between"),
+        }
+    }
+}
+
+/// One or more positions with spaces between.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PositionList(pub Vec<DVec2>);
+
+impl FromStr for PositionList {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let position = |text: &str| match numbers(text).as_deref() {
+            Some(&[x, y]) => Some(DVec2::new(x, y)),
+            _ => None,
+        };
+        let positions: Option<Vec<DVec2>> = text.split_whitespace().map(position).collect();
+        let positions = positions.filter(|positions| !positions.is_empty());
+        positions.map(Self).ok_or("write positions as X,Y, for example 731500,4017200")
+    }
+}
+
+/// A position, and meters above the ground there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RaisedPosition {
+    /// The position.
+    pub at: DVec2,
+    /// Meters above the ground, where they are stated.
+    pub above_m: Option<f64>,
+}
+
+impl FromStr for RaisedPosition {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        match numbers(text).as_deref() {
+            Some(&[x, y]) => Ok(Self { at: DVec2::new(x, y), above_m: None }),
+            Some(&[x, y, above_m]) => Ok(Self { at: DVec2::new(x, y), above_m: Some(above_m) }),
+            _ => Err("write a position as X,Y or, with meters above the ground, X,Y,H"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_are_two_finite_numbers_and_ends_may_have_a_height() {
+        assert_eq!("1.5,-2e3".parse(), Ok(PositionList(vec![DVec2::new(1.5, -2e3)])));
+        let two = vec![DVec2::new(-84.1, 36.2), DVec2::new(-84.0, 36.0)];
+        assert_eq!("-84.1,36.2 -84,36".parse(), Ok(PositionList(two)));
+        assert_eq!("1,2,30".parse(), Ok(RaisedPosition { at: DVec2::new(1.0, 2.0), above_m: Some(30.0) }));
+        assert_eq!("1,2".parse(), Ok(RaisedPosition { at: DVec2::new(1.0, 2.0), above_m: None }));
+        for wrong in ["", "1", "1,2,3,4", "a,b", "NaN,1", "1,inf", "1;2"] {
+            assert!(wrong.parse::<PositionList>().is_err(), "{wrong}");
+            assert!(wrong.parse::<RaisedPosition>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_number_is_finite_and_in_range() {
+        let parse = number::<f64>(0.0.., "no");
+        assert_eq!(parse("2.5"), Ok(2.5));
+        for wrong in ["-1", "NaN", "inf", "1e999", "five", ""] {
+            assert_eq!(parse(wrong), Err("no"), "{wrong}");
+        }
+    }
+}

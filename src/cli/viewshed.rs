@@ -1,0 +1,190 @@
+//! `sandtable viewshed`: what can be seen from a point, as a map, a raster or a few figures.
+
+use std::fmt::Write;
+use std::ops::Bound;
+use std::path::{Path, PathBuf};
+use std::slice;
+
+use clap::Args;
+use glam::DVec2;
+use serde_json::json;
+
+use crate::cli::error::CliError;
+use crate::cli::los::curvature;
+use crate::cli::options::DatasetArguments;
+use crate::cli::output::{print, print_lines, row};
+use crate::cli::progress::StepTimer;
+use crate::cli::rasters::format_for;
+use crate::cli::values::{NumberPair, number};
+use crate::dem::formats::DemFormat;
+use crate::geom::crs::Crs;
+use crate::pipeline::dataset::{Dataset, QueryError, transform};
+use crate::pipeline::viewshed::{ViewshedSummary, raster};
+use crate::pipeline::viewshed_map::{SheetText, viewshed_map};
+use crate::pipeline::{files, raster_file};
+use crate::terrain::query::service::Snapshot;
+use crate::terrain::sight::line::SightEnd;
+use crate::terrain::sight::viewshed::{Sector, Viewshed, ViewshedCounts, ViewshedOptions, viewshed};
+
+const HEIGHT_ADVICE: &str = "write meters as a number from 0 to 100000";
+
+/// `viewshed`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "A raster holds 1 where a target can be seen, 0 where it is hidden, and 255, its no-data value, beyond the \
+                  range, out of the sector and where there is no elevation."
+)]
+pub struct ViewshedArguments {
+    /// The dataset.
+    #[command(flatten)]
+    pub dataset: DatasetArguments,
+    /// The position of the observer
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub at: NumberPair,
+    /// Meters of the eye above the ground
+    #[arg(long, value_name = "METERS", default_value = "2", value_parser = number::<f64>(0.0..=1e5, HEIGHT_ADVICE))]
+    pub observer_height: f64,
+    /// Meters of the target above the ground
+    #[arg(long, value_name = "METERS", default_value = "0", value_parser = number::<f64>(0.0..=1e5, HEIGHT_ADVICE))]
+    pub target_height: f64,
+    /// How far to look, in meters [default: without limit]
+    #[arg(long, value_name = "METERS", value_parser = number::<f64>((Bound::Excluded(0.0), Bound::Unbounded), "write meters as a number above 0"))]
+    pub range: Option<f64>,
+    /// Look only between two azimuths, in degrees clockwise from north
+    #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true)]
+    pub sector: Option<NumberPair>,
+    /// The refraction coefficient: the share of the Earth's curvature that bent light makes up for
+    #[arg(long, value_name = "K", default_value_t = 1.0 / 7.0, value_parser = number::<f64>(-1.0..1.0, "write a number from -1 to below 1; 0.13 to 0.17 is usual"))]
+    pub refraction: f64,
+    /// Assume a flat Earth without air
+    #[arg(long, conflicts_with = "refraction")]
+    pub flat: bool,
+    /// Write the answer to this file: a map as .png, or a raster as .tif, .asc or .bt
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+}
+
+/// A file to write.
+enum ViewshedOutput<'a> {
+    Map(&'a Path),
+    Raster(&'a Path, &'static DemFormat),
+}
+
+pub fn run(arguments: &ViewshedArguments) -> Result<(), CliError> {
+    let output = arguments.output.as_deref().map(|path| output(path, &arguments.dataset.file)).transpose()?;
+    let steps = StepTimer::default();
+    steps.begin("reading the ground");
+    let dataset = arguments.dataset.open()?;
+    let snapshot = dataset.service()?.snapshot();
+    let options = options(arguments, &dataset, snapshot.crs())?;
+    steps.begin("looking around");
+    let viewshed = viewshed(snapshot.lattice(), &options).map_err(|answer| {
+        let NumberPair(x, y) = arguments.at;
+        QueryError::NoGround { what: "the observer at".into(), at: DVec2::new(x, y), answer }
+    })?;
+    let summary = ViewshedSummary::new(snapshot.lattice(), &viewshed);
+    if let Some(output) = output {
+        steps.begin("writing");
+        write(arguments, &output, &snapshot, &options, &viewshed)?;
+    }
+    steps.finish();
+    if arguments.dataset.json {
+        print(&format!("{:#}\n", json(arguments, &options, &summary)))
+    } else {
+        print_lines(&text(arguments, &summary))
+    }
+}
+
+fn output<'a>(path: &'a Path, input: &PathBuf) -> Result<ViewshedOutput<'a>, CliError> {
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+        files::check_output(path, &[input])?;
+        return Ok(ViewshedOutput::Map(path));
+    }
+    Ok(ViewshedOutput::Raster(path, format_for(path, slice::from_ref(input))?))
+}
+
+fn options(
+    arguments: &ViewshedArguments,
+    dataset: &Dataset,
+    ground: &Crs,
+) -> Result<ViewshedOptions, QueryError> {
+    let NumberPair(x, y) = arguments.at;
+    let at = transform("the observer at", &arguments.dataset.crs(dataset), ground, DVec2::new(x, y))?;
+    Ok(ViewshedOptions {
+        observer: SightEnd { at, above_m: arguments.observer_height },
+        target_above_m: arguments.target_height,
+        range_m: arguments.range.unwrap_or(f64::INFINITY),
+        sector: arguments.sector.map_or(Sector::ALL, |NumberPair(from, to)| Sector::between(from, to)),
+        curvature: curvature(arguments.flat, Some(arguments.refraction)),
+    })
+}
+
+fn write(
+    arguments: &ViewshedArguments,
+    output: &ViewshedOutput<'_>,
+    snapshot: &Snapshot,
+    options: &ViewshedOptions,
+    viewshed: &Viewshed,
+) -> Result<(), CliError> {
+    let lattice = snapshot.lattice();
+    match output {
+        ViewshedOutput::Raster(path, format) => {
+            let raster = raster(lattice, viewshed, snapshot.crs());
+            raster_file::write(&raster, format, path, slice::from_ref(&arguments.dataset.file))?;
+        }
+        ViewshedOutput::Map(path) => {
+            let text = SheetText {
+                title: format!("Viewshed · {}", files::file_stem(&arguments.dataset.file)),
+                subtitle: subtitle(arguments, &ViewshedSummary::new(lattice, viewshed)),
+                vertical_datum: snapshot.source().vertical_datum.clone(),
+            };
+            files::write_picture(path, &viewshed_map(lattice, viewshed, options, text))?;
+        }
+    }
+    Ok(())
+}
+
+fn subtitle(arguments: &ViewshedArguments, summary: &ViewshedSummary) -> String {
+    let mut subtitle = format!("Eye {} m above ground", arguments.observer_height);
+    if arguments.target_height > 0.0 {
+        let _ = write!(subtitle, ", target {} m", arguments.target_height);
+    }
+    if let Some(range) = arguments.range {
+        let _ = write!(subtitle, ", within {range} m");
+    }
+    if let Some(NumberPair(from, to)) = arguments.sector {
+        let _ = write!(subtitle, ", azimuth {from}° to {to}°");
+    }
+    let _ = write!(subtitle, "; {:.1} % in sight", summary.visible_share * 100.0);
+    subtitle + if arguments.flat { "; flat Earth" } else { "; curvature and refraction applied" }
+}
+
+fn json(
+    arguments: &ViewshedArguments,
+    options: &ViewshedOptions,
+    summary: &ViewshedSummary,
+) -> serde_json::Value {
+    let ViewshedCounts { visible, hidden, no_data, beyond } = summary.counts;
+    let observer = options.observer;
+    json!({
+        "observer": { "x": observer.at.x, "y": observer.at.y, "above_m": observer.above_m },
+        "target_above_m": options.target_above_m,
+        "range_m": arguments.range,
+        "sector_deg": arguments.sector.map(|NumberPair(from, to)| [from, to]),
+        "refraction": (!arguments.flat).then_some(arguments.refraction),
+        "posts": { "visible": visible, "hidden": hidden, "no_data": no_data, "beyond": beyond },
+        "visible_m2": summary.visible_m2,
+        "visible_share": summary.visible_share,
+        "output": arguments.output.as_ref().map(|path| path.display().to_string()),
+    })
+}
+
+fn text(arguments: &ViewshedArguments, summary: &ViewshedSummary) -> Vec<String> {
+    let ViewshedCounts { visible, hidden, no_data, beyond } = summary.counts;
+    let mut lines: Vec<String> = arguments.output.iter().map(|path| path.display().to_string()).collect();
+    let (km2, percent) = (summary.visible_m2 / 1e6, summary.visible_share * 100.0);
+    lines.push(row(9, "in sight", format!("{km2:.3} km², {percent:.2} % of what was looked at")));
+    let posts = format!("{visible} visible, {hidden} hidden, {no_data} without data, {beyond} beyond");
+    lines.push(row(9, "posts", posts));
+    lines
+}

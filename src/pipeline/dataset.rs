@@ -1,0 +1,232 @@
+//! The subject of a height query: an elevation file, or the ground of a scene.
+//!
+//! Every command and the HTTP service query through [`Dataset`], so that they give the same answers.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::dem::answer::Answer;
+use crate::dem::raster::Raster;
+use crate::geom::crs::{Crs, CrsError};
+use crate::pipeline::dem::{self, DemOptions, OpenDemError};
+use crate::pipeline::ground::{self, GroundError};
+use crate::pipeline::scene_file::{OpenSceneError, open_scene};
+use crate::terrain::query::service::HeightService;
+use crate::terrain::query::source::source_heights;
+use crate::terrain::query::{Interpolation, Surface};
+
+/// What a dataset is opened with.
+#[derive(Clone, Debug, Default)]
+pub struct DatasetOptions {
+    /// What the caller states about an elevation file.
+    pub dem: DemOptions,
+    /// Folders that a scene may read besides the parent of its own.
+    pub allowed: Vec<PathBuf>,
+}
+
+/// An elevation file, or a scene.
+pub struct Dataset {
+    name: String,
+    content: DatasetContent,
+}
+
+enum DatasetContent {
+    /// The ground is made at the first query: an elevation file in degrees must be warped for it.
+    Raster {
+        raster: Arc<Raster>,
+        ground: OnceLock<Result<HeightService, Arc<GroundError>>>,
+        warning: Option<String>,
+    },
+    Scene(HeightService),
+}
+
+/// A dataset that cannot be opened.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenError {
+    /// The elevation cannot be opened.
+    #[error(transparent)]
+    Dem(#[from] OpenDemError),
+    /// The scene cannot be opened.
+    #[error(transparent)]
+    Scene(#[from] OpenSceneError),
+}
+
+/// A query that has no answer.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum QueryError {
+    /// The elevation file has no ground in meters.
+    #[error("{dataset}")]
+    Ground {
+        /// The file.
+        dataset: String,
+        /// Why.
+        source: Arc<GroundError>,
+    },
+    /// The shift between the datums of the two coordinate systems is not known.
+    #[error("{dataset}")]
+    Datum {
+        /// The file.
+        dataset: String,
+        /// Which shift.
+        source: CrsError,
+    },
+    /// A position cannot be expressed in the other coordinate system.
+    #[error("{what} {},{}", at.x, at.y)]
+    Position {
+        /// What the position is, such as `observer`.
+        what: String,
+        /// As given.
+        at: DVec2,
+        /// Why.
+        source: CrsError,
+    },
+    /// There is no ground at a position.
+    #[error("{what} {},{}: {}", at.x, at.y, absence(*answer))]
+    NoGround {
+        /// What the position is, such as `observer`.
+        what: String,
+        /// As given.
+        at: DVec2,
+        /// The answer there.
+        answer: Answer,
+    },
+}
+
+fn absence(answer: Answer) -> &'static str {
+    match answer {
+        Answer::NoData => "the elevation model has no data there",
+        _ => "this lies outside the elevation model",
+    }
+}
+
+impl Dataset {
+    /// Opens the scene at `path` where the name ends in `.toml`, else the elevation there.
+    ///
+    /// # Errors
+    /// See [`OpenError`].
+    pub fn open(path: &Path, options: &DatasetOptions) -> Result<Self, OpenError> {
+        let name = path.display().to_string();
+        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
+            let scene = open_scene(path, &options.allowed, &|_| ())?;
+            return Ok(Self { name, content: DatasetContent::Scene(scene.heights) });
+        }
+        let mosaic = dem::open(path, &options.dem)?;
+        let warning = dem::warning(path, &mosaic);
+        let raster = Arc::new(mosaic.raster);
+        Ok(Self { name, content: DatasetContent::Raster { raster, ground: OnceLock::new(), warning } })
+    }
+
+    /// A warning for the user about the files, where there is one.
+    pub fn warning(&self) -> Option<&str> {
+        match &self.content {
+            DatasetContent::Raster { warning, .. } => warning.as_deref(),
+            DatasetContent::Scene(_) => None,
+        }
+    }
+
+    /// The coordinate system of positions unless the caller states another: the file's or the scene's.
+    pub fn crs(&self) -> Crs {
+        match &self.content {
+            DatasetContent::Raster { raster, .. } => raster.crs.clone().unwrap_or_else(Crs::local),
+            DatasetContent::Scene(service) => service.snapshot().crs().clone(),
+        }
+    }
+
+    /// The surface that is queried unless the caller states another: the source of a file, the ground of a scene.
+    pub fn default_surface(&self) -> Surface {
+        match &self.content {
+            DatasetContent::Raster { .. } => Surface::Source,
+            DatasetContent::Scene(_) => Surface::Ground,
+        }
+    }
+
+    /// The raster as read.
+    pub fn source(&self) -> Arc<Raster> {
+        match &self.content {
+            DatasetContent::Raster { raster, .. } => Arc::clone(raster),
+            DatasetContent::Scene(service) => Arc::clone(service.snapshot().source()),
+        }
+    }
+
+    /// The height service on the ground in meters.
+    ///
+    /// # Errors
+    /// [`QueryError::Ground`].
+    pub fn service(&self) -> Result<&HeightService, QueryError> {
+        match &self.content {
+            DatasetContent::Scene(service) => Ok(service),
+            DatasetContent::Raster { raster, ground, .. } => {
+                ground.get_or_init(|| ground::height_service(raster).map_err(Arc::new)).as_ref().map_err(
+                    |error| QueryError::Ground { dataset: self.name.clone(), source: Arc::clone(error) },
+                )
+            }
+        }
+    }
+
+    /// [`Dataset::service`] where the ground is made or has failed; `None` where it is not made yet.
+    pub fn service_if_made(&self) -> Option<Result<&HeightService, QueryError>> {
+        match &self.content {
+            DatasetContent::Raster { ground, .. } if ground.get().is_none() => None,
+            _ => Some(self.service()),
+        }
+    }
+
+    /// The heights at positions in coordinates of `from`, in order.
+    ///
+    /// The source of a file without a coordinate system is taken to lie in `from`. A position that cannot be brought to
+    /// the surface's system is [`Answer::Outside`].
+    ///
+    /// # Errors
+    /// [`QueryError::Datum`]; for another surface than the source, [`QueryError::Ground`].
+    pub fn heights(
+        &self,
+        surface: Surface,
+        interpolation: Interpolation,
+        from: &Crs,
+        at: &[DVec2],
+    ) -> Result<Vec<Answer>, QueryError> {
+        let mut answers = vec![Answer::Outside; at.len()];
+        if surface == Surface::Source {
+            let source = self.source();
+            self.check_datums(from, source.crs.as_ref().unwrap_or(from))?;
+            source_heights(&source, from, interpolation, at, &mut answers);
+            return Ok(answers);
+        }
+        let snapshot = self.service()?.snapshot();
+        if from == snapshot.crs() {
+            snapshot.heights(surface, interpolation, at, &mut answers);
+            return Ok(answers);
+        }
+        self.check_datums(from, snapshot.crs())?;
+        let transformed = |&at: &DVec2| from.transform(snapshot.crs(), at).unwrap_or(DVec2::NAN);
+        let transformed: Vec<DVec2> = at.par_iter().map(transformed).collect();
+        snapshot.heights(surface, interpolation, &transformed, &mut answers);
+        Ok(answers)
+    }
+
+    fn check_datums(&self, from: &Crs, to: &Crs) -> Result<(), QueryError> {
+        check_datums(from, to).map_err(|source| QueryError::Datum { dataset: self.name.clone(), source })
+    }
+}
+
+/// Checks that the shift between the datums of two systems is known, which does not depend on the position.
+///
+/// # Errors
+/// [`CrsError::Datum`].
+pub fn check_datums(from: &Crs, to: &Crs) -> Result<(), CrsError> {
+    match from.transform(to, DVec2::ZERO) {
+        Err(error @ CrsError::Datum { .. }) => Err(error),
+        _ => Ok(()),
+    }
+}
+
+/// A position in another coordinate system; `what` names it in messages.
+///
+/// # Errors
+/// [`QueryError::Position`].
+pub fn transform(what: &str, from: &Crs, to: &Crs, at: DVec2) -> Result<DVec2, QueryError> {
+    from.transform(to, at).map_err(|source| QueryError::Position { what: what.to_owned(), at, source })
+}

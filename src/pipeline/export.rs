@@ -1,0 +1,113 @@
+//! Exporting a scene as a file that modeling programs open.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::draw::list::{DrawList, FeatureId};
+use crate::export::{SceneExport, glb, obj, prepare};
+use crate::mesh::write::Remarks;
+use crate::pipeline::files::{self, WriteFileError};
+use crate::roam::criterion::flat::Flat;
+use crate::roam::displayed::DisplayedTerrain;
+use crate::roam::refine::rebuild::rebuild;
+use crate::scene::picture;
+use crate::scene::{Scene, SceneFeature, Terrain};
+
+/// A format of exported scenes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExportFormat {
+    /// Binary glTF.
+    Glb,
+    /// Wavefront OBJ, with its materials and textures beside it.
+    Obj,
+}
+
+impl ExportFormat {
+    /// The format of files with this extension, in any case.
+    pub fn from_extension(extension: &str) -> Option<Self> {
+        match extension.to_ascii_lowercase().as_str() {
+            "glb" => Some(Self::Glb),
+            "obj" => Some(Self::Obj),
+            _ => None,
+        }
+    }
+}
+
+/// An exported scene.
+pub struct ExportedScene {
+    /// The files, the one that was asked for first.
+    pub files: Vec<PathBuf>,
+    /// What they hold.
+    pub list: DrawList,
+}
+
+/// Exports a scene that was opened true to scale to `path`. The ground is off by at most `max_error_m` at every post.
+/// `progress` is called with the name of each step as it begins.
+///
+/// # Errors
+/// A file cannot be written, or would replace one that the scene is made of.
+pub fn export(
+    scene: &Scene,
+    path: &Path,
+    format: ExportFormat,
+    max_error_m: f64,
+    progress: &dyn Fn(&'static str),
+) -> Result<ExportedScene, WriteFileError> {
+    files::check_output(path, &scene.files)?;
+    progress("refining terrain");
+    let displayed = displayed(&scene.terrain, max_error_m as f32);
+    let (list, _) = picture::draw_list(scene, &displayed, progress);
+    progress("removing covered ground");
+    let list = prepare::prepare(list);
+    progress("writing");
+    let remarks = remarks(scene, max_error_m);
+    let name_of = |feature| feature_name(&scene.features, feature);
+    let export = SceneExport { list: &list, name_of: &name_of, remarks: &remarks };
+    let mut written = vec![path.to_owned()];
+    match format {
+        ExportFormat::Glb => files::write_with(path, |out| glb::write(&export, out))?,
+        ExportFormat::Obj => {
+            let stem = files::file_stem(path);
+            for companion in obj::companions(&list, &stem) {
+                let path = path.with_file_name(companion.name);
+                files::check_output(&path, &scene.files)?;
+                files::write(&path, &companion.bytes)?;
+                written.push(path);
+            }
+            files::write_with(path, |out| obj::write(&export, &stem, out))?;
+        }
+    }
+    Ok(ExportedScene { files: written, list })
+}
+
+/// The terrain with errors of at most `max_error_m` at every post.
+fn displayed(terrain: &Terrain, max_error_m: f32) -> DisplayedTerrain {
+    let patches: Vec<_> = terrain.layout.patches().collect();
+    let criterion = Flat::new(&terrain.layout, terrain.errors(), max_error_m);
+    let active = rebuild(&terrain.layout, &criterion, patches.iter().copied());
+    DisplayedTerrain::new(Arc::clone(terrain.displayed()), active, patches)
+}
+
+fn feature_name(features: &[SceneFeature], feature: FeatureId) -> String {
+    if feature == FeatureId::GROUND {
+        return "ground".into();
+    }
+    let index = feature.0.checked_sub(FeatureId::GROUND.0 + 1);
+    let feature = index.and_then(|index| features.get(index as usize));
+    feature.map_or_else(String::new, |SceneFeature { kind, name }| match name.as_str() {
+        "" => kind.noun(1).to_owned(),
+        name => format!("{} {name}", kind.noun(1)),
+    })
+}
+
+fn remarks(scene: &Scene, max_error_m: f64) -> Remarks {
+    let origin = scene.terrain.lattice.origin();
+    let title = scene.title.as_deref().unwrap_or("a scene");
+    let lines = [
+        format!("{title}, written by sandtable"),
+        "meters from the south-west post; heights are elevations".to_owned(),
+        format!("origin: easting {} northing {} in {}", origin.x, origin.y, scene.crs.name()),
+        format!("the ground is off by at most {max_error_m} m at every post"),
+    ];
+    Remarks::new(&lines, "")
+}

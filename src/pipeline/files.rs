@@ -1,0 +1,274 @@
+//! Reading the files that a user names, and writing results: whole, or not at all.
+
+use std::fs;
+use std::io::{self, BufWriter, Read, Write};
+use std::path::{Path, PathBuf};
+
+use crate::draw::pixels::Pixels;
+use crate::export::png;
+
+/// The largest input file: more than any elevation tile in use, less than the memory of today's machines.
+const MAX_BYTES: u64 = 4 << 30;
+
+/// The path that stands for standard input.
+const STDIN: &str = "-";
+
+/// A file that cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[error("{name}")]
+pub struct ReadFileError {
+    /// The path, or `standard input`.
+    pub name: String,
+    /// Why.
+    #[source]
+    pub cause: ReadFileCause,
+}
+
+/// Why a file cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadFileCause {
+    /// A folder, a pipe or a device.
+    #[error("this is not a file")]
+    NotAFile,
+    /// The file is larger than the limit.
+    #[error("{bytes} bytes are more than the {MAX_BYTES} that are read")]
+    TooLarge {
+        /// Its size.
+        bytes: u64,
+    },
+    /// The bytes are not UTF-8.
+    #[error("byte {at} is not UTF-8 text")]
+    NotText {
+        /// The first byte that is not.
+        at: usize,
+    },
+    /// The system refuses.
+    #[error(transparent)]
+    System(#[from] SystemError),
+}
+
+/// A file that cannot be written; nothing is left behind.
+#[derive(Debug, thiserror::Error)]
+#[error("{}", path.display())]
+pub struct WriteFileError {
+    /// The file.
+    pub path: PathBuf,
+    /// Why.
+    #[source]
+    pub cause: WriteFileCause,
+}
+
+/// Why a file cannot be written.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteFileCause {
+    /// The file's folder does not exist.
+    #[error("there is no such folder to write to")]
+    NoFolder,
+    /// The path names a folder.
+    #[error("this is a folder; name a file in it")]
+    Folder,
+    /// The path names a pipe or a device.
+    #[error("this is a device or a pipe; name a file")]
+    Device,
+    /// The path has no file name.
+    #[error("this is not the name of a file")]
+    NoName,
+    /// The file is one of the inputs.
+    #[error("this is a file that is read; name another to write to")]
+    Input,
+    /// The name has another extension than `.png`.
+    #[error("pictures are written as PNG; name one that ends in .png")]
+    NotPng,
+    /// The system refuses.
+    #[error(transparent)]
+    System(#[from] SystemError),
+}
+
+/// What the operating system reports about a file.
+#[derive(Debug, thiserror::Error)]
+pub enum SystemError {
+    /// No such file.
+    #[error("there is no such file or folder")]
+    NotFound,
+    /// No permission.
+    #[error("permission denied")]
+    Denied,
+    /// Anything else.
+    #[error(transparent)]
+    Other(io::Error),
+}
+
+impl From<io::Error> for SystemError {
+    fn from(error: io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::NotFound => Self::NotFound,
+            io::ErrorKind::PermissionDenied => Self::Denied,
+            _ => Self::Other(error),
+        }
+    }
+}
+
+impl ReadFileError {
+    fn new(path: &Path, cause: ReadFileCause) -> Self {
+        Self { name: display_name(path), cause }
+    }
+
+    fn system(path: &Path) -> impl Fn(io::Error) -> Self + '_ {
+        |error| Self::new(path, SystemError::from(error).into())
+    }
+}
+
+impl WriteFileError {
+    /// The error for `path`.
+    pub fn new(path: &Path, cause: impl Into<WriteFileCause>) -> Self {
+        Self { path: path.to_owned(), cause: cause.into() }
+    }
+}
+
+/// The bytes of a regular file of at most 4 GiB.
+///
+/// # Errors
+/// See [`ReadFileCause`].
+pub fn read(path: &Path) -> Result<Vec<u8>, ReadFileError> {
+    let metadata = fs::metadata(path).map_err(ReadFileError::system(path))?;
+    if !metadata.is_file() {
+        return Err(ReadFileError::new(path, ReadFileCause::NotAFile));
+    }
+    if metadata.len() > MAX_BYTES {
+        return Err(ReadFileError::new(path, ReadFileCause::TooLarge { bytes: metadata.len() }));
+    }
+    fs::read(path).map_err(ReadFileError::system(path))
+}
+
+/// The text of a file, or of standard input for the path `-`.
+///
+/// # Errors
+/// See [`ReadFileCause`].
+pub fn read_text(path: &Path) -> Result<String, ReadFileError> {
+    let bytes = if path == Path::new(STDIN) {
+        let mut bytes = Vec::new();
+        let read = io::stdin().lock().take(MAX_BYTES).read_to_end(&mut bytes);
+        read.map_err(ReadFileError::system(path))?;
+        bytes
+    } else {
+        read(path)?
+    };
+    String::from_utf8(bytes).map_err(|error| {
+        ReadFileError::new(path, ReadFileCause::NotText { at: error.utf8_error().valid_up_to() })
+    })
+}
+
+/// The name of a file in messages: `standard input` for the path `-`.
+pub fn display_name(path: &Path) -> String {
+    if path == Path::new(STDIN) { "standard input".into() } else { path.display().to_string() }
+}
+
+/// The last component of a path; empty where there is none.
+pub fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// The last component of a path without its extension; empty where there is none.
+pub fn file_stem(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// The files in a folder, sorted by name; its subfolders are left out.
+///
+/// # Errors
+/// The folder cannot be read.
+pub fn list_folder(folder: &Path) -> Result<Vec<PathBuf>, ReadFileError> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).map_err(ReadFileError::system(folder))? {
+        files.push(entry.map_err(ReadFileError::system(folder))?.path());
+    }
+    files.retain(|path| path.is_file());
+    files.sort();
+    Ok(files)
+}
+
+/// Reads the file beside `path` that has a given name: a sidecar. `None` where it cannot be read.
+pub fn beside(path: &Path) -> impl Fn(&str) -> Option<Vec<u8>> + '_ {
+    move |name: &str| {
+        let is_plain = !name.is_empty() && !name.contains(['/', '\\']);
+        is_plain.then(|| read(&path.with_file_name(name)).ok()).flatten()
+    }
+}
+
+/// Checks, without writing, that a file could be written to `path`, so that a mistyped folder is reported before the
+/// work and not after it.
+///
+/// # Errors
+/// The folder does not exist; `path` is a folder, a device or one of `inputs`, whose links are followed.
+pub fn check_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> Result<(), WriteFileError> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let is_input = || {
+        let same = |output: PathBuf| {
+            inputs.iter().any(|input| input.as_ref().canonicalize().is_ok_and(|input| input == output))
+        };
+        path.canonicalize().is_ok_and(same)
+    };
+    let cause = match fs::metadata(path) {
+        _ if !folder.is_dir() => WriteFileCause::NoFolder,
+        Ok(metadata) if metadata.is_dir() => WriteFileCause::Folder,
+        Ok(metadata) if !metadata.is_file() => WriteFileCause::Device,
+        Ok(_) if is_input() => WriteFileCause::Input,
+        _ if path.file_name().is_none() => WriteFileCause::NoName,
+        _ => return Ok(()),
+    };
+    Err(WriteFileError::new(path, cause))
+}
+
+/// [`check_output`] for a picture, whose name must end in `.png` or have no extension.
+///
+/// # Errors
+/// As [`check_output`]; or the name is that of another format.
+pub fn check_picture_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> Result<(), WriteFileError> {
+    check_output(path, inputs)?;
+    match path.extension() {
+        Some(extension) if !extension.eq_ignore_ascii_case("png") => {
+            Err(WriteFileError::new(path, WriteFileCause::NotPng))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes a picture, which must have pixels, as PNG, without alpha where it is opaque.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_picture(path: &Path, pixels: &Pixels) -> Result<(), WriteFileError> {
+    write(path, &png::encode(pixels))
+}
+
+/// Writes a file: first under another name beside `path`, then renamed to it.
+///
+/// # Errors
+/// The system refuses.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteFileError> {
+    write_with(path, |out| out.write_all(bytes))
+}
+
+/// [`write`] for content that is made while it is written.
+///
+/// # Errors
+/// The system or `content` fails.
+pub fn write_with(
+    path: &Path,
+    content: impl FnOnce(&mut BufWriter<fs::File>) -> io::Result<()>,
+) -> Result<(), WriteFileError> {
+    let name = path.file_name().ok_or_else(|| WriteFileError::new(path, WriteFileCause::NoName))?;
+    let mut partial = name.to_owned();
+    partial.push(format!(".{}.part", std::process::id()));
+    let partial = path.with_file_name(partial);
+    let fill = |file| {
+        let mut out = BufWriter::new(file);
+        content(&mut out)?;
+        out.into_inner()?.sync_all()
+    };
+    let written = fs::File::create(&partial).and_then(fill).and_then(|()| fs::rename(&partial, path));
+    written.map_err(|error| {
+        let _ = fs::remove_file(&partial);
+        WriteFileError::new(path, SystemError::from(error))
+    })
+}

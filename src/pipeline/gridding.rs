@@ -1,0 +1,182 @@
+//! Opening scattered points and breaklines for gridding.
+
+use std::iter::once;
+use std::path::{Path, PathBuf};
+
+use glam::{DVec2, DVec3};
+
+use crate::dem::points::{self, PointCloud, PointHints, PointsError};
+use crate::geom::crs::{Crs, CrsError};
+use crate::pipeline::files::{self, ReadFileError};
+use crate::vector::error::VectorError;
+use crate::vector::feature::{Feature, Geometry, VectorLayer};
+use crate::vector::hints::VectorHints;
+use crate::vector::read;
+
+/// Points that cannot be opened.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenPointsError {
+    /// A file cannot be read.
+    #[error(transparent)]
+    File(#[from] ReadFileError),
+    /// A file of points is not one that is read.
+    #[error("{}", path.display())]
+    Points {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: PointsError,
+    },
+    /// A vector file is not one that is read.
+    #[error("{}", path.display())]
+    Vector {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: VectorError,
+    },
+    /// A vector file has no elevations for points.
+    #[error("{}: no point in it has an elevation; points with a z are needed", path.display())]
+    FlatPoints {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A vector file has no elevations for breaklines.
+    #[error("{}: no line in it has an elevation at every vertex; breaklines with a z are needed", path.display())]
+    FlatLines {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Positions cannot be brought to the system of the first file.
+    #[error("{}", path.display())]
+    Crs {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: CrsError,
+    },
+    /// No file is named.
+    #[error("name at least one file of points")]
+    NoFiles,
+}
+
+/// What is opened.
+#[derive(Clone, Debug, Default)]
+pub struct PointSources<'a> {
+    /// Files of points.
+    pub points: &'a [PathBuf],
+    /// Vector files whose lines the ground breaks along.
+    pub breaklines: &'a [PathBuf],
+    /// The coordinate system, in place of the ones that the files state.
+    pub crs: Option<Crs>,
+    /// The classes of LAS points that are taken. Empty: ground (class 2) where a file has any, else all.
+    pub classes: &'a [u8],
+}
+
+impl PointSources<'_> {
+    /// All points and breaklines, in the coordinate system and the vertical unit of the first file.
+    ///
+    /// # Errors
+    /// See [`OpenPointsError`].
+    pub fn open(&self) -> Result<PointCloud, OpenPointsError> {
+        let points = self.points.iter().map(|path| (path, self.open_points(path)));
+        let breaklines = self.breaklines.iter().map(|path| (path, self.open_breaklines(path)));
+        let mut clouds = points.chain(breaklines);
+        let (_, first) = clouds.next().ok_or(OpenPointsError::NoFiles)?;
+        clouds.try_fold(first?, |cloud, (path, next)| {
+            joined(cloud, next?).map_err(|source| OpenPointsError::Crs { path: path.clone(), source })
+        })
+    }
+
+    fn open_points(&self, path: &Path) -> Result<PointCloud, OpenPointsError> {
+        let bytes = files::read(path)?;
+        if points::recognizes(&files::file_name(path), &bytes) {
+            let hints = PointHints { crs: self.crs.as_ref(), classes: self.classes };
+            return points::read(&bytes, &hints)
+                .map_err(|source| OpenPointsError::Points { path: path.to_owned(), source });
+        }
+        let layer = self.read_layer(path, &bytes)?;
+        let points: Vec<DVec3> = layer.features.iter().flat_map(vertices).collect();
+        if points.is_empty() {
+            return Err(OpenPointsError::FlatPoints { path: path.to_owned() });
+        }
+        Ok(PointCloud { points, ..cloud(layer) })
+    }
+
+    fn open_breaklines(&self, path: &Path) -> Result<PointCloud, OpenPointsError> {
+        let layer = self.read_layer(path, &files::read(path)?)?;
+        let breaklines: Vec<Vec<DVec3>> = layer.features.iter().flat_map(breaklines).collect();
+        if breaklines.is_empty() {
+            return Err(OpenPointsError::FlatLines { path: path.to_owned() });
+        }
+        Ok(PointCloud { breaklines, ..cloud(layer) })
+    }
+
+    fn read_layer(&self, path: &Path, bytes: &[u8]) -> Result<VectorLayer, OpenPointsError> {
+        let companions = &files::beside(path);
+        let hints = VectorHints { crs: self.crs.as_ref(), companions, ..VectorHints::default() };
+        read::read(&files::file_name(path), bytes, &hints)
+            .map_err(|source| OpenPointsError::Vector { path: path.to_owned(), source })
+    }
+}
+
+/// A cloud with the system and the notes of a layer, and no points yet.
+fn cloud(layer: VectorLayer) -> PointCloud {
+    PointCloud {
+        points: Vec::new(),
+        breaklines: Vec::new(),
+        crs: Some(layer.crs),
+        meters_per_z: 1.0,
+        vertical_datum: None,
+        notes: layer.notes,
+    }
+}
+
+/// The vertices of a feature that have an elevation.
+fn vertices(feature: &Feature) -> Vec<DVec3> {
+    let elevations = feature.elevations.as_deref().unwrap_or_default();
+    let vertices = feature.geometry.vertices().zip(elevations).map(|(at, &z)| at.extend(z));
+    vertices.filter(|vertex| vertex.is_finite()).collect()
+}
+
+/// The lines of a feature, and the borders of its polygons, where every vertex has an elevation.
+fn breaklines(feature: &Feature) -> Vec<Vec<DVec3>> {
+    let elevations = feature.elevations.as_deref().unwrap_or_default();
+    let mut elevations = elevations.iter().copied().chain(std::iter::repeat(f64::NAN));
+    let mut line = |part: &[DVec2]| -> Vec<DVec3> {
+        part.iter().zip(elevations.by_ref()).map(|(at, z)| at.extend(z)).collect()
+    };
+    let lines: Vec<Vec<DVec3>> = match &feature.geometry {
+        Geometry::Points(_) => Vec::new(),
+        Geometry::Lines(lines) => lines.iter().map(|part| line(part)).collect(),
+        Geometry::Polygons(polygons) => {
+            let rings = polygons.iter().flat_map(|polygon| once(&polygon.exterior).chain(&polygon.holes));
+            let closed = |mut ring: Vec<DVec3>| {
+                ring.extend(ring.first().copied());
+                ring
+            };
+            rings.map(|ring| closed(line(ring))).collect()
+        }
+    };
+    lines.into_iter().filter(|line| line.len() > 1 && line.iter().all(|vertex| vertex.is_finite())).collect()
+}
+
+/// Two clouds in the system and the unit of the first.
+fn joined(mut first: PointCloud, mut second: PointCloud) -> Result<PointCloud, CrsError> {
+    let factor = second.meters_per_z / first.meters_per_z;
+    let systems = first.crs.as_ref().zip(second.crs.as_ref()).filter(|(to, from)| to != from);
+    for point in second.points.iter_mut().chain(second.breaklines.iter_mut().flatten()) {
+        if let Some((to, from)) = systems {
+            *point = from.transform(to, point.truncate())?.extend(point.z);
+        }
+        if factor != 1.0 {
+            point.z *= factor;
+        }
+    }
+    first.points.append(&mut second.points);
+    first.breaklines.append(&mut second.breaklines);
+    first.crs = first.crs.or(second.crs);
+    first.vertical_datum = first.vertical_datum.or(second.vertical_datum);
+    first.notes.append(&mut second.notes);
+    Ok(first)
+}

@@ -1,0 +1,75 @@
+//! From a scene, a camera and a picture to annotations.
+
+use glam::Vec2;
+
+use crate::annotate::annotation::{Annotations, PictureLabel};
+use crate::annotate::legend::Legend;
+use crate::annotate::north::NorthArrow;
+use crate::annotate::scale_bar::ScaleBar;
+use crate::render::picture::Picture;
+use crate::scene::{Scene, SceneLabel};
+use crate::view::camera::Camera;
+
+/// The annotations of a picture: labels with their positions on it, and furniture.
+pub fn annotations(scene: &Scene, camera: &Camera, picture: &Picture) -> Annotations {
+    let furniture = scene.furniture;
+    Annotations {
+        labels: scene.labels.iter().filter_map(|label| project(label, camera, picture)).collect(),
+        title: scene.title.clone().filter(|_| furniture.title),
+        subtitle: scene.subtitle.clone().filter(|_| furniture.title),
+        north: furniture.north_arrow.then(|| NorthArrow::from_camera(camera)),
+        scale_bar: if furniture.scale_bar { scale_bar(camera, picture) } else { None },
+        legend: furniture.legend.then(|| legend(scene)),
+        ..Annotations::default()
+    }
+}
+
+fn project(label: &SceneLabel, camera: &Camera, picture: &Picture) -> Option<PictureLabel> {
+    let ground = camera.project(label.ground)?;
+    let top = camera.project(label.anchor)?;
+    Some(PictureLabel {
+        text: label.text.clone(),
+        anchor_px: ground.pixel,
+        top_px: (label.anchor != label.ground).then_some(top.pixel),
+        depth_m: ground.depth_m,
+        visible: is_visible(picture, ground.pixel, ground.depth_m)
+            || is_visible(picture, top.pixel, top.depth_m),
+        kind: label.kind,
+    })
+}
+
+/// Whether a place is in front of, or within 2 % of, the depth of one of the pixels around it. The drawn ground may be
+/// off by its tolerance, and the pixel of a summit may show the ground behind it.
+fn is_visible(picture: &Picture, pixel: Vec2, depth_m: f32) -> bool {
+    let (width, height) = (i64::from(picture.pixels.width()), i64::from(picture.pixels.height()));
+    // A place near the plane of the eye may project beyond the range of an i32.
+    let (column, row) = (i64::from(pixel.x.floor() as i32), i64::from(pixel.y.floor() as i32));
+    (-2..=1).any(|up| {
+        (-1..=1).any(|aside| {
+            let (x, y) = (column + aside, row + up);
+            let inside = (0..width).contains(&x) && (0..height).contains(&y);
+            inside && picture.depth_m[(y * width + x) as usize] >= depth_m * 0.98
+        })
+    })
+}
+
+/// The scale bar for the distance of the ground at the picture's center, or at the first pixel with ground below it.
+fn scale_bar(camera: &Camera, picture: &Picture) -> Option<ScaleBar> {
+    let (width, height) = (picture.pixels.width() as usize, picture.pixels.height() as usize);
+    let middle = (height / 2..height).map(|row| picture.depth_m[row * width + width / 2]);
+    let distance_m = middle.into_iter().find(|depth| depth.is_finite())?;
+    Some(ScaleBar::at_distance(camera, distance_m))
+}
+
+fn legend(scene: &Scene) -> Legend {
+    let (low_m, high_m) = scene.terrain.lattice.height_range();
+    let datum = scene.heights.snapshot().source().vertical_datum.clone();
+    Legend {
+        ramp: scene.map.ramp.clone(),
+        low_m,
+        high_m,
+        vertical_exaggeration: scene.terrain.exaggeration,
+        contour_interval: scene.map.contours.map(|contours| contours.interval_m),
+        vertical_datum: datum.map(|name| format!("Heights: {name}")),
+    }
+}

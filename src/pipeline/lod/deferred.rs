@@ -1,0 +1,67 @@
+//! Nested spheres examined when due: patches are culled, and the walk brings those in view up to date.
+//!
+//! The walk keeps index lists itself and changes them in place, with its own numbering of vertices; they are sent as
+//! they are, triangles beyond the border and over no data included.
+
+use crate::pipeline::lod::follower::LodFollower;
+use crate::pipeline::lod::method::SphereRule;
+use crate::pipeline::lod::patch_lists::{PatchLists, Stale};
+use crate::pipeline::lod::prepared::PreparedGround;
+use crate::roam::block::WholeGround;
+use crate::roam::culling::{Culling, InView};
+use crate::roam::refine::deferred::Deferred;
+use crate::roam::shown::PatchList;
+use crate::view::camera::Camera;
+
+/// A walk over ground in memory.
+type Walk<'a> = Deferred<WholeGround<'a>>;
+
+/// The deferred refiner at work.
+pub struct DeferredFollower<'a> {
+    ground: &'a PreparedGround,
+    spheres: SphereRule,
+    walk: Option<Walk<'a>>,
+    lists: PatchLists<()>,
+    view: InView,
+}
+
+impl<'a> DeferredFollower<'a> {
+    /// Refines by `spheres`.
+    pub fn new(ground: &'a PreparedGround, spheres: SphereRule) -> Self {
+        Self { ground, spheres, walk: None, lists: PatchLists::new(ground.layout), view: InView::default() }
+    }
+}
+
+fn start<'a>(ground: &'a PreparedGround, spheres: SphereRule, camera: &Camera) -> Walk<'a> {
+    let source = WholeGround { ground: ground.patched(), spheres: ground.spheres(spheres, camera) };
+    Deferred::new(source, ground.lattice.cell().min_element())
+        .expect("patches of the default size are small enough")
+}
+
+impl LodFollower for DeferredFollower<'_> {
+    fn prepare(&mut self, camera: &Camera) {
+        self.walk = Some(start(self.ground, self.spheres, camera));
+    }
+
+    fn update(&mut self, camera: &Camera) {
+        let ground = self.ground;
+        let view = self.view.update(ground.patched(), &ground.heights, Culling::frustum(camera));
+        let walk = self.walk.get_or_insert_with(|| start(ground, self.spheres, camera));
+        walk.update(camera.eye(), view).expect("ground in memory has every patch");
+        let stale = Stale::Patches(&walk.changes().dirty);
+        self.lists.update(view, stale, |corner, ()| 3 * walk.indices(corner).len());
+    }
+
+    fn sent_bytes(&self) -> usize {
+        self.lists.written_bytes()
+    }
+
+    fn shown(&mut self) -> Vec<PatchList> {
+        let (ground, Some(walk)) = (self.ground, &self.walk) else { return Vec::new() };
+        self.lists.shown(|corner, ()| {
+            let vertices = |numbers: &[u16; 3]| numbers.map(|number| walk.vertex(corner, number));
+            let triangles = walk.indices(corner).iter().map(vertices);
+            PatchList::of_vertices(&ground.layout, corner, triangles)
+        })
+    }
+}

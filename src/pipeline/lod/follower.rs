@@ -1,0 +1,39 @@
+//! What every method does: it follows a camera and returns what it shows.
+
+use crate::pipeline::lod::deferred::DeferredFollower;
+use crate::pipeline::lod::full::FullFollower;
+use crate::pipeline::lod::geomipmap::GeomipmapFollower;
+use crate::pipeline::lod::method::LodMethod;
+use crate::pipeline::lod::prepared::PreparedGround;
+use crate::pipeline::lod::refining::RefiningFollower;
+use crate::roam::shown::PatchList;
+use crate::view::camera::Camera;
+
+/// A method at work.
+pub trait LodFollower {
+    /// Makes what the cameras of a flight need, once; not timed.
+    fn prepare(&mut self, _: &Camera) {}
+
+    /// Brings triangles and index lists up to date. This is what is timed.
+    fn update(&mut self, camera: &Camera);
+
+    /// Bytes of the index lists that the last update wrote.
+    fn sent_bytes(&self) -> usize;
+
+    /// The lists of the patches in view, after an update; lists that were not written are the same as before.
+    fn shown(&mut self) -> Vec<PatchList>;
+}
+
+impl LodMethod {
+    /// The method at work on `ground`. `budget` is the most triangles, for a method that keeps a budget.
+    pub fn follower(self, ground: &PreparedGround, budget: Option<usize>) -> Box<dyn LodFollower + '_> {
+        match self {
+            Self::Full => Box::new(FullFollower::new(ground)),
+            Self::Geomipmap => Box::new(GeomipmapFollower::new(ground)),
+            Self::Refining { lists, criterion, refiner } => {
+                Box::new(RefiningFollower::new(ground, lists, criterion, refiner, budget))
+            }
+            Self::Deferred { spheres } => Box::new(DeferredFollower::new(ground, spheres)),
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! From files to results: open, build, draw, annotate, write.
+//!
+//! ```text
+//! files ─► dem ─► ground ─► dataset ──► profile, sight, viewshed     answers about the ground
+//!   │                          ▲   └──► viewshed_map, charts         and their pictures
+//!   └────► scene_file ─────────┴──────► picture ◄── labels           pictures of scenes
+//! ```
+//!
+//! Programs share these steps. No step reads arguments or the clock, and none prints: a step returns values, notes
+//! for the user and typed errors ([`error::error_text`] makes one text of an error and its causes).
+
+pub mod bounded_mesh;
+pub mod choice;
+pub mod convert;
+pub mod csv;
+pub mod dataset;
+pub mod dem;
+pub mod error;
+pub mod export;
+pub mod files;
+pub mod gridding;
+pub mod ground;
+pub mod labels;
+pub mod lod;
+pub mod model_file;
+pub mod new_scene;
+pub mod picture;
+pub mod positions;
+pub mod profile;
+pub mod raster_file;
+pub mod scene_file;
+pub mod service;
+pub mod sight;
+pub mod viewshed;
+pub mod viewshed_map;

@@ -1,0 +1,128 @@
+//! The folder of a new scene file, and where the scene's data lies relative to it.
+
+use std::path::{Component, Path, PathBuf};
+
+use crate::pipeline::files::SystemError;
+
+/// The folder of a new scene file.
+pub(super) struct SceneFolder {
+    /// Without links, whether it exists or not.
+    folder: PathBuf,
+}
+
+/// A folder or a file that a new scene cannot use.
+#[derive(Debug, thiserror::Error)]
+#[error("{}", path.display())]
+pub struct FolderError {
+    path: PathBuf,
+    #[source]
+    cause: FolderCause,
+}
+
+/// Why a new scene cannot use a folder or a file.
+#[derive(Debug, thiserror::Error)]
+pub enum FolderCause {
+    /// A file is in the way of the folder.
+    #[error("this is not a folder")]
+    NotAFolder,
+    /// A path that does not exist goes up.
+    #[error("name the folder without `..` in it")]
+    Parent,
+    /// No part of the path exists.
+    #[error("there is no such place")]
+    Nowhere,
+    /// The file does not exist.
+    #[error("there is no such file")]
+    NoFile,
+    /// A folder, a pipe or a device.
+    #[error("this is not a file")]
+    NotAFile,
+    /// The name is not Unicode, which a scene file must be.
+    #[error("its name is not Unicode text; rename it")]
+    NotText,
+    /// The system refuses.
+    #[error(transparent)]
+    System(#[from] SystemError),
+}
+
+fn fault(path: &Path, cause: FolderCause) -> FolderError {
+    FolderError { path: path.to_owned(), cause }
+}
+
+impl SceneFolder {
+    /// The folder at `path`, which need not exist.
+    ///
+    /// # Errors
+    /// See [`FolderCause`].
+    pub fn new(path: &Path) -> Result<Self, FolderError> {
+        if path.exists() && !path.is_dir() {
+            return Err(fault(path, FolderCause::NotAFolder));
+        }
+        let absolute =
+            std::path::absolute(path).map_err(|error| fault(path, SystemError::from(error).into()))?;
+        let existing = absolute.ancestors().find_map(|above| Some((above, above.canonicalize().ok()?)));
+        let (above, real) = existing.ok_or_else(|| fault(path, FolderCause::Nowhere))?;
+        let rest = absolute.strip_prefix(above).unwrap_or(Path::new(""));
+        if rest.components().any(|part| part == Component::ParentDir) {
+            return Err(fault(path, FolderCause::Parent));
+        }
+        Ok(Self { folder: real.join(rest) })
+    }
+
+    /// The name of `file` in the scene file: relative to its folder, with `/`.
+    ///
+    /// # Errors
+    /// See [`FolderCause`].
+    pub fn relative(&self, file: &Path) -> Result<String, FolderError> {
+        let real = real(file)?;
+        let shared = self.folder.components().zip(real.components()).take_while(|(a, b)| a == b).count();
+        let up = self.folder.components().skip(shared).map(|_| Some(".."));
+        let down = real.components().skip(shared).map(|part| part.as_os_str().to_str());
+        let parts: Option<Vec<&str>> = up.chain(down).collect();
+        parts.map(|parts| parts.join("/")).ok_or_else(|| fault(file, FolderCause::NotText))
+    }
+
+    /// The folders of those `files` that do not lie under the parent of the scene's folder, so that the user must allow
+    /// them. Sorted, none within another.
+    ///
+    /// # Errors
+    /// See [`FolderCause`].
+    pub fn folders_to_allow<'f>(
+        &self,
+        files: impl Iterator<Item = &'f PathBuf>,
+    ) -> Result<Vec<PathBuf>, FolderError> {
+        // As in `Assets`: the root of the file system is not a parent.
+        let root = self.folder.parent().filter(|parent| parent.parent().is_some()).unwrap_or(&self.folder);
+        let mut folders = Vec::new();
+        for file in files {
+            let real = real(file)?;
+            if !real.starts_with(root) {
+                folders.push(real.parent().unwrap_or(&real).to_path_buf());
+            }
+        }
+        Ok(outermost(folders))
+    }
+}
+
+/// The folders sorted, without those within others.
+fn outermost(mut folders: Vec<PathBuf>) -> Vec<PathBuf> {
+    folders.sort();
+    folders.dedup_by(|after, before| after.starts_with(before));
+    folders
+}
+
+fn real(file: &Path) -> Result<PathBuf, FolderError> {
+    let real = file.canonicalize().map_err(|_| fault(file, FolderCause::NoFile))?;
+    if real.is_file() { Ok(real) } else { Err(fault(file, FolderCause::NotAFile)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_within_others_are_not_allowed_twice() {
+        let folders = vec![PathBuf::from("/b"), "/a/x".into(), "/a".into(), "/ab".into()];
+        assert_eq!(outermost(folders), [Path::new("/a"), Path::new("/ab"), Path::new("/b")]);
+    }
+}

@@ -1,0 +1,187 @@
+//! The text of a new scene file, with the comments that its editor needs.
+
+use std::fmt::Write;
+
+use glam::DVec2;
+use serde_json::Value;
+
+use crate::annotate::nice::NiceNumber;
+use crate::pipeline::new_scene::survey::{FeatureSelection, RULES, SurveyedLayer, TableMatch};
+
+/// What is known of the scene; zero and empty where it is not known yet.
+#[derive(Default)]
+pub(super) struct SceneDraft {
+    pub title: String,
+    /// The elevation files as the scene file names them.
+    pub dem: Vec<String>,
+    /// The coordinate system that the user states.
+    pub crs: Option<String>,
+    /// The name of the scene's coordinate system.
+    pub crs_name: String,
+    /// The longer side of the ground.
+    pub size_m: f64,
+    /// From the lowest to the highest post.
+    pub relief_m: f64,
+    /// 0 where none is stated.
+    pub exaggeration: f64,
+    pub contours_m: Option<f64>,
+    pub camera: Option<CameraDraft>,
+}
+
+/// A camera as its table states it.
+pub(super) struct CameraDraft {
+    pub name: String,
+    pub eye: DVec2,
+    pub eye_elevation_m: f64,
+    pub look_at: DVec2,
+    pub look_at_height_m: f64,
+    pub field_of_view_deg: f64,
+}
+
+/// A vector file and what it holds.
+pub(super) struct VectorDraft {
+    /// The file as the scene file names it.
+    pub file: String,
+    pub layers: Vec<SurveyedLayer>,
+}
+
+/// A file and one of its layers.
+#[derive(Clone, Copy)]
+struct LayerSource<'a> {
+    file: &'a str,
+    layer: &'a SurveyedLayer,
+}
+
+/// Up to this extent, widths are true to scale: on a picture a thousand pixels wide a pixel is then four meters, and a
+/// street of five meters is just visible.
+const TRUE_TO_SCALE_M: f64 = 4000.0;
+
+/// The text of the scene file.
+pub(super) fn scene(draft: &SceneDraft, vectors: &[VectorDraft]) -> String {
+    let mut out = head(draft);
+    out.push_str(&terrain(draft));
+    out.push_str(&style(draft));
+    let factor =
+        NiceNumber::at_most(draft.size_m / TRUE_TO_SCALE_M).map_or(1.0, |nice| nice.value().max(1.0));
+    let sources: Vec<LayerSource<'_>> = vectors
+        .iter()
+        .flat_map(|VectorDraft { file, layers }| layers.iter().map(move |layer| LayerSource { file, layer }))
+        .collect();
+    if factor > 1.0 && !sources.is_empty() {
+        let _ = writeln!(
+            out,
+            "\n# The ground is {:.0} km wide: roads and rivers are drawn {factor} times as wide as they are, so that they\n\
+             # show. For a view from near by, divide the widths by {factor}.",
+            draft.size_m / 1000.0
+        );
+    }
+    for rule in &RULES {
+        for &source in &sources {
+            for found in source.layer.matches.iter().filter(|found| found.rule.what == rule.what) {
+                table(&mut out, source, found, factor);
+            }
+        }
+    }
+    sources.iter().for_each(|&source| rest(&mut out, source));
+    out.push_str(&camera(draft));
+    out
+}
+
+fn head(draft: &SceneDraft) -> String {
+    let (title, crs) = (quoted(&draft.title), &draft.crs_name);
+    format!(
+        "# Lengths and heights are meters, angles degrees, file names relative to this file.\n\
+         # Every key: `sandtable schema > schema.json`, which editors use once the first line here says\n\
+         # `#:schema schema.json`. Inline points are in the scene's coordinate system, {crs},\n\
+         # unless `points_crs` or a table's `crs` says otherwise.\n\n\
+         title = {title}\n"
+    )
+}
+
+/// The table of the terrain, which alone makes a scene.
+pub(super) fn terrain(draft: &SceneDraft) -> String {
+    let mut out = "\n[terrain]\n".to_owned();
+    let dem = match &draft.dem[..] {
+        [only] => quoted(only),
+        several => format!("[{}]", several.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(", ")),
+    };
+    let _ = writeln!(out, "dem = {dem}");
+    if let Some(crs) = &draft.crs {
+        let _ = writeln!(out, "crs = {}", quoted(crs));
+    }
+    if draft.exaggeration > 0.0 {
+        let _ = writeln!(out, "# 1 is true to scale; flat country shows its forms at 2 or 3.");
+        let _ = writeln!(out, "vertical_exaggeration = {}", draft.exaggeration);
+    }
+    out
+}
+
+fn style(draft: &SceneDraft) -> String {
+    let mut out = "\n[style]\n# Or \"desert\", \"gray\", or stops of your own: [[0, \"#7f9f6b\"], [400, \"#c9cf97\"]].\n\
+                   ramp = \"atlas\"\n"
+        .to_owned();
+    if let Some(interval) = draft.contours_m {
+        let _ = writeln!(out, "\n# The ground rises by {:.0} m.", draft.relief_m);
+        let _ = writeln!(out, "[style.contours]\ninterval = {interval}\nmajor_every = 5");
+    }
+    out.push_str("\n[style.light]\nazimuth = 315\naltitude = 45\n");
+    out
+}
+
+fn table(out: &mut String, source: LayerSource<'_>, found: &TableMatch, factor: f64) {
+    let (rule, count) = (found.rule, found.count);
+    let _ = writeln!(out, "\n# {} ({count}).\n[[{}]]\nfile = {}", rule.what, rule.table, quoted(source.file));
+    if let Some(name) = &source.layer.name {
+        let _ = writeln!(out, "layer = {}", quoted(name));
+    }
+    if found.selection == FeatureSelection::ByCondition {
+        let _ = writeln!(out, "where = {}", quoted(rule.condition));
+    }
+    if let Some(width_m) = rule.width_m {
+        let _ = writeln!(out, "width = {}", width_m * factor);
+    }
+    for key in rule.keys {
+        let _ = writeln!(out, "{key}");
+    }
+}
+
+/// Tables, commented out, for the features that no table takes.
+fn rest(out: &mut String, source: LayerSource<'_>) {
+    for (kind, count) in &source.layer.rest {
+        let (head, condition) = match *kind {
+            "lines" => ("# [[fence]]\n# kind = \"boundary\"", "name = '...'"),
+            "polygons" => ("# [[area]]\n# cover = \"meadow\"", "name = '...'"),
+            _ => ("# [[model]]\n# file = \"model.glb\"\n# [model.instances]", "natural = 'tree'"),
+        };
+        let _ = writeln!(out, "\n# In no table of this file ({count} {kind}); to draw them:");
+        let _ = writeln!(out, "{head}\n# file = {}", quoted(source.file));
+        if let Some(name) = &source.layer.name {
+            let _ = writeln!(out, "# layer = {}", quoted(name));
+        }
+        let _ = writeln!(out, "# where = \"{condition}\"");
+    }
+}
+
+fn camera(draft: &SceneDraft) -> String {
+    let Some(camera) = &draft.camera else {
+        return "\n# Without a [[camera]] one is made that sees the whole ground.\n".into();
+    };
+    let decimals = if draft.size_m < 200.0 { 2 } else { 0 };
+    let point = |at: DVec2| format!("[{:.decimals$}, {:.decimals$}]", at.x, at.y);
+    format!(
+        "\n# The whole ground from the south. `eye_height` in place of `eye_elevation` counts from the ground.\n\
+         [[camera]]\nname = {}\neye = {}\neye_elevation = {:.decimals$}\nlook_at = {}\nlook_at_height = {:.decimals$}\n\
+         field_of_view = {:.0}\n",
+        quoted(&camera.name),
+        point(camera.eye),
+        camera.eye_elevation_m,
+        point(camera.look_at),
+        camera.look_at_height_m,
+        camera.field_of_view_deg
+    )
+}
+
+/// A text in double quotes; JSON's escapes are TOML's.
+fn quoted(text: &str) -> String {
+    Value::from(text).to_string()
+}

@@ -1,0 +1,145 @@
+//! The profile of the ground along a line, and its chart.
+//!
+//! The vertices of the line are brought to the ground's coordinate system and joined by straight lines *there*: a line
+//! given in degrees is not the one that is straight on a map in degrees. Positions of stations are returned in the
+//! line's own system.
+
+use glam::DVec2;
+
+use crate::annotate::chart::ChartText;
+use crate::annotate::chart_ground::{ChartGround, ChartPoint};
+use crate::annotate::chart_profile::ProfileChart;
+use crate::annotate::nice;
+use crate::dem::answer::Answer;
+use crate::geom::crs::Crs;
+use crate::pipeline::dataset::{QueryError, transform};
+use crate::pipeline::positions::{InputLine, format_position};
+use crate::terrain::profile::{ProfileStation, ProfileSummary, Sampling, sampled_profile};
+use crate::terrain::query::service::Snapshot;
+
+/// The most steps along a profile: more would fill the memory, and nobody reads them.
+const MOST_STEPS: f64 = 1e7;
+
+/// Stretches without ground that are shorter than this, in meters, are not mentioned.
+const LEAST_GAP_M: f64 = 0.5;
+
+/// A line that gives no profile.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum ProfileError {
+    /// A vertex or a station has no position in the other coordinate system.
+    #[error(transparent)]
+    Query(#[from] QueryError),
+    /// The step between stations is not a length.
+    #[error("a step of {step_m} m: give meters above 0")]
+    Step {
+        /// As given.
+        step_m: f64,
+    },
+    /// The step between stations is too short for the line.
+    #[error(
+        "a step of {step_m} m: the line is {length_m:.0} m long, and at most {MOST_STEPS} steps are made; take longer ones"
+    )]
+    ShortStep {
+        /// As given.
+        step_m: f64,
+        /// The length of the line.
+        length_m: f64,
+    },
+}
+
+/// The ground along a line.
+pub struct GroundProfile {
+    /// The line as given.
+    pub line: InputLine,
+    /// The coordinate system in which it is straight between its vertices.
+    pub ground_crs: Crs,
+    /// Its stations.
+    pub stations: Vec<ProfileStation>,
+    /// The positions of the stations in the line's system.
+    pub positions: Vec<DVec2>,
+    /// Lengths, climbs and extremes.
+    pub summary: ProfileSummary,
+    vertical_datum: Option<String>,
+    /// Stations of the vertices between the ends, meters.
+    bends_m: Vec<f64>,
+}
+
+impl GroundProfile {
+    /// The profile of the ground of `snapshot` along `line`.
+    ///
+    /// # Errors
+    /// See [`ProfileError`].
+    pub fn new(snapshot: &Snapshot, line: InputLine, sampling: Sampling) -> Result<Self, ProfileError> {
+        let to_ground = |&at: &DVec2| transform("the position", &line.crs, snapshot.crs(), at);
+        let vertices: Vec<DVec2> = line.vertices.iter().map(to_ground).collect::<Result<_, _>>()?;
+        let lengths_m = vertices.windows(2).map(|pair| pair[0].distance(pair[1]));
+        let mut bends_m: Vec<f64> = lengths_m
+            .scan(0.0, |station_m, length_m| {
+                *station_m += length_m;
+                Some(*station_m)
+            })
+            .collect();
+        check_step(sampling.step_m, bends_m.pop().unwrap_or_default())?;
+        let stations = sampled_profile(snapshot.lattice(), &vertices, sampling);
+        let from_ground =
+            |station: &ProfileStation| transform("the station at", snapshot.crs(), &line.crs, station.at);
+        Ok(Self {
+            positions: stations.iter().map(from_ground).collect::<Result<_, _>>()?,
+            summary: ProfileSummary::from_stations(&stations),
+            stations,
+            ground_crs: snapshot.crs().clone(),
+            line,
+            vertical_datum: snapshot.source().vertical_datum.clone(),
+            bends_m,
+        })
+    }
+
+    /// The chart of the profile.
+    pub fn chart(&self, title: String) -> ProfileChart {
+        let end = |at: Option<&DVec2>| format_position(&self.line.crs, at.copied().unwrap_or_default());
+        let ProfileSummary { length_m, covered_m, ascent_m, descent_m, .. } = self.summary;
+        let mut subtitle = format!(
+            "{} long, climbs {} m and falls {} m",
+            nice::format_distance(length_m),
+            nice::format_number(ascent_m, 0),
+            nice::format_number(descent_m, 0)
+        );
+        if length_m - covered_m > LEAST_GAP_M {
+            subtitle += &format!("; {} without ground", nice::format_distance(length_m - covered_m));
+        }
+        let datum = self.vertical_datum.as_deref();
+        ProfileChart {
+            text: ChartText {
+                title,
+                subtitle,
+                height_axis: datum.map_or("Height (m)".into(), |datum| format!("Height (m, {datum})")),
+                along_axis: "Distance along the line".into(),
+                start: format!("A  {}", end(self.line.vertices.first())),
+                end: format!("{}  B", end(self.line.vertices.last())),
+            },
+            points: chart_points(&self.stations, |_, height_m| height_m),
+            bends_m: self.bends_m.clone(),
+        }
+    }
+}
+
+fn check_step(step_m: Option<f64>, length_m: f64) -> Result<(), ProfileError> {
+    match step_m {
+        Some(step_m) if !(step_m > 0.0 && step_m.is_finite()) => Err(ProfileError::Step { step_m }),
+        Some(step_m) if length_m / step_m > MOST_STEPS => Err(ProfileError::ShortStep { step_m, length_m }),
+        _ => Ok(()),
+    }
+}
+
+/// Stations as points of a chart; `height_m` maps a station and its height to the height that is drawn.
+pub fn chart_points(stations: &[ProfileStation], height_m: impl Fn(f64, f64) -> f64) -> Vec<ChartPoint> {
+    let point = |station: &ProfileStation| ChartPoint {
+        along_m: station.station_m,
+        ground: match station.ground {
+            Answer::Height(height) => ChartGround::Height(height_m(station.station_m, height)),
+            Answer::NoData => ChartGround::NoData,
+            Answer::Outside => ChartGround::Outside,
+        },
+    };
+    stations.iter().map(point).collect()
+}

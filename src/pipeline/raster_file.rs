@@ -1,0 +1,67 @@
+//! Writing rasters: the file and the files beside it, without replacing an input.
+
+use std::path::{Path, PathBuf};
+
+use crate::dem::formats::DemFormat;
+use crate::dem::raster::Raster;
+use crate::dem::write::{self, Companion, WriteError, WrittenDem};
+use crate::pipeline::files::{self, ReadFileError, WriteFileError};
+
+/// A raster that cannot be written.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteRasterError {
+    /// The format cannot hold the raster.
+    #[error("{}", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: WriteError,
+    },
+    /// A file beside it belongs to an input and has another content.
+    #[error("{}: this belongs to a file that is read and would be replaced; name another to write to", path.display())]
+    Sidecar {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A file cannot be compared.
+    #[error(transparent)]
+    Read(#[from] ReadFileError),
+    /// A file cannot be written.
+    #[error(transparent)]
+    File(#[from] WriteFileError),
+}
+
+/// Writes a raster to `path`, first the files that belong beside it. `inputs` are the files that it was made of.
+///
+/// # Errors
+/// See [`WriteRasterError`]; nothing replaces one of `inputs` or a sidecar of one.
+pub fn write(
+    raster: &Raster,
+    format: &DemFormat,
+    path: &Path,
+    inputs: &[PathBuf],
+) -> Result<WrittenDem, WriteRasterError> {
+    let written = write::write(raster, format, &files::file_stem(path))
+        .map_err(|source| WriteRasterError::Format { path: path.to_owned(), source })?;
+    for companion in &written.companions {
+        check_companion(&path.with_extension(companion.extension), companion, inputs)?;
+    }
+    for companion in &written.companions {
+        files::write(&path.with_extension(companion.extension), &companion.bytes)?;
+    }
+    files::write(path, &written.bytes)?;
+    Ok(written)
+}
+
+/// A companion may replace a sidecar of an input only by the same bytes.
+fn check_companion(path: &Path, companion: &Companion, inputs: &[PathBuf]) -> Result<(), WriteRasterError> {
+    files::check_output(path, inputs)?;
+    let Ok(real) = path.canonicalize() else { return Ok(()) };
+    let sidecar = |input: &PathBuf| input.with_extension(companion.extension).canonicalize().ok();
+    let is_sidecar = inputs.iter().filter_map(sidecar).any(|sidecar| sidecar == real);
+    if is_sidecar && files::read(path)? != companion.bytes {
+        return Err(WriteRasterError::Sidecar { path: path.to_owned() });
+    }
+    Ok(())
+}

@@ -1,0 +1,66 @@
+//! From a scene file to a scene.
+
+use std::path::{Path, PathBuf};
+
+use crate::description::diagnostic::{Diagnostic, Diagnostics};
+use crate::description::document::Document;
+use crate::description::parse::parse_bytes_including;
+use crate::pipeline::files::{self, ReadFileError};
+use crate::scene::Scene;
+use crate::scene::assets::{AssetError, Assets};
+use crate::scene::build::build;
+
+/// A scene that cannot be opened.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenSceneError {
+    /// The scene file cannot be read.
+    #[error(transparent)]
+    File(#[from] ReadFileError),
+    /// A folder that the scene may read cannot be opened.
+    #[error(transparent)]
+    Assets(#[from] AssetError),
+    /// The scene file is wrong: everything that was found.
+    #[error("the scene file is wrong")]
+    Parse(#[from] Diagnostics),
+    /// The scene cannot be built: the first thing that was found.
+    #[error("the scene cannot be built")]
+    Build(#[from] Diagnostic),
+}
+
+/// Reads, parses and builds the scene file at `path`. The scene reads files under the parent of its own folder and
+/// under the folders `allowed`. `progress` is called with the name of each step as it begins.
+///
+/// # Errors
+/// See [`OpenSceneError`].
+pub fn open_scene(
+    path: &Path,
+    allowed: &[PathBuf],
+    progress: &dyn Fn(&'static str),
+) -> Result<Scene, OpenSceneError> {
+    progress("reading the scene file");
+    let (document, assets) = open_document(path, allowed)?;
+    Ok(build(&document, &assets, progress)?)
+}
+
+/// [`open_scene`] with heights true to scale, whatever exaggeration the scene file states.
+///
+/// # Errors
+/// See [`OpenSceneError`].
+pub fn open_scene_true_to_scale(
+    path: &Path,
+    allowed: &[PathBuf],
+    progress: &dyn Fn(&'static str),
+) -> Result<Scene, OpenSceneError> {
+    progress("reading the scene file");
+    let (mut document, assets) = open_document(path, allowed)?;
+    document.terrain.vertical_exaggeration = 1.0;
+    Ok(build(&document, &assets, progress)?)
+}
+
+fn open_document(path: &Path, allowed: &[PathBuf]) -> Result<(Document, Assets), OpenSceneError> {
+    let bytes = files::read(path)?;
+    let assets = Assets::new(path, allowed)?;
+    let load = |name: &str| assets.read(name).map_err(Into::into);
+    let document = parse_bytes_including(&path.to_string_lossy(), &bytes, &load)?;
+    Ok((document, assets))
+}

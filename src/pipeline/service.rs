@@ -1,0 +1,158 @@
+//! What a height service serves and how much a client may ask of it.
+
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+
+use crate::pipeline::dataset::DatasetOptions;
+use crate::pipeline::files;
+
+/// Names that are addresses of the service.
+const RESERVED: [&str; 3] = ["los", "profile", "viewshed"];
+
+/// The longest name, in bytes.
+const LONGEST_NAME: usize = 100;
+
+/// What a service serves, where, and within which limits.
+#[derive(Clone, Debug)]
+pub struct ServiceOptions {
+    /// The datasets; no two have the same name.
+    pub datasets: Vec<NamedFile>,
+    /// What they are opened with.
+    pub dataset: DatasetOptions,
+    /// The address to listen at; port 0 takes a free one.
+    pub listen: SocketAddr,
+    /// Limits of requests.
+    pub limits: ServiceLimits,
+    /// Whether each request is logged.
+    pub log: RequestLog,
+    /// Writes a line for the user: where the service listens, warnings, the log.
+    pub write_line: fn(&str),
+}
+
+/// How much a client may ask.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ServiceLimits {
+    /// The most points of one request: locations, samples, vertices.
+    pub max_points: u32,
+    /// The most posts of one viewshed: those in the square around its range.
+    pub max_posts: u32,
+    /// The most requests answered at once.
+    pub max_requests: u32,
+    /// The most connections held open.
+    pub max_connections: u32,
+    /// How long a request may take to arrive, and how long its answer may take, seconds.
+    pub timeout_s: u16,
+    /// How long the last answers may take when the service stops, seconds.
+    pub grace_s: u16,
+}
+
+impl Default for ServiceLimits {
+    fn default() -> Self {
+        Self {
+            max_points: 10_000,
+            max_posts: 4_194_304,
+            max_requests: 256,
+            max_connections: 1024,
+            timeout_s: 30,
+            grace_s: 10,
+        }
+    }
+}
+
+/// Whether requests are logged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RequestLog {
+    /// A line for each request.
+    On,
+    /// Nothing.
+    Off,
+}
+
+/// A file and the name under which it is served.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NamedFile {
+    name: String,
+    path: PathBuf,
+}
+
+/// A name that a dataset cannot have.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the dataset name '{name}' {fault}: give it another, as in hills={}", path.display())]
+pub struct DatasetNameError {
+    /// The name.
+    name: String,
+    /// What is wrong with it.
+    fault: &'static str,
+    /// The dataset's file.
+    path: PathBuf,
+}
+
+impl NamedFile {
+    /// Parses `NAME=FILE`, or `FILE`, which is named after the file without its extension. An `=` in the path of a file
+    /// that exists separates nothing.
+    ///
+    /// # Errors
+    /// The name cannot be part of an address.
+    pub fn parse(text: &str) -> Result<Self, DatasetNameError> {
+        let path = Path::new(text);
+        let parts = text.split_once('=').filter(|(name, _)| !name.contains(['/', '\\']));
+        let (name, path) = match parts {
+            Some((name, file)) if !path.exists() => (name.to_owned(), Path::new(file)),
+            _ => (files::file_stem(path), path),
+        };
+        let path = path.to_owned();
+        match name_fault(&name) {
+            Some(fault) => Err(DatasetNameError { name, fault, path }),
+            None => Ok(Self { name, path }),
+        }
+    }
+
+    /// The name in addresses.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+fn name_fault(name: &str) -> Option<&'static str> {
+    let is_unfit = |c: char| c.is_control() || matches!(c, ',' | '/' | '?' | '#' | '%' | '\\');
+    match name {
+        _ if RESERVED.contains(&name) => Some("is the address of a question"),
+        "" => Some("is empty"),
+        _ if name.len() > LONGEST_NAME => Some("is longer than 100 bytes"),
+        _ if name.contains(is_unfit) => Some("holds a character that an address cannot"),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_dataset_has_the_name_that_is_given_or_its_files() {
+        for (text, name, path) in [
+            ("data/hills.tif", "hills", "data/hills.tif"),
+            ("a=data/hills.tif", "a", "data/hills.tif"),
+            ("data/x=1/hills.tif", "hills", "data/x=1/hills.tif"),
+            ("a=b=c.tif", "a", "b=c.tif"),
+        ] {
+            let file = NamedFile::parse(text).expect(text);
+            assert_eq!((file.name(), file.path()), (name, Path::new(path)));
+        }
+    }
+
+    #[test]
+    fn names_that_an_address_cannot_hold_are_refused() {
+        for wrong in ["", "los", "a,b", "a/b", "50%", "a\nb", &"x".repeat(101)] {
+            assert!(name_fault(wrong).is_some(), "{wrong}");
+        }
+        for right in ["N43E007", "dem_srtm wgs84", "höhen", "a.b-c"] {
+            assert_eq!(name_fault(right), None, "{right}");
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! The results of a viewshed: figures, and a raster.
+
+use glam::{DAffine2, DMat2, DVec2};
+
+use crate::dem::raster::{Raster, Samples};
+use crate::geom::crs::Crs;
+use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedCounts};
+
+/// The value of posts that were not looked at or have no data.
+const NO_DATA: f64 = 255.0;
+
+/// How much is in sight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewshedSummary {
+    /// Posts of each kind.
+    pub counts: ViewshedCounts,
+    /// The area in sight, square meters.
+    pub visible_m2: f64,
+    /// The share of posts in sight among those that were looked at; 0 where there are none.
+    pub visible_share: f64,
+}
+
+impl ViewshedSummary {
+    /// The figures of a viewshed over `lattice`.
+    pub fn new(lattice: &Lattice, viewshed: &Viewshed) -> Self {
+        let counts = viewshed.counts();
+        let visible = counts.visible as f64;
+        let looked_at = counts.visible + counts.hidden;
+        Self {
+            counts,
+            visible_m2: visible * lattice.cell().element_product(),
+            visible_share: if looked_at == 0 { 0.0 } else { visible / looked_at as f64 },
+        }
+    }
+}
+
+/// The viewshed as a raster: 1 in sight, 0 hidden, no data elsewhere.
+pub fn raster(lattice: &Lattice, viewshed: &Viewshed, crs: &Crs) -> Raster {
+    let value = |post: &PostVisibility| match post {
+        PostVisibility::Visible => 1.0,
+        PostVisibility::Hidden => 0.0,
+        PostVisibility::Beyond | PostVisibility::NoData => f32::NAN,
+    };
+    let rows = viewshed.posts.chunks_exact(viewshed.columns as usize).rev();
+    let cell = lattice.cell();
+    let north_west = lattice.map_position(Post { column: 0, row: lattice.rows() - 1 });
+    Raster {
+        driver: "viewshed",
+        data_type: "Byte",
+        width: viewshed.columns,
+        height: viewshed.rows,
+        samples: Samples::F32(rows.flatten().map(value).collect()),
+        meters_per_z: 1.0,
+        map_from_grid: DAffine2 {
+            matrix2: DMat2::from_diagonal(DVec2::new(cell.x, -cell.y)),
+            translation: north_west + DVec2::new(-0.5, 0.5) * cell,
+        },
+        georeferenced: true,
+        crs: (*crs != Crs::local()).then(|| crs.clone()),
+        nodata: Some(NO_DATA),
+        vertical_datum: None,
+    }
+}

@@ -1,0 +1,229 @@
+//! The positions of a request and their coordinate system.
+//!
+//! Without `crs`, coordinates are WGS 84 latitude and longitude, latitude first, as in the Open Topo Data and Google
+//! APIs. With `crs=EPSG:n` they are x,y of that system: easting and northing, or longitude and latitude. With
+//! `crs=native` they are x,y of the dataset's own system, as in `sandtable height`.
+
+use glam::DVec2;
+use serde::Serialize;
+
+use crate::geom::crs::Crs;
+use crate::pipeline::dataset::check_datums;
+use crate::serve::parameters::Parameters;
+use crate::serve::polyline;
+use crate::serve::reply::{HttpError, quoted};
+
+/// The coordinates of a request.
+#[derive(Clone, Debug)]
+pub struct Coordinates {
+    /// Their system.
+    pub crs: Crs,
+    /// Their order and names.
+    pub axes: AxisOrder,
+}
+
+/// The order and names of two coordinates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AxisOrder {
+    /// Latitude, longitude; `lat` and `lng` in answers.
+    LatLng,
+    /// `x`, `y`.
+    Xy,
+}
+
+/// A position in an answer.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Location {
+    /// Degrees.
+    LatLng {
+        /// Latitude.
+        lat: f64,
+        /// Longitude.
+        lng: f64,
+    },
+    /// Coordinates of a named system.
+    Xy {
+        /// Easting or longitude.
+        x: f64,
+        /// Northing or latitude.
+        y: f64,
+    },
+}
+
+impl Coordinates {
+    /// Reads `crs`, for a dataset whose own system is `native`.
+    ///
+    /// # Errors
+    /// There is no such system, or no transform from it to the dataset's.
+    pub fn read(parameters: &Parameters, native: &Crs, wgs84: &Crs) -> Result<Self, HttpError> {
+        let coordinates = match parameters.get("crs") {
+            None => Self { crs: wgs84.clone(), axes: AxisOrder::LatLng },
+            Some("native") => return Ok(Self { crs: native.clone(), axes: AxisOrder::Xy }),
+            Some(text) => {
+                let crs = Crs::from_epsg(epsg(text)?);
+                let crs = crs.map_err(|error| HttpError::wrong(format!("crs: {error}")))?;
+                Self { crs, axes: AxisOrder::Xy }
+            }
+        };
+        check_datums(&coordinates.crs, native).map_err(|error| {
+            HttpError::wrong(format!(
+                "crs: {error}; crs=native takes coordinates of the dataset's own system"
+            ))
+        })?;
+        Ok(coordinates)
+    }
+
+    /// The position in `text`: two numbers with a comma between. `what` is the parameter.
+    ///
+    /// # Errors
+    /// It is something else, or not a position on Earth.
+    pub fn position(&self, what: &str, text: &str) -> Result<DVec2, HttpError> {
+        self.pair(text).ok_or_else(|| self.refusal(what, text))
+    }
+
+    /// The positions in `text`: pairs with `|` between, or an encoded polyline where the coordinates are latitude and
+    /// longitude and there is no comma.
+    ///
+    /// # Errors
+    /// One is not a position, or there are more than `most`; both are found before memory is taken for them.
+    pub fn positions(&self, text: &str, most: usize) -> Result<Vec<DVec2>, HttpError> {
+        if self.axes == AxisOrder::LatLng && !text.contains(',') {
+            let positions = polyline::decode(text, most)?;
+            return match positions.iter().position(|&at| !self.is_valid(at)) {
+                None => Ok(positions),
+                Some(index) => {
+                    let DVec2 { x, y } = positions[index];
+                    Err(self.refusal(&format!("location {}", index + 1), &format!("{y},{x}")))
+                }
+            };
+        }
+        let text = text.trim_matches('|');
+        let count = text.bytes().filter(|&byte| byte == b'|').count() + 1;
+        if count > most {
+            return Err(HttpError::wrong(format!(
+                "{count} locations, where {most} are the most of one request"
+            )));
+        }
+        let mut positions = Vec::with_capacity(count);
+        for pair in text.split('|') {
+            let refusal = || self.refusal(&format!("location {}", positions.len() + 1), pair);
+            let at = self.pair(pair).ok_or_else(refusal)?;
+            positions.push(at);
+        }
+        Ok(positions)
+    }
+
+    /// A position as a location of an answer.
+    pub fn location(&self, DVec2 { x, y }: DVec2) -> Location {
+        match self.axes {
+            AxisOrder::LatLng => Location::LatLng { lat: y, lng: x },
+            AxisOrder::Xy => Location::Xy { x, y },
+        }
+    }
+
+    fn pair(&self, text: &str) -> Option<DVec2> {
+        let (first, second) = text.split_once(',')?;
+        let (first, second) = (first.trim().parse().ok()?, second.trim().parse().ok()?);
+        let at = match self.axes {
+            AxisOrder::LatLng => DVec2::new(second, first),
+            AxisOrder::Xy => DVec2::new(first, second),
+        };
+        self.is_valid(at).then_some(at)
+    }
+
+    fn is_valid(&self, at: DVec2) -> bool {
+        match self.axes {
+            AxisOrder::LatLng => (-90.0..=90.0).contains(&at.y) && (-180.0..=180.0).contains(&at.x),
+            AxisOrder::Xy => at.is_finite(),
+        }
+    }
+
+    fn refusal(&self, what: &str, text: &str) -> HttpError {
+        let found = quoted(text);
+        HttpError::wrong(match self.axes {
+            AxisOrder::LatLng => format!(
+                "{what} is {found}; write latitude,longitude in degrees, -90 to 90 and -180 to 180, as in 46.2,-122.19"
+            ),
+            AxisOrder::Xy => format!("{what} is {found}; write x,y, two numbers with a comma between"),
+        })
+    }
+}
+
+fn epsg(text: &str) -> Result<u32, HttpError> {
+    let code = text.split_once(':').filter(|(authority, _)| authority.eq_ignore_ascii_case("epsg"));
+    code.and_then(|(_, code)| code.parse().ok()).ok_or_else(|| {
+        HttpError::wrong(format!("crs is {}; write EPSG:n, for example EPSG:32616, or native", quoted(text)))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::serve::parameters::tests::form;
+    use proptest::prelude::*;
+
+    fn lat_lng() -> Coordinates {
+        Coordinates { crs: Crs::wgs84(), axes: AxisOrder::LatLng }
+    }
+
+    #[test]
+    fn latitude_comes_first_unless_a_system_is_named() {
+        let expected = Ok(vec![DVec2::new(172.5, -43.5), DVec2::new(1.98, 27.6)]);
+        assert_eq!(lat_lng().positions("-43.5,172.5|27.6, 1.98|", 2), expected);
+        let xy = Coordinates { axes: AxisOrder::Xy, ..lat_lng() };
+        assert_eq!(xy.positions("172.5,-43.5|1.98,27.6", 2), expected);
+        assert_eq!(lat_lng().positions("_p~iF~ps|U", 2), Ok(vec![DVec2::new(-120.2, 38.5)]));
+    }
+
+    #[test]
+    fn what_is_no_position_is_refused_with_its_number() {
+        for (wrong, number) in [
+            ("1,2|91,0", 2),
+            ("NaN,0", 1),
+            ("0,inf", 1),
+            ("1,2||3,4", 2),
+            ("1,2|3", 2),
+            ("1,2,3", 1),
+            ("1e999,0|1,2", 1),
+            (",", 1),
+            ("0,180.0001", 1),
+        ] {
+            let refusal = lat_lng().positions(wrong, 10).expect_err(wrong);
+            assert!(refusal.reason().contains(&format!("location {number} ")), "{wrong}: {refusal:?}");
+        }
+        assert!(
+            lat_lng().positions("1,2|3,4|5,6", 2).expect_err("too many").reason().contains("3 locations")
+        );
+        let beyond = lat_lng().positions("_fsia@???", 9).expect_err("latitude 173");
+        assert!(beyond.reason().contains("location 1"), "{beyond:?}");
+    }
+
+    #[test]
+    fn a_dataset_without_a_system_is_asked_in_its_own_coordinates_only() {
+        let wgs84 = Crs::wgs84();
+        let read = |query: &'static str| Coordinates::read(&form(query), &Crs::local(), &wgs84);
+        assert!(read("").expect_err("no way").reason().contains("crs=native"));
+        assert_eq!(read("crs=native").expect("sound").crs.name(), "local meters");
+        for wrong in ["crs=EPSG:0", "crs=4326", "crs=%2Bproj=longlat", "crs=EPSG:99999999999"] {
+            assert!(read(wrong).is_err_and(|refusal| refusal.status() == 400), "{wrong}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn positions_come_back_to_the_same_bits(lat in -90.0..=90.0f64, lng in -180.0..=180.0f64) {
+            let positions = lat_lng().positions(&format!("{lat},{lng}"), 1).expect("sound");
+            prop_assert_eq!(positions, vec![DVec2::new(lng, lat)]);
+            let written = serde_json::to_value(lat_lng().location(DVec2::new(lng, lat))).expect("JSON");
+            prop_assert_eq!((written["lat"].as_f64(), written["lng"].as_f64()), (Some(lat), Some(lng)));
+        }
+
+        #[test]
+        fn no_text_breaks_the_reader(text in "[-0-9,|.eE infNa~_?@+]{0,60}") {
+            if let Ok(positions) = lat_lng().positions(&text, 8) {
+                prop_assert!(positions.len() <= 8 && positions.iter().all(|at| at.is_finite()));
+            }
+        }
+    }
+}

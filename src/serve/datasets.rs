@@ -1,0 +1,107 @@
+//! The datasets that are served, by name.
+//!
+//! They are opened when the service starts and never again: no request reaches the disk. Their ground in meters, for
+//! which an elevation file in degrees must be warped, is made in the background; a query for it waits.
+
+use std::sync::Arc;
+
+use crate::pipeline::dataset::{Dataset, OpenError};
+use crate::pipeline::error::error_text;
+use crate::pipeline::service::{NamedFile, ServiceOptions};
+use crate::serve::reply::{HttpError, quoted};
+use crate::terrain::query::service::Snapshot;
+
+/// A dataset and its name.
+pub struct ServedDataset {
+    /// The name in requests.
+    pub name: String,
+    /// The dataset.
+    pub dataset: Dataset,
+}
+
+impl ServedDataset {
+    /// The ground as it is now; waits where it is being made.
+    ///
+    /// # Errors
+    /// The dataset has no ground in meters.
+    pub fn snapshot(&self) -> Result<Arc<Snapshot>, HttpError> {
+        let service = self.dataset.service().map_err(|error| {
+            let (name, reason) = (quoted(&self.name), error_text(&error));
+            HttpError::wrong(format!("dataset {name} has no ground in meters: {reason}"))
+        })?;
+        Ok(service.snapshot())
+    }
+}
+
+/// All datasets, in the order in which they were named; at least one.
+pub struct Datasets(Vec<ServedDataset>);
+
+impl Datasets {
+    /// Opens all datasets of a service.
+    ///
+    /// # Errors
+    /// One cannot be opened.
+    pub fn open(options: &ServiceOptions) -> Result<Self, OpenError> {
+        let open = |file: &NamedFile| {
+            let dataset = Dataset::open(file.path(), &options.dataset)?;
+            let warn = |warning: &str| (options.write_line)(&format!("warning: {warning}"));
+            dataset.warning().into_iter().for_each(warn);
+            Ok(ServedDataset { name: file.name().to_owned(), dataset })
+        };
+        options.datasets.iter().map(open).collect::<Result<_, _>>().map(Self)
+    }
+
+    /// All datasets.
+    pub fn all(&self) -> &[ServedDataset] {
+        &self.0
+    }
+
+    /// The dataset at an index.
+    pub fn at(&self, index: usize) -> &ServedDataset {
+        &self.0[index]
+    }
+
+    fn find(&self, name: &str) -> Result<usize, HttpError> {
+        self.0.iter().position(|served| served.name == name).ok_or_else(|| {
+            HttpError::unknown(format!("there is no dataset {}; there are {}", quoted(name), self.names()))
+        })
+    }
+
+    /// The indices of the datasets in a list of names with commas between.
+    ///
+    /// # Errors
+    /// There is no such dataset, or one is named twice.
+    pub fn find_all(&self, list: &str) -> Result<Vec<usize>, HttpError> {
+        let mut indices = Vec::new();
+        for name in list.split(',') {
+            let index = self.find(name)?;
+            if indices.contains(&index) {
+                return Err(HttpError::wrong(format!("dataset {} is named twice", quoted(name))));
+            }
+            indices.push(index);
+        }
+        Ok(indices)
+    }
+
+    /// The index of the dataset `name`, which may be missing where only one is served.
+    ///
+    /// # Errors
+    /// There is no such dataset, or none is named and several are served.
+    pub fn find_one(&self, name: Option<&str>) -> Result<usize, HttpError> {
+        match name {
+            Some(name) => self.find(name),
+            None if self.0.len() == 1 => Ok(0),
+            None => Err(HttpError::wrong(format!(
+                "'dataset' is missing; write it as in dataset={}, there are {}",
+                self.0[0].name,
+                self.names()
+            ))),
+        }
+    }
+
+    /// All names, for a message.
+    pub fn names(&self) -> String {
+        let names: Vec<&str> = self.0.iter().map(|served| served.name.as_str()).collect();
+        names.join(", ")
+    }
+}

@@ -1,0 +1,327 @@
+//! `/v1/DATASET`: heights at locations, compatible with the Open Topo Data API.
+//!
+//! What that API documents is answered as it documents it: `locations` as `lat,lng|lat,lng` or as an encoded polyline,
+//! `interpolation`, `samples` along the path of the locations, `nodata_value`, `format=json|geojson`, several datasets
+//! `a,b` of which the first with a height answers. Parameters that it does not have are ignored, as it does. Beyond it:
+//!
+//! | | |
+//! |---|---|
+//! | `status` per result | `Ok`, `NoData` or `Outside`: a hole is not the edge of the model |
+//! | `surface` | `source` (as read), `ground` (after earthworks), `scene` (decks on top); the default is the source of a file and the ground of a scene |
+//! | `interpolation` | also `planar` and `distance-weighted`; `cubic` is refused |
+//! | `crs` | coordinates in another system; see [`coordinates`](crate::serve::coordinates) |
+
+use std::io;
+
+use axum::http::header::CONTENT_TYPE;
+use axum::response::{IntoResponse, Response};
+use glam::DVec2;
+use serde::Serialize;
+use serde_json::Serializer;
+use serde_json::ser::Formatter;
+
+use crate::dem::answer::Answer;
+use crate::serve::coordinates::{Coordinates, Location};
+use crate::serve::datasets::ServedDataset;
+use crate::serve::parameters::Parameters;
+use crate::serve::query::{Query, QueryWeight, Service};
+use crate::serve::reply::{HttpError, JsonArray, OK, quoted};
+use crate::serve::samples::along_path;
+use crate::terrain::query::{Interpolation, Surface};
+
+/// The most points that are answered on the thread that read the request: some tens of microseconds. Handing more to
+/// another thread takes two switches between threads, about as long.
+const LIGHT_POINTS: usize = 1000;
+
+/// About the bytes of a result in JSON.
+const RESULT_BYTES: usize = 128;
+
+/// Heights at locations.
+pub struct HeightsQuery {
+    datasets: Vec<usize>,
+    coordinates: Coordinates,
+    positions: Vec<DVec2>,
+    /// The default surface of each dataset where `None`.
+    surface: Option<Surface>,
+    interpolation: Interpolation,
+    missing: MissingHeight,
+    format: HeightsFormat,
+}
+
+/// The elevation of a result that has none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum MissingHeight {
+    Null,
+    /// `NaN`, which JavaScript and Python read although JSON does not have it.
+    Nan,
+    Number(f64),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum HeightsFormat {
+    Json,
+    /// RFC 7946.
+    GeoJson,
+}
+
+impl Query for HeightsQuery {
+    fn read(service: &Service, datasets: &str, parameters: &Parameters) -> Result<Self, HttpError> {
+        let datasets = service.datasets.find_all(datasets)?;
+        let most = service.limits.max_points as usize;
+        let surface = parameters.choice("surface")?;
+        let interpolation = interpolation(parameters)?;
+        let formats = [("json", HeightsFormat::Json), ("geojson", HeightsFormat::GeoJson)];
+        let format = parameters.word("format", formats)?.unwrap_or(HeightsFormat::Json);
+        let missing = missing(parameters)?;
+        let coordinates = coordinates(service, parameters, &datasets)?;
+        if format == HeightsFormat::GeoJson && coordinates.crs != service.wgs84 {
+            return Err(HttpError::wrong(
+                "format=geojson holds WGS 84 only (RFC 7946); leave crs out, or ask for format=json",
+            ));
+        }
+        let text = parameters.required("locations", "46.2,-122.19|46.21,-122.2")?;
+        let vertices = coordinates.positions(text, most)?;
+        let positions = match parameters.get("samples") {
+            None => vertices,
+            Some(count) => samples(&coordinates, &vertices, count, most)?,
+        };
+        Ok(Self { datasets, coordinates, positions, surface, interpolation, missing, format })
+    }
+
+    fn weight(&self, service: &Service) -> QueryWeight {
+        let is_made = self.datasets.iter().map(|&index| service.datasets.at(index)).all(|served| {
+            self.surface_of(served) == Surface::Source || served.dataset.service_if_made().is_some()
+        });
+        if is_made && self.positions.len() <= LIGHT_POINTS { QueryWeight::Light } else { QueryWeight::Heavy }
+    }
+
+    fn answer(self, service: &Service) -> Result<Response, HttpError> {
+        let heights = self.heights(service)?;
+        let results = heights.iter().zip(&self.positions);
+        let dataset = |found: &FoundHeight| service.datasets.at(found.dataset).name.as_str();
+        Ok(match self.format {
+            HeightsFormat::Json => self.serialized(
+                "application/json",
+                &HeightResults {
+                    results: JsonArray(results.map(|(found, &at)| HeightResult {
+                        elevation: self.elevation(found.answer),
+                        location: self.coordinates.location(at),
+                        dataset: dataset(found),
+                        status: found.answer.status(),
+                    })),
+                    status: OK,
+                },
+            ),
+            HeightsFormat::GeoJson => self.serialized(
+                "application/geo+json",
+                &FeatureCollection {
+                    kind: "FeatureCollection",
+                    features: JsonArray(results.map(|(found, &at)| HeightFeature {
+                        kind: "Feature",
+                        geometry: PointGeometry {
+                            kind: "Point",
+                            coordinates: self.geojson_position(found.answer, at),
+                        },
+                        properties: FeatureProperties {
+                            status: found.answer.status(),
+                            dataset: dataset(found),
+                        },
+                    })),
+                },
+            ),
+        })
+    }
+}
+
+fn interpolation(parameters: &Parameters) -> Result<Interpolation, HttpError> {
+    if parameters.get("interpolation") == Some("cubic") {
+        return Err(HttpError::wrong(
+            "interpolation=cubic is not offered: it makes heights above and below all posts around; \
+             there are planar, bilinear, nearest and distance-weighted",
+        ));
+    }
+    Ok(parameters.choice("interpolation")?.unwrap_or_default())
+}
+
+fn missing(parameters: &Parameters) -> Result<MissingHeight, HttpError> {
+    match parameters.get("nodata_value") {
+        None | Some("null") => Ok(MissingHeight::Null),
+        Some(nan) if nan.eq_ignore_ascii_case("nan") => Ok(MissingHeight::Nan),
+        Some(text) => match text.trim().parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(MissingHeight::Number(value)),
+            _ => Err(HttpError::wrong(format!(
+                "nodata_value is {}; write null, nan or a number such as -9999",
+                quoted(text)
+            ))),
+        },
+    }
+}
+
+/// The coordinates of the request, which must have a transform to every dataset.
+fn coordinates(
+    service: &Service,
+    parameters: &Parameters,
+    datasets: &[usize],
+) -> Result<Coordinates, HttpError> {
+    let read = |&index: &usize| {
+        let native = service.datasets.at(index).dataset.crs();
+        Coordinates::read(parameters, &native, &service.wgs84)
+    };
+    let all = datasets.iter().map(read).collect::<Result<Vec<_>, _>>()?;
+    if all.iter().any(|coordinates| coordinates.crs != all[0].crs) {
+        return Err(HttpError::wrong("crs=native needs datasets of one and the same system; write EPSG:n"));
+    }
+    all.into_iter().next().ok_or_else(|| HttpError::unknown("no dataset is named"))
+}
+
+fn samples(
+    coordinates: &Coordinates,
+    vertices: &[DVec2],
+    count: &str,
+    most: usize,
+) -> Result<Vec<DVec2>, HttpError> {
+    let parsed = count.trim().parse::<usize>().ok().filter(|count| (2..=most).contains(count));
+    let count = parsed.ok_or_else(|| {
+        HttpError::wrong(format!("samples is {}; write a number from 2 to {most}", quoted(count)))
+    })?;
+    if vertices.len() < 2 {
+        return Err(HttpError::wrong("samples lie along a path, which needs two locations or more"));
+    }
+    Ok(along_path(coordinates.axes, vertices, count))
+}
+
+/// An answer, and the index of the dataset that gave it.
+#[derive(Clone, Copy)]
+struct FoundHeight {
+    answer: Answer,
+    dataset: usize,
+}
+
+/// Orders answers by how much they say.
+fn rank(answer: Answer) -> u8 {
+    match answer {
+        Answer::Outside => 0,
+        Answer::NoData => 1,
+        Answer::Height(_) => 2,
+    }
+}
+
+impl HeightsQuery {
+    fn surface_of(&self, served: &ServedDataset) -> Surface {
+        self.surface.unwrap_or_else(|| served.dataset.default_surface())
+    }
+
+    /// For each position the height of the first dataset that has one; where none has, the answer of the first dataset
+    /// that holds the position; where none does, that of the first.
+    fn heights(&self, service: &Service) -> Result<Vec<FoundHeight>, HttpError> {
+        let first = self.datasets[0];
+        let answers = self.answers(service, first, &self.positions)?;
+        let mut heights: Vec<FoundHeight> =
+            answers.into_iter().map(|answer| FoundHeight { answer, dataset: first }).collect();
+        for &dataset in &self.datasets[1..] {
+            let open: Vec<usize> =
+                (0..heights.len()).filter(|&index| heights[index].answer.height_m().is_none()).collect();
+            let positions: Vec<DVec2> = open.iter().map(|&index| self.positions[index]).collect();
+            for (index, answer) in open.into_iter().zip(self.answers(service, dataset, &positions)?) {
+                if rank(answer) > rank(heights[index].answer) {
+                    heights[index] = FoundHeight { answer, dataset };
+                }
+            }
+        }
+        Ok(heights)
+    }
+
+    fn answers(&self, service: &Service, index: usize, at: &[DVec2]) -> Result<Vec<Answer>, HttpError> {
+        let served = service.datasets.at(index);
+        let surface = self.surface_of(served);
+        if surface != Surface::Source {
+            // Waits for the ground, and says why there is none.
+            served.snapshot()?;
+        }
+        Ok(served.dataset.heights(surface, self.interpolation, &self.coordinates.crs, at)?)
+    }
+
+    fn elevation(&self, answer: Answer) -> Option<f64> {
+        answer.height_m().or(match self.missing {
+            MissingHeight::Number(value) => Some(value),
+            MissingHeight::Null | MissingHeight::Nan => None,
+        })
+    }
+
+    /// A position without a height has two coordinates: GeoJSON has neither null nor NaN there.
+    fn geojson_position(&self, answer: Answer, DVec2 { x, y }: DVec2) -> GeoJsonPosition {
+        match self.elevation(answer) {
+            Some(height) => GeoJsonPosition::Space([x, y, height]),
+            None => GeoJsonPosition::Plane([x, y]),
+        }
+    }
+
+    fn serialized(&self, content_type: &'static str, body: &impl Serialize) -> Response {
+        let mut bytes = Vec::with_capacity(64 + self.positions.len() * RESULT_BYTES);
+        let nulls =
+            HeightsFormatter { null: if self.missing == MissingHeight::Nan { b"NaN" } else { b"null" } };
+        body.serialize(&mut Serializer::with_formatter(&mut bytes, nulls))
+            .expect("memory takes every byte, and every key is a string");
+        ([(CONTENT_TYPE, content_type)], bytes).into_response()
+    }
+}
+
+/// Compact JSON with another word for null, which only elevations can be.
+struct HeightsFormatter {
+    null: &'static [u8],
+}
+
+impl Formatter for HeightsFormatter {
+    fn write_null<W: io::Write + ?Sized>(&mut self, out: &mut W) -> io::Result<()> {
+        out.write_all(self.null)
+    }
+}
+
+#[derive(Serialize)]
+struct HeightResults<R> {
+    results: R,
+    status: &'static str,
+}
+
+#[derive(Serialize)]
+struct HeightResult<'a> {
+    elevation: Option<f64>,
+    location: Location,
+    dataset: &'a str,
+    status: &'static str,
+}
+
+#[derive(Serialize)]
+struct FeatureCollection<F> {
+    #[serde(rename = "type")]
+    kind: &'static str,
+    features: F,
+}
+
+#[derive(Serialize)]
+struct HeightFeature<'a> {
+    #[serde(rename = "type")]
+    kind: &'static str,
+    geometry: PointGeometry,
+    properties: FeatureProperties<'a>,
+}
+
+#[derive(Serialize)]
+struct PointGeometry {
+    #[serde(rename = "type")]
+    kind: &'static str,
+    coordinates: GeoJsonPosition,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum GeoJsonPosition {
+    Plane([f64; 2]),
+    Space([f64; 3]),
+}
+
+#[derive(Serialize)]
+struct FeatureProperties<'a> {
+    status: &'static str,
+    dataset: &'a str,
+}

@@ -1,0 +1,240 @@
+//! Connections: how many are open, and how long a silent one stays open.
+//!
+//! A client that sends its request a byte a minute, or never takes its answer, must not hold a connection forever
+//! (*slowloris*). Neither `axum` nor `tower-http` sees the bytes of a head or the sockets, so they are watched here. A
+//! connection is always in one of three phases:
+//!
+//! ```text
+//!          first byte              blank line                  first byte of the answer
+//! Quiet ───────────────► Head ─────────────────► Busy ─────────────────────────────► Quiet
+//! 60 s                   10 s                    no limit here
+//! ```
+//!
+//! A quiet connection waits for its next request, or its client still takes the last answer; both count from the first
+//! byte of the answer. While a request is busy, [`parameters`](crate::serve::parameters) limits its body and
+//! [`router`](crate::serve::router) its answer.
+
+use std::io;
+use std::net::SocketAddr;
+use std::pin::Pin;
+use std::sync::Arc;
+use std::task::{Context, Poll};
+use std::time::Duration;
+
+use axum::serve::Listener;
+use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::time::{Instant, Sleep};
+
+/// The limit of a quiet connection: a megabyte over a slow line, and a pause between requests.
+const QUIET: Duration = Duration::from_secs(60);
+
+/// The limit of a head, from its first byte on: a few packets.
+const HEAD: Duration = Duration::from_secs(10);
+
+/// The pause after the system gives no connection, mostly for too many open files.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// The answer to one connection too many.
+const FULL: &[u8] =
+    b"HTTP/1.1 503 Service Unavailable\r\ncontent-type: application/json\r\nretry-after: 1\r\n\
+    connection: close\r\ncontent-length: 72\r\n\r\n\
+    {\"status\":\"SERVER_ERROR\",\"error\":\"too many open connections; try again\"}";
+
+/// Accepts connections, as many as may be open.
+pub struct Gate {
+    listener: TcpListener,
+    permits: Arc<Semaphore>,
+}
+
+impl Gate {
+    /// Accepts at most `most` connections at a time; more are refused and closed.
+    pub fn new(listener: TcpListener, most: usize) -> Self {
+        Self { listener, permits: Arc::new(Semaphore::new(most)) }
+    }
+}
+
+impl Listener for Gate {
+    type Io = TimedStream;
+    type Addr = SocketAddr;
+
+    async fn accept(&mut self) -> (TimedStream, SocketAddr) {
+        use io::ErrorKind::{ConnectionAborted, ConnectionRefused, ConnectionReset};
+        loop {
+            match self.listener.accept().await {
+                Ok((stream, from)) => match Arc::clone(&self.permits).try_acquire_owned() {
+                    Ok(permit) => return (TimedStream::new(stream, permit), from),
+                    // Does not wait for a client that does not read.
+                    Err(_) => drop(stream.try_write(FULL)),
+                },
+                // The error of one connection, which is gone.
+                Err(error)
+                    if matches!(error.kind(), ConnectionAborted | ConnectionRefused | ConnectionReset) => {}
+                Err(_) => tokio::time::sleep(PAUSE).await,
+            }
+        }
+    }
+
+    fn local_addr(&self) -> io::Result<SocketAddr> {
+        self.listener.local_addr()
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum ConnectionPhase {
+    Quiet,
+    Head(BlankLine),
+    Busy,
+}
+
+/// A connection that is closed where its client takes too long.
+pub struct TimedStream {
+    stream: TcpStream,
+    phase: ConnectionPhase,
+    /// The end of the phase; not looked at while busy.
+    end: Instant,
+    alarm: Pin<Box<Sleep>>,
+    _permit: OwnedSemaphorePermit,
+}
+
+impl TimedStream {
+    fn new(stream: TcpStream, permit: OwnedSemaphorePermit) -> Self {
+        // An answer is written at once; waiting to fill a packet would only delay it.
+        let _ = stream.set_nodelay(true);
+        let end = Instant::now() + QUIET;
+        let alarm = Box::pin(tokio::time::sleep_until(end));
+        Self { stream, phase: ConnectionPhase::Quiet, end, alarm, _permit: permit }
+    }
+
+    fn received(&mut self, bytes: &[u8]) {
+        let mut blank = match self.phase {
+            ConnectionPhase::Busy => return,
+            ConnectionPhase::Head(blank) => blank,
+            ConnectionPhase::Quiet => {
+                self.end = Instant::now() + HEAD;
+                BlankLine::default()
+            }
+        };
+        let ends = blank.ends_in(bytes);
+        self.phase = if ends { ConnectionPhase::Busy } else { ConnectionPhase::Head(blank) };
+    }
+
+    fn sent(&mut self, bytes: &[u8]) {
+        // "100 Continue" is no answer yet.
+        if self.phase != ConnectionPhase::Quiet && !bytes.starts_with(b"HTTP/1.1 100") {
+            self.phase = ConnectionPhase::Quiet;
+            self.end = Instant::now() + QUIET;
+        }
+    }
+
+    /// Fails where the client has taken too long; else wakes the task when it has.
+    fn poll_end<T>(&mut self, context: &mut Context<'_>) -> Poll<io::Result<T>> {
+        if self.phase == ConnectionPhase::Busy {
+            return Poll::Pending;
+        }
+        if self.alarm.deadline() != self.end {
+            self.alarm.as_mut().reset(self.end);
+        }
+        self.alarm.as_mut().poll(context).map(|()| Err(io::ErrorKind::TimedOut.into()))
+    }
+}
+
+impl AsyncRead for TimedStream {
+    fn poll_read(
+        self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        into: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
+        let this = self.get_mut();
+        let before = into.filled().len();
+        match Pin::new(&mut this.stream).poll_read(context, into) {
+            Poll::Pending => this.poll_end(context),
+            done => {
+                let bytes = &into.filled()[before..];
+                if !bytes.is_empty() {
+                    this.received(bytes);
+                }
+                done
+            }
+        }
+    }
+}
+
+impl AsyncWrite for TimedStream {
+    fn poll_write(self: Pin<&mut Self>, context: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
+        self.poll_write_vectored(context, &[io::IoSlice::new(bytes)])
+    }
+
+    fn poll_write_vectored(
+        self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        parts: &[io::IoSlice<'_>],
+    ) -> Poll<io::Result<usize>> {
+        let this = self.get_mut();
+        this.sent(parts.first().map_or(&[], |part| part));
+        match Pin::new(&mut this.stream).poll_write_vectored(context, parts) {
+            Poll::Pending => this.poll_end(context),
+            done => done,
+        }
+    }
+
+    fn is_write_vectored(&self) -> bool {
+        self.stream.is_write_vectored()
+    }
+
+    fn poll_flush(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.get_mut().stream).poll_flush(context)
+    }
+
+    fn poll_shutdown(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.get_mut().stream).poll_shutdown(context)
+    }
+}
+
+/// Finds the blank line that ends a head, in bytes that come in any pieces.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct BlankLine {
+    /// Whether the current line is empty but for a carriage return; false on the first line.
+    empty: bool,
+}
+
+impl BlankLine {
+    /// Whether a blank line ends in `bytes`.
+    fn ends_in(&mut self, bytes: &[u8]) -> bool {
+        for &byte in bytes {
+            match byte {
+                b'\n' if self.empty => return true,
+                b'\n' => self.empty = true,
+                b'\r' => {}
+                _ => self.empty = false,
+            }
+        }
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_blank_line_is_found_in_pieces_of_any_size() {
+        let head = b"GET / HTTP/1.1\r\nhost: a\r\n\r\n";
+        for size in 1..head.len() {
+            let mut blank = BlankLine::default();
+            let ends: Vec<bool> = head.chunks(size).map(|piece| blank.ends_in(piece)).collect();
+            let (last, others) = ends.split_last().expect("pieces");
+            assert!(*last && others.iter().all(|&end| !end), "{size}");
+        }
+        assert!(BlankLine::default().ends_in(b"GET / HTTP/1.1\n\n"), "bare line feeds are read too");
+        assert!(!BlankLine::default().ends_in(b"GET / HTTP/1.1\r\nhost: a\r\n"));
+    }
+
+    #[test]
+    fn the_refusal_of_a_connection_says_its_own_length() {
+        let text = std::str::from_utf8(FULL).expect("ASCII");
+        let (head, body) = text.split_once("\r\n\r\n").expect("a head");
+        assert!(head.contains(&format!("content-length: {}", body.len())), "{}", body.len());
+    }
+}

@@ -1,0 +1,170 @@
+//! The height service over HTTP.
+//!
+//! ```text
+//! listener      connections: how many, and how long a silent one is held
+//!    └─ router  requests: their address, their limits, the thread that answers them
+//!         ├─ parameters, coordinates, polyline, samples    reading
+//!         ├─ heights, los, profile, viewshed               the queries (`query` is what they share)
+//!         ├─ datasets                                      what is served
+//!         └─ reply, help, health                           writing
+//! ```
+//!
+//! Every answer comes from the [`Dataset`](crate::pipeline::dataset::Dataset) that the commands query, and is written so
+//! that it reads back to the same bits. No request names a file, and none leaves a trace in the service: what is served
+//! is fixed when the service starts.
+
+mod coordinates;
+mod datasets;
+mod health;
+mod heights;
+mod help;
+mod listener;
+mod los;
+mod parameters;
+mod polyline;
+mod profile;
+mod query;
+mod reply;
+mod router;
+mod samples;
+mod viewshed;
+
+use std::io;
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::net::TcpListener;
+use tokio::runtime::{Builder, Runtime};
+use tokio::sync::{Semaphore, oneshot};
+
+use crate::geom::crs::Crs;
+use crate::pipeline::dataset::OpenError;
+use crate::pipeline::service::ServiceOptions;
+use crate::serve::datasets::Datasets;
+use crate::serve::listener::Gate;
+use crate::serve::query::Service;
+
+/// A service that cannot start or cannot go on.
+#[derive(Debug, thiserror::Error)]
+pub enum ServeError {
+    /// No threads.
+    #[error("threads cannot be started")]
+    Threads(#[source] io::Error),
+    /// The address cannot be listened at.
+    #[error("{address}")]
+    Listen {
+        /// The address.
+        address: SocketAddr,
+        /// Why.
+        source: io::Error,
+    },
+    /// A dataset cannot be opened.
+    #[error(transparent)]
+    Open(#[from] OpenError),
+}
+
+/// Serves until a signal ends it (SIGINT or SIGTERM).
+///
+/// # Errors
+/// See [`ServeError`].
+pub fn run(options: &ServiceOptions) -> Result<(), ServeError> {
+    let at_address = |source| ServeError::Listen { address: options.listen, source };
+    let runtime = runtime().map_err(ServeError::Threads)?;
+    // First of all, so that an address in use is reported at once and not after minutes of reading.
+    let listener = runtime.block_on(TcpListener::bind(options.listen)).map_err(at_address)?;
+    let service = Arc::new(Service {
+        datasets: Datasets::open(options)?,
+        limits: options.limits,
+        wgs84: Crs::wgs84(),
+        requests: Arc::new(Semaphore::new(options.limits.max_requests as usize)),
+        viewsheds: Semaphore::new(viewsheds_at_once()),
+        log: options.log,
+        write_line: options.write_line,
+    });
+    prepare(&service);
+    let served = runtime.block_on(serve(listener, &service));
+    runtime.shutdown_background();
+    served.map_err(at_address)
+}
+
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// A viewshed runs on all cores; with a few at once, a small one passes a large one.
+fn viewsheds_at_once() -> usize {
+    (cores() / 2).clamp(1, 4)
+}
+
+/// A runtime with a listening thread for each core, and as many threads for heavy queries that all viewsheds leave one
+/// for each core.
+fn runtime() -> io::Result<Runtime> {
+    Builder::new_multi_thread().enable_all().max_blocking_threads(cores() + viewsheds_at_once()).build()
+}
+
+/// Makes the ground of every dataset in the background; queries for elevations as read are answered meanwhile.
+fn prepare(service: &Arc<Service>) {
+    let service = Arc::clone(service);
+    let work = move || service.datasets.all().iter().for_each(|served| drop(served.dataset.service()));
+    // Without this thread, the first query for the ground makes it.
+    let _ = std::thread::Builder::new().name("ground".into()).spawn(work);
+}
+
+/// Serves until the first signal. Then takes no more connections and waits for the last answers: at most the grace time,
+/// or until a second signal.
+async fn serve(listener: TcpListener, service: &Arc<Service>) -> io::Result<()> {
+    let gate = Gate::new(listener, service.limits.max_connections as usize);
+    let address = axum::serve::Listener::local_addr(&gate)?;
+    let mut signals = StopSignals::listen()?;
+    (service.write_line)(&format!("listening at http://{address}: {}", service.datasets.names()));
+    let (stop, stopped) = oneshot::channel::<()>();
+    let serving = axum::serve(gate, router::router(Arc::clone(service))).with_graceful_shutdown(async {
+        let _ = stopped.await;
+    });
+    let grace = Duration::from_secs(service.limits.grace_s.into());
+    let cut_short = async {
+        signals.next().await;
+        let _ = stop.send(());
+        let _ = tokio::time::timeout(grace, signals.next()).await;
+    };
+    tokio::select! {
+        ended = serving => ended,
+        () = cut_short => Ok(()),
+    }
+}
+
+/// The signals that end the program, from the moment of its creation.
+struct StopSignals {
+    #[cfg(unix)]
+    interrupt: tokio::signal::unix::Signal,
+    #[cfg(unix)]
+    terminate: tokio::signal::unix::Signal,
+}
+
+impl StopSignals {
+    #[cfg(unix)]
+    fn listen() -> io::Result<Self> {
+        use tokio::signal::unix::{SignalKind, signal};
+        let (interrupt, terminate) = (signal(SignalKind::interrupt())?, signal(SignalKind::terminate())?);
+        Ok(Self { interrupt, terminate })
+    }
+
+    #[cfg(unix)]
+    async fn next(&mut self) {
+        tokio::select! {
+            _ = self.interrupt.recv() => {}
+            _ = self.terminate.recv() => {}
+        }
+    }
+
+    #[cfg(not(unix))]
+    fn listen() -> io::Result<Self> {
+        Ok(Self {})
+    }
+
+    #[cfg(not(unix))]
+    async fn next(&mut self) {
+        let _ = tokio::signal::ctrl_c().await;
+    }
+}

@@ -1,0 +1,301 @@
+//! The parameters of a request: from its query and from a body that is a form or a JSON object.
+//!
+//! A JSON object holds the same names as a form. Its values may be strings, numbers, and lists of strings, which mean the
+//! strings with `|` between. A later value replaces an earlier one, and the body those of the query.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::Json;
+use axum::body::{Body, Bytes, to_bytes};
+use axum::extract::{Form, FromRequest, Query, Request};
+use axum::http::header::{CONTENT_ENCODING, CONTENT_LENGTH, CONTENT_TYPE};
+use axum::http::{HeaderMap, HeaderValue, Method, StatusCode};
+use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
+
+use crate::pipeline::choice::Choice;
+use crate::pipeline::service::ServiceLimits;
+use crate::serve::query::Service;
+use crate::serve::reply::{HttpError, quoted};
+
+/// The most parameters: no query has as many.
+const MOST: usize = 32;
+
+/// The longest path and query of a request, in bytes. HTTP itself refuses 65,535 bytes without a reason; this leaves
+/// space to give one.
+const LONGEST_URL: usize = 60_000;
+
+const FORM: &str = "application/x-www-form-urlencoded";
+
+/// Named values.
+#[derive(Debug, Default)]
+pub struct Parameters(BTreeMap<String, String>);
+
+/// A value of a form or of a JSON object.
+#[derive(serde::Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected a string, a number, or a list of strings such as [\"56,123\", \"57,124\"]"
+)]
+enum ParameterValue {
+    Text(String),
+    Number(serde_json::Number),
+    List(Vec<String>),
+    Null(()),
+}
+
+impl ParameterValue {
+    fn text(self) -> Option<String> {
+        match self {
+            Self::Text(text) => Some(text),
+            Self::Number(number) => Some(number.to_string()),
+            Self::List(items) => Some(items.join("|")),
+            Self::Null(()) => None,
+        }
+    }
+}
+
+struct ParametersVisitor;
+
+impl<'de> Visitor<'de> for ParametersVisitor {
+    type Value = Parameters;
+
+    fn expecting(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str("an object of parameters")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Parameters, A::Error> {
+        let mut parameters = BTreeMap::new();
+        while let Some((name, value)) = map.next_entry::<String, ParameterValue>()? {
+            parameters.extend(value.text().map(|value| (name, value)));
+            if parameters.len() > MOST {
+                return Err(A::Error::custom(format!("there are more than {MOST} parameters")));
+            }
+        }
+        Ok(Parameters(parameters))
+    }
+}
+
+impl<'de> Deserialize<'de> for Parameters {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(ParametersVisitor)
+    }
+}
+
+impl FromRequest<Arc<Service>> for Parameters {
+    type Rejection = HttpError;
+
+    async fn from_request(request: Request, service: &Arc<Service>) -> Result<Self, HttpError> {
+        let length = request.uri().path_and_query().map_or(0, |whole| whole.as_str().len());
+        if length > LONGEST_URL {
+            let reason = format!(
+                "the address is {length} bytes long, {LONGEST_URL} are the most; send the parameters in the body of a POST"
+            );
+            return Err(HttpError::new(StatusCode::URI_TOO_LONG, reason));
+        }
+        let query = Query::<Self>::try_from_uri(request.uri());
+        let Query(mut parameters) = query.map_err(|rejection| HttpError::wrong(rejection.body_text()))?;
+        if request.method() == Method::POST {
+            let is_json = is_json(request.headers())?;
+            let body = read_body(request, &service.limits).await?;
+            parameters.0.append(&mut Self::from_body(body, is_json).await?.0);
+        }
+        Ok(parameters)
+    }
+}
+
+impl Parameters {
+    /// Reads a body. One that is not declared as JSON or as a form is JSON where it begins with a brace.
+    async fn from_body(mut body: Bytes, is_json: Option<bool>) -> Result<Self, HttpError> {
+        if is_json.unwrap_or_else(|| body.trim_ascii_start().starts_with(b"{")) {
+            let json = Json::<Self>::from_bytes(&body);
+            return json
+                .map(|Json(parameters)| parameters)
+                .map_err(|rejection| HttpError::wrong(rejection.body_text()));
+        }
+        body.truncate(body.trim_ascii_end().len());
+        let mut request = Request::new(Body::from(body));
+        *request.method_mut() = Method::POST;
+        request.headers_mut().insert(CONTENT_TYPE, HeaderValue::from_static(FORM));
+        let form = Form::<Self>::from_request(request, &()).await;
+        form.map(|Form(parameters)| parameters).map_err(|rejection| HttpError::wrong(rejection.body_text()))
+    }
+
+    /// The bytes of all values.
+    pub fn len(&self) -> usize {
+        self.0.values().map(String::len).sum()
+    }
+
+    /// The value of a parameter.
+    pub fn get(&self, name: &str) -> Option<&str> {
+        self.0.get(name).map(String::as_str)
+    }
+
+    /// The value of a parameter that is needed.
+    ///
+    /// # Errors
+    /// It is missing; `example` shows how it is written.
+    pub fn required(&self, name: &str, example: &str) -> Result<&str, HttpError> {
+        self.get(name)
+            .filter(|value| !value.is_empty())
+            .ok_or_else(|| HttpError::wrong(format!("'{name}' is missing; write it as in {name}={example}")))
+    }
+
+    /// A finite number in `range`; `default` where the parameter is missing.
+    ///
+    /// # Errors
+    /// It is something else.
+    pub fn number(&self, name: &str, range: RangeInclusive<f64>, default: f64) -> Result<f64, HttpError> {
+        let Some(text) = self.get(name) else { return Ok(default) };
+        text.trim().parse().ok().filter(|value| range.contains(value)).ok_or_else(|| {
+            let (found, least, most) = (quoted(text), range.start(), range.end());
+            HttpError::wrong(format!("{name} is {found}; write a number from {least} to {most}"))
+        })
+    }
+
+    /// The value of a [`Choice`]; `None` where the parameter is missing.
+    ///
+    /// # Errors
+    /// The word is none of its words.
+    pub fn choice<T: Choice>(&self, name: &str) -> Result<Option<T>, HttpError> {
+        self.word(name, T::CHOICES.iter().map(|choice| (choice.word, choice.value)))
+    }
+
+    /// The value that a word names; `None` where the parameter is missing.
+    ///
+    /// # Errors
+    /// The word is none of `words`.
+    pub fn word<T>(
+        &self,
+        name: &str,
+        words: impl IntoIterator<Item = (&'static str, T)>,
+    ) -> Result<Option<T>, HttpError> {
+        let Some(text) = self.get(name) else { return Ok(None) };
+        let mut known = Vec::new();
+        for (word, value) in words {
+            if word == text {
+                return Ok(Some(value));
+            }
+            known.push(word);
+        }
+        Err(HttpError::wrong(format!("{name} is {}; there are {}", quoted(text), known.join(", "))))
+    }
+
+    /// Refuses parameters that are not in `known`: a misspelled one would be ignored.
+    ///
+    /// # Errors
+    /// There is one.
+    pub fn allow_only(&self, known: &[&str]) -> Result<(), HttpError> {
+        match self.0.keys().find(|name| !known.contains(&name.as_str())) {
+            None => Ok(()),
+            Some(name) => {
+                let known = known.join(", ");
+                Err(HttpError::wrong(format!("there is no parameter {}; there are {known}", quoted(name))))
+            }
+        }
+    }
+}
+
+/// Whether the headers declare a body as JSON (`true`) or as a form (`false`); `None` where they declare neither.
+fn is_json(headers: &HeaderMap) -> Result<Option<bool>, HttpError> {
+    let refused = |what: &str, found: &HeaderValue, remedy: &str| {
+        let found = quoted(&String::from_utf8_lossy(found.as_bytes()));
+        HttpError::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, format!("the {what} is {found}; {remedy}"))
+            .closing()
+    };
+    if let Some(coding) = headers.get(CONTENT_ENCODING).filter(|coding| *coding != "identity") {
+        return Err(refused("content encoding", coding, "send the body as it is"));
+    }
+    let Some(found) = headers.get(CONTENT_TYPE) else { return Ok(None) };
+    let named = found.to_str().unwrap_or_default().split(';').next().unwrap_or_default().trim();
+    match named.to_ascii_lowercase().as_str() {
+        "application/json" => Ok(Some(true)),
+        FORM => Ok(Some(false)),
+        _ => Err(refused("content type", found, &format!("send application/json or {FORM}"))),
+    }
+}
+
+/// The whole body, within the limits of size and time.
+async fn read_body(request: Request, limits: &ServiceLimits) -> Result<Bytes, HttpError> {
+    // 128 bytes a point hold both coordinates at full precision with the quotes and escapes of any notation.
+    let most = limits.max_points as usize * 128 + 65_536;
+    let too_long = || {
+        let reason = format!("the body is longer than {most} bytes, the most of one request; ask in parts");
+        HttpError::new(StatusCode::PAYLOAD_TOO_LARGE, reason).closing()
+    };
+    let stated = request.headers().get(CONTENT_LENGTH).and_then(|length| length.to_str().ok()?.parse().ok());
+    if stated.is_some_and(|length: u64| length > most as u64) {
+        return Err(too_long());
+    }
+    let timeout = Duration::from_secs(limits.timeout_s.into());
+    match tokio::time::timeout(timeout, to_bytes(request.into_body(), most)).await {
+        Ok(Ok(bytes)) => Ok(bytes),
+        // Either the body exceeds the limit, or the client has left and reads no answer.
+        Ok(Err(_)) => Err(too_long()),
+        Err(_) => {
+            let reason = format!("the body did not arrive within {} s", limits.timeout_s);
+            Err(HttpError::new(StatusCode::REQUEST_TIMEOUT, reason).closing())
+        }
+    }
+}
+
+#[cfg(test)]
+pub(in crate::serve) mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn read(body: &[u8], is_json: bool) -> Result<Parameters, HttpError> {
+        let runtime = tokio::runtime::Builder::new_current_thread().build().expect("a thread");
+        runtime.block_on(Parameters::from_body(Bytes::copy_from_slice(body), Some(is_json)))
+    }
+
+    pub fn form(text: &str) -> Parameters {
+        read(text.as_bytes(), false).expect("sound")
+    }
+
+    #[test]
+    fn escapes_are_read_and_later_values_replace_earlier_ones() {
+        let parameters = form("locations=1%2C2%7C3,4&&a+b=c%20d&broken=100%&empty");
+        assert_eq!(parameters.get("locations"), Some("1,2|3,4"));
+        assert_eq!(parameters.get("a b"), Some("c d"));
+        assert_eq!((parameters.get("broken"), parameters.get("empty")), (Some("100%"), Some("")));
+        assert_eq!(form("a=1&a=2").get("a"), Some("2"));
+    }
+
+    #[test]
+    fn json_holds_the_same_as_a_form() {
+        let body = br#"{"locations": ["1,2", "3,4"], "samples": 7, "nodata_value": -9999.5, "format": null}"#;
+        let parameters = read(body, true).expect("sound");
+        assert_eq!(parameters.get("locations"), Some("1,2|3,4"));
+        assert_eq!((parameters.get("samples"), parameters.get("nodata_value")), (Some("7"), Some("-9999.5")));
+        assert_eq!(parameters.get("format"), None);
+        for wrong in ["", "[]", "{", "{\"a\":true}", "{\"a\":{}}", "{\"a\":[1]}", "{\"a\":[[]]}", "{} {}"] {
+            let refused = read(wrong.as_bytes(), true);
+            assert!(refused.is_err_and(|refusal| refusal.status() == 400), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn the_number_of_parameters_is_limited() {
+        let many: String = (0..100).map(|index| format!("p{index}=1&")).collect();
+        assert!(read(many.as_bytes(), false).is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn no_body_breaks_the_readers(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
+            let _ = read(&bytes, false);
+            let _ = read(&bytes, true);
+        }
+
+        #[test]
+        fn whatever_is_escaped_comes_back(text in "\\PC{0,40}") {
+            let escaped: String = text.bytes().map(|byte| format!("%{byte:02x}")).collect();
+            let parameters = form(&format!("a={escaped}"));
+            prop_assert_eq!(parameters.get("a"), Some(text.as_str()));
+        }
+    }
+}

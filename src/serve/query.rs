@@ -1,0 +1,131 @@
+//! What the queries share: the service, and how a query is read, weighed and answered.
+
+use std::sync::Arc;
+
+use axum::response::Response;
+use glam::DVec2;
+use tokio::sync::Semaphore;
+
+use crate::geom::crs::Crs;
+use crate::pipeline::service::{RequestLog, ServiceLimits};
+use crate::serve::coordinates::{Coordinates, Location};
+use crate::serve::datasets::{Datasets, ServedDataset};
+use crate::serve::parameters::Parameters;
+use crate::serve::reply::HttpError;
+use crate::terrain::query::service::Snapshot;
+use crate::terrain::sight::Curvature;
+
+/// Heights above the ground reach up to where aircraft fly, meters.
+const HIGHEST_M: f64 = 100_000.0;
+
+/// The default height of an observer's eye, as in GDAL's viewsheds.
+pub const OBSERVER_M: f64 = 2.0;
+
+/// The service, one for the whole program.
+pub struct Service {
+    /// The datasets.
+    pub datasets: Datasets,
+    /// How much a client may ask.
+    pub limits: ServiceLimits,
+    /// WGS 84, the system of most requests.
+    pub wgs84: Crs,
+    /// Permits for requests that are being answered.
+    pub requests: Arc<Semaphore>,
+    /// Permits for viewsheds that are being computed: each takes all cores and a byte a post.
+    pub viewsheds: Semaphore,
+    /// Whether requests are logged.
+    pub log: RequestLog,
+    /// Writes a line for the user.
+    pub write_line: fn(&str),
+}
+
+/// The thread that answers a query.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum QueryWeight {
+    /// The one that read it, within microseconds.
+    Light,
+    /// One that may take its time.
+    Heavy,
+}
+
+/// A query that an address names.
+pub trait Query: Sized + Send + 'static {
+    /// Reads it. `datasets` is what the address names after `/v1/`; empty for a query with its own address.
+    ///
+    /// # Errors
+    /// A parameter is missing, wrong, or exceeds a limit.
+    fn read(service: &Service, datasets: &str, parameters: &Parameters) -> Result<Self, HttpError>;
+
+    /// The thread that answers it. Heavy by default, since the ground may have to be made first.
+    fn weight(&self, _: &Service) -> QueryWeight {
+        QueryWeight::Heavy
+    }
+
+    /// Answers it.
+    ///
+    /// # Errors
+    /// The datasets have no answer.
+    fn answer(self, service: &Service) -> Result<Response, HttpError>;
+}
+
+/// The dataset of a query about its ground, and the coordinates of the request and its answer.
+pub struct GroundQuery {
+    /// The index of the dataset.
+    dataset: usize,
+    /// The coordinates.
+    pub coordinates: Coordinates,
+}
+
+impl GroundQuery {
+    /// Reads `dataset` and `crs`; refuses parameters other than these and `known`.
+    ///
+    /// # Errors
+    /// There is no such dataset, system or parameter, or no transform between the two systems.
+    pub fn read(service: &Service, parameters: &Parameters, known: &[&str]) -> Result<Self, HttpError> {
+        parameters.allow_only(&[&["dataset"][..], known, &["crs"]].concat())?;
+        let dataset = service.datasets.find_one(parameters.get("dataset"))?;
+        let native = service.datasets.at(dataset).dataset.crs();
+        let coordinates = Coordinates::read(parameters, &native, &service.wgs84)?;
+        Ok(Self { dataset, coordinates })
+    }
+
+    /// The dataset.
+    pub fn served<'s>(&self, service: &'s Service) -> &'s ServedDataset {
+        service.datasets.at(self.dataset)
+    }
+
+    /// A position of the request in the ground's system; `what` names it in messages.
+    ///
+    /// # Errors
+    /// It lies beyond what one of the systems covers.
+    pub fn to_ground(&self, what: &str, at: DVec2, ground: &Snapshot) -> Result<DVec2, HttpError> {
+        let transformed = self.coordinates.crs.transform(ground.crs(), at);
+        transformed.map_err(|error| HttpError::wrong(format!("{what}: {error}")))
+    }
+
+    /// A position on the ground as a location of the answer; not finite where the request's system has none.
+    pub fn location(&self, ground: &Snapshot, at: DVec2) -> Location {
+        let at = ground.crs().transform(&self.coordinates.crs, at).unwrap_or(DVec2::NAN);
+        self.coordinates.location(at)
+    }
+}
+
+/// Meters above the ground: the parameter `name`, or `default`.
+///
+/// # Errors
+/// It is not a number, or lies below the ground.
+pub fn above_m(parameters: &Parameters, name: &str, default: f64) -> Result<f64, HttpError> {
+    parameters.number(name, 0.0..=HIGHEST_M, default)
+}
+
+/// What `earth` and `refraction` state; without them, [`Curvature::default`].
+///
+/// # Errors
+/// `earth` is neither `round` nor `flat`, or the refraction is out of range.
+pub fn curvature(parameters: &Parameters) -> Result<Curvature, HttpError> {
+    let round = Curvature::default();
+    let refraction = parameters.number("refraction", -1.0..=1.0, round.refraction)?;
+    let round = Curvature { refraction, ..round };
+    let earth = parameters.word("earth", [("round", round), ("flat", Curvature::FLAT)])?;
+    Ok(earth.unwrap_or(round))
+}

@@ -1,0 +1,225 @@
+//! `/v1/viewshed`: which posts of the ground can be seen from a point.
+//!
+//! ```text
+//! {"dataset":"a","crs":"EPSG:32610","columns":41,"rows":41,
+//!  "south_west":{"x":561000.0,"y":5116000.0},"cell":{"x":30.0,"y":30.0},
+//!  "counts":{"visible":612,"hidden":733,"no_data":0,"beyond":336},"visible_area_m2":550800.0,
+//!  "runs":["14b13v14b", …],"status":"OK"}
+//! ```
+//!
+//! `runs` holds a string for each row of posts from the south, each row from the west: a count, and a letter for that
+//! many posts: `v` visible, `h` hidden, `n` no data, `b` beyond the range or out of the sector. The grid is the ground's,
+//! cut to the square around the range; `south_west` is the position of its first post. `format=summary` leaves `runs`
+//! out.
+
+use std::fmt::Write;
+
+use axum::Json;
+use axum::response::{IntoResponse, Response};
+use glam::DVec2;
+use serde::Serialize;
+
+use crate::serve::coordinates::Location;
+use crate::serve::parameters::Parameters;
+use crate::serve::query::{GroundQuery, OBSERVER_M, Query, Service, above_m, curvature};
+use crate::serve::reply::{HttpError, OK, quoted};
+use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::sight::line::SightEnd;
+use crate::terrain::sight::viewshed::{self, PostVisibility, Sector, Viewshed, ViewshedOptions};
+
+/// When to try again while other viewsheds are being computed, seconds.
+const RETRY_AFTER_S: u16 = 2;
+
+/// Which posts can be seen from a point.
+pub struct ViewshedQuery {
+    ground: GroundQuery,
+    /// The options, with the observer in the request's coordinates.
+    options: ViewshedOptions,
+    detail: ViewshedDetail,
+}
+
+/// How much of a viewshed is answered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ViewshedDetail {
+    /// Every post.
+    Runs,
+    /// The counts.
+    Summary,
+}
+
+const KNOWN: [&str; 8] =
+    ["observer", "observer_height", "target_height", "range", "sector", "refraction", "earth", "format"];
+
+#[derive(Serialize)]
+struct ViewshedAnswer<'a> {
+    dataset: &'a str,
+    crs: &'a str,
+    columns: u32,
+    rows: u32,
+    south_west: Location,
+    cell: Location,
+    counts: PostCounts,
+    visible_area_m2: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    runs: Option<Vec<String>>,
+    status: &'static str,
+}
+
+#[derive(Serialize)]
+struct PostCounts {
+    visible: usize,
+    hidden: usize,
+    no_data: usize,
+    beyond: usize,
+}
+
+impl Query for ViewshedQuery {
+    fn read(service: &Service, _: &str, parameters: &Parameters) -> Result<Self, HttpError> {
+        let ground = GroundQuery::read(service, parameters, &KNOWN)?;
+        let text = parameters.required("observer", "46.2,-122.19")?;
+        let at = ground.coordinates.position("observer", text)?;
+        let above = above_m(parameters, "observer_height", OBSERVER_M)?;
+        let options = ViewshedOptions {
+            observer: SightEnd { at, above_m: above },
+            target_above_m: above_m(parameters, "target_height", 0.0)?,
+            range_m: parameters.number("range", 0.0..=1e9, f64::INFINITY)?,
+            sector: sector(parameters.get("sector"))?,
+            curvature: curvature(parameters)?,
+        };
+        let details = [("runs", ViewshedDetail::Runs), ("summary", ViewshedDetail::Summary)];
+        let detail = parameters.word("format", details)?.unwrap_or(ViewshedDetail::Runs);
+        Ok(Self { ground, options, detail })
+    }
+
+    fn answer(self, service: &Service) -> Result<Response, HttpError> {
+        let _permit = service
+            .viewsheds
+            .try_acquire()
+            .map_err(|_| HttpError::busy(RETRY_AFTER_S, "other viewsheds are being computed; try again"))?;
+        let served = self.ground.served(service);
+        let snapshot = served.snapshot()?;
+        let lattice = snapshot.lattice();
+        let at = self.ground.to_ground("observer", self.options.observer.at, &snapshot)?;
+        let window = PostWindow::around(lattice, at, self.options.range_m);
+        window.check(lattice, service.limits.max_posts)?;
+        let observer = SightEnd { at, ..self.options.observer };
+        let options = ViewshedOptions { observer, ..self.options };
+        let viewshed = viewshed::viewshed(lattice, &options).map_err(|answer| {
+            HttpError::wrong(format!("observer: there is no ground there ({})", answer.status()))
+        })?;
+        let counts = window.counts(&viewshed);
+        let xy = |DVec2 { x, y }: DVec2| Location::Xy { x, y };
+        Ok(Json(ViewshedAnswer {
+            dataset: &served.name,
+            crs: snapshot.crs().name(),
+            columns: window.columns(),
+            rows: window.rows(),
+            south_west: xy(lattice.map_position(window.first)),
+            cell: xy(lattice.cell()),
+            visible_area_m2: counts.visible as f64 * lattice.cell().element_product(),
+            counts,
+            runs: (self.detail == ViewshedDetail::Runs).then(|| window.runs(&viewshed)),
+            status: OK,
+        })
+        .into_response())
+    }
+}
+
+/// Parses `FROM,WIDTH`: where a sector begins, clockwise from north, and how far it turns.
+fn sector(text: Option<&str>) -> Result<Sector, HttpError> {
+    let Some(text) = text else { return Ok(Sector::ALL) };
+    let numbers = text.split_once(',').and_then(|(from, width)| {
+        Some((from.trim().parse::<f64>().ok()?, width.trim().parse::<f64>().ok()?))
+    });
+    match numbers {
+        Some((from_deg, width_deg))
+            if (-360.0..=360.0).contains(&from_deg) && width_deg > 0.0 && width_deg <= 360.0 =>
+        {
+            Ok(Sector { from_deg: from_deg.rem_euclid(360.0), width_deg })
+        }
+        _ => Err(HttpError::wrong(format!(
+            "sector is {}; write FROM,WIDTH in degrees clockwise from north, as in 45,90 for the north-east to the \
+             south-east",
+            quoted(text)
+        ))),
+    }
+}
+
+/// The posts of an answer.
+struct PostWindow {
+    first: Post,
+    last: Post,
+}
+
+impl PostWindow {
+    /// The posts within `range_m` of `at` eastward and northward; those of the border where there are none.
+    fn around(lattice: &Lattice, at: DVec2, range_m: f64) -> Self {
+        let grid = lattice.grid_at(at - lattice.origin());
+        let reach = DVec2::splat(range_m) / lattice.cell();
+        let most = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
+        let post = |grid: DVec2| {
+            let inside = grid.clamp(DVec2::ZERO, most);
+            Post { column: inside.x as u32, row: inside.y as u32 }
+        };
+        // Rounded outward, so that rounding leaves out no post right at the range.
+        Self { first: post((grid - reach).floor()), last: post((grid + reach).ceil()) }
+    }
+
+    fn columns(&self) -> u32 {
+        self.last.column.saturating_sub(self.first.column) + 1
+    }
+
+    fn rows(&self) -> u32 {
+        self.last.row.saturating_sub(self.first.row) + 1
+    }
+
+    fn posts(&self) -> u64 {
+        u64::from(self.columns()) * u64::from(self.rows())
+    }
+
+    fn check(&self, lattice: &Lattice, most: u32) -> Result<(), HttpError> {
+        let posts = self.posts();
+        if posts <= u64::from(most) {
+            return Ok(());
+        }
+        // A square has two cells for each of the range, and up to three posts more.
+        let range = 0.5 * (f64::from(most).sqrt() - 3.0) * lattice.cell().min_element();
+        Err(HttpError::wrong(format!(
+            "the viewshed would have {posts} posts, {most} are the most of one request; ask for range={:.0} or less",
+            range.max(0.0).floor()
+        )))
+    }
+
+    /// The posts of each kind; all that are not beyond lie in the window.
+    fn counts(&self, viewshed: &Viewshed) -> PostCounts {
+        let all = viewshed.counts();
+        let looked_at = all.visible + all.hidden + all.no_data;
+        PostCounts {
+            visible: all.visible,
+            hidden: all.hidden,
+            no_data: all.no_data,
+            beyond: (self.posts() as usize).saturating_sub(looked_at),
+        }
+    }
+
+    fn runs(&self, viewshed: &Viewshed) -> Vec<String> {
+        let row = |row: u32| {
+            let from = row as usize * viewshed.columns as usize + self.first.column as usize;
+            let posts = &viewshed.posts[from..from + self.columns() as usize];
+            posts.chunk_by(|a, b| a == b).fold(String::new(), |mut runs, run| {
+                let _ = write!(runs, "{}{}", run.len(), letter(run[0]));
+                runs
+            })
+        };
+        (self.first.row..=self.last.row).map(row).collect()
+    }
+}
+
+fn letter(post: PostVisibility) -> char {
+    match post {
+        PostVisibility::Visible => 'v',
+        PostVisibility::Hidden => 'h',
+        PostVisibility::NoData => 'n',
+        PostVisibility::Beyond => 'b',
+    }
+}
