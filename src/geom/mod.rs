@@ -6,6 +6,7 @@ pub mod crs;
 pub mod crs_fault;
 pub mod datum_shift;
 pub mod geodesic;
+pub mod morton;
 pub mod polygon;
 pub mod polyline;
 pub(crate) mod proj_string;

@@ -7,9 +7,12 @@ use crate::geom::rect::Rect;
 
 /// Twice the signed area of the ring; positive where it runs counter-clockwise.
 pub fn doubled_area(ring: &[DVec2]) -> f64 {
-    // Measured from a vertex, since products of coordinates far from the origin would cancel.
-    let origin = ring.first().copied().unwrap_or_default();
-    ring.windows(2).map(|pair| (pair[0] - origin).perp_dot(pair[1] - origin)).sum()
+    edges(ring).map(|(from, to)| from.perp_dot(to)).sum()
+}
+
+/// Twice the signed area of a triangle; positive where it runs counter-clockwise.
+pub fn doubled_triangle_area([a, b, c]: [DVec2; 3]) -> f64 {
+    (b - a).perp_dot(c - a)
 }
 
 /// The ring's edges, the closing one last.
@@ -64,7 +67,15 @@ pub fn triangulate_ring(ring: &[DVec2]) -> Vec<[usize; 3]> {
         .triangle_indices
         .chunks_exact(3)
         .map(|ids| [corner(ids[0]), corner(ids[1]), corner(ids[2])])
-        .map(|ids| if doubled_area(&ids.map(|id| ring[id])) < 0.0 { [ids[0], ids[2], ids[1]] } else { ids })
+        .map(
+            |ids| {
+                if doubled_triangle_area(ids.map(|id| ring[id])) < 0.0 {
+                    [ids[0], ids[2], ids[1]]
+                } else {
+                    ids
+                }
+            },
+        )
         .collect()
 }
 
@@ -73,7 +84,7 @@ fn line_string(ring: &[DVec2]) -> geo::LineString {
 }
 
 fn counter_clockwise([a, b, c]: [DVec2; 3]) -> Option<[DVec2; 3]> {
-    let area = doubled_area(&[a, b, c]);
+    let area = doubled_triangle_area([a, b, c]);
     if area > 0.0 { Some([a, b, c]) } else { (area < 0.0).then_some([a, c, b]) }
 }
 

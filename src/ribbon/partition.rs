@@ -16,6 +16,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::geom::convex;
+use crate::geom::morton;
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::geom::rect_tree::RectTree;
@@ -100,6 +101,8 @@ fn left_of(plan: &PlanMesh, rests: &mut impl Iterator<Item = Rest>) -> PlanMesh 
 struct Covering {
     triangles: Vec<[DVec2; 3]>,
     tree: RectTree,
+    /// The order in which triangles are taken away from another one: near ones together, so that fewer pieces arise.
+    ranks: Vec<u32>,
 }
 
 impl Covering {
@@ -107,7 +110,7 @@ impl Covering {
         let corners = plans.into_iter().flat_map(PlanMesh::corners);
         let triangles: Vec<[DVec2; 3]> = corners.map(|triangle| triangle.map(|corner| corner.at)).collect();
         let rects: Vec<Rect> = triangles.iter().map(|&corners| Rect::around(corners)).collect();
-        Self { tree: RectTree::new(&rects), triangles }
+        Self { tree: RectTree::new(&rects), ranks: morton::ranks(&rects), triangles }
     }
 
     /// What `found` says of every triangle, in their order.
@@ -128,8 +131,11 @@ impl Covering {
         let corners = &self.triangles[triangle];
         let mut pieces = vec![corners.to_vec()];
         let mut is_whole = true;
-        for other in self.tree.meeting_in_order(&Rect::around(*corners)) {
-            if other >= triangle || pieces.is_empty() {
+        let meeting = self.tree.meeting(&Rect::around(*corners));
+        let mut before: Vec<usize> = meeting.filter(|&other| other < triangle).collect();
+        before.sort_unstable_by_key(|&other| self.ranks[other]);
+        for other in before {
+            if pieces.is_empty() {
                 break;
             }
             let window = &self.triangles[other];

@@ -93,7 +93,7 @@ impl Under {
         let gradient = -normal.truncate() / normal.z;
         let z = |p: DVec2| a.z + gradient.dot(p + at - a.truncate());
         for corners in polygon::fan(piece) {
-            let area = polygon::doubled_area(&corners) / 2.0;
+            let area = polygon::doubled_triangle_area(corners) / 2.0;
             let middle = corners.iter().sum::<DVec2>() / 3.0;
             self.area_m2 += area;
             self.moment += middle.extend(z(middle)) * area;

@@ -7,9 +7,11 @@
 pub mod adapters;
 pub mod data;
 pub mod forest;
+pub mod golden;
 pub mod places;
 pub mod scratch;
 pub mod shapefile;
 pub mod skip;
 pub mod synthetic;
+pub mod tiles;
 pub mod validator;

@@ -32,7 +32,7 @@ pub struct Taken {
 impl Taken {
     /// Takes a triangle's ground; one without area, or running clockwise, takes none.
     pub fn add(&mut self, triangle: [DVec2; 3]) {
-        let has_area = polygon::doubled_area(&triangle) > 0.0;
+        let has_area = polygon::doubled_triangle_area(triangle) > 0.0;
         if !has_area {
             return;
         }

@@ -59,7 +59,7 @@ impl Deck {
 }
 
 fn counter_clockwise(facet: SurfaceTriangle) -> Option<SurfaceTriangle> {
-    let ([a, b, c], area) = (facet, polygon::doubled_area(&plan(&facet)));
+    let ([a, b, c], area) = (facet, polygon::doubled_triangle_area(plan(&facet)));
     if area > 0.0 { Some(facet) } else { (area < 0.0).then_some([a, c, b]) }
 }
 

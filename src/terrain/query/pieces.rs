@@ -89,7 +89,7 @@ impl TrianglePiece<'_> {
     /// Triangles whose signed areas add up to the piece: three corners and the area in cells, negative for what must be
     /// subtracted.
     pub fn fan(&self) -> impl Iterator<Item = ([DVec2; 3], f64)> + '_ {
-        polygon::fan(self.ring).map(|corners| (corners, polygon::doubled_area(&corners) * 0.5))
+        polygon::fan(self.ring).map(|corners| (corners, polygon::doubled_triangle_area(corners) * 0.5))
     }
 
     /// Its area in cells.

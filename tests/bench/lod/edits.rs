@@ -1,5 +1,5 @@
 //! Dynamic terrain: what mending after a small edit costs beside making everything anew; and what constraining the
-//! spheres by local roughness (003) saves at the same height difference.
+//! spheres by local roughness (Yu and Zhang) saves at the same height difference.
 
 use std::path::Path;
 use std::sync::Arc;

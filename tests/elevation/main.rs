@@ -1,0 +1,11 @@
+//! Elevation files: reading, writing, gridding, joining and paging.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod dem_oracle;
+mod demo_data;
+mod gridding;
+mod mosaics;
+mod paging;
+mod raster_writers;

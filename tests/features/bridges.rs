@@ -1,0 +1,141 @@
+//! Bridges and tunnels of whole scenes: decks one can ask heights of, solids without holes, and what the report says.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use crate::common::data::data;
+use crate::common::scratch::Scratch;
+use glam::DVec2;
+use sandtable::draw::list::{DrawMesh, FeatureId};
+use sandtable::pipeline::scene_file::open_scene;
+use sandtable::scene::{FeatureKind, Scene};
+use sandtable::structure::deck_check::closed;
+use sandtable::terrain::query::{Interpolation, Surface};
+
+fn scene(path: &Path, allow: Vec<PathBuf>) -> Scene {
+    open_scene(path, &allow, &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))
+}
+
+fn crossing() -> Scene {
+    scene(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/bridge.toml"), Vec::new())
+}
+
+/// Every bridge's solids, by feature.
+fn bridges(scene: &Scene) -> BTreeMap<FeatureId, Vec<&DrawMesh>> {
+    let mut all: BTreeMap<FeatureId, Vec<&DrawMesh>> = BTreeMap::new();
+    for solid in &scene.solids {
+        if scene.features[solid.feature.0 as usize - 2].kind == FeatureKind::Bridge {
+            all.entry(solid.feature).or_default().push(&solid.mesh);
+        }
+    }
+    all
+}
+
+#[test]
+fn on_a_bridge_the_scene_is_its_deck_and_the_ground_is_the_ground() {
+    let scene = crossing();
+    // Over the creek, on the middle of the viaduct.
+    let at = DVec2::new(747_840.0, 4_022_965.0);
+    let height =
+        |surface| scene.heights.height(surface, Interpolation::Planar, at).height_m().expect("ground");
+    let (deck, ground) = (height(Surface::Scene), height(Surface::Ground));
+    assert!(deck > 440.0 && deck < 480.0, "the deck lies at {deck} m");
+    assert!(deck - ground > 60.0, "{deck} m over {ground} m");
+    let aside = at + DVec2::new(60.0, -60.0);
+    let asked = |surface| scene.heights.height(surface, Interpolation::Planar, aside);
+    assert_eq!(asked(Surface::Scene), asked(Surface::Ground), "beside the bridge there is only the ground");
+}
+
+#[test]
+fn a_valley_crossing_has_two_bridges_and_a_tunnel_with_two_portals() {
+    let scene = crossing();
+    let kinds: Vec<(FeatureKind, usize)> = scene.census();
+    assert!(
+        kinds.contains(&(FeatureKind::Bridge, 2)) && kinds.contains(&(FeatureKind::Tunnel, 1)),
+        "{kinds:?}"
+    );
+    let portals = scene
+        .solids
+        .iter()
+        .filter(|solid| scene.features[solid.feature.0 as usize - 2].kind == FeatureKind::Tunnel);
+    assert_eq!(portals.count(), 2);
+    let viaduct = scene.report.bridges_and_tunnels.iter().find(|row| row.name == "Cove Creek viaduct");
+    let viaduct = viaduct.expect("it is reported");
+    assert_eq!((viaduct.kind, viaduct.by), ("bridge", "tag"));
+    assert!(viaduct.greatest_height_above_ground > 60.0, "{viaduct:?}");
+    assert!(viaduct.greatest_depth_below_ground < 0.01, "{viaduct:?}");
+    assert!(viaduct.lowest_clearance > Some(50.0), "the creek and the track are far below: {viaduct:?}");
+    assert!(matches!(viaduct.piers, Some(5..20)), "{viaduct:?}");
+}
+
+#[test]
+fn every_bridge_is_closed_and_stands_on_the_ground() {
+    let scene = crossing();
+    let all = bridges(&scene);
+    assert_eq!(all.len(), 2);
+    for (feature, meshes) in all {
+        assert_eq!(closed(&meshes), Ok(()), "{feature:?}");
+    }
+}
+
+#[test]
+fn too_many_piers_are_refused_at_the_bridge_that_asks_for_most() {
+    let scratch = Scratch::new();
+    let dem = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/jacksboro/valley.asc");
+    scratch.write("valley.asc", std::fs::read(dem).expect("readable"));
+    let zigzag: Vec<String> =
+        (0..100).map(|at| format!("[{}, {}]", 746_100 + at * 80, 4_015_200 + at % 2 * 8000)).collect();
+    let text = format!(
+        "[terrain]\ndem = \"valley.asc\"\ncrs = \"EPSG:32616\"\n[[bridge]]\npier_spacing = 1\npoints = [{}]\n\
+         [[camera]]\nname = \"a\"\neye = [750000, 4018000]\neye_height = 900\nlook_at = [750100, 4019000]\n",
+        zigzag.join(", ")
+    );
+    let path = scratch.write("scene.toml", text);
+    let failure = open_scene(&path, &[], &|_| {}).err().expect("too many");
+    assert!(format!("{failure:?}").contains("piers"), "{failure:?}");
+}
+
+/// Builds a city's roads and tells how its bridges and tunnels came out.
+fn city(dem: &str, roads: &str) -> Option<Scene> {
+    let (dem, roads) = (data(dem)?, data(roads)?);
+    let scratch = Scratch::new();
+    let text = format!(
+        "points_crs = \"EPSG:4326\"\n[terrain]\ndem = {dem:?}\n[[road]]\nfile = {roads:?}\nwidth = 7\n"
+    );
+    let path = scratch.write("scene.toml", text);
+    let folders = [dem, roads].iter().filter_map(|file| file.parent().map(Path::to_path_buf)).collect();
+    Some(scene(&path, folders))
+}
+
+fn holds(scene: &Scene) {
+    for (feature, meshes) in bridges(scene) {
+        assert_eq!(closed(&meshes), Ok(()), "{feature:?}");
+    }
+    let rows = &scene.report.bridges_and_tunnels;
+    let of_kind = |kind: &'static str| rows.iter().filter(move |row| row.kind == kind);
+    for row in of_kind("bridge") {
+        assert!(row.greatest_depth_below_ground < 0.3, "a deck lies below the ground: {row:?}");
+    }
+    for kind in ["bridge", "tunnel", "underpass"] {
+        let portals: usize = of_kind(kind).filter_map(|row| row.portals).sum();
+        println!("{} of kind {kind}, {portals} portals", of_kind(kind).count());
+    }
+    let steepest = of_kind("bridge").map(|row| row.steepest_grade).fold(0.0, f64::max);
+    println!("the steepest bridge rises {steepest:.1} %");
+}
+
+#[test]
+fn monaco_s_bridges_and_tunnels_are_built() {
+    let roads = "scenes/monaco/derived/roads.geojson";
+    let Some(scene) = city("scenes/monaco/N43E007.hgt.zip", roads) else { return };
+    assert_eq!(scene.report.bridges_and_tunnels.len(), 83, "20 bridges and 63 tunnels");
+    holds(&scene);
+}
+
+#[test]
+fn porto_alegre_s_bridges_and_tunnels_are_built() {
+    let roads = "scenes/porto_alegre_br/derived/roads_centre.geojson";
+    let Some(scene) = city("scenes/porto_alegre_br/poa_elevation.tif", roads) else { return };
+    holds(&scene);
+    assert!(bridges(&scene).len() > 40);
+}

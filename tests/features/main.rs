@@ -1,0 +1,13 @@
+//! Features on the ground, and the vector files that they come from.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod areas;
+mod bridges;
+mod buildings;
+mod conform;
+mod fences;
+mod roads;
+mod vector_files;
+mod water;

@@ -1,0 +1,8 @@
+//! Height queries, lines of sight and viewsheds.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod heights;
+mod sight;
+mod viewshed;

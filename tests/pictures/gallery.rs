@@ -1,0 +1,180 @@
+//! Every scene in `scenes/`: sound in every structure on the way to a picture, the same bytes for any number of
+//! threads, and the same picture as the one in `tests/golden`.
+//!
+//! A change that is meant to change pictures is blessed, after looking at them:
+//! `SANDTABLE_BLESS=1 cargo test --test pictures gallery`.
+
+use crate::common::golden;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+use sandtable::draw::list::{DepthLayer, DrawItem};
+use sandtable::mesh::check;
+use sandtable::mesh::trimesh::TriMesh;
+use sandtable::pipeline::picture::{PictureSize, RenderedView, render_view};
+use sandtable::pipeline::scene_file::open_scene;
+use sandtable::render::RenderBackend;
+use sandtable::ribbon::drape::check_clearance;
+use sandtable::scene::picture::ViewDraw;
+use sandtable::scene::{Scene, View};
+
+/// Small enough to be quick and to be kept, large enough for annotations.
+const SIZE: PictureSize = PictureSize { width: 480, height: 270 };
+
+/// All golden pictures together stay below this.
+const MOST_BYTES: u64 = 4_000_000;
+
+/// A scene of the gallery.
+struct Exhibit {
+    name: String,
+    scene: Scene,
+}
+
+/// A view of a scene, rendered with one thread.
+struct Shown {
+    name: String,
+    exhibit: &'static Exhibit,
+    view: &'static View,
+    finished: RenderedView,
+}
+
+fn scene_files() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let entries =
+        fs::read_dir(folder).expect("the scenes are there").map(|entry| entry.expect("readable").path());
+    let mut files: Vec<PathBuf> =
+        entries.filter(|path| path.extension().is_some_and(|extension| extension == "toml")).collect();
+    files.sort();
+    files
+}
+
+fn exhibits() -> &'static [Exhibit] {
+    static EXHIBITS: LazyLock<Vec<Exhibit>> =
+        LazyLock::new(|| scene_files().iter().map(|path| load(path)).collect());
+    &EXHIBITS
+}
+
+fn load(path: &Path) -> Exhibit {
+    let scene = open_scene(path, &[], &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"));
+    Exhibit { name: path.file_stem().expect("named").to_string_lossy().into_owned(), scene }
+}
+
+/// Every camera of every scene.
+fn shown() -> &'static [Shown] {
+    static SHOWN: LazyLock<Vec<Shown>> = LazyLock::new(|| {
+        let views = exhibits()
+            .iter()
+            .flat_map(|exhibit| exhibit.scene.cameras.iter().map(move |view| (exhibit, view)));
+        views.map(|(exhibit, view)| show(exhibit, view)).collect()
+    });
+    &SHOWN
+}
+
+fn show(exhibit: &'static Exhibit, view: &'static View) -> Shown {
+    let name = format!("{}-{}", exhibit.name, view.name);
+    Shown { name, exhibit, view, finished: render(&exhibit.scene, view, 1) }
+}
+
+fn render(scene: &Scene, view: &View, threads: usize) -> RenderedView {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+    let finished = pool.install(|| render_view(scene, view, SIZE, RenderBackend::Cpu, &|_| {}));
+    finished.unwrap_or_else(|failure| panic!("{}: {failure:?}", view.name))
+}
+
+#[test]
+fn every_scene_opens_with_a_comment_that_says_what_it_shows() {
+    for path in scene_files() {
+        let text = fs::read_to_string(&path).expect("readable");
+        let first = text.lines().next().unwrap_or_default();
+        let says = first.strip_prefix("# ").is_some_and(|comment| comment.len() > 20);
+        assert!(says, "{} opens with {first:?}", path.display());
+    }
+}
+
+#[test]
+fn every_scene_s_errors_never_shrink_from_a_vertex_to_its_parents() {
+    for Exhibit { name, scene } in exhibits() {
+        assert_eq!(scene.terrain.errors().check(&scene.terrain.layout), Ok(()), "{name}");
+    }
+}
+
+#[test]
+fn every_view_s_ground_is_a_conforming_mesh() {
+    for Shown { name, finished, .. } in shown() {
+        let displayed = &finished.drawn.displayed;
+        assert_eq!(displayed.active().check(), Ok(()), "{name}");
+        let mut mesh = TriMesh::default();
+        displayed.emit(&mut mesh);
+        assert_eq!(check::check(&mesh).err(), None, "{name}");
+        assert_eq!(mesh.triangles.len(), finished.drawn.ground_triangles, "{name}");
+        assert!(mesh.triangles.len() > 500, "{name}: {} triangles of ground", mesh.triangles.len());
+    }
+}
+
+#[test]
+fn every_view_s_draw_list_is_sound() {
+    for Shown { name, finished, .. } in shown() {
+        assert_eq!(finished.drawn.list.check(), Ok(()), "{name}");
+    }
+}
+
+fn draped(shot: &ViewDraw) -> impl Iterator<Item = &DrawItem> {
+    shot.list.items.iter().filter(|item| matches!(item.layer, DepthLayer::Draped(_)))
+}
+
+/// What rounding corners to f32 may come to: twice the step between numbers at the far end of the ground, which
+/// is 8 mm at 32 km. A corner is moved aside by half a step each way, and up or down on slopes by as much.
+fn clearance_m(scene: &Scene) -> f64 {
+    scene.terrain.lattice.extent().size().max_element() * f64::from(f32::EPSILON) * 2.0
+}
+
+#[test]
+fn every_road_river_and_lake_lies_on_the_displayed_ground() {
+    for Shown { name, exhibit, finished, .. } in shown() {
+        let (shot, most_m) = (&finished.drawn, clearance_m(&exhibit.scene));
+        for item in draped(shot) {
+            let found_m = check_clearance(&shot.list.meshes[item.mesh.0 as usize], &*shot.displayed);
+            assert!(found_m < most_m, "{name}: {:?} is {found_m} m off, not {most_m} m", item.feature);
+        }
+        let in_view = draped(shot).count() > 0;
+        assert_eq!(in_view, !exhibit.scene.ribbons.is_empty(), "{name}: ribbons in view");
+    }
+}
+
+#[test]
+fn one_thread_and_three_give_the_same_bytes() {
+    for Shown { name, exhibit, view, finished } in shown() {
+        let other = render(&exhibit.scene, view, 3);
+        assert!(finished.pixels == other.pixels, "{name}");
+        assert_eq!(finished.annotations, other.annotations, "{name}");
+    }
+}
+
+#[test]
+fn every_picture_is_the_golden_one() {
+    let faults = shown().iter().map(|shown| golden::compare(&shown.name, &shown.finished.pixels));
+    let mut faults: Vec<String> = faults.filter_map(Result::err).collect();
+    faults.extend(left_over());
+    let help = "Look at the .new.png and .diff.png beside the golden pictures. If they are as they should be:\n    \
+                SANDTABLE_BLESS=1 cargo test --test pictures gallery";
+    assert!(faults.is_empty(), "{}\n{help}", faults.join("\n"));
+    let bytes: u64 = golden::files().iter().map(|path| fs::metadata(path).expect("readable").len()).sum();
+    assert!(
+        bytes < MOST_BYTES,
+        "the golden pictures have {bytes} bytes, at most {MOST_BYTES} should be kept"
+    );
+}
+
+/// The golden pictures of no view; removed where pictures are blessed.
+fn left_over() -> Vec<String> {
+    let views: BTreeSet<&str> = shown().iter().map(|shown| shown.name.as_str()).collect();
+    let name = |path: &PathBuf| path.file_stem().expect("named").to_string_lossy().into_owned();
+    let mut left_over = golden::files();
+    left_over.retain(|path| !views.contains(name(path).as_str()));
+    if golden::is_blessing() {
+        left_over.drain(..).for_each(|path| fs::remove_file(path).expect("removable"));
+    }
+    left_over.iter().map(|path| format!("{} is of no view", path.display())).collect()
+}

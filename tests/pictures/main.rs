@@ -1,0 +1,10 @@
+//! Pictures: golden pictures, both renderers, annotations.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod annotate;
+mod gallery;
+mod render_cpu;
+mod render_gpu;
+mod render_parity;

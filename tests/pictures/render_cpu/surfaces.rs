@@ -1,0 +1,203 @@
+//! What surfaces look like: textures in perspective, contours, haze, borders, depths.
+
+use glam::{Vec2, Vec3};
+use sandtable::draw::color::{Srgba, linear_from_srgb};
+use sandtable::draw::ground::Contours;
+use sandtable::draw::list::{DepthLayer, DrawList, FeatureId};
+use sandtable::draw::material::Material;
+use sandtable::draw::pixels::Pixels;
+use sandtable::view::camera::Camera;
+
+use crate::render_cpu::landscape::{BOX, ground_map, ground_material, ground_mesh, item};
+use crate::render_cpu::{count, depth, feature, looking, northward, plain_light, quad, shot, wall};
+
+/// A floor 40 m wide and 80 m deep, 2 m below an eye that looks north.
+fn floor() -> sandtable::draw::list::DrawMesh {
+    let corner = |x: f32, y: f32| Vec3::new(x, y, -2.0);
+    quad([corner(-20.0, 0.0), corner(20.0, 0.0), corner(20.0, 80.0), corner(-20.0, 80.0)], Srgba::WHITE)
+}
+
+/// Where the ray of a pixel's center meets the floor.
+fn on_floor(camera: &Camera, x: u32, y: u32) -> Option<Vec3> {
+    let ray = camera.ray_through(Vec2::new(x as f32 + 0.5, y as f32 + 0.5));
+    let reach = -2.0 / ray.z;
+    (ray.z < 0.0).then(|| camera.eye() + ray * reach)
+}
+
+#[test]
+fn texture_coordinates_are_correct_in_perspective() {
+    let mut list = DrawList::default();
+    plain_light(&mut list);
+    let ramp = Pixels::from_fn(256, 256, |x, y| Srgba::opaque(x as u8, y as u8, 128));
+    let texture = Some(list.add_texture(ramp));
+    item(&mut list, floor(), Material { texture, ..Material::default() }, DepthLayer::Solid, BOX);
+    let camera = northward((200, 150));
+    let picture = shot(&list, &camera);
+    let mut checked = 0;
+    for (x, y) in (0..200).step_by(9).flat_map(|x| (80..150).step_by(7).map(move |y| (x, y))) {
+        let Some(world) = on_floor(&camera, x, y).filter(|p| p.x.abs() < 18.0 && p.y < 60.0) else {
+            continue;
+        };
+        let uv = Vec2::new(world.x / 40.0 + 0.5, 1.0 - world.y / 80.0);
+        let Srgba([red, green, ..]) = picture.pixels.at(x, y);
+        let expected = uv * 256.0 - 0.5;
+        assert!((f32::from(red) - expected.x).abs() < 3.0, "({x}, {y}): {red} for {}", expected.x);
+        assert!((f32::from(green) - expected.y).abs() < 3.0, "({x}, {y}): {green} for {}", expected.y);
+        checked += 1;
+    }
+    assert!(checked > 100);
+}
+
+#[test]
+fn a_floor_that_runs_beneath_and_behind_the_eye_is_whole() {
+    let mut list = DrawList::default();
+    let corner = |x: f32, y: f32| Vec3::new(x, y, -2.0);
+    let side = 40_000.0;
+    let mesh = quad(
+        [corner(-side, -side), corner(side, -side), corner(side, side), corner(-side, side)],
+        Srgba::WHITE,
+    );
+    item(&mut list, mesh, Material::default(), DepthLayer::Solid, BOX);
+    let camera = looking(Vec3::ZERO, Vec3::new(0.3, 1.0, -0.2), (200, 150));
+    let picture = shot(&list, &camera);
+    for (x, y) in (0..200).flat_map(|x| (0..150).map(move |y| (x, y))) {
+        let Some(world) = on_floor(&camera, x, y) else { continue };
+        let expected = world.dot(camera.forward());
+        if expected > 1_000.0 || world.truncate().abs().max_element() > 0.9 * side {
+            continue;
+        }
+        assert_eq!(feature(&picture, x, y), BOX, "({x}, {y})");
+        assert!((depth(&picture, x, y) / expected - 1.0).abs() < 1e-4, "({x}, {y}) at {expected} m");
+    }
+}
+
+#[test]
+fn the_far_plane_and_the_near_plane_cut() {
+    for (y, seen) in [(0.4, FeatureId::NONE), (0.6, BOX), (99.0, BOX), (101.0, FeatureId::NONE)] {
+        let mut list = DrawList::default();
+        item(
+            &mut list,
+            wall(y, [-500.0, 500.0], [-500.0, 500.0], Srgba::WHITE),
+            Material::default(),
+            DepthLayer::Solid,
+            BOX,
+        );
+        let camera = Camera::new(Vec3::ZERO, Vec3::Y, 0.8, (40, 30), (0.5, 100.0)).expect("sound");
+        let picture = shot(&list, &camera);
+        assert_eq!(count(&picture, seen), 40 * 30, "at {y} m");
+    }
+}
+
+#[test]
+fn a_border_pixel_shows_the_share_that_is_covered() {
+    let mut list = DrawList::default();
+    plain_light(&mut list);
+    list.lighting.haze.color = Vec3::ZERO;
+    list.lighting.zenith = Vec3::ZERO;
+    // 100 px a meter at 10 m: the wall's right border lies at pixel 50 + 3/8 in every row.
+    let tan = 50.0 / 100.0 / 10.0;
+    let camera =
+        Camera::new(Vec3::ZERO, Vec3::Y, 2.0 * libm::atanf(tan), (100, 100), (1.0, 100.0)).expect("sound");
+    item(
+        &mut list,
+        wall(10.0, [-9.0, 0.003_75], [-9.0, 9.0], Srgba::WHITE),
+        Material::default(),
+        DepthLayer::Solid,
+        BOX,
+    );
+    let picture = shot(&list, &camera);
+    let share = |x: u32| linear_from_srgb(picture.pixels.at(x, 50).0[0]);
+    assert_eq!((share(49), share(51)), (1.0, 0.0));
+    assert!((share(50) - 0.375).abs() < 0.01, "{}", share(50));
+}
+
+#[test]
+fn haze_thickens_with_the_true_distance() {
+    let mut list = DrawList::default();
+    plain_light(&mut list);
+    list.lighting.haze.distance_m = 15.0;
+    item(
+        &mut list,
+        wall(10.0, [-9.0, 9.0], [-9.0, 9.0], Srgba::opaque(200, 40, 40)),
+        Material::default(),
+        DepthLayer::Solid,
+        BOX,
+    );
+    let camera = northward((120, 90));
+    let picture = shot(&list, &camera);
+    for (x, y) in [(60, 45), (0, 0), (119, 40)] {
+        let ray = camera.ray_through(Vec2::new(x as f32 + 0.5, y as f32 + 0.5));
+        let albedo = Srgba::opaque(200, 40, 40).linear();
+        let expected = Srgba::from_linear(list.lighting.add_haze(albedo, ray.length() * 10.0));
+        let seen = picture.pixels.at(x, y);
+        assert!(seen.0.iter().zip(expected.0).all(|(a, b)| a.abs_diff(b) <= 1), "{seen:?}, {expected:?}");
+    }
+}
+
+#[test]
+fn contours_keep_their_width_from_near_to_far() {
+    let slope = |_: f32, y: f32| 0.25 * y;
+    let mut list =
+        DrawList { ground: Some(ground_map(101, 500.0, false, slope).into()), ..DrawList::default() };
+    plain_light(&mut list);
+    let map = std::sync::Arc::make_mut(list.ground.as_mut().expect("just put there"));
+    map.ramp = sandtable::draw::ground::ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop");
+    map.contours = Some(Contours {
+        interval_m: 10.0,
+        major_every: 1_000_000,
+        color: Srgba::opaque(0, 0, 0),
+        width_px: 1.5,
+    });
+    item(&mut list, ground_mesh(20, 500.0, slope), ground_material(), DepthLayer::Ground, FeatureId::GROUND);
+    let camera = looking(Vec3::new(0.0, -420.0, -80.0), Vec3::new(0.0, 0.0, 20.0), (64, 900));
+    let picture = shot(&list, &camera);
+    // Down one column, the dark of each line adds up to its width.
+    let dark = |y: u32| 1.0 - linear_from_srgb(picture.pixels.at(32, y).0[0]);
+    let mut widths = Vec::new();
+    let mut sum = 0.0;
+    for y in (0..900).filter(|&y| feature(&picture, 32, y) == FeatureId::GROUND) {
+        sum += dark(y);
+        if dark(y) == 0.0 && sum > 0.0 {
+            widths.push(std::mem::take(&mut sum));
+        }
+    }
+    assert!(widths.len() > 8, "{widths:?}");
+    // The farthest lines are close together and fade on purpose; the border may cut the first and the last.
+    let clear = &widths[widths.len() / 2..widths.len() - 1];
+    assert!(clear.iter().all(|width| (width - 1.5).abs() < 0.2), "{widths:?}");
+}
+
+#[test]
+fn a_lake_at_the_height_of_a_line_is_not_all_line() {
+    let flat = |_: f32, _: f32| 20.0;
+    let mut list = DrawList { ground: Some(ground_map(11, 100.0, true, flat).into()), ..DrawList::default() };
+    plain_light(&mut list);
+    item(&mut list, ground_mesh(4, 100.0, flat), ground_material(), DepthLayer::Ground, FeatureId::GROUND);
+    let picture = shot(&list, &looking(Vec3::new(0.0, -50.0, 60.0), Vec3::new(0.0, 0.0, 20.0), (60, 40)));
+    let ramp = list.ground.as_ref().expect("there").ramp.linear_at(20.0);
+    assert_eq!(picture.pixels.at(30, 20), Srgba::from_linear(ramp));
+}
+
+#[test]
+fn depths_and_features_are_those_at_the_pixel_s_center() {
+    let mut list = DrawList::default();
+    let tilted = quad(
+        [
+            Vec3::new(-3.0, 8.0, -3.0),
+            Vec3::new(3.0, 8.0, -3.0),
+            Vec3::new(3.0, 14.0, 3.0),
+            Vec3::new(-3.0, 14.0, 3.0),
+        ],
+        Srgba::WHITE,
+    );
+    item(&mut list, tilted, Material::default(), DepthLayer::Solid, FeatureId(77));
+    let camera = northward((90, 70));
+    let picture = shot(&list, &camera);
+    for (x, y) in [(45, 35), (30, 30), (50, 44)] {
+        // The plane is y = z + 11.
+        let ray = camera.ray_through(Vec2::new(x as f32 + 0.5, y as f32 + 0.5));
+        assert_eq!(feature(&picture, x, y), FeatureId(77));
+        assert!((depth(&picture, x, y) - 11.0 / (ray.y - ray.z)).abs() < 1e-4);
+    }
+    assert_eq!(depth(&picture, 1, 1), f32::INFINITY);
+}

@@ -1,0 +1,127 @@
+//! One draw list, two renderers, one picture: what may differ, and by how much.
+//!
+//! Rounding is the driver's, so a few pixels on outlines show a neighbor's feature and colors differ by a
+//! fraction of a step. The CPU renderer tells features at its first sample, which lies at the very center of
+//! a pixel only where there is one; so features and depths are held against one sample, colors against the
+//! four that the GPU takes too.
+
+#![cfg(feature = "gpu")]
+
+use crate::common::adapters::gpus;
+use crate::common::forest::{forest, overlook};
+use crate::common::synthetic::{camera, scene, scene_with_contours};
+use glam::Vec3;
+use sandtable::draw::list::DrawList;
+use sandtable::render::cpu::{RenderQuality, SampleCount, render};
+use sandtable::render::gpu::render_on;
+use sandtable::render::picture::Picture;
+use sandtable::scene::picture::build_draw_list;
+use sandtable::view::camera::Camera;
+
+/// How much two pictures differ.
+#[derive(Clone, Copy, Debug)]
+struct Difference {
+    /// Pixels with another feature, as a share of all.
+    features: f64,
+    /// Pixels of the same feature whose depths differ by more than a part in 10,000, as a share of all.
+    depths: f64,
+    /// The mean difference of a channel in 8-bit steps.
+    mean: f64,
+    /// Pixels of which a channel differs by more than 16 steps, as a share of all.
+    far_off: f64,
+}
+
+/// The most that may differ. Software drivers come to a tenth of it, or less; hardware may round otherwise.
+const ALLOWED: Difference = Difference { features: 1e-3, depths: 1e-3, mean: 0.75, far_off: 2e-3 };
+
+impl Difference {
+    /// Features and depths from `one`, colors from `four` samples a pixel, against `other`.
+    fn of(one: &Picture, four: &Picture, other: &Picture) -> Self {
+        let count = one.features.len() as f64;
+        let share = |pixels: usize| pixels as f64 / count;
+        let features: Vec<bool> = one.features.iter().zip(&other.features).map(|(a, b)| a == b).collect();
+        let depths = one.depth_m.iter().zip(&other.depth_m).zip(&features);
+        let apart = |a: f32, b: f32| a != b && ((a - b).abs() > 1e-4 * a || a.is_nan());
+        let colors = four.pixels.data().iter().zip(other.pixels.data());
+        let steps: Vec<[u8; 3]> =
+            colors.map(|(a, b)| std::array::from_fn(|channel| a.0[channel].abs_diff(b.0[channel]))).collect();
+        let sum: f64 = steps.iter().flatten().map(|&step| f64::from(step)).sum();
+        Self {
+            features: share(features.iter().filter(|same| !**same).count()),
+            depths: share(depths.filter(|((a, b), same)| **same && apart(**a, **b)).count()),
+            mean: sum / count / 3.0,
+            far_off: share(steps.iter().filter(|pixel| pixel.iter().any(|&step| step > 16)).count()),
+        }
+    }
+
+    fn is_within(&self, allowed: &Self) -> bool {
+        self.features <= allowed.features
+            && self.depths <= allowed.depths
+            && self.mean <= allowed.mean
+            && self.far_off <= allowed.far_off
+    }
+}
+
+fn compare(list: &DrawList, camera: &Camera, what: &str) {
+    let on_cpu = |samples| {
+        let options = RenderQuality { samples, ..RenderQuality::default() };
+        render(list, camera, &options).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let (one, four) = (on_cpu(SampleCount::One), on_cpu(SampleCount::Four));
+    for gpu in gpus() {
+        let picture = render_on(gpu, list, camera).unwrap_or_else(|error| panic!("{error}"));
+        let found = Difference::of(&one, &four, &picture);
+        assert!(found.is_within(&ALLOWED), "{what} on {}: {found:?}, allowed {ALLOWED:?}", gpu.name());
+    }
+}
+
+#[test]
+fn the_whole_scene_is_the_same_on_both() {
+    compare(&scene(), &camera(640, 480), "the scene");
+}
+
+#[test]
+fn contours_are_the_same_on_both() {
+    compare(&scene_with_contours(), &camera(640, 480), "contours");
+}
+
+#[test]
+fn a_grazing_view_of_far_ground_is_the_same_on_both() {
+    let (eye, target) = (Vec3::new(320.0, -3000.0, 260.0), Vec3::new(320.0, 300.0, 40.0));
+    let camera = Camera::new(eye, target, 0.3, (640, 240), (1.0, 9000.0)).expect("sound");
+    compare(&scene_with_contours(), &camera, "from afar");
+}
+
+#[test]
+fn a_view_straight_down_is_the_same_on_both() {
+    let (eye, target) = (Vec3::new(320.0, 320.0, 900.0), Vec3::new(320.0, 320.0, 0.0));
+    let camera = Camera::new(eye, target, 0.8, (400, 400), (1.0, 5000.0)).expect("sound");
+    compare(&scene(), &camera, "from above");
+}
+
+#[test]
+fn a_forest_is_nearly_the_same_picture_on_both_renderers() {
+    let scene = forest(3000, &["firtree.obj", "tent.glb"]);
+    let camera = overlook(&scene, (640, 360));
+    let list = build_draw_list(&scene, &camera, &|_| ()).list;
+    let options = RenderQuality { samples: SampleCount::Four, ..RenderQuality::default() };
+    let cpu = render(&list, &camera, &options).expect("sound");
+    for gpu in gpus() {
+        let picture = render_on(gpu, &list, &camera).unwrap_or_else(|error| panic!("{error}"));
+        let count = cpu.pixels.data().len() as f64;
+        let mean = mean_difference(&cpu, &picture);
+        let others =
+            cpu.features.iter().zip(&picture.features).filter(|(a, b)| a != b).count() as f64 / count;
+        println!("{}: {mean:.3} steps, {others:.4} other features", gpu.name());
+        assert!(mean < 1.5, "{mean} steps on {}", gpu.name());
+        // The CPU tells features at its first sample, the GPU at a pixel's center; outlines of trees are many.
+        assert!(others < 0.15, "{others} on {}", gpu.name());
+    }
+}
+
+fn mean_difference(one: &Picture, other: &Picture) -> f64 {
+    let pixels = one.pixels.data().iter().zip(other.pixels.data());
+    let steps = pixels
+        .map(|(a, b)| (0..3).map(|channel| u64::from(a.0[channel].abs_diff(b.0[channel]))).sum::<u64>());
+    steps.sum::<u64>() as f64 / one.pixels.data().len() as f64 / 3.0
+}

@@ -1,0 +1,96 @@
+//! The program as a user runs it: what it prints, where, and how it ends.
+
+mod convert;
+mod export;
+mod grid;
+mod heights;
+mod info;
+mod lod;
+mod los;
+mod manners;
+mod meshes;
+mod new;
+mod pictures;
+mod profile;
+mod report;
+mod schema;
+mod serve;
+mod viewshed;
+mod wrong_scenes;
+
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// One run of the program.
+#[derive(Debug)]
+struct Ran {
+    /// The exit code; −1 where a signal ended it.
+    code: i32,
+    out: String,
+    err: String,
+}
+
+impl Ran {
+    /// What was printed, of a run that must have succeeded in silence.
+    #[track_caller]
+    fn ok(self) -> String {
+        assert_eq!((self.code, self.err.as_str()), (0, ""), "{self:?}");
+        self.out
+    }
+
+    /// What was complained of, of a run that must have ended with `code` and printed nothing else.
+    #[track_caller]
+    fn failed(self, code: i32) -> String {
+        assert_eq!((self.code, self.out.as_str()), (code, ""), "{self:?}");
+        assert!(!self.err.contains("panicked"), "{}", self.err);
+        self.err
+    }
+}
+
+/// The program, to be run in `folder`.
+fn program<A: AsRef<std::ffi::OsStr>>(folder: &Path, arguments: &[A]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_sandtable"));
+    command.current_dir(folder).args(arguments).stdin(Stdio::null());
+    command
+}
+
+/// Runs the program in `folder` to its end.
+fn run_in<A: AsRef<std::ffi::OsStr>>(folder: &Path, arguments: &[A]) -> Ran {
+    ran(program(folder, arguments).output().expect("the program starts"))
+}
+
+/// Runs the program in the project's folder.
+fn run<A: AsRef<std::ffi::OsStr>>(arguments: &[A]) -> Ran {
+    run_in(Path::new(env!("CARGO_MANIFEST_DIR")), arguments)
+}
+
+/// Runs the program in `folder` with something to read on standard input.
+fn run_with_input(folder: &Path, arguments: &[&str], input: &str) -> Ran {
+    let mut command = program(folder, arguments);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the program starts");
+    let mut stdin = child.stdin.take().expect("a pipe");
+    // A program that refuses its other input ends before it reads, and closes the pipe.
+    let _ = stdin.write_all(input.as_bytes());
+    drop(stdin);
+    ran(child.wait_with_output().expect("the program ends"))
+}
+
+fn ran(output: std::process::Output) -> Ran {
+    Ran {
+        code: output.status.code().unwrap_or(-1),
+        out: String::from_utf8(output.stdout).expect("UTF-8"),
+        err: String::from_utf8(output.stderr).expect("UTF-8"),
+    }
+}
+
+/// A file of the project.
+fn project(path: &str) -> String {
+    format!("{}/{path}", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The bytes of a file of the project.
+fn bytes_of(path: &str) -> Vec<u8> {
+    std::fs::read(project(path)).expect("a file of the project")
+}

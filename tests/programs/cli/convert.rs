@@ -1,0 +1,121 @@
+//! `dem convert`: elevation in another format, another system, other cells.
+
+use crate::cli::run_in;
+use crate::common::scratch::Scratch;
+
+/// Three rows of four samples ten meters apart, the second of the second row a hole.
+const GRID: &str = "ncols 4\nnrows 3\nxllcorner 400000\nyllcorner 200000\ncellsize 10\nNODATA_value -9999\n\
+                    10 20 30 40\n50 -9999 70 80\n90 100 110 120\n";
+
+/// A plane of whole meters in degrees, forty samples a side.
+fn degrees() -> String {
+    let rows = (0..40).map(|row| {
+        let row: Vec<String> = (0..40).map(|column| format!("{}", 100 + 2 * row + 3 * column)).collect();
+        row.join(" ") + "\n"
+    });
+    format!("ncols 40\nnrows 40\nxllcorner 7\nyllcorner 44\ncellsize 0.0005\n{}", rows.collect::<String>())
+}
+
+fn grid() -> Scratch {
+    let scratch = Scratch::new();
+    scratch.write("grid.asc", GRID);
+    scratch.write("degrees.asc", degrees());
+    scratch.write("degrees.prj", "EPSG:4326");
+    scratch
+}
+
+fn convert(scratch: &Scratch, arguments: &[&str]) -> crate::cli::Ran {
+    run_in(scratch.folder(), &[&["dem", "convert"], arguments].concat())
+}
+
+#[test]
+fn there_and_back_the_heights_are_the_files() {
+    let scratch = grid();
+    assert_eq!(
+        convert(&scratch, &["grid.asc", "out.tif"]).ok(),
+        "out.tif\n\
+         \x20 format       GeoTIFF, int16\n\
+         \x20 size         4 columns, 3 rows\n\
+         \x20 crs          none stated\n\
+         \x20 cell         10 x 10\n\
+         \x20 resampled    no, the samples are the file's\n\
+         \x20 valid        11 of 12 samples\n"
+    );
+    for name in ["again.bt", "again.asc"] {
+        convert(&scratch, &["out.tif", name]).ok();
+    }
+    assert_eq!(std::fs::read_to_string(scratch.at("again.asc")).expect("it was written"), GRID);
+    convert(&scratch, &["again.bt", "third.asc"]).ok();
+    let third = std::fs::read_to_string(scratch.at("third.asc")).expect("it was written");
+    assert_eq!(third.replace("-32768", "-9999"), GRID);
+}
+
+#[test]
+fn a_cell_in_meters_for_a_raster_in_degrees_is_refused_with_its_zone() {
+    let scratch = grid();
+    let refused = convert(&scratch, &["degrees.asc", "out.tif", "--cell", "30"]).failed(1);
+    assert!(refused.contains("--crs EPSG:32632"), "{refused}");
+    assert!(!scratch.at("out.tif").exists());
+    let out = convert(&scratch, &["degrees.asc", "out.tif", "--cell", "30", "--crs", "EPSG:32632"]).ok();
+    for wanted in ["crs          EPSG:32632", "cell         30 x 30", "bilinear", "datum shift  none needed"]
+    {
+        assert!(out.contains(wanted), "{wanted}: {out}");
+    }
+    let out = convert(&scratch, &["degrees.asc", "coarse.tif", "--cell", "0.002"]).ok();
+    assert!(out.contains("10 columns, 10 rows") && out.contains("average"), "{out}");
+}
+
+#[test]
+fn a_shift_between_datums_is_told_and_one_that_needs_a_grid_refused() {
+    let scratch = grid();
+    let to = |source: &str, target: &str| {
+        convert(&scratch, &["grid.asc", "out.tif", "--source-crs", source, "--crs", target])
+    };
+    let out = to("EPSG:27700", "EPSG:4326").ok();
+    assert!(out.contains("datum shift  towgs84 446.448,-125.157,542.06"), "{out}");
+    let refused = to("EPSG:26711", "EPSG:32611").failed(1);
+    assert!(refused.contains("NAD27") && refused.contains("grid.asc"), "{refused}");
+}
+
+#[test]
+fn a_raster_without_a_system_is_not_taken_to_be_in_the_wanted_one() {
+    let scratch = grid();
+    let refused = convert(&scratch, &["grid.asc", "out.tif", "--crs", "EPSG:32632"]).failed(1);
+    assert!(refused.contains("--source-crs"), "{refused}");
+    let out = convert(&scratch, &["grid.asc", "out.tif", "--cell", "20"]).ok();
+    assert!(out.contains("2 columns, 2 rows") && out.contains("average"), "{out}");
+}
+
+#[test]
+fn no_input_is_written_over_and_nothing_is_left_of_what_fails() {
+    let scratch = grid();
+    let before = scratch.names();
+    for (arguments, code) in [
+        (&["grid.asc", "grid.asc"][..], 1),
+        (&["grid.asc", "none/out.tif"], 1),
+        (&["grid.asc", "out.xyz"], 2),
+        (&["grid.asc", "out"], 2),
+        (&["grid.asc"], 2),
+        (&["grid.asc", "degrees.asc", "out.tif"], 1),
+        (&["grid.asc", "out.tif", "--cell", "0"], 2),
+        (&["grid.asc", "out.tif", "--crs", "EPSG:0"], 2),
+        (&["grid.asc", "out.hgt"], 1),
+        // degrees.prj is the input's own, and holds another text.
+        (&["degrees.asc", "degrees.bt"], 1),
+    ] {
+        let refused = convert(&scratch, arguments).failed(code);
+        assert!(!refused.is_empty());
+        assert_eq!(scratch.names(), before, "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_picture_says_how_it_is_to_be_read() {
+    let scratch = grid();
+    let out = convert(&scratch, &["grid.asc", "out.png"]).ok();
+    assert!(out.contains("read it with --height-scale 1 --height-offset 9"), "{out}");
+    convert(&scratch, &["out.png", "again.asc", "--height-scale", "1", "--height-offset", "9"]).ok();
+    let again = std::fs::read_to_string(scratch.at("again.asc")).expect("it was written");
+    // Gray value 0 stood for no data, and no height is 0.
+    assert!(again.ends_with("NODATA_value 0\n10 20 30 40\n50 0 70 80\n90 100 110 120\n"), "{again}");
+}

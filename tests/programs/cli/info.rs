@@ -1,0 +1,168 @@
+//! `dem info` and `model info`.
+
+use serde_json::Value;
+
+use crate::cli::{project, run, run_in};
+use crate::common::scratch::Scratch;
+
+fn json(arguments: &[&str]) -> Value {
+    let out = run(arguments).ok();
+    assert_eq!(out.lines().count(), 1, "one object on one line");
+    serde_json::from_str(&out).expect("JSON")
+}
+
+#[test]
+fn dem_info_tells_what_is_in_a_file_in_json() {
+    let about = json(&["dem", "info", "assets/jacksboro/dem.tif", "--json"]);
+    assert_eq!(about["driver"], "GTiff");
+    assert_eq!((about["width"].as_u64(), about["height"].as_u64()), (Some(403), Some(344)));
+    assert_eq!(about["crs"], "EPSG:4326");
+    assert_eq!(about["nodata"], Value::Null);
+    assert_eq!((about["min"].as_f64(), about["max"].as_f64()), (Some(236.0), Some(1076.0)));
+    assert!((about["mean"].as_f64().expect("a mean") - 531.0311688499048).abs() < 1e-9);
+    assert_eq!(about["transform"].as_array().map(Vec::len), Some(6));
+}
+
+#[test]
+fn dem_info_tells_the_same_in_a_table() {
+    let out = run(&["dem", "info", "assets/jacksboro/valley.asc"]).ok();
+    for wanted in ["driver   AAIGrid", "112 columns, 112 rows", "crs      none stated", "heights  "] {
+        assert!(out.contains(wanted), "{wanted} in\n{out}");
+    }
+}
+
+#[test]
+fn a_png_needs_a_scale_and_may_have_an_offset() {
+    let refused = run(&["dem", "info", "assets/jacksboro/hills.png"]).failed(1);
+    assert!(refused.contains("--height-scale") && refused.contains("--height-offset"), "{refused}");
+    assert_eq!(refused.matches("hills.png").count(), 1, "the file is named once: {refused}");
+
+    let hills = ["dem", "info", "assets/jacksboro/hills.png", "--json", "--height-scale", "0.1"];
+    let about = json(&hills);
+    assert_eq!(about["driver"], "PNG");
+    let raised = json(&[&hills[..], &["--height-offset", "-100"]].concat());
+    let lowest = |about: &Value| about["min"].as_f64().expect("a number");
+    assert!((lowest(&about) - 100.0 - lowest(&raised)).abs() < 1e-4, "{raised}");
+
+    let zero = run(&["dem", "info", "assets/jacksboro/hills.png", "--height-scale", "NaN"]).failed(1);
+    assert!(zero.contains("NaN"), "{zero}");
+}
+
+#[test]
+fn a_grid_without_a_single_height_has_no_statistics() {
+    let scratch = Scratch::new();
+    scratch.write(
+        "a.asc",
+        "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9\n-9 -9\n-9 -9\n",
+    );
+    let out = run_in(scratch.folder(), &["dem", "info", "a.asc", "--json"]).ok();
+    let about: Value = serde_json::from_str(&out).expect("JSON");
+    assert_eq!(
+        (&about["min"], &about["mean"], &about["valid"]),
+        (&Value::Null, &Value::Null, &Value::from(0))
+    );
+    assert!(run_in(scratch.folder(), &["dem", "info", "a.asc"]).ok().contains("heights  none"));
+}
+
+#[test]
+fn model_info_counts_and_bounds_in_json() {
+    for (file, meshes) in [("bridge.glb", 8), ("watchtower.3ds", 0), ("farmhouse.obj", 0)] {
+        let about = json(&["model", "info", &project(&format!("assets/models/{file}")), "--json"]);
+        for key in ["meshes", "vertices", "faces", "materials"] {
+            assert!(about[key].as_u64().is_some_and(|count| count > 0), "{file}: {key} in {about}");
+        }
+        assert!(meshes == 0 || about["meshes"] == meshes, "{file}");
+        let bound = |end: &str| -> Vec<f64> {
+            about["bounds"][end].as_array().expect("a corner").iter().filter_map(Value::as_f64).collect()
+        };
+        let (min, max) = (bound("min"), bound("max"));
+        assert_eq!((min.len(), max.len()), (3, 3), "{about}");
+        assert!(min.iter().zip(&max).all(|(min, max)| min < max), "{file}: {about}");
+    }
+    let table = run(&["model", "info", "assets/models/tent.glb"]).ok();
+    assert!(table.contains("vertices") && table.contains("Z up"), "{table}");
+}
+
+#[test]
+fn what_is_no_elevation_or_no_model_is_refused_with_what_is_read() {
+    let refused = run(&["dem", "info", "assets/models/tent.glb"]).failed(1);
+    assert!(refused.contains("tent.glb") && refused.contains("GeoTIFF"), "{refused}");
+    let refused = run(&["model", "info", "assets/jacksboro/dem.tif"]).failed(1);
+    assert!(refused.contains("dem.tif") && refused.to_lowercase().contains("obj"), "{refused}");
+    assert_eq!(refused.matches("dem.tif").count(), 1, "the file is named once: {refused}");
+}
+
+#[test]
+fn missing_empty_and_strange_files_are_refused() {
+    let scratch = Scratch::new();
+    scratch.write("empty.tif", "");
+    scratch.write("empty.obj", "");
+    scratch.write("empty", "");
+    for (arguments, wanted) in [
+        (["dem", "info", "nowhere.tif"], "no such file"),
+        (["dem", "info", "empty.tif"], "empty.tif"),
+        (["dem", "info", "empty"], "empty"),
+        (["dem", "info", "."], "empty.tif"),
+        (["model", "info", "nowhere.obj"], "no such file"),
+        (["model", "info", "empty.obj"], "empty.obj"),
+        (["model", "info", "."], "not a file"),
+        (["check", ".", "--allow=."], "not a file"),
+    ] {
+        let refused = run_in(scratch.folder(), &arguments).failed(1);
+        assert!(refused.contains(wanted), "{arguments:?}: {refused}");
+    }
+}
+
+#[test]
+fn a_folder_of_tiles_is_one_raster() {
+    let scratch = Scratch::new();
+    let tile = |west: u32, heights: &str| {
+        format!("ncols 2\nnrows 1\nxllcorner {west}\nyllcorner 0\ncellsize 10\n{heights}\n")
+    };
+    scratch.write("tiles/a.asc", tile(0, "1 2"));
+    scratch.write("tiles/b.asc", tile(10, "2.5 3"));
+    scratch.write("tiles/readme.txt", "not a tile");
+    let out = run_in(scratch.folder(), &["dem", "info", "tiles", "--json"]).ok();
+    let about: Value = serde_json::from_str(&out).expect("JSON");
+    assert_eq!((&about["width"], &about["max"]), (&Value::from(3), &Value::from(3.0)));
+    assert!(
+        about["notes"][0].as_str().expect("a note").contains("1 of them differ, by up to 0.5"),
+        "{about}"
+    );
+
+    scratch.write("tiles/c.asc", tile(23, "4 5"));
+    let refused = run_in(scratch.folder(), &["dem", "info", "tiles"]).failed(1);
+    assert!(refused.contains("a.asc and c.asc") && refused.contains("(0.3000, 0.0000)"), "{refused}");
+    scratch.write("empty/readme.txt", "nothing");
+    let refused = run_in(scratch.folder(), &["dem", "info", "empty"]).failed(1);
+    assert!(refused.contains("no elevation file"), "{refused}");
+}
+
+#[test]
+fn dem_info_tells_type_datum_unit_and_voids() {
+    let scratch = Scratch::new();
+    let heights = "1 1 1\n1 -9999 1\n1 1 1\n";
+    scratch.write("a.asc", format!("ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n{heights}"));
+    let out = run_in(scratch.folder(), &["dem", "info", "a.asc", "--json"]).ok();
+    let about: Value = serde_json::from_str(&out).expect("JSON");
+    assert_eq!((&about["type"], &about["enclosed_voids"]), (&Value::from("Int32"), &Value::from(1)));
+    assert_eq!((&about["vertical_datum"], &about["meters_per_z"]), (&Value::Null, &Value::from(1.0)));
+    let table = run_in(scratch.folder(), &["dem", "info", "a.asc"]).ok();
+    for wanted in ["type     Int32", "1 samples, 1 of them enclosed", "datum    none stated", "unit     1 m"]
+    {
+        assert!(table.contains(wanted), "{wanted} in\n{table}");
+    }
+}
+
+#[test]
+fn a_raw_file_is_what_the_command_line_says() {
+    let scratch = Scratch::new();
+    scratch.write("a.raw", "AB");
+    let refused = run_in(scratch.folder(), &["dem", "info", "a.raw"]).failed(1);
+    assert!(refused.contains("--raw 1201x1201:i16be"), "{refused}");
+    let stated = ["dem", "info", "a.raw", "--json", "--raw", "2x1:u8", "--height-scale", "2"];
+    let about: Value = serde_json::from_str(&run_in(scratch.folder(), &stated).ok()).expect("JSON");
+    assert_eq!((&about["driver"], &about["max"]), (&Value::from("RAW"), &Value::from(132.0)));
+    let wrong = run_in(scratch.folder(), &["dem", "info", "a.raw", "--raw", "2x1"]).failed(2);
+    assert!(wrong.contains("1201x1201:i16be"), "{wrong}");
+}

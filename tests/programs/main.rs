@@ -1,0 +1,8 @@
+//! The command line, the HTTP service and the README.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod cli;
+mod readme;
+mod serve;

@@ -1,0 +1,9 @@
+//! The height query service as its clients meet it: the program is started, and asked over sockets.
+
+mod bits;
+pub mod client;
+mod ground;
+mod heights;
+mod hostile;
+mod manners;
+mod refusals;

@@ -1,0 +1,208 @@
+//! `/v1/DATASET`: what the Open Topo Data API documents, and what is more.
+
+use glam::DVec2;
+use sandtable::geom::crs::Crs;
+use serde_json::{Value, json};
+
+use crate::common::scratch::Scratch;
+use crate::serve::client::{Server, encoded};
+
+/// Three rows of four samples a hundredth of a degree apart, the second of the second row a hole. Sample centers stand
+/// at 10.005, 10.015, 10.025 and 10.035 east and 50.025, 50.015 and 50.005 north.
+pub const GRID: &str = "ncols 4\nnrows 3\nxllcorner 10\nyllcorner 50\ncellsize 0.01\nNODATA_value -9999\n\
+                        10 20 30 40\n50 -9999 70 80\n90 100 110 120\n";
+
+/// Another model, around the first one's hole and east of it.
+const BESIDE: &str = "ncols 8\nnrows 3\nxllcorner 10\nyllcorner 50\ncellsize 0.01\nNODATA_value -9999\n\
+                      1 2 3 4 5 6 7 8\n1 2 3 4 5 6 7 8\n1 2 3 4 5 6 7 -9999\n";
+
+pub fn folder() -> Scratch {
+    let scratch = Scratch::new();
+    scratch.write("grid.asc", GRID);
+    scratch.write("grid.prj", "EPSG:4326");
+    scratch.write("beside.asc", BESIDE);
+    scratch.write("beside.prj", "EPSG:4326");
+    scratch.write("plain.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 2\n3 4\n");
+    scratch
+}
+
+fn server() -> (Scratch, Server) {
+    let scratch = folder();
+    let server = Server::start(scratch.folder(), &["grid.asc", "other=beside.asc", "plain.asc"]);
+    (scratch, server)
+}
+
+fn elevations(answer: &Value) -> Vec<Value> {
+    answer["results"].as_array().expect("results").iter().map(|result| result["elevation"].clone()).collect()
+}
+
+#[test]
+fn results_come_in_order_with_their_place_dataset_and_status() {
+    let (_scratch, server) = server();
+    let answer = server.get("/v1/grid?locations=50.005,10.005|50.015,10.015|60,10&interpolation=nearest");
+    assert_eq!(answer.header("content-type"), "application/json");
+    let place = |lat: f64, lng: f64| json!({"lat": lat, "lng": lng});
+    let expected = json!({
+        "results": [
+            {"elevation": 90.0, "location": place(50.005, 10.005), "dataset": "grid", "status": "Ok"},
+            {"elevation": null, "location": place(50.015, 10.015), "dataset": "grid", "status": "NoData"},
+            {"elevation": null, "location": place(60.0, 10.0), "dataset": "grid", "status": "Outside"},
+        ],
+        "status": "OK",
+    });
+    assert_eq!(answer.ok(), expected);
+}
+
+#[test]
+fn get_form_and_json_say_the_same() {
+    let (_scratch, server) = server();
+    let got = server.get("/v1/grid?locations=50.01,10.01%7C50.02,10.03&interpolation=bilinear").body;
+    let form = "application/x-www-form-urlencoded";
+    let typed = "application/json; charset=utf-8";
+    let object = r#"{"locations": "50.01,10.01|50.02,10.03", "interpolation": "bilinear"}"#;
+    let list = r#"{"locations": ["50.01,10.01", "50.02,10.03"]}"#;
+    assert_eq!(server.post("/v1/grid", form, "locations=50.01%2C10.01|50.02,+10.03").body, got);
+    assert_eq!(server.post("/v1/grid", typed, object).body, got);
+    assert_eq!(server.post("/v1/grid", typed, list).body, got);
+    assert_eq!(
+        server.post("/v1/grid?interpolation=bilinear", typed, list).body,
+        got,
+        "a query goes with a body"
+    );
+    let untyped =
+        format!("POST /v1/grid HTTP/1.1\r\nhost: a\r\ncontent-length: {}\r\n\r\n{object}", object.len());
+    assert_eq!(server.raw(untyped.as_bytes()).body, got, "a body without a type is looked at");
+    assert!(got.contains("\"status\":\"OK\""), "{got}");
+}
+
+#[test]
+fn a_polyline_is_the_same_as_its_locations() {
+    let (_scratch, server) = server();
+    let text = encoded(&[(5_001_000, 1_000_968), (5_002_000, 1_002_960)]);
+    let answer = server.get(&format!("/v1/grid?locations={text}"));
+    assert_eq!(answer.body, server.get("/v1/grid?locations=50.01,10.00968|50.02,10.0296").body);
+    let object = serde_json::json!({"locations": text}).to_string();
+    assert_eq!(server.post("/v1/grid", "application/json", &object).body, answer.body);
+    assert_eq!(answer.ok()["results"].as_array().map(Vec::len), Some(2));
+}
+
+#[test]
+fn every_interpolation_is_offered_but_cubic() {
+    let (_scratch, server) = server();
+    let height = |interpolation: &str| {
+        let path = format!("/v1/grid?locations=50.0225,10.0275&interpolation={interpolation}");
+        elevations(&server.get(&path).ok())[0].as_f64().expect("a height")
+    };
+    // In the cell of 30, 40, 70 and 80, a quarter from its west and three quarters from its south.
+    assert!((height("bilinear") - 42.5).abs() < 1e-6);
+    assert!((height("planar") - 42.5).abs() < 1e-6);
+    assert_eq!(height("nearest"), 30.0);
+    assert!((45.0..50.0).contains(&height("distance-weighted")));
+    let refused = server.get("/v1/grid?locations=50,10&interpolation=cubic").refused(400);
+    assert!(refused.contains("cubic") && refused.contains("bilinear"), "{refused}");
+    let default = server.get("/v1/grid?locations=50.0225,10.0275").body;
+    assert_eq!(default, server.get("/v1/grid?locations=50.0225,10.0275&interpolation=bilinear").body);
+}
+
+#[test]
+fn what_stands_for_no_height_can_be_chosen() {
+    let (_scratch, server) = server();
+    let body = |value: &str| server.get(&format!("/v1/grid?locations=60,10&nodata_value={value}")).body;
+    assert!(body("null").contains("\"elevation\":null"));
+    assert!(body("nan").contains("\"elevation\":NaN"));
+    assert!(body("-9999").contains("\"elevation\":-9999.0"));
+    assert!(body("-9999").contains("\"status\":\"Outside\""), "the status still tells");
+}
+
+#[test]
+fn samples_lie_at_equal_distances_along_the_path() {
+    let (_scratch, server) = server();
+    let answer =
+        server.get("/v1/grid?locations=50.005,10.005|50.005,10.035&samples=4&interpolation=nearest").ok();
+    assert_eq!(elevations(&answer), [90.0, 100.0, 110.0, 120.0].map(Value::from));
+    let last = &answer["results"][3]["location"];
+    assert_eq!((last["lat"].as_f64(), last["lng"].as_f64()), (Some(50.005), Some(10.035)));
+    let bent = server.get("/v1/grid?locations=50.005,10.005|50.025,10.005|50.025,10.035&samples=100").ok();
+    assert_eq!(bent["results"].as_array().map(Vec::len), Some(100));
+}
+
+#[test]
+fn of_several_datasets_the_first_with_a_height_answers() {
+    let (_scratch, server) = server();
+    let path = "/v1/grid,other?locations=50.005,10.005|50.015,10.015|50.005,10.055|50.005,10.075|60,10&interpolation=nearest";
+    let answer = server.get(path).ok();
+    let told: Vec<_> = answer["results"]
+        .as_array()
+        .expect("results")
+        .iter()
+        .map(|result| (result["elevation"].as_f64(), result["dataset"].as_str(), result["status"].as_str()))
+        .collect();
+    assert_eq!(
+        told,
+        [
+            (Some(90.0), Some("grid"), Some("Ok")),
+            (Some(2.0), Some("other"), Some("Ok")),
+            (Some(6.0), Some("other"), Some("Ok")),
+            (None, Some("other"), Some("NoData")),
+            (None, Some("grid"), Some("Outside")),
+        ]
+    );
+}
+
+#[test]
+fn geojson_holds_points_with_their_heights_third() {
+    let (_scratch, server) = server();
+    let answer = server.get("/v1/grid?locations=50.005,10.005|60,10&format=geojson&interpolation=nearest");
+    assert_eq!(answer.header("content-type"), "application/geo+json");
+    let json = answer.ok();
+    assert_eq!(json["type"], "FeatureCollection");
+    assert_eq!(
+        json["features"][0]["geometry"],
+        json!({"type": "Point", "coordinates": [10.005, 50.005, 90.0]})
+    );
+    assert_eq!(json["features"][0]["properties"], json!({"status": "Ok", "dataset": "grid"}));
+    assert_eq!(json["features"][1]["geometry"]["coordinates"], json!([10.0, 60.0]), "no height, no third");
+    assert_eq!(json["features"][1]["properties"]["status"], "Outside");
+    let read: geojson::GeoJson = answer.body.parse().expect("GeoJSON");
+    assert!(
+        matches!(read, geojson::GeoJson::FeatureCollection(collection) if collection.features.len() == 2)
+    );
+}
+
+#[test]
+fn other_coordinates_are_x_then_y() {
+    let (_scratch, server) = server();
+    let degrees = server.get("/v1/grid?locations=10.005,50.005&crs=EPSG:4326&interpolation=nearest").ok();
+    assert_eq!(degrees["results"][0]["location"], json!({"x": 10.005, "y": 50.005}));
+    assert_eq!(elevations(&degrees), [Value::from(90.0)]);
+    let utm = Crs::from_epsg(32632).expect("a zone");
+    let at = Crs::wgs84().transform(&utm, DVec2::new(10.005, 50.005)).expect("inside");
+    let path = format!("/v1/grid?locations={},{}&crs=EPSG:32632&interpolation=nearest", at.x, at.y);
+    let meters = server.get(&path).ok();
+    assert_eq!(elevations(&meters), [Value::from(90.0)]);
+    let own = server.get("/v1/plain?locations=5,15&crs=native&interpolation=nearest").ok();
+    assert_eq!(elevations(&own), [Value::from(1.0)]);
+}
+
+#[test]
+fn health_lists_the_datasets_and_the_page_at_the_root_explains() {
+    let (_scratch, server) = server();
+    let health = server.get("/health").ok();
+    assert_eq!((&health["status"], &health["version"]), (&json!("OK"), &json!(env!("CARGO_PKG_VERSION"))));
+    let names: Vec<_> =
+        health["datasets"].as_array().expect("a list").iter().map(|one| one["name"].as_str()).collect();
+    assert_eq!(names, [Some("grid"), Some("other"), Some("plain")]);
+    let grid = &health["datasets"][0];
+    assert_eq!((&grid["crs"], &grid["columns"], &grid["rows"]), (&json!("EPSG:4326"), &json!(4), &json!(3)));
+    assert_eq!(
+        (grid["extent"]["min_x"].as_f64(), grid["extent"]["max_x"].as_f64()),
+        (Some(10.0), Some(10.04))
+    );
+    assert_eq!(health["datasets"][2]["crs"], Value::Null);
+    let page = server.get("/");
+    assert_eq!((page.status, page.header("content-type")), (200, "text/plain; charset=utf-8"));
+    assert!(
+        page.body.contains("Datasets: grid, other, plain") && page.body.contains("/v1/viewshed"),
+        "{page:?}"
+    );
+}

@@ -1,0 +1,241 @@
+//! Zhang, Wang and Wu: the digital terrain model.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use glam::{DVec2, Vec2, Vec3};
+use sandtable::description::parse::parse_bytes;
+use sandtable::draw::list::{DepthLayer, DrawMesh};
+use sandtable::geom::polyline::Polyline;
+use sandtable::ribbon::drape::{check_clearance, drape};
+use sandtable::ribbon::plan::PlanMesh;
+use sandtable::ribbon::stroke::{Continuations, StrokeOptions, stroke};
+use sandtable::roam::active::ActiveSet;
+use sandtable::roam::block::{BlockSource, WholeGround};
+use sandtable::roam::criterion::Criterion;
+use sandtable::roam::criterion::midpoint::Midpoint;
+use sandtable::roam::criterion::screen::ScreenError;
+use sandtable::roam::culling::patches_in_view;
+use sandtable::roam::displayed::DisplayedTerrain;
+use sandtable::roam::errors::ErrorMap;
+use sandtable::roam::graph::Vertex;
+use sandtable::roam::refine::deferred::Deferred;
+use sandtable::roam::refine::rebuild::rebuild;
+use sandtable::roam::spheres::{SphereMap, reach};
+use sandtable::scene::FeatureKind;
+use sandtable::scene::assets::Assets;
+use sandtable::scene::build::build;
+use sandtable::scene::picture::{build_draw_list, camera as scene_camera};
+use sandtable::terrain::query::{Interpolation, ground_height};
+use sandtable::terrain::triangle_surface::TriangleSurface;
+use sandtable::view::flight::{CircularFlight, GroundClearance};
+use sandtable::view::frustum::Frustum;
+
+use crate::common::scratch::Scratch;
+use crate::papers::{World, camera, same};
+
+#[test]
+fn a_cell_is_read_as_a_constant_or_by_the_distances_to_the_four_around() {
+    let world = World::new((3, 3), 2, |x, y| x * 10.0 + y * y * 7.0);
+    let ask = |interpolation, x: f64, y: f64| {
+        ground_height(&world.lattice, interpolation, DVec2::new(x, y)).height_m().expect("on the ground")
+    };
+    assert_eq!(ask(Interpolation::Nearest, 4.9, 0.0), 0.0);
+    assert_eq!(ask(Interpolation::Nearest, 5.1, 0.0), 10.0, "the surface jumps between cells");
+    let at = DVec2::new(3.0, 4.0);
+    let corners = [(0.0, 0.0, 0.0), (10.0, 0.0, 10.0), (0.0, 10.0, 7.0), (10.0, 10.0, 17.0)];
+    let weighted = corners.map(|(x, y, z)| (1.0 / at.distance(DVec2::new(x, y)), z));
+    let (weights, sum) = weighted.iter().fold((0.0, 0.0), |(w, s), (weight, z)| (w + weight, s + weight * z));
+    let found = ask(Interpolation::DistanceWeighted4, at.x, at.y);
+    assert!((found - sum / weights).abs() < 1e-9, "{found} against {}", sum / weights);
+    assert_eq!(ask(Interpolation::DistanceWeighted4, 10.0, 10.0), 17.0, "a post is itself");
+}
+
+#[test]
+fn features_get_their_elevation_from_the_ground_that_roam_built() {
+    let world = World::hills(97, 97, 32);
+    let camera = camera(Vec3::new(100.0, 100.0, 120.0), Vec3::new(600.0, 600.0, 0.0));
+    let criterion = ScreenError::new(world.ground(), &world.errors, &world.heights, &camera, 4.0);
+    let active = rebuild(&world.layout, &criterion, world.layout.patches());
+    let patches = world.layout.patches().collect();
+    let displayed = DisplayedTerrain::new(Arc::new(world.lattice.clone()), active, patches);
+
+    let line =
+        Polyline::new(vec![DVec2::new(50.0, 80.0), DVec2::new(400.0, 300.0), DVec2::new(900.0, 820.0)], 0.01)
+            .expect("a line");
+    let mut plan = PlanMesh::default();
+    stroke(
+        &line,
+        Continuations::default(),
+        &StrokeOptions { width_m: 12.0, ..StrokeOptions::default() },
+        &mut plan,
+    );
+    assert!(!plan.triangles.is_empty(), "triangles from centerline and width");
+    let mut draped = DrawMesh::default();
+    drape(&plan, &displayed, &mut draped);
+    assert!(draped.triangles.len() > plan.triangles.len(), "cut by the ground");
+    assert!(check_clearance(&draped, &displayed) < 1e-3, "it lies on the ground that is shown");
+    let model = displayed.displayed_z(DVec2::new(444.0, 333.0)).expect("on the ground");
+    assert!(model.abs() < 60.0, "a model's foot stands at {model} m");
+}
+
+#[test]
+fn roughness_is_the_midpoint_less_the_mean_of_the_ends_a_node_s_the_largest() {
+    let world = World::hills(33, 49, 16);
+    let errors = ErrorMap::midpoint(&world.lattice, &world.layout);
+    for vertex in world.vertices() {
+        let expected = world.largest_below(vertex, &|vertex| world.midpoint_error(vertex));
+        let found = errors.at(&world.layout, vertex);
+        assert!(same(found, expected), "{vertex:?}: {found} against {expected}");
+    }
+    errors.check(&world.layout).expect("never smaller than below");
+}
+
+#[test]
+fn the_distance_is_that_from_the_eye_to_the_hypotenuse_s_midpoint() {
+    let world = World::hills(33, 49, 16);
+    let errors = ErrorMap::midpoint(&world.lattice, &world.layout);
+    let (camera, tolerance_px) = (camera(Vec3::new(-50.0, 70.0, 80.0), Vec3::new(200.0, 300.0, 0.0)), 2.0);
+    let criterion = Midpoint::new(world.ground(), &errors, &camera, tolerance_px);
+    for vertex in world.vertices() {
+        let [from, to] = vertex.hypotenuse().map(|end| world.ground().plan(end));
+        let midpoint = ((from + to) / 2.0).extend(world.height(vertex));
+        let pixels =
+            errors.at(&world.layout, vertex) * camera.pixels_per_meter(midpoint.distance(camera.eye()));
+        assert!(same(criterion.excess(vertex), pixels / tolerance_px), "{vertex:?}: {pixels} px");
+    }
+}
+
+#[test]
+fn forced_splits_go_on_recursively_from_block_to_block() {
+    let world = World::hills(129, 129, 32);
+    let (mut active, mut order) = (ActiveSet::new(world.layout), Vec::new());
+    active.activate_each(Vertex::new(33, 33), &mut |vertex| order.push(vertex));
+    for (at, vertex) in order.iter().enumerate() {
+        for parent in vertex.parents() {
+            let before = world.layout.is_corner(parent) || order[..at].contains(&parent);
+            assert!(before, "{parent:?} is split before {vertex:?}");
+        }
+    }
+    let blocks = |vertex: &Vertex| (vertex.x / 32, vertex.y / 32);
+    let touched: BTreeSet<_> = order.iter().map(blocks).collect();
+    assert!(touched.len() >= 3, "a corner's split goes over to the blocks beside: {touched:?}");
+}
+
+#[test]
+fn only_blocks_that_need_detail_get_trees() {
+    // A hill in one block of a plain.
+    let hill = |x: f32, y: f32| 20.0 * (1.0 - Vec2::new(x - 80.0, y - 112.0).length() / 12.0).max(0.0);
+    let world = World::new((257, 257), 32, hill);
+    let spheres = SphereMap::plain(world.ground(), &world.errors, 100.0);
+    let source = WholeGround { ground: world.ground(), spheres: &spheres };
+    let patches: Vec<Vertex> = world.layout.patches().collect();
+    for (eye, needs_none) in [(Vec3::new(900.0, 1100.0, 50.0), false), (Vec3::new(0.0, 0.0, 90_000.0), true)]
+    {
+        let mut mesh = Deferred::new(source, 10.0).expect("small patches");
+        mesh.update(eye, &patches).expect("in memory");
+        let inside = |&&corner: &&Vertex| {
+            let root = source.root(corner);
+            root.radius > 0.0 && root.center.distance(eye) < root.radius
+        };
+        let needed = patches.iter().filter(inside).count();
+        assert_eq!(mesh.meshes(), needed, "from {eye}");
+        assert_eq!(needed == 0, needs_none);
+        assert!(needed < 10, "{needed} of {} blocks", patches.len());
+        let split = patches.iter().filter(|&&corner| mesh.indices(corner).len() > 2).count();
+        assert!(split <= needed, "blocks without trees are two triangles each");
+    }
+}
+
+#[test]
+fn a_frame_of_a_terrain_with_sixty_three_times_the_samples_costs_hardly_more() {
+    let frame_cost = |posts: u32| {
+        let world = World::new((posts, posts), 64, |x, y| {
+            30.0 * libm::sinf(x * 0.05) * libm::cosf(y * 0.04) + 3.0 * libm::sinf(x * 0.7 + y * 0.45)
+        });
+        let middle = world.lattice.extent().max.as_vec2() / 2.0;
+        let circle = CircularFlight {
+            center: middle,
+            radius_m: 400.0,
+            step_m: 4.0,
+            clearance: GroundClearance { height_m: 60.0, smoothing_m: 10.0 },
+        };
+        let stations = circle.stations(120, &|_| 0.0);
+        let first = stations[0].camera(1.0, 50_000.0).expect("sound");
+        let spheres = SphereMap::plain(world.ground(), &world.errors, reach(&first, 4.0));
+        let source = WholeGround { ground: world.ground(), spheres: &spheres };
+        let mut mesh = Deferred::new(source, 10.0).expect("small patches");
+        let (mut examined, mut triangles) = (0, 0);
+        for (frame, station) in stations.iter().enumerate() {
+            let camera = station.camera(1.0, 50_000.0).expect("sound");
+            let seen = patches_in_view(world.ground(), &world.heights, &Frustum::new(&camera));
+            mesh.update(camera.eye(), &seen).expect("in memory");
+            if frame > 0 {
+                examined += mesh.examined();
+                triangles += mesh.triangle_count();
+            }
+        }
+        (examined as f64, triangles as f64)
+    };
+    let (small, large) = (frame_cost(129), frame_cost(1025));
+    assert!(large.0 < small.0 * 2.5, "{large:?} against {small:?}: vertices looked at, triangles shown");
+    assert!(large.1 < small.1 * 2.5, "{large:?} against {small:?}: vertices looked at, triangles shown");
+}
+
+#[test]
+fn a_digital_terrain_model_is_heights_features_and_what_is_no_terrain() {
+    let folder = Scratch::new();
+    let heights: Vec<String> =
+        (0..60 * 60).map(|at| format!("{:.2}", 100.0 + 9.0 * libm::sin(f64::from(at % 60) * 0.3))).collect();
+    let grid = "ncols 60\nnrows 60\nxllcorner 0\nyllcorner 0\ncellsize 10\n".to_string();
+    folder.write("hill.asc", grid + &heights.join(" "));
+    let model = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models/watchtower.3ds"));
+    folder.write("tower.3ds", model.expect("the project's own model"));
+    let text = r##"
+        title = "Hill"
+        subtitle = "from the south"
+        crs = "EPSG:32616"
+        [terrain]
+        dem = "hill.asc"
+        [[road]]
+        points = [[50, 100], [300, 220], [550, 180]]
+        width = 8
+        [[river]]
+        points = [[100, 550], [320, 400], [540, 500]]
+        width = 12
+        [[lake]]
+        points = [[400, 300], [460, 300], [460, 350], [400, 350]]
+        [[model]]
+        file = "tower.3ds"
+        at = [200, 300]
+        [[label]]
+        text = "Tower {height}"
+        at = [200, 300]
+    "##;
+    let file = folder.write("scene.toml", text);
+    let document = parse_bytes("scene.toml", text.as_bytes()).unwrap_or_else(|errors| panic!("{errors}"));
+    let assets = Assets::new(&file, &[]).expect("the folder is there");
+    let scene = build(&document, &assets, &|_| ()).unwrap_or_else(|error| panic!("{error}"));
+    let kinds = scene.features.iter().map(|feature| feature.kind).collect::<BTreeSet<_>>();
+    let all = [FeatureKind::Lake, FeatureKind::River, FeatureKind::Road, FeatureKind::Model];
+    assert!(all.iter().all(|kind| kinds.contains(kind)), "regular and irregular features: {kinds:?}");
+    assert_eq!((scene.title.as_deref(), scene.labels.len()), (Some("Hill"), 1), "what is no terrain");
+
+    let view = &scene.cameras[0];
+    let shot = build_draw_list(&scene, &scene_camera(&scene, view, (640, 480)).expect("sound"), &|_| ());
+    assert!(shot.ground_triangles > 100, "the elevation model");
+    let draped = shot.list.items.iter().filter(|item| matches!(item.layer, DepthLayer::Draped(_)));
+    let mut ribbons = 0;
+    for item in draped {
+        let mesh = &shot.list.meshes[item.mesh.0 as usize];
+        assert!(check_clearance(mesh, &*shot.displayed) < 1e-3, "laid over the ground by height");
+        let material = &shot.list.materials[item.material.0 as usize];
+        assert!(material.texture.is_some(), "each triangle is textured: {}", material.name);
+        ribbons += 1;
+    }
+    assert_eq!(ribbons, 3, "a lake, a river and a road");
+    let tower = shot.list.items.iter().find(|item| item.feature == scene.placements[0].feature);
+    let foot = tower.expect("the model is drawn").world_from_mesh.transform_point3(Vec3::ZERO);
+    let ground = shot.displayed.displayed_z(foot.truncate().as_dvec2()).expect("on the ground") as f32;
+    assert!((foot.z - ground).abs() < 1.0, "the model stands at {} on {ground}", foot.z);
+}

@@ -1,0 +1,152 @@
+//! Simpler forms of models: what they save, and what of it can be seen.
+
+use std::path::PathBuf;
+
+use crate::common::forest::{forest, overlook, seen_from};
+use glam::Vec3;
+use sandtable::draw::list::DrawList;
+use sandtable::geom::aabb::Aabb;
+use sandtable::mesh::sink::VertexId;
+use sandtable::model::error::CompanionError;
+use sandtable::model::read::read;
+use sandtable::model::simplify::levels;
+use sandtable::model::{Companions, Model, ModelPart};
+use sandtable::render::cpu::{RenderQuality, render};
+use sandtable::render::picture::Picture;
+use sandtable::scene::Scene;
+use sandtable::scene::picture::{build_draw_list, display, draw_list};
+use sandtable::view::camera::Camera;
+
+struct Assets;
+
+impl Companions for Assets {
+    fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError> {
+        let folder: PathBuf = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models").into();
+        Ok(std::fs::read(folder.join(name))?)
+    }
+}
+
+fn asset(name: &str) -> Model {
+    read(name, &Assets.load(name).expect("the asset is there"), &Assets).expect("the asset can be read")
+}
+
+/// The picture as seen, and the one in which every model is drawn in full.
+fn pictures(scene: &Scene, camera: &Camera) -> ([DrawList; 2], [Picture; 2]) {
+    let seen = build_draw_list(scene, camera, &|_| ()).list;
+    let (full, _) = draw_list(scene, &display(&scene.terrain, camera), &|_| ());
+    let drawn = |list: &DrawList| render(list, camera, &RenderQuality::default()).expect("sound");
+    let pictures = [drawn(&seen), drawn(&full)];
+    ([seen, full], pictures)
+}
+
+/// The mean difference of a channel in 8-bit steps over the pixels that either picture has a model in.
+fn mean_difference([one, other]: &[Picture; 2]) -> (f64, usize) {
+    let pixels = one.pixels.data().iter().zip(other.pixels.data());
+    let features = one.features.iter().zip(&other.features);
+    let (mut sum, mut count) = (0u64, 0);
+    for ((a, b), _) in pixels.zip(features).filter(|(_, (a, b))| a.0 > 1 || b.0 > 1) {
+        sum += (0..3).map(|channel| u64::from(a.0[channel].abs_diff(b.0[channel]))).sum::<u64>();
+        count += 1;
+    }
+    (sum as f64 / 3.0 / f64::from(count.max(1)), count as usize)
+}
+
+/// The mean colors of both pictures where both have a model.
+fn mean_colors([one, other]: &[Picture; 2]) -> [Vec3; 2] {
+    let features = one.features.iter().zip(&other.features);
+    let both: Vec<bool> = features.map(|(a, b)| a.0 > 1 && b.0 > 1).collect();
+    let mean = |picture: &Picture| {
+        let models = picture.pixels.data().iter().zip(&both).filter(|(_, both)| **both);
+        let (sum, count) = models.fold((Vec3::ZERO, 0.0), |(sum, count), (pixel, _)| {
+            let [red, green, blue, _] = pixel.0.map(f32::from);
+            (sum + Vec3::new(red, green, blue), count + 1.0)
+        });
+        sum / f32::max(count, 1.0)
+    };
+    [mean(one), mean(other)]
+}
+
+#[test]
+fn a_forest_looks_the_same_at_a_tenth_of_its_triangles() {
+    let scene = forest(6000, &["firtree.obj"]);
+    let camera = overlook(&scene, (960, 540));
+    let (lists, pictures) = pictures(&scene, &camera);
+    let triangles = lists.each_ref().map(DrawList::triangle_count);
+    let (mean, pixels) = mean_difference(&pictures);
+    let colors = mean_colors(&pictures);
+    println!("{triangles:?} triangles, {mean:.2} steps over {pixels} pixels, mean colors {colors:?}");
+    assert!(triangles[0] * 10 < triangles[1], "{triangles:?}");
+    assert!(pixels > 20_000, "{pixels}");
+    assert!(mean < 10.0, "{mean}");
+    assert!((colors[0] - colors[1]).abs().max_element() < 6.0, "{colors:?}");
+}
+
+#[test]
+fn models_near_the_eye_are_drawn_in_full_and_far_ones_as_pictures() {
+    let scene = forest(30_000, &["firtree.obj"]);
+    let full = asset("firtree.obj").triangle_count();
+    let eye = Vec3::new(1280.0, 1280.0, 345.0);
+    let camera = seen_from(&scene, eye, eye + Vec3::new(0.0, 100.0, -12.0), (960, 540));
+    let list = build_draw_list(&scene, &camera, &|_| ()).list;
+    let mut nearest = f32::INFINITY;
+    let mut farthest_full = 0f32;
+    for item in list.items.iter().filter(|item| item.feature.0 > 1) {
+        let distance = item.world_from_mesh.w_axis.truncate().distance(eye);
+        match item.triangles.len() {
+            2 => nearest = nearest.min(distance),
+            count if count * 2 > full / 2 => farthest_full = farthest_full.max(distance),
+            _ => {}
+        }
+    }
+    assert!(nearest > 150.0 && nearest.is_finite(), "the nearest picture is {nearest} m away");
+    assert!(farthest_full > 20.0, "the farthest full model is {farthest_full} m away");
+}
+
+#[test]
+fn a_scene_of_few_models_is_drawn_in_full() {
+    let scene = forest(60, &["firtree.obj", "farmhouse.obj"]);
+    let camera = overlook(&scene, (320, 200));
+    let ([seen, full], pictures) = pictures(&scene, &camera);
+    assert!(seen.items.len() <= full.items.len());
+    assert!(pictures[0].pixels == pictures[1].pixels && pictures[0].features == pictures[1].features);
+}
+
+fn vertices(parts: &[ModelPart]) -> impl Iterator<Item = Vec3> + '_ {
+    parts.iter().flat_map(|part| part.mesh.vertices.iter().map(|vertex| Vec3::from(vertex.position)))
+}
+
+fn area(parts: &[ModelPart]) -> f32 {
+    let at = |part: &ModelPart, id: VertexId| Vec3::from(part.mesh.vertices[id.index()].position);
+    let corners =
+        parts.iter().flat_map(|part| part.mesh.triangles.iter().map(|ids| ids.map(|id| at(part, id))));
+    corners.map(|[a, b, c]| (b - a).cross(c - a).length() * 0.5).sum()
+}
+
+#[test]
+fn levels_of_every_model_stay_within_its_bounds_and_keep_its_area() {
+    for name in ["watchtower.3ds", "farmhouse.obj", "bridge.glb", "tent.glb", "truck.3ds", "firtree.obj"] {
+        let model = asset(name);
+        let Aabb { min, max } = model.bounds().expect("it has vertices");
+        let levels = levels(&model);
+        let counts: Vec<(usize, f32)> =
+            levels.iter().map(|level| (level.triangle_count(), level.error)).collect();
+        println!("{name}: {} triangles, {counts:?}", model.triangle_count());
+        for level in &levels {
+            assert!(vertices(&level.parts).all(|at| at.cmpge(min).all() && at.cmple(max).all()), "{name}");
+            assert!(area(&level.parts) > 0.8 * area(&model.parts), "{name}");
+        }
+        assert!(counts.windows(2).all(|pair| pair[1].0 < pair[0].0 && pair[1].1 >= pair[0].1), "{name}");
+    }
+}
+
+#[test]
+fn the_same_model_gives_the_same_levels() {
+    let triangles = || -> Vec<Vec<ModelPart>> {
+        levels(&asset("bridge.glb")).into_iter().map(|level| level.parts).collect()
+    };
+    let [one, other] = [triangles(), triangles()];
+    assert_eq!(one.len(), other.len());
+    for (one, other) in one.iter().flatten().zip(other.iter().flatten()) {
+        assert_eq!(one.mesh, other.mesh);
+    }
+}

@@ -1,0 +1,16 @@
+//! Scene files, models and what a scene shows.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod assets;
+mod clearance;
+mod detail;
+mod instances;
+mod models;
+mod odd_scenes;
+mod own_models;
+mod placement;
+mod recut;
+mod scatter;
+mod scene_file;
