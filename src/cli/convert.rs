@@ -83,7 +83,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), CliError> {
 /// The error with the arguments that would mend it.
 fn with_remedy(file: &Path, error: &ConvertError) -> CliError {
     let remedy = match error {
-        ConvertError::NoCrs { .. } => "; name its own, for example --source-crs EPSG:4326".to_owned(),
+        ConvertError::NoCrs(_) => "; name its own, for example --source-crs EPSG:4326".to_owned(),
         ConvertError::CellInDegrees { cell, zone: Some(zone) } => {
             format!("; for cells of {cell} m bring it to its UTM zone, --crs {zone}")
         }

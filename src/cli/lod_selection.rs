@@ -56,9 +56,6 @@ pub struct NoMethod {
 impl MethodFilter {
     /// The methods that pass, in the order in which they are compared: the default selection for an empty filter. Without
     /// `emit` the lists are those of the bintree, since all emitters show the same triangles.
-    ///
-    /// # Errors
-    /// No method passes; the message says which parts go together.
     pub fn methods(self) -> Result<Vec<LodMethod>, NoMethod> {
         if self == Self::default() {
             return Ok(SELECTION.to_vec());

@@ -94,9 +94,6 @@ impl HeightArguments {
 
 impl DatasetArguments {
     /// Opens the dataset; prints its warning.
-    ///
-    /// # Errors
-    /// The dataset cannot be opened.
     pub fn open(&self) -> Result<Dataset, CliError> {
         let options = DatasetOptions { dem: self.heights.dem_options(), allowed: self.access.allow.clone() };
         let dataset = Dataset::open(&self.file, &options)?;
@@ -117,9 +114,6 @@ impl DatasetArguments {
 
 impl ChartArguments {
     /// Checks that the chart could be written.
-    ///
-    /// # Errors
-    /// It could not, or would replace `input`.
     pub fn check(&self, input: &PathBuf) -> Result<(), CliError> {
         match &self.output {
             Some(path) => Ok(files::check_picture_output(path, std::slice::from_ref(input))?),

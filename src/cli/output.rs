@@ -12,25 +12,16 @@ use crate::cli::error::CliError;
 struct StdoutError(#[source] io::Error);
 
 /// Prints `text`.
-///
-/// # Errors
-/// Standard output cannot be written, other than for a closed pipe.
 pub fn print(text: &str) -> Result<(), CliError> {
     stream(|out| out.write_all(text.as_bytes()))
 }
 
 /// Prints `lines`, each with its end.
-///
-/// # Errors
-/// As [`print`].
 pub fn print_lines(lines: &[String]) -> Result<(), CliError> {
     stream(|out| lines.iter().try_for_each(|line| writeln!(out, "{line}")))
 }
 
 /// Prints what `write` writes, buffered.
-///
-/// # Errors
-/// As [`print`].
 pub fn stream(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), CliError> {
     let mut out = BufWriter::new(io::stdout().lock());
     match write(&mut out).and_then(|()| out.flush()) {

@@ -7,9 +7,6 @@ use crate::dem::formats::DemFormat;
 use crate::pipeline::files;
 
 /// The format that the extension of `path` names, where a file could be written there that replaces none of `inputs`.
-///
-/// # Errors
-/// Usage, where the extension names no format; input, where the file could not be written.
 pub fn format_for(path: &Path, inputs: &[PathBuf]) -> Result<&'static DemFormat, CliError> {
     let format = DemFormat::to_write(&extension(path)).ok_or_else(|| {
         let path = path.display();

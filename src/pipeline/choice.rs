@@ -29,34 +29,31 @@ pub struct Word<T> {
     pub meaning: &'static str,
 }
 
+/// A value with its word and meaning.
+pub const fn word<T: Copy>(value: T, word: &'static str, meaning: &'static str) -> Word<T> {
+    Word { value, word, meaning }
+}
+
 impl Choice for Interpolation {
     const CHOICES: &'static [Word<Self>] = &[
-        Word { value: Self::Planar, word: "planar", meaning: "On the finest triangles" },
-        Word { value: Self::Bilinear, word: "bilinear", meaning: "Between four posts, as GDAL does" },
-        Word { value: Self::Nearest, word: "nearest", meaning: "The height of the nearest post" },
-        Word {
-            value: Self::DistanceWeighted4,
-            word: "distance-weighted",
-            meaning: "The four posts around, weighted by nearness",
-        },
+        word(Self::Planar, "planar", "On the finest triangles"),
+        word(Self::Bilinear, "bilinear", "Between four posts, as GDAL does"),
+        word(Self::Nearest, "nearest", "The height of the nearest post"),
+        word(Self::DistanceWeighted4, "distance-weighted", "The four posts around, weighted by nearness"),
     ];
 }
 
 impl Choice for Surface {
     const CHOICES: &'static [Word<Self>] = &[
-        Word { value: Self::Source, word: "source", meaning: "The raster as read, in its own grid" },
-        Word {
-            value: Self::Ground,
-            word: "ground",
-            meaning: "The ground in meters, after a scene's earthworks",
-        },
-        Word { value: Self::Scene, word: "scene", meaning: "The higher of the ground and the decks over it" },
+        word(Self::Source, "source", "The raster as read, in its own grid"),
+        word(Self::Ground, "ground", "The ground in meters, after a scene's earthworks"),
+        word(Self::Scene, "scene", "The higher of the ground and the decks over it"),
     ];
 }
 
 impl Choice for BeyondHull {
     const CHOICES: &'static [Word<Self>] = &[
-        Word { value: Self::NoData, word: "nodata", meaning: "No data" },
-        Word { value: Self::Nearest, word: "nearest", meaning: "The height of the nearest point" },
+        word(Self::NoData, "nodata", "No data"),
+        word(Self::Nearest, "nearest", "The height of the nearest point"),
     ];
 }

@@ -50,11 +50,8 @@ pub struct Converted {
 #[derive(Debug, thiserror::Error)]
 pub enum ConvertError {
     /// The elevation names no coordinate system.
-    #[error("it names no coordinate system, so it cannot be brought to {target}")]
-    NoCrs {
-        /// The target system.
-        target: String,
-    },
+    #[error("it names no coordinate system, so it cannot be brought to {0}")]
+    NoCrs(String),
     /// The cell is too large for a system in degrees.
     #[error(
         "cells of {cell} degrees are too large: cells count in the units of the system, and this one is in degrees"
@@ -101,7 +98,7 @@ fn resample(source: Raster, options: &ConvertOptions) -> Result<(Raster, Resampl
         return Ok((source, Resampling::Kept));
     }
     if let (Some(target), None, true) = (target, &source.crs, source.georeferenced) {
-        return Err(ConvertError::NoCrs { target: target.name().to_owned() });
+        return Err(ConvertError::NoCrs(target.name().to_owned()));
     }
     let is_in_degrees = target.or(source.crs.as_ref()).is_some_and(Crs::is_geographic);
     if let Some(cell) = cell.filter(|&cell| is_in_degrees && cell > LARGEST_CELL_DEG) {

@@ -1,5 +1,19 @@
 //! Tables of numbers as text: comma, semicolon or white space between the fields, with or without a header.
 
+use std::fmt::Display;
+
+/// A line that is wrong.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{name}:{line}: {fault}")]
+pub struct LineError<F: Display> {
+    /// The file.
+    pub name: String,
+    /// From 1.
+    pub line: usize,
+    /// What is wrong.
+    pub fault: F,
+}
+
 /// The lines that hold something, with their numbers from 1: no byte order mark, no empty lines, no comments (`#`).
 pub fn numbered_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let lines = text.trim_start_matches('\u{feff}').lines().zip(1..).map(|(line, number)| (number, line));

@@ -9,6 +9,7 @@ use crate::dem::mosaic::{Mosaic, MosaicError, Tiles};
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints};
 use crate::geom::crs::Crs;
+use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
 
 /// What the caller states about an elevation file beyond its content.
@@ -35,19 +36,11 @@ pub enum OpenDemError {
     #[error(transparent)]
     File(#[from] ReadFileError),
     /// A file is not elevation that is read.
-    #[error("{}", path.display())]
-    Format {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: DemErrorKind,
-    },
+    #[error(transparent)]
+    Format(#[from] FileError<DemErrorKind>),
     /// A folder has no elevation file.
-    #[error("{}: there is no elevation file in this folder", folder.display())]
-    NoTiles {
-        /// The folder.
-        folder: PathBuf,
-    },
+    #[error("{}: there is no elevation file in this folder", .0.display())]
+    NoTiles(PathBuf),
     /// The files are not tiles of one raster.
     #[error(transparent)]
     Tiles(#[from] MosaicError),
@@ -64,7 +57,7 @@ pub fn open(path: &Path, options: &DemOptions) -> Result<Mosaic, OpenDemError> {
     let mut tiles = files::list_folder(path)?;
     tiles.retain(|tile| read::is_tile_name(&files::file_name(tile)));
     if tiles.is_empty() {
-        return Err(OpenDemError::NoTiles { folder: path.to_owned() });
+        return Err(OpenDemError::NoTiles(path.to_owned()));
     }
     open_tiles(&tiles, options)
 }
@@ -94,8 +87,8 @@ fn open_file(path: &Path, options: &DemOptions) -> Result<Raster, OpenDemError> 
         companions: &files::beside(path),
         ..DemHints::default()
     };
-    read::read(&files::file_name(path), &bytes, &hints)
-        .map_err(|error| OpenDemError::Format { path: path.to_owned(), source: error.kind })
+    let raster = read::read(&files::file_name(path), &bytes, &hints);
+    Ok(raster.map_err(|error| FileError::<DemErrorKind>::new(path, error.kind))?)
 }
 
 /// A warning for the user where the tiles at `path` contradict each other.

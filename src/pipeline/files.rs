@@ -3,9 +3,11 @@
 use std::fs;
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
+use std::string::FromUtf8Error;
 
 use crate::draw::pixels::Pixels;
 use crate::export::png;
+use crate::pipeline::error::FileError;
 
 /// The largest input file: more than any elevation tile in use, less than the memory of today's machines.
 const MAX_BYTES: u64 = 4 << 30;
@@ -14,15 +16,7 @@ const MAX_BYTES: u64 = 4 << 30;
 const STDIN: &str = "-";
 
 /// A file that cannot be read.
-#[derive(Debug, thiserror::Error)]
-#[error("{name}")]
-pub struct ReadFileError {
-    /// The path, or `standard input`.
-    pub name: String,
-    /// Why.
-    #[source]
-    pub cause: ReadFileCause,
-}
+pub type ReadFileError = FileError<ReadFileCause>;
 
 /// Why a file cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -31,32 +25,18 @@ pub enum ReadFileCause {
     #[error("this is not a file")]
     NotAFile,
     /// The file is larger than the limit.
-    #[error("{bytes} bytes are more than the {MAX_BYTES} that are read")]
-    TooLarge {
-        /// Its size.
-        bytes: u64,
-    },
-    /// The bytes are not UTF-8.
-    #[error("byte {at} is not UTF-8 text")]
-    NotText {
-        /// The first byte that is not.
-        at: usize,
-    },
+    #[error("{0} bytes are more than the {MAX_BYTES} that are read")]
+    TooLarge(u64),
+    /// The bytes are not UTF-8, from this one on.
+    #[error("byte {0} is not UTF-8 text")]
+    NotText(usize),
     /// The system refuses.
     #[error(transparent)]
     System(#[from] SystemError),
 }
 
 /// A file that cannot be written; nothing is left behind.
-#[derive(Debug, thiserror::Error)]
-#[error("{}", path.display())]
-pub struct WriteFileError {
-    /// The file.
-    pub path: PathBuf,
-    /// Why.
-    #[source]
-    pub cause: WriteFileCause,
-}
+pub type WriteFileError = FileError<WriteFileCause>;
 
 /// Why a file cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -108,21 +88,8 @@ impl From<io::Error> for SystemError {
     }
 }
 
-impl ReadFileError {
-    fn new(path: &Path, cause: ReadFileCause) -> Self {
-        Self { name: display_name(path), cause }
-    }
-
-    fn system(path: &Path) -> impl Fn(io::Error) -> Self + '_ {
-        |error| Self::new(path, SystemError::from(error).into())
-    }
-}
-
-impl WriteFileError {
-    /// The error for `path`.
-    pub fn new(path: &Path, cause: impl Into<WriteFileCause>) -> Self {
-        Self { path: path.to_owned(), cause: cause.into() }
-    }
+fn system(path: &Path) -> impl Fn(io::Error) -> ReadFileError + '_ {
+    |error| FileError::new(path, SystemError::from(error))
 }
 
 /// The bytes of a regular file of at most 4 GiB.
@@ -130,14 +97,14 @@ impl WriteFileError {
 /// # Errors
 /// See [`ReadFileCause`].
 pub fn read(path: &Path) -> Result<Vec<u8>, ReadFileError> {
-    let metadata = fs::metadata(path).map_err(ReadFileError::system(path))?;
+    let metadata = fs::metadata(path).map_err(system(path))?;
     if !metadata.is_file() {
         return Err(ReadFileError::new(path, ReadFileCause::NotAFile));
     }
     if metadata.len() > MAX_BYTES {
-        return Err(ReadFileError::new(path, ReadFileCause::TooLarge { bytes: metadata.len() }));
+        return Err(ReadFileError::new(path, ReadFileCause::TooLarge(metadata.len())));
     }
-    fs::read(path).map_err(ReadFileError::system(path))
+    fs::read(path).map_err(system(path))
 }
 
 /// The text of a file, or of standard input for the path `-`.
@@ -148,14 +115,13 @@ pub fn read_text(path: &Path) -> Result<String, ReadFileError> {
     let bytes = if path == Path::new(STDIN) {
         let mut bytes = Vec::new();
         let read = io::stdin().lock().take(MAX_BYTES).read_to_end(&mut bytes);
-        read.map_err(ReadFileError::system(path))?;
+        read.map_err(system(path))?;
         bytes
     } else {
         read(path)?
     };
-    String::from_utf8(bytes).map_err(|error| {
-        ReadFileError::new(path, ReadFileCause::NotText { at: error.utf8_error().valid_up_to() })
-    })
+    let not_text = |error: FromUtf8Error| ReadFileCause::NotText(error.utf8_error().valid_up_to());
+    String::from_utf8(bytes).map_err(|error| FileError::new(path, not_text(error)))
 }
 
 /// The name of a file in messages: `standard input` for the path `-`.
@@ -179,8 +145,8 @@ pub fn file_stem(path: &Path) -> String {
 /// The folder cannot be read.
 pub fn list_folder(folder: &Path) -> Result<Vec<PathBuf>, ReadFileError> {
     let mut files = Vec::new();
-    for entry in fs::read_dir(folder).map_err(ReadFileError::system(folder))? {
-        files.push(entry.map_err(ReadFileError::system(folder))?.path());
+    for entry in fs::read_dir(folder).map_err(system(folder))? {
+        files.push(entry.map_err(system(folder))?.path());
     }
     files.retain(|path| path.is_file());
     files.sort();

@@ -7,6 +7,7 @@ use glam::{DVec2, DVec3};
 
 use crate::dem::points::{self, PointCloud, PointHints, PointsError};
 use crate::geom::crs::{Crs, CrsError};
+use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
 use crate::vector::error::VectorError;
 use crate::vector::feature::{Feature, Geometry, VectorLayer};
@@ -20,41 +21,20 @@ pub enum OpenPointsError {
     #[error(transparent)]
     File(#[from] ReadFileError),
     /// A file of points is not one that is read.
-    #[error("{}", path.display())]
-    Points {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: PointsError,
-    },
+    #[error(transparent)]
+    Points(#[from] FileError<PointsError>),
     /// A vector file is not one that is read.
-    #[error("{}", path.display())]
-    Vector {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: VectorError,
-    },
+    #[error(transparent)]
+    Vector(#[from] FileError<VectorError>),
     /// A vector file has no elevations for points.
-    #[error("{}: no point in it has an elevation; points with a z are needed", path.display())]
-    FlatPoints {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("{}: no point in it has an elevation; points with a z are needed", .0.display())]
+    FlatPoints(PathBuf),
     /// A vector file has no elevations for breaklines.
-    #[error("{}: no line in it has an elevation at every vertex; breaklines with a z are needed", path.display())]
-    FlatLines {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("{}: no line in it has an elevation at every vertex; breaklines with a z are needed", .0.display())]
+    FlatLines(PathBuf),
     /// Positions cannot be brought to the system of the first file.
-    #[error("{}", path.display())]
-    Crs {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: CrsError,
-    },
+    #[error(transparent)]
+    Crs(#[from] FileError<CrsError>),
     /// No file is named.
     #[error("name at least one file of points")]
     NoFiles,
@@ -83,22 +63,19 @@ impl PointSources<'_> {
         let breaklines = self.breaklines.iter().map(|path| (path, self.open_breaklines(path)));
         let mut clouds = points.chain(breaklines);
         let (_, first) = clouds.next().ok_or(OpenPointsError::NoFiles)?;
-        clouds.try_fold(first?, |cloud, (path, next)| {
-            joined(cloud, next?).map_err(|source| OpenPointsError::Crs { path: path.clone(), source })
-        })
+        clouds.try_fold(first?, |cloud, (path, next)| Ok(joined(cloud, next?).map_err(FileError::at(path))?))
     }
 
     fn open_points(&self, path: &Path) -> Result<PointCloud, OpenPointsError> {
         let bytes = files::read(path)?;
         if points::recognizes(&files::file_name(path), &bytes) {
             let hints = PointHints { crs: self.crs.as_ref(), classes: self.classes };
-            return points::read(&bytes, &hints)
-                .map_err(|source| OpenPointsError::Points { path: path.to_owned(), source });
+            return Ok(points::read(&bytes, &hints).map_err(FileError::at(path))?);
         }
         let layer = self.read_layer(path, &bytes)?;
         let points: Vec<DVec3> = layer.features.iter().flat_map(vertices).collect();
         if points.is_empty() {
-            return Err(OpenPointsError::FlatPoints { path: path.to_owned() });
+            return Err(OpenPointsError::FlatPoints(path.to_owned()));
         }
         Ok(PointCloud { points, ..cloud(layer) })
     }
@@ -107,7 +84,7 @@ impl PointSources<'_> {
         let layer = self.read_layer(path, &files::read(path)?)?;
         let breaklines: Vec<Vec<DVec3>> = layer.features.iter().flat_map(breaklines).collect();
         if breaklines.is_empty() {
-            return Err(OpenPointsError::FlatLines { path: path.to_owned() });
+            return Err(OpenPointsError::FlatLines(path.to_owned()));
         }
         Ok(PointCloud { breaklines, ..cloud(layer) })
     }
@@ -115,21 +92,13 @@ impl PointSources<'_> {
     fn read_layer(&self, path: &Path, bytes: &[u8]) -> Result<VectorLayer, OpenPointsError> {
         let companions = &files::beside(path);
         let hints = VectorHints { crs: self.crs.as_ref(), companions, ..VectorHints::default() };
-        read::read(&files::file_name(path), bytes, &hints)
-            .map_err(|source| OpenPointsError::Vector { path: path.to_owned(), source })
+        Ok(read::read(&files::file_name(path), bytes, &hints).map_err(FileError::at(path))?)
     }
 }
 
 /// A cloud with the system and the notes of a layer, and no points yet.
 fn cloud(layer: VectorLayer) -> PointCloud {
-    PointCloud {
-        points: Vec::new(),
-        breaklines: Vec::new(),
-        crs: Some(layer.crs),
-        meters_per_z: 1.0,
-        vertical_datum: None,
-        notes: layer.notes,
-    }
+    PointCloud { crs: Some(layer.crs), notes: layer.notes, ..PointCloud::new(Vec::new()) }
 }
 
 /// The vertices of a feature that have an elevation.

@@ -1,10 +1,11 @@
 //! Opening model files.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::model::Model;
 use crate::model::error::ModelError;
 use crate::model::read;
+use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
 use crate::scene::assets::{AssetError, Assets};
 
@@ -15,24 +16,14 @@ pub enum OpenModelError {
     #[error(transparent)]
     File(#[from] ReadFileError),
     /// The folder of the file cannot be read.
-    #[error("{}", path.display())]
-    Folder {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: AssetError,
-    },
+    #[error(transparent)]
+    Folder(#[from] FileError<AssetError>),
     /// The file is empty, or of no format that is read; the error names it.
     #[error(transparent)]
     Unknown(ModelError),
     /// The file breaks its format.
-    #[error("{}", path.display())]
-    Format {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: ModelError,
-    },
+    #[error(transparent)]
+    Format(FileError<ModelError>),
 }
 
 /// Opens the model file at `path` with the files beside it.
@@ -40,12 +31,12 @@ pub enum OpenModelError {
 /// # Errors
 /// See [`OpenModelError`].
 pub fn open(path: &Path) -> Result<Model, OpenModelError> {
-    let folder = |source| OpenModelError::Folder { path: path.to_owned(), source };
+    let folder = FileError::<AssetError>::at(path);
     let bytes = files::read(path)?;
-    let assets = Assets::new(path, &[]).map_err(folder)?;
-    let companions = assets.beside(&files::file_name(path)).map_err(folder)?;
+    let assets = Assets::new(path, &[]).map_err(&folder)?;
+    let companions = assets.beside(&files::file_name(path)).map_err(&folder)?;
     read::read(&path.to_string_lossy(), &bytes, &companions).map_err(|error| match error {
         ModelError::Empty { .. } | ModelError::Unknown { .. } => OpenModelError::Unknown(error),
-        source => OpenModelError::Format { path: path.to_owned(), source },
+        cause => OpenModelError::Format(FileError::new(path, cause)),
     })
 }

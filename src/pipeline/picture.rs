@@ -5,7 +5,7 @@ use std::str::FromStr;
 use crate::annotate::paint::annotate;
 use crate::annotate::report::AnnotationReport;
 use crate::draw::pixels::Pixels;
-use crate::pipeline::choice::{Choice, Word};
+use crate::pipeline::choice::{Choice, Word, word};
 use crate::pipeline::labels;
 use crate::render::{RenderBackend, RenderError, render};
 use crate::scene::picture::{ViewDraw, build_draw_list, camera};
@@ -47,10 +47,8 @@ impl FromStr for PictureSize {
 }
 
 impl Choice for RenderBackend {
-    const CHOICES: &'static [Word<Self>] = &[
-        Word { value: Self::Cpu, word: "cpu", meaning: "The processor" },
-        Word { value: Self::Gpu, word: "gpu", meaning: "A graphics adapter" },
-    ];
+    const CHOICES: &'static [Word<Self>] =
+        &[word(Self::Cpu, "cpu", "The processor"), word(Self::Gpu, "gpu", "A graphics adapter")];
 }
 
 /// An annotated picture and what it was made of.

@@ -7,7 +7,8 @@ use std::str::FromStr;
 use glam::DVec2;
 
 use crate::geom::crs::Crs;
-use crate::pipeline::csv::{fields, is_header, numbered_lines};
+use crate::pipeline::csv::{LineError, fields, is_header, numbered_lines};
+use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
 use crate::vector::error::VectorError;
 use crate::vector::hints::VectorHints;
@@ -37,28 +38,17 @@ pub struct InputLine {
 pub struct PositionError;
 
 /// A CSV table that does not hold positions.
+pub type PositionsError = LineError<PositionFault>;
+
+/// What is wrong with a line of positions, which is quoted.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum PositionsError {
-    /// The header does not name the columns of x and y.
-    #[error("{name}:{line}: the header '{found}' must name columns x and y, or lon and lat")]
-    Header {
-        /// The file.
-        name: String,
-        /// From 1.
-        line: usize,
-        /// The line.
-        found: String,
-    },
+pub enum PositionFault {
+    /// A header does not name the columns of x and y.
+    #[error("the header '{0}' must name columns x and y, or lon and lat")]
+    Header(String),
     /// A line does not hold a position.
-    #[error("{name}:{line}: found '{found}', each line must hold numbers x,y")]
-    Line {
-        /// The file.
-        name: String,
-        /// From 1.
-        line: usize,
-        /// The line.
-        found: String,
-    },
+    #[error("found '{0}', each line must hold numbers x,y")]
+    Line(String),
 }
 
 /// A file that does not give a line.
@@ -79,19 +69,11 @@ pub enum ReadLineError {
         found: usize,
     },
     /// The vector file cannot be read.
-    #[error("{}", path.display())]
-    Vector {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: VectorError,
-    },
+    #[error(transparent)]
+    Vector(#[from] FileError<VectorError>),
     /// The vector file has no line.
-    #[error("{}: it holds no line; a profile follows the first line of a vector file", path.display())]
-    NoLine {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("{}: it holds no line; a profile follows the first line of a vector file", .0.display())]
+    NoLine(PathBuf),
 }
 
 impl FromStr for WrittenPosition<'static> {
@@ -118,22 +100,17 @@ impl<'a> WrittenPosition<'a> {
 /// A line is not a position, or the header does not name the columns.
 pub fn parse_positions<'a>(name: &str, text: &'a str) -> Result<Vec<WrittenPosition<'a>>, PositionsError> {
     let mut lines = numbered_lines(text).peekable();
+    let at_line = |line, fault| LineError { name: name.to_owned(), line, fault };
     let columns = match lines.next_if(|(_, line)| is_header(line)) {
-        Some((line, header)) => columns(header).ok_or_else(|| PositionsError::Header {
-            name: name.into(),
-            line,
-            found: header.into(),
-        })?,
+        Some((line, header)) => {
+            columns(header).ok_or_else(|| at_line(line, PositionFault::Header(header.into())))?
+        }
         None => [0, 1],
     };
     let position = |(line, text): (usize, &'a str)| {
         let fields: Vec<&str> = fields(text).collect();
         let [x, y] = columns.map(|column| fields.get(column).copied().unwrap_or_default());
-        WrittenPosition::parse(x, y).ok_or_else(|| PositionsError::Line {
-            name: name.into(),
-            line,
-            found: text.into(),
-        })
+        WrittenPosition::parse(x, y).ok_or_else(|| at_line(line, PositionFault::Line(text.into())))
     };
     lines.map(position).collect()
 }
@@ -172,10 +149,9 @@ pub fn read_line(path: &Path, stated: Option<Crs>, native: &Crs) -> Result<Input
 fn first_line(path: &Path, stated: Option<Crs>) -> Result<InputLine, ReadLineError> {
     let bytes = files::read(path)?;
     let hints = VectorHints { crs: stated.as_ref(), layer: None, companions: &files::beside(path) };
-    let layer = read::read(&files::file_name(path), &bytes, &hints)
-        .map_err(|source| ReadLineError::Vector { path: path.to_owned(), source })?;
+    let layer = read::read(&files::file_name(path), &bytes, &hints).map_err(FileError::at(path))?;
     let line = layer.features.iter().find_map(|feature| feature.lines().first().cloned());
-    let vertices = line.ok_or_else(|| ReadLineError::NoLine { path: path.to_owned() })?;
+    let vertices = line.ok_or_else(|| ReadLineError::NoLine(path.to_owned()))?;
     Ok(InputLine { vertices, crs: layer.crs })
 }
 

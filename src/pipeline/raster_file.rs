@@ -5,25 +5,18 @@ use std::path::{Path, PathBuf};
 use crate::dem::formats::DemFormat;
 use crate::dem::raster::Raster;
 use crate::dem::write::{self, Companion, WriteError, WrittenDem};
+use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError, WriteFileError};
 
 /// A raster that cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteRasterError {
     /// The format cannot hold the raster.
-    #[error("{}", path.display())]
-    Format {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: WriteError,
-    },
+    #[error(transparent)]
+    Format(#[from] FileError<WriteError>),
     /// A file beside it belongs to an input and has another content.
-    #[error("{}: this belongs to a file that is read and would be replaced; name another to write to", path.display())]
-    Sidecar {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("{}: this belongs to a file that is read and would be replaced; name another to write to", .0.display())]
+    Sidecar(PathBuf),
     /// A file cannot be compared.
     #[error(transparent)]
     Read(#[from] ReadFileError),
@@ -42,8 +35,7 @@ pub fn write(
     path: &Path,
     inputs: &[PathBuf],
 ) -> Result<WrittenDem, WriteRasterError> {
-    let written = write::write(raster, format, &files::file_stem(path))
-        .map_err(|source| WriteRasterError::Format { path: path.to_owned(), source })?;
+    let written = write::write(raster, format, &files::file_stem(path)).map_err(FileError::at(path))?;
     for companion in &written.companions {
         check_companion(&path.with_extension(companion.extension), companion, inputs)?;
     }
@@ -61,7 +53,7 @@ fn check_companion(path: &Path, companion: &Companion, inputs: &[PathBuf]) -> Re
     let sidecar = |input: &PathBuf| input.with_extension(companion.extension).canonicalize().ok();
     let is_sidecar = inputs.iter().filter_map(sidecar).any(|sidecar| sidecar == real);
     if is_sidecar && files::read(path)? != companion.bytes {
-        return Err(WriteRasterError::Sidecar { path: path.to_owned() });
+        return Err(WriteRasterError::Sidecar(path.to_owned()));
     }
     Ok(())
 }

@@ -53,9 +53,6 @@ pub enum Location {
 
 impl Coordinates {
     /// Reads `crs`, for a dataset whose own system is `native`.
-    ///
-    /// # Errors
-    /// There is no such system, or no transform from it to the dataset's.
     pub fn read(parameters: &Parameters, native: &Crs, wgs84: &Crs) -> Result<Self, HttpError> {
         let coordinates = match parameters.get("crs") {
             None => Self { crs: wgs84.clone(), axes: AxisOrder::LatLng },
@@ -75,18 +72,12 @@ impl Coordinates {
     }
 
     /// The position in `text`: two numbers with a comma between. `what` is the parameter.
-    ///
-    /// # Errors
-    /// It is something else, or not a position on Earth.
     pub fn position(&self, what: &str, text: &str) -> Result<DVec2, HttpError> {
         self.pair(text).ok_or_else(|| self.refusal(what, text))
     }
 
     /// The positions in `text`: pairs with `|` between, or an encoded polyline where the coordinates are latitude and
     /// longitude and there is no comma.
-    ///
-    /// # Errors
-    /// One is not a position, or there are more than `most`; both are found before memory is taken for them.
     pub fn positions(&self, text: &str, most: usize) -> Result<Vec<DVec2>, HttpError> {
         if self.axes == AxisOrder::LatLng && !text.contains(',') {
             let positions = polyline::decode(text, most)?;

@@ -21,9 +21,6 @@ pub struct ServedDataset {
 
 impl ServedDataset {
     /// The ground as it is now; waits where it is being made.
-    ///
-    /// # Errors
-    /// The dataset has no ground in meters.
     pub fn snapshot(&self) -> Result<Arc<Snapshot>, HttpError> {
         let service = self.dataset.service().map_err(|error| {
             let (name, reason) = (quoted(&self.name), error_text(&error));
@@ -38,9 +35,6 @@ pub struct Datasets(Vec<ServedDataset>);
 
 impl Datasets {
     /// Opens all datasets of a service.
-    ///
-    /// # Errors
-    /// One cannot be opened.
     pub fn open(options: &ServiceOptions) -> Result<Self, OpenError> {
         let open = |file: &NamedFile| {
             let dataset = Dataset::open(file.path(), &options.dataset)?;
@@ -68,9 +62,6 @@ impl Datasets {
     }
 
     /// The indices of the datasets in a list of names with commas between.
-    ///
-    /// # Errors
-    /// There is no such dataset, or one is named twice.
     pub fn find_all(&self, list: &str) -> Result<Vec<usize>, HttpError> {
         let mut indices = Vec::new();
         for name in list.split(',') {
@@ -84,9 +75,6 @@ impl Datasets {
     }
 
     /// The index of the dataset `name`, which may be missing where only one is served.
-    ///
-    /// # Errors
-    /// There is no such dataset, or none is named and several are served.
     pub fn find_one(&self, name: Option<&str>) -> Result<usize, HttpError> {
         match name {
             Some(name) => self.find(name),

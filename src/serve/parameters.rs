@@ -135,9 +135,6 @@ impl Parameters {
     }
 
     /// The value of a parameter that is needed.
-    ///
-    /// # Errors
-    /// It is missing; `example` shows how it is written.
     pub fn required(&self, name: &str, example: &str) -> Result<&str, HttpError> {
         self.get(name)
             .filter(|value| !value.is_empty())
@@ -145,9 +142,6 @@ impl Parameters {
     }
 
     /// A finite number in `range`; `default` where the parameter is missing.
-    ///
-    /// # Errors
-    /// It is something else.
     pub fn number(&self, name: &str, range: RangeInclusive<f64>, default: f64) -> Result<f64, HttpError> {
         let Some(text) = self.get(name) else { return Ok(default) };
         text.trim().parse().ok().filter(|value| range.contains(value)).ok_or_else(|| {
@@ -157,17 +151,11 @@ impl Parameters {
     }
 
     /// The value of a [`Choice`]; `None` where the parameter is missing.
-    ///
-    /// # Errors
-    /// The word is none of its words.
     pub fn choice<T: Choice>(&self, name: &str) -> Result<Option<T>, HttpError> {
         self.word(name, T::CHOICES.iter().map(|choice| (choice.word, choice.value)))
     }
 
     /// The value that a word names; `None` where the parameter is missing.
-    ///
-    /// # Errors
-    /// The word is none of `words`.
     pub fn word<T>(
         &self,
         name: &str,
@@ -185,9 +173,6 @@ impl Parameters {
     }
 
     /// Refuses parameters that are not in `known`: a misspelled one would be ignored.
-    ///
-    /// # Errors
-    /// There is one.
     pub fn allow_only(&self, known: &[&str]) -> Result<(), HttpError> {
         match self.0.keys().find(|name| !known.contains(&name.as_str())) {
             None => Ok(()),

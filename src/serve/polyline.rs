@@ -20,9 +20,6 @@ const PER_DEGREE: f64 = 1e5;
 const LONGEST_STEP: u32 = 7;
 
 /// The locations of an encoded polyline: longitude (x) and latitude (y) in degrees, which may be out of range.
-///
-/// # Errors
-/// A character is not one of the format, the text ends within a location, or there are more than `most` locations.
 pub fn decode(text: &str, most: usize) -> Result<Vec<DVec2>, HttpError> {
     let mut steps = DeltaReader { bytes: text.as_bytes(), at: 0 };
     // A location takes two characters or more.

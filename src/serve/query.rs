@@ -51,9 +51,6 @@ pub enum QueryWeight {
 /// A query that an address names.
 pub trait Query: Sized + Send + 'static {
     /// Reads it. `datasets` is what the address names after `/v1/`; empty for a query with its own address.
-    ///
-    /// # Errors
-    /// A parameter is missing, wrong, or exceeds a limit.
     fn read(service: &Service, datasets: &str, parameters: &Parameters) -> Result<Self, HttpError>;
 
     /// The thread that answers it. Heavy by default, since the ground may have to be made first.
@@ -62,9 +59,6 @@ pub trait Query: Sized + Send + 'static {
     }
 
     /// Answers it.
-    ///
-    /// # Errors
-    /// The datasets have no answer.
     fn answer(self, service: &Service) -> Result<Response, HttpError>;
 }
 
@@ -78,9 +72,6 @@ pub struct GroundQuery {
 
 impl GroundQuery {
     /// Reads `dataset` and `crs`; refuses parameters other than these and `known`.
-    ///
-    /// # Errors
-    /// There is no such dataset, system or parameter, or no transform between the two systems.
     pub fn read(service: &Service, parameters: &Parameters, known: &[&str]) -> Result<Self, HttpError> {
         parameters.allow_only(&[&["dataset"][..], known, &["crs"]].concat())?;
         let dataset = service.datasets.find_one(parameters.get("dataset"))?;
@@ -95,9 +86,6 @@ impl GroundQuery {
     }
 
     /// A position of the request in the ground's system; `what` names it in messages.
-    ///
-    /// # Errors
-    /// It lies beyond what one of the systems covers.
     pub fn to_ground(&self, what: &str, at: DVec2, ground: &Snapshot) -> Result<DVec2, HttpError> {
         let transformed = self.coordinates.crs.transform(ground.crs(), at);
         transformed.map_err(|error| HttpError::wrong(format!("{what}: {error}")))
@@ -111,17 +99,11 @@ impl GroundQuery {
 }
 
 /// Meters above the ground: the parameter `name`, or `default`.
-///
-/// # Errors
-/// It is not a number, or lies below the ground.
 pub fn above_m(parameters: &Parameters, name: &str, default: f64) -> Result<f64, HttpError> {
     parameters.number(name, 0.0..=HIGHEST_M, default)
 }
 
 /// What `earth` and `refraction` state; without them, [`Curvature::default`].
-///
-/// # Errors
-/// `earth` is neither `round` nor `flat`, or the refraction is out of range.
 pub fn curvature(parameters: &Parameters) -> Result<Curvature, HttpError> {
     let round = Curvature::default();
     let refraction = parameters.number("refraction", -1.0..=1.0, round.refraction)?;

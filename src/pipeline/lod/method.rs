@@ -5,7 +5,7 @@
 
 use std::fmt::{self, Display};
 
-use crate::pipeline::choice::{Choice, Word};
+use crate::pipeline::choice::{Choice, Word, word};
 
 /// What emits triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,93 +102,73 @@ pub enum LodMethod {
 
 impl Choice for Emit {
     const CHOICES: &'static [Word<Self>] = &[
-        Word {
-            value: Self::Lists(IndexEmitter::Bintree),
-            word: "bintree",
-            meaning: "The leaves of the triangle bintree",
-        },
-        Word {
-            value: Self::Lists(IndexEmitter::Quadtree),
-            word: "quadtree",
-            meaning: "The fans of the restricted quadtree: the same triangles",
-        },
-        Word {
-            value: Self::Lists(IndexEmitter::Strips),
-            word: "strips",
-            meaning: "Triangle strips of the bintree's leaves",
-        },
-        Word {
-            value: Self::Geomipmap,
-            word: "geomipmap",
-            meaning: "GeoMipMap: a level for each patch, the borders stitched; nothing is refined",
-        },
-        Word { value: Self::Full, word: "full", meaning: "Every post: the reference; nothing is refined" },
+        word(Self::Lists(IndexEmitter::Bintree), "bintree", "The leaves of the triangle bintree"),
+        word(
+            Self::Lists(IndexEmitter::Quadtree),
+            "quadtree",
+            "The fans of the restricted quadtree: the same triangles",
+        ),
+        word(Self::Lists(IndexEmitter::Strips), "strips", "Triangle strips of the bintree's leaves"),
+        word(
+            Self::Geomipmap,
+            "geomipmap",
+            "GeoMipMap: a level for each patch, the borders stitched; nothing is refined",
+        ),
+        word(Self::Full, "full", "Every post: the reference; nothing is refined"),
     ];
 }
 
 impl Choice for CriterionKind {
     const CHOICES: &'static [Word<Self>] = &[
-        Word {
-            value: Self::Screen,
-            word: "screen",
-            meaning: "The largest length an error can span on the picture; kept at every post of the picture",
-        },
-        Word {
-            value: Self::Variance,
-            word: "variance",
-            meaning: "Variance and the land's width over distance",
-        },
-        Word {
-            value: Self::Roughness,
-            word: "roughness",
-            meaning: "Roughness below a midpoint over distance: at equal pixels the same as variance",
-        },
-        Word {
-            value: Self::Anisotropic,
-            word: "anisotropic",
-            meaning: "The length of an error on the picture, foreshortened by the viewing direction",
-        },
-        Word { value: Self::Block, word: "block", meaning: "Relief times half a block's side over distance" },
-        Word {
-            value: Self::Spheres(SphereRule::Plain),
-            word: "spheres",
-            meaning: "Nested error spheres of midpoint errors",
-        },
-        Word {
-            value: Self::Spheres(SphereRule::Constrained),
-            word: "constrained",
-            meaning: "Nested error spheres, smaller where the ground is smooth",
-        },
-        Word {
-            value: Self::Spheres(SphereRule::Bounding),
-            word: "bounding",
-            meaning: "Nested error spheres of exact errors; kept at every post, wherever the camera looks",
-        },
+        word(
+            Self::Screen,
+            "screen",
+            "The largest length an error can span on the picture; kept at every post of the picture",
+        ),
+        word(Self::Variance, "variance", "Variance and the land's width over distance"),
+        word(
+            Self::Roughness,
+            "roughness",
+            "Roughness below a midpoint over distance: at equal pixels the same as variance",
+        ),
+        word(
+            Self::Anisotropic,
+            "anisotropic",
+            "The length of an error on the picture, foreshortened by the viewing direction",
+        ),
+        word(Self::Block, "block", "Relief times half a block's side over distance"),
+        word(Self::Spheres(SphereRule::Plain), "spheres", "Nested error spheres of midpoint errors"),
+        word(
+            Self::Spheres(SphereRule::Constrained),
+            "constrained",
+            "Nested error spheres, smaller where the ground is smooth",
+        ),
+        word(
+            Self::Spheres(SphereRule::Bounding),
+            "bounding",
+            "Nested error spheres of exact errors; kept at every post, wherever the camera looks",
+        ),
     ];
 }
 
 impl Choice for Refine {
     const CHOICES: &'static [Word<Self>] = &[
-        Word {
-            value: Self::With(Refiner::Rebuild),
-            word: "rebuild",
-            meaning: "From the roots for every frame, by splits alone",
-        },
-        Word {
-            value: Self::With(Refiner::Coherent),
-            word: "coherent",
-            meaning: "Forced splits and forced merges of the last frame's mesh",
-        },
-        Word {
-            value: Self::With(Refiner::Queues),
-            word: "queues",
-            meaning: "A queue of splits and one of merges; can keep a budget of triangles",
-        },
-        Word {
-            value: Self::Deferred,
-            word: "deferred",
-            meaning: "Each vertex examined again when the eye has come far enough; goes with spheres",
-        },
+        word(Self::With(Refiner::Rebuild), "rebuild", "From the roots for every frame, by splits alone"),
+        word(
+            Self::With(Refiner::Coherent),
+            "coherent",
+            "Forced splits and forced merges of the last frame's mesh",
+        ),
+        word(
+            Self::With(Refiner::Queues),
+            "queues",
+            "A queue of splits and one of merges; can keep a budget of triangles",
+        ),
+        word(
+            Self::Deferred,
+            "deferred",
+            "Each vertex examined again when the eye has come far enough; goes with spheres",
+        ),
     ];
 }
 

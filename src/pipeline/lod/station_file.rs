@@ -6,7 +6,7 @@
 
 use glam::Vec3;
 
-use crate::pipeline::csv::{fields, is_header, numbered_lines};
+use crate::pipeline::csv::{LineError, fields, is_header, numbered_lines};
 use crate::view::flight::FlightStation;
 
 /// The most stations: more than any flight has frames.
@@ -22,15 +22,8 @@ const LONGEST_QUOTE: usize = 60;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StationFileError {
     /// A line is not a station.
-    #[error("{name}:{line}: {fault}")]
-    Line {
-        /// The file.
-        name: String,
-        /// From 1.
-        line: usize,
-        /// What is wrong.
-        fault: StationFault,
-    },
+    #[error(transparent)]
+    Line(#[from] LineError<StationFault>),
     /// There are fewer than two stations.
     #[error("{name}: found {found} stations, a flight needs two or more lines of x,y,z,tx,ty,tz")]
     TooFew {
@@ -44,12 +37,9 @@ pub enum StationFileError {
 /// What is wrong with a station.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StationFault {
-    /// The line does not hold six numbers.
-    #[error("found '{found}', each line must hold six numbers x,y,z,tx,ty,tz")]
-    Numbers {
-        /// The line.
-        found: String,
-    },
+    /// The line, which is quoted, does not hold six numbers.
+    #[error("found '{0}', each line must hold six numbers x,y,z,tx,ty,tz")]
+    Numbers(String),
     /// A coordinate is out of range.
     #[error("coordinates are meters from the south-west post, at most {FARTHEST_M}")]
     Range,
@@ -71,7 +61,7 @@ pub fn parse(name: &str, text: &str) -> Result<Vec<FlightStation>, StationFileEr
     let mut stations = Vec::new();
     for (line, text) in lines {
         let station = if stations.len() < MOST { parse_station(text) } else { Err(StationFault::TooMany) };
-        let at_line = |fault| StationFileError::Line { name: name.into(), line, fault };
+        let at_line = |fault| LineError { name: name.into(), line, fault };
         stations.push(station.map_err(at_line)?);
     }
     match stations.len() {
@@ -84,7 +74,7 @@ fn parse_station(line: &str) -> Result<FlightStation, StationFault> {
     let numbers = fields(line).flat_map(str::split_whitespace).map(|number| number.parse().ok());
     let numbers: Option<Vec<f32>> = numbers.collect();
     let Some([x, y, z, tx, ty, tz]) = numbers.as_deref() else {
-        return Err(StationFault::Numbers { found: line.trim().chars().take(LONGEST_QUOTE).collect() });
+        return Err(StationFault::Numbers(line.trim().chars().take(LONGEST_QUOTE).collect()));
     };
     let (eye, target) = (Vec3::new(*x, *y, *z), Vec3::new(*tx, *ty, *tz));
     let is_valid = |point: Vec3| point.is_finite() && point.abs().max_element() <= FARTHEST_M;

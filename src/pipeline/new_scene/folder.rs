@@ -2,6 +2,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
+use crate::pipeline::error::FileError;
 use crate::pipeline::files::SystemError;
 
 /// The folder of a new scene file.
@@ -11,13 +12,7 @@ pub(super) struct SceneFolder {
 }
 
 /// A folder or a file that a new scene cannot use.
-#[derive(Debug, thiserror::Error)]
-#[error("{}", path.display())]
-pub struct FolderError {
-    path: PathBuf,
-    #[source]
-    cause: FolderCause,
-}
+pub type FolderError = FileError<FolderCause>;
 
 /// Why a new scene cannot use a folder or a file.
 #[derive(Debug, thiserror::Error)]
@@ -45,10 +40,6 @@ pub enum FolderCause {
     System(#[from] SystemError),
 }
 
-fn fault(path: &Path, cause: FolderCause) -> FolderError {
-    FolderError { path: path.to_owned(), cause }
-}
-
 impl SceneFolder {
     /// The folder at `path`, which need not exist.
     ///
@@ -56,15 +47,15 @@ impl SceneFolder {
     /// See [`FolderCause`].
     pub fn new(path: &Path) -> Result<Self, FolderError> {
         if path.exists() && !path.is_dir() {
-            return Err(fault(path, FolderCause::NotAFolder));
+            return Err(FileError::new(path, FolderCause::NotAFolder));
         }
         let absolute =
-            std::path::absolute(path).map_err(|error| fault(path, SystemError::from(error).into()))?;
+            std::path::absolute(path).map_err(|error| FileError::new(path, SystemError::from(error)))?;
         let existing = absolute.ancestors().find_map(|above| Some((above, above.canonicalize().ok()?)));
-        let (above, real) = existing.ok_or_else(|| fault(path, FolderCause::Nowhere))?;
+        let (above, real) = existing.ok_or_else(|| FileError::new(path, FolderCause::Nowhere))?;
         let rest = absolute.strip_prefix(above).unwrap_or(Path::new(""));
         if rest.components().any(|part| part == Component::ParentDir) {
-            return Err(fault(path, FolderCause::Parent));
+            return Err(FileError::new(path, FolderCause::Parent));
         }
         Ok(Self { folder: real.join(rest) })
     }
@@ -79,7 +70,7 @@ impl SceneFolder {
         let up = self.folder.components().skip(shared).map(|_| Some(".."));
         let down = real.components().skip(shared).map(|part| part.as_os_str().to_str());
         let parts: Option<Vec<&str>> = up.chain(down).collect();
-        parts.map(|parts| parts.join("/")).ok_or_else(|| fault(file, FolderCause::NotText))
+        parts.map(|parts| parts.join("/")).ok_or_else(|| FileError::new(file, FolderCause::NotText))
     }
 
     /// The folders of those `files` that do not lie under the parent of the scene's folder, so that the user must allow
@@ -112,8 +103,8 @@ fn outermost(mut folders: Vec<PathBuf>) -> Vec<PathBuf> {
 }
 
 fn real(file: &Path) -> Result<PathBuf, FolderError> {
-    let real = file.canonicalize().map_err(|_| fault(file, FolderCause::NoFile))?;
-    if real.is_file() { Ok(real) } else { Err(fault(file, FolderCause::NotAFile)) }
+    let real = file.canonicalize().map_err(|_| FileError::new(file, FolderCause::NoFile))?;
+    if real.is_file() { Ok(real) } else { Err(FileError::new(file, FolderCause::NotAFile)) }
 }
 
 #[cfg(test)]

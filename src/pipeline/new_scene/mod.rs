@@ -65,29 +65,18 @@ pub struct WrittenScene {
 #[derive(Debug, thiserror::Error)]
 pub enum NewSceneError {
     /// There is a scene file already.
-    #[error("{}: there is such a file already; remove it, or name another folder", path.display())]
-    Exists {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("{}: there is such a file already; remove it, or name another folder", .0.display())]
+    Exists(PathBuf),
     /// The folder or a file named in the scene is unfit.
     #[error(transparent)]
     Folder(#[from] FolderError),
     /// A vector file cannot be read.
     #[error(transparent)]
     Survey(#[from] SurveyError),
-    /// The folder cannot be made.
-    #[error("{}", path.display())]
-    MakeFolder {
-        /// The scene file.
-        path: PathBuf,
-        /// Why.
-        source: SystemError,
-    },
     /// The elevation gives no ground.
     #[error(transparent)]
     Ground(#[from] OpenSceneError),
-    /// The file cannot be written.
+    /// The folder cannot be made, or the file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteFileError),
 }
@@ -103,7 +92,7 @@ pub fn write(
     progress("surveying files");
     let path = options.folder.join(FILE_NAME);
     if path.symlink_metadata().is_ok() {
-        return Err(NewSceneError::Exists { path });
+        return Err(NewSceneError::Exists(path));
     }
     let folder = SceneFolder::new(&options.folder)?;
     let dem = options.dem.iter().map(|file| folder.relative(file)).collect::<Result<Vec<_>, _>>()?;
@@ -115,7 +104,7 @@ pub fn write(
     let title = options.title.clone().unwrap_or_else(|| title_of(&options.dem[0]));
     let draft = SceneDraft { title, dem, crs: options.crs.clone(), ..SceneDraft::default() };
     let is_new = !options.folder.exists();
-    let system = |error: io::Error| NewSceneError::MakeFolder { path: path.clone(), source: error.into() };
+    let system = |error: io::Error| WriteFileError::new(&path, SystemError::from(error));
     fs::create_dir_all(&options.folder).map_err(system)?;
     let draft = complete(&path, draft, &allowed).inspect_err(|_| {
         if is_new {

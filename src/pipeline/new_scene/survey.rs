@@ -4,10 +4,11 @@
 //! evaluated for every feature, so that the counts are those of the scene, and no table is written that selects nothing.
 //! Where no rule matches a layer, its name may still say what it holds.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use crate::description::expression::Expression;
+use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
 use crate::scene::attributes::Attributes;
 use crate::vector::error::VectorError;
@@ -66,13 +67,8 @@ pub enum SurveyError {
     #[error(transparent)]
     File(#[from] ReadFileError),
     /// The file is not one that is read.
-    #[error("{}", path.display())]
-    Vector {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: VectorError,
-    },
+    #[error(transparent)]
+    Vector(#[from] FileError<VectorError>),
 }
 
 /// The rules in the order in which tables are written: what lies lower first.
@@ -208,17 +204,17 @@ pub(super) fn layers(file: &Path) -> Result<Vec<SurveyedLayer>, SurveyError> {
     let read = |layer: Option<&str>| {
         read::read(&name, &bytes, &VectorHints { crs: None, layer, companions: &companions })
     };
-    let vector = |source| SurveyError::Vector { path: file.to_owned(), source };
+    let vector = FileError::<VectorError>::at(file);
     match read(None) {
         Ok(layer) => Ok(vec![survey(Arc::new(layer), None, &name)]),
         Err(VectorError::WhichLayer { names, .. }) => {
             let layers = distinct(names).into_iter().map(|name| {
-                let layer = read(Some(&name)).map_err(vector)?;
+                let layer = read(Some(&name)).map_err(&vector)?;
                 Ok(survey(Arc::new(layer), Some(name.clone()), &name))
             });
             layers.collect::<Result<_, _>>().map(without_excerpts)
         }
-        Err(error) => Err(vector(error)),
+        Err(error) => Err(vector(error).into()),
     }
 }
 
