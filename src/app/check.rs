@@ -23,7 +23,7 @@ pub fn run(options: &CheckOptions) -> Result<(), CliError> {
 /// What a scene holds, and what there is to say about it, in lines.
 pub fn contents(scene: &Scene) -> Vec<String> {
     let lattice = &scene.terrain.lattice;
-    let (low, high) = lattice.height_range();
+    let (low, high) = scene.terrain.height_range();
     let size = lattice.extent().size() / 1000.0;
     let ground = format!(
         "  ground    {}×{} posts, {:.2}×{:.2} km, {} to {} m, {}",

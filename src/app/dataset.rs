@@ -43,8 +43,8 @@ impl Dataset {
     pub fn open(path: &Path, heights: StatedHeights, access: &Access) -> Result<Self, CliError> {
         let name = path.display().to_string();
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(OsStr::new("toml"))) {
-            let scene = load::scene(path, access, &|_| ())?;
-            return Ok(Self { name, kind: DatasetKind::Scene(scene.heights) });
+            let ground = load::scene_ground(path, access)?;
+            return Ok(Self { name, kind: DatasetKind::Scene(ground.heights) });
         }
         let raster = Arc::new(read_raster(path, heights)?);
         let crs = raster.crs.clone().unwrap_or_else(Crs::local);

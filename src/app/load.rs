@@ -7,9 +7,9 @@ use crate::app::failure::CliError;
 use crate::app::files;
 use crate::description::document::Document;
 use crate::description::parse::parse_bytes_including;
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneGround};
 use crate::scene::assets::Assets;
-use crate::scene::build::build;
+use crate::scene::build::{build, build_ground};
 
 /// Reads, parses and builds the scene at `path`. `step` is called with what is done next.
 ///
@@ -19,6 +19,15 @@ pub fn scene(path: &Path, access: &Access, step: &dyn Fn(&'static str)) -> Resul
     step("reading the scene file");
     let (document, assets) = document(path, access)?;
     build(&document, &assets, step).map_err(CliError::input)
+}
+
+/// Reads and parses the scene at `path`, and builds its ground.
+///
+/// # Errors
+/// As for [`scene`], without what is wrong with features that leave the ground as it is.
+pub fn scene_ground(path: &Path, access: &Access) -> Result<SceneGround, CliError> {
+    let (document, assets) = document(path, access)?;
+    build_ground(&document, &assets).map_err(CliError::input)
 }
 
 /// As [`scene`], with heights true to scale whatever exaggeration the scene file asks for.
