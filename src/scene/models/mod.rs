@@ -20,6 +20,7 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::{FeatureSource, ModelPlacement};
 use crate::description::scalar::Scalar;
+use crate::description::words::Footing;
 use crate::model::Model;
 use crate::scene::assets::Assets;
 use crate::scene::attributes::Attributes;
@@ -60,9 +61,41 @@ pub fn place(
     collected: &mut SceneBuilder,
 ) -> Result<(Vec<Model>, Vec<Placement>), Diagnostic> {
     let mut library = Library::new(document, assets);
+    let tables = document.models.iter();
+    let (groups, mut placements) = stand_tables(tables, (places, sources), &mut library, lattice, collected)?;
+    let volumes = footings::lay(document, &groups, &placements, (&library, places), lattice)?;
+    model_report::tell(&groups, &placements, (&library, &volumes, places), lattice, collected);
+    scatter::strew(document, (places, sources), lattice, (&mut library, &mut placements), collected)?;
+    Ok((library.into_models(), placements))
+}
+
+/// Levels the pads that models ask for; no other model is read.
+///
+/// # Errors
+/// As for [`place`], for the models on pads.
+pub fn level_pads(
+    document: &Document,
+    (places, sources, assets): (&WorldFrame<'_>, &Sources<'_>, &Assets),
+    lattice: &mut Lattice,
+) -> Result<(), Diagnostic> {
+    let mut library = Library::new(document, assets);
+    let tables = document.models.iter().filter(|table| *table.footing == Footing::Pad);
+    let mut unused = SceneBuilder::default();
+    let (groups, placements) = stand_tables(tables, (places, sources), &mut library, lattice, &mut unused)?;
+    footings::lay(document, &groups, &placements, (&library, places), lattice).map(drop)
+}
+
+/// The placements of some tables, and which of them are whose.
+fn stand_tables<'a>(
+    tables: impl Iterator<Item = &'a ModelPlacement>,
+    (places, sources): (&WorldFrame<'_>, &Sources<'_>),
+    library: &mut Library<'_>,
+    lattice: &Lattice,
+    collected: &mut SceneBuilder,
+) -> Result<(Vec<Group<'a>>, Vec<Placement>), Diagnostic> {
     let mut placements = Vec::new();
     let mut groups = Vec::new();
-    for table in &document.models {
+    for table in tables {
         let first = placements.len();
         let (mut off, mut unknown) = (0, 0);
         if let Some(at) = &table.at {
@@ -72,15 +105,15 @@ pub fn place(
             let name = table.name.clone().unwrap_or_else(|| table.file.to_string());
             placements.push(placed(
                 table,
-                (&library, model),
+                (library, model),
                 (&Attributes::default(), world),
                 name,
                 collected,
             ));
         } else if let Some(source) = &table.instances {
             let points = sources.points(source)?;
-            within(document, source, placements.len() + points.len())?;
-            let mut choice = ModelChoice::new(table, &mut library, collected)?;
+            within(places.document, source, placements.len() + points.len())?;
+            let mut choice = ModelChoice::new(table, library, collected)?;
             for Sourced { attributes, shape } in points {
                 let ground = FullResolution { lattice };
                 if ground.displayed_z(shape).is_none() {
@@ -89,16 +122,13 @@ pub fn place(
                 }
                 let model = choice.of(&attributes);
                 let name = attributes.name(table.name.as_deref());
-                placements.push(placed(table, (&library, model), (&attributes, shape), name, collected));
+                placements.push(placed(table, (library, model), (&attributes, shape), name, collected));
             }
             unknown = choice.unknown;
         }
         groups.push(Group { table, placements: first..placements.len(), off, unknown });
     }
-    let volumes = footings::lay(document, &groups, &placements, (&library, places), lattice)?;
-    model_report::tell(&groups, &placements, (&library, &volumes, places), lattice, collected);
-    scatter::strew(document, (places, sources), lattice, (&mut library, &mut placements), collected)?;
-    Ok((library.into_models(), placements))
+    Ok((groups, placements))
 }
 
 /// Refuses more models than [`MAX_MODELS`].

@@ -67,8 +67,11 @@ fn listed(
     viewer: Viewer<'_>,
     progress: &dyn Fn(&'static str),
 ) -> (DrawList, usize) {
+    if !scene.is_lit() {
+        progress("lighting terrain");
+    }
     let mut list =
-        DrawList { ground: Some(Arc::clone(&scene.map)), lighting: scene.lighting, ..DrawList::default() };
+        DrawList { ground: Some(Arc::clone(scene.map())), lighting: scene.lighting, ..DrawList::default() };
     let walls = ground::add(&mut list, &scene.terrain, displayed);
     let ground_triangles = list.triangle_count();
     progress("draping features");
