@@ -2,6 +2,8 @@
 
 #[path = "scene_file/layers.rs"]
 mod layers;
+#[path = "scene_file/reference.rs"]
+mod reference;
 #[path = "scene_file/schema.rs"]
 mod schema;
 
