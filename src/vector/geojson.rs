@@ -99,7 +99,7 @@ fn parse(text: &[u8], first_line: usize) -> Result<GeoJson, VectorError> {
         other_json(text).unwrap_or_else(|| {
             let line = first_line + error.line().max(1) - 1;
             let place = format!("line {line}, column {}", error.column().max(1));
-            VectorError::refused(FORMAT, place, GeoJsonError(error))
+            VectorError::broken(FORMAT, place, GeoJsonError(error))
         })
     })
 }

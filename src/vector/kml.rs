@@ -183,7 +183,7 @@ impl<'a> KmlReader<'a> {
     }
 
     fn check<T>(&self, element: &XmlElement<'_>, result: Result<T, InvalidTuple>) -> Result<T, VectorError> {
-        result.map_err(|error| self.xml.refused_at(element, error))
+        result.map_err(|error| self.xml.broken_at(element, error))
     }
 }
 

@@ -184,8 +184,7 @@ impl<'a> ShapefileReader<'a> {
             }
             5 | 15 | 25 => {
                 let polygons = self.sorter.polygons(reader.lines().ok_or_else(short)?);
-                let polygons =
-                    polygons.map_err(|error| VectorError::refused(FORMAT, record(index), error))?;
+                let polygons = polygons.map_err(|error| VectorError::broken(FORMAT, record(index), error))?;
                 polygons.into_iter().for_each(|rings| parts.add_polygon(rings));
             }
             31 => {
