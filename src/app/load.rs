@@ -6,7 +6,7 @@ use crate::app::arguments::Access;
 use crate::app::failure::CliError;
 use crate::app::files;
 use crate::description::document::Document;
-use crate::description::parse::parse_bytes_including;
+use crate::description::parse::parse_including;
 use crate::scene::Scene;
 use crate::scene::assets::Assets;
 use crate::scene::build::build;
@@ -36,6 +36,6 @@ fn document(path: &Path, access: &Access) -> Result<(Document, Assets), CliError
     let bytes = files::read(path)?;
     let assets = Assets::new(path, &access.allow).map_err(CliError::input)?;
     let load = |name: &str| assets.read(name).map_err(Into::into);
-    let document = parse_bytes_including(&path.to_string_lossy(), &bytes, &load).map_err(CliError::input)?;
+    let document = parse_including(&path.to_string_lossy(), &bytes, &load).map_err(CliError::input)?;
     Ok((document, assets))
 }

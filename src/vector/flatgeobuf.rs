@@ -144,7 +144,7 @@ impl FgbReader<'_> {
         };
         let kind_of_parts = match kind {
             GeometryType::Point | GeometryType::MultiPoint => {
-                self.vertices(geometry)?.into_iter().for_each(|position| parts.add_point(position));
+                parts.add_points(self.vertices(geometry)?);
                 return Ok(());
             }
             GeometryType::LineString | GeometryType::MultiLineString => {

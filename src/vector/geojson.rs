@@ -168,7 +168,8 @@ fn add_shape(parts: &mut FeatureParts, value: &GeometryValue) {
 }
 
 fn add_points(parts: &mut FeatureParts, positions: &[Position]) {
-    vertices(positions, parts).into_iter().for_each(|position| parts.add_point(position));
+    let points = vertices(positions, parts);
+    parts.add_points(points);
 }
 
 fn add_line(parts: &mut FeatureParts, line: &[Position]) {

@@ -122,7 +122,7 @@ impl<'a> KmlReader<'a> {
             }
             "Point" => {
                 let lists = self.vertex_lists(element, placemark)?;
-                lists.into_iter().flatten().for_each(|position| placemark.parts.add_point(position));
+                placemark.parts.add_points(lists.concat());
             }
             "LineString" | "LinearRing" | "Track" => {
                 let lists = self.vertex_lists(element, placemark)?;

@@ -173,11 +173,8 @@ impl<'a> ShapefileReader<'a> {
         let mut parts = FeatureParts::default();
         match kind {
             0 => {}
-            1 | 11 | 21 => parts.add_point(reader.point().ok_or_else(short)?),
-            8 | 18 | 28 => {
-                let points = reader.multipoint().ok_or_else(short)?;
-                points.into_iter().for_each(|position| parts.add_point(position));
-            }
+            1 | 11 | 21 => parts.add_points(vec![reader.point().ok_or_else(short)?]),
+            8 | 18 | 28 => parts.add_points(reader.multipoint().ok_or_else(short)?),
             3 | 13 | 23 => {
                 let lines = reader.lines().ok_or_else(short)?;
                 lines.into_iter().for_each(|line| parts.add_line(line));
