@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::description::diagnostic::{Diagnostic, Diagnostics};
 use crate::description::document::Document;
-use crate::description::parse::parse_bytes_including;
+use crate::description::parse::parse_including;
 use crate::pipeline::files::{self, ReadFileError};
 use crate::scene::assets::{AssetError, Assets};
 use crate::scene::build::{build, build_ground};
@@ -71,6 +71,6 @@ fn open_document(path: &Path, allowed: &[PathBuf]) -> Result<(Document, Assets),
     let bytes = files::read(path)?;
     let assets = Assets::new(path, allowed)?;
     let load = |name: &str| assets.read(name).map_err(Into::into);
-    let document = parse_bytes_including(&path.to_string_lossy(), &bytes, &load)?;
+    let document = parse_including(&path.to_string_lossy(), &bytes, &load)?;
     Ok((document, assets))
 }

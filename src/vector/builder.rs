@@ -119,11 +119,10 @@ fn omission_note(count: usize, what: &str) -> Option<String> {
 }
 
 impl FeatureParts {
-    /// Adds a point.
-    pub fn add_point(&mut self, position: DVec3) {
-        let mut points = vec![position];
+    /// Adds points.
+    pub fn add_points(&mut self, mut points: Vertices) {
         self.keep_finite(&mut points);
-        self.points.extend(points);
+        self.points.append(&mut points);
     }
 
     /// Adds a line; one of less than two vertices is left out.
@@ -249,7 +248,7 @@ mod tests {
     fn positions_that_are_not_numbers_are_left_out_and_noted() {
         let mut parts = FeatureParts::default();
         parts.add_line(vec![DVec3::new(1.0, 2.0, f64::NAN), DVec3::NAN, DVec3::new(f64::INFINITY, 0.0, 0.0)]);
-        parts.add_point(DVec3::new(1.0, 2.0, f64::NAN));
+        parts.add_points(vec![DVec3::new(1.0, 2.0, f64::NAN)]);
         let layer = layer(parts);
         assert_eq!(layer.features.len(), 1);
         assert_eq!(layer.features[0].elevations, None);

@@ -1,6 +1,7 @@
 //! Scene files as users write them: complete, and broken in every way that has a message of its own.
 
 mod layers;
+mod reference;
 mod schema;
 
 use proptest::prelude::{ProptestConfig, any};

@@ -106,7 +106,7 @@ impl Terrain {
     /// more than `tolerance_px` pixels. Positions are meters from the south-west post.
     pub fn mesh_for(&self, camera: &Camera, tolerance_px: f32) -> TriMesh {
         let mut mesh = TriMesh::default();
-        picture::display(&self.bundle, camera, tolerance_px).emit(&mut mesh);
+        picture::display_within(&self.bundle, camera, tolerance_px).emit(&mut mesh);
         mesh
     }
 

@@ -46,7 +46,7 @@ pub fn camera(scene: &Scene, view: &View, size: (u32, u32)) -> Result<Camera, Ca
 /// The draw list for one camera. `progress` is called with the name of each step as it begins.
 pub fn build_draw_list(scene: &Scene, camera: &Camera, progress: &dyn Fn(&'static str)) -> ViewDraw {
     progress("refining terrain");
-    let displayed = Arc::new(display(&scene.terrain, camera, scene.terrain.tolerance_px));
+    let displayed = Arc::new(display(&scene.terrain, camera));
     let (list, ground_triangles) = listed(scene, &displayed, Viewer::Camera(camera), progress);
     ViewDraw { list, displayed, ground_triangles }
 }
@@ -84,8 +84,13 @@ fn listed(
     (list, ground_triangles)
 }
 
+/// The terrain as `camera` shows it, off by at most the terrain's own tolerance.
+pub fn display(terrain: &Terrain, camera: &Camera) -> DisplayedTerrain {
+    display_within(terrain, camera, terrain.tolerance_px)
+}
+
 /// The terrain as `camera` shows it, off by at most `tolerance_px` pixels.
-pub fn display(terrain: &Terrain, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
+pub fn display_within(terrain: &Terrain, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
     let (ground, heights) = (terrain.ground(), terrain.patch_heights());
     let patches = patches_in_view(ground, heights, &Frustum::new(camera));
     let criterion = ScreenError::new(ground, terrain.errors(), heights, camera, tolerance_px);

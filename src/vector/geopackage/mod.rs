@@ -124,7 +124,7 @@ fn refused(place: &str, error: rusqlite::Error) -> VectorError {
         Some(ErrorCode::NotADatabase) => {
             VectorError::broken(FORMAT, place, "it is not an SQLite database that can be read")
         }
-        _ => VectorError::refused(FORMAT, place, error),
+        _ => VectorError::broken(FORMAT, place, error),
     }
 }
 
@@ -199,7 +199,7 @@ fn read_features(
                 WkbError::Unsupported(kind) => VectorError::curves(FORMAT, kind),
                 WkbError::Broken => {
                     let place = format!("{place}, feature {}", layer.feature_count() + 1);
-                    VectorError::refused(FORMAT, place, error)
+                    VectorError::broken(FORMAT, place, error)
                 }
             })?;
         }

@@ -75,7 +75,7 @@ impl<'a> AreaAssembler<'a> {
         let Some(loops) = loops else { return Ok(None) };
         let exceeded = |error: RingLimitExceeded| {
             let place = format!("relation {}", relation.id);
-            VectorError::refused("OpenStreetMap extract", place, error)
+            VectorError::broken("OpenStreetMap extract", place, error)
         };
         let vertices = loops.iter().map(Vec::len).sum();
         self.vertices_left =

@@ -144,7 +144,7 @@ impl OsmLayer {
             let elevation = data.value(tags, "ele").and_then(|text| text.trim().parse().ok());
             let (x, y) = node.degrees();
             let mut parts = FeatureParts::default();
-            parts.add_point(position(x, y, elevation));
+            parts.add_points(vec![position(x, y, elevation)]);
             layer.add(parts, properties(data, tags, "osm_id", node.id))?;
         }
         Ok(())

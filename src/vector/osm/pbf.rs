@@ -54,7 +54,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
         match blob.kind {
             b"OSMHeader" => check_header(&unpack(blob.content, &place)?)?,
             b"OSMData" => read_block(&unpack(blob.content, &place)?, &mut data)
-                .map_err(|error| VectorError::refused(FORMAT, &place, error))?,
+                .map_err(|error| VectorError::broken(FORMAT, &place, error))?,
             _ => {}
         }
     }
@@ -81,8 +81,7 @@ fn next_blob<'a>(cursor: &mut ByteCursor<'a>) -> Option<PbfBlob<'a>> {
 fn unpack(blob: &[u8], place: &str) -> Result<Vec<u8>, VectorError> {
     let broken = |reason: &'static str| VectorError::broken(FORMAT, place, reason);
     let values = last_values(blob, [1, 2, 3, 4, 5, 6, 7]);
-    let [raw, size, zlib, others @ ..] =
-        values.map_err(|error| VectorError::refused(FORMAT, place, error))?;
+    let [raw, size, zlib, others @ ..] = values.map_err(|error| VectorError::broken(FORMAT, place, error))?;
     match (raw, zlib) {
         (FieldValue::Bytes(raw), _) => Ok(raw.to_vec()),
         (_, FieldValue::Bytes(packed)) => {
@@ -90,7 +89,7 @@ fn unpack(blob: &[u8], place: &str) -> Result<Vec<u8>, VectorError> {
                 return Err(broken("it states no size that is allowed"));
             };
             let unpacked = archive::inflate_zlib(packed, size)
-                .map_err(|error| VectorError::refused(FORMAT, place, error))?;
+                .map_err(|error| VectorError::broken(FORMAT, place, error))?;
             let is_full = unpacked.len() as u64 == size;
             if is_full { Ok(unpacked) } else { Err(broken("it unpacks to less than it states")) }
         }
@@ -107,7 +106,7 @@ fn unpack(blob: &[u8], place: &str) -> Result<Vec<u8>, VectorError> {
 
 fn check_header(header: &[u8]) -> Result<(), VectorError> {
     for field in fields(header) {
-        let field = field.map_err(|error| VectorError::refused(FORMAT, "its header", error))?;
+        let field = field.map_err(|error| VectorError::broken(FORMAT, "its header", error))?;
         if let (4, FieldValue::Bytes(name)) = field
             && !KNOWN_FEATURES.contains(&name)
         {

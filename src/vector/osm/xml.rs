@@ -51,7 +51,7 @@ fn add(xml: &XmlReader<'_>, element: &XmlElement<'_>, data: &mut OsmData) -> Res
         (None, "way") => data.add_way(OsmWay { id, refs, tags }),
         (None, _) => data.add_relation(OsmRelation { id, members, tags }),
     });
-    added.map_err(|error| xml.refused_at(element, error))
+    added.map_err(|error| xml.broken_at(element, error))
 }
 
 fn tags(element: &XmlElement<'_>, data: &mut OsmData) -> Result<OsmTags, OsmMemoryExceeded> {
