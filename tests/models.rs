@@ -284,3 +284,74 @@ fn no_cut_or_changed_byte_of_a_sound_file_does_harm() {
         }
     }
 }
+
+/// OBJ files that `tobj` 4.0.5 does not read as the format says, and why.
+const TOBJ_FAILS: [(&str, &str); 0] = [];
+
+/// The triangles that the faces of a file give, and the distinct positions of their corners, sorted.
+#[derive(Debug, PartialEq)]
+struct ObjGeometry {
+    triangles: usize,
+    positions: Vec<[u32; 3]>,
+}
+
+impl ObjGeometry {
+    fn new(triangles: usize, corners: impl Iterator<Item = Vec3>) -> Self {
+        let mut positions: Vec<_> =
+            corners.map(|corner| (corner + Vec3::ZERO).to_array().map(f32::to_bits)).collect();
+        positions.sort_unstable();
+        positions.dedup();
+        Self { triangles, positions }
+    }
+
+    fn from_model(model: &Model) -> Self {
+        let meshes = || model.parts.iter().map(|part| &part.mesh);
+        let triangles = meshes().map(|mesh| mesh.triangles.len()).sum();
+        let corners = meshes()
+            .flat_map(|mesh| mesh.triangles.iter().flatten().map(|id| mesh.vertices[id.index()].position));
+        Self::new(triangles, corners.map(Vec3::from))
+    }
+
+    fn from_tobj(bytes: &[u8]) -> Result<Self, tobj::LoadError> {
+        let options =
+            tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..tobj::LoadOptions::default() };
+        let no_materials = |_: &Path| Err(tobj::LoadError::OpenFileFailed);
+        let (models, _) = tobj::load_obj_buf(&mut &*bytes, &options, no_materials)?;
+        let meshes = || models.iter().map(|model| &model.mesh);
+        let triangles = |mesh: &tobj::Mesh| match mesh.face_arities[..] {
+            [] => mesh.indices.len() / 3,
+            _ => mesh.face_arities.iter().map(|&corners| corners as usize - 2).sum(),
+        };
+        let corner = |mesh: &tobj::Mesh, index: u32| {
+            let [x, y, z] = std::array::from_fn(|axis| mesh.positions[index as usize * 3 + axis]);
+            Vec3::new(x, -z, y)
+        };
+        let corners = meshes().flat_map(|mesh| mesh.indices.iter().map(move |&index| corner(mesh, index)));
+        Ok(Self::new(meshes().map(triangles).sum(), corners))
+    }
+}
+
+#[test]
+fn obj_files_have_the_triangles_and_positions_that_tobj_reads() {
+    let Some(data) = data() else { return };
+    let models = data.join("models/obj");
+    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
+    let mut wrong = Vec::new();
+    let mut compared = 0;
+    for path in [models, assets].iter().flat_map(|folder| files_below(folder, &["obj"])) {
+        let name = path.to_string_lossy();
+        let Ok(model) = read_file(&path) else { continue };
+        let bytes = std::fs::read(&path).expect("the file can be read");
+        let expected = ObjGeometry::from_tobj(&bytes);
+        let is_same = expected.as_ref().is_ok_and(|expected| *expected == ObjGeometry::from_model(&model));
+        let is_known = TOBJ_FAILS.iter().any(|(file, _)| name.ends_with(file));
+        compared += usize::from(is_same);
+        if is_same == is_known {
+            let expected = expected.map(|geometry| (geometry.triangles, geometry.positions.len()));
+            let own = ObjGeometry::from_model(&model);
+            wrong.push(format!("{name}: {expected:?}, here {} and {}", own.triangles, own.positions.len()));
+        }
+    }
+    assert!(wrong.is_empty(), "{} of {compared}:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(compared > 40, "{compared} files compared");
+}

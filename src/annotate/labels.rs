@@ -7,8 +7,8 @@ use crate::annotate::composer::Composer;
 use crate::annotate::drawing::{Drawing, polygon};
 use crate::annotate::paragraph::{Paragraph, written_lines};
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::place::{LabelCandidate, LabelField, LabelRequest, check, place};
-use crate::annotate::positions::{Alignment, LabelMetrics, LabelPosition, Preference};
+use crate::annotate::place::{LabelCandidate, LabelField, LabelRequest, place};
+use crate::annotate::positions::{Alignment, LabelMetrics, LabelPosition};
 use crate::annotate::report::AnnotationReport;
 use crate::annotate::sheet::{HALO, INK, PAPER, SOFT_INK, Sheet, WATER_INK};
 use crate::annotate::text::{TextLine, TextStyle};
@@ -53,7 +53,6 @@ pub fn draw_labels(
     let requests: Vec<LabelRequest> = prepared.iter().map(PreparedLabel::request).collect();
     let field = field(furniture, &sheet);
     let choices = place(&requests, &field);
-    debug_assert_eq!(check(&requests, &choices, &field), Ok(()));
     let mut drawing = Drawing::default();
     let chosen = prepared.iter().zip(choices);
     let chosen: Vec<_> =
@@ -75,7 +74,6 @@ pub fn draw_labels(
     drawing
 }
 
-/// What becomes of a label.
 #[derive(Clone, Copy, Debug)]
 enum LabelOutcome {
     Placed,
@@ -122,7 +120,6 @@ fn by_importance(labels: &[PictureLabel]) -> Vec<(usize, &PictureLabel)> {
     order
 }
 
-/// A label with its text set, ready to be placed.
 struct PreparedLabel<'a> {
     number: usize,
     label: &'a PictureLabel,
@@ -133,10 +130,6 @@ struct PreparedLabel<'a> {
 }
 
 impl<'a> PreparedLabel<'a> {
-    /// Sets the label's text and lists its positions.
-    ///
-    /// # Errors
-    /// Its outcome, where nothing would show: it is empty, or the picture is too narrow for a few letters.
     fn new(number: usize, label: &'a PictureLabel, composer: &mut Composer) -> Result<Self, LabelOutcome> {
         let style = LabelStyle::new(label.kind, composer);
         let block = set_lines(&label.text, &style, composer);
@@ -192,7 +185,7 @@ fn metrics(label: &PictureLabel, texts: [PixelBox; 3], style: &LabelStyle, sheet
         symbol: Vec2::splat(style.symbol + style.halo),
         gap: sheet.px(1.0),
         longest,
-        preference: if label.kind == LabelKind::Water { Preference::OnPlace } else { Preference::Above },
+        may_lie_on_place: label.kind == LabelKind::Water,
     }
 }
 
@@ -252,7 +245,6 @@ fn uprighted(line: PixelSegment) -> PixelSegment {
     PixelSegment { from: line.from, to: Vec2::new(line.from.x, line.to.y) }
 }
 
-/// The look of a kind of label.
 struct LabelStyle {
     name: TextStyle,
     note: TextStyle,
@@ -261,7 +253,6 @@ struct LabelStyle {
     halo: f32,
     /// Half the size of the symbol.
     symbol: f32,
-    /// Usual length of the leader line.
     leader: f32,
 }
 

@@ -149,7 +149,6 @@ fn paste(pixels: &mut Pixels, map: &Pixels, (x, y): (usize, usize)) {
     }
 }
 
-/// Writes title and subtitle into `area`.
 fn draw_head(drawing: &mut Drawing, furniture: &MapFurniture, area: PixelBox, composer: &mut Composer) {
     let mut baseline = area.min.y;
     for (text, style, color, lead) in [

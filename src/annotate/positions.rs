@@ -20,7 +20,6 @@ use crate::annotate::place::LabelCandidate;
 /// What the candidates of one label are made from; all lengths in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabelMetrics {
-    /// The place.
     pub anchor: Vec2,
     /// From the place to the preferred end of its leader line; upward.
     pub reach: Vec2,
@@ -30,18 +29,15 @@ pub struct LabelMetrics {
     pub symbol: Vec2,
     /// The gap between text and leader line, and text and symbol.
     pub gap: f32,
-    /// The longest leader line.
     pub longest: f32,
-    /// The first choice.
-    pub preference: Preference,
+    /// Whether the text goes on the place itself first, without symbol and leader line.
+    pub may_lie_on_place: bool,
 }
 
-/// One way to draw a label, and the alignment of its lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabelPosition {
     /// Where everything is.
     pub candidate: LabelCandidate,
-    /// The alignment of the text's lines.
     pub alignment: Alignment,
 }
 
@@ -56,15 +52,6 @@ pub enum Alignment {
     Right = 2,
 }
 
-/// The preferred position of a label.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Preference {
-    /// Above its place, at the end of a leader line.
-    Above,
-    /// On its place, without symbol or line.
-    OnPlace,
-}
-
 /// Lengths of the leader to try, as multiples of the preferred one.
 const LENGTHS: [f32; 7] = [1.0, 0.55, 1.5, 2.1, 2.8, 3.7, 5.0];
 /// Where along the text's lower edge the leader meets it.
@@ -72,9 +59,8 @@ const MEETINGS: [(f32, Alignment); 3] =
     [(0.5, Alignment::Center), (0.14, Alignment::Left), (0.86, Alignment::Right)];
 
 impl LabelMetrics {
-    /// All positions, the best first.
     pub fn positions(&self) -> Vec<LabelPosition> {
-        let on_place = (self.preference == Preference::OnPlace).then(|| self.on_place());
+        let on_place = self.may_lie_on_place.then(|| self.on_place());
         let above = LENGTHS
             .iter()
             .filter(|&&length| self.reach.length() * length <= self.longest)
@@ -83,7 +69,6 @@ impl LabelMetrics {
         on_place.into_iter().chain(above).chain(beside).collect()
     }
 
-    /// The symbol's box at the place.
     pub fn symbol_box(&self) -> PixelBox {
         PixelBox::around(self.anchor, self.symbol)
     }
@@ -139,7 +124,7 @@ mod tests {
             symbol: Vec2::splat(6.0),
             gap: 3.0,
             longest: 200.0,
-            preference: Preference::Above,
+            may_lie_on_place: false,
         }
     }
 
@@ -196,7 +181,7 @@ mod tests {
 
     #[test]
     fn a_water_name_stands_on_the_water_first() {
-        let first = candidates(&LabelMetrics { preference: Preference::OnPlace, ..metrics() })[0];
+        let first = candidates(&LabelMetrics { may_lie_on_place: true, ..metrics() })[0];
         assert!((first.text.center() - metrics().anchor).abs().max_element() <= 0.5);
         assert_eq!((first.symbol, first.leader), (None, None));
     }

@@ -53,7 +53,6 @@ impl AnnotationReport {
         self.missing_glyphs.iter().map(|missing| missing.count).sum()
     }
 
-    /// Adds the flaws of drawn texts.
     pub(in crate::annotate) fn add_texts(&mut self, texts: &[DrawnText]) {
         for DrawnText { text, missing, shortened } in texts {
             if *missing > 0 {

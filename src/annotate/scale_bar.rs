@@ -40,7 +40,6 @@ impl ScaleBar {
     }
 }
 
-/// A bar of nice length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct NiceBar {
     /// Its length in meters.
@@ -156,15 +155,15 @@ mod tests {
 
     #[test]
     fn figures_are_exact_in_meters_and_kilometers() {
-        let said = |meters: f64| {
+        let figures_and_unit = |meters: f64| {
             let length = NiceNumber::at_most(meters).expect("positive");
             (figures(&length)[1].clone(), figures(&length)[2].clone(), unit(&length).0)
         };
-        assert_eq!(said(1000.0), ("0.5".to_owned(), "1".to_owned(), "km"));
-        assert_eq!(said(500.0), ("250".to_owned(), "500".to_owned(), "m"));
-        assert_eq!(said(5.0), ("2.5".to_owned(), "5".to_owned(), "m"));
-        assert_eq!(said(0.5), ("0.25".to_owned(), "0.5".to_owned(), "m"));
-        assert_eq!(said(20_000.0), ("10".to_owned(), "20".to_owned(), "km"));
+        assert_eq!(figures_and_unit(1000.0), ("0.5".to_owned(), "1".to_owned(), "km"));
+        assert_eq!(figures_and_unit(500.0), ("250".to_owned(), "500".to_owned(), "m"));
+        assert_eq!(figures_and_unit(5.0), ("2.5".to_owned(), "5".to_owned(), "m"));
+        assert_eq!(figures_and_unit(0.5), ("0.25".to_owned(), "0.5".to_owned(), "m"));
+        assert_eq!(figures_and_unit(20_000.0), ("10".to_owned(), "20".to_owned(), "km"));
     }
 
     #[test]

@@ -70,22 +70,18 @@ impl Sheet {
         self.whole_px(26.0).min((self.size.y * 0.03).round().max(2.0))
     }
 
-    /// Distance of text from its panel's edge.
     pub fn padding(&self) -> f32 {
         self.whole_px(15.0)
     }
 
-    /// Width of thin lines.
     pub fn hairline(&self) -> f32 {
         self.px(1.0).max(1.0)
     }
 
-    /// The whole picture.
     pub fn bounds(&self) -> PixelBox {
         PixelBox { min: Vec2::ZERO, max: self.size }
     }
 
-    /// The picture inside its margin.
     pub fn inner(&self) -> PixelBox {
         self.bounds().grown(-self.margin())
     }

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use crate::annotate::composer::Composer;
+use crate::annotate::composer::{Composer, widest};
 use crate::annotate::drawing::Drawing;
 use crate::annotate::paragraph::Paragraph;
 use crate::annotate::sheet::{INK, SOFT_INK, Sheet};
@@ -24,12 +24,11 @@ pub fn compose(title: Option<&str>, subtitle: Option<&str>, composer: &mut Compo
     let [title, subtitle] = [title, subtitle].map(Option::unwrap_or_default);
     let title_style = title_style(title, widest, composer);
     let subtitle_style = composer.style(18.0, TextStyle::REGULAR);
-    let typesetter = &mut composer.typesetter;
     for (title_lines, subtitle_lines) in MOST_LINES {
-        let heading = typesetter.broken(title, title_style, widest, title_lines);
+        let heading = composer.broken(title, title_style, widest, title_lines);
         // A subtitle without a title may use the title's lines.
         let subtitle_lines = if heading.lines.is_empty() { title_lines } else { subtitle_lines };
-        let note = typesetter.broken(subtitle, subtitle_style, widest, subtitle_lines);
+        let note = composer.broken(subtitle, subtitle_style, widest, subtitle_lines);
         let mut drawing = lay_out(&heading, &note, &sheet)?;
         if title_lines == 1 || drawing.bounds().size().y <= sheet.size.y * HIGHEST_SHARE {
             drawing.record_text(title, heading.missing(), heading.shortened);
@@ -68,7 +67,7 @@ fn lay_out(title: &Paragraph, subtitle: &Paragraph, sheet: &Sheet) -> Option<Dra
         drawing.write(line, Vec2::new(padding, baseline), color);
         above = line;
     }
-    let width = title.width().max(subtitle.width());
+    let width = widest(lines());
     // Panels end a padding below the baseline, not below the descenders: the baseline reads as the edge.
     let height = baseline + padding + (last.style.size_px * 0.06).round();
     Some(drawing.on_panel(Vec2::new((width + padding * 2.0).ceil(), height), sheet))

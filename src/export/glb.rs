@@ -129,7 +129,6 @@ fn linear(color: Srgba) -> [u16; 4] {
     [light(red), light(green), light(blue), u16::from(alpha) * 257]
 }
 
-/// The glTF object of a material.
 fn object_of(material: &Material, image: Option<usize>) -> Value {
     let [red, green, blue] = material.base_color.linear().to_array();
     let alpha = if material.alpha == AlphaMode::Opaque { 1.0 } else { material.base_color.alpha() };

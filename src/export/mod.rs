@@ -44,7 +44,6 @@ impl SceneExport<'_> {
         &self.list.materials[item.material.0 as usize]
     }
 
-    /// The triangles that `item` draws.
     fn triangles(&self, item: &DrawItem) -> &[[VertexId; 3]] {
         let Range { start, end } = item.triangles;
         &self.mesh(item).triangles[start as usize..end as usize]

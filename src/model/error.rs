@@ -81,7 +81,6 @@ impl ModelError {
         Self::ThreeDs { offset, reason: reason.into() }
     }
 
-    /// An error in a glTF file.
     pub(super) fn gltf(place: impl Into<String>, reason: impl Into<String>) -> Self {
         Self::Gltf { place: place.into(), reason: reason.into() }
     }

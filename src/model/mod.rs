@@ -82,9 +82,6 @@ pub struct Census {
 /// Loads the files that a model names: buffers, textures, material libraries.
 pub trait Companions {
     /// The bytes of the file that the model calls `name`.
-    ///
-    /// # Errors
-    /// Whatever prevents loading it.
     fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError>;
 }
 

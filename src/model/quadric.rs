@@ -29,7 +29,6 @@ impl Quadric {
         }
     }
 
-    /// The planes of both.
     pub(super) fn plus(&self, other: &Self) -> Self {
         Self {
             squares: std::array::from_fn(|index| self.squares[index] + other.squares[index]),

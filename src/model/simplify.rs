@@ -106,7 +106,6 @@ pub fn levels(model: &Model) -> Vec<DetailLevel> {
     levels
 }
 
-/// Why simplification stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum StopReason {
     /// The target is reached.
@@ -124,7 +123,6 @@ struct CollapseCandidate {
     to: PointId,
 }
 
-/// An allowed step.
 struct CollapseStep {
     cost: f64,
     /// The change in appearance, in the model's units.

@@ -13,7 +13,6 @@ pub(super) struct SurfaceEdge {
     /// Whether the surface, a material, a texture or a smooth patch ends here: other than two triangles meet, or they
     /// meet with different wedges.
     is_seam: bool,
-    /// One of its triangles.
     triangle: u32,
 }
 

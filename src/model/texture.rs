@@ -130,7 +130,6 @@ impl<'a> Textures<'a> {
         pixels.is_some_and(|pixels| pixels.data().iter().any(|pixel| pixel.0[3] < 255))
     }
 
-    /// Moves the textures and notes to `model`.
     pub(super) fn move_to(self, model: &mut Model) {
         model.textures = self.pixels;
         model.notes.extend(self.notes);
@@ -145,9 +144,6 @@ fn brightness(pixel: Srgba) -> u8 {
 
 /// The companion called `name`, also tried without its folders and in other letter cases: models leave the systems on
 /// which 3DS and OBJ files were written.
-///
-/// # Errors
-/// That of the first try.
 pub(super) fn load_any(companions: &dyn Companions, name: &str) -> Result<Vec<u8>, CompanionError> {
     let name = name.trim().replace('\\', "/");
     let file = name.rsplit('/').next().unwrap_or(&name);

@@ -48,7 +48,6 @@ fn colored_vertex(position: Vec3, normal: Vec3, color: Srgba) -> DrawVertex {
     DrawVertex { position: position.to_array(), normal: normal.to_array(), uv: [0.0; 2], color }
 }
 
-/// A model of one mesh with vertex colors.
 fn model(name: &str, mesh: DrawMesh) -> Model {
     let census =
         Census { meshes: 1, vertices: mesh.vertices.len(), faces: mesh.triangles.len(), materials: 1 };

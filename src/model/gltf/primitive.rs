@@ -14,7 +14,6 @@ use super::accessor::AccessorReader;
 use super::material::{GltfMaterial, GltfUvTransform};
 use super::skin::MeshPose;
 
-/// Reads the meshes of one document.
 pub(super) struct MeshReader<'a> {
     pub accessors: AccessorReader<'a>,
     /// The last is for primitives without a material.
@@ -23,7 +22,6 @@ pub(super) struct MeshReader<'a> {
     pub notes: Vec<String>,
 }
 
-/// How much a mesh has, as stored.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct MeshCounts {
     pub primitives: usize,
@@ -42,15 +40,10 @@ struct PrimitiveVertices {
 }
 
 impl<'a> MeshReader<'a> {
-    /// A reader with the document's materials.
     pub(super) fn new(accessors: AccessorReader<'a>, materials: Vec<GltfMaterial>) -> Self {
         Self { accessors, materials, budget: TriangleBudget::default(), notes: Vec::new() }
     }
 
-    /// Adds `mesh` in `pose` to `parts`.
-    ///
-    /// # Errors
-    /// [`ModelError`].
     pub(super) fn add_mesh(
         &mut self,
         mesh: &Mesh<'_>,
@@ -83,7 +76,6 @@ impl<'a> MeshReader<'a> {
         Ok(counts)
     }
 
-    /// The triangles of a primitive, in range.
     fn triangles(
         &mut self,
         primitive: &Primitive<'_>,

@@ -35,9 +35,7 @@ impl FaceId {
 /// A triangle of the list that may be seen.
 #[derive(Clone, Copy, Debug)]
 pub struct ScreenFace {
-    /// The item's index in the list.
     pub item: u32,
-    /// The triangle's index in its mesh.
     pub triangle: u32,
     /// Depth and corner weights over the picture.
     pub planes: TrianglePlanes,
@@ -48,7 +46,6 @@ pub struct ScreenFace {
 }
 
 impl ScreenFace {
-    /// Whether it belongs to a draped item.
     pub fn is_draped(&self) -> bool {
         self.reach > 1.0
     }
@@ -59,17 +56,6 @@ impl ScreenFace {
     }
 }
 
-/// How a piece enters the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RasterPass {
-    /// Hides what is behind it.
-    Opaque,
-    /// Hides what is behind it where its alpha reaches the cut-off.
-    Mask,
-    /// Lets through a part of what is behind it.
-    Blend,
-}
-
 /// A triangular part of a face's outline.
 #[derive(Clone, Copy, Debug)]
 pub struct FacePiece {
@@ -77,10 +63,8 @@ pub struct FacePiece {
     pub corners: [SubpixelPoint; 3],
     /// The pixels it may touch; never empty.
     pub window: PixelWindow,
-    /// Its face.
     pub face: FaceId,
-    /// How it is drawn.
-    pub pass: RasterPass,
+    pub alpha: AlphaMode,
 }
 
 /// The faces of up to [`CHUNK`] consecutive triangles of the list.
@@ -90,20 +74,18 @@ struct FaceChunk {
     pieces: Vec<FacePiece>,
 }
 
-/// All faces and pieces of a list as one camera sees them.
 #[derive(Debug)]
 pub struct ScreenGeometry {
     chunks: Vec<FaceChunk>,
 }
 
-/// What the triangles of one item have in common.
 struct ItemSetup<'a> {
     screen: &'a Screen,
     mesh: &'a DrawMesh,
     item: &'a DrawItem,
     index: u32,
-    projection: Projection,
-    pass: RasterPass,
+    projection: Projection<'a>,
+    alpha: AlphaMode,
     two_sided: bool,
 }
 
@@ -168,11 +150,7 @@ impl<'a> ItemSetup<'a> {
             item,
             index: index as u32,
             projection: screen.projection(&item.world_from_mesh),
-            pass: match material.alpha {
-                AlphaMode::Opaque => RasterPass::Opaque,
-                AlphaMode::Mask(_) => RasterPass::Mask,
-                AlphaMode::Blend => RasterPass::Blend,
-            },
+            alpha: material.alpha,
             two_sided: material.two_sided,
         }
     }
@@ -215,7 +193,7 @@ impl<'a> ItemSetup<'a> {
             let corners = if faces_eye { [a, c, b] } else { [a, b, c] };
             let window = PixelWindow::around(&corners, self.screen.size);
             if doubled_area(&corners) > 0 && !window.is_empty() {
-                pieces.push(FacePiece { corners, window, face, pass: self.pass });
+                pieces.push(FacePiece { corners, window, face, alpha: self.alpha });
             }
         }
     }

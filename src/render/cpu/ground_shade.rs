@@ -10,7 +10,6 @@ use crate::render::cpu::hit::FacePoint;
 use crate::render::cpu::texture::TexelFootprint;
 use crate::render::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
 
-/// A ground map with its coarser levels.
 #[derive(Debug)]
 pub struct GroundShader<'a> {
     map: &'a GroundMap,
@@ -28,7 +27,6 @@ pub struct GroundPoint {
 }
 
 impl<'a> GroundShader<'a> {
-    /// A checked `map` with all coarser levels.
     pub fn new(map: &'a GroundMap) -> Self {
         Self { map, posts_per_meter: map.cell.recip(), coarser: coarser_levels(map).collect() }
     }

@@ -8,7 +8,6 @@ use crate::render::cpu::screen::Screen;
 /// A point of a face and its change from pixel to pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct FacePoint {
-    /// In world space.
     pub world: Vec3,
     /// Meters from the eye.
     pub distance_m: f32,
@@ -62,12 +61,10 @@ impl Barycentric {
         }
     }
 
-    /// The blend of the corners' vectors.
     pub fn blend(&self, [a, b, c]: [Vec3; 3]) -> Vec3 {
         a + (b - a) * self.at.x + (c - a) * self.at.y
     }
 
-    /// The blend of the corners' numbers.
     pub fn blend_number(&self, [a, b, c]: [f32; 3]) -> f32 {
         a + (b - a) * self.at.x + (c - a) * self.at.y
     }

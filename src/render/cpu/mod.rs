@@ -30,7 +30,7 @@
 //! masked quads, takes about three.
 //!
 //! Memory: 12 bytes per pixel for the picture; 150 bytes per visible triangle; for each band of 64 rows in work 12
-//! bytes per pixel and 48 per triangle in it; for each thread 0.3 MiB, and up to 2 MiB more under transparent surfaces;
+//! bytes per pixel and 52 per triangle in it; for each thread 0.3 MiB, and up to 2 MiB more under transparent surfaces;
 //! a third of each texture and of the ground map for their coarser levels, and as much again of a texture with holes
 //! for its alpha.
 
@@ -124,7 +124,6 @@ pub fn render(list: &DrawList, camera: &Camera, quality: &RenderQuality) -> Resu
     })
 }
 
-/// All bands of the picture.
 fn draw<const N: usize>(
     screen: &Screen,
     geometry: &ScreenGeometry,

@@ -13,7 +13,6 @@ use crate::render::cpu::visibility::TILE;
 /// Pixels along the side of a block.
 const BLOCK: u32 = 8;
 
-/// Blocks along the side of a tile.
 const BLOCKS: usize = (TILE / BLOCK) as usize;
 
 /// Pieces drawn into a block after which its farthest depth is computed again.
@@ -22,7 +21,6 @@ const STALE: u8 = 16;
 /// Pieces over more blocks than these are not tested: hardly any of them is hidden entirely.
 const MOST_BLOCKS: usize = 4;
 
-/// The farthest depths of the blocks of one tile.
 #[derive(Debug)]
 pub struct Occlusion {
     /// The least inverse depth of each block.
@@ -67,7 +65,6 @@ impl Occlusion {
     }
 }
 
-/// The columns and rows of blocks that a window touches.
 fn blocks(window: PixelWindow) -> [Range<usize>; 2] {
     [0, 1].map(|axis| (window.from[axis] / BLOCK) as usize..window.to[axis].div_ceil(BLOCK) as usize)
 }

@@ -27,7 +27,6 @@ pub const EIGHT: SamplePattern<8> =
     SamplePattern { sixteenths: [[1, -3], [-1, 3], [5, 1], [-3, -5], [-5, 5], [-7, -1], [3, 7], [7, -7]] };
 
 impl<const N: usize> SamplePattern<N> {
-    /// Every sample.
     pub const FULL: SampleMask = ((1u16 << N) - 1) as SampleMask;
 
     /// The offset of `sample` from the pixel's center, in pixels.

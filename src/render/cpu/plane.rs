@@ -25,7 +25,6 @@ impl ScreenPlane {
     }
 }
 
-/// Depth and corner weights of a triangle over the picture.
 #[derive(Clone, Copy, Debug)]
 pub struct TrianglePlanes {
     /// `1 / w`, `w` being meters along the viewing direction.

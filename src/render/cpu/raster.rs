@@ -83,7 +83,6 @@ struct EdgeFunction<const N: usize> {
     step: [i64; 2],
     /// The change from a pixel's center to its samples.
     samples: [i64; N],
-    /// The extremes of `samples`.
     least: i64,
     most: i64,
 }

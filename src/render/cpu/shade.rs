@@ -14,7 +14,6 @@ use crate::render::cpu::hit::{Barycentric, FacePoint};
 use crate::render::cpu::screen::Screen;
 use crate::render::cpu::texture::{Texel, TexelFootprint, Texture, Weighting};
 
-/// A draw list with everything that is computed once per frame for shading.
 #[derive(Debug)]
 pub struct Shader<'a> {
     list: &'a DrawList,
@@ -24,13 +23,11 @@ pub struct Shader<'a> {
     most_taps: u32,
 }
 
-/// A face's vertices and their weights at a point.
 struct FaceVertices<'a> {
     corners: [&'a DrawVertex; 3],
     weights: Barycentric,
 }
 
-/// The color of a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Shaded {
     /// Lit and seen through the haze; linear, in 0..=1.
@@ -51,7 +48,6 @@ impl<'a> Shader<'a> {
         }
     }
 
-    /// The item a face belongs to.
     pub fn item(&self, face: &ScreenFace) -> &'a DrawItem {
         &self.list.items[face.item as usize]
     }

@@ -10,7 +10,6 @@ use crate::draw::pixels::Pixels;
 use crate::render::cpu::alpha::{AlphaMask, neighbors};
 use crate::render::mip_levels::smaller_levels;
 
-/// A texture with its mip levels.
 #[derive(Debug)]
 pub struct Texture<'a> {
     base: &'a Pixels,
@@ -28,7 +27,6 @@ pub enum Weighting {
     ByAlpha,
 }
 
-/// A filtered color.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Texel {
     /// In linear light.
@@ -88,7 +86,6 @@ impl<'a> Texture<'a> {
         Self { base, smaller, alpha, linear: std::array::from_fn(|channel| linear_from_srgb(channel as u8)) }
     }
 
-    /// Columns and rows of the first level.
     pub fn size(&self) -> Vec2 {
         Vec2::new(self.base.width() as f32, self.base.height() as f32)
     }
@@ -135,7 +132,6 @@ impl<'a> Texture<'a> {
     }
 }
 
-/// A weighted sum of colors.
 struct TexelSum {
     weighting: Weighting,
     color: Vec3,

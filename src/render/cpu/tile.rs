@@ -4,8 +4,9 @@ use glam::Vec3;
 
 use crate::draw::color::Srgba;
 use crate::draw::list::{DepthLayer, FeatureId};
+use crate::draw::material::AlphaMode;
 use crate::render::cpu::blend::Blend;
-use crate::render::cpu::geometry::{FaceId, FacePiece, RasterPass, ScreenFace, ScreenGeometry};
+use crate::render::cpu::geometry::{FaceId, FacePiece, ScreenFace, ScreenGeometry};
 use crate::render::cpu::pattern::{SampleMask, SamplePattern};
 use crate::render::cpu::raster::PixelWindow;
 use crate::render::cpu::screen::Screen;
@@ -23,7 +24,6 @@ pub struct TileContext<'a, const N: usize> {
     pub screen: &'a Screen,
     /// What may be seen.
     pub geometry: &'a ScreenGeometry,
-    /// Its colors.
     pub shader: &'a Shader<'a>,
     /// The samples of a pixel.
     pub pattern: &'a SamplePattern<N>,
@@ -32,15 +32,12 @@ pub struct TileContext<'a, const N: usize> {
 /// One pixel of the picture.
 #[derive(Clone, Copy, Debug)]
 pub struct ResolvedPixel {
-    /// Its color.
     pub color: Srgba,
     /// Meters along the viewing direction.
     pub depth_m: f32,
-    /// The feature at its center.
     pub feature: FeatureId,
 }
 
-/// Buffers reused from tile to tile.
 #[derive(Debug)]
 pub struct TileScratch<const N: usize> {
     visibility: Visibility<N>,
@@ -48,7 +45,6 @@ pub struct TileScratch<const N: usize> {
 }
 
 impl<const N: usize> TileScratch<N> {
-    /// Buffers for one tile.
     pub fn new() -> Self {
         Self { visibility: Visibility::new(), blend: Blend::new() }
     }
@@ -65,7 +61,7 @@ pub fn draw_tile<const N: usize>(
     scratch.blend.clear(window);
     let touches_tile = |piece: &&FacePiece| !piece.window.intersection(window).is_empty();
     let (transparent, others): (Vec<&FacePiece>, Vec<&FacePiece>) =
-        pieces.iter().filter(touches_tile).partition(|piece| piece.pass == RasterPass::Blend);
+        pieces.iter().filter(touches_tile).partition(|piece| piece.alpha == AlphaMode::Blend);
     let mut solids = Vec::new();
     for piece in others {
         let face = frame.geometry.face(piece.face);
@@ -106,7 +102,7 @@ fn draw_piece<const N: usize>(
     face: &ScreenFace,
     visibility: &mut Visibility<N>,
 ) {
-    if piece.pass == RasterPass::Mask {
+    if matches!(piece.alpha, AlphaMode::Mask(_)) {
         let cutout = frame.shader.cutout(face);
         visibility.draw(piece, face, frame.pattern, |at, samples| cutout.solid(at, samples, frame.pattern));
     } else {

@@ -14,7 +14,6 @@ use crate::render::cpu::raster::{PixelWindow, cover};
 /// common processors.
 pub const TILE: u32 = 64;
 
-/// The faces seen in one tile and their inverse depths.
 #[derive(Debug)]
 pub struct Visibility<const N: usize> {
     window: PixelWindow,
@@ -24,7 +23,6 @@ pub struct Visibility<const N: usize> {
 }
 
 impl<const N: usize> Visibility<N> {
-    /// Buffers for one tile.
     pub fn new() -> Self {
         let pixels = (TILE * TILE) as usize;
         Self {
@@ -120,7 +118,6 @@ pub struct SampleDepths<const N: usize> {
 }
 
 impl<const N: usize> SampleDepths<N> {
-    /// The differences for one face.
     pub fn new(face: &ScreenFace, pattern: &SamplePattern<N>) -> Self {
         let plane = &face.planes.inverse_depth;
         let change = |[x, y]: [i32; 2]| (plane.right * f64::from(x) + plane.down * f64::from(y)) / 16.0;
@@ -135,7 +132,6 @@ impl<const N: usize> SampleDepths<N> {
     }
 }
 
-/// The samples of `faces` that see `face`.
 pub fn samples_of<const N: usize>(faces: &[FaceId; N], face: FaceId) -> SampleMask {
     let bits = faces.iter().enumerate().map(|(sample, &seen)| SampleMask::from(seen == face) << sample);
     bits.fold(0, |mask, bit| mask | bit)
