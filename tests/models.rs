@@ -285,8 +285,23 @@ fn no_cut_or_changed_byte_of_a_sound_file_does_harm() {
     }
 }
 
-/// OBJ files that `tobj` 4.0.5 does not read as the format says, and why.
-const TOBJ_FAILS: [(&str, &str); 0] = [];
+/// OBJ files that `tobj` 4.0.5 reads otherwise, and why.
+const TOBJ_DIFFERS: [(&str, &str); 11] = [
+    (
+        "assets/models/firtree.obj",
+        "of quads that name a corner twice, triangles without area are left out here",
+    ),
+    ("assimp/box_UTF16BE.obj", "it reads no UTF-16"),
+    ("assimp/number_formats.obj", "it refuses odd exponents"),
+    ("assimp/testline.obj", "it takes lines of more than two points for faces"),
+    ("assimp/testmixed.obj", "it takes lines of more than two points for faces"),
+    ("helix/line_continuation_empty_continuation.obj", "it reads no continued lines"),
+    ("helix/line_continuation_multiple_breaks.obj", "it reads no continued lines"),
+    ("helix/line_continuation_single.obj", "it reads no continued lines"),
+    ("helix/suzanne.obj", "it refuses a usemtl without a name"),
+    ("tinyobj/line-prim.obj", "it takes lines of more than two points for faces"),
+    ("tinyobj/test-nan.obj", "it refuses positions that are not numbers"),
+];
 
 /// The triangles that the faces of a file give, and the distinct positions of their corners, sorted.
 #[derive(Debug, PartialEq)]
@@ -344,14 +359,14 @@ fn obj_files_have_the_triangles_and_positions_that_tobj_reads() {
         let bytes = std::fs::read(&path).expect("the file can be read");
         let expected = ObjGeometry::from_tobj(&bytes);
         let is_same = expected.as_ref().is_ok_and(|expected| *expected == ObjGeometry::from_model(&model));
-        let is_known = TOBJ_FAILS.iter().any(|(file, _)| name.ends_with(file));
+        let is_listed = TOBJ_DIFFERS.iter().any(|(file, _)| name.ends_with(file));
         compared += usize::from(is_same);
-        if is_same == is_known {
+        if is_same == is_listed {
             let expected = expected.map(|geometry| (geometry.triangles, geometry.positions.len()));
             let own = ObjGeometry::from_model(&model);
             wrong.push(format!("{name}: {expected:?}, here {} and {}", own.triangles, own.positions.len()));
         }
     }
     assert!(wrong.is_empty(), "{} of {compared}:\n{}", wrong.len(), wrong.join("\n"));
-    assert!(compared > 40, "{compared} files compared");
+    assert!(compared > 50, "{compared} files compared");
 }

@@ -50,9 +50,6 @@ pub enum ModelError {
         /// What was found and what to do.
         reason: String,
     },
-    /// The chunks of a GLB file are broken.
-    #[error("glTF file, the GLB chunks; the file may be cut off")]
-    GlbChunks(#[source] gltf::Error),
     /// The JSON of a glTF file is broken.
     #[error("glTF file, the JSON")]
     GltfJson(#[source] serde_json::Error),

@@ -27,7 +27,6 @@ mod quadric;
 pub mod read;
 pub mod simplify;
 mod soup;
-mod surface_edges;
 mod texture;
 pub mod three_ds;
 mod triangulate;
