@@ -152,7 +152,6 @@ impl<'a> PreparedLabel<'a> {
         LabelRequest { candidates, reserved: Some(self.metrics.symbol_box()) }
     }
 
-    /// Draws the leader line and the symbol, where the candidate has them.
     fn draw_symbol(&self, candidate: &LabelCandidate, sheet: &Sheet, drawing: &mut Drawing) {
         if let Some(line) = candidate.leader {
             let (line, width) = (uprighted(line), sheet.px(1.2).max(0.9));

@@ -29,7 +29,6 @@ impl PixelBox {
         Self { min, max: min + size }
     }
 
-    /// The box of the given half width and half height around `center`.
     pub fn around(center: Vec2, half: Vec2) -> Self {
         Self { min: center - half, max: center + half }
     }

@@ -36,7 +36,6 @@ pub struct LabelMetrics {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabelPosition {
-    /// Where everything is.
     pub candidate: LabelCandidate,
     pub alignment: Alignment,
 }

@@ -120,7 +120,6 @@ fn draw_bar(drawing: &mut Drawing, bar: PixelBox, sheet: &Sheet) {
     }
 }
 
-/// The figures at the start, the middle and the end.
 fn figures(length: &NiceNumber) -> [String; 3] {
     let full = length.value() / unit(length).1;
     let is_integer = |value: f64| (value - libm::round(value)).abs() < 1e-6;

@@ -32,7 +32,6 @@ const STEADY_SHARE: f32 = 0.32;
 /// The smallest type: below this the embedded light font turns gray.
 const SMALLEST_TYPE_PX: f32 = 9.5;
 
-/// The picture as a sheet to lay things out on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sheet {
     /// Width and height in pixels.
@@ -42,7 +41,6 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// The sheet of a picture of `width` × `height` pixels.
     pub fn new(width: u32, height: u32) -> Self {
         let size = Vec2::new(width as f32, height as f32);
         let share = size.y.min(size.x * DESIGN_ASPECT) / DESIGN_HEIGHT;
@@ -65,7 +63,6 @@ impl Sheet {
         self.px(design).max(SMALLEST_TYPE_PX)
     }
 
-    /// Distance of furniture from the border.
     pub fn margin(&self) -> f32 {
         self.whole_px(26.0).min((self.size.y * 0.03).round().max(2.0))
     }

@@ -66,7 +66,6 @@ impl TextStyle {
         self.size_px * CAP_HEIGHT
     }
 
-    /// Width of the strengthening stroke in pixels.
     fn stroke_px(&self) -> f32 {
         self.weight * self.size_px
     }
@@ -138,7 +137,6 @@ impl TextLine {
 }
 
 impl Drawing {
-    /// Writes a line of text whose baseline starts at `at`.
     pub fn write(&mut self, line: &TextLine, at: Vec2, color: Srgba) {
         let Some(path) = line.outline_at(at) else { return };
         let stroke = line.style.stroke_px();
@@ -167,7 +165,6 @@ impl Drawing {
     }
 }
 
-/// Adds the embedded fonts.
 pub fn register_fonts(collection: &mut Collection) {
     for (font, name) in
         [(epaint_default_fonts::UBUNTU_LIGHT, FONT), (epaint_default_fonts::HACK_REGULAR, FALLBACK_FONT)]

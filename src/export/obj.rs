@@ -42,7 +42,6 @@ fn texture_name(stem: &str, id: TextureId) -> String {
     format!("{stem}_{}.png", id.0)
 }
 
-/// Distinct names for distinct materials.
 fn material_name(list: &DrawList, MaterialId(id): MaterialId) -> String {
     format!("{}_{id}", word(&list.materials[id as usize].name))
 }

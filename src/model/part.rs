@@ -23,7 +23,6 @@ pub(super) struct TriangleBudget {
 }
 
 impl TriangleBudget {
-    /// Takes `triangles` from the budget.
     pub(super) fn take(&mut self, triangles: usize) -> Result<(), ModelError> {
         self.used = self.used.saturating_add(triangles);
         if self.used > MAX_TRIANGLES {

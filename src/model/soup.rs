@@ -22,7 +22,6 @@ pub(super) struct PointId(pub u32);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) struct WedgeId(pub u32);
 
-/// One part's vertex at a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SoupWedge {
     pub point: PointId,

@@ -28,7 +28,6 @@ pub(super) struct Textures<'a> {
     notes: Vec<String>,
 }
 
-/// Why bytes do not become a texture.
 #[derive(Debug, thiserror::Error)]
 enum TextureError {
     #[error("it is not PNG, JPEG, BMP or TGA")]
@@ -42,7 +41,6 @@ enum TextureError {
 }
 
 impl<'a> Textures<'a> {
-    /// No textures yet.
     pub(super) fn new(companions: &'a dyn Companions) -> Self {
         let (by_name, masked) = (BTreeMap::new(), BTreeMap::new());
         Self { companions, by_name, masked, pixels: Vec::new(), pixels_left: MAX_PIXELS, notes: Vec::new() }
@@ -124,7 +122,6 @@ impl<'a> Textures<'a> {
         Some(self.add(masked))
     }
 
-    /// Whether a texture has pixels that are not opaque.
     pub(super) fn has_holes(&self, id: TextureId) -> bool {
         let pixels = self.pixels.get(id.0 as usize);
         pixels.is_some_and(|pixels| pixels.data().iter().any(|pixel| pixel.0[3] < 255))

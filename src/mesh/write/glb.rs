@@ -204,7 +204,6 @@ impl<'a> GlbScene<'a> {
     }
 }
 
-/// The binary chunk, and the views and accessors into it.
 #[derive(Default)]
 struct GlbData<'s> {
     chunks: Vec<Cow<'s, [u8]>>,

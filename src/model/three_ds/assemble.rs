@@ -23,7 +23,6 @@ use super::keyframer::world_from_nodes;
 use super::material::{MapChunk, MaterialChunk};
 use super::mesh::TriObject;
 
-/// How a map changes texture coordinates.
 #[derive(Clone, Copy, Debug)]
 struct MapUvTransform {
     scale: Vec2,

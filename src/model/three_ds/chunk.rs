@@ -16,7 +16,6 @@ pub(super) struct Chunk<'a> {
 }
 
 impl<'a> Chunk<'a> {
-    /// The chunk at the start of a file.
     pub(super) fn first(bytes: &'a [u8]) -> Result<Self, ModelError> {
         ChunkCursor { bytes, offset: 0 }
             .chunk()?

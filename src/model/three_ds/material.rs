@@ -19,7 +19,6 @@ pub(super) struct MaterialChunk {
     pub opacity_map: Option<MapChunk>,
 }
 
-/// A picture mapped on a surface.
 #[derive(Clone, Debug)]
 pub(super) struct MapChunk {
     pub file: String,

@@ -10,14 +10,12 @@ use glam::Vec2;
 
 use crate::draw::pixels::Pixels;
 
-/// The alpha of a texture and its mip levels.
 #[derive(Debug)]
 pub struct AlphaMask {
     /// The largest first; none where the texture is opaque or empty.
     levels: Vec<AlphaLevel>,
 }
 
-/// Level and taps of the mask readings for one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaskFootprint {
     level: usize,
@@ -32,7 +30,6 @@ struct AlphaLevel {
 }
 
 impl AlphaMask {
-    /// The alpha of `base` and of its `smaller` levels.
     pub fn new(base: &Pixels, smaller: &[Pixels]) -> Self {
         let is_opaque = base.data().iter().all(|color| color.0[3] == u8::MAX);
         let levels = std::iter::once(base).chain(smaller).map(|level| AlphaLevel {
@@ -80,7 +77,6 @@ fn nearest_level(area: f32) -> usize {
 }
 
 impl AlphaLevel {
-    /// The alpha around `uv`, 0..=1.
     fn bilinear(&self, uv: Vec2) -> f32 {
         let [width, height] = self.size;
         let [x, y] = (Vec2::new(uv.x * width as f32, uv.y * height as f32) - 0.5).to_array();

@@ -17,7 +17,6 @@ use crate::render::picture::LEAST_VISIBLE_ALPHA;
 /// Transparent fragments that a pixel keeps; of more, the farthest is dropped. Bounds memory to 2 MiB per tile.
 const MOST_LAYERS: usize = 32;
 
-/// A transparent face in one pixel.
 #[derive(Clone, Copy, Debug)]
 struct Fragment {
     face: FaceId,
@@ -33,7 +32,6 @@ pub struct Blend {
 }
 
 impl Blend {
-    /// Without fragments.
     pub fn new() -> Self {
         Self { window: PixelWindow::EMPTY, pixels: vec![Vec::new(); (TILE * TILE) as usize] }
     }

@@ -18,7 +18,6 @@ const GUARD_PX: f64 = 8192.0;
 /// A triangle cut at five planes has at most this many corners.
 const MOST_CORNERS: usize = 8;
 
-/// A convex outline in homogeneous pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Outline {
     corners: [DVec3; MOST_CORNERS],

@@ -32,7 +32,6 @@ impl FaceId {
     pub const NONE: Self = Self(u32::MAX);
 }
 
-/// A triangle of the list that may be seen.
 #[derive(Clone, Copy, Debug)]
 pub struct ScreenFace {
     pub item: u32,
@@ -56,7 +55,6 @@ impl ScreenFace {
     }
 }
 
-/// A triangular part of a face's outline.
 #[derive(Clone, Copy, Debug)]
 pub struct FacePiece {
     /// Sub-pixel corners with a positive area.
@@ -114,7 +112,6 @@ impl ScreenGeometry {
         &self.chunks[(id / CHUNK) as usize].faces[(id % CHUNK) as usize]
     }
 
-    /// All pieces in the list's order.
     pub fn pieces(&self) -> impl Iterator<Item = &FacePiece> {
         self.chunks.iter().flat_map(|chunk| &chunk.pieces)
     }
@@ -155,7 +152,6 @@ impl<'a> ItemSetup<'a> {
         }
     }
 
-    /// Adds the triangle's face and pieces, if it can be seen.
     fn add_triangle(&self, chunk: &mut FaceChunk, triangle: u32, id: FaceId) {
         let corners =
             self.mesh.triangles[triangle as usize].map(|id| self.mesh.vertices[id.index()].position);

@@ -17,7 +17,6 @@ pub struct GroundShader<'a> {
     coarser: Vec<GroundLevel>,
 }
 
-/// The ground over one pixel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GroundPoint {
     /// Height, slopes and light.
@@ -31,7 +30,6 @@ impl<'a> GroundShader<'a> {
         Self { map, posts_per_meter: map.cell.recip(), coarser: coarser_levels(map).collect() }
     }
 
-    /// The ground beneath a hit, over the pixel's footprint.
     pub fn at(&self, hit: &FacePoint, most_taps: u32) -> GroundPoint {
         let [right, down] = [hit.right.truncate(), hit.down.truncate()];
         let footprint = TexelFootprint::new(right, down, self.posts_per_meter, most_taps);
@@ -86,7 +84,6 @@ impl<'a> GroundShader<'a> {
     }
 }
 
-/// The cell of a grid coordinate among `count` posts, and the position within it.
 fn split(coordinate: f32, count: usize) -> (usize, f32) {
     let cell = (coordinate as usize).min(count.saturating_sub(2));
     (cell, coordinate - cell as f32)

@@ -5,7 +5,6 @@ use glam::{Vec2, Vec3};
 use crate::render::cpu::geometry::ScreenFace;
 use crate::render::cpu::screen::Screen;
 
-/// A point of a face and its change from pixel to pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct FacePoint {
     pub world: Vec3,
@@ -26,7 +25,6 @@ pub struct Barycentric {
 }
 
 impl FacePoint {
-    /// The point of `face` seen at pixel position `at`.
     pub fn new(face: &ScreenFace, screen: &Screen, at: [f32; 2]) -> Self {
         let plane = &face.planes.inverse_depth;
         let depth_m = 1.0 / face.inverse_depth(at);

@@ -10,7 +10,6 @@ use std::ops::Range;
 use crate::render::cpu::raster::PixelWindow;
 use crate::render::cpu::visibility::TILE;
 
-/// Pixels along the side of a block.
 const BLOCK: u32 = 8;
 
 const BLOCKS: usize = (TILE / BLOCK) as usize;
@@ -23,14 +22,12 @@ const MOST_BLOCKS: usize = 4;
 
 #[derive(Debug)]
 pub struct Occlusion {
-    /// The least inverse depth of each block.
     farthest: [[f32; BLOCKS]; BLOCKS],
     /// Pieces drawn since, [`STALE`] at most.
     drawn: [[u8; BLOCKS]; BLOCKS],
 }
 
 impl Occlusion {
-    /// Nothing known of any block.
     pub fn new() -> Self {
         Self { farthest: [[0.0; BLOCKS]; BLOCKS], drawn: [[STALE; BLOCKS]; BLOCKS] }
     }
@@ -54,7 +51,6 @@ impl Occlusion {
         })
     }
 
-    /// Counts a piece drawn in `window`, in pixels of the tile.
     pub fn count_piece(&mut self, window: PixelWindow) {
         let [columns, rows] = blocks(window);
         for row in rows {
@@ -69,7 +65,6 @@ fn blocks(window: PixelWindow) -> [Range<usize>; 2] {
     [0, 1].map(|axis| (window.from[axis] / BLOCK) as usize..window.to[axis].div_ceil(BLOCK) as usize)
 }
 
-/// The least inverse depth of a block.
 fn farthest<const N: usize>(depths: &[[f32; N]], column: usize, row: usize) -> f32 {
     let (side, block) = (TILE as usize, BLOCK as usize);
     let lines = depths[row * block * side..][..block * side].chunks_exact(side);

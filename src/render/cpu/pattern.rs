@@ -29,7 +29,6 @@ pub const EIGHT: SamplePattern<8> =
 impl<const N: usize> SamplePattern<N> {
     pub const FULL: SampleMask = ((1u16 << N) - 1) as SampleMask;
 
-    /// The offset of `sample` from the pixel's center, in pixels.
     pub fn offset(&self, sample: usize) -> [f32; 2] {
         self.sixteenths[sample].map(|sixteenths| sixteenths as f32 / 16.0)
     }

@@ -5,11 +5,8 @@ use glam::DVec3;
 /// `x·right + y·down + start` at pixel position `(x, y)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ScreenPlane {
-    /// The change over one pixel to the right.
     pub right: f64,
-    /// The change over one pixel down.
     pub down: f64,
-    /// The value at the picture's upper left corner.
     pub start: f64,
 }
 
@@ -19,7 +16,6 @@ impl ScreenPlane {
         vector.is_finite().then_some(Self { right: vector.x, down: vector.y, start: vector.z })
     }
 
-    /// The value at a pixel position.
     pub fn at(&self, position: [f32; 2]) -> f64 {
         self.right * f64::from(position[0]) + self.down * f64::from(position[1]) + self.start
     }

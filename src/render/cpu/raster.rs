@@ -15,7 +15,6 @@ use crate::render::cpu::pattern::{SampleMask, SamplePattern};
 /// its guard band) stay below 2^61.
 pub const SUBPIXEL_BITS: u32 = 14;
 
-/// Pixels along the side of a block.
 const BLOCK: u32 = 8;
 
 const ONE_PIXEL: i64 = 1 << SUBPIXEL_BITS;
@@ -26,23 +25,18 @@ pub type SubpixelPoint = [i32; 2];
 /// The pixels `from[0]..to[0]` × `from[1]..to[1]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PixelWindow {
-    /// First column and row.
     pub from: [u32; 2],
-    /// Past the last column and row.
     pub to: [u32; 2],
 }
 
 impl PixelWindow {
-    /// No pixel.
     pub const EMPTY: Self = Self { from: [0; 2], to: [0; 2] };
 
-    /// The pixels in both.
     pub fn intersection(self, other: Self) -> Self {
         let from = [self.from[0].max(other.from[0]), self.from[1].max(other.from[1])];
         Self { from, to: [self.to[0].min(other.to[0]), self.to[1].min(other.to[1])] }
     }
 
-    /// Whether there is no pixel.
     pub fn is_empty(&self) -> bool {
         self.from[0] >= self.to[0] || self.from[1] >= self.to[1]
     }

@@ -12,7 +12,6 @@ use crate::view::camera::Camera;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Screen {
-    /// Columns and rows of pixels.
     pub size: [u32; 2],
     /// The near distance in meters.
     pub near: f64,

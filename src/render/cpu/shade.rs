@@ -58,12 +58,10 @@ impl<'a> Shader<'a> {
         material.albedo == Albedo::GroundMap && material.normals == NormalSource::Ground
     }
 
-    /// The color of the sky at pixel position `at`.
     pub fn sky(&self, at: [f32; 2]) -> Vec3 {
         self.list.lighting.sky_color(self.screen.ray_at(at))
     }
 
-    /// The color of `face` at pixel position `at`.
     pub fn shade(&self, face: &ScreenFace, at: [f32; 2]) -> Shaded {
         let item = self.item(face);
         let material = self.material(item);

@@ -36,7 +36,6 @@ pub struct Texel {
 }
 
 impl Texel {
-    /// Opaque white.
     pub const WHITE: Self = Self { color: Vec3::ONE, alpha: 1.0 };
 }
 
@@ -71,7 +70,6 @@ impl TexelFootprint {
         Self { axis, taps: taps as u32, level: level.max(0.0) }
     }
 
-    /// The offsets of the readings from the pixel's position.
     pub fn offsets(&self) -> impl Iterator<Item = Vec2> + use<> {
         let (axis, taps) = (self.axis, self.taps);
         (0..taps).map(move |tap| axis * ((tap as f32 + 0.5) / taps as f32 - 0.5))
@@ -90,7 +88,6 @@ impl<'a> Texture<'a> {
         Vec2::new(self.base.width() as f32, self.base.height() as f32)
     }
 
-    /// Its alpha, for masks.
     pub fn alpha(&self) -> &AlphaMask {
         &self.alpha
     }

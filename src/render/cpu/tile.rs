@@ -17,19 +17,14 @@ use crate::render::cpu::visibility::{Visibility, samples_of};
 /// depths differ by more; along a slope they differ by less, except close to the horizon.
 const SAME_SLOPE: f32 = 0.01;
 
-/// Everything the tiles of a frame share.
 #[derive(Debug)]
 pub struct TileContext<'a, const N: usize> {
-    /// Pixels and rays.
     pub screen: &'a Screen,
-    /// What may be seen.
     pub geometry: &'a ScreenGeometry,
     pub shader: &'a Shader<'a>,
-    /// The samples of a pixel.
     pub pattern: &'a SamplePattern<N>,
 }
 
-/// One pixel of the picture.
 #[derive(Clone, Copy, Debug)]
 pub struct ResolvedPixel {
     pub color: Srgba,
@@ -165,7 +160,6 @@ fn samples_alike<const N: usize>(
     mask
 }
 
-/// The depth and feature of a face at a pixel's center.
 fn depth_and_feature<const N: usize>(
     frame: &TileContext<N>,
     id: FaceId,

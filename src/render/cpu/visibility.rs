@@ -42,12 +42,10 @@ impl<const N: usize> Visibility<N> {
         self.depths.fill([(1.0 / farthest_m) as f32; N]);
     }
 
-    /// The faces that the samples of a pixel see.
     pub fn faces(&self, x: u32, y: u32) -> &[FaceId; N] {
         &self.faces[self.index(x, y)]
     }
 
-    /// The inverse depths at the samples of a pixel.
     pub fn depths(&self, x: u32, y: u32) -> &[f32; N] {
         &self.depths[self.index(x, y)]
     }

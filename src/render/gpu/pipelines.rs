@@ -7,7 +7,6 @@ use crate::render::gpu::adapter::{Gpu, GpuApi};
 use crate::render::gpu::plan::{DepthRule, PipelineKey, Plan};
 use crate::render::gpu::uniforms::{FrameUniforms, Instance, SurfaceConstants};
 
-/// The format of colors, as drawn and as read back.
 pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// The format of depth. Reversed depth needs floats: their resolution near zero is why it is reversed.
 pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -47,7 +46,6 @@ pub struct Pipelines {
 }
 
 impl Layouts {
-    /// The layouts that all pipelines share.
     pub fn new(gpu: &Gpu) -> Self {
         let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
         let fragment = wgpu::ShaderStages::FRAGMENT;

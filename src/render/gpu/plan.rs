@@ -63,7 +63,6 @@ pub struct Plan {
 }
 
 impl PipelineKey {
-    /// The sky behind everything.
     pub const SKY: Self = Self { rule: DepthRule::Sky, two_sided: true, masked: false };
 }
 

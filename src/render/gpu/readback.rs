@@ -23,7 +23,6 @@ const TIMEOUT: Duration = Duration::from_secs(600);
 pub struct Targets {
     /// Several samples per pixel; drawn to and resolved where the adapter can, else unused.
     pub samples: wgpu::Texture,
-    /// The depth of those samples.
     pub sample_depth: wgpu::Texture,
     /// One color per pixel.
     pub color: wgpu::Texture,
@@ -41,7 +40,6 @@ struct TextureCopy {
 }
 
 impl Targets {
-    /// Textures for a picture of `width` × `height` pixels.
     pub fn new(gpu: &Gpu, (width, height): (u32, u32)) -> Result<Self, GpuError> {
         gpu.check_sides(|| format!("the {width}×{height} pixels of the picture"), [width, height])?;
         let create = |format, sample_count, usage| {
