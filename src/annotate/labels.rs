@@ -7,8 +7,8 @@ use crate::annotate::composer::Composer;
 use crate::annotate::drawing::{Drawing, polygon};
 use crate::annotate::paragraph::{Paragraph, written_lines};
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::place::{LabelCandidate, LabelField, LabelRequest, place};
-use crate::annotate::positions::{Alignment, LabelMetrics, LabelPosition};
+use crate::annotate::place::{Alignment, LabelCandidate, LabelField, LabelRequest, place};
+use crate::annotate::positions::LabelMetrics;
 use crate::annotate::report::AnnotationReport;
 use crate::annotate::sheet::{HALO, INK, PAPER, SOFT_INK, Sheet, WATER_INK};
 use crate::annotate::text::{TextLine, TextStyle};
@@ -60,7 +60,7 @@ pub fn draw_labels(
     // Symbols and leaders first, all texts over them.
     for (label, position) in &chosen {
         outcomes[label.number] = LabelOutcome::Placed;
-        label.draw_symbol(&position.candidate, &sheet, &mut drawing);
+        label.draw_symbol(position, &sheet, &mut drawing);
     }
     chosen.iter().for_each(|(label, position)| label.draw_text(position, &mut drawing));
     // In the order of the input.
@@ -126,7 +126,7 @@ struct PreparedLabel<'a> {
     style: LabelStyle,
     block: Paragraph,
     metrics: LabelMetrics,
-    positions: Vec<LabelPosition>,
+    positions: Vec<LabelCandidate>,
 }
 
 impl<'a> PreparedLabel<'a> {
@@ -148,8 +148,7 @@ impl<'a> PreparedLabel<'a> {
     }
 
     fn request(&self) -> LabelRequest {
-        let candidates = self.positions.iter().map(|position| position.candidate).collect();
-        LabelRequest { candidates, reserved: Some(self.metrics.symbol_box()) }
+        LabelRequest { candidates: self.positions.clone(), reserved: Some(self.metrics.symbol_box()) }
     }
 
     fn draw_symbol(&self, candidate: &LabelCandidate, sheet: &Sheet, drawing: &mut Drawing) {
@@ -164,9 +163,9 @@ impl<'a> PreparedLabel<'a> {
     }
 
     /// Writes the text: all halos first, for the name's must not cover the height below it.
-    fn draw_text(&self, position: &LabelPosition, drawing: &mut Drawing) {
+    fn draw_text(&self, position: &LabelCandidate, drawing: &mut Drawing) {
         let text = self.metrics.texts[position.alignment as usize];
-        let by = (position.candidate.text.min - text.min).round();
+        let by = (position.text.min - text.min).round();
         let mut lines = baselines(&self.block.lines, position.alignment);
         lines.iter_mut().for_each(|(_, at)| *at += by);
         drawing.draw_halo(&lines, self.style.halo);

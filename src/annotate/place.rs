@@ -17,6 +17,18 @@ pub struct LabelCandidate {
     pub symbol: Option<PixelBox>,
     /// The leader line from the symbol to the text; `None` where it is drawn without.
     pub leader: Option<PixelSegment>,
+    pub alignment: Alignment,
+}
+
+/// The alignment of lines of text; the numbers index the boxes of a label's text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Alignment {
+    /// Flush left: the text is to the right of what it names.
+    Left = 0,
+    /// Centered: the text is over what it names.
+    Center = 1,
+    /// Flush right: the text is to the left of what it names.
+    Right = 2,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -144,7 +156,7 @@ mod tests {
 
     fn text(x: f32, y: f32) -> LabelCandidate {
         let text = PixelBox::at(Vec2::new(x, y), Vec2::new(40.0, 10.0));
-        LabelCandidate { text, symbol: None, leader: None }
+        LabelCandidate { text, symbol: None, leader: None, alignment: Alignment::Center }
     }
 
     fn request(candidates: &[LabelCandidate]) -> LabelRequest {
@@ -218,6 +230,7 @@ mod tests {
                 text: PixelBox::at(Vec2::new(x, y), Vec2::new(width, height)),
                 symbol: (parts & 1 > 0).then(|| PixelBox::around(anchor, Vec2::splat(3.0))),
                 leader: (parts & 2 > 0).then_some(leader),
+                alignment: Alignment::Center,
             }
         })
     }

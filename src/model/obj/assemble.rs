@@ -189,6 +189,7 @@ fn downward(uv: Vec2) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::draw::color::Srgba;
     use crate::draw::material::AlphaMode;
     use crate::model::obj::read;
 
