@@ -6,6 +6,7 @@ use glam::{Mat3, Mat4, Vec2, Vec3};
 
 use crate::draw::color::{Srgba, srgb_from_linear};
 use crate::draw::list::MaterialId;
+use crate::model::Census;
 use crate::model::error::ModelError;
 use crate::model::normals::{Smoothing, corner_normals};
 use crate::model::part::{ModelCorner, PartBuilder, TriangleBudget};
@@ -20,13 +21,6 @@ pub(super) struct MeshReader<'a> {
     pub materials: Vec<GltfMaterial>,
     budget: TriangleBudget,
     pub notes: Vec<String>,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct MeshCounts {
-    pub primitives: usize,
-    pub vertices: usize,
-    pub triangles: usize,
 }
 
 /// The vertices of a primitive in the world, Z up.
@@ -49,11 +43,11 @@ impl<'a> MeshReader<'a> {
         mesh: &Mesh<'_>,
         pose: &MeshPose,
         parts: &mut PartBuilder,
-    ) -> Result<MeshCounts, ModelError> {
-        let mut counts = MeshCounts::default();
+    ) -> Result<Census, ModelError> {
+        let mut counts = Census::default();
         for primitive in mesh.primitives() {
             let place = format!("meshes[{}].primitives[{}]", mesh.index(), primitive.index());
-            counts.primitives += 1;
+            counts.meshes += 1;
             if !matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
                 self.notes.push(format!("{place} has points or lines, which are not drawn"));
                 continue;
@@ -71,7 +65,7 @@ impl<'a> MeshReader<'a> {
                 self.notes.push(format!("{place} has {dropped} triangles that are not finite"));
             }
             counts.vertices += vertices.positions.len();
-            counts.triangles += triangles.len();
+            counts.faces += triangles.len();
         }
         Ok(counts)
     }

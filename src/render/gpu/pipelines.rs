@@ -22,6 +22,24 @@ const DRAPE_NEARER_PX: f32 = 1.0 / 128.0;
 
 const SHADER: &str = concat!(include_str!("shader.wgsl"), "\n", include_str!("sky.wgsl"));
 
+/// Vertices and instances.
+const VERTEX_BUFFERS: [Option<wgpu::VertexBufferLayout>; 2] = [
+    Some(wgpu::VertexBufferLayout {
+        array_stride: size_of::<DrawVertex>() as u64,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &wgpu::vertex_attr_array![
+            0 => Float32x3, 1 => Float32x3, 2 => Float32x2, 3 => Unorm8x4,
+        ],
+    }),
+    Some(wgpu::VertexBufferLayout {
+        array_stride: size_of::<Instance>() as u64,
+        step_mode: wgpu::VertexStepMode::Instance,
+        attributes: &wgpu::vertex_attr_array![
+            4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Float32x4, 8 => Uint32,
+        ],
+    }),
+];
+
 #[derive(Debug)]
 pub struct Layouts {
     /// Group 0: constants, ground posts, ramp.
@@ -137,30 +155,14 @@ fn pipeline(
         (GpuPass::Color, GpuApi::Vulkan) if key.masked && gpu.samples == 4 => "masked_color",
         (GpuPass::Color, GpuApi::Vulkan) => "color",
     };
-    let buffers = [
-        Some(wgpu::VertexBufferLayout {
-            array_stride: size_of::<DrawVertex>() as u64,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &wgpu::vertex_attr_array![
-                0 => Float32x3, 1 => Float32x3, 2 => Float32x2, 3 => Unorm8x4,
-            ],
-        }),
-        Some(wgpu::VertexBufferLayout {
-            array_stride: size_of::<Instance>() as u64,
-            step_mode: wgpu::VertexStepMode::Instance,
-            attributes: &wgpu::vertex_attr_array![
-                4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Float32x4, 8 => Uint32,
-            ],
-        }),
-    ];
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(entry_point),
         layout: Some(layout),
         vertex: wgpu::VertexState {
             module: shader,
             entry_point: Some(if is_sky { "sky_vertex" } else { "vertex" }),
-            compilation_options: options(&vertex_constants),
-            buffers: if is_sky { &[] } else { &buffers },
+            compilation_options: options(if is_sky { &[] } else { &vertex_constants }),
+            buffers: if is_sky { &[] } else { &VERTEX_BUFFERS },
         },
         primitive: wgpu::PrimitiveState {
             cull_mode: (!key.two_sided).then_some(wgpu::Face::Back),
@@ -174,7 +176,7 @@ fn pipeline(
         fragment: Some(wgpu::FragmentState {
             module: shader,
             entry_point: Some(entry_point),
-            compilation_options: options(&fragment_constants),
+            compilation_options: options(if is_sky { &[] } else { &fragment_constants }),
             targets: &target(pass, key.rule),
         }),
         multiview_mask: None,
