@@ -33,19 +33,12 @@ pub struct DrawnText {
 /// Marks in the order in which they are painted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drawing {
-    marks: Vec<PaintedPath>,
-    texts: Vec<DrawnText>,
+    pub marks: Vec<PaintedPath>,
+    /// For the report.
+    pub texts: Vec<DrawnText>,
 }
 
 impl Drawing {
-    pub fn marks(&self) -> &[PaintedPath] {
-        &self.marks
-    }
-
-    pub fn texts(&self) -> &[DrawnText] {
-        &self.texts
-    }
-
     pub fn record_text(&mut self, text: &str, missing: usize, shortened: bool) {
         self.texts.push(DrawnText { text: text.to_owned(), missing, shortened });
     }
@@ -185,6 +178,6 @@ mod tests {
         drawing.rect(PixelBox::EMPTY, FRAME);
         drawing.line(PixelSegment { from: Vec2::splat(f32::NAN), to: Vec2::ONE }, 1.0, FRAME);
         drawing.disc(Vec2::ZERO, 0.0, FRAME);
-        assert!(drawing.marks().is_empty());
+        assert!(drawing.marks.is_empty());
     }
 }

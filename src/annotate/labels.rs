@@ -69,7 +69,7 @@ pub fn draw_labels(
     for label in in_order {
         drawing.record_text(&label.label.text, label.block.missing(), label.block.shortened);
     }
-    report.add_texts(drawing.texts());
+    report.add_texts(&drawing.texts);
     labels.iter().zip(outcomes).for_each(|(label, outcome)| outcome.report(&label.text, report));
     drawing
 }

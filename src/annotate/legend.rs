@@ -168,7 +168,7 @@ mod tests {
     #[test]
     fn the_panel_holds_everything() {
         let drawing = draw(&legend()).expect("a range");
-        let panel = drawing.marks().first().map(|mark| crate::annotate::drawing::box_of(&mark.path));
+        let panel = drawing.marks.first().map(|mark| crate::annotate::drawing::box_of(&mark.path));
         assert_eq!(panel, Some(drawing.bounds()));
     }
 

@@ -137,7 +137,7 @@ pub fn compose(map: &Pixels, furniture: &MapFurniture) -> (Pixels, AnnotationRep
     draw_column(&mut drawing, furniture, column, &mut composer);
     paint(&mut pixels, [&drawing]);
     let mut report = AnnotationReport::default();
-    report.add_texts(drawing.texts());
+    report.add_texts(&drawing.texts);
     (pixels, report)
 }
 

@@ -25,7 +25,7 @@ pub fn annotate(pixels: &mut Pixels, annotations: &Annotations) -> AnnotationRep
     let furniture = Furniture::lay_out(annotations, &mut composer);
     let boxes: Vec<PixelBox> = furniture.drawings.iter().map(Drawing::bounds).collect();
     let mut report = AnnotationReport { left_out: furniture.left_out, ..AnnotationReport::default() };
-    furniture.drawings.iter().for_each(|drawing| report.add_texts(drawing.texts()));
+    furniture.drawings.iter().for_each(|drawing| report.add_texts(&drawing.texts));
     let labels = draw_labels(&annotations.labels, &boxes, &mut composer, &mut report);
     paint(pixels, furniture.drawings.iter().chain([&labels]));
     report

@@ -16,9 +16,8 @@ impl Paragraph {
     }
 }
 
-/// The lines of a text as written: split at line ends, without control characters, spaces single, none empty.
-///
-/// At most `most` lines are returned; the second value tells whether any were dropped.
+/// The lines of a text as written: split at line ends, without control characters, spaces single, none empty. At most
+/// `most` lines are returned; the second value tells whether any were dropped.
 pub fn written_lines(text: &str, most: usize) -> (Vec<String>, bool) {
     let is_end = |c: char| matches!(c, '\n' | '\r' | '\u{85}' | '\u{2028}' | '\u{2029}' | '\u{b}' | '\u{c}');
     let mut lines = text.split(is_end).map(single_spaced).filter(|line| !line.is_empty());
@@ -33,9 +32,8 @@ fn single_spaced(text: &str) -> String {
 }
 
 impl Composer {
-    /// `text` as one line no wider than `most_px`, ending in an ellipsis where it is cut.
-    ///
-    /// `None` where not even a few letters before the ellipsis fit.
+    /// `text` as one line no wider than `most_px`, ending in an ellipsis where it is cut. `None` where not even a few
+    /// letters before the ellipsis fit.
     pub fn fitted(&mut self, text: &str, style: TextStyle, most_px: f32) -> Option<TextLine> {
         let full = self.line(text, style);
         if full.advance <= most_px && !full.shortened {
@@ -62,9 +60,8 @@ impl Composer {
         Some(best)
     }
 
-    /// `text` broken between words into at most `most_lines` lines of at most `most_px`.
-    ///
-    /// Written line ends are kept; text that does not fit is cut with an ellipsis. Empty where nothing fits.
+    /// `text` broken between words into at most `most_lines` lines of at most `most_px`. Written line ends are kept;
+    /// text that does not fit is cut with an ellipsis. Empty where nothing fits.
     pub fn broken(&mut self, text: &str, style: TextStyle, most_px: f32, most_lines: usize) -> Paragraph {
         let (written, mut shortened) = written_lines(text, most_lines);
         let mut lines = Vec::new();

@@ -15,9 +15,8 @@ const HIGHEST_SHARE: f32 = 0.21;
 /// Lines of the title and of the subtitle, from the most generous to the least.
 const MOST_LINES: [(usize, usize); 4] = [(2, 2), (2, 1), (2, 0), (1, 0)];
 
-/// The title block with its upper left corner at the origin; `None` where both texts are empty or do not fit.
-///
-/// On small pictures the subtitle is dropped: first its second line, then all of it.
+/// The title block with its upper left corner at the origin; `None` where both texts are empty or do not fit. On small
+/// pictures the subtitle is dropped: first its second line, then all of it.
 pub fn compose(title: Option<&str>, subtitle: Option<&str>, composer: &mut Composer) -> Option<Drawing> {
     let sheet = composer.sheet;
     let widest = sheet.size.x * WIDEST_SHARE - sheet.padding() * 2.0;
@@ -82,7 +81,7 @@ mod tests {
     }
 
     fn shortened(drawing: &Drawing) -> Vec<&str> {
-        drawing.texts().iter().filter(|text| text.shortened).map(|text| text.text.as_str()).collect()
+        drawing.texts.iter().filter(|text| text.shortened).map(|text| text.text.as_str()).collect()
     }
 
     #[test]
@@ -94,7 +93,7 @@ mod tests {
     #[test]
     fn the_block_holds_its_letters() {
         let drawing = block(Some("Cross Mountain, jgpqy"), Some("Ångström")).expect("a title");
-        let panel = drawing.marks().first().map(|mark| crate::annotate::drawing::box_of(&mark.path));
+        let panel = drawing.marks.first().map(|mark| crate::annotate::drawing::box_of(&mark.path));
         assert_eq!(panel, Some(drawing.bounds()));
     }
 

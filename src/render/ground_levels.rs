@@ -40,9 +40,8 @@ impl PostCount {
     }
 }
 
-/// The coarser levels of a checked `map`, the finest first, down to two posts a side.
-///
-/// Each level is made when it is taken; earlier ones are not kept.
+/// The coarser levels of a checked `map`, the finest first, down to two posts a side. Each level is made when it is
+/// taken; earlier ones are not kept.
 pub fn coarser_levels(map: &GroundMap) -> impl Iterator<Item = GroundLevel> {
     let first = next_level(PostCount::from_map(map), &map.posts);
     successors(first, |level| next_level(level.size, &level.posts))

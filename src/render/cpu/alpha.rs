@@ -98,10 +98,8 @@ impl AlphaLevel {
 }
 
 /// The two texels around a repeating coordinate and its distance from the first toward the second, in texels. `size`
-/// must not be 0.
-///
-/// Rounds by casting, which is much cheaper than `floor` and `rem_euclid`. Casts saturate and turn NaN to 0:
-/// coordinates that are not finite give some texel too.
+/// must not be 0. Rounds by casting, which is much cheaper than `floor` and `rem_euclid`. Casts saturate and turn NaN
+/// to 0: coordinates that are not finite give some texel too.
 pub fn neighbors(coordinate: f32, size: u32) -> (usize, usize, f32) {
     let part = coordinate - coordinate as i64 as f32;
     let repeated = if part < 0.0 { part + 1.0 } else { part }.clamp(0.0, 1.0);

@@ -116,10 +116,8 @@ fn insert(pixel: &mut Vec<Fragment>, fragment: Fragment, face: &ScreenFace) {
     }
 }
 
-/// Whether a transparent face at inverse depth `depth` shows before an opaque face.
-///
-/// In the same plane a drape shows over the ground and over drapes that come before it in the list; drapes that come
-/// after it cover it.
+/// Whether a transparent face at inverse depth `depth` shows before an opaque face. In the same plane a drape shows
+/// over the ground and over drapes that come before it in the list; drapes that come after it cover it.
 fn is_before<const N: usize>(
     frame: &TileContext<N>,
     face: &ScreenFace,

@@ -41,7 +41,7 @@ impl Cutout<'_> {
             return if alpha < self.cutoff { 0 } else { samples };
         };
         let [uv, across, along] = weights.blend_uv(corners);
-        let mask = texture.alpha();
+        let mask = &texture.alpha;
         let footprint = mask.footprint(across * SAMPLE_SIDE, along * SAMPLE_SIDE, self.most_taps);
         let center = Vec2::from(pattern.centroid(samples));
         let mut solid = 0;

@@ -45,10 +45,6 @@ pub struct ScreenFace {
 }
 
 impl ScreenFace {
-    pub fn is_draped(&self) -> bool {
-        self.reach > 1.0
-    }
-
     /// The inverse depth at a pixel position, clamped to the range of the face's corners.
     pub fn inverse_depth(&self, at: [f32; 2]) -> f32 {
         (self.planes.inverse_depth.at(at) as f32).max(self.range[0]).min(self.range[1])
@@ -88,9 +84,8 @@ struct ItemSetup<'a> {
 }
 
 impl ScreenGeometry {
-    /// The faces of a checked `list` that `screen` may see, in the list's order.
-    ///
-    /// `None` where the list draws more triangles than ids can number (2^32).
+    /// The faces of a checked `list` that `screen` may see, in the list's order. `None` where the list draws more
+    /// triangles than ids can number (2^32).
     pub fn new(list: &DrawList, screen: &Screen) -> Option<Self> {
         let mut total = 0;
         let ends = list.items.iter().map(|item| {
@@ -171,7 +166,7 @@ impl<'a> ItemSetup<'a> {
             return;
         }
         let tolerance = match self.item.layer {
-            DepthLayer::Draped(_) => drape_tolerance(&offsets, self.screen.eye()),
+            DepthLayer::Draped(_) => drape_tolerance(&offsets, self.screen.eye),
             DepthLayer::Ground | DepthLayer::Solid => 0.0,
         };
         let range = inverse_depth_range(&outline, self.screen.near);
@@ -195,20 +190,17 @@ impl<'a> ItemSetup<'a> {
     }
 }
 
-/// The least and greatest `1 / w` among the corners.
-///
-/// Cutting a triangle of astronomic size can leave a corner slightly before the near plane, or even behind the eye: both
-/// are clamped to what a camera sees.
+/// The least and greatest `1 / w` among the corners. Cutting a triangle of astronomic size can leave a corner slightly
+/// before the near plane, or even behind the eye: both are clamped to what a camera sees.
 fn inverse_depth_range(outline: &Outline, near: f64) -> [f32; 2] {
     let inverses = outline.corners().iter().map(|corner| (1.0 / corner.z).clamp(0.0, 1.0 / near) as f32);
     inverses.fold([f32::MAX, 0.0], |[least, most], inverse| [least.min(inverse), most.max(inverse)])
 }
 
-/// The part of a depth by which a draped triangle may lie behind the ground it was cut from.
-///
-/// At least [`DRAPE_TOLERANCE`]. A corner rounded to f32 leaves the ground's plane by up to one step of its largest
-/// coordinate. Seen from an eye at distance `e` from that plane, this changes depths by that step over `e`: close above
-/// a road far from the origin this is the larger of the two.
+/// The part of a depth by which a draped triangle may lie behind the ground it was cut from. At least
+/// [`DRAPE_TOLERANCE`]. A corner rounded to f32 leaves the ground's plane by up to one step of its largest coordinate.
+/// Seen from an eye at distance `e` from that plane, this changes depths by that step over `e`: close above a road far
+/// from the origin this is the larger of the two.
 fn drape_tolerance(offsets: &[DVec3; 3], eye: DVec3) -> f64 {
     let [a, b, c] = *offsets;
     let normal = (b - a).cross(c - a);

@@ -29,14 +29,13 @@ impl FacePoint {
         let plane = &face.planes.inverse_depth;
         let depth_m = 1.0 / face.inverse_depth(at);
         let ray = screen.ray_at(at);
-        let [ray_right, ray_down] = screen.ray_steps();
         // p = eye + ray · depth and depth = 1 / plane, hence dp = depth · (dray − ray · depth · dplane).
         let change = |step: Vec3, slope: f64| (step - ray * (slope as f32 * depth_m)) * depth_m;
         Self {
-            world: screen.eye().as_vec3() + ray * depth_m,
+            world: screen.eye.as_vec3() + ray * depth_m,
             distance_m: ray.length() * depth_m,
-            right: change(ray_right, plane.right),
-            down: change(ray_down, plane.down),
+            right: change(screen.ray_right, plane.right),
+            down: change(screen.ray_down, plane.down),
         }
     }
 }

@@ -7,9 +7,8 @@
 /// A set of a pixel's samples: bit `s` is sample `s`.
 pub type SampleMask = u8;
 
-/// `N` sample positions, at most 8.
-///
-/// The first sample is the one nearest to the pixel's center; the mean of all is the center.
+/// `N` sample positions, at most 8. The first sample is the one nearest to the pixel's center; the mean of all is the
+/// center.
 #[derive(Debug)]
 pub struct SamplePattern<const N: usize> {
     /// Offsets from the pixel's center in sixteenths of a pixel, X right and Y down.
@@ -33,10 +32,9 @@ impl<const N: usize> SamplePattern<N> {
         self.sixteenths[sample].map(|sixteenths| sixteenths as f32 / 16.0)
     }
 
-    /// The mean offset of the samples in `mask` from the pixel's center, in pixels; zero for none.
-    ///
-    /// A triangle is convex, so that the mean of the samples it covers lies inside it: attributes taken there never
-    /// reach beyond its border.
+    /// The mean offset of the samples in `mask` from the pixel's center, in pixels; zero for none. A triangle is
+    /// convex, so that the mean of the samples it covers lies inside it: attributes taken there never reach beyond its
+    /// border.
     pub fn centroid(&self, mask: SampleMask) -> [f32; 2] {
         if mask == Self::FULL || mask == 0 {
             return [0.0; 2];

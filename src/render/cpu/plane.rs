@@ -34,10 +34,9 @@ pub struct TrianglePlanes {
 }
 
 impl TrianglePlanes {
-    /// The planes of a triangle with corners `(x·w, y·w, w)`; `None` where it is seen edge-on or a corner is not finite.
-    ///
-    /// A point of the triangle on the picture, `p = (x, y, 1)`, is `w · p = Σ λᵢ cornerᵢ`, so that `λᵢ / w = Bᵢ · p`
-    /// with the rows `Bᵢ` of the inverse of the corners' matrix. Differences of corners are taken first, since a
+    /// The planes of a triangle with corners `(x·w, y·w, w)`; `None` where it is seen edge-on or a corner is not
+    /// finite. A point of the triangle on the picture, `p = (x, y, 1)`, is `w · p = Σ λᵢ cornerᵢ`, so that `λᵢ / w = Bᵢ
+    /// · p` with the rows `Bᵢ` of the inverse of the corners' matrix. Differences of corners are taken first, since a
     /// distant triangle is small beside its distance.
     pub fn from_corners([a, b, c]: [DVec3; 3]) -> Option<Self> {
         let (ab, ac) = (b - a, c - a);

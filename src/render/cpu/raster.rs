@@ -8,11 +8,9 @@
 
 use crate::render::cpu::pattern::{SampleMask, SamplePattern};
 
-/// Corners are snapped to `2^-SUBPIXEL_BITS` pixels.
-///
-/// Fine enough that the outline of a draped surface leaves its ground triangle's by no more than the depth tolerance
-/// covers, a few pixels from the horizon; coarse enough that edge functions over 32,768 pixels (the largest picture and
-/// its guard band) stay below 2^61.
+/// Corners are snapped to `2^-SUBPIXEL_BITS` pixels. Fine enough that the outline of a draped surface leaves its ground
+/// triangle's by no more than the depth tolerance covers, a few pixels from the horizon; coarse enough that edge
+/// functions over 32,768 pixels (the largest picture and its guard band) stay below 2^61.
 pub const SUBPIXEL_BITS: u32 = 14;
 
 const BLOCK: u32 = 8;
@@ -110,10 +108,9 @@ impl<const N: usize> EdgeFunction<N> {
     }
 }
 
-/// Calls `visit(column, row, mask)` for every pixel in `window` of which the triangle covers samples.
-///
-/// The corners run clockwise as seen, that is, with a positive [`doubled_area`]. Each pixel is visited at most once, and
-/// never with an empty mask; blocks come row by row.
+/// Calls `visit(column, row, mask)` for every pixel in `window` of which the triangle covers samples. The corners run
+/// clockwise as seen, that is, with a positive [`doubled_area`]. Each pixel is visited at most once, and never with an
+/// empty mask; blocks come row by row.
 pub fn cover<const N: usize>(
     corners: &[SubpixelPoint; 3],
     pattern: &SamplePattern<N>,

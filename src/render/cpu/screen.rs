@@ -17,11 +17,14 @@ pub struct Screen {
     pub near: f64,
     /// The far distance in meters.
     pub far: f64,
-    eye: DVec3,
+    /// The eye in world space.
+    pub eye: DVec3,
     rows: [DVec3; 3],
     ray_corner: Vec3,
-    ray_right: Vec3,
-    ray_down: Vec3,
+    /// The change of [`Screen::ray_at`] over one pixel to the right.
+    pub ray_right: Vec3,
+    /// The change of [`Screen::ray_at`] over one pixel down.
+    pub ray_down: Vec3,
 }
 
 /// Mesh space to the homogeneous pixels of one [`Screen`].
@@ -55,18 +58,9 @@ impl Screen {
         }
     }
 
-    pub fn eye(&self) -> DVec3 {
-        self.eye
-    }
-
     /// The direction from the eye through a pixel position, one meter long along the viewing direction.
     pub fn ray_at(&self, at: [f32; 2]) -> Vec3 {
         self.ray_corner + self.ray_right * at[0] + self.ray_down * at[1]
-    }
-
-    /// The change of [`Screen::ray_at`] over one pixel to the right and one down.
-    pub fn ray_steps(&self) -> [Vec3; 2] {
-        [self.ray_right, self.ray_down]
     }
 
     pub fn projection(&self, world_from_mesh: &Mat4) -> Projection<'_> {

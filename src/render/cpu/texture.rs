@@ -14,7 +14,8 @@ use crate::render::mip_levels::smaller_levels;
 pub struct Texture<'a> {
     base: &'a Pixels,
     smaller: Vec<Pixels>,
-    alpha: AlphaMask,
+    /// For masks.
+    pub alpha: AlphaMask,
     linear: [f32; 256],
 }
 
@@ -51,10 +52,9 @@ pub struct TexelFootprint {
 }
 
 impl TexelFootprint {
-    /// The footprint of a pixel whose sides span `right` and `down`, measured in cells of `scale` per unit.
-    ///
-    /// At most `most_taps` readings are taken; where that is too few, the level rises instead. Sides that are not finite
-    /// read the coarsest level once.
+    /// The footprint of a pixel whose sides span `right` and `down`, measured in cells of `scale` per unit. At most
+    /// `most_taps` readings are taken; where that is too few, the level rises instead. Sides that are not finite read
+    /// the coarsest level once.
     pub fn new(right: Vec2, down: Vec2, scale: Vec2, most_taps: u32) -> Self {
         let (across, along) = ((right * scale).length_squared(), (down * scale).length_squared());
         if across.max(along) <= 1.0 {
@@ -88,13 +88,8 @@ impl<'a> Texture<'a> {
         Vec2::new(self.base.width() as f32, self.base.height() as f32)
     }
 
-    pub fn alpha(&self) -> &AlphaMask {
-        &self.alpha
-    }
-
-    /// The color over a footprint around `uv`, trilinear.
-    ///
-    /// (0, 0) is the upper left corner, (1, 1) the lower right; the picture repeats in both directions.
+    /// The color over a footprint around `uv`, trilinear. (0, 0) is the upper left corner, (1, 1) the lower right; the
+    /// picture repeats in both directions.
     pub fn sample(&self, uv: Vec2, footprint: &TexelFootprint, weighting: Weighting) -> Texel {
         if self.base.data().is_empty() {
             return Texel::WHITE;

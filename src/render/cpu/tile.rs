@@ -134,9 +134,8 @@ fn resolve<const N: usize>(
 }
 
 /// The samples of a pixel that are shaded with sample `first`: those of its face and, on ground colored and lit by the
-/// map, those of neighbors on the same slope.
-///
-/// Ground triangles are often no larger than a few pixels: this saves about a sixth of a frame's time.
+/// map, those of neighbors on the same slope. Ground triangles are often no larger than a few pixels: this saves about
+/// a sixth of a frame's time.
 fn samples_alike<const N: usize>(
     frame: &TileContext<N>,
     visibility: &Visibility<N>,

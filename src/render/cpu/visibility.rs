@@ -54,9 +54,8 @@ impl<const N: usize> Visibility<N> {
         ((y - self.window.from[1]) * TILE + x - self.window.from[0]) as usize
     }
 
-    /// Whether a solid's piece may be seen in front of what is there; if so, counts it as drawn.
-    ///
-    /// Must be called for solids only, after everything else is drawn.
+    /// Whether a solid's piece may be seen in front of what is there; if so, counts it as drawn. Must be called for
+    /// solids only, after everything else is drawn.
     pub fn may_show(&mut self, piece: &FacePiece, face: &ScreenFace) -> bool {
         let visible = piece.window.intersection(self.window);
         let [left, top] = self.window.from;
@@ -70,10 +69,9 @@ impl<const N: usize> Visibility<N> {
     }
 
     /// Draws a piece where it is seen: of a draped face where it is behind what is there by no more than the face's
-    /// reach, of another face where it is nearer. `solid` returns those of a pixel's seen samples that are not in a hole
-    /// of the face.
-    ///
-    /// The nearer of both depths is kept, so that drapes laid over each other do not sink step by step.
+    /// reach, of another face where it is nearer. `solid` returns those of a pixel's seen samples that are not in a
+    /// hole of the face. The nearer of both depths is kept, so that drapes laid over each other do not sink step by
+    /// step.
     pub fn draw(
         &mut self,
         piece: &FacePiece,
@@ -89,7 +87,7 @@ impl<const N: usize> Visibility<N> {
             let mut in_front = 0;
             for sample in 0..N {
                 let there = depths[sample];
-                let is_seen = if face.is_draped() {
+                let is_seen = if face.reach > 1.0 {
                     new[sample] * face.reach >= there
                 } else {
                     new[sample] > there || (new[sample] == there && piece.face.0 < faces[sample].0)
