@@ -47,8 +47,10 @@ impl FromStr for PictureSize {
 }
 
 impl Choice for RenderBackend {
-    const CHOICES: &'static [Word<Self>] =
-        &[word(Self::Cpu, "cpu", "The processor"), word(Self::Gpu, "gpu", "A graphics adapter")];
+    const CHOICES: &'static [Word<Self>] = &[
+        word(Self::Cpu, "cpu", "The processor"),
+        word(Self::Gpu, "gpu", "A graphics adapter; needs the Cargo feature `gpu`"),
+    ];
 }
 
 /// An annotated picture and what it was made of.
