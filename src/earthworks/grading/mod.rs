@@ -248,9 +248,14 @@ mod tests {
             sections: vec![RoadSection { ends, stations_m: stations_m.clone(), max_grade }],
         };
         let limits = EarthworkLimits { max_fill_m: f64::INFINITY, max_cut_m: f64::INFINITY };
-        let design =
-            design(&network, &[SectionGround { ground_m, stated: None, limits }], &[f64::NAN; 2], 50.0);
+        let design = design(
+            &network,
+            &[SectionGround { ground_m, stated: Support::Ground, limits }],
+            &[f64::NAN; 2],
+            50.0,
+        );
         let flat = strip(points, [0.0; 2], FLAT);
-        GradingStrip { stations_m, levels_m: design.levels_m[0].clone(), ..flat }
+        let level = Profile::new(stations_m, design.levels_m[0].clone()).expect("stations rise");
+        GradingStrip { level, ..flat }
     }
 }

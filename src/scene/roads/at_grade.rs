@@ -68,7 +68,7 @@ fn compare<'a>(legs: &[RoadLeg], squares: impl Iterator<Item = &'a Vec<usize>>) 
 }
 
 fn legs(road: usize, centerline: &Centerline) -> impl Iterator<Item = RoadLeg> + '_ {
-    let (points, stations) = (centerline.line.points(), centerline.line.stations());
+    let (points, stations) = (centerline.alignment.line.points(), centerline.alignment.line.stations());
     let leg = move |(ends, &start_m): (&[DVec2], &f64)| RoadLeg {
         road,
         start_m,
@@ -114,7 +114,8 @@ fn crossing(one: &RoadLeg, other: &RoadLeg) -> Option<[RoadStation; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::roads::centerline::{Support, tests::road};
+    use crate::earthworks::alignment::Support;
+    use crate::scene::roads::centerline::tests::road;
 
     #[test]
     fn every_pair_of_a_dense_web_is_found_once() {
@@ -131,7 +132,7 @@ mod tests {
             let found = crossings(&roads, |_| true).expect("not too tangled");
             assert_eq!(found.len(), 15 * 15);
             for [(one, at), (other, there)] in found {
-                let apart = roads[one].line.at(at).distance(roads[other].line.at(there));
+                let apart = roads[one].alignment.line.at(at).distance(roads[other].alignment.line.at(there));
                 assert!(apart < 1e-9, "{apart}");
             }
         }
