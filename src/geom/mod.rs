@@ -6,6 +6,7 @@ pub mod crs;
 pub mod crs_fault;
 pub mod datum_shift;
 pub mod geodesic;
+pub mod leg_tree;
 pub mod offset;
 pub mod polygon;
 pub mod polyline;

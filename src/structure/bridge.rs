@@ -339,6 +339,7 @@ mod tests {
     use super::*;
     use crate::geom::polyline::Polyline;
     use crate::structure::deck_profile::ClearancePoint;
+    use crate::structure::deck_profile::clearing;
     use proptest::prelude::*;
 
     fn options(length_m: f64) -> BridgeOptions {
@@ -438,7 +439,7 @@ mod tests {
             let floors: Vec<ClearancePoint> = line.stations().iter().zip(&heights)
                 .map(|(&station_m, &level_m)| ClearancePoint { station_m, level_m }).collect();
             let ends = [floors[0].level_m, floors[floors.len() - 1].level_m];
-            let profile = Profile::clearing((line.length(), ends), &floors, &[], 0.1);
+            let profile = clearing(&Profile::straight(line.length(), ends), &floors, &[], 0.1);
             let bridge = build(&course(&line), &profile, &options(line.length()), (&|_| Some(95.0), &none()));
             prop_assert_eq!(bridge.check(), Ok(()));
             let plan = |facet: &SurfaceTriangle| (facet[1] - facet[0]).truncate().perp_dot((facet[2] - facet[0]).truncate());

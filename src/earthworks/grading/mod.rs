@@ -69,11 +69,13 @@ impl GradingWorks<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::earthworks::alignment::Support;
     use crate::earthworks::alignment::design::{SectionGround, design};
     use crate::earthworks::alignment::network::{NodeId, RoadSection, SectionNetwork};
     use crate::earthworks::alignment::spans::EarthworkLimits;
     use crate::earthworks::grading::strip::StripEnd;
     use crate::earthworks::grading::strip::tests::{FLAT, strip};
+    use crate::geom::profile::Profile;
     use crate::terrain::profile::profile;
     use crate::terrain::query::{Interpolation, ground_height};
     use glam::DVec2;
