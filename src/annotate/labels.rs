@@ -7,7 +7,7 @@ use crate::annotate::composer::Composer;
 use crate::annotate::drawing::{Drawing, polygon};
 use crate::annotate::paragraph::{Paragraph, written_lines};
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::place::{Alignment, LabelCandidate, LabelField, LabelRequest, place};
+use crate::annotate::place::{LabelCandidate, LabelField, LabelRequest, TextAlignment, place};
 use crate::annotate::positions::LabelMetrics;
 use crate::annotate::report::AnnotationReport;
 use crate::annotate::sheet::{HALO, INK, PAPER, SOFT_INK, Sheet, WATER_INK};
@@ -138,7 +138,7 @@ impl<'a> PreparedLabel<'a> {
         }
         // Space around the text, so that no two labels read as one.
         let space = composer.sheet.px(2.0);
-        let texts = [Alignment::Left, Alignment::Center, Alignment::Right]
+        let texts = [TextAlignment::Left, TextAlignment::Center, TextAlignment::Right]
             .map(|alignment| block_box(&block.lines, alignment, style.halo).grown(space));
         if texts.iter().any(|text| text.size().cmple(Vec2::ZERO).any() || !text.size().is_finite()) {
             return Err(LabelOutcome::Empty);
@@ -213,11 +213,11 @@ fn set_lines(text: &str, style: &LabelStyle, composer: &mut Composer) -> Paragra
 }
 
 /// The lines with the starts of their baselines: the first at y = 0, all aligned to x = 0.
-fn baselines(lines: &[TextLine], alignment: Alignment) -> Vec<(&TextLine, Vec2)> {
+fn baselines(lines: &[TextLine], alignment: TextAlignment) -> Vec<(&TextLine, Vec2)> {
     let share = match alignment {
-        Alignment::Left => 0.0,
-        Alignment::Center => 0.5,
-        Alignment::Right => 1.0,
+        TextAlignment::Left => 0.0,
+        TextAlignment::Center => 0.5,
+        TextAlignment::Right => 1.0,
     };
     let mut y = 0.0;
     let place = |(number, line): (usize, &'_ TextLine)| {
@@ -230,7 +230,7 @@ fn baselines(lines: &[TextLine], alignment: Alignment) -> Vec<(&TextLine, Vec2)>
     lines.iter().zip(starts).collect()
 }
 
-fn block_box(lines: &[TextLine], alignment: Alignment, halo: f32) -> PixelBox {
+fn block_box(lines: &[TextLine], alignment: TextAlignment, halo: f32) -> PixelBox {
     let boxes = baselines(lines, alignment).into_iter().map(|(line, at)| line.bounds(halo).moved(at));
     boxes.fold(PixelBox::EMPTY, PixelBox::union)
 }

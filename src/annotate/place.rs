@@ -17,12 +17,12 @@ pub struct LabelCandidate {
     pub symbol: Option<PixelBox>,
     /// The leader line from the symbol to the text; `None` where it is drawn without.
     pub leader: Option<PixelSegment>,
-    pub alignment: Alignment,
+    pub alignment: TextAlignment,
 }
 
 /// The alignment of lines of text; the numbers index the boxes of a label's text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Alignment {
+pub enum TextAlignment {
     /// Flush left: the text is to the right of what it names.
     Left = 0,
     /// Centered: the text is over what it names.
@@ -156,7 +156,7 @@ mod tests {
 
     fn text(x: f32, y: f32) -> LabelCandidate {
         let text = PixelBox::at(Vec2::new(x, y), Vec2::new(40.0, 10.0));
-        LabelCandidate { text, symbol: None, leader: None, alignment: Alignment::Center }
+        LabelCandidate { text, symbol: None, leader: None, alignment: TextAlignment::Center }
     }
 
     fn request(candidates: &[LabelCandidate]) -> LabelRequest {
@@ -230,7 +230,7 @@ mod tests {
                 text: PixelBox::at(Vec2::new(x, y), Vec2::new(width, height)),
                 symbol: (parts & 1 > 0).then(|| PixelBox::around(anchor, Vec2::splat(3.0))),
                 leader: (parts & 2 > 0).then_some(leader),
-                alignment: Alignment::Center,
+                alignment: TextAlignment::Center,
             }
         })
     }

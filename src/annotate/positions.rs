@@ -15,7 +15,7 @@
 use glam::Vec2;
 
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::place::{Alignment, LabelCandidate};
+use crate::annotate::place::{LabelCandidate, TextAlignment};
 
 /// What the candidates of one label are made from; all lengths in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +23,7 @@ pub struct LabelMetrics {
     pub anchor: Vec2,
     /// From the place to the preferred end of its leader line; upward.
     pub reach: Vec2,
-    /// The box of the text for each [`Alignment`], around any origin; candidates move it by whole pixels.
+    /// The box of the text for each [`TextAlignment`], around any origin; candidates move it by whole pixels.
     pub texts: [PixelBox; 3],
     /// Half the size of the symbol.
     pub symbol: Vec2,
@@ -37,8 +37,8 @@ pub struct LabelMetrics {
 /// Lengths of the leader to try, as multiples of the preferred one.
 const LENGTHS: [f32; 7] = [1.0, 0.55, 1.5, 2.1, 2.8, 3.7, 5.0];
 /// Where along the text's lower edge the leader meets it.
-const MEETINGS: [(f32, Alignment); 3] =
-    [(0.5, Alignment::Center), (0.14, Alignment::Left), (0.86, Alignment::Right)];
+const MEETINGS: [(f32, TextAlignment); 3] =
+    [(0.5, TextAlignment::Center), (0.14, TextAlignment::Left), (0.86, TextAlignment::Right)];
 
 impl LabelMetrics {
     pub fn positions(&self) -> Vec<LabelCandidate> {
@@ -47,7 +47,7 @@ impl LabelMetrics {
             .iter()
             .filter(|&&length| self.reach.length() * length <= self.longest)
             .flat_map(|&length| MEETINGS.map(|meeting| self.above(self.reach * length, meeting)));
-        let beside = [(1.0, Alignment::Left), (-1.0, Alignment::Right)].map(|side| self.beside(side));
+        let beside = [(1.0, TextAlignment::Left), (-1.0, TextAlignment::Right)].map(|side| self.beside(side));
         on_place.into_iter().chain(above).chain(beside).collect()
     }
 
@@ -56,12 +56,12 @@ impl LabelMetrics {
     }
 
     fn on_place(&self) -> LabelCandidate {
-        let alignment = Alignment::Center;
+        let alignment = TextAlignment::Center;
         let text = moved_center(self.texts[alignment as usize], self.anchor);
         LabelCandidate { text, symbol: None, leader: None, alignment }
     }
 
-    fn above(&self, reach: Vec2, (meeting, alignment): (f32, Alignment)) -> LabelCandidate {
+    fn above(&self, reach: Vec2, (meeting, alignment): (f32, TextAlignment)) -> LabelCandidate {
         let area = self.texts[alignment as usize];
         let end = self.anchor + reach;
         let foot = Vec2::new(area.min.x + area.size().x * meeting, area.max.y + self.gap);
@@ -73,7 +73,7 @@ impl LabelMetrics {
         LabelCandidate { text, symbol: Some(self.symbol_box()), leader, alignment }
     }
 
-    fn beside(&self, (side, alignment): (f32, Alignment)) -> LabelCandidate {
+    fn beside(&self, (side, alignment): (f32, TextAlignment)) -> LabelCandidate {
         let (area, symbol) = (self.texts[alignment as usize], self.symbol_box());
         let away = self.symbol.x + self.gap + area.size().x * 0.5;
         let mut text = moved_center(area, self.anchor + Vec2::new(side * away, 0.0));
@@ -137,9 +137,9 @@ mod tests {
         for position in metrics().positions() {
             let off = position.text.center().x - metrics().anchor.x - 4.0;
             match position.alignment {
-                Alignment::Left => assert!(off > 10.0),
-                Alignment::Right => assert!(off < -10.0),
-                Alignment::Center => assert!(off.abs() < 25.0),
+                TextAlignment::Left => assert!(off > 10.0),
+                TextAlignment::Right => assert!(off < -10.0),
+                TextAlignment::Center => assert!(off.abs() < 25.0),
             }
         }
     }
