@@ -18,15 +18,12 @@ pub struct DemError {
 /// What was wrong with an elevation file.
 #[derive(Debug, thiserror::Error)]
 pub enum DemErrorKind {
-    /// Neither the content nor the extension belongs to a known format.
+    /// Neither the content nor the extension belongs to a known format; the text says what the file seems to be.
     #[error(
-        "{found}; elevation is read from {}; convert it, for example with: gdal_translate FILE out.tif",
-        formats::list()
+        "{}; elevation is read from {}; convert it, for example with: gdal_translate FILE out.tif",
+        .0, formats::list()
     )]
-    UnknownFormat {
-        /// What the file seems to be.
-        found: String,
-    },
+    UnknownFormat(String),
     /// The file uses a part of its format that is not read.
     #[error("this {format} uses {what}, which is not read; {remedy}")]
     Unsupported {
@@ -114,12 +111,9 @@ pub enum DemErrorKind {
         "a RAW file has no header: state raw = \"1201x1201:i16be\" under [terrain], or --raw 1201x1201:i16be on the command line (columns, rows, type and byte order)"
     )]
     NoRawLayout,
-    /// The header file that belongs beside the file is missing.
-    #[error("this {format} needs its header, a file of the same name with .hdr, beside it; put it there")]
-    NoHeader {
-        /// The format.
-        format: &'static str,
-    },
+    /// The header file that belongs beside a file of this format is missing.
+    #[error("this {0} needs its header, a file of the same name with .hdr, beside it; put it there")]
+    NoHeader(&'static str),
     /// A hint out of range.
     #[error("{what} is {value}; it must be {wanted}")]
     Hint {

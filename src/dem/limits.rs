@@ -15,15 +15,12 @@ const SPARSE_BYTES: u64 = 64 << 20;
 /// The size that a header claims, to be held against the bytes of its file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SizeClaim {
-    /// Samples per row.
     pub width: u64,
-    /// Rows.
     pub height: u64,
     /// The fewest bytes that a sample decodes to; 0 where a file may leave samples out.
     pub bytes_per_sample: u64,
     /// The most bytes that one byte of the file decodes to.
     pub expansion: u64,
-    /// The most samples that are allowed.
     pub most_samples: u64,
 }
 

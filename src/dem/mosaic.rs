@@ -60,12 +60,9 @@ pub enum MosaicError {
     /// There is no tile.
     #[error("there is no elevation file to join")]
     Empty,
-    /// A tile has no georeference.
-    #[error("{tile} does not state where it lies, so it cannot be joined")]
-    NoPlace {
-        /// The tile.
-        tile: String,
-    },
+    /// The tile of this name has no georeference.
+    #[error("{0} does not state where it lies, so it cannot be joined")]
+    NoPlace(String),
     /// Two tiles are not alike.
     #[error(
         "{first} and {other} are not tiles of one raster: their {what} are {} and {}; bring them to one, for example with: sandtable dem convert",
@@ -94,12 +91,9 @@ pub enum MosaicError {
         /// By how many cells, from −0.5 to 0.5.
         off: DVec2,
     },
-    /// The tiles hold more samples together than are joined.
-    #[error("the tiles hold {samples} samples, more than the {MOST_OF_ALL} that are joined; join fewer")]
-    TooMany {
-        /// The samples up to the tile that is too many.
-        samples: u64,
-    },
+    /// The tiles hold more samples together than are joined; those up to the tile that is too many.
+    #[error("the tiles hold {0} samples, more than the {MOST_OF_ALL} that are joined; join fewer")]
+    TooMany(u64),
     /// The rectangle around all tiles has more samples than a raster.
     #[error(
         "the tiles span {width} x {height} samples, more than the {MOST_SAMPLES} of a raster; join fewer"
@@ -129,8 +123,7 @@ impl Tiles {
         self.samples += tile.samples.len() as u64;
         self.names.push(name.into());
         self.rasters.push(tile);
-        let samples = self.samples;
-        if samples > MOST_OF_ALL { Err(MosaicError::TooMany { samples }) } else { Ok(()) }
+        if self.samples > MOST_OF_ALL { Err(MosaicError::TooMany(self.samples)) } else { Ok(()) }
     }
 
     /// Joins the tiles.
@@ -172,7 +165,7 @@ impl Tiles {
     fn compare_with_first(&self, index: usize) -> Result<(), MosaicError> {
         let (first, tile) = (&self.rasters[0], &self.rasters[index]);
         if !tile.georeferenced {
-            return Err(MosaicError::NoPlace { tile: self.names[index].clone() });
+            return Err(MosaicError::NoPlace(self.names[index].clone()));
         }
         let differ = |what, found: [String; 2]| {
             let (first, other) = (self.names[0].clone(), self.names[index].clone());
@@ -221,7 +214,6 @@ impl Tiles {
     }
 }
 
-/// The cells of a raster, for messages.
 fn cells(raster: &Raster) -> String {
     let [_, a, b, _, c, d] = raster.geotransform();
     if b == 0.0 && c == 0.0 { format!("{a} by {d}") } else { format!("({a}, {c}) by ({b}, {d})") }

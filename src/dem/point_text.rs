@@ -14,7 +14,6 @@ const NAMES: [&[&str]; 3] = [
     &["z", "elevation", "elev", "height", "h", "alt", "altitude", "ele", "hoehe"],
 ];
 
-/// A text of points.
 pub(crate) struct PointText<'a> {
     text: &'a str,
     /// The first line, where it holds column names.
@@ -23,7 +22,6 @@ pub(crate) struct PointText<'a> {
     pub columns: [Option<usize>; 3],
 }
 
-/// A line of a text.
 #[derive(Clone, Copy)]
 pub(crate) struct TextLine<'a> {
     /// Its number, from 1.
@@ -44,7 +42,6 @@ impl<'a> PointText<'a> {
         Self { text, header, columns }
     }
 
-    /// The lines of points.
     pub fn lines(&self) -> impl Iterator<Item = TextLine<'a>> {
         let header = self.header.map_or(0, |header| header.number);
         lines(self.text).filter(move |line| line.number > header)

@@ -52,13 +52,10 @@ pub enum Samples {
 
 /// A float type of [`Samples`].
 pub(crate) trait SampleFloat: Copy + Default + Display + Into<f64> + Send + Sync {
-    /// No data.
     const NODATA: Self;
 
-    /// The nearest value of this type.
     fn from_f64(value: f64) -> Self;
 
-    /// The samples with these values.
     fn into_samples(values: Vec<Self>) -> Samples;
 }
 
@@ -192,7 +189,6 @@ impl Raster {
         Cow::Owned(self.clone().into_meters())
     }
 
-    /// The raster with its heights in meters.
     pub(crate) fn into_meters(self) -> Self {
         Self { samples: self.samples.scaled(self.meters_per_z, 0.0), meters_per_z: 1.0, ..self }
     }
@@ -216,7 +212,6 @@ impl Raster {
         DVec2::new(axes.x_axis.length(), axes.y_axis.length())
     }
 
-    /// Whether rows and columns run along the axes of the map.
     pub(crate) fn is_axis_aligned(&self) -> bool {
         let axes = self.map_from_grid.matrix2;
         axes.x_axis.y == 0.0 && axes.y_axis.x == 0.0
@@ -253,7 +248,6 @@ impl Raster {
         [translation.x, x_axis.x, y_axis.x, translation.y, x_axis.y, y_axis.y]
     }
 
-    /// Columns and rows.
     pub(crate) fn grid_size(&self) -> DVec2 {
         DVec2::new(f64::from(self.width), f64::from(self.height))
     }

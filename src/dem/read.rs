@@ -72,7 +72,6 @@ impl DemFile<'_> {
         split_extension(self.name).1.to_ascii_lowercase()
     }
 
-    /// The file name without folders and extension.
     pub fn stem(&self) -> &str {
         split_extension(file_name(self.name)).0
     }
@@ -155,7 +154,6 @@ pub fn read(name: &str, bytes: &[u8], hints: &DemHints) -> Result<Raster, DemErr
     Ok(raster)
 }
 
-/// Reads a file that may be packed.
 fn read_packed(file: &DemFile) -> Result<Raster, DemErrorKind> {
     if archive::is_gzip(file.bytes) {
         let (name, content) = (unpacked_name(file.name), archive::gunzip(file.bytes, MAX_RASTER_BYTES)?);
@@ -217,16 +215,15 @@ fn not_recognized(bytes: &[u8], extension: &str) -> DemErrorKind {
     let Some(format) = by_extension(extension) else { return unknown(describe(bytes, extension)) };
     match format.recognition {
         Recognition::Content { start, .. } => format.broken(format!("it does not start with {start}")),
-        Recognition::HeaderFile { .. } => DemErrorKind::NoHeader { format: format.name },
+        Recognition::HeaderFile { .. } => DemErrorKind::NoHeader(format.name),
         Recognition::Statement | Recognition::Extension => DemErrorKind::NoRawLayout,
     }
 }
 
 fn unknown(found: impl Into<String>) -> DemErrorKind {
-    DemErrorKind::UnknownFormat { found: found.into() }
+    DemErrorKind::UnknownFormat(found.into())
 }
 
-/// An unknown file in words.
 fn describe(bytes: &[u8], extension: &str) -> String {
     const KNOWN: [(&[u8], &str); 6] = [
         (b"SQLite format 3", "it is an SQLite database, perhaps a GeoPackage"),
@@ -245,7 +242,6 @@ fn describe(bytes: &[u8], extension: &str) -> String {
     }
 }
 
-/// A name without folders.
 fn file_name(path: &str) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
@@ -260,7 +256,6 @@ fn unpacked_name(name: &str) -> String {
     }
 }
 
-/// A name without its extension, and the extension.
 fn split_extension(name: &str) -> (&str, &str) {
     match name.rsplit_once('.') {
         Some((base, extension)) if !extension.contains(['/', '\\']) => (base, extension),

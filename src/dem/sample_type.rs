@@ -1,6 +1,5 @@
 //! Types of stored samples.
 
-/// The type of a stored sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SampleType {
     U8,
@@ -19,11 +18,8 @@ pub(crate) enum SampleType {
 /// What the bits of a number mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NumberKind {
-    /// An integer from 0 on.
     Unsigned,
-    /// An integer in two's complement.
     Signed,
-    /// An IEEE 754 number.
     Float,
 }
 
@@ -46,7 +42,6 @@ impl SampleType {
         })
     }
 
-    /// Bytes of a sample.
     pub fn bytes(self) -> usize {
         match self {
             Self::U8 | Self::I8 => 1,
@@ -56,7 +51,6 @@ impl SampleType {
         }
     }
 
-    /// What its bits mean.
     pub fn kind(self) -> NumberKind {
         match self {
             Self::U8 | Self::U16 | Self::U32 | Self::U64 => NumberKind::Unsigned,
@@ -65,7 +59,6 @@ impl SampleType {
         }
     }
 
-    /// Whether it holds fractions.
     pub fn is_float(self) -> bool {
         self.kind() == NumberKind::Float
     }
@@ -100,7 +93,6 @@ impl SampleType {
         }
     }
 
-    /// The least and the greatest value.
     pub fn range(self) -> (f64, f64) {
         let bits = self.bytes() as i32 * 8;
         match self.kind() {

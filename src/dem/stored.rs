@@ -10,7 +10,6 @@ use crate::dem::sample_type::SampleType;
 /// A type, and its value for no data.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct StoredSamples {
-    /// The type.
     pub sample: SampleType,
     /// The value for no data; `None` where the raster has no holes and names no value.
     pub nodata: Option<f64>,

@@ -25,7 +25,6 @@ pub(crate) fn length_of_code(code: u16) -> Option<f64> {
     LENGTHS.iter().find(|(known, ..)| *known == code).map(|(_, meters, _)| *meters)
 }
 
-/// EPSG's number of a unit of `meters`.
 pub(crate) fn code_of_length(meters: f64) -> Option<u16> {
     LENGTHS.iter().find(|(_, known, _)| (meters - known).abs() < 1e-12).map(|(code, ..)| *code)
 }

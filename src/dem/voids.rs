@@ -88,7 +88,6 @@ pub fn count(raster: &Raster) -> (u64, u64) {
 struct Void {
     /// Its samples in order; cut off at [`MOST_CELLS`].
     cells: Vec<usize>,
-    /// The number of its samples.
     count: u64,
 }
 

@@ -57,7 +57,6 @@ pub trait Windows {
     }
 }
 
-/// A raster in memory.
 impl Windows for Raster {
     fn metadata(&self) -> &Raster {
         self

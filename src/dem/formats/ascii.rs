@@ -21,8 +21,7 @@ use crate::dem::raster::{Raster, SampleFloat, Samples, north_up};
 use crate::dem::read::DemFile;
 use crate::dem::write::{WriteError, WrittenDem};
 
-/// The declaration of this format.
-pub static FORMAT: DemFormat = DemFormat {
+pub(super) static FORMAT: DemFormat = DemFormat {
     name: "ESRI ASCII grid",
     extensions: &["asc"],
     shared_extensions: &[],
@@ -111,7 +110,6 @@ fn cell(header: &HeaderFields) -> Result<DVec2, DemErrorKind> {
     Err(header.broken(format!("the cells are {} by {}, not of a positive size", cell.x, cell.y)))
 }
 
-/// The samples of the text.
 struct AsciiValues {
     values: Vec<f32>,
     /// Whether any of them is no data.

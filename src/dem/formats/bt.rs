@@ -36,8 +36,7 @@ use crate::dem::units::{FOOT_M, US_SURVEY_FOOT_M};
 use crate::dem::write::{WriteError, WrittenDem};
 use crate::geom::crs::Crs;
 
-/// The declaration of this format.
-pub static FORMAT: DemFormat = DemFormat {
+pub(super) static FORMAT: DemFormat = DemFormat {
     name: "BT terrain",
     extensions: &["bt"],
     shared_extensions: &[],

@@ -3,22 +3,22 @@
 //! A new format is a file with a `FORMAT` and its line in [`FORMATS`]: recognition, reading, writing, the extensions of
 //! tiles in folders and archives, and the formats that messages list all come from that declaration.
 
-pub mod ascii;
-pub mod bt;
-pub mod dted;
-pub mod ehdr;
-pub mod envi;
+mod ascii;
+mod bt;
+mod dted;
+mod ehdr;
+mod envi;
 mod header;
 pub mod height_encoding;
-pub mod hgt;
-pub mod png;
+mod hgt;
+mod png;
 pub mod raw;
 mod sample_layout;
-pub mod surfer;
-pub mod terragen;
-pub mod text;
-pub mod usgs;
-pub mod xyz;
+mod surfer;
+mod terragen;
+pub(crate) mod text;
+mod usgs;
+mod xyz;
 
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
@@ -53,9 +53,7 @@ pub struct DemFormat {
     pub extensions: &'static [&'static str],
     /// Extensions that pictures and tables have as well.
     pub shared_extensions: &'static [&'static str],
-    /// How files of it are recognized.
     pub(crate) recognition: Recognition,
-    /// Reads a file of it.
     pub(crate) reader: fn(&DemFile) -> Result<Raster, DemErrorKind>,
     /// Writes a raster; `None` where the format is only read. The text is the stem of the file's name.
     pub(crate) writer: Option<fn(&Raster, &str) -> Result<WrittenDem, WriteError>>,
@@ -66,16 +64,13 @@ pub struct DemFormat {
 pub(crate) enum Recognition {
     /// By their first bytes.
     Content {
-        /// Whether content is of the format.
         matches: fn(&[u8]) -> bool,
         /// The first bytes in words, for messages.
         start: &'static str,
     },
-    /// By their extension.
     Extension,
     /// By a text header in a file beside them.
     HeaderFile {
-        /// Whether a header is of the format.
         matches: fn(&[u8]) -> bool,
     },
     /// By a statement of the caller.
@@ -105,7 +100,6 @@ impl DemFormat {
         matches!(self.recognition, Recognition::HeaderFile { matches } if matches(header))
     }
 
-    /// A broken file of this format.
     pub(crate) fn broken(&self, reason: impl Into<String>) -> DemErrorKind {
         DemErrorKind::Broken { format: self.name, reason: reason.into() }
     }
@@ -115,7 +109,6 @@ impl DemFormat {
         DemErrorKind::Undecodable { format: self.name, source: Box::new(source) }
     }
 
-    /// A part of this format that is not read.
     pub(crate) fn unsupported(&self, what: impl Into<String>, remedy: &'static str) -> DemErrorKind {
         DemErrorKind::Unsupported { format: self.name, what: what.into(), remedy }
     }
@@ -123,8 +116,8 @@ impl DemFormat {
     /// Checks that a raster has north up and a georeference, for formats that hold no other.
     pub(crate) fn check_place(&self, raster: &Raster) -> Result<(), WriteError> {
         match (raster.georeferenced, raster.is_north_up()) {
-            (false, _) => Err(WriteError::NoPlace { format: self.name }),
-            (_, false) => Err(WriteError::NotNorthUp { format: self.name }),
+            (false, _) => Err(WriteError::NoPlace(self.name)),
+            (_, false) => Err(WriteError::NotNorthUp(self.name)),
             _ => Ok(()),
         }
     }

@@ -19,8 +19,7 @@ use crate::dem::raster::{Raster, Samples};
 use crate::dem::read::DemFile;
 use crate::dem::write::{WriteError, WrittenDem};
 
-/// The declaration of this format.
-pub static FORMAT: DemFormat = DemFormat {
+pub(super) static FORMAT: DemFormat = DemFormat {
     name: "PNG",
     extensions: &[],
     shared_extensions: &["png"],
@@ -68,7 +67,6 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     })
 }
 
-/// The meaning of pixels.
 enum PngHeights {
     /// Gray values: meters per value, and the height of value 0.
     Gray {
@@ -114,7 +112,6 @@ struct Pixels {
     sample: usize,
     /// Samples of a pixel.
     channels: usize,
-    /// The gray value that is transparent.
     transparent_gray: Option<f64>,
 }
 

@@ -1,6 +1,5 @@
 //! Words and numbers of text formats.
 
-/// The words of a text, as bytes.
 pub(crate) struct TextWords<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -12,7 +11,6 @@ impl<'a> TextWords<'a> {
         Self { bytes, at: 0 }
     }
 
-    /// The bytes that have not been read yet.
     pub fn rest(&self) -> &'a [u8] {
         &self.bytes[self.at..]
     }

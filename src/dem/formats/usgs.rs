@@ -23,8 +23,7 @@ use crate::dem::read::DemFile;
 use crate::dem::units::{FOOT_M, US_SURVEY_FOOT_M};
 use crate::geom::crs::Crs;
 
-/// The declaration of this format.
-pub static FORMAT: DemFormat = DemFormat {
+pub(super) static FORMAT: DemFormat = DemFormat {
     name: "USGS elevation model",
     extensions: &["dem"],
     shared_extensions: &[],
@@ -198,7 +197,6 @@ impl UsgsHeader {
     }
 }
 
-/// The raster around a quad.
 struct Quad {
     /// The position of the north-west height, in the file's units.
     first: DVec2,
@@ -229,7 +227,6 @@ fn vertical_datum(code: Option<i64>) -> Option<&'static str> {
     }
 }
 
-/// Text of fixed widths.
 struct FixedText<'a>(&'a [u8]);
 
 impl FixedText<'_> {

@@ -33,12 +33,10 @@ pub(super) struct KdTree {
     depth: u32,
 }
 
-/// A site and its squared distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Near {
     /// From the position of the search.
     pub distance2: f64,
-    /// The site.
     pub site: u32,
 }
 
@@ -49,13 +47,11 @@ impl Near {
     }
 }
 
-/// A search of the tree.
 trait Search {
     /// Whether it needs sites of a box whose offset from the position is `offset` along each axis; 0 along an axis where
     /// the box is not known to lie on one side.
     fn needs(&self, offset: DVec2) -> bool;
 
-    /// Takes a site.
     fn take(&mut self, at: DVec2, site: u32);
 }
 
@@ -63,7 +59,6 @@ trait Search {
 /// costs more than the search; a search that starts with a good bound never drops any before its end.
 const SPARE: usize = 32;
 
-/// The nearest sites of a search.
 pub(super) struct NearestSites {
     near: Vec<Near>,
     wanted: usize,
@@ -110,7 +105,6 @@ impl NearestSites {
     }
 }
 
-/// A search of the nearest sites to `q`.
 struct NearestSearch<'a> {
     q: DVec2,
     found: &'a mut NearestSites,
@@ -151,7 +145,6 @@ impl Search for RangeSearch<'_> {
 /// north-east, one due north as north-east, one due west as north-west and one due south as south-east.
 pub(super) type Quadrants = [Option<Near>; 4];
 
-/// A search of the nearest site of each quadrant around `q`.
 struct QuadrantSearch {
     q: DVec2,
     found: Quadrants,
@@ -181,7 +174,6 @@ impl Search for QuadrantSearch {
     }
 }
 
-/// Part of the tree while it is searched.
 #[derive(Clone, Copy)]
 struct Subtree {
     start: usize,
@@ -215,7 +207,6 @@ impl KdTree {
         Self { at, sites, planes, depth }
     }
 
-    /// The site nearest to `q`; `None` where there is none at all.
     pub fn nearest(&self, q: DVec2) -> Option<u32> {
         let mut found = NearestSites::new(1);
         self.nearest_k(q, f64::INFINITY, &mut found);
@@ -239,7 +230,6 @@ impl KdTree {
         self.search(q, &mut RangeSearch { q, limit2, most, gathered });
     }
 
-    /// The nearest site of each quadrant around `q`.
     pub fn quadrants(&self, q: DVec2) -> Quadrants {
         let mut search = QuadrantSearch { q, found: [None; 4] };
         self.search(q, &mut search);

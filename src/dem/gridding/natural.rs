@@ -38,7 +38,6 @@ const SNAP: f64 = 1e-11;
 /// A center nearer to a side of the hull than this part of the side's length lies on it.
 const ON_SIDE: f64 = 1e-12;
 
-/// A triangle as a search needs it.
 struct SearchTriangle {
     circumcenter: DVec2,
     radius2: f64,
@@ -47,7 +46,6 @@ struct SearchTriangle {
     neighbors: [u32; 3],
 }
 
-/// Sites with their triangulation.
 pub(super) struct Naturals {
     at: Vec<DVec2>,
     z: Vec<f64>,
@@ -63,7 +61,6 @@ struct NeighborScratch {
 }
 
 impl Naturals {
-    /// Triangulates the sites.
     pub fn new(sites: &Sites) -> Result<Self, GridError> {
         let web = delaunay(sites)?;
         let (tin, neighbors) = rayon::join(|| Tin::from_web(&web), || neighbors(&web));

@@ -25,7 +25,6 @@ const LEAST_CANDIDATES: usize = 64;
 /// The factor that widens a bound on distances, against rounding.
 const SLACK: f64 = 1.0 + 1e-9;
 
-/// Cells that share a search.
 struct Tile<'a> {
     /// The first column.
     left: usize,
@@ -64,7 +63,6 @@ impl SearchScratch {
     }
 }
 
-/// Sites that are searched by distance.
 pub(super) struct WeightedSites<'a> {
     sites: &'a Sites,
     tree: KdTree,

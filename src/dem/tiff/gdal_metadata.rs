@@ -4,7 +4,6 @@ use crate::dem::error::DemErrorKind;
 use crate::dem::tiff::geotiff::FORMAT;
 use crate::dem::units::length_of_name;
 
-/// The number of the tag.
 pub(crate) const GDAL_METADATA: u16 = 42112;
 
 /// Scale, offset and unit of a band; 1, 0 and `None` where not stated.

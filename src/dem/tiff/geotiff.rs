@@ -25,8 +25,7 @@ use crate::dem::tiff::place::PlaceTags;
 use crate::dem::tiff::storage::{Storage, decode_error};
 use crate::dem::tiff::write::write;
 
-/// The declaration of this format.
-pub static FORMAT: DemFormat = DemFormat {
+pub(crate) static FORMAT: DemFormat = DemFormat {
     name: "GeoTIFF",
     extensions: &["tif", "tiff"],
     shared_extensions: &[],

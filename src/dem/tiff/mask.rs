@@ -88,7 +88,6 @@ pub(crate) fn check(storage: &Storage) -> Result<(), DemErrorKind> {
     Ok(())
 }
 
-/// One block of a mask.
 pub(crate) struct MaskBlock {
     rows: Vec<u8>,
     row_bytes: usize,
@@ -97,7 +96,6 @@ pub(crate) struct MaskBlock {
     bits: usize,
 }
 
-/// Unpacks a block of a mask.
 pub(crate) fn block(
     unpacker: &mut Unpacker,
     file: &mut impl BlockBytes,

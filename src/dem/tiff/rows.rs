@@ -20,7 +20,6 @@ use crate::dem::raster::SampleFloat;
 use crate::dem::sample_type::SampleType;
 use crate::dem::tiff::storage::{Predictor, Storage};
 
-/// How rows of an image become elevations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowDecoder {
     sample: SampleType,
@@ -45,7 +44,6 @@ impl RowDecoder {
     }
 }
 
-/// A float type that rows are decoded to.
 pub(crate) trait Elevation: SampleFloat {
     /// Decodes a row's first samples, as many as `out` holds. `row` is a whole row of a block.
     fn decode(rows: &RowDecoder, row: &[u8], words: &mut RowWords, out: &mut [Self]);

@@ -26,22 +26,15 @@ use crate::dem::tiff::geotiff::FORMAT;
 pub(crate) const TO_DEFLATE: &str =
     "convert it, for example with: gdal_translate -co COMPRESS=DEFLATE FILE out.tif";
 
-/// How an image is stored.
 #[derive(Clone, Debug)]
 pub(crate) struct Storage {
-    /// Samples per row.
     pub width: u32,
-    /// Rows.
     pub height: u32,
-    /// Bits of one sample.
     pub bits: u16,
     /// The type of samples; `None` where they are not read as elevation, or not alike in all bands.
     pub sample: Option<SampleType>,
-    /// How blocks are packed.
     pub packing: Packing,
-    /// How rows were transformed before they were packed.
     pub predictor: Predictor,
-    /// The order of a sample's bytes.
     pub order: ByteOrder,
     /// Bands that lie side by side in one block.
     pub bands_per_block: u16,
@@ -60,7 +53,6 @@ pub(crate) struct Storage {
 /// How blocks are packed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Packing {
-    /// Not at all.
     Plain,
     /// A zlib stream (RFC 1950).
     Deflate,
@@ -75,7 +67,6 @@ pub(crate) enum Packing {
 /// How rows were transformed before they were packed (TIFF 6.0, section 14; Adobe's Technical Note 3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Predictor {
-    /// Not at all.
     Plain,
     /// Samples are differences to their neighbors on the left.
     Differences,
@@ -176,7 +167,6 @@ impl Storage {
         (samples * u64::from(self.bits) * u64::from(self.bands_per_block)).div_ceil(8)
     }
 
-    /// Bytes that one row of a block decodes to.
     pub fn row_bytes(&self) -> usize {
         self.decoded_bytes(self.block_width.into()) as usize
     }
@@ -216,7 +206,6 @@ impl Storage {
         (0..down).flat_map(move |y| (0..across).map(move |x| self.block(x, y)))
     }
 
-    /// Whether a block was written at all.
     pub fn is_written(&self, index: u32) -> bool {
         self.block_bytes.get(index as usize).is_none_or(|&bytes| bytes > 0)
     }

@@ -25,7 +25,6 @@ const SLACK: usize = 1 << 10;
 
 /// A file that blocks are read from.
 pub(crate) trait BlockBytes {
-    /// The number of bytes in the file.
     fn length(&self) -> usize;
 
     /// The bytes in a range within the file; fewer where the file has shrunk.
@@ -42,7 +41,6 @@ impl BlockBytes for &[u8] {
     }
 }
 
-/// What unpacks the blocks of an image, one after the other.
 pub(crate) struct Unpacker<'a> {
     storage: &'a Storage,
     decompressor: Decompressor,
@@ -57,7 +55,6 @@ enum Decompressor {
 }
 
 impl<'a> Unpacker<'a> {
-    /// For the blocks of an image.
     pub fn new(storage: &'a Storage) -> Self {
         let decompressor = match storage.packing {
             Packing::Plain => Decompressor::Plain,

@@ -86,7 +86,6 @@ fn float_bytes(line: &[u8], size: usize) -> Vec<u8> {
     sorted.iter().zip(before).map(|(byte, before)| byte.wrapping_sub(before)).collect()
 }
 
-/// The value of a tag.
 enum TiffField {
     Shorts(Vec<u16>),
     Longs(Vec<u32>),

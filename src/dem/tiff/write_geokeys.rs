@@ -29,7 +29,6 @@ pub(crate) struct GeoKeyTags {
 }
 
 impl GeoKeyTags {
-    /// The keys of a raster.
     pub fn new(raster: &Raster) -> Self {
         let mut keys = GeoKeyList::default();
         keys.code(RASTER_TYPE, 1);
@@ -52,7 +51,6 @@ impl GeoKeyTags {
     }
 }
 
-/// The value of a key.
 enum GeoKeyValue {
     Code(u16),
     Numbers(Vec<f64>),

@@ -49,14 +49,11 @@ pub enum WarpError {
     /// The raster holds no data.
     #[error("the elevation file holds no valid sample: all of them are no data; check its no-data value")]
     Empty,
-    /// The wanted system is not in meters.
+    /// The wanted system, by name, is not in meters.
     #[error(
-        "a scene needs a projected system in meters, and {name} is not one; choose a UTM zone, for example EPSG:32616"
+        "a scene needs a projected system in meters, and {0} is not one; choose a UTM zone, for example EPSG:32616"
     )]
-    TargetNotMetric {
-        /// The wanted system.
-        name: String,
-    },
+    TargetNotMetric(String),
     /// No UTM zone suits the raster.
     #[error(
         "the elevation file reaches from longitude {west} to {east} and from latitude {south} to {north}, which no UTM zone covers well; cut it, or state a projected system in meters as crs of the scene"
@@ -83,14 +80,11 @@ pub enum WarpError {
         /// Rows.
         height: u64,
     },
-    /// The raster covers a pole, where one in degrees has no border.
+    /// The raster covers a pole, where one in the wanted system, in degrees, has no border.
     #[error(
-        "the elevation file covers a pole, which a raster in degrees ({system}) cannot; cut it, or choose a polar system, for example EPSG:3413 or EPSG:3031"
+        "the elevation file covers a pole, which a raster in degrees ({0}) cannot; cut it, or choose a polar system, for example EPSG:3413 or EPSG:3031"
     )]
-    Pole {
-        /// The wanted system.
-        system: String,
-    },
+    Pole(String),
     /// A coordinate cannot be transformed from one system to the other.
     #[error(transparent)]
     Crs(#[from] CrsError),
@@ -122,7 +116,7 @@ pub enum WarpError {
 pub fn to_metric<'a>(raster: &'a Raster, target: Option<&Crs>) -> Result<Cow<'a, Raster>, WarpError> {
     check_source(raster)?;
     if let Some(target) = target.filter(|target| !target.is_metric()) {
-        return Err(WarpError::TargetNotMetric { name: target.name().into() });
+        return Err(WarpError::TargetNotMetric(target.name().into()));
     }
     let system = match (&raster.crs, target) {
         (_, Some(target)) => Some(target.clone()),
@@ -151,7 +145,7 @@ pub fn to_metric<'a>(raster: &'a Raster, target: Option<&Crs>) -> Result<Cow<'a,
 pub fn check_metric(raster: &Raster) -> Result<(), WarpError> {
     check_source(raster)?;
     match &raster.crs {
-        Some(crs) if !crs.is_metric() => Err(WarpError::TargetNotMetric { name: crs.name().into() }),
+        Some(crs) if !crs.is_metric() => Err(WarpError::TargetNotMetric(crs.name().into())),
         _ => Ok(()),
     }
 }

@@ -81,7 +81,6 @@ impl<'a> Resampler<'a> {
         }
     }
 
-    /// The side of a cell.
     pub fn cell(&self) -> f64 {
         self.cells.cell()
     }
