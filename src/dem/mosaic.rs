@@ -136,14 +136,8 @@ impl Tiles {
     pub fn join(mut self) -> Result<Mosaic, MosaicError> {
         if self.rasters.len() < 2 {
             let raster = self.rasters.pop().ok_or(MosaicError::Empty)?;
-            return Ok(Mosaic {
-                raster,
-                tiles: 1,
-                overlaps: 0,
-                differing: 0,
-                greatest_difference: 0.0,
-                gaps: 0,
-            });
+            let (overlaps, differing, greatest_difference, gaps) = (0, 0, 0.0, 0);
+            return Ok(Mosaic { raster, tiles: 1, overlaps, differing, greatest_difference, gaps });
         }
         for index in 0..self.rasters.len() {
             self.compare_with_first(index)?;

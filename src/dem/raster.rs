@@ -51,7 +51,7 @@ pub enum Samples {
 }
 
 /// A float type of [`Samples`].
-pub(crate) trait SampleFloat: Copy + Default + Display + Into<f64> + Send + Sync {
+pub(crate) trait SampleFloat: Copy + Default + Display + Into<f64> + PartialEq + Send + Sync {
     const NODATA: Self;
 
     fn from_f64(value: f64) -> Self;

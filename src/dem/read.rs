@@ -189,14 +189,14 @@ fn read_unpacked(file: &DemFile) -> Result<Raster, DemErrorKind> {
     if file.hints.raw.is_some() {
         return (raw::FORMAT.reader)(file);
     }
-    let recognized = find(|format| format.recognizes_content(file.bytes))
-        .or_else(|| {
-            by_extension(&extension).filter(|format| matches!(format.recognition, Recognition::Extension))
-        })
-        .or_else(|| {
-            let header = file.header()?;
-            find(|format| format.recognizes_header(&header))
-        });
+    let by_content = |format: &DemFormat| matches!(format.recognition, Recognition::Content { matches, .. } if matches(file.bytes));
+    let by_name =
+        || by_extension(&extension).filter(|format| matches!(format.recognition, Recognition::Extension));
+    let by_header = || {
+        let header = file.header()?;
+        find(|format| matches!(format.recognition, Recognition::HeaderFile { matches } if matches(&header)))
+    };
+    let recognized = find(by_content).or_else(by_name).or_else(by_header);
     match recognized {
         Some(format) => (format.reader)(file),
         None => Err(not_recognized(file.bytes, &extension)),

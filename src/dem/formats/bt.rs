@@ -239,7 +239,7 @@ fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
         return Err(WriteError::NoDataTaken { format: FORMAT.name, value: NODATA });
     }
     let mut notes = Vec::new();
-    let sample = match StoredSamples::of(raster).sample {
+    let sample = match StoredSamples::new(raster).sample {
         kept @ (SampleType::I16 | SampleType::I32) => kept,
         other => {
             if other.is_wide() {

@@ -90,16 +90,6 @@ impl DemFormat {
         self.extensions.contains(&extension) || self.shared_extensions.contains(&extension)
     }
 
-    /// Whether content is recognized as this format's.
-    pub(crate) fn recognizes_content(&self, bytes: &[u8]) -> bool {
-        matches!(self.recognition, Recognition::Content { matches, .. } if matches(bytes))
-    }
-
-    /// Whether the header beside a file is recognized as this format's.
-    pub(crate) fn recognizes_header(&self, header: &[u8]) -> bool {
-        matches!(self.recognition, Recognition::HeaderFile { matches } if matches(header))
-    }
-
     pub(crate) fn broken(&self, reason: impl Into<String>) -> DemErrorKind {
         DemErrorKind::Broken { format: self.name, reason: reason.into() }
     }

@@ -210,6 +210,7 @@ fn circumcenter(a: DVec2, b: DVec2) -> DVec2 {
 }
 
 /// The sums over the sides of all areas taken.
+#[derive(Default)]
 struct AreaSums {
     /// Heights are summed as differences from this one.
     zero: f64,
@@ -227,16 +228,7 @@ struct AreaSums {
 
 impl AreaSums {
     fn new(zero: f64) -> Self {
-        Self {
-            zero,
-            heights: 0.0,
-            area: 0.0,
-            first: None,
-            last: DVec2::ZERO,
-            lowest: f64::INFINITY,
-            highest: f64::NEG_INFINITY,
-            on_side: None,
-        }
+        Self { zero, lowest: f64::INFINITY, highest: f64::NEG_INFINITY, ..Self::default() }
     }
 
     /// Adds a side between the areas taken from a and from b, `rise` = z_b − z_a.

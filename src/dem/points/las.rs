@@ -33,7 +33,7 @@ pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError>
         points.take(&bytes[header.points_at..][..header.count as usize * header.point_bytes]);
     }
     let mut notes = system.notes;
-    let points = points.of_classes(hints.classes, &mut notes)?;
+    let points = points.select_classes(hints.classes, &mut notes)?;
     Ok(PointCloud {
         crs: system.crs,
         meters_per_z: system.meters_per_z,
@@ -76,7 +76,7 @@ impl<'a> LasPoints<'a> {
         }
     }
 
-    fn of_classes(self, wanted: &[u8], notes: &mut Vec<String>) -> Result<Vec<DVec3>, PointsError> {
+    fn select_classes(self, wanted: &[u8], notes: &mut Vec<String>) -> Result<Vec<DVec3>, PointsError> {
         if self.withheld > 0 {
             notes.push(format!("{} withheld points were left out", self.withheld));
         }

@@ -100,7 +100,7 @@ impl GeoTiffHeader {
             is_point: keys.is_point(),
         };
         let nodata = text(decoder, Tag::GdalNodata).trim().trim_start_matches('+').parse().ok();
-        let band = BandMetadata::of_first_band(&text(decoder, Tag::Unknown(GDAL_METADATA)))?;
+        let band = BandMetadata::first_band(&text(decoder, Tag::Unknown(GDAL_METADATA)))?;
         let raster = Raster {
             driver: "GTiff",
             data_type: storage.sample.map_or("Byte", |sample| sample.gdal_name()),

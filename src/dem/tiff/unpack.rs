@@ -76,7 +76,7 @@ impl<'a> Unpacker<'a> {
         block: TiffBlock,
         rows: &mut Vec<u8>,
     ) -> Result<(), DemErrorKind> {
-        let needed = self.storage.row_bytes() * block.height as usize;
+        let needed = self.storage.row_bytes() * block.window.height as usize;
         let range = self.range(block, needed, file.length())?;
         let packed = file.bytes(range).map_err(|error| FORMAT.undecodable(error))?;
         rows.resize(needed, 0);
