@@ -36,8 +36,7 @@ pub struct Raster {
     pub crs: Option<Crs>,
     /// The file's value for no data, before scale and offset.
     pub nodata: Option<f64>,
-    /// The vertical datum in the file's words (`NAVD88`, `EGM96 geoid`); `None` where it is not stated. Carried along
-    /// and printed, never computed with.
+    /// The vertical datum in the file's words (`NAVD88`), printed but never computed with; `None` where not stated.
     pub vertical_datum: Option<String>,
 }
 
@@ -199,8 +198,7 @@ impl Raster {
         Self { samples: Samples::F32(Vec::new()), crs, vertical_datum, ..*self }
     }
 
-    /// Grid position (column, row) of a point in the raster's own coordinates; NaN where the georeference
-    /// cannot be inverted.
+    /// Grid position (column, row) of a map position; NaN where the georeference cannot be inverted.
     pub fn grid_from_map(&self, at: DVec2) -> DVec2 {
         // The large map coordinates cancel before the small cell divides them.
         self.map_from_grid.matrix2.inverse() * (at - self.map_from_grid.translation)
@@ -241,8 +239,7 @@ impl Raster {
         Rect { min: min + half, max: max - half }
     }
 
-    /// The georeference in GDAL's order: x of the corner, x per column, x per row, y of the corner, y per
-    /// column, y per row.
+    /// The georeference in GDAL's order: x of the corner, x per column, x per row, then the same of y.
     pub fn geotransform(&self) -> [f64; 6] {
         let DAffine2 { matrix2: DMat2 { x_axis, y_axis }, translation } = self.map_from_grid;
         [translation.x, x_axis.x, y_axis.x, translation.y, x_axis.y, y_axis.y]

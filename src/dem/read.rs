@@ -11,8 +11,7 @@ use crate::geom::crs::Crs;
 /// What the caller knows of a file beyond its bytes.
 #[derive(Clone)]
 pub struct DemHints<'a> {
-    /// Meters per gray value of a PNG, which is refused without it, or per value of a RAW file (default 1). Other
-    /// formats ignore it.
+    /// Meters per gray value of a PNG, which is refused without it, or per value of a RAW file (default 1).
     pub height_scale: Option<f64>,
     /// Elevation in meters of value 0. Default 0.
     pub height_offset: Option<f64>,
@@ -22,8 +21,7 @@ pub struct DemHints<'a> {
     pub raw: Option<RawLayout>,
     /// The vertical datum, in place of the file's.
     pub vertical_datum: Option<String>,
-    /// Distance in meters between samples of a file without georeference; its south-west sample is then at (0, 0).
-    /// Files with a georeference keep theirs.
+    /// Meters between samples of a file without georeference, whose south-west sample is then at (0, 0).
     pub cell: Option<f64>,
     /// The coordinate system, in place of the file's.
     pub crs: Option<Crs>,

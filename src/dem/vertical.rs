@@ -2,8 +2,7 @@
 //!
 //! The names are carried along and printed, never computed with; that two of them differ is for the user to see.
 
-/// EPSG's vertical systems that elevation is met in, and the numbers of GeoTIFF 1.0 (5101 to 5106). The first number of a
-/// name is written.
+/// EPSG's numbers of vertical systems, and those of GeoTIFF 1.0 (5101 to 5106). A name's first number is written.
 const NAMES: [(&str, &[u16]); 29] = [
     ("NAVD88", &[5703, 6360, 8228, 5103]),
     ("NGVD29", &[7968, 5702, 5102]),

@@ -214,8 +214,7 @@ fn system(file: &DemFile, header: &BtHeader) -> Result<BtSystem, DemErrorKind> {
     Ok(BtSystem { crs: Some(Crs::from_epsg_in(code, unit)?), meters_per_unit: 1.0 })
 }
 
-/// The geographic system of a datum: EPSG's number less 2000, one of the old USGS numbers, or WGS 84 where it
-/// is unknown (negative), as GDAL takes it.
+/// The geographic system of a datum by EPSG's number less 2000 or an old USGS number; WGS 84, as in GDAL, if negative.
 fn geographic_code(datum: i16) -> Result<u32, DemErrorKind> {
     match datum {
         ..=-1 | 23 => Ok(4326),

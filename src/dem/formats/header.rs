@@ -68,8 +68,7 @@ impl HeaderFields {
         self.whole(key)?.ok_or_else(|| self.broken(format!("its header does not state {key}")))
     }
 
-    /// The outer south-west corner of a grid of `cell`, by Esri's keys for the corner or the center of its
-    /// south-west sample; `None` where either axis is not stated.
+    /// The outer south-west corner of a grid of `cell`, by Esri's keys; `None` where either axis is not stated.
     pub fn south_west(&self, cell: DVec2) -> Result<Option<DVec2>, DemErrorKind> {
         let edge = |corner: &str, center: &str, cell: f64| -> Result<Option<f64>, DemErrorKind> {
             Ok(self.number(corner)?.or(self.number(center)?.map(|center| center - cell * 0.5)))

@@ -48,8 +48,7 @@ pub static FORMATS: [&DemFormat; 13] = [
 pub struct DemFormat {
     /// Its name in messages.
     pub name: &'static str,
-    /// Extensions that belong to it alone, in lower case and without the dot: files of such a name are tiles in folders
-    /// and archives.
+    /// Extensions of this format alone, in lower case, without the dot: such files are tiles in folders and archives.
     pub extensions: &'static [&'static str],
     /// Extensions that pictures and tables have as well.
     pub shared_extensions: &'static [&'static str],
@@ -78,8 +77,7 @@ pub(crate) enum Recognition {
 }
 
 impl DemFormat {
-    /// The format that files with an extension are written in; `None` where there is none. The extension has no dot and
-    /// may be in any case.
+    /// The format that files with an extension, in any case and without the dot, are written in; `None` where none is.
     pub fn to_write(extension: &str) -> Option<&'static Self> {
         let lower = extension.to_ascii_lowercase();
         FORMATS.into_iter().find(|format| format.writer.is_some() && format.has_extension(&lower))

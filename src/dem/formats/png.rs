@@ -34,8 +34,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
 /// Deflate turns one byte into at most 1032; filters add one byte a row.
 const EXPANSION: u64 = 1032;
 
-/// Steps from the lowest height to the highest that is written: the 65,534 between the gray values for heights, less
-/// one for an offset on a multiple of the step.
+/// Steps from the lowest to the highest height written: 65,534 gray values, less one for an offset on a whole step.
 const STEPS: f64 = 65533.0;
 
 fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {

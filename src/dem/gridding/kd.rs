@@ -47,8 +47,7 @@ impl Near {
 }
 
 trait Search {
-    /// Whether it needs sites of a box whose offset from the position is `offset` along each axis; 0 along an axis where
-    /// the box is not known to lie on one side.
+    /// Whether it needs sites of a box `offset` away along each axis; 0 where it is not known to lie on one side.
     fn needs(&self, offset: DVec2) -> bool;
 
     fn take(&mut self, at: DVec2, site: u32);

@@ -88,8 +88,7 @@ pub struct Gridded {
 pub struct GriddingReport {
     /// Points, without the vertices of breaklines.
     pub points: usize,
-    /// Points and vertices of breaklines with the x and y of an earlier one; each position takes the mean of its
-    /// heights.
+    /// Points and vertices of breaklines with the x and y of an earlier one; a position takes the mean height.
     pub duplicates: usize,
     /// Breaklines.
     pub breaklines: usize,

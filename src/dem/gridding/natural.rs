@@ -31,8 +31,7 @@ use crate::dem::gridding::tin::{OUTSIDE, Tin, delaunay, neighbors};
 /// edge, the walk to it decides on which side it is taken.
 const BAND_ROWS: usize = 16;
 
-/// A center nearer to a site than this part of the extent takes its height: nearer, circles through the site do not
-/// differ from circles through the center.
+/// A center nearer to a site than this part of the extent takes its height: circles through either are then the same.
 const SNAP: f64 = 1e-11;
 
 /// A center nearer to a side of the hull than this part of the side's length lies on it.
@@ -101,8 +100,7 @@ impl Naturals {
         });
     }
 
-    /// The triangle around `q`, found by walking from another toward it; where rounding puts `q` outside of all, the
-    /// triangle at the border where the walk ends.
+    /// The triangle around `q`, or at the border nearest to it, found by walking from another toward it.
     fn locate(&self, q: DVec2, from: u32) -> u32 {
         let mut at = from;
         // But for rounding, a walk meets no triangle twice (Devillers, Pion and Teillaud 2002).

@@ -66,8 +66,7 @@ impl Tin {
     }
 }
 
-/// The neighbors of every triangle, in the order of [`Tin::from_web`]: for each side from corner i to corner i + 1 the
-/// triangle beyond, or [`OUTSIDE`].
+/// For each triangle of [`Tin::from_web`], the triangle beyond each side from corner i to i + 1, or [`OUTSIDE`].
 pub(super) fn neighbors(web: &DelaunayTriangulation<TinVertex>) -> Vec<[u32; 3]> {
     // Face 0 is the outside of the hull; the inner faces follow.
     let beyond = |index: usize| index.checked_sub(1).map_or(OUTSIDE, |index| index as u32);

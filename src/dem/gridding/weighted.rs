@@ -145,8 +145,7 @@ impl<'a> WeightedSites<'a> {
         }
     }
 
-    /// The squared distance from `q` to the farthest of the sites found for the previous cell: as many as are wanted lie
-    /// within it.
+    /// The squared distance from `q` to the farthest of the sites found: as many as are wanted lie within it.
     fn farthest2(&self, found: &NearestSites, q: DVec2) -> f64 {
         let distances2 =
             found.near().iter().map(|near| (self.sites.at[near.site as usize] - q).length_squared());

@@ -123,8 +123,7 @@ impl LasHeader {
 }
 
 impl<'a> Record<'a> {
-    /// The record at `at`, which moves behind it. `header` are the bytes before its content, whose length is a field of
-    /// it; `None` where it does not lie within `bytes`.
+    /// The record at `at`, which moves behind it; `None` beyond the end. `header` bytes before its content state its length.
     fn read(
         bytes: &'a [u8],
         at: &mut usize,

@@ -26,8 +26,7 @@ pub const MOST_POINTS: u64 = 1 << 26;
 pub struct PointCloud {
     /// Easting (or longitude), northing (or latitude) and height; finite.
     pub points: Vec<DVec3>,
-    /// Lines along which the ground breaks, each of at least two vertices; the ground follows them between their
-    /// vertices.
+    /// Lines along which the ground breaks and which it follows, each of at least two vertices.
     pub breaklines: Vec<Vec<DVec3>>,
     /// The system of x and y; `None` where the file names none.
     pub crs: Option<Crs>,

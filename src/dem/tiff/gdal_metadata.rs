@@ -18,8 +18,7 @@ pub(crate) struct BandMetadata {
 }
 
 impl BandMetadata {
-    /// Reads the first band's items of a flat list of `<Item name="…" sample="0" role="scale">…</Item>`; everything
-    /// else is ignored.
+    /// Reads the first band's items, `<Item name="…" sample="0" role="scale">…</Item>`; all else is ignored.
     pub fn first_band(xml: &str) -> Result<Self, DemErrorKind> {
         let mut band = Self { scale: 1.0, offset: 0.0, meters_per_z: None };
         for item in xml.split("<Item").skip(1) {

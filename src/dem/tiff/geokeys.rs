@@ -56,8 +56,7 @@ impl GeoKeys {
         }
     }
 
-    /// The vertical datum: by the code of the vertical system or of its datum, else by the citation; `None` where not
-    /// stated.
+    /// The vertical datum by the code of the system or of the datum, else by the citation; `None` where not stated.
     pub fn vertical_datum(&self) -> Option<String> {
         let cited = || self.text(key::VERTICAL_CITATION).filter(|words| !words.is_empty()).map(str::to_owned);
         let code = self.real_code(key::VERTICAL_TYPE).or_else(|| self.real_code(key::VERTICAL_DATUM));

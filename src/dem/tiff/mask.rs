@@ -39,8 +39,7 @@ pub(crate) fn apply_beside(
         .broken(format!("the mask beside it has {} x {} samples, not {width} x {height}", found.0, found.1)))
 }
 
-/// Makes NaN of what a mask of the same size hides, where there is one among the images after the decoder's current one;
-/// returns whether there is.
+/// Makes NaN of what a mask of the same size among the later images hides; returns whether there is one.
 pub(crate) fn apply_within(
     decoder: &mut Decoder<Cursor<&[u8]>>,
     bytes: &[u8],

@@ -56,13 +56,19 @@ pub struct Overview {
     image: usize,
 }
 
+/// The overviews and the masks among the images after the first.
+#[derive(Clone, Debug, Default)]
+struct LaterImages {
+    overviews: Vec<Overview>,
+    masks: Vec<Overview>,
+}
+
 /// A GeoTIFF, read in windows.
 pub struct GeoTiffWindows<R> {
     name: String,
     file: SharedFile<R>,
     header: GeoTiffHeader,
-    overviews: Vec<Overview>,
-    masks: Vec<Overview>,
+    images: LaterImages,
     heights: Storage,
     mask: Option<Storage>,
     blocks: LruCache<u32, Arc<[f32]>>,
@@ -97,26 +103,29 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
                 "take the mask into it: gdal_translate --config GDAL_TIFF_INTERNAL_MASK YES FILE out.tif",
             ));
         }
-        let (overviews, masks) = file.reduced_images_and_masks();
-        let (mask, blocks) = (None, LruCache::new(cache_bytes));
-        let name = name.to_owned();
-        Self { name, file, header, overviews, masks, heights, mask, blocks, cache_bytes }.with_mask()
+        let images = file.later_images();
+        Self::new(name, file, header, heights, images, cache_bytes)
     }
 
-    /// Looks for a mask of this image's size.
-    fn with_mask(mut self) -> Result<Self, DemErrorKind> {
-        let mut masks = self.masks.iter();
-        if let Some(mask) = masks.find(|mask| (mask.width, mask.height) == self.size()) {
-            let mask = self.file.storage(mask.image)?;
-            mask::check(&mask)?;
-            self.mask = Some(mask);
-        }
-        Ok(self)
+    /// Looks for a mask of the image's size.
+    fn new(
+        name: &str,
+        file: SharedFile<R>,
+        header: GeoTiffHeader,
+        heights: Storage,
+        images: LaterImages,
+        cache_bytes: usize,
+    ) -> Result<Self, DemErrorKind> {
+        let is_of_size = |mask: &&Overview| (mask.width, mask.height) == (heights.width, heights.height);
+        let mask = images.masks.iter().find(is_of_size).map(|mask| file.storage(mask.image)).transpose()?;
+        mask.iter().try_for_each(mask::check)?;
+        let (name, blocks) = (name.to_owned(), LruCache::new(cache_bytes));
+        Ok(Self { name, file, header, images, heights, mask, blocks, cache_bytes })
     }
 
     /// The reduced images of this one, as the file lists them: mostly from the finest to the coarsest.
     pub fn overviews(&self) -> &[Overview] {
-        &self.overviews
+        &self.images.overviews
     }
 
     /// Opens a reduced image from [`GeoTiffWindows::overviews`]: the same ground, samples further apart.
@@ -134,18 +143,9 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
         let times = self.header.raster.grid_size() / DVec2::new(width.into(), height.into());
         let map_from_grid = self.header.raster.map_from_grid * DAffine2::from_scale(times);
         let raster = Raster { width, height, map_from_grid, ..self.header.raster.without_samples() };
-        let overview = Self {
-            name: self.name.clone(),
-            file: self.file.clone(),
-            header: GeoTiffHeader { raster, ..self.header },
-            overviews: Vec::new(),
-            masks: self.masks.clone(),
-            heights,
-            mask: None,
-            blocks: LruCache::new(self.cache_bytes),
-            cache_bytes: self.cache_bytes,
-        };
-        overview.with_mask()
+        let header = GeoTiffHeader { raster, ..self.header };
+        let images = LaterImages { masks: self.images.masks.clone(), ..LaterImages::default() };
+        Self::new(&self.name, self.file.clone(), header, heights, images, self.cache_bytes)
     }
 
     /// Bytes of decoded blocks that are kept now.
@@ -245,11 +245,10 @@ impl<R: Read + Seek> SharedFile<R> {
         Ok(storage)
     }
 
-    /// The overviews and the masks among the images after the first.
-    fn reduced_images_and_masks(&self) -> (Vec<Overview>, Vec<Overview>) {
-        let (mut overviews, mut masks) = (Vec::new(), Vec::new());
+    fn later_images(&self) -> LaterImages {
+        let mut images = LaterImages::default();
         let mut file = self.lock();
-        let Ok(mut decoder) = self.decoder(&mut file) else { return (overviews, masks) };
+        let Ok(mut decoder) = self.decoder(&mut file) else { return images };
         let size = decoder.dimensions().unwrap_or_default();
         for image in 1..=MOST_IMAGES {
             // A broken overview or page is no reason to refuse the images before it.
@@ -260,12 +259,12 @@ impl<R: Read + Seek> SharedFile<R> {
             let Ok((width, height)) = decoder.dimensions() else { continue };
             let found = Overview { width, height, image };
             if kind & IS_MASK != 0 {
-                masks.push(found);
+                images.masks.push(found);
             } else if kind & IS_REDUCED != 0 && width.min(height) > 0 && width < size.0 && height <= size.1 {
-                overviews.push(found);
+                images.overviews.push(found);
             }
         }
-        (overviews, masks)
+        images
     }
 }
 

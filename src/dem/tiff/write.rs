@@ -179,8 +179,7 @@ fn place(raster: &Raster) -> Vec<(u16, TiffField)> {
     }
 }
 
-/// Header, directory, long values and tiles. At most 2²⁸ samples of eight bytes, they stay within the 4 GiB that a
-/// classic TIFF can point into.
+/// Header, directory, long values and tiles. At most 2²⁸ samples of eight bytes fit the 4 GiB of a classic TIFF.
 fn file(mut tags: Vec<(u16, TiffField)>, tiles: &[Vec<u8>]) -> Vec<u8> {
     let lengths: Vec<u32> = tiles.iter().map(|tile| tile.len() as u32).collect();
     tags.push((324, TiffField::longs(&lengths)));

@@ -17,8 +17,7 @@ use crate::dem::warp::resample::Resampler;
 use crate::geom::crs::{Crs, CrsError};
 use crate::geom::rect::Rect;
 
-/// How far from its central meridian a UTM zone is used where no system is chosen. At 9° lengths are off by up
-/// to 1.2 %.
+/// How far from its meridian a UTM zone is used where no system is chosen; at 9° lengths are off by up to 1.2 %.
 const UTM_REACH_DEG: f64 = 9.0;
 
 /// UTM ends at 84° north and 80° south.

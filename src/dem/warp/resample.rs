@@ -20,8 +20,7 @@ use crate::dem::warp::row_positions::positions;
 use crate::geom::crs::{Crs, CrsError};
 use crate::geom::rect::Rect;
 
-/// Where the cell is not chosen the output may have this many times the samples of the source: a raster turned by 45°
-/// needs 2.
+/// Without a stated cell, the samples of the output per sample of the source: a raster turned by 45° needs 2.
 const GROWTH: u64 = 8;
 
 /// Positions that are computed before their samples are summed: some megabytes.
@@ -35,8 +34,7 @@ pub(super) struct Resampler<'a> {
 }
 
 impl<'a> Resampler<'a> {
-    /// To cells around the valid samples, on multiples of the cell; without a `cell`, of the size of the source's cells
-    /// at the center.
+    /// To cells around the valid samples, on multiples of the cell; by default as large as the source's at the center.
     pub fn around(
         source: &'a Raster,
         transform: &'a CrsTransform<'a>,
