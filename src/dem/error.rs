@@ -1,5 +1,7 @@
 //! Errors of reading elevation files.
 
+use glam::U64Vec2;
+
 use crate::archive::ArchiveError;
 use crate::dem::formats;
 use crate::geom::crs::CrsError;
@@ -55,33 +57,26 @@ pub enum DemErrorKind {
     },
     /// The raster has more samples than are read.
     #[error(
-        "{width} x {height} samples are more than the {most} that are read; cut or coarsen the file, for example with: gdal_translate -outsize 25% 25%"
+        "{} x {} samples are more than the {most} that are read; cut or coarsen the file, for example with: gdal_translate -outsize 25% 25%",
+        .size.x, .size.y
     )]
     TooLarge {
-        /// Samples per row as stated.
-        width: u64,
-        /// Rows as stated.
-        height: u64,
+        /// Samples per row and rows, as stated.
+        size: U64Vec2,
         /// The cap.
         most: u64,
     },
-    /// The header states no sample at all.
-    #[error("{width} x {height} samples are none; the header is broken or the file is empty")]
-    NoSamples {
-        /// Samples per row as stated.
-        width: u64,
-        /// Rows as stated.
-        height: u64,
-    },
+    /// The header states no sample at all, but these samples per row and rows.
+    #[error("{} x {} samples are none; the header is broken or the file is empty", .0.x, .0.y)]
+    NoSamples(U64Vec2),
     /// The header states more samples than the file can hold.
     #[error(
-        "{width} x {height} samples cannot be held by a file of {file_bytes} bytes; it is cut short or its header is broken"
+        "{} x {} samples cannot be held by a file of {file_bytes} bytes; it is cut short or its header is broken",
+        .size.x, .size.y
     )]
     Truncated {
-        /// Samples per row as stated.
-        width: u64,
-        /// Rows as stated.
-        height: u64,
+        /// Samples per row and rows, as stated.
+        size: U64Vec2,
         /// Bytes of the file.
         file_bytes: usize,
     },

@@ -8,7 +8,7 @@
 //! that no tile covers are gaps: no data, and counted. Longitudes may continue across ±180°: the mosaic starts east of
 //! the widest gap.
 
-use glam::{DVec2, I64Vec2};
+use glam::{DVec2, I64Vec2, U64Vec2};
 
 use crate::dem::limits::MOST_SAMPLES;
 use crate::dem::raster::{Raster, SampleFloat, Samples};
@@ -96,14 +96,9 @@ pub enum MosaicError {
     TooMany(u64),
     /// The rectangle around all tiles has more samples than a raster.
     #[error(
-        "the tiles span {width} x {height} samples, more than the {MOST_SAMPLES} of a raster; join fewer"
+        "the tiles span {} x {} samples, more than the {MOST_SAMPLES} of a raster; join fewer", .0.x, .0.y
     )]
-    TooLarge {
-        /// Samples per row.
-        width: u64,
-        /// Rows.
-        height: u64,
-    },
+    TooLarge(U64Vec2),
 }
 
 /// Tiles of one raster, in the order in which they win.
@@ -201,8 +196,7 @@ impl Tiles {
             return Err(MosaicError::Misaligned { first, other, off });
         }
         if at.abs().max_element() > MOST_SAMPLES as f64 {
-            let size = at.abs() + 1.0;
-            return Err(MosaicError::TooLarge { width: size.x as u64, height: size.y as u64 });
+            return Err(MosaicError::TooLarge((at.abs() + 1.0).as_u64vec2()));
         }
         Ok(at.round().as_i64vec2())
     }
@@ -251,12 +245,12 @@ impl MosaicFrame {
         let ends = tiles.iter().zip(corners).map(|(tile, corner)| *corner + size(tile));
         let min = corners.iter().copied().fold(I64Vec2::MAX, I64Vec2::min);
         let max = ends.fold(I64Vec2::MIN, I64Vec2::max);
-        let (width, height) = ((max.x - min.x) as u64, (max.y - min.y) as u64);
-        match width.checked_mul(height) {
+        let size = (max - min).as_u64vec2();
+        match size.x.checked_mul(size.y) {
             Some(samples) if samples <= MOST_SAMPLES => {
-                Ok(Self { min, width: width as usize, height: height as usize })
+                Ok(Self { min, width: size.x as usize, height: size.y as usize })
             }
-            _ => Err(MosaicError::TooLarge { width, height }),
+            _ => Err(MosaicError::TooLarge(size)),
         }
     }
 }

@@ -58,29 +58,23 @@ pub(crate) trait SampleFloat: Copy + Default + Display + Into<f64> + PartialEq +
     fn into_samples(values: Vec<Self>) -> Samples;
 }
 
-impl SampleFloat for f32 {
-    const NODATA: Self = Self::NAN;
+macro_rules! sample_floats {
+    ($($float:ident: $samples:ident),*) => {$(
+        impl SampleFloat for $float {
+            const NODATA: Self = Self::NAN;
 
-    fn from_f64(value: f64) -> Self {
-        value as Self
-    }
+            fn from_f64(value: f64) -> Self {
+                value as Self
+            }
 
-    fn into_samples(values: Vec<Self>) -> Samples {
-        Samples::F32(values)
-    }
+            fn into_samples(values: Vec<Self>) -> Samples {
+                Samples::$samples(values)
+            }
+        }
+    )*};
 }
 
-impl SampleFloat for f64 {
-    const NODATA: Self = Self::NAN;
-
-    fn from_f64(value: f64) -> Self {
-        value
-    }
-
-    fn into_samples(values: Vec<Self>) -> Samples {
-        Samples::F64(values)
-    }
-}
+sample_floats!(f32: F32, f64: F64);
 
 impl Samples {
     /// The number of samples.

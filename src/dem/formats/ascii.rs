@@ -36,21 +36,9 @@ const DEFAULT_NODATA: f64 = -9999.0;
 /// Written for no data, in the order of preference; the raster's own value comes first.
 const NODATA_VALUES: [f64; 3] = [DEFAULT_NODATA, -32768.0, -99999.0];
 
-const KEYS: [&str; 10] = [
-    "ncols",
-    "nrows",
-    "xllcorner",
-    "yllcorner",
-    "xllcenter",
-    "yllcenter",
-    "cellsize",
-    "dx",
-    "dy",
-    "nodata_value",
-];
-
 fn is_key(word: &[u8]) -> bool {
-    KEYS.iter().any(|key| key.as_bytes().eq_ignore_ascii_case(word))
+    const KEYS: &str = "ncols nrows xllcorner yllcorner xllcenter yllcenter cellsize dx dy nodata_value";
+    KEYS.split(' ').any(|key| key.as_bytes().eq_ignore_ascii_case(word))
 }
 
 fn without_byte_order_mark(bytes: &[u8]) -> &[u8] {

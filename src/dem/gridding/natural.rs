@@ -52,12 +52,8 @@ pub(super) struct Naturals {
     snap2: f64,
 }
 
-/// Buffers that a task reuses for every center.
-#[derive(Default)]
-struct NeighborScratch {
-    /// Sides yet to be crossed: the triangle and the side, the next in counter-clockwise order on top.
-    sides: Vec<(u32, u8)>,
-}
+/// Sides yet to be crossed: the triangle and the side, the next in counter-clockwise order on top. A task reuses it.
+type OpenSides = Vec<(u32, u8)>;
 
 impl Naturals {
     pub fn new(sites: &Sites) -> Result<Self, GridError> {
@@ -84,7 +80,7 @@ impl Naturals {
         let columns = hull.columns(cells);
         let bands = out.par_chunks_mut(BAND_ROWS * width).zip(cells.y.par_chunks(BAND_ROWS));
         let bands = bands.zip(columns.par_chunks(BAND_ROWS));
-        bands.for_each_init(NeighborScratch::default, |scratch, ((out, y), columns)| {
+        bands.for_each_init(OpenSides::new, |open, ((out, y), columns)| {
             let mut row_start = 0;
             for ((row, &y), columns) in out.chunks_mut(width).zip(y).zip(columns) {
                 let mut around = row_start;
@@ -94,7 +90,7 @@ impl Naturals {
                     if index == 0 {
                         row_start = around;
                     }
-                    row[column] = self.height(q, around, scratch);
+                    row[column] = self.height(q, around, open);
                 }
             }
         });
@@ -120,14 +116,14 @@ impl Naturals {
     }
 
     /// The height at `q`, which lies in the triangle `around`.
-    fn height(&self, q: DVec2, around: u32, scratch: &mut NeighborScratch) -> f64 {
+    fn height(&self, q: DVec2, around: u32, sides: &mut OpenSides) -> f64 {
         let corners = self.cells[around as usize].corners;
         for corner in corners {
             if self.at[corner as usize].distance_squared(q) <= self.snap2 {
                 return self.z[corner as usize];
             }
         }
-        let sums = self.gather(q, around, scratch);
+        let sums = self.gather(q, around, sides);
         let height = sums.zero + sums.heights / sums.area;
         match sums.on_side {
             Some(height) => height,
@@ -137,8 +133,7 @@ impl Naturals {
     }
 
     /// Sums over the triangles that a site at `q` would make vanish.
-    fn gather(&self, q: DVec2, around: u32, scratch: &mut NeighborScratch) -> AreaSums {
-        let sides = &mut scratch.sides;
+    fn gather(&self, q: DVec2, around: u32, sides: &mut OpenSides) -> AreaSums {
         sides.clear();
         sides.extend([(around, 2), (around, 1), (around, 0)]);
         let mut sums = AreaSums::new(self.z[self.cells[around as usize].corners[0] as usize]);

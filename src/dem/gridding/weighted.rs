@@ -57,12 +57,6 @@ struct SearchScratch {
     candidates: Vec<(DVec2, u32)>,
 }
 
-impl SearchScratch {
-    fn new(wanted: usize) -> Self {
-        Self { found: NearestSites::new(wanted), candidates: Vec::new() }
-    }
-}
-
 pub(super) struct WeightedSites<'a> {
     sites: &'a Sites,
     tree: KdTree,
@@ -90,7 +84,7 @@ impl<'a> WeightedSites<'a> {
         let bands =
             out.par_chunks_mut(TILE * width).zip(cells.y.par_chunks(TILE)).zip(columns.par_chunks(TILE));
         bands.for_each_init(
-            || SearchScratch::new(self.wanted()),
+            || SearchScratch { found: NearestSites::new(self.wanted()), candidates: Vec::new() },
             |scratch, ((out, y), columns)| {
                 for left in (0..width).step_by(TILE) {
                     let x = &cells.x[left..(left + TILE).min(width)];

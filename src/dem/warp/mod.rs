@@ -8,7 +8,7 @@ mod row_positions;
 
 use std::borrow::Cow;
 
-use glam::DVec2;
+use glam::{DVec2, U64Vec2};
 
 use crate::dem::raster::{Raster, Samples, north_up};
 use crate::dem::warp::crs_transform::CrsTransform;
@@ -69,15 +69,14 @@ pub enum WarpError {
     },
     /// The result would be too large.
     #[error(
-        "in {system} the elevation file would need {width} x {height} samples; choose a system that suits its place, or larger cells"
+        "in {system} the elevation file would need {} x {} samples; choose a system that suits its place, or larger cells",
+        .size.x, .size.y
     )]
     TooLarge {
         /// The wanted system.
         system: String,
-        /// Samples per row.
-        width: u64,
-        /// Rows.
-        height: u64,
+        /// Samples per row and rows.
+        size: U64Vec2,
     },
     /// The raster covers a pole, where one in the wanted system, in degrees, has no border.
     #[error(

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use glam::DVec2;
+use glam::{DVec2, U64Vec2};
 use rayon::prelude::*;
 
 use crate::dem::cell_grid::{CellGrid, CellGridError};
@@ -65,7 +65,7 @@ impl<'a> Resampler<'a> {
     ) -> Result<Self, WarpError> {
         let too_large = |width, height| {
             let system = transform.to.map_or("north up", Crs::name).into();
-            WarpError::TooLarge { system, width, height }
+            WarpError::TooLarge { system, size: U64Vec2::new(width, height) }
         };
         let cells = cells.map_err(|error| match error {
             CellGridError::TooMany { columns, rows, .. } => too_large(columns as u64, rows as u64),
