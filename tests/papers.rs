@@ -1,7 +1,7 @@
 //! What the papers claim, claim by claim, of the product: one test a claim, one file a paper.
 //!
-//! 000: patches with forced splits and merges. 001: the restricted quadtree. 002: outdoor terrain rendering.
-//! 003: the constrained nested error criterion. 004: the digital terrain model.
+//! `patches`: Lin et al., patch-based ROAM. `quadtree`: the restricted quadtree. `outdoor`: outdoor terrain rendering.
+//! `nested`: Yu and Zhang, constrained nested error criterion. `dtm`: Zhang et al., patch-based ROAM by roughness.
 
 mod common;
 #[path = "papers/dtm.rs"]

@@ -1,4 +1,4 @@
-//! 002: outdoor terrain rendering, its chapter on levels of detail.
+//! The outdoor terrain rendering chapter: outdoor terrain rendering, its chapter on levels of detail.
 
 use std::io::Cursor;
 use std::sync::Arc;
@@ -34,7 +34,7 @@ use sandtable::terrain::light::light;
 use crate::{World, camera, leaves, same};
 
 #[test]
-fn paper_002_a_height_map_has_a_horizontal_and_a_vertical_scale_and_a_slope_at_every_vertex() {
+fn a_height_map_has_a_horizontal_and_a_vertical_scale_and_a_slope_at_every_vertex() {
     let heights = (0..25).map(|at| (at % 5) as f32 * 3.0 + (at / 5) as f32 * 4.0).collect();
     let lattice = Lattice::new(DVec2::ZERO, DVec2::new(6.0, 2.0), 5, heights).expect("sound");
     for post in lattice.posts() {
@@ -48,7 +48,7 @@ fn paper_002_a_height_map_has_a_horizontal_and_a_vertical_scale_and_a_slope_at_e
 }
 
 #[test]
-fn paper_002_no_t_junction_is_left_at_any_side_of_any_block() {
+fn no_t_junction_is_left_at_any_side_of_any_block() {
     let world = World::hills(97, 65, 32);
     let area = world.lattice.extent().size();
     let lattice = Arc::new(world.lattice.clone());
@@ -63,7 +63,7 @@ fn paper_002_no_t_junction_is_left_at_any_side_of_any_block() {
 }
 
 #[test]
-fn paper_002_detail_is_finer_near_the_eye_and_on_rough_ground() {
+fn detail_is_finer_near_the_eye_and_on_rough_ground() {
     let rough =
         |x: f32, y: f32| if y > 128.0 { 4.0 * libm::sinf(x * 1.3) * libm::cosf(y * 1.1) } else { 0.0 };
     let world = World::new((257, 257), 32, rough);
@@ -81,7 +81,7 @@ fn paper_002_detail_is_finer_near_the_eye_and_on_rough_ground() {
 }
 
 #[test]
-fn paper_002_the_detail_of_every_triangle_is_under_control_by_one_tolerance() {
+fn the_detail_of_every_triangle_is_under_control_by_one_tolerance() {
     let world = World::hills(129, 129, 64);
     let count = |tolerance_m: f32| {
         let criterion = Flat::new(&world.layout, &world.errors, tolerance_m);
@@ -104,7 +104,7 @@ fn read_gray(picture: DynamicImage, meters_per_value: f64) -> Vec<f32> {
 }
 
 #[test]
-fn paper_002_a_height_map_has_8_bits_a_value_or_more() {
+fn a_height_map_has_8_bits_a_value_or_more() {
     let coarse = ImageBuffer::from_fn(3, 2, |x, y| image::Luma([(100 * x + 50 * y) as u8]));
     let from_south = read_gray(DynamicImage::ImageLuma8(coarse), 2.0);
     assert_eq!(from_south, [100.0, 300.0, 500.0, 0.0, 200.0, 400.0]);
@@ -118,7 +118,7 @@ fn paper_002_a_height_map_has_8_bits_a_value_or_more() {
 }
 
 #[test]
-fn paper_002_the_normal_of_a_vertex_is_the_mean_of_the_faces_around_it() {
+fn the_normal_of_a_vertex_is_the_mean_of_the_faces_around_it() {
     let world = World::hills(17, 17, 16);
     for post in world.lattice.posts() {
         let (column, row) = (i64::from(post.column), i64::from(post.row));
@@ -154,7 +154,7 @@ fn sorted(triangles: Vec<[Vertex; 3]>) -> Vec<[Vertex; 3]> {
 }
 
 #[test]
-fn paper_002_strips_and_fans_send_the_same_triangles_in_fewer_vertices() {
+fn strips_and_fans_send_the_same_triangles_in_fewer_vertices() {
     let world = World::hills(129, 129, 32);
     let active = seen(&world);
     let (mut list, mut by_strips, mut by_fans) = (Vec::new(), Vec::new(), Vec::new());
@@ -187,7 +187,7 @@ fn emitted(world: &World, levels: &PatchLevels) -> TriMesh {
 }
 
 #[test]
-fn paper_002_a_block_s_level_is_chosen_by_its_distance_and_error_from_a_pyramid() {
+fn a_block_s_level_is_chosen_by_its_distance_and_error_from_a_pyramid() {
     // Hills in the south, ten times lower ones in the north.
     let world = World::new((257, 257), 32, |x, y| {
         let height_m = if y < 128.0 { 8.0 } else { 0.8 };
@@ -208,7 +208,7 @@ fn paper_002_a_block_s_level_is_chosen_by_its_distance_and_error_from_a_pyramid(
 }
 
 #[test]
-fn paper_002_the_borders_of_blocks_of_any_two_levels_are_stitched() {
+fn the_borders_of_blocks_of_any_two_levels_are_stitched() {
     let world = World::hills(97, 65, 16);
     let area = world.lattice.extent().size();
     for seed in 0..12u32 {
@@ -239,7 +239,7 @@ fn relief(world: &World, vertex: Vertex) -> f32 {
 }
 
 #[test]
-fn paper_002_a_block_is_refined_while_err_times_r_over_d_is_above_k() {
+fn a_block_is_refined_while_err_times_r_over_d_is_above_k() {
     let world = World::hills(17, 17, 8);
     let own: Vec<f32> = (0..world.layout.vertex_count() as i32)
         .map(|at| Vertex::new(at % 17, at / 17))
@@ -261,7 +261,7 @@ fn paper_002_a_block_is_refined_while_err_times_r_over_d_is_above_k() {
 }
 
 #[test]
-fn paper_002_slopes_have_more_detail_than_level_ground() {
+fn slopes_have_more_detail_than_level_ground() {
     let world = World::new((129, 129), 64, |x, _| (x - 64.0).max(0.0) * 9.0);
     let relief = ErrorMap::relief(&world.lattice, &world.layout);
     let eye = Vec3::new(640.0, 640.0, 900.0);
@@ -274,7 +274,7 @@ fn paper_002_slopes_have_more_detail_than_level_ground() {
 }
 
 #[test]
-fn paper_002_the_number_of_triangles_has_a_cap_that_is_reached_and_never_exceeded() {
+fn the_number_of_triangles_has_a_cap_that_is_reached_and_never_exceeded() {
     let world = World::hills(257, 257, 64);
     let errors = ErrorMap::midpoint(&world.lattice, &world.layout);
     let patches: Vec<Vertex> = world.layout.patches().collect();
@@ -292,7 +292,7 @@ fn paper_002_the_number_of_triangles_has_a_cap_that_is_reached_and_never_exceede
 }
 
 #[test]
-fn paper_002_the_ground_has_light_maps() {
+fn the_ground_has_light_maps() {
     // A wall that runs north, the sun low in the west.
     let world = World::new((65, 33), 32, |x, _| if x == 20.0 { 100.0 } else { 0.0 });
     let light = light(&world.lattice, Vec3::new(-1.0, 0.0, 0.5).normalize());
@@ -305,7 +305,7 @@ fn paper_002_the_ground_has_light_maps() {
 }
 
 #[test]
-fn paper_002_the_surfaces_of_the_ground_are_blended_by_height() {
+fn the_surfaces_of_the_ground_are_blended_by_height() {
     let [grass, rock] = [Srgba::opaque(40, 120, 30), Srgba::opaque(120, 110, 100)];
     let ramp = ColorRamp::new(vec![(100.0, grass), (300.0, rock)]).expect("rising");
     for (height_m, share) in

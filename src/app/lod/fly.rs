@@ -9,7 +9,7 @@ use crate::app::lod::method::LodMethod;
 use crate::app::lod::prepared::PreparedGround;
 use crate::app::lod::report::FlightReport;
 use crate::roam::frames::LastFrame;
-use crate::roam::measure::{HeightDifference, height_difference_seen};
+use crate::roam::measure::{HeightDifference, height_difference};
 use crate::roam::shown::PatchList;
 use crate::terrain::lattice::Post;
 use crate::view::camera::Camera;
@@ -75,7 +75,7 @@ fn difference_in_view(terrain: &PreparedGround, camera: &Camera, shown: &[PatchL
         let shown = camera.project(at.extend(shown_m as f32));
         Some(shown.map_or(0.0, |shown| f64::from(shown.pixel.distance(ground))))
     };
-    height_difference_seen(lattice, &terrain.layout, shown, seen_px)
+    height_difference(lattice, &terrain.layout, shown, seen_px)
 }
 
 /// The frames that are measured, from the first to the last.

@@ -34,7 +34,7 @@ impl<'a> Writer<'a> {
     /// In the way of `lists`.
     pub fn new(lists: IndexEmitter, terrain: &'a PreparedGround) -> Self {
         let block =
-            VertexBlock::of(&terrain.layout).expect("patches of the default size have 16-bit indices");
+            VertexBlock::new(&terrain.layout).expect("patches of the default size have 16-bit indices");
         Self { terrain, lists, block, strips: Strips::default() }
     }
 

@@ -153,7 +153,7 @@ fn at_rest(world: &World, spheres: &SphereMap, cameras: &[Camera]) {
     println!("at rest: {:.3} µs a frame, {} bytes", ms * 1e3 / TIMES as f64, walk.upload());
 }
 
-/// 000's own comparison: as many triangles by splits alone, every frame anew.
+/// Lin et al.'s own comparison: as many triangles by splits alone, every frame anew.
 fn splits_alone() {
     let heights = fields::fractal(1025);
     let (world, cameras) = (World::new(&heights), flight::cameras(&heights, 1.0, FRAMES));
