@@ -49,7 +49,7 @@ pub fn build_ground(document: &Document, assets: &Assets) -> Result<SceneGround,
     let sources = Sources::new(&frame, assets);
     let mut collected = SceneBuilder::default();
     shape(document, &sources, &mut lattice, &mut collected)?;
-    models::level_pads(document, (&frame, &sources, assets), &mut lattice)?;
+    models::level_pads(&sources, &mut lattice)?;
     let lattice = Arc::new(lattice);
     let heights = height_service(document, loaded.source, loaded.crs.clone(), lattice, &collected.decks)?;
     Ok(SceneGround { heights, files: assets.files_read() })
@@ -80,8 +80,8 @@ pub fn build(
     collected.resolve_overlaps();
 
     progress("loading models");
-    let (models, placements) =
-        models::place(document, (&frame, &sources, assets), &mut lattice, &mut collected)?;
+    let placed = models::place(&sources, &mut lattice, &mut collected)?;
+    let models = placed.library.into_models();
     let defaulted: Vec<String> = attributes::notes(&collected.default_counts).collect();
     collected.notes.extend(defaulted);
 
@@ -107,7 +107,7 @@ pub fn build(
         uprights: collected.uprights,
         details: models.iter().map(|_| OnceLock::new()).collect(),
         models,
-        placements,
+        placements: placed.placements,
         labels,
         cameras,
         furniture: document.furniture,

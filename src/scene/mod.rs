@@ -298,8 +298,8 @@ pub struct Placement {
     pub at: Vec2,
     /// How its height is found.
     pub clamp: Clamp,
-    /// Meters above the ground, or elevation, as `clamp` says; 0 where it stands on the ground.
-    pub height_m: f32,
+    /// Meters above the ground, or displayed elevation, as `clamp` says; 0 where it stands on the ground.
+    pub height: f64,
     /// Which way its front points, radians clockwise from north.
     pub heading_rad: f32,
     /// Meters per unit of the model.
