@@ -59,8 +59,8 @@ pub fn parse_including(file_name: &str, bytes: &[u8], load: LoadFile<'_>) -> Res
         report.error(span, error, help);
     }
     let tables: Vec<_> = source.texts().map(|(start, text)| toml_table(start, text, &mut report)).collect();
-    let root =
-        tables.into_iter().collect::<Option<Vec<_>>>().map(|tables| merged(tables, &gathered.includes));
+    let tables: Option<Vec<_>> = tables.into_iter().collect();
+    let root = tables.map(|mut tables| merged(0, &mut tables, &gathered.includes));
     let (parsed, report) = match &root {
         Some(root) => {
             let styles = Styles::read(root, &mut report);

@@ -248,16 +248,23 @@ impl<'t> KeyValue<'_, 't> {
         Some(text)
     }
 
-    pub fn text_list(mut self) -> Option<Vec<String>> {
+    pub fn text_list(self) -> Option<Vec<String>> {
+        self.one_or_more("texts", |text| text.filled_text())
+    }
+
+    /// A value, or a list of them; messages call several of them `plural`.
+    pub fn one_or_more<T>(
+        mut self,
+        plural: &str,
+        read: impl Fn(KeyValue<'_, 't>) -> Option<T>,
+    ) -> Option<Vec<T>> {
         match self.value.get_ref() {
-            DeValue::Array(list) if (1..=MAX_LIST).contains(&list.len()) => {
-                self.each(list, |text| text.filled_text())
-            }
+            DeValue::Array(list) if (1..=MAX_LIST).contains(&list.len()) => self.each(list, read),
             DeValue::Array(list) => {
-                let message = format!("`{}` lists {} texts", self.key, list.len());
+                let message = format!("`{}` lists {} {plural}", quoted(self.key), list.len());
                 self.wrong(message, format!("list from 1 to {MAX_LIST}"))
             }
-            _ => self.filled_text().map(|text| vec![text]),
+            _ => read(self.element(self.value)).map(|value| vec![value]),
         }
     }
 

@@ -23,7 +23,6 @@ const FORMAT: &str = "FlatGeobuf file";
 /// Bytes of a node of the index.
 const NODE_BYTES: u64 = 40;
 
-/// Returns whether `bytes` are FlatGeobuf, of any version.
 pub(super) fn is_flatgeobuf(bytes: &[u8]) -> bool {
     bytes.starts_with(b"fgb\x03") || (bytes.starts_with(b"fgb") && bytes.get(4..7) == Some(b"fgb"))
 }

@@ -21,7 +21,6 @@ const MAX_DEPTH: usize = 64;
 /// Bytes of a document in which its declaration is searched.
 const DECLARATION_BYTES: usize = 200;
 
-/// Reads a document from start to end.
 pub(crate) struct XmlReader<'a> {
     reader: Reader<&'a [u8]>,
     text: &'a str,
@@ -211,7 +210,6 @@ impl<'a> XmlElement<'a> {
         self.start.local_name().into_inner()
     }
 
-    /// Returns its child elements.
     pub fn children(&self) -> impl Iterator<Item = &XmlElement<'a>> {
         self.content.iter().filter_map(|content| match content {
             XmlContent::Element(element) => Some(element),
@@ -219,7 +217,6 @@ impl<'a> XmlElement<'a> {
         })
     }
 
-    /// Returns its child elements called `name`.
     pub fn children_named(&self, name: &str) -> impl Iterator<Item = &XmlElement<'a>> {
         self.children().filter(move |child| child.name() == name)
     }
@@ -246,7 +243,6 @@ impl<'a> XmlElement<'a> {
         self.raw_attribute(name)?.normalized_value(XmlVersion::Implicit1_0).ok()
     }
 
-    /// Returns the value of an attribute as a number.
     pub fn number<T: std::str::FromStr>(&self, name: &str) -> Option<T> {
         self.raw_attribute(name)?.value.trim().parse().ok()
     }

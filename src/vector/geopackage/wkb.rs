@@ -42,9 +42,6 @@ struct WkbLayout {
 }
 
 /// Adds the shape that `bytes` start with to `parts`.
-///
-/// # Errors
-/// [`WkbError`].
 pub(crate) fn read(bytes: &[u8], parts: &mut FeatureParts) -> Result<(), WkbError> {
     read_shape(&mut ByteCursor::new(bytes), parts, 0)
 }

@@ -41,9 +41,6 @@ enum PbfError {
 }
 
 /// Reads everything in the file.
-///
-/// # Errors
-/// [`VectorError`].
 pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
     let mut data = OsmData::default();
     let mut cursor = ByteCursor::new(bytes);
@@ -77,7 +74,6 @@ fn next_blob<'a>(cursor: &mut ByteCursor<'a>) -> Option<PbfBlob<'a>> {
     Some(PbfBlob { kind, content: cursor.take(bytes as usize)? })
 }
 
-/// Returns a blob's content, unpacked.
 fn unpack(blob: &[u8], place: &str) -> Result<Vec<u8>, VectorError> {
     let broken = |reason: &'static str| VectorError::broken(FORMAT, place, reason);
     let values = last_values(blob, [1, 2, 3, 4, 5, 6, 7]);
@@ -120,7 +116,6 @@ fn check_header(header: &[u8]) -> Result<(), VectorError> {
     Ok(())
 }
 
-/// One block while it is read.
 struct PbfBlock<'a> {
     data: &'a mut OsmData,
     texts: Vec<PbfText<'a>>,
@@ -255,7 +250,6 @@ impl PbfBlock<'_> {
         Ok(self.data.add_relation(OsmRelation { id, members: members.into(), tags })?)
     }
 
-    /// Reads packed keys and their values.
     fn tags(&mut self, keys: FieldValue<'_>, values: FieldValue<'_>) -> Result<OsmTags, PbfError> {
         let mut values = varints(values.bytes()?);
         let tag = |key: Result<u64, MalformedMessage>| Ok((self.text(key?)?, self.text(next(&mut values)?)?));

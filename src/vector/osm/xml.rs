@@ -9,9 +9,6 @@ use crate::vector::xml::{self, XmlElement, XmlReader};
 const FORMAT: &str = "OpenStreetMap XML";
 
 /// Reads everything in the file but what is marked as deleted.
-///
-/// # Errors
-/// [`VectorError`].
 pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
     let text = xml::decode(bytes, FORMAT)?;
     let mut xml = XmlReader::new(&text, FORMAT);

@@ -35,7 +35,6 @@ const HEADER_BYTES: usize = 100;
 /// Smaller numbers mean "no data" (page 2 of the description, there of measures).
 const MIN_ELEVATION: f64 = -1e38;
 
-/// The files of one shapefile.
 pub(super) struct ShapefileParts<'a> {
     /// `.shp`.
     pub shapes: &'a [u8],

@@ -16,8 +16,8 @@ scene file.
 
 A scene file is TOML in UTF-8. Lengths and heights are meters, angles degrees, compass directions clockwise from north,
 points `[easting, northing]` or `[longitude, latitude]`, and file names relative to the file that they stand in, unless a
-key says otherwise. A key without a default is needed. An expression gives a value for each feature from its properties,
-such as `\"lanes * 3.5 ?? 8\"`.
+key says otherwise. A key of a value without a default is needed. An expression gives a value for each feature from its
+properties, such as `\"lanes * 3.5 ?? 8\"`.
 ";
 
 /// A heading and a table for `keys`, then for the tables among them. `dotted` is the name of their own table.
