@@ -291,7 +291,7 @@ pub enum Backend {
     /// The processor.
     #[default]
     Cpu,
-    /// A graphics adapter.
+    /// A graphics adapter; needs the Cargo feature `gpu`.
     Gpu,
 }
 

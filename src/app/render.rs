@@ -14,7 +14,7 @@ use crate::scene::{Scene, View};
 /// Renders the scene and prints where the picture is, what is in it, and how long each step took.
 ///
 /// # Errors
-/// Whatever is wrong with the scene; no adapter for `--backend gpu`; the picture cannot be written.
+/// Whatever is wrong with the scene; `--backend gpu` without its feature or an adapter; the picture cannot be written.
 pub fn run(options: &RenderOptions) -> Result<(), CliError> {
     let threads = options.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(CliError::input)?;
