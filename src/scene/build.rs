@@ -48,7 +48,7 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
     conform::conform(document, &mut lattice, &mut roads, &mut collected)?;
     let plots = buildings::lay_out(document, &sources, &mut lattice, &mut collected)?;
     let lines = fences::lay_out(document, &sources, &mut lattice, &mut collected)?;
-    bridges::build(document, &sources, (&lattice, places.exaggeration), &mut roads, &mut collected)?;
+    bridges::build(document, &sources, &lattice, places.exaggeration, &mut roads, &mut collected)?;
     network::lay(&roads, &extent, &mut collected);
     let finest = DrawnGround { lattice: &lattice, exaggeration: places.exaggeration };
     fences::set(&lines, finest, &mut collected);
