@@ -88,7 +88,7 @@ impl Drapes {
     pub fn new<'a>(borders: &Borders, plans: impl IntoIterator<Item = &'a PlanMesh>) -> Self {
         let mut patches = vec![PatchDrape::default(); borders.patch_count()];
         for (ribbon, plan) in plans.into_iter().enumerate() {
-            divide((ribbon, plan), borders, &mut patches);
+            divide(ribbon, plan, borders, &mut patches);
         }
         Self { patches }
     }
@@ -148,7 +148,7 @@ impl PatchDrape {
 }
 
 /// Adds each triangle of a plan to the parts it has in the patches it meets.
-fn divide((ribbon, plan): (usize, &PlanMesh), borders: &Borders, patches: &mut [PatchDrape]) {
+fn divide(ribbon: usize, plan: &PlanMesh, borders: &Borders, patches: &mut [PatchDrape]) {
     let (mut piece, mut scratch) = (Vec::new(), Vec::new());
     for corners in plan.corners() {
         let texture = TextureMap::of(corners);

@@ -6,10 +6,9 @@
 //!                                                    └─► an underpass: the road stays on the ground
 //! ```
 //!
-//! **Tunnels.** Nothing is drawn of a tunnel but its portals, and a portal only where the hill rises over it. A short
-//! tunnel under ground that is hardly higher than its ends is an underpass: what it passes under, a railway or a house,
-//! is not in the elevation model, and a portal there would open into nothing; so would one where no road comes out. The road stays on the ground then, so that
-//! the course of the road is seen, as a map would show it.
+//! **Tunnels.** Only the portals of a tunnel are drawn, where the hill rises over them. A short tunnel under ground that is
+//! hardly higher than its ends is an underpass: what it passes under, a railway or a house, is not in the elevation model.
+//! The road stays on the ground there, as a map would show it.
 
 use std::collections::BTreeSet;
 
@@ -58,15 +57,15 @@ const MERGE_M: f64 = 1e-6;
 /// The longest part of a bridge that an abutment takes.
 const LONGEST_ABUTMENT: f64 = 0.25;
 
-/// Builds what carries the document's roads and its tables of bridges. Roads through underpasses become roads on the
-/// ground; all others that are not on the ground are done with.
+/// Builds the bridges and tunnels of the document's roads and tables. Roads through underpasses become roads on the ground.
 ///
 /// # Errors
 /// A source cannot be had, or asks for too many piers.
 pub fn build(
     document: &Document,
     sources: &Sources<'_>,
-    (lattice, exaggeration): (&Lattice, f32),
+    lattice: &Lattice,
+    exaggeration: f32,
     roads: &mut [Centerline],
     collected: &mut SceneBuilder,
 ) -> Result<(), Diagnostic> {
@@ -88,7 +87,7 @@ pub fn build(
     let mut bridges: Vec<(BuiltChain<'_>, &ChainLink, BridgeOptions)> = Vec::new();
     for (chain, run) in chains.iter().zip(&runs) {
         let Some(run) = run else {
-            collected.notes.push(format!("{} left out: no ground lies along it", called(&spans, chain)));
+            collected.notes.push(format!("{} left out: no ground lies along it", described(&spans, chain)));
             continue;
         };
         let built = BuiltChain { spans: &spans, chain, run, site: &site, mouths: &mouths };
@@ -104,7 +103,7 @@ pub fn build(
     let decks = Deck::new(&decks.collect::<Vec<_>>());
     let decks = decks.map_err(|error| document.error_at(0..0, error))?;
     for (built, link, options) in &bridges {
-        built.bridge((link, options), &decks, collected);
+        built.bridge(link, options, &decks, collected);
     }
     Ok(())
 }
@@ -144,13 +143,13 @@ fn water(collected: &SceneBuilder) -> Result<Deck, DeckError> {
 #[error("water under bridges")]
 struct WaterError(#[source] DeckError);
 
-fn called(spans: &[RoadSpan], chain: &SpanChain) -> String {
+fn described(spans: &[RoadSpan], chain: &SpanChain) -> String {
     let span = &spans[chain.links[0].line];
     let kind = if span.alignment.support == Support::Tunnel { "tunnel" } else { "bridge" };
     if span.name.is_empty() { format!("a {kind} without a name") } else { format!("{kind} '{}'", span.name) }
 }
 
-/// A chain with all that is known of it.
+/// A chain with its levels and its site.
 #[derive(Clone, Copy)]
 struct BuiltChain<'a> {
     spans: &'a [RoadSpan],
@@ -212,20 +211,15 @@ impl<'a> BuiltChain<'a> {
         bridge::deck(&course, &profile, options, &|at| self.site.ground_m(at))
     }
 
-    fn bridge(
-        &self,
-        (link, options): (&ChainLink, &BridgeOptions),
-        decks: &Deck,
-        collected: &mut SceneBuilder,
-    ) {
+    fn bridge(&self, link: &ChainLink, options: &BridgeOptions, decks: &Deck, collected: &mut SceneBuilder) {
         let span = &self.spans[link.line];
         let (course, profile) = self.course(link);
-        let built = bridge::build(&course, &profile, options, (&|at| self.site.ground_m(at), decks));
+        let built = bridge::build(&course, &profile, options, &|at| self.site.ground_m(at), decks);
         let feature = collected.add(FeatureKind::Bridge, span.name.clone());
         collected.solids.push(Solid { mesh: built.carriageway, coat: Coat::Surface(span.surface), feature });
         collected.solids.push(Solid { mesh: built.body, coat: Coat::Painted, feature });
         collected.decks.extend(built.deck);
-        self.tell(link, (Some(built.piers), None), profile.steepest(0.0), collected);
+        self.report(link, Some(built.piers), None, profile.steepest(0.0), collected);
     }
 
     /// How far the abutment at an end of the chain reaches under it; `None` where the chain goes on or leaves the model.
@@ -286,7 +280,7 @@ impl<'a> BuiltChain<'a> {
                 if let Some(road) = self.spans[link.line].road {
                     roads[road].alignment.support = Support::Ground;
                 }
-                self.tell(link, (None, Some(0)), self.run.profile.steepest(0.0), collected);
+                self.report(link, None, Some(0), self.run.profile.steepest(0.0), collected);
             }
             return;
         }
@@ -302,7 +296,7 @@ impl<'a> BuiltChain<'a> {
                 collected.solids.push(Solid { mesh, coat: Coat::Painted, feature });
             }
             let grade = self.run.profile.slice(link.reach_m()[0], link.reach_m()[1], MERGE_M).steepest(0.0);
-            self.tell(link, (None, Some(portals.len())), grade, collected);
+            self.report(link, None, Some(portals.len()), grade, collected);
         }
     }
 
@@ -328,11 +322,12 @@ impl<'a> BuiltChain<'a> {
         portal.covered_after_m(BURIED, &|at| self.site.ground_m(at)).map(|_| portal)
     }
 
-    /// Adds a span's row to the report; `counts` are its piers and portals.
-    fn tell(
+    /// Adds a span's row to the report.
+    fn report(
         &self,
         link: &ChainLink,
-        counts: (Option<usize>, Option<usize>),
+        piers: Option<usize>,
+        portals: Option<usize>,
         grade: f64,
         collected: &mut SceneBuilder,
     ) {
@@ -351,7 +346,7 @@ impl<'a> BuiltChain<'a> {
         let clearance = here
             .flat_map(|passage| passage.reach_m.map(|at| self.run.profile.at(at) - depth_m - passage.level_m))
             .reduce(f64::min);
-        let kind = match (span.alignment.support, counts.1) {
+        let kind = match (span.alignment.support, portals) {
             (Support::Tunnel, Some(0)) if -least < LEAST_COVER_M => "underpass",
             (Support::Tunnel, _) => "tunnel",
             _ => "bridge",
@@ -364,8 +359,8 @@ impl<'a> BuiltChain<'a> {
             greatest_height_above_ground: most,
             greatest_depth_below_ground: -least,
             steepest_grade: grade * 100.0,
-            piers: counts.0,
-            portals: counts.1,
+            piers,
+            portals,
             lowest_clearance: clearance,
         });
     }

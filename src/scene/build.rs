@@ -143,7 +143,7 @@ fn shape(
     let plots = buildings::lay_out(document, sources, lattice, collected)?;
     let lines = fences::lay_out(document, sources, lattice, collected)?;
     let exaggeration = document.terrain.vertical_exaggeration as f32;
-    bridges::build(document, sources, (lattice, exaggeration), &mut roads, collected)?;
+    bridges::build(document, sources, lattice, exaggeration, &mut roads, collected)?;
     Ok(ShapedFeatures { roads, plots, lines })
 }
 

@@ -57,7 +57,7 @@ pub struct Plot {
     feature: FeatureId,
 }
 
-/// How often what happened to buildings that a user should know.
+/// Counts of buildings that are not as stated.
 #[derive(Default)]
 struct BuildingTally {
     off: usize,
@@ -69,7 +69,7 @@ struct BuildingTally {
 }
 
 impl BuildingTally {
-    fn tell(&self, notes: &mut Vec<String>) {
+    fn note(&self, notes: &mut Vec<String>) {
         let sentences = [
             (self.off, "left out: not wholly on the elevation model's data"),
             (self.empty, "left out: the footprint encloses no area"),
@@ -115,7 +115,7 @@ pub fn lay_out(
             plots.push(Plot { table, attributes, parts, pad_m, feature });
         }
     }
-    tally.tell(&mut collected.notes);
+    tally.note(&mut collected.notes);
     Ok(plots)
 }
 
@@ -207,7 +207,7 @@ pub fn raise(document: &Document, plots: &[Plot], ground: DrawnGround<'_>, colle
         let ground_z = (base_z, (under.low_m.min(base_m) * stretch) - FOUNDATION_M);
         raise_parts(building, plot, ground_z, collected, &mut tally);
     }
-    tally.tell(&mut collected.notes);
+    tally.note(&mut collected.notes);
 }
 
 /// Raises the parts of one building, given the world Z of its base and of the foot of its walls.

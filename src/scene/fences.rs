@@ -25,13 +25,11 @@ use crate::scene::near::{self, Clipped};
 use crate::scene::report::TrenchRow;
 use crate::scene::sources::Sources;
 use crate::scene::{FeatureKind, FeatureSolid};
+use crate::structure::bands::{BandSize, bare_m, hedge, parapets, rails, wall};
 use crate::structure::draped_solid::DrapedSolid;
-use crate::structure::fence::{Posts, rails, spans, stands};
-use crate::structure::hedge::hedge;
+use crate::structure::fence::{Posts, spans, stands};
 use crate::structure::obstacle::{self, Obstacles};
 use crate::structure::power::{PowerLine, clear};
-use crate::structure::trench::{bare_m, parapets};
-use crate::structure::wall::wall;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::triangle_surface::TriangleSurface;
 use crate::terrain::volumes::Volumes;
@@ -57,7 +55,7 @@ pub struct FenceLine {
     feature: FeatureId,
 }
 
-/// The sizes of a kind that nobody states.
+/// The default sizes of a kind.
 struct Sizes {
     height_m: f64,
     width_m: f64,
@@ -90,12 +88,12 @@ pub fn lay_out(
     let (mut lines, mut pieces, mut undug) = (Vec::new(), 0.0, 0);
     let extent = lattice.extent();
     for fence in &document.fences {
-        let given = fence.name.as_deref();
+        let stated = fence.name.as_deref();
         let found = sources.lines(&fence.source)?;
-        for (attributes, line) in near::lines(found, (&extent, 0.0), (FeatureKind::Fence, given), collected) {
-            let name = attributes.name(given);
+        for (attributes, line) in near::lines(found, &extent, 0.0, FeatureKind::Fence, stated, collected) {
+            let name = attributes.name(stated);
             let feature = collected.add(FeatureKind::Fence, name.clone());
-            let line = line_of(fence, &attributes, (&line, &extent), feature, collected);
+            let line = fence_line(fence, &attributes, line.clip(&extent), feature, collected);
             pieces += line.pieces();
             if pieces > MOST_PIECES {
                 return Err(too_many(document, fence, line.kind));
@@ -128,10 +126,10 @@ fn too_many(document: &Document, fence: &FenceTable, kind: FenceKind) -> Diagnos
     document.error_at(place, message).with_help("give it a wider `spacing`, or choose fewer lines by `where`")
 }
 
-fn line_of(
+fn fence_line(
     fence: &FenceTable,
     attributes: &Attributes,
-    (line, extent): (&Polyline, &Rect),
+    parts: Vec<Vec<DVec2>>,
     feature: FeatureId,
     collected: &mut SceneBuilder,
 ) -> FenceLine {
@@ -142,7 +140,7 @@ fn line_of(
     let mut size = |key, default: f64| attributes.number_or(key, default, &mut collected.default_counts);
     FenceLine {
         kind,
-        parts: line.clip(extent),
+        parts,
         height_m: size(fence.height.as_ref(), tagged.unwrap_or(sizes.height_m)),
         width_m: size(fence.width.as_ref(), sizes.width_m),
         spacing_m: size(fence.spacing.as_deref(), sizes.spacing_m),
@@ -250,7 +248,7 @@ pub fn set(lines: &[FenceLine], ground: DrawnGround<'_>, collected: &mut SceneBu
     }
 }
 
-/// What stands along one part of a line; `added` counts pylons that nobody asked for.
+/// What stands along one part of a line; `added` counts the pylons that keep wires off the ground.
 fn uprights(
     points: &[DVec2],
     line: &FenceLine,
@@ -258,20 +256,21 @@ fn uprights(
     added: &mut usize,
 ) -> Vec<DrapedSolid> {
     let FenceLine { height_m, width_m, spacing_m, sag, .. } = *line;
+    let size = BandSize { width_m, height_m, every_m: spacing_m };
     match line.kind {
         FenceKind::Fence => {
             let posts = Posts { stands: stands(points, spacing_m), width_m, height_m };
             let [low, high] = rails(points, width_m, height_m);
             vec![DrapedSolid::Posts(posts), DrapedSolid::Band(low), DrapedSolid::Band(high)]
         }
-        FenceKind::Wall => vec![DrapedSolid::Band(wall(points, (width_m, height_m), spacing_m))],
-        FenceKind::Hedge => vec![DrapedSolid::Band(hedge(points, (width_m, height_m), spacing_m))],
+        FenceKind::Wall => vec![DrapedSolid::Band(wall(points, size))],
+        FenceKind::Hedge => vec![DrapedSolid::Band(hedge(points, size))],
         FenceKind::PowerLine => {
             let (pylons, more) = clear(&stands(points, spacing_m), height_m, ground);
             *added += more;
             vec![DrapedSolid::PowerLine(PowerLine { pylons, height_m, width_m, sag })]
         }
-        FenceKind::Trench => parapets(points, (width_m, height_m), spacing_m).map(DrapedSolid::Band).to_vec(),
+        FenceKind::Trench => parapets(points, size).map(DrapedSolid::Band).to_vec(),
         FenceKind::Obstacles => {
             let stands = obstacle::belt(points, width_m, spacing_m);
             vec![DrapedSolid::Obstacles(Obstacles { stands, height_m })]

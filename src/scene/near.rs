@@ -1,4 +1,4 @@
-//! Leaving out what does not come near the ground.
+//! Leaves out what does not come near the ground.
 
 use glam::DVec2;
 
@@ -15,11 +15,13 @@ use crate::scene::sources::Sourced;
 pub const MERGE_M: f64 = 0.01;
 
 /// The lines of `kind` of which some part lies within `reach_m` of the ground's `extent`, with their attributes; the
-/// others, and those that are a single point, are noted. `given` is the name in the scene file.
+/// others, and those that are a single point, are noted. `name` is the one in the scene file.
 pub fn lines(
     lines: Vec<Sourced<Vec<DVec2>>>,
-    (extent, reach_m): (&Rect, f64),
-    (kind, given): (FeatureKind, Option<&str>),
+    extent: &Rect,
+    reach_m: f64,
+    kind: FeatureKind,
+    name: Option<&str>,
     collected: &mut SceneBuilder,
 ) -> Vec<(Attributes, Polyline)> {
     let count = lines.len();
@@ -33,7 +35,7 @@ pub fn lines(
         .collect();
     let off = count - near.len();
     if off > 0 {
-        let what = given.map(|name| format!(" of '{name}'")).unwrap_or_default();
+        let what = name.map(|name| format!(" of '{name}'")).unwrap_or_default();
         collected.notes.push(format!(
             "{off} {}{what} left out: off the elevation model or a single point",
             kind.noun(off)

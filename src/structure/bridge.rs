@@ -50,7 +50,6 @@ const SAME_DECK_M: f64 = 1.5;
 const MOST_TILT: f64 = 0.25;
 
 const CONCRETE: Srgba = Srgba::opaque(236, 231, 219);
-const WEATHERED: Srgba = Srgba::opaque(214, 207, 193);
 
 /// How a deck's end lies across.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,7 +116,8 @@ pub fn build(
     course: &DeckCourse<'_>,
     profile: &Profile,
     options: &BridgeOptions,
-    (ground, decks): (&GroundHeight<'_>, &Deck),
+    ground: &GroundHeight<'_>,
+    decks: &Deck,
 ) -> BridgeSolids {
     let sections = sections(course, profile, options, ground);
     let mut body = Faces::default();
@@ -131,16 +131,15 @@ pub fn build(
             from_end <= length_m + 1e-6
         };
         let under: Vec<DeckSection> = sections.iter().filter(reach).copied().collect();
-        pier::abutment(&under, (course.width_m, options), ground, WEATHERED, &mut body);
+        pier::abutment(&under, course.width_m, options, ground, &mut body);
         let last = if end == 0 { sections.first() } else { sections.last() };
         if let Some(section) = last {
-            pier::end_posts(section, (course.width_m, options), WEATHERED, &mut body);
+            pier::end_posts(section, course.width_m, options, &mut body);
         }
     }
     for &station in &options.piers_m {
         let section = nearest(&sections, station);
-        bridge.piers +=
-            usize::from(pier::pier(section, (course.width_m, options), ground, CONCRETE, &mut body));
+        bridge.piers += usize::from(pier::pier(section, course.width_m, options, ground, &mut body));
     }
     bridge.body = body.into_mesh();
     bridge
@@ -370,7 +369,7 @@ mod tests {
         let options = BridgeOptions { piers_m: vec![40.0], ..options(90.0) };
         let decks = Deck::new(&beside).expect("sound");
         let level = Profile::straight(90.0, [50.0; 2]);
-        let bridge = build(&course(&line), &level, &options, (&|_| Some(50.0), &decks));
+        let bridge = build(&course(&line), &level, &options, &|_| Some(50.0), &decks);
         bridge.check().expect("sound");
         let highest = |side: f32| {
             let corners = bridge.body.vertices.iter().map(|vertex| vertex.position);
@@ -391,7 +390,7 @@ mod tests {
             let points = [DVec2::ZERO, DVec2::new(120.0, 0.0)].map(turn);
             let line = Polyline::new(points, 0.0).expect("a line");
             let profile = Profile::straight(120.0, [100.0, 102.4]);
-            let bridge = build(&course(&line), &profile, &options(120.0), (&valley, &none()));
+            let bridge = build(&course(&line), &profile, &options(120.0), &valley, &none());
             bridge.check().expect("sound");
             assert_eq!(bridge.piers, 2);
             for station in [40.0, 80.0] {
@@ -412,7 +411,7 @@ mod tests {
         let line = Polyline::new([DVec2::ZERO, DVec2::new(90.0, 0.0)], 0.0).expect("a line");
         let slope = |at: DVec2| Some(50.0 + at.y * 0.1);
         let bridge =
-            build(&course(&line), &Profile::straight(90.0, [50.0; 2]), &options(90.0), (&slope, &none()));
+            build(&course(&line), &Profile::straight(90.0, [50.0; 2]), &options(90.0), &slope, &none());
         let height = |x: f32, y: f32| {
             let mut corners = bridge.deck.iter().flatten().filter(|corner| corner.x == x && corner.y == y);
             corners.next().expect("a corner").z
@@ -440,7 +439,7 @@ mod tests {
                 .map(|(&station_m, &level_m)| ClearancePoint { station_m, level_m }).collect();
             let ends = [floors[0].level_m, floors[floors.len() - 1].level_m];
             let profile = clearing(&Profile::straight(line.length(), ends), &floors, &[], 0.1);
-            let bridge = build(&course(&line), &profile, &options(line.length()), (&|_| Some(95.0), &none()));
+            let bridge = build(&course(&line), &profile, &options(line.length()), &|_| Some(95.0), &none());
             prop_assert_eq!(bridge.check(), Ok(()));
             let plan = |facet: &SurfaceTriangle| (facet[1] - facet[0]).truncate().perp_dot((facet[2] - facet[0]).truncate());
             let area: f32 = bridge.deck.iter().map(plan).sum::<f32>() / 2.0;

@@ -39,6 +39,25 @@ impl Faces {
         }
     }
 
+    /// Adds the quads between two rings of as many corners, the second counter-clockwise about the first seen from outside.
+    pub fn tube(&mut self, near: &[Vec3], far: &[Vec3], color: Srgba) {
+        for (side, &corner) in near.iter().enumerate() {
+            let next = (side + 1) % near.len();
+            self.polygon(&[corner, near[next], far[next], far[side]], color);
+        }
+    }
+
+    /// Adds the closed solid of tubes between rings in a row.
+    pub fn stack<const CORNERS: usize>(&mut self, rings: &[[Vec3; CORNERS]], color: Srgba) {
+        for pair in rings.windows(2) {
+            self.tube(&pair[0], &pair[1], color);
+        }
+        if let [first, .., last] = rings {
+            self.polygon(&std::array::from_fn::<_, CORNERS, _>(|at| first[CORNERS - 1 - at]), color);
+            self.polygon(last, color);
+        }
+    }
+
     /// Adds a flat polygon of any shape in triangles, triples of positions in `corners`, all counter-clockwise seen from
     /// where it faces; nothing where it has no area.
     pub fn flat(&mut self, corners: &[Vec3], triangles: &[[usize; 3]], color: Srgba) {

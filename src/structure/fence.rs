@@ -1,21 +1,13 @@
-//! Fences: posts that stand on the displayed ground and rails that follow it from post to post.
+//! The posts of fences, and where things stand along a line.
 
 use glam::{DVec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::structure::faces::Faces;
-use crate::structure::fence_band::{BandSection, FenceBand, SectionCorner};
-use crate::structure::fence_track::Track;
 use crate::structure::power_beam::square;
 use crate::terrain::support_surface::SupportSurface;
 
 const WOOD: Srgba = Srgba::opaque(150, 124, 92);
-const RAIL: Srgba = Srgba::opaque(176, 150, 114);
-
-/// Rails from the ground up as shares of the fence's height: where each begins and ends.
-const RAILS: [(f64, f64); 2] = [(0.36, 0.48), (0.76, 0.88)];
-/// A rail's thickness as a share of the post's.
-const RAIL_THICKNESS: f64 = 0.45;
 
 /// Where something stands, and which way the line runs there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,23 +42,6 @@ impl Posts {
             square(faces, (at(-dug_m), at(self.height_m)), (half, half), along, WOOD);
         }
     }
-}
-
-/// The rails of a fence along `points` whose posts are `post_m` wide.
-pub fn rails(points: &[DVec2], post_m: f64, height_m: f64) -> [FenceBand; 2] {
-    RAILS.map(|(low, high)| {
-        let (low, high) = (low * height_m, high * height_m);
-        let corner = |share: f64, up_m: f64| SectionCorner { share, up_m };
-        FenceBand {
-            track: Track::new(points, post_m * RAIL_THICKNESS / 2.0),
-            section: BandSection {
-                feet: (-1.0, 1.0),
-                corners: vec![corner(0.0, low), corner(0.0, high), corner(1.0, high), corner(1.0, low)],
-                colors: vec![RAIL; 4],
-            },
-            ruffle: None,
-        }
-    })
 }
 
 /// Where posts stand along a line of distinct points: at every vertex and, evenly in between, no more than `spacing_m`

@@ -3,6 +3,7 @@
 //! Positions are world space; heights are handed in as they are drawn, times the scene's exaggeration, so that a solid
 //! meets the ground it stands on.
 
+pub mod bands;
 pub mod bridge;
 pub mod building;
 pub mod building_footing;
@@ -15,7 +16,6 @@ pub mod faces;
 pub mod fence;
 pub mod fence_band;
 pub mod fence_track;
-pub mod hedge;
 pub mod obstacle;
 pub mod pier;
 pub mod plinth;
@@ -23,6 +23,4 @@ pub mod power;
 pub mod power_beam;
 pub mod roof;
 pub mod roof_hipped;
-pub mod trench;
 pub mod tunnel;
-pub mod wall;

@@ -16,6 +16,9 @@ use crate::structure::bridge::{BridgeOptions, FOUNDED_M, GIRDER, GroundHeight, P
 use crate::structure::deck::DeckSection;
 use crate::structure::faces::Faces;
 
+const CONCRETE: Srgba = Srgba::opaque(236, 231, 219);
+const WEATHERED: Srgba = Srgba::opaque(214, 207, 193);
+
 /// How much a shaft widens downward on each side, meters a meter.
 const BATTER: f64 = 0.02;
 
@@ -31,9 +34,9 @@ const SHAFT: f64 = 0.5;
 /// Adds a pier under a section; `false` where it would be lower than is worth building, or where there is no ground.
 pub(in crate::structure) fn pier(
     section: &DeckSection,
-    (width_m, options): (f64, &BridgeOptions),
+    width_m: f64,
+    options: &BridgeOptions,
     ground: &GroundHeight<'_>,
-    color: Srgba,
     faces: &mut Faces,
 ) -> bool {
     let across = (section.aside[0] - section.aside[1]).normalize_or(DVec2::X);
@@ -65,16 +68,16 @@ pub(in crate::structure) fn pier(
         let lip = flare * 0.25;
         rings.extend([frame.ring((head, along), top - lip), frame.ring((head, along), top)]);
     }
-    stack(&rings, color, faces);
+    faces.stack(&rings, CONCRETE);
     true
 }
 
 /// Adds the abutment under the sections: a block from within the deck to below the ground, whose sides are its wing walls.
 pub(in crate::structure) fn abutment(
     under: &[DeckSection],
-    (width_m, options): (f64, &BridgeOptions),
+    width_m: f64,
+    options: &BridgeOptions,
     ground: &GroundHeight<'_>,
-    color: Srgba,
     faces: &mut Faces,
 ) {
     let edges = under.iter().flat_map(|section| section.aside.map(|aside| section.at + aside));
@@ -92,24 +95,14 @@ pub(in crate::structure) fn abutment(
         .iter()
         .map(|&[left, right]| [left, right, right.truncate().extend(foot), left.truncate().extend(foot)])
         .collect();
-    let (Some(first), Some(last)) = (rings.first(), rings.last()) else { return };
-    for pair in rings.windows(2) {
-        for side in 0..4 {
-            let next = (side + 1) % 4;
-            faces.polygon(&[pair[0][side], pair[0][next], pair[1][next], pair[1][side]], color);
-        }
-    }
-    if rings.len() > 1 {
-        faces.polygon(&[first[3], first[2], first[1], first[0]], color);
-        faces.polygon(last, color);
-    }
+    faces.stack(&rings, WEATHERED);
 }
 
 /// Adds the posts in which both parapets end.
 pub(in crate::structure) fn end_posts(
     section: &DeckSection,
-    (width_m, options): (f64, &BridgeOptions),
-    color: Srgba,
+    width_m: f64,
+    options: &BridgeOptions,
     faces: &mut Faces,
 ) {
     let by = magnified(width_m);
@@ -121,7 +114,7 @@ pub(in crate::structure) fn end_posts(
         let road = f64::from(section.drawn(side, part, 0.0, options.exaggeration).z);
         let rings =
             [-0.5 * options.depth_m - by, 1.6 * by].map(|above| frame.ring((half, half), road + above));
-        stack(&rings, color, faces);
+        faces.stack(&rings, WEATHERED);
     }
 }
 
@@ -150,21 +143,6 @@ impl PierFrame {
             let at = self.at + self.across * aside + self.across.perp() * ahead;
             at.as_vec2().extend(z as f32)
         })
-    }
-}
-
-/// Adds the closed solid between rings that lie over each other.
-fn stack(rings: &[[Vec3; 8]], color: Srgba, faces: &mut Faces) {
-    for pair in rings.windows(2) {
-        for side in 0..8 {
-            let next = (side + 1) % 8;
-            faces.polygon(&[pair[0][side], pair[0][next], pair[1][next], pair[1][side]], color);
-        }
-    }
-    if let (Some(first), Some(last)) = (rings.first(), rings.last()) {
-        let bottom: Vec<Vec3> = first.iter().rev().copied().collect();
-        faces.polygon(&bottom, color);
-        faces.polygon(last, color);
     }
 }
 

@@ -23,10 +23,7 @@ pub fn square(faces: &mut Faces, (from, to): (Vec3, Vec3), half_m: (f32, f32), a
         [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(a, b)| at + (aside * a + other * b) * half)
     };
     let (near, far) = (ring(from, half_m.0), ring(to, half_m.1));
-    for side in 0..4 {
-        let next = (side + 1) % 4;
-        faces.polygon(&[near[side], near[next], far[next], far[side]], color);
-    }
+    faces.tube(&near, &far, color);
     faces.polygon(&far, color);
     faces.polygon(&[near[3], near[2], near[1], near[0]], color);
 }

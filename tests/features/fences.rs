@@ -9,13 +9,11 @@ use sandtable::pipeline::scene_file::open_scene;
 use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::scene::Scene;
 use sandtable::scene::picture::display;
+use sandtable::structure::bands::{BandSize, hedge, parapets, rails, wall};
 use sandtable::structure::draped_solid::DrapedSolid;
-use sandtable::structure::fence::{rails, stands};
+use sandtable::structure::fence::stands;
 use sandtable::structure::fence_band::{FenceBand, check_feet};
-use sandtable::structure::hedge::hedge;
 use sandtable::structure::power::check_wires;
-use sandtable::structure::trench::parapets;
-use sandtable::structure::wall::wall;
 use sandtable::terrain::full_resolution::FullResolution;
 use sandtable::terrain::support_surface::SupportSurface;
 use sandtable::view::camera::Camera;
@@ -61,10 +59,10 @@ proptest! {
         prop_assume!(displayed.is_some());
         let displayed = displayed.expect("checked");
         let points: Vec<DVec2> = points.into_iter().map(DVec2::from).collect();
-        let bands: Vec<FenceBand> = [wall(&points, (width_m, 3.0), 4.0), hedge(&points, (width_m, 3.0), 3.0)]
+        let bands: Vec<FenceBand> = [wall(&points, BandSize { width_m: width_m, height_m: 3.0, every_m: 4.0 }), hedge(&points, BandSize { width_m: width_m, height_m: 3.0, every_m: 3.0 })]
             .into_iter()
             .chain(rails(&points, width_m, 2.0))
-            .chain(parapets(&points, (width_m, 2.0), 5.0))
+            .chain(parapets(&points, BandSize { width_m: width_m, height_m: 2.0, every_m: 5.0 }))
             .collect();
         for band in &bands {
             let off = check_feet(band, &displayed);
@@ -134,7 +132,7 @@ fn a_wall_holds_what_its_length_width_and_height_make() {
             (0..quarter).fold(DVec2::new(x, y), |at, _| at.perp()) + DVec2::new(262.0, 455.0)
         };
         let points = [turn(-30.0, 0.0), turn(0.0, 0.0), turn(0.0, 25.0)];
-        let mesh = DrapedSolid::Band(wall(&points, (2.0, 3.0), 50.0))
+        let mesh = DrapedSolid::Band(wall(&points, BandSize { width_m: 2.0, height_m: 3.0, every_m: 50.0 }))
             .mesh(SupportSurface { displayed: &displayed, ground: &finest(scene) });
         let at = |position: [f32; 3]| Vec3::from(position).as_dvec3() - DVec2::new(262.0, 455.0).extend(0.0);
         // Between ground and top every upright prism is as high as the wall: the sides and the top tell its volume.

@@ -181,14 +181,14 @@ fn mend(bed: &mut ChannelBed, stretch: &CarveStretch, mends: u8) -> Vec<usize> {
     if excess_m <= ROUNDING_M {
         return Vec::new();
     }
-    let mut moved = lower_ahead(bed, stretch, (excess_m, mends));
+    let mut moved = lower_ahead(bed, stretch, excess_m, mends);
     if rise_m(bed, stretch) > ROUNDING_M {
         moved.extend(raise_behind(bed, stretch));
     }
     moved
 }
 
-fn lower_ahead(bed: &mut ChannelBed, stretch: &CarveStretch, (excess_m, mends): (f64, u8)) -> Vec<usize> {
+fn lower_ahead(bed: &mut ChannelBed, stretch: &CarveStretch, excess_m: f64, mends: u8) -> Vec<usize> {
     let lowest_behind_m = stretch.behind().map(|place| bed.heights_m[place]).fold(f64::INFINITY, f64::min);
     let posts = stretch.places.into_iter().zip(stretch.shares);
     let mut ahead: Vec<(usize, f64)> =

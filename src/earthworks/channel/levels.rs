@@ -6,8 +6,8 @@
 //! water that falls, and that is where reaches end ([`super::reaches`]). So a bank that is a pit lowers the water below it
 //! by the deepest cut at most.
 //!
-//! Then courses hear of each other at the vertices they share: none may be higher there than what flows in, nor lower than
-//! a lake that its water has yet to reach. Levels only fall, and only to levels that are there, so the hearing ends.
+//! Then courses are lowered at the vertices they share: none may be higher there than what flows in, nor lower than a lake
+//! that its water has yet to reach. Levels only fall, and only to levels that exist, so the rounds end.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -43,7 +43,13 @@ pub(super) fn settle(courses: &mut [ChannelCourse], channels: &[Channel]) {
     relax(courses, &mut nodes, lower);
     relax(courses, &mut nodes, raise_floor);
     for (index, course) in courses.iter_mut().enumerate() {
-        keep_above_lakes(course, &nodes, index);
+        let floors_m = floors_m(course, &nodes, index);
+        for (station, floor_m) in course.stations.iter_mut().zip(floors_m) {
+            // NaN stays: there is no ground to raise.
+            if station.level_m < floor_m {
+                station.level_m = floor_m;
+            }
+        }
     }
 }
 
@@ -160,48 +166,27 @@ fn lower(course: &mut ChannelCourse, nodes: &mut Nodes, index: usize) -> Vec<usi
     lowered
 }
 
-/// Tells the nodes from which water of this course comes to a lake, and returns those that knew of none so high.
+/// Raises the floors of the nodes from which water of this course comes to a lake, and returns these nodes.
 fn raise_floor(course: &mut ChannelCourse, nodes: &mut Nodes, index: usize) -> Vec<usize> {
+    let floors_m = floors_m(course, nodes, index);
     let mut raised = Vec::new();
-    let stations_and_nodes = floors(course, nodes, index);
-    for (at, floor_m) in stations_and_nodes {
-        // What ends here does not speak for the water that goes on from here.
-        let goes_on = at.0 + 1 < course.stations.len();
-        if goes_on && floor_m > nodes.nodes[at.1].floor_m {
-            nodes.nodes[at.1].floor_m = floor_m;
-            raised.push(at.1);
+    for &(at, node) in nodes.of_courses[index].iter().rev() {
+        // What ends here says nothing about the water that continues from here.
+        let continues = at + 1 < course.stations.len() && course.stations[at].reach.is_some();
+        if continues && floors_m[at] > nodes.nodes[node].floor_m {
+            nodes.nodes[node].floor_m = floors_m[at];
+            raised.push(node);
         }
     }
     raised
 }
 
-/// The highest lake downstream of each of a course's nodes, with the node's station.
-fn floors(course: &ChannelCourse, nodes: &Nodes, index: usize) -> Vec<((usize, usize), f64)> {
-    let (mut found, mut highest_m) = (Vec::new(), f64::NEG_INFINITY);
+/// For each station of a course the highest lake that its water has yet to reach; minus infinity for none.
+fn floors_m(course: &ChannelCourse, nodes: &Nodes, index: usize) -> Vec<f64> {
+    let mut floors_m = vec![f64::NEG_INFINITY; course.stations.len()];
     let mut own = nodes.of_courses[index].iter().rev().peekable();
-    let mut reach = None;
-    for (at, station) in course.stations.iter().enumerate().rev() {
-        let place = own.next_if(|(own, _)| *own == at);
-        if station.reach != reach {
-            (reach, highest_m) = (station.reach, f64::NEG_INFINITY);
-        }
-        if reach.is_none() {
-            continue;
-        }
-        highest_m = highest_m.max(station.lake_m.unwrap_or(f64::NEG_INFINITY));
-        if let Some(&place) = place {
-            highest_m = highest_m.max(nodes.nodes[place.1].floor_m);
-            found.push((place, highest_m));
-        }
-    }
-    found
-}
-
-/// Raises the levels of a course to the highest lake that its water has yet to reach.
-fn keep_above_lakes(course: &mut ChannelCourse, nodes: &Nodes, index: usize) {
     let (mut floor_m, mut reach) = (f64::NEG_INFINITY, None);
-    let mut own = nodes.of_courses[index].iter().rev().peekable();
-    for (at, station) in course.stations.iter_mut().enumerate().rev() {
+    for (at, station) in course.stations.iter().enumerate().rev() {
         let node = own.next_if(|(own, _)| *own == at);
         if station.reach != reach {
             (reach, floor_m) = (station.reach, f64::NEG_INFINITY);
@@ -209,15 +194,11 @@ fn keep_above_lakes(course: &mut ChannelCourse, nodes: &Nodes, index: usize) {
         if reach.is_none() {
             continue;
         }
-        if let Some(&(_, node)) = node {
-            floor_m = floor_m.max(nodes.nodes[node].floor_m);
-        }
-        floor_m = floor_m.max(station.lake_m.unwrap_or(f64::NEG_INFINITY));
-        // NaN stays: there is no ground to raise.
-        if station.level_m < floor_m {
-            station.level_m = floor_m;
-        }
+        let of_node = node.map_or(f64::NEG_INFINITY, |&(_, node)| nodes.nodes[node].floor_m);
+        floor_m = floor_m.max(station.lake_m.unwrap_or(f64::NEG_INFINITY)).max(of_node);
+        floors_m[at] = floor_m;
     }
+    floors_m
 }
 
 /// The levels at a course's ends, nothing cut yet.

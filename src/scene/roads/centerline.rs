@@ -57,8 +57,8 @@ pub fn collect(
     for (table, road) in document.roads.iter().enumerate() {
         let lines = sources.lines(&road.source)?;
         let widths_m = lines.first().and_then(|line| widths_m(road, &line.shape));
-        let given = (FeatureKind::Road, road.name.as_deref());
-        for (attributes, line) in near::lines(lines, (extent, REACH_M), given, collected) {
+        let name = road.name.as_deref();
+        for (attributes, line) in near::lines(lines, extent, REACH_M, FeatureKind::Road, name, collected) {
             let mut centerline = centerline(road, attributes, line, collected);
             centerline.table = table;
             if let Some(widths_m) = &widths_m {

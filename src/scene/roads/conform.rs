@@ -66,9 +66,9 @@ pub fn conform(
         Earthworks { roads, rules: &rules, walls: walls(roads, &routes, &meetings), meetings: &meetings };
     let volumes = works.build(lattice, &routes, collected);
     for (route, volumes) in routes.iter().zip(&volumes) {
-        tell(&roads[route.road], route, volumes, collected);
+        report_road(&roads[route.road], route, volumes, collected);
     }
-    total(document, roads, (&routes, &volumes), collected);
+    note_totals(document, roads, &routes, &volumes, collected);
     replace(roads, &routes);
     Ok(())
 }
@@ -174,7 +174,7 @@ fn make_denser(lattice: &mut Lattice, strips: &[GradingStrip], collected: &mut S
 }
 
 /// Reports a road and keeps its profile.
-fn tell(road: &Centerline, route: &Route, volumes: &Volumes, collected: &mut SceneBuilder) {
+fn report_road(road: &Centerline, route: &Route, volumes: &Volumes, collected: &mut SceneBuilder) {
     let name = collected.name(road.feature).to_owned();
     let all = route.all_spans();
     let support_at =
@@ -209,11 +209,12 @@ fn tell(road: &Centerline, route: &Route, volumes: &Volumes, collected: &mut Sce
     });
 }
 
-/// Notes what the roads of each table come to.
-fn total(
+/// Notes the earth moved for the roads of each table.
+fn note_totals(
     document: &Document,
     roads: &[Centerline],
-    (routes, volumes): (&[Route], &[Volumes]),
+    routes: &[Route],
+    volumes: &[Volumes],
     collected: &mut SceneBuilder,
 ) {
     let mut tables: BTreeMap<usize, (usize, Volumes, [usize; 2])> = BTreeMap::new();
@@ -227,10 +228,11 @@ fn total(
         }
     }
     for (table, (count, Volumes { cut_m3, fill_m3 }, [bridges, tunnels])) in tables {
-        let of =
+        let name =
             document.roads[table].name.as_deref().map(|name| format!(" of '{name}'")).unwrap_or_default();
         let roads = if count == 1 { "1 road".to_owned() } else { format!("{count} roads") };
-        let mut note = format!("the ground follows {roads}{of}: {cut_m3:.0} m³ cut, {fill_m3:.0} m³ filled");
+        let mut note =
+            format!("the ground follows {roads}{name}: {cut_m3:.0} m³ cut, {fill_m3:.0} m³ filled");
         if bridges + tunnels > 0 {
             note += &format!("; on bridges {bridges} times and in tunnels {tunnels} times");
         }

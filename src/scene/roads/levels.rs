@@ -1,8 +1,8 @@
-//! How high bridges and tunnels run: each chain's elevations, from what it starts on, leads to and passes over.
+//! How high bridges and tunnels run: the elevations of each chain, from its ends and what it passes over.
 //!
-//! A chain that ends on the ground starts at its height; where chains meet in the air, the meeting's level is such that
-//! all of them rise evenly there (the levels of the meetings solve Laplace's equation on the network, each chain weighing
-//! as the inverse of its length). Chains of lower level come first, so that those above know what they pass over.
+//! A chain that ends on the ground has its height there. Where chains meet in the air, the levels of the meetings solve
+//! Laplace's equation on the network, each chain weighing as the inverse of its length: all of them rise evenly there.
+//! Chains of lower level come first, so that those above know what they pass over.
 
 use std::collections::BTreeMap;
 
@@ -21,14 +21,13 @@ use crate::terrain::lattice::Lattice;
 use crate::terrain::query::deck::Deck;
 use crate::terrain::query::{Interpolation, ground_height};
 
-/// The room over roads and water that a bridge gives where it can be climbed to, in meters: 4.5 m for traffic and some
-/// to spare.
+/// The clearance of a bridge over roads and water where it can be climbed to, in meters: 4.5 m for traffic and a reserve.
 pub const CLEARANCE_M: f64 = 5.0;
 
-/// The steepest way up to that, rise over run.
+/// The steepest climb to that, rise over run.
 pub const STEEPEST: f64 = 0.10;
 
-/// The widest span between piers of a low bridge where nothing is stated, in meters.
+/// The default of the greatest distance between piers of a low bridge, in meters.
 pub const PIER_SPACING_M: f64 = 25.0;
 
 /// A high bridge's spans grow with its height, as its piers cost more: this part of it.
@@ -37,10 +36,10 @@ const SPACING_PER_HEIGHT: f64 = 0.6;
 /// They grow up to this, in meters, the longest that a girder without haunches carries.
 const WIDEST_SPACING_M: f64 = 70.0;
 
-/// The most places at which the ground under a chain is looked at.
+/// The most points at which the ground under a chain is sampled.
 const MOST_SAMPLES: f64 = 4096.0;
 
-/// How often levels of meetings are evened out: changes die off as fast as chains between two grounds are few.
+/// How often levels of meetings are averaged: changes die off the faster, the fewer chains lie between two grounds.
 const EVENINGS: usize = 200;
 
 /// What lies under bridges.
@@ -91,17 +90,16 @@ pub fn settle(
     roads: &[Centerline],
     site: &Site<'_>,
 ) -> Vec<Option<ChainRun>> {
-    let below = Below::new(spans, chains, roads);
+    let below = Below::new(spans, chains, roads, site);
     let samples: Vec<Vec<ClearancePoint>> = chains.iter().map(|chain| sampled(chain, spans, site)).collect();
-    let meetings = meetings(spans, chains, &samples, &below);
+    let meetings = meetings(&samples, &below);
     let mut order: Vec<usize> = (0..chains.len()).collect();
     order.sort_by_key(|&chain| {
         (below.leans_on_another(&chains[chain]), top_level(&chains[chain], spans), chain)
     });
     let mut runs: Vec<Option<ChainRun>> = vec![None; chains.len()];
     for index in order {
-        let run = below.run((index, &samples[index]), (spans, chains), &meetings, &runs, site);
-        runs[index] = run;
+        runs[index] = below.run(index, &samples[index], &meetings, &runs);
     }
     runs
 }
@@ -132,38 +130,47 @@ fn sampled(chain: &SpanChain, spans: &[RoadSpan], site: &Site<'_>) -> Vec<Cleara
 }
 
 /// What chains pass over and lean on.
-struct Below {
-    /// Where spans cross lower ways: the roads on the ground first, then the spans.
+struct Below<'a> {
+    spans: &'a [RoadSpan],
+    chains: &'a [SpanChain],
+    site: &'a Site<'a>,
+    /// Where bridges cross lower lines: the roads on the ground first, then the bridges.
     crossings: Vec<Overpass>,
-    /// Which span each of the crossings' upper ways is.
+    /// The spans of the crossings' upper lines.
     bridges: Vec<usize>,
-    /// Which road each of the first lower ways is.
-    roads: Vec<usize>,
+    /// How many of the lower lines are roads on the ground.
+    roads: usize,
+    /// The widths of the lower lines.
     widths_m: Vec<f64>,
-    /// Which chain and link each span is.
+    /// The chain and the link of each span.
     link_of: Vec<(usize, usize)>,
-    /// The vertices inside spans, by place: span and station.
+    /// The vertices inside spans: span and station.
     inside: BTreeMap<VertexKey, (usize, f64)>,
 }
 
-impl Below {
-    fn new(spans: &[RoadSpan], chains: &[SpanChain], all_roads: &[Centerline]) -> Self {
+impl<'a> Below<'a> {
+    fn new(
+        spans: &'a [RoadSpan],
+        chains: &'a [SpanChain],
+        all_roads: &[Centerline],
+        site: &'a Site<'a>,
+    ) -> Self {
         let bridges: Vec<usize> =
             (0..spans.len()).filter(|&span| spans[span].alignment.support == Support::Bridge).collect();
-        let roads: Vec<usize> = (0..all_roads.len())
-            .filter(|&road| all_roads[road].alignment.support == Support::Ground)
-            .collect();
         let over = |&span: &usize| PassedLine {
             line: &spans[span].alignment.line,
             width_m: spans[span].options.width_m,
             level: spans[span].level,
         };
         let upper: Vec<PassedLine<'_>> = bridges.iter().map(over).collect();
-        let on_ground = roads.iter().map(|&road| {
-            let road = &all_roads[road];
-            PassedLine { line: &road.alignment.line, width_m: road.options.width_m, level: road.level }
+        let on_ground = all_roads.iter().filter(|road| road.alignment.support == Support::Ground);
+        let passed = on_ground.map(|road| PassedLine {
+            line: &road.alignment.line,
+            width_m: road.options.width_m,
+            level: road.level,
         });
-        let lower: Vec<PassedLine<'_>> = on_ground.chain(upper.iter().copied()).collect();
+        let roads = passed.clone().count();
+        let lower: Vec<PassedLine<'_>> = passed.chain(upper.iter().copied()).collect();
         let mut link_of = vec![(0, 0); spans.len()];
         for (index, chain) in chains.iter().enumerate() {
             for (link, placed) in chain.links.iter().enumerate() {
@@ -177,6 +184,9 @@ impl Below {
             inside.extend(between.map(|vertex| (vertex_key(points[vertex]), (index, stations[vertex]))));
         }
         Self {
+            spans,
+            chains,
+            site,
             crossings: crossings::find(&upper, &lower),
             widths_m: lower.iter().map(|way| way.width_m).collect(),
             bridges,
@@ -186,11 +196,11 @@ impl Below {
         }
     }
 
-    /// The chain and station on it of a place inside another chain's line.
-    fn host(&self, at: VertexKey, chains: &[SpanChain]) -> Option<(usize, f64)> {
+    /// The chain that has a vertex inside it, and the vertex' station.
+    fn host(&self, at: VertexKey) -> Option<(usize, f64)> {
         let &(span, on_span_m) = self.inside.get(&at)?;
         let (chain, link) = self.link_of[span];
-        Some((chain, chains[chain].links[link].station_m(on_span_m)))
+        Some((chain, self.chains[chain].links[link].station_m(on_span_m)))
     }
 
     fn leans_on_another(&self, chain: &SpanChain) -> bool {
@@ -199,18 +209,17 @@ impl Below {
 
     fn run(
         &self,
-        (index, ground): (usize, &[ClearancePoint]),
-        (spans, chains): (&[RoadSpan], &[SpanChain]),
+        index: usize,
+        ground: &[ClearancePoint],
         meetings: &BTreeMap<VertexKey, f64>,
         runs: &[Option<ChainRun>],
-        site: &Site<'_>,
     ) -> Option<ChainRun> {
-        let chain = &chains[index];
+        let (chain, spans) = (&self.chains[index], self.spans);
         let own = ground_ends(ground)?;
         let end_m = |end: usize| match chain.ends[end] {
             ChainEnd::Ground | ChainEnd::Loose => own[end],
             ChainEnd::Onward(at) => {
-                let host = self.host(at, chains).filter(|&(host, _)| host != index);
+                let host = self.host(at).filter(|&(host, _)| host != index);
                 let on_host = host.and_then(|(host, station)| Some(runs[host].as_ref()?.profile.at(station)));
                 on_host.or_else(|| meetings.get(&at).copied()).unwrap_or(own[end])
             }
@@ -222,7 +231,7 @@ impl Below {
             stated.unwrap_or_else(|| by_height(&Profile::straight(chain.length_m, ends_m), ground));
         let depth_m = depth_m(spacing_m.min(chain.length_m));
         let is_bridge = first.alignment.support == Support::Bridge;
-        let passages = if is_bridge { self.passages(index, (spans, chains), runs, site) } else { Vec::new() };
+        let passages = if is_bridge { self.passages(index, runs) } else { Vec::new() };
         let level = first.alignment.level.clone();
         let stated = level.filter(|level| level.values().iter().all(|level| level.is_finite()));
         let straight = Profile::straight(chain.length_m, ends_m);
@@ -230,7 +239,7 @@ impl Below {
             if !is_bridge {
                 return straight;
             }
-            let room = CLEARANCE_M + depth_m / f64::from(site.exaggeration);
+            let room = CLEARANCE_M + depth_m / f64::from(self.site.exaggeration);
             let floors = passages.iter().flat_map(|passage| {
                 passage.reach_m.map(|station_m| ClearancePoint { station_m, level_m: passage.level_m + room })
             });
@@ -240,21 +249,15 @@ impl Below {
     }
 
     /// What passes below a chain, by station.
-    fn passages(
-        &self,
-        index: usize,
-        (spans, chains): (&[RoadSpan], &[SpanChain]),
-        runs: &[Option<ChainRun>],
-        site: &Site<'_>,
-    ) -> Vec<Passage> {
-        let chain = &chains[index];
-        let mut all = wet(chain, spans, site);
+    fn passages(&self, index: usize, runs: &[Option<ChainRun>]) -> Vec<Passage> {
+        let (chain, chains, site) = (&self.chains[index], self.chains, self.site);
+        let mut all = wet(chain, self.spans, site);
         for crossing in &self.crossings {
-            let (of, link) = self.link_of[self.bridges[crossing.upper]];
-            if of != index {
+            let (upper, link) = self.link_of[self.bridges[crossing.upper]];
+            if upper != index {
                 continue;
             }
-            let level_m = match crossing.lower.checked_sub(self.roads.len()) {
+            let level_m = match crossing.lower.checked_sub(self.roads) {
                 None => site.ground_m(crossing.at),
                 Some(lower) => {
                     let (host, link) = self.link_of[self.bridges[lower]];
@@ -303,47 +306,58 @@ fn ground_ends(ground: &[ClearancePoint]) -> Option<[f64; 2]> {
     Some([ground.first()?.level_m, ground.last()?.level_m])
 }
 
-/// The levels of the places where chains meet above or below the ground.
-fn meetings(
-    spans: &[RoadSpan],
-    chains: &[SpanChain],
-    samples: &[Vec<ClearancePoint>],
-    below: &Below,
-) -> BTreeMap<VertexKey, f64> {
+/// What pulls at a meeting: the level at the other end of a chain, fixed or that of another meeting.
+struct LevelPull {
+    at: VertexKey,
+    other: Option<VertexKey>,
+    level_m: f64,
+    length_m: f64,
+}
+
+/// The levels of the vertices where chains meet above or below the ground.
+fn meetings(samples: &[Vec<ClearancePoint>], below: &Below<'_>) -> BTreeMap<VertexKey, f64> {
     let mut levels: BTreeMap<VertexKey, f64> = BTreeMap::new();
     let mut lowest: BTreeMap<VertexKey, f64> = BTreeMap::new();
-    // What pulls at a place: the level at the other end of a chain, fixed or a place's, and the chain's length.
-    let mut pulls: Vec<(VertexKey, (Option<VertexKey>, f64), f64)> = Vec::new();
-    for (chain, ground) in chains.iter().zip(samples) {
+    let mut pulls: Vec<LevelPull> = Vec::new();
+    for (chain, ground) in below.chains.iter().zip(samples) {
         let Some(own) = ground_ends(ground) else { continue };
-        let settled = spans[chain.links[0].line].alignment.level.as_ref();
-        let own = settled.map_or(own, |level| [level.values()[0], level.values()[level.values().len() - 1]]);
+        let first = &below.spans[chain.links[0].line].alignment;
+        let stated = first.level.as_ref().map(Profile::values);
+        let own = stated.map_or(own, |levels| [levels[0], levels[levels.len() - 1]]);
         for end in 0..2 {
             let ChainEnd::Onward(at) = chain.ends[end] else { continue };
-            let other = match chain.ends[1 - end] {
-                ChainEnd::Onward(other) if settled.is_none() => (Some(other), own[1 - end]),
-                _ => (None, own[1 - end]),
-            };
             levels.entry(at).or_insert(own[end]);
-            if spans[chain.links[0].line].alignment.support == Support::Bridge && settled.is_none() {
+            if first.support == Support::Bridge && stated.is_none() {
                 lowest.insert(at, own[end]);
             }
-            let pull = if settled.is_some() { ((None, own[end]), 1e-3) } else { (other, chain.length_m) };
-            pulls.push((at, pull.0, pull.1));
-            if let Some((host, station)) = below.host(at, chains) {
+            let other = match chain.ends[1 - end] {
+                ChainEnd::Onward(other) => Some(other),
+                _ => None,
+            };
+            pulls.push(if stated.is_some() {
+                LevelPull { at, other: None, level_m: own[end], length_m: 1e-3 }
+            } else {
+                LevelPull { at, other, level_m: own[1 - end], length_m: chain.length_m }
+            });
+            if let Some((host, station)) = below.host(at) {
                 let ends = ground_ends(&samples[host]).unwrap_or(own);
-                pulls.push((at, (None, ends[0]), station.max(1e-3)));
-                pulls.push((at, (None, ends[1]), (chains[host].length_m - station).max(1e-3)));
+                let lengths = [station, below.chains[host].length_m - station];
+                pulls.extend(ends.into_iter().zip(lengths).map(|(level_m, length_m)| LevelPull {
+                    at,
+                    other: None,
+                    level_m,
+                    length_m: length_m.max(1e-3),
+                }));
             }
         }
     }
-    pulls.sort_by_key(|pull| pull.0);
+    pulls.sort_by_key(|pull| pull.at);
     for _ in 0..EVENINGS {
-        for group in pulls.chunk_by(|a, b| a.0 == b.0) {
-            let level = |&(other, level): &(Option<VertexKey>, f64)| other.map_or(level, |at| levels[&at]);
-            let weight: f64 = group.iter().map(|pull| 1.0 / pull.2).sum();
-            let sum: f64 = group.iter().map(|pull| level(&pull.1) / pull.2).sum();
-            levels.insert(group[0].0, sum / weight);
+        for group in pulls.chunk_by(|a, b| a.at == b.at) {
+            let level = |pull: &LevelPull| pull.other.map_or(pull.level_m, |at| levels[&at]);
+            let weight: f64 = group.iter().map(|pull| 1.0 / pull.length_m).sum();
+            let sum: f64 = group.iter().map(|pull| level(pull) / pull.length_m).sum();
+            levels.insert(group[0].at, sum / weight);
         }
     }
     for (at, ground_m) in lowest {

@@ -15,7 +15,7 @@ use crate::earthworks::grading::strip;
 use crate::geom::profile::Profile;
 use crate::scene::attributes::DefaultCounts;
 use crate::scene::roads::centerline::Centerline;
-use crate::scene::roads::meetings::RoadMeetings;
+use crate::scene::roads::meetings::{RoadMeetings, RoadStop};
 use crate::scene::roads::route::Route;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::profile::profile;
@@ -104,20 +104,14 @@ impl NetworkSurvey {
             if stations > MOST_STATIONS {
                 return Err(too_many(document, road));
             }
-            survey.add(lattice, (index, road), rules, meetings);
+            survey.add(lattice, index, road, rules, &meetings.stops[index]);
         }
         survey.pin();
         Ok(survey)
     }
 
-    fn add(
-        &mut self,
-        lattice: &Lattice,
-        (index, road): (usize, &Centerline),
-        rules: &Rules,
-        meetings: &RoadMeetings,
-    ) {
-        let (first, stops) = (self.network.sections.len(), &meetings.stops[index]);
+    fn add(&mut self, lattice: &Lattice, index: usize, road: &Centerline, rules: &Rules, stops: &[RoadStop]) {
+        let first = self.network.sections.len();
         for pair in stops.windows(2) {
             let origin = lattice.origin();
             let points = road.alignment.line.between(pair[0].station_m, pair[1].station_m);

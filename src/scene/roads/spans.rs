@@ -131,11 +131,9 @@ fn table_spans(
 ) -> Result<Vec<RoadSpan>, Diagnostic> {
     let mut all = Vec::new();
     for bridge in &document.bridges {
-        let given = bridge.name.as_deref();
+        let name = bridge.name.as_deref();
         let lines = sources.lines(&bridge.source)?;
-        for (attributes, line) in
-            near::lines(lines, (extent, REACH_M), (FeatureKind::Bridge, given), collected)
-        {
+        for (attributes, line) in near::lines(lines, extent, REACH_M, FeatureKind::Bridge, name, collected) {
             if line.range_within(extent).is_none() {
                 continue;
             }
@@ -159,7 +157,7 @@ fn table_spans(
                 surface,
                 level: 1,
                 pier_spacing_m: bridge.pier_spacing.stated().copied(),
-                name: attributes.name(given),
+                name: attributes.name(name),
                 origin: SpanOrigin::Table,
                 place: bridge.source.span(),
             });

@@ -43,7 +43,7 @@ pub fn lay(
             let bounds = Rect::around(shape.exterior.iter().copied());
             let extent = lattice.extent();
             if !bounds.meets(&extent) {
-                collected.notes.push(format!("{} lies off the elevation model", called(&name)));
+                collected.notes.push(format!("{} lies off the elevation model", described(&name)));
                 continue;
             }
             let mut plan = Clipped { plan: PlanMesh::default(), extent: &extent };
@@ -53,8 +53,8 @@ pub fn lay(
                 continue;
             }
             let shore = Shore::of(lattice, &shape);
-            let level = level_of(document, lake, (&attributes, &shore), collected)?;
-            let feature = flood(lattice, (name, &shape, &shore), level, collected);
+            let level = level_of(document, lake, &attributes, &shore, collected)?;
+            let feature = flood(lattice, name, &shape, &shore, level, collected);
             collected.lay(plan.plan, RibbonSurface::Lake, feature);
         }
     }
@@ -67,10 +67,12 @@ struct LakeLevel {
     rule: &'static str,
 }
 
-/// Levels the ground under a lake, tells of it and returns the feature it is.
+/// Levels the ground under a lake, reports it and returns its feature.
 fn flood(
     lattice: &mut Lattice,
-    (name, shape, shore): (String, &Polygon, &Shore),
+    name: String,
+    shape: &Polygon,
+    shore: &Shore,
     level: LakeLevel,
     collected: &mut SceneBuilder,
 ) -> FeatureId {
@@ -78,14 +80,14 @@ fn flood(
     let (level_m, volumes) = (level.level_m, flooded.volumes);
     collected.notes.push(format!(
         "{} lies level at {level_m:.1} m: {:.0} m³ cut, {:.0} m³ filled",
-        called(&name),
+        described(&name),
         volumes.cut_m3,
         volumes.fill_m3
     ));
     if let Some(other_m) = flooded.other_level_m {
         collected.notes.push(format!(
             "{} shares cells with a lake at {other_m:.1} m, and the level of the later one holds there",
-            called(&name)
+            described(&name)
         ));
     }
     collected.report.lakes.push(LakeRow {
@@ -105,7 +107,8 @@ fn flood(
 fn level_of(
     document: &Document,
     lake: &LakeTable,
-    (attributes, shore): (&Attributes, &Shore),
+    attributes: &Attributes,
+    shore: &Shore,
     collected: &mut SceneBuilder,
 ) -> Result<LakeLevel, Diagnostic> {
     if let Some(level_m) = attributes.value(lake.level.as_ref()) {
@@ -189,6 +192,6 @@ fn area_m2(shape: &Polygon) -> f64 {
 }
 
 /// A lake in a note; many have no name.
-fn called(name: &str) -> String {
+fn described(name: &str) -> String {
     if name.is_empty() { "a lake without a name".into() } else { format!("lake '{name}'") }
 }

@@ -62,9 +62,7 @@ pub fn collect(
         let lines = sources.lines(&river.source)?;
         let shape = lines.first().map(|line| line.shape.clone()).unwrap_or_default();
         let name = river.name.as_deref();
-        for (attributes, line) in
-            near::lines(lines, (&extent, REACH_M), (FeatureKind::River, name), collected)
-        {
+        for (attributes, line) in near::lines(lines, &extent, REACH_M, FeatureKind::River, name, collected) {
             let widths = river.widths.as_ref().and_then(|widths_m| widths(&line, &shape, widths_m));
             drawn.push((river, attributes, line, widths));
         }

@@ -52,8 +52,8 @@ pub fn lay(
         let help = "make them narrower, or say `water = \"drape\"`";
         document.error_at(place, error).with_help(help)
     })?;
-    tell(&falling, &cuts, collected);
-    tell_of_climbs(&falling, &cuts, collected);
+    report_cuts(&falling, &cuts, collected);
+    report_climbs(&falling, &cuts, collected);
     ribbons(&streams, &lattice.extent(), collected);
     Ok(())
 }
@@ -67,8 +67,8 @@ fn channel_of(stream: &Stream) -> Channel {
     }
 }
 
-/// Tells what cutting came to: a row a river, and a note on them all.
-fn tell(streams: &[&Stream], cuts: &Cuts, collected: &mut SceneBuilder) {
+/// Reports the cuts: a row for each river, and a note on them all.
+fn report_cuts(streams: &[&Stream], cuts: &Cuts, collected: &mut SceneBuilder) {
     for (stream, cut) in streams.iter().zip(&cuts.cuts) {
         collected.report.rivers.push(row(stream, cut));
     }
@@ -85,8 +85,8 @@ fn tell(streams: &[&Stream], cuts: &Cuts, collected: &mut SceneBuilder) {
     ));
 }
 
-/// Tells where water climbs: a note on them all, with the greatest.
-fn tell_of_climbs(streams: &[&Stream], cuts: &Cuts, collected: &mut SceneBuilder) {
+/// Reports where the ground rises downstream: a note on all climbs, with the greatest.
+fn report_climbs(streams: &[&Stream], cuts: &Cuts, collected: &mut SceneBuilder) {
     let climbing = cuts.cuts.iter().filter(|cut| !cut.climbs.is_empty()).count();
     let count: usize = cuts.cuts.iter().map(|cut| cut.climbs.len()).sum();
     let all = streams.iter().zip(&cuts.cuts).filter_map(|(stream, cut)| Some((&stream.name, greatest(cut)?)));
