@@ -90,7 +90,7 @@ pub enum DemErrorKind {
     },
     /// The coordinate reference system is not understood.
     #[error("its coordinate system cannot be used: {0}; or state the right one as crs under [terrain]")]
-    Crs(#[from] CrsError),
+    Crs(#[source] Box<CrsError>),
     /// A gray PNG without the height of its gray values.
     #[error(
         "a PNG holds gray values, not meters: state height_scale (meters per gray value) and, where value 0 is not at 0 m, height_offset, under [terrain], or --height-scale and --height-offset on the command line"
@@ -119,4 +119,10 @@ pub enum DemErrorKind {
         /// What it must be.
         wanted: &'static str,
     },
+}
+
+impl From<CrsError> for DemErrorKind {
+    fn from(error: CrsError) -> Self {
+        Self::Crs(Box::new(error))
+    }
 }

@@ -38,7 +38,7 @@ pub struct Mosaic {
 }
 
 impl Mosaic {
-    /// What a user should know of the joining, in one line.
+    /// The counts in one line, for the user.
     pub fn note(&self) -> String {
         let mut note = format!("{} tiles joined; {} samples are shared", self.tiles, self.overlaps);
         if self.differing > 0 {
@@ -216,7 +216,7 @@ fn turns(tiles: &[Raster]) -> Vec<f64> {
     let west = |index: usize| tiles[index].extent().min.x;
     let mut order: Vec<usize> = (0..tiles.len()).collect();
     order.sort_by(|&a, &b| west(a).total_cmp(&west(b)));
-    // The mosaic starts behind the widest step between neighbors; behind the step across ±180° where none is wider.
+    // The mosaic starts after the widest step between neighbors; after the step across ±180° where none is wider.
     let mut widest = west(order[0]) + 360.0 - west(order[order.len() - 1]);
     let mut start = 0;
     for at in 1..order.len() {

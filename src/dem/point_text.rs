@@ -54,7 +54,7 @@ fn lines(text: &str) -> impl Iterator<Item = TextLine<'_>> {
 }
 
 impl<'a> TextLine<'a> {
-    /// The point in three columns, NaN where the height is empty; `None` where x, y or z is no number, or x or y not finite.
+    /// The point in three columns, NaN where the height is empty; `None` where one is no number or x or y not finite.
     pub fn point(&self, columns: [usize; 3]) -> Option<DVec3> {
         let mut found = [None; 3];
         for (index, field) in self.fields().enumerate() {

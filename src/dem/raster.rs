@@ -163,7 +163,7 @@ impl Raster {
         }
     }
 
-    /// This raster with a georeference that somebody stated.
+    /// This raster with a stated georeference.
     pub(crate) fn placed(self, map_from_grid: DAffine2) -> Self {
         Self { map_from_grid, georeferenced: true, ..self }
     }

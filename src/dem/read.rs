@@ -8,7 +8,7 @@ use crate::dem::formats::{DemFormat, FORMATS, Recognition, raw};
 use crate::dem::raster::Raster;
 use crate::geom::crs::Crs;
 
-/// What the caller knows of a file beyond its bytes.
+/// What the caller states of a file beyond its bytes.
 #[derive(Clone)]
 pub struct DemHints<'a> {
     /// Meters per gray value of a PNG, which is refused without it, or per value of a RAW file (default 1).
@@ -60,7 +60,7 @@ pub(crate) struct DemFile<'a> {
     pub name: &'a str,
     /// The content.
     pub bytes: &'a [u8],
-    /// What the caller knows.
+    /// What the caller states.
     pub hints: &'a DemHints<'a>,
 }
 

@@ -16,7 +16,7 @@ pub struct WrittenDem {
     pub companions: Vec<Companion>,
     /// The type of the stored heights: `float32`, `int16`, `text`.
     pub stored: String,
-    /// What the user must know: what was rounded, how to read it.
+    /// What was rounded and how to read the file, for the user.
     pub notes: Vec<String>,
 }
 

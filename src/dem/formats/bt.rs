@@ -115,47 +115,30 @@ impl BtHeader {
             count => Err(FORMAT.broken(format!("it has {count} {what}; at least 2 make a terrain"))),
         };
         let (columns, rows) = (nodes(10, "columns")?, nodes(14, "rows")?);
-        if version == 0 {
-            Self::version_0(fields, columns, rows)
-        } else {
-            Self::later(fields, version, columns, rows)
-        }
-    }
-
-    fn version_0(fields: ByteFields, columns: u32, rows: u32) -> Result<Self, DemErrorKind> {
-        let long = |at: usize| fields.i32(at).unwrap_or_default();
         let short = |at: usize| fields.i16(at).unwrap_or_default();
-        let edge = |at: usize| fields.f32(at).map_or(f64::NAN, f64::from);
-        let is_utm = short(22) == 1;
+        let narrow = |at: usize| fields.f32(at).map_or(f64::NAN, f64::from);
+        let (bytes, is_float) =
+            if version == 0 { (long(18), long(42)) } else { (short(18).into(), short(20).into()) };
+        let [unit, zone, datum] = match (version, short(22)) {
+            (0, 1) => [1, short(24), WGS84_DATUM],
+            (0, _) => [0, 0, WGS84_DATUM],
+            _ => [22, 24, 26].map(short),
+        };
+        let [left, right, bottom, top] = match version {
+            0 => [26, 30, 34, 38].map(narrow),
+            _ => [28, 36, 44, 52].map(|at| fields.f64(at).unwrap_or(f64::NAN)),
+        };
         Ok(Self {
             columns,
             rows,
-            sample: sample_type(long(18), long(42) != 0)?,
-            unit: i16::from(is_utm),
-            zone: if is_utm { short(24) } else { 0 },
-            datum: WGS84_DATUM,
-            has_projection_file: false,
-            min: DVec2::new(edge(26), edge(34)),
-            max: DVec2::new(edge(30), edge(38)),
-            meters_per_z: 1.0,
-        })
-    }
-
-    fn later(fields: ByteFields, version: u8, columns: u32, rows: u32) -> Result<Self, DemErrorKind> {
-        let short = |at: usize| fields.i16(at).unwrap_or_default();
-        let edge = |at: usize| fields.f64(at).unwrap_or(f64::NAN);
-        let scale = if version >= 3 { fields.f32(62).map_or(1.0, f64::from) } else { 1.0 };
-        Ok(Self {
-            columns,
-            rows,
-            sample: sample_type(short(18).into(), short(20) != 0)?,
-            unit: short(22),
-            zone: short(24),
-            datum: short(26),
+            sample: sample_type(bytes, is_float != 0)?,
+            unit,
+            zone,
+            datum,
             has_projection_file: version >= 2 && short(60) != 0,
-            min: DVec2::new(edge(28), edge(44)),
-            max: DVec2::new(edge(36), edge(52)),
-            meters_per_z: vertical_unit(scale)?,
+            min: DVec2::new(left, bottom),
+            max: DVec2::new(right, top),
+            meters_per_z: vertical_unit(if version >= 3 { narrow(62) } else { 1.0 })?,
         })
     }
 }

@@ -37,7 +37,7 @@ const VOID: i16 = -32767;
 /// Bytes of each label before the records.
 const LABELS: [usize; 3] = [80, 648, 2700];
 
-/// Bytes of a record besides its heights: eight before and four behind.
+/// Bytes of a record besides its heights: eight before and four after.
 const AROUND: usize = 12;
 
 /// The first byte of every record.
@@ -46,7 +46,7 @@ const SENTINEL: u8 = 0xaa;
 /// No depth in sign and magnitude is greater; beyond it, the height is in two's complement.
 const DEEPEST: i16 = -16_000;
 
-/// Where the user header label starts: behind the tape's labels, of which there are at most two.
+/// Where the user header label starts: after the tape's labels, of which there are at most two.
 fn label_at(bytes: &[u8]) -> Option<usize> {
     let at = |index: usize| bytes.get(80 * index..);
     let is_tape =
@@ -64,7 +64,7 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     let samples = samples(data, &header)?;
     let cell = header.cell_deg;
     let north = header.south_west.y + cell.y * f64::from(header.rows - 1);
-    // The standard knows WGS 72 and WGS 84; a blank is WGS 84, as GDAL takes it.
+    // The standard has WGS 72 and WGS 84; a blank is WGS 84, as in GDAL.
     let code = if text(identification, 144, 5) == "WGS72" { 4322 } else { 4326 };
     Ok(Raster {
         driver: "DTED",
@@ -169,7 +169,7 @@ fn angle(label: &[u8], at: usize, letters: &[u8; 2], most: f64) -> Result<f64, D
     let field = text(label, at, 8);
     let wrong = || unplaced(format!("its origin at byte {at} is '{field}', not as 0800000W"));
     let letter = field.bytes().last().filter(|letter| letters.contains(letter)).ok_or_else(wrong)?;
-    // Some write a latitude with two digits for degrees and a blank behind.
+    // Some write a latitude with two digits for degrees and a blank at the end.
     let digits: String = field.chars().filter(char::is_ascii_digit).collect();
     if digits.len() < 6 || digits.len() > 7 {
         return Err(wrong());

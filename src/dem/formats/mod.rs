@@ -43,6 +43,8 @@ pub static FORMATS: [&DemFormat; 13] = [
     &raw::FORMAT,
 ];
 
+type DemWriter = fn(&Raster, &str) -> Result<WrittenDem, WriteError>;
+
 /// The declaration of a format.
 #[derive(Debug)]
 pub struct DemFormat {
@@ -55,7 +57,7 @@ pub struct DemFormat {
     pub(crate) recognition: Recognition,
     pub(crate) reader: fn(&DemFile) -> Result<Raster, DemErrorKind>,
     /// Writes a raster; `None` where the format is only read. The text is the stem of the file's name.
-    pub(crate) writer: Option<fn(&Raster, &str) -> Result<WrittenDem, WriteError>>,
+    pub(crate) writer: Option<DemWriter>,
 }
 
 /// How files of a format are recognized.

@@ -37,7 +37,7 @@ const VOID: i64 = -32767;
 /// Bytes of record A, and the unit that profiles are padded to.
 const RECORD: usize = 1024;
 
-/// At least one height in so many must be in the file: quads lie askew in their raster, but fill most of it.
+/// The file holds at least one height in this many: quads lie askew in their raster, but fill most of it.
 const SPARSEST: u64 = 4;
 
 /// Whether the content is a record A: by its level code and its coordinate system, as in GDAL.
@@ -216,7 +216,7 @@ fn vertical_datum(code: Option<i64>) -> Option<&'static str> {
 struct FixedText<'a>(&'a [u8]);
 
 impl FixedText<'_> {
-    /// The next whole number from `at` on, of up to six characters; moves `at` behind it.
+    /// The next whole number from `at` on, of up to six characters; moves `at` past it.
     fn whole(&self, at: &mut usize) -> Option<i64> {
         let rest = self.0.get(*at..)?;
         let start = rest.iter().position(|byte| !byte.is_ascii_whitespace())?;
@@ -228,7 +228,7 @@ impl FixedText<'_> {
         std::str::from_utf8(&word[..length]).ok()?.parse().ok()
     }
 
-    /// The number in `width` characters at `at`, also with a Fortran exponent of `D`; moves `at` behind it.
+    /// The number in `width` characters at `at`, also with a Fortran exponent of `D`; moves `at` past it.
     fn real(&self, at: &mut usize, width: usize) -> Option<f64> {
         let field = std::str::from_utf8(self.0.get(*at..*at + width)?).ok()?;
         *at += width;

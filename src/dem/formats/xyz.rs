@@ -25,8 +25,8 @@ pub(super) static FORMAT: DemFormat = DemFormat {
 /// How far from its node a point may lie, in cells: rounded decimals of degrees are a few thousandths off.
 const OFF_NODE: f64 = 0.01;
 
-/// At least one node in so many must have a point. Scattered points at whole meters lie on nodes as well, but on
-/// few of them; a catchment cut from a grid fills a third of its rectangle.
+/// One node in this many must have a point: scattered points at whole meters lie on nodes as well, but on few of
+/// them; a catchment cut from a grid fills a third of its rectangle.
 const SPARSEST: u64 = 5;
 
 /// The steps that the cell is found from: many rows' worth.

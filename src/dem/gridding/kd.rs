@@ -191,8 +191,7 @@ impl KdTree {
 
     /// Puts the sites nearest to `q` into `found`, as many as it wants and there are.
     ///
-    /// `limit2` is a squared distance inside which, or at which, so many are known to lie; infinite where nothing is
-    /// known.
+    /// `limit2` is a squared distance within which that many lie; infinite where none is known.
     pub fn nearest_k(&self, q: DVec2, limit2: f64, found: &mut NearestSites) {
         found.start(q, limit2);
         visit(&self.sites, &self.planes, q, DVec2::ZERO, found);

@@ -21,7 +21,7 @@ use rayon::prelude::*;
 use crate::dem::cell_grid::CellGrid;
 use crate::dem::gridding::tin::Tin;
 
-/// Rows a task: enough that few triangles lie in two, few enough that all cores stay busy to the end.
+/// Rows per task: many, so that few triangles lie in two; few, so that all cores are busy to the end.
 const BAND_ROWS: usize = 16;
 
 /// The positions of cells' centers, from the sites' origin.

@@ -27,7 +27,7 @@ pub(super) struct LasCrs {
 }
 
 impl LasCrs {
-    /// The system that the records state; for x and y `stated` instead, where the caller knows better.
+    /// The system that the records state; for x and y `stated` instead, where the caller states one.
     pub fn new(records: &[Record], header: &LasHeader, stated: Option<&Crs>) -> Result<Self, PointsError> {
         let content = |id: u16| {
             let record = records.iter().find(|record| record.owner == OWNER && record.id == id);

@@ -123,7 +123,7 @@ impl LasHeader {
 }
 
 impl<'a> Record<'a> {
-    /// The record at `at`, which moves behind it; `None` beyond the end. `header` bytes before its content state its length.
+    /// The record at `at`, which moves past it; `None` beyond the end. `header` bytes before its content state its size.
     fn read(
         bytes: &'a [u8],
         at: &mut usize,

@@ -34,7 +34,7 @@ pub struct PointCloud {
     pub meters_per_z: f64,
     /// The vertical datum in the file's words; `None` where it is not stated.
     pub vertical_datum: Option<String>,
-    /// What the user should know: what was left out or assumed.
+    /// What was left out or assumed, for the user.
     pub notes: Vec<String>,
 }
 
@@ -46,7 +46,7 @@ impl PointCloud {
     }
 }
 
-/// What the caller knows of a file of points beyond its bytes.
+/// What the caller states of a file of points beyond its bytes.
 #[derive(Clone, Debug, Default)]
 pub struct PointHints<'a> {
     /// The system of x and y, in place of the file's.

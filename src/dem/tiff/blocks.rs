@@ -93,22 +93,15 @@ pub(crate) fn block(
     nodata: Option<f64>,
     block: TiffBlock,
 ) -> Result<Samples, DemErrorKind> {
+    let mut decoder = BlockDecoder::new(storage, nodata)?;
+    let (count, width) = (block.window.samples(), block.window.width as usize);
     if storage.elevation_type()?.is_wide() {
-        block_elevations::<f64>(file, storage, nodata, block)
+        let mut values = vec![0.0; count];
+        decoder.decode(file, block, &mut values, width).map(|()| Samples::F64(values))
     } else {
-        block_elevations::<f32>(file, storage, nodata, block)
+        let mut values = vec![0.0; count];
+        decoder.decode(file, block, &mut values, width).map(|()| Samples::F32(values))
     }
-}
-
-fn block_elevations<E: SampleFloat>(
-    file: &mut impl BlockBytes,
-    storage: &Storage,
-    nodata: Option<f64>,
-    block: TiffBlock,
-) -> Result<Samples, DemErrorKind> {
-    let mut values = vec![E::default(); block.window.samples()];
-    BlockDecoder::new(storage, nodata)?.decode(file, block, &mut values, block.window.width as usize)?;
-    Ok(E::into_samples(values))
 }
 
 /// Decodes blocks of an image, reusing its buffers.

@@ -157,7 +157,7 @@ impl Storage {
         Ok(())
     }
 
-    /// Bytes that so many samples of a block decode to.
+    /// Bytes that `samples` of a block decode to.
     pub fn decoded_bytes(&self, samples: u64) -> u64 {
         (samples * u64::from(self.bits) * u64::from(self.bands_per_block)).div_ceil(8)
     }

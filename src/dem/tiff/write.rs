@@ -4,7 +4,7 @@
 //! header │ directory │ long values of tags │ tile 0 │ tile 1 │ …
 //! ```
 //!
-//! The directory comes first, so that a reader has all it needs to know with the first bytes. Tiles are packed in
+//! The directory comes first, so that the first bytes hold all that a reader needs. Tiles are packed in
 //! parallel and written in their order: the same bytes for every number of threads. Floats go through the floating-point
 //! predictor, integers through differences: both pack terrain a third smaller than plain. (The `tiff` crate's encoder
 //! writes no tiles and no floating-point predictor.)
@@ -200,7 +200,7 @@ fn file(mut tags: Vec<(u16, TiffField)>, tiles: &[Vec<u8>]) -> Vec<u8> {
     bytes
 }
 
-/// A directory that starts at `start`, and behind it the values that do not fit its entries.
+/// A directory that starts at `start`, and after it the values that do not fit its entries.
 fn directory(tags: &[(u16, TiffField)], start: usize) -> Vec<u8> {
     let mut entries = (tags.len() as u16).to_le_bytes().to_vec();
     let mut long = Vec::new();

@@ -51,7 +51,7 @@ impl<'a> CrsTransform<'a> {
         }
         let contains = |latitude: f64| {
             let pole = to.transform(from, DVec2::new(0.0, latitude)).map(|at| raster.grid_from_map(at));
-            // A projection that does not cover the pole may return anything: only what leads back counts.
+            // A projection may return anything for a pole that it does not cover: the result must transform back to it.
             let leads_back = |at: DVec2| {
                 let back = from.transform(to, raster.map_from_grid.transform_point2(at));
                 back.is_ok_and(|back| (back.y - latitude).abs() < 1e-6)

@@ -16,14 +16,13 @@ use crate::dem::warp::resample::{CellSize, Resampler};
 use crate::dem::warp::{WarpError, check_source, turned_north_up, with_crs};
 use crate::geom::crs::Crs;
 
-/// From this many times the source's cells on, cells hold the average: a bilinear value at their center would leave
-/// samples out. At twice the size the two differ little; above it only the average keeps the mean height.
+/// From this many times the source's cells on, cells hold the average: only that keeps the mean height.
 const COARSER: f64 = 2.0;
 
 /// How samples were made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Resampling {
-    /// They are the source's, perhaps in another order.
+    /// They are the source's, in its order or mirrored.
     Kept,
     /// Between the four samples of the source around each cell's center.
     Bilinear,

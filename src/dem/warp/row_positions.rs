@@ -7,8 +7,8 @@
 
 use glam::DVec2;
 
-/// How far, in source samples, a parabola may miss an exact position. At a cliff of a kilometer between two
-/// samples it is worth a millimeter; a tenth of it would double the exact positions and show nowhere.
+/// The largest error of a parabola in source samples: a millimeter at a cliff of a kilometer between two samples.
+/// A tenth of it would double the exact positions and change no result that shows.
 const TOLERANCE: f64 = 1e-6;
 
 /// Pieces start at this many cells: few enough that two checks a piece cannot overlook a fold of the map.
