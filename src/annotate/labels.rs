@@ -343,9 +343,9 @@ mod tests {
     fn the_order_of_the_input_does_not_matter() {
         let mut labels: Vec<_> =
             (0..40).map(|n| label(&format!("No {n}"), 300.0 + 37.0 * (n % 9) as f32, 500.0)).collect();
-        let forth = draw(&labels).0;
+        let forth = draw(&labels).0.marks;
         labels.reverse();
-        assert_eq!(draw(&labels).0, forth);
+        assert_eq!(draw(&labels).0.marks, forth);
     }
 
     #[test]
