@@ -19,7 +19,7 @@ use crate::annotate::drawing::Drawing;
 use crate::annotate::nice::{Ticks, format_trimmed};
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 use crate::annotate::sheet::{INK, PAPER, SOFT_INK, Sheet};
-use crate::annotate::text::{TextLine, TextStyle};
+use crate::annotate::text::{TextStyle, TypesetLine};
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 
@@ -148,7 +148,7 @@ impl Chart {
         self.background.write(&note, at.round(), SOFT_INK);
     }
 
-    fn draw_height_axis(&mut self, text: &ChartText, figures: &[(f64, TextLine)]) {
+    fn draw_height_axis(&mut self, text: &ChartText, figures: &[(f64, TypesetLine)]) {
         let (sheet, frame, style) = (self.composer.sheet, self.frame, figure_style(&self.composer));
         for (height_m, figure) in figures {
             let y = frame.at(0.0, *height_m).y.round();
@@ -251,7 +251,7 @@ fn figure_style(composer: &Composer) -> TextStyle {
     composer.style(15.0, TextStyle::REGULAR)
 }
 
-fn height_figures(heights_m: (f64, f64), height_px: f32, composer: &mut Composer) -> Vec<(f64, TextLine)> {
+fn height_figures(heights_m: (f64, f64), height_px: f32, composer: &mut Composer) -> Vec<(f64, TypesetLine)> {
     let style = figure_style(composer);
     let most = (height_px / (style.size_px * 3.2)) as usize;
     composer.figures(&Ticks::new(heights_m.0, heights_m.1, most.clamp(2, 9)), style)

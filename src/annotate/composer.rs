@@ -5,7 +5,7 @@ use parley::{FontContext, LayoutContext};
 
 use crate::annotate::nice::{Ticks, format_number};
 use crate::annotate::sheet::Sheet;
-use crate::annotate::text::{TextLine, TextStyle, register_fonts};
+use crate::annotate::text::{TextStyle, TypesetLine, register_fonts};
 
 /// Lays out text on a sheet; holds tables of the embedded fonts and scratch space between lines.
 pub struct Composer {
@@ -29,13 +29,13 @@ impl Composer {
         TextStyle::upright(self.sheet.type_px(design_px), weight)
     }
 
-    pub fn figures(&mut self, ticks: &Ticks, style: TextStyle) -> Vec<(f64, TextLine)> {
+    pub fn figures(&mut self, ticks: &Ticks, style: TextStyle) -> Vec<(f64, TypesetLine)> {
         let figure = |&value: &f64| (value, self.line(&format_number(value, ticks.decimals), style));
         ticks.values.iter().map(figure).collect()
     }
 }
 
 /// The width of the widest of `lines`.
-pub fn widest<'a>(lines: impl IntoIterator<Item = &'a TextLine>) -> f32 {
+pub fn widest<'a>(lines: impl IntoIterator<Item = &'a TypesetLine>) -> f32 {
     lines.into_iter().map(|line| line.advance).fold(0.0, f32::max)
 }

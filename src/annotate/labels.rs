@@ -11,7 +11,7 @@ use crate::annotate::place::{LabelCandidate, LabelField, LabelRequest, TextAlign
 use crate::annotate::positions::LabelMetrics;
 use crate::annotate::report::AnnotationReport;
 use crate::annotate::sheet::{HALO, INK, PAPER, SOFT_INK, Sheet, WATER_INK};
-use crate::annotate::text::{TextLine, TextStyle};
+use crate::annotate::text::{TextStyle, TypesetLine};
 use crate::description::words::LabelKind;
 use crate::draw::color::Srgba;
 
@@ -207,20 +207,20 @@ fn set_lines(text: &str, style: &LabelStyle, composer: &mut Composer) -> Paragra
     let widest = composer.sheet.size.x * WIDEST_SHARE;
     let styles = std::iter::once(style.name).chain(std::iter::repeat(style.note));
     let set = |(text, style): (&String, TextStyle)| composer.fitted(text, style, widest);
-    let lines: Vec<TextLine> = written.iter().zip(styles).filter_map(set).collect();
+    let lines: Vec<TypesetLine> = written.iter().zip(styles).filter_map(set).collect();
     let shortened = dropped || lines.len() < written.len() || lines.iter().any(|line| line.shortened);
     Paragraph { lines, shortened }
 }
 
 /// The lines with the starts of their baselines: the first at y = 0, all aligned to x = 0.
-fn baselines(lines: &[TextLine], alignment: TextAlignment) -> Vec<(&TextLine, Vec2)> {
+fn baselines(lines: &[TypesetLine], alignment: TextAlignment) -> Vec<(&TypesetLine, Vec2)> {
     let share = match alignment {
         TextAlignment::Left => 0.0,
         TextAlignment::Center => 0.5,
         TextAlignment::Right => 1.0,
     };
     let mut y = 0.0;
-    let place = |(number, line): (usize, &'_ TextLine)| {
+    let place = |(number, line): (usize, &'_ TypesetLine)| {
         if number > 0 {
             y += (line.style.size_px * LEADING).round();
         }
@@ -230,7 +230,7 @@ fn baselines(lines: &[TextLine], alignment: TextAlignment) -> Vec<(&TextLine, Ve
     lines.iter().zip(starts).collect()
 }
 
-fn block_box(lines: &[TextLine], alignment: TextAlignment, halo: f32) -> PixelBox {
+fn block_box(lines: &[TypesetLine], alignment: TextAlignment, halo: f32) -> PixelBox {
     let boxes = baselines(lines, alignment).into_iter().map(|(line, at)| line.bounds(halo).moved(at));
     boxes.fold(PixelBox::EMPTY, PixelBox::union)
 }
@@ -343,9 +343,9 @@ mod tests {
     fn the_order_of_the_input_does_not_matter() {
         let mut labels: Vec<_> =
             (0..40).map(|n| label(&format!("No {n}"), 300.0 + 37.0 * (n % 9) as f32, 500.0)).collect();
-        let forth = draw(&labels).0;
+        let forth = draw(&labels).0.marks;
         labels.reverse();
-        assert_eq!(draw(&labels).0, forth);
+        assert_eq!(draw(&labels).0.marks, forth);
     }
 
     #[test]

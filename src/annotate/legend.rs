@@ -8,7 +8,7 @@ use crate::annotate::nice::{Ticks, format_trimmed};
 use crate::annotate::paragraph::written_lines;
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::sheet::{FRAME, INK, SOFT_INK, Sheet};
-use crate::annotate::text::{CAP_HEIGHT, TextLine, TextStyle};
+use crate::annotate::text::{CAP_HEIGHT, TextStyle, TypesetLine};
 use crate::draw::color::Srgba;
 use crate::draw::ground::ColorRamp;
 
@@ -67,14 +67,14 @@ pub(in crate::annotate) fn compose(legend: &Legend, composer: &mut Composer) -> 
     Some(drawing.on_panel(corner, &sheet))
 }
 
-fn figures(legend: &Legend, ramp_px: f32, composer: &mut Composer) -> Vec<(f64, TextLine)> {
+fn figures(legend: &Legend, ramp_px: f32, composer: &mut Composer) -> Vec<(f64, TypesetLine)> {
     let style = composer.style(15.0, TextStyle::REGULAR);
     let most = ((ramp_px / (style.size_px * 1.9)) as usize + 1).clamp(2, 7);
     composer.figures(&Ticks::new(legend.low_m.into(), legend.high_m.into(), most), style)
 }
 
 /// Notes below the ramp, each with its text as given.
-fn notes(legend: &Legend, composer: &mut Composer) -> Vec<(String, TextLine)> {
+fn notes(legend: &Legend, composer: &mut Composer) -> Vec<(String, TypesetLine)> {
     let style = composer.style(14.0, TextStyle::REGULAR);
     let mut texts = Vec::new();
     if let Some(interval) = legend.contour_interval.filter(|interval| interval.is_finite() && *interval > 0.0)
@@ -112,7 +112,7 @@ fn draw_ramp(drawing: &mut Drawing, legend: &Legend, ramp: PixelBox, sheet: &She
 fn draw_figures(
     drawing: &mut Drawing,
     legend: &Legend,
-    figures: &[(f64, TextLine)],
+    figures: &[(f64, TypesetLine)],
     ramp: PixelBox,
     sheet: &Sheet,
 ) -> f32 {

@@ -1,12 +1,12 @@
 //! Text made to fit: lines cleaned of what cannot be printed, cut with an ellipsis, broken between words.
 
 use crate::annotate::composer::Composer;
-use crate::annotate::text::{TextLine, TextStyle};
+use crate::annotate::text::{TextStyle, TypesetLine};
 
 #[derive(Clone, Debug)]
 pub struct Paragraph {
     /// The lines, first on top.
-    pub lines: Vec<TextLine>,
+    pub lines: Vec<TypesetLine>,
     pub shortened: bool,
 }
 
@@ -34,7 +34,7 @@ fn single_spaced(text: &str) -> String {
 impl Composer {
     /// `text` as one line no wider than `most_px`, ending in an ellipsis where it is cut. `None` where not even a few
     /// letters before the ellipsis fit.
-    pub fn fitted(&mut self, text: &str, style: TextStyle, most_px: f32) -> Option<TextLine> {
+    pub fn fitted(&mut self, text: &str, style: TextStyle, most_px: f32) -> Option<TypesetLine> {
         let full = self.line(text, style);
         if full.advance <= most_px && !full.shortened {
             return Some(full);
@@ -43,7 +43,7 @@ impl Composer {
         let mut cut = |keep: usize| {
             let kept = text[..ends.get(keep).copied().unwrap_or(text.len())].trim_end();
             let line = self.line(&format!("{kept}…"), style);
-            (line.advance <= most_px).then_some(TextLine { shortened: true, ..line })
+            (line.advance <= most_px).then_some(TypesetLine { shortened: true, ..line })
         };
         /// Fewer letters than this before an ellipsis are unreadable.
         const FEWEST: usize = 4;

@@ -16,7 +16,7 @@ use crate::annotate::drawing::Drawing;
 use crate::annotate::nice::{NiceNumber, format_distance, format_number};
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::sheet::{INK, PAPER, SOFT_INK, Sheet};
-use crate::annotate::text::{CAP_HEIGHT, DESCENT, TextLine, TextStyle};
+use crate::annotate::text::{CAP_HEIGHT, DESCENT, TextStyle, TypesetLine};
 use crate::view::camera::Camera;
 
 /// Longest bar, in design pixels. Nice lengths are at most 2.5 times apart, so that bars are at least 104 long.
@@ -77,7 +77,7 @@ pub(in crate::annotate) fn compose_on_map(
     Some(lay_out(&measure, None, composer))
 }
 
-fn lay_out(measure: &NiceBar, note: Option<&TextLine>, composer: &mut Composer) -> Drawing {
+fn lay_out(measure: &NiceBar, note: Option<&TypesetLine>, composer: &mut Composer) -> Drawing {
     let style = composer.style(16.0, TextStyle::REGULAR);
     let figures = figures(&measure.length).map(|text| composer.line(&text, style));
     let unit = composer.line(&format!(" {}", unit(&measure.length).0), style);

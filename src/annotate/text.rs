@@ -82,7 +82,7 @@ impl TextStyle {
 }
 
 #[derive(Clone, Debug)]
-pub struct TextLine {
+pub struct TypesetLine {
     /// Outline of all letters, baseline from the origin to the right; `None` where nothing shows.
     pub outline: Option<Path>,
     /// Width along the baseline, in pixels.
@@ -95,7 +95,7 @@ pub struct TextLine {
 
 impl Composer {
     /// `text` as one line. Line ends and other control characters become spaces; text is cut after 300 characters.
-    pub fn line(&mut self, text: &str, style: TextStyle) -> TextLine {
+    pub fn line(&mut self, text: &str, style: TextStyle) -> TypesetLine {
         let shortened = text.chars().nth(MOST_CHARACTERS).is_some();
         let text: String =
             text.chars().take(MOST_CHARACTERS).map(|c| if c.is_control() { ' ' } else { c }).collect();
@@ -108,7 +108,7 @@ impl Composer {
                 advance = advance.max(run.offset() + run.advance());
             }
         }
-        TextLine { outline: outliner.path.finish(), advance, missing, shortened, style }
+        TypesetLine { outline: outliner.path.finish(), advance, missing, shortened, style }
     }
 
     fn shape(&mut self, text: &str, style: TextStyle) -> Layout<()> {
@@ -123,7 +123,7 @@ impl Composer {
     }
 }
 
-impl TextLine {
+impl TypesetLine {
     /// The smallest box around the letters with a halo of `halo` pixels, baseline from the origin;
     /// [`PixelBox::EMPTY`] where nothing shows.
     pub fn bounds(&self, halo: f32) -> PixelBox {
@@ -137,7 +137,7 @@ impl TextLine {
 }
 
 impl Drawing {
-    pub fn write(&mut self, line: &TextLine, at: Vec2, color: Srgba) {
+    pub fn write(&mut self, line: &TypesetLine, at: Vec2, color: Srgba) {
         let Some(path) = line.outline_at(at) else { return };
         let stroke = line.style.stroke_px();
         if stroke > 0.0 {
@@ -147,14 +147,14 @@ impl Drawing {
     }
 
     /// Writes a line on a halo reaching `reach` pixels around its letters.
-    pub fn write_haloed(&mut self, line: &TextLine, at: Vec2, reach: f32, color: Srgba) {
+    pub fn write_haloed(&mut self, line: &TypesetLine, at: Vec2, reach: f32, color: Srgba) {
         self.draw_halo(&[(line, at)], reach);
         self.write(line, at, color);
     }
 
     /// Draws one halo under all of `lines`, reaching `reach` pixels around their letters. Drawn before any line is
     /// written, it covers no neighbor's letters, and has one even tone where lines are close.
-    pub fn draw_halo(&mut self, lines: &[(&TextLine, Vec2)], reach: f32) {
+    pub fn draw_halo(&mut self, lines: &[(&TypesetLine, Vec2)], reach: f32) {
         let mut all = PathBuilder::new();
         for path in lines.iter().filter_map(|(line, at)| line.outline_at(*at)) {
             all.push_path(&path);
@@ -235,7 +235,7 @@ impl OutlinePen for Outliner {
 mod tests {
     use super::*;
 
-    fn set(text: &str) -> TextLine {
+    fn set(text: &str) -> TypesetLine {
         Composer::new(100, 100).line(text, TextStyle::upright(20.0, TextStyle::REGULAR))
     }
 

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::draw::color::Srgba;
 use crate::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh};
-use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
+use crate::draw::material::{Albedo, AlphaMode, NormalSource};
 use crate::export::bake::{BakedGround, bake};
 use crate::export::inlay::cut_out;
 
@@ -23,9 +23,12 @@ pub fn prepare(mut list: DrawList) -> DrawList {
     };
     if let Some(baked) = baked {
         let texture = Some(list.add_texture(baked.pixels));
-        for material in list.materials.iter_mut().filter(|material| material.albedo == Albedo::GroundMap) {
-            let (albedo, base_color) = (Albedo::Surface, Srgba::WHITE);
-            *material = Material { texture, albedo, base_color, ..std::mem::take(material) };
+        for material in &mut list.materials {
+            material.normals = NormalSource::Vertex;
+            if material.albedo == Albedo::GroundMap {
+                (material.albedo, material.texture) = (Albedo::Surface, texture);
+                material.base_color = Srgba::WHITE;
+            }
         }
     }
     let items = std::mem::take(&mut list.items);
@@ -94,6 +97,7 @@ mod tests {
 
     use crate::draw::ground::{ColorRamp, GroundMap, GroundPost};
     use crate::draw::list::{DrawVertex, FeatureId};
+    use crate::draw::material::Material;
     use crate::mesh::sink::MeshSink;
     use glam::{Mat4, Vec2};
 
