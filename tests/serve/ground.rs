@@ -110,8 +110,8 @@ fn on_a_real_model_profile_and_viewshed_are_the_librarys() {
     let Some(file) = data("dem/bigtujunga_utm11_i16_tiled.tif") else { return };
     let gray = StatedHeights::default();
     let dataset = Dataset::open(&file, gray, &Access { allow: Vec::new() }).expect("sound");
-    let epoch = dataset.service().expect("in meters").snapshot();
-    let lattice = epoch.lattice();
+    let snapshot = dataset.service().expect("in meters").snapshot();
+    let lattice = snapshot.lattice();
     let server = Server::start(Path::new("."), &[&format!("dem={}", file.display())]);
 
     let line = [DVec2::new(380_000.0, 3_805_000.0), DVec2::new(398_000.0, 3_796_500.0)];

@@ -38,7 +38,7 @@ impl<'a> Mipmapping<'a> {
     fn note_stale(&mut self, levels: &PatchLevels) {
         let layout = &self.terrain.layout;
         let last = self.levels.as_ref();
-        let is_same = |corner| last.is_some_and(|last| last.of(layout, corner) == levels.of(layout, corner));
+        let is_same = |corner| last.is_some_and(|last| last.at(layout, corner) == levels.at(layout, corner));
         self.stale.clear();
         for corner in layout.patches().filter(|&corner| !is_same(corner)) {
             self.stale.extend(with_neighbors(layout, corner));
