@@ -3,7 +3,7 @@
 //! This checks the promise of an error bound, so it shares nothing with what made the mesh except the lattice: it takes the
 //! triangles as they are written, in f64.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::mesh::trimesh::TriMesh;
 use crate::roam::errors::rows::RowSpans;
@@ -74,7 +74,7 @@ pub fn measure(lattice: &Lattice, mesh: &TriMesh) -> Result<Deviation, BoundErro
 fn post_of(lattice: &Lattice, mesh: &TriMesh, vertex: usize) -> Option<Post> {
     let at = mesh.positions[vertex].truncate();
     let grid = (at.as_dvec2() / lattice.cell()).round();
-    let is_inside = grid.cmpge(glam::DVec2::ZERO).all() && grid.cmple(lattice.last_grid()).all();
+    let is_inside = grid.cmpge(DVec2::ZERO).all() && grid.cmple(lattice.last_grid()).all();
     let post = Post::at_grid(grid);
     (is_inside && lattice.position(post) == at).then_some(post)
 }

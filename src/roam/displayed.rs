@@ -1,4 +1,4 @@
-//! The displayed terrain: what the bits show of the ground, as a mesh and as facets to lay things on.
+//! The displayed terrain: the mesh of the bits, and a surface for features.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::roam::patched_ground::PatchedGround;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 
-/// A displayed terrain: the ground and the bits that say how finely it is shown.
+/// A displayed terrain: a lattice and the active vertices.
 #[derive(Clone, Debug)]
 pub struct DisplayedTerrain {
     lattice: Arc<Lattice>,
@@ -32,7 +32,7 @@ impl DisplayedTerrain {
         Self { lattice, active, patches, shown }
     }
 
-    /// The bits.
+    /// The active vertices.
     pub fn active(&self) -> &ActiveSet {
         &self.active
     }

@@ -1,9 +1,8 @@
 //! The restricted quadtree as pure arithmetic: nodes by their address in base 4, and the five vertices of each.
 //!
-//! An address is the string of turns from the root, one digit a level: the parent's is without the last digit, a
-//! child's has one more, and a neighbor's is found by counting in the digits of its axis with a carry. A node
-//! stores five vertices; its corners belong to nodes above. In patches of 2ⁿ cells the root is the patch and the
-//! nodes with n − 1 digits, two cells wide, are the finest.
+//! An address has one digit a level, from the root: the parent's lacks the last digit, a child's has one more, and a
+//! neighbor's follows by counting in the digits of its axis with a carry. A node stores five vertices; its corners belong to
+//! nodes above. In patches of 2ⁿ cells the root is the patch and the nodes with n − 1 digits, two cells wide, are the finest.
 //!
 //! ```text
 //! ┌───┬───┐            ●── north ──●        ●  a vertex of a node above
@@ -13,15 +12,14 @@
 //! └───┴───┘            ●── south ──●
 //! ```
 //!
-//! Dependencies: a center depends on the two corners of its node on the diagonal that is perpendicular to the
-//! line to the parent's center; an edge vertex depends on the two centers beside it. They are the vertex graph's
-//! own: see [`Vertex::parents`].
+//! A center depends on the two corners of its node on the diagonal perpendicular to the line to the parent's center; an edge
+//! vertex depends on the two centers beside it. These are [`Vertex::parents`].
 //!
 //! Source: the restricted quadtree with five-vertex nodes and base-4 indices, after Lindstrom et al. 1996.
 
 use std::fmt;
 
-use crate::roam::graph::{Vertex, VertexKind};
+use crate::roam::graph::Vertex;
 
 /// The most digits of an address: a patch of 4096 cells has nodes of two cells after 11.
 pub const MOST_DIGITS: u32 = 15;
@@ -94,9 +92,9 @@ impl Address {
     /// The neighbor on the same level, and whether the carry left the patch: then it is the address in the
     /// next patch on that side.
     ///
-    /// Digit by digit from the last: a digit on the near half moves to the far half and the count ends; one on
-    /// the far half moves to the near half and the carry goes on. One addition does it for all digits, as every
-    /// bit of the other axis passes the carry on.
+    /// Digit by digit from the last: a digit on the near half moves to the far half and the count ends; one on the far half
+    /// moves to the near half with a carry. One addition does it for all digits, since the bits of the other axis propagate
+    /// the carry.
     pub const fn neighbor(self, side: NodeSide) -> (Self, bool) {
         let top = 1 << (2 * self.level());
         let digits = self.0 ^ top;
@@ -199,44 +197,48 @@ impl QuadNode {
         let corner = Vertex::new(self.east * patch + x * side, self.north * patch + y * side);
         (side >= 2).then_some(NodeSquare { corner, side })
     }
-
-    /// The node whose center is `center`, in patches of `patch` cells; `None` for a vertex that is no center.
-    pub fn of_center(center: Vertex, patch: i32) -> Option<Self> {
-        let half = center.step();
-        if center.kind() != VertexKind::Center || half <= 0 || half >= patch {
-            return None;
-        }
-        let (east, north) = (center.x.div_euclid(patch), center.y.div_euclid(patch));
-        let levels = (patch / (2 * half)).trailing_zeros();
-        let digit = |level: u32| {
-            let weight = half << (levels - level);
-            u32::from(center.x & weight != 0) | u32::from(center.y & weight != 0) << 1
-        };
-        let address = (0..levels).try_fold(Address::ROOT, |address, level| address.child(digit(level)))?;
-        Some(Self { east, north, address })
-    }
-
-    /// The two corners of the node that its center depends on: those on the diagonal perpendicular to the line
-    /// to the parent's center. `None` for a root, whose corners are always there.
-    pub fn center_depends_on(self, patch: i32) -> Option<[Vertex; 2]> {
-        let center = self.square(patch)?.center();
-        let above = self.parent()?.square(patch)?.center();
-        let (dx, dy) = (above.x - center.x, above.y - center.y);
-        Some([center.moved(-dy, dx), center.moved(dy, -dx)])
-    }
-
-    /// The two centers that an edge vertex depends on: those of the nodes beside it, of which one may lie
-    /// outside the terrain.
-    pub fn edge_depends_on(self, side: NodeSide, patch: i32) -> Option<[Vertex; 2]> {
-        Some([self.square(patch)?.center(), self.neighbor(side).square(patch)?.center()])
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::roam::graph::VertexKind;
 
     const PATCH: i32 = 16;
+
+    impl QuadNode {
+        /// The node whose center is `center`, in patches of `patch` cells; `None` for a vertex that is no center.
+        pub fn of_center(center: Vertex, patch: i32) -> Option<Self> {
+            let half = center.step();
+            if center.kind() != VertexKind::Center || half <= 0 || half >= patch {
+                return None;
+            }
+            let (east, north) = (center.x.div_euclid(patch), center.y.div_euclid(patch));
+            let levels = (patch / (2 * half)).trailing_zeros();
+            let digit = |level: u32| {
+                let weight = half << (levels - level);
+                u32::from(center.x & weight != 0) | u32::from(center.y & weight != 0) << 1
+            };
+            let address =
+                (0..levels).try_fold(Address::ROOT, |address, level| address.child(digit(level)))?;
+            Some(Self { east, north, address })
+        }
+
+        /// The two corners of the node that its center depends on: those on the diagonal perpendicular to the line
+        /// to the parent's center. `None` for a root, whose corners are always there.
+        pub fn center_depends_on(self, patch: i32) -> Option<[Vertex; 2]> {
+            let center = self.square(patch)?.center();
+            let above = self.parent()?.square(patch)?.center();
+            let (dx, dy) = (above.x - center.x, above.y - center.y);
+            Some([center.moved(-dy, dx), center.moved(dy, -dx)])
+        }
+
+        /// The two centers that an edge vertex depends on: those of the nodes beside it, of which one may lie
+        /// outside the terrain.
+        pub fn edge_depends_on(self, side: NodeSide, patch: i32) -> Option<[Vertex; 2]> {
+            Some([self.square(patch)?.center(), self.neighbor(side).square(patch)?.center()])
+        }
+    }
 
     /// All nodes of 3 × 3 patches.
     fn nodes() -> Vec<QuadNode> {

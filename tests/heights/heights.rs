@@ -1,4 +1,4 @@
-//! The height contract: batches are single questions, readers see whole epochs, and what is drawn changes nothing but
+//! The height contract: batches are single questions, readers see whole snapshots, and what is drawn changes nothing but
 //! what is displayed.
 
 use std::sync::Arc;

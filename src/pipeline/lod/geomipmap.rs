@@ -36,7 +36,7 @@ impl<'a> GeomipmapFollower<'a> {
     /// Lists the patches whose level changed and their neighbors, whose stitches may change.
     fn list_stale(&mut self, levels: &PatchLevels) {
         let (layout, last) = (&self.ground.layout, self.levels.as_ref());
-        let is_same = |corner| last.is_some_and(|last| last.of(layout, corner) == levels.of(layout, corner));
+        let is_same = |corner| last.is_some_and(|last| last.at(layout, corner) == levels.at(layout, corner));
         self.stale.clear();
         for corner in layout.patches().filter(|&corner| !is_same(corner)) {
             self.stale.extend(with_neighbors(layout, corner));

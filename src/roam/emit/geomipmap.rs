@@ -1,12 +1,11 @@
-//! GeoMipMap (de Boer 2000): static levels of detail, one a patch, the borders stitched.
+//! GeoMipMap (de Boer 2000): static levels of detail, one a patch, with stitched borders.
 //!
-//! Level l of a patch joins every 2ˡ-th post by right triangles whose diagonals alternate as the lattice's do, so
-//! level 0 is the ground itself. What a level is off the ground is measured once; a view then chooses a level a
-//! patch, nothing finer-grained, and each patch's triangles follow from its own level and its neighbors'.
+//! Level l of a patch joins every 2ˡ-th post by right triangles whose diagonals alternate as the lattice's do, so level 0 is
+//! the ground itself. The error of each level is measured once; a view then chooses a level a patch, and each patch's
+//! triangles follow from its own level and its neighbors'.
 //!
-//! Two patches of different levels meet at the posts of the coarser: the finer drops the posts between along
-//! that side. Only the outermost row of its cells changes; corners are cut along their diagonals, so the sides
-//! are independent of each other:
+//! Two patches of different levels meet at the posts of the coarser: the finer drops the posts between along that side. Only
+//! the outermost row of its cells changes; corners are cut along their diagonals, so the sides are independent:
 //!
 //! ```text
 //!     o───o───o───o───o───o───o          the row inside keeps its step s
@@ -14,14 +13,14 @@
 //! o───────o───────o───────o───────o      the border has the coarser one, S
 //! ```
 //!
-//! Each border edge takes the post of the row inside that faces its middle; each edge of the row inside takes
-//! the nearest border post. All stitched triangles have an edge along their side and so keep area and sense
-//! where the layout folds vertices onto the lattice's border.
+//! Each border edge is joined to the post of the inner row that faces its middle; each edge of the inner row to the nearest
+//! border post. All stitched triangles have an edge along their side and so keep area and orientation where the layout maps
+//! vertices onto the lattice's border.
 //!
-//! A level that covers data and no data alike is never chosen, and neither are coarse levels beside it: holes
-//! are those of the full mesh. Not an [`ActiveSet`](crate::roam::active::ActiveSet): stitched triangles are none
-//! of the bintree's. The error that is measured is that of whole levels; stitched triangles are within the
-//! coarser neighbor's on the border, and no bound is promised inside their row.
+//! A level that covers both data and no data is never chosen, and neither are coarse levels beside it: holes are those of the
+//! full mesh. The levels are not an [`ActiveSet`](crate::roam::active::ActiveSet), since stitched triangles are not the
+//! bintree's. The measured error is that of whole levels; stitched triangles are within the coarser neighbor's on the border,
+//! and no bound is promised inside their row.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -55,13 +54,13 @@ impl Pyramids {
         Self { layout: *layout, errors }
     }
 
-    /// How many levels a patch has: from the posts, 0, to a single square.
+    /// The number of levels of a patch: from the posts, 0, to a single square.
     pub fn level_count(&self) -> u32 {
         self.layout.patch().trailing_zeros() + 1
     }
 
-    /// The largest vertical distance in meters between the ground and the patch at `level`, without
-    /// exaggeration: 0 at level 0, infinite where the level would cover a hole. Never less than a finer level's.
+    /// The largest vertical distance in meters between the ground and the patch at `level`: 0 at level 0, infinite where the
+    /// level would cover a hole. Never less than a finer level's.
     pub fn error_m(&self, corner: Vertex, level: u32) -> f32 {
         self.errors[self.layout.patch_index(corner)][level as usize]
     }
@@ -75,7 +74,7 @@ impl Pyramids {
         camera: &Camera,
         tolerance_px: f32,
     ) -> PatchLevels {
-        // Twice longer than its share at the picture's middle where seen aslant, as in the screen-space criterion.
+        // As in the screen-space criterion: pixels at the picture's corner, where they are largest.
         let aslant = 1.0 + camera.tan_half_fov().length_squared();
         let meters_at_one = tolerance_px / (camera.pixels_per_meter(1.0) * aslant);
         self.chosen(|corner| match heights.bounds(ground, corner) {
@@ -111,8 +110,8 @@ impl Pyramids {
 }
 
 impl PatchLevels {
-    /// Levels chosen otherwise, one a patch in the layout's order; `None` where their number is wrong or one is
-    /// coarser than a single square. Holes are only kept where a level is fine enough.
+    /// Given levels, one a patch in the layout's order; `None` where their number is wrong or one is coarser than a single
+    /// square. Holes are kept only where a level is fine enough.
     pub fn new(layout: &PatchLayout, levels: Vec<u32>) -> Option<Self> {
         let coarsest = layout.patch().trailing_zeros();
         let sound = levels.len() == layout.patch_count() && levels.iter().all(|&level| level <= coarsest);
@@ -120,20 +119,20 @@ impl PatchLevels {
     }
 
     /// The level of a patch.
-    pub fn of(&self, layout: &PatchLayout, corner: Vertex) -> u32 {
+    pub fn at(&self, layout: &PatchLayout, corner: Vertex) -> u32 {
         self.0[layout.patch_index(corner)]
     }
 
     /// The step between posts along one side of a patch: the coarser of the two that meet there.
     fn border_step(&self, layout: &PatchLayout, corner: Vertex, side: NodeSide) -> i32 {
-        let own = self.of(layout, corner);
-        let other = beside(layout, corner, side).map_or(own, |neighbor| self.of(layout, neighbor));
+        let own = self.at(layout, corner);
+        let other = beside(layout, corner, side).map_or(own, |neighbor| self.at(layout, neighbor));
         1 << own.max(other)
     }
 }
 
 /// Calls `emit` with the triangles of the patches whose south-west corners are listed, counter-clockwise.
-/// Patches that are not listed still say where the borders' posts are.
+/// Patches that are not listed still determine the posts on borders.
 pub fn triangles(
     layout: &PatchLayout,
     levels: &PatchLevels,
@@ -141,7 +140,7 @@ pub fn triangles(
     mut emit: impl FnMut([Vertex; 3]),
 ) {
     for corner in patches {
-        let step = 1 << levels.of(layout, corner);
+        let step = 1 << levels.at(layout, corner);
         if step == layout.patch() {
             Triangle::roots(corner, step).iter().for_each(|half| emit(half.corners()));
             continue;
@@ -343,11 +342,11 @@ mod tests {
         let camera =
             Camera::new(eye, Vec3::new(300.0, 500.0, 0.0), 0.8, (640, 480), (0.5, 9000.0)).expect("sound");
         let levels = pyramids.for_view(ground, &heights, &camera, 12.0);
-        assert!(levels.of(&layout, Vertex::new(0, 0)) < levels.of(&layout, Vertex::new(112, 112)));
+        assert!(levels.at(&layout, Vertex::new(0, 0)) < levels.at(&layout, Vertex::new(112, 112)));
         for corner in layout.patches() {
             let (min, max) = heights.bounds(ground, corner).expect("data");
             let nearest = nearest_m(eye, min, max);
-            let error = pyramids.error_m(corner, levels.of(&layout, corner));
+            let error = pyramids.error_m(corner, levels.at(&layout, corner));
             assert!(error == 0.0 || error * camera.pixels_per_meter(nearest) <= 12.0, "{corner:?}");
         }
     }

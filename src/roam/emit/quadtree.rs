@@ -1,8 +1,7 @@
 //! The restricted quadtree's triangles, top-down from five-vertex nodes.
 //!
-//! A node is a square whose center is active. Its triangles are a fan round the center, over the corners and the
-//! active edge vertices; which edge vertices are active, four bits, says all. Up to quarter turns that makes six
-//! patterns, here with the ring's numbers at their places:
+//! A node is a square whose center is active. Its triangles are a fan round the center, over the corners and the active edge
+//! vertices, so four bits determine it. Up to quarter turns these are six patterns, here with the numbers of the ring:
 //!
 //! ```text
 //!   0: none           1: west           2: west, south    3: west, east     4: all but north  5: all
@@ -13,14 +12,13 @@
 //!   0───────2         0───────2         0───1───2         0───────2         0───1───2         0───1───2
 //! ```
 //!
-//! A quarter between two active edge vertices is a child's square. Where the child's center is inactive, its two
-//! triangles along the diagonal to the center are those of the fan; where it is active, the child draws its own
-//! fan instead. The center of a child has just those two edge vertices as parents, so there is no other case. Only
-//! a patch whose own center is inactive is no fan: two triangles, along the diagonal that alternates from patch
-//! to patch.
+//! A quarter between two active edge vertices is a child's square. Where the child's center is inactive, its two triangles
+//! along the diagonal to the center are those of the fan; where it is active, the child draws its own fan instead. The center
+//! of a child has these two edge vertices as parents, so there is no other case. Only a patch whose own center is inactive is
+//! no fan but two triangles, along the diagonal that alternates from patch to patch.
 //!
-//! Source: the restricted quadtree with five-vertex nodes, six patterns and quarter turns, after Lindstrom et al.
-//! 1996. From the same bits the triangles are those of the bintree.
+//! Source: the restricted quadtree with five-vertex nodes, six patterns and quarter turns, after Lindstrom et al. 1996. The
+//! triangles are those of the bintree from the same bits.
 
 use crate::roam::active::ActiveSet;
 use crate::roam::bintree::Triangle;
@@ -105,21 +103,21 @@ const fn quarter(from: u8, to: u8) -> u8 {
     }
 }
 
-/// A node on its way down: its center and how far below the patch it is.
+/// A node to visit: its center and its level below the patch.
 #[derive(Clone, Copy)]
 struct Visit {
     center: WalkKey,
     level: u32,
 }
 
-/// The ring of a node and what is active about it.
+/// The ring of a node with its active vertices and children.
 struct NodeRing {
     ring: [WalkKey; 8],
     state: usize,
     children: u8,
 }
 
-/// The way down one patch.
+/// The walk from the root of a patch.
 struct Descent<'a> {
     active: &'a ActiveSet,
     origin: WalkKey,
@@ -144,7 +142,7 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Looks round a node of half side `half` and puts its active children on `waiting`.
+    /// The ring of a node of half side `half`; puts its active children on `waiting`.
     fn around(&self, node: Visit, half: i32, waiting: &mut Vec<Visit>) -> NodeRing {
         let at = |x: i32, y: i32| key(self.active.layout(), Vertex::new(x, y));
         let (zero, east, north) = (self.origin, at(half, 0), at(0, half));

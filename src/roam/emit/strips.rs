@@ -1,22 +1,21 @@
 //! Triangle strips: each triangle after the first costs one vertex, or two where the strip turns the same way twice.
 //!
-//! In a strip any three vertices in a row are a triangle, every second one clockwise. A strip goes on over the
-//! edge of its last two vertices; where the next triangle lies at the other edge, the vertex before the last is
-//! sent again (the swap), which makes a triangle without area:
+//! Any three consecutive vertices of a strip are a triangle, every second one clockwise. A strip continues over the edge of
+//! its last two vertices; where the next triangle lies at the other edge, the vertex before the last is repeated (the swap),
+//! which makes a triangle without area:
 //!
 //! ```text
 //!         e
 //!       ╱ │
 //!     ╱   │
-//!   a ─── c      a b c d      goes on over b–c
+//!   a ─── c      a b c d      continues over b–c
 //!   │   ╱ │
-//!   │ ╱   │      a b a c e    goes on over a–c: the triangle (a, b, a) is empty
+//!   │ ╱   │      a b a c e    continues over a–c: the triangle (a, b, a) is empty
 //!   b ─── d
 //! ```
 //!
-//! The leaves of a bintree, in the order of its walk, share edge after edge (Pascucci 2000 sends the same curve),
-//! so every patch is one strip; holes and borders break it into a few. The strips are made from any triangles
-//! in order, since what is drawn of a patch is known only triangle by triangle.
+//! The leaves of a bintree in the order of its walk share edge after edge (Pascucci 2000 sends the same curve), so every
+//! patch is one strip; holes and borders break it into a few. Strips are made from any triangles in order.
 
 use crate::roam::active::ActiveSet;
 use crate::roam::emit::bintree;
@@ -31,12 +30,12 @@ pub struct Strips {
     end: StripTail,
 }
 
-/// What is sent.
+/// The size of strips or fans.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StripStats {
     /// Triangles with area.
     pub triangles: usize,
-    /// Vertices sent for them; a list of triangles sends three each.
+    /// Vertices; a list of triangles has three each.
     pub vertices: usize,
     /// Strips, or fans.
     pub strips: usize,
@@ -49,30 +48,28 @@ impl StripStats {
     }
 }
 
-/// The last triangle of the strip that is being made: what of it has been sent.
+/// The last triangle of the strip under construction, by the vertices that are not written yet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum StripTail {
     /// No triangle yet.
     #[default]
     Nothing,
-    /// Nothing: its corners can still be turned.
+    /// All: its corners can still be rotated.
     Whole([Vertex; 3]),
-    /// Two corners, in this order; the third follows once it is known over which edge the strip goes on.
+    /// The last; the others were written in this order. It follows once the edge is known over which the strip continues.
     AllBut {
         /// The earlier one.
         older: Vertex,
         /// The later one.
         newer: Vertex,
-        /// The one not sent.
+        /// The one not written.
         last: Vertex,
     },
 }
 
 impl Strips {
-    /// Adds the patches whose south-west corners are listed, each a strip: of the bintree's leaves that `keep`
-    /// keeps.
-    ///
-    /// `keep` is for leaves that are not drawn; see [`drawn_posts`](crate::roam::emit::world::drawn_posts).
+    /// Adds the patches whose south-west corners are listed, each a strip of the bintree's leaves for which `keep` returns
+    /// true: see [`drawn_posts`](crate::roam::emit::world::drawn_posts).
     pub fn add_patches(
         &mut self,
         active: &ActiveSet,
@@ -89,21 +86,21 @@ impl Strips {
         }
     }
 
-    /// Takes all strips out, to be filled anew.
+    /// Removes all strips.
     pub fn clear(&mut self) {
         self.vertices.clear();
         self.starts.clear();
         (self.triangles, self.end) = (0, StripTail::Nothing);
     }
 
-    /// Adds a triangle, counter-clockwise: to the strip where it shares an edge with the one before, else to a
-    /// new one.
+    /// Adds a counter-clockwise triangle: to the last strip where it shares an edge with the triangle before, else to a new
+    /// strip.
     pub fn push(&mut self, corners: [Vertex; 3]) {
         self.triangles += 1;
         let follows = match self.end {
             StripTail::Nothing => None,
-            StripTail::Whole(first) => self.go_on_from_first(first, corners),
-            StripTail::AllBut { older, newer, last } => self.go_on(older, newer, last, corners),
+            StripTail::Whole(first) => self.continue_from_first(first, corners),
+            StripTail::AllBut { older, newer, last } => self.continue_from(older, newer, last, corners),
         };
         self.end = follows.unwrap_or_else(|| {
             self.finish();
@@ -112,7 +109,7 @@ impl Strips {
         });
     }
 
-    /// Sends what is left of the last triangle; the next one starts a strip.
+    /// Ends the last strip.
     pub fn finish(&mut self) {
         match std::mem::take(&mut self.end) {
             StripTail::Nothing => {}
@@ -121,7 +118,7 @@ impl Strips {
         }
     }
 
-    fn go_on_from_first(&mut self, [a, b, c]: [Vertex; 3], next: [Vertex; 3]) -> Option<StripTail> {
+    fn continue_from_first(&mut self, [a, b, c]: [Vertex; 3], next: [Vertex; 3]) -> Option<StripTail> {
         let turned = [[a, b, c], [b, c, a], [c, a, b]];
         let [outer, older, newer] = turned.into_iter().find(|corners| !next.contains(&corners[0]))?;
         let last = beyond(older, newer, next)?;
@@ -129,7 +126,13 @@ impl Strips {
         Some(StripTail::AllBut { older, newer, last })
     }
 
-    fn go_on(&mut self, older: Vertex, newer: Vertex, last: Vertex, next: [Vertex; 3]) -> Option<StripTail> {
+    fn continue_from(
+        &mut self,
+        older: Vertex,
+        newer: Vertex,
+        last: Vertex,
+        next: [Vertex; 3],
+    ) -> Option<StripTail> {
         if let Some(beyond) = beyond(newer, last, next) {
             self.vertices.push(last);
             return Some(StripTail::AllBut { older: newer, newer: last, last: beyond });
@@ -139,19 +142,19 @@ impl Strips {
         Some(StripTail::AllBut { older, newer: last, last: beyond })
     }
 
-    /// The strips, each the vertices to send. Call [`Strips::finish`] first after [`Strips::push`].
+    /// The vertices of each strip. Call [`Strips::finish`] first after [`Strips::push`].
     pub fn iter(&self) -> impl Iterator<Item = &[Vertex]> {
         let ends = self.starts.iter().skip(1).copied().chain([self.vertices.len()]);
         self.starts.iter().zip(ends).map(|(&start, end)| &self.vertices[start..end])
     }
 
-    /// What is sent.
+    /// Their size.
     pub fn stats(&self) -> StripStats {
         StripStats { triangles: self.triangles, vertices: self.vertices.len(), strips: self.starts.len() }
     }
 }
 
-/// The third corner of a triangle that has `a` and `b`; `None` where it has not both.
+/// The third corner of a triangle with the corners `a` and `b`; `None` where it lacks one of them.
 fn beyond(a: Vertex, b: Vertex, corners: [Vertex; 3]) -> Option<Vertex> {
     let both = corners.contains(&a) && corners.contains(&b);
     corners.into_iter().find(|&corner| both && corner != a && corner != b)

@@ -39,7 +39,7 @@ impl ErrorMap {
     pub fn raised(own: Vec<f32>, layout: &PatchLayout) -> Self {
         let mut errors = vec![0f32; own.len()];
         let sound = SweepSource::new(&own, layout).sweep::<KnownErrors>(&mut errors);
-        debug_assert!(sound, "given errors may be NaN");
+        debug_assert!(sound, "given errors are taken as they are");
         Self { errors }
     }
 

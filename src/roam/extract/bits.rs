@@ -2,8 +2,8 @@
 
 use crate::roam::layout::PatchLayout;
 
-/// Columns and rows of the blocks that are passed over where their center is not active: sixteen errors are one
-/// line of the cache, and a quarter of a word of bits.
+/// Columns and rows of the blocks that are skipped where their center is not active: sixteen errors are one cache line, and a
+/// quarter of a word of bits.
 const BLOCK: usize = 16;
 
 /// Which vertices are active, row by row, and how many are before each word.
@@ -11,7 +11,7 @@ const BLOCK: usize = 16;
 pub struct ActiveBits {
     pub words: Vec<u64>,
     pub before: Vec<u32>,
-    /// The numbers of active vertices with even coordinates; of others, whatever was there.
+    /// The numbers of active vertices with even coordinates; stale for other vertices.
     pub even_numbers: Vec<u32>,
     pub even_width: usize,
     /// Words in a row.
@@ -45,7 +45,7 @@ impl ActiveBits {
     }
 
     /// Inside a block, all vertices descend from its center; on its sides, from that of the block beyond as well;
-    /// its corners, of other vertices, are always looked at.
+    /// its corners, of other vertices, are always tested.
     fn set_by_blocks(&mut self, errors: &[f32], tolerance_m: f32) {
         let (columns, width) = (self.columns, self.width);
         let blocks = (columns - 1) / BLOCK;
@@ -110,7 +110,7 @@ impl ActiveBits {
         }
     }
 
-    /// Room for all triangles and for those that are written and then thought better of.
+    /// Room for all triangles and for those that are written and not kept.
     pub fn most_triangles(layout: &PatchLayout, vertices: &[u32]) -> usize {
         2 * layout.patch_count() + 2 * vertices.len() + 4
     }

@@ -1,7 +1,7 @@
 //! Triangles for a tolerance without a view: the mesh of a terrain as a file or a tile wants it.
 //!
-//! An error map never grows toward the children, so the vertices whose error is above a tolerance are already
-//! closed under parents, and nothing need be walked from the roots. Three passes in storage order do it:
+//! An error map never grows toward the children, so the vertices whose error is above a tolerance are closed under parents,
+//! and no walk from the roots is needed. Three passes in storage order:
 //!
 //! 1. One bit a vertex: error above the tolerance, or patch corner.
 //! 2. Vertices are numbered in that order; a vertex's number is the count of bits before it.
@@ -10,22 +10,24 @@
 //!
 //! ```text
 //! o───────q───────o        m an edge middle, q the corners around it (its hypotenuse's ends and its parents),
-//! │     ╱ │ ╲     │        c its children: the triangle m, q, q stands where c is not active. A center is the
+//! │     ╱ │ ╲     │        c its children: the triangle m, q, q exists where c is not active. A center is the
 //! │   c   │   c   │        same, turned by 45°.
 //! │ ╱     │     ╲ │
 //! q───────m───────q
 //! ```
 //!
-//! A recursion from the roots visits every inner triangle too, guesses a branch at each, and finds each corner's
-//! number in a table as large as the terrain.
+//! A recursion from the roots visits every inner triangle too, branches at each, and looks up each corner's number in a table
+//! as large as the terrain.
 
 mod bits;
 
 use crate::roam::bintree::Triangle;
+use crate::roam::emit::world::doubled_area;
 use crate::roam::errors::ErrorMap;
 use crate::roam::extract::bits::{ActiveBits, places};
 use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
+use crate::terrain::lattice::Post;
 
 /// A mesh of posts, and the memory it was made in: extracting again reuses it.
 #[derive(Clone, Debug, Default)]
@@ -49,8 +51,8 @@ impl Extract {
         &self.triangles[..self.count]
     }
 
-    /// Drops the triangles with a corner that `keep` refuses, by its number as a post, and the vertices that none
-    /// uses any more: where there is no data.
+    /// Drops the triangles with a corner for which `keep`, called with the post's number, returns false, and the vertices
+    /// that become unused; for posts without data.
     pub fn retain(&mut self, keep: impl Fn(u32) -> bool) {
         let corners: Vec<u32> = self.vertices.clone();
         self.renumber(&corners, |posts| posts.iter().all(|&post| keep(post)));
@@ -91,8 +93,8 @@ impl Extract {
 
 /// Writes to `out` the triangles of all patches, split wherever the error is above `tolerance_m`, 0 or more.
 ///
-/// Where patches reach past the lattice's border, triangles beyond it are left out, as they are drawn. Errors know
-/// nothing of data: see [`Extract::retain`].
+/// Where patches reach past the lattice's border, triangles beyond it are left out. Posts without data are not: see
+/// [`Extract::retain`].
 pub fn extract(layout: &PatchLayout, errors: &ErrorMap, tolerance_m: f32, out: &mut Extract) {
     out.bits.set(layout, errors.values(), tolerance_m);
     out.bits.number(&mut out.vertices);
@@ -108,7 +110,7 @@ pub fn extract(layout: &PatchLayout, errors: &ErrorMap, tolerance_m: f32, out: &
     clamp_to_border(layout, out);
 }
 
-/// Replaces the vertices beyond a border by the posts they stand for.
+/// Replaces the vertices beyond a border by their posts.
 fn clamp_to_border(layout: &PatchLayout, out: &mut Extract) {
     let (columns, rows) = (layout.columns() as i32, layout.rows() as i32);
     let last = layout.post(Vertex::new(columns - 1, rows - 1));
@@ -121,16 +123,15 @@ fn clamp_to_border(layout: &PatchLayout, out: &mut Extract) {
     };
     let posts: Vec<u32> = out.vertices.iter().map(post).collect();
     let width = last.column + 1;
-    let doubled_area = |posts: [u32; 3]| {
-        let [a, b, c] = posts.map(|post| (i64::from(post % width), i64::from(post / width)));
-        (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0)
+    let has_area = |posts: [u32; 3]| {
+        doubled_area(posts.map(|post| Post { column: post % width, row: post / width })) != 0
     };
-    out.renumber(&posts, |posts| doubled_area(posts) != 0);
+    out.renumber(&posts, has_area);
 }
 
-/// Where a vertex's corners and children are, as distances in storage that wrap around: counter-clockwise, every
-/// child between its corner and the next. Whether a vertex is a center then chooses numbers and not ways, for
-/// which one it is next can hardly be guessed.
+/// The offsets in storage, wrapping around, of a vertex's corners and children: counter-clockwise, every child between its
+/// corner and the next. Centers and edge middles then differ in numbers and not in code, since a branch would hardly be
+/// predicted.
 #[derive(Clone, Copy, Default)]
 struct Star {
     /// In the numbers of even vertices.
@@ -142,7 +143,7 @@ struct Star {
 }
 
 impl Star {
-    /// Of edges' middles and centers by turns, from the finest step.
+    /// Those of edge middles and centers alternately, from the finest step.
     fn all(bits: &ActiveBits) -> Vec<Self> {
         let steps = (0..bits.patch.ilog2()).map(|level| 1isize << level);
         let first = |step: isize| [((step, 0), (step / 2, step / 2)), ((-step, -step), (0, -step))];
@@ -227,13 +228,8 @@ impl Emitter<'_> {
             }
             for bit in places(word & EVEN & !outer) {
                 let own = rank(mid_before[place], word, bit);
-                let around = [
-                    own + 1,
-                    rank(high_before[place], north, bit),
-                    own - 1,
-                    rank(low_before[place], south, bit),
-                ];
-                self.put_all(own, around);
+                let beside = [rank(high_before[place], north, bit), rank(low_before[place], south, bit)];
+                self.put_all(own, beside);
             }
             // An odd column is never a word's first; the vertex east of its last is the next word's first.
             let after = mid.get(place + 1).is_some_and(|next| next & 1 == 1);
@@ -265,13 +261,8 @@ impl Emitter<'_> {
             let first = place * 64;
             for bit in places(word & !EVEN) {
                 let own = rank(mid_before[place], word, bit);
-                let around = [
-                    own + 1,
-                    rank(high_before[place], north, bit),
-                    own - 1,
-                    rank(low_before[place], south, bit),
-                ];
-                self.put_all(own, around);
+                let beside = [rank(high_before[place], north, bit), rank(low_before[place], south, bit)];
+                self.put_all(own, beside);
             }
             for bit in places(word & EVEN) {
                 let x = first + bit as usize;
@@ -330,14 +321,17 @@ impl Emitter<'_> {
         }
     }
 
-    fn put_all(&mut self, own: u32, [a, b, c, d]: [u32; 4]) {
+    /// The four triangles around a finest edge middle, `beside` its neighbors north and south.
+    #[inline]
+    fn put_all(&mut self, own: u32, [b, d]: [u32; 2]) {
+        let (a, c) = (own + 1, own - 1);
         let slots = &mut self.triangles[self.count..self.count + 4];
         slots.copy_from_slice(&[[own, a, b], [own, b, c], [own, c, d], [own, d, a]]);
         self.count += 4;
     }
 
-    /// Those whose children, 0 or 1, are 0. All are written, and the count tells which are kept: which ones they
-    /// are is hardly ever guessed.
+    /// Puts the triangles whose children, 0 or 1, are 0. All are written, and the count keeps the right ones, since a branch
+    /// would hardly be predicted.
     fn put_missing(&mut self, own: u32, [a, b, c, d]: [u32; 4], children: [u64; 4]) {
         let slots = &mut self.triangles[self.count..self.count + 4];
         let mut kept = 0;

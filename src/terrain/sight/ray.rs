@@ -10,7 +10,6 @@
 use std::ops::ControlFlow;
 
 use glam::{DVec2, DVec3};
-use rayon::prelude::*;
 
 use crate::terrain::cell_triangle::{CellTriangle, Diagonal};
 use crate::terrain::lattice::{Lattice, Post};
@@ -18,9 +17,6 @@ use crate::terrain::query::{Interpolation, ground_height};
 use crate::terrain::sight::crossings::{LineCrossing, LinePart};
 use crate::terrain::sight::descent::{Probe, descend};
 use crate::terrain::sight::ground::SightGround;
-
-/// Rays per task of a batch: some ten microseconds' work at the least.
-const CHUNK: usize = 1024;
 
 /// A half-line in world space, meters from the lattice's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,16 +55,6 @@ impl SightGround {
             ControlFlow::Continue(()) => search.at_end()?,
         };
         Some(span.hit(lattice, met))
-    }
-
-    /// [`SightGround::pick`] for many rays, in order, on all threads.
-    ///
-    /// # Panics
-    /// Where `out` is not as long as `rays`.
-    pub fn picks(&self, rays: &[Ray], farthest_m: f64, out: &mut [Option<RayHit>]) {
-        assert_eq!(rays.len(), out.len(), "one answer per ray");
-        let answers = rays.par_iter().zip(out).with_min_len(CHUNK);
-        answers.for_each(|(&ray, out)| *out = self.pick(ray, farthest_m));
     }
 }
 

@@ -152,12 +152,12 @@ fn the_ground_is_answered_alike_by_library_and_service_at_latitudes_and_longitud
 fn a_scene_is_asked_for_its_ground_and_its_source_in_its_own_coordinates() {
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/heightmap.toml");
     let dataset = open(&scene);
-    let epoch = dataset.service().expect("a scene has ground").snapshot();
-    let extent = epoch.lattice().extent();
+    let snapshot = dataset.service().expect("a scene has ground").snapshot();
+    let extent = snapshot.lattice().extent();
     let at: Vec<DVec2> = (0..50)
         .map(|index| {
             let part = DVec2::new(f64::from(index % 7) / 6.3, f64::from(index % 11) / 9.5);
-            epoch.lattice().origin() + extent.min + (extent.max - extent.min) * part
+            snapshot.lattice().origin() + extent.min + (extent.max - extent.min) * part
         })
         .collect();
     let locations: Vec<[String; 2]> = at.iter().map(|at| [at.x.to_string(), at.y.to_string()]).collect();

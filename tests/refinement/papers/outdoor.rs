@@ -202,7 +202,7 @@ fn a_block_s_level_is_chosen_by_its_distance_and_error_from_a_pyramid() {
     }
     let camera = camera(Vec3::new(-100.0, 1280.0, 40.0), Vec3::new(2000.0, 1280.0, 0.0));
     let levels = pyramids.for_view(world.ground(), &world.heights, &camera, 2.0);
-    let at = |east: i32, north: i32| levels.of(&world.layout, Vertex::new(east * 32, north * 32));
+    let at = |east: i32, north: i32| levels.at(&world.layout, Vertex::new(east * 32, north * 32));
     assert!(at(0, 2) < at(7, 2), "by distance: {} near, {} far", at(0, 2), at(7, 2));
     assert!(at(4, 2) < at(4, 5), "by error: {} on hills, {} on low ones", at(4, 2), at(4, 5));
 }

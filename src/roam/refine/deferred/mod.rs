@@ -1,21 +1,19 @@
-//! Deferred re-examination: a frame costs what changed and what fell due, not what is shown.
+//! Deferred examination: a frame costs the vertices that change or fall due, not those that are shown.
 //!
-//! A vertex that is s meters from the surface of its sphere cannot change before the eye has traveled s meters:
-//! the delay factor of the constrained nested error criterion, made exact by counting distance instead of frames.
-//! So every vertex that could change next waits in a wheel keyed by distance traveled, and is looked at when it
-//! falls due.
+//! A vertex s meters from the surface of its sphere cannot change before the eye has traveled s meters: the delay factor of
+//! the constrained nested error criterion, made exact by counting distance instead of frames. Every vertex that could change
+//! next waits in a wheel keyed by distance traveled, and is examined when it falls due.
 //!
-//! Patches out of view wait: nothing is looked at in them, and what fell due meanwhile is made up for when they come
-//! into view again. A patch whose middle sphere has never held the eye shows its two root triangles and has no
-//! memory of its own.
+//! Nothing is examined in patches out of view; vertices that fall due there are examined when the patch is in view again. A
+//! patch whose middle sphere has never held the eye shows its two root triangles and has no mesh.
 //!
-//! The mesh is exactly that of `rebuild` with the spheres as criterion, over the patches shown. Any nested spheres
-//! will do, and nothing else: other criteria have no distance within which they keep their mind.
+//! The mesh is exactly that of `rebuild` with the spheres as criterion, over the patches shown. The criterion must be nested
+//! spheres: others have no distance within which they cannot change.
 //!
-//! Cost, on one core: 3 µs a frame, 130 ns a vertex that changes and 26 ns one that is only looked at (a fit over
-//! frames with 9,000 triangles at five speeds). What is looked at each frame grows with the speed and with the
-//! logarithm of the distance to what may change. The longest frames, up to 0.15 ms, are those in which patches come into
-//! view that have no mesh of their own yet.
+//! Costs, on one core, 3 µs a frame, 130 ns a vertex that changes and 26 ns one that is only examined (a fit over frames with
+//! 9,000 triangles at five speeds). The number of vertices examined grows with the speed and with the logarithm of the
+//! distance to those that may change. The longest frames, up to 0.15 ms, are those in which patches without a mesh come into
+//! view.
 
 mod check;
 pub mod patch;
@@ -35,26 +33,26 @@ use crate::roam::refine::deferred::patch::{Decider, EyeStation, PatchMesh, Updat
 use crate::roam::refine::deferred::topology::Topology;
 use crate::roam::refine::deferred::wheel::{FARTHEST, Links, Wheel, WheelLink};
 
-/// Ticks that a post's distance is cut into. With coarser ticks more vertices may change before the next tick and are
-/// looked at every frame; with finer ones a frame turns more slots. Arbitrary within a few times of this.
+/// Ticks in the distance between posts. Coarser ticks make more vertices due every frame, finer ones more slots to turn;
+/// arbitrary within a few times of this.
 const TICKS_PER_POST: f64 = 8.0;
 
 /// Patches of more cells a side have no u16 for each vertex.
 pub const LARGEST_PATCH: i32 = 128;
 
-/// Bits of an entry of the wheel that number the vertex; the others number the mesh.
+/// Bits of the vertex in an entry of the wheel; the others are the mesh.
 const VERTEX_BITS: u32 = 15;
 
 /// One patch of the walk.
 #[derive(Clone, Copy, Debug, Default)]
 struct WalkedPatch {
-    /// Its place among the meshes, if it has one.
+    /// The index of its mesh.
     mesh: Option<u32>,
-    /// A patch without a mesh needs none before this tick.
+    /// The first tick in which it may need a mesh.
     due: u64,
 }
 
-/// The patches that have a mesh of their own.
+/// The meshes of patches.
 #[derive(Debug, Default)]
 struct Meshes(Vec<PatchMesh>);
 
@@ -68,7 +66,7 @@ impl Links for Meshes {
     }
 }
 
-/// Lists that every update fills anew; kept for their memory.
+/// Scratch lists of an update, kept for their memory.
 #[derive(Debug, Default)]
 struct UpdateScratch {
     due: Vec<u32>,
@@ -87,14 +85,14 @@ pub struct Deferred<S> {
     meshes: Meshes,
     /// The update in which each mesh was last listed.
     seen: Vec<u64>,
-    /// Whether each mesh has missed something.
+    /// Whether each mesh has vertices to examine when it is listed.
     behind: Vec<bool>,
-    /// Meshes that no patch has.
+    /// Meshes without a patch.
     spare: Vec<u32>,
     wheel: Wheel,
     visible: Vec<Vertex>,
     station: EyeStation,
-    /// Whether the listed patches are right for where the eye is.
+    /// Whether the listed patches are up to date with the eye.
     settled: bool,
     frame: u64,
     changes: RefinementChanges,
@@ -103,7 +101,7 @@ pub struct Deferred<S> {
 }
 
 impl<S: BlockSource> Deferred<S> {
-    /// A walk that starts anywhere. `cell_m` is the smaller distance between posts, meters, and more than 0.
+    /// A mesh that starts at any eye. `cell_m` is the smaller distance between posts, meters, above 0.
     ///
     /// `None` where patches have more than [`LARGEST_PATCH`] cells a side.
     pub fn new(source: S, cell_m: f64) -> Option<Self> {
@@ -132,10 +130,10 @@ impl<S: BlockSource> Deferred<S> {
         })
     }
 
-    /// Brings the listed patches to where the eye is; `visible` are south-west corners, each once.
+    /// Updates the listed patches to the eye; `visible` are south-west corners, each once.
     ///
     /// # Errors
-    /// Where a patch cannot be had; the patches before it are up to date, and the update can be asked for again.
+    /// A patch cannot be read; the update can be repeated.
     pub fn update(&mut self, eye: Vec3, visible: &[Vertex]) -> Result<&RefinementChanges, BlockError> {
         self.changes = RefinementChanges {
             dirty: std::mem::take(&mut self.changes.dirty),
@@ -167,20 +165,20 @@ impl<S: BlockSource> Deferred<S> {
         &self.visible
     }
 
-    /// What the last update changed. A patch that has come into view is not dirty for that alone.
+    /// The changes of the last update. A patch that has come into view is not dirty for that alone.
     pub fn changes(&self) -> &RefinementChanges {
         &self.changes
     }
 
-    /// How many vertices the last update looked at.
+    /// The number of vertices that the last update examined.
     pub fn examined(&self) -> usize {
         self.counts.examined
     }
 
-    /// The triangles shown of a patch: corners by number, counter-clockwise. Vertices are numbered as [`Topology`]
-    /// numbers them, the same for all patches of one orientation; [`Deferred::vertex`] tells which is which.
+    /// The triangles shown of a patch: corners by number, counter-clockwise. [`Topology`] numbers the vertices, the same for
+    /// all patches of one orientation; [`Deferred::vertex`] resolves a number.
     pub fn indices(&self, corner: Vertex) -> &[[u16; 3]] {
-        self.mesh(corner).map_or(self.topology(corner).flat(), PatchMesh::indices)
+        self.mesh(corner).map_or(self.topology(corner).roots().as_slice(), PatchMesh::indices)
     }
 
     /// The vertex with a number in the patch with south-west corner `corner`.
@@ -189,12 +187,12 @@ impl<S: BlockSource> Deferred<S> {
         corner.moved(column, row)
     }
 
-    /// How many triangles the listed patches show.
+    /// The number of triangles that the listed patches show.
     pub fn triangle_count(&self) -> usize {
         self.visible.iter().map(|&corner| self.indices(corner).len()).sum()
     }
 
-    /// The bits of the patches listed last, and of what they need around them.
+    /// The active vertices of the patches listed last, and those that they need around them.
     pub fn active_set(&self) -> ActiveSet {
         let mut active = ActiveSet::new(self.layout);
         let side = self.layout.patch() + 1;
@@ -207,11 +205,11 @@ impl<S: BlockSource> Deferred<S> {
         active
     }
 
-    /// Tells of an edit: the heights or spheres of the patches whose south-west corners are listed have changed in
-    /// the source. They are mended in the next update.
+    /// Marks the patches whose south-west corners are listed as edited: their heights or spheres have changed in the source.
+    /// The next update applies the changes.
     ///
     /// # Errors
-    /// Where a patch cannot be had.
+    /// A patch cannot be read.
     pub fn edit(&mut self, dirty: &[Vertex]) -> Result<(), BlockError> {
         self.settled = false;
         for &corner in dirty {
@@ -239,10 +237,10 @@ impl<S: BlockSource> Deferred<S> {
             let link = *patch.link(vertex);
             let inside = self.station.inside_m(patch.sphere(topology, vertex));
             let waits = patch.is_waiting(vertex);
-            let waits_well = waits
+            let is_soon_enough = waits
                 && (inside > 0.0) == patch.is_active(vertex)
                 && self.station.due(inside.abs()) >= self.wheel.begin(link);
-            if !waits_well {
+            if !is_soon_enough {
                 patch.miss(vertex);
                 self.behind[slot] = true;
                 if waits {
@@ -252,23 +250,23 @@ impl<S: BlockSource> Deferred<S> {
         }
     }
 
-    /// Where patches come from.
+    /// The source of patches.
     pub fn source(&self) -> &S {
         &self.source
     }
 
-    /// Where patches come from; whoever changes it tells so by [`Deferred::edit`].
+    /// The source of patches; a change of it must be followed by [`Deferred::edit`].
     pub fn source_mut(&mut self) -> &mut S {
         &mut self.source
     }
 
-    /// How many patches have a mesh of their own.
+    /// The number of patches with a mesh.
     pub fn meshes(&self) -> usize {
         self.meshes.0.len() - self.spare.len()
     }
 
-    /// Gives up the meshes of patches that have not been listed for the longest time, until at most `most` are left
-    /// or only listed ones; they are made anew when they are listed again.
+    /// Drops the meshes of the patches that have not been listed for the longest time, until at most `most` are left or only
+    /// listed ones.
     pub fn forget(&mut self, most: usize) {
         let mut held: Vec<(u64, usize, u32)> = (self.patches.iter().enumerate())
             .filter_map(|(index, patch)| Some((index, patch.mesh?)))
@@ -298,8 +296,8 @@ impl<S: BlockSource> Deferred<S> {
         }
     }
 
-    /// Counts the way. Nothing waits for longer than [`FARTHEST`] ticks, so no leap need count for more, and a place
-    /// that is not a number may be as far away as anything.
+    /// Adds the distance traveled. Nothing waits for longer than [`FARTHEST`] ticks, so no leap counts for more; neither does
+    /// one to or from an eye that is NaN.
     fn travel_to(&mut self, eye: Vec3) {
         let moved_m = (eye.as_dvec3() - self.station.eye.as_dvec3()).length();
         let ticks = moved_m * self.station.ticks_per_m;
@@ -330,13 +328,13 @@ impl<S: BlockSource> Deferred<S> {
                     }
                 }
                 None if shown.due > self.station.tick() => {}
-                None => self.found_mesh_if_needed(corner, index)?,
+                None => self.add_mesh_if_needed(corner, index)?,
             }
         }
         Ok(())
     }
 
-    fn found_mesh_if_needed(&mut self, corner: Vertex, index: usize) -> Result<(), BlockError> {
+    fn add_mesh_if_needed(&mut self, corner: Vertex, index: usize) -> Result<(), BlockError> {
         let root = self.source.root(corner);
         let inside = self.station.inside_m([root.center.x, root.center.y, root.center.z, root.radius]);
         if inside <= 0.0 {
@@ -361,8 +359,8 @@ impl<S: BlockSource> Deferred<S> {
         Ok(())
     }
 
-    /// Looks at what fell due: first measures all, then decides. Reads that do not wait for decisions overlap, and
-    /// most of them miss the cache.
+    /// Examines the vertices that fell due: first measures all, then decides. Most reads miss the cache, and reads that do not
+    /// wait for decisions overlap.
     fn examine_due(&mut self) {
         let mut due = std::mem::take(&mut self.scratch.due);
         let mut inside_m = std::mem::take(&mut self.scratch.inside_m);
@@ -386,7 +384,7 @@ impl<S: BlockSource> Deferred<S> {
         self.scratch.inside_m = inside_m;
     }
 
-    /// Makes up for what the listed patches missed.
+    /// Examines the vertices that the listed patches missed.
     fn catch_up(&mut self) {
         while let Some(mesh) = self.scratch.behind.pop() {
             self.behind[mesh as usize] = false;
@@ -394,7 +392,7 @@ impl<S: BlockSource> Deferred<S> {
         }
     }
 
-    /// Lets a patch decide, and notes whether it changed.
+    /// Calls `decide` for a mesh, and marks its patch as dirty if it changed.
     fn with_patch(&mut self, mesh: usize, decide: impl FnOnce(&mut PatchMesh, &mut Decider<'_>)) {
         let before = self.counts.splits + self.counts.merges;
         let patch = &mut self.meshes.0[mesh];

@@ -1,13 +1,12 @@
 //! One patch that follows the eye on its own.
 //!
-//! A vertex is active exactly while the eye is inside its sphere, spheres are nested, and vertices on a border have
-//! the same sphere in both patches: so each patch is a function of the eye alone, and patches that are up to date
-//! agree along their borders without being told.
+//! A vertex is active exactly while the eye is inside its sphere, spheres are nested, and vertices on a border have the same
+//! sphere in both patches: each patch is a function of the eye alone, and patches that are up to date agree along their
+//! borders.
 //!
-//! Only two kinds of vertices can change next: inactive ones whose parents are active, and active ones without
-//! active children. They wait in the wheel until the eye may have reached their sphere's surface; what falls due
-//! while the patch is out of view is kept for when it comes back. Each change rewrites four places of the patch's
-//! index list; the list is dense at all times.
+//! Only inactive vertices with active parents and active vertices without active children can change next. They wait in the
+//! wheel until the eye may have reached their sphere's surface; those that fall due while the patch is out of view are kept
+//! for its return. Each change rewrites four entries of the patch's index list, which is always dense.
 
 use std::sync::Arc;
 
@@ -36,10 +35,10 @@ const PARENTS: u8 = 3 * ONE_PARENT;
 /// Counts active children, of which there are at most four.
 const ONE_CHILD: u8 = 32;
 
-/// Where the eye is and how far it has come.
+/// The eye and the distance that it has traveled.
 #[derive(Clone, Copy, Debug)]
 pub struct EyeStation {
-    /// The eye, drawn world space.
+    /// The eye, world space.
     pub eye: Vec3,
     /// Ticks traveled, with their fraction.
     pub traveled: f64,
@@ -53,17 +52,14 @@ impl EyeStation {
         self.traveled as u64
     }
 
-    /// The tick in which a vertex can change first that is `slack_m` meters from its sphere's surface; no more than
-    /// [`FARTHEST`] ahead.
+    /// The first tick in which a vertex `slack_m` meters from its sphere's surface can change; at most [`FARTHEST`] ahead.
     pub fn due(&self, slack_m: f64) -> u64 {
         let ahead = (slack_m * self.ticks_per_m * SAFETY).min(FARTHEST as f64);
         (self.traveled + ahead) as u64
     }
 
-    /// How far the eye is inside the sphere about (`x`, `y`, `z`), meters; negative outside. A sphere of no radius
-    /// holds nothing.
-    ///
-    /// In f64: neighbors agree to the last bit, and spheres that are nested by a hair stay nested.
+    /// How far the eye is inside the sphere about (`x`, `y`, `z`), meters; negative outside, −∞ for a radius of 0. In f64, so
+    /// that neighbors agree to the last bit and nested spheres stay nested.
     pub fn inside_m(&self, [x, y, z, radius]: [f32; 4]) -> f64 {
         let (dx, dy, dz) = (
             f64::from(x) - f64::from(self.eye.x),
@@ -71,13 +67,13 @@ impl EyeStation {
             f64::from(z) - f64::from(self.eye.z),
         );
         let inside = f64::from(radius) - (dx * dx + dy * dy + dz * dz).sqrt();
-        // An eye that is nowhere is outside everything, and everything still waits for its return.
+        // An eye that is NaN is outside everything, and everything still waits for its return.
         if radius > 0.0 { inside.max(f64::MIN) } else { f64::NEG_INFINITY }
     }
 }
 
-/// One vertex: where its sphere is and where it waits. Sixteen bytes, so that a line of the cache holds four; what
-/// changes with the neighbors is kept apart, a byte each, so that a line holds sixty-four.
+/// The sphere of a vertex and its link in the wheel: sixteen bytes, four to a cache line. The flags, which change with the
+/// neighbors, are stored apart, sixty-four to a line.
 #[derive(Clone, Copy, Debug)]
 struct VertexCell {
     z: f32,
@@ -100,43 +96,43 @@ pub struct PatchMesh {
     pub parity: usize,
     cells: Vec<VertexCell>,
     flags: Vec<u8>,
-    /// Where each vertex's four triangles are in the index list.
+    /// The places of each vertex's four triangles in the index list.
     slots: Vec<[u16; 4]>,
-    /// What the vertices were made from; an edit is what differs from it.
+    /// The source of the vertices, for comparison with an edited one.
     block: Arc<PatchBlock>,
     indices: Vec<[u16; 3]>,
-    /// What is to be looked at when the patch is listed again.
+    /// Vertices to examine when the patch is listed again.
     missed: Vec<u16>,
 }
 
-/// What vertices are decided with.
+/// The context of a decision.
 pub struct Decider<'a> {
     /// The vertices of the patch.
     pub topology: &'a Topology,
-    /// Where the eye is.
+    /// The eye.
     pub station: &'a EyeStation,
-    /// Where what was decided waits for its next time.
+    /// Where vertices wait for their next examination.
     pub wheel: &'a mut Wheel,
-    /// What is to be decided yet, in the same patch.
+    /// Vertices of the same patch still to be decided.
     pub todo: &'a mut Vec<u16>,
-    /// What was done.
+    /// The work done.
     pub counts: &'a mut UpdateCounts,
 }
 
-/// What an update counted.
+/// The work of an update.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct UpdateCounts {
     /// Vertices activated.
     pub splits: usize,
     /// Vertices deactivated.
     pub merges: usize,
-    /// Vertices looked at.
+    /// Vertices examined.
     pub examined: usize,
 }
 
 impl PatchMesh {
-    /// Makes this the patch of a block, with nothing active and its root triangles shown, keeping its memory. None of
-    /// its vertices may be in the wheel; they get the entries from `entries` on.
+    /// Resets this to the patch of a block, with nothing active and its root triangles shown. None of its vertices may be in
+    /// the wheel; they get the entries from `entries` on.
     pub fn reset(&mut self, topology: &Topology, block: &Arc<PatchBlock>, entries: u32) {
         self.entries = entries;
         self.block = Arc::clone(block);
@@ -157,10 +153,10 @@ impl PatchMesh {
         let clipped = block.plan.iter().any(|along| along.windows(2).any(|pair| pair[0] == pair[1]));
         self.partial = clipped || block.z.iter().any(|z| z.is_nan());
         self.indices.clear();
-        for corner in topology.roots().into_iter().flatten() {
-            self.flags[corner as usize] |= ACTIVE;
+        for corner in topology.roots().iter().flatten() {
+            self.flags[*corner as usize] |= ACTIVE;
         }
-        for root in topology.roots() {
+        for &root in topology.roots() {
             self.show(topology, root, triangle(root[0], 0));
         }
         self.missed.clear();
@@ -177,19 +173,19 @@ impl PatchMesh {
         self.flags[vertex as usize] & ACTIVE != 0
     }
 
-    /// Remembers a vertex that must be looked at when the patch is listed next.
+    /// Adds a vertex to examine when the patch is listed next.
     pub fn miss(&mut self, vertex: u16) {
         self.missed.push(vertex);
     }
 
-    /// Decides about everything that was missed or edited.
+    /// Decides all vertices that were missed or edited.
     pub fn catch_up(&mut self, with: &mut Decider<'_>) {
         std::mem::swap(&mut self.missed, with.todo);
         self.decide_all(with);
     }
 
-    /// Turns the patch into one whose heights or spheres were edited, and returns the vertices whose spheres changed;
-    /// `None` where data came or went: the patch must be reset then.
+    /// Replaces the block by an edited one and returns the vertices whose spheres changed; `None` where data was added or
+    /// removed, so that the patch must be reset.
     pub fn edit(&mut self, topology: &Topology, block: &Arc<PatchBlock>) -> Option<Vec<u16>> {
         let old = std::mem::replace(&mut self.block, Arc::clone(block));
         let mut changed = Vec::new();
@@ -216,18 +212,18 @@ impl PatchMesh {
         Some(changed)
     }
 
-    /// Notes that a vertex is in no list of the wheel any more; returns what its link was.
+    /// Marks a vertex as in no list of the wheel; returns its last link.
     pub fn leave(&mut self, vertex: u16) -> WheelLink {
         self.flags[vertex as usize] &= !WAITING;
         self.cells[vertex as usize].link
     }
 
-    /// The link of a vertex; what it says counts only while the vertex waits.
+    /// The link of a vertex; valid while the vertex waits.
     pub fn link(&mut self, vertex: u16) -> &mut WheelLink {
         &mut self.cells[vertex as usize].link
     }
 
-    /// How many active children a vertex counts.
+    /// The active children that a vertex counts.
     pub(super) fn active_children(&self, vertex: u16) -> usize {
         usize::from(self.flags[vertex as usize] / ONE_CHILD)
     }
@@ -237,7 +233,7 @@ impl PatchMesh {
         self.flags[vertex as usize] & WAITING != 0
     }
 
-    /// Where a triangle is in the index list.
+    /// The place of a triangle in the index list.
     pub(super) fn slot(&self, triangle: u32) -> Option<usize> {
         let slot = self.slots[(triangle / 4) as usize][(triangle % 4) as usize];
         (slot != NONE).then_some(slot as usize)
@@ -249,7 +245,7 @@ impl PatchMesh {
         [self.block.plan[0][column as usize], self.block.plan[1][row as usize], cell.z, cell.radius]
     }
 
-    /// Decides about a vertex whose sphere the eye is `inside` by that many meters, and about what follows from it.
+    /// Decides a vertex whose sphere the eye is inside by `inside` meters, and those that follow from it.
     pub fn decide(&mut self, with: &mut Decider<'_>, vertex: u16, inside: f64) {
         self.decide_one(with, vertex, inside);
         self.decide_all(with);
@@ -262,7 +258,7 @@ impl PatchMesh {
         }
     }
 
-    /// Decides about a vertex, unless it waits or cannot change, and puts it where it is decided next.
+    /// Decides a vertex, unless it waits or cannot change, and puts it into the wheel.
     fn decide_one(&mut self, with: &mut Decider<'_>, vertex: u16, inside: f64) {
         let flags = self.flags[vertex as usize];
         let active = flags & ACTIVE != 0;
@@ -374,12 +370,9 @@ impl PatchMesh {
 
     /// Whether a triangle lies over no data, or has no area, as beyond the border of the terrain.
     pub(super) fn is_missing(&self, topology: &Topology, corners: [u16; 3]) -> bool {
-        let holed = corners.iter().any(|&corner| self.flags[corner as usize] & HOLE != 0);
-        holed || self.is_degenerate(topology, corners)
-    }
-
-    /// Whether the corners lie on a line, as they do beyond the border of the terrain.
-    fn is_degenerate(&self, topology: &Topology, corners: [u16; 3]) -> bool {
+        if corners.iter().any(|&corner| self.flags[corner as usize] & HOLE != 0) {
+            return true;
+        }
         let [a, b, c] = corners.map(|corner| {
             let [x, y] = topology.places()[corner as usize];
             [self.block.plan[0][x as usize], self.block.plan[1][y as usize]]

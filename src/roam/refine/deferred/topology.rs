@@ -1,6 +1,6 @@
-//! The vertex graph of one patch as a table, made once and shared by all patches of the same orientation.
+//! The vertex graph of one patch as a table, shared by all patches of the same orientation.
 //!
-//! Around a vertex stand four corners, counter-clockwise: the ends of the hypotenuse that it splits and, between
+//! Around a vertex are four corners, counter-clockwise: the ends of the hypotenuse that it splits and, between
 //! them, its two parents. Its activation replaces the two triangles on either side of the hypotenuse by four:
 //!
 //! ```text
@@ -11,11 +11,9 @@
 //!        ring 0
 //! ```
 //!
-//! Arithmetic could tell all this again for every vertex and frame; a table of 28 bytes a vertex tells it in one
-//! read and stays in the second-level cache.
-//!
-//! Vertices are numbered by level, coarsest first, and row by row within a level: what a patch of a few triangles
-//! reads lies together.
+//! Arithmetic would compute this for every vertex and frame; the table takes 28 bytes a vertex, is read at once, and stays in
+//! the second-level cache. Vertices are numbered by level, coarsest first, and row by row within a level, so that a patch of
+//! a few triangles reads few cache lines.
 
 use crate::roam::graph::{Vertex, VertexKind};
 
@@ -92,13 +90,8 @@ impl Topology {
         row * (self.side as usize + 1) + column
     }
 
-    /// The two root triangles: apex, left, right.
-    pub fn roots(&self) -> [[u16; 3]; 2] {
-        self.roots
-    }
-
-    /// The index list of a patch in which nothing is active.
-    pub fn flat(&self) -> &[[u16; 3]] {
+    /// The two root triangles, apex, left, right: the index list of a patch in which nothing is active.
+    pub fn roots(&self) -> &[[u16; 3]; 2] {
         &self.roots
     }
 

@@ -1,12 +1,12 @@
 //! A wheel of buckets keyed by distance traveled.
 //!
-//! Distances are counted in ticks from the start of the walk. Level 0 has one slot a tick for the next 63; each
-//! further level has slots four times as wide, so any distance ahead finds a slot that begins at most a sixteenth
-//! too early. What is in a slot is handed out when the walk reaches the slot's *beginning*: early, never late.
-//! What may change before the next tick lies in a list of its own that is handed out every time.
+//! Distances are counted in ticks from the start. Level 0 has one slot a tick for the next 63; each further level has slots
+//! four times as wide, so any distance ahead has a slot that begins at most a sixteenth too early. The entries of a slot are
+//! taken when its *beginning* is reached: early, never late. Those that may change before the next tick are in a separate
+//! list, which is taken every time.
 //!
-//! Entries are vertices by a number of their owner's choosing, linked through cells that the owner keeps of them;
-//! the wheel holds only the heads of the lists, three kilobytes for any number of vertices.
+//! Entries are numbers of the owner's choice, linked through cells that the owner stores; the wheel holds only the heads of
+//! the lists, three kilobytes for any number of entries.
 
 /// No entry, no list.
 pub const FREE: u32 = u32::MAX;
@@ -20,10 +20,10 @@ const SHIFT: u32 = 2;
 /// Levels: the last reaches 2²⁸ ticks ahead, farther than any terrain.
 const LEVELS: usize = 12;
 
-/// The farthest that an entry is put ahead, in ticks; what is due later is handed out early and put back.
+/// The farthest that an entry is put ahead, in ticks; one that is due later is taken early and put back.
 pub const FARTHEST: u64 = (SLOTS - 2) << (SHIFT * (LEVELS as u32 - 1));
 
-/// Where the list of what is handed out next time is found among the heads.
+/// The head of the list that is taken every time.
 const NEXT_TIME: usize = LEVELS * SLOTS as usize;
 
 /// The owner of the entries' links.
@@ -31,11 +31,11 @@ pub trait Links {
     /// The link of an entry that is in a list.
     fn link(&mut self, entry: u32) -> &mut WheelLink;
 
-    /// Notes that an entry is in no list any more; returns what its link was.
+    /// Marks an entry as in no list; returns its last link.
     fn leave(&mut self, entry: u32) -> WheelLink;
 }
 
-/// What an entry knows of its list.
+/// The link of an entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WheelLink {
     /// The next entry, or [`FREE`].
@@ -63,8 +63,8 @@ impl Wheel {
         Self { now, filled: [0; LEVELS], heads: [FREE; NEXT_TIME + 1] }
     }
 
-    /// Puts `entry`, which is in no list, where it is handed out at tick `due` or up to a sixteenth of the way
-    /// earlier; at the next taking where that is now. Returns the link that its owner must keep of it.
+    /// Puts `entry`, which is in no list, into the list that is taken at tick `due` or up to a sixteenth of the distance
+    /// earlier; next time where that is now. Returns the link that its owner must store.
     #[must_use]
     pub fn put(&mut self, entry: u32, due: u64) -> WheelLink {
         let due = due.min(self.now + FARTHEST);
@@ -86,7 +86,7 @@ impl Wheel {
         level as usize * SLOTS as usize + slot as usize
     }
 
-    /// The tick at which what is in the list of `link` is handed out; 0 if that is every time.
+    /// The tick at which the list of `link` is taken; 0 for the one that is taken every time.
     pub fn begin(&self, link: WheelLink) -> u64 {
         let list = u64::from(link.list);
         if list as usize == NEXT_TIME {
@@ -112,7 +112,7 @@ impl Wheel {
         links.link(before).next = next;
     }
 
-    /// Takes out every entry that `keep` does not want.
+    /// Takes out every entry for which `keep` returns false.
     pub fn retain(&mut self, links: &mut impl Links, keep: impl Fn(u32) -> bool) {
         for head in &mut self.heads {
             let mut entry = std::mem::replace(head, FREE);
@@ -128,7 +128,7 @@ impl Wheel {
         }
     }
 
-    /// Moves on to tick `now`, which must not be before the last, and appends everything due by then to `due`.
+    /// Advances to tick `now`, which must not be before the last, and appends the entries due by then to `due`.
     pub fn take_due(&mut self, links: &mut impl Links, now: u64, due: &mut Vec<u32>) {
         take_list(&mut self.heads[NEXT_TIME], links, due);
         for level in 0..LEVELS {

@@ -91,7 +91,7 @@ pub(super) struct Horizon {
     scratch: Vec<HorizonPiece>,
 }
 
-/// The buckets to either side that a floor takes in: an edge with an end in a bucket ends at most so many away, where there
+/// The buckets to either side that a floor takes in: an edge with an end in a bucket ends at most this many away, where there
 /// are no more buckets than posts across the wedge.
 const REACH: usize = 3;
 

@@ -2,7 +2,7 @@
 
 use crate::terrain::sight::viewshed::frame::OctantFrame;
 
-/// Rings read at once: where rings run across the rows of the lattice, a cache line holds the heights of so many.
+/// Rings read at once: where rings run across the rows of the lattice, a cache line holds the heights of as many.
 const CHUNK: usize = 16;
 
 /// A post of a ring as the observer sees it.
