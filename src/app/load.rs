@@ -7,9 +7,9 @@ use crate::app::failure::CliError;
 use crate::app::files;
 use crate::description::document::Document;
 use crate::description::parse::parse_bytes_including;
-use crate::scene::{Scene, SceneGround};
 use crate::scene::assets::Assets;
 use crate::scene::build::{build, build_ground};
+use crate::scene::{Scene, SceneGround};
 
 /// Reads, parses and builds the scene at `path`. `step` is called with what is done next.
 ///

@@ -83,17 +83,12 @@ pub fn build(document: &Document, assets: &Assets, step: &dyn Fn(&'static str)) 
 
     step("placing labels and cameras");
     let terrain = terrain(document, lattice)?;
-    let labels = views::labels(document, &frame, &terrain)?;
-    let cameras = views::cameras(document, &frame, &terrain)?;
+    let labels = views::labels(&frame, &terrain)?;
+    let cameras = views::cameras(&frame, &terrain)?;
     collected.notes.extend(views::buried(&cameras, &terrain));
     let (low, high) = terrain.bounds();
-    let heights = height_service(
-        document,
-        loaded.source,
-        crs.clone(),
-        Arc::clone(&terrain.lattice),
-        &collected.decks,
-    )?;
+    let heights =
+        height_service(document, loaded.source, crs.clone(), Arc::clone(&terrain.lattice), &collected.decks)?;
     Ok(Scene {
         title: document.title.clone(),
         subtitle: document.subtitle.clone(),

@@ -1,20 +1,20 @@
-//! What building a scene found out about single features: typed rows, a struct a table.
+//! Measures of single features: typed rows, a struct per table.
 //!
-//! To add a table, add its block to `report!`, and push its rows where they are found. The name and the unit of a column
+//! A new table is a block in `report!`. The name and the unit of a column
 //! come from its field: `lowest_shore: f64, "m"` is `lowest shore [m]` in text, `lowest_shore_m` in JSON and CSV.
 
 /// One table for output: a row for each feature.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReportTable {
-    /// What its rows are, such as `conformed roads`.
+    /// Its title, such as `conformed roads`.
     pub name: String,
-    /// What its columns hold.
+    /// Its columns.
     pub columns: &'static [ReportColumn],
     /// A cell for each column.
     pub rows: Vec<Vec<ReportCell>>,
 }
 
-/// What a column holds.
+/// A column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReportColumn {
     /// The name as a word, such as `deepest_cut`.
@@ -134,7 +134,7 @@ report! {
         name: String;
         /// Elevation of the water.
         level: f64, "m";
-        /// How the level was found: the level rule, or `given`.
+        /// The rule of the level, or `given`.
         rule: &'static str;
         /// Lowest ground along the shore.
         lowest_shore: Option<f64>, "m";
@@ -267,11 +267,11 @@ report! {
     instances: InstancesRow {
         /// The table, or its file.
         name: String;
-        /// Models that stand.
+        /// Models.
         models: usize;
         /// Points off the ground.
         off_the_ground: usize;
-        /// Points that name none of the variants.
+        /// Points without one of the variants.
         of_no_variant: usize;
         /// Least gap at any corner.
         least_gap: Option<f64>, "m";
@@ -287,21 +287,21 @@ report! {
         fill: Option<f64>, "m3";
     }
 
-    /// Models strewn over areas.
+    /// Models scattered over areas.
     scattered: ScatterRow {
         /// The table.
         name: String;
-        /// Models that stand.
+        /// Models.
         models: usize;
         /// Areas.
         areas: usize;
-        /// Places left free for the slope of the ground.
+        /// Points without a model because of the slope.
         by_slope: usize;
-        /// Places left free for the elevation of the ground.
+        /// Points without a model because of the elevation.
         by_elevation: usize;
-        /// Places left free for roads, water and buildings.
+        /// Points without a model because of roads, water and buildings.
         by_obstacles as "by roads, water and buildings": usize;
-        /// Places off the ground.
+        /// Points off the ground.
         off_the_ground: usize;
     }
 }

@@ -1,4 +1,4 @@
-//! A scene and a camera to a draw list: refine, emit, drape, set solids and models.
+//! From a scene and a camera to a draw list: refine, emit, drape, set solids and models.
 
 mod detail;
 mod drapes;
@@ -22,9 +22,9 @@ use crate::scene::{Scene, Terrain, View};
 use crate::view::camera::{Camera, CameraError};
 use crate::view::frustum::Frustum;
 
-/// What one camera sees of a scene.
+/// The draw list of a scene for one camera.
 pub struct ViewDraw {
-    /// What to draw.
+    /// The draw list.
     pub list: DrawList,
     /// The displayed ground.
     pub displayed: Arc<DisplayedTerrain>,
@@ -43,7 +43,7 @@ pub fn camera(scene: &Scene, view: &View, size: (u32, u32)) -> Result<Camera, Ca
     Camera::new(view.eye, view.target, view.fov_y_rad, size, (0.5, far))
 }
 
-/// The draw list for one camera. `step` is called with what is done next.
+/// The draw list for one camera. `step` is called with the name of each pass as it begins.
 pub fn build_draw_list(scene: &Scene, camera: &Camera, step: &dyn Fn(&'static str)) -> ViewDraw {
     step("refining terrain");
     let displayed = Arc::new(display(&scene.terrain, camera));
@@ -51,8 +51,8 @@ pub fn build_draw_list(scene: &Scene, camera: &Camera, step: &dyn Fn(&'static st
     ViewDraw { list, displayed, ground_triangles }
 }
 
-/// What is to be drawn of a scene whose terrain is shown as `displayed`, and how many triangles of it are ground: all
-/// models wherever they stand, as their files have them. `step` is called with what is done next.
+/// The draw list of a scene over the terrain `displayed`, with all models in full, and the number of its triangles that are
+/// ground. `step` is called with the name of each pass as it begins.
 pub fn draw_list(
     scene: &Scene,
     displayed: &DisplayedTerrain,
@@ -84,7 +84,7 @@ fn listed(
     (list, ground_triangles)
 }
 
-/// The terrain as `camera` shows it.
+/// The terrain refined for `camera`.
 pub fn display(terrain: &Terrain, camera: &Camera) -> DisplayedTerrain {
     let (ground, heights) = (terrain.ground(), terrain.patch_heights());
     let patches = patches_in_view(ground, heights, &Frustum::new(camera));
