@@ -11,21 +11,21 @@ use crate::vector::feature::VectorLayer;
 /// The properties of one feature; none for a feature that the scene file itself states.
 #[derive(Clone, Debug, Default)]
 pub struct Attributes {
-    of: Option<(Arc<VectorLayer>, usize)>,
+    feature: Option<(Arc<VectorLayer>, usize)>,
 }
 
-/// How often a key's expression gave no value and a default was taken, by key and default.
+/// The number of features for which a key's expression gave no value, by key and default.
 pub type DefaultCounts = BTreeMap<(String, String), usize>;
 
 impl Attributes {
-    /// The properties of the feature at this place in the layer.
+    /// The properties of the layer's feature at an index.
     pub fn new(layer: Arc<VectorLayer>, feature: usize) -> Self {
-        Self { of: Some((layer, feature)) }
+        Self { feature: Some((layer, feature)) }
     }
 
-    /// A property's value; `None` where there is none, or it is null, a list or a table.
+    /// A property's value; `None` where it is absent, null, a list or a table.
     pub fn get(&self, property: &str) -> Option<Scalar> {
-        let (layer, feature) = self.of.as_ref()?;
+        let (layer, feature) = self.feature.as_ref()?;
         match layer.features[*feature].properties.get(property)? {
             serde_json::Value::Bool(value) => Some(Scalar::Bool(*value)),
             serde_json::Value::Number(value) => value.as_f64().map(Scalar::Number),
@@ -71,7 +71,7 @@ impl Attributes {
         })
     }
 
-    /// Whether a property is there and does not say no.
+    /// Whether a property is present and not negative.
     pub fn affirm(&self, property: &str) -> bool {
         self.get(property).is_some_and(|value| value.holds())
     }

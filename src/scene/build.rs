@@ -87,8 +87,8 @@ pub fn build(
 
     progress("placing labels and cameras");
     let terrain = terrain(document, lattice)?;
-    let labels = views::labels(document, &frame, &terrain)?;
-    let cameras = views::cameras(document, &frame, &terrain)?;
+    let labels = views::labels(&frame, &terrain)?;
+    let cameras = views::cameras(&frame, &terrain)?;
     collected.notes.extend(views::buried(&cameras, &terrain));
     let (low, high) = terrain.bounds();
     let heights =

@@ -1,4 +1,4 @@
-//! What the passes over a document gather: features with their ids, what lies and stands, and what there is to say.
+//! The output of the passes over a document: features with their ids, ribbons, solids, notes and reports.
 
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
@@ -11,48 +11,48 @@ use crate::scene::roads::profiles::RoadProfile;
 use crate::scene::{FeatureKind, FeatureSolid, Ribbon, SceneFeature, Solid};
 use crate::terrain::triangle_surface::SurfaceTriangle;
 
-/// Features with their ids, and what there is to say about them.
+/// The features of a scene so far, with their meshes, notes and reports.
 #[derive(Default)]
 pub struct SceneBuilder {
-    /// What lies on the ground.
+    /// Meshes draped on the ground.
     pub ribbons: Vec<Ribbon>,
     /// Every feature so far; ids count from 2.
     pub features: Vec<SceneFeature>,
-    /// What has a shape of its own.
+    /// Solids with fixed heights.
     pub solids: Vec<Solid>,
-    /// What is set on the displayed ground for every picture.
+    /// Solids that each picture sets on its displayed ground.
     pub uprights: Vec<FeatureSolid>,
-    /// What one can stand on above the ground: triangles in world space, heights in meters without exaggeration.
+    /// Decks above the ground for height queries: triangles in world space, true heights in meters.
     pub decks: Vec<SurfaceTriangle>,
-    /// For the user.
+    /// Notes for the user.
     pub notes: Vec<String>,
-    /// How often expressions gave no value.
+    /// The number of expressions without a value, by key and default.
     pub default_counts: DefaultCounts,
-    /// What was found out about single features.
+    /// Measures of single features.
     pub report: SceneReport,
-    /// Of every road that the ground follows.
+    /// The longitudinal profile of every road that the ground follows.
     pub profiles: Vec<RoadProfile>,
 }
 
 impl SceneBuilder {
-    /// Notes a feature and returns its id.
+    /// Adds a feature and returns its id.
     pub fn add(&mut self, kind: FeatureKind, name: String) -> FeatureId {
         self.features.push(SceneFeature { kind, name });
         FeatureId(FeatureId::GROUND.0 + self.features.len() as u32)
     }
 
-    /// The name of a feature that was added; may be empty.
+    /// The name of a feature; may be empty.
     pub fn name(&self, feature: FeatureId) -> &str {
         let place = feature.0.checked_sub(FeatureId::GROUND.0 + 1);
         place.and_then(|place| self.features.get(place as usize)).map_or("", |feature| &feature.name)
     }
 
-    /// Lays a plan over what was laid before in its class and below.
+    /// Adds a ribbon over those of its class and below.
     pub fn lay(&mut self, plan: PlanMesh, surface: RibbonSurface, feature: FeatureId) {
         self.lay_tinted(plan, (surface, Srgba::WHITE), feature);
     }
 
-    /// Lays a plan as [`Self::lay`] does, its surface's color and alpha multiplied by a tint.
+    /// As [`Self::lay`], with the surface's color and alpha multiplied by a tint.
     pub fn lay_tinted(
         &mut self,
         plan: PlanMesh,
@@ -62,8 +62,8 @@ impl SceneBuilder {
         self.ribbons.push(Ribbon { plan, surface, tint, layer: layer_of(surface), feature });
     }
 
-    /// Takes apart what lies over one another, so that no two ribbons share any ground: what covers what goes by class,
-    /// and within a class the junctions come first and then what was laid last.
+    /// Clips ribbons by those that cover them, so that no two share any ground. Classes cover one another in the order of
+    /// `layer_of`; within a class junctions cover roads, and later ribbons earlier ones.
     pub fn resolve_overlaps(&mut self) {
         let order = |ribbon: &Ribbon| (ribbon.layer, ribbon.surface.is_junction());
         self.ribbons.sort_by_key(order);
@@ -76,8 +76,7 @@ impl SceneBuilder {
     }
 }
 
-/// What covers what, by class: banks over what covers the ground, still water over streams, roads over water, better
-/// roads over lesser.
+/// The class of a surface; a higher class covers a lower.
 fn layer_of(surface: RibbonSurface) -> u8 {
     match surface {
         RibbonSurface::Cover(_) | RibbonSurface::Border => 0,

@@ -1,7 +1,6 @@
-//! The ground at full resolution as it will be displayed, while its heights are still being shaped.
+//! The ground at full resolution at displayed heights, while earthworks still change it.
 //!
-//! A displayed lattice is made once, when the heights are final. What is set on the ground before that multiplies the
-//! heights that it reads.
+//! The displayed lattice is made once the heights are final; until then this surface multiplies the heights that it reads.
 
 use glam::DVec2;
 
@@ -15,7 +14,7 @@ use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 pub struct DrawnGround<'a> {
     /// The heights, meters.
     pub lattice: &'a Lattice,
-    /// What they are multiplied by.
+    /// The factor of displayed heights.
     pub exaggeration: f32,
 }
 

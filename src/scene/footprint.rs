@@ -1,11 +1,10 @@
-//! Where a model touches the ground, and the ground under that.
+//! The footprint of a model, and the ground under it.
 //!
-//! A model's footprint is the rectangle, along its own axes, around what lies in the lowest tenth of its height: the feet of
-//! a tower and the trunk of a tree, not their platform or crown. A rectangle and not a hull, because what stands in a
-//! scene is mostly built square, and because its four corners are what the report tells of.
+//! A footprint is the rectangle, along the model's axes, around the vertices in the lowest tenth of its height: the feet of
+//! a tower and the trunk of a tree, not their platform or crown. It is a rectangle, not a hull, since most models are
+//! built square and the report lists four corners.
 //!
-//! The ground under it is the displayed triangles cut to the rectangle. Their corners hold the lowest and the highest
-//! point exactly, and their areas weigh the mean, so what is said of a footprint is true of all of it and not of samples.
+//! The ground under it is the displayed triangles cut to the rectangle: exact, not sampled.
 
 use glam::{DVec2, DVec3, Vec3};
 
@@ -14,12 +13,12 @@ use crate::geom::polygon;
 use crate::model::Model;
 use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 
-/// How much of a model's height counts as its foot.
+/// The part of a model's height that is its foot.
 const FOOT_PART: f32 = 0.1;
-/// A footprint reaches at least this far from its middle, in model units: a pole and a board have one too.
+/// The least half side of a footprint, in model units: that of a pole or a board.
 const LEAST_HALF: f32 = 0.01;
 
-/// The rectangle where a model touches the ground, in the model's own space and units.
+/// The rectangle where a model touches the ground, in model space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelFootprint {
     /// The front left corner as seen from before it, at the model's lowest point.
@@ -48,7 +47,7 @@ impl ModelFootprint {
         [min, min.with_x(max.x), max, max.with_x(min.x)]
     }
 
-    /// It with every side moved out by `part` of the longer one.
+    /// The footprint with every side moved out by `part` of the longer one.
     pub fn grown(&self, part: f32) -> Self {
         let by = ((self.max - self.min).max_element() * part) * Vec3::new(1.0, 1.0, 0.0);
         Self { min: self.min - by, max: self.max + by }

@@ -18,20 +18,20 @@ use crate::terrain::lattice::Lattice;
 
 /// The raster as read and the lattice made of it.
 pub struct LoadedGround {
-    /// As the files hold it, joined and filled as the scene asks.
+    /// The raster as read; tiles joined, voids filled where the scene says so.
     pub source: Arc<Raster>,
-    /// In the scene's system, before earthworks.
+    /// The heights in the scene's system, before earthworks.
     pub lattice: Lattice,
     /// The scene's system.
     pub crs: Crs,
-    /// What was done that a user should know.
+    /// Notes for the user.
     pub notes: Vec<String>,
 }
 
 /// Reads the document's elevation files and brings them to a metric system.
 ///
 /// # Errors
-/// A file cannot be had or read, several are not tiles of one raster, or they cannot be brought to the scene's
+/// A file cannot be read, several are not tiles of one raster, or they cannot be brought to the scene's
 /// system.
 pub fn load(document: &Document, assets: &Assets) -> Result<LoadedGround, Diagnostic> {
     let dem = &document.terrain.dem;
@@ -47,7 +47,7 @@ pub fn load(document: &Document, assets: &Assets) -> Result<LoadedGround, Diagno
     Ok(LoadedGround { source: Arc::new(source), lattice, crs, notes })
 }
 
-/// The one raster that the document's files are, or are tiles of.
+/// The document's elevation files as one raster.
 fn joined(document: &Document, assets: &Assets, notes: &mut Vec<String>) -> Result<Raster, Diagnostic> {
     let terrain = &document.terrain;
     let companions = |name: &str| assets.read(name).ok();

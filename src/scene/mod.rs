@@ -1,9 +1,9 @@
-//! From the scene file to what a renderer draws.
+//! From a scene file to a draw list.
 //!
-//! `build` turns a document and its assets into a [`Scene`], one pass a file: the ground (`ground`), what lies on
-//! it (`areas`, `water`, `roads`), what stands on it (`buildings`, `fences`), models (`models`, `scatter`; `footprint` and
-//! `placement` say how they meet the ground), labels and cameras (`views`); the passes gather what they make in `builder`.
-//! `picture` turns a scene and a camera into a draw list.
+//! `build` turns a document and its assets into a [`SceneGround`] or a [`Scene`], one pass a file: the ground (`ground`),
+//! ribbons (`areas`, `water`, `roads`), solids (`buildings`, `fences`, `bridges`), models (`models`, `scatter`; `footprint`
+//! and `placement` set them on the ground), labels and cameras (`views`). The passes add to `builder`. `picture` turns a
+//! scene and a camera into a draw list.
 
 pub mod areas;
 pub mod assets;
@@ -57,7 +57,7 @@ use crate::structure::draped_solid::DrapedSolid;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::service::HeightService;
 
-/// A digital terrain model: the ground, what lies and stands on it, and how it is to be seen.
+/// A digital terrain model: the ground, the features on it, labels and views.
 pub struct Scene {
     /// The picture's title.
     pub title: Option<String>,
@@ -78,27 +78,27 @@ pub struct Scene {
     map: OnceLock<Arc<GroundMap>>,
     /// Areas, rivers, lakes and roads, in drawing order.
     pub ribbons: Vec<Ribbon>,
-    /// What has a shape of its own: buildings, bridges.
+    /// Solids with fixed heights: buildings, bridges.
     pub solids: Vec<Solid>,
-    /// What is set on the displayed ground for every picture: walls, fences, lines, footings.
+    /// Solids that each picture sets on its displayed ground: walls, fences, lines, footings.
     pub uprights: Vec<FeatureSolid>,
     /// Model files, each loaded once.
     pub models: Vec<Model>,
     /// Simpler forms of each model, made when a picture first needs them.
     pub details: Vec<OnceLock<ModelDetail>>,
-    /// What stands on the ground.
+    /// Models in their places.
     pub placements: Vec<Placement>,
     /// Names and heights.
     pub labels: Vec<SceneLabel>,
     /// Views; at least one.
     pub cameras: Vec<View>,
-    /// What frames the picture.
+    /// Legend, scale bar and the like.
     pub furniture: FurnitureTable,
-    /// Every feature, in the order of their ids from 2 up.
+    /// Every feature, in the order of ids from 2 up.
     pub features: Vec<SceneFeature>,
-    /// What was done that a user should know: features off the model, missing textures, earth moved.
+    /// Notes for the user: features off the model, missing textures, earth moved.
     pub notes: Vec<String>,
-    /// What was found out about single features.
+    /// Measures of single features.
     pub report: SceneReport,
     /// The longitudinal profiles of the roads that the ground follows.
     pub profiles: Vec<RoadProfile>,
@@ -114,15 +114,15 @@ pub struct SceneGround {
     pub files: Vec<std::path::PathBuf>,
 }
 
-/// The ground with what refinement needs to know of it.
+/// The ground with the measures that refinement needs, each made on first use.
 pub struct Terrain {
     /// The heights.
     pub lattice: Arc<Lattice>,
     /// The patches over them.
     pub layout: PatchLayout,
-    /// How many times heights are stretched when drawn.
+    /// The vertical exaggeration of displayed heights.
     pub exaggeration: f32,
-    /// How many pixels the drawn ground may be off.
+    /// The greatest error of the displayed ground in pixels.
     pub tolerance_px: f32,
     height_range: OnceLock<(f32, f32)>,
     displayed: OnceLock<Arc<Lattice>>,
@@ -182,7 +182,7 @@ impl Terrain {
     }
 }
 
-/// What a feature is.
+/// The kind of a feature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FeatureKind {
     /// A lake.
@@ -195,47 +195,36 @@ pub enum FeatureKind {
     Bridge,
     /// A tunnel.
     Tunnel,
-    /// Something that covers the ground.
+    /// A ground cover.
     Area,
     /// A building.
     Building,
-    /// A fence, or something else that runs along a line.
+    /// A fence, wall, power line or another line.
     Fence,
     /// A model.
     Model,
-    /// Models strewn over areas: one feature a table, however many stand there.
+    /// Models scattered over areas: one feature per table.
     Scattered,
 }
 
-impl FeatureKind {
-    /// Every kind, in the order in which they are told.
-    pub const ALL: [Self; 10] = [
-        Self::Lake,
-        Self::River,
-        Self::Road,
-        Self::Bridge,
-        Self::Tunnel,
-        Self::Area,
-        Self::Building,
-        Self::Fence,
-        Self::Model,
-        Self::Scattered,
-    ];
+/// The noun of each kind for one feature and for several, in the order of summaries.
+const FEATURE_NOUNS: [(FeatureKind, &str, &str); 10] = [
+    (FeatureKind::Lake, "lake", "lakes"),
+    (FeatureKind::River, "river", "rivers"),
+    (FeatureKind::Road, "road", "roads"),
+    (FeatureKind::Bridge, "bridge", "bridges"),
+    (FeatureKind::Tunnel, "tunnel", "tunnels"),
+    (FeatureKind::Area, "area", "areas"),
+    (FeatureKind::Building, "building", "buildings"),
+    (FeatureKind::Fence, "line", "lines"),
+    (FeatureKind::Model, "model", "models"),
+    (FeatureKind::Scattered, "scatter of models", "scatters of models"),
+];
 
-    /// Its name for a count of one, or of several.
+impl FeatureKind {
+    /// Its noun for a count of one, or of several.
     pub fn noun(self, count: usize) -> &'static str {
-        let (one, several) = match self {
-            Self::Lake => ("lake", "lakes"),
-            Self::River => ("river", "rivers"),
-            Self::Road => ("road", "roads"),
-            Self::Bridge => ("bridge", "bridges"),
-            Self::Tunnel => ("tunnel", "tunnels"),
-            Self::Area => ("area", "areas"),
-            Self::Building => ("building", "buildings"),
-            Self::Fence => ("line", "lines"),
-            Self::Model => ("model", "models"),
-            Self::Scattered => ("scatter of models", "scatters of models"),
-        };
+        let (_, one, several) = FEATURE_NOUNS[self as usize];
         if count == 1 { one } else { several }
     }
 }
@@ -249,39 +238,39 @@ pub struct SceneFeature {
     pub name: String,
 }
 
-/// Something that lies on the ground.
+/// A feature that lies on the ground.
 pub struct Ribbon {
     /// Its triangles in plan.
     pub plan: PlanMesh,
-    /// What it is made of.
+    /// Its surface.
     pub surface: RibbonSurface,
-    /// Multiplied with the surface's own color and alpha; white changes nothing.
+    /// A factor of the surface's color and alpha.
     pub tint: Srgba,
-    /// Where it lies among others: a higher number covers a lower.
+    /// Its drawing order: a higher number covers a lower.
     pub layer: u8,
     /// The feature it belongs to.
     pub feature: FeatureId,
 }
 
-/// Something built with a shape of its own.
+/// A solid with fixed heights.
 pub struct Solid {
-    /// Its triangles in world space, heights drawn times the scene's exaggeration.
+    /// Its triangles in world space, at displayed heights.
     pub mesh: DrawMesh,
-    /// What its triangles show.
+    /// The look of its triangles.
     pub coat: Coat,
     /// The feature it belongs to.
     pub feature: FeatureId,
 }
 
-/// Something that stands on the ground as it is displayed.
+/// A solid that each picture sets on its displayed ground.
 pub struct FeatureSolid {
-    /// What it is.
+    /// The solid.
     pub upright: DrapedSolid,
     /// The feature it belongs to.
     pub feature: FeatureId,
 }
 
-/// What a solid's triangles show.
+/// The look of a solid's triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Coat {
     /// The colors of their vertices.
@@ -296,11 +285,11 @@ pub struct Placement {
     pub model: usize,
     /// World X and Y of its origin.
     pub at: Vec2,
-    /// How its height is found.
+    /// What its height is measured from.
     pub clamp: Clamp,
     /// Meters above the ground, or displayed elevation, as `clamp` says; 0 where it stands on the ground.
     pub height: f64,
-    /// Which way its front points, radians clockwise from north.
+    /// The heading of its front, radians clockwise from north.
     pub heading_rad: f32,
     /// Meters per unit of the model.
     pub scale: f32,
@@ -313,9 +302,9 @@ pub struct Placement {
 /// How a model meets the ground it stands on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GroundFit {
-    /// Which ground under it counts.
+    /// The ground under it that decides its height.
     pub anchor: Anchor,
-    /// How far it may lean with the ground, in radians.
+    /// The most that it leans with the ground, in radians.
     pub tilt_rad: f32,
     /// How deep it stands in the ground, in meters.
     pub sink_m: f32,
@@ -324,7 +313,7 @@ pub struct GroundFit {
 }
 
 impl Placement {
-    /// Whether its place depends on all of the ground under its footprint and not only on that under its origin.
+    /// Whether its pose depends on the ground under its whole footprint, not only under its origin.
     pub fn needs_footprint(&self) -> bool {
         self.standing.anchor != Anchor::Origin || self.standing.tilt_rad > 0.0
     }
@@ -335,22 +324,22 @@ impl Placement {
 pub struct SceneLabel {
     /// What it says.
     pub text: String,
-    /// The place on the ground, world space, drawn height.
+    /// The position on the ground, world space, displayed height.
     pub ground: Vec3,
     /// Where the leader line starts, at or above the ground.
     pub anchor: Vec3,
-    /// What it names.
+    /// The kind of thing that it names.
     pub kind: LabelKind,
 }
 
 /// A view of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
-    /// How `--camera` calls it.
+    /// Its name on the command line.
     pub name: String,
     /// The eye, world space.
     pub eye: Vec3,
-    /// What it looks at, world space.
+    /// The point in the picture's middle, world space.
     pub target: Vec3,
     /// Vertical field of view in radians.
     pub fov_y_rad: f32,
@@ -379,9 +368,13 @@ impl Scene {
         }
     }
 
-    /// How many features there are of each kind, kinds in order, only those present.
+    /// The number of features of each kind that is present, in the order of [`FeatureKind`].
     pub fn census(&self) -> Vec<(FeatureKind, usize)> {
         let count = |kind| self.features.iter().filter(|feature| feature.kind == kind).count();
-        FeatureKind::ALL.map(|kind| (kind, count(kind))).into_iter().filter(|&(_, count)| count > 0).collect()
+        FEATURE_NOUNS
+            .map(|(kind, ..)| (kind, count(kind)))
+            .into_iter()
+            .filter(|&(_, count)| count > 0)
+            .collect()
     }
 }

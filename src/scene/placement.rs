@@ -1,8 +1,7 @@
-//! How a model stands: where its anchor puts it, how far it leans, and the plinth under it.
+//! The pose of a model on the ground, and the plinth under it.
 //!
-//! All of it is worked out on the displayed triangles, at picture time, so that a model neither floats nor sinks when
-//! the ground is shown more coarsely; where they are out of view, on the finest. The same function on the finest
-//! triangles alone gives what the report tells.
+//! Poses are computed for each picture on its displayed triangles, so that no model floats or sinks where the ground is
+//! coarser; where those are out of view, on the finest. The report uses the finest triangles alone.
 //!
 //! ```text
 //!          ┌─────┐  base: the model's lowest point, under its origin
@@ -22,21 +21,21 @@ use crate::scene::footprint::{ModelFootprint, Under};
 use crate::structure::plinth;
 use crate::terrain::support_surface::SupportSurface;
 
-/// How far a plinth reaches out beyond the footprint, as a part of the longer side: it shows as a step.
+/// The margin of a plinth around the footprint, as a part of the longer side: visible as a step.
 pub const PLINTH_REACH: f32 = 0.05;
-/// How deep a plinth reaches below the lowest ground under it, in drawn meters: it closes with the ground for certain.
+/// The depth of a plinth below the lowest ground under it, in displayed meters: no gap remains.
 const PLINTH_DEPTH_M: f64 = 0.5;
-/// A footprint counts as displayed where this part of it is; the rest is rounding.
+/// The part of a footprint that must be displayed for its displayed ground to count; the rest is rounding.
 const WHOLE: f64 = 0.999;
 
 /// A model on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelPose {
-    /// Model space to world space, drawn heights.
+    /// Model space to world space.
     pub world_from_model: Mat4,
-    /// Drawn height of the ground that the anchor names.
+    /// World Z of the ground at the anchor.
     pub anchor_z: f64,
-    /// How far it leans, in radians.
+    /// The angle of its lean, in radians.
     pub tilt_rad: f64,
 }
 
@@ -49,7 +48,7 @@ fn under(ground: SupportSurface<'_>, outline: &[DVec2; 4], at: DVec2) -> Option<
         .or_else(|| Under::cut(ground.ground, outline, at))
 }
 
-/// How a model with this footprint stands on the ground; `None` where there is none.
+/// The pose of a model on the ground; `None` where there is no ground.
 pub fn stand(
     placement: &Placement,
     footprint: &ModelFootprint,
@@ -72,13 +71,12 @@ pub fn stand(
 }
 
 impl ModelPose {
-    /// The footprint's corners where they stand, in world space.
+    /// The footprint's corners in world space.
     pub fn base(&self, footprint: &ModelFootprint) -> [Vec3; 4] {
         footprint.corners().map(|corner| self.world_from_model.transform_point3(corner))
     }
 
-    /// The block between the model and the ground, in world space; `None` where it has none or lies in the ground all
-    /// over.
+    /// The plinth in world space; `None` without one, or where all of it would be buried.
     pub fn plinth(
         &self,
         placement: &Placement,
@@ -89,7 +87,7 @@ impl ModelPose {
         Some(plinth::block(&self.base(&footprint.grown(PLINTH_REACH)), foot_z as f32))
     }
 
-    /// How high the plinth is, from the lowest ground under it to the model; `None` where there is none.
+    /// The plinth's height above the lowest ground under it; `None` as for [`ModelPose::plinth`].
     pub fn plinth_height_m(
         &self,
         placement: &Placement,
@@ -136,7 +134,7 @@ fn leaning(gradient: DVec2, tilt_rad: f64) -> DVec2 {
     if libm::atan(steep) <= tilt_rad { gradient } else { gradient * (libm::tan(tilt_rad) / steep) }
 }
 
-/// Model space to world space, given the anchor's drawn height and the plane that the model leans with.
+/// Model space to world space, given world Z at the anchor and the gradient of the lean.
 fn pose(placement: &Placement, footprint: &ModelFootprint, anchor_z: f64, lean: DVec2) -> Mat4 {
     let rotation = tilted(lean.as_vec2()) * heading(placement.heading_rad);
     let sink_m = f64::from(placement.standing.sink_m);

@@ -1,5 +1,5 @@
-//! The block the ground stands on: walls from the edge of the displayed ground down to a level base, so that a
-//! terrain seen whole reads as a sand table and not as a sheet in the air.
+//! The block under the ground: walls from the edge of the displayed ground down to a level base, so that a terrain seen
+//! whole looks like a sand table, not like a sheet in the air.
 
 use glam::{DVec2, Vec2, Vec3};
 use rayon::prelude::*;
@@ -11,20 +11,19 @@ use crate::mesh::sink::MeshSink;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 
-/// How far the base lies below the lowest ground, as a share of the ground's longer side.
+/// The depth of the base below the lowest ground, as a part of the ground's longer side.
 const DEPTH: f64 = 0.02;
 
 /// The wall's color at the ground and at the base: a cut through soil.
 const TOP: Srgba = Srgba::opaque(196, 168, 136);
 const FOOT: Srgba = Srgba::opaque(132, 110, 90);
 
-/// Walls under the border edges of `ground`, a mesh emitted from `lattice`, heights drawn times `exaggeration`.
+/// Walls under the border edges of `ground`, a mesh of the displayed heights in `lattice`.
 ///
 /// A border edge gets a wall where there is no ground beyond it: at the lattice's border and around holes, not
 /// where a neighboring patch is merely out of view.
-pub fn plinth(ground: &DrawMesh, lattice: &Lattice, exaggeration: f32) -> DrawMesh {
-    let base =
-        lattice.height_range().0 * exaggeration - (lattice.extent().size().max_element() * DEPTH) as f32;
+pub fn plinth(ground: &DrawMesh, lattice: &Lattice) -> DrawMesh {
+    let base = lattice.height_range().0 - (lattice.extent().size().max_element() * DEPTH) as f32;
     let mut walls = DrawMesh::default();
     for (from, to) in border_edges(ground) {
         let along = to.truncate() - from.truncate();
@@ -109,7 +108,7 @@ mod tests {
     fn walls_stand_at_the_world_s_edge_and_face_outward_but_not_at_the_edge_of_view() {
         let lattice =
             Lattice::new(DVec2::new(700.0, 900.0), DVec2::splat(10.0), 3, vec![5.0; 6]).expect("sound");
-        let walls = plinth(&western_cell(&lattice), &lattice, 1.0);
+        let walls = plinth(&western_cell(&lattice), &lattice);
         assert_eq!(walls.triangles.len(), 6, "south, west and north");
         for triangle in &walls.triangles {
             let [a, b, c] = triangle.map(|id| Vec3::from(walls.vertices[id.index()].position));

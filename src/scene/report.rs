@@ -1,20 +1,20 @@
-//! What building a scene found out about single features: typed rows, a struct a table.
+//! Measures of single features: typed rows, a struct per table.
 //!
-//! To add a table, add its block to `report!`, and push its rows where they are found. The name and the unit of a column
+//! A new table is a block in `report!`. The name and the unit of a column
 //! come from its field: `lowest_shore: f64, "m"` is `lowest shore [m]` in text, `lowest_shore_m` in JSON and CSV.
 
 /// One table for output: a row for each feature.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReportTable {
-    /// What its rows are, such as `conformed roads`.
+    /// Its title, such as `conformed roads`.
     pub name: String,
-    /// What its columns hold.
+    /// Its columns.
     pub columns: &'static [ReportColumn],
     /// A cell for each column.
     pub rows: Vec<Vec<ReportCell>>,
 }
 
-/// What a column holds.
+/// A column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReportColumn {
     /// The name as a word, such as `deepest_cut`.
@@ -206,7 +206,7 @@ report! {
     /// Tables of models with instances.
     instances: InstancesRow {
         name: String => "The table, or its file.";
-        models: usize => "Models that stand.";
+        models: usize => "Models.";
         off_the_ground: usize => "Points off the ground.";
         of_no_variant: usize => "Points that name none of the variants.";
         least_gap: Option<f64>, "m" => "Least gap at any corner.";
@@ -217,10 +217,10 @@ report! {
         fill: Option<f64>, "m3" => "Earth filled for pads.";
     }
 
-    /// Models strewn over areas.
+    /// Models scattered over areas.
     scattered: ScatterRow {
         name: String => "The table.";
-        models: usize => "Models that stand.";
+        models: usize => "Models.";
         areas: usize => "Areas.";
         by_slope: usize => "Places left free for the slope of the ground.";
         by_elevation: usize => "Places left free for the elevation of the ground.";

@@ -22,7 +22,7 @@ use crate::vector::filter::{Condition, Filter};
 use crate::vector::hints::VectorHints;
 use crate::vector::read;
 
-/// A file's name, the layer asked for and the system stated for it.
+/// A file's name, and the layer and the system stated for it.
 type LayerKey = (String, Option<String>, Option<String>);
 
 /// Reads vector files, each once.
@@ -34,7 +34,7 @@ pub struct Sources<'a> {
     layers: RefCell<BTreeMap<LayerKey, Arc<VectorLayer>>>,
 }
 
-/// A shape with what its file says of it.
+/// A shape with the properties of its feature.
 pub struct Sourced<T> {
     /// The properties of the feature it is, or is a part of; none for inline points.
     pub attributes: Attributes,
@@ -51,8 +51,8 @@ impl<'a> Sources<'a> {
     /// The lines of a source.
     ///
     /// # Errors
-    /// The file cannot be had or read, holds no line that matches, or its coordinates cannot be brought to the
-    /// scene's system.
+    /// The file cannot be read, holds no line that matches, or its coordinates cannot be transformed to the scene's
+    /// system.
     pub fn lines(&self, source: &FeatureSource) -> Result<Vec<Sourced<Vec<DVec2>>>, Diagnostic> {
         let lines = self.shapes(source, |geometry| match geometry {
             Geometry::Lines(lines) => lines.clone(),
@@ -184,7 +184,7 @@ impl<'a> Sources<'a> {
         Ok(layer)
     }
 
-    /// The message about a file that cannot be read, at the key that is to blame.
+    /// The error of a file that cannot be read, at the key that caused it.
     fn unread(
         &self,
         file: &Stated<String>,
@@ -207,7 +207,7 @@ impl<'a> Sources<'a> {
         }
     }
 
-    /// Brings every shape to the world.
+    /// Transforms every shape to world coordinates.
     fn place_all<T, U>(
         &self,
         source: &FeatureSource,

@@ -15,7 +15,7 @@ use crate::scene::Terrain;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::light;
 
-/// An atlas's tints from the lowest ground to the highest: meadow, field, heath, rock, pale heights.
+/// The tints of an atlas, from the lowest ground to the highest: meadow, field, heath, rock, snow.
 const ATLAS: [(f32, [u8; 3]); 7] = [
     (0.0, [120, 158, 106]),
     (0.18, [156, 182, 124]),
@@ -26,7 +26,7 @@ const ATLAS: [(f32, [u8; 3]); 7] = [
     (1.0, [226, 220, 212]),
 ];
 
-/// Dry country: sand, ochre, red rock, pale heights.
+/// The tints of a desert: sand, ochre, red rock, pale heights.
 const DESERT: [(f32, [u8; 3]); 5] = [
     (0.0, [196, 178, 138]),
     (0.3, [222, 196, 146]),
@@ -35,7 +35,7 @@ const DESERT: [(f32, [u8; 3]); 5] = [
     (1.0, [232, 214, 196]),
 ];
 
-/// A neutral ground for overlays.
+/// Neutral tints for overlays.
 const GRAY: [(f32, [u8; 3]); 2] = [(0.0, [168, 168, 168]), (1.0, [236, 236, 236])];
 
 /// The document's ramp over the ground's range of heights.
@@ -78,8 +78,7 @@ pub fn contours(document: &Document) -> Option<Contours> {
     })
 }
 
-/// The document's light, and haze over ground whose drawn box is `extent_m` meters long or, if that is more,
-/// high.
+/// The document's light and haze; `extent_m` is the longest side of the displayed ground's box.
 pub fn lighting(document: &Document, extent_m: f32) -> Lighting {
     let light = &document.style.light;
     let (azimuth, altitude) = ((light.azimuth as f32).to_radians(), (light.altitude as f32).to_radians());
@@ -94,7 +93,7 @@ pub fn lighting(document: &Document, extent_m: f32) -> Lighting {
     Lighting { to_sun: to_sun.normalize_or(Vec3::Z), haze: Haze { distance_m, ..default.haze }, ..default }
 }
 
-/// What the ground shows at every post.
+/// The height, slope and light of every post.
 pub fn ground_map(terrain: &Terrain, to_sun: Vec3, ramp: ColorRamp, contours: Option<Contours>) -> GroundMap {
     let lattice = &terrain.lattice;
     let light = light::light(terrain.displayed(), to_sun);
@@ -125,8 +124,8 @@ pub fn ground_map(terrain: &Terrain, to_sun: Vec3, ramp: ColorRamp, contours: Op
     }
 }
 
-/// Heights with posts without data taking the last known height of their row, then of the row below: they only
-/// color the pixels within half a cell of the edge of data.
+/// The heights, where posts without data take the nearest height of their row, or the lowest: they only color pixels
+/// within half a cell of the edge of data.
 fn filled_heights(lattice: &Lattice, lowest: f32) -> Vec<f32> {
     let columns = lattice.columns() as usize;
     let mut heights = lattice.heights().to_vec();

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::description::diagnostic::Diagnostic;
-use crate::description::document::{CameraTable, Document, LabelTable};
+use crate::description::document::{CameraTable, LabelTable};
 use crate::scene::world_frame::WorldFrame;
 use crate::scene::{SceneLabel, Terrain, View};
 use crate::terrain::query::{Interpolation, ground_height};
@@ -11,15 +11,11 @@ use crate::terrain::query::{Interpolation, ground_height};
 /// The document's labels, `{height}` filled in.
 ///
 /// # Errors
-/// A label stands off the ground.
-pub fn labels(
-    document: &Document,
-    places: &WorldFrame<'_>,
-    terrain: &Terrain,
-) -> Result<Vec<SceneLabel>, Diagnostic> {
+/// A label lies off the ground.
+pub fn labels(frame: &WorldFrame<'_>, terrain: &Terrain) -> Result<Vec<SceneLabel>, Diagnostic> {
     let label = |table: &LabelTable| {
-        let world = places.point(&table.at, table.crs.as_ref())?;
-        let ground = places.on_ground(&terrain.lattice, &table.at, world)?;
+        let world = frame.point(&table.at, table.crs.as_ref())?;
+        let ground = frame.on_ground(&terrain.lattice, &table.at, world)?;
         let elevation = whole_meters(ground.z / terrain.exaggeration);
         Ok(SceneLabel {
             text: table.text.replace("{height}", &elevation),
@@ -28,7 +24,7 @@ pub fn labels(
             kind: table.kind,
         })
     };
-    document.labels.iter().map(label).collect()
+    frame.document.labels.iter().map(label).collect()
 }
 
 /// A height in whole meters, without a sign before 0.
@@ -37,40 +33,35 @@ pub fn whole_meters(height_m: f32) -> String {
     format!("{:.0}", if rounded == 0.0 { 0.0 } else { rounded })
 }
 
-/// The document's cameras, or one that sees the whole ground where it has none.
+/// The document's cameras; without any, one that sees the whole ground.
 ///
 /// # Errors
-/// A camera's eye stands off the ground without an elevation of its own, its target stands off the ground, or
-/// the two are one place.
-pub fn cameras(
-    document: &Document,
-    places: &WorldFrame<'_>,
-    terrain: &Terrain,
-) -> Result<Vec<View>, Diagnostic> {
-    if document.cameras.is_empty() {
+/// The eye of a camera without `eye_elevation` lies off the ground, its target does, or the two coincide.
+pub fn cameras(frame: &WorldFrame<'_>, terrain: &Terrain) -> Result<Vec<View>, Diagnostic> {
+    if frame.document.cameras.is_empty() {
         return Ok(vec![overview(terrain)]);
     }
-    document.cameras.iter().map(|table| camera(table, places, terrain)).collect()
+    frame.document.cameras.iter().map(|table| camera(table, frame, terrain)).collect()
 }
 
-fn camera(table: &CameraTable, places: &WorldFrame<'_>, terrain: &Terrain) -> Result<View, Diagnostic> {
-    let eye_world = places.point(&table.eye, table.crs.as_ref())?;
+fn camera(table: &CameraTable, frame: &WorldFrame<'_>, terrain: &Terrain) -> Result<View, Diagnostic> {
+    let eye_world = frame.point(&table.eye, table.crs.as_ref())?;
     let eye = match table.eye_elevation {
         Some(elevation) => eye_world.as_vec2().extend(elevation as f32 * terrain.exaggeration),
         None => {
-            let ground = places.on_ground(&terrain.lattice, &table.eye, eye_world).map_err(|error| {
+            let ground = frame.on_ground(&terrain.lattice, &table.eye, eye_world).map_err(|error| {
                 error.with_help("give the camera an eye_elevation where its eye is not above the model")
             })?;
             ground + Vec3::Z * table.eye_height as f32
         }
     };
-    let target_world = places.point(&table.look_at, table.crs.as_ref())?;
-    let target = places.on_ground(&terrain.lattice, &table.look_at, target_world)?;
+    let target_world = frame.point(&table.look_at, table.crs.as_ref())?;
+    let target = frame.on_ground(&terrain.lattice, &table.look_at, target_world)?;
     let target = target + Vec3::Z * table.look_at_height as f32;
     if (target - eye).try_normalize().is_none() {
         let message = "the camera looks at the place where its eye is";
         let help = "move look_at, or give it another look_at_height";
-        return Err(places.document.error(&table.look_at, message).with_help(help));
+        return Err(frame.document.error(&table.look_at, message).with_help(help));
     }
     Ok(View {
         name: table.name.to_string(),
@@ -80,7 +71,7 @@ fn camera(table: &CameraTable, places: &WorldFrame<'_>, terrain: &Terrain) -> Re
     })
 }
 
-/// What there is to say about cameras whose eye is under the ground.
+/// A note for each camera whose eye is under the ground.
 pub fn buried(cameras: &[View], terrain: &Terrain) -> Vec<String> {
     let lattice = &terrain.lattice;
     let depth_m = |view: &View| {
@@ -99,10 +90,10 @@ pub fn buried(cameras: &[View], terrain: &Terrain) -> Vec<String> {
 const OVERVIEW_FOV_DEG: f32 = 40.0;
 /// The narrowest picture, width to height, that shows the overview's whole ground.
 const OVERVIEW_ASPECT: f32 = 4.0 / 3.0;
-/// How much further back the eye stands than it must: room for the plinth and the furniture.
+/// A factor of the eye's distance, which leaves space for the plinth and the furniture.
 const OVERVIEW_MARGIN: f32 = 1.1;
 
-/// From the south, looking down at about 36°, as near as it may be with the whole ground in view.
+/// A view from the south, 36° down, as near as the whole ground fits in.
 fn overview(terrain: &Terrain) -> View {
     let (min, max) = terrain.bounds();
     let target = (min + max) / 2.0;
@@ -110,7 +101,7 @@ fn overview(terrain: &Terrain) -> View {
     let up = Vec3::new(0.0, 0.6, 0.8);
     let fov_y_rad = OVERVIEW_FOV_DEG.to_radians();
     let tan = libm::tanf(fov_y_rad / 2.0);
-    // Every corner asks for a distance at which it is no further from the middle of the picture than its border.
+    // Each corner of the box has a least distance at which it lies within the picture.
     let distance = (0..8)
         .map(|corner| {
             let side = |bit: i32| if corner & bit == 0 { -0.5 } else { 0.5 };

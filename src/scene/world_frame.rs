@@ -10,7 +10,7 @@ use crate::geom::crs::{Crs, CrsError};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 
-/// Brings a document's points to the world.
+/// The transform of a document's points to world space.
 pub struct WorldFrame<'a> {
     /// The document, for messages.
     pub document: &'a Document,
@@ -20,7 +20,7 @@ pub struct WorldFrame<'a> {
     pub points_crs: Crs,
     /// Map coordinates of world (0, 0).
     pub origin: DVec2,
-    /// How many times heights are stretched when drawn.
+    /// The vertical exaggeration of displayed heights.
     pub exaggeration: f32,
 }
 
@@ -49,7 +49,7 @@ impl<'a> WorldFrame<'a> {
         world.map_err(|error| self.document.error(at, error))
     }
 
-    /// The place on the ground below a world position, its drawn height as Z.
+    /// The ground at a world position, its displayed height as Z.
     ///
     /// # Errors
     /// The position lies off the elevation model, or where it holds no data.

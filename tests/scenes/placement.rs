@@ -2,13 +2,16 @@
 
 use crate::common::scratch::Scratch;
 use glam::{DVec2, Vec2, Vec3};
+use sandtable::description::diagnostic::Diagnostic;
+use sandtable::description::document::Document;
 use sandtable::description::parse::parse_bytes;
 use sandtable::draw::list::{DrawItem, FeatureId};
 use sandtable::scene::assets::Assets;
-use sandtable::scene::build::build;
+use sandtable::scene::build::{build, build_ground};
 use sandtable::scene::picture::{ViewDraw, build_draw_list, camera};
 use sandtable::scene::report::ModelRow;
 use sandtable::scene::{Scene, View};
+use sandtable::terrain::lattice::Lattice;
 use sandtable::terrain::query::{Interpolation, ground_height};
 use sandtable::terrain::triangle_surface::TriangleSurface;
 
@@ -30,6 +33,11 @@ fn hills() -> String {
 
 /// The scene with `text` after its `[terrain]`, or the message that refuses it.
 fn scene(text: &str) -> Result<Scene, String> {
+    built(text, |document, assets| build(document, assets, &|_| ()))
+}
+
+/// What `build` makes of the scene file with `text` after its `[terrain]`.
+fn built<T>(text: &str, build: impl Fn(&Document, &Assets) -> Result<T, Diagnostic>) -> Result<T, String> {
     let scratch = Scratch::new();
     scratch.write("s/hills.asc", hills());
     scratch.write("s/house.obj", HOUSE);
@@ -51,7 +59,29 @@ fn scene(text: &str) -> Result<Scene, String> {
         format!("[terrain]\ndem = \"hills.asc\"\ncrs = \"EPSG:32616\"\nvertical_exaggeration = 1.5\n{text}");
     let document = parse_bytes("scene.toml", text.as_bytes()).map_err(|error| error.to_string())?;
     let assets = Assets::new(&file, &[]).expect("the folder is there");
-    build(&document, &assets, &|_| ()).map_err(|error| error.to_string())
+    build(&document, &assets).map_err(|error| error.to_string())
+}
+
+#[test]
+fn the_ground_alone_is_the_ground_of_the_scene_and_a_scene_is_not_lit_before_a_picture() {
+    let pads = "[[model]]\nfile = \"house.obj\"\nat = [700, 900]\nheading = 20\nfooting = \"pad\"\n\
+                [[model]]\nfile = \"house.obj\"\nat = [720, 930]\nfooting = \"plinth\"\n";
+    let scene = scene(pads).expect("sound");
+    assert!(!scene.is_lit());
+    let ground = built(pads, build_ground).expect("sound").heights.snapshot();
+    let bits =
+        |lattice: &Lattice| lattice.heights().iter().map(|height| height.to_bits()).collect::<Vec<_>>();
+    assert!(bits(ground.lattice()) == bits(&scene.terrain.lattice));
+    assert!(ground.lattice().pinned().contains(&true), "the pad is there");
+}
+
+#[test]
+fn the_ground_alone_reads_no_model_without_a_pad() {
+    let missing =
+        |footing: &str| format!("[[model]]\nfile = \"none.obj\"\nat = [700, 900]\nfooting = \"{footing}\"\n");
+    assert!(built(&missing("plinth"), build_ground).is_ok());
+    assert!(built(&missing("pad"), build_ground).is_err());
+    assert!(scene(&missing("plinth")).is_err());
 }
 
 /// Houses here and there, all with the same lines in their tables.

@@ -1,4 +1,4 @@
-//! Pads: the ground leveled under the models that ask for it, and the bounds on what footprints may cost.
+//! Pads: the ground leveled under models, and limits on the cost of footprints.
 
 use std::collections::BTreeMap;
 
@@ -20,12 +20,12 @@ use crate::terrain::lattice::{HIGHEST_M, Lattice};
 use crate::terrain::support_surface::SupportSurface;
 use crate::terrain::volumes::Volumes;
 
-/// How far a pad reaches out beyond the footprint, as a part of the longer side: room to walk round.
+/// The margin of a pad around the footprint, as a part of the longer side.
 const PAD_REACH: f32 = 0.1;
-/// The most pads of a scene; each may move the earth of some ten thousand posts.
+/// The most pads of a scene; each may move some ten thousand posts.
 const MAX_PADS: usize = 10_000;
-/// The most cells that all footprints together may cover, where they are looked at: some seconds of work for a scene
-/// whose models are a thousand times too large, which is a wrong unit.
+/// The most cells that all footprints together may cover. Models a thousand times too large, those in a wrong unit, would
+/// otherwise take minutes.
 const MAX_CELLS: u64 = 10_000_000;
 
 /// Levels the ground under every model on a pad, and returns the earth moved by the index of the placement.

@@ -1,7 +1,7 @@
-//! The models that a document names, each had once: files, and those that are built in.
+//! The models that a document names, each read once: files and built-in models.
 //!
-//! One rule for `file`, `variants` and `of`: a text that is the bare name of a built-in model is that model; any other is
-//! the path of a file. A file that has such a name is reached by `./`.
+//! In `file`, `variants` and `of` the bare name of a built-in model is that model; any other text is the path of a file. A
+//! file of such a name is written with `./`.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -16,21 +16,19 @@ use crate::scene::assets::Assets;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::footprint::ModelFootprint;
 
-/// Where a model comes from.
+/// The origin of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Maker {
-    /// A file.
+enum ModelOrigin {
     File,
-    /// The program.
     BuiltIn,
 }
 
-/// Models by the names that the document has for them.
+/// Models by their names in the document.
 pub struct Library<'a> {
     document: &'a Document,
     assets: &'a Assets,
     models: Vec<Model>,
-    about: Vec<(ModelFootprint, Maker)>,
+    about: Vec<(ModelFootprint, ModelOrigin)>,
     known: BTreeMap<String, usize>,
 }
 
@@ -40,10 +38,10 @@ impl<'a> Library<'a> {
         Self { document, assets, models: Vec::new(), about: Vec::new(), known: BTreeMap::new() }
     }
 
-    /// The place of the model called `name`, which is read if it is not there yet; what it did not get is noted.
+    /// The index of the model called `name`, read on first use; its notes are added to those of the scene.
     ///
     /// # Errors
-    /// The file cannot be had or read; said at `span`.
+    /// The file cannot be read; the error points at `span`.
     pub fn get(
         &mut self,
         name: &str,
@@ -53,12 +51,12 @@ impl<'a> Library<'a> {
         if let Some(&model) = self.known.get(name) {
             return Ok(model);
         }
-        let (model, maker) = match built_in::by_name(name) {
-            Some(model) => (model, Maker::BuiltIn),
-            None => (self.load(name, span)?, Maker::File),
+        let (model, origin) = match built_in::by_name(name) {
+            Some(model) => (model, ModelOrigin::BuiltIn),
+            None => (self.load(name, span)?, ModelOrigin::File),
         };
         collected.notes.extend(model.notes.iter().map(|note| format!("{name}: {note}")));
-        self.about.push((ModelFootprint::of(&model), maker));
+        self.about.push((ModelFootprint::of(&model), origin));
         self.models.push(model);
         self.known.insert(name.to_owned(), self.models.len() - 1);
         Ok(self.models.len() - 1)
@@ -78,16 +76,16 @@ impl<'a> Library<'a> {
         })
     }
 
-    /// Where a model touches the ground.
+    /// The footprint of a model.
     pub fn footprint(&self, model: usize) -> &ModelFootprint {
         &self.about[model].0
     }
 
-    /// How a model's height is found where `stated` is asked for. A built-in model on the ground stands there by its
-    /// origin, since what it has below that is its root.
+    /// What a model's height is measured from. A built-in model stands on the ground by its origin, since its root lies
+    /// below that.
     pub fn clamp(&self, model: usize, stated: Clamp) -> Clamp {
         match (stated, self.about[model].1) {
-            (Clamp::Ground, Maker::BuiltIn) => Clamp::Relative,
+            (Clamp::Ground, ModelOrigin::BuiltIn) => Clamp::Relative,
             _ => stated,
         }
     }
@@ -98,7 +96,7 @@ impl<'a> Library<'a> {
         bounds.map_or(0.0, |bounds| bounds.min.abs().max(bounds.max.abs()).truncate().max_element())
     }
 
-    /// All models, in the order of their places.
+    /// All models, in the order of their indices.
     pub fn into_models(self) -> Vec<Model> {
         self.models
     }

@@ -1,12 +1,12 @@
 //! Models: every file read once, every placement checked against the ground.
 //!
 //! ```text
-//!  [[model]] at / instances ─► placements ─► footings: pads level the ground ─► told: gaps, volumes
+//!  [[model]] at / instances ─► placements ─► footings: pads level the ground ─► report: gaps, volumes
 //!  [[scatter]] ───────────────────────────────────────────────────────────────► placements by the thousand
 //! ```
 //!
-//! A placement names a model, a place in plan and how it meets the ground; how high it stands is worked out when it is
-//! drawn ([`crate::scene::placement`]).
+//! A placement holds a model, a position in plan and how it meets the ground; each picture computes its height
+//! ([`crate::scene::placement`]).
 
 pub mod footings;
 pub mod library;
@@ -33,11 +33,10 @@ use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::triangle_surface::TriangleSurface;
 
-/// The most models that stand in a scene, however they came there: some fifty megabytes of placements, and more than
-/// a picture has room to show.
+/// The most models of a scene: some fifty megabytes of placements, and more than a picture can show.
 pub const MAX_MODELS: usize = 1_000_000;
 
-/// What one `[[model]]` came to.
+/// The placements of one `[[model]]`.
 pub struct Group<'a> {
     /// The table.
     pub table: &'a ModelPlacement,
@@ -173,10 +172,10 @@ impl<'a> PlacedModels<'a> {
     }
 }
 
-/// Refuses more models than [`MAX_MODELS`].
+/// Checks that a scene has no more models than [`MAX_MODELS`].
 ///
 /// # Errors
-/// There are more, said at the place of `source`.
+/// There are more; the error points at `source`.
 pub fn within(document: &Document, source: &FeatureSource, count: usize) -> Result<(), Diagnostic> {
     if count <= MAX_MODELS {
         return Ok(());
@@ -187,7 +186,7 @@ pub fn within(document: &Document, source: &FeatureSource, count: usize) -> Resu
         .with_help("take fewer points or a lower density, or choose among them with `where`"))
 }
 
-/// Which model stands at which of a table's points.
+/// The choice among a table's variants.
 struct ModelChoice<'a> {
     table: &'a ModelPlacement,
     file: usize,

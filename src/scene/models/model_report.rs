@@ -1,7 +1,7 @@
 //! The report on models: single ones corner by corner, instances of one table by their extremes.
 //!
-//! A gap is the drawn height of a corner of the model's foot above the ground under it: above 0 it floats, below 0 it is
-//! buried. Gaps are those over the finest ground; in a picture they differ by what the displayed ground is off.
+//! A gap is the displayed height of a corner of the model's foot above the ground under it: above 0 it floats, below 0 it
+//! is buried. Gaps are measured over the finest ground; in a picture they differ by the error of the displayed ground.
 
 use std::collections::BTreeMap;
 

@@ -1,9 +1,7 @@
-//! Many models: what is out of view is left out, what is small is drawn in a simpler form, and what is alike comes
-//! in runs.
+//! Many models: those out of view are left out, small ones are drawn in a simpler form, and equal ones form runs.
 //!
-//! A picture whose models come to no more than [`FULL_TRIANGLES`] shows all of them as their files have them: there is
-//! nothing to gain. Past that, each is drawn in the form that [`ModelDetail::form`] chooses for the size at which it is seen.
-//! Items are listed model by model, form by form and part by part, so that they make the runs of
+//! A picture whose models have no more than [`FULL_TRIANGLES`] draws all of them in full. Past that, [`ModelDetail::form`]
+//! chooses the form of each by its apparent size. Items are listed by model, form and part, for the runs of
 //! [`DrawList::runs`].
 
 use std::collections::BTreeMap;
@@ -23,12 +21,12 @@ use crate::view::frustum::Frustum;
 /// The triangles of models up to which a picture shows every one of them in full: as many as a landscape's ground has.
 const FULL_TRIANGLES: usize = 250_000;
 
-/// For whom models are drawn.
+/// The viewer that models are drawn for.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Viewer<'a> {
-    /// For whoever looks at them later: all models, in full.
+    /// None yet: all models, in full.
     Anyone,
-    /// For one picture.
+    /// The camera of one picture.
     Camera(&'a Camera),
 }
 
@@ -37,7 +35,7 @@ pub(super) enum Viewer<'a> {
 pub(super) struct PlacedModel {
     /// Which of the scene's models.
     pub model: usize,
-    /// Its place: a rotation, a uniform scale and a translation.
+    /// Its pose: a rotation, a uniform scale and a translation.
     pub world_from_model: Mat4,
     /// The feature it is.
     pub feature: FeatureId,
@@ -50,7 +48,7 @@ struct BoundingSphere {
     radius: f32,
 }
 
-/// Adds all that stands where `viewer` may see it.
+/// Adds the models that `viewer` may see.
 pub(super) fn add(list: &mut DrawList, scene: &Scene, placed: &[PlacedModel], viewer: Viewer<'_>) {
     let balls: Vec<BoundingSphere> = scene.models.iter().map(BoundingSphere::around).collect();
     let groups = match viewer {
@@ -93,7 +91,7 @@ fn grouped<'a>(stands: impl Iterator<Item = (&'a PlacedModel, DetailForm)>) -> G
     groups
 }
 
-/// The form in which each is drawn.
+/// The form of each model in view.
 fn forms(
     scene: &Scene,
     camera: &Camera,
@@ -115,14 +113,14 @@ fn forms(
 
 /// Makes the simpler forms of the models in view, where they are not yet made.
 ///
-/// They are made before they are put in place, not in it: making them shares work out among threads, and a thread that
-/// helps another picture meanwhile must not come to wait for itself.
+/// Not by `get_or_init`: making them runs on several threads, and one that helps another picture meanwhile could wait for
+/// itself.
 fn prepare(scene: &Scene, in_view: &[&PlacedModel]) {
     let mut wanted: Vec<usize> = in_view.iter().map(|stand| stand.model).collect();
     wanted.sort_unstable();
     wanted.dedup();
     wanted.par_iter().filter(|&&model| scene.details[model].get().is_none()).for_each(|&model| {
-        // Another picture may have been faster; it made the same.
+        // Another picture may have set the same value first.
         let _ = scene.details[model].set(ModelDetail::new(&scene.models[model]));
     });
 }
@@ -133,7 +131,7 @@ impl BoundingSphere {
         Self { center: bounds.center(), radius: bounds.radius() }
     }
 
-    /// The ball in world space.
+    /// The sphere in world space.
     fn in_world(&self, stand: &PlacedModel) -> Self {
         let scale = stand.world_from_model.x_axis.truncate().length();
         Self { center: stand.world_from_model.transform_point3(self.center), radius: self.radius * scale }
@@ -143,7 +141,7 @@ impl BoundingSphere {
         frustum.may_see(self.center - self.radius, self.center + self.radius)
     }
 
-    /// How the model in this ball of its own space is seen.
+    /// The apparent size of the model in this sphere of model space.
     fn seen(&self, stand: &PlacedModel, camera: &Camera) -> ApparentSize {
         let world = self.in_world(stand);
         let scale = if self.radius > 0.0 { world.radius / self.radius } else { 1.0 };
@@ -157,7 +155,7 @@ impl BoundingSphere {
     }
 }
 
-/// A draw list with what has been listed of each model.
+/// A draw list with the meshes and materials of each model so far.
 struct ModelItems<'a> {
     list: &'a mut DrawList,
     /// The first material of each model.

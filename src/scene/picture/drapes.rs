@@ -1,4 +1,4 @@
-//! What lies on the ground, cut to the displayed triangles.
+//! Ribbons, cut to the displayed triangles.
 
 use std::collections::BTreeMap;
 

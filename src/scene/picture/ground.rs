@@ -1,4 +1,4 @@
-//! The displayed ground and the block it stands on.
+//! The displayed ground and the block under it.
 
 use glam::Vec3;
 
@@ -33,7 +33,7 @@ impl MeshSink<Vec3> for GroundSink {
 pub(super) fn add(list: &mut DrawList, terrain: &Terrain, displayed: &DisplayedTerrain) -> DrawMesh {
     let mut sink = GroundSink(DrawMesh::default());
     displayed.emit(&mut sink);
-    let walls = plinth(&sink.0, &terrain.lattice, terrain.exaggeration);
+    let walls = plinth(&sink.0, terrain.displayed());
     let material = list.add_material(Material {
         name: "ground".into(),
         normals: NormalSource::Ground,

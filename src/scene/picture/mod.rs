@@ -1,4 +1,4 @@
-//! A scene and a camera to a draw list: refine, emit, drape, set solids and models.
+//! From a scene and a camera to a draw list: refine, emit, drape, set solids and models.
 
 mod detail;
 mod drapes;
@@ -22,9 +22,9 @@ use crate::scene::{Scene, Terrain, View};
 use crate::view::camera::{Camera, CameraError};
 use crate::view::frustum::Frustum;
 
-/// What one camera sees of a scene.
+/// The draw list of a scene for one camera.
 pub struct ViewDraw {
-    /// What to draw.
+    /// The draw list.
     pub list: DrawList,
     /// The displayed ground.
     pub displayed: Arc<DisplayedTerrain>,

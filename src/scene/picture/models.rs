@@ -1,4 +1,4 @@
-//! Models, each set where it stands.
+//! Models, each in its pose.
 
 use rayon::prelude::*;
 

@@ -1,4 +1,4 @@
-//! What lies on the ground of a scene, by patch: for those who walk through it and cut again only what changed.
+//! The ribbons of a scene by patch, for flights that cut again only the patches that changed.
 
 use crate::ribbon::patches::{Borders, Drapes};
 use crate::roam::graph::Vertex;

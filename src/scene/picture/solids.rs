@@ -1,4 +1,4 @@
-//! What has a shape of its own.
+//! Solids with fixed heights.
 
 use std::collections::BTreeMap;
 

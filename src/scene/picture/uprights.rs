@@ -1,4 +1,4 @@
-//! What stands on the ground, set on it as it is displayed: the walls, fences and lines, and what buildings lack to it.
+//! Walls, fences, lines and footings, set on the displayed ground.
 
 use rayon::prelude::*;
 

@@ -1,8 +1,8 @@
-//! Models strewn over areas: woods, scrub, boulders.
+//! Models scattered over areas: woods, scrub, boulders.
 //!
-//! A [`pattern`] covers the whole map; of its places those stand that lie in the area ([`bands`]), on ground of the slope
-//! and elevation asked for, and on nobody else's ([`taken`]). Every step asks about one place only, so a tree stands or
-//! does not whatever happens elsewhere, and rows of squares are done side by side.
+//! A [`pattern`] covers the whole map. A point of it gets a model where it lies in the area ([`bands`]), on ground of the
+//! stated slopes and elevations, and clear of other features ([`taken`]). Each point is decided alone, so that no model
+//! depends on another, and rows of squares are filled in parallel.
 
 pub mod bands;
 pub mod chance;
@@ -38,20 +38,19 @@ use crate::terrain::query::gradient::{Gradient, GradientSurface, ground_gradient
 use crate::terrain::query::{Interpolation, ground_height};
 use crate::vector::feature::Polygon;
 
-/// The spacing where none is stated, in parts of the side of the square that each has to itself: a wood, not an orchard.
+/// The default spacing, in parts of the side of a model's square: a wood, not an orchard.
 const SPACING_PART: f64 = 0.5;
-/// How far a model keeps from what is taken, in parts of its reach: boughs may hang over a road, trunks not stand on it.
+/// The clearance of a model from other features, in parts of its reach: boughs may hang over a road.
 const CLEAR_PART: f64 = 0.5;
-/// The most squares of a scene's patterns that are looked at, and pieces of edges kept for one area: a second's work for
-/// what holds no more than a million models.
+/// The most squares of a scene's patterns, and the most pieces of edges of one area: a second's work.
 const MAX_SQUARES: usize = 1 << 25;
-/// Rows of squares done side by side before the models are counted.
+/// Rows of squares filled in parallel before the models are counted.
 const ROWS_AT_ONCE: usize = 256;
 
-/// Strews the document's scattered models among the other placements.
+/// Adds the document's scattered models to the placements.
 ///
 /// # Errors
-/// A source or a model file cannot be had, or there are more models or areas than can be placed.
+/// A source or a model file cannot be read, or there are more models or areas than can be placed.
 pub fn strew(
     sources: &Sources<'_>,
     lattice: &Lattice,
@@ -87,7 +86,7 @@ pub fn strew(
             }
             areas += 1;
         }
-        // Where areas overlap, they have found the same places.
+        // Areas that overlap give the same points.
         stood.sort_by(|a, b| a.at.y.total_cmp(&b.at.y).then(a.at.x.total_cmp(&b.at.x)));
         stood.dedup_by(|a, b| a.at == b.at);
         tell(table, (stood.len(), areas, counts), collected);
@@ -96,7 +95,7 @@ pub fn strew(
     Ok(())
 }
 
-/// What a table strews.
+/// The models of a table.
 struct Species {
     models: Vec<usize>,
     seed: u64,
@@ -112,13 +111,13 @@ impl Species {
         for name in table.models.iter() {
             models.push(library.get(name, table.models.span(), collected)?);
         }
-        // Tables of other species strew otherwise, so that two do not stand in each other.
+        // Tables of different models get different patterns, so that theirs do not coincide.
         let seed = seed_of(table.seed, table.models.iter().map(String::as_str));
         Ok(Self { models, seed })
     }
 }
 
-/// How many places of a pattern nothing stands at, by why, and in how many areas the spacing takes from the density.
+/// The points without a model by reason, and the areas whose spacing lowers their density.
 #[derive(Clone, Copy, Debug, Default)]
 struct ScatterCounts {
     crowded: usize,
@@ -179,7 +178,7 @@ fn bands(
     })
 }
 
-/// What decides at a place.
+/// The conditions at a point.
 struct ScatterGround<'a> {
     table: &'a ScatterTable,
     frame: &'a WorldFrame<'a>,
@@ -191,7 +190,7 @@ struct ScatterGround<'a> {
 }
 
 impl ScatterGround<'_> {
-    /// What stands in a row of squares, and how much does not.
+    /// The models in a row of squares, and the points without one.
     fn row(&self, bands: &Bands, pattern: &PointPattern, row: i64) -> (Vec<Placement>, ScatterCounts) {
         let (mut standing, mut counts) = (Vec::new(), ScatterCounts::default());
         for column in bands.columns(row) {
@@ -202,7 +201,7 @@ impl ScatterGround<'_> {
         (standing, counts)
     }
 
-    /// What stands at a place, or why nothing does.
+    /// The model at a point, or the reason why there is none.
     fn stand(&self, place: &PatternPoint, counts: &mut ScatterCounts) -> Option<Placement> {
         let Some((height_m, gradient)) = self.ground_at(place.at) else {
             counts.off += 1;
@@ -230,8 +229,8 @@ impl ScatterGround<'_> {
         Some((height_m, ground_gradient(self.lattice, GradientSurface::Planar, at).ok()?))
     }
 
-    /// A model at a place, its looks drawn from the place's fate. It stands as deep in a slope as its foot is wide, so
-    /// that its downhill side does not float.
+    /// A model at a point, its kind, size and heading drawn from the point's random number. It sinks into a slope by its
+    /// foot's width, so that its downhill side does not float.
     fn placement(&self, place: &PatternPoint, gradient: Gradient) -> Placement {
         let mut chance = Chance::from_number(place.fate);
         let model = self.species.models[chance.below(self.species.models.len())];
@@ -253,7 +252,7 @@ fn holds([from, to]: [f64; 2], value: f64) -> bool {
     (from..=to).contains(&value)
 }
 
-/// The ground that roads, water and buildings take, and what stands on it already.
+/// The ground under roads, water, buildings and the models so far.
 fn taken_by(placed: &PlacedModels<'_>, collected: &SceneBuilder) -> Taken {
     let mut taken = Taken::default();
     let kind = |feature: FeatureId| {
@@ -270,7 +269,7 @@ fn taken_by(placed: &PlacedModels<'_>, collected: &SceneBuilder) -> Taken {
             let at = |id: &crate::mesh::sink::VertexId| {
                 Vec3::from(solid.mesh.vertices[id.index()].position).truncate().as_dvec2()
             };
-            // Of a closed solid, what looks up covers all of its plan.
+            // The upper side of a closed solid covers its plan.
             solid.mesh.triangles.iter().for_each(|ids| taken.add([at(&ids[0]), at(&ids[1]), at(&ids[2])]));
         }
     }
