@@ -215,7 +215,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteFileError> {
     write_with(path, |out| out.write_all(bytes))
 }
 
-/// [`write`] for content that is made while it is written.
+/// [`write()`] for content that is made while it is written.
 ///
 /// # Errors
 /// The system or `content` fails.
